@@ -1,0 +1,96 @@
+/* The design of a foil: what the part should be, and the tolerances it is judged by.
+ *
+ * Lengths are in mm, angles in degrees. Words and equations: thesis chapter 5, eq 5.1 to 5.9.
+ * A design file is JSON with "schema": "foilgauge/design/1"; the member names are those below.
+ */
+#ifndef FOILGAUGE_DESIGN_H
+#define FOILGAUGE_DESIGN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum fg_form {
+  FG_FORM_CLASSICAL,  /* bumps, lands between them, a lip at one end */
+  FG_FORM_SINUSOIDAL, /* long fillets, short lands, no lip */
+  FG_FORM_DISCS,      /* no foil: round holes and discs */
+} fg_form;
+
+/* Which line of the strip the lengths belong to. */
+typedef enum fg_datum {
+  FG_DATUM_MID,   /* the midline */
+  FG_DATUM_INNER, /* the edge on the shaft's side */
+  FG_DATUM_OUTER, /* the edge on the sleeve's side */
+} fg_datum;
+
+/* A tolerance: lower <= value <= upper, in the unit of the quantity. Unset limits are -inf, +inf.
+ * `quantity` is the JSON name of a reported quantity: of a bump ("height_mm"), or of the whole
+ * foil ("overall.radius_mm", "thickness_mm"). In a design file:
+ *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } } */
+typedef struct fg_tolerance {
+  char quantity[48];
+  double lower, upper;
+} fg_tolerance;
+
+enum { FG_TOLERANCES_MAX = 32, FG_DIAMETERS_MAX = 256 };
+
+typedef struct fg_design {
+  char name[64];
+  fg_form form;
+  fg_datum datum;
+  size_t bump_count;         /* expected; 0: not stated */
+  double bump_radius_mm;     /* R_D */
+  double bump_angle_deg;     /* alpha_D */
+  double overall_radius_mm;  /* of the foil as designed; also R0_design of eq e */
+  double sleeve_radius_mm;   /* R_sleeve; default: overall_radius_mm */
+  double pitch_deg;          /* angle from bump to bump about O; default 13 1/3 */
+  double fillet_radius_mm;   /* default 0.35 */
+  double thickness_mm;       /* t */
+  double rotor_diameter_mm;  /* D */
+  size_t diameter_count;     /* discs only: known diameters, in any order */
+  double diameters_mm[FG_DIAMETERS_MAX];
+  size_t tolerance_count;
+  fg_tolerance tolerances[FG_TOLERANCES_MAX];
+} fg_design;
+
+/* What follows from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */
+typedef struct fg_nominal {
+  double centre_to_centre_mm;    /* X_D: distance of bump centre from overall centre, from
+                                    R_D, alpha_D and the overall radius */
+  double half_chord_mm;          /* l0 = R sin(alpha/2), eq 5.2 */
+  double arc_length_mm;          /* alpha_D R_D */
+  double intersection_angle_deg; /* theta_D */
+  double height_mm;              /* h_D = R_D - (X_D - R_sleeve), eq 5.5 */
+  double die_height_mm;          /* h_b = t + R - R cos(alpha/2), eq 5.1 */
+  double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8 */
+} fg_nominal;
+
+/* The Gen II design of thesis table 5.6: R 3.32 mm, alpha 63.15 degrees, overall 20.73 mm,
+ * t 0.1 mm, rotor 40 mm, nine bumps, classical, datum mid. */
+void fg_design_default(fg_design *design);
+
+/* FG_ERR_DATA when a value is missing, not finite, not positive or contradicts another one (a bump
+ * circle that cannot meet the overall circle at alpha, bumps that overlap at this pitch). The
+ * message names the member, its value and what would be right. */
+fg_status fg_design_check(fg_context *ctx, const fg_design *design);
+
+/* The derived nominal values of a checked design. */
+fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
+
+/* Reads a design from JSON text; members that are absent keep the value `design` has on entry, so
+ * fill it with fg_design_default first. Unknown members, wrong types and wrong schema are
+ * FG_ERR_DATA. `path` is for messages. Checks with fg_design_check before it returns. */
+fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design);
+
+/* The same from a file. */
+fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

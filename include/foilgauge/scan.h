@@ -1,0 +1,58 @@
+/* A scan, read row by row as gray values.
+ *
+ * PNG of any kind (gray, RGB, palette, with or without alpha, 1 to 16 bit) comes out as rows of
+ * 8- or 16-bit gray: 16 when the file has 16, else 8. Fewer bits are spread over 0 to 255. RGB
+ * becomes luminance (Rec. 709 weights); alpha is dropped. Interlaced files are decoded whole in
+ * memory and served row by row. CRC errors and truncation are fatal.
+ */
+#ifndef FOILGAUGE_SCAN_H
+#define FOILGAUGE_SCAN_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_scan fg_scan;
+
+typedef struct fg_scan_options {
+  double dpi;          /* 0: as the file says; else used for both axes, file or not */
+  uint64_t pixel_cap;  /* refuse larger ones; 0: 4e9 */
+} fg_scan_options;
+
+typedef struct fg_scan_info {
+  int64_t width_px, height_px;
+  int bit_depth;           /* of the file: 1, 2, 4, 8, 16 */
+  int bytes_per_pixel;     /* of the rows: 1 or 2 (host byte order, uint16_t) */
+  double dpi[2];           /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
+  double dpi_file[2];      /* before snapping; NaN when the file has none */
+} fg_scan_info;
+
+/* Opens a scan and reads its header. `path` "-" is standard input. Errors: FG_ERR_IO (cannot open
+ * or read), FG_ERR_DATA (empty, not a PNG, broken, over the cap, no resolution and no dpi given:
+ * the message says `--dpi`), FG_ERR_USAGE (dpi not finite or not positive). */
+fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options *options,
+                       fg_scan **scan);
+
+const fg_scan_info *fg_scan_get_info(const fg_scan *scan);
+
+/* The next `rows` rows, each `stride_bytes` after the one before. Rows beyond the end are an
+ * FG_ERR_USAGE. After the last row everything up to the end of the file is read and checked. */
+fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
+                            int64_t stride_bytes);
+
+/* SHA-256 of the whole file, as 64 hex digits. For a regular file it is computed from the same
+ * open file (pread, safe to call from another thread while rows are read); for a pipe it is known
+ * after the last row. */
+fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]);
+
+void fg_scan_close(fg_scan *scan); /* NULL is fine */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

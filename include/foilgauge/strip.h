@@ -1,0 +1,59 @@
+/* A traced strip: both edges of a foil's cross-section along its whole length.
+ *
+ * The vision side fills it, the geometry side reads it. Positions are in mm of the scan's frame:
+ * x right, y down, pixel centres at whole numbers times the axis' pixel size.
+ */
+#ifndef FOILGAUGE_STRIP_H
+#define FOILGAUGE_STRIP_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/circle.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Facts about a strip as it was seen; the recogniser turns them into flags. */
+typedef enum fg_strip_fact {
+  FG_STRIP_TOUCHES_BORDER = 1u << 0, /* the scan's border cuts it */
+  FG_STRIP_TOUCHES_OTHER = 1u << 1,  /* something else of the same material touches it */
+  FG_STRIP_CLIPPED = 1u << 2,        /* pixels at the edges are at the end of the scale */
+  FG_STRIP_SIDE_BAND = 1u << 3,      /* a band beside one edge: the part's wall shows */
+  FG_STRIP_GAP = 1u << 4,            /* the strip is interrupted or its edge is hidden somewhere */
+} fg_strip_fact;
+
+/* One cross-section. Left and right are as seen when walking along the strip with y down:
+ * the normal is the tangent turned by +90 degrees (from x to y), and `right` lies on its side. */
+typedef struct fg_station {
+  double s_mm;      /* arc length of the midline from the strip's first end */
+  fg_point left;    /* left edge, mm */
+  fg_point right;   /* right edge, mm */
+  fg_point normal;  /* unit normal, in mm coordinates */
+  float u_left_um;  /* standard deviation of the edge along the normal, from pixel noise alone */
+  float u_right_um;
+  float weight;     /* 0: not usable (dust, burr, hidden edge); 1: good */
+} fg_station;
+
+typedef struct fg_strip {
+  fg_station *stations; /* in order along the strip, from one end to the other; owned */
+  size_t count;
+  double step_mm;       /* nominal distance of stations */
+  double thickness_mm;  /* median distance of the edges */
+  double u_thickness_mm;
+  double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */
+  double contrast;      /* strip minus background, in units of the scan's full scale */
+  double noise;         /* pixel noise sd, same unit */
+  double gamma;         /* exponent of the tone curve found */
+  unsigned facts;       /* fg_strip_fact */
+  int64_t box_px[4];    /* x, y, width, height of what belongs to it in the scan */
+} fg_strip;
+
+void fg_strip_free(fg_strip *strip); /* frees the stations; NULL is fine */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

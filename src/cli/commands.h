@@ -1,0 +1,19 @@
+/* The program's commands: a row of a table each (main.c). */
+#ifndef FG_CLI_COMMANDS_H
+#define FG_CLI_COMMANDS_H
+
+#include "foilgauge/status.h"
+
+/* argv[0] is the command's name. Returns the exit code (DESIGN: 0, 1, 2, 64, 65, 74, 130). */
+typedef int fg_command_run(int argc, char **argv);
+
+typedef struct fg_command {
+  const char *name;
+  fg_command_run *run;
+  const char *summary; /* one line for `foilgauge help` */
+} fg_command;
+
+/* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
+int fg_cli_fail(const fg_context *ctx, fg_status status);
+
+#endif

@@ -1,0 +1,41 @@
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/commands.h"
+
+static const fg_command commands[] = {
+    {NULL, NULL, NULL},
+};
+
+int fg_cli_fail(const fg_context *ctx, fg_status status) {
+  fprintf(stderr, "foilgauge: %s\n", ctx->message);
+  return fg_status_exit_code(status);
+}
+
+static void print_help(FILE *out) {
+  fputs("foilgauge measures the foils of gas foil bearings from flatbed scans.\n\n"
+        "Usage: foilgauge COMMAND [OPTION...]\n\nCommands:\n",
+        out);
+  for (const fg_command *command = commands; command->name; command++)
+    fprintf(out, "  %-10s %s\n", command->name, command->summary);
+  fputs("\n`foilgauge COMMAND --help` explains one command.\n", out);
+}
+
+int main(int argc, char **argv) {
+  if (argc < 2) {
+    print_help(stderr);
+    return fg_status_exit_code(FG_ERR_USAGE);
+  }
+  if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help")) {
+    print_help(stdout);
+    return 0;
+  }
+  if (!strcmp(argv[1], "version") || !strcmp(argv[1], "--version")) {
+    puts("foilgauge " FOILGAUGE_VERSION);
+    return 0;
+  }
+  for (const fg_command *command = commands; command->name; command++)
+    if (!strcmp(argv[1], command->name)) return command->run(argc - 1, argv + 1);
+  fprintf(stderr, "foilgauge: no command '%s'; `foilgauge help` lists them\n", argv[1]);
+  return fg_status_exit_code(FG_ERR_USAGE);
+}

@@ -1,0 +1,27 @@
+#include "foilgauge/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...) {
+  if (ctx) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
+    va_end(arguments);
+  }
+  return status;
+}
+
+int fg_status_exit_code(fg_status status) {
+  switch (status) {
+  case FG_OK: return 0;
+  case FG_ERR_USAGE: return 64;
+  case FG_ERR_DATA:
+  case FG_ERR_NUMERIC: return 65;
+  case FG_ERR_IO:
+  case FG_ERR_MEMORY: return 74;
+  case FG_ERR_INTERRUPTED: return 130;
+  }
+  return 70;
+}
