@@ -1,0 +1,37 @@
+#include "core/text.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+fg_status fg_text_print(fg_context *ctx, char **text, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  int length = vasprintf(text, format, arguments);
+  va_end(arguments);
+  if (length >= 0) return FG_OK;
+  *text = NULL;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+}
+
+fg_status fg_text_append(fg_context *ctx, char **text, const char *format, ...) {
+  char *addition = NULL, *joined = NULL;
+  va_list arguments;
+  va_start(arguments, format);
+  int length = vasprintf(&addition, format, arguments);
+  va_end(arguments);
+  if (length < 0) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  fg_status status = fg_text_print(ctx, &joined, "%s%s", *text ? *text : "", addition);
+  free(addition);
+  if (status != FG_OK) return status;
+  free(*text);
+  *text = joined;
+  return FG_OK;
+}
+
+void fg_text_clip(char *text, size_t size, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, size, format, arguments);
+  va_end(arguments);
+}

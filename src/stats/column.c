@@ -1,0 +1,124 @@
+#include "stats/column.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/extended.h"
+#include "core/memory.h"
+#include "core/text.h"
+
+fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column) {
+  for (size_t i = 0; i < table->columns; i++)
+    if (strcmp(table->column[i].name, name) == 0)
+      return fg_fail(ctx, FG_ERR_USAGE, "the table has a column '%s' already", name);
+  FG_TRY(fg_memory_reserve(ctx, table->columns + 1, sizeof *table->column, &table->column_capacity,
+                           (void **)&table->column));
+  fg_column *added = &table->column[table->columns];
+  memset(added, 0, sizeof *added);
+  FG_TRY(fg_text_print(ctx, &added->name, "%s", name));
+  table->columns++;
+  *column = added;
+  return FG_OK;
+}
+
+static fg_status push_cell(fg_context *ctx, fg_column *column, size_t row, fg_extended number,
+                           size_t mark) {
+  FG_TRY(fg_memory_reserve(ctx, row + 1, sizeof *column->number, &column->capacity,
+                           (void **)&column->number));
+  column->number[row] = number;
+  /* Marks are kept from the first cell on that is not a number: most columns never need them. */
+  if (!column->word && mark == FG_TABLE_NOT_A_WORD) return FG_OK;
+  bool first = !column->word;
+  FG_TRY(fg_memory_reserve(ctx, row + 1, sizeof *column->word, &column->mark_capacity,
+                           (void **)&column->word));
+  if (first)
+    for (size_t i = 0; i < row; i++)
+      column->word[i] = FG_TABLE_NOT_A_WORD;
+  column->word[row] = mark;
+  return FG_OK;
+}
+
+fg_status fg_column_push_number(fg_context *ctx, fg_column *column, size_t row,
+                                fg_extended number) {
+  if (!isfinite(number.value)) return fg_column_push_missing(ctx, column, row);
+  FG_TRY(push_cell(ctx, column, row, number, FG_TABLE_NOT_A_WORD));
+  column->number_count++;
+  return FG_OK;
+}
+
+fg_status fg_column_push_missing(fg_context *ctx, fg_column *column, size_t row) {
+  FG_TRY(push_cell(ctx, column, row, fg_extended_of(0.0), FG_TABLE_MISSING));
+  column->missing_count++;
+  return FG_OK;
+}
+
+/* FNV-1a. */
+static size_t hash_word(const char *word) {
+  uint64_t hash = 1469598103934665603u;
+  for (; *word; word++)
+    hash = (hash ^ (unsigned char)*word) * 1099511628211u;
+  return (size_t)hash;
+}
+
+/* The slot where the word is, or the free one where it belongs. */
+static size_t *find_slot(const fg_column *column, const char *word) {
+  size_t mask = column->slot_count - 1;
+  for (size_t i = hash_word(word) & mask;; i = (i + 1) & mask) {
+    size_t *slot = &column->slot[i];
+    if (!*slot || strcmp(column->words[*slot - 1], word) == 0) return slot;
+  }
+}
+
+static fg_status grow_slots(fg_context *ctx, fg_column *column) {
+  if (column->word_count * 2 < column->slot_count) return FG_OK;
+  size_t count = column->slot_count ? column->slot_count * 2 : 16;
+  void *slots = NULL;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *column->slot, &slots));
+  free(column->slot);
+  column->slot = slots;
+  column->slot_count = count;
+  for (size_t i = 0; i < column->word_count; i++)
+    *find_slot(column, column->words[i]) = i + 1;
+  return FG_OK;
+}
+
+fg_status fg_column_push_word(fg_context *ctx, fg_column *column, size_t row, const char *word) {
+  FG_TRY(grow_slots(ctx, column));
+  size_t *slot = find_slot(column, word);
+  if (!*slot) {
+    FG_TRY(fg_memory_reserve(ctx, column->word_count + 1, sizeof *column->words,
+                             &column->word_capacity, (void **)&column->words));
+    FG_TRY(fg_text_print(ctx, &column->words[column->word_count], "%s", word));
+    *slot = ++column->word_count;
+  }
+  return push_cell(ctx, column, row, fg_extended_of(0.0), *slot - 1);
+}
+
+static bool is_missing(const char *text, size_t length) {
+  static const char *const spellings[] = {"NA",   "N/A",  "NaN",      "nan",  "inf",
+                                          "+inf", "-inf", "infinity", "null", "#N/A"};
+  if (length == 0) return true;
+  for (size_t i = 0; i < sizeof spellings / sizeof *spellings; i++)
+    if (strlen(spellings[i]) == length && strncasecmp(text, spellings[i], length) == 0) return true;
+  return false;
+}
+
+fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
+                              size_t length) {
+  fg_extended number;
+  while (length && (text[0] == ' ' || text[0] == '\t'))
+    text++, length--;
+  while (length && (text[length - 1] == ' ' || text[length - 1] == '\t'))
+    length--;
+  if (fg_extended_parse(text, length, &number))
+    return fg_column_push_number(ctx, column, row, number);
+  if (is_missing(text, length)) return fg_column_push_missing(ctx, column, row);
+  char *word = NULL;
+  FG_TRY(fg_text_print(ctx, &word, "%.*s", (int)length, text));
+  fg_status status = fg_column_push_word(ctx, column, row, word);
+  free(word);
+  return status;
+}

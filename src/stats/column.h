@@ -1,0 +1,19 @@
+/* Building a table cell by cell: shared by the CSV reader and the tables made in memory. */
+#ifndef FG_STATS_COLUMN_H
+#define FG_STATS_COLUMN_H
+
+#include "foilgauge/table.h"
+
+/* Appends a column without rows; the name is copied. FG_ERR_USAGE when the name is taken. */
+fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column);
+
+/* One more cell in the column, which holds `row` cells so far. */
+fg_status fg_column_push_number(fg_context *ctx, fg_column *column, size_t row, fg_extended number);
+fg_status fg_column_push_missing(fg_context *ctx, fg_column *column, size_t row);
+fg_status fg_column_push_word(fg_context *ctx, fg_column *column, size_t row, const char *word);
+
+/* Decides what the text is (number, missing or word) and appends it. */
+fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
+                              size_t length);
+
+#endif

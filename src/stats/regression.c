@@ -1,0 +1,228 @@
+#include "foilgauge/regression.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/extended.h"
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/distribution.h"
+#include "stats/regression_parts.h"
+
+fg_status fg_regression_note(fg_context *ctx, fg_regression *regression, const char *format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  FG_TRY(fg_memory_reserve(ctx, regression->notes + 1, sizeof *regression->note,
+                           &regression->note_capacity, (void **)&regression->note));
+  return fg_text_print(ctx, &regression->note[regression->notes++], "%s", text);
+}
+
+/* Rounding in 106 bits leaves some 1e-62 of the sum of squares; data typed with 20 digits and
+ * differing in the last one leave 1e-40. */
+static double clean_ss(double ss, double scale) {
+  return ss <= 1e-50 * scale ? 0 : ss;
+}
+
+/* With z = Q'y, |y|² = sum z² + |residual|². The constant, where there is one, is column 0. */
+static void sum_squares(const fg_fit *fit, fg_regression *reg) {
+  const fg_orthogonal *s = &fit->solution;
+  fg_extended model = {0, 0}, all = {0, 0};
+  fg_extended residual = fg_extended_dot(s->residual, s->residual, s->rows);
+  for (size_t k = 0; k < s->rank; k++) {
+    fg_extended square = fg_extended_square(s->z[s->kept[k]]);
+    all = fg_extended_add(all, square);
+    if (!(reg->constant && s->kept[k] == 0)) model = fg_extended_add(model, square);
+  }
+  double scale = fg_extended_add(all, residual).value;
+  reg->residual_ss = reg->residual_freedom ? clean_ss(residual.value, scale) : 0;
+  reg->model_ss = clean_ss(model.value, scale);
+  reg->total_ss = reg->residual_ss == 0 || reg->model_ss == 0
+                      ? reg->residual_ss + reg->model_ss
+                      : fg_extended_add(model, residual).value;
+  /* 1 - residual / total would lose the digits of an R² near zero; the quotient loses none. */
+  reg->r2 = reg->total_ss > 0 ? reg->model_ss / reg->total_ss : NAN;
+}
+
+static void summarise(fg_regression *reg) {
+  size_t model_freedom = reg->rank - (reg->constant ? 1 : 0);
+  double freedom = (double)reg->residual_freedom;
+  double mean_square = reg->residual_freedom ? reg->residual_ss / freedom : NAN;
+  reg->residual_sd = sqrt(mean_square);
+  double total_freedom = (double)(reg->rows - (reg->constant ? 1 : 0));
+  reg->adjusted_r2 = 1 - (1 - reg->r2) * total_freedom / freedom;
+  if (!reg->residual_freedom) reg->adjusted_r2 = NAN;
+  reg->model_f = model_freedom ? reg->model_ss / (double)model_freedom / mean_square : NAN;
+  reg->model_p_value = fg_distribution_f_upper(reg->model_f, (double)model_freedom, freedom);
+}
+
+static fg_status note_limits(fg_context *ctx, fg_regression *reg) {
+  if (!reg->residual_freedom)
+    FG_TRY(fg_regression_note(
+        ctx, reg,
+        "%zu runs and %zu coefficients: no residual freedom, so no standard errors, t or p; repeat "
+        "runs, drop terms, or judge the effects by Lenth's method and the half-normal plot",
+        reg->rows, reg->rank));
+  if (reg->total_ss == 0)
+    FG_TRY(fg_regression_note(ctx, reg,
+                              "all responses are equal: there is nothing to explain and R² has no "
+                              "meaning; check the response column"));
+  else if (reg->residual_freedom && reg->residual_ss == 0)
+    FG_TRY(fg_regression_note(ctx, reg,
+                              "the model reproduces the response exactly: the errors are zero and "
+                              "the tests have no meaning"));
+  return FG_OK;
+}
+
+static fg_status check_input(fg_context *ctx, const fg_model *model, const fg_extended *response,
+                             const double *weights) {
+  if (!model->rows) return fg_fail(ctx, FG_ERR_DATA, "no runs to fit");
+  if (!model->columns) return fg_fail(ctx, FG_ERR_USAGE, "the model has no columns");
+  for (size_t i = 0; i < model->rows; i++) {
+    if (!isfinite(response[i].value))
+      return fg_fail(ctx, FG_ERR_DATA, "row %zu: the response is not a finite number", i + 1);
+    if (weights && !(weights[i] > 0 && isfinite(weights[i])))
+      return fg_fail(ctx, FG_ERR_USAGE, "row %zu: the weight is not positive", i + 1);
+  }
+  return FG_OK;
+}
+
+static fg_status solve(fg_context *ctx, fg_fit *fit, double tolerance) {
+  fg_extended *scale = NULL;
+  size_t rows = fit->model->rows;
+  if (fit->weights) {
+    FG_TRY(fg_memory_allocate(ctx, rows, sizeof *scale, (void **)&scale));
+    for (size_t i = 0; i < rows; i++)
+      scale[i] = fg_extended_sqrt(fg_extended_of(fit->weights[i]));
+  }
+  const fg_least_squares problem = {.matrix = fit->model->matrix,
+                                    .response = fit->response,
+                                    .scale = scale,
+                                    .rows = rows,
+                                    .columns = fit->model->columns,
+                                    .tolerance = tolerance > 0 ? tolerance : 1e-13};
+  fg_status status = fg_orthogonal_solve(ctx, &problem, &fit->solution);
+  free(scale);
+  return status;
+}
+
+fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_extended *response,
+                            const fg_regression_options *options, fg_regression *regression) {
+  const fg_regression_options defaults = {0};
+  fg_status status = FG_OK;
+  if (!options) options = &defaults;
+  fg_fit fit = {.model = model, .response = response, .weights = options->weights};
+  *regression = (fg_regression){.rows = model->rows,
+                                .columns = model->columns,
+                                .constant = model->formula.constant,
+                                .confidence = options->confidence > 0 ? options->confidence : 0.95};
+  FG_TRY_EXIT(check_input(ctx, model, response, options->weights));
+  FG_TRY_EXIT(solve(ctx, &fit, options->alias_tolerance));
+  regression->rank = fit.solution.rank;
+  regression->residual_freedom = regression->rows - regression->rank;
+  sum_squares(&fit, regression);
+  summarise(regression);
+  FG_TRY_EXIT(note_limits(ctx, regression));
+  FG_TRY_EXIT(fg_regression_coefficients(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_aliases(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_condition(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_anova(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_lack_of_fit(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_diagnostics(ctx, &fit, regression));
+exit:
+  fg_orthogonal_free(&fit.solution);
+  if (status != FG_OK) fg_regression_free(regression);
+  return status;
+}
+
+fg_status fg_regression_analyse(fg_context *ctx, const fg_table *table, const char *formula,
+                                const char *response, const fg_regression_options *options,
+                                fg_model *model, fg_regression *regression) {
+  fg_status status = FG_OK;
+  fg_formula parsed;
+  const fg_extended *numbers = NULL;
+  *model = (fg_model){0};
+  *regression = (fg_regression){0};
+  FG_TRY(fg_formula_parse(ctx, formula, &parsed));
+  if (!response) response = parsed.response;
+  if (!response)
+    FG_TRY_EXIT(fg_fail(ctx, FG_ERR_USAGE, "formula '%s': no response is named", formula));
+  FG_TRY_EXIT(fg_table_numbers(ctx, table, response, &numbers));
+  FG_TRY_EXIT(fg_model_build(ctx, table, &parsed, model));
+  FG_TRY_EXIT(fg_regression_fit(ctx, model, numbers, options, regression));
+exit:
+  fg_formula_free(&parsed);
+  if (status != FG_OK) fg_model_free(model);
+  return status;
+}
+
+double fg_regression_covariance(const fg_regression *regression, size_t i, size_t j) {
+  const fg_extended *u = regression->inverse_root;
+  size_t n = regression->columns;
+  double covariance = fg_extended_dot(u + i * n, u + j * n, n).value;
+  return covariance * regression->residual_sd * regression->residual_sd;
+}
+
+fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression, const double *row,
+                                fg_prediction *prediction) {
+  size_t n = regression->columns;
+  fg_extended mean = {0, 0}, length = {0, 0};
+  if (!regression->inverse_root) return fg_fail(ctx, FG_ERR_USAGE, "nothing has been fitted");
+  for (size_t j = 0; j < n; j++) {
+    fg_extended sum = {0, 0};
+    for (size_t i = 0; i < n; i++)
+      sum = fg_extended_add(
+          sum, fg_extended_multiply(fg_extended_of(row[i]), regression->inverse_root[i * n + j]));
+    length = fg_extended_add(length, fg_extended_square(sum));
+    mean = fg_extended_add(
+        mean, fg_extended_multiply(fg_extended_of(row[j]), regression->estimate_extended[j]));
+  }
+  double sd = regression->residual_sd;
+  double quantile = fg_distribution_t_quantile((1 + regression->confidence) / 2,
+                                               (double)regression->residual_freedom);
+  double standard_error = sd * sqrt(length.value), run = sd * sqrt(1 + length.value);
+  *prediction = (fg_prediction){.mean = mean.value,
+                                .standard_error = standard_error,
+                                .run_standard_error = run,
+                                .low = mean.value - quantile * standard_error,
+                                .high = mean.value + quantile * standard_error,
+                                .run_low = mean.value - quantile * run,
+                                .run_high = mean.value + quantile * run};
+  return FG_OK;
+}
+
+static void free_rows(fg_anova_row *rows, size_t count) {
+  for (size_t i = 0; rows && i < count; i++)
+    free(rows[i].name);
+  free(rows);
+}
+
+void fg_regression_free(fg_regression *r) {
+  if (!r) return;
+  for (size_t i = 0; r->coefficient && i < r->columns; i++)
+    free(r->coefficient[i].name);
+  for (size_t i = 0; r->alias && i < r->aliases; i++) {
+    free(r->alias[i].with);
+    free(r->alias[i].factor);
+  }
+  for (size_t i = 0; i < r->notes; i++)
+    free(r->note[i]);
+  free_rows(r->sequential, r->terms);
+  free_rows(r->partial, r->terms);
+  free(r->coefficient);
+  free(r->alias);
+  free(r->note);
+  free(r->fitted);
+  free(r->residual);
+  free(r->leverage);
+  free(r->internal);
+  free(r->external);
+  free(r->cook);
+  free(r->estimate_extended);
+  free(r->inverse_root);
+  *r = (fg_regression){0};
+}

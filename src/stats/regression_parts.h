@@ -1,0 +1,26 @@
+/* The parts of a regression that are worked out after the least-squares solution. */
+#ifndef FG_STATS_REGRESSION_PARTS_H
+#define FG_STATS_REGRESSION_PARTS_H
+
+#include "foilgauge/regression.h"
+#include "stats/orthogonal.h"
+
+/* What the parts read: one problem, its solution. */
+typedef struct fg_fit {
+  const fg_model *model;
+  const fg_extended *response;
+  const double *weights; /* NULL: all 1 */
+  fg_orthogonal solution;
+} fg_fit;
+
+fg_status fg_regression_note(fg_context *ctx, fg_regression *regression, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+fg_status fg_regression_coefficients(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+fg_status fg_regression_aliases(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+fg_status fg_regression_condition(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+fg_status fg_regression_anova(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+fg_status fg_regression_diagnostics(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+
+#endif

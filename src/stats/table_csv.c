@@ -1,0 +1,236 @@
+/* CSV text in and out. libcsv finds the cells; this file gives them rows, columns and lines. */
+#include <csv.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/table.h"
+#include "stats/column.h"
+
+typedef struct csv_reader {
+  fg_context *ctx;
+  fg_table *table;
+  const char *source;
+  fg_status status;
+  size_t line;    /* of the text, being fed */
+  size_t column;  /* of the next cell */
+  bool header;    /* the header is complete */
+  bool empty;     /* all cells of this row so far are empty */
+  char **pending; /* cells of the row, held until it is known not to be empty */
+  size_t *pending_length;
+  size_t pending_capacity, pending_length_capacity;
+} csv_reader;
+
+static fg_status add_name(csv_reader *r, const char *text, size_t length) {
+  fg_column *column = NULL;
+  char name[256];
+  if (memchr(text, 0, length))
+    return fg_fail(r->ctx, FG_ERR_DATA, "%s: line %zu: a NUL byte in the header", r->source,
+                   r->line);
+  if (length >= sizeof name)
+    return fg_fail(r->ctx, FG_ERR_DATA, "%s: the name of column %zu is longer than 255 bytes",
+                   r->source, r->table->columns + 1);
+  if (length == 0)
+    return fg_fail(r->ctx, FG_ERR_DATA, "%s: column %zu has no name in the header; name it",
+                   r->source, r->table->columns + 1);
+  fg_text_clip(name, sizeof name, "%.*s", (int)length, text);
+  for (size_t i = 0; i < r->table->columns; i++)
+    if (strcmp(r->table->column[i].name, name) == 0)
+      return fg_fail(r->ctx, FG_ERR_DATA,
+                     "%s: columns %zu and %zu are both called '%s'; rename one", r->source, i + 1,
+                     r->table->columns + 1, name);
+  return fg_column_open(r->ctx, r->table, name, &column);
+}
+
+static fg_status hold_cell(csv_reader *r, const char *text, size_t length) {
+  if (length && memchr(text, 0, length))
+    return fg_fail(r->ctx, FG_ERR_DATA, "%s: row %zu (line %zu): a NUL byte; is this a CSV file?",
+                   r->source, r->table->rows + 1, r->line);
+  size_t old = r->pending_capacity;
+  FG_TRY(fg_memory_reserve(r->ctx, r->column + 1, sizeof *r->pending, &r->pending_capacity,
+                           (void **)&r->pending));
+  for (size_t i = old; i < r->pending_capacity; i++)
+    r->pending[i] = NULL;
+  FG_TRY(fg_memory_reserve(r->ctx, r->column + 1, sizeof *r->pending_length,
+                           &r->pending_length_capacity, (void **)&r->pending_length));
+  char *moved = realloc(r->pending[r->column], length + 1);
+  if (!moved) return fg_fail(r->ctx, FG_ERR_MEMORY, "out of memory: %zu bytes", length + 1);
+  if (length) memcpy(moved, text, length);
+  moved[length] = 0;
+  r->pending[r->column] = moved;
+  r->pending_length[r->column] = length;
+  if (length) r->empty = false;
+  r->column++;
+  return FG_OK;
+}
+
+static fg_status end_row(csv_reader *r) {
+  fg_table *table = r->table;
+  if (r->empty) return FG_OK;
+  if (r->column != table->columns)
+    return fg_fail(r->ctx, FG_ERR_DATA,
+                   "%s: row %zu (line %zu) has %zu cells, the header names %zu columns", r->source,
+                   table->rows + 1, r->line, r->column, table->columns);
+  for (size_t i = 0; i < table->columns; i++)
+    FG_TRY(fg_column_push_text(r->ctx, &table->column[i], table->rows, r->pending[i],
+                               r->pending_length[i]));
+  FG_TRY(fg_memory_reserve(r->ctx, table->rows + 1, sizeof *table->line, &table->line_capacity,
+                           (void **)&table->line));
+  table->line[table->rows++] = r->line;
+  return FG_OK;
+}
+
+static void on_cell(void *text, size_t length, void *reader) {
+  csv_reader *r = reader;
+  if (r->status != FG_OK) return;
+  r->status = r->header ? hold_cell(r, text, length) : add_name(r, text ? text : "", length);
+}
+
+static void on_row(int terminator, void *reader) {
+  csv_reader *r = reader;
+  (void)terminator;
+  if (r->status != FG_OK) return;
+  if (r->header) r->status = end_row(r);
+  r->header = true;
+  r->column = 0;
+  r->empty = true;
+}
+
+/* The separator that the header line holds most of. */
+static unsigned char guess_delimiter(const char *text, size_t size) {
+  static const unsigned char candidates[] = {',', ';', '\t'};
+  size_t counts[3] = {0};
+  for (size_t i = 0; i < size && text[i] != '\n' && text[i] != '\r'; i++)
+    for (size_t k = 0; k < 3; k++)
+      counts[k] += (unsigned char)text[i] == candidates[k];
+  size_t best = 0;
+  for (size_t k = 1; k < 3; k++)
+    if (counts[k] > counts[best]) best = k;
+  return candidates[best];
+}
+
+static fg_status fail_syntax(csv_reader *r) {
+  return fg_fail(r->ctx, FG_ERR_DATA,
+                 "%s: line %zu: a quote that is not closed, or stands inside a cell; "
+                 "write \"...\" around the cell and \"\" for a quote",
+                 r->source, r->line);
+}
+
+/* Line by line, so that an error can say where: libcsv keeps its state between the calls. */
+static fg_status feed(csv_reader *r, struct csv_parser *parser, const char *text, size_t size) {
+  while (size && r->status == FG_OK) {
+    const char *newline = memchr(text, '\n', size);
+    size_t length = newline ? (size_t)(newline - text) + 1 : size;
+    r->line++;
+    if (csv_parse(parser, text, length, on_cell, on_row, r) != length && r->status == FG_OK)
+      return fail_syntax(r);
+    text += length;
+    size -= length;
+  }
+  if (r->status == FG_OK && csv_fini(parser, on_cell, on_row, r) != 0) return fail_syntax(r);
+  return r->status;
+}
+
+static fg_status check_encoding(fg_context *ctx, const char *source, const char **text,
+                                size_t *size) {
+  const unsigned char *b = (const unsigned char *)*text;
+  if (*size >= 2 && ((b[0] == 0xff && b[1] == 0xfe) || (b[0] == 0xfe && b[1] == 0xff)))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: the text is UTF-16; save it as UTF-8", source);
+  if (*size >= 3 && b[0] == 0xef && b[1] == 0xbb && b[2] == 0xbf) {
+    *text += 3;
+    *size -= 3;
+  }
+  return FG_OK;
+}
+
+fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, size_t size,
+                         fg_table *table) {
+  fg_status status = FG_OK;
+  struct csv_parser parser;
+  csv_reader reader = {.ctx = ctx, .table = table, .source = source, .empty = true};
+  *table = (fg_table){0};
+  FG_TRY(check_encoding(ctx, source, &text, &size));
+  if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0)
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  csv_set_delim(&parser, guess_delimiter(text, size));
+  FG_TRY_EXIT(fg_text_print(ctx, &table->source, "%s", source));
+  FG_TRY_EXIT(feed(&reader, &parser, text, size));
+  if (!reader.header)
+    FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: empty; the first row must name columns", source));
+  if (!table->rows) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: a header, but no rows", source));
+exit:
+  csv_free(&parser);
+  for (size_t i = 0; i < reader.pending_capacity; i++)
+    free(reader.pending[i]);
+  free(reader.pending);
+  free(reader.pending_length);
+  if (status != FG_OK) fg_table_free(table);
+  return status;
+}
+
+/* Text under construction. */
+typedef struct writer {
+  char *text;
+  size_t length, capacity;
+} writer;
+
+static fg_status write_bytes(fg_context *ctx, writer *w, const char *bytes, size_t length) {
+  FG_TRY(fg_memory_reserve(ctx, w->length + length + 1, 1, &w->capacity, (void **)&w->text));
+  memcpy(w->text + w->length, bytes, length);
+  w->length += length;
+  w->text[w->length] = 0;
+  return FG_OK;
+}
+
+static fg_status write_word(fg_context *ctx, writer *w, const char *word) {
+  if (!strpbrk(word, ",;\t\"\r\n")) return write_bytes(ctx, w, word, strlen(word));
+  FG_TRY(write_bytes(ctx, w, "\"", 1));
+  for (; *word; word++) {
+    if (*word == '"') FG_TRY(write_bytes(ctx, w, "\"", 1));
+    FG_TRY(write_bytes(ctx, w, word, 1));
+  }
+  return write_bytes(ctx, w, "\"", 1);
+}
+
+/* The fewest digits that read back as the same double. */
+static fg_status write_number(fg_context *ctx, writer *w, double number) {
+  char text[40];
+  for (int digits = 15; digits <= 17; digits++) {
+    fg_text_clip(text, sizeof text, "%.*g", digits, number);
+    if (strtod(text, NULL) == number) break;
+  }
+  return write_bytes(ctx, w, text, strlen(text));
+}
+
+static fg_status write_cell(fg_context *ctx, writer *w, const fg_column *column, size_t row) {
+  size_t mark = column->word ? column->word[row] : FG_TABLE_NOT_A_WORD;
+  if (mark == FG_TABLE_MISSING) return FG_OK;
+  if (mark == FG_TABLE_NOT_A_WORD) return write_number(ctx, w, column->number[row].value);
+  return write_word(ctx, w, column->words[mark]);
+}
+
+fg_status fg_table_format(fg_context *ctx, const fg_table *table, char **text) {
+  fg_status status = FG_OK;
+  writer w = {0};
+  FG_TRY_EXIT(write_bytes(ctx, &w, "", 0));
+  for (size_t i = 0; i < table->columns; i++) {
+    if (i) FG_TRY_EXIT(write_bytes(ctx, &w, ",", 1));
+    FG_TRY_EXIT(write_word(ctx, &w, table->column[i].name));
+  }
+  FG_TRY_EXIT(write_bytes(ctx, &w, "\n", 1));
+  for (size_t row = 0; row < table->rows; row++) {
+    for (size_t i = 0; i < table->columns; i++) {
+      if (i) FG_TRY_EXIT(write_bytes(ctx, &w, ",", 1));
+      FG_TRY_EXIT(write_cell(ctx, &w, &table->column[i], row));
+    }
+    FG_TRY_EXIT(write_bytes(ctx, &w, "\n", 1));
+  }
+exit:
+  if (status != FG_OK) {
+    free(w.text);
+    w.text = NULL;
+  }
+  *text = w.text;
+  return status;
+}

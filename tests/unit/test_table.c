@@ -1,0 +1,213 @@
+/* CSV tables: every kind of bad text gets an error that names the place; good text is exact. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "core/extended.h"
+#include "foilgauge/table.h"
+
+static fg_status parse(fg_context *ctx, const char *text, fg_table *table) {
+  return fg_table_parse(ctx, "runs.csv", text, strlen(text), table);
+}
+
+static void bad_text_is_named(void **state) {
+  static const struct {
+    const char *text, *words;
+  } cases[] = {
+      {"", "runs.csv: empty"},
+      {"\n\n", "runs.csv: empty"},
+      {"T,D\n", "a header, but no rows"},
+      {"T,D\n\n,\n", "a header, but no rows"},
+      {"T,D,T\n1,2,3\n", "columns 1 and 3 are both called 'T'"},
+      {"T,,D\n1,2,3\n", "column 2 has no name"},
+      {"T,D\n1,2\n3\n", "row 2 (line 3) has 1 cells, the header names 2"},
+      {"T,D\n1,2\n\n3,4,5\n", "row 2 (line 4) has 3 cells"},
+      {"T,D\n1,\"2\n3,4\n", "quote that is not closed"},
+      {"T,D\n1,2\"3\n", "line 2: a quote"},
+      {"\xff\xfeT", "UTF-16"},
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    assert_int_equal(parse(&ctx, cases[i].text, &table), FG_ERR_DATA);
+    if (!strstr(ctx.message, cases[i].words))
+      fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
+    assert_null(table.column);
+  }
+  fg_context ctx = {0};
+  fg_table table;
+  assert_int_equal(fg_table_parse(&ctx, "runs.csv", "T,D\n1,\0\n", 8, &table), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "NUL byte"));
+}
+
+static void bad_cells_are_named_where_used(void **state) {
+  static const struct {
+    const char *text, *words;
+  } cases[] = {
+      {"T,D\n1,2\n3,oven\n", "runs.csv: row 2 (line 3), column 'D': 'oven' is not a number"},
+      {"T,D\n1,2\n3,\n", "row 2 (line 3), column 'D': the cell is empty"},
+      {"T,D\n1,NaN\n3,4\n", "row 1 (line 2), column 'D': the cell is empty or not a finite"},
+      {"T,D\n1,1\n\n3,inf\n", "row 2 (line 4), column 'D'"},
+      {"T,D\n1,1e999\n", "row 1 (line 2), column 'D': '1e999' is not a number"},
+      {"T,d\n1,2\n", "there is no column 'D'; the columns are T, d"},
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    const fg_extended *numbers = NULL;
+    assert_int_equal(parse(&ctx, cases[i].text, &table), FG_OK);
+    assert_int_equal(fg_table_numbers(&ctx, &table, "D", &numbers), FG_ERR_DATA);
+    if (!strstr(ctx.message, cases[i].words))
+      fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
+    fg_table_free(&table);
+  }
+}
+
+/* Mark, line ends, quotes, separators: one and the same table. */
+static void dialects_are_read(void **state) {
+  static const char *const texts[] = {
+      "T,name\n1.5,\"a, \"\"b\"\"\"\n-2e3,c\n",
+      "\xef\xbb\xbfT,name\r\n1.5,\"a, \"\"b\"\"\"\r\n-2e3,c",
+      "\"T\";name\n1.5;\"a, \"\"b\"\"\"\n\n-2e3; c \n;\n",
+      "T\tname\r1.5\t\"a, \"\"b\"\"\"\r-2e3\tc\r",
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    const fg_extended *numbers = NULL;
+    fg_levels levels;
+    char *text = NULL;
+    assert_int_equal(parse(&ctx, texts[i], &table), FG_OK);
+    assert_int_equal(table.rows, 2);
+    assert_int_equal(fg_table_numbers(&ctx, &table, "T", &numbers), FG_OK);
+    assert_true(numbers[0].value == 1.5 && numbers[1].value == -2000);
+    assert_int_equal(fg_table_levels(&ctx, &table, "name", false, &levels), FG_OK);
+    assert_int_equal(levels.count, 2);
+    assert_string_equal(levels.name[0], "a, \"b\"");
+    assert_int_equal(levels.index[1], 1);
+    assert_int_equal(fg_table_format(&ctx, &table, &text), FG_OK);
+    assert_string_equal(text, "T,name\n1.5,\"a, \"\"b\"\"\"\n-2000,c\n");
+    free(text);
+    fg_levels_free(&levels);
+    fg_table_free(&table);
+  }
+}
+
+/* 0.1 = 3602879701896397 / 2^55 - 5.55e-18; the tail is that difference, and value is what strtod
+ * says for any text. */
+static void decimals_keep_their_digits(void **state) {
+  static const char *const numbers[] = {
+      "0.1", "1000000000000.4", "-3.14159265358979323846264338327950288", "6.02214076e23",
+      "1e-300", "179769313486231570000e288", "4.9e-3", "00012.500", "+7", ".5", "5.",
+      "123456789012345678901234567890123456789"};
+  static const char *const others[] = {"", "-", ".", "1e", "1e+", "0x10", "1 2", "1,5", "e5", "nan"};
+  (void)state;
+  fg_extended tenth = {0, 0}, a = {0, 0};
+  assert_true(fg_extended_parse("0.1", 3, &tenth));
+  assert_true(fabs(tenth.tail - -5.5511151231257827e-18) < 1e-33);
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    assert_true(fg_extended_parse(numbers[i], strlen(numbers[i]), &a));
+    assert_true(a.value == strtod(numbers[i], NULL));
+  }
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    assert_false(fg_extended_parse(others[i], strlen(others[i]), &a));
+}
+
+/* (a / b) b - a and sqrt(a)² - a vanish to 30 digits on seeded numbers. */
+static void arithmetic_has_thirty_digits(void **state) {
+  unsigned seed = 7;
+  (void)state;
+  for (int i = 0; i < 10000; i++) {
+    fg_extended x[2];
+    for (int k = 0; k < 2; k++) {
+      seed = seed * 1664525u + 1013904223u;
+      double head = 0.5 + seed / 4294967296.0;
+      seed = seed * 1664525u + 1013904223u;
+      x[k] = fg_extended_sum(head, head * (seed / 4294967296.0 - 0.5) * 1.1e-16);
+    }
+    fg_extended back = fg_extended_multiply(fg_extended_divide(x[0], x[1]), x[1]);
+    assert_true(fabs(fg_extended_subtract(back, x[0]).value) < 1e-30);
+    back = fg_extended_square(fg_extended_sqrt(x[0]));
+    assert_true(fabs(fg_extended_subtract(back, x[0]).value) < 1e-30);
+    back = fg_extended_subtract(fg_extended_add(x[0], x[1]), x[1]);
+    assert_true(fabs(fg_extended_subtract(back, x[0]).value) < 1e-30);
+  }
+}
+
+static void words_among_numbers_need_factor(void **state) {
+  fg_context ctx = {0};
+  fg_table table;
+  fg_levels levels;
+  (void)state;
+  assert_int_equal(parse(&ctx, "m\n10\n9\nspare\n9\n", &table), FG_OK);
+  assert_int_equal(fg_table_levels(&ctx, &table, "m", false, &levels), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "row 3 (line 4), column 'm': 'spare' is not a number"));
+  assert_non_null(strstr(ctx.message, "factor(name)"));
+  assert_int_equal(fg_table_levels(&ctx, &table, "m", true, &levels), FG_OK);
+  assert_int_equal(levels.count, 3);
+  assert_string_equal(levels.name[0], "9");
+  assert_string_equal(levels.name[2], "spare");
+  fg_levels_free(&levels);
+  fg_table_free(&table);
+}
+
+/* A million rows: the sum of 0.001 i is exact to the digits of the text. */
+static void a_million_rows(void **state) {
+  enum { ROWS = 1000000 };
+  (void)state;
+  fg_context ctx = {0};
+  fg_table table;
+  const fg_extended *numbers = NULL;
+  char *text = malloc(24u * ROWS);
+  assert_non_null(text);
+  size_t length = (size_t)sprintf(text, "x,w\n");
+  for (int i = 0; i < ROWS; i++)
+    length += (size_t)sprintf(text + length, "%d.%03d,w%d\n", i / 1000, i % 1000, i % 7);
+  assert_int_equal(fg_table_parse(&ctx, "big.csv", text, length, &table), FG_OK);
+  assert_int_equal(table.rows, ROWS);
+  assert_int_equal(fg_table_numbers(&ctx, &table, "x", &numbers), FG_OK);
+  fg_extended sum = {0, 0};
+  for (size_t i = 0; i < table.rows; i++) sum = fg_extended_add(sum, numbers[i]);
+  assert_true(sum.value == 499999500.0 && fabs(sum.tail) < 1e-18);
+  assert_int_equal(table.column[1].word_count, 7);
+  fg_table_free(&table);
+  free(text);
+}
+
+static void rows_are_selected(void **state) {
+  fg_context ctx = {0};
+  fg_table table, part;
+  (void)state;
+  assert_int_equal(parse(&ctx, "x,w\n1,a\n2,b\n3,\n", &table), FG_OK);
+  assert_int_equal(fg_table_select(&ctx, &table, (size_t[]){2, 0}, 2, &part), FG_OK);
+  assert_true(part.column[0].number[0].value == 3 && part.column[0].number[1].value == 1);
+  assert_true(part.column[1].word[0] == FG_TABLE_MISSING && part.column[1].missing_count == 1);
+  assert_string_equal(part.column[1].words[part.column[1].word[1]], "a");
+  assert_int_equal(part.line[0], 4);
+  fg_table_free(&part);
+  assert_int_equal(fg_table_select(&ctx, &table, (size_t[]){3}, 1, &part), FG_ERR_USAGE);
+  fg_table_free(&table);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_text_is_named),
+      cmocka_unit_test(bad_cells_are_named_where_used),
+      cmocka_unit_test(dialects_are_read),
+      cmocka_unit_test(decimals_keep_their_digits),
+      cmocka_unit_test(arithmetic_has_thirty_digits),
+      cmocka_unit_test(words_among_numbers_need_factor),
+      cmocka_unit_test(a_million_rows),
+      cmocka_unit_test(rows_are_selected),
+  };
+  return cmocka_run_group_tests_name("table", tests, NULL, NULL);
+}
