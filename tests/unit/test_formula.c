@@ -65,7 +65,8 @@ static void errors_say_where(void **state) {
       {"`T", "a ` without its partner"},
       {"y z ~ T", "a ~ is expected"},
       {"T ~ y ~ D", "+, -, :, * or the end"},
-      {"((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((T", "too many brackets"},
+      {"((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((T",
+       "too many brackets"},
   };
   (void)state;
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -126,15 +127,18 @@ static void the_matrix_holds_products(void **state) {
   assert_int_equal(fg_formula_parse(&ctx, "inverse(x) + x^2:g + sqrt(x)", &formula), FG_OK);
   assert_int_equal(fg_model_build(&ctx, &table, &formula, &model), FG_OK);
   assert_int_equal(model.columns, 5);
-  const double expected[4][5] = {
-      {1, 1, 1, 1, 0}, {1, 0.5, 1.4142135623730951, 0, 4}, {1, 0.25, 2, 16, 0},
-      {1, 0.125, 2.8284271247461903, 64, 0}};
+  const double expected[4][5] = {{1, 1, 1, 1, 0},
+                                 {1, 0.5, 1.4142135623730951, 0, 4},
+                                 {1, 0.25, 2, 16, 0},
+                                 {1, 0.125, 2.8284271247461903, 64, 0}};
   for (size_t i = 0; i < 4; i++)
-    for (size_t j = 0; j < 5; j++) assert_true(model.matrix[j * 4 + i].value == expected[i][j]);
+    for (size_t j = 0; j < 5; j++)
+      assert_true(model.matrix[j * 4 + i].value == expected[i][j]);
   double at[5];
   /* variables in order of appearance: inverse(x), x, g, sqrt(x) */
   assert_int_equal(fg_model_row(&ctx, &model, (double[]){2, 2, 1, 2}, at), FG_OK);
-  for (size_t j = 0; j < 5; j++) assert_true(at[j] == expected[1][j]);
+  for (size_t j = 0; j < 5; j++)
+    assert_true(at[j] == expected[1][j]);
   fg_model_free(&model);
   fg_formula_free(&formula);
   fg_table_free(&table);

@@ -105,11 +105,20 @@ static void dialects_are_read(void **state) {
 /* 0.1 = 3602879701896397 / 2^55 - 5.55e-18; the tail is that difference, and value is what strtod
  * says for any text. */
 static void decimals_keep_their_digits(void **state) {
-  static const char *const numbers[] = {
-      "0.1", "1000000000000.4", "-3.14159265358979323846264338327950288", "6.02214076e23",
-      "1e-300", "179769313486231570000e288", "4.9e-3", "00012.500", "+7", ".5", "5.",
-      "123456789012345678901234567890123456789"};
-  static const char *const others[] = {"", "-", ".", "1e", "1e+", "0x10", "1 2", "1,5", "e5", "nan"};
+  static const char *const numbers[] = {"0.1",
+                                        "1000000000000.4",
+                                        "-3.14159265358979323846264338327950288",
+                                        "6.02214076e23",
+                                        "1e-300",
+                                        "179769313486231570000e288",
+                                        "4.9e-3",
+                                        "00012.500",
+                                        "+7",
+                                        ".5",
+                                        "5.",
+                                        "123456789012345678901234567890123456789"};
+  static const char *const others[] = {"",     "-",   ".",   "1e", "1e+",
+                                       "0x10", "1 2", "1,5", "e5", "nan"};
   (void)state;
   fg_extended tenth = {0, 0}, a = {0, 0};
   assert_true(fg_extended_parse("0.1", 3, &tenth));
@@ -176,7 +185,8 @@ static void a_million_rows(void **state) {
   assert_int_equal(table.rows, ROWS);
   assert_int_equal(fg_table_numbers(&ctx, &table, "x", &numbers), FG_OK);
   fg_extended sum = {0, 0};
-  for (size_t i = 0; i < table.rows; i++) sum = fg_extended_add(sum, numbers[i]);
+  for (size_t i = 0; i < table.rows; i++)
+    sum = fg_extended_add(sum, numbers[i]);
   assert_true(sum.value == 499999500.0 && fabs(sum.tail) < 1e-18);
   assert_int_equal(table.column[1].word_count, 7);
   fg_table_free(&table);

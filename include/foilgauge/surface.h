@@ -1,0 +1,76 @@
+/* Response surfaces: where a fitted quadratic is stationary, lowest, highest, and how to get there.
+ *
+ * The surface is y = b0 + b'x + x'Bx in the numeric factors of a model of degree two at most (Box
+ * and Wilson 1951); factors of words keep the level they are given. All x are in the units that
+ * the model was fitted in, usually coded ones; fg_coding_to_real translates.
+ */
+#ifndef FOILGAUGE_SURFACE_H
+#define FOILGAUGE_SURFACE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/regression.h"
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { FG_SURFACE_FACTORS = 12 };
+
+typedef enum fg_surface_kind {
+  FG_SURFACE_MINIMUM,
+  FG_SURFACE_MAXIMUM,
+  FG_SURFACE_SADDLE,
+  FG_SURFACE_RIDGE, /* an eigenvalue is nothing beside the largest: no single point */
+  FG_SURFACE_PLANE, /* no term of degree two */
+} fg_surface_kind;
+
+typedef struct fg_surface {
+  size_t factors;
+  size_t variable[FG_SURFACE_FACTORS]; /* index into the model's variables */
+  double constant;
+  double linear[FG_SURFACE_FACTORS];
+  double quadratic[FG_SURFACE_FACTORS][FG_SURFACE_FACTORS]; /* symmetric */
+
+  fg_surface_kind kind;
+  bool has_stationary; /* not on a plane or a ridge */
+  double stationary[FG_SURFACE_FACTORS], stationary_value;
+  double eigenvalue[FG_SURFACE_FACTORS];                      /* descending */
+  double eigenvector[FG_SURFACE_FACTORS][FG_SURFACE_FACTORS]; /* [k] belongs to eigenvalue[k] */
+} fg_surface;
+
+/* `setting` holds one number per variable of the model's formula; only the levels of word factors
+ * are read from it (index of the level); NULL: baselines. FG_ERR_USAGE for a degree above two, a
+ * transformed number, no numeric factor or more than 12. */
+fg_status fg_surface_make(fg_context *ctx, const fg_model *model, const fg_regression *regression,
+                          const double *setting, fg_surface *surface);
+
+double fg_surface_value(const fg_surface *surface, const double *x);
+
+/* The lowest (or highest) point of the box low <= x <= high, exactly: every face of the box is
+ * searched for its own stationary point. A user's constraint (temperature below 700 °C) is a
+ * smaller box. FG_ERR_USAGE for an empty box. */
+fg_status fg_surface_optimum_box(fg_context *ctx, const fg_surface *surface, bool highest,
+                                 const double *low, const double *high, double *x);
+
+/* The lowest (or highest) point of the ball |x| <= radius. */
+fg_status fg_surface_optimum_ball(fg_context *ctx, const fg_surface *surface, bool highest,
+                                  double radius, double *x);
+
+/* The ridge path (Draper 1963): the best point on each sphere of radius radii[i] about the centre;
+ * on a plane this is the path of steepest ascent or descent. `path` takes count × factors. */
+fg_status fg_surface_ridge_path(fg_context *ctx, const fg_surface *surface, bool highest,
+                                const double *radii, size_t count, double *path);
+
+/* The model row at x (with the word factors of `setting`) and the prediction there: the mean with
+ * its confidence interval and the interval of one confirmation run. */
+fg_status fg_surface_predict(fg_context *ctx, const fg_surface *surface, const fg_model *model,
+                             const fg_regression *regression, const double *setting,
+                             const double *x, fg_prediction *prediction);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,192 @@
+/* Two strata: whole plots, and runs within them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/extended.h"
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/distribution.h"
+#include "foilgauge/doe.h"
+
+/* A term is of the whole plot when all its columns are constant within every plot. */
+static bool is_constant_within(const fg_model *model, const fg_levels *plots, size_t term,
+                               double *first, bool *seen) {
+  for (size_t j = 0; j < model->columns; j++) {
+    if (model->column[j].term != term) continue;
+    memset(seen, 0, plots->count * sizeof *seen);
+    for (size_t i = 0; i < model->rows; i++) {
+      size_t plot = plots->index[i];
+      double value = model->matrix[j * model->rows + i].value;
+      if (seen[plot] && fabs(value - first[plot]) > 1e-9 * fmax(1, fabs(value))) return false;
+      seen[plot] = true;
+      first[plot] = value;
+    }
+  }
+  return true;
+}
+
+/* Columns of the whole-plot terms, then one indicator per plot, then the others: the plots take
+ * what is left of them after the whole-plot terms, and the sequential squares are the strata. */
+typedef struct strata {
+  const fg_model *model;
+  const fg_levels *plots;
+  bool *whole; /* by term */
+  fg_model joint;
+  char plots_name[16]; /* of the joint term */
+} strata;
+
+enum { TERM_PLOTS = 0 }; /* joint term 0 is the plots; term t of the model is t + 1 */
+
+static void copy_columns(strata *s, bool whole, bool constant) {
+  const fg_model *m = s->model;
+  for (size_t j = 0; j < m->columns; j++) {
+    size_t term = m->column[j].term;
+    bool is_constant = term == FG_MODEL_CONSTANT;
+    if (is_constant != constant || (!is_constant && s->whole[term] != whole)) continue;
+    size_t to = s->joint.columns++;
+    s->joint.column[to] = (fg_model_column){.name = m->column[j].name,
+                                            .term = is_constant ? FG_MODEL_CONSTANT : term + 1};
+    memcpy(s->joint.matrix + to * m->rows, m->matrix + j * m->rows, m->rows * sizeof *m->matrix);
+  }
+}
+
+static void add_plots(strata *s) {
+  for (size_t p = 0; p < s->plots->count; p++) {
+    size_t to = s->joint.columns++;
+    s->joint.column[to] = (fg_model_column){.name = s->plots->name[p], .term = TERM_PLOTS};
+    for (size_t i = 0; i < s->model->rows; i++)
+      s->joint.matrix[to * s->model->rows + i] =
+          fg_extended_of(s->plots->index[i] == p ? 1.0 : 0.0);
+  }
+}
+
+/* The joint model borrows names; only its own arrays are freed. */
+static fg_status join(fg_context *ctx, strata *s) {
+  const fg_model *m = s->model;
+  size_t columns = m->columns + s->plots->count, terms = m->formula.terms + 1;
+  s->joint = (fg_model){.rows = m->rows};
+  s->joint.formula.constant = m->formula.constant;
+  s->joint.formula.terms = terms;
+  FG_TRY(fg_memory_allocate(ctx, columns, sizeof *s->joint.column, (void **)&s->joint.column));
+  FG_TRY(fg_memory_allocate(ctx, terms, sizeof *s->joint.term_name, (void **)&s->joint.term_name));
+  FG_TRY(fg_memory_allocate(ctx, columns * m->rows, sizeof *s->joint.matrix,
+                            (void **)&s->joint.matrix));
+  s->joint.term_name[TERM_PLOTS] = s->plots_name;
+  for (size_t t = 1; t < terms; t++)
+    s->joint.term_name[t] = m->term_name[t - 1];
+  copy_columns(s, true, true);
+  copy_columns(s, true, false);
+  add_plots(s);
+  copy_columns(s, false, false);
+  return FG_OK;
+}
+
+static fg_status add_term(fg_context *ctx, const fg_anova_row *from, bool whole,
+                          fg_split_plot *result) {
+  double error = whole ? result->plot_ms : result->run_ms;
+  size_t freedom = whole ? result->plot_freedom : result->run_freedom;
+  fg_split_plot_term *to = &result->term[result->terms++];
+  *to = (fg_split_plot_term){.row = *from, .whole_plot = whole};
+  to->row.name = NULL;
+  to->row.f = from->mean_square / error;
+  to->row.p_value = fg_distribution_f_upper(to->row.f, (double)from->freedom, (double)freedom);
+  return fg_text_print(ctx, &to->row.name, "%s", from->name);
+}
+
+static fg_status read_strata(fg_context *ctx, const strata *s, const fg_regression *reg,
+                             fg_split_plot *result) {
+  const fg_anova_row *plots = &reg->sequential[TERM_PLOTS];
+  size_t terms = s->model->formula.terms;
+  result->plots = s->plots->count;
+  result->plot_freedom = plots->freedom;
+  result->plot_ss = plots->sum_of_squares;
+  result->plot_ms = plots->freedom ? plots->mean_square : NAN;
+  result->run_freedom = reg->residual_freedom;
+  result->run_ss = reg->residual_ss;
+  result->run_ms = reg->residual_sd * reg->residual_sd;
+  double runs_per_plot = (double)reg->rows / (double)result->plots;
+  result->plot_variance = fmax(0, (result->plot_ms - result->run_ms) / runs_per_plot);
+  if (isnan(result->plot_ms - result->run_ms)) result->plot_variance = NAN;
+  FG_TRY(fg_memory_allocate(ctx, terms, sizeof *result->term, (void **)&result->term));
+  for (int whole = 1; whole >= 0; whole--)
+    for (size_t t = 0; t < terms; t++)
+      if (s->whole[t] == whole) FG_TRY(add_term(ctx, &reg->sequential[t + 1], whole, result));
+  return FG_OK;
+}
+
+static size_t plots_are_equal(const fg_levels *plots, double *count) {
+  memset(count, 0, plots->count * sizeof *count);
+  for (size_t i = 0; i < plots->rows; i++)
+    count[plots->index[i]]++;
+  for (size_t p = 1; p < plots->count; p++)
+    if (count[p] != count[0]) return 0;
+  return 1;
+}
+
+static fg_status mark_whole_terms(fg_context *ctx, strata *s, fg_split_plot *result) {
+  double *first = NULL;
+  bool *seen = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, s->plots->count, sizeof *first, (void **)&first));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, s->plots->count, sizeof *seen, (void **)&seen));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, s->model->formula.terms, sizeof *s->whole, (void **)&s->whole));
+  for (size_t t = 0; t < s->model->formula.terms; t++)
+    s->whole[t] = is_constant_within(s->model, s->plots, t, first, seen);
+  result->balanced = plots_are_equal(s->plots, first);
+exit:
+  free(first);
+  free(seen);
+  return status;
+}
+
+fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg_formula *formula,
+                                const char *response, const char *plot, fg_split_plot *result) {
+  fg_status status = FG_OK;
+  fg_model model = {0};
+  fg_levels plots = {0};
+  fg_regression reg = {0};
+  const fg_extended *y = NULL;
+  strata s = {.model = &model, .plots = &plots, .plots_name = "(whole plots)"};
+  *result = (fg_split_plot){0};
+  FG_TRY_EXIT(fg_table_numbers(ctx, table, response, &y));
+  FG_TRY_EXIT(fg_table_levels(ctx, table, plot, true, &plots));
+  if (plots.count < 2 || plots.count == table->rows)
+    FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA,
+                        "column '%s' names %zu whole plots for %zu runs: there must be at least "
+                        "two, and one with more than one run",
+                        plot, plots.count, table->rows));
+  FG_TRY_EXIT(fg_model_build(ctx, table, formula, &model));
+  FG_TRY_EXIT(mark_whole_terms(ctx, &s, result));
+  FG_TRY_EXIT(join(ctx, &s));
+  FG_TRY_EXIT(fg_regression_fit(ctx, &s.joint, y, NULL, &reg));
+  FG_TRY_EXIT(read_strata(ctx, &s, &reg, result));
+exit:
+  fg_regression_free(&reg);
+  free(s.joint.column);
+  free(s.joint.term_name);
+  free(s.joint.matrix);
+  free(s.whole);
+  fg_model_free(&model);
+  fg_levels_free(&plots);
+  if (status != FG_OK) fg_split_plot_free(result);
+  return status;
+}
+
+double fg_split_plot_inflation(const fg_split_plot *result, const char *term, double residual_sd) {
+  for (size_t t = 0; t < result->terms; t++) {
+    if (strcmp(result->term[t].row.name, term) != 0) continue;
+    double error = result->term[t].whole_plot ? result->plot_ms : result->run_ms;
+    return sqrt(error) / residual_sd;
+  }
+  return NAN;
+}
+
+void fg_split_plot_free(fg_split_plot *result) {
+  if (!result) return;
+  for (size_t t = 0; t < result->terms; t++)
+    free(result->term[t].row.name);
+  free(result->term);
+  *result = (fg_split_plot){0};
+}
