@@ -106,14 +106,14 @@ static double slope_along(const fg_surface *s, size_t k) {
 }
 
 /* In the eigenvectors' frame the surface is sum (g_k u_k + e_k u_k²): x = sum u_k v_k with
- * u_k = -g_k / (2 (e_k - shift)); shift 0 is the stationary point. */
-static void shifted_point(const fg_surface *s, double shift, double *x) {
-  for (size_t i = 0; i < s->factors; i++)
-    x[i] = 0;
+ * u_k = -g_k / (2 (e_k - shift)); shift 0 is the stationary point. The shift is edge - distance:
+ * kept apart, a distance far below the rounding of the edge still counts. */
+static void shifted_point(const fg_surface *s, double edge, double distance, double *x) {
+  for (size_t i = 0; i < s->factors; i++) x[i] = 0;
   for (size_t k = 0; k < s->factors; k++) {
-    double u = -slope_along(s, k) / (2 * (s->eigenvalue[k] - shift));
-    for (size_t i = 0; i < s->factors; i++)
-      x[i] += u * s->eigenvector[k][i];
+    double slope = slope_along(s, k), curvature = (s->eigenvalue[k] - edge) + distance;
+    if (slope == 0) continue;
+    for (size_t i = 0; i < s->factors; i++) x[i] -= slope / (2 * curvature) * s->eigenvector[k][i];
   }
 }
 
@@ -144,7 +144,7 @@ fg_status fg_surface_make(fg_context *ctx, const fg_model *model, const fg_regre
     surface->stationary[i] = NAN;
   surface->stationary_value = NAN;
   if (!surface->has_stationary) return FG_OK;
-  shifted_point(surface, 0, surface->stationary);
+  shifted_point(surface, 0, 0, surface->stationary);
   surface->stationary_value = fg_surface_value(surface, surface->stationary);
   return FG_OK;
 }
@@ -236,17 +236,16 @@ static double norm(const double *x, size_t count) {
 static bool sphere_point(const fg_surface *s, double radius, double *x) {
   double edge = s->eigenvalue[s->factors - 1], scale = norm(s->linear, s->factors) / 2;
   double near = 0, far = scale / radius * (1 + 1e-12);
-  shifted_point(s, edge - far, x);
   if (!(far > 0)) return false;
   for (int i = 0; i < 200; i++) {
     double middle = (near + far) / 2;
-    shifted_point(s, edge - middle, x);
+    shifted_point(s, edge, middle, x);
     if (norm(x, s->factors) > radius)
       near = middle;
     else
       far = middle;
   }
-  shifted_point(s, edge - far, x);
+  shifted_point(s, edge, far, x);
   return true;
 }
 
