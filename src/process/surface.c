@@ -109,11 +109,13 @@ static double slope_along(const fg_surface *s, size_t k) {
  * u_k = -g_k / (2 (e_k - shift)); shift 0 is the stationary point. The shift is edge - distance:
  * kept apart, a distance far below the rounding of the edge still counts. */
 static void shifted_point(const fg_surface *s, double edge, double distance, double *x) {
-  for (size_t i = 0; i < s->factors; i++) x[i] = 0;
+  for (size_t i = 0; i < s->factors; i++)
+    x[i] = 0;
   for (size_t k = 0; k < s->factors; k++) {
     double slope = slope_along(s, k), curvature = (s->eigenvalue[k] - edge) + distance;
     if (slope == 0) continue;
-    for (size_t i = 0; i < s->factors; i++) x[i] -= slope / (2 * curvature) * s->eigenvector[k][i];
+    for (size_t i = 0; i < s->factors; i++)
+      x[i] -= slope / (2 * curvature) * s->eigenvector[k][i];
   }
 }
 

@@ -1,0 +1,99 @@
+/* Plans of experiments: which runs to make, in which order.
+ *
+ * Two-level factorials, full or fractional (Box and Hunter 1961), with replicates, centre points
+ * and blocks; central composite designs with any axial distance (the thesis's modified one: corners
+ * at ±1, axial points at ±3, one centre point); Box-Behnken designs (1960) for 3 to 7 factors. The
+ * order is random by a seed; a factor that is hard to change makes whole plots: all runs at one of
+ * its settings stay together (one oven load), and the loads are shuffled.
+ */
+#ifndef FOILGAUGE_PLAN_H
+#define FOILGAUGE_PLAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/status.h"
+#include "foilgauge/table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { FG_PLAN_FACTORS = 20, FG_PLAN_RUNS = 100000 };
+
+typedef enum fg_plan_kind {
+  FG_PLAN_FACTORIAL,
+  FG_PLAN_COMPOSITE,
+  FG_PLAN_BOX_BEHNKEN,
+} fg_plan_kind;
+
+typedef struct fg_plan_factor {
+  const char *name;
+  double low, high; /* real values of -1 and +1 */
+  bool hard_to_change;
+} fg_plan_factor;
+
+typedef struct fg_plan_options {
+  fg_plan_kind kind;
+  const fg_plan_factor *factor;
+  size_t factors;
+  const char *const *generator; /* "D=A:B:C" or "D=-A:B", names of factors; for the corners */
+  size_t generators;
+  const char *const *block_generator; /* "A:B:C": its sign is the block; b of them make 2^b blocks;
+                                         factorials only */
+  size_t block_generators;
+  size_t replicates;     /* of every run but the centre points; 0 means 1 */
+  size_t centre_points;  /* in every block */
+  bool replicate_blocks; /* every replicate is a block of its own */
+  bool composite_blocks; /* corners and axial points are two blocks, centre points in both */
+  double axial;          /* composite designs: distance in coded units; 0: rotatable, the fourth
+                            root of the number of corners */
+  uint64_t seed;
+} fg_plan_options;
+
+typedef struct fg_plan_run {
+  size_t standard;   /* place in the standard order, from 1 */
+  size_t block;      /* from 1 */
+  size_t plot;       /* whole plot, from 1; 0 without hard factors */
+  size_t replicate;  /* from 1 */
+  const char *point; /* "corner", "axial", "centre", "edge" */
+  double coded[FG_PLAN_FACTORS];
+} fg_plan_run;
+
+typedef struct fg_plan {
+  size_t factors;
+  char *name[FG_PLAN_FACTORS];
+  double low[FG_PLAN_FACTORS], high[FG_PLAN_FACTORS];
+  fg_plan_run *run; /* in the order to be made */
+  size_t runs, capacity;
+  size_t blocks, plots; /* plots 0: no restriction */
+  double axial;         /* as used; 0 for other kinds */
+  int resolution;       /* length of the shortest word of the defining relation; 0: full */
+  uint32_t *word;       /* the defining relation: bit k is factor k; without the empty word */
+  int *word_sign;
+  size_t words, word_capacity, sign_capacity;
+} fg_plan;
+
+/* FG_ERR_USAGE says what cannot be: unknown names, contradicting generators, equal levels, too
+ * many runs, a kind that the number of factors does not allow. Free with fg_plan_free. */
+fg_status fg_plan_make(fg_context *ctx, const fg_plan_options *options, fg_plan *plan);
+
+/* The run sheet: run, standard_order, point, block (when there are several), whole_plot (when
+ * restricted), the factors in real units. Free with fg_table_free. */
+fg_status fg_plan_table(fg_context *ctx, const fg_plan *plan, fg_table *table);
+
+/* What the fraction cannot tell apart, in words: one line "A = B:C:E = -D:E" per effect of at most
+ * `order` factors, with aliases of at most `alias_order`; "" for a full factorial. The caller
+ * frees it. */
+fg_status fg_plan_alias_text(fg_context *ctx, const fg_plan *plan, size_t order, size_t alias_order,
+                             char **text);
+/* The defining relation: "I = A:B:C:D = ..."; "" for a full factorial. The caller frees it. */
+fg_status fg_plan_relation_text(fg_context *ctx, const fg_plan *plan, char **text);
+
+void fg_plan_free(fg_plan *plan);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
