@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 
 static const fg_command commands[] = {
+    {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
     {NULL, NULL, NULL},
 };
 
