@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "foilgauge/design.h"
+#include "foilgauge/report.h"
 
 enum { DESIGN_BYTES_MAX = 1 << 20, MESSAGE_MAX = 900 };
 
@@ -252,6 +253,7 @@ static fg_status fail_syntax(const reader *r, const char *json, const char *at) 
 static fg_status check_design(const reader *r, const fg_design *design) {
   fg_context words = {0};
   fg_status status = fg_design_check(&words, design);
+  if (status == FG_OK) status = fg_report_check_tolerances(&words, design);
   if (status == FG_OK) return FG_OK;
   return fg_fail(r->ctx, status, "%s: %.*s", r->path, MESSAGE_MAX, words.message);
 }
