@@ -247,11 +247,24 @@ static void take_back(measure_run *run, int committed) {
   }
 }
 
-/* Writes (and flushes) everything before anything gets its final name: a full disk shows here. */
-static fg_status write_outputs(fg_context *ctx, measure_run *run) {
+/* Names the file in a writer's error. */
+static fg_status write_one(fg_context *ctx, measure_run *run, output_kind kind) {
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
-  for (int kind = 0; kind < OUT_COUNT; kind++)
-    if (run->open[kind]) FG_TRY(writers[kind](ctx, &report, run->outputs[kind].stream));
+  const char *path = run->arguments.paths[kind];
+  fg_status status = writers[kind](ctx, &report, run->outputs[kind].stream);
+  if (status != FG_ERR_IO) return status;
+  fg_context inner = *ctx;
+  return fg_fail(ctx, status, "%s: %.900s", is_standard(path) ? "standard output" : path,
+                 inner.message);
+}
+
+/* Writes and flushes everything before anything gets its final name, so that a full disk shows
+ * first; standard output comes last, when all files are written. */
+static fg_status write_outputs(fg_context *ctx, measure_run *run) {
+  for (int standard = 0; standard <= 1; standard++)
+    for (int kind = 0; kind < OUT_COUNT; kind++)
+      if (run->open[kind] && is_standard(run->arguments.paths[kind]) == (standard == 1))
+        FG_TRY(write_one(ctx, run, (output_kind)kind));
   for (int kind = 0; kind < OUT_COUNT; kind++) {
     if (!run->open[kind]) continue;
     fg_status status = fg_output_commit(ctx, &run->outputs[kind]);
