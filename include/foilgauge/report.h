@@ -148,6 +148,10 @@ fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE 
 /* For people, at most 100 columns. */
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out);
 
+/* PNG, at most 8000 px wide: the one scan of the report in gray (read again from its file), edges,
+ * numbered bumps, fitted circles, residuals magnified with their scale, dimensions in a legend. */
+fg_status fg_report_write_overlay(fg_context *ctx, const fg_report *report, FILE *out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -11,14 +11,20 @@
 #include "foilgauge/report.h"
 
 /* What the command can write, in the order of writing. */
-typedef enum output_kind { OUT_JSON, OUT_CSV, OUT_POINTS, OUT_TABLE, OUT_COUNT } output_kind;
+typedef enum output_kind {
+  OUT_JSON,
+  OUT_CSV,
+  OUT_POINTS,
+  OUT_OVERLAY,
+  OUT_TABLE,
+  OUT_COUNT
+} output_kind;
 
 typedef fg_status report_writer(fg_context *ctx, const fg_report *report, FILE *out);
 
 static report_writer *const writers[OUT_COUNT] = {
-    [OUT_JSON] = fg_report_write_json,
-    [OUT_CSV] = fg_report_write_csv,
-    [OUT_POINTS] = fg_report_write_points,
+    [OUT_JSON] = fg_report_write_json,     [OUT_CSV] = fg_report_write_csv,
+    [OUT_POINTS] = fg_report_write_points, [OUT_OVERLAY] = fg_report_write_overlay,
     [OUT_TABLE] = fg_report_write_table,
 };
 
@@ -45,7 +51,7 @@ typedef struct measure_run {
   fg_status first_error;
 } measure_run;
 
-enum { OPTION_CSV = 256, OPTION_POINTS, OPTION_DPI, OPTION_FORM, OPTION_THREADS };
+enum { OPTION_CSV = 256, OPTION_POINTS, OPTION_OVERLAY, OPTION_DPI, OPTION_FORM, OPTION_THREADS };
 
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
@@ -54,6 +60,7 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 1},
     {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
     {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},
+    {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
     {0},
 };
@@ -88,6 +95,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_POINTS:
     arguments->paths[OUT_POINTS] = text;
+    break;
+  case OPTION_OVERLAY:
+    arguments->paths[OUT_OVERLAY] = text;
     break;
   case OPTION_FORM:
     arguments->form = text;
@@ -152,6 +162,9 @@ static fg_status check_arguments(fg_context *ctx, const measure_arguments *argum
   for (size_t i = 0; i < arguments->scan_count; i++)
     standard += is_standard(arguments->scans[i]);
   if (standard > 1) return fg_fail(ctx, FG_ERR_USAGE, "-: standard input can be read only once");
+  if (arguments->paths[OUT_OVERLAY] && (arguments->scan_count > 1 || standard))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--overlay shows one scan, read again from its file: give one file");
   for (int kind = 0; kind < OUT_COUNT; kind++)
     FG_TRY(check_output(ctx, arguments, (output_kind)kind));
   return FG_OK;
@@ -247,11 +260,24 @@ static void take_back(measure_run *run, int committed) {
   }
 }
 
-/* Writes (and flushes) everything before anything gets its final name: a full disk shows here. */
-static fg_status write_outputs(fg_context *ctx, measure_run *run) {
+/* Names the file in a writer's error. */
+static fg_status write_one(fg_context *ctx, measure_run *run, output_kind kind) {
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
-  for (int kind = 0; kind < OUT_COUNT; kind++)
-    if (run->open[kind]) FG_TRY(writers[kind](ctx, &report, run->outputs[kind].stream));
+  const char *path = run->arguments.paths[kind];
+  fg_status status = writers[kind](ctx, &report, run->outputs[kind].stream);
+  if (status != FG_ERR_IO) return status;
+  fg_context inner = *ctx;
+  return fg_fail(ctx, status, "%s: %.900s", is_standard(path) ? "standard output" : path,
+                 inner.message);
+}
+
+/* Writes and flushes everything before anything gets its final name, so that a full disk shows
+ * first; standard output comes last, when all files are written. */
+static fg_status write_outputs(fg_context *ctx, measure_run *run) {
+  for (int standard = 0; standard <= 1; standard++)
+    for (int kind = 0; kind < OUT_COUNT; kind++)
+      if (run->open[kind] && is_standard(run->arguments.paths[kind]) == (standard == 1))
+        FG_TRY(write_one(ctx, run, (output_kind)kind));
   for (int kind = 0; kind < OUT_COUNT; kind++) {
     if (!run->open[kind]) continue;
     fg_status status = fg_output_commit(ctx, &run->outputs[kind]);
