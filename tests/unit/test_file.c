@@ -184,6 +184,26 @@ static void full_disk_leaves_the_old_file(void **state) {
   assert_int_equal(count_entries(where), 1);
 }
 
+/* Space that comes back before the commit does not bring back what was lost. */
+static void passing_shortage_is_an_error(void **state) {
+  folder *where = *state;
+  struct rlimit before, low;
+  fg_context ctx = {0};
+  fg_output output;
+  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_OK);
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  low = (struct rlimit){.rlim_cur = 5, .rlim_max = before.rlim_max};
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+  for (int i = 0; i < 100000; i++)
+    fputs("0123456789", output.stream);
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  assert_int_equal(fg_output_commit(&ctx, &output), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, where->file));
+  assert_int_equal(count_entries(where), 0);
+}
+
 static void unwritable_places_are_named(void **state) {
   folder *where = *state;
   char inside[300], missing[300];
@@ -289,6 +309,7 @@ int main(void) {
       WITH_FOLDER(names_may_be_as_long_as_names_can_be),
       cmocka_unit_test(full_device_is_an_error),
       WITH_FOLDER(full_disk_leaves_the_old_file),
+      WITH_FOLDER(passing_shortage_is_an_error),
       WITH_FOLDER(unwritable_places_are_named),
       WITH_FOLDER(read_only_file_is_respected),
       cmocka_unit_test(standard_output_stays_open),
