@@ -70,8 +70,16 @@ typedef struct fg_noise_model {
 void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t count, int values,
                        fg_noise_model *noise);
 
-/* Covariance of (x, y, R) of one arc under a noise model: A (sum_ij x_i x_j' c_|i-j|) A. */
+/* Covariance of (x, y, R) of one arc under a noise model: A (sum_ij x_i x_j' c_|i-j|) A. Where the
+ * estimated correlation is so uncertain that this is no covariance, the noise is taken as white
+ * with the variance times the integral of the correlation (at least 1). */
 void fg_arc_covariance(const fg_datum_line *line, const fg_noise_model *noise, fg_arc *arc);
+
+/* The same from the ranges as clusters: A (sum over ranges of g g') A × n/(n - 3), g the sum of x
+ * times the residual over one range. It holds when whole ranges deviate together (lands that do
+ * not lie on one circle). Returns the ratio of its variance of R to the one in `arc`, and replaces
+ * that covariance when the ratio could come by chance with a probability of less than `p`. */
+double fg_arc_cluster_covariance(const fg_datum_line *line, double p, fg_arc *arc);
 
 /* What the parameters (x, y, R) would move by if the half width's deviation from its mean were an
  * error of the line: the edge model's own systematic error shows there. */

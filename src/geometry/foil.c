@@ -19,6 +19,9 @@
 #define OUTLIER_SHARE 0.02
 /* The edge model's systematic error counts when chance would show it less often than this. */
 #define EDGE_MODEL_P 0.005
+/* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
+ * intensity model leaves on clean renders (reports/accuracy.md). */
+#define LINE_SHIFT_BLURS 0.001
 /* Correlation over more stations than this is roughness of the edge. */
 #define ROUGH_STATIONS 3.0
 
@@ -94,11 +97,28 @@ static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half
       layout->overall.covariance[p][q] += (1 - 1 / ratio) * shift[p] * shift[q];
 }
 
-static size_t gather_arcs(const fg_layout *layout, fg_arc *arcs) {
+/* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
+ * radius of every circle and the crowns, and nothing else. */
+static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
+  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
+  double shift_mm = LINE_SHIFT_BLURS * blur_um / 1000;
+  arc->covariance[2][2] += shift_mm * shift_mm;
+}
+
+static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
+  fg_noise_model noise, half_width;
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
+  fg_arc_covariance(&layout->line, &noise, &layout->overall);
+  fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
+  add_overall_systematic(layout, &half_width);
+  add_line_shift(foil, &layout->overall);
+}
+
+static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
   size_t n = 0;
   for (size_t i = 0; i < layout->turning.bump_count; i++)
     if (layout->fitted[i]) arcs[n++] = layout->bumps[i];
-  arcs[n++] = layout->overall;
   return n;
 }
 
@@ -106,8 +126,8 @@ static fg_status find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil 
   fg_arc *arcs = NULL;
   fg_noise_model noise, half_width;
   double systematic[3][3];
-  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count + 1, sizeof *arcs, (void **)&arcs));
-  size_t count = gather_arcs(layout, arcs);
+  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *arcs, (void **)&arcs));
+  size_t count = gather_bumps(layout, arcs);
   fg_noise_estimate(&layout->line, arcs, count, 0, &noise);
   fg_noise_estimate(&layout->line, arcs, count, 1, &half_width);
   free(arcs);
@@ -120,9 +140,9 @@ static fg_status find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil 
     if (!layout->fitted[i]) continue;
     fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
     if (found) add_systematic(layout, systematic, &layout->bumps[i]);
+    add_line_shift(foil, &layout->bumps[i]);
   }
-  fg_arc_covariance(&layout->line, &noise, &layout->overall);
-  add_overall_systematic(layout, &half_width);
+  find_overall_covariance(layout, foil);
   return FG_OK;
 }
 
