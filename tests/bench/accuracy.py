@@ -20,6 +20,7 @@ import numpy as np
 import benchlib
 from accuracy_specs import TIERS
 
+HERE = os.path.dirname(os.path.abspath(__file__))
 QUANTITIES = ("R", "h", "alpha", "theta", "R0")
 UNITS = {"R": "µm", "h": "µm", "alpha": "deg", "theta": "deg", "R0": "µm"}
 BOUND_FLOOR_UM = 0.05  # below this the bound of R is not asked for
@@ -29,30 +30,33 @@ GROSS_UM = 25.0  # an error of R beyond this is a wrong arc, not noise
 # --- one foil -------------------------------------------------------------------------------
 
 
-def measure(scan, design, folder):
+def measure(program, scan, design):
     """(foil, what went wrong). One foil is expected."""
-    out = os.path.join(folder, f"report-{os.getpid()}.json")
-    command = [benchlib.FOILGAUGE, "measure", scan, "--design", design, "-o", out]
-    done = subprocess.run(command, capture_output=True, text=True)
-    try:
-        if done.returncode not in (0, 1, 2):
-            return None, f"exit code {done.returncode}: {done.stderr.strip()[:160]}"
-        foils = benchlib.load(out)["foils"]
-    finally:
-        if os.path.exists(out):
-            os.remove(out)
+    command, fine = [benchlib.FOILGAUGE, "measure"], (0, 1, 2)
+    if program != "foilgauge":
+        command, fine = ["/usr/bin/python3", os.path.join(HERE, f"peer_{program}.py")], (0,)
+    done = subprocess.run(command + [scan, "--design", design], capture_output=True, text=True)
+    if done.returncode not in fine:
+        return None, f"exit code {done.returncode}: {done.stderr.strip()[-160:]}"
+    foils = json.loads(done.stdout)["foils"]
     if len(foils) != 1:
         return None, f"{len(foils)} foils found"
     return foils[0], ""
 
 
+def known(item, name):
+    """A number of a report; NaN where it says null or, as the peers, nothing."""
+    value = item.get(name)
+    return float("nan") if value is None else value
+
+
 def uncertainties(foil, truth):
     pairs = benchlib.match(foil, truth)
     result = {
-        short: np.array([np.nan if b[f"u_{name}"] is None else b[f"u_{name}"] * factor for b, _ in pairs])
+        short: np.array([known(b, f"u_{name}") * factor for b, _ in pairs])
         for name, short, _, factor in benchlib.BUMP_QUANTITIES
     }
-    result["R0"] = np.array([foil["overall"]["u_radius_mm"] * 1000.0])
+    result["R0"] = np.array([known(foil["overall"], "u_radius_mm") * 1000.0])
     return result
 
 
@@ -79,7 +83,7 @@ def judge(record, foil, truth):
 
 
 def render_and_measure(job):
-    tier, index, seed, folder = job
+    tier, index, seed, folder, program = job
     spec, record = TIERS[tier].make(np.random.default_rng([seed, index]), index)
     stem = os.path.join(folder, f"{tier}-{index}")
     paths = {name: stem + ext for name, ext in
@@ -98,7 +102,7 @@ def render_and_measure(job):
             return record
         truth = benchlib.load_truth(paths["truth"])
         benchlib.write_design(truth, paths["design"])
-        foil, failure = measure(paths["scan"], paths["design"], folder)
+        foil, failure = measure(program, paths["scan"], paths["design"])
         if foil is None:
             record["failure"] = failure
             return record
@@ -109,7 +113,7 @@ def render_and_measure(job):
                 os.remove(path)
 
 
-def measure_shared(scan, folder):
+def measure_shared(program, scan, folder):
     truth = benchlib.load_truth(scan[: -len(".png")] + ".truth.json")
     facts = truth["scan"]
     bits = 16 if "16bit" in os.path.basename(scan) else 8
@@ -118,7 +122,7 @@ def measure_shared(scan, folder):
     record["effects"] = ", ".join(effect["id"] for effect in truth["effects"])
     design = os.path.join(folder, "design.json")
     benchlib.write_design(truth, design)
-    foil, failure = measure(scan, design, folder)
+    foil, failure = measure(program, scan, design)
     if foil is None:
         record["failure"] = failure
         return record
@@ -143,8 +147,8 @@ def figures(records, quantity):
     bound = floored(pooled(records, "bound", quantity), quantity)
     if not error.size:
         return None
-    known = np.isfinite(u)
-    covered = np.abs(error[known]) <= 1.96 * u[known]
+    stated = np.isfinite(u)
+    covered = np.abs(error[stated]) <= 1.96 * u[stated]
     return {
         "rms": benchlib.rms(error),
         "bound": benchlib.rms(bound),
@@ -153,7 +157,7 @@ def figures(records, quantity):
         "normal": benchlib.rms(error / bound),
         "bias": float(np.mean(error)),
         "u_bias": float(np.std(error) / np.sqrt(error.size)),
-        "coverage": 100.0 * float(np.mean(covered)) if known.any() else float("nan"),
+        "coverage": 100.0 * float(np.mean(covered)) if stated.any() else float("nan"),
         "largest": float(np.max(np.abs(error))),
         "count": int(error.size),
     }
@@ -269,21 +273,33 @@ def write_scans(out, records):
 # --- runs -----------------------------------------------------------------------------------
 
 
+def suffix(options):
+    return "" if options.program == "foilgauge" else f"_{options.program}"
+
+
+def run_command(options):
+    words = ["tests/bench/accuracy.sh"]
+    for name in ("program", "seed", "share"):
+        if getattr(options, name) != options.defaults[name]:
+            words.append(f"--{name} {getattr(options, name)}")
+    return " ".join(words)
+
+
 def run_tiers(options):
     records = []
     with tempfile.TemporaryDirectory() as folder, multiprocessing.Pool(options.jobs) as pool:
         for name, tier in TIERS.items():
             count = max(1, round(tier.count * options.share))
-            jobs = [(name, k, options.seed, folder) for k in range(count)]
+            jobs = [(name, k, options.seed, folder, options.program) for k in range(count)]
             print(f"{name}: rendering and measuring {count} foils", flush=True)
             records += pool.map(render_and_measure, jobs, chunksize=1)
-    path = os.path.join(options.out, "accuracy.md")
+    path = os.path.join(options.out, f"accuracy{suffix(options)}.md")
     with open(path, "w", encoding="utf-8") as out:
-        write_header(out, "Accuracy on rendered foils", f"tests/bench/accuracy.sh --seed {options.seed}")
+        write_header(out, "Accuracy on rendered foils", run_command(options))
         for name in TIERS:
             write_tier(out, name, [r for r in records if r["tier"] == name])
         write_failures(out, records)
-    write_csv(os.path.join(options.out, "accuracy.csv"), records)
+    write_csv(os.path.join(options.out, f"accuracy{suffix(options)}.csv"), records)
     return path
 
 
@@ -293,10 +309,10 @@ def run_scans(options):
         print("scans of another renderer: skipped, the shared data folder is not there")
         return None
     with tempfile.TemporaryDirectory() as folder:
-        records = [measure_shared(scan, folder) for scan in scans]
-    path = os.path.join(options.out, "accuracy_shared.md")
+        records = [measure_shared(options.program, scan, folder) for scan in scans]
+    path = os.path.join(options.out, f"accuracy_shared{suffix(options)}.md")
     with open(path, "w", encoding="utf-8") as out:
-        write_header(out, "Accuracy on scans of another renderer", "tests/bench/accuracy.sh")
+        write_header(out, "Accuracy on scans of another renderer", run_command(options))
         out.write(
             "\nA scan with effects of the scanner carries them into its errors: `measure` alone does not\n"
             "correct them. The bound knows white noise only.\n"
@@ -310,10 +326,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--share", type=float, default=1.0, help="part of every tier, for a quick look")
+    parser.add_argument("--program", choices=["foilgauge", "skimage", "opencv"], default="foilgauge",
+                        help="whose accuracy: the program's, or a peer's on the same renders")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--only-scans", action="store_true", help="no rendering: the shared scans only")
     parser.add_argument("-o", "--out", default=os.path.join(benchlib.ROOT, "reports"))
     options = parser.parse_args()
+    options.defaults = vars(parser.parse_args([]))
     os.makedirs(options.out, exist_ok=True)
     if not os.path.exists(benchlib.FOILGAUGE):
         sys.exit("accuracy.py: build/foilgauge is not built")

@@ -31,6 +31,15 @@ def load(path):
         return json.load(file)
 
 
+def load_truth(path):
+    """A truth file of one foil. `foilgauge render` may list its foils; others state the one."""
+    truth = load(path)
+    if truth.get("foils"):
+        truth = {**truth, **truth["foils"][0]}
+    truth.setdefault("effects", [])
+    return truth
+
+
 def write_design(truth, path):
     """The design that a truth file carries, as a design file for program and peers alike."""
     known = truth["design"]

@@ -60,7 +60,7 @@ def report_of(name, folder, out):
 def measure_scan(scan, repetitions, folder):
     """All four on one scan, in turn, each repetition in the other order. The first round warms the
     page cache and is not counted."""
-    truth = benchlib.load(scan[: -len(".png")] + ".truth.json")
+    truth = benchlib.load_truth(scan[: -len(".png")] + ".truth.json")
     design, out = os.path.join(folder, "design.json"), os.path.join(folder, "report.json")
     benchlib.write_design(truth, design)
     todo = commands(scan, design, out)
