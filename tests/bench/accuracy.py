@@ -76,7 +76,8 @@ def judge(record, foil, truth):
     record["u"] = uncertainties(foil, truth)
     record["bound"] = benchlib.foil_bounds(truth, sigma, end_lands_mm=record.get("end_lands_mm", (0, 0)))
     record["flags"] = foil.get("flags", [])
-    if np.max(np.abs(wrong["R"])) > GROSS_UM:
+    # What an effect of the scanner does to R is no wrong arc.
+    if "scan." not in record.get("effects", "") and np.max(np.abs(wrong["R"])) > GROSS_UM:
         k = int(np.argmax(np.abs(wrong["R"])))
         record["gross"] = f"bump {k + 1}: R off by {wrong['R'][k]:.1f} µm"
     return record
@@ -166,13 +167,17 @@ def figures(records, quantity):
 HEADER = ["what", "n", "rms", "bound", "rms / bound", "rms of error / bound", "bias ± se", "coverage %", "largest"]
 
 
+def per_cent(value, decimals):
+    return f"{value:.{decimals}f}" if np.isfinite(value) else "–"
+
+
 def figure_row(label, f):
     if f is None:
         return [label] + ["–"] * (len(HEADER) - 1)
     n = benchlib.number
     bias = f"{n(f['bias'], 2)} ± {n(f['u_bias'], 1)}"
     cells = [f["count"], n(f["rms"]), n(f["bound"]), f"{f['ratio']:.2f}", f"{f['normal']:.2f}"]
-    return [label] + cells + [bias, f"{f['coverage']:.1f}", n(f["largest"])]
+    return [label] + cells + [bias, per_cent(f["coverage"], 1), n(f["largest"])]
 
 
 SUBSETS = [
@@ -194,6 +199,9 @@ SUBSETS = [
     ("rotation 270–360°", lambda r: r["rotate_deg"] % 360 >= 270),
     ("one hand", lambda r: not r["mirror"]),
     ("the other hand", lambda r: r["mirror"]),
+    ("side wall", lambda r: r.get("side_wall")),
+    ("no side wall", lambda r: not r.get("side_wall")),
+    ("JPEG blocks", lambda r: r.get("jpeg")),
 ]
 
 
@@ -207,6 +215,8 @@ def write_tier(out, name, records):
         rows = []
         for label, belongs in SUBSETS:
             part = [r for r in measured if belongs(r)]
+            if not part or len(part) == len(measured):
+                continue  # a subset that is none says nothing
             rows.append(figure_row(label, figures(part, quantity)))
         out.write(f"\n{quantity} ({UNITS[quantity]}) by subset:\n\n" + benchlib.table(HEADER, rows))
 
@@ -265,7 +275,7 @@ def write_scans(out, records):
             cells = ["not measured", "", "", "", ""]
             if f:
                 n = benchlib.number
-                cells = [n(f["rms"]), n(f["bound"]), n(f["bias"], 2), f"{f['coverage']:.0f}", n(f["largest"])]
+                cells = [n(f["rms"]), n(f["bound"]), n(f["bias"], 2), per_cent(f["coverage"], 0), n(f["largest"])]
             rows.append([r["name"], r.get("effects") or "–", f"{q} ({UNITS[q]})"] + cells)
     out.write("\n" + benchlib.table(header, rows))
 
