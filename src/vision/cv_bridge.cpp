@@ -28,3 +28,15 @@ fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32
     return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
   }
 }
+
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height) {
+  try {
+    cv::Mat target(height, width, CV_32F, grid);
+    cv::Mat blurred;
+    cv::medianBlur(target, blurred, 5);
+    blurred.copyTo(target);
+    return FG_OK;
+  } catch (const std::exception &error) {
+    return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
+  }
+}

@@ -21,6 +21,9 @@ typedef struct fg_blob {
 fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32_t height,
                       int32_t *labels, fg_blob **blobs, int32_t *blob_count);
 
+/* Median over 5 × 5 of a grid of floats, in place, borders repeated. */
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
+
 #ifdef __cplusplus
 }
 #endif
