@@ -201,6 +201,7 @@ SUBSETS = [
     ("the other hand", lambda r: r["mirror"]),
     ("side wall", lambda r: r.get("side_wall")),
     ("no side wall", lambda r: not r.get("side_wall")),
+    ("clipped white", lambda r: r.get("clipped")),
     ("JPEG blocks", lambda r: r.get("jpeg")),
 ]
 

@@ -66,6 +66,7 @@ def record_of(foil, scanner):
         "end_lands_mm": [foil["first_land_mm"], foil["last_land_mm"]],
         "side_wall": "side_wall" in rough,
         "jpeg": "jpeg" in rough,
+        "clipped": "clip_white" in scanner,
     }
 
 
@@ -95,11 +96,12 @@ def sinusoidal(rng, index):
 def rough(rng, index):
     """As real flatbed scans are: blur on one side, edges that scatter by about 0.3 px and stay
     together over 5 to 15 px, correlated noise, halo, dust; half with the part's wall beside one
-    edge, a quarter with JPEG blocks."""
+    edge, half with clipped white, a quarter with JPEG blocks."""
     foil = foil_spec(rng, index)
     effects = {
-        "one_sided_blur_px": float(rng.uniform(0, 0.8)),
+        "one_sided_blur_px": float(rng.uniform(0.5, 1.9)),
         "edge_roughness_um": float(rng.uniform(1.0, 2.0)),
+        "edge_common_um": float(rng.uniform(0.3, 1.0)),
         "correlation_um": float(rng.uniform(26, 80)),
         "halo": {"fraction": float(rng.uniform(0.1, 0.2)), "length_px": float(rng.uniform(10, 30))},
     }
@@ -116,13 +118,18 @@ def rough(rng, index):
     scanner = {
         "bits": bits,
         "gamma": log_uniform(rng, 0.45, 2.2),
-        "blur_px": float(rng.uniform(1.8, 2.9)),
+        "blur_px": float(rng.uniform(1.8, 2.2)),
         "noise": float(rng.uniform(0.8, 2.5)),
         "noise_correlation": float(rng.uniform(0.5, 0.7)),
         "dust": {"count": int(rng.integers(0, 60))},
+        "scratches": {"count": int(rng.integers(0, 4))},
+        "shading": {axis: float(rng.uniform(-0.04, 0.04)) for axis in ("x", "y", "quadratic")},
         "rough": effects,
     }
     scanner.update(levels(rng, light_on_dark=(index // 2) % 2 == 0))
+    if (index // 16) % 2:  # white at the end of the scale, as a scanner's own exposure leaves it
+        white = max(scanner["background"], scanner["background"] + scanner["contrast"])
+        scanner["clip_white"] = float(white * rng.uniform(0.99, 1.02))
     return spec_of(rng, foil, scanner), record_of(foil, scanner)
 
 
@@ -143,8 +150,9 @@ TIERS = {
     ),
     "rough": Tier(
         "Rough, as real scans are",
-        "Blur 1.8 to 2.9 px and more on one side, edges scattered by 1 to 2 µm with a correlation of 26 to\n"
-        "80 µm, correlated noise, halo of 10 to 20 %, dust; half with a side wall, some with JPEG blocks.\n"
+        "Blur 1.8 to 2.2 px, on one side up to 2.9, edges scattered by 1 to 2 µm with a correlation of 26 to\n"
+        "80 µm, correlated noise, halo of 10 to 20 %, dust, scratches, shading; half with a side wall, half with\n"
+        "clipped white, some with JPEG blocks.\n"
         "The bound knows white noise only; here it is a scale, not a mark.",
         64,
         rough,

@@ -8,7 +8,8 @@ import subprocess
 import numpy as np
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-FOILGAUGE = os.path.join(ROOT, "build", "foilgauge")
+# Another build of the program can be named, to compare two.
+FOILGAUGE = os.environ.get("FOILGAUGE_PROGRAM") or os.path.join(ROOT, "build", "foilgauge")
 MM_PER_INCH = 25.4
 
 # JSON name, unit of the tables, factor from the report's unit to it.
