@@ -117,7 +117,7 @@ def render_and_measure(job):
 def measure_shared(program, scan, folder):
     truth = benchlib.load_truth(scan[: -len(".png")] + ".truth.json")
     facts = truth["scan"]
-    bits = 16 if "16bit" in os.path.basename(scan) else 8
+    bits = facts.get("bits") or (16 if "16bit" in os.path.basename(scan) else 8)
     record = {key: facts[key] for key in ("blur_px", "noise", "contrast")}
     record.update(tier="scans", name=os.path.basename(scan), bits=bits, index=0)
     record["effects"] = ", ".join(effect["id"] for effect in truth["effects"])
