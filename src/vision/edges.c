@@ -9,6 +9,7 @@
 #define STEP_PX       2.0  /* distance of stations */
 #define SMOOTH_PX     30.0 /* half window of the reference line */
 #define BAND_REACH_PX 17.0 /* beyond the strip's edges: 4 blurs of 3 px, and some background */
+#define MIDDLE_REACH_PX 6.0 /* the same while only the middle is sought */
 enum { MIDDLE_STATIONS = 4 }; /* the middle is smoothed over so many stations to either side */
 
 /* The middle of each station by the weight of its pixels, counts between 30 and 70 % of the
@@ -88,7 +89,7 @@ static int compare_doubles(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Stations of the strip in mm, with the blur's shift of curved edges put back. */
+/* Stations of the strip in mm. */
 static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_strip *strip) {
   double kx = 25.4 / dpi[0], ky = 25.4 / dpi[1], s_mm = 0;
   for (size_t i = 0; i < work->reference->count; i++) {
@@ -97,9 +98,7 @@ static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_stri
     double nx = -r->ty, ny = r->tx;
     fg_station *out = &strip->stations[i];
     if (i > 0) s_mm += hypot((r->x - r[-1].x) * kx, (r->y - r[-1].y) * ky);
-    double at[2];
-    for (int side = 0; side < 2; side++)
-      at[side] = e->edge_px[side] - 0.5 * r->curvature * e->blur_px[side] * e->blur_px[side];
+    const float *at = e->edge_px;
     double norm = hypot(nx / kx, ny / ky), scale = hypot(nx * kx, ny * ky) * 1000;
     *out = (fg_station){.s_mm = s_mm,
                         .left = {(r->x + at[0] * nx) * kx, (r->y + at[0] * ny) * ky},
@@ -153,14 +152,45 @@ static void find_box(const fg_reference *reference, fg_strip *strip) {
   }
 }
 
+/* The reference line of the measurement: the middles of a first, coarse line, smoothed. The coarse
+ * line's own wiggles would shift edges by some 0.01 px where the strip crosses the lattice
+ * obliquely; after this step they are below 0.001 px. */
+static fg_status build_reference(fg_context *ctx, const fg_tiles *tiles,
+                                 const fg_segmentation *segmentation, const fg_trace *trace,
+                                 fg_reference *out) {
+  fg_reference coarse = {0};
+  fg_band band = {0};
+  fg_edge_work work = {.reference = &coarse, .band = &band, .width_px = trace->width_px};
+  fg_point *middles = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX, &coarse));
+  FG_TRY_EXIT(fg_band_collect(ctx, tiles, &coarse, trace->width_px / 2 + MIDDLE_REACH_PX, &band));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, coarse.count, sizeof *work.stations, (void **)&work.stations));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, coarse.count, sizeof *middles, (void **)&middles));
+  find_middles(segmentation, trace, &work);
+  for (size_t i = 0; i < coarse.count; i++) {
+    const fg_reference_station *r = &coarse.stations[i];
+    double middle = work.stations[i].middle_px;
+    middles[i] = (fg_point){r->x - middle * r->ty, r->y + middle * r->tx};
+  }
+  FG_TRY_EXIT(fg_reference_build(ctx, middles, coarse.count, SMOOTH_PX, STEP_PX, out));
+exit:
+  fg_reference_free(&coarse);
+  fg_band_free(&band);
+  free(work.stations);
+  free(middles);
+  return status;
+}
+
 static fg_status measure_edges(fg_context *ctx, const fg_segmentation *segmentation,
                                const fg_trace *trace, fg_edge_work *work) {
   find_middles(segmentation, trace, work);
   FG_TRY(fg_edges_find_shape(ctx, work, true));
-  fg_edges_solve(work, 3);
+  fg_edges_solve(work, 2);
   refine_middles(work);
   FG_TRY(fg_edges_find_shape(ctx, work, false));
-  fg_edges_solve(work, 3);
+  fg_edges_solve(work, 2);
   mark_ends(work);
   scale_uncertainties(work);
   return FG_OK;
@@ -174,8 +204,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   fg_edge_work work = {.reference = &reference, .band = &band, .width_px = trace->width_px,
                        .reach_px = BAND_REACH_PX, .noise = 1, .contrast = trace->contrast};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX,
-                                 &reference));
+  FG_TRY_EXIT(build_reference(ctx, tiles, segmentation, trace, &reference));
   FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *work.stations,
                                  (void **)&work.stations));
   FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *work.tables, (void **)&work.tables));

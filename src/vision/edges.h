@@ -7,8 +7,8 @@
  * held, both edges of every station follow from its pixels by Gauss-Newton: the maximum-likelihood
  * estimate, whose variance is the bound (n/A)² 2 s sqrt(pi) for an edge that stands alone.
  *
- * A Gaussian blur of sd s moves a curved edge towards its centre of curvature by s²/(2R); that is
- * put back.
+ * A Gaussian blur of sd s moves a curved edge towards its centre of curvature by s²/(2R). The
+ * stations hold the edge as it is seen; the fits of circles put the shift back.
  */
 #ifndef FG_VISION_EDGES_H
 #define FG_VISION_EDGES_H

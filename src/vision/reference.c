@@ -80,6 +80,25 @@ static fg_status resample(fg_context *ctx, const node *nodes, size_t count, doub
   return FG_OK;
 }
 
+/* Tangent and curvature as the line itself has them (central differences over two steps): a local
+ * parabola's own slope and curvature belong to a smoother line than its positions do, and the
+ * difference would shift pixels that lie obliquely to their station. */
+static void differentiate(fg_reference *line) {
+  enum { REACH = 2 };
+  if (line->count <= 2 * REACH) return;
+  double h = REACH * line->step_px;
+  for (size_t i = REACH; i + REACH < line->count; i++) {
+    fg_reference_station *s = &line->stations[i];
+    double dx = s[REACH].x - s[-REACH].x, dy = s[REACH].y - s[-REACH].y;
+    double bend_x = s[REACH].x - 2 * s->x + s[-REACH].x;
+    double bend_y = s[REACH].y - 2 * s->y + s[-REACH].y;
+    double norm = hypot(dx, dy);
+    s->tx = dx / norm;
+    s->ty = dy / norm;
+    s->curvature = (s->tx * bend_y - s->ty * bend_x) / (h * h);
+  }
+}
+
 fg_status fg_reference_build(fg_context *ctx, const fg_point *points, size_t count,
                              double window_px, double step_px, fg_reference *reference) {
   memset(reference, 0, sizeof *reference);
@@ -94,6 +113,7 @@ fg_status fg_reference_build(fg_context *ctx, const fg_point *points, size_t cou
   for (size_t i = 0; i < count; i++)
     if (smooth_node(points, chord, count, i, window_px, &nodes[kept])) kept++;
   FG_TRY_EXIT(resample(ctx, nodes, kept, step_px, reference));
+  differentiate(reference);
 exit:
   free(chord);
   free(nodes);
