@@ -3,7 +3,10 @@
 
 #include "cli/commands.h"
 
+fg_command_run fg_cmd_render;
+
 static const fg_command commands[] = {
+    {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
     {NULL, NULL, NULL},
 };
 
