@@ -1,9 +1,9 @@
 /* The forward model: foils and a scanner in, a scan and its truth out.
  *
- * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds two to start from). What
- * is drawn is exact: the strip's midline is made of lines and arcs, a sample of the picture is the
- * blurred strip at its signed distance, and the picture is low-passed in two dimensions, so that
- * what blur does to a curved edge is really there. The same spec and seed give the same bytes,
+ * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds two to start from).
+ * What is drawn is exact: the strip's midline is made of lines and arcs, a sample of the picture is
+ * the blurred strip at its signed distance, and the picture is low-passed in two dimensions, so
+ * that what blur does to a curved edge is really there. The same spec and seed give the same bytes,
  * whatever the height of the strips it is drawn in. Memory is proportional to a strip of rows.
  *
  * How a pixel comes about, in this order:

@@ -18,8 +18,12 @@ static const struct argp_option options[] = {
 static error_t parse_option(int key, char *value, struct argp_state *state) {
   render_arguments *arguments = state->input;
   switch (key) {
-  case 'o': arguments->scan = value; return 0;
-  case 't': arguments->truth = value; return 0;
+  case 'o':
+    arguments->scan = value;
+    return 0;
+  case 't':
+    arguments->truth = value;
+    return 0;
   case ARGP_KEY_ARG:
     if (arguments->spec) argp_error(state, "one SPEC.json at a time, not also '%s'", value);
     arguments->spec = value;
@@ -28,7 +32,8 @@ static error_t parse_option(int key, char *value, struct argp_state *state) {
     if (!arguments->spec) argp_error(state, "say which SPEC.json to render");
     if (!arguments->scan) argp_error(state, "say where the scan goes: -o SCAN.png");
     return 0;
-  default: return ARGP_ERR_UNKNOWN;
+  default:
+    return ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -22,19 +22,20 @@ static fg_point nominal_px(const fg_sampler *sampler, double x, double y) {
 }
 
 /* In pixels, with room for the step between marks and for steps of a field. */
-static double reach_px(const fg_sampler *sampler, double half_width_mm) {
+static double reach_px(const fg_sampler *sampler, double half_width_mm, double reach_mm) {
   double pixel = fmin(sampler->pixel_mm[0], sampler->pixel_mm[1]);
   double field = 0;
   for (size_t i = 0; i < sampler->spec->effects.count; i++)
     if (sampler->spec->effects.effects[i].row->frame == FG_EFFECT_SCANNER &&
         sampler->spec->effects.effects[i].row->middle_axis == 1)
       field += 1e-3 * fabs(sampler->spec->effects.effects[i].p[0]);
-  return (half_width_mm + sampler->reach_mm + field) / pixel + 3;
+  return (half_width_mm + reach_mm + field) / pixel + 3;
 }
 
 static void shape_box(const fg_sampler *sampler, const fg_shape *shape, double box_px[4]) {
   double half = shape->radius + fabs(shape->lobe_mm);
-  double reach = reach_px(sampler, half + (sampler->has_field ? 0.1 * half : 0));
+  double reach =
+      reach_px(sampler, half + (sampler->has_field ? 0.1 * half : 0), sampler->edge_reach_mm);
   fg_point a = nominal_px(sampler, shape->x0, shape->y0);
   fg_point b = nominal_px(sampler, shape->x1, shape->y1);
   box_px[0] = fmin(a.x, b.x) - reach;
@@ -55,7 +56,8 @@ static fg_point mark_point(const fg_sampler *sampler, const fg_segment *segment,
 }
 
 static double segment_reach_px(const fg_sampler *sampler, const fg_segment *segment) {
-  return reach_px(sampler, sampler->spec->scene.frames[segment->foil].half_thickness_mm);
+  return reach_px(sampler, sampler->spec->scene.frames[segment->foil].half_thickness_mm,
+                  sampler->reach_mm);
 }
 
 static void find_spans(const fg_sampler *sampler, fg_band *band) {
@@ -142,12 +144,13 @@ static fg_status mark_segment(fg_context *ctx, const fg_sampler *sampler, size_t
   return FG_OK;
 }
 
-fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px,
-                       int64_t margin_px, fg_band *band) {
+fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px, int64_t margin_px,
+                       fg_band *band) {
   const fg_scene *scene = &sampler->spec->scene;
   band->row0 = (y0_px - margin_px) / FG_BLOCK_PX;
   band->node_count = 0;
-  for (int64_t i = 0; i < band->columns * band->rows; i++) band->heads[i] = -1;
+  for (int64_t i = 0; i < band->columns * band->rows; i++)
+    band->heads[i] = -1;
   double top = (double)band->row0 * FG_BLOCK_PX;
   double bottom = top + (double)band->rows * FG_BLOCK_PX;
   for (size_t i = 0; i < thing_count(sampler); i++) {

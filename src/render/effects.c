@@ -79,7 +79,9 @@ static const fg_effect_row rows[] = {
     {"scan.shear", FG_EFFECT_SCANNER, {{"value", NAN, -0.1, 0.1}}, shear, NULL, 0},
     {"scan.carriage_ripple",
      FG_EFFECT_SCANNER,
-     {{"amplitude_um", NAN, -200, 200}, {"period_mm", NAN, 0.05, 1000}, {"phase_deg", 0, -360, 360}},
+     {{"amplitude_um", NAN, -200, 200},
+      {"period_mm", NAN, 0.05, 1000},
+      {"phase_deg", 0, -360, 360}},
      carriage_ripple,
      NULL,
      0},
@@ -158,7 +160,8 @@ fg_status fg_effects_parse(const fg_place *place, const cJSON *array, fg_effect_
     fg_place inner = fg_place_item(place, "effects", (int)list->count);
     const cJSON *id = cJSON_GetObjectItemCaseSensitive(item, "id");
     const fg_effect_row *row = rows;
-    while (row->id && !(cJSON_IsString(id) && !strcmp(row->id, id->valuestring))) row++;
+    while (row->id && !(cJSON_IsString(id) && !strcmp(row->id, id->valuestring)))
+      row++;
     if (!row->id)
       return fg_member_fail(&inner, "id", id, "must be the name of an effect such as scan.scale_y");
     list->effects[list->count] = (fg_effect){.row = row};

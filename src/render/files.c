@@ -19,7 +19,8 @@ typedef struct png_out {
 
 static void on_error(png_structp png, png_const_charp words) {
   png_out *out = png_get_error_ptr(png);
-  fg_fail(out->ctx, FG_ERR_IO, "%s: cannot write: %s", out->file.path ? out->file.path : "-", words);
+  fg_fail(out->ctx, FG_ERR_IO, "%s: cannot write: %s", out->file.path ? out->file.path : "-",
+          words);
   longjmp(out->failed, 1);
 }
 
@@ -79,8 +80,7 @@ static fg_status write_truth(fg_context *ctx, const fg_render_spec *spec, fg_out
   FG_TRY(fg_render_truth_json(ctx, spec, &json));
   bool written = fputs(json, out->stream) >= 0 && fputc('\n', out->stream) != EOF;
   free(json);
-  return written ? FG_OK
-                 : fg_fail(ctx, FG_ERR_IO, "%s: cannot write", out->path ? out->path : "-");
+  return written ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: cannot write", out->path ? out->path : "-");
 }
 
 fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char *scan_path,

@@ -22,7 +22,8 @@ fg_status fg_member_fail(const fg_place *place, const char *name, const cJSON *i
                          const char *what) {
   fg_place inner = *name ? fg_place_inside(place, name) : *place;
   const char *member = inner.member[0] ? inner.member : "the spec";
-  if (!item) return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s is missing: %s", place->path, member, what);
+  if (!item)
+    return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s is missing: %s", place->path, member, what);
   char *value = cJSON_PrintUnformatted(item);
   fg_fail(place->ctx, FG_ERR_DATA, "%s: %s is %.60s: %s", place->path, member, value ? value : "?",
           what);
@@ -84,7 +85,8 @@ static fg_status read_one(const fg_place *place, const cJSON *item, const fg_mem
     return FG_OK;
   }
   case FG_MEMBER_OTHER:
-  case FG_MEMBER_END: return FG_OK;
+  case FG_MEMBER_END:
+    return FG_OK;
   }
   return FG_OK;
 }
@@ -95,7 +97,8 @@ fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_m
   const cJSON *item;
   cJSON_ArrayForEach(item, object) {
     const fg_member *row = table;
-    while (row->kind != FG_MEMBER_END && strcmp(row->name, item->string) != 0) row++;
+    while (row->kind != FG_MEMBER_END && strcmp(row->name, item->string) != 0)
+      row++;
     if (row->kind == FG_MEMBER_END)
       return fg_member_fail(place, item->string, item, "there is no such member");
     if (cJSON_GetObjectItemCaseSensitive(object, item->string) != item)

@@ -66,9 +66,8 @@ static void derive_bump(const fg_foil_request *request, fg_render_bump *bump) {
 
 fg_render_bump fg_outline_nominal(const fg_render_design *design) {
   fg_foil_request request = {.overall_radius_mm = design->overall_radius_mm, .height_factor = {1}};
-  fg_render_bump bump = {.index = 1,
-                         .radius_mm = design->bump_radius_mm,
-                         .bump_angle_deg = design->bump_angle_deg};
+  fg_render_bump bump = {
+      .index = 1, .radius_mm = design->bump_radius_mm, .bump_angle_deg = design->bump_angle_deg};
   derive_bump(&request, &bump);
   return bump;
 }
@@ -184,15 +183,15 @@ static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps,
   for (int i = 0; i < design->bump_count; i++) {
     /* Drawn for missing bumps too: taking one out leaves the others as they were. */
     double scatter = request->springback_sd * fg_random_normal(&random);
-    plans[i] = (bump_plan){
-        .axis_rad = (i - 0.5 * (design->bump_count - 1)) * design->pitch_deg * pi / 180,
-        .present = !request->missing[i]};
+    plans[i] =
+        (bump_plan){.axis_rad = (i - 0.5 * (design->bump_count - 1)) * design->pitch_deg * pi / 180,
+                    .present = !request->missing[i]};
     if (!plans[i].present) continue;
     fg_render_bump bump = {.index = i + 1, .radius_mm = request->radius_mm[i]};
     if (isnan(bump.radius_mm))
-      bump.radius_mm = design->bump_radius_mm * (1 + request->springback_mean + scatter) *
-                       fg_effects_shape(&o->spec->effects, FG_EFFECT_TABLE, i + 1,
-                                        design->bump_count);
+      bump.radius_mm =
+          design->bump_radius_mm * (1 + request->springback_mean + scatter) *
+          fg_effects_shape(&o->spec->effects, FG_EFFECT_TABLE, i + 1, design->bump_count);
     bump.bump_angle_deg = request->bump_angle_deg[i];
     if (isnan(bump.bump_angle_deg))
       bump.bump_angle_deg = design->bump_angle_deg * design->bump_radius_mm / bump.radius_mm;
@@ -238,7 +237,8 @@ fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
   truth->mirror = request->mirror;
 
   const bump_plan *first = &plans[0], *last = &plans[request->design.bump_count - 1];
-  double start = first->axis_rad - first->land_rad - request->first_land_mm / request->overall_radius_mm;
+  double start =
+      first->axis_rad - first->land_rad - request->first_land_mm / request->overall_radius_mm;
   double end = last->axis_rad + last->land_rad + request->last_land_mm / request->overall_radius_mm;
   fg_foil_frame *frame = &scene->frames[foil];
   frame->first_segment = scene->segment_count;

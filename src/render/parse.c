@@ -71,7 +71,8 @@ static fg_status read_missing(const fg_place *place, const cJSON *array, fg_foil
   if (!array) return FG_OK;
   FG_TRY(fg_member_numbers(place, "missing", array, 1, request->design.bump_count, 0,
                            FG_RENDER_BUMPS_MAX, numbers, &count));
-  for (int i = 0; i < count; i++) request->missing[(int)numbers[i] - 1] = true;
+  for (int i = 0; i < count; i++)
+    request->missing[(int)numbers[i] - 1] = true;
   return FG_OK;
 }
 
@@ -178,8 +179,8 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
   int count;
   const cJSON *centre = get(foil, "centre_mm");
   if (centre)
-    FG_TRY(fg_member_numbers(place, "centre_mm", centre, -1e4, 1e4, 2, 2, request->centre_mm,
-                             &count));
+    FG_TRY(
+        fg_member_numbers(place, "centre_mm", centre, -1e4, 1e4, 2, 2, request->centre_mm, &count));
   if (isnan(request->overall_radius_mm))
     request->overall_radius_mm = request->design.overall_radius_mm;
   return FG_OK;
@@ -309,7 +310,8 @@ static fg_status check_scanner(const fg_place *place, const cJSON *object,
     return fg_member_fail(place, "contrast", get(object, "contrast"),
                           "background + contrast must lie within 0 and 255, contrast not 0");
   if (scanner->jpeg_quality && scanner->bits != 8)
-    return fg_member_fail(place, "bits", get(object, "bits"), "must be 8 where there is rough.jpeg");
+    return fg_member_fail(place, "bits", get(object, "bits"),
+                          "must be 8 where there is rough.jpeg");
   return FG_OK;
 }
 
@@ -334,7 +336,8 @@ static fg_status read_scanner(const fg_place *place, const cJSON *object, fg_sca
   static const fg_member shading[] = {
       {"x", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading), -0.5, 0.5},
       {"y", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + sizeof(double), -0.5, 0.5},
-      {"quadratic", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + 2 * sizeof(double), -0.5, 0.5},
+      {"quadratic", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + 2 * sizeof(double), -0.5,
+       0.5},
       END,
   };
   if (!object) return FG_OK;

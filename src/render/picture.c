@@ -16,11 +16,11 @@ typedef struct picture {
   fg_tiler tiler;
   fg_band band;
   int64_t width, padded, strip_rows;
-  float *coverage;       /* padded × strip_rows */
+  float *coverage; /* padded × strip_rows */
   float *values, *noise, *noise_above;
   float *column_shading;
-  float *tone;           /* NULL: linear */
-  void *pixels;          /* strip_rows rows */
+  float *tone;  /* NULL: linear */
+  void *pixels; /* strip_rows rows */
   fg_noise_table table;
   fg_jpeg jpeg;
 } picture;
@@ -96,7 +96,8 @@ static void expose_row(const picture *p, int64_t y, const float *coverage, float
   for (int64_t x = 0; x < p->width; x++)
     values[x] = (base + step * coverage[x]) * (p->column_shading[x] + row_shading);
   if (!p->tone) {
-    for (int64_t x = 0; x < p->width; x++) values[x] *= 255;
+    for (int64_t x = 0; x < p->width; x++)
+      values[x] *= 255;
     return;
   }
   for (int64_t x = 0; x < p->width; x++) {
@@ -107,8 +108,8 @@ static void expose_row(const picture *p, int64_t y, const float *coverage, float
   }
 }
 
-/* Noise of variance 1. Correlated: first-order recursions along the row and down the columns, so the
- * correlation to the next pixel is `rho` both ways, and rho² diagonally. */
+/* Noise of variance 1. Correlated: first-order recursions along the row and down the columns, so
+ * the correlation to the next pixel is `rho` both ways, and rho² diagonally. */
 static void noise_row(picture *p, int64_t y) {
   float rho = (float)p->spec->scanner.noise_correlation;
   fg_random random;

@@ -19,7 +19,8 @@ void fg_random_seed(fg_random *random, uint64_t seed, uint64_t stream, uint64_t 
   uint64_t state = seed;
   state = splitmix(&state) ^ stream;
   state = splitmix(&state) ^ index;
-  for (int i = 0; i < 4; i++) random->state[i] = splitmix(&state);
+  for (int i = 0; i < 4; i++)
+    random->state[i] = splitmix(&state);
 }
 
 uint64_t fg_random_next(fg_random *random) {
@@ -52,7 +53,8 @@ void fg_noise_table_fill(fg_noise_table *table) {
   }
   /* Cutting the law into quantiles takes a little off its variance; two of them make 1. */
   double scale = sqrt(0.5 * FG_NOISE_QUANTILES / sum_of_squares);
-  for (int i = 0; i < FG_NOISE_QUANTILES; i++) table->quantiles[i] = (float)(scale * quantiles[i]);
+  for (int i = 0; i < FG_NOISE_QUANTILES; i++)
+    table->quantiles[i] = (float)(scale * quantiles[i]);
 }
 
 void fg_noise_draw(const fg_noise_table *table, fg_random *random, float *out, size_t count) {

@@ -16,10 +16,12 @@ static void smooth_noise(fg_random *random, double sd, float *white, float *out,
     kernel[k + HALF_WIDTH] = exp(-0.5 * u * u);
     squares += kernel[k + HALF_WIDTH] * kernel[k + HALF_WIDTH];
   }
-  for (size_t i = 0; i < count + 2 * HALF_WIDTH; i++) white[i] = (float)fg_random_normal(random);
+  for (size_t i = 0; i < count + 2 * HALF_WIDTH; i++)
+    white[i] = (float)fg_random_normal(random);
   for (size_t i = 0; i < count; i++) {
     double sum = 0;
-    for (int k = 0; k <= 2 * HALF_WIDTH; k++) sum += kernel[k] * (double)white[i + (size_t)k];
+    for (int k = 0; k <= 2 * HALF_WIDTH; k++)
+      sum += kernel[k] * (double)white[i + (size_t)k];
     out[i] = (float)(sd * sum / sqrt(squares));
   }
 }
@@ -38,10 +40,10 @@ fg_status fg_roughness_build(fg_context *ctx, const fg_scanner *scanner, uint64_
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *common, (void **)&common));
   smooth_noise(&random, 1e-3 * scanner->edge_common_um, white, common, count);
   for (int edge = 0; edge < 2; edge++) {
-    FG_TRY_EXIT(
-        fg_memory_allocate(ctx, count, sizeof(float), (void **)&frame->roughness[edge]));
+    FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(float), (void **)&frame->roughness[edge]));
     smooth_noise(&random, 1e-3 * scanner->edge_roughness_um, white, frame->roughness[edge], count);
-    for (size_t i = 0; i < count; i++) frame->roughness[edge][i] += common[i];
+    for (size_t i = 0; i < count; i++)
+      frame->roughness[edge][i] += common[i];
   }
 exit:
   free(white);

@@ -2,14 +2,15 @@
 
 #include <math.h>
 
-static const double phi_limit = 5; /* 1 - Phi(5) = 3e-7 */
+static const double phi_limit = 5;  /* 1 - Phi(5) = 3e-7 */
 static const double wall_reach = 6; /* decay lengths */
 
 void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   const fg_scanner *scanner = &spec->scanner;
   *sampler = (fg_sampler){.spec = spec};
   double pixel = fmin(spec->pixel_mm[0], spec->pixel_mm[1]);
-  for (int axis = 0; axis < 2; axis++) sampler->pixel_mm[axis] = spec->pixel_mm[axis];
+  for (int axis = 0; axis < 2; axis++)
+    sampler->pixel_mm[axis] = spec->pixel_mm[axis];
   sampler->sd_mm = 0.3 * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
   sampler->has_field = fg_effects_have(&spec->effects, FG_EFFECT_SCANNER);
   sampler->has_part = fg_effects_have(&spec->effects, FG_EFFECT_PART);
@@ -20,7 +21,6 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->wall_y = sin(direction);
   sampler->wall_mm = scanner->wall_length_px * pixel;
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
-  if (scanner->wall_amplitude != 0) reach = fmax(reach, wall_reach * sampler->wall_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
   /* Part and bump shapes never exceed their amplitude by much inside the foil's span. */
   for (size_t i = 0; i < spec->effects.count; i++) {
@@ -28,7 +28,8 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
     if (frame == FG_EFFECT_PART || frame == FG_EFFECT_BUMP)
       reach += 2e-3 * fabs(spec->effects.effects[i].p[0]);
   }
-  sampler->reach_mm = reach;
+  sampler->edge_reach_mm = reach;
+  sampler->reach_mm = reach + (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm : 0);
   for (int i = 0; i < FG_PHI_STEPS + 2; i++) {
     double u = phi_limit * (2.0 * i / FG_PHI_STEPS - 1);
     sampler->phi[i] = (float)(0.5 * erfc(-u / sqrt(2.0)));
@@ -114,6 +115,19 @@ static double wall(const fg_sampler *sampler, const cross_section *at, double in
          exp(-fmax(distance, 0) / sampler->wall_mm);
 }
 
+/* Beyond the reach of the edges there is the wall or nothing. */
+static double far_value(const fg_sampler *sampler, const fg_foil_frame *frame,
+                        const cross_section *at, double sd) {
+  const fg_segment *segment = at->segment;
+  if (sampler->spec->scanner.wall_amplitude == 0) return 0;
+  double value = wall(sampler, at, frame->half_thickness_mm, -frame->half_thickness_mm);
+  if (value == 0 || !(segment->open_start || segment->open_end)) return value;
+  double t = along(at);
+  if (segment->open_start) value *= phi(sampler, t / sd);
+  if (segment->open_end) value *= phi(sampler, (segment->length_mm - t) / sd);
+  return value;
+}
+
 static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
                           const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
@@ -134,7 +148,8 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
   double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
   double inner_sd = edge_sd(sampler, sd, at->ny, bright);
   double outer_sd = edge_sd(sampler, sd, -at->ny, bright);
-  double value = phi(sampler, (at->n - outer) / outer_sd) - phi(sampler, (at->n - inner) / inner_sd);
+  double value =
+      phi(sampler, (at->n - outer) / outer_sd) - phi(sampler, (at->n - inner) / inner_sd);
   if (sampler->spec->scanner.wall_amplitude != 0)
     value += (1 - value) * wall(sampler, at, inner, outer);
   if (segment->open_start) value *= phi(sampler, t / sd);
@@ -149,18 +164,20 @@ static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t co
   if (sampler->has_part) {
     /* The shape moves radially, so a place belongs to the part that is radially below it. */
     double dx = x - frame->x, dy = y - frame->y, distance = hypot(dx, dy);
-    double psi = frame->mirror *
-                 remainder(atan2(dy, dx) - frame->axis_rad, 2 * 3.14159265358979323846);
-    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_PART, psi,
-                                    frame->half_span_rad);
+    double psi =
+        frame->mirror * remainder(atan2(dy, dx) - frame->axis_rad, 2 * 3.14159265358979323846);
+    double shift =
+        fg_effects_shape(&sampler->spec->effects, FG_EFFECT_PART, psi, frame->half_span_rad);
     x -= shift * dx / distance;
     y -= shift * dy / distance;
   }
   cross_section best = {0};
-  for (size_t i = 0; i < count; i++) try_segment(&scene->segments[ids[i]], x, y, &best);
+  for (size_t i = 0; i < count; i++)
+    try_segment(&scene->segments[ids[i]], x, y, &best);
   if (!best.segment) return 0;
-  double limit = sampler->reach_mm + frame->half_thickness_mm + phi_limit * (sd - sampler->sd_mm);
-  if (fabs(best.n) > limit) return 0;
+  double limit =
+      sampler->edge_reach_mm + frame->half_thickness_mm + phi_limit * (sd - sampler->sd_mm);
+  if (fabs(best.n) > limit) return far_value(sampler, frame, &best, sd);
   return strip_value(sampler, frame, &best, sd);
 }
 
@@ -175,7 +192,8 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   }
   double r = sqrt(dx * dx + dy * dy);
   double edge = r - shape->radius;
-  if (shape->lobes)
+  if (shape->lobes &&
+      fabs(edge) < fabs(shape->lobe_mm) + phi_limit * hypot(sd, sampler->one_sided_mm))
     edge -= shape->lobe_mm * cos(shape->lobes * (atan2(dy, dx) - shape->lobe_phase_rad));
   if (!shape->adds && r > 0) {
     double bright = sampler->spec->scanner.contrast * (shape->value - 0.5) > 0 ? 1 : -1;

@@ -13,16 +13,17 @@
 #include "render/spec.h"
 
 enum {
-  FG_BLOCK_PX = 8,     /* lists of what is near are kept per block of 8 × 8 pixels */
-  FG_NEAR_MAX = 128,   /* things near one block; more are left out, farthest in the list first */
+  FG_BLOCK_PX = 8,   /* lists of what is near are kept per block of 8 × 8 pixels */
+  FG_NEAR_MAX = 128, /* things near one block; more are left out, farthest in the list first */
   FG_PHI_STEPS = 2048,
 };
 
 typedef struct fg_sampler {
   const fg_render_spec *spec;
   double pixel_mm[2];
-  double sd_mm;          /* of the sampling */
-  double reach_mm;       /* how far from the midline of a thin strip a sample can be non-zero */
+  double sd_mm;         /* of the sampling */
+  double edge_reach_mm; /* how far from an undisturbed edge its blur can be seen */
+  double reach_mm;      /* how far from the midline of a thin strip a sample can be non-zero */
   bool has_field, has_part, has_bump;
   double one_sided_mm;   /* sd; 0 without */
   double wall_x, wall_y; /* direction */
@@ -49,20 +50,20 @@ typedef struct fg_band_node {
 } fg_band_node;
 
 typedef struct fg_band {
-  int64_t column0, row0;   /* block coordinates of the first block: floor(pixel / 8) */
+  int64_t column0, row0; /* block coordinates of the first block: floor(pixel / 8) */
   int64_t columns, rows;
-  int32_t *heads;          /* -1: empty */
+  int32_t *heads; /* -1: empty */
   fg_band_node *nodes;
   size_t node_count, node_capacity;
-  double (*spans_px)[2];   /* first and last row that a segment or shape can reach */
+  double (*spans_px)[2]; /* first and last row that a segment or shape can reach */
 } fg_band;
 
 /* `margin_px` (a multiple of 8) is kept on all sides; `rows_px` is the band's height. */
 fg_status fg_band_create(fg_context *ctx, const fg_sampler *sampler, int64_t rows_px,
                          int64_t margin_px, fg_band *band);
 /* Fills the lists for the band whose first picture row is y0_px. */
-fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px,
-                       int64_t margin_px, fg_band *band);
+fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px, int64_t margin_px,
+                       fg_band *band);
 void fg_band_gather(const fg_band *band, int64_t block_x, int64_t block_y, fg_near *near);
 bool fg_band_any(const fg_band *band, int64_t x0, int64_t y0, int64_t x1, int64_t y1);
 void fg_band_free(fg_band *band);

@@ -111,8 +111,8 @@ static void finish_foil_truth(const fg_render_spec *spec, const fg_foil_frame *f
   fg_render_bump *bumps = (fg_render_bump *)foil->bumps;
   for (size_t i = 0; i < foil->bump_count; i++) {
     fg_point c = turn(frame, bumps[i].centre_px.x, bumps[i].centre_px.y);
-    bumps[i].centre_px = (fg_point){(frame->x + c.x) / spec->pixel_mm[0],
-                                    (frame->y + c.y) / spec->pixel_mm[1]};
+    bumps[i].centre_px =
+        (fg_point){(frame->x + c.x) / spec->pixel_mm[0], (frame->y + c.y) / spec->pixel_mm[1]};
   }
 }
 
@@ -140,7 +140,8 @@ static fg_status build_foil(const fg_place *place, fg_render_spec *spec,
 
 static fg_status build_foils(const fg_place *place, fg_render_spec *spec, box *all) {
   size_t count = 0;
-  for (size_t i = 0; i < spec->request_count; i++) count += (size_t)spec->requests[i].repeat;
+  for (size_t i = 0; i < spec->request_count; i++)
+    count += (size_t)spec->requests[i].repeat;
   if (count > FG_RENDER_FOILS_MAX)
     return fg_member_fail(place, "foils", NULL, "at most 4096 foils, copies counted");
   fg_scene *scene = &spec->scene;
@@ -160,16 +161,16 @@ static void build_discs(fg_render_spec *spec, box *all) {
   for (size_t i = 0; i < spec->disc_request_count; i++) {
     const fg_disc_request *request = &spec->disc_requests[i];
     double x = request->centre_mm[0], y = request->centre_mm[1];
-    scene->shapes[scene->shape_count++] = (fg_shape){.x0 = x,
-                                                     .y0 = y,
-                                                     .x1 = x,
-                                                     .y1 = y,
-                                                     .radius = request->radius_mm,
-                                                     .value = request->hole ? 0 : 1,
-                                                     .lobes = request->lobes,
-                                                     .lobe_mm = 1e-3 * request->lobe_um,
-                                                     .lobe_phase_rad =
-                                                         request->lobe_phase_deg * pi / 180};
+    scene->shapes[scene->shape_count++] =
+        (fg_shape){.x0 = x,
+                   .y0 = y,
+                   .x1 = x,
+                   .y1 = y,
+                   .radius = request->radius_mm,
+                   .value = request->hole ? 0 : 1,
+                   .lobes = request->lobes,
+                   .lobe_mm = 1e-3 * request->lobe_um,
+                   .lobe_phase_rad = request->lobe_phase_deg * pi / 180};
     scene->discs[scene->disc_count++] =
         (fg_render_disc){.centre_px = {x / spec->pixel_mm[0], y / spec->pixel_mm[1]},
                          .radius_mm = request->radius_mm,
@@ -192,17 +193,17 @@ static void scatter_litter(fg_render_spec *spec, const fg_litter *litter, fg_ran
     double length = litter->length_px * size * pixel;
     double lobes = fg_random_uniform(&random);
     double radius = litter->radius_px * pixel * (litter->length_px > 0 ? 1 : size);
-    spec->scene.shapes[spec->scene.shape_count++] = (fg_shape){
-        .x0 = x,
-        .y0 = y,
-        .x1 = x + length * cos(angle),
-        .y1 = y + length * sin(angle),
-        .radius = radius,
-        .value = strength * litter->contrast / spec->scanner.contrast,
-        .adds = true,
-        .lobes = litter->length_px > 0 ? 0 : 2 + (int)(3 * lobes),
-        .lobe_mm = litter->length_px > 0 ? 0 : 0.3 * radius,
-        .lobe_phase_rad = angle};
+    spec->scene.shapes[spec->scene.shape_count++] =
+        (fg_shape){.x0 = x,
+                   .y0 = y,
+                   .x1 = x + length * cos(angle),
+                   .y1 = y + length * sin(angle),
+                   .radius = radius,
+                   .value = strength * litter->contrast / spec->scanner.contrast,
+                   .adds = true,
+                   .lobes = litter->length_px > 0 ? 0 : 2 + (int)(3 * lobes),
+                   .lobe_mm = litter->length_px > 0 ? 0 : 0.2 * radius,
+                   .lobe_phase_rad = angle};
   }
 }
 
@@ -214,8 +215,8 @@ static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box
     if (isnan(*sizes[axis])) *sizes[axis] = ceil(need);
     if (!(*sizes[axis] >= 16 && *sizes[axis] <= 200000))
       return fg_fail(place->ctx, FG_ERR_DATA,
-                     "%s: %s would be %g to hold what is drawn: must be from 16 to 200000", place->path,
-                     names[axis], *sizes[axis]);
+                     "%s: %s would be %g to hold what is drawn: must be from 16 to 200000",
+                     place->path, names[axis], *sizes[axis]);
     if (*sizes[axis] != floor(*sizes[axis]))
       return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s is %g: must be a whole number", place->path,
                      names[axis], *sizes[axis]);
@@ -226,7 +227,8 @@ static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box
 fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   fg_scene *scene = &spec->scene;
   const fg_scanner *scanner = &spec->scanner;
-  for (int axis = 0; axis < 2; axis++) spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
+  for (int axis = 0; axis < 2; axis++)
+    spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
   box all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   FG_TRY(build_foils(place, spec, &all));
   size_t litter = (size_t)scanner->dust.count + (size_t)scanner->specks.count +
@@ -274,7 +276,8 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
     return fg_fail(ctx, FG_ERR_USAGE, "there is no foil %zu with a midline of %g mm", foil, s_mm);
   const fg_foil_frame *frame = &scene->frames[foil];
   size_t i = frame->first_segment, last = i + frame->segment_count - 1;
-  while (i < last && s_mm > scene->segments[i].s_mm + scene->segments[i].length_mm) i++;
+  while (i < last && s_mm > scene->segments[i].s_mm + scene->segments[i].length_mm)
+    i++;
   const fg_segment *segment = &scene->segments[i];
   double t = s_mm - segment->s_mm;
   fg_point p = fg_segment_point(segment, t);

@@ -25,16 +25,16 @@ typedef struct fg_render_lip {
 
 typedef struct fg_foil_request {
   fg_render_design design;
-  double overall_radius_mm;                       /* actual; NaN: as designed */
-  double springback_mean, springback_sd;          /* R = R_D (1 + mean + sd × normal) */
-  double radius_mm[FG_RENDER_BUMPS_MAX];          /* overrides; NaN: by springback */
-  double bump_angle_deg[FG_RENDER_BUMPS_MAX];     /* NaN: constant arc length */
-  double height_factor[FG_RENDER_BUMPS_MAX];      /* 1: not crushed */
+  double overall_radius_mm;                   /* actual; NaN: as designed */
+  double springback_mean, springback_sd;      /* R = R_D (1 + mean + sd × normal) */
+  double radius_mm[FG_RENDER_BUMPS_MAX];      /* overrides; NaN: by springback */
+  double bump_angle_deg[FG_RENDER_BUMPS_MAX]; /* NaN: constant arc length */
+  double height_factor[FG_RENDER_BUMPS_MAX];  /* 1: not crushed */
   bool missing[FG_RENDER_BUMPS_MAX];
   bool has_lip;
   fg_render_lip lip;
-  double first_land_mm, last_land_mm;             /* from the fillet's end */
-  double centre_mm[2];                            /* NaN: placed automatically */
+  double first_land_mm, last_land_mm; /* from the fillet's end */
+  double centre_mm[2];                /* NaN: placed automatically */
   double rotate_deg, rotate_step_deg;
   bool mirror;
   int repeat;
@@ -72,13 +72,13 @@ typedef struct fg_segment {
   bool open_start, open_end; /* the strip ends here */
   double x, y;               /* the arc's centre, or where the line starts */
   double radius;
-  double angle, sweep;       /* of the arc: where it starts, and how far it turns; signed */
-  double ax, ay, bx, by;     /* arc: unit vectors from the centre to start and end;
-                                line: unit tangent and unit normal towards the inner side */
-  double mx, my;             /* arc: unit vector from the centre to the middle */
-  double side;               /* +1: the inner side (towards the bearing) is outside the arc */
-  double s_mm, length_mm;    /* of the start, and along it */
-  int bump;                  /* from 1; 0 for others */
+  double angle, sweep;    /* of the arc: where it starts, and how far it turns; signed */
+  double ax, ay, bx, by;  /* arc: unit vectors from the centre to start and end;
+                             line: unit tangent and unit normal towards the inner side */
+  double mx, my;          /* arc: unit vector from the centre to the middle */
+  double side;            /* +1: the inner side (towards the bearing) is outside the arc */
+  double s_mm, length_mm; /* of the start, and along it */
+  int bump;               /* from 1; 0 for others */
   size_t foil;
 } fg_segment;
 

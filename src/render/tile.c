@@ -22,8 +22,8 @@ static fg_status make_kernel(fg_context *ctx, double blur_px, double sampled_px,
   for (int pass = 0; pass < 2; pass++)
     for (int k = -*taps; k <= *taps; k++) {
       double u = (double)k / FG_SAMPLES;
-      double weight = 0.5 * (erf((u + 0.5) / (sigma * sqrt(2.0))) -
-                             erf((u - 0.5) / (sigma * sqrt(2.0))));
+      double weight =
+          0.5 * (erf((u + 0.5) / (sigma * sqrt(2.0))) - erf((u - 0.5) / (sigma * sqrt(2.0))));
       if (pass == 0)
         sum += weight;
       else
@@ -50,7 +50,8 @@ static void make_halo_kernel(fg_tiler *tiler, double length_px) {
         row[cell] = (float)exp(-0.5 * u * u);
         sum += (double)row[cell];
       }
-      for (int cell = 0; cell < cells; cell++) row[cell] = (float)((double)row[cell] / sum);
+      for (int cell = 0; cell < cells; cell++)
+        row[cell] = (float)((double)row[cell] / sum);
     }
 }
 
@@ -61,8 +62,8 @@ static fg_status create_halo(fg_context *ctx, const fg_scanner *scanner, fg_tile
   FG_TRY(fg_memory_allocate(ctx, cells * cells, sizeof(float), (void **)&tiler->cells));
   FG_TRY(fg_memory_allocate(ctx, cells * FG_TILE_PX, sizeof(float), (void **)&tiler->cell_rows));
   FG_TRY(fg_memory_allocate(ctx, FG_TILE_PX * FG_TILE_PX, sizeof(float), (void **)&tiler->halo));
-  FG_TRY(fg_memory_allocate(ctx, 2 * FG_TILE_PX * cells, sizeof(float),
-                            (void **)&tiler->halo_kernel));
+  FG_TRY(
+      fg_memory_allocate(ctx, 2 * FG_TILE_PX * cells, sizeof(float), (void **)&tiler->halo_kernel));
   make_halo_kernel(tiler, scanner->halo_length_px);
   return FG_OK;
 }
@@ -88,9 +89,10 @@ fg_status fg_tiler_create(fg_context *ctx, const fg_sampler *sampler, fg_tiler *
 }
 
 void fg_tiler_free(fg_tiler *tiler) {
-  float *blocks[] = {tiler->kernel[0], tiler->kernel[1], tiler->samples,  tiler->columns,
-                     tiler->cells,     tiler->cell_rows, tiler->halo,     tiler->halo_kernel};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) free(blocks[i]);
+  float *blocks[] = {tiler->kernel[0], tiler->kernel[1], tiler->samples, tiler->columns,
+                     tiler->cells,     tiler->cell_rows, tiler->halo,    tiler->halo_kernel};
+  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+    free(blocks[i]);
   *tiler = (fg_tiler){0};
 }
 
@@ -134,12 +136,14 @@ static void blur_tile(const fg_tiler *tiler, float *out, int64_t stride) {
     for (int k = -tiler->taps[1]; k <= tiler->taps[1]; k++) {
       const float *row = tiler->samples + (centre + k) * side;
       const float weight = tiler->kernel[1][k + tiler->taps[1]];
-      for (int64_t x = 0; x < side; x++) line[x] += weight * row[x];
+      for (int64_t x = 0; x < side; x++)
+        line[x] += weight * row[x];
     }
     for (int64_t x = 0; x < FG_TILE_PX; x++) {
       const float *at = line + FG_SAMPLES * (x + tiler->margin_px) + 1 - tiler->taps[0];
       float sum = 0;
-      for (int k = 0; k <= 2 * tiler->taps[0]; k++) sum += tiler->kernel[0][k] * at[k];
+      for (int k = 0; k <= 2 * tiler->taps[0]; k++)
+        sum += tiler->kernel[0][k] * at[k];
       out[y * stride + x] = sum;
     }
   }
@@ -186,7 +190,8 @@ static void blur_cells(const fg_tiler *tiler, int part) {
         line[x] += kernel[y * cells + j] * tiler->cells[j * cells + x];
     for (int64_t x = 0; x < FG_TILE_PX; x++) {
       float sum = 0;
-      for (int64_t i = 0; i < cells; i++) sum += kernel[x * cells + i] * line[i];
+      for (int64_t i = 0; i < cells; i++)
+        sum += kernel[x * cells + i] * line[i];
       tiler->halo[y * FG_TILE_PX + x] += 0.5F * sum;
     }
   }
@@ -197,11 +202,11 @@ static void add_halo(const fg_tiler *tiler, const fg_band *band, int64_t x0, int
   float share = (float)tiler->sampler->spec->scanner.halo_fraction;
   sample_cells(tiler, band, x0, y0);
   memset(tiler->halo, 0, FG_TILE_PX * FG_TILE_PX * sizeof *tiler->halo);
-  for (int part = 0; part < 2; part++) blur_cells(tiler, part);
+  for (int part = 0; part < 2; part++)
+    blur_cells(tiler, part);
   for (int64_t y = 0; y < FG_TILE_PX; y++)
     for (int64_t x = 0; x < FG_TILE_PX; x++)
-      out[y * stride + x] +=
-          share * (tiler->halo[y * FG_TILE_PX + x] - out[y * stride + x]);
+      out[y * stride + x] += share * (tiler->halo[y * FG_TILE_PX + x] - out[y * stride + x]);
 }
 
 static bool anything_within(const fg_band *band, int64_t x0, int64_t y0, int64_t margin) {

@@ -14,9 +14,9 @@ enum {
 
 typedef struct fg_tiler {
   const fg_sampler *sampler;
-  int64_t margin_px;       /* around a tile, for the blur; a multiple of 8 */
-  int64_t halo_px;         /* the same for the halo; 0 without */
-  int taps[2];             /* of the kernel on each axis, each side of the centre */
+  int64_t margin_px; /* around a tile, for the blur; a multiple of 8 */
+  int64_t halo_px;   /* the same for the halo; 0 without */
+  int taps[2];       /* of the kernel on each axis, each side of the centre */
   float *kernel[2];
   float *samples, *columns; /* buffers */
   float *cells, *cell_rows, *halo, *halo_kernel;

@@ -110,7 +110,8 @@ static void put_discs(cJSON *root, const fg_render_spec *spec) {
 
 static const fg_render_design *design_of(const fg_render_spec *spec, size_t foil) {
   size_t i = 0;
-  while (foil >= (size_t)spec->requests[i].repeat) foil -= (size_t)spec->requests[i++].repeat;
+  while (foil >= (size_t)spec->requests[i].repeat)
+    foil -= (size_t)spec->requests[i++].repeat;
   return &spec->requests[i].design;
 }
 
