@@ -86,7 +86,7 @@ static const fg_effect_row rows[] = {
      NULL,
      0},
     {"scan.row_step",
-     FG_EFFECT_SCANNER,
+     FG_EFFECT_STEP,
      {{"amplitude_um", NAN, -500, 500}, {"y_mm", INFINITY, -1000, 1000}},
      row_step,
      NULL,
@@ -184,11 +184,24 @@ bool fg_effects_have(const fg_effect_list *list, fg_effect_frame frame) {
   return false;
 }
 
-void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, double d_mm[2]) {
+void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, double row_y_mm,
+                      double d_mm[2]) {
   d_mm[0] = d_mm[1] = 0;
-  for (size_t i = 0; i < list->count; i++)
-    if (list->effects[i].row->frame == FG_EFFECT_SCANNER)
-      list->effects[i].row->field(list->effects[i].p, x_mm, y_mm, d_mm);
+  for (size_t i = 0; i < list->count; i++) {
+    const fg_effect *effect = &list->effects[i];
+    if (effect->row->frame == FG_EFFECT_SCANNER) effect->row->field(effect->p, x_mm, y_mm, d_mm);
+    if (effect->row->frame == FG_EFFECT_STEP) effect->row->field(effect->p, x_mm, row_y_mm, d_mm);
+  }
+}
+
+double fg_effects_next_step(const fg_effect_list *list, double low_mm, double high_mm) {
+  double next = NAN;
+  for (size_t i = 0; i < list->count; i++) {
+    double at = list->effects[i].p[1];
+    if (list->effects[i].row->frame != FG_EFFECT_STEP || !(at >= low_mm && at < high_mm)) continue;
+    next = fmin(next, at); /* fmin prefers the number to NaN */
+  }
+  return next;
 }
 
 double fg_effects_shape(const fg_effect_list *list, fg_effect_frame frame, double coordinate,

@@ -15,6 +15,8 @@ enum { FG_EFFECT_PARAMETERS_MAX = 4, FG_EFFECTS_MAX = 16 };
 
 typedef enum fg_effect_frame {
   FG_EFFECT_SCANNER, /* field(p, x_mm, y_mm, d) adds to d */
+  FG_EFFECT_STEP,    /* the same, but a jump at y = p[1]: it comes after the optics, so it is sharp
+                        in the picture and not blurred */
   FG_EFFECT_PART,    /* shape(p, psi_rad, ·): radial shift about O in mm, outwards positive; psi
                         is counted from the foil's middle, towards the free end */
   FG_EFFECT_BUMP,    /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
@@ -54,8 +56,13 @@ void fg_effects_resolve(fg_effect_list *list, double width_mm, double height_mm)
 
 bool fg_effects_have(const fg_effect_list *list, fg_effect_frame frame);
 
-/* d(x, y) of all scanner effects. */
-void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, double d_mm[2]);
+/* d(x, y) of all scanner effects. `row_y_mm` is the y of the picture row that is being made: it
+ * says on which side of a jump we are. */
+void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, double row_y_mm,
+                      double d_mm[2]);
+
+/* The first jump at or above low_mm and below high_mm; NaN without. */
+double fg_effects_next_step(const fg_effect_list *list, double low_mm, double high_mm);
 
 /* Sum (FG_EFFECT_TABLE: product) of the shapes of one frame. */
 double fg_effects_shape(const fg_effect_list *list, fg_effect_frame frame, double coordinate,

@@ -7,12 +7,13 @@ static const double wall_reach = 6; /* decay lengths */
 
 void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   const fg_scanner *scanner = &spec->scanner;
-  *sampler = (fg_sampler){.spec = spec};
+  *sampler = (fg_sampler){.spec = spec, .row_y_mm = NAN};
   double pixel = fmin(spec->pixel_mm[0], spec->pixel_mm[1]);
   for (int axis = 0; axis < 2; axis++)
     sampler->pixel_mm[axis] = spec->pixel_mm[axis];
   sampler->sd_mm = 0.3 * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
-  sampler->has_field = fg_effects_have(&spec->effects, FG_EFFECT_SCANNER);
+  sampler->has_field = fg_effects_have(&spec->effects, FG_EFFECT_SCANNER) ||
+                       fg_effects_have(&spec->effects, FG_EFFECT_STEP);
   sampler->has_part = fg_effects_have(&spec->effects, FG_EFFECT_PART);
   sampler->has_bump = fg_effects_have(&spec->effects, FG_EFFECT_BUMP);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
@@ -209,7 +210,8 @@ double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, do
   double x = x_mm, y = y_mm;
   if (sampler->has_field) {
     double d[2];
-    fg_effects_field(&sampler->spec->effects, x, y, d);
+    double row_y = isnan(sampler->row_y_mm) ? y : sampler->row_y_mm;
+    fg_effects_field(&sampler->spec->effects, x, y, row_y, d);
     x += d[0];
     y += d[1];
   }

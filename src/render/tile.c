@@ -72,7 +72,7 @@ static int64_t sample_side(const fg_tiler *tiler) {
   return FG_SAMPLES * (FG_TILE_PX + 2 * tiler->margin_px);
 }
 
-fg_status fg_tiler_create(fg_context *ctx, const fg_sampler *sampler, fg_tiler *tiler) {
+fg_status fg_tiler_create(fg_context *ctx, fg_sampler *sampler, fg_tiler *tiler) {
   const fg_scanner *scanner = &sampler->spec->scanner;
   *tiler = (fg_tiler){.sampler = sampler};
   int taps = 0;
@@ -84,12 +84,12 @@ fg_status fg_tiler_create(fg_context *ctx, const fg_sampler *sampler, fg_tiler *
   tiler->margin_px = round_up((double)(taps + 1) / FG_SAMPLES, FG_BLOCK_PX);
   size_t side = (size_t)sample_side(tiler);
   FG_TRY(fg_memory_allocate(ctx, side * side, sizeof(float), (void **)&tiler->samples));
-  FG_TRY(fg_memory_allocate(ctx, side * FG_TILE_PX, sizeof(float), (void **)&tiler->columns));
+  FG_TRY(fg_memory_allocate(ctx, FG_TILE_PX * FG_TILE_PX, sizeof(float), (void **)&tiler->jump));
   return create_halo(ctx, scanner, tiler);
 }
 
 void fg_tiler_free(fg_tiler *tiler) {
-  float *blocks[] = {tiler->kernel[0], tiler->kernel[1], tiler->samples, tiler->columns,
+  float *blocks[] = {tiler->kernel[0], tiler->kernel[1], tiler->samples, tiler->jump,
                      tiler->cells,     tiler->cell_rows, tiler->halo,    tiler->halo_kernel};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
     free(blocks[i]);
@@ -215,16 +215,48 @@ static bool anything_within(const fg_band *band, int64_t x0, int64_t y0, int64_t
                      (y0 + FG_TILE_PX + margin) / FG_BLOCK_PX - 1);
 }
 
-bool fg_tiler_draw(fg_tiler *tiler, const fg_band *band, int64_t x0_px, int64_t y0_px, float *out,
-                   int64_t stride) {
-  if (!anything_within(band, x0_px, y0_px, fg_tiler_reach_px(tiler))) return false;
-  if (anything_within(band, x0_px, y0_px, tiler->margin_px)) {
-    sample_tile(tiler, band, x0_px, y0_px);
+static void draw_plain(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t y0, float *out,
+                       int64_t stride) {
+  if (anything_within(band, x0, y0, tiler->margin_px)) {
+    sample_tile(tiler, band, x0, y0);
     blur_tile(tiler, out, stride);
   } else {
     for (int64_t y = 0; y < FG_TILE_PX; y++)
       memset(out + y * stride, 0, FG_TILE_PX * sizeof *out);
   }
-  if (tiler->halo_px) add_halo(tiler, band, x0_px, y0_px, out, stride);
+  if (tiler->halo_px) add_halo(tiler, band, x0, y0, out, stride);
+}
+
+/* Rows between two jumps see the whole neighbourhood from their own side of the jumps: the tile is
+ * drawn once for every such run of rows. */
+static void draw_with_jumps(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t y0,
+                            float *out, int64_t stride) {
+  double pixel = tiler->sampler->pixel_mm[1];
+  int64_t y = 0;
+  while (y < FG_TILE_PX) {
+    double row_y = (double)(y0 + y) * pixel;
+    double jump = fg_effects_next_step(&tiler->sampler->spec->effects, row_y, INFINITY);
+    tiler->sampler->row_y_mm = row_y;
+    draw_plain(tiler, band, x0, y0, tiler->jump, FG_TILE_PX);
+    do {
+      memcpy(out + y * stride, tiler->jump + y * FG_TILE_PX, FG_TILE_PX * sizeof *out);
+      y++;
+    } while (y < FG_TILE_PX && !((double)(y0 + y) * pixel > jump));
+  }
+  tiler->sampler->row_y_mm = NAN;
+}
+
+bool fg_tiler_draw(fg_tiler *tiler, const fg_band *band, int64_t x0_px, int64_t y0_px, float *out,
+                   int64_t stride) {
+  int64_t reach = fg_tiler_reach_px(tiler);
+  if (!anything_within(band, x0_px, y0_px, reach)) return false;
+  double pixel = tiler->sampler->pixel_mm[1];
+  double jump =
+      fg_effects_next_step(&tiler->sampler->spec->effects, (double)(y0_px - reach) * pixel,
+                           (double)(y0_px + FG_TILE_PX + reach) * pixel);
+  if (isnan(jump))
+    draw_plain(tiler, band, x0_px, y0_px, out, stride);
+  else
+    draw_with_jumps(tiler, band, x0_px, y0_px, out, stride);
   return true;
 }

@@ -13,16 +13,16 @@ enum {
 };
 
 typedef struct fg_tiler {
-  const fg_sampler *sampler;
+  fg_sampler *sampler;
   int64_t margin_px; /* around a tile, for the blur; a multiple of 8 */
   int64_t halo_px;   /* the same for the halo; 0 without */
   int taps[2];       /* of the kernel on each axis, each side of the centre */
   float *kernel[2];
-  float *samples, *columns; /* buffers */
+  float *samples, *jump; /* buffers */
   float *cells, *cell_rows, *halo, *halo_kernel;
 } fg_tiler;
 
-fg_status fg_tiler_create(fg_context *ctx, const fg_sampler *sampler, fg_tiler *tiler);
+fg_status fg_tiler_create(fg_context *ctx, fg_sampler *sampler, fg_tiler *tiler);
 void fg_tiler_free(fg_tiler *tiler);
 
 /* How far beyond a tile its content matters: the larger of the two margins. */
