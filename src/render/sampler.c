@@ -53,6 +53,7 @@ typedef struct cross_section {
   double n;      /* distance from the midline, towards the inner side */
   double nx, ny; /* that direction */
   double dx, dy; /* from the segment's centre or start */
+  double bend;   /* side / r: curvature of the line of equal distance here */
 } cross_section;
 
 static void try_segment(const fg_segment *segment, double x, double y, cross_section *best) {
@@ -65,7 +66,7 @@ static void try_segment(const fg_segment *segment, double x, double y, cross_sec
       return;
     double n = dx * segment->bx + dy * segment->by;
     if (best->segment && fabs(n) >= fabs(best->n)) return;
-    *best = (cross_section){segment, n, segment->bx, segment->by, dx, dy};
+    *best = (cross_section){segment, n, segment->bx, segment->by, dx, dy, 0};
     return;
   }
   double forward = segment->sweep > 0 ? 1 : -1;
@@ -75,7 +76,14 @@ static void try_segment(const fg_segment *segment, double x, double y, cross_sec
   double n = segment->side * (r - segment->radius);
   if (best->segment && fabs(n) >= fabs(best->n)) return;
   double scale = r > 0 ? segment->side / r : 0;
-  *best = (cross_section){segment, n, dx * scale, dy * scale, dx, dy};
+  *best = (cross_section){segment, n, dx * scale, dy * scale, dx, dy, scale};
+}
+
+/* What a Gaussian of sd s does to an edge of curvature k: its profile moves by k s² / 2 towards the
+ * centre of curvature (diffusion moves a level line with half its curvature). */
+static double bend_shift(double bend, double sd) {
+  double shift = 0.5 * bend * sd * sd;
+  return fmax(-0.5 * sd, fmin(0.5 * sd, shift));
 }
 
 /* Arc length from the segment's start. */
@@ -149,8 +157,8 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
   double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
   double inner_sd = edge_sd(sampler, sd, at->ny, bright);
   double outer_sd = edge_sd(sampler, sd, -at->ny, bright);
-  double value =
-      phi(sampler, (at->n - outer) / outer_sd) - phi(sampler, (at->n - inner) / inner_sd);
+  double n = at->n + bend_shift(at->bend, sd);
+  double value = phi(sampler, (n - outer) / outer_sd) - phi(sampler, (n - inner) / inner_sd);
   if (sampler->spec->scanner.wall_amplitude != 0)
     value += (1 - value) * wall(sampler, at, inner, outer);
   if (segment->open_start) value *= phi(sampler, t / sd);
@@ -193,6 +201,7 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   }
   double r = sqrt(dx * dx + dy * dy);
   double edge = r - shape->radius;
+  if (r > 0) edge += bend_shift(length2 > 0 ? 0 : 1 / r, sd);
   if (shape->lobes &&
       fabs(edge) < fabs(shape->lobe_mm) + phi_limit * hypot(sd, sampler->one_sided_mm))
     edge -= shape->lobe_mm * cos(shape->lobes * (atan2(dy, dx) - shape->lobe_phase_rad));
