@@ -21,6 +21,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->wall_x = cos(direction);
   sampler->wall_y = sin(direction);
   sampler->wall_mm = scanner->wall_length_px * pixel;
+  sampler->wall_gap_mm = scanner->wall_gap_px * pixel;
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
   /* Part and bump shapes never exceed their amplitude by much inside the foil's span. */
@@ -30,7 +31,9 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
       reach += 2e-3 * fabs(spec->effects.effects[i].p[0]);
   }
   sampler->edge_reach_mm = reach;
-  sampler->reach_mm = reach + (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm : 0);
+  sampler->reach_mm =
+      reach +
+      (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm + sampler->wall_gap_mm : 0);
   for (int i = 0; i < FG_PHI_STEPS + 2; i++) {
     double u = phi_limit * (2.0 * i / FG_PHI_STEPS - 1);
     sampler->phi[i] = (float)(0.5 * erfc(-u / sqrt(2.0)));
@@ -120,8 +123,12 @@ static double wall(const fg_sampler *sampler, const cross_section *at, double in
   double distance = at->n > 0.5 * (inner + outer) ? at->n - inner : outer - at->n;
   if (at->n <= 0.5 * (inner + outer)) facing = -facing;
   if (facing <= 0) return 0;
-  return sampler->spec->scanner.wall_amplitude * facing *
-         exp(-fmax(distance, 0) / sampler->wall_mm);
+  double strength = sampler->spec->scanner.wall_amplitude * facing;
+  double past = distance - sampler->wall_gap_mm;
+  if (past >= 0) return strength * exp(-past / sampler->wall_mm);
+  if (sampler->wall_gap_mm <= 0) return strength;
+  double u = 2 * past / sampler->wall_gap_mm; /* within the gap it fades towards the edge */
+  return strength * exp(-0.5 * u * u);
 }
 
 /* Beyond the reach of the edges there is the wall or nothing. */

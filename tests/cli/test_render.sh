@@ -46,6 +46,6 @@ cat >"$folder/wide.json" <<'END'
  "foils":[{"repeat":4,"rotate_deg":-90}],"scanner":{"noise":0}}
 END
 if ! nm "$program" 2>/dev/null | grep -q __asan; then
-  expect 0 '' bash -c "ulimit -v 400000; exec '$program' render '$folder/wide.json' -o /dev/null"
+  expect 0 '' bash -c "ulimit -v 250000; exec '$program' render '$folder/wide.json' -o /dev/null"
 fi
 exit $((failures > 0))

@@ -301,6 +301,29 @@ static void spiral_lies_beside_the_plain_foil(void **state) {
     fg_render_free(specs[i]);
 }
 
+/* The lip stands on the land at 90 degrees, outwards or inwards. */
+static void lip_stands_on_the_land(void **state) {
+  (void)state;
+  for (int inwards = 0; inwards < 2; inwards++) {
+    picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":{"
+                            "\"length_mm\":1.5,\"bend_radius_mm\":0.4,\"side\":\"%s\"}}]}",
+                            inwards ? "inwards" : "outwards");
+    fg_point o = p.truth->foils[0].overall_centre_px, end, foot, land;
+    fg_context ctx = {0};
+    double bend_end = 1.5 + 0.2 * 3.14159265358979;
+    assert_int_equal(fg_render_midline(&ctx, p.spec, 0, 0, &end), FG_OK);
+    assert_int_equal(fg_render_midline(&ctx, p.spec, 0, 1.5, &foot), FG_OK);
+    assert_int_equal(fg_render_midline(&ctx, p.spec, 0, bend_end, &land), FG_OK);
+    double ux = (land.x - o.x) * pixel / 20.73, uy = (land.y - o.y) * pixel / 20.73;
+    double along = ((end.x - land.x) * ux + (end.y - land.y) * uy) * pixel;
+    double across = ((foot.y - land.y) * ux - (foot.x - land.x) * uy) * pixel;
+    assert_close(hypot(ux, uy), 1, 1e-9);
+    assert_close(along, inwards ? -1.9 : 1.9, 1e-9);
+    assert_close(across, -0.4, 1e-9); /* beyond the land's end, away from bump 1 */
+    drop(&p);
+  }
+}
+
 static void lip_decay_widens_the_first_bumps(void **state) {
   (void)state;
   picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":\"part.lip_decay\","
@@ -341,6 +364,7 @@ int main(void) {
       cmocka_unit_test(lost_rows_are_sharp),
       cmocka_unit_test(part_effects_move_the_crown),
       cmocka_unit_test(spiral_lies_beside_the_plain_foil),
+      cmocka_unit_test(lip_stands_on_the_land),
       cmocka_unit_test(lip_decay_widens_the_first_bumps),
       cmocka_unit_test(foils_of_a_bed_lie_apart),
   };

@@ -2,6 +2,9 @@
  * same bytes every time; and specs that must be refused. */
 #include "render_picture.h"
 
+#include <unistd.h>
+
+#include "foilgauge/scan.h"
 #include "render/jpeg.h"
 
 typedef struct statistics {
@@ -255,6 +258,35 @@ static void same_spec_same_bytes_whatever_the_strip(void **state) {
   drop(&first);
 }
 
+/* The file says what the rows said, to the last bit, at the resolution of each axis. */
+static void file_holds_the_rows(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  char path[] = "/tmp/foilgauge-render-XXXXXX";
+  int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":130,\"height_px\":140,"
+                      "\"discs\":[{\"centre_mm\":[0.3,0.35],\"radius_mm\":0.2}],"
+                      "\"scanner\":{\"dpi\":[4800,4200],\"bits\":16}}");
+  assert_int_equal(fg_render_scan(&ctx, p.spec, path, NULL), FG_OK);
+  fg_scan *scan = NULL;
+  assert_int_equal(fg_scan_open(&ctx, path, &(fg_scan_options){0}, &scan), FG_OK);
+  const fg_scan_info *info = fg_scan_get_info(scan);
+  assert_int_equal(info->width_px, 130);
+  assert_int_equal(info->height_px, 140);
+  assert_int_equal(info->bit_depth, 16);
+  assert_close(info->dpi[0], 4800, 0);
+  assert_close(info->dpi[1], 4200, 0);
+  uint16_t rows[140][130];
+  assert_int_equal(fg_scan_read_rows(&ctx, scan, 140, rows, sizeof rows[0]), FG_OK);
+  for (int i = 0; i < 130 * 140; i++)
+    assert_int_equal(rows[i / 130][i % 130], lround(p.dn[i] * 257));
+  fg_scan_close(scan);
+  remove(path);
+  drop(&p);
+}
+
 typedef struct bad_spec {
   const char *json, *words;
 } bad_spec;
@@ -329,6 +361,7 @@ int main(void) {
       cmocka_unit_test(blur_is_one_sided),
       cmocka_unit_test(jpeg_keeps_what_is_flat_and_rounds_the_rest),
       cmocka_unit_test(same_spec_same_bytes_whatever_the_strip),
+      cmocka_unit_test(file_holds_the_rows),
       cmocka_unit_test(bad_specs_are_refused_by_name),
   };
   return cmocka_run_group_tests_name("render scanner", tests, NULL, NULL);
