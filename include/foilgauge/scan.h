@@ -17,6 +17,12 @@
 extern "C" {
 #endif
 
+/* What a scanner can have been set to; anything else is taken for a mistake. */
+#define FG_SCAN_DPI_MIN 1.0
+#define FG_SCAN_DPI_MAX 1e6
+/* A row is held in memory whole. */
+#define FG_SCAN_WIDTH_MAX_PX 1000000
+
 typedef struct fg_scan fg_scan;
 
 typedef struct fg_scan_options {
@@ -29,12 +35,17 @@ typedef struct fg_scan_info {
   int bit_depth;           /* of the file: 1, 2, 4, 8, 16 */
   int bytes_per_pixel;     /* of the rows: 1 or 2 (host byte order, uint16_t) */
   double dpi[2];           /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
-  double dpi_file[2];      /* before snapping; NaN when the file has none */
+  double dpi_file[2];      /* what the file says, before snapping; NaN when it says none */
 } fg_scan_info;
+
+/* For a caller that takes a resolution from its user: FG_ERR_USAGE, with words, unless `dpi` is
+ * finite, positive and from FG_SCAN_DPI_MIN to FG_SCAN_DPI_MAX. Zero is wrong here. */
+fg_status fg_scan_check_dpi(fg_context *ctx, double dpi);
 
 /* Opens a scan and reads its header. `path` "-" is standard input. Errors: FG_ERR_IO (cannot open
  * or read), FG_ERR_DATA (empty, not a PNG, broken, over the cap, no resolution and no dpi given:
- * the message says `--dpi`), FG_ERR_USAGE (dpi not finite or not positive). */
+ * the message says `--dpi`), FG_ERR_USAGE (options->dpi neither 0 nor as fg_scan_check_dpi wants
+ * it). Rows and columns in error texts count from 1. NULL options are all zero. */
 fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options *options,
                        fg_scan **scan);
 

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <exception>
+#include <vector>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -23,6 +24,55 @@ fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32
                     stats.at<int>(i, cv::CC_STAT_AREA)};
     *blobs = out;
     *blob_count = count - 1;
+    return FG_OK;
+  } catch (const std::exception &error) {
+    return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
+  }
+}
+
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height) {
+  try {
+    cv::Mat target(height, width, CV_32F, grid);
+    cv::Mat blurred;
+    cv::medianBlur(target, blurred, 5);
+    blurred.copyTo(target);
+    return FG_OK;
+  } catch (const std::exception &error) {
+    return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
+  }
+}
+
+static cv::Scalar colour_of(uint32_t colour) {
+  return cv::Scalar(colour >> 16 & 255, colour >> 8 & 255, colour & 255);
+}
+
+fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
+                          uint32_t colour, int32_t thickness_px) {
+  try {
+    const int shift = 4; /* sixteenths of a pixel */
+    cv::Mat image(rgb->height, rgb->width, CV_8UC3, rgb->pixels);
+    std::vector<cv::Point> points;
+    points.reserve(count);
+    for (size_t i = 0; i < count; i++)
+      points.emplace_back(cv::saturate_cast<int>(xy_px[2 * i] * (1 << shift)),
+                          cv::saturate_cast<int>(xy_px[2 * i + 1] * (1 << shift)));
+    cv::polylines(image, points, false, colour_of(colour), thickness_px, cv::LINE_AA, shift);
+    return FG_OK;
+  } catch (const std::exception &error) {
+    return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
+  }
+}
+
+fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
+                          double height_px, double anchor, uint32_t colour, int32_t thickness_px) {
+  try {
+    const int font = cv::FONT_HERSHEY_SIMPLEX;
+    cv::Mat image(rgb->height, rgb->width, CV_8UC3, rgb->pixels);
+    const double scale = cv::getFontScaleFromHeight(font, int(height_px), thickness_px);
+    const cv::Size size = cv::getTextSize(text, font, scale, thickness_px, nullptr);
+    const cv::Point at(cv::saturate_cast<int>(at_px[0] - anchor * size.width),
+                       cv::saturate_cast<int>(at_px[1]));
+    cv::putText(image, text, at, font, scale, colour_of(colour), thickness_px, cv::LINE_AA);
     return FG_OK;
   } catch (const std::exception &error) {
     return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());

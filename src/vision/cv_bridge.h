@@ -2,6 +2,7 @@
 #ifndef FG_VISION_CV_BRIDGE_H
 #define FG_VISION_CV_BRIDGE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "foilgauge/status.h"
@@ -20,6 +21,25 @@ typedef struct fg_blob {
  * background, else 1 + the index into *blobs. The caller frees *blobs. Sides at most 32767. */
 fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32_t height,
                       int32_t *labels, fg_blob **blobs, int32_t *blob_count);
+
+/* Median over 5 × 5 of a grid of floats, in place, borders repeated. */
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
+
+/* A picture to draw on: rows of R, G, B bytes, without padding. */
+typedef struct fg_rgb {
+  uint8_t *pixels; /* 3 × width × height */
+  int32_t width, height;
+} fg_rgb;
+
+/* Draws an antialiased line through `count` points x, y in px (pixel centres at whole numbers; what
+ * lies outside is cut off). `colour` is 0xRRGGBB. */
+fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
+                          uint32_t colour, int32_t thickness_px);
+
+/* Draws ASCII text, its baseline at `y_px`, its capitals `height_px` tall. `anchor` moves it to the
+ * left by that share of its width: 0 starts at `x_px`, 0.5 is centred there. */
+fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
+                          double height_px, double anchor, uint32_t colour, int32_t thickness_px);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,141 @@
+/* The forward model: foils and a scanner in, a scan and its truth out.
+ *
+ * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds two to start from).
+ * What is drawn is exact: the strip's midline is made of lines and arcs, a sample of the picture is
+ * the blurred strip at its signed distance, and the picture is low-passed in two dimensions, so
+ * that what blur does to a curved edge is really there. The same spec and seed give the same bytes,
+ * whatever the height of the strips it is drawn in. Memory is proportional to a strip of rows.
+ *
+ * How a pixel comes about, in this order:
+ *   coverage of the pixel's surroundings, at true position = nominal + d(x, y) of the effects;
+ *   optical blur (Gaussian, sd `blur_px`) and the pixel's own square (1 px box, not counted in
+ *   blur_px); halo; light = background + contrast × coverage, linear; shading; tone curve
+ *   DN = 255 light^(1/gamma), where background and background + contrast keep their DN; noise;
+ *   clipping; rounding to 8 or 16 bit (full scale 65535 = 255 × 257); JPEG blocks.
+ *
+ * Members of a spec (default in brackets; lengths in mm of the midline, unless the name says else):
+ *   seed [0], width_px, height_px [fitted to the content], margin_px [80], comment
+ *   foils[] [one Gen II foil]:
+ *     design {bump_radius_mm, bump_angle_deg, bump_count, overall_radius_mm, pitch_deg,
+ *       fillet_radius_mm, thickness_mm ... as in a design file} [Gen II]; with "form": "sinusoidal"
+ *       there is no lip unless one is given
+ *     overall_radius_mm: R0 as it is [as designed]
+ *     radius_springback {mean [0], sd [0]}: R = R_D (1 + mean + sd × normal);
+ *     radius_mm [...] per bump instead; bump_angle_deg [...] per bump [R alpha as designed]
+ *     lip null or {length_mm [2], bend_radius_mm [0.4], side ["outwards"]}
+ *     first_land_mm [1.8], last_land_mm [1.3]: from the fillet to the lip's bend, or the free end
+ *     missing [numbers]; crushed [{bump, height_factor [0.5]}]: crossings stay, the crown gives way
+ *     rotate_deg [-90]: direction of the middle from O (x right, y down); mirror [false];
+ *     centre_mm [x, y] of O [placed on shelves from the top]; repeat [1], rotate_step_deg [0]
+ *   discs[]: centre_mm, radius_mm, hole [false], lobes [0], lobe_um, lobe_phase_deg:
+ *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
+ *   scanner:
+ *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
+ *     gamma [1], blur_px [1.2; at least 0.4], noise [1 DN], noise_correlation [0] to the next
+ *     pixel along x and y, clip_white, shading {x, y, quadratic}: relative, at the picture's edges
+ *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
+ *     rough:
+ *       one_sided_blur_px [0]: blur added (in squares) to edges that go from bright to dark along
+ *         rising rows, in proportion to the edge normal's share along the rows' way
+ *       edge_roughness_um, edge_common_um [0]: sd per edge, and of both together, with the
+ *         autocorrelation exp(-(d / correlation_um)²) along the strip [50]
+ *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
+ *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
+ *         edges that face the direction, decaying over the length, times the cosine to it
+ *       jpeg {quality}
+ *   effects[] {id, parameters}: src/render/effects.c holds the table.
+ *
+ * Nothing here is shared with the measuring side.
+ */
+#ifndef FOILGAUGE_RENDER_H
+#define FOILGAUGE_RENDER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/circle.h"
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_render_spec fg_render_spec;
+
+/* What one bump really is (midline), before part effects move it. theta by cos(theta) = (X² - R² -
+ * R0²) / (2 R R0). */
+typedef struct fg_render_bump {
+  int index;                     /* 1 is next to the lip */
+  double radius_mm;              /* R */
+  double bump_angle_deg;         /* alpha */
+  double intersection_angle_deg; /* theta */
+  double centre_to_centre_mm;    /* X */
+  double height_mm;              /* h = R0 - (X - R) */
+  fg_point centre_px;
+  bool crushed;
+} fg_render_bump;
+
+typedef struct fg_render_foil {
+  double overall_radius_mm;
+  fg_point overall_centre_px;
+  double thickness_mm;
+  double rotate_deg; /* direction of the foil's middle seen from O, about the scan's x axis */
+  bool mirror;       /* false: bump numbers rise clockwise as the scan is seen */
+  const fg_render_bump *bumps; /* without the missing ones */
+  size_t bump_count;
+} fg_render_foil;
+
+typedef struct fg_render_disc {
+  fg_point centre_px;
+  double radius_mm;
+  bool hole;
+} fg_render_disc;
+
+/* What is drawn; owned by the spec. */
+typedef struct fg_render_truth {
+  int64_t width_px, height_px;
+  int bits;
+  double dpi[2]; /* x, y */
+  const fg_render_foil *foils;
+  size_t foil_count;
+  const fg_render_disc *discs;
+  size_t disc_count;
+} fg_render_truth;
+
+/* Takes a row of the picture: `pixels` are width_px values of 8 bit, or of 16 bit in host byte
+ * order. Rows come in order. What it returns other than FG_OK ends the rendering. */
+typedef fg_status fg_render_row(fg_context *ctx, void *user, int64_t row, const void *pixels);
+
+/* Reads a spec; `path` is for messages. FG_ERR_DATA names the member, its value and what would be
+ * right. On success the caller frees with fg_render_free. */
+fg_status fg_render_parse(fg_context *ctx, const char *path, const char *json,
+                          fg_render_spec **spec);
+fg_status fg_render_load(fg_context *ctx, const char *path, fg_render_spec **spec);
+void fg_render_free(fg_render_spec *spec); /* NULL is fine */
+
+const fg_render_truth *fg_render_get_truth(const fg_render_spec *spec);
+
+/* A point of a foil's true midline at arc length s_mm from its first end (the lip's), in pixels;
+ * part effects are in it, scanner effects and edge roughness are not. `foil` counts from 0.
+ * FG_ERR_USAGE when there is no such foil or place. */
+fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
+                            fg_point *point_px);
+
+/* Renders and hands out row after row. `strip_rows` is how many rows are drawn at a time (rounded
+ * up to a multiple of 64); 0 is the default. It does not change the picture. */
+fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
+                         fg_render_row *row, void *user);
+
+/* Renders to a PNG file (gray, 8 or 16 bit, with pHYs) and, unless truth_path is NULL, writes the
+ * truth as JSON ("schema": "foilgauge/truth/1"). Each appears only when whole. */
+fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char *scan_path,
+                         const char *truth_path);
+
+/* The truth as JSON text; the caller frees it with free(). */
+fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

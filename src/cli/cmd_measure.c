@@ -1,0 +1,329 @@
+#include <argp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "foilgauge/measure.h"
+#include "foilgauge/report.h"
+
+/* What the command can write, in the order of writing. */
+typedef enum output_kind {
+  OUT_JSON,
+  OUT_CSV,
+  OUT_POINTS,
+  OUT_OVERLAY,
+  OUT_TABLE,
+  OUT_COUNT
+} output_kind;
+
+typedef fg_status report_writer(fg_context *ctx, const fg_report *report, FILE *out);
+
+static report_writer *const writers[OUT_COUNT] = {
+    [OUT_JSON] = fg_report_write_json,     [OUT_CSV] = fg_report_write_csv,
+    [OUT_POINTS] = fg_report_write_points, [OUT_OVERLAY] = fg_report_write_overlay,
+    [OUT_TABLE] = fg_report_write_table,
+};
+
+typedef struct measure_arguments {
+  const char *paths[OUT_COUNT]; /* NULL: not asked for; "-": standard output */
+  const char *design_path;
+  const char *form;
+  double dpi;
+  unsigned threads;
+  char **scans; /* of argv */
+  size_t scan_count;
+} measure_arguments;
+
+typedef struct measure_run {
+  measure_arguments arguments;
+  fg_design design;
+  fg_nominal nominal;
+  fg_output outputs[OUT_COUNT];
+  bool open[OUT_COUNT];
+  fg_measurement *measurements;
+  fg_report_scan *scans;
+  char (*errors)[sizeof(((fg_context *)0)->message)];
+  size_t measured;
+  fg_status first_error;
+} measure_run;
+
+enum { OPTION_CSV = 256, OPTION_POINTS, OPTION_OVERLAY, OPTION_DPI, OPTION_FORM, OPTION_THREADS };
+
+static const struct argp_option options[] = {
+    {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
+    {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
+    {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
+    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 1},
+    {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
+    {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},
+    {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
+    {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
+    {0},
+};
+
+static const char doc[] =
+    "Measure every foil in a scan: radii, angles, heights, clearances, each with its uncertainty."
+    "\vSCAN is a PNG file, or - for standard input. Without -o the results go to standard "
+    "output: as a table on a terminal, else as JSON.\n\n"
+    "Exit code: 0 done and within tolerance; 1 out of tolerance; 2 something could not be "
+    "measured; 64 usage; 65 bad data; 74 input or output.";
+
+static double parse_number(struct argp_state *state, const char *name, const char *text,
+                           double lowest, double highest) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text || *end || !(value >= lowest && value <= highest))
+    argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
+  return value;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  measure_arguments *arguments = state->input;
+  switch (key) {
+  case 'd':
+    arguments->design_path = text;
+    break;
+  case 'o':
+    arguments->paths[OUT_JSON] = text;
+    break;
+  case OPTION_CSV:
+    arguments->paths[OUT_CSV] = text;
+    break;
+  case OPTION_POINTS:
+    arguments->paths[OUT_POINTS] = text;
+    break;
+  case OPTION_OVERLAY:
+    arguments->paths[OUT_OVERLAY] = text;
+    break;
+  case OPTION_FORM:
+    arguments->form = text;
+    break;
+  case OPTION_DPI:
+    arguments->dpi = parse_number(state, "dpi", text, 1, 1e6);
+    break;
+  case OPTION_THREADS:
+    arguments->threads = (unsigned)parse_number(state, "threads", text, 1, 1024);
+    break;
+  case ARGP_KEY_ARGS:
+    arguments->scans = state->argv + state->next;
+    arguments->scan_count = (size_t)(state->argc - state->next);
+    break;
+  case ARGP_KEY_NO_ARGS:
+    argp_error(state, "no SCAN was given");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static bool is_standard(const char *path) {
+  return !strcmp(path, "-");
+}
+
+/* Whether two paths are one regular file; a name that is not there yet is compared as text. */
+static bool same_file(const char *a, const char *b) {
+  struct stat stat_a, stat_b;
+  if (!strcmp(a, b)) return true;
+  if (stat(a, &stat_a) || stat(b, &stat_b)) return false;
+  return S_ISREG(stat_a.st_mode) && stat_a.st_dev == stat_b.st_dev &&
+         stat_a.st_ino == stat_b.st_ino;
+}
+
+static fg_status check_output(fg_context *ctx, const measure_arguments *arguments,
+                              output_kind kind) {
+  const char *path = arguments->paths[kind];
+  if (!path) return FG_OK;
+  for (int other = 0; other < (int)kind; other++)
+    if (arguments->paths[other] && same_file(path, arguments->paths[other]))
+      return fg_fail(ctx, FG_ERR_USAGE, "%s: two outputs cannot go to one file", path);
+  for (size_t i = 0; i < arguments->scan_count && !is_standard(path); i++)
+    if (same_file(path, arguments->scans[i]))
+      return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite the scan", path);
+  if (arguments->design_path && same_file(path, arguments->design_path))
+    return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite the design", path);
+  return FG_OK;
+}
+
+/* Results without -o go to standard output, unless another output is there already. */
+static void choose_standard_output(measure_arguments *arguments) {
+  if (arguments->paths[OUT_JSON]) return;
+  for (int kind = 0; kind < OUT_COUNT; kind++)
+    if (arguments->paths[kind] && is_standard(arguments->paths[kind])) return;
+  arguments->paths[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
+}
+
+static fg_status check_arguments(fg_context *ctx, const measure_arguments *arguments) {
+  size_t standard = 0;
+  for (size_t i = 0; i < arguments->scan_count; i++)
+    standard += is_standard(arguments->scans[i]);
+  if (standard > 1) return fg_fail(ctx, FG_ERR_USAGE, "-: standard input can be read only once");
+  if (arguments->paths[OUT_OVERLAY] && (arguments->scan_count > 1 || standard))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--overlay shows one scan, read again from its file: give one file");
+  for (int kind = 0; kind < OUT_COUNT; kind++)
+    FG_TRY(check_output(ctx, arguments, (output_kind)kind));
+  return FG_OK;
+}
+
+static fg_status apply_form(fg_context *ctx, const char *form, fg_design *design) {
+  static const struct {
+    const char *name;
+    fg_form form;
+  } forms[] = {{"classical", FG_FORM_CLASSICAL},
+               {"sinusoidal", FG_FORM_SINUSOIDAL},
+               {"discs", FG_FORM_DISCS}};
+  if (!form) return FG_OK;
+  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
+    if (strcmp(form, forms[i].name) != 0) continue;
+    design->form = forms[i].form;
+    return FG_OK;
+  }
+  return fg_fail(ctx, FG_ERR_USAGE, "--form: '%s' is none of classical, sinusoidal, discs", form);
+}
+
+static fg_status load_design(fg_context *ctx, measure_run *run) {
+  fg_design_default(&run->design);
+  if (run->arguments.design_path)
+    FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
+  FG_TRY(apply_form(ctx, run->arguments.form, &run->design));
+  FG_TRY(fg_design_check(ctx, &run->design));
+  if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
+  return fg_report_check_tolerances(ctx, &run->design);
+}
+
+static fg_status open_outputs(fg_context *ctx, measure_run *run) {
+  for (int kind = 0; kind < OUT_COUNT; kind++) {
+    if (!run->arguments.paths[kind]) continue;
+    FG_TRY(fg_output_open(ctx, run->arguments.paths[kind], &run->outputs[kind]));
+    run->open[kind] = true;
+  }
+  return FG_OK;
+}
+
+static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
+  size_t count = run->arguments.scan_count;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *run->measurements, &block));
+  run->measurements = block;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *run->scans, &block));
+  run->scans = block;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *run->errors, &block));
+  run->errors = block;
+  return FG_OK;
+}
+
+/* A scan that fails is reported; only what stops everything is an error here. */
+static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
+  const fg_measure_options options_of_scan = {.dpi = run->arguments.dpi,
+                                              .threads = run->arguments.threads};
+  const char *path = run->arguments.scans[index];
+  fg_report_scan *scan = &run->scans[index];
+  fg_status status =
+      fg_measure_scan(ctx, path, &run->design, &options_of_scan, &run->measurements[index]);
+  scan->path = path;
+  if (status == FG_OK) {
+    scan->measurement = &run->measurements[index];
+    for (size_t i = 0; i < run->measurements[index].foil_count; i++)
+      fg_foil_judge(&run->design, &run->measurements[index].foils[i]);
+    run->measured++;
+    return FG_OK;
+  }
+  if (status == FG_ERR_INTERRUPTED || status == FG_ERR_MEMORY) return status;
+  memcpy(run->errors[index], ctx->message, sizeof ctx->message);
+  scan->error = run->errors[index];
+  if (run->first_error == FG_OK) run->first_error = status;
+  if (run->arguments.scan_count > 1) fg_cli_fail(ctx, status);
+  return FG_OK;
+}
+
+static fg_status measure_all(fg_context *ctx, measure_run *run) {
+  FG_TRY(allocate_scans(ctx, run));
+  for (size_t i = 0; i < run->arguments.scan_count; i++)
+    FG_TRY(measure_one(ctx, run, i));
+  if (run->measured > 0) return FG_OK;
+  if (run->arguments.scan_count == 1) return run->first_error; /* ctx has its words */
+  return fg_fail(ctx, run->first_error, "none of %zu scans could be measured",
+                 run->arguments.scan_count);
+}
+
+/* An output that fails after another has its final name: none may look finished. */
+static void take_back(measure_run *run, int committed) {
+  for (int kind = 0; kind < committed; kind++) {
+    const char *path = run->arguments.paths[kind];
+    struct stat info;
+    if (path && !is_standard(path) && stat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
+  }
+}
+
+/* Names the file in a writer's error. */
+static fg_status write_one(fg_context *ctx, measure_run *run, output_kind kind) {
+  const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
+  const char *path = run->arguments.paths[kind];
+  fg_status status = writers[kind](ctx, &report, run->outputs[kind].stream);
+  if (status != FG_ERR_IO) return status;
+  fg_context inner = *ctx;
+  return fg_fail(ctx, status, "%s: %.900s", is_standard(path) ? "standard output" : path,
+                 inner.message);
+}
+
+/* Writes and flushes everything before anything gets its final name, so that a full disk shows
+ * first; standard output comes last, when all files are written. */
+static fg_status write_outputs(fg_context *ctx, measure_run *run) {
+  for (int standard = 0; standard <= 1; standard++)
+    for (int kind = 0; kind < OUT_COUNT; kind++)
+      if (run->open[kind] && is_standard(run->arguments.paths[kind]) == (standard == 1))
+        FG_TRY(write_one(ctx, run, (output_kind)kind));
+  for (int kind = 0; kind < OUT_COUNT; kind++) {
+    if (!run->open[kind]) continue;
+    fg_status status = fg_output_commit(ctx, &run->outputs[kind]);
+    if (status == FG_OK) continue;
+    take_back(run, kind);
+    return status;
+  }
+  return FG_OK;
+}
+
+static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code) {
+  const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
+  fg_report_outcome outcome;
+  FG_TRY(fg_report_judge(ctx, &report, &outcome));
+  *code = outcome.not_measured ? 2 : outcome.exceeded ? 1 : 0;
+  return FG_OK;
+}
+
+static void free_run(measure_run *run) {
+  for (int kind = 0; kind < OUT_COUNT; kind++)
+    if (run->open[kind]) fg_output_discard(&run->outputs[kind]);
+  for (size_t i = 0; run->scans && i < run->arguments.scan_count; i++)
+    if (run->scans[i].measurement) fg_measurement_free(&run->measurements[i]);
+  free(run->measurements);
+  free(run->scans);
+  free(run->errors);
+}
+
+static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
+  choose_standard_output(&run->arguments);
+  FG_TRY(check_arguments(ctx, &run->arguments));
+  FG_TRY(load_design(ctx, run));
+  FG_TRY(open_outputs(ctx, run));
+  FG_TRY(measure_all(ctx, run));
+  FG_TRY(write_outputs(ctx, run));
+  return outcome_code(ctx, run, code);
+}
+
+int fg_cmd_measure(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "SCAN...", doc, NULL, NULL, NULL};
+  fg_context ctx = {0};
+  measure_run run = {0};
+  int code = 0;
+  argv[0] = (char[]){"foilgauge measure"};
+  argp_parse(&parser, argc, argv, 0, NULL, &run.arguments);
+  fg_status status = measure(&ctx, &run, &code);
+  free_run(&run);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
+}

@@ -1,0 +1,23 @@
+/* What is drawn over a scan: edges, circles, numbers, residuals. */
+#ifndef FG_REPORT_DRAWING_H
+#define FG_REPORT_DRAWING_H
+
+#include "report/canvas.h"
+
+enum {
+  FG_COLOUR_EDGE = 0x00a6c8,
+  FG_COLOUR_BUMP = 0xff7a1a,
+  FG_COLOUR_OVERALL = 0x3d9dff,
+  FG_COLOUR_RESIDUAL = 0xe0359b,
+  FG_COLOUR_TEXT = 0xffffff,
+};
+
+/* The magnification of residuals that makes the larger ones about 0.9 mm long: 1, 2 or 5 times a
+ * power of ten. 1000 when there are none. */
+double fg_drawing_magnification(const fg_measurement *measurement);
+
+/* Draws every foil and disc, and the residuals' scale in the lower left corner. */
+fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
+                              const fg_measurement *measurement);
+
+#endif

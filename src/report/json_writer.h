@@ -1,0 +1,50 @@
+/* A small streaming JSON writer: what is written is never held.
+ *
+ * `name` is the member's name inside an object and NULL inside an array. Deterministic: ten
+ * significant digits, always a decimal point; NaN and infinities are null. Strings become valid
+ * UTF-8 (a stray byte becomes U+FFFD). Errors stay in the stream: the caller checks ferror at the
+ * end.
+ */
+#ifndef FG_REPORT_JSON_WRITER_H
+#define FG_REPORT_JSON_WRITER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct fg_json {
+  FILE *out;
+  int depth;
+  int line_depth;   /* > 0: members stay on one line */
+  bool has_members; /* of the innermost open object or array */
+} fg_json;
+
+void fg_json_begin(fg_json *json, FILE *out);
+void fg_json_end(fg_json *json); /* the last newline */
+
+void fg_json_object(fg_json *json, const char *name);
+void fg_json_object_end(fg_json *json);
+void fg_json_array(fg_json *json, const char *name);
+void fg_json_array_end(fg_json *json);
+
+/* Between the two everything stays on one line. */
+void fg_json_line(fg_json *json);
+void fg_json_line_end(fg_json *json);
+
+void fg_json_number(fg_json *json, const char *name, double value);
+void fg_json_integer(fg_json *json, const char *name, int64_t value);
+void fg_json_bool(fg_json *json, const char *name, bool value);
+void fg_json_string(fg_json *json, const char *name, const char *text); /* NULL: null */
+
+/* An array of numbers on one line. */
+void fg_json_numbers(fg_json *json, const char *name, const double *values, size_t count);
+
+/* The digits of a number as JSON writes them, or "null". */
+void fg_json_format(char text[32], double value);
+
+/* The length of the UTF-8 sequence at `text` (up to its NUL); 0 when it is not one: overlong, a
+ * surrogate, above U+10FFFF, a stray byte. */
+size_t fg_utf8_length(const char *text);
+
+#endif

@@ -1,0 +1,177 @@
+/* Comma-separated values, quoted as in RFC 4180, lines end with \n: bumps, and every edge point. */
+#include <math.h>
+#include <string.h>
+
+#include "report/json_writer.h"
+#include "report/words.h"
+
+static void put_number(FILE *out, double value) {
+  char text[32];
+  fputc(',', out);
+  if (!isfinite(value)) return;
+  fg_json_format(text, value);
+  fputs(text, out);
+}
+
+static void put_text(FILE *out, const char *text) {
+  if (!strpbrk(text, ",\"\r\n")) {
+    fputs(text, out);
+    return;
+  }
+  fputc('"', out);
+  for (; *text; text++) {
+    if (*text == '"') fputc('"', out);
+    fputc(*text, out);
+  }
+  fputc('"', out);
+}
+
+/* "centre_mm" becomes "centre_x_mm": the unit stays last. */
+static void put_axis_name(FILE *out, const char *before, const char *name, char axis) {
+  const char *unit = strrchr(name, '_');
+  fprintf(out, ",%s%.*s_%c%s", before, (int)(unit - name), name, axis, unit);
+}
+
+static void put_field_names(FILE *out, const fg_report_field *field) {
+  if (field->kind == FG_FIELD_PAIR) {
+    put_axis_name(out, "", field->name, 'x');
+    put_axis_name(out, "", field->name, 'y');
+    put_axis_name(out, "u_", field->name, 'x');
+    put_axis_name(out, "u_", field->name, 'y');
+    return;
+  }
+  fprintf(out, ",%s", field->name);
+  if (field->u_offset != FG_NO_UNCERTAINTY) fprintf(out, ",u_%s", field->name);
+}
+
+static void put_field(FILE *out, const fg_report_field *field, const void *object) {
+  double value[2], u[2];
+  if (field->kind == FG_FIELD_PAIR) {
+    fg_report_pair(field, object, value, u);
+    for (int i = 0; i < 2; i++)
+      put_number(out, value[i]);
+    for (int i = 0; i < 2; i++)
+      put_number(out, u[i]);
+    return;
+  }
+  put_number(out, fg_report_value(field, object));
+  if (field->u_offset != FG_NO_UNCERTAINTY) put_number(out, fg_report_uncertainty(field, object));
+}
+
+static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
+  const char *separator = "";
+  fputc(',', out);
+  for (; words->name; words++) {
+    if (!(flags & words->flag)) continue;
+    fprintf(out, "%s%s", separator, words->name);
+    separator = " ";
+  }
+}
+
+static void put_object(FILE *out, const char *scan, int foil, fg_report_owner owner, int number,
+                       unsigned flags, const void *object) {
+  size_t count;
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  put_text(out, scan);
+  if (owner == FG_REPORT_BUMP) fprintf(out, ",%d", foil);
+  fprintf(out, ",%d", number);
+  put_flags(out, fg_bump_flag_words(), flags);
+  for (size_t i = 0; i < count; i++)
+    put_field(out, &fields[i], object);
+  fputs("\n", out);
+}
+
+static void put_heading(FILE *out, fg_report_owner owner) {
+  size_t count;
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  fputs(owner == FG_REPORT_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
+  for (size_t i = 0; i < count; i++)
+    put_field_names(out, &fields[i]);
+  fputs("\n", out);
+}
+
+fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
+  bool discs = report->design->form == FG_FORM_DISCS;
+  put_heading(out, discs ? FG_REPORT_DISC : FG_REPORT_BUMP);
+  for (size_t i = 0; i < report->scan_count; i++) {
+    const fg_measurement *measurement = report->scans[i].measurement;
+    const char *scan = report->scans[i].path;
+    for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
+      const fg_foil *foil = &measurement->foils[k];
+      for (size_t b = 0; b < foil->bump_count; b++)
+        put_object(out, scan, foil->number, FG_REPORT_BUMP, foil->bumps[b].number,
+                   foil->bumps[b].flags, &foil->bumps[b]);
+    }
+    for (size_t k = 0; measurement && k < measurement->disc_count; k++)
+      put_object(out, scan, 0, FG_REPORT_DISC, measurement->discs[k].number,
+                 measurement->discs[k].flags, &measurement->discs[k]);
+  }
+  return fg_report_finish(ctx, out, "the CSV file");
+}
+
+typedef struct edge_point {
+  const char *side;
+  fg_point at;
+  double u_um;
+  double residual_um;
+} edge_point;
+
+/* Fixed digits: edge points are many, and nm are enough. */
+static void put_fixed(FILE *out, double value) {
+  fputc(',', out);
+  if (isfinite(value)) fprintf(out, "%.4f", value);
+}
+
+static void put_point(FILE *out, const char *place, const fg_station *station,
+                      const fg_station_label *label, const edge_point *point) {
+  fprintf(out, "%s,%.6f,%s,%.6f,%.6f", place, station->s_mm, point->side, point->at.x, point->at.y);
+  put_fixed(out, point->u_um);
+  fprintf(out, ",%s,%d,%d", fg_arc_kind_word(label->kind), label->number, label->fitted);
+  put_fixed(out, point->residual_um);
+  fputc('\n', out);
+}
+
+static void put_station(FILE *out, const char *place, const fg_station *station,
+                        const fg_station_label *label) {
+  const edge_point points[] = {
+      {"left", station->left, station->u_left_um, label->residual_left_um},
+      {"mid",
+       {(station->left.x + station->right.x) / 2, (station->left.y + station->right.y) / 2},
+       hypot(station->u_left_um, station->u_right_um) / 2,
+       label->residual_um},
+      {"right", station->right, station->u_right_um, label->residual_right_um},
+  };
+  for (size_t i = 0; i < sizeof points / sizeof points[0]; i++)
+    put_point(out, place, station, label, &points[i]);
+}
+
+static void put_foil_points(FILE *out, size_t scan, const fg_foil *foil) {
+  char place[80];
+  for (size_t i = 0; foil->labels && i < foil->strip.count; i++) {
+    snprintf(place, sizeof place, "%zu,%d,%zu", scan, foil->number, i);
+    put_station(out, place, &foil->strip.stations[i], &foil->labels[i]);
+  }
+}
+
+static void put_disc_points(FILE *out, size_t scan, const fg_disc *disc) {
+  for (size_t i = 0; disc->edge && disc->residual_um && i < disc->points; i++) {
+    fprintf(out, "%zu,%d,%zu,%.6f,%.6f", scan, disc->number, i, disc->edge[i].x, disc->edge[i].y);
+    put_fixed(out, disc->residual_um[i]);
+    fputc('\n', out);
+  }
+}
+
+fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE *out) {
+  fputs(report->design->form == FG_FORM_DISCS
+            ? "scan,disc,point,x_mm,y_mm,residual_um\n"
+            : "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n",
+        out);
+  for (size_t i = 0; i < report->scan_count; i++) {
+    const fg_measurement *measurement = report->scans[i].measurement;
+    for (size_t k = 0; measurement && k < measurement->foil_count; k++)
+      put_foil_points(out, i + 1, &measurement->foils[k]);
+    for (size_t k = 0; measurement && k < measurement->disc_count; k++)
+      put_disc_points(out, i + 1, &measurement->discs[k]);
+  }
+  return fg_report_finish(ctx, out, "the file of points");
+}

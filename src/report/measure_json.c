@@ -1,0 +1,290 @@
+#include "report/measure_json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/words.h"
+
+void fg_json_head(fg_json *json, const char *schema) {
+  fg_json_string(json, "schema", schema);
+  fg_json_string(json, "version", FOILGAUGE_VERSION);
+}
+
+static void write_limit(fg_json *json, const char *name, double limit) {
+  if (isfinite(limit)) fg_json_number(json, name, limit);
+}
+
+static void write_tolerances(fg_json *json, const fg_design *design) {
+  fg_json_object(json, "tolerances");
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_tolerance *tolerance = &design->tolerances[i];
+    fg_json_object(json, tolerance->quantity);
+    fg_json_line(json);
+    write_limit(json, "min", tolerance->lower);
+    write_limit(json, "max", tolerance->upper);
+    fg_json_object_end(json);
+    fg_json_line_end(json);
+  }
+  fg_json_object_end(json);
+}
+
+void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
+  fg_json_object(json, name);
+  fg_json_string(json, "schema", "foilgauge/design/1");
+  fg_json_string(json, "name", design->name);
+  fg_json_string(json, "form", fg_form_word(design->form));
+  if (design->form == FG_FORM_DISCS) {
+    fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
+  } else {
+    fg_json_string(json, "datum", fg_datum_word(design->datum));
+    fg_json_integer(json, "bump_count", (int64_t)design->bump_count);
+    fg_json_number(json, "bump_radius_mm", design->bump_radius_mm);
+    fg_json_number(json, "bump_angle_deg", design->bump_angle_deg);
+    fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+    fg_json_number(json, "sleeve_radius_mm", design->sleeve_radius_mm);
+    fg_json_number(json, "pitch_deg", design->pitch_deg);
+    fg_json_number(json, "fillet_radius_mm", design->fillet_radius_mm);
+    fg_json_number(json, "thickness_mm", design->thickness_mm);
+    fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
+  }
+  write_tolerances(json, design);
+  fg_json_object_end(json);
+}
+
+void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal) {
+  fg_json_object(json, name);
+  fg_json_number(json, "centre_to_centre_mm", nominal->centre_to_centre_mm);
+  fg_json_number(json, "half_chord_mm", nominal->half_chord_mm);
+  fg_json_number(json, "arc_length_mm", nominal->arc_length_mm);
+  fg_json_number(json, "intersection_angle_deg", nominal->intersection_angle_deg);
+  fg_json_number(json, "height_mm", nominal->height_mm);
+  fg_json_number(json, "die_height_mm", nominal->die_height_mm);
+  fg_json_number(json, "clearance_mm", nominal->clearance_mm);
+  fg_json_object_end(json);
+}
+
+void fg_json_input(fg_json *json, const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  fg_json_object(json, NULL);
+  fg_json_string(json, "path", scan->path);
+  fg_json_string(json, "sha256", measurement ? measurement->sha256 : NULL);
+  if (measurement) {
+    fg_json_integer(json, "width_px", measurement->width_px);
+    fg_json_integer(json, "height_px", measurement->height_px);
+    fg_json_integer(json, "bit_depth", measurement->bit_depth);
+    fg_json_numbers(json, "dpi", measurement->dpi, 2);
+    fg_json_numbers(json, "dpi_file", measurement->dpi_file, 2);
+  }
+  fg_json_object_end(json);
+}
+
+static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags) {
+  fg_json_array(json, "flags");
+  fg_json_line(json);
+  for (; words->name; words++)
+    if (flags & words->flag) fg_json_string(json, NULL, words->name);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
+/* `prefix` is cut off: the members of `overall` stand in an object of their own. */
+static void write_field(fg_json *json, const fg_report_field *field, const void *object,
+                        size_t prefix) {
+  const char *name = field->name + prefix;
+  char u_name[64];
+  snprintf(u_name, sizeof u_name, "u_%s", name);
+  double value[2], u[2];
+  switch (field->kind) {
+  case FG_FIELD_PAIR:
+    fg_report_pair(field, object, value, u);
+    fg_json_numbers(json, name, value, 2);
+    fg_json_numbers(json, u_name, u, 2);
+    break;
+  case FG_FIELD_NUMBER:
+    fg_json_number(json, name, fg_report_value(field, object));
+    if (field->u_offset != FG_NO_UNCERTAINTY)
+      fg_json_number(json, u_name, fg_report_uncertainty(field, object));
+    break;
+  case FG_FIELD_COUNT:
+    fg_json_integer(json, name, (int64_t)fg_report_value(field, object));
+    break;
+  }
+}
+
+/* The rows whose names start with `group` ("overall.") or, when it is empty, have no dot. */
+static void write_fields(fg_json *json, fg_report_owner owner, const char *group,
+                         const void *object) {
+  size_t count, prefix = strlen(group);
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    bool belongs =
+        prefix ? !strncmp(fields[i].name, group, prefix) : strchr(fields[i].name, '.') == NULL;
+    if (belongs) write_field(json, &fields[i], object, prefix);
+  }
+}
+
+static void write_covariance(fg_json *json, const double covariance[3][3]) {
+  fg_json_array(json, "covariance_mm2");
+  fg_json_line(json);
+  for (int i = 0; i < 3; i++)
+    fg_json_numbers(json, NULL, covariance[i], 3);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_bump(fg_json *json, const fg_bump *bump) {
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", bump->number);
+  write_flags(json, fg_bump_flag_words(), bump->flags);
+  write_fields(json, FG_REPORT_BUMP, "", bump);
+  write_covariance(json, bump->covariance);
+  fg_json_object_end(json);
+}
+
+static void write_judgement(fg_json *json, const fg_judgement *judgement, const char *owner) {
+  fg_json_object(json, NULL);
+  fg_json_line(json);
+  fg_json_string(json, "quantity", judgement->tolerance->quantity);
+  if (judgement->number) fg_json_integer(json, owner, judgement->number);
+  fg_json_number(json, "value", judgement->value);
+  fg_json_number(json, "u", judgement->u);
+  fg_json_number(json, "min", judgement->tolerance->lower);
+  fg_json_number(json, "max", judgement->tolerance->upper);
+  fg_json_bool(json, "exceeded", judgement->exceeded);
+  fg_json_string(json, "verdict", fg_verdict_word(judgement->verdict));
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_judgements(fg_json *json, const fg_judgement *list, size_t count,
+                             const char *owner) {
+  fg_json_string(json, "verdict", fg_verdict_word(fg_judgements_verdict(list, count)));
+  fg_json_array(json, "judgements");
+  for (size_t i = 0; i < count; i++)
+    write_judgement(json, &list[i], owner);
+  fg_json_array_end(json);
+}
+
+static void write_strip(fg_json *json, const fg_strip *strip) {
+  fg_json_object(json, "strip");
+  fg_json_integer(json, "stations", (int64_t)strip->count);
+  fg_json_number(json, "step_mm", strip->step_mm);
+  fg_json_number(json, "blur_left_um", strip->blur_left_um);
+  fg_json_number(json, "blur_right_um", strip->blur_right_um);
+  fg_json_number(json, "contrast", strip->contrast);
+  fg_json_number(json, "noise", strip->noise);
+  fg_json_number(json, "gamma", strip->gamma);
+  double box[4];
+  for (int i = 0; i < 4; i++)
+    box[i] = (double)strip->box_px[i];
+  fg_json_numbers(json, "box_px", box, 4);
+  fg_json_object_end(json);
+}
+
+static void write_foil_values(fg_json *json, const fg_foil *foil) {
+  fg_json_string(json, "orientation", fg_orientation_word(foil->orientation));
+  write_fields(json, FG_REPORT_FOIL, "", foil);
+  fg_json_object(json, "overall");
+  write_fields(json, FG_REPORT_FOIL, "overall.", foil);
+  write_covariance(json, foil->overall.covariance);
+  fg_json_object_end(json);
+  write_strip(json, &foil->strip);
+  fg_json_array(json, "bumps");
+  for (size_t i = 0; i < foil->bump_count; i++)
+    write_bump(json, &foil->bumps[i]);
+  fg_json_array_end(json);
+}
+
+fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
+                       const fg_foil *foil) {
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  fg_judgement *list;
+  size_t count;
+  FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", foil->number);
+  write_flags(json, fg_foil_flag_words(), foil->flags);
+  fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
+  fg_json_bool(json, "in_tolerance", measured && foil->in_tolerance);
+  if (measured)
+    write_judgements(json, list, count, "bump");
+  else
+    fg_json_string(json, "verdict", fg_verdict_word(FG_VERDICT_NOT_MEASURED));
+  write_foil_values(json, foil);
+  fg_json_object_end(json);
+  free(list);
+  return FG_OK;
+}
+
+fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
+                       const fg_disc *disc) {
+  fg_judgement *list;
+  size_t count;
+  FG_TRY(fg_disc_judgements(ctx, design, disc, &list, &count));
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", disc->number);
+  write_flags(json, fg_bump_flag_words(), disc->flags);
+  fg_json_bool(json, "hole", disc->hole);
+  fg_json_bool(json, "bright", disc->bright);
+  write_judgements(json, list, count, "disc");
+  write_fields(json, FG_REPORT_DISC, "", disc);
+  write_covariance(json, disc->covariance);
+  fg_json_object_end(json);
+  free(list);
+  return FG_OK;
+}
+
+/* The members that one scan gives: of the report itself, or of one of `scans`. */
+static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *report,
+                            const fg_measurement *measurement) {
+  fg_json_bool(json, "light_on_dark", measurement->light_on_dark);
+  fg_json_integer(json, "specks", (int64_t)measurement->specks);
+  fg_json_array(json, "foils");
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));
+  fg_json_array_end(json);
+  if (report->design->form != FG_FORM_DISCS) return FG_OK;
+  fg_json_array(json, "discs");
+  for (size_t i = 0; i < measurement->disc_count; i++)
+    FG_TRY(fg_json_disc(ctx, json, report->design, &measurement->discs[i]));
+  fg_json_array_end(json);
+  return FG_OK;
+}
+
+static fg_status write_scans(fg_context *ctx, fg_json *json, const fg_report *report) {
+  fg_json_array(json, "scans");
+  for (size_t i = 0; i < report->scan_count; i++) {
+    const fg_report_scan *scan = &report->scans[i];
+    fg_json_object(json, NULL);
+    fg_json_string(json, "path", scan->path);
+    fg_json_string(json, "error", scan->measurement ? NULL : scan->error);
+    if (scan->measurement) FG_TRY(write_scan(ctx, json, report, scan->measurement));
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+  return FG_OK;
+}
+
+fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *out) {
+  fg_report_outcome outcome;
+  fg_json json;
+  FG_TRY(fg_report_judge(ctx, report, &outcome));
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/measure/1");
+  fg_json_string(&json, "verdict", fg_verdict_word(outcome.verdict));
+  fg_json_array(&json, "inputs");
+  for (size_t i = 0; i < report->scan_count; i++)
+    fg_json_input(&json, &report->scans[i]);
+  fg_json_array_end(&json);
+  fg_json_design(&json, "design", report->design);
+  if (report->design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", report->nominal);
+  if (report->scan_count == 1 && report->scans[0].measurement)
+    FG_TRY(write_scan(ctx, &json, report, report->scans[0].measurement));
+  else
+    FG_TRY(write_scans(ctx, &json, report));
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  return fg_report_finish(ctx, out, "the JSON report");
+}

@@ -1,0 +1,172 @@
+/* The overlay: the scan in gray, what was found drawn over it, and a legend below. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "report/drawing.h"
+#include "report/words.h"
+
+enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = 256 };
+static const double pixels_max = 48e6;
+
+/* The legend: text in lines and columns under the picture. */
+typedef struct legend {
+  fg_rgb *rgb;
+  double left_px, top_px;
+  double em_px; /* height of capitals */
+  double line;  /* the next line's number */
+} legend;
+
+static fg_status put_text(fg_context *ctx, const legend *at, double column_em, uint32_t colour,
+                          const char *text) {
+  char ascii[LINE_MAX_LENGTH];
+  const double where[2] = {at->left_px + column_em * at->em_px,
+                           at->top_px + (at->line + 1) * 2.0 * at->em_px};
+  int32_t thickness = (int32_t)fmax(1, round(at->em_px / 8));
+  fg_text_to_ascii(text, ascii, sizeof ascii);
+  return fg_cv_draw_text(ctx, at->rgb, ascii, where, at->em_px, 0, colour, thickness);
+}
+
+static const char *const bump_columns[] = {"radius_mm", "bump_angle_deg", "intersection_angle_deg",
+                                           "height_mm", "clearance_mm",   "radius_error_pct"};
+static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um"};
+
+static void value_text(const fg_report_field *field, const void *object, char *text, size_t size) {
+  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+  int decimals = fg_report_decimals(field, u);
+  if (!isfinite(value))
+    snprintf(text, size, "-");
+  else if (isfinite(u))
+    snprintf(text, size, "%.*f ± %.*f", decimals, value, decimals, FG_COVERAGE_FACTOR * u);
+  else
+    snprintf(text, size, "%.*f", decimals, value);
+}
+
+static fg_status put_heading(fg_context *ctx, legend *at, fg_report_owner owner,
+                             const char *const *names, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    char text[64];
+    const fg_report_field *field = fg_report_find(owner, names[i]);
+    snprintf(text, sizeof text, "%s %s", field->symbol, field->unit);
+    FG_TRY(put_text(ctx, at, 4 + 16.0 * (double)i, 0xa8b4c0, text));
+  }
+  at->line++;
+  return FG_OK;
+}
+
+static fg_status put_row(fg_context *ctx, legend *at, fg_report_owner owner,
+                         const char *const *names, size_t count, int number, bool bad,
+                         const void *object) {
+  char text[64];
+  uint32_t colour = bad ? 0xff6b6b : 0xf0f3f6;
+  snprintf(text, sizeof text, "%d", number);
+  FG_TRY(put_text(ctx, at, 0, FG_COLOUR_BUMP, text));
+  for (size_t i = 0; i < count; i++) {
+    value_text(fg_report_find(owner, names[i]), object, text, sizeof text);
+    FG_TRY(put_text(ctx, at, 4 + 16.0 * (double)i, colour, text));
+  }
+  at->line++;
+  return FG_OK;
+}
+
+static fg_status put_foil(fg_context *ctx, legend *at, const fg_foil *foil, bool all) {
+  char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
+  value_text(fg_report_find(FG_REPORT_FOIL, "overall.radius_mm"), foil, radius, sizeof radius);
+  value_text(fg_report_find(FG_REPORT_FOIL, "overall.springback_error_pct"), foil, error,
+             sizeof error);
+  value_text(fg_report_find(FG_REPORT_FOIL, "thickness_mm"), foil, thickness, sizeof thickness);
+  if (foil->flags & FG_FOIL_NOT_MEASURED)
+    snprintf(text, sizeof text, "Foil %d: not measured: %.180s", foil->number, foil->error);
+  else
+    snprintf(text, sizeof text, "Foil %d: R0 %s mm, springback %s %%, t %s mm", foil->number,
+             radius, error, thickness);
+  FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
+  at->line++;
+  if (!all) return FG_OK;
+  size_t columns = sizeof bump_columns / sizeof *bump_columns;
+  FG_TRY(put_heading(ctx, at, FG_REPORT_BUMP, bump_columns, columns));
+  for (size_t i = 0; i < foil->bump_count; i++)
+    FG_TRY(put_row(ctx, at, FG_REPORT_BUMP, bump_columns, columns, foil->bumps[i].number,
+                   foil->bumps[i].flags != 0, &foil->bumps[i]));
+  return FG_OK;
+}
+
+static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *measurement) {
+  size_t columns = sizeof disc_columns / sizeof *disc_columns;
+  FG_TRY(put_heading(ctx, at, FG_REPORT_DISC, disc_columns, columns));
+  for (size_t i = 0; i < measurement->disc_count; i++)
+    FG_TRY(put_row(ctx, at, FG_REPORT_DISC, disc_columns, columns, measurement->discs[i].number,
+                   measurement->discs[i].flags != 0, &measurement->discs[i]));
+  return FG_OK;
+}
+
+static bool legend_has_bumps(const fg_measurement *measurement) {
+  return measurement->foil_count <= LEGEND_FOILS_MAX;
+}
+
+static size_t legend_lines(const fg_measurement *measurement) {
+  size_t lines = 3 + measurement->foil_count;
+  for (size_t i = 0; legend_has_bumps(measurement) && i < measurement->foil_count; i++)
+    lines += measurement->foils[i].bump_count + 1;
+  return lines + (measurement->disc_count ? measurement->disc_count + 1 : 0);
+}
+
+static fg_status draw_legend(fg_context *ctx, legend *at, const fg_measurement *measurement) {
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    FG_TRY(put_foil(ctx, at, &measurement->foils[i], legend_has_bumps(measurement)));
+  if (measurement->disc_count) FG_TRY(put_discs(ctx, at, measurement));
+  return put_text(ctx, at, 0, 0xa8b4c0,
+                  "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: beyond. "
+                  "Whiskers: residuals.");
+}
+
+/* The gray picture on top, a dark panel for the legend below. */
+static fg_status make_ground(fg_context *ctx, const fg_picture *picture, double panel_px,
+                             fg_rgb *rgb) {
+  size_t pixels = (size_t)picture->width * (size_t)picture->height;
+  void *block;
+  rgb->width = picture->width;
+  rgb->height = picture->height + (int32_t)panel_px;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)rgb->height, 3 * (size_t)rgb->width, &block));
+  rgb->pixels = block;
+  for (size_t i = 0; i < pixels; i++)
+    memset(rgb->pixels + 3 * i, picture->gray[i], 3);
+  size_t panel = 3 * (size_t)rgb->width * (size_t)(rgb->height - picture->height);
+  memset(rgb->pixels + 3 * pixels, 0x16, panel);
+  return FG_OK;
+}
+
+static fg_status draw_overlay(fg_context *ctx, const fg_measurement *measurement,
+                              const fg_picture *picture, fg_rgb *rgb) {
+  double em_px = fmax(8, picture->width / 118.0);
+  FG_TRY(make_ground(ctx, picture, 2.0 * em_px * ((double)legend_lines(measurement) + 1), rgb));
+  fg_canvas canvas = fg_canvas_over(picture, measurement);
+  fg_rgb upper = {rgb->pixels, picture->width, picture->height}; /* nothing reaches the legend */
+  canvas.rgb = &upper;
+  FG_TRY(fg_draw_measurement(ctx, &canvas, measurement));
+  legend at = {rgb, 2 * em_px, picture->height + em_px, em_px, 0};
+  return draw_legend(ctx, &at, measurement);
+}
+
+fg_status fg_report_write_overlay(fg_context *ctx, const fg_report *report, FILE *out) {
+  const fg_measurement *measurement = report->scans[0].measurement;
+  fg_picture picture = {0};
+  fg_rgb rgb = {0};
+  uint8_t *png = NULL;
+  size_t size = 0;
+  fg_status status = FG_OK;
+  if (report->scan_count != 1 || !measurement)
+    return fg_fail(ctx, FG_ERR_USAGE, "an overlay shows exactly one measured scan");
+  const int64_t box[4] = {0, 0, measurement->width_px, measurement->height_px};
+  FG_TRY_EXIT(fg_picture_load(ctx, measurement, box, WIDTH_MAX, pixels_max, &picture));
+  FG_TRY_EXIT(draw_overlay(ctx, measurement, &picture, &rgb));
+  FG_TRY_EXIT(fg_png_encode(ctx, rgb.pixels, rgb.width, rgb.height, 3, &png, &size));
+  fwrite(png, 1, size, out);
+  status = fg_report_finish(ctx, out, "the overlay");
+exit:
+  fg_picture_free(&picture);
+  free(rgb.pixels);
+  free(png);
+  return status;
+}

@@ -1,0 +1,96 @@
+#include "report/words.h"
+
+#include <errno.h>
+#include <string.h>
+
+static const fg_flag_words foil_flags[] = {
+    {FG_FOIL_TOUCHES_BORDER, "touches_border",
+     "The border of the scan cuts the foil: move it further inside and scan again."},
+    {FG_FOIL_TOUCHES_OTHER, "touches_other",
+     "Something else touches the foil: what lies at that place may be wrong."},
+    {FG_FOIL_NO_LIP, "no_lip", "No lip was found: the bumps are numbered clockwise as seen."},
+    {FG_FOIL_BUMP_COUNT, "bump_count", "The number of bumps is not the one the design states."},
+    {FG_FOIL_MISSING_BUMP, "missing_bump", "A place where a bump belongs is empty."},
+    {FG_FOIL_FEW_LANDS, "few_lands",
+     "The overall circle rests on few lands: what follows from it is less certain."},
+    {FG_FOIL_CLIPPED, "clipped",
+     "Pixels at the edges are at the end of the gray scale: scan with less exposure or contrast."},
+    {FG_FOIL_SIDE_BAND, "side_band",
+     "The wall of the foil shows beside one edge: that edge may be shifted."},
+    {FG_FOIL_GAP, "gap", "The strip is interrupted, or its edge is hidden, somewhere."},
+    {FG_FOIL_ROUGH_EDGE, "rough_edge",
+     "The residuals are correlated along the strip; the uncertainties take that into account."},
+    {FG_FOIL_NOT_MEASURED, "not_measured", "The foil could not be measured."},
+    {0, NULL, NULL},
+};
+
+static const fg_flag_words bump_flags[] = {
+    {FG_BUMP_CRUSHED, "crushed", "far lower, wider or rounder than its neighbours"},
+    {FG_BUMP_NOT_FITTED, "not_fitted", "no circle could be fitted"},
+    {FG_BUMP_NO_CROSSING, "no_crossing", "its circle does not meet the overall circle: no angle"},
+    {FG_BUMP_POOR_FIT, "poor_fit", "it is not a circle within the noise of the edges"},
+    {FG_BUMP_OUTLIERS, "outliers", "burr or dust was given less weight"},
+    {FG_BUMP_OUT_OF_TOLERANCE, "out_of_tolerance", "a tolerance is exceeded"},
+    {0, NULL, NULL},
+};
+
+const fg_flag_words *fg_foil_flag_words(void) {
+  return foil_flags;
+}
+
+const fg_flag_words *fg_bump_flag_words(void) {
+  return bump_flags;
+}
+
+const char *fg_form_word(fg_form form) {
+  switch (form) {
+  case FG_FORM_CLASSICAL:
+    return "classical";
+  case FG_FORM_SINUSOIDAL:
+    return "sinusoidal";
+  case FG_FORM_DISCS:
+    return "discs";
+  }
+  return "";
+}
+
+const char *fg_datum_word(fg_datum datum) {
+  switch (datum) {
+  case FG_DATUM_MID:
+    return "mid";
+  case FG_DATUM_INNER:
+    return "inner";
+  case FG_DATUM_OUTER:
+    return "outer";
+  }
+  return "";
+}
+
+const char *fg_orientation_word(fg_orientation orientation) {
+  return orientation == FG_CLOCKWISE ? "clockwise" : "counterclockwise";
+}
+
+const char *fg_arc_kind_word(fg_arc_kind kind) {
+  switch (kind) {
+  case FG_ARC_NONE:
+    return "none";
+  case FG_ARC_LIP:
+    return "lip";
+  case FG_ARC_LAND:
+    return "land";
+  case FG_ARC_FILLET:
+    return "fillet";
+  case FG_ARC_BUMP:
+    return "bump";
+  case FG_ARC_END:
+    return "end";
+  }
+  return "";
+}
+
+fg_status fg_report_finish(fg_context *ctx, FILE *out, const char *what) {
+  errno = 0;
+  if (fflush(out) == 0 && !ferror(out)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s cannot be written: %s", what,
+                 errno ? strerror(errno) : "write error");
+}

@@ -1,0 +1,31 @@
+/* Words of flags and kinds: as JSON has them, and in plain words for people. */
+#ifndef FG_REPORT_WORDS_H
+#define FG_REPORT_WORDS_H
+
+#include "foilgauge/report.h"
+
+typedef struct fg_flag_words {
+  unsigned flag;
+  const char *name;  /* in JSON and CSV */
+  const char *plain; /* for people */
+} fg_flag_words;
+
+/* Tables that end with a row whose name is NULL. */
+const fg_flag_words *fg_foil_flag_words(void);
+const fg_flag_words *fg_bump_flag_words(void);
+
+const char *fg_form_word(fg_form form);
+const char *fg_datum_word(fg_datum datum);
+const char *fg_orientation_word(fg_orientation orientation);
+const char *fg_arc_kind_word(fg_arc_kind kind);
+
+/* The two values of a pair and of their uncertainties (field->kind FG_FIELD_PAIR). */
+void fg_report_pair(const fg_report_field *field, const void *object, double value[2], double u[2]);
+
+/* How many decimals of a value people should see: U = 2 u shows two digits. */
+int fg_report_decimals(const fg_report_field *field, double u);
+
+/* FG_ERR_IO when the stream has failed. */
+fg_status fg_report_finish(fg_context *ctx, FILE *out, const char *what);
+
+#endif

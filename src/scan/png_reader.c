@@ -1,0 +1,224 @@
+#include "scan/png_reader.h"
+
+#include <inttypes.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Larger pieces of IDAT save calls, smaller ones stay in the processor's cache. */
+enum { IDAT_PIECE_BYTES = 1 << 16 };
+
+struct fg_png {
+  png_structp png;
+  png_infop info;
+  fg_source *source;
+  fg_png_header header;
+  bool in_image;
+  uint64_t rows_read;
+  bool cut_off;
+  char words[128];   /* libpng's, of the error */
+  char warning[128]; /* of the last warning: it holds the detail of some errors */
+};
+
+static void on_error(png_structp png, png_const_charp words) {
+  fg_png *reader = png_get_error_ptr(png);
+  snprintf(reader->words, sizeof reader->words, "%s", words);
+  png_longjmp(png, 1);
+}
+
+/* libpng only warns where the compressed data are wrong behind the last row (their checksum, rows
+ * beyond the header's). Then the rows cannot be trusted. Bytes after a sound stream do no harm. */
+static void on_warning(png_structp png, png_const_charp words) {
+  fg_png *reader = png_get_error_ptr(png);
+  snprintf(reader->warning, sizeof reader->warning, "%s", words);
+  bool in_image = !strncmp(words, "IDAT:", 5);
+  if (in_image && !strstr(words, "Extra compressed data")) png_error(png, words);
+}
+
+static void on_read(png_structp png, png_bytep out, size_t wanted) {
+  fg_png *reader = png_get_io_ptr(png);
+  if (fg_source_read(reader->source, out, wanted) == wanted) return;
+  reader->cut_off = true;
+  png_error(png, "cut off");
+}
+
+/* The one setjmp: runs `step` and says whether libpng came through. */
+static bool run(fg_png *reader, void (*step)(fg_png *, void *), void *row) {
+  if (setjmp(png_jmpbuf(reader->png))) return false;
+  step(reader, row);
+  return true;
+}
+
+static const char *explain(const char *words) {
+  static const char *const table[][2] = {
+      {"CRC error", "its checksum (CRC) is wrong"},
+      {"incorrect data check", "the checksum of the compressed image is wrong"},
+      {"Not enough image data", "the image ends before its last row"},
+      {"Not enough compressed data", "the image ends before its last row"},
+      {"Too much image data", "it holds more rows than the header says"},
+      {"Missing PLTE before IDAT", "the palette is missing"},
+      {"Missing IHDR before IDAT", "the header is missing"},
+      {"out of place", "it stands in the wrong place"},
+  };
+  for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+    if (!strcmp(words, table[i][0])) return table[i][1];
+  return words;
+}
+
+/* libpng puts the chunk's name before its words where it knows it. */
+static const char *split_chunk(const fg_png *reader, char chunk[24]) {
+  const char *colon = strstr(reader->words, ": ");
+  if (colon && colon - reader->words >= 4 && colon - reader->words < 24) {
+    snprintf(chunk, 24, "%.*s", (int)(colon - reader->words), reader->words);
+    return colon + 2;
+  }
+  uint32_t type = png_get_io_chunk_type(reader->png);
+  for (int i = 0; i < 4; i++)
+    chunk[i] = (char)(type >> (24 - 8 * i));
+  chunk[4] = '\0';
+  return reader->words;
+}
+
+static void describe_place(const fg_png *reader, char *place, size_t size) {
+  char chunk[24];
+  split_chunk(reader, chunk);
+  const fg_png_header *header = &reader->header;
+  bool named = chunk[0] >= 'A' && chunk[0] <= 'z';
+  int length = snprintf(place, size, "%s%s%sbyte %" PRIu64, named ? "chunk " : "",
+                        named ? chunk : "", named ? ", " : "", reader->source->offset);
+  if (length < 0 || (size_t)length >= size || !reader->in_image) return;
+  if (header->interlaced)
+    snprintf(place + length, size - (size_t)length, ", interlaced row %" PRIu64,
+             reader->rows_read + 1);
+  else if (reader->rows_read < header->height_px)
+    snprintf(place + length, size - (size_t)length, ", row %" PRIu64 " of %" PRIu32,
+             reader->rows_read + 1, header->height_px);
+  else
+    snprintf(place + length, size - (size_t)length, ", after the last row");
+}
+
+static fg_status fail(fg_context *ctx, const fg_png *reader) {
+  const char *name = reader->source->name;
+  char place[128], chunk[24];
+  describe_place(reader, place, sizeof place);
+  if (reader->source->error)
+    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read at %s: %s; check the disk or copy it again",
+                   name, place, strerror(reader->source->error));
+  if (reader->cut_off)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: is cut off (%s); copy or scan it again", name, place);
+  const char *words = split_chunk(reader, chunk);
+  if (strstr(words, "ut of memory") || strstr(words, "nsufficient memory"))
+    return fg_fail(ctx, FG_ERR_MEMORY, "%s: out of memory (%s)", name, place);
+  if (!strcmp(words, "Invalid IHDR data")) words = reader->warning;
+  return fg_fail(ctx, FG_ERR_DATA, "%s: is a damaged PNG: %s (%s); copy or scan it again", name,
+                 explain(words), place);
+}
+
+/* Only the resolution matters of all that is not the image: whatever else stands in the file is
+ * checked by its CRC and not looked into. */
+static void configure(png_structp png) {
+  static const png_byte phys[] = "pHYs", trns[] = "tRNS";
+  png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, trns, 1);
+  png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_AS_DEFAULT, phys, 1);
+  png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX); /* the caller has its own */
+  png_set_compression_buffer_size(png, IDAT_PIECE_BYTES);
+}
+
+static void read_header(fg_png *reader, void *unused) {
+  (void)unused;
+  png_structp png = reader->png;
+  fg_png_header *header = &reader->header;
+  configure(png);
+  png_read_info(png, reader->info);
+  header->width_px = png_get_image_width(png, reader->info);
+  header->height_px = png_get_image_height(png, reader->info);
+  header->bit_depth = png_get_bit_depth(png, reader->info);
+  header->channels = png_get_channels(png, reader->info);
+  header->interlaced = png_get_interlace_type(png, reader->info) != PNG_INTERLACE_NONE;
+  int unit = PNG_RESOLUTION_UNKNOWN;
+  header->has_phys =
+      png_get_pHYs(png, reader->info, &header->per_metre[0], &header->per_metre[1], &unit) != 0;
+  header->phys_in_metres = unit == PNG_RESOLUTION_METER;
+}
+
+static void copy_palette(fg_png *reader) {
+  fg_png_header *header = &reader->header;
+  png_colorp colours = NULL;
+  int count = 0;
+  header->has_palette = png_get_color_type(reader->png, reader->info) == PNG_COLOR_TYPE_PALETTE;
+  if (!header->has_palette || !png_get_PLTE(reader->png, reader->info, &colours, &count)) return;
+  header->palette_size = (size_t)count;
+  for (int i = 0; i < count && i < 256; i++)
+    header->palette[i] = (fg_gray_colour){colours[i].red, colours[i].green, colours[i].blue};
+}
+
+static fg_status create(fg_context *ctx, fg_png *reader) {
+  reader->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, reader, on_error, on_warning);
+  if (reader->png) reader->info = png_create_info_struct(reader->png);
+  if (!reader->info) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: libpng's reader");
+  png_set_read_fn(reader->png, reader, on_read);
+  return FG_OK;
+}
+
+fg_status fg_png_open(fg_context *ctx, fg_source *source, fg_png **png) {
+  fg_png *reader = NULL;
+  *png = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *reader, (void **)&reader));
+  reader->source = source;
+  fg_status status = create(ctx, reader);
+  if (status == FG_OK && !run(reader, read_header, NULL)) status = fail(ctx, reader);
+  if (status != FG_OK) {
+    fg_png_close(reader);
+    return status;
+  }
+  copy_palette(reader);
+  *png = reader;
+  return FG_OK;
+}
+
+const fg_png_header *fg_png_get_header(const fg_png *png) {
+  return &png->header;
+}
+
+static void start(fg_png *reader, void *unused) {
+  (void)unused;
+  if (reader->header.bit_depth < 8) png_set_packing(reader->png);
+  const uint16_t one = 1;
+  bool little_endian = *(const uint8_t *)&one == 1;
+  if (reader->header.bit_depth == 16 && little_endian) png_set_swap(reader->png);
+  png_start_read_image(reader->png);
+}
+
+fg_status fg_png_start(fg_context *ctx, fg_png *png) {
+  png->in_image = true;
+  return run(png, start, NULL) ? FG_OK : fail(ctx, png);
+}
+
+static void read_row(fg_png *reader, void *row) {
+  png_read_row(reader->png, row, NULL);
+  reader->rows_read++;
+}
+
+fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples) {
+  return run(png, read_row, samples) ? FG_OK : fail(ctx, png);
+}
+
+static void finish(fg_png *reader, void *unused) {
+  (void)unused;
+  png_read_end(reader->png, NULL);
+}
+
+fg_status fg_png_finish(fg_context *ctx, fg_png *png) {
+  return run(png, finish, NULL) ? FG_OK : fail(ctx, png);
+}
+
+void fg_png_close(fg_png *png) {
+  if (!png) return;
+  png_destroy_read_struct(&png->png, &png->info, NULL);
+  free(png);
+}

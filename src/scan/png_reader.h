@@ -1,0 +1,49 @@
+/* One PNG, read from front to back through libpng. libpng's setjmp stays behind this header.
+ *
+ * Order of calls: open, start, one read for each row (and, when interlaced, of each pass), finish.
+ * After an error only close is left. */
+#ifndef FG_SCAN_PNG_READER_H
+#define FG_SCAN_PNG_READER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "scan/gray.h"
+#include "scan/source.h"
+
+typedef struct fg_png_header {
+  uint32_t width_px, height_px;
+  int bit_depth; /* of a sample in the file */
+  int channels;  /* 1 to 4; palette images have 1 */
+  bool interlaced;
+  bool has_phys;
+  bool phys_in_metres;
+  uint32_t per_metre[2]; /* x, y; as in pHYs, whatever its unit */
+  bool has_palette;      /* samples are indices into `palette` */
+  size_t palette_size;
+  fg_gray_colour palette[256];
+} fg_png_header;
+
+typedef struct fg_png fg_png;
+
+/* Reads all that stands before the image. The source stays the caller's and must outlive the
+ * reader. FG_ERR_DATA: not a PNG, damaged; FG_ERR_IO, FG_ERR_MEMORY. */
+fg_status fg_png_open(fg_context *ctx, fg_source *source, fg_png **png);
+const fg_png_header *fg_png_get_header(const fg_png *png);
+
+/* Makes ready for rows; separate from opening, so that the caller can refuse a size before memory
+ * for it is taken. */
+fg_status fg_png_start(fg_context *ctx, fg_png *png);
+
+/* The next row's samples, all channels: one to a byte (up to 8 bits), one to a uint16_t in host
+ * order (16 bits). `samples` holds the full width of the image even where a pass has fewer
+ * columns. */
+fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples);
+
+/* Reads and checks everything from the last row to the end of the PNG. */
+fg_status fg_png_finish(fg_context *ctx, fg_png *png);
+
+void fg_png_close(fg_png *png); /* NULL is fine */
+
+#endif

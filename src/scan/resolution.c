@@ -1,0 +1,62 @@
+#include "scan/resolution.h"
+
+#include <math.h>
+
+#define METRES_PER_INCH 0.0254
+#define SNAP_DPI        0.02
+#define GIVE_DPI        "give the resolution with --dpi"
+
+/* pHYs counts whole pixels per metre, so 4800 dpi = 188976.38 per metre reads as 4799.99. */
+static double snap(double dpi) {
+  double whole = round(dpi);
+  return fabs(dpi - whole) <= SNAP_DPI ? whole : dpi;
+}
+
+static bool is_plausible(double dpi) {
+  return dpi >= FG_SCAN_DPI_MIN && dpi <= FG_SCAN_DPI_MAX;
+}
+
+fg_status fg_scan_check_dpi(fg_context *ctx, double dpi) {
+  if (!isfinite(dpi) || dpi <= 0)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "a resolution of %g dpi makes no sense; " GIVE_DPI " as a positive number", dpi);
+  if (!is_plausible(dpi))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "a resolution of %g dpi is outside %g to %g dpi; " GIVE_DPI " in dots per inch",
+                   dpi, FG_SCAN_DPI_MIN, FG_SCAN_DPI_MAX);
+  return FG_OK;
+}
+
+static fg_status check_file(fg_context *ctx, const char *name, const fg_png_header *header,
+                            const double dpi[2]) {
+  if (!header->has_phys)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: does not say its resolution (no usable pHYs chunk); " GIVE_DPI, name);
+  if (!header->phys_in_metres)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: does not say its resolution (chunk pHYs holds the shape "
+                   "of its pixels only); " GIVE_DPI,
+                   name);
+  for (int axis = 0; axis < 2; axis++)
+    if (!is_plausible(dpi[axis]))
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: says %g dpi in %c (chunk pHYs: %u pixels per metre), which no scanner "
+                     "has; " GIVE_DPI,
+                     name, dpi[axis], "xy"[axis], header -> per_metre[axis]);
+  return FG_OK;
+}
+
+fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_png_header *header,
+                             double dpi, fg_scan_info *info) {
+  bool known = header->has_phys && header->phys_in_metres;
+  for (int axis = 0; axis < 2; axis++)
+    info->dpi_file[axis] = known ? header->per_metre[axis] * METRES_PER_INCH : NAN;
+  if (dpi != 0) {
+    info->dpi[0] = info->dpi[1] = dpi;
+    return FG_OK;
+  }
+  FG_TRY(check_file(ctx, name, header, info->dpi_file));
+  for (int axis = 0; axis < 2; axis++)
+    info->dpi[axis] = snap(info->dpi_file[axis]);
+  return FG_OK;
+}

@@ -1,0 +1,147 @@
+/* The shape of the edges along a strip: mean profiles of segments, and their fits. */
+#include "vision/edges.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+
+#define BIN_PX 0.25
+enum {
+  GAMMA_SEGMENTS = 8, /* profiles that are asked for the tone curve */
+};
+
+static fg_status allocate_segments(fg_context *ctx, fg_edge_work *work) {
+  if (work->segments) return FG_OK;
+  double half = work->width_px / 2 + work->reach_px;
+  work->segment_count = (work->reference->count + FG_SEGMENT_STATIONS - 1) / FG_SEGMENT_STATIONS;
+  work->bin_count = (size_t)(2 * half / BIN_PX) + 1;
+  FG_TRY(fg_memory_allocate(ctx, work->segment_count, sizeof *work->segments,
+                            (void **)&work->segments));
+  FG_TRY(fg_memory_allocate(ctx, work->segment_count * work->bin_count, sizeof *work->bins,
+                            (void **)&work->bins));
+  for (size_t i = 0; i < work->segment_count; i++)
+    work->segments[i].bins = work->bins + i * work->bin_count;
+  return FG_OK;
+}
+
+/* Mean profiles of the segments of one chunk, across from the stations' middles. */
+static void stack_chunk(const fg_edge_work *work, size_t chunk) {
+  double half = work->width_px / 2 + work->reach_px;
+  size_t first = chunk * FG_CHUNK_SEGMENTS, last = first + FG_CHUNK_SEGMENTS;
+  if (last > work->segment_count) last = work->segment_count;
+  fg_profile_bin *bins = work->bins + first * work->bin_count;
+  size_t count = (last - first) * work->bin_count;
+  memset(bins, 0, count * sizeof *bins);
+  const fg_pixel_band *band = &work->bands[chunk];
+  for (size_t i = 0; i < band->count; i++) {
+    const fg_band_pixel *p = &band->pixels[i];
+    double across = p->across_px - work->stations[p->station].middle_px;
+    double at = (across + half) * (1 / BIN_PX);
+    if (at < 0 || at >= (double)work->bin_count) continue;
+    fg_profile_bin *bin = &work->segments[p->station / FG_SEGMENT_STATIONS].bins[(size_t)at];
+    bin->across_px += across;
+    bin->value += p->value;
+    bin->count += 1;
+  }
+  for (size_t i = 0; i < count; i++) {
+    if (bins[i].count <= 0) continue;
+    bins[i].across_px /= bins[i].count;
+    bins[i].value /= bins[i].count;
+  }
+}
+
+/* A start for the fit: levels from the ends and the middle of the profile. */
+static void start_fit(const fg_edge_work *work, const fg_segment_profile *s,
+                      fg_profile_fit *fit) {
+  double level[3] = {0}, weight[3] = {0};
+  double half = work->width_px / 2;
+  for (size_t i = 0; i < work->bin_count; i++) {
+    const fg_profile_bin *b = &s->bins[i];
+    int where = b->across_px < -half - 6 ? 0 : b->across_px > half + 6 ? 2 : 1;
+    if (where == 1 && fabs(b->across_px) > half / 3) continue;
+    level[where] += b->value * b->count;
+    weight[where] += b->count;
+  }
+  for (int i = 0; i < 3; i++) level[i] = weight[i] > 0 ? level[i] / weight[i] : 0;
+  memset(fit, 0, sizeof *fit);
+  double gamma = work->tables->gamma;
+  fit->shape = (fg_edge_shape){.plateau = fg_edge_light(gamma, level[1]),
+                               .level = {fg_edge_light(gamma, level[0]),
+                                         fg_edge_light(gamma, level[2])},
+                               .blur_px = {1.5, 1.5}};
+  fit->edge_px[0] = -half;
+  fit->edge_px[1] = half;
+  fit->gamma = gamma;
+}
+
+static fg_status stack_task(fg_context *ctx, void *shared, size_t chunk) {
+  (void)ctx;
+  stack_chunk(shared, chunk);
+  return FG_OK;
+}
+
+static fg_status fit_task(fg_context *ctx, void *shared, size_t i) {
+  (void)ctx;
+  fg_edge_work *work = shared;
+  fg_segment_profile *s = &work->segments[i];
+  if (!s->fit.good) start_fit(work, s, &s->fit);
+  fg_profile_fit_model(s->bins, work->bin_count, 0, &s->fit);
+  return FG_OK;
+}
+
+/* The tone curve from one of a few profiles spread along the strip. */
+typedef struct tone_task {
+  fg_edge_work *work;
+  fg_profile_fit fits[GAMMA_SEGMENTS];
+} tone_task;
+
+static fg_status fit_tone(fg_context *ctx, void *shared, size_t i) {
+  (void)ctx;
+  tone_task *task = shared;
+  fg_edge_work *work = task->work;
+  size_t at = (i + 1) * work->segment_count / (GAMMA_SEGMENTS + 1);
+  fg_profile_fit *fit = &task->fits[i];
+  const fg_segment_profile *s = &work->segments[at];
+  start_fit(work, s, fit);
+  fg_profile_fit_model(s->bins, work->bin_count, 0, fit);
+  if (fit->good) fg_profile_fit_model(s->bins, work->bin_count, 1, fit);
+  return FG_OK;
+}
+
+/* gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty. The
+ * middle of the sorted values stands for all: a profile that holds a fillet or dust is no vote. */
+static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
+  tone_task task = {.work = work};
+  double values[GAMMA_SEGMENTS], u = 0;
+  int count = 0;
+  FG_TRY(fg_parallel_run(ctx, work->threads, GAMMA_SEGMENTS, fit_tone, &task));
+  for (int i = 0; i < GAMMA_SEGMENTS; i++) {
+    if (!task.fits[i].good) continue;
+    int j = count++;
+    for (; j > 0 && values[j - 1] > task.fits[i].gamma; j--) values[j] = values[j - 1];
+    values[j] = task.fits[i].gamma;
+    u += task.fits[i].u_gamma;
+  }
+  work->gamma = 1;
+  if (count >= 3) {
+    double gamma = values[count / 2], spread = values[count * 3 / 4] - values[count / 4];
+    double doubt = fmax(u / count, spread) / sqrt(count);
+    if (fabs(gamma - 1) > fmax(3 * doubt, 0.02)) work->gamma = fmin(fmax(gamma, 0.33), 3.5);
+  }
+  if (work->gamma != 1) fg_edge_tables_init(work->tables, work->gamma);
+  return FG_OK;
+}
+
+fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work, bool again) {
+  size_t good = 0;
+  FG_TRY(allocate_segments(ctx, work));
+  FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
+  if (!again) FG_TRY(find_gamma(ctx, work));
+  FG_TRY(fg_parallel_run(ctx, work->threads, work->segment_count, fit_task, work));
+  for (size_t i = 0; i < work->segment_count; i++) good += work->segments[i].fit.good != 0;
+  if (good < 3 || good * 3 < work->segment_count)
+    return fg_fail(ctx, FG_ERR_NUMERIC, "no pair of edges along the strip");
+  return fg_edges_smooth_shape(ctx, work, good);
+}

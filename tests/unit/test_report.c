@@ -1,0 +1,394 @@
+/* Reports of a measurement made of formulas: what is written is what was measured. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <cjson/cJSON.h>
+
+#include "report/json_writer.h"
+#include "report/words.h"
+#include "support/synthetic_foil.h"
+
+typedef struct fixture {
+  fg_design design;
+  fg_nominal nominal;
+  fg_measurement measurement;
+  fg_report_scan scans[2];
+  fg_report report;
+} fixture;
+
+static int set_up(void **state) {
+  fixture *all = calloc(1, sizeof *all);
+  all->design = synthetic_design();
+  all->nominal = synthetic_nominal(&all->design);
+  all->measurement = synthetic_measurement(&all->design);
+  all->scans[0] = (fg_report_scan){all->measurement.scan, &all->measurement, NULL};
+  all->scans[1] = (fg_report_scan){"lost.png", NULL, "lost.png: cannot be opened"};
+  all->report = (fg_report){&all->design, &all->nominal, all->scans, 1};
+  *state = all;
+  return 0;
+}
+
+static int tear_down(void **state) {
+  fixture *all = *state;
+  synthetic_free(&all->measurement);
+  free(all);
+  return 0;
+}
+
+typedef fg_status report_writer(fg_context *ctx, const fg_report *report, FILE *out);
+
+/* What a writer writes, as text; the caller frees it. */
+static char *text_of(report_writer *write, const fg_report *report) {
+  fg_context ctx = {0};
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  assert_int_equal(write(&ctx, report, out), FG_OK);
+  fclose(out);
+  return text;
+}
+
+static cJSON *json_of(const fg_report *report) {
+  char *text = text_of(fg_report_write_json, report);
+  cJSON *json = cJSON_Parse(text);
+  assert_non_null(json);
+  free(text);
+  return json;
+}
+
+static const cJSON *member(const cJSON *object, const char *name) {
+  const cJSON *found = cJSON_GetObjectItemCaseSensitive(object, name);
+  if (!found) print_error("no member '%s'\n", name);
+  assert_non_null(found);
+  return found;
+}
+
+static const cJSON *first_foil(const cJSON *json) {
+  return cJSON_GetArrayItem(member(json, "foils"), 0);
+}
+
+static void same_number(const cJSON *json, double value) {
+  if (isnan(value)) {
+    assert_true(cJSON_IsNull(json));
+    return;
+  }
+  assert_true(cJSON_IsNumber(json));
+  assert_true(fabs(json->valuedouble - value) <= 1e-9 * fabs(value));
+}
+
+static void same_field(const cJSON *object, const fg_report_field *field, const void *values) {
+  char u_name[64];
+  const char *dot = strchr(field->name, '.'), *name = dot ? dot + 1 : field->name;
+  if (dot) object = member(object, "overall");
+  snprintf(u_name, sizeof u_name, "u_%s", name);
+  if (field->kind == FG_FIELD_PAIR) {
+    double value[2], u[2];
+    fg_report_pair(field, values, value, u);
+    for (int i = 0; i < 2; i++) {
+      same_number(cJSON_GetArrayItem(member(object, name), i), value[i]);
+      same_number(cJSON_GetArrayItem(member(object, u_name), i), u[i]);
+    }
+    return;
+  }
+  same_number(member(object, name), fg_report_value(field, values));
+  if (field->u_offset != FG_NO_UNCERTAINTY)
+    same_number(member(object, u_name), fg_report_uncertainty(field, values));
+}
+
+static void same_fields(const cJSON *object, fg_report_owner owner, const void *values) {
+  size_t count;
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  for (size_t i = 0; i < count; i++)
+    same_field(object, &fields[i], values);
+}
+
+static void json_holds_every_field(void **state) {
+  fixture *all = *state;
+  const fg_foil *foil = &all->measurement.foils[0];
+  cJSON *json = json_of(&all->report);
+  same_fields(first_foil(json), FG_REPORT_FOIL, foil);
+  const cJSON *bumps = member(first_foil(json), "bumps");
+  assert_int_equal(cJSON_GetArraySize(bumps), SYNTHETIC_BUMPS);
+  for (int i = 0; i < SYNTHETIC_BUMPS; i++)
+    same_fields(cJSON_GetArrayItem(bumps, i), FG_REPORT_BUMP, &foil->bumps[i]);
+  cJSON_Delete(json);
+}
+
+/* The names of DESIGN section 1 and 3, spelt out: the table must not drift from them. */
+static void json_has_the_agreed_names(void **state) {
+  fixture *all = *state;
+  static const char *const bump_names[] = {"radius_mm",
+                                           "centre_mm",
+                                           "centre_to_centre_mm",
+                                           "bump_angle_deg",
+                                           "height_mm",
+                                           "clearance_mm",
+                                           "clearance_error",
+                                           "intersection_angle_deg",
+                                           "height_model_mm",
+                                           "radius_error_pct",
+                                           "rms_um",
+                                           "bump_angle_error_pct",
+                                           "points",
+                                           "bump_angle_model_deg"};
+  static const char *const overall_names[] = {"radius_mm", "u_radius_mm", "centre_mm", "rms_um",
+                                              "springback_error_pct"};
+  static const char *const foil_names[] = {"thickness_mm", "orientation", "flags", "bumps"};
+  cJSON *json = json_of(&all->report);
+  const cJSON *foil = first_foil(json);
+  const cJSON *bump = cJSON_GetArrayItem(member(foil, "bumps"), 0);
+  assert_string_equal(member(json, "schema")->valuestring, "foilgauge/measure/1");
+  for (size_t i = 0; i < sizeof bump_names / sizeof *bump_names; i++)
+    member(bump, bump_names[i]);
+  for (size_t i = 0; i < sizeof overall_names / sizeof *overall_names; i++)
+    member(member(foil, "overall"), overall_names[i]);
+  for (size_t i = 0; i < sizeof foil_names / sizeof *foil_names; i++)
+    member(foil, foil_names[i]);
+  const cJSON *input = cJSON_GetArrayItem(member(json, "inputs"), 0);
+  assert_int_equal(strlen(member(input, "sha256")->valuestring), 64);
+  same_number(cJSON_GetArrayItem(member(input, "dpi_file"), 0), 4799.9904);
+  cJSON_Delete(json);
+}
+
+static void unknown_is_null_and_flags_are_words(void **state) {
+  fixture *all = *state;
+  fg_foil *foil = &all->measurement.foils[0];
+  foil->flags = FG_FOIL_NO_LIP | FG_FOIL_GAP;
+  foil->bumps[2].radius_mm = foil->bumps[2].u_radius_mm = NAN;
+  foil->bumps[2].flags = FG_BUMP_NOT_FITTED;
+  all->measurement.dpi_file[0] = INFINITY;
+  cJSON *json = json_of(&all->report);
+  const cJSON *flags = member(first_foil(json), "flags");
+  assert_int_equal(cJSON_GetArraySize(flags), 2);
+  assert_string_equal(cJSON_GetArrayItem(flags, 0)->valuestring, "no_lip");
+  assert_string_equal(cJSON_GetArrayItem(flags, 1)->valuestring, "gap");
+  const cJSON *bump = cJSON_GetArrayItem(member(first_foil(json), "bumps"), 2);
+  assert_true(cJSON_IsNull(member(bump, "radius_mm")));
+  assert_true(cJSON_IsNull(member(bump, "u_radius_mm")));
+  assert_string_equal(cJSON_GetArrayItem(member(bump, "flags"), 0)->valuestring, "not_fitted");
+  cJSON_Delete(json);
+}
+
+static void every_flag_has_its_words(void **state) {
+  (void)state;
+  unsigned foil = 0, bump = 0;
+  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
+    foil |= words->flag;
+  for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++)
+    bump |= words->flag;
+  assert_int_equal(foil, 2 * FG_FOIL_NOT_MEASURED - 1);
+  assert_int_equal(bump, 2 * FG_BUMP_OUT_OF_TOLERANCE - 1);
+}
+
+static void any_path_gives_valid_json(void **state) {
+  fixture *all = *state;
+  all->scans[0].path = "tab\there \xC3\xA4 bad\xFF\xC0\xAF\xED\xA0\x80 \"q\\\x7F";
+  cJSON *json = json_of(&all->report);
+  const cJSON *path = member(cJSON_GetArrayItem(member(json, "inputs"), 0), "path");
+  assert_string_equal(path->valuestring,
+                      "tab\there \xC3\xA4 bad\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD"
+                      "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD \"q\\\x7F");
+  cJSON_Delete(json);
+}
+
+static void several_scans_stand_in_scans(void **state) {
+  fixture *all = *state;
+  all->report.scan_count = 2;
+  cJSON *json = json_of(&all->report);
+  assert_null(cJSON_GetObjectItem(json, "foils"));
+  assert_string_equal(member(json, "verdict")->valuestring, "not_measured");
+  const cJSON *scans = member(json, "scans");
+  assert_int_equal(cJSON_GetArraySize(scans), 2);
+  same_fields(first_foil(cJSON_GetArrayItem(scans, 0)), FG_REPORT_FOIL, &all->measurement.foils[0]);
+  assert_string_equal(member(cJSON_GetArrayItem(scans, 1), "error")->valuestring,
+                      "lost.png: cannot be opened");
+  cJSON_Delete(json);
+}
+
+static void numbers_are_plain(void **state) {
+  (void)state;
+  static const struct {
+    double value;
+    const char *text;
+  } cases[] = {{20.73, "20.73"},   {-0.0, "0"},     {NAN, "null"},
+               {INFINITY, "null"}, {2e-5, "2e-05"}, {1.0 / 3, "0.3333333333"}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char text[32];
+    fg_json_format(text, cases[i].value);
+    assert_string_equal(text, cases[i].text);
+  }
+}
+
+static void verdict_considers_the_uncertainty(void **state) {
+  (void)state;
+  const fg_tolerance both = {"x", 1.0, 2.0}, upper = {"x", -INFINITY, 2.0};
+  static const struct {
+    double value, u;
+    fg_verdict verdict, with_upper;
+  } cases[] = {
+      {1.5, 0.2, FG_VERDICT_PASS, FG_VERDICT_PASS},
+      {1.5, 0.3, FG_VERDICT_UNDECIDED, FG_VERDICT_UNDECIDED},
+      {1.9, 0.06, FG_VERDICT_UNDECIDED, FG_VERDICT_UNDECIDED},
+      {2.1, 0.06, FG_VERDICT_UNDECIDED, FG_VERDICT_UNDECIDED},
+      {2.1, 0.04, FG_VERDICT_FAIL, FG_VERDICT_FAIL},
+      {0.9, 0.04, FG_VERDICT_FAIL, FG_VERDICT_PASS},
+      {2.0, NAN, FG_VERDICT_PASS, FG_VERDICT_PASS},
+      {2.0001, NAN, FG_VERDICT_FAIL, FG_VERDICT_FAIL},
+      {NAN, 0.1, FG_VERDICT_NOT_MEASURED, FG_VERDICT_NOT_MEASURED},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    assert_int_equal(fg_judge_value(&both, cases[i].value, cases[i].u), cases[i].verdict);
+    assert_int_equal(fg_judge_value(&upper, cases[i].value, cases[i].u), cases[i].with_upper);
+  }
+}
+
+static void a_bump_beyond_its_limit_is_flagged(void **state) {
+  fixture *all = *state;
+  fg_context ctx = {0};
+  fg_foil *foil = &all->measurement.foils[0];
+  fg_report_outcome outcome;
+  synthetic_tolerance(&all->design, "radius_error_pct", -INFINITY, 2.0); /* bump 1 has 2.195 */
+  synthetic_tolerance(&all->design, "overall.radius_mm", 20.9, 21.0);
+  fg_foil_judge(&all->design, foil);
+  assert_false(foil->in_tolerance);
+  assert_int_equal(foil->bumps[0].flags, FG_BUMP_OUT_OF_TOLERANCE);
+  assert_int_equal(foil->bumps[1].flags, 0);
+  assert_int_equal(fg_report_judge(&ctx, &all->report, &outcome), FG_OK);
+  assert_int_equal(outcome.exceeded, 1);
+  assert_int_equal(outcome.not_measured, 0);
+  assert_int_equal(outcome.verdict, FG_VERDICT_FAIL);
+
+  all->design.tolerances[0].upper = 2.5;
+  fg_foil_judge(&all->design, foil);
+  assert_true(foil->in_tolerance);
+  assert_int_equal(foil->bumps[0].flags, 0);
+  all->design.tolerances[1].lower = 20.96;
+  fg_foil_judge(&all->design, foil);
+  assert_false(foil->in_tolerance);
+}
+
+static void a_bump_that_lacks_is_not_passed(void **state) {
+  fixture *all = *state;
+  fg_context ctx = {0};
+  fg_foil *foil = &all->measurement.foils[0];
+  fg_judgement *list;
+  size_t count;
+  synthetic_tolerance(&all->design, "height_mm", 0.5, 0.6);
+  memmove(&foil->bumps[3], &foil->bumps[4], 5 * sizeof *foil->bumps); /* number 4 is gone */
+  foil->bump_count = 8;
+  assert_int_equal(fg_foil_judgements(&ctx, &all->design, foil, &list, &count), FG_OK);
+  assert_int_equal(count, 9);
+  for (size_t i = 0; i < count; i++)
+    assert_int_equal(list[i].verdict, i == 3 ? FG_VERDICT_NOT_MEASURED : FG_VERDICT_PASS);
+  assert_int_equal(fg_judgements_verdict(list, count), FG_VERDICT_NOT_MEASURED);
+  free(list);
+}
+
+static void an_unknown_tolerance_is_refused(void **state) {
+  fixture *all = *state;
+  fg_context ctx = {0};
+  synthetic_tolerance(&all->design, "thickness_mm", 0.09, 0.11);
+  assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_OK);
+  synthetic_tolerance(&all->design, "hight_mm", 0, 1);
+  assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "tolerances.hight_mm"));
+  assert_non_null(strstr(ctx.message, "height_mm,"));
+  all->design.form = FG_FORM_DISCS;
+  all->design.tolerance_count = 1;
+  assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
+}
+
+static size_t count_of(const char *text, char wanted) {
+  size_t count = 0;
+  for (; *text; text++)
+    count += *text == wanted;
+  return count;
+}
+
+static void csv_has_a_line_per_bump(void **state) {
+  fixture *all = *state;
+  char *text = text_of(fg_report_write_csv, &all->report);
+  assert_int_equal(count_of(text, '\n'), SYNTHETIC_BUMPS + 1);
+  char *second = strchr(text, '\n') + 1;
+  second[-1] = '\0';
+  *strchr(second, '\n') = '\0';
+  const char *quoted = "\"foil, \"\"one\"\" <a&b>.png\",1,1,,3.39288342,0.00021,";
+  assert_memory_equal(second, quoted, strlen(quoted));
+  assert_int_equal(count_of(text, ','), count_of(second, ',') - 1); /* one is inside the quotes */
+  assert_non_null(strstr(text, ",centre_x_mm,centre_y_mm,u_centre_x_mm,u_centre_y_mm,"));
+  free(text);
+}
+
+static void points_hold_both_edges_and_the_midline(void **state) {
+  fixture *all = *state;
+  char *text = text_of(fg_report_write_points, &all->report);
+  assert_int_equal(count_of(text, '\n'), 3 * SYNTHETIC_STATIONS + 1);
+  char wanted[200];
+  const fg_station *station = &all->measurement.foils[0].strip.stations[3000];
+  const fg_station_label *label = &all->measurement.foils[0].labels[3000];
+  assert_int_equal(label->kind, FG_ARC_BUMP);
+  snprintf(wanted, sizeof wanted, "\n1,1,3000,%.6f,right,%.6f,%.6f,0.1200,bump,5,1,%.4f\n",
+           station->s_mm, station->right.x, station->right.y, label->residual_right_um);
+  assert_non_null(strstr(text, wanted));
+  free(text);
+}
+
+static void table_says_what_plus_minus_is(void **state) {
+  fixture *all = *state;
+  char *text = text_of(fg_report_write_table, &all->report);
+  assert_non_null(strstr(text, "overall radius 20.9500 ± 0.0010 mm"));
+  assert_non_null(strstr(text, "3.39288 0.00042"));
+  assert_non_null(strstr(text, "± is U = 2 u"));
+  free(text);
+}
+
+static void decimals_follow_the_uncertainty(void **state) {
+  (void)state;
+  const fg_report_field *radius = fg_report_find(FG_REPORT_BUMP, "radius_mm");
+  assert_int_equal(fg_report_decimals(radius, 0.0002), 5); /* U = 0.00040 */
+  assert_int_equal(fg_report_decimals(radius, 0.5), 4);    /* never fewer than its own */
+  assert_int_equal(fg_report_decimals(radius, NAN), 4);
+  assert_int_equal(fg_report_decimals(radius, 1e-12), 5); /* never digits without end */
+}
+
+static void a_full_disk_is_an_error(void **state) {
+  fixture *all = *state;
+  report_writer *const writers[] = {fg_report_write_json, fg_report_write_csv,
+                                    fg_report_write_points, fg_report_write_table};
+  for (size_t i = 0; i < sizeof writers / sizeof *writers; i++) {
+    fg_context ctx = {0};
+    FILE *full = fopen("/dev/full", "w");
+    if (!full) skip();
+    assert_int_equal(writers[i](&ctx, &all->report, full), FG_ERR_IO);
+    assert_true(ctx.message[0] != '\0');
+    fclose(full);
+  }
+}
+
+#define TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      TEST(json_holds_every_field),
+      TEST(json_has_the_agreed_names),
+      TEST(unknown_is_null_and_flags_are_words),
+      TEST(every_flag_has_its_words),
+      TEST(any_path_gives_valid_json),
+      TEST(several_scans_stand_in_scans),
+      TEST(numbers_are_plain),
+      TEST(verdict_considers_the_uncertainty),
+      TEST(a_bump_beyond_its_limit_is_flagged),
+      TEST(a_bump_that_lacks_is_not_passed),
+      TEST(an_unknown_tolerance_is_refused),
+      TEST(csv_has_a_line_per_bump),
+      TEST(points_hold_both_edges_and_the_midline),
+      TEST(table_says_what_plus_minus_is),
+      TEST(decimals_follow_the_uncertainty),
+      TEST(a_full_disk_is_an_error),
+  };
+  return cmocka_run_group_tests_name("report", tests, NULL, NULL);
+}

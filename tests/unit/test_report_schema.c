@@ -1,0 +1,134 @@
+/* Reports validate against the JSON Schemas in reports/schema, and the schema knows every row of
+ * the table of fields. Skipped without python3-jsonschema. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <cjson/cJSON.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "foilgauge/report.h"
+#include "support/synthetic_foil.h"
+
+enum { SKIPPED = 77 };
+
+/* The exit code of the validator on what the report writes. */
+static int validate(const fg_report *report) {
+  fg_context ctx = {0};
+  char path[] = "/tmp/foilgauge-report-XXXXXX", command[256];
+  FILE *out = fdopen(mkstemp(path), "w");
+  assert_non_null(out);
+  assert_int_equal(fg_report_write_json(&ctx, report, out), FG_OK);
+  fclose(out);
+  snprintf(command, sizeof command,
+           "python3 tests/support/validate_schema.py reports/schema measure.schema.json %s", path);
+  int status = system(command);
+  unlink(path);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+static void assert_valid(const fg_report *report) {
+  int code = validate(report);
+  if (code == SKIPPED || code == 127) skip();
+  assert_int_equal(code, 0);
+}
+
+static void a_foil_is_valid(void **state) {
+  (void)state;
+  fg_design design = synthetic_design();
+  synthetic_tolerance(&design, "height_mm", 0.5, INFINITY);
+  fg_nominal nominal = synthetic_nominal(&design);
+  fg_measurement measurement = synthetic_measurement(&design);
+  fg_report_scan scans[2] = {{"a.png", &measurement, NULL}, {"b.png", NULL, "b.png: broken"}};
+  fg_report report = {&design, &nominal, scans, 1};
+  assert_valid(&report);
+  report.scan_count = 2;
+  assert_valid(&report);
+
+  /* A foil without a single value. */
+  fg_foil *foil = &measurement.foils[0];
+  foil->flags = FG_FOIL_NOT_MEASURED;
+  snprintf(foil->error, sizeof foil->error, "no arc was found");
+  foil->bump_count = 0;
+  foil->overall.radius_mm = foil->overall.u_radius_mm = NAN;
+  foil->thickness_mm = NAN;
+  assert_valid(&report);
+  synthetic_free(&measurement);
+}
+
+static void discs_are_valid(void **state) {
+  (void)state;
+  fg_design design = synthetic_design();
+  design.form = FG_FORM_DISCS;
+  design.diameter_count = 2;
+  design.diameters_mm[0] = 3;
+  design.diameters_mm[1] = 5.5;
+  synthetic_tolerance(&design, "roundness_um", -INFINITY, 5);
+  fg_nominal nominal = {0};
+  fg_disc discs[2] = {synthetic_disc(1, 1.5), synthetic_disc(2, 2.75)};
+  fg_measurement measurement = {.width_px = 100,
+                                .height_px = 100,
+                                .bit_depth = 16,
+                                .dpi = {1200, 1200},
+                                .dpi_file = {NAN, NAN},
+                                .discs = discs,
+                                .disc_count = 2};
+  memset(measurement.sha256, '0', 64);
+  fg_report_scan scan = {"discs.png", &measurement, NULL};
+  assert_valid(&(fg_report){&design, &nominal, &scan, 1});
+  for (int i = 0; i < 2; i++) {
+    free(discs[i].edge);
+    free(discs[i].residual_um);
+  }
+}
+
+static cJSON *load_schema(void) {
+  FILE *file = fopen("reports/schema/measure.schema.json", "r");
+  assert_non_null(file);
+  char *text = calloc(1, 1 << 20);
+  assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
+  fclose(file);
+  cJSON *schema = cJSON_Parse(text);
+  assert_non_null(schema);
+  free(text);
+  return schema;
+}
+
+static const cJSON *properties_of(const cJSON *schema, const char *definition) {
+  const cJSON *all = cJSON_GetObjectItemCaseSensitive(schema, "$defs");
+  const cJSON *one = cJSON_GetObjectItemCaseSensitive(all, definition);
+  return cJSON_GetObjectItemCaseSensitive(one, "properties");
+}
+
+static void every_row_is_in_the_schema(void **state) {
+  (void)state;
+  static const char *const definitions[] = {"foil", "bump", "disc"};
+  cJSON *schema = load_schema();
+  for (int owner = FG_REPORT_FOIL; owner <= FG_REPORT_DISC; owner++) {
+    size_t count;
+    const fg_report_field *fields = fg_report_fields((fg_report_owner)owner, &count);
+    for (size_t i = 0; i < count; i++) {
+      const char *dot = strchr(fields[i].name, '.'), *name = dot ? dot + 1 : fields[i].name;
+      char u_name[64];
+      snprintf(u_name, sizeof u_name, "u_%s", name);
+      const cJSON *known = properties_of(schema, dot ? "overall" : definitions[owner]);
+      assert_true(cJSON_HasObjectItem(known, name));
+      assert_int_equal(cJSON_HasObjectItem(known, u_name), fields[i].u_offset != FG_NO_UNCERTAINTY);
+    }
+  }
+  cJSON_Delete(schema);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_foil_is_valid),
+      cmocka_unit_test(discs_are_valid),
+      cmocka_unit_test(every_row_is_in_the_schema),
+  };
+  return cmocka_run_group_tests_name("report schema", tests, NULL, NULL);
+}
