@@ -123,6 +123,8 @@ static void decimals_keep_their_digits(void **state) {
   fg_extended tenth = {0, 0}, a = {0, 0};
   assert_true(fg_extended_parse("0.1", 3, &tenth));
   assert_true(fabs(tenth.tail - -5.5511151231257827e-18) < 1e-33);
+  assert_true(fg_extended_parse("3.141592653589793238462643383279", 32, &a));
+  assert_true(fabs(a.tail - 1.2246467991473532e-16) < 1e-30);
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
     assert_true(fg_extended_parse(numbers[i], strlen(numbers[i]), &a));
     assert_true(a.value == strtod(numbers[i], NULL));
