@@ -56,6 +56,9 @@ const fg_scan_info *fg_scan_get_info(const fg_scan *scan);
 fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                             int64_t stride_bytes);
 
+/* Whether it is a regular file (not a pipe or a device). */
+bool fg_scan_is_file(const fg_scan *scan);
+
 /* SHA-256 of the whole file, as 64 hex digits. For a regular file it is computed from the same
  * open file (pread, safe to call from another thread while rows are read); for a pipe it is known
  * after the last row. */

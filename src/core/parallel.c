@@ -1,10 +1,46 @@
 #include "core/parallel.h"
 
-#include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <unistd.h>
 
 enum { THREADS_MAX = 64 };
+
+static void *run_anywhere(void *argument) {
+  fg_thread *thread = argument;
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  for (size_t cpu = 0; cpu < CPU_SETSIZE; cpu++) CPU_SET(cpu, &all);
+  pthread_setaffinity_np(pthread_self(), sizeof all, &all);
+  return thread->run(thread->argument);
+}
+
+/* Attributes that keep a thread off the caller's core at its start. False: no other core. */
+static bool avoid_this_core(pthread_attr_t *attributes) {
+  cpu_set_t set;
+  int here = sched_getcpu();
+  if (here < 0 || pthread_getaffinity_np(pthread_self(), sizeof set, &set) != 0) return false;
+  CPU_CLR((size_t)here, &set);
+  return CPU_COUNT(&set) > 0 && pthread_attr_init(attributes) == 0 &&
+         pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0;
+}
+
+fg_status fg_thread_start(fg_thread *thread, void *(*run)(void *), void *argument) {
+  pthread_attr_t attributes;
+  thread->run = run;
+  thread->argument = argument;
+  if (avoid_this_core(&attributes)) {
+    int failed = pthread_create(&thread->handle, &attributes, run_anywhere, thread);
+    pthread_attr_destroy(&attributes);
+    if (!failed) return FG_OK;
+  }
+  return pthread_create(&thread->handle, NULL, run, argument) == 0 ? FG_OK : FG_ERR_MEMORY;
+}
+
+void fg_thread_join(fg_thread *thread) {
+  pthread_join(thread->handle, NULL);
+}
 
 typedef struct pool {
   fg_parallel_task *task;
@@ -39,18 +75,18 @@ fg_status fg_parallel_run(fg_context *ctx, unsigned threads, size_t count, fg_pa
                           void *shared) {
   pool p = {.task = task, .shared = shared, .count = count};
   worker workers[THREADS_MAX] = {0};
-  pthread_t handles[THREADS_MAX];
+  fg_thread handles[THREADS_MAX];
   if (threads == 0) threads = (unsigned)sysconf(_SC_NPROCESSORS_ONLN);
   if (threads > THREADS_MAX) threads = THREADS_MAX;
   if (threads > count) threads = (unsigned)count;
   unsigned started = 0;
   for (unsigned i = 0; i < threads || i == 0; i++) workers[i].pool = &p;
   while (started + 1 < threads &&
-         pthread_create(&handles[started], NULL, work, &workers[started + 1]) == 0)
+         fg_thread_start(&handles[started], work, &workers[started + 1]) == FG_OK)
     started++;
   work(&workers[0]);
   const worker *first = NULL;
-  for (unsigned i = 0; i < started; i++) pthread_join(handles[i], NULL);
+  for (unsigned i = 0; i < started; i++) fg_thread_join(&handles[i]);
   for (unsigned i = 0; i <= started; i++)
     if (workers[i].status != FG_OK && (!first || workers[i].failed < first->failed))
       first = &workers[i];

@@ -2,9 +2,24 @@
 #ifndef FG_CORE_PARALLEL_H
 #define FG_CORE_PARALLEL_H
 
+#include <pthread.h>
 #include <stddef.h>
 
 #include "foilgauge/status.h"
+
+/* A thread that starts on another core than the caller's, where there is one, and may then run
+ * anywhere. A new thread is queued on its parent's core and waits there for a time slice (some
+ * milliseconds) while other cores idle: as long as a whole stage of a measurement takes. */
+typedef struct fg_thread {
+  pthread_t handle;
+  void *(*run)(void *);
+  void *argument;
+} fg_thread;
+
+/* `thread` must stay where it is until it is joined. FG_ERR_MEMORY when there is no thread to be
+ * had; the caller can then do the work itself. */
+fg_status fg_thread_start(fg_thread *thread, void *(*run)(void *), void *argument);
+void fg_thread_join(fg_thread *thread);
 
 /* Works on one item; items must not touch each other's data. */
 typedef fg_status fg_parallel_task(fg_context *ctx, void *shared, size_t item);

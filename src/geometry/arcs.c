@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 #define OUTLIER_SIGMAS 5.0
 #define OUTLIER_LEAST_MM 0.0003
@@ -69,11 +70,6 @@ static size_t count_stations(const fg_arc *arc) {
   return count;
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Robust sd about the circle; `work` holds all stations of the arc. */
 static double find_scatter(const fg_datum_line *line, const fg_arc *arc, double *work) {
   size_t n = 0;
@@ -83,8 +79,7 @@ static double find_scatter(const fg_datum_line *line, const fg_arc *arc, double 
       if (isfinite(r)) work[n++] = fabs(r);
     }
   if (!n) return 0;
-  qsort(work, n, sizeof *work, compare_doubles);
-  return 1.4826 * work[n / 2];
+  return 1.4826 * fg_select(work, n, n / 2);
 }
 
 /* Gathers the usable stations; with `all` outliers too. */

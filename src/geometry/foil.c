@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "geometry/labels.h"
 #include "geometry/layout.h"
 
@@ -175,13 +176,15 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   bump->position_deg = position_deg(foil, arc);
   bump->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
   bump->radius_mm = arc->circle.radius;
+  memcpy(bump->covariance, arc->covariance, sizeof bump->covariance);
   if (!layout->fitted[i]) {
     bump->flags |= FG_BUMP_NOT_FITTED;
     bump->radius_mm = bump->centre_mm.x = bump->centre_mm.y = NAN;
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++) bump->covariance[p][q] = NAN;
   }
-  memcpy(bump->covariance, arc->covariance, sizeof bump->covariance);
-  for (int k = 0; k < 2; k++) bump->u_centre_mm[k] = sqrt(arc->covariance[k][k]);
-  bump->u_radius_mm = sqrt(arc->covariance[2][2]);
+  for (int k = 0; k < 2; k++) bump->u_centre_mm[k] = sqrt(bump->covariance[k][k]);
+  bump->u_radius_mm = sqrt(bump->covariance[2][2]);
   bump->rms_um = 1000 * arc->rms_mm;
   bump->points = arc->points;
   if ((double)arc->outliers > OUTLIER_SHARE * (double)arc->points) bump->flags |= FG_BUMP_OUTLIERS;
@@ -193,11 +196,6 @@ static double turn_between(double from_deg, double to_deg) {
   return d - 360 * round(d / 360);
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double median_of(fg_context *ctx, const fg_foil *foil, double (*get)(const fg_bump *)) {
   double *values = NULL, median = NAN;
   size_t n = 0;
@@ -205,10 +203,7 @@ static double median_of(fg_context *ctx, const fg_foil *foil, double (*get)(cons
     return NAN;
   for (size_t i = 0; i < foil->bump_count; i++)
     if (isfinite(get(&foil->bumps[i]))) values[n++] = get(&foil->bumps[i]);
-  if (n) {
-    qsort(values, n, sizeof *values, compare_doubles);
-    median = values[n / 2];
-  }
+  if (n) median = fg_select(values, n, n / 2);
   free(values);
   return median;
 }
@@ -256,8 +251,7 @@ static void number_bumps(const fg_layout *layout, const fg_design *design, fg_fo
   size_t gap_count = n > 1 ? (n - 1 < 512 ? n - 1 : 512) : 0;
   for (size_t i = 0; i < gap_count; i++)
     gaps[i] = fabs(turn_between(foil->bumps[i].position_deg, foil->bumps[i + 1].position_deg));
-  if (gap_count) qsort(gaps, gap_count, sizeof *gaps, compare_doubles);
-  double pitch = gap_count >= 3 ? gaps[gap_count / 2] : design->pitch_deg;
+  double pitch = gap_count >= 3 ? fg_select(gaps, gap_count, gap_count / 2) : design->pitch_deg;
   int number = 1;
   for (size_t i = 0; i < n; i++) {
     if (i > 0) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 #define TANGENT_MM     0.12              /* the direction is taken over ± this length */
 #define PROMINENCE_RAD (12 * M_PI / 180) /* smaller turns back are not turning points */
@@ -58,11 +59,6 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
   return count;
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Median over the stretches that turn with `sign`, the two at the ends left out when there are
  * others. 0 when there are none. */
 static double median_over(const fg_stretch *stretches, size_t count, double sign,
@@ -71,9 +67,7 @@ static double median_over(const fg_stretch *stretches, size_t count, double sign
   size_t n = 0, skip = count > 4 ? 1 : 0;
   for (size_t i = skip; i + skip < count; i++)
     if (stretches[i].turn_rad * sign > PROMINENCE_RAD) values[n++] = get(&stretches[i]);
-  if (!n) return 0;
-  qsort(values, n, sizeof *values, compare_doubles);
-  return values[n / 2];
+  return n ? fg_select(values, n, n / 2) : 0;
 }
 
 static double get_turn(const fg_stretch *s) {
@@ -128,8 +122,7 @@ static void pick_bumps(const fg_strip *strip, const double *direction, const fg_
   if (!n) return;
   double sorted[STRETCHES_MAX];
   memcpy(sorted, radii, n * sizeof *radii);
-  qsort(sorted, n, sizeof *sorted, compare_doubles);
-  double limit = LIP_RADIUS * sorted[n / 2];
+  double limit = LIP_RADIUS * fg_select(sorted, n, n / 2);
   fg_stretch first = tight_part(strip, direction, &bumps[0]);
   fg_stretch last = tight_part(strip, direction, &bumps[n - 1]);
   out->lip_first = n > 1 && is_lip(&first, limit);

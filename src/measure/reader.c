@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 
 enum { SLOTS = 4 };
 
@@ -82,8 +83,8 @@ static fg_status consume(fg_context *ctx, ring *r, fg_tiles *tiles) {
 
 /* Runs both sides. Where no second thread is to be had, it is one after the other. */
 static fg_status run_ring(fg_context *ctx, ring *r, fg_tiles *tiles) {
-  pthread_t decoder;
-  if (pthread_create(&decoder, NULL, decode, r) != 0) {
+  fg_thread decoder;
+  if (fg_thread_start(&decoder, decode, r) != FG_OK) {
     fg_status status = FG_OK;
     for (int64_t strip = 0; strip < r->strips && status == FG_OK; strip++) {
       status = fg_scan_read_rows(ctx, r->scan, rows_of(r, strip), r->slots[0], r->stride_bytes);
@@ -92,11 +93,11 @@ static fg_status run_ring(fg_context *ctx, ring *r, fg_tiles *tiles) {
     return status == FG_OK ? fg_tiles_finish(ctx, tiles) : status;
   }
   fg_status status = consume(ctx, r, tiles);
-  pthread_join(decoder, NULL);
+  fg_thread_join(&decoder);
   return status;
 }
 
-/* The file's digest, computed beside the decoding. */
+/* The file's digest, computed beside the decoding (of a pipe: after it). */
 typedef struct digest {
   fg_scan *scan;
   fg_context context;
@@ -116,16 +117,20 @@ fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_tiles *tiles, char sh
             .changed = PTHREAD_COND_INITIALIZER};
   digest d = {.scan = scan, .hex = sha256};
   fg_status status = FG_OK;
+  fg_thread digester;
+  bool beside = false;
   r.strips = (info->height_px + FG_TILE_PX - 1) / FG_TILE_PX;
   r.stride_bytes = info->width_px * info->bytes_per_pixel;
   memset(tiles, 0, sizeof *tiles);
   for (int i = 0; i < SLOTS; i++)
     FG_TRY_EXIT(fg_memory_allocate(ctx, (size_t)r.stride_bytes, FG_TILE_PX, (void **)&r.slots[i]));
   FG_TRY_EXIT(fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, tiles));
-  FG_TRY_EXIT(run_ring(ctx, &r, tiles));
-  run_digest(&d);
-  status = d.status;
-  if (status != FG_OK) fg_fail(ctx, status, "%s", d.context.message);
+  beside = fg_scan_is_file(scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
+  status = run_ring(ctx, &r, tiles);
+  if (beside) fg_thread_join(&digester);
+  else if (status == FG_OK) run_digest(&d);
+  if (status == FG_OK && d.status != FG_OK)
+    status = fg_fail(ctx, d.status, "%s", d.context.message);
 exit:
   for (int i = 0; i < SLOTS; i++) free(r.slots[i]);
   pthread_mutex_destroy(&r.lock);

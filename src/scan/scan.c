@@ -190,6 +190,10 @@ fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *
   return status;
 }
 
+bool fg_scan_is_file(const fg_scan *scan) {
+  return scan->source.regular;
+}
+
 fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]) {
   const fg_source *source = &scan->source;
   if (source->regular)

@@ -12,6 +12,7 @@ fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32
   *blobs = nullptr;
   *blob_count = 0;
   try {
+    cv::setNumThreads(0); /* these grids are small; OpenCV's pool costs more than it saves */
     const cv::Mat source(height, width, CV_8U, const_cast<uint8_t *>(mask));
     cv::Mat target(height, width, CV_32S, labels), stats, centroids;
     const int count = cv::connectedComponentsWithStats(source, target, stats, centroids, 8, CV_32S);
@@ -32,6 +33,7 @@ fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32
 
 fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height) {
   try {
+    cv::setNumThreads(0);
     cv::Mat target(height, width, CV_32F, grid);
     cv::Mat blurred;
     cv::medianBlur(target, blurred, 5);

@@ -31,8 +31,12 @@ typedef struct step {
   double value, by_distance, by_level, by_slope, by_blur;
 } step;
 
-static step step_at(double d, double level, double slope, double plateau, double blur) {
-  double t = d / blur, phi = exp(-0.5 * t * t) / sqrt(2 * M_PI), cum = 0.5 * erfc(-t * M_SQRT1_2);
+static step step_at(const fg_edge_tables *tables, double d, double level, double slope,
+                    double plateau, double blur) {
+  float density, cumulative;
+  double t = d / blur;
+  fg_edge_normal(tables, (float)t, &density, &cumulative);
+  double phi = density, cum = cumulative;
   step s;
   s.value = (level + slope * d - plateau) * cum + slope * blur * phi;
   s.by_distance = slope * cum + (level - plateau) * phi / blur;
@@ -62,9 +66,10 @@ static void unpack(const double *x, fg_profile_fit *fit) {
 }
 
 /* Model and its derivatives at one place. */
-static double model_at(const double *x, double across, double *row) {
-  step left = step_at(x[EDGE_LEFT] - across, x[LEVEL_L], x[SLOPE_L], x[PLATEAU], x[BLUR_L]);
-  step right = step_at(across - x[EDGE_RIGHT], x[LEVEL_R], x[SLOPE_R], x[PLATEAU], x[BLUR_R]);
+static double model_at(const fg_edge_tables *tables, const double *x, double across,
+                       size_t unknowns, double *row) {
+  step left = step_at(tables, x[EDGE_LEFT] - across, x[LEVEL_L], x[SLOPE_L], x[PLATEAU], x[BLUR_L]);
+  step right = step_at(tables, across - x[EDGE_RIGHT], x[LEVEL_R], x[SLOPE_R], x[PLATEAU], x[BLUR_R]);
   double light = fmax(x[PLATEAU] + left.value + right.value, 1e-3);
   double gamma = x[GAMMA], value = light, rate = 1;
   if (gamma != 1) {
@@ -80,7 +85,7 @@ static double model_at(const double *x, double across, double *row) {
   row[SLOPE_R] = rate * right.by_slope;
   row[BLUR_L] = rate * left.by_blur;
   row[BLUR_R] = rate * right.by_blur;
-  row[GAMMA] = -value * log(light / 255) / (gamma * gamma);
+  if (unknowns > GAMMA) row[GAMMA] = -value * log(light / 255) / (gamma * gamma);
   return value;
 }
 
@@ -96,13 +101,14 @@ static void hold_counts(const double *x, double *row) {
   }
 }
 
-static void build(const fg_profile_bin *bins, size_t count, const double *x, size_t unknowns,
+static void build(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count, const double *x, size_t unknowns,
                   fg_normal_equations *system) {
   fg_normal_clear(system, unknowns);
   double row[UNKNOWNS];
   for (size_t i = 0; i < count; i++) {
-    double value = model_at(x, bins[i].across_px, row);
-    hold_counts(x, row);
+    if (bins[i].count <= 0) continue;
+    double value = model_at(tables, x, bins[i].across_px, unknowns, row);
+    if (unknowns > GAMMA) hold_counts(x, row);
     fg_normal_add(system, row, bins[i].value - value, bins[i].count);
   }
 }
@@ -138,13 +144,13 @@ static void conclude(const fg_profile_bin *bins, size_t count, size_t unknowns,
   fit->u_gamma = fit->good && unknowns > GAMMA ? fit->noise * sqrt(inverse[GAMMA][GAMMA]) : 0;
 }
 
-void fg_profile_fit_model(const fg_profile_bin *bins, size_t count, int free_gamma,
-                          fg_profile_fit *fit) {
+void fg_profile_fit_model(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count,
+                          int free_gamma, fg_profile_fit *fit) {
   size_t unknowns = free_gamma ? UNKNOWNS : GAMMA;
   double x[UNKNOWNS], trial[UNKNOWNS], dx[FG_SMALL_MAX], damping = 1e-4;
   fg_normal_equations system, next;
   pack(fit, x);
-  build(bins, count, x, unknowns, &system);
+  build(tables, bins, count, x, unknowns, &system);
   fit->good = 0;
   for (int i = 0; i < ITERATIONS_MAX && damping < 1e6; i++) {
     if (!fg_normal_solve(&system, damping, dx, NULL)) {
@@ -152,7 +158,7 @@ void fg_profile_fit_model(const fg_profile_bin *bins, size_t count, int free_gam
       continue;
     }
     advance(x, dx, unknowns, trial);
-    if (is_sensible(trial)) build(bins, count, trial, unknowns, &next);
+    if (is_sensible(trial)) build(tables, bins, count, trial, unknowns, &next);
     if (!is_sensible(trial) || !(next.sum_squares <= system.sum_squares)) {
       damping *= 10;
       continue;
@@ -162,7 +168,7 @@ void fg_profile_fit_model(const fg_profile_bin *bins, size_t count, int free_gam
     system = next;
     damping *= 0.1;
     fit->good = 1;
-    if (gain <= 1e-7 * system.sum_squares) break;
+    if (gain <= 1e-5 * system.sum_squares) break;
   }
   unpack(x, fit);
   conclude(bins, count, unknowns, &system, fit);

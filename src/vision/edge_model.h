@@ -97,9 +97,10 @@ typedef struct fg_profile_fit {
 } fg_profile_fit;
 
 /* Fits the model to a mean profile by damped Gauss-Newton; `fit` holds the start. gamma is fitted
- * when free_gamma is set, else taken as it is. */
-void fg_profile_fit_model(const fg_profile_bin *bins, size_t count, int free_gamma,
-                          fg_profile_fit *fit);
+ * when free_gamma is set, else taken as it is. Of the tables only the normal distribution is
+ * used. */
+void fg_profile_fit_model(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count,
+                          int free_gamma, fg_profile_fit *fit);
 
 #ifdef __cplusplus
 }

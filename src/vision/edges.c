@@ -6,11 +6,15 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/select.h"
 
 #define STEP_PX       2.0  /* distance of stations */
 #define SMOOTH_PX     30.0 /* half window of the reference line */
-#define BAND_REACH_PX 17.0 /* beyond the strip's edges: 4 blurs of 3 px, and some background */
-enum { MIDDLE_STATIONS = 4 }; /* the middle is smoothed over so many stations to either side */
+#define BAND_REACH_PX 15.0 /* beyond the strip's edges: 4 blurs of 3 px, and some background */
+enum {
+  MIDDLE_STATIONS = 4, /* the middle is smoothed over so many stations to either side */
+  SOLVE_ROUNDS = 3,
+};
 
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last) {
   *first = chunk * FG_CHUNK_STATIONS;
@@ -65,21 +69,6 @@ static fg_status collect_pixels(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
-/* The middle from the edges that were found, for the second round of profiles. */
-static void refine_middles(fg_edge_work *work) {
-  size_t count = work->reference->count;
-  for (size_t i = 0; i < count; i++) {
-    float sum = 0, weight = 0;
-    size_t from = i > MIDDLE_STATIONS ? i - MIDDLE_STATIONS : 0;
-    for (size_t j = from; j <= i + MIDDLE_STATIONS && j < count; j++) {
-      const fg_edge_station *s = &work->stations[j];
-      sum += s->weight * 0.5f * (s->edge_px[0] + s->edge_px[1]);
-      weight += s->weight;
-    }
-    if (weight > 0) work->stations[i].middle_px = sum / weight;
-  }
-}
-
 /* Ends are round and cut: nothing within a width of them is an edge of the strip's side. */
 static void mark_ends(fg_edge_work *work) {
   size_t count = work->reference->count;
@@ -107,11 +96,6 @@ static void scale_uncertainties(fg_edge_work *work) {
   double factor = expected > 0 ? sqrt(fmax(1, sum / expected)) : 1;
   for (size_t i = 0; i < work->reference->count; i++)
     for (int side = 0; side < 2; side++) work->stations[i].u_px[side] *= (float)factor;
-}
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 /* Stations of the strip in mm. */
@@ -144,11 +128,13 @@ static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const doub
   for (size_t i = 0; i < strip->count; i++) {
     const fg_station *s = &strip->stations[i];
     if (s->weight > 0)
-      thickness[n++] = hypot(s->right.x - s->left.x, s->right.y - s->left.y);
+      thickness[n++] = sqrt((s->right.x - s->left.x) * (s->right.x - s->left.x) +
+                            (s->right.y - s->left.y) * (s->right.y - s->left.y));
   }
-  qsort(thickness, n, sizeof *thickness, compare_doubles);
-  strip->thickness_mm = n ? thickness[n / 2] : NAN;
-  double spread = n ? 0.7413 * (thickness[n * 3 / 4] - thickness[n / 4]) : NAN;
+  double upper = n ? fg_select(thickness, n, n * 3 / 4) : NAN;
+  double lower = n ? fg_select(thickness, n, n / 4) : NAN;
+  strip->thickness_mm = n ? fg_select(thickness, n, n / 2) : NAN;
+  double spread = 0.7413 * (upper - lower);
   strip->u_thickness_mm = n ? 1.2533 * spread / sqrt((double)n) : NAN;
   free(thickness);
   strip->step_mm = work->reference->step_px * um / 1000;
@@ -199,11 +185,8 @@ static void free_work(fg_edge_work *work) {
 
 static fg_status run(fg_context *ctx, fg_edge_work *work) {
   FG_TRY(collect_pixels(ctx, work));
-  FG_TRY(fg_edges_find_shape(ctx, work, false));
-  FG_TRY(fg_edges_solve(ctx, work, 1));
-  refine_middles(work);
-  FG_TRY(fg_edges_find_shape(ctx, work, true));
-  FG_TRY(fg_edges_solve(ctx, work, 2));
+  FG_TRY(fg_edges_find_shape(ctx, work));
+  FG_TRY(fg_edges_solve(ctx, work, SOLVE_ROUNDS));
   mark_ends(work);
   scale_uncertainties(work);
   return FG_OK;

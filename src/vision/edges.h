@@ -79,9 +79,9 @@ typedef struct fg_edge_work {
 /* Stations [*first, *last] of a chunk. */
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last);
 
-/* Step 1 and 2: the shape of every station from its middle. With `again` the fits start from those
- * before and the tone curve is kept. edges_shape.c, edges_smooth.c */
-fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work, bool again);
+/* Step 1 and 2: the tone curve and the shape of every station from its middle. edges_shape.c,
+ * edges_smooth.c */
+fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work);
 
 /* The smoothed shape of every station from the segments' fits. */
 fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good);

@@ -86,8 +86,8 @@ static fg_status fit_task(fg_context *ctx, void *shared, size_t i) {
   (void)ctx;
   fg_edge_work *work = shared;
   fg_segment_profile *s = &work->segments[i];
-  if (!s->fit.good) start_fit(work, s, &s->fit);
-  fg_profile_fit_model(s->bins, work->bin_count, 0, &s->fit);
+  start_fit(work, s, &s->fit);
+  fg_profile_fit_model(work->tables, s->bins, work->bin_count, 0, &s->fit);
   return FG_OK;
 }
 
@@ -105,8 +105,8 @@ static fg_status fit_tone(fg_context *ctx, void *shared, size_t i) {
   fg_profile_fit *fit = &task->fits[i];
   const fg_segment_profile *s = &work->segments[at];
   start_fit(work, s, fit);
-  fg_profile_fit_model(s->bins, work->bin_count, 0, fit);
-  if (fit->good) fg_profile_fit_model(s->bins, work->bin_count, 1, fit);
+  fg_profile_fit_model(work->tables, s->bins, work->bin_count, 0, fit);
+  if (fit->good) fg_profile_fit_model(work->tables, s->bins, work->bin_count, 1, fit);
   return FG_OK;
 }
 
@@ -134,11 +134,11 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
-fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work, bool again) {
+fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work) {
   size_t good = 0;
   FG_TRY(allocate_segments(ctx, work));
   FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
-  if (!again) FG_TRY(find_gamma(ctx, work));
+  FG_TRY(find_gamma(ctx, work));
   FG_TRY(fg_parallel_run(ctx, work->threads, work->segment_count, fit_task, work));
   for (size_t i = 0; i < work->segment_count; i++) good += work->segments[i].fit.good != 0;
   if (good < 3 || good * 3 < work->segment_count)

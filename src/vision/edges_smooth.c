@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/small_solve.h"
 
 enum { BASIS_MAX = 7 };
@@ -45,15 +46,8 @@ static double predict(const course *c, const double *basis) {
   return sum;
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static double median_in_place(double *values, size_t count) {
-  if (!count) return NAN;
-  qsort(values, count, sizeof *values, compare_doubles);
-  return values[count / 2];
+  return count ? fg_select(values, count, count / 2) : NAN;
 }
 
 /* Least squares over the segments within `limit` of the present course; the share of the scatter
@@ -167,8 +161,10 @@ static void summarise(fg_edge_work *work, double *scratch) {
   work->clipped = median_of(work, scratch, get_extreme) > 253.5;
   for (size_t k = 0; k < work->reference->count; k++) {
     fg_edge_station *st = &work->stations[k];
-    st->edge_px[0] = st->middle_px + (float)left;
-    st->edge_px[1] = st->middle_px + (float)right;
+    const fg_profile_fit *fit = &work->segments[k / FG_SEGMENT_STATIONS].fit;
+    bool near = fit->good && fabs(fit->edge_px[1] - right) + fabs(fit->edge_px[0] - left) < 3;
+    st->edge_px[0] = st->middle_px + (float)(near ? fit->edge_px[0] : left);
+    st->edge_px[1] = st->middle_px + (float)(near ? fit->edge_px[1] : right);
     st->step[0] -= st->plateau;
     st->step[1] -= st->plateau;
   }

@@ -54,12 +54,17 @@ static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const vie
   double step = r->reference->step_px, f = ((double)u - a->u) / (b->u - a->u);
   double v0 = (1 - f) * a->v + f * b->v;
   double span = r->reach_px / fabs(a->tu) * 1.05 + 1;
+  /* A first guess of the station: along the chord's direction, stretched by the curvature. */
+  const fg_reference_station *s = &r->reference->stations[i];
+  double slope = a->tv / step, bend = s->curvature * (r->steep ? -a->tu : a->tu);
   int64_t from = (int64_t)ceil(v0 - span), to = (int64_t)floor(v0 + span);
+  if (from > to) return FG_OK;
   size_t needed = band->count + (size_t)(to - from + 1);
   FG_TRY(fg_memory_reserve(ctx, needed, sizeof *band->pixels, &band->capacity,
                            (void **)&band->pixels));
   for (int64_t v = from; v <= to; v++) {
-    double guess = (double)i + f + ((double)v - v0) * a->tv / step, across;
+    double dv = (double)v - v0, across;
+    double guess = (double)i + f + dv * slope / (1 - bend * dv);
     int64_t x = r->steep ? v : u, y = r->steep ? u : v;
     long station = project(r->reference, (double)x, (double)y, (long)(guess + 0.5), &across);
     if (station < (long)r->first || station > (long)r->last) continue;
@@ -99,7 +104,9 @@ fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles,
                                 const fg_reference *reference, size_t first, size_t last,
                                 double reach_px, fg_pixel_band *band) {
   memset(band, 0, sizeof *band);
-  fg_status status = FG_OK;
+  double area = (double)(last - first + 1) * reference->step_px * (2 * reach_px + 1);
+  fg_status status = fg_memory_reserve(ctx, (size_t)(1.1 * area) + 256, sizeof *band->pixels,
+                                       &band->capacity, (void **)&band->pixels);
   while (first <= last && status == FG_OK) {
     run r = {.tiles = tiles, .reference = reference, .first = first, .reach_px = reach_px};
     r.steep = is_steep(&reference->stations[first]);

@@ -1,0 +1,10 @@
+/* Order statistics without sorting. */
+#ifndef FG_CORE_SELECT_H
+#define FG_CORE_SELECT_H
+
+#include <stddef.h>
+
+/* The value at position `k` of the sorted values (Hoare's selection); reorders them. count > k. */
+double fg_select(double *values, size_t count, size_t k);
+
+#endif
