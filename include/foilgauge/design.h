@@ -21,7 +21,12 @@ typedef enum fg_form {
   FG_FORM_DISCS,      /* no foil: round holes and discs */
 } fg_form;
 
-/* Which line of the strip the lengths belong to. */
+/* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
+ * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
+ * at a crown R + offset meets R0 - offset and h = R0 - (X - R) keeps its value. R_sleeve is the bore
+ * that the lands rest on and t the whole thickness, so the crown's shaft side stands h + t above
+ * the bore and eq 5.8 holds as it stands for every datum. Eq 5.5 takes R_sleeve for the radius of
+ * the datum line of the lands once the foil is in the bearing. */
 typedef enum fg_datum {
   FG_DATUM_MID,   /* the midline */
   FG_DATUM_INNER, /* the edge on the shaft's side */
@@ -70,6 +75,16 @@ typedef struct fg_nominal {
   double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8 */
 } fg_nominal;
 
+/* What the declared springback model (thesis eq 5.6 and 5.7) predicts of a bump from its radius
+ * alone: arc length and crown keep their place. */
+typedef struct fg_springback {
+  double bump_angle_deg;   /* alpha_m = alpha_D R_D / R */
+  double bump_angle_slope; /* d alpha_m / dR, degrees per mm */
+  double height_mm;        /* h_m = h_D - (R_sleeve - M) */
+  double height_slope;     /* d h_m / dR */
+  double clearance_mm;     /* eq 5.8 with h_m */
+} fg_springback;
+
 /* The Gen II design of thesis table 5.6: R 3.32 mm, alpha 63.15 degrees, overall 20.73 mm,
  * t 0.1 mm, rotor 40 mm, nine bumps, classical, datum mid. */
 void fg_design_default(fg_design *design);
@@ -79,12 +94,22 @@ void fg_design_default(fg_design *design);
  * message names the member, its value and what would be right. */
 fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 
-/* The derived nominal values of a checked design. */
+/* The derived nominal values; checks the design first. All NaN for form discs. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
+/* Clearance over a bump of this height: eq 5.8, mm. */
+double fg_design_clearance(const fg_design *design, double height_mm);
+
+/* The declared springback model at a bump radius above 0. */
+void fg_design_springback(const fg_design *design, const fg_nominal *nominal, double radius_mm,
+                          fg_springback *model);
+
 /* Reads a design from JSON text; members that are absent keep the value `design` has on entry, so
- * fill it with fg_design_default first. Unknown members, wrong types and wrong schema are
- * FG_ERR_DATA. `path` is for messages. Checks with fg_design_check before it returns. */
+ * fill it with fg_design_default first. Two exceptions guard against a half-written design: of
+ * bump_radius_mm, bump_angle_deg, overall_radius_mm and thickness_mm a foil's file states all or
+ * none, and sleeve_radius_mm follows an overall_radius_mm that comes without it. Unknown and
+ * duplicate members, wrong types, a missing or wrong schema and text after the end are FG_ERR_DATA.
+ * `path` is for messages. Checks with fg_design_check; `design` changes on success only. */
 fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design);
 
 /* The same from a file. */

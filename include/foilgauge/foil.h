@@ -168,8 +168,13 @@ void fg_measurement_free(fg_measurement *measurement);
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, fg_foil *foil);
 
 /* Quantities that follow from the circles (thesis eq 5.3 to 5.9 and the declared springback
- * model): fills everything of `bump` below `centre_mm` from (radius_mm, centre_mm, covariance) and
- * the overall circle with its covariance; the two are taken as independent. */
+ * model). Reads radius_mm, centre_mm and covariance of `bump`, and centre, radius and covariance of
+ * `overall`, both of the design's datum line (see fg_datum); the two circles are taken as
+ * independent. Fills u_radius_mm, u_centre_mm, position_deg and everything from
+ * centre_to_centre_mm to u_bump_angle_model_deg, with uncertainties to first order in the whole
+ * covariance. Thickness, rotor and sleeve are the design's, without uncertainty. Sets or clears
+ * FG_BUMP_NO_CROSSING: the circles do not cross or only touch; then alpha, theta and e_alpha are NaN
+ * and the others stand. A circle that was not fitted (NaN) makes what depends on it NaN. */
 void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
                     fg_bump *bump);
 

@@ -5,6 +5,7 @@
 
 static const fg_command commands[] = {
     {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
+    {"design", fg_cmd_design, "check a design; what follows from it; its clearance curve"},
     {NULL, NULL, NULL},
 };
 

@@ -30,6 +30,18 @@ fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32
   }
 }
 
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height) {
+  try {
+    cv::Mat target(height, width, CV_32F, grid);
+    cv::Mat blurred;
+    cv::medianBlur(target, blurred, 5);
+    blurred.copyTo(target);
+    return FG_OK;
+  } catch (const std::exception &error) {
+    return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
+  }
+}
+
 static cv::Scalar colour_of(uint32_t colour) {
   return cv::Scalar(colour >> 16 & 255, colour >> 8 & 255, colour & 255);
 }

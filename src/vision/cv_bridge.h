@@ -38,6 +38,9 @@ fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, siz
 fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
                           double height_px, double anchor, uint32_t colour, int32_t thickness_px);
 
+/* Median over 5 × 5 of a grid of floats, in place, borders repeated. */
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
+
 #ifdef __cplusplus
 }
 #endif

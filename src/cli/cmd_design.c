@@ -1,0 +1,171 @@
+#include <argp.h>
+#include <stdbool.h>
+
+#include "cli/commands.h"
+#include "core/file.h"
+#include "foilgauge/design.h"
+#include "foilgauge/report.h"
+#include "report/measure_json.h"
+#include "report/words.h"
+
+typedef struct design_arguments {
+  const char *design_path; /* NULL: built in */
+  const char *output_path;
+  bool json, curve;
+} design_arguments;
+
+enum { OPTION_JSON = 256, OPTION_CURVE };
+
+static const struct argp_option options[] = {
+    {"json", OPTION_JSON, NULL, 0, "Write JSON (as -o does)", 0},
+    {"curve", OPTION_CURVE, NULL, 0,
+     "Write how the declared springback model changes the clearance, as CSV: bump radius error "
+     "from "
+     "-5 to +30 %",
+     0},
+    {"output", 'o', "FILE", 0, "Write here (-: standard output)", 0},
+    {0},
+};
+
+static const char doc[] =
+    "Check a design and show what follows from it.\v"
+    "DESIGN is a JSON file (\"schema\": \"foilgauge/design/1\"); without it the built-in Gen II "
+    "foil is shown. Lengths belong to the design's datum line.\n\n"
+    "The curve takes each bump radius through eq 5.6 and 5.7 (constant arc length, crown in place) "
+    "to height and clearance. clearance_error is (C_D - C) / C_D (eq 5.9); clearance_change_pct is "
+    "100 (C - C_D) / C_D, as the thesis plots it.\n\n"
+    "Exit code: 0 done; 64 usage; 65 the design is wrong; 74 input or output.";
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  design_arguments *arguments = state->input;
+  switch (key) {
+  case 'o':
+    arguments->output_path = text;
+    break;
+  case OPTION_JSON:
+    arguments->json = true;
+    break;
+  case OPTION_CURVE:
+    arguments->curve = true;
+    break;
+  case ARGP_KEY_ARG:
+    if (arguments->design_path) argp_error(state, "more than one DESIGN: %s", text);
+    arguments->design_path = text;
+    break;
+  case ARGP_KEY_END:
+    if (arguments->json && arguments->curve) argp_error(state, "--curve is CSV; drop --json");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static void write_json(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+  fg_json json;
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/nominal/1");
+  fg_json_design(&json, "design", design);
+  if (design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", nominal);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+}
+
+static void write_row(FILE *out, const char *words, const char *symbol, double value,
+                      const char *unit) {
+  fprintf(out, "  %-34s %-9s %12.6f %s\n", words, symbol, value, unit);
+}
+
+static void write_stated(const fg_design *design, FILE *out) {
+  write_row(out, "bump radius", "R_D", design->bump_radius_mm, "mm");
+  write_row(out, "bump angle", "alpha_D", design->bump_angle_deg, "deg");
+  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
+  write_row(out, "sleeve radius", "R_sleeve", design->sleeve_radius_mm, "mm");
+  write_row(out, "pitch", "", design->pitch_deg, "deg");
+  write_row(out, "fillet radius", "", design->fillet_radius_mm, "mm");
+  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
+}
+
+static void write_derived(const fg_nominal *nominal, FILE *out) {
+  write_row(out, "bump centre to overall centre", "X_D", nominal->centre_to_centre_mm, "mm");
+  write_row(out, "half chord (eq 5.2)", "l0", nominal->half_chord_mm, "mm");
+  write_row(out, "arc length of a bump", "", nominal->arc_length_mm, "mm");
+  write_row(out, "intersection angle", "theta_D", nominal->intersection_angle_deg, "deg");
+  write_row(out, "bump height (eq 5.5)", "h_D", nominal->height_mm, "mm");
+  write_row(out, "die height (eq 5.1)", "h_b", nominal->die_height_mm, "mm");
+  write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
+}
+
+static void write_table(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+  fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
+  if (design->form == FG_FORM_DISCS) {
+    fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
+    for (size_t i = 0; i < design->diameter_count; i++)
+      write_row(out, "diameter", "", design->diameters_mm[i], "mm");
+  } else {
+    fprintf(out, ", datum %s", fg_datum_word(design->datum));
+    if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);
+    fputs("\n\nstated\n", out);
+    write_stated(design, out);
+    fputs("\nderived\n", out);
+    write_derived(nominal, out);
+  }
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    fprintf(out, "%s  %-34s from %g to %g\n", i ? "" : "\ntolerances\n",
+            design->tolerances[i].quantity, design->tolerances[i].lower,
+            design->tolerances[i].upper);
+}
+
+enum { CURVE_FROM_PCT = -5, CURVE_TO_PCT = 30 };
+
+static void write_curve(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+  double nominal_mm = nominal->clearance_mm;
+  fputs("radius_error_pct,radius_mm,bump_angle_model_deg,height_model_mm,clearance_mm,"
+        "clearance_error,clearance_change_pct\n",
+        out);
+  for (int percent = CURVE_FROM_PCT; percent <= CURVE_TO_PCT; percent++) {
+    fg_springback model;
+    double radius_mm = design->bump_radius_mm * (100 + percent) / 100;
+    fg_design_springback(design, nominal, radius_mm, &model);
+    fprintf(out, "%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f\n", percent, radius_mm, model.bump_angle_deg,
+            model.height_mm, model.clearance_mm, (nominal_mm - model.clearance_mm) / nominal_mm,
+            100 * (model.clearance_mm - nominal_mm) / nominal_mm);
+  }
+}
+
+static fg_status write_design(fg_context *ctx, const design_arguments *arguments,
+                              const fg_design *design, const fg_nominal *nominal) {
+  fg_output output;
+  FG_TRY(fg_output_open(ctx, arguments->output_path, &output));
+  if (arguments->curve)
+    write_curve(design, nominal, output.stream);
+  else if (arguments->json || arguments->output_path)
+    write_json(design, nominal, output.stream);
+  else
+    write_table(design, nominal, output.stream);
+  return fg_output_commit(ctx, &output);
+}
+
+static fg_status show_design(fg_context *ctx, const design_arguments *arguments) {
+  fg_design design;
+  fg_nominal nominal;
+  fg_design_default(&design);
+  if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &design));
+  FG_TRY(fg_design_derive(ctx, &design, &nominal));
+  if (arguments->curve && design.form == FG_FORM_DISCS)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no bumps, so there is no curve",
+                   arguments->design_path);
+  return write_design(ctx, arguments, &design, &nominal);
+}
+
+int fg_cmd_design(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "[DESIGN]", doc, NULL, NULL, NULL};
+  fg_context ctx = {0};
+  design_arguments arguments = {0};
+  argv[0] = (char[]){"foilgauge design"};
+  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  fg_status status = show_design(&ctx, &arguments);
+  return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
+}

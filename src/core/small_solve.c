@@ -1,0 +1,63 @@
+#include "core/small_solve.h"
+
+#include <math.h>
+#include <string.h>
+
+void fg_normal_clear(fg_normal_equations *system, size_t unknowns) {
+  memset(system, 0, sizeof *system);
+  system->unknowns = unknowns;
+}
+
+void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
+  for (size_t i = 0; i < system->unknowns; i++) {
+    double scaled = weight * row[i];
+    for (size_t j = 0; j <= i; j++) system->matrix[i][j] += scaled * row[j];
+    system->right[i] += scaled * value;
+  }
+  system->sum_squares += weight * value * value;
+}
+
+/* Lower Cholesky factor of the damped matrix. */
+static bool factor(const fg_normal_equations *system, double damping,
+                   double lower[FG_SMALL_MAX][FG_SMALL_MAX]) {
+  for (size_t i = 0; i < system->unknowns; i++)
+    for (size_t j = 0; j <= i; j++) {
+      double sum = system->matrix[i][j];
+      if (i == j) sum += damping * sum;
+      for (size_t k = 0; k < j; k++) sum -= lower[i][k] * lower[j][k];
+      if (i == j) {
+        if (!(sum > 1e-14 * system->matrix[i][i])) return false;
+        lower[i][i] = sqrt(sum);
+      } else {
+        lower[i][j] = sum / lower[j][j];
+      }
+    }
+  return true;
+}
+
+static void substitute(size_t n, double lower[FG_SMALL_MAX][FG_SMALL_MAX], double *x) {
+  for (size_t i = 0; i < n; i++) {
+    for (size_t k = 0; k < i; k++) x[i] -= lower[i][k] * x[k];
+    x[i] /= lower[i][i];
+  }
+  for (size_t i = n; i-- > 0;) {
+    for (size_t k = i + 1; k < n; k++) x[i] -= lower[k][i] * x[k];
+    x[i] /= lower[i][i];
+  }
+}
+
+bool fg_normal_solve(const fg_normal_equations *system, double damping, double *x,
+                     double inverse[FG_SMALL_MAX][FG_SMALL_MAX]) {
+  double lower[FG_SMALL_MAX][FG_SMALL_MAX];
+  size_t n = system->unknowns;
+  if (!factor(system, damping, lower)) return false;
+  memcpy(x, system->right, n * sizeof *x);
+  substitute(n, lower, x);
+  for (size_t c = 0; inverse && c < n; c++) {
+    double unit[FG_SMALL_MAX] = {0};
+    unit[c] = 1;
+    substitute(n, lower, unit);
+    for (size_t r = 0; r < n; r++) inverse[r][c] = unit[r];
+  }
+  return true;
+}

@@ -1,0 +1,129 @@
+#include <math.h>
+
+#include <gsl/gsl_multimin.h>
+
+#include "core/numerics.h"
+#include "geometry/circle_arc.h"
+
+/* Nelder-Mead over the curvature and the direction to the centre, as seen from a point of the
+ * starting arc; the radius is the mean distance from that centre, so the simplex is a triangle. */
+typedef struct search {
+  const fg_circle_frame *frame;
+  fg_circle_arc start;
+} search;
+
+static double search_objective(const gsl_vector *at, void *parameters) {
+  const search *s = parameters;
+  double mean;
+  fg_circle_arc arc =
+      fg_circle_arc_step(&s->start, gsl_vector_get(at, 0), gsl_vector_get(at, 1), 0);
+  double ms = fg_circle_arc_profile_ms(s->frame, &arc, &mean);
+  return isfinite(ms) ? ms : GSL_POSINF;
+}
+
+/* The arc at the minimum: its circle about the same centre, grown by the mean distance. */
+static fg_circle_arc search_result(const search *s, const gsl_vector *at) {
+  double mean;
+  fg_circle_arc arc =
+      fg_circle_arc_step(&s->start, gsl_vector_get(at, 0), gsl_vector_get(at, 1), 0);
+  fg_circle_arc_profile_ms(s->frame, &arc, &mean);
+  arc.qx -= mean * arc.nx;
+  arc.qy -= mean * arc.ny;
+  arc.curvature /= 1 + arc.curvature * mean;
+  return arc;
+}
+
+enum { SEARCH_ITERATIONS_MAX = 400 };
+static const double search_size_end = 1e-6; /* of the simplex; the polish does the rest */
+
+static fg_status nelder_mead(fg_context *ctx, search *s, size_t *iterations) {
+  double at[2] = {0, 0}, steps[2] = {0.02 + 0.02 * s->start.curvature, 0.02};
+  gsl_vector_view start = gsl_vector_view_array(at, 2), step = gsl_vector_view_array(steps, 2);
+  gsl_multimin_function function = {search_objective, 2, s};
+  gsl_multimin_fminimizer *minimiser =
+      gsl_multimin_fminimizer_alloc(gsl_multimin_fminimizer_nmsimplex2, 2);
+  if (!minimiser) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: Nelder-Mead");
+  int code = gsl_multimin_fminimizer_set(minimiser, &function, &start.vector, &step.vector);
+  while (code == GSL_SUCCESS && *iterations < SEARCH_ITERATIONS_MAX) {
+    code = gsl_multimin_fminimizer_iterate(minimiser);
+    ++*iterations;
+    if (gsl_multimin_fminimizer_size(minimiser) < search_size_end) break;
+  }
+  s->start = search_result(s, gsl_multimin_fminimizer_x(minimiser));
+  gsl_multimin_fminimizer_free(minimiser);
+  return FG_OK;
+}
+
+/* Down to the minimum from one start. *reached says whether it is one: finite, converged, and no
+ * worse than the best line, which every proper minimum beats. */
+static fg_status descend(fg_context *ctx, const fg_circle_frame *frame, fg_circle_arc *arc,
+                         size_t *iterations, bool *reached) {
+  search s = {frame, fg_circle_arc_rebase(arc)};
+  FG_TRY(nelder_mead(ctx, &s, iterations));
+  *arc = s.start;
+  *reached = fg_circle_arc_polish(frame, arc) && arc->curvature > FG_CIRCLE_FLAT &&
+             fg_circle_arc_ms(frame, arc) <= frame->line_ms * (1 + 1e-9);
+  return FG_OK;
+}
+
+enum { STARTS_MAX = 4 };
+
+static bool usable(const fg_circle *circle) {
+  return isfinite(circle->x) && isfinite(circle->y) && isfinite(circle->radius) &&
+         circle->radius > 0;
+}
+
+/* Starts in the order in which they are tried: the better of the given and the algebraic circle,
+ * then the other, then the best line bent a little to either side (which is where the minimum lies
+ * when the points are nearly straight but scatter more than their sagitta). A start that is far off
+ * costs one evaluation. */
+static size_t list_starts(const fg_circle_frame *frame, const fg_circle *given,
+                          fg_circle_arc starts[STARTS_MAX]) {
+  size_t count = 0;
+  fg_circle circle;
+  if (given && usable(given)) {
+    circle = fg_circle_into_frame(frame, given);
+    if (usable(&circle)) starts[count++] = fg_circle_arc_from(&circle);
+  }
+  if (fg_circle_estimate_in_frame(NULL, frame, &circle) == FG_OK)
+    starts[count++] = fg_circle_arc_from(&circle);
+  if (count == 2 && !(fg_circle_arc_ms(frame, &starts[0]) <= fg_circle_arc_ms(frame, &starts[1]))) {
+    fg_circle_arc bad = starts[0];
+    starts[0] = starts[1];
+    starts[1] = bad;
+  }
+  starts[count++] = (fg_circle_arc){.ny = 1, .curvature = 1e-3};
+  starts[count++] = (fg_circle_arc){.ny = -1, .curvature = 1e-3};
+  return count;
+}
+
+static fg_status fit_in_frame(fg_context *ctx, const fg_circle_frame *frame, const fg_circle *given,
+                              fg_circle_fit *fit) {
+  fg_circle_arc starts[STARTS_MAX];
+  size_t count = list_starts(frame, given, starts);
+  size_t iterations = 0;
+  for (size_t i = 0; i < count; i++) {
+    bool reached = false;
+    fg_circle_fit found;
+    FG_TRY(descend(ctx, frame, &starts[i], &iterations, &reached));
+    if (!reached || !fg_circle_arc_covariance(frame, &starts[i], found.covariance)) continue;
+    fg_circle local = fg_circle_arc_circle(&starts[i]);
+    found.circle = fg_circle_out_of_frame(frame, &local);
+    found.rms = frame->scale * sqrt(fg_circle_arc_ms(frame, &starts[i]));
+    found.iterations = iterations;
+    *fit = found;
+    return FG_OK;
+  }
+  return fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: a line fits %zu points better than any circle",
+                 frame->count);
+}
+
+fg_status fg_circle_fit_geometric(fg_context *ctx, const fg_point *points, const double *weights,
+                                  size_t count, const fg_circle *start, fg_circle_fit *fit) {
+  fg_circle_frame frame;
+  fg_numerics_start();
+  FG_TRY(fg_circle_frame_make(ctx, points, weights, count, &frame));
+  fg_status status = fit_in_frame(ctx, &frame, start, fit);
+  fg_circle_frame_free(&frame);
+  return status;
+}

@@ -1,0 +1,178 @@
+#include <math.h>
+#include <stddef.h>
+
+#include "foilgauge/foil.h"
+
+static const double rad_per_deg = 3.14159265358979323846 / 180;
+
+/* What every quantity is a function of: distance of the centres, the two radii, the design. */
+enum { BY_X, BY_R, BY_R0, BY_COUNT };
+
+typedef struct geometry {
+  double x, r, r0; /* mm */
+  const fg_design *design;
+  const fg_nominal *nominal;
+  fg_springback model;
+} geometry;
+
+/* A row per quantity: its value, and its gradient by (X, R, R0) on top of the zeros given. */
+typedef double quantity_value(const geometry *g, double gradient[BY_COUNT]);
+
+static double centre_to_centre(const geometry *g, double gradient[BY_COUNT]) {
+  gradient[BY_X] = 1;
+  return g->x;
+}
+
+/* alpha = 2 acos c, c = (X² + R² - R0²) / (2 X R); NaN when the circles do not cross. */
+static double bump_angle(const geometry *g, double gradient[BY_COUNT]) {
+  double c = (g->x * g->x + (g->r - g->r0) * (g->r + g->r0)) / (2 * g->x * g->r);
+  double per_c = -2 / sqrt((1 - c) * (1 + c)) / rad_per_deg;
+  gradient[BY_X] = per_c * (1 / g->r - c / g->x);
+  gradient[BY_R] = per_c * (1 / g->x - c / g->r);
+  gradient[BY_R0] = -per_c * g->r0 / (g->x * g->r);
+  return 2 * acos(c) / rad_per_deg;
+}
+
+/* theta = acos c, c = (X² - R² - R0²) / (2 R R0). */
+static double intersection_angle(const geometry *g, double gradient[BY_COUNT]) {
+  double c = (g->x * g->x - g->r * g->r - g->r0 * g->r0) / (2 * g->r * g->r0);
+  double per_c = -1 / sqrt((1 - c) * (1 + c)) / rad_per_deg;
+  gradient[BY_X] = per_c * g->x / (g->r * g->r0);
+  gradient[BY_R] = -per_c * (1 / g->r0 + c / g->r);
+  gradient[BY_R0] = -per_c * (1 / g->r + c / g->r0);
+  return acos(c) / rad_per_deg;
+}
+
+static double height(const geometry *g, double gradient[BY_COUNT]) {
+  gradient[BY_X] = -1;
+  gradient[BY_R] = gradient[BY_R0] = 1;
+  return g->r0 - (g->x - g->r);
+}
+
+static double scaled(double gradient[BY_COUNT], double factor) {
+  for (int i = 0; i < BY_COUNT; i++)
+    gradient[i] *= factor;
+  return factor;
+}
+
+static double clearance(const geometry *g, double gradient[BY_COUNT]) {
+  double h = height(g, gradient);
+  scaled(gradient, -1);
+  return fg_design_clearance(g->design, h);
+}
+
+static double clearance_error(const geometry *g, double gradient[BY_COUNT]) {
+  double design = g->nominal->clearance_mm, local = clearance(g, gradient);
+  scaled(gradient, -1 / design);
+  return (design - local) / design;
+}
+
+static double radius_error(const geometry *g, double gradient[BY_COUNT]) {
+  double design = g->design->bump_radius_mm;
+  gradient[BY_R] = 100 / design;
+  return 100 * (g->r - design) / design;
+}
+
+static double bump_angle_error(const geometry *g, double gradient[BY_COUNT]) {
+  double design = g->design->bump_angle_deg, angle = bump_angle(g, gradient);
+  return scaled(gradient, 100 / design) * (angle - design);
+}
+
+static double height_model(const geometry *g, double gradient[BY_COUNT]) {
+  gradient[BY_R] = g->model.height_slope;
+  return g->model.height_mm;
+}
+
+static double bump_angle_model(const geometry *g, double gradient[BY_COUNT]) {
+  gradient[BY_R] = g->model.bump_angle_slope;
+  return g->model.bump_angle_deg;
+}
+
+typedef struct quantity {
+  quantity_value *value;
+  size_t at, uncertainty_at; /* offsets in fg_bump */
+} quantity;
+
+#define QUANTITY(function, member)                                                                 \
+  { function, offsetof(fg_bump, member), offsetof(fg_bump, u_##member) }
+static const quantity quantities[] = {
+    QUANTITY(centre_to_centre, centre_to_centre_mm),
+    QUANTITY(bump_angle, bump_angle_deg),
+    QUANTITY(intersection_angle, intersection_angle_deg),
+    QUANTITY(height, height_mm),
+    QUANTITY(clearance, clearance_mm),
+    QUANTITY(clearance_error, clearance_error),
+    QUANTITY(radius_error, radius_error_pct),
+    QUANTITY(bump_angle_error, bump_angle_error_pct),
+    QUANTITY(height_model, height_model_mm),
+    QUANTITY(bump_angle_model, bump_angle_model_deg),
+};
+#undef QUANTITY
+
+/* Covariance of (a·u, radius) where u is the unit vector from O to C: X = C·u - O·u to first
+ * order, and the two circles are independent. */
+typedef struct along {
+  double centre, radius, both;
+} along;
+
+static along project(double covariance[3][3], double ux, double uy) {
+  return (along){
+      .centre =
+          ux * ux * covariance[0][0] + 2 * ux * uy * covariance[0][1] + uy * uy * covariance[1][1],
+      .radius = covariance[2][2],
+      .both = ux * covariance[0][2] + uy * covariance[1][2],
+  };
+}
+
+/* One circle's share: (a, b)' V (a, b) with weights a on its centre and b on its radius. Only what
+ * has a weight counts, so that a covariance that is not known (NaN) stays out of quantities that do
+ * not depend on it. Written as a square plus what is left of the smaller term: R and the crown
+ * correlate at -0.999, and a sum of three terms could come out negative. */
+static double share(const along *v, double a, double b) {
+  if (a == 0) return b == 0 ? 0 : b * b * v->radius;
+  if (b == 0 || v->radius == 0) return a * a * v->centre;
+  double regression = v->both / v->radius;
+  double rest = v->centre - regression * v->both;
+  double slope = a * regression + b;
+  return a * a * (rest < 0 ? 0 : rest) + slope * slope * v->radius;
+}
+
+static double root(double variance) {
+  return variance < 0 ? 0 : sqrt(variance);
+}
+
+static void fill(const geometry *g, const along *bump_along, const along *overall_along,
+                 fg_bump *bump) {
+  for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
+    double gradient[BY_COUNT] = {0, 0, 0};
+    double value = quantities[i].value(g, gradient);
+    double variance = share(bump_along, gradient[BY_X], gradient[BY_R]) +
+                      share(overall_along, -gradient[BY_X], gradient[BY_R0]);
+    bool defined = isfinite(value);
+    *(double *)((char *)bump + quantities[i].at) = defined ? value : NAN;
+    *(double *)((char *)bump + quantities[i].uncertainty_at) = defined ? sqrt(variance) : NAN;
+  }
+}
+
+void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
+                    fg_bump *bump) {
+  double dx = bump->centre_mm.x - overall->centre_mm.x;
+  double dy = bump->centre_mm.y - overall->centre_mm.y;
+  geometry g = {.x = hypot(dx, dy),
+                .r = bump->radius_mm,
+                .r0 = overall->radius_mm,
+                .design = design,
+                .nominal = nominal};
+  fg_design_springback(design, nominal, g.r, &g.model);
+  along bump_along = project(bump->covariance, dx / g.x, dy / g.x);
+  fg_overall land = *overall; /* C has no implicit const for rows of a matrix */
+  along overall_along = project(land.covariance, dx / g.x, dy / g.x);
+  fill(&g, &bump_along, &overall_along, bump);
+  bump->u_radius_mm = root(bump->covariance[2][2]);
+  for (int i = 0; i < 2; i++)
+    bump->u_centre_mm[i] = root(bump->covariance[i][i]);
+  bump->position_deg = atan2(dy, dx) / rad_per_deg;
+  bump->flags &= ~(unsigned)FG_BUMP_NO_CROSSING;
+  bool fitted = isfinite(g.x) && isfinite(g.r) && isfinite(g.r0);
+  if (fitted && isnan(bump->bump_angle_deg)) bump->flags |= FG_BUMP_NO_CROSSING;
+}

@@ -1,0 +1,280 @@
+#include <cjson/cJSON.h>
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "foilgauge/design.h"
+#include "foilgauge/report.h"
+
+enum { DESIGN_BYTES_MAX = 1 << 20, MESSAGE_MAX = 900 };
+
+#define DESIGN_SCHEMA "foilgauge/design/1"
+
+/* Where we are, for messages. */
+typedef struct reader {
+  fg_context *ctx;
+  const char *path;
+} reader;
+
+static fg_status fail(const reader *r, const char *member, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static fg_status fail(const reader *r, const char *member, const char *format, ...) {
+  char words[MESSAGE_MAX];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(words, sizeof words, format, arguments);
+  va_end(arguments);
+  return fg_fail(r->ctx, FG_ERR_DATA, "%s: %.60s: %s", r->path, member, words);
+}
+
+typedef fg_status read_value(const reader *r, const char *name, const cJSON *item, void *out);
+
+static fg_status read_number(const reader *r, const char *name, const cJSON *item, void *out) {
+  if (!cJSON_IsNumber(item)) return fail(r, name, "must be a number");
+  if (!isfinite(item->valuedouble)) return fail(r, name, "the number is too large");
+  *(double *)out = item->valuedouble;
+  return FG_OK;
+}
+
+static fg_status read_count(const reader *r, const char *name, const cJSON *item, void *out) {
+  double value = 0;
+  FG_TRY(read_number(r, name, item, &value));
+  if (value < 0 || value > 100000 || value != floor(value))
+    return fail(r, name, "is %g; it must be a whole number from 0 (not stated) to 100000", value);
+  *(size_t *)out = (size_t)value;
+  return FG_OK;
+}
+
+static fg_status read_name(const reader *r, const char *name, const cJSON *item, void *out) {
+  size_t room = sizeof((fg_design *)0)->name;
+  if (!cJSON_IsString(item)) return fail(r, name, "must be a text");
+  size_t length = strlen(item->valuestring);
+  if (length >= room) return fail(r, name, "has %zu bytes; at most %zu", length, room - 1);
+  for (const char *c = item->valuestring; *c; c++)
+    if (iscntrl((unsigned char)*c)) return fail(r, name, "holds a control character");
+  memcpy(out, item->valuestring, length + 1);
+  return FG_OK;
+}
+
+static fg_status read_schema(const reader *r, const char *name, const cJSON *item, void *out) {
+  (void)out;
+  if (cJSON_IsString(item) && !strcmp(item->valuestring, DESIGN_SCHEMA)) return FG_OK;
+  return fail(r, name, "must be \"" DESIGN_SCHEMA "\"");
+}
+
+/* The place of a word in a list that ends with NULL. */
+static fg_status read_word(const reader *r, const char *name, const cJSON *item,
+                           const char *const *words, const char *choices, int *place) {
+  for (int i = 0; cJSON_IsString(item) && words[i]; i++)
+    if (!strcmp(item->valuestring, words[i])) {
+      *place = i;
+      return FG_OK;
+    }
+  return fail(r, name, "must be %s", choices);
+}
+
+static fg_status read_form(const reader *r, const char *name, const cJSON *item, void *out) {
+  static const char *const words[] = {"classical", "sinusoidal", "discs", NULL};
+  int place = 0;
+  FG_TRY(read_word(r, name, item, words, "\"classical\", \"sinusoidal\" or \"discs\"", &place));
+  *(fg_form *)out = (fg_form)place;
+  return FG_OK;
+}
+
+static fg_status read_datum(const reader *r, const char *name, const cJSON *item, void *out) {
+  static const char *const words[] = {"mid", "inner", "outer", NULL};
+  int place = 0;
+  FG_TRY(read_word(r, name, item, words, "\"mid\", \"inner\" or \"outer\"", &place));
+  *(fg_datum *)out = (fg_datum)place;
+  return FG_OK;
+}
+
+static const cJSON *earlier_twin(const cJSON *object, const cJSON *member) {
+  for (const cJSON *item = object->child; item != member; item = item->next)
+    if (!strcmp(item->string, member->string)) return item;
+  return NULL;
+}
+
+static fg_status read_limits(const reader *r, const char *name, const cJSON *item,
+                             fg_tolerance *tolerance) {
+  if (!cJSON_IsObject(item) || !item->child)
+    return fail(r, name, "must be an object with \"min\", \"max\" or both");
+  for (const cJSON *limit = item->child; limit; limit = limit->next) {
+    char full[128];
+    snprintf(full, sizeof full, "%.50s.%.20s", name, limit->string);
+    if (earlier_twin(item, limit)) return fail(r, full, "is given twice");
+    if (!strcmp(limit->string, "min"))
+      FG_TRY(read_number(r, full, limit, &tolerance->lower));
+    else if (!strcmp(limit->string, "max"))
+      FG_TRY(read_number(r, full, limit, &tolerance->upper));
+    else
+      return fail(r, full, "is not known; a tolerance has \"min\" and \"max\"");
+  }
+  return FG_OK;
+}
+
+/* A file's tolerances replace those that were there. */
+static fg_status read_tolerances(const reader *r, const char *name, const cJSON *item, void *out) {
+  fg_design *design = out;
+  if (!cJSON_IsObject(item)) return fail(r, name, "must be an object of quantities");
+  design->tolerance_count = 0;
+  for (const cJSON *entry = item->child; entry; entry = entry->next) {
+    char full[80];
+    fg_tolerance tolerance = {.lower = -INFINITY, .upper = INFINITY};
+    snprintf(full, sizeof full, "%s.%.50s", name, entry->string);
+    if (earlier_twin(item, entry)) return fail(r, full, "is given twice");
+    if (strlen(entry->string) >= sizeof tolerance.quantity)
+      return fail(r, full, "is not the name of a quantity");
+    if (design->tolerance_count == FG_TOLERANCES_MAX)
+      return fail(r, name, "more than %d entries", FG_TOLERANCES_MAX);
+    memcpy(tolerance.quantity, entry->string, strlen(entry->string) + 1);
+    FG_TRY(read_limits(r, full, entry, &tolerance));
+    design->tolerances[design->tolerance_count++] = tolerance;
+  }
+  return FG_OK;
+}
+
+static fg_status read_diameters(const reader *r, const char *name, const cJSON *item, void *out) {
+  fg_design *design = out;
+  if (!cJSON_IsArray(item)) return fail(r, name, "must be an array of numbers");
+  design->diameter_count = 0;
+  for (const cJSON *entry = item->child; entry; entry = entry->next) {
+    char full[48];
+    snprintf(full, sizeof full, "%s[%zu]", name, design->diameter_count);
+    if (design->diameter_count == FG_DIAMETERS_MAX)
+      return fail(r, name, "more than %d values", FG_DIAMETERS_MAX);
+    FG_TRY(read_number(r, full, entry, &design->diameters_mm[design->diameter_count]));
+    design->diameter_count++;
+  }
+  return FG_OK;
+}
+
+/* One row per member; offset 0 hands the whole design to the reader. */
+typedef struct member_row {
+  const char *name;
+  read_value *read;
+  size_t offset;
+} member_row;
+
+#define MEMBER(name, read)                                                                         \
+  { #name, read, offsetof(fg_design, name) }
+static const member_row member_rows[] = {
+    {"schema", read_schema, 0},
+    MEMBER(name, read_name),
+    MEMBER(form, read_form),
+    MEMBER(datum, read_datum),
+    MEMBER(bump_count, read_count),
+    MEMBER(bump_radius_mm, read_number),
+    MEMBER(bump_angle_deg, read_number),
+    MEMBER(overall_radius_mm, read_number),
+    MEMBER(sleeve_radius_mm, read_number),
+    MEMBER(pitch_deg, read_number),
+    MEMBER(fillet_radius_mm, read_number),
+    MEMBER(thickness_mm, read_number),
+    MEMBER(rotor_diameter_mm, read_number),
+    {"diameters_mm", read_diameters, 0},
+    {"tolerances", read_tolerances, 0},
+};
+#undef MEMBER
+
+enum { MEMBER_ROWS = sizeof member_rows / sizeof *member_rows };
+
+static fg_status fail_unknown(const reader *r, const char *name) {
+  char known[MESSAGE_MAX] = "";
+  for (size_t i = 0; i < MEMBER_ROWS; i++) {
+    size_t length = strlen(known);
+    snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", member_rows[i].name);
+  }
+  return fail(r, name, "is not a member of a design; there are %s", known);
+}
+
+static fg_status read_member(const reader *r, const cJSON *item, fg_design *design) {
+  for (size_t i = 0; i < MEMBER_ROWS; i++)
+    if (!strcmp(item->string, member_rows[i].name))
+      return member_rows[i].read(r, item->string, item, (char *)design + member_rows[i].offset);
+  return fail_unknown(r, item->string);
+}
+
+/* A file that states one of these and leaves another to the default would be measured against a
+ * mixture of two designs. */
+static fg_status check_complete(const reader *r, const cJSON *root, const fg_design *design) {
+  static const char *const together[] = {"bump_radius_mm", "bump_angle_deg", "overall_radius_mm",
+                                         "thickness_mm"};
+  const char *given = NULL, *missing = NULL;
+  for (size_t i = 0; i < sizeof together / sizeof *together; i++) {
+    bool has = cJSON_GetObjectItemCaseSensitive(root, together[i]) != NULL;
+    if (has && !given) given = together[i];
+    if (!has && !missing) missing = together[i];
+  }
+  if (design->form == FG_FORM_DISCS || !given || !missing) return FG_OK;
+  return fail(r, missing, "is missing; a design that states %s must state it too", given);
+}
+
+static fg_status read_root(const reader *r, const cJSON *root, fg_design *design) {
+  if (!cJSON_IsObject(root)) return fail(r, "the design", "must be a JSON object");
+  for (const cJSON *item = root->child; item; item = item->next) {
+    if (earlier_twin(root, item)) return fail(r, item->string, "is given twice");
+    FG_TRY(read_member(r, item, design));
+  }
+  if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
+    return fail(r, "schema", "is missing; a design has \"schema\": \"" DESIGN_SCHEMA "\"");
+  FG_TRY(check_complete(r, root, design));
+  if (cJSON_GetObjectItemCaseSensitive(root, "overall_radius_mm") &&
+      !cJSON_GetObjectItemCaseSensitive(root, "sleeve_radius_mm"))
+    design->sleeve_radius_mm = design->overall_radius_mm;
+  return FG_OK;
+}
+
+/* Line and column of where the text stops being JSON, and that line: it mostly names the member. */
+static fg_status fail_syntax(const reader *r, const char *json, const char *at) {
+  const char *start = json;
+  int line = 1, shown = 0;
+  char excerpt[81];
+  if (!at || at < json) at = json;
+  for (const char *c = json; c < at; c++)
+    if (*c == '\n') {
+      line++;
+      start = c + 1;
+    }
+  for (const char *c = start; *c && *c != '\n' && shown < 80; c++)
+    if (shown > 0 || !isspace((unsigned char)*c))
+      excerpt[shown++] = iscntrl((unsigned char)*c) ? ' ' : *c;
+  excerpt[shown] = '\0';
+  return fg_fail(r->ctx, FG_ERR_DATA, "%s: line %d, column %td: this is not JSON: %s", r->path,
+                 line, at - start + 1, shown ? excerpt : "(the text ends)");
+}
+
+static fg_status check_design(const reader *r, const fg_design *design) {
+  fg_context words = {0};
+  fg_status status = fg_design_check(&words, design);
+  if (status == FG_OK) status = fg_report_check_tolerances(&words, design);
+  if (status == FG_OK) return FG_OK;
+  return fg_fail(r->ctx, status, "%s: %.*s", r->path, MESSAGE_MAX, words.message);
+}
+
+fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design) {
+  const reader r = {ctx, path};
+  const char *end = NULL;
+  fg_design read = *design;
+  cJSON *root = cJSON_ParseWithOpts(json, &end, true);
+  if (!root) return fail_syntax(&r, json, end);
+  fg_status status = read_root(&r, root, &read);
+  cJSON_Delete(root);
+  if (status == FG_OK) status = check_design(&r, &read);
+  if (status == FG_OK) *design = read;
+  return status;
+}
+
+fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design) {
+  char *text = NULL;
+  FG_TRY(fg_file_read_text(ctx, path, DESIGN_BYTES_MAX, &text));
+  fg_status status = fg_design_parse(ctx, path, text, design);
+  free(text);
+  return status;
+}

@@ -1,0 +1,228 @@
+#include "vision/edges.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+#define STEP_PX       2.0  /* distance of stations */
+#define SMOOTH_PX     30.0 /* half window of the reference line */
+#define BAND_REACH_PX 17.0 /* beyond the strip's edges: 4 blurs of 3 px, and some background */
+#define MIDDLE_REACH_PX 6.0 /* the same while only the middle is sought */
+enum { MIDDLE_STATIONS = 4 }; /* the middle is smoothed over so many stations to either side */
+
+/* The middle of each station by the weight of its pixels, counts between 30 and 70 % of the
+ * contrast rising from 0 to 1, so that neither halo nor band pulls. */
+static void find_middles(const fg_segmentation *seg, const fg_trace *trace, fg_edge_work *work) {
+  size_t count = work->reference->count;
+  for (size_t i = 0; i < work->band->count; i++) {
+    const fg_band_pixel *p = &work->band->pixels[i];
+    if (fabsf(p->across_px) > (float)(work->width_px + 4)) continue;
+    const fg_reference_station *r = &work->reference->stations[p->station];
+    int32_t bx = (int32_t)(r->x / FG_BLOCK_PX), by = (int32_t)(r->y / FG_BLOCK_PX);
+    if (bx < 0 || by < 0 || bx >= seg->width || by >= seg->height) continue;
+    float background = seg->background[(size_t)by * (size_t)seg->width + (size_t)bx];
+    float excess = seg->light_on_dark ? p->value - background : background - p->value;
+    float weight = (excess / (float)trace->contrast - 0.3f) * 2.5f;
+    weight = fminf(fmaxf(weight, 0), 1);
+    work->stations[p->station].g1 += weight * p->across_px;
+    work->stations[p->station].m11 += weight;
+  }
+  for (size_t i = 0; i < count; i++) {
+    float sum = 0, weight = 0;
+    size_t from = i > MIDDLE_STATIONS ? i - MIDDLE_STATIONS : 0;
+    for (size_t j = from; j <= i + MIDDLE_STATIONS && j < count; j++) {
+      sum += work->stations[j].g1;
+      weight += work->stations[j].m11;
+    }
+    work->stations[i].middle_px = weight > 0 ? sum / weight : 0;
+  }
+}
+
+/* The middle from the edges that were found, for the second round of profiles. */
+static void refine_middles(fg_edge_work *work) {
+  size_t count = work->reference->count;
+  for (size_t i = 0; i < count; i++) {
+    float sum = 0, weight = 0;
+    size_t from = i > MIDDLE_STATIONS ? i - MIDDLE_STATIONS : 0;
+    for (size_t j = from; j <= i + MIDDLE_STATIONS && j < count; j++) {
+      const fg_edge_station *s = &work->stations[j];
+      sum += s->weight * 0.5f * (s->edge_px[0] + s->edge_px[1]);
+      weight += s->weight;
+    }
+    if (weight > 0) work->stations[i].middle_px = sum / weight;
+  }
+}
+
+/* Ends are round and cut: nothing within a width of them is an edge of the strip's side. */
+static void mark_ends(fg_edge_work *work) {
+  size_t count = work->reference->count;
+  size_t margin = (size_t)((work->width_px + 2 * fmax(work->blur_px[0], work->blur_px[1])) /
+                           work->reference->step_px);
+  for (size_t i = 0; i < count; i++)
+    if (i < margin || i + margin >= count) work->stations[i].weight = 0;
+}
+
+/* Neighbouring edges scatter by more than white pixel noise explains when pixels are correlated or
+ * the edge itself is rough; the standard deviations follow. The second difference of three
+ * independent neighbours has the variance 1.5 u². */
+static void scale_uncertainties(fg_edge_work *work) {
+  double sum = 0, expected = 0;
+  for (size_t i = 1; i + 1 < work->reference->count; i++) {
+    const fg_edge_station *s = &work->stations[i];
+    if (s[-1].weight <= 0 || s->weight <= 0 || s[1].weight <= 0) continue;
+    for (int side = 0; side < 2; side++) {
+      double d = s->edge_px[side] - 0.5 * (s[-1].edge_px[side] + s[1].edge_px[side]);
+      if (fabs(d) > 8 * s->u_px[side] + 0.5) continue;
+      sum += d * d;
+      expected += 1.5 * (double)s->u_px[side] * s->u_px[side];
+    }
+  }
+  double factor = expected > 0 ? sqrt(fmax(1, sum / expected)) : 1;
+  for (size_t i = 0; i < work->reference->count; i++)
+    for (int side = 0; side < 2; side++) work->stations[i].u_px[side] *= (float)factor;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Stations of the strip in mm. */
+static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_strip *strip) {
+  double kx = 25.4 / dpi[0], ky = 25.4 / dpi[1], s_mm = 0;
+  for (size_t i = 0; i < work->reference->count; i++) {
+    const fg_reference_station *r = &work->reference->stations[i];
+    const fg_edge_station *e = &work->stations[i];
+    double nx = -r->ty, ny = r->tx;
+    fg_station *out = &strip->stations[i];
+    if (i > 0) s_mm += hypot((r->x - r[-1].x) * kx, (r->y - r[-1].y) * ky);
+    const float *at = e->edge_px;
+    double norm = hypot(nx / kx, ny / ky), scale = hypot(nx * kx, ny * ky) * 1000;
+    *out = (fg_station){.s_mm = s_mm,
+                        .left = {(r->x + at[0] * nx) * kx, (r->y + at[0] * ny) * ky},
+                        .right = {(r->x + at[1] * nx) * kx, (r->y + at[1] * ny) * ky},
+                        .normal = {nx / kx / norm, ny / ky / norm},
+                        .u_left_um = (float)(e->u_px[0] * scale),
+                        .u_right_um = (float)(e->u_px[1] * scale),
+                        .weight = e->weight};
+  }
+}
+
+static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
+                           fg_strip *strip) {
+  double um = 25400 / sqrt(dpi[0] * dpi[1]);
+  double *thickness = NULL;
+  size_t n = 0;
+  FG_TRY(fg_memory_allocate(ctx, strip->count, sizeof *thickness, (void **)&thickness));
+  for (size_t i = 0; i < strip->count; i++) {
+    const fg_station *s = &strip->stations[i];
+    if (s->weight > 0)
+      thickness[n++] = hypot(s->right.x - s->left.x, s->right.y - s->left.y);
+  }
+  qsort(thickness, n, sizeof *thickness, compare_doubles);
+  strip->thickness_mm = n ? thickness[n / 2] : NAN;
+  double spread = n ? 0.7413 * (thickness[n * 3 / 4] - thickness[n / 4]) : NAN;
+  strip->u_thickness_mm = n ? 1.2533 * spread / sqrt((double)n) : NAN;
+  free(thickness);
+  strip->step_mm = work->reference->step_px * um / 1000;
+  strip->blur_left_um = work->blur_px[0] * um;
+  strip->blur_right_um = work->blur_px[1] * um;
+  strip->contrast = work->contrast / 255;
+  strip->noise = work->noise / 255;
+  strip->gamma = work->gamma;
+  if (work->clipped) strip->facts |= FG_STRIP_CLIPPED;
+  if (work->side_band) strip->facts |= FG_STRIP_SIDE_BAND;
+  return FG_OK;
+}
+
+static void find_box(const fg_reference *reference, fg_strip *strip) {
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (size_t i = 0; i < reference->count; i++) {
+    const double at[2] = {reference->stations[i].x, reference->stations[i].y};
+    for (int axis = 0; axis < 2; axis++) {
+      low[axis] = fmin(low[axis], at[axis]);
+      high[axis] = fmax(high[axis], at[axis]);
+    }
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    strip->box_px[axis] = (int64_t)floor(low[axis]);
+    strip->box_px[2 + axis] = (int64_t)ceil(high[axis] - low[axis]) + 1;
+  }
+}
+
+/* The reference line of the measurement: the middles of a first, coarse line, smoothed. The coarse
+ * line's own wiggles would shift edges by some 0.01 px where the strip crosses the lattice
+ * obliquely; after this step they are below 0.001 px. */
+static fg_status build_reference(fg_context *ctx, const fg_tiles *tiles,
+                                 const fg_segmentation *segmentation, const fg_trace *trace,
+                                 fg_reference *out) {
+  fg_reference coarse = {0};
+  fg_band band = {0};
+  fg_edge_work work = {.reference = &coarse, .band = &band, .width_px = trace->width_px};
+  fg_point *middles = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX, &coarse));
+  FG_TRY_EXIT(fg_band_collect(ctx, tiles, &coarse, trace->width_px / 2 + MIDDLE_REACH_PX, &band));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, coarse.count, sizeof *work.stations, (void **)&work.stations));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, coarse.count, sizeof *middles, (void **)&middles));
+  find_middles(segmentation, trace, &work);
+  for (size_t i = 0; i < coarse.count; i++) {
+    const fg_reference_station *r = &coarse.stations[i];
+    double middle = work.stations[i].middle_px;
+    middles[i] = (fg_point){r->x - middle * r->ty, r->y + middle * r->tx};
+  }
+  FG_TRY_EXIT(fg_reference_build(ctx, middles, coarse.count, SMOOTH_PX, STEP_PX, out));
+exit:
+  fg_reference_free(&coarse);
+  fg_band_free(&band);
+  free(work.stations);
+  free(middles);
+  return status;
+}
+
+static fg_status measure_edges(fg_context *ctx, const fg_segmentation *segmentation,
+                               const fg_trace *trace, fg_edge_work *work) {
+  find_middles(segmentation, trace, work);
+  FG_TRY(fg_edges_find_shape(ctx, work, true));
+  fg_edges_solve(work, 2);
+  refine_middles(work);
+  FG_TRY(fg_edges_find_shape(ctx, work, false));
+  fg_edges_solve(work, 2);
+  mark_ends(work);
+  scale_uncertainties(work);
+  return FG_OK;
+}
+
+fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
+                           const fg_segmentation *segmentation, const fg_trace *trace,
+                           const double dpi[2], fg_strip *strip) {
+  fg_reference reference = {0};
+  fg_band band = {0};
+  fg_edge_work work = {.reference = &reference, .band = &band, .width_px = trace->width_px,
+                       .reach_px = BAND_REACH_PX, .noise = 1, .contrast = trace->contrast};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(build_reference(ctx, tiles, segmentation, trace, &reference));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *work.stations,
+                                 (void **)&work.stations));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *work.tables, (void **)&work.tables));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *strip->stations,
+                                 (void **)&strip->stations));
+  fg_edge_tables_init(work.tables, 1);
+  FG_TRY_EXIT(fg_band_collect(ctx, tiles, &reference, trace->width_px / 2 + BAND_REACH_PX, &band));
+  FG_TRY_EXIT(measure_edges(ctx, segmentation, trace, &work));
+  strip->count = reference.count;
+  strip->facts = trace->facts;
+  fill_stations(&work, dpi, strip);
+  find_box(&reference, strip);
+  FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));
+exit:
+  fg_reference_free(&reference);
+  fg_band_free(&band);
+  free(work.stations);
+  free(work.tables);
+  if (status != FG_OK) fg_strip_free(strip);
+  return status;
+}

@@ -1,0 +1,98 @@
+/* Both edges of every station from its pixels, the shape of the profile held. */
+#include "vision/edges.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A pixel this far off the model is dust or a burr: so many noise sd plus a share of contrast. */
+#define OUTLIER_SIGMAS 6.0
+#define OUTLIER_SHARE  0.25
+/* Pixels up to so many blurs beyond an edge tell where the edge is. */
+#define REACH_BLURS 4.0
+
+/* Adds one pixel to its station. */
+static inline void add_pixel(const fg_edge_tables *tables, fg_edge_station *s, float across,
+                             float value, float limit) {
+  float d1 = s->edge_px[0] - across, d2 = across - s->edge_px[1];
+  float i1 = 1.0f / s->blur_px[0], i2 = 1.0f / s->blur_px[1];
+  float t1 = d1 * i1, t2 = d2 * i2;
+  if (t1 > (float)REACH_BLURS || t2 > (float)REACH_BLURS) return;
+  float p1, c1, p2, c2;
+  fg_edge_normal(tables, t1, &p1, &c1);
+  fg_edge_normal(tables, t2, &p2, &c2);
+  float light = s->plateau + (s->step[0] + s->slope[0] * d1) * c1 +
+                s->slope[0] * s->blur_px[0] * p1 + (s->step[1] + s->slope[1] * d2) * c2 +
+                s->slope[1] * s->blur_px[1] * p2;
+  float model, rate;
+  fg_edge_tone(tables, light, &model, &rate);
+  s->seen++;
+  if ((model >= 254.5f && value >= 254.5f) || (model <= 0.5f && value <= 0.5f)) return;
+  float residual = value - model;
+  if (fabsf(residual) > limit) return;
+  /* The filters leave the slopes out: a slope is the least certain part of the shape. */
+  float f1 = rate * s->step[0] * p1 * i1, f2 = -rate * s->step[1] * p2 * i2;
+  s->m11 += f1 * f1;
+  s->m12 += f1 * f2;
+  s->m22 += f2 * f2;
+  s->g1 += f1 * residual;
+  s->g2 += f2 * residual;
+  s->misfit += residual * residual;
+  s->used++;
+}
+
+static void clear_sums(fg_edge_station *s) {
+  s->m11 = s->m12 = s->m22 = s->g1 = s->g2 = s->misfit = 0;
+  s->used = s->seen = 0;
+}
+
+/* Solves the 2 × 2 system of a station and moves its edges. */
+static void move_edges(fg_edge_station *s, double noise) {
+  double det = (double)s->m11 * s->m22 - (double)s->m12 * s->m12;
+  s->weight = 0;
+  s->u_px[0] = s->u_px[1] = NAN;
+  if (!(det > 1e-6 * (double)s->m11 * s->m22) || s->used < s->seen * 3 / 4) return;
+  double a = (s->m22 * (double)s->g1 - s->m12 * (double)s->g2) / det;
+  double b = (s->m11 * (double)s->g2 - s->m12 * (double)s->g1) / det;
+  s->u_px[0] = (float)(noise * sqrt(s->m22 / det));
+  s->u_px[1] = (float)(noise * sqrt(s->m11 / det));
+  if (fabs(a) > 3 || fabs(b) > 3) return;
+  s->edge_px[0] += (float)a;
+  s->edge_px[1] += (float)b;
+  s->weight = 1;
+}
+
+static double estimate_noise(const fg_edge_work *work) {
+  double sum = 0, freedom = 0;
+  for (size_t i = 0; i < work->reference->count; i++) {
+    const fg_edge_station *s = &work->stations[i];
+    if (s->used < 8) continue;
+    sum += s->misfit;
+    freedom += s->used - 2;
+  }
+  return freedom > 0 ? sqrt(sum / freedom) : 1;
+}
+
+/* Stations whose pixels miss the model far more than usual carry dust or a burr. */
+static void drop_misfits(fg_edge_work *work) {
+  double limit = 9 * work->noise * work->noise + 0.001 * work->contrast * work->contrast;
+  for (size_t i = 0; i < work->reference->count; i++) {
+    fg_edge_station *s = &work->stations[i];
+    if (s->used < 8 || s->misfit > limit * s->used) s->weight = 0;
+  }
+}
+
+void fg_edges_solve(fg_edge_work *work, int rounds) {
+  for (int round = 0; round < rounds; round++) {
+    for (size_t i = 0; i < work->reference->count; i++) clear_sums(&work->stations[i]);
+    float limit = (float)(round == 0 ? 1e9 : OUTLIER_SIGMAS * work->noise +
+                                                 OUTLIER_SHARE * work->contrast);
+    for (size_t i = 0; i < work->band->count; i++) {
+      const fg_band_pixel *p = &work->band->pixels[i];
+      add_pixel(work->tables, &work->stations[p->station], p->across_px, p->value, limit);
+    }
+    work->noise = estimate_noise(work);
+    for (size_t i = 0; i < work->reference->count; i++)
+      move_edges(&work->stations[i], work->noise);
+  }
+  drop_misfits(work);
+}

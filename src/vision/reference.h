@@ -1,0 +1,48 @@
+/* A smooth reference line along a strip: stations at equal steps with tangent and curvature.
+ *
+ * Pixels get their place (along, across) from this line; where exactly it lies in the strip does
+ * not matter, that it is smooth does.
+ */
+#ifndef FG_VISION_REFERENCE_H
+#define FG_VISION_REFERENCE_H
+
+#include "foilgauge/circle.h"
+#include "vision/trace.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_reference_station {
+  double x, y;       /* px */
+  double tx, ty;     /* unit tangent; the normal is (-ty, tx) */
+  double curvature;  /* 1/px, positive when the line bends towards the normal */
+} fg_reference_station;
+
+typedef struct fg_reference {
+  fg_reference_station *stations; /* owned */
+  size_t count;
+  double step_px;
+} fg_reference;
+
+/* Smooths traced points with local parabolas over ± window_px and resamples them. */
+fg_status fg_reference_build(fg_context *ctx, const fg_point *points, size_t count,
+                             double window_px, double step_px, fg_reference *reference);
+
+void fg_reference_free(fg_reference *reference);
+
+/* A pixel's place relative to the circle that osculates a station: `along` and `across` (both px)
+ * of the offset (a along the tangent, b along the normal). Exact for a circle:
+ * across = (2b - k(a² + b²)) / (1 + sqrt((1 - kb)² + (ka)²)); along to third order in ka. */
+static inline void fg_reference_project(double curvature, double a, double b, double *along,
+                                        double *across) {
+  double p = 1 - curvature * b, q = curvature * a;
+  *across = (2 * b - curvature * (a * a + b * b)) / (1 + sqrt(p * p + q * q));
+  double r = q / p;
+  *along = a / p * (1 - r * r / 3);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif

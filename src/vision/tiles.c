@@ -1,0 +1,196 @@
+#include "vision/tiles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Contrast of block means, in 8-bit counts, above which a tile is kept: six times the lower
+ * quartile of its tile row, but never less than MIN (noise) nor more than MAX (a row of tiles
+ * that all lie on the part must not hide it). */
+enum { CONTRAST_MIN = 3, CONTRAST_MAX = 12, CONTRAST_OVER_QUARTILE = 6 };
+
+static size_t strip_bytes(const fg_tiles *tiles) {
+  return (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel * FG_TILE_PX;
+}
+
+fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
+                          int bytes_per_pixel, fg_tiles *tiles) {
+  memset(tiles, 0, sizeof *tiles);
+  tiles->width_px = width_px;
+  tiles->height_px = height_px;
+  tiles->bytes_per_pixel = bytes_per_pixel;
+  tiles->columns = (int32_t)((width_px + FG_TILE_PX - 1) / FG_TILE_PX);
+  tiles->rows = (int32_t)((height_px + FG_TILE_PX - 1) / FG_TILE_PX);
+  tiles->block_columns = tiles->columns * FG_BLOCKS_PER_TILE;
+  tiles->block_rows = tiles->rows * FG_BLOCKS_PER_TILE;
+  size_t count = (size_t)tiles->columns * (size_t)tiles->rows;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(void *), (void **)&tiles->pixels));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&tiles->wanted));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count * FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
+                                 sizeof(float), (void **)&tiles->blocks));
+  for (int i = 0; i < 3; i++)
+    FG_TRY_EXIT(fg_memory_allocate(ctx, strip_bytes(tiles), 1, &tiles->strips[i]));
+exit:
+  if (status != FG_OK) fg_tiles_free(tiles);
+  return status;
+}
+
+static int64_t rows_of_strip(const fg_tiles *tiles, int32_t strip) {
+  int64_t left = tiles->height_px - (int64_t)strip * FG_TILE_PX;
+  return left < FG_TILE_PX ? left : FG_TILE_PX;
+}
+
+/* Adds `rows` rows of pixels, column by column, into sums. */
+static void add_rows(const fg_tiles *tiles, const void *rows, int64_t count, uint32_t *sums) {
+  size_t width = (size_t)tiles->width_px;
+  memset(sums, 0, width * sizeof *sums);
+  for (int64_t y = 0; y < count; y++) {
+    if (tiles->bytes_per_pixel == 1) {
+      const uint8_t *row = (const uint8_t *)rows + (size_t)y * width;
+      for (size_t x = 0; x < width; x++) sums[x] += row[x];
+    } else {
+      const uint16_t *row = (const uint16_t *)rows + (size_t)y * width;
+      for (size_t x = 0; x < width; x++) sums[x] += row[x];
+    }
+  }
+}
+
+/* Block means of one row of blocks; blocks outside the scan repeat the last one inside. */
+static void average_blocks(const fg_tiles *tiles, const uint32_t *sums, int64_t rows, float *out) {
+  float unit = tiles->bytes_per_pixel == 1 ? 1.0f : 1.0f / 257.0f;
+  for (int32_t b = 0; b < tiles->block_columns; b++) {
+    int64_t from = (int64_t)b * FG_BLOCK_PX, to = from + FG_BLOCK_PX;
+    if (to > tiles->width_px) to = tiles->width_px;
+    if (from >= to) {
+      out[b] = out[b - 1];
+      continue;
+    }
+    uint64_t sum = 0;
+    for (int64_t x = from; x < to; x++) sum += sums[x];
+    out[b] = (float)sum * unit / (float)((to - from) * rows);
+  }
+}
+
+static fg_status reduce_strip(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
+  const uint8_t *pixels = tiles->strips[strip % 3];
+  size_t row_bytes = (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel;
+  int64_t rows = rows_of_strip(tiles, strip);
+  uint32_t *sums = NULL;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)tiles->width_px, sizeof *sums, (void **)&sums));
+  for (int b = 0; b < FG_BLOCKS_PER_TILE; b++) {
+    int64_t from = (int64_t)b * FG_BLOCK_PX;
+    float *out = tiles->blocks + ((size_t)strip * FG_BLOCKS_PER_TILE + (size_t)b) *
+                                     (size_t)tiles->block_columns;
+    if (from >= rows) {
+      memcpy(out, out - tiles->block_columns, (size_t)tiles->block_columns * sizeof *out);
+      continue;
+    }
+    int64_t count = rows - from < FG_BLOCK_PX ? rows - from : FG_BLOCK_PX;
+    add_rows(tiles, pixels + (size_t)from * row_bytes, count, sums);
+    average_blocks(tiles, sums, count, out);
+  }
+  free(sums);
+  return FG_OK;
+}
+
+static int compare_floats(const void *a, const void *b) {
+  float x = *(const float *)a, y = *(const float *)b;
+  return (x > y) - (x < y);
+}
+
+static float tile_contrast(const fg_tiles *tiles, int32_t column, int32_t strip) {
+  float low = INFINITY, high = -INFINITY;
+  for (int y = 0; y < FG_BLOCKS_PER_TILE; y++) {
+    const float *row = tiles->blocks +
+                       ((size_t)strip * FG_BLOCKS_PER_TILE + (size_t)y) *
+                           (size_t)tiles->block_columns +
+                       (size_t)column * FG_BLOCKS_PER_TILE;
+    for (int x = 0; x < FG_BLOCKS_PER_TILE; x++) {
+      low = row[x] < low ? row[x] : low;
+      high = row[x] > high ? row[x] : high;
+    }
+  }
+  return high - low;
+}
+
+static fg_status mark_wanted(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
+  size_t columns = (size_t)tiles->columns;
+  float *contrast = NULL;
+  FG_TRY(fg_memory_allocate(ctx, columns * 2, sizeof *contrast, (void **)&contrast));
+  for (size_t c = 0; c < columns; c++)
+    contrast[c] = contrast[columns + c] = tile_contrast(tiles, (int32_t)c, strip);
+  qsort(contrast + columns, columns, sizeof *contrast, compare_floats);
+  float limit = CONTRAST_OVER_QUARTILE * contrast[columns + columns / 4];
+  if (limit < CONTRAST_MIN) limit = CONTRAST_MIN;
+  if (limit > CONTRAST_MAX) limit = CONTRAST_MAX;
+  uint8_t *wanted = tiles->wanted + (size_t)strip * columns;
+  for (size_t c = 0; c < columns; c++) wanted[c] = contrast[c] > limit;
+  free(contrast);
+  return FG_OK;
+}
+
+/* Wanted itself, or beside a wanted tile. */
+static int is_kept(const fg_tiles *tiles, int32_t column, int32_t strip) {
+  for (int32_t y = strip - 1; y <= strip + 1; y++)
+    for (int32_t x = column - 1; x <= column + 1; x++)
+      if (x >= 0 && y >= 0 && x < tiles->columns && y < tiles->rows &&
+          tiles->wanted[(size_t)y * (size_t)tiles->columns + (size_t)x])
+        return 1;
+  return 0;
+}
+
+static fg_status keep_tiles(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
+  const uint8_t *source = tiles->strips[strip % 3];
+  size_t bytes = (size_t)tiles->bytes_per_pixel, row_bytes = (size_t)tiles->width_px * bytes;
+  for (int32_t c = 0; c < tiles->columns; c++) {
+    if (!is_kept(tiles, c, strip)) continue;
+    uint8_t *tile = NULL;
+    FG_TRY(fg_memory_allocate(ctx, FG_TILE_PX * FG_TILE_PX, bytes, (void **)&tile));
+    size_t from = (size_t)c * FG_TILE_PX * bytes, width = FG_TILE_PX * bytes;
+    if (from + width > row_bytes) width = row_bytes - from;
+    for (int64_t y = 0; y < rows_of_strip(tiles, strip); y++)
+      memcpy(tile + (size_t)y * FG_TILE_PX * bytes, source + (size_t)y * row_bytes + from, width);
+    tiles->pixels[(size_t)strip * (size_t)tiles->columns + (size_t)c] = tile;
+  }
+  return FG_OK;
+}
+
+fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
+                             int64_t stride_bytes) {
+  int32_t strip = tiles->received;
+  if (strip >= tiles->rows) return fg_fail(ctx, FG_ERR_USAGE, "more rows than the scan has");
+  size_t row_bytes = (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel;
+  for (int64_t y = 0; y < rows_of_strip(tiles, strip); y++)
+    memcpy((uint8_t *)tiles->strips[strip % 3] + (size_t)y * row_bytes,
+           (const uint8_t *)rows + y * stride_bytes, row_bytes);
+  FG_TRY(reduce_strip(ctx, tiles, strip));
+  FG_TRY(mark_wanted(ctx, tiles, strip));
+  if (strip > 0) FG_TRY(keep_tiles(ctx, tiles, strip - 1));
+  tiles->received++;
+  return FG_OK;
+}
+
+fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles) {
+  if (tiles->received != tiles->rows)
+    return fg_fail(ctx, FG_ERR_USAGE, "fewer rows than the scan has");
+  FG_TRY(keep_tiles(ctx, tiles, tiles->rows - 1));
+  for (int i = 0; i < 3; i++) {
+    free(tiles->strips[i]);
+    tiles->strips[i] = NULL;
+  }
+  return FG_OK;
+}
+
+void fg_tiles_free(fg_tiles *tiles) {
+  if (!tiles) return;
+  if (tiles->pixels)
+    for (size_t i = 0; i < (size_t)tiles->columns * (size_t)tiles->rows; i++)
+      free(tiles->pixels[i]);
+  free(tiles->pixels);
+  free(tiles->wanted);
+  free(tiles->blocks);
+  for (int i = 0; i < 3; i++) free(tiles->strips[i]);
+  memset(tiles, 0, sizeof *tiles);
+}

@@ -1,0 +1,295 @@
+#include "vision/trace.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "foilgauge/strip.h"
+
+enum {
+  PROFILE_MAX = 1024,   /* samples across */
+  SEED_ANGLES = 24,     /* directions tried at a seed */
+  TANGENT_POINTS = 3,   /* the tangent is taken over so many steps */
+  STRIPS_MAX = 16,      /* strips in one object */
+};
+#define GAP_WIDTHS   4.0  /* longest gap that is bridged, in strip widths */
+#define LENGTH_LEAST 12.0 /* shortest strip, in strip widths */
+
+typedef struct walker {
+  const fg_tiles *tiles;
+  const fg_segmentation *segmentation;
+  const fg_object *object;
+  double half_window_px; /* of a cut */
+  double width_px;       /* of the strip at the seed */
+  double contrast;
+} walker;
+
+typedef struct cut {
+  double offset_px; /* of the middle, along the normal */
+  double width_px;
+  double peak;
+} cut;
+
+/* Excess over the local background, positive inside the strip. 0 where nothing was kept. */
+static float excess_at(const walker *w, double x, double y) {
+  int64_t ix = (int64_t)floor(x + 0.5), iy = (int64_t)floor(y + 0.5);
+  float value = fg_tiles_pixel(w->tiles, ix, iy);
+  if (isnan(value)) return 0;
+  const fg_segmentation *s = w->segmentation;
+  float background =
+      s->background[(size_t)(iy / FG_BLOCK_PX) * (size_t)s->width + (size_t)(ix / FG_BLOCK_PX)];
+  return s->light_on_dark ? value - background : background - value;
+}
+
+/* Cuts across at p: the run above half of `contrast` that lies nearest to p. False when there is
+ * none or when it leaves the window. */
+static bool cut_across(const walker *w, fg_point p, fg_point tangent, double contrast, cut *out) {
+  int half = (int)w->half_window_px;
+  if (2 * half + 1 > PROFILE_MAX) half = (PROFILE_MAX - 1) / 2;
+  float profile[PROFILE_MAX];
+  int count = 2 * half + 1;
+  for (int j = 0; j < count; j++) {
+    double n = j - half, x = p.x - n * tangent.y, y = p.y + n * tangent.x;
+    float sum = 0;
+    for (int a = -1; a <= 1; a++)
+      sum += excess_at(w, x + 1.5 * a * tangent.x, y + 1.5 * a * tangent.y);
+    profile[j] = sum / 3;
+  }
+  float limit = (float)(0.5 * contrast);
+  int best = -1;
+  for (int d = 0; d <= half && best < 0; d++) {
+    if (profile[half + d] > limit) best = half + d;
+    else if (profile[half - d] > limit) best = half - d;
+  }
+  if (best < 0) return false;
+  int from = best, to = best;
+  while (from > 0 && profile[from - 1] > limit) from--;
+  while (to < count - 1 && profile[to + 1] > limit) to++;
+  if (from == 0 || to == count - 1) return false;
+  double a = from - (profile[from] - limit) / (profile[from] - profile[from - 1]);
+  double b = to + (profile[to] - limit) / (profile[to] - profile[to + 1]);
+  out->offset_px = 0.5 * (a + b) - half;
+  out->width_px = b - a;
+  out->peak = 0;
+  for (int j = from; j <= to; j++) out->peak = fmax(out->peak, profile[j]);
+  return true;
+}
+
+static fg_point along(fg_point p, fg_point direction, double length) {
+  return (fg_point){p.x + length * direction.x, p.y + length * direction.y};
+}
+
+static fg_point normal_of(fg_point tangent) {
+  return (fg_point){-tangent.y, tangent.x};
+}
+
+/* The direction across which the strip at p is narrowest; moves p into its middle. */
+static bool find_direction(walker *w, fg_point *p, fg_point *tangent) {
+  for (int round = 0; round < 3; round++) {
+    cut narrowest = {.width_px = INFINITY}, c;
+    fg_point direction = {1, 0};
+    for (int i = 0; i < SEED_ANGLES; i++) {
+      double angle = M_PI * i / SEED_ANGLES;
+      fg_point t = {cos(angle), sin(angle)};
+      if (!cut_across(w, *p, t, w->contrast, &c) || c.width_px >= narrowest.width_px) continue;
+      narrowest = c;
+      direction = t;
+    }
+    if (!isfinite(narrowest.width_px)) return false;
+    *p = along(*p, normal_of(direction), narrowest.offset_px);
+    *tangent = direction;
+    w->width_px = narrowest.width_px;
+  }
+  return true;
+}
+
+static bool outside(const walker *w, fg_point p, double margin) {
+  return p.x < margin || p.y < margin || p.x > (double)w->tiles->width_px - 1 - margin ||
+         p.y > (double)w->tiles->height_px - 1 - margin;
+}
+
+static fg_status append(fg_context *ctx, fg_trace *trace, fg_point p) {
+  FG_TRY(fg_memory_reserve(ctx, trace->count + 1, sizeof *trace->points, &trace->capacity,
+                           (void **)&trace->points));
+  trace->points[trace->count++] = p;
+  return FG_OK;
+}
+
+/* The walk may not come back to where it was: a strip is no ring. */
+static bool visited(const fg_trace *trace, fg_point p, double width) {
+  size_t recent = (size_t)(8 * TANGENT_POINTS);
+  for (size_t i = 0; i + recent < trace->count; i++)
+    if (hypot(trace->points[i].x - p.x, trace->points[i].y - p.y) < 0.5 * width) return true;
+  return false;
+}
+
+static fg_point tangent_at_end(const fg_trace *trace, fg_point fallback) {
+  if (trace->count <= TANGENT_POINTS) return fallback;
+  fg_point a = trace->points[trace->count - 1 - TANGENT_POINTS];
+  fg_point b = trace->points[trace->count - 1];
+  double length = hypot(b.x - a.x, b.y - a.y);
+  return length > 0 ? (fg_point){(b.x - a.x) / length, (b.y - a.y) / length} : fallback;
+}
+
+/* Walks from p in one direction, appending points (p itself excluded). */
+static fg_status walk(fg_context *ctx, const walker *w, fg_point p, fg_point tangent,
+                      fg_trace *trace) {
+  double step = fmax(3.0, w->width_px / 3), missed = 0;
+  fg_point direction = tangent;
+  while (missed <= GAP_WIDTHS * w->width_px) {
+    fg_point next = along(p, direction, step + missed);
+    if (outside(w, next, 0)) {
+      if (missed == 0) trace->facts |= FG_STRIP_TOUCHES_BORDER;
+      break;
+    }
+    cut c;
+    bool good = cut_across(w, next, direction, w->contrast, &c) &&
+                c.width_px < 1.6 * w->width_px && c.width_px > 0.5 * w->width_px &&
+                fabs(c.offset_px) < 0.5 * w->width_px + 0.5 * missed;
+    if (!good) {
+      missed += step;
+      continue;
+    }
+    if (missed > 2 * step) trace->facts |= FG_STRIP_GAP;
+    missed = 0;
+    p = along(next, normal_of(direction), c.offset_px);
+    if (visited(trace, p, w->width_px)) break;
+    FG_TRY(append(ctx, trace, p));
+    direction = tangent_at_end(trace, direction);
+  }
+  return FG_OK;
+}
+
+static void reverse(fg_trace *trace) {
+  for (size_t i = 0, j = trace->count; i + 1 < j; i++, j--) {
+    fg_point swap = trace->points[i];
+    trace->points[i] = trace->points[j - 1];
+    trace->points[j - 1] = swap;
+  }
+}
+
+static fg_status trace_from_seed(fg_context *ctx, walker *w, fg_point seed, fg_trace *trace) {
+  fg_point tangent;
+  if (!find_direction(w, &seed, &tangent)) return FG_OK;
+  w->half_window_px = 1.5 * w->width_px + 6;
+  FG_TRY(walk(ctx, w, seed, (fg_point){-tangent.x, -tangent.y}, trace));
+  reverse(trace);
+  FG_TRY(append(ctx, trace, seed));
+  FG_TRY(walk(ctx, w, seed, tangent, trace));
+  trace->width_px = w->width_px;
+  trace->contrast = w->contrast;
+  return FG_OK;
+}
+
+/* Clears the blocks of the object that lie along a trace, and returns how many are left. */
+static int32_t clear_along(const fg_trace *trace, const walker *w, fg_point seed, uint8_t *open) {
+  const fg_object *o = w->object;
+  int32_t reach = (int32_t)((w->width_px / 2 + 2 * FG_BLOCK_PX) / FG_BLOCK_PX) + 1, left = 0;
+  for (size_t i = 0; i <= trace->count; i++) {
+    fg_point p = i < trace->count ? trace->points[i] : seed;
+    int32_t bx = (int32_t)(p.x / FG_BLOCK_PX) - o->x, by = (int32_t)(p.y / FG_BLOCK_PX) - o->y;
+    for (int32_t y = by - reach; y <= by + reach; y++)
+      for (int32_t x = bx - reach; x <= bx + reach; x++)
+        if (x >= 0 && y >= 0 && x < o->width && y < o->height)
+          open[(size_t)y * (size_t)o->width + (size_t)x] = 0;
+  }
+  for (size_t i = 0; i < (size_t)o->width * (size_t)o->height; i++) left += open[i];
+  return left;
+}
+
+/* The open block with the largest excess: the middle of the strip, away from its fringes. */
+static bool find_seed(const walker *w, const uint8_t *open, fg_point *seed) {
+  const fg_object *o = w->object;
+  const fg_segmentation *s = w->segmentation;
+  float best = 0;
+  for (int32_t y = 0; y < o->height; y++)
+    for (int32_t x = 0; x < o->width; x++) {
+      if (!open[(size_t)y * (size_t)o->width + (size_t)x]) continue;
+      float excess = s->excess[(size_t)(y + o->y) * (size_t)s->width + (size_t)(x + o->x)];
+      if (excess <= best) continue;
+      best = excess;
+      *seed = (fg_point){(x + o->x + 0.5) * FG_BLOCK_PX - 0.5, (y + o->y + 0.5) * FG_BLOCK_PX - 0.5};
+    }
+  return best > 0;
+}
+
+/* The strip's own contrast at a seed: the largest excess of the pixels around it, less the
+ * extremes (a 90th percentile over 16 × 16). */
+static double contrast_at(const walker *w, fg_point seed) {
+  float values[16 * 16];
+  size_t count = 0;
+  for (int y = -8; y < 8; y++)
+    for (int x = -8; x < 8; x++) {
+      float value = excess_at(w, seed.x + x, seed.y + y);
+      size_t i = count++;
+      for (; i > 0 && values[i - 1] > value; i--) values[i] = values[i - 1];
+      values[i] = value;
+    }
+  return values[count * 9 / 10];
+}
+
+static void open_blocks(const walker *w, uint8_t *open) {
+  const fg_object *o = w->object;
+  for (int32_t y = 0; y < o->height; y++)
+    for (int32_t x = 0; x < o->width; x++)
+      open[(size_t)y * (size_t)o->width + (size_t)x] =
+          w->segmentation->labels[(size_t)(y + o->y) * (size_t)w->segmentation->width +
+                                  (size_t)(x + o->x)] == o->label;
+}
+
+static void free_trace(fg_trace *trace) {
+  free(trace->points);
+  memset(trace, 0, sizeof *trace);
+}
+
+/* Keeps a trace that is long enough to be a strip. */
+static void keep_or_drop(fg_trace *trace, fg_trace_list *list) {
+  double length = 0;
+  for (size_t i = 1; i < trace->count; i++)
+    length += hypot(trace->points[i].x - trace->points[i - 1].x,
+                    trace->points[i].y - trace->points[i - 1].y);
+  if (trace->count < 8 || length < LENGTH_LEAST * trace->width_px)
+    free_trace(trace);
+  else
+    list->traces[list->count++] = *trace;
+}
+
+fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
+                          const fg_segmentation *segmentation, const fg_object *object,
+                          double width_px, fg_trace_list *list) {
+  memset(list, 0, sizeof *list);
+  walker w = {.tiles = tiles, .segmentation = segmentation, .object = object};
+  uint8_t *open = NULL;
+  fg_status status = FG_OK;
+  fg_trace trace = {0};
+  FG_TRY_EXIT(fg_memory_allocate(ctx, (size_t)object->width * (size_t)object->height, 1,
+                                 (void **)&open));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, STRIPS_MAX, sizeof *list->traces, (void **)&list->traces));
+  open_blocks(&w, open);
+  fg_point seed;
+  int32_t left = object->blocks, little = (int32_t)(LENGTH_LEAST * width_px / FG_BLOCK_PX);
+  for (int i = 0; i < STRIPS_MAX && left > little && find_seed(&w, open, &seed); i++) {
+    trace = (fg_trace){0};
+    w.contrast = contrast_at(&w, seed);
+    w.half_window_px = 3 * width_px + 8;
+    w.width_px = width_px;
+    FG_TRY_EXIT(trace_from_seed(ctx, &w, seed, &trace));
+    left = clear_along(&trace, &w, seed, open);
+    keep_or_drop(&trace, list);
+    trace = (fg_trace){0};
+  }
+  if (list->count > 1)
+    for (size_t i = 0; i < list->count; i++) list->traces[i].facts |= FG_STRIP_TOUCHES_OTHER;
+exit:
+  free(open);
+  free_trace(&trace);
+  if (status != FG_OK) fg_trace_list_free(list);
+  return status;
+}
+
+void fg_trace_list_free(fg_trace_list *list) {
+  if (!list) return;
+  for (size_t i = 0; i < list->count; i++) free_trace(&list->traces[i]);
+  free(list->traces);
+  memset(list, 0, sizeof *list);
+}

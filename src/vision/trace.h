@@ -1,0 +1,42 @@
+/* Tracing: the coarse midline of every strip in an object, by walking along it.
+ *
+ * From a seed inside the strip the walk steps along the tangent, cuts the strip across, and puts
+ * the next point into the middle of the cut. It goes on through short gaps (a scratch, a speck of
+ * dust) and stops where the strip ends. Points are good to a few tenths of a pixel: a reference
+ * line for the edges, not a measurement.
+ */
+#ifndef FG_VISION_TRACE_H
+#define FG_VISION_TRACE_H
+
+#include "foilgauge/circle.h"
+#include "vision/segment.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_trace {
+  fg_point *points;   /* px, from one end to the other; owned */
+  size_t count, capacity;
+  double width_px;    /* median width of the strip at half contrast */
+  double contrast;    /* median contrast, 8-bit counts */
+  unsigned facts;     /* fg_strip_fact: border, other, gap */
+} fg_trace;
+
+typedef struct fg_trace_list {
+  fg_trace *traces;   /* owned */
+  size_t count;
+} fg_trace_list;
+
+/* All strips of one object. `width_px` is what the design expects; strips of a quarter to four
+ * times that are traced. An object that is no strip gives an empty list. */
+fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
+                          const fg_segmentation *segmentation, const fg_object *object,
+                          double width_px, fg_trace_list *list);
+
+void fg_trace_list_free(fg_trace_list *list);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
