@@ -16,6 +16,7 @@ typedef enum output_kind {
   OUT_CSV,
   OUT_POINTS,
   OUT_OVERLAY,
+  OUT_HTML,
   OUT_TABLE,
   OUT_COUNT
 } output_kind;
@@ -25,7 +26,7 @@ typedef fg_status report_writer(fg_context *ctx, const fg_report *report, FILE *
 static report_writer *const writers[OUT_COUNT] = {
     [OUT_JSON] = fg_report_write_json,     [OUT_CSV] = fg_report_write_csv,
     [OUT_POINTS] = fg_report_write_points, [OUT_OVERLAY] = fg_report_write_overlay,
-    [OUT_TABLE] = fg_report_write_table,
+    [OUT_HTML] = fg_report_write_html,     [OUT_TABLE] = fg_report_write_table,
 };
 
 typedef struct measure_arguments {
@@ -51,7 +52,15 @@ typedef struct measure_run {
   fg_status first_error;
 } measure_run;
 
-enum { OPTION_CSV = 256, OPTION_POINTS, OPTION_OVERLAY, OPTION_DPI, OPTION_FORM, OPTION_THREADS };
+enum {
+  OPTION_CSV = 256,
+  OPTION_POINTS,
+  OPTION_OVERLAY,
+  OPTION_HTML,
+  OPTION_DPI,
+  OPTION_FORM,
+  OPTION_THREADS
+};
 
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
@@ -61,6 +70,7 @@ static const struct argp_option options[] = {
     {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
     {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},
     {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
     {0},
 };
@@ -98,6 +108,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_OVERLAY:
     arguments->paths[OUT_OVERLAY] = text;
+    break;
+  case OPTION_HTML:
+    arguments->paths[OUT_HTML] = text;
     break;
   case OPTION_FORM:
     arguments->form = text;
