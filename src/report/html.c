@@ -35,14 +35,15 @@ static const char style[] =
     "font-variant-numeric:tabular-nums}th,td{padding:5px 10px;text-align:right;white-space:nowrap;"
     "border-bottom:1px solid "
     "var(--line)}th{font-weight:600;color:var(--soft);vertical-align:bottom}"
-    "th:first-child,td:first-child{text-align:left}td.words{text-align:left;white-space:normal}"
+    "th:first-child,td:first-child{text-align:left}td.words{text-align:left;white-space:normal}td."
+    "words:not(:empty){min-width:150px}"
     "td "
     "i{display:block;font-style:normal;font-weight:400;color:var(--soft);font-size:11.5px;line-"
     "height:1.2}"
     "td.fail{background:#fdeaea;color:var(--bad);font-weight:600}"
     "td.cannot_tell{background:#fff4df;color:var(--open);font-weight:600}"
     "td.pass{background:#edf7f1}tr.limits td{color:var(--soft);font-size:12.5px}\n"
-    ".reasons{margin:-4px 0 14px;color:var(--soft)}.reasons b{color:var(--ink)}\n"
+    ".reasons{margin:-6px 0 10px;color:var(--soft)}.reasons b{color:var(--ink)}\n"
     "ul.flags{margin:14px 0 0;padding:10px 14px 10px 32px;background:#fff8e8;border-radius:8px}\n"
     ".plot{display:block;width:100%;height:auto;font-size:14px}.plot text{fill:var(--ink)}"
     ".plot .x,.plot .title{text-anchor:middle}.plot .y{text-anchor:end}.plot .title{fill:"
@@ -159,7 +160,7 @@ static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, cons
   if (count == 0) return;
   fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, field->decimals, sum, field->unit);
   if (count > 1)
-    fprintf(out, "<small>s = %.*f over %zu bumps</small>", field->decimals,
+    fprintf(out, "<small>s = %.*f, n = %zu</small>", field->decimals,
             sqrt(squares / (double)(count - 1)), count);
   fputs("</dd></div>\n", out);
 }
@@ -170,7 +171,7 @@ static void put_tiles(FILE *out, const fg_foil *foil) {
   put_tile(out, FG_REPORT_FOIL, "overall.springback_error_pct", "Overall springback", foil);
   put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
   put_mean_tile(out, foil, "height_mm", "Bump height, mean");
-  put_mean_tile(out, foil, "clearance_mm", "Local clearance, mean");
+  put_mean_tile(out, foil, "clearance_mm", "Clearance, mean");
   put_tile(out, FG_REPORT_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
@@ -332,7 +333,8 @@ static void put_uncertainty(FILE *out) {
         "factor k = 2, about 95 %). u comes from the residuals with their correlation along the "
         "edge and from what the two edges say against each other. The scanner&#39;s own error of "
         "scale is not in it. A value passes when value ± U lies inside its tolerance, fails when "
-        "it lies outside, and cannot be told when a limit runs through it.</p>\n",
+        "it lies outside, and cannot be told when a limit runs through it. s is the standard "
+        "deviation over the n bumps.</p>\n",
         out);
 }
 
