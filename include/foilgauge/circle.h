@@ -3,7 +3,8 @@
  * The algebraic estimate is the hyper-accurate fit (Al-Sharadqah and Chernov 2009, Electronic
  * Journal of Statistics 3, 886): no essential bias on short arcs, unlike Kåsa's. The geometric fit
  * minimises sum w_i (|p_i - c| - R)² with Nelder-Mead (GSL nmsimplex2) on centred, scaled
- * coordinates, and is polished by Gauss-Newton to the last digits.
+ * coordinates, and is polished by damped Newton to the last digits. Both work on the arc (curvature,
+ * direction, crown), so that a radius of thousands of times the arc is no special case.
  */
 #ifndef FOILGAUGE_CIRCLE_H
 #define FOILGAUGE_CIRCLE_H
@@ -34,13 +35,15 @@ typedef struct fg_circle_fit {
   size_t iterations;       /* of Nelder-Mead */
 } fg_circle_fit;
 
-/* Hyper fit. `weights` may be NULL (all 1). FG_ERR_NUMERIC for fewer than 3 points, for points
+/* Hyper fit. `weights` may be NULL (all 1) and are 0 or more. FG_ERR_NUMERIC for fewer than 3
+ * points of weight above 0, for points
  * that are not finite, all in one place or exactly on a line. */
 fg_status fg_circle_estimate(fg_context *ctx, const fg_point *points, const double *weights,
                              size_t count, fg_circle *circle);
 
 /* Orthogonal-distance fit. `start` may be NULL: the algebraic estimate is used; a start that is
- * given may be bad. Three points or more. The same errors as above. */
+ * given may be bad: it is tried first only where it is better than the algebraic one. The same errors
+ * as above. */
 fg_status fg_circle_fit_geometric(fg_context *ctx, const fg_point *points, const double *weights,
                                   size_t count, const fg_circle *start, fg_circle_fit *fit);
 

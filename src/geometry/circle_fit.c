@@ -97,25 +97,40 @@ static size_t list_starts(const fg_circle_frame *frame, const fg_circle *given,
   return count;
 }
 
-static fg_status fit_in_frame(fg_context *ctx, const fg_circle_frame *frame, const fg_circle *given,
-                              fg_circle_fit *fit) {
+/* Points that clearly lie on an arc have one minimum. Where a circle explains little more than a
+ * line does there may be several, and every start is tried. */
+static const double clear_share = 0.1;
+
+static fg_status best_arc(fg_context *ctx, const fg_circle_frame *frame, const fg_circle *given,
+                          fg_circle_arc *best, size_t *iterations) {
   fg_circle_arc starts[STARTS_MAX];
   size_t count = list_starts(frame, given, starts);
-  size_t iterations = 0;
-  for (size_t i = 0; i < count; i++) {
+  double best_ms = INFINITY;
+  for (size_t i = 0; i < count && best_ms > clear_share * frame->line_ms; i++) {
     bool reached = false;
-    fg_circle_fit found;
-    FG_TRY(descend(ctx, frame, &starts[i], &iterations, &reached));
-    if (!reached || !fg_circle_arc_covariance(frame, &starts[i], found.covariance)) continue;
-    fg_circle local = fg_circle_arc_circle(&starts[i]);
-    found.circle = fg_circle_out_of_frame(frame, &local);
-    found.rms = frame->scale * sqrt(fg_circle_arc_ms(frame, &starts[i]));
-    found.iterations = iterations;
-    *fit = found;
-    return FG_OK;
+    FG_TRY(descend(ctx, frame, &starts[i], iterations, &reached));
+    double ms = fg_circle_arc_ms(frame, &starts[i]);
+    if (!reached || !(ms < best_ms)) continue;
+    best_ms = ms;
+    *best = starts[i];
   }
+  if (best_ms < INFINITY) return FG_OK;
   return fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: a line fits %zu points better than any circle",
                  frame->count);
+}
+
+static fg_status fit_in_frame(fg_context *ctx, const fg_circle_frame *frame, const fg_circle *given,
+                              fg_circle_fit *fit) {
+  fg_circle_arc arc;
+  fg_circle_fit found = {0};
+  FG_TRY(best_arc(ctx, frame, given, &arc, &found.iterations));
+  if (!fg_circle_arc_covariance(frame, &arc, found.covariance))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: the points do not determine a circle");
+  fg_circle local = fg_circle_arc_circle(&arc);
+  found.circle = fg_circle_out_of_frame(frame, &local);
+  found.rms = frame->scale * sqrt(fg_circle_arc_ms(frame, &arc));
+  *fit = found;
+  return FG_OK;
 }
 
 fg_status fg_circle_fit_geometric(fg_context *ctx, const fg_point *points, const double *weights,

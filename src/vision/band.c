@@ -19,41 +19,52 @@ typedef struct run {
 
 /* A station as the run sees it: u along the lattice's running axis, v across. */
 typedef struct view {
-  double u, v, tu, tv, nu, nv, curvature;
+  double u, v, tu, tv;
 } view;
 
 static view view_station(const run *r, size_t i) {
   const fg_reference_station *s = &r->reference->stations[i];
-  if (r->steep) return (view){s->y, s->x, s->ty, s->tx, s->tx, -s->ty, s->curvature};
-  return (view){s->x, s->y, s->tx, s->ty, -s->ty, s->tx, s->curvature};
+  if (r->steep) return (view){s->y, s->x, s->ty, s->tx};
+  return (view){s->x, s->y, s->tx, s->ty};
 }
 
-static float pixel_at(const run *r, int64_t u, int64_t v) {
-  return r->steep ? fg_tiles_pixel(r->tiles, v, u) : fg_tiles_pixel(r->tiles, u, v);
+/* The station nearest to a pixel, from a guess, and the pixel's distance from the line: measured
+ * from that station's own osculating circle, at most half a step away, so that a line whose
+ * curvature changes (the start of a fillet) does not bend the scale. */
+static long project(const fg_reference *line, double x, double y, long station, double *across) {
+  double along, half = 0.5 * line->step_px;
+  *across = INFINITY;
+  for (int i = 0; i < 4; i++) {
+    if (station < 0 || station >= (long)line->count) return -1;
+    const fg_reference_station *s = &line->stations[station];
+    double dx = x - s->x, dy = y - s->y;
+    fg_reference_project(s->curvature, dx * s->tx + dy * s->ty, dy * s->tx - dx * s->ty, &along,
+                         across);
+    if (fabs(along) <= half) break;
+    long move = (long)(along / line->step_px + (along > 0 ? 0.5 : -0.5));
+    if (move == 0 || i == 3) break;
+    station += move;
+  }
+  return station;
 }
 
 /* All pixels of one lattice line that crosses the reference between stations i and i+1. */
 static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const view *a,
                               const view *b, int64_t u, fg_band *band) {
   double step = r->reference->step_px, f = ((double)u - a->u) / (b->u - a->u);
-  double k = (1 - f) * a->curvature + f * b->curvature;
-  double tu = (1 - f) * a->tu + f * b->tu, tv = (1 - f) * a->tv + f * b->tv;
-  double nu = (1 - f) * a->nu + f * b->nu, nv = (1 - f) * a->nv + f * b->nv;
-  /* The line between stations lies beside its chord, away from the centre of curvature. */
-  double sagitta = 0.5 * k * f * (1 - f) * step * step;
-  double v0 = (1 - f) * a->v + f * b->v - sagitta * nv, u0 = (double)u - sagitta * nu;
-  double span = r->reach_px / fabs(nv) * 1.05 + 1;
+  double v0 = (1 - f) * a->v + f * b->v;
+  double span = r->reach_px / fabs(a->tu) * 1.05 + 1;
   int64_t from = (int64_t)ceil(v0 - span), to = (int64_t)floor(v0 + span);
   size_t needed = band->count + (size_t)(to - from + 1);
   FG_TRY(fg_memory_reserve(ctx, needed, sizeof *band->pixels, &band->capacity,
                            (void **)&band->pixels));
   for (int64_t v = from; v <= to; v++) {
-    double du = (double)u - u0, dv = (double)v - v0, along, across;
-    fg_reference_project(k, du * tu + dv * tv, du * nu + dv * nv, &along, &across);
+    double guess = (double)i + f + ((double)v - v0) * a->tv / step, across;
+    int64_t x = r->steep ? v : u, y = r->steep ? u : v;
+    long station = project(r->reference, (double)x, (double)y, (long)(guess + 0.5), &across);
+    if (station < (long)r->first || station > (long)r->last) continue;
     if (fabs(across) > r->reach_px) continue;
-    double station = floor((double)i + f + along / step + 0.5);
-    if (station < (double)r->first || station > (double)r->last) continue;
-    float value = pixel_at(r, u, v);
+    float value = fg_tiles_pixel(r->tiles, x, y);
     if (isnan(value)) continue;
     band->pixels[band->count++] = (fg_band_pixel){(float)across, value, (int32_t)station};
   }

@@ -22,6 +22,9 @@ typedef struct fg_blob {
 fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32_t height,
                       int32_t *labels, fg_blob **blobs, int32_t *blob_count);
 
+/* Median over 5 × 5 of a grid of floats, in place, borders repeated. */
+fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
+
 /* A picture to draw on: rows of R, G, B bytes, without padding. */
 typedef struct fg_rgb {
   uint8_t *pixels; /* 3 × width × height */
@@ -37,9 +40,6 @@ fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, siz
  * left by that share of its width: 0 starts at `x_px`, 0.5 is centred there. */
 fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
                           double height_px, double anchor, uint32_t colour, int32_t thickness_px);
-
-/* Median over 5 × 5 of a grid of floats, in place, borders repeated. */
-fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
 
 #ifdef __cplusplus
 }

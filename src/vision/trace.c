@@ -66,8 +66,8 @@ static bool cut_across(const walker *w, fg_point p, fg_point tangent, double con
   while (from > 0 && profile[from - 1] > limit) from--;
   while (to < count - 1 && profile[to + 1] > limit) to++;
   if (from == 0 || to == count - 1) return false;
-  double a = from - (profile[from] - limit) / (profile[from] - profile[from - 1]);
-  double b = to + (profile[to] - limit) / (profile[to] - profile[to + 1]);
+  double a = from - (double)(profile[from] - limit) / (profile[from] - profile[from - 1]);
+  double b = to + (double)(profile[to] - limit) / (profile[to] - profile[to + 1]);
   out->offset_px = 0.5 * (a + b) - half;
   out->width_px = b - a;
   out->peak = 0;
@@ -266,7 +266,7 @@ fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
                                  (void **)&open));
   FG_TRY_EXIT(fg_memory_allocate(ctx, STRIPS_MAX, sizeof *list->traces, (void **)&list->traces));
   open_blocks(&w, open);
-  fg_point seed;
+  fg_point seed = {0, 0};
   int32_t left = object->blocks, little = (int32_t)(LENGTH_LEAST * width_px / FG_BLOCK_PX);
   for (int i = 0; i < STRIPS_MAX && left > little && find_seed(&w, open, &seed); i++) {
     trace = (fg_trace){0};

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/circle.h"
+#include "support/random.h"
 
 enum { POINTS_MAX = 600 };
 
@@ -27,16 +28,6 @@ static FILE *open_reference(const char *name) {
   return fopen(path, "r");
 }
 
-static uint64_t next_random(uint64_t *seed) {
-  *seed ^= *seed << 13;
-  *seed ^= *seed >> 7;
-  return *seed ^= *seed << 17;
-}
-
-static double uniform(uint64_t *seed) {
-  return (double)(next_random(seed) >> 11) * 0x1p-53;
-}
-
 static size_t read_nist(int number, double points[][3], double fit[7]) {
   char name[64];
   size_t count = 0;
@@ -46,12 +37,14 @@ static size_t read_nist(int number, double points[][3], double fit[7]) {
   assert_int_equal(fscanf(file, "%zu", &count), 1);
   assert_in_range(count, 3, POINTS_MAX);
   for (size_t i = 0; i < count; i++)
-    for (int k = 0; k < 3; k++) assert_int_equal(fscanf(file, "%lf", &points[i][k]), 1);
+    for (int k = 0; k < 3; k++)
+      assert_int_equal(fscanf(file, "%lf", &points[i][k]), 1);
   fclose(file);
   snprintf(name, sizeof name, "nist_circle2d/cir2d%d.fit", number);
   file = open_reference(name);
   assert_non_null(file);
-  for (int k = 0; k < 7; k++) assert_int_equal(fscanf(file, "%lf", &fit[k]), 1);
+  for (int k = 0; k < 7; k++)
+    assert_int_equal(fscanf(file, "%lf", &fit[k]), 1);
   fclose(file);
   return count;
 }
@@ -77,7 +70,8 @@ static void nist_pair(int number) {
 
 static void all_nist_pairs(void **state) {
   (void)state;
-  for (int number = 1; number <= 30; number++) nist_pair(number);
+  for (int number = 1; number <= 30; number++)
+    nist_pair(number);
 }
 
 typedef struct literature_set {
@@ -131,8 +125,10 @@ static void literature_sets_from_bad_starts(void **state) {
     assert_true(parse_set(line, &set));
     check_set(&set, NULL);
     for (int i = 0; i < 300; i++) {
-      double far = pow(10, -1 + 7 * uniform(&seed)), angle = 6.2831853 * uniform(&seed);
-      fg_circle start = {far * cos(angle), far * sin(angle), pow(10, -3 + 9 * uniform(&seed))};
+      double far = pow(10, -1 + 7 * random_uniform(&seed)),
+             angle = 6.2831853 * random_uniform(&seed);
+      fg_circle start = {far * cos(angle), far * sin(angle),
+                         pow(10, -3 + 9 * random_uniform(&seed))};
       check_set(&set, &start);
     }
     sets++;

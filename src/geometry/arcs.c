@@ -1,0 +1,194 @@
+#include "geometry/arcs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+#define OUTLIER_SIGMAS 5.0
+#define OUTLIER_LEAST_MM 0.0003
+enum { POINTS_LEAST = 8, ROUNDS_MAX = 6 };
+
+fg_status fg_datum_line_build(fg_context *ctx, const fg_strip *strip, fg_datum datum,
+                              bool inner_is_right, fg_datum_line *line) {
+  memset(line, 0, sizeof *line);
+  line->strip = strip;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, strip->count, sizeof *line->points, (void **)&line->points));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *line->half_width,
+                                 (void **)&line->half_width));
+  bool right = (datum == FG_DATUM_INNER) == inner_is_right;
+  for (size_t i = 0; i < strip->count; i++) {
+    const fg_station *s = &strip->stations[i];
+    fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
+    line->points[i] = datum == FG_DATUM_MID ? middle : right ? s->right : s->left;
+    line->half_width[i] = 0.5 * hypot(s->right.x - s->left.x, s->right.y - s->left.y);
+  }
+  double l = strip->blur_left_um, r = strip->blur_right_um;
+  double square = datum == FG_DATUM_MID ? 0.5 * (l * l + r * r) : right ? r * r : l * l;
+  line->blur_mm = 1e-3 * sqrt(square);
+exit:
+  if (status != FG_OK) fg_datum_line_free(line);
+  return status;
+}
+
+void fg_datum_line_free(fg_datum_line *line) {
+  if (!line) return;
+  free(line->points);
+  free(line->half_width);
+  memset(line, 0, sizeof *line);
+}
+
+/* Blur moves an edge of radius R towards the centre by blur²/(2R). */
+static double blur_shift(const fg_datum_line *line, double radius) {
+  return line->blur_mm * line->blur_mm / (2 * radius);
+}
+
+double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_t station) {
+  if (!(line->strip->stations[station].weight > 0)) return NAN;
+  fg_point p = line->points[station];
+  return hypot(p.x - circle->x, p.y - circle->y) - circle->radius +
+         blur_shift(line, circle->radius);
+}
+
+static double outlier_limit(const fg_arc *arc) {
+  return fmax(OUTLIER_SIGMAS * arc->scatter_mm, OUTLIER_LEAST_MM);
+}
+
+bool fg_arc_used(const fg_datum_line *line, const fg_arc *arc, size_t station) {
+  double r = fg_arc_residual(line, &arc->circle, station);
+  return isfinite(r) && fabs(r) <= outlier_limit(arc);
+}
+
+static size_t count_stations(const fg_arc *arc) {
+  size_t count = 0;
+  for (size_t i = 0; i < arc->range_count; i++)
+    count += arc->ranges[i].last - arc->ranges[i].first + 1;
+  return count;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Robust sd about the circle; `work` holds all stations of the arc. */
+static double find_scatter(const fg_datum_line *line, const fg_arc *arc, double *work) {
+  size_t n = 0;
+  for (size_t i = 0; i < arc->range_count; i++)
+    for (size_t k = arc->ranges[i].first; k <= arc->ranges[i].last; k++) {
+      double r = fg_arc_residual(line, &arc->circle, k);
+      if (isfinite(r)) work[n++] = fabs(r);
+    }
+  if (!n) return 0;
+  qsort(work, n, sizeof *work, compare_doubles);
+  return 1.4826 * work[n / 2];
+}
+
+/* Gathers the usable stations; with `all` outliers too. */
+static size_t gather(const fg_datum_line *line, const fg_arc *arc, bool all, fg_point *points) {
+  size_t n = 0;
+  for (size_t i = 0; i < arc->range_count; i++)
+    for (size_t k = arc->ranges[i].first; k <= arc->ranges[i].last; k++)
+      if (all ? line->strip->stations[k].weight > 0 : fg_arc_used(line, arc, k))
+        points[n++] = line->points[k];
+  return n;
+}
+
+static fg_status fit_once(fg_context *ctx, const fg_datum_line *line, const fg_point *points,
+                          size_t count, const fg_circle *start, fg_arc *arc) {
+  fg_circle_fit fit;
+  if (count < POINTS_LEAST)
+    return fg_fail(ctx, FG_ERR_NUMERIC, "%zu edge points are too few for a circle", count);
+  FG_TRY(fg_circle_fit_geometric(ctx, points, NULL, count, start, &fit));
+  arc->circle = fit.circle;
+  arc->circle.radius += blur_shift(line, fit.circle.radius);
+  arc->rms_mm = fit.rms;
+  arc->points = count;
+  memcpy(arc->covariance, fit.covariance, sizeof arc->covariance);
+  return FG_OK;
+}
+
+fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
+  size_t stations = count_stations(arc), usable = 0, before = 0;
+  fg_point *points = NULL;
+  double *work = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *points, (void **)&points));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *work, (void **)&work));
+  usable = gather(line, arc, true, points);
+  FG_TRY_EXIT(fit_once(ctx, line, points, usable, NULL, arc));
+  before = usable;
+  for (int round = 0; round < ROUNDS_MAX; round++) {
+    arc->scatter_mm = find_scatter(line, arc, work);
+    size_t used = gather(line, arc, false, points);
+    if (used == before) break;
+    FG_TRY_EXIT(fit_once(ctx, line, points, used, NULL, arc));
+    before = used;
+  }
+  arc->outliers = usable - arc->points;
+exit:
+  free(points);
+  free(work);
+  return status;
+}
+
+/* Mean departure over a few stations beyond `at`, in the direction `step`; NaN outside. */
+static double departure(const fg_datum_line *line, const fg_arc *arc, double side, long at,
+                        long step, long low, long high) {
+  enum { MEAN_STATIONS = 3 };
+  double sum = 0;
+  int n = 0;
+  for (int i = 0; i < MEAN_STATIONS; i++) {
+    long k = at + step * i;
+    if (k < low || k > high) break;
+    double r = fg_arc_residual(line, &arc->circle, (size_t)k);
+    if (!isfinite(r)) continue;
+    sum += side * r;
+    n++;
+  }
+  return n ? sum / n : NAN;
+}
+
+/* The tangent point beyond the core's end, in stations from it: the foot of sqrt(departure). */
+static double find_foot(const fg_datum_line *line, const fg_arc *arc, double side, long end,
+                        long step, long low, long high) {
+  double least = fmax(4 * arc->scatter_mm, 0.0004), most = least + 0.02;
+  double s0 = 0, s1 = 0, s2 = 0, r0 = 0, r1 = 0;
+  long k = end;
+  for (; k >= low && k <= high; k += step) {
+    double d = departure(line, arc, side, k, step, low, high);
+    if (!isfinite(d) || d < least) continue;
+    if (d > most) break;
+    double x = (double)((k - end) * step), y = sqrt(d);
+    s0 += 1;
+    s1 += x;
+    s2 += x * x;
+    r0 += y;
+    r1 += x * y;
+  }
+  double determinant = s0 * s2 - s1 * s1, reach = (double)((k - end) * step);
+  if (s0 < 3 || determinant <= 0) return reach;
+  double slope = (s0 * r1 - s1 * r0) / determinant, level = (r0 - slope * s1) / s0;
+  /* The mean over stations ahead sees the departure one station early. */
+  return slope > 0 ? fmin(-level / slope + 1, reach) : reach;
+}
+
+void fg_arc_grow(const fg_datum_line *line, const fg_arc *arc, double side, fg_range bounds,
+                 fg_range *range) {
+  long low = (long)bounds.first, high = (long)bounds.last;
+  double margin = 1.5 * line->blur_mm / line->strip->step_mm + 1;
+  /* Start inside the core: its ends may already lie on the fillets. */
+  long inset = (long)(range->last - range->first) / 6;
+  long a = (long)range->first + inset, b = (long)range->last - inset;
+  double back = find_foot(line, arc, side, a, -1, low, high) - margin;
+  double ahead = find_foot(line, arc, side, b, 1, low, high) - margin;
+  long first = a - (long)floor(back), last = b + (long)floor(ahead);
+  if (first < low) first = low;
+  if (last > high) last = high;
+  if (last - first < POINTS_LEAST) return;
+  range->first = (size_t)first;
+  range->last = (size_t)last;
+}

@@ -1,0 +1,346 @@
+/* A foil from its strip: arcs, uncertainties, numbers, flags, derived quantities. */
+#include "foilgauge/foil.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/labels.h"
+#include "geometry/layout.h"
+
+/* A bump is crushed when its height or radius is off the others' median by this factor. */
+#define CRUSHED_HEIGHT 0.6
+#define CRUSHED_RADIUS 1.6
+/* A bump fits poorly when it scatters by this factor more than the median bump. */
+#define POOR_SCATTER 3.0
+#define OUTLIER_SHARE 0.02
+/* The edge model's systematic error counts when chance would show it less often than this. */
+#define EDGE_MODEL_P 0.005
+/* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
+ * intensity model leaves on clean renders (reports/accuracy.md). */
+#define LINE_SHIFT_BLURS 0.001
+/* Correlation over more stations than this is roughness of the edge. */
+#define ROUGH_STATIONS 3.0
+
+static void fail_foil(fg_foil *foil, const char *why) {
+  foil->flags |= FG_FOIL_NOT_MEASURED;
+  snprintf(foil->error, sizeof foil->error, "%s", why);
+}
+
+/* Unit vectors of a bump: u from O to C, v across. */
+static void bump_frame(const fg_layout *layout, const fg_arc *arc, double frame[2][2]) {
+  double dx = arc->circle.x - layout->overall.circle.x;
+  double dy = arc->circle.y - layout->overall.circle.y, d = hypot(dx, dy);
+  frame[0][0] = dx / d;
+  frame[0][1] = dy / d;
+  frame[1][0] = -dy / d;
+  frame[1][1] = dx / d;
+}
+
+/* A shift of (x, y, R) in the bump's frame: (u, v, R). */
+static void to_frame(double frame[2][2], const double in[3], double out[3]) {
+  for (int i = 0; i < 2; i++) out[i] = frame[i][0] * in[0] + frame[i][1] * in[1];
+  out[2] = in[2];
+}
+
+/* The systematic part of the edge model over all bumps, in the bump's frame: mean square of the
+ * half-width shifts beyond what the half width's own noise gives. False when there is none. */
+static bool find_edge_model(const fg_layout *layout, const fg_noise_model *noise,
+                            double systematic[3][3]) {
+  double ratio = 0, bumps = 0;
+  memset(systematic, 0, 9 * sizeof(double));
+  for (size_t i = 0; i < layout->turning.bump_count; i++) {
+    fg_arc arc = layout->bumps[i];
+    double shift[3], local[3], frame[2][2];
+    if (!layout->fitted[i] || !fg_arc_half_width_shift(&layout->line, &arc, shift)) continue;
+    fg_arc_covariance(&layout->line, noise, &arc);
+    bump_frame(layout, &arc, frame);
+    to_frame(frame, shift, local);
+    ratio += shift[2] * shift[2] / arc.covariance[2][2];
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++) systematic[p][q] += local[p] * local[q];
+    bumps++;
+  }
+  if (bumps < 1 || !(ratio > gsl_cdf_chisq_Qinv(EDGE_MODEL_P, bumps))) return false;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++) systematic[p][q] *= (1 - bumps / ratio) / bumps;
+  return true;
+}
+
+/* Adds a systematic covariance, given in the bump's frame, to a bump's. */
+static void add_systematic(const fg_layout *layout, double systematic[3][3], fg_arc *arc) {
+  double frame[2][2], turn[3][3] = {{0}};
+  bump_frame(layout, arc, frame);
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++) turn[j][i] = frame[i][j];
+  turn[2][2] = 1;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+          arc->covariance[p][q] += turn[p][a] * systematic[a][b] * turn[q][b];
+}
+
+/* The overall circle's own half-width shift, where it exceeds three standard deviations. */
+static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half_width) {
+  fg_arc arc = layout->overall;
+  double shift[3];
+  if (!fg_arc_half_width_shift(&layout->line, &arc, shift)) return;
+  fg_arc_covariance(&layout->line, half_width, &arc);
+  double ratio = shift[2] * shift[2] / arc.covariance[2][2];
+  if (!(ratio > 9)) return;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      layout->overall.covariance[p][q] += (1 - 1 / ratio) * shift[p] * shift[q];
+}
+
+/* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
+ * radius of every circle and the crowns, and nothing else. */
+static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
+  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
+  double shift_mm = LINE_SHIFT_BLURS * blur_um / 1000;
+  arc->covariance[2][2] += shift_mm * shift_mm;
+}
+
+static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
+  fg_noise_model noise, half_width;
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
+  fg_arc_covariance(&layout->line, &noise, &layout->overall);
+  fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
+  add_overall_systematic(layout, &half_width);
+  add_line_shift(foil, &layout->overall);
+}
+
+static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
+  size_t n = 0;
+  for (size_t i = 0; i < layout->turning.bump_count; i++)
+    if (layout->fitted[i]) arcs[n++] = layout->bumps[i];
+  return n;
+}
+
+static fg_status find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil) {
+  fg_arc *arcs = NULL;
+  fg_noise_model noise, half_width;
+  double systematic[3][3];
+  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *arcs, (void **)&arcs));
+  size_t count = gather_bumps(layout, arcs);
+  fg_noise_estimate(&layout->line, arcs, count, 0, &noise);
+  fg_noise_estimate(&layout->line, arcs, count, 1, &half_width);
+  free(arcs);
+  foil->noise_um = 1000 * sqrt(noise.covariance[0]);
+  foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
+  if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
+  bool found = find_edge_model(layout, &half_width, systematic);
+  foil->edge_model_um = found ? 1000 * sqrt(fmax(systematic[2][2], 0)) : 0;
+  for (size_t i = 0; i < layout->turning.bump_count; i++) {
+    if (!layout->fitted[i]) continue;
+    fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
+    if (found) add_systematic(layout, systematic, &layout->bumps[i]);
+    add_line_shift(foil, &layout->bumps[i]);
+  }
+  find_overall_covariance(layout, foil);
+  return FG_OK;
+}
+
+static void fill_overall(const fg_layout *layout, const fg_design *design, fg_foil *foil) {
+  const fg_arc *arc = &layout->overall;
+  fg_overall *o = &foil->overall;
+  o->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
+  o->radius_mm = arc->circle.radius;
+  memcpy(o->covariance, arc->covariance, sizeof o->covariance);
+  for (int i = 0; i < 2; i++) o->u_centre_mm[i] = sqrt(arc->covariance[i][i]);
+  o->u_radius_mm = sqrt(arc->covariance[2][2]);
+  double design_mm = design->overall_radius_mm;
+  o->springback_error_pct = 100 * (design_mm - o->radius_mm) / design_mm;
+  o->u_springback_error_pct = 100 * o->u_radius_mm / design_mm;
+  o->rms_um = 1000 * arc->rms_mm;
+  o->points = arc->points;
+}
+
+static double position_deg(const fg_foil *foil, const fg_arc *arc) {
+  return atan2(arc->circle.y - foil->overall.centre_mm.y,
+               arc->circle.x - foil->overall.centre_mm.x) * 180 / M_PI;
+}
+
+static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design,
+                      const fg_nominal *nominal, fg_foil *foil, fg_bump *bump) {
+  const fg_arc *arc = &layout->bumps[i];
+  const fg_station *stations = foil->strip.stations;
+  bump->arc_start_mm = stations[arc->ranges[0].first].s_mm;
+  bump->arc_end_mm = stations[arc->ranges[0].last].s_mm;
+  bump->position_deg = position_deg(foil, arc);
+  bump->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
+  bump->radius_mm = arc->circle.radius;
+  if (!layout->fitted[i]) {
+    bump->flags |= FG_BUMP_NOT_FITTED;
+    bump->radius_mm = bump->centre_mm.x = bump->centre_mm.y = NAN;
+  }
+  memcpy(bump->covariance, arc->covariance, sizeof bump->covariance);
+  for (int k = 0; k < 2; k++) bump->u_centre_mm[k] = sqrt(arc->covariance[k][k]);
+  bump->u_radius_mm = sqrt(arc->covariance[2][2]);
+  bump->rms_um = 1000 * arc->rms_mm;
+  bump->points = arc->points;
+  if ((double)arc->outliers > OUTLIER_SHARE * (double)arc->points) bump->flags |= FG_BUMP_OUTLIERS;
+  fg_bump_derive(design, nominal, &foil->overall, bump);
+}
+
+static double turn_between(double from_deg, double to_deg) {
+  double d = to_deg - from_deg;
+  return d - 360 * round(d / 360);
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median_of(fg_context *ctx, const fg_foil *foil, double (*get)(const fg_bump *)) {
+  double *values = NULL, median = NAN;
+  size_t n = 0;
+  if (fg_memory_allocate(ctx, foil->bump_count, sizeof *values, (void **)&values) != FG_OK)
+    return NAN;
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (isfinite(get(&foil->bumps[i]))) values[n++] = get(&foil->bumps[i]);
+  if (n) {
+    qsort(values, n, sizeof *values, compare_doubles);
+    median = values[n / 2];
+  }
+  free(values);
+  return median;
+}
+
+static double get_height(const fg_bump *b) {
+  return b->height_mm;
+}
+static double get_radius(const fg_bump *b) {
+  return b->radius_mm;
+}
+static double get_rms(const fg_bump *b) {
+  return b->rms_um;
+}
+
+static void flag_bumps(fg_context *ctx, fg_foil *foil) {
+  double height = median_of(ctx, foil, get_height), radius = median_of(ctx, foil, get_radius);
+  double rms = median_of(ctx, foil, get_rms);
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    fg_bump *b = &foil->bumps[i];
+    if (b->height_mm < CRUSHED_HEIGHT * height || b->radius_mm > CRUSHED_RADIUS * radius ||
+        b->radius_mm < radius / CRUSHED_RADIUS)
+      b->flags |= FG_BUMP_CRUSHED;
+    if (b->rms_um > POOR_SCATTER * rms) b->flags |= FG_BUMP_POOR_FIT;
+  }
+}
+
+/* Puts the bumps into order from the lip (without one: clockwise) and numbers them by their
+ * places: a gap of two pitches leaves a number out. */
+static void number_bumps(const fg_layout *layout, const fg_design *design, fg_foil *foil) {
+  size_t n = foil->bump_count;
+  double turn = n > 1 ? turn_between(foil->bumps[0].position_deg, foil->bumps[1].position_deg) : 0;
+  if (n == 1) turn = layout->turning.sense > 0 ? -1 : 1;
+  bool reversed = layout->turning.lip_last && !layout->turning.lip_first;
+  if (!layout->turning.lip_first && !layout->turning.lip_last) {
+    foil->flags |= FG_FOIL_NO_LIP;
+    reversed = turn < 0;
+  }
+  foil->orientation = (turn > 0) != reversed ? FG_CLOCKWISE : FG_COUNTERCLOCKWISE;
+  for (size_t i = 0; reversed && i < n / 2; i++) {
+    fg_bump swap = foil->bumps[i];
+    foil->bumps[i] = foil->bumps[n - 1 - i];
+    foil->bumps[n - 1 - i] = swap;
+  }
+  double gaps[512];
+  size_t gap_count = n > 1 ? (n - 1 < 512 ? n - 1 : 512) : 0;
+  for (size_t i = 0; i < gap_count; i++)
+    gaps[i] = fabs(turn_between(foil->bumps[i].position_deg, foil->bumps[i + 1].position_deg));
+  if (gap_count) qsort(gaps, gap_count, sizeof *gaps, compare_doubles);
+  double pitch = gap_count >= 3 ? gaps[gap_count / 2] : design->pitch_deg;
+  int number = 1;
+  for (size_t i = 0; i < n; i++) {
+    if (i > 0) {
+      double gap = fabs(turn_between(foil->bumps[i - 1].position_deg, foil->bumps[i].position_deg));
+      int places = (int)lround(gap / pitch);
+      if (places > 1) foil->flags |= FG_FOIL_MISSING_BUMP;
+      number += places > 1 ? places : 1;
+    }
+    foil->bumps[i].number = number;
+  }
+  if (design->bump_count && n != design->bump_count) foil->flags |= FG_FOIL_BUMP_COUNT;
+}
+
+static void find_rotation(fg_foil *foil) {
+  double c = 0, s = 0;
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    c += cos(foil->bumps[i].position_deg * M_PI / 180);
+    s += sin(foil->bumps[i].position_deg * M_PI / 180);
+  }
+  foil->rotation_deg = atan2(s, c) * 180 / M_PI;
+}
+
+static void take_over_facts(fg_foil *foil) {
+  static const unsigned pairs[][2] = {
+      {FG_STRIP_TOUCHES_BORDER, FG_FOIL_TOUCHES_BORDER}, {FG_STRIP_TOUCHES_OTHER, FG_FOIL_TOUCHES_OTHER},
+      {FG_STRIP_CLIPPED, FG_FOIL_CLIPPED},               {FG_STRIP_SIDE_BAND, FG_FOIL_SIDE_BAND},
+      {FG_STRIP_GAP, FG_FOIL_GAP},
+  };
+  for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
+    if (foil->strip.facts & pairs[i][0]) foil->flags |= pairs[i][1];
+}
+
+static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *layout,
+                           fg_foil *foil) {
+  fg_nominal nominal;
+  FG_TRY(fg_design_derive(ctx, design, &nominal));
+  size_t n = layout->turning.bump_count;
+  FG_TRY(find_uncertainties(ctx, layout, foil));
+  fill_overall(layout, design, foil);
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *foil->bumps, (void **)&foil->bumps));
+  foil->bump_count = n;
+  for (size_t i = 0; i < n; i++)
+    fill_bump(layout, i, design, &nominal, foil, &foil->bumps[i]);
+  number_bumps(layout, design, foil);
+  flag_bumps(ctx, foil);
+  find_rotation(foil);
+  if (layout->land_count < 3) foil->flags |= FG_FOIL_FEW_LANDS;
+  return fg_labels_fill(ctx, layout, design->datum, foil);
+}
+
+fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, fg_foil *foil) {
+  fg_layout layout;
+  const char *error;
+  foil->thickness_mm = foil->strip.thickness_mm;
+  foil->u_thickness_mm = foil->strip.u_thickness_mm;
+  foil->in_tolerance = true;
+  take_over_facts(foil);
+  FG_TRY(fg_layout_find(ctx, design, &foil->strip, &layout, &error));
+  fg_status status = FG_OK;
+  if (error)
+    fail_foil(foil, error);
+  else
+    status = fill_foil(ctx, design, &layout, foil);
+  fg_layout_free(&layout);
+  return status;
+}
+
+void fg_foil_free(fg_foil *foil) {
+  if (!foil) return;
+  free(foil->bumps);
+  free(foil->labels);
+  fg_strip_free(&foil->strip);
+  memset(foil, 0, sizeof *foil);
+}
+
+void fg_measurement_free(fg_measurement *measurement) {
+  if (!measurement) return;
+  for (size_t i = 0; i < measurement->foil_count; i++) fg_foil_free(&measurement->foils[i]);
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    free(measurement->discs[i].edge);
+    free(measurement->discs[i].residual_um);
+  }
+  free(measurement->foils);
+  free(measurement->discs);
+  memset(measurement, 0, sizeof *measurement);
+}

@@ -1,0 +1,142 @@
+#include "geometry/layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+enum { GROW_ROUNDS = 3, LAND_POINTS_LEAST = 24 };
+
+/* Stretches between bumps, and what lies beyond the outer two: the places of lands. */
+static fg_range gap_bounds(const fg_layout *layout, size_t i) {
+  const fg_turning *t = &layout->turning;
+  size_t last = layout->line.strip->count - 1;
+  fg_range gap = {0, last};
+  if (i > 0) gap.first = t->bumps[i - 1].last;
+  else if (t->lip_first) gap.first = t->lip_end[0];
+  if (i < t->bump_count) gap.last = t->bumps[i].first;
+  else if (t->lip_last) gap.last = t->lip_end[1];
+  return gap;
+}
+
+static fg_range middle_part(fg_range range, double share) {
+  double length = (double)(range.last - range.first);
+  size_t inset = (size_t)(0.5 * (1 - share) * length);
+  return (fg_range){range.first + inset, range.last - inset};
+}
+
+/* A first overall circle through the middles of the gaps between bumps; with fewer than three
+ * bumps the end lands help. */
+static fg_status start_overall(fg_context *ctx, fg_layout *layout) {
+  size_t bumps = layout->turning.bump_count, n = 0;
+  for (size_t i = 1; i < bumps; i++)
+    layout->lands[n++] = middle_part(gap_bounds(layout, i), 0.25);
+  for (size_t end = 0; end < 2 && bumps < 4; end++) {
+    fg_range gap = gap_bounds(layout, end ? bumps : 0);
+    if (gap.last - gap.first > 40) layout->lands[n++] = middle_part(gap, 0.3);
+  }
+  layout->land_count = n;
+  layout->overall.ranges = layout->lands;
+  layout->overall.range_count = n;
+  return fg_arc_fit(ctx, &layout->line, &layout->overall);
+}
+
+/* Every gap's land: grown from what lies nearest to the circle. End gaps have lip or free end on
+ * one side. */
+static void regrow_lands(fg_layout *layout) {
+  const fg_circle *circle = &layout->overall.circle;
+  size_t n = 0;
+  for (size_t i = 0; i <= layout->turning.bump_count; i++) {
+    fg_range gap = gap_bounds(layout, i), best = {0, 0}, open = {0, 0};
+    double limit = fmax(6 * layout->overall.scatter_mm, 0.003);
+    bool inside = false;
+    for (size_t k = gap.first; k <= gap.last; k++) {
+      double r = fg_arc_residual(&layout->line, circle, k);
+      bool near = isfinite(r) && fabs(r) < limit;
+      if (near && !inside) open.first = k;
+      if (near) open.last = k;
+      if (near && open.last - open.first > best.last - best.first) best = open;
+      inside = near || (inside && !isfinite(r));
+    }
+    if (best.last - best.first < LAND_POINTS_LEAST / 2) continue;
+    fg_range grown = middle_part(best, 0.7);
+    fg_arc_grow(&layout->line, &layout->overall, -1, gap, &grown);
+    if (grown.first < best.first) grown.first = best.first;
+    if (grown.last > best.last) grown.last = best.last;
+    layout->lands[n++] = grown;
+  }
+  layout->land_count = n;
+  layout->overall.ranges = layout->lands;
+  layout->overall.range_count = n;
+}
+
+static fg_status fit_bump(fg_context *ctx, fg_layout *layout, size_t i) {
+  fg_arc *arc = &layout->bumps[i];
+  const fg_stretch *s = &layout->turning.bumps[i];
+  fg_range bounds = {s->first, s->last};
+  size_t wide = (s->last - s->first) / 8;
+  bounds.first = bounds.first > wide ? bounds.first - wide : 0;
+  if (bounds.last + wide < layout->line.strip->count) bounds.last += wide;
+  layout->bump_ranges[i] = middle_part((fg_range){s->first, s->last}, 0.5);
+  arc->ranges = &layout->bump_ranges[i];
+  arc->range_count = 1;
+  fg_status status = fg_arc_fit(ctx, &layout->line, arc);
+  for (int round = 0; round < GROW_ROUNDS && status == FG_OK; round++) {
+    fg_arc_grow(&layout->line, arc, 1, bounds, &layout->bump_ranges[i]);
+    status = fg_arc_fit(ctx, &layout->line, arc);
+  }
+  layout->fitted[i] = status == FG_OK;
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+static fg_status fit_overall(fg_context *ctx, fg_layout *layout, const char **error) {
+  fg_status status = start_overall(ctx, layout);
+  for (int round = 0; round < GROW_ROUNDS && status == FG_OK; round++) {
+    regrow_lands(layout);
+    if (!layout->land_count) break;
+    status = fg_arc_fit(ctx, &layout->line, &layout->overall);
+  }
+  if (status == FG_ERR_MEMORY) return status;
+  if (status != FG_OK || layout->land_count < 2)
+    *error = "too little of the lands is seen for an overall circle";
+  return FG_OK;
+}
+
+fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_strip *strip,
+                         fg_layout *layout, const char **error) {
+  memset(layout, 0, sizeof *layout);
+  *error = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_turning_find(ctx, strip, &layout->turning));
+  size_t bumps = layout->turning.bump_count;
+  if (!bumps) {
+    *error = "no bumps along the strip";
+    goto exit;
+  }
+  /* Bumps turn round their own centre, which lies on the sleeve's side: when they turn towards the
+   * normal (to the right), the shaft is on the left. */
+  layout->inner_is_right = layout->turning.sense < 0;
+  FG_TRY_EXIT(fg_datum_line_build(ctx, strip, design->datum, layout->inner_is_right,
+                                  &layout->line));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(fg_range), (void **)&layout->bump_ranges));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(fg_arc), (void **)&layout->bumps));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(bool), (void **)&layout->fitted));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bumps + 2, sizeof(fg_range), (void **)&layout->lands));
+  FG_TRY_EXIT(fit_overall(ctx, layout, error));
+  for (size_t i = 0; i < bumps && !*error; i++) FG_TRY_EXIT(fit_bump(ctx, layout, i));
+exit:
+  if (status != FG_OK) fg_layout_free(layout);
+  return status;
+}
+
+void fg_layout_free(fg_layout *layout) {
+  if (!layout) return;
+  fg_turning_free(&layout->turning);
+  fg_datum_line_free(&layout->line);
+  free(layout->bump_ranges);
+  free(layout->bumps);
+  free(layout->fitted);
+  free(layout->lands);
+  memset(layout, 0, sizeof *layout);
+}

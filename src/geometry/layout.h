@@ -1,0 +1,27 @@
+/* The layout of a foil: its arcs in order, from what its midline does. */
+#ifndef FG_GEOMETRY_LAYOUT_H
+#define FG_GEOMETRY_LAYOUT_H
+
+#include "geometry/arcs.h"
+#include "geometry/turning.h"
+
+typedef struct fg_layout {
+  fg_turning turning;
+  fg_datum_line line;
+  bool inner_is_right;  /* the shaft's side of the strip */
+  fg_range *bump_ranges; /* turning.bump_count; owned */
+  fg_arc *bumps;         /* one range each; owned */
+  bool *fitted;          /* whether the bump's circle was found; owned */
+  fg_range *lands;       /* owned */
+  size_t land_count;
+  fg_arc overall;        /* over the lands */
+} fg_layout;
+
+/* Finds and fits all arcs. `error` gets words (NULL: none) when the foil cannot be laid out:
+ * no bumps, or too little land for an overall circle. Errors are FG_ERR_MEMORY only. */
+fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_strip *strip,
+                         fg_layout *layout, const char **error);
+
+void fg_layout_free(fg_layout *layout);
+
+#endif

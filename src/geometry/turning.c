@@ -1,0 +1,169 @@
+#include "geometry/turning.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+#define TANGENT_MM     0.12              /* the direction is taken over ± this length */
+#define PROMINENCE_RAD (12 * M_PI / 180) /* smaller turns back are not turning points */
+#define LIP_TURN_LEAST (45 * M_PI / 180)
+#define LIP_RADIUS     0.4 /* a lip's bend is tighter than this share of the bumps' radius */
+enum { STRETCHES_MAX = 512 };
+
+static void find_directions(const fg_strip *strip, double *direction) {
+  size_t reach = (size_t)(TANGENT_MM / strip->step_mm + 0.5);
+  if (reach < 1) reach = 1;
+  double before = 0;
+  for (size_t i = 0; i < strip->count; i++) {
+    size_t a = i > reach ? i - reach : 0;
+    size_t b = i + reach < strip->count ? i + reach : strip->count - 1;
+    fg_point p = fg_strip_middle(strip, a), q = fg_strip_middle(strip, b);
+    double angle = atan2(q.y - p.y, q.x - p.x);
+    if (i > 0) angle += 2 * M_PI * round((before - angle) / (2 * M_PI));
+    direction[i] = before = angle;
+  }
+}
+
+/* Cuts the strip at the turning points of the direction. Returns how many stretches. */
+static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_stretch *out) {
+  size_t count = 0, from = 0, low = 0, high = 0;
+  int rising = 0;
+  for (size_t i = 1; i <= strip->count && count < STRETCHES_MAX - 1; i++) {
+    bool end = i == strip->count;
+    if (!end) {
+      if (direction[i] > direction[high]) high = i;
+      if (direction[i] < direction[low]) low = i;
+    }
+    size_t cut;
+    if (!end && rising >= 0 && direction[i] < direction[high] - PROMINENCE_RAD) {
+      cut = high;
+      low = i;
+      rising = -1;
+    } else if (!end && rising <= 0 && direction[i] > direction[low] + PROMINENCE_RAD) {
+      cut = low;
+      high = i;
+      rising = 1;
+    } else if (end) {
+      cut = strip->count - 1;
+    } else {
+      continue;
+    }
+    if (cut > from)
+      out[count++] = (fg_stretch){from, cut, direction[cut] - direction[from],
+                                  strip->stations[cut].s_mm - strip->stations[from].s_mm};
+    from = cut;
+  }
+  return count;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Median over the stretches that turn with `sign`, the two at the ends left out when there are
+ * others. 0 when there are none. */
+static double median_over(const fg_stretch *stretches, size_t count, double sign,
+                          double (*get)(const fg_stretch *)) {
+  double values[STRETCHES_MAX];
+  size_t n = 0, skip = count > 4 ? 1 : 0;
+  for (size_t i = skip; i + skip < count; i++)
+    if (stretches[i].turn_rad * sign > PROMINENCE_RAD) values[n++] = get(&stretches[i]);
+  if (!n) return 0;
+  qsort(values, n, sizeof *values, compare_doubles);
+  return values[n / 2];
+}
+
+static double get_turn(const fg_stretch *s) {
+  return fabs(s->turn_rad);
+}
+
+static double get_radius(const fg_stretch *s) {
+  return s->length_mm / fabs(s->turn_rad);
+}
+
+/* Bumps turn less than what lies between them, by one pitch. With too few stretches to compare,
+ * bumps are those of the larger radius. */
+static double find_sense(const fg_stretch *stretches, size_t count) {
+  double up = median_over(stretches, count, 1, get_turn);
+  double down = median_over(stretches, count, -1, get_turn);
+  if (count >= 6 && up > 0 && down > 0) return up < down ? 1 : -1;
+  return median_over(stretches, count, 1, get_radius) >
+                 median_over(stretches, count, -1, get_radius)
+             ? 1
+             : -1;
+}
+
+/* A tight bend in the bumps' sense, the first or last of its kind, is the lip's. */
+static bool is_lip(const fg_stretch *s, double typical_radius) {
+  return fabs(s->turn_rad) > LIP_TURN_LEAST && get_radius(s) < typical_radius;
+}
+
+/* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
+ * radius of the bend is judged where 80 % of the turn happens. */
+static fg_stretch tight_part(const fg_strip *strip, const double *direction,
+                             const fg_stretch *s) {
+  size_t a = s->first, b = s->last;
+  double from = direction[a] + 0.1 * s->turn_rad, to = direction[a] + 0.9 * s->turn_rad;
+  double sign = s->turn_rad > 0 ? 1 : -1;
+  while (a < s->last && sign * (direction[a] - from) < 0) a++;
+  while (b > a && sign * (direction[b] - to) > 0) b--;
+  return (fg_stretch){a, b, 0.8 * s->turn_rad,
+                      strip->stations[b].s_mm - strip->stations[a].s_mm};
+}
+
+static void pick_bumps(const fg_strip *strip, const double *direction, const fg_stretch *all,
+                       size_t count, fg_turning *out) {
+  size_t n = 0;
+  double radii[STRETCHES_MAX];
+  fg_stretch *bumps = out->bumps;
+  for (size_t i = 0; i < count; i++)
+    if (all[i].turn_rad * out->sense > PROMINENCE_RAD) {
+      fg_stretch tight = tight_part(strip, direction, &all[i]);
+      radii[n] = get_radius(&tight);
+      bumps[n++] = all[i];
+    }
+  if (!n) return;
+  double sorted[STRETCHES_MAX];
+  memcpy(sorted, radii, n * sizeof *radii);
+  qsort(sorted, n, sizeof *sorted, compare_doubles);
+  double limit = LIP_RADIUS * sorted[n / 2];
+  fg_stretch first = tight_part(strip, direction, &bumps[0]);
+  fg_stretch last = tight_part(strip, direction, &bumps[n - 1]);
+  out->lip_first = n > 1 && is_lip(&first, limit);
+  out->lip_last = n > 1 && is_lip(&last, limit);
+  out->lip_end[0] = first.last;
+  out->lip_end[1] = last.first;
+  size_t skip = out->lip_first ? 1 : 0, drop = out->lip_last ? 1 : 0;
+  out->bump_count = n > skip + drop ? n - skip - drop : 0;
+  memmove(bumps, bumps + skip, out->bump_count * sizeof *bumps);
+}
+
+fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *turning) {
+  memset(turning, 0, sizeof *turning);
+  double *direction = NULL;
+  fg_stretch *stretches = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *direction, (void **)&direction));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *stretches, (void **)&stretches));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turning->bumps,
+                                 (void **)&turning->bumps));
+  if (strip->count < 8) goto exit;
+  find_directions(strip, direction);
+  size_t count = cut_stretches(strip, direction, stretches);
+  turning->sense = find_sense(stretches, count);
+  pick_bumps(strip, direction, stretches, count, turning);
+exit:
+  free(direction);
+  free(stretches);
+  if (status != FG_OK) fg_turning_free(turning);
+  return status;
+}
+
+void fg_turning_free(fg_turning *turning) {
+  if (!turning) return;
+  free(turning->bumps);
+  memset(turning, 0, sizeof *turning);
+}

@@ -1,0 +1,41 @@
+/* Recognition of a foil from how its midline turns.
+ *
+ * Along a foil the tangent's direction goes back and forth: a bump turns it one way, the fillet,
+ * land and fillet between two bumps turn it the other way, and by one pitch more, since all of it
+ * goes round the overall circle. The turning points of the direction are the inflections between
+ * bump arcs and fillets. The lip is a tight bend at one end, in the bumps' sense.
+ */
+#ifndef FG_GEOMETRY_TURNING_H
+#define FG_GEOMETRY_TURNING_H
+
+#include <stdbool.h>
+
+#include "foilgauge/strip.h"
+
+/* A stretch between two turning points: stations [first, last]. */
+typedef struct fg_stretch {
+  size_t first, last;
+  double turn_rad;  /* signed */
+  double length_mm;
+} fg_stretch;
+
+typedef struct fg_turning {
+  fg_stretch *bumps;     /* in the order of the stations; owned */
+  size_t bump_count;
+  bool lip_first, lip_last; /* a lip was seen at the first, the last station's end */
+  size_t lip_end[2];     /* station where the lip's bend ends; valid where there is a lip */
+  double sense;          /* +1: bumps turn towards the normal (right), -1: away from it */
+} fg_turning;
+
+/* Finds the bumps and the lip. No bump is no error: bump_count is 0. */
+fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *turning);
+
+void fg_turning_free(fg_turning *turning);
+
+/* The middle between the edges at a station. */
+static inline fg_point fg_strip_middle(const fg_strip *strip, size_t i) {
+  const fg_station *s = &strip->stations[i];
+  return (fg_point){0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
+}
+
+#endif

@@ -1,0 +1,12 @@
+/* Rows of a scan into tiles: one thread decodes while another reduces. */
+#ifndef FG_MEASURE_READER_H
+#define FG_MEASURE_READER_H
+
+#include "foilgauge/scan.h"
+#include "vision/tiles.h"
+
+/* Reads the whole scan into `tiles` (created here; the caller frees them), and its SHA-256. The
+ * tiles do not depend on threads: strips are added in order. */
+fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_tiles *tiles, char sha256[65]);
+
+#endif

@@ -1,0 +1,62 @@
+# Sourced by samples/run.sh, tests/run.sh and the benchmarks: the Debian packages, in one place,
+# and the way a step is run and told.
+
+FOILGAUGE_PACKAGES="build-essential cmake pkg-config libpng-dev libgsl-dev libcjson-dev nettle-dev
+libopencv-core-dev libopencv-imgproc-dev libcmocka-dev"
+
+# Only the comparisons need these: what a user would write in Python instead.
+FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"
+
+# step TEXT COMMAND...: one line per step; what the command says is shown only when it fails.
+step() {
+  local text=$1 log
+  shift
+  log=$(mktemp)
+  printf '%s ... ' "$text"
+  if "$@" >"$log" 2>&1; then
+    echo "done"
+    rm -f "$log"
+  else
+    local code=$?
+    echo "failed (exit code $code): $*"
+    cat "$log"
+    rm -f "$log"
+    return $code
+  fi
+}
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    echo "needs root: run as root, or install sudo, or install by hand: $*" >&2
+    return 1
+  fi
+}
+
+apt_install() {
+  as_root apt-get update &&
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "$@"
+}
+
+# install_missing PACKAGE...: touches the network only when dpkg says that something is missing.
+install_missing() {
+  local package missing=()
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
+      missing+=("$package")
+  done
+  if [ ${#missing[@]} -eq 0 ]; then
+    echo "packages: all installed"
+  else
+    step "installing ${missing[*]}" apt_install "${missing[@]}"
+  fi
+}
+
+# build_preset PRESET FOLDER: configure and build; a tree that is there is brought up to date.
+build_preset() {
+  step "configuring $1 in $2/" cmake --preset "$1" || return
+  step "building $1" cmake --build "$2" -j"$(nproc)"
+}

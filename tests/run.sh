@@ -1,0 +1,33 @@
+#!/bin/bash
+# Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
+# --long adds the accuracy and speed benchmarks, which rewrite the tables in reports/.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. tests/packages.sh
+
+long=no
+case "${1-}" in
+  "") ;;
+  --long) long=yes ;;
+  *)
+    echo "usage: tests/run.sh [--long]" >&2
+    exit 64
+    ;;
+esac
+
+install_missing $FOILGAUGE_PACKAGES
+build_preset release build
+build_preset sanitize build-sanitize
+
+if [ $long = yes ]; then
+  tests/bench/accuracy.sh
+  tests/bench/speed.sh
+fi
+
+# Both trees are tested even when the first fails; ctest's own summary is the last thing said.
+code=0
+for tree in build build-sanitize; do
+  echo "testing $tree/"
+  ctest --test-dir "$tree" --output-on-failure -j"$(nproc)" || code=$?
+done
+exit $code

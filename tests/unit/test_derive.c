@@ -1,0 +1,217 @@
+/* Derived quantities of a bump: uncertainties against Monte Carlo, datum lines against each other,
+ * circles that do not cross. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "foilgauge/foil.h"
+#include "support/random.h"
+
+typedef struct derive_case {
+  fg_design design;
+  fg_nominal nominal;
+  fg_overall overall;
+  fg_bump bump;
+} derive_case;
+
+/* A Gen II bump seen in a direction that is no axis. */
+static derive_case make_case(double radius, double x, double overall_radius) {
+  derive_case c = {0};
+  fg_design_default(&c.design);
+  assert_int_equal(fg_design_derive(NULL, &c.design, &c.nominal), FG_OK);
+  c.overall.centre_mm = (fg_point){30, 20};
+  c.overall.radius_mm = overall_radius;
+  c.bump.centre_mm = (fg_point){30 + x * cos(0.7), 20 + x * sin(0.7)};
+  c.bump.radius_mm = radius;
+  return c;
+}
+
+static void derive(derive_case *c) {
+  fg_bump_derive(&c->design, &c->nominal, &c->overall, &c->bump);
+}
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
+}
+
+static void design_bump_has_no_error(void **state) {
+  (void)state;
+  derive_case c = make_case(3.32, 23.48547331077125, 20.73);
+  derive(&c);
+  assert_near(c.bump.centre_to_centre_mm, c.nominal.centre_to_centre_mm, 1e-13);
+  assert_near(c.bump.bump_angle_deg, 63.15, 1e-10);
+  assert_near(c.bump.intersection_angle_deg, c.nominal.intersection_angle_deg, 1e-10);
+  assert_near(c.bump.height_mm, c.nominal.height_mm, 1e-13);
+  assert_near(c.bump.clearance_mm, c.nominal.clearance_mm, 1e-13);
+  assert_near(c.bump.clearance_error, 0, 1e-11);
+  assert_near(c.bump.radius_error_pct, 0, 1e-12);
+  assert_near(c.bump.bump_angle_error_pct, 0, 1e-10);
+  assert_near(c.bump.height_model_mm, c.nominal.height_mm, 1e-13);
+  assert_near(c.bump.bump_angle_model_deg, 63.15, 1e-12);
+  assert_near(c.bump.position_deg, 0.7 * 180 / 3.14159265358979323846, 1e-11);
+}
+
+/* Signs and factors of the errors, from another bump than the design's. */
+static void errors_have_the_signs_of_the_thesis(void **state) {
+  (void)state;
+  derive_case c = make_case(3.32 * 1.1, 23.8, 20.73);
+  derive(&c);
+  double height = 20.73 - (23.8 - 3.652), clearance = 20.73 - height - 20 - 0.1;
+  assert_near(c.bump.radius_error_pct, 10, 1e-11);
+  assert_near(c.bump.height_mm, height, 1e-13);
+  assert_near(c.bump.clearance_mm, clearance, 1e-13);
+  assert_near(c.bump.clearance_error, (c.nominal.clearance_mm - clearance) / c.nominal.clearance_mm,
+              1e-12);
+  assert_near(c.bump.bump_angle_error_pct, 100 * (c.bump.bump_angle_deg / 63.15 - 1), 1e-12);
+  assert_near(c.bump.bump_angle_model_deg, 63.15 / 1.1, 1e-11);
+}
+
+/* A covariance with a correlation of R and crown of -0.999, as an arc of 63 degrees has it. */
+static void make_covariance(double covariance[3][3], double direction_rad, double u_radius,
+                            double u_crown, double u_across) {
+  double u[2] = {cos(direction_rad), sin(direction_rad)};
+  /* The crown's distance from O is centre·u - R; centre·u = R + crown. */
+  double along = u_radius * u_radius + u_crown * u_crown, across = u_across * u_across;
+  for (int i = 0; i < 2; i++) {
+    for (int j = 0; j < 2; j++)
+      covariance[i][j] = along * u[i] * u[j] + across * ((i == j) - u[i] * u[j]);
+    covariance[i][2] = covariance[2][i] = u_radius * u_radius * u[i];
+  }
+  covariance[2][2] = u_radius * u_radius;
+}
+
+/* Draws from such a covariance. */
+static void disturb(fg_point *centre, double *radius, double direction_rad, double u_radius,
+                    double u_crown, double u_across, uint64_t *seed) {
+  double by_radius = u_radius * random_gaussian(seed), by_crown = u_crown * random_gaussian(seed);
+  double across = u_across * random_gaussian(seed), along = by_radius + by_crown;
+  centre->x += along * cos(direction_rad) - across * sin(direction_rad);
+  centre->y += along * sin(direction_rad) + across * cos(direction_rad);
+  *radius += by_radius;
+}
+
+enum { TRIALS = 40000, QUANTITIES = 10 };
+
+static void quantities_of(const fg_bump *b, double value[QUANTITIES], double u[QUANTITIES]) {
+  double values[QUANTITIES] = {b->centre_to_centre_mm,    b->bump_angle_deg,
+                               b->intersection_angle_deg, b->height_mm,
+                               b->clearance_mm,           b->clearance_error,
+                               b->radius_error_pct,       b->bump_angle_error_pct,
+                               b->height_model_mm,        b->bump_angle_model_deg};
+  double us[QUANTITIES] = {b->u_centre_to_centre_mm,    b->u_bump_angle_deg,
+                           b->u_intersection_angle_deg, b->u_height_mm,
+                           b->u_clearance_mm,           b->u_clearance_error,
+                           b->u_radius_error_pct,       b->u_bump_angle_error_pct,
+                           b->u_height_model_mm,        b->u_bump_angle_model_deg};
+  for (int i = 0; i < QUANTITIES; i++) {
+    value[i] = values[i];
+    u[i] = us[i];
+  }
+}
+
+static void uncertainties_are_those_of_draws(void **state) {
+  (void)state;
+  uint64_t seed = 11;
+  derive_case c = make_case(3.39, 23.79, 20.95);
+  make_covariance(c.bump.covariance, 0.7, 4e-3, 0.1e-3, 0.5e-3);
+  make_covariance(c.overall.covariance, 1.9, 2e-3, 0.2e-3, 1e-3);
+  derive(&c);
+  double value[QUANTITIES], u[QUANTITIES], sum[QUANTITIES] = {0}, square[QUANTITIES] = {0};
+  quantities_of(&c.bump, value, u);
+  for (int trial = 0; trial < TRIALS; trial++) {
+    derive_case d = c;
+    double drawn[QUANTITIES], ignored[QUANTITIES];
+    disturb(&d.bump.centre_mm, &d.bump.radius_mm, 0.7, 4e-3, 0.1e-3, 0.5e-3, &seed);
+    disturb(&d.overall.centre_mm, &d.overall.radius_mm, 1.9, 2e-3, 0.2e-3, 1e-3, &seed);
+    derive(&d);
+    quantities_of(&d.bump, drawn, ignored);
+    for (int i = 0; i < QUANTITIES; i++) {
+      sum[i] += (drawn[i] - value[i]) / TRIALS;
+      square[i] += (drawn[i] - value[i]) * (drawn[i] - value[i]) / TRIALS;
+    }
+  }
+  /* A standard deviation from 40000 draws is worth 0.35 %. */
+  for (int i = 0; i < QUANTITIES; i++) {
+    double sd = sqrt(square[i] - sum[i] * sum[i]);
+    if (!(fabs(u[i] / sd - 1) < 0.02)) fail_msg("quantity %d: u %g, draws %g", i, u[i], sd);
+  }
+}
+
+/* The crown is known to 0.1 nm while R is worth 4 µm: h must keep what the crown is worth. */
+static void height_keeps_the_crown_s_uncertainty(void **state) {
+  (void)state;
+  derive_case c = make_case(3.39, 23.79, 20.95);
+  make_covariance(c.bump.covariance, 0.7, 4e-3, 1e-7, 0);
+  derive(&c);
+  assert_near(c.bump.u_height_mm, 1e-7, 2e-9);
+  assert_near(c.bump.u_clearance_mm, 1e-7, 2e-9);
+  assert_near(c.bump.u_radius_mm, 4e-3, 1e-15);
+}
+
+/* One foil by its midline, inner and outer edge: same X, h and clearance. Towards the shaft the
+ * overall circle shrinks and the bump's, whose centre lies outside, grows. */
+static void height_does_not_depend_on_the_datum(void **state) {
+  (void)state;
+  const double offsets[] = {0, -0.05, 0.05};
+  derive_case mid = make_case(3.39, 23.79, 20.95);
+  derive(&mid);
+  for (int i = 0; i < 3; i++) {
+    derive_case c = make_case(3.39 - offsets[i], 23.79, 20.95 + offsets[i]);
+    derive(&c);
+    assert_near(c.bump.height_mm, mid.bump.height_mm, 1e-13);
+    assert_near(c.bump.clearance_mm, mid.bump.clearance_mm, 1e-13);
+  }
+}
+
+static void circles_that_do_not_cross_have_no_angle(void **state) {
+  (void)state;
+  const double distances[] = {24.5, 17.3};
+  for (int i = 0; i < 2; i++) {
+    derive_case c = make_case(3.39, distances[i], 20.95);
+    derive(&c);
+    assert_true(c.bump.flags & FG_BUMP_NO_CROSSING);
+    assert_true(isnan(c.bump.bump_angle_deg) && isnan(c.bump.u_bump_angle_deg));
+    assert_true(isnan(c.bump.intersection_angle_deg) && isnan(c.bump.bump_angle_error_pct));
+    assert_near(c.bump.height_mm, 20.95 - (distances[i] - 3.39), 1e-13);
+    assert_true(isfinite(c.bump.bump_angle_model_deg) && isfinite(c.bump.height_model_mm));
+  }
+  derive_case c = make_case(3.39, 23.79, 20.95);
+  c.bump.flags = FG_BUMP_NO_CROSSING | FG_BUMP_POOR_FIT;
+  derive(&c);
+  assert_int_equal(c.bump.flags, FG_BUMP_POOR_FIT);
+}
+
+static void what_was_not_fitted_stays_unknown(void **state) {
+  (void)state;
+  derive_case c = make_case(NAN, 23.79, 20.95);
+  c.bump.flags = FG_BUMP_NOT_FITTED;
+  derive(&c);
+  assert_int_equal(c.bump.flags, FG_BUMP_NOT_FITTED);
+  assert_true(isnan(c.bump.height_mm) && isnan(c.bump.bump_angle_deg));
+  assert_true(isnan(c.bump.radius_error_pct) && isnan(c.bump.height_model_mm));
+
+  c = make_case(3.39, 23.79, 20.95);
+  for (int i = 0; i < 9; i++)
+    c.overall.covariance[i / 3][i % 3] = NAN;
+  derive(&c);
+  assert_true(isnan(c.bump.u_height_mm) && isfinite(c.bump.height_mm));
+  assert_true(isfinite(c.bump.u_radius_error_pct) && isfinite(c.bump.u_height_model_mm));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(design_bump_has_no_error),
+      cmocka_unit_test(errors_have_the_signs_of_the_thesis),
+      cmocka_unit_test(uncertainties_are_those_of_draws),
+      cmocka_unit_test(height_keeps_the_crown_s_uncertainty),
+      cmocka_unit_test(height_does_not_depend_on_the_datum),
+      cmocka_unit_test(circles_that_do_not_cross_have_no_angle),
+      cmocka_unit_test(what_was_not_fitted_stays_unknown),
+  };
+  return cmocka_run_group_tests_name("derive", tests, NULL, NULL);
+}

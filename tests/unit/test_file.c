@@ -1,0 +1,321 @@
+/* Files appear under their final name only when whole; what goes wrong is said and leaves nothing
+ * behind. */
+#include <dirent.h>
+#include <fcntl.h>
+#include <setjmp.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "core/file.h"
+#include "core/sha256.h"
+
+typedef struct folder {
+  char path[200], file[256];
+} folder;
+
+static int make_folder(void **state) {
+  folder *made = calloc(1, sizeof *made);
+  const char *parent = getenv("TMPDIR");
+  snprintf(made->path, sizeof made->path, "%s/foilgauge-test-XXXXXX",
+           parent && *parent ? parent : "/tmp");
+  if (!mkdtemp(made->path)) return -1;
+  snprintf(made->file, sizeof made->file, "%s/report.json", made->path);
+  *state = made;
+  return 0;
+}
+
+static int count_entries(const folder *where) {
+  int count = 0;
+  DIR *entries = opendir(where->path);
+  for (struct dirent *entry; entries && (entry = readdir(entries));)
+    count += strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..");
+  closedir(entries);
+  return count;
+}
+
+static int remove_folder(void **state) {
+  folder *made = *state;
+  DIR *entries = opendir(made->path);
+  for (struct dirent *entry; entries && (entry = readdir(entries));)
+    unlinkat(dirfd(entries), entry->d_name, 0);
+  closedir(entries);
+  int result = rmdir(made->path);
+  free(made);
+  return result;
+}
+
+static void write_file(const char *path, const char *content) {
+  fg_context ctx = {0};
+  fg_output output;
+  if (fg_output_open(&ctx, path, &output) != FG_OK) fail_msg("%s", ctx.message);
+  fputs(content, output.stream);
+  if (fg_output_commit(&ctx, &output) != FG_OK) fail_msg("%s", ctx.message);
+}
+
+static void assert_content(const char *path, const char *content) {
+  char *text = NULL;
+  assert_int_equal(fg_file_read_text(NULL, path, 1000, &text), FG_OK);
+  assert_string_equal(text, content);
+  free(text);
+}
+
+static void file_appears_only_when_whole(void **state) {
+  folder *where = *state;
+  write_file(where->file, "old");
+  fg_output output;
+  assert_int_equal(fg_output_open(NULL, where->file, &output), FG_OK);
+  fputs("new", output.stream);
+  fflush(output.stream);
+  assert_content(where->file, "old");
+  assert_int_equal(count_entries(where), 2);
+  assert_int_equal(fg_output_commit(NULL, &output), FG_OK);
+  fg_output_discard(&output);
+  assert_content(where->file, "new");
+  assert_int_equal(count_entries(where), 1);
+}
+
+static void discard_leaves_nothing(void **state) {
+  folder *where = *state;
+  fg_output output;
+  assert_int_equal(fg_output_open(NULL, where->file, &output), FG_OK);
+  fputs("half", output.stream);
+  fg_output_discard(&output);
+  fg_output_discard(&output);
+  assert_int_equal(count_entries(where), 0);
+}
+
+static void mode_follows_the_umask(void **state) {
+  folder *where = *state;
+  mode_t old = umask(027);
+  write_file(where->file, "x");
+  umask(old);
+  struct stat entry;
+  assert_int_equal(stat(where->file, &entry), 0);
+  assert_int_equal(entry.st_mode & 0777, 0640);
+}
+
+static void symbolic_link_stays_a_link(void **state) {
+  folder *where = *state;
+  char link[256];
+  snprintf(link, sizeof link, "%s/latest", where->path);
+  write_file(where->file, "old");
+  assert_int_equal(symlink("report.json", link), 0);
+  write_file(link, "new");
+  assert_content(where->file, "new");
+  struct stat entry;
+  assert_int_equal(lstat(link, &entry), 0);
+  assert_true(S_ISLNK(entry.st_mode));
+}
+
+static void bare_name_goes_to_the_current_folder(void **state) {
+  folder *where = *state;
+  int before = open(".", O_RDONLY | O_DIRECTORY);
+  assert_int_equal(chdir(where->path), 0);
+  write_file("report.json", "here");
+  assert_int_equal(fchdir(before), 0);
+  close(before);
+  assert_content(where->file, "here");
+}
+
+static void names_may_be_as_long_as_names_can_be(void **state) {
+  folder *where = *state;
+  char path[500];
+  snprintf(path, sizeof path, "%s/%0255d", where->path, 0);
+  write_file(path, "long");
+  assert_content(path, "long");
+}
+
+/* More than stdio buffers, so that a write fails before the commit. */
+static fg_status write_much(fg_context *ctx, const char *path) {
+  fg_output output;
+  FG_TRY(fg_output_open(ctx, path, &output));
+  for (int i = 0; i < 100000; i++)
+    fputs("0123456789", output.stream);
+  return fg_output_commit(ctx, &output);
+}
+
+static fg_status write_little(fg_context *ctx, const char *path) {
+  fg_output output;
+  FG_TRY(fg_output_open(ctx, path, &output));
+  fputs("0123456789", output.stream);
+  return fg_output_commit(ctx, &output);
+}
+
+static void full_device_is_an_error(void **state) {
+  (void)state;
+  if (access("/dev/full", W_OK) != 0) skip();
+  fg_context ctx = {0};
+  assert_int_equal(write_much(&ctx, "/dev/full"), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, "/dev/full: cannot be written: No space left on device"));
+  assert_non_null(strstr(ctx.message, "free some space"));
+  assert_int_equal(write_little(&ctx, "/dev/full"), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, "No space left"));
+}
+
+static void full_disk_leaves_the_old_file(void **state) {
+  folder *where = *state;
+  write_file(where->file, "old");
+  struct rlimit before, low;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  low = (struct rlimit){.rlim_cur = 5, .rlim_max = before.rlim_max};
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+  fg_context much = {0}, little = {0};
+  fg_status much_status = write_much(&much, where->file);
+  fg_status little_status = write_little(&little, where->file);
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  assert_int_equal(much_status, FG_ERR_IO);
+  assert_int_equal(little_status, FG_ERR_IO);
+  assert_non_null(strstr(much.message, where->file));
+  assert_non_null(strstr(much.message, "too large"));
+  assert_non_null(strstr(little.message, "too large"));
+  assert_content(where->file, "old");
+  assert_int_equal(count_entries(where), 1);
+}
+
+/* Space that comes back before the commit does not bring back what was lost. */
+static void passing_shortage_is_an_error(void **state) {
+  folder *where = *state;
+  struct rlimit before, low;
+  fg_context ctx = {0};
+  fg_output output;
+  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_OK);
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+  low = (struct rlimit){.rlim_cur = 5, .rlim_max = before.rlim_max};
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+  for (int i = 0; i < 100000; i++)
+    fputs("0123456789", output.stream);
+  setrlimit(RLIMIT_FSIZE, &before);
+  signal(SIGXFSZ, handler);
+  assert_int_equal(fg_output_commit(&ctx, &output), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, where->file));
+  assert_int_equal(count_entries(where), 0);
+}
+
+static void unwritable_places_are_named(void **state) {
+  folder *where = *state;
+  char inside[300], missing[300];
+  snprintf(missing, sizeof missing, "%s/none/report.json", where->path);
+  snprintf(inside, sizeof inside, "%s/report.json", where->file);
+  write_file(where->file, "x");
+  const struct {
+    const char *path;
+    fg_status status;
+    const char *says;
+  } cases[] = {
+      {where->path, FG_ERR_IO, "folder"},
+      {missing, FG_ERR_IO, "create its folder"},
+      {inside, FG_ERR_IO, "is a file, not a folder"},
+      {"", FG_ERR_USAGE, "empty name"},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    fg_context ctx = {0};
+    fg_output output;
+    assert_int_equal(fg_output_open(&ctx, cases[i].path, &output), cases[i].status);
+    if (!strstr(ctx.message, cases[i].says)) fail_msg("%s", ctx.message);
+    assert_null(output.stream);
+    fg_output_discard(&output);
+  }
+  assert_int_equal(count_entries(where), 1);
+}
+
+static void read_only_file_is_respected(void **state) {
+  folder *where = *state;
+  write_file(where->file, "keep");
+  chmod(where->file, 0444);
+  if (access(where->file, W_OK) == 0) skip(); /* root may write all */
+  fg_context ctx = {0};
+  fg_output output;
+  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, "ermission"));
+  assert_content(where->file, "keep");
+}
+
+static void standard_output_stays_open(void **state) {
+  (void)state;
+  fg_output output;
+  assert_int_equal(fg_output_open(NULL, "-", &output), FG_OK);
+  assert_ptr_equal(output.stream, stdout);
+  assert_int_equal(fg_output_commit(NULL, &output), FG_OK);
+  assert_int_equal(fg_output_open(NULL, NULL, &output), FG_OK);
+  assert_ptr_equal(output.stream, stdout);
+  fg_output_discard(&output);
+  assert_int_equal(fflush(stdout), 0);
+}
+
+static void text_is_read_whole(void **state) {
+  folder *where = *state;
+  char *text = NULL, content[20001];
+  memset(content, 'a', 20000);
+  content[20000] = '\0';
+  write_file(where->file, content);
+  assert_int_equal(fg_file_read_text(NULL, where->file, 20000, &text), FG_OK);
+  assert_string_equal(text, content);
+  free(text);
+  fg_context ctx = {0};
+  assert_int_equal(fg_file_read_text(&ctx, where->file, 19999, &text), FG_ERR_DATA);
+  assert_null(text);
+  assert_non_null(strstr(ctx.message, "19999"));
+  write_file(where->file, "");
+  assert_content(where->file, "");
+}
+
+static void what_is_no_text_is_refused(void **state) {
+  folder *where = *state;
+  char *text = NULL;
+  fg_context ctx = {0};
+  FILE *stream = fopen(where->file, "wb");
+  fwrite("ab\0cd", 1, 5, stream);
+  fclose(stream);
+  assert_int_equal(fg_file_read_text(&ctx, where->file, 100, &text), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "byte 2"));
+  assert_int_equal(fg_file_read_text(&ctx, where->path, 100, &text), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, "directory"));
+  assert_int_equal(fg_file_read_text(&ctx, "/nonexistent/design.json", 100, &text), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, "/nonexistent/design.json"));
+  assert_null(text);
+}
+
+/* FIPS 180-2, appendix B.1: the sum of "abc". */
+static void sha256_is_the_standards(void **state) {
+  folder *where = *state;
+  char hex[65];
+  write_file(where->file, "abc");
+  assert_int_equal(fg_sha256_file(NULL, where->file, hex), FG_OK);
+  assert_string_equal(hex, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  assert_int_equal(fg_sha256_file(NULL, where->path, hex), FG_ERR_IO);
+}
+
+int main(void) {
+#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+  const struct CMUnitTest tests[] = {
+      WITH_FOLDER(file_appears_only_when_whole),
+      WITH_FOLDER(discard_leaves_nothing),
+      WITH_FOLDER(mode_follows_the_umask),
+      WITH_FOLDER(symbolic_link_stays_a_link),
+      WITH_FOLDER(bare_name_goes_to_the_current_folder),
+      WITH_FOLDER(names_may_be_as_long_as_names_can_be),
+      cmocka_unit_test(full_device_is_an_error),
+      WITH_FOLDER(full_disk_leaves_the_old_file),
+      WITH_FOLDER(passing_shortage_is_an_error),
+      WITH_FOLDER(unwritable_places_are_named),
+      WITH_FOLDER(read_only_file_is_respected),
+      cmocka_unit_test(standard_output_stays_open),
+      WITH_FOLDER(text_is_read_whole),
+      WITH_FOLDER(what_is_no_text_is_refused),
+      WITH_FOLDER(sha256_is_the_standards),
+  };
+  return cmocka_run_group_tests_name("file", tests, NULL, NULL);
+}
