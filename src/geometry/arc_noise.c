@@ -42,48 +42,111 @@ static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, si
     }
 }
 
-/* The first lag from which on three in a row lie within two standard errors of nothing. */
+/* The first lag whose correlation is within two standard errors of nothing, or negative. */
 static size_t find_cut(const double *correlation, const double *pairs, size_t lags) {
-  for (size_t lag = 1; lag + 3 < lags; lag++) {
-    bool nothing = true;
-    for (size_t i = lag; i < lag + 3; i++)
-      nothing &= fabs(correlation[i]) < 2 / sqrt(fmax(pairs[i], 1));
-    if (nothing) return lag;
+  size_t lag = 1;
+  while (lag < lags && correlation[lag] > 2 / sqrt(fmax(pairs[lag], 1))) lag++;
+  return lag;
+}
+
+/* A fit of three parameters takes variance out of slow residuals: the correlation that is seen is
+ * less than the noise's. How much less follows for a typical arc from the projection M = I - P:
+ * the mean of (M C M) over the diagonal of each lag, against C. */
+enum { TYPICAL_POINTS = 400 }; /* of the arc that stands for all */
+
+/* Columns that span what a circle fit takes out of an arc of n points and half angle `half`:
+ * 1, cos, sin of the angle, orthonormal. */
+static void span_fit(double half, size_t n, double q[3][TYPICAL_POINTS]) {
+  for (size_t i = 0; i < n; i++) {
+    double angle = half * (2 * (double)i / (double)(n - 1) - 1);
+    q[0][i] = 1;
+    q[1][i] = cos(angle) - 1;
+    q[2][i] = sin(angle);
   }
-  return lags / 2;
+  for (int a = 0; a < 3; a++) {
+    double square = 0;
+    for (int b = 0; b < a; b++) {
+      double dot = 0;
+      for (size_t i = 0; i < n; i++) dot += q[a][i] * q[b][i];
+      for (size_t i = 0; i < n; i++) q[a][i] -= dot * q[b][i];
+    }
+    for (size_t i = 0; i < n; i++) square += q[a][i] * q[a][i];
+    for (size_t i = 0; i < n; i++) q[a][i] /= sqrt(square);
+  }
+}
+
+/* seen[lag] = mean over i of (M C M)[i, i + lag] with M = I - QQ' and C banded by the noise. With
+ * B = C Q and S = Q'C Q: M C M = C - B Q' - Q B' + Q S Q'. */
+static void project_noise(double q[3][TYPICAL_POINTS], size_t n, const fg_noise_model *noise,
+                          double *seen) {
+  double b[3][TYPICAL_POINTS], s[3][3] = {{0}};
+  for (int a = 0; a < 3; a++)
+    for (size_t i = 0; i < n; i++) {
+      b[a][i] = noise->covariance[0] * q[a][i];
+      for (size_t lag = 1; lag < noise->lags; lag++) {
+        if (i >= lag) b[a][i] += noise->covariance[lag] * q[a][i - lag];
+        if (i + lag < n) b[a][i] += noise->covariance[lag] * q[a][i + lag];
+      }
+      for (int c = 0; c < 3; c++) s[c][a] += q[c][i] * b[a][i];
+    }
+  for (size_t lag = 0; lag < noise->lags; lag++) {
+    double sum = 0;
+    for (size_t i = 0; i + lag < n; i++)
+      for (int a = 0; a < 3; a++) {
+        sum -= b[a][i] * q[a][i + lag] + q[a][i] * b[a][i + lag];
+        for (int c = 0; c < 3; c++) sum += q[a][i] * s[a][c] * q[c][i + lag];
+      }
+    seen[lag] = noise->covariance[lag] + sum / (double)(n - lag);
+  }
+}
+
+/* A fit of three parameters takes variance out of slow residuals: the correlation that is seen is
+ * less than the noise's. How much less is computed for a typical arc from what was seen, and
+ * given back, twice. */
+static void undo_projection(const fg_datum_line *line, const fg_arc *arc, fg_noise_model *noise) {
+  double q[3][TYPICAL_POINTS], seen[FG_NOISE_LAGS], first[FG_NOISE_LAGS];
+  size_t n = arc->ranges[0].last - arc->ranges[0].first + 1;
+  double half = 0.5 * (double)n * line->strip->step_mm / arc->circle.radius;
+  if (n > TYPICAL_POINTS) n = TYPICAL_POINTS;
+  if (n < 2 * noise->lags || n < 16) return;
+  span_fit(half, n, q);
+  memcpy(first, noise->covariance, sizeof first);
+  for (int round = 0; round < 2; round++) {
+    project_noise(q, n, noise, seen);
+    for (size_t lag = 0; lag < noise->lags; lag++)
+      noise->covariance[lag] += first[lag] - seen[lag];
+  }
 }
 
 void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t count, int values,
                        fg_noise_model *noise) {
   memset(noise, 0, sizeof *noise);
+  noise->integral_stations = 1;
+  noise->lags = 1;
   lag_sums sums = {0};
-  double correlation[FG_NOISE_LAGS];
+  double correlation[FG_NOISE_LAGS], variance = 0;
   /* White noise is the common case: look at few lags first. */
-  size_t lags = 8, cut = 0;
-  for (; lags <= FG_NOISE_LAGS; lags *= 4) {
+  size_t cut = 1;
+  for (size_t lags = 8; lags <= FG_NOISE_LAGS; lags *= 2) {
     memset(&sums, 0, sizeof sums);
     for (size_t i = 0; i < count; i++) add_arc(line, &arcs[i], values, lags, &sums);
-    if (!(sums.pairs[0] > 4) || !(sums.products[0] > 0)) break;
-    double variance = sums.products[0] / sums.pairs[0];
+    if (!(sums.pairs[0] > 4) || !(sums.products[0] > 0)) return;
+    variance = sums.products[0] / sums.pairs[0];
     for (size_t lag = 0; lag < lags; lag++)
       correlation[lag] =
           sums.pairs[lag] > 0 ? sums.products[lag] / sums.pairs[lag] / variance : 0;
     cut = find_cut(correlation, sums.pairs, lags);
-    if (cut < lags / 2) break;
+    if (cut < lags) break;
   }
-  if (lags > FG_NOISE_LAGS) lags = FG_NOISE_LAGS;
-  /* Three parameters of every circle took their share of the variance. */
-  double freedom = fmax(sums.pairs[0] - 3.0 * (double)count, 1);
-  double variance = sums.pairs[0] > 0 ? sums.products[0] / freedom : 0;
-  noise->covariance[0] = variance;
-  noise->integral_stations = 1;
-  noise->lags = 1;
-  /* Flat top (Politis and Romano 1995): whole up to the cut, then down to nothing at twice it. */
-  for (size_t lag = 1; cut > 1 && lag < 2 * cut && lag < lags; lag++) {
-    double weight = lag < cut ? 1 : 2 - (double)lag / (double)cut;
-    noise->covariance[lag] = weight * variance * correlation[lag];
-    noise->integral_stations += 2 * weight * correlation[lag];
-    noise->lags = lag + 1;
+  if (cut == 1) {
+    /* Three parameters of every circle took their share of the variance. */
+    noise->covariance[0] = sums.products[0] / fmax(sums.pairs[0] - 3.0 * (double)count, 1);
+    return;
   }
-  if (noise->integral_stations < 0.2) noise->integral_stations = 0.2;
+  noise->lags = cut < FG_NOISE_LAGS ? cut : FG_NOISE_LAGS;
+  for (size_t lag = 0; lag < noise->lags; lag++)
+    noise->covariance[lag] = variance * correlation[lag];
+  if (count > 0) undo_projection(line, &arcs[count / 2], noise);
+  for (size_t lag = 1; lag < noise->lags; lag++)
+    noise->integral_stations += 2 * noise->covariance[lag] / noise->covariance[0];
 }

@@ -160,8 +160,9 @@ static double find_foot(const fg_datum_line *line, const fg_arc *arc, double sid
   long k = end;
   for (; k >= low && k <= high; k += step) {
     double d = departure(line, arc, side, k, step, low, high);
-    if (!isfinite(d) || d < least) continue;
     if (d > most) break;
+    if (d < least) s0 = s1 = s2 = r0 = r1 = 0; /* noise, not yet the fillet */
+    if (!(d >= least)) continue;
     double x = (double)((k - end) * step), y = sqrt(d);
     s0 += 1;
     s1 += x;

@@ -159,12 +159,12 @@ static fg_status build_reference(fg_context *ctx, const fg_tiles *tiles,
                                  const fg_segmentation *segmentation, const fg_trace *trace,
                                  fg_reference *out) {
   fg_reference coarse = {0};
-  fg_band band = {0};
+  fg_pixel_band band = {0};
   fg_edge_work work = {.reference = &coarse, .band = &band, .width_px = trace->width_px};
   fg_point *middles = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX, &coarse));
-  FG_TRY_EXIT(fg_band_collect(ctx, tiles, &coarse, trace->width_px / 2 + MIDDLE_REACH_PX, &band));
+  FG_TRY_EXIT(fg_pixel_band_collect(ctx, tiles, &coarse, trace->width_px / 2 + MIDDLE_REACH_PX, &band));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, coarse.count, sizeof *work.stations, (void **)&work.stations));
   FG_TRY_EXIT(fg_memory_allocate(ctx, coarse.count, sizeof *middles, (void **)&middles));
@@ -177,7 +177,7 @@ static fg_status build_reference(fg_context *ctx, const fg_tiles *tiles,
   FG_TRY_EXIT(fg_reference_build(ctx, middles, coarse.count, SMOOTH_PX, STEP_PX, out));
 exit:
   fg_reference_free(&coarse);
-  fg_band_free(&band);
+  fg_pixel_band_free(&band);
   free(work.stations);
   free(middles);
   return status;
@@ -200,7 +200,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
                            const double dpi[2], fg_strip *strip) {
   fg_reference reference = {0};
-  fg_band band = {0};
+  fg_pixel_band band = {0};
   fg_edge_work work = {.reference = &reference, .band = &band, .width_px = trace->width_px,
                        .reach_px = BAND_REACH_PX, .noise = 1, .contrast = trace->contrast};
   fg_status status = FG_OK;
@@ -211,7 +211,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *strip->stations,
                                  (void **)&strip->stations));
   fg_edge_tables_init(work.tables, 1);
-  FG_TRY_EXIT(fg_band_collect(ctx, tiles, &reference, trace->width_px / 2 + BAND_REACH_PX, &band));
+  FG_TRY_EXIT(fg_pixel_band_collect(ctx, tiles, &reference, trace->width_px / 2 + BAND_REACH_PX, &band));
   FG_TRY_EXIT(measure_edges(ctx, segmentation, trace, &work));
   strip->count = reference.count;
   strip->facts = trace->facts;
@@ -220,7 +220,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));
 exit:
   fg_reference_free(&reference);
-  fg_band_free(&band);
+  fg_pixel_band_free(&band);
   free(work.stations);
   free(work.tables);
   if (status != FG_OK) fg_strip_free(strip);

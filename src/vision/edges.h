@@ -14,7 +14,7 @@
 #define FG_VISION_EDGES_H
 
 #include "foilgauge/strip.h"
-#include "vision/band.h"
+#include "vision/pixel_band.h"
 #include "vision/edge_model.h"
 #include "vision/segment.h"
 #include "vision/trace.h"
@@ -44,7 +44,7 @@ typedef struct fg_edge_station {
 /* What one strip is measured with. */
 typedef struct fg_edge_work {
   const fg_reference *reference;
-  const fg_band *band;
+  const fg_pixel_band *band;
   fg_edge_station *stations; /* reference->count */
   fg_edge_tables *tables;
   double width_px;           /* of the strip */

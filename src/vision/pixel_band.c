@@ -1,4 +1,4 @@
-#include "vision/band.h"
+#include "vision/pixel_band.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -50,7 +50,7 @@ static long project(const fg_reference *line, double x, double y, long station, 
 
 /* All pixels of one lattice line that crosses the reference between stations i and i+1. */
 static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const view *a,
-                              const view *b, int64_t u, fg_band *band) {
+                              const view *b, int64_t u, fg_pixel_band *band) {
   double step = r->reference->step_px, f = ((double)u - a->u) / (b->u - a->u);
   double v0 = (1 - f) * a->v + f * b->v;
   double span = r->reach_px / fabs(a->tu) * 1.05 + 1;
@@ -71,7 +71,7 @@ static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const vie
   return FG_OK;
 }
 
-static fg_status collect_run(fg_context *ctx, const run *r, fg_band *band) {
+static fg_status collect_run(fg_context *ctx, const run *r, fg_pixel_band *band) {
   /* Pixels of the run's first and last stations may lie on lattice lines that cross beyond it. */
   size_t margin = (size_t)(1.2 * r->reach_px / r->reference->step_px) + 2;
   size_t from = r->first, to = r->last;
@@ -95,8 +95,8 @@ static bool is_steep(const fg_reference_station *s) {
   return fabs(s->ty) > fabs(s->tx);
 }
 
-fg_status fg_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_reference *reference,
-                          double reach_px, fg_band *band) {
+fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_reference *reference,
+                          double reach_px, fg_pixel_band *band) {
   memset(band, 0, sizeof *band);
   fg_status status = FG_OK;
   size_t first = 0;
@@ -109,11 +109,11 @@ fg_status fg_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_refer
     status = collect_run(ctx, &r, band);
     first = r.last + 1;
   }
-  if (status != FG_OK) fg_band_free(band);
+  if (status != FG_OK) fg_pixel_band_free(band);
   return status;
 }
 
-void fg_band_free(fg_band *band) {
+void fg_pixel_band_free(fg_pixel_band *band) {
   if (!band) return;
   free(band->pixels);
   memset(band, 0, sizeof *band);

@@ -3,8 +3,8 @@
  * Pixels are never interpolated: each enters with its exact distance from the line, so that noise
  * stays white and the edge position carries no bias of a resampler.
  */
-#ifndef FG_VISION_BAND_H
-#define FG_VISION_BAND_H
+#ifndef FG_VISION_PIXEL_BAND_H
+#define FG_VISION_PIXEL_BAND_H
 
 #include "vision/reference.h"
 #include "vision/tiles.h"
@@ -19,16 +19,16 @@ typedef struct fg_band_pixel {
   int32_t station;  /* whose step it falls into */
 } fg_band_pixel;
 
-typedef struct fg_band {
+typedef struct fg_pixel_band {
   fg_band_pixel *pixels; /* roughly in order along the strip; owned */
   size_t count, capacity;
-} fg_band;
+} fg_pixel_band;
 
 /* All pixels within reach_px of the line. Pixels that were not kept are left out. */
-fg_status fg_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_reference *reference,
-                          double reach_px, fg_band *band);
+fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_reference *reference,
+                          double reach_px, fg_pixel_band *band);
 
-void fg_band_free(fg_band *band);
+void fg_pixel_band_free(fg_pixel_band *band);
 
 #ifdef __cplusplus
 }

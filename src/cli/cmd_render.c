@@ -1,0 +1,57 @@
+/* foilgauge render: a spec in, a scan and its truth out. */
+#include <argp.h>
+#include <stdlib.h>
+
+#include "cli/commands.h"
+#include "foilgauge/render.h"
+
+typedef struct render_arguments {
+  const char *spec, *scan, *truth;
+} render_arguments;
+
+static const struct argp_option options[] = {
+    {"output", 'o', "SCAN.png", 0, "where the scan goes (PNG, gray); - is standard output", 0},
+    {"truth", 't', "F.json", 0, "where the true dimensions go", 0},
+    {0},
+};
+
+static error_t parse_option(int key, char *value, struct argp_state *state) {
+  render_arguments *arguments = state->input;
+  switch (key) {
+  case 'o':
+    arguments->scan = value;
+    return 0;
+  case 't':
+    arguments->truth = value;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (arguments->spec) argp_error(state, "one SPEC.json at a time, not also '%s'", value);
+    arguments->spec = value;
+    return 0;
+  case ARGP_KEY_END:
+    if (!arguments->spec) argp_error(state, "say which SPEC.json to render");
+    if (!arguments->scan) argp_error(state, "say where the scan goes: -o SCAN.png");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+int fg_cmd_render(int argc, char **argv) {
+  static const struct argp parser = {
+      .options = options,
+      .parser = parse_option,
+      .args_doc = "SPEC.json",
+      .doc = "Renders a scan of foils as SPEC.json describes them, and the truth about it.\v"
+             "samples/render/clean.json and rough.json are specs to start from. The same spec "
+             "gives the same bytes."};
+  render_arguments arguments = {0};
+  fg_context ctx = {0};
+  fg_render_spec *spec = NULL;
+  argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
+  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  fg_status status = fg_render_load(&ctx, arguments.spec, &spec);
+  if (status == FG_OK) status = fg_render_scan(&ctx, spec, arguments.scan, arguments.truth);
+  fg_render_free(spec);
+  return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
+}

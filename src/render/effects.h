@@ -1,0 +1,71 @@
+/* Effects: what makes the picture or the part differ from the declared model. One row each.
+ *
+ * A scanner effect is a field: true position = nominal position + d(x, y), in mm. A part effect
+ * moves the midline in the foil's frame, or changes the table of bumps.
+ */
+#ifndef FG_RENDER_EFFECTS_H
+#define FG_RENDER_EFFECTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "render/members.h"
+
+enum { FG_EFFECT_PARAMETERS_MAX = 4, FG_EFFECTS_MAX = 16 };
+
+typedef enum fg_effect_frame {
+  FG_EFFECT_SCANNER, /* field(p, x_mm, y_mm, d) adds to d */
+  FG_EFFECT_STEP,    /* the same, but a jump at y = p[1]: it comes after the optics, so it is sharp
+                        in the picture and not blurred */
+  FG_EFFECT_PART,    /* shape(p, psi_rad, ·): radial shift about O in mm, outwards positive; psi
+                        is counted from the foil's middle, towards the free end */
+  FG_EFFECT_BUMP,    /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
+                        where the arc meets its fillets */
+  FG_EFFECT_TABLE,   /* shape(p, index, count): factor on the bump's radius; index from 1 */
+} fg_effect_frame;
+
+typedef struct fg_effect_parameter {
+  const char *name;
+  double fallback; /* NaN: must be given; +inf: the middle of the picture, mm */
+  double low, high;
+} fg_effect_parameter;
+
+typedef struct fg_effect_row {
+  const char *id;
+  fg_effect_frame frame;
+  fg_effect_parameter parameters[FG_EFFECT_PARAMETERS_MAX];
+  void (*field)(const double *p, double x_mm, double y_mm, double d_mm[2]);
+  double (*shape)(const double *p, double coordinate, double extent);
+  int middle_axis; /* which axis a fallback of +inf is the middle of: 0 x, 1 y */
+} fg_effect_row;
+
+typedef struct fg_effect {
+  const fg_effect_row *row;
+  double p[FG_EFFECT_PARAMETERS_MAX];
+} fg_effect;
+
+typedef struct fg_effect_list {
+  fg_effect effects[FG_EFFECTS_MAX];
+  size_t count;
+} fg_effect_list;
+
+fg_status fg_effects_parse(const fg_place *place, const cJSON *array, fg_effect_list *list);
+
+/* Fills in parameters that refer to the picture's middle. */
+void fg_effects_resolve(fg_effect_list *list, double width_mm, double height_mm);
+
+bool fg_effects_have(const fg_effect_list *list, fg_effect_frame frame);
+
+/* d(x, y) of all scanner effects. `row_y_mm` is the y of the picture row that is being made: it
+ * says on which side of a jump we are. */
+void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, double row_y_mm,
+                      double d_mm[2]);
+
+/* The first jump at or above low_mm and below high_mm; NaN without. */
+double fg_effects_next_step(const fg_effect_list *list, double low_mm, double high_mm);
+
+/* Sum (FG_EFFECT_TABLE: product) of the shapes of one frame. */
+double fg_effects_shape(const fg_effect_list *list, fg_effect_frame frame, double coordinate,
+                        double extent);
+
+#endif

@@ -1,0 +1,54 @@
+/* Members of JSON objects as rows of a table: name, kind, place in a struct, allowed range. */
+#ifndef FG_RENDER_MEMBERS_H
+#define FG_RENDER_MEMBERS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include <cjson/cJSON.h>
+
+#include "foilgauge/status.h"
+
+typedef enum fg_member_kind {
+  FG_MEMBER_END,
+  FG_MEMBER_NUMBER,  /* double */
+  FG_MEMBER_INTEGER, /* int */
+  FG_MEMBER_BOOL,    /* bool */
+  FG_MEMBER_OTHER,   /* known, read by the caller */
+} fg_member_kind;
+
+typedef struct fg_member {
+  const char *name;
+  fg_member_kind kind;
+  size_t offset;
+  double low, high; /* of numbers, both allowed */
+} fg_member;
+
+/* Where we are in which file, for messages. */
+typedef struct fg_place {
+  fg_context *ctx;
+  const char *path;
+  char member[160]; /* "foils[0].design", empty at the top */
+} fg_place;
+
+fg_place fg_place_inside(const fg_place *place, const char *name);
+fg_place fg_place_item(const fg_place *place, const char *name, int index);
+
+/* "<path>: <place>.<name> is <value>: <what>" as FG_ERR_DATA; `item` may be NULL: missing. */
+fg_status fg_member_fail(const fg_place *place, const char *name, const cJSON *item,
+                         const char *what);
+
+/* Reads the members of `object` into `base`; absent ones keep their value. FG_ERR_DATA for an
+ * object that is none, unknown members, members given twice, wrong types and values out of
+ * range. */
+fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_member *table,
+                          void *base);
+
+fg_status fg_member_number(const fg_place *place, const char *name, const cJSON *item, double low,
+                           double high, double *value);
+
+/* An array of numbers; *count is what it has, at least `least`, at most `most`. */
+fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
+                            double high, int least, int most, double *values, int *count);
+
+#endif

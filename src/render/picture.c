@@ -1,0 +1,175 @@
+/* From coverage to pixels, row after row: light, shading, tone, noise, clipping, rounding. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/jpeg.h"
+#include "render/random.h"
+#include "render/tile.h"
+
+enum { TONE_STEPS = 65536 };
+
+typedef struct picture {
+  const fg_render_spec *spec;
+  fg_sampler sampler;
+  fg_tiler tiler;
+  fg_band band;
+  int64_t width, padded, strip_rows;
+  float *coverage; /* padded × strip_rows */
+  float *values, *noise, *noise_above;
+  float *column_shading;
+  float *tone;  /* NULL: linear */
+  void *pixels; /* strip_rows rows */
+  fg_noise_table table;
+  fg_jpeg jpeg;
+} picture;
+
+static fg_status make_tone(fg_context *ctx, picture *p) {
+  double gamma = p->spec->scanner.gamma;
+  if (gamma == 1) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, TONE_STEPS + 2, sizeof *p->tone, (void **)&p->tone));
+  for (int i = 0; i < TONE_STEPS + 2; i++)
+    p->tone[i] = (float)(255 * pow((double)i / TONE_STEPS, 1 / gamma));
+  return FG_OK;
+}
+
+static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
+                                picture *p) {
+  p->spec = spec;
+  p->width = spec->truth.width_px;
+  p->padded = (p->width + FG_TILE_PX - 1) / FG_TILE_PX * FG_TILE_PX;
+  if (strip_rows < 1) strip_rows = FG_TILE_PX;
+  if (strip_rows > spec->truth.height_px) strip_rows = spec->truth.height_px;
+  p->strip_rows = (strip_rows + FG_TILE_PX - 1) / FG_TILE_PX * FG_TILE_PX;
+  fg_sampler_init(spec, &p->sampler);
+  FG_TRY(fg_tiler_create(ctx, &p->sampler, &p->tiler));
+  FG_TRY(fg_band_create(ctx, &p->sampler, p->strip_rows, fg_tiler_reach_px(&p->tiler), &p->band));
+  size_t padded = (size_t)p->padded, rows = (size_t)p->strip_rows;
+  FG_TRY(fg_memory_allocate(ctx, padded * rows, sizeof(float), (void **)&p->coverage));
+  FG_TRY(fg_memory_allocate(ctx, padded * rows, spec->scanner.bits == 16 ? 2 : 1, &p->pixels));
+  FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->values));
+  FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->noise));
+  FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->noise_above));
+  FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->column_shading));
+  FG_TRY(make_tone(ctx, p));
+  const double *shading = spec->scanner.shading;
+  for (int64_t x = 0; x < p->width; x++) {
+    double u = 2.0 * (double)x / (double)(p->width - 1) - 1;
+    p->column_shading[x] = (float)(1 + shading[0] * u + shading[2] * u * u);
+  }
+  fg_noise_table_fill(&p->table);
+  if (spec->scanner.jpeg_quality) fg_jpeg_init(spec->scanner.jpeg_quality, &p->jpeg);
+  return FG_OK;
+}
+
+static void picture_free(picture *p) {
+  fg_tiler_free(&p->tiler);
+  fg_band_free(&p->band);
+  free(p->coverage);
+  free(p->pixels);
+  free(p->values);
+  free(p->noise);
+  free(p->noise_above);
+  free(p->column_shading);
+  free(p->tone);
+}
+
+static fg_status draw_coverage(fg_context *ctx, picture *p, int64_t y0) {
+  FG_TRY(fg_band_fill(ctx, &p->sampler, y0, fg_tiler_reach_px(&p->tiler), &p->band));
+  memset(p->coverage, 0, (size_t)p->padded * (size_t)p->strip_rows * sizeof *p->coverage);
+  for (int64_t y = 0; y < p->strip_rows && y0 + y < p->spec->truth.height_px; y += FG_TILE_PX)
+    for (int64_t x = 0; x < p->padded; x += FG_TILE_PX)
+      fg_tiler_draw(&p->tiler, &p->band, x, y0 + y, p->coverage + y * p->padded + x, p->padded);
+  return FG_OK;
+}
+
+/* Light of one row as DN of 8 bit. The ends of the scale keep their DN whatever gamma is. */
+static void expose_row(const picture *p, int64_t y, const float *coverage, float *values) {
+  const fg_scanner *scanner = &p->spec->scanner;
+  double gamma = scanner->gamma;
+  double dark = pow(scanner->background / 255, gamma);
+  double bright = pow((scanner->background + scanner->contrast) / 255, gamma);
+  double v = 2.0 * (double)y / (double)(p->spec->truth.height_px - 1) - 1;
+  float row_shading = (float)(scanner->shading[1] * v + scanner->shading[2] * v * v);
+  float base = (float)dark, step = (float)(bright - dark);
+  for (int64_t x = 0; x < p->width; x++)
+    values[x] = (base + step * coverage[x]) * (p->column_shading[x] + row_shading);
+  if (!p->tone) {
+    for (int64_t x = 0; x < p->width; x++)
+      values[x] *= 255;
+    return;
+  }
+  for (int64_t x = 0; x < p->width; x++) {
+    float place = values[x] * TONE_STEPS;
+    place = place < 0 ? 0 : place > TONE_STEPS ? TONE_STEPS : place;
+    int i = (int)place;
+    values[x] = p->tone[i] + (place - (float)i) * (p->tone[i + 1] - p->tone[i]);
+  }
+}
+
+/* Noise of variance 1. Correlated: first-order recursions along the row and down the columns, so
+ * the correlation to the next pixel is `rho` both ways, and rho² diagonally. */
+static void noise_row(picture *p, int64_t y) {
+  float rho = (float)p->spec->scanner.noise_correlation;
+  fg_random random;
+  fg_random_seed(&random, p->spec->seed, FG_STREAM_NOISE, (uint64_t)y);
+  fg_noise_draw(&p->table, &random, p->noise, (size_t)p->width);
+  if (rho <= 0) return;
+  float fresh = sqrtf(1 - rho * rho);
+  for (int64_t x = 1; x < p->width; x++)
+    p->noise[x] = rho * p->noise[x - 1] + fresh * p->noise[x];
+  if (y > 0)
+    for (int64_t x = 0; x < p->width; x++)
+      p->noise[x] = rho * p->noise_above[x] + fresh * p->noise[x];
+  memcpy(p->noise_above, p->noise, (size_t)p->width * sizeof *p->noise);
+}
+
+static void quantise_row(const picture *p, const float *values, void *pixels) {
+  const fg_scanner *scanner = &p->spec->scanner;
+  float top = isnan(scanner->clip_white) ? 255.0F : (float)scanner->clip_white;
+  float sd = (float)scanner->noise;
+  bool wide = scanner->bits == 16;
+  uint8_t *narrow_out = pixels;
+  uint16_t *wide_out = pixels;
+  for (int64_t x = 0; x < p->width; x++) {
+    float value = values[x] + sd * p->noise[x];
+    value = value < 0 ? 0 : value > top ? top : value;
+    if (wide)
+      wide_out[x] = (uint16_t)(value * 257 + 0.5F);
+    else
+      narrow_out[x] = (uint8_t)(value + 0.5F);
+  }
+}
+
+static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0, fg_render_row *row,
+                            void *user) {
+  int64_t rows = p->spec->truth.height_px - y0;
+  if (rows > p->strip_rows) rows = p->strip_rows;
+  size_t row_bytes = (size_t)p->padded * (p->spec->scanner.bits == 16 ? 2 : 1);
+  FG_TRY(draw_coverage(ctx, p, y0));
+  for (int64_t y = 0; y < rows; y++) {
+    expose_row(p, y0 + y, p->coverage + y * p->padded, p->values);
+    if (p->spec->scanner.noise > 0) noise_row(p, y0 + y);
+    quantise_row(p, p->values, (char *)p->pixels + (size_t)y * row_bytes);
+  }
+  if (p->spec->scanner.jpeg_quality)
+    fg_jpeg_squeeze(&p->jpeg, p->pixels, p->width, rows, p->padded);
+  for (int64_t y = 0; y < rows; y++)
+    FG_TRY(row(ctx, user, y0 + y, (const char *)p->pixels + (size_t)y * row_bytes));
+  return FG_OK;
+}
+
+fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
+                         fg_render_row *row, void *user) {
+  picture *p = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *p, (void **)&p));
+  FG_TRY_EXIT(picture_create(ctx, spec, strip_rows, p));
+  for (int64_t y = 0; y < spec->truth.height_px; y += p->strip_rows)
+    FG_TRY_EXIT(draw_strip(ctx, p, y, row, user));
+exit:
+  picture_free(p);
+  free(p);
+  return status;
+}

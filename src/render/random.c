@@ -1,0 +1,75 @@
+#include "render/random.h"
+
+#include <math.h>
+
+#include <gsl/gsl_cdf.h>
+
+static uint64_t splitmix(uint64_t *state) {
+  uint64_t z = (*state += 0x9e3779b97f4a7c15u);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+static uint64_t rotate_left(uint64_t value, int bits) {
+  return (value << bits) | (value >> (64 - bits));
+}
+
+void fg_random_seed(fg_random *random, uint64_t seed, uint64_t stream, uint64_t index) {
+  uint64_t state = seed;
+  state = splitmix(&state) ^ stream;
+  state = splitmix(&state) ^ index;
+  for (int i = 0; i < 4; i++)
+    random->state[i] = splitmix(&state);
+}
+
+uint64_t fg_random_next(fg_random *random) {
+  uint64_t *s = random->state;
+  uint64_t result = rotate_left(s[0] + s[3], 23) + s[0];
+  uint64_t t = s[1] << 17;
+  s[2] ^= s[0];
+  s[3] ^= s[1];
+  s[1] ^= s[2];
+  s[0] ^= s[3];
+  s[2] ^= t;
+  s[3] = rotate_left(s[3], 45);
+  return result;
+}
+
+double fg_random_uniform(fg_random *random) {
+  return (double)(fg_random_next(random) >> 11) * 0x1p-53;
+}
+
+double fg_random_normal(fg_random *random) {
+  return gsl_cdf_ugaussian_Pinv(((double)(fg_random_next(random) >> 12) + 0.5) * 0x1p-52);
+}
+
+void fg_noise_table_fill(fg_noise_table *table) {
+  double quantiles[FG_NOISE_QUANTILES];
+  double sum_of_squares = 0;
+  for (int i = 0; i < FG_NOISE_QUANTILES; i++) {
+    quantiles[i] = gsl_cdf_ugaussian_Pinv((i + 0.5) / FG_NOISE_QUANTILES);
+    sum_of_squares += quantiles[i] * quantiles[i];
+  }
+  /* Cutting the law into quantiles takes a little off its variance; two of them make 1. */
+  double scale = sqrt(0.5 * FG_NOISE_QUANTILES / sum_of_squares);
+  for (int i = 0; i < FG_NOISE_QUANTILES; i++)
+    table->quantiles[i] = (float)(scale * quantiles[i]);
+}
+
+void fg_noise_draw(const fg_noise_table *table, fg_random *random, float *out, size_t count) {
+  const float *q = table->quantiles;
+  const uint64_t mask = FG_NOISE_QUANTILES - 1;
+  fg_random local = *random;
+  size_t i = 0;
+  for (; i + 2 <= count; i += 2) {
+    uint64_t bits = fg_random_next(&local);
+    out[i] = q[bits & mask] + q[(bits >> 11) & mask];
+    out[i + 1] = q[(bits >> 22) & mask] + q[(bits >> 33) & mask];
+  }
+  if (i < count) {
+    uint64_t bits = fg_random_next(&local);
+    out[i] = q[bits & mask] + q[(bits >> 11) & mask];
+  }
+  *random = local;
+}

@@ -1,0 +1,231 @@
+#include "render/sampler.h"
+
+#include <math.h>
+
+static const double phi_limit = 5;  /* 1 - Phi(5) = 3e-7 */
+static const double wall_reach = 6; /* decay lengths */
+
+void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
+  const fg_scanner *scanner = &spec->scanner;
+  *sampler = (fg_sampler){.spec = spec, .row_y_mm = NAN};
+  double pixel = fmin(spec->pixel_mm[0], spec->pixel_mm[1]);
+  for (int axis = 0; axis < 2; axis++)
+    sampler->pixel_mm[axis] = spec->pixel_mm[axis];
+  sampler->sd_mm = 0.3 * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
+  sampler->has_field = fg_effects_have(&spec->effects, FG_EFFECT_SCANNER) ||
+                       fg_effects_have(&spec->effects, FG_EFFECT_STEP);
+  sampler->has_part = fg_effects_have(&spec->effects, FG_EFFECT_PART);
+  sampler->has_bump = fg_effects_have(&spec->effects, FG_EFFECT_BUMP);
+  sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
+  double direction = scanner->wall_direction_deg * 3.14159265358979323846 / 180;
+  sampler->wall_x = cos(direction);
+  sampler->wall_y = sin(direction);
+  sampler->wall_mm = scanner->wall_length_px * pixel;
+  double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
+  reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
+  /* Part and bump shapes never exceed their amplitude by much inside the foil's span. */
+  for (size_t i = 0; i < spec->effects.count; i++) {
+    fg_effect_frame frame = spec->effects.effects[i].row->frame;
+    if (frame == FG_EFFECT_PART || frame == FG_EFFECT_BUMP)
+      reach += 2e-3 * fabs(spec->effects.effects[i].p[0]);
+  }
+  sampler->edge_reach_mm = reach;
+  sampler->reach_mm = reach + (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm : 0);
+  for (int i = 0; i < FG_PHI_STEPS + 2; i++) {
+    double u = phi_limit * (2.0 * i / FG_PHI_STEPS - 1);
+    sampler->phi[i] = (float)(0.5 * erfc(-u / sqrt(2.0)));
+  }
+}
+
+/* Normal distribution function, linear between 2048 values: within 3e-6. */
+static double phi(const fg_sampler *sampler, double u) {
+  double place = (u + phi_limit) * (FG_PHI_STEPS / (2 * phi_limit));
+  if (!(place > 0)) return 0;
+  if (place >= FG_PHI_STEPS) return 1;
+  int i = (int)place;
+  double low = (double)sampler->phi[i], high = (double)sampler->phi[i + 1];
+  return low + (place - i) * (high - low);
+}
+
+/* The cross-section that a place belongs to. */
+typedef struct cross_section {
+  const fg_segment *segment;
+  double n;      /* distance from the midline, towards the inner side */
+  double nx, ny; /* that direction */
+  double dx, dy; /* from the segment's centre or start */
+} cross_section;
+
+static void try_segment(const fg_segment *segment, double x, double y, cross_section *best) {
+  const double slack = 1e-9; /* mm: no place falls between two segments */
+  double dx = x - segment->x, dy = y - segment->y;
+  if (segment->line) {
+    double t = dx * segment->ax + dy * segment->ay;
+    if ((t < -slack && !segment->open_start) ||
+        (t > segment->length_mm + slack && !segment->open_end))
+      return;
+    double n = dx * segment->bx + dy * segment->by;
+    if (best->segment && fabs(n) >= fabs(best->n)) return;
+    *best = (cross_section){segment, n, segment->bx, segment->by, dx, dy};
+    return;
+  }
+  double forward = segment->sweep > 0 ? 1 : -1;
+  if (forward * (segment->ax * dy - segment->ay * dx) < -slack && !segment->open_start) return;
+  if (forward * (dx * segment->by - dy * segment->bx) < -slack && !segment->open_end) return;
+  double r = sqrt(dx * dx + dy * dy);
+  double n = segment->side * (r - segment->radius);
+  if (best->segment && fabs(n) >= fabs(best->n)) return;
+  double scale = r > 0 ? segment->side / r : 0;
+  *best = (cross_section){segment, n, dx * scale, dy * scale, dx, dy};
+}
+
+/* Arc length from the segment's start. */
+static double along(const cross_section *at) {
+  const fg_segment *segment = at->segment;
+  if (segment->line) return at->dx * segment->ax + at->dy * segment->ay;
+  double turned = atan2(segment->mx * at->dy - segment->my * at->dx,
+                        segment->mx * at->dx + segment->my * at->dy);
+  return segment->length_mm * (0.5 + turned / segment->sweep);
+}
+
+/* Catmull-Rom between the drawn values. */
+static double roughness(const fg_foil_frame *frame, int edge, double s_mm) {
+  double place = s_mm / frame->roughness_step_mm + 1;
+  double last = (double)frame->roughness_count - 3;
+  place = place < 1 ? 1 : place > last ? last : place;
+  size_t i = (size_t)place;
+  double t = place - (double)i;
+  const float *v = frame->roughness[edge] + i - 1;
+  double a = (double)v[0], b = (double)v[1], c = (double)v[2], d = (double)v[3];
+  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+/* Bright-to-dark edges, along the carriage's way (rows rising), are blurred more. (mx, my) points
+ * out of the bright-or-dark thing; `bright` is +1 when the thing is brighter than around it. */
+static double edge_sd(const fg_sampler *sampler, double sd, double my, double bright) {
+  if (sampler->one_sided_mm <= 0 || my * bright <= 0) return sd;
+  double extra = sampler->one_sided_mm * my;
+  return sqrt(sd * sd + extra * extra);
+}
+
+static double wall(const fg_sampler *sampler, const cross_section *at, double inner, double outer) {
+  double facing = at->nx * sampler->wall_x + at->ny * sampler->wall_y;
+  double distance = at->n > 0.5 * (inner + outer) ? at->n - inner : outer - at->n;
+  if (at->n <= 0.5 * (inner + outer)) facing = -facing;
+  if (facing <= 0) return 0;
+  return sampler->spec->scanner.wall_amplitude * facing *
+         exp(-fmax(distance, 0) / sampler->wall_mm);
+}
+
+/* Beyond the reach of the edges there is the wall or nothing. */
+static double far_value(const fg_sampler *sampler, const fg_foil_frame *frame,
+                        const cross_section *at, double sd) {
+  const fg_segment *segment = at->segment;
+  if (sampler->spec->scanner.wall_amplitude == 0) return 0;
+  double value = wall(sampler, at, frame->half_thickness_mm, -frame->half_thickness_mm);
+  if (value == 0 || !(segment->open_start || segment->open_end)) return value;
+  double t = along(at);
+  if (segment->open_start) value *= phi(sampler, t / sd);
+  if (segment->open_end) value *= phi(sampler, (segment->length_mm - t) / sd);
+  return value;
+}
+
+static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
+                          const cross_section *at, double sd) {
+  const fg_segment *segment = at->segment;
+  double inner = frame->half_thickness_mm, outer = -inner;
+  double t = 0;
+  bool ends = segment->open_start || segment->open_end;
+  if (ends || frame->roughness[0] || (segment->bump && sampler->has_bump)) t = along(at);
+  if (segment->bump && sampler->has_bump) {
+    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_BUMP,
+                                    2 * t / segment->length_mm - 1, 1);
+    inner += shift;
+    outer += shift;
+  }
+  if (frame->roughness[0]) {
+    inner += roughness(frame, 0, segment->s_mm + t);
+    outer += roughness(frame, 1, segment->s_mm + t);
+  }
+  double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
+  double inner_sd = edge_sd(sampler, sd, at->ny, bright);
+  double outer_sd = edge_sd(sampler, sd, -at->ny, bright);
+  double value =
+      phi(sampler, (at->n - outer) / outer_sd) - phi(sampler, (at->n - inner) / inner_sd);
+  if (sampler->spec->scanner.wall_amplitude != 0)
+    value += (1 - value) * wall(sampler, at, inner, outer);
+  if (segment->open_start) value *= phi(sampler, t / sd);
+  if (segment->open_end) value *= phi(sampler, (segment->length_mm - t) / sd);
+  return value;
+}
+
+static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
+                         double y, double sd) {
+  const fg_scene *scene = &sampler->spec->scene;
+  const fg_foil_frame *frame = &scene->frames[scene->segments[ids[0]].foil];
+  if (sampler->has_part) {
+    /* The shape moves radially, so a place belongs to the part that is radially below it. */
+    double dx = x - frame->x, dy = y - frame->y, distance = hypot(dx, dy);
+    double psi =
+        frame->mirror * remainder(atan2(dy, dx) - frame->axis_rad, 2 * 3.14159265358979323846);
+    double shift =
+        fg_effects_shape(&sampler->spec->effects, FG_EFFECT_PART, psi, frame->half_span_rad);
+    x -= shift * dx / distance;
+    y -= shift * dy / distance;
+  }
+  cross_section best = {0};
+  for (size_t i = 0; i < count; i++)
+    try_segment(&scene->segments[ids[i]], x, y, &best);
+  if (!best.segment) return 0;
+  double limit =
+      sampler->edge_reach_mm + frame->half_thickness_mm + phi_limit * (sd - sampler->sd_mm);
+  if (fabs(best.n) > limit) return far_value(sampler, frame, &best, sd);
+  return strip_value(sampler, frame, &best, sd);
+}
+
+static double shape_value(const fg_sampler *sampler, const fg_shape *shape, double x, double y,
+                          double sd, double below) {
+  double lx = shape->x1 - shape->x0, ly = shape->y1 - shape->y0, length2 = lx * lx + ly * ly;
+  double dx = x - shape->x0, dy = y - shape->y0;
+  if (length2 > 0) {
+    double t = fmin(1, fmax(0, (dx * lx + dy * ly) / length2));
+    dx -= t * lx;
+    dy -= t * ly;
+  }
+  double r = sqrt(dx * dx + dy * dy);
+  double edge = r - shape->radius;
+  if (shape->lobes &&
+      fabs(edge) < fabs(shape->lobe_mm) + phi_limit * hypot(sd, sampler->one_sided_mm))
+    edge -= shape->lobe_mm * cos(shape->lobes * (atan2(dy, dx) - shape->lobe_phase_rad));
+  if (!shape->adds && r > 0) {
+    double bright = sampler->spec->scanner.contrast * (shape->value - 0.5) > 0 ? 1 : -1;
+    sd = edge_sd(sampler, sd, dy / r, bright);
+  }
+  double cover = phi(sampler, -edge / sd);
+  return shape->adds ? below + shape->value * cover : below + (shape->value - below) * cover;
+}
+
+double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, double y_mm,
+                 double sd_mm) {
+  const fg_scene *scene = &sampler->spec->scene;
+  double x = x_mm, y = y_mm;
+  if (sampler->has_field) {
+    double d[2];
+    double row_y = isnan(sampler->row_y_mm) ? y : sampler->row_y_mm;
+    fg_effects_field(&sampler->spec->effects, x, y, row_y, d);
+    x += d[0];
+    y += d[1];
+  }
+  double value = 0;
+  size_t i = 0;
+  while (i < near->count && near->ids[i] < scene->segment_count) {
+    size_t first = i, foil = scene->segments[near->ids[i]].foil;
+    while (i < near->count && near->ids[i] < scene->segment_count &&
+           scene->segments[near->ids[i]].foil == foil)
+      i++;
+    value += (1 - value) * foil_value(sampler, near->ids + first, i - first, x, y, sd_mm);
+  }
+  for (; i < near->count; i++)
+    value = shape_value(sampler, &scene->shapes[near->ids[i] - scene->segment_count], x, y, sd_mm,
+                        value);
+  return value;
+}

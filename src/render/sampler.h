@@ -1,0 +1,72 @@
+/* What is at a place of the picture: coverage before optical blur, smoothed just enough to be
+ * sampled.
+ *
+ * A sample is the strip seen through a Gaussian of sd `sd`, taken from its signed distance: the
+ * difference of two normal distribution functions. At three samples a pixel and sd 0.3 px the
+ * spectrum beyond the sampling rate is below 1e-6, so sums of samples are as good as integrals; and
+ * what a smoothing along the normal alone misses on a curved edge is sd²/(2 radius): 1e-4 px on a
+ * bump. The rest of the blur, and the pixel's square, are two-dimensional (tile.c).
+ */
+#ifndef FG_RENDER_SAMPLER_H
+#define FG_RENDER_SAMPLER_H
+
+#include "render/spec.h"
+
+enum {
+  FG_BLOCK_PX = 8,   /* lists of what is near are kept per block of 8 × 8 pixels */
+  FG_NEAR_MAX = 128, /* things near one block; more are left out, farthest in the list first */
+  FG_PHI_STEPS = 2048,
+};
+
+typedef struct fg_sampler {
+  const fg_render_spec *spec;
+  double pixel_mm[2];
+  double sd_mm;         /* of the sampling */
+  double edge_reach_mm; /* how far from an undisturbed edge its blur can be seen */
+  double reach_mm;      /* how far from the midline of a thin strip a sample can be non-zero */
+  double row_y_mm;      /* side of jumps that the sample is seen from; NaN: its own */
+  bool has_field, has_part, has_bump;
+  double one_sided_mm;   /* sd; 0 without */
+  double wall_x, wall_y; /* direction */
+  double wall_mm;        /* decay length */
+  float phi[FG_PHI_STEPS + 2];
+} fg_sampler;
+
+void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler);
+
+/* Things near one block, ascending: segments first, then shapes (segment_count + index). */
+typedef struct fg_near {
+  size_t ids[FG_NEAR_MAX];
+  size_t count;
+} fg_near;
+
+/* Value at a nominal place: 0 background, 1 foil. `sd_mm` is the smoothing. */
+double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, double y_mm,
+                 double sd_mm);
+
+/* Lists of what is near each block of a band of rows. */
+typedef struct fg_band_node {
+  uint32_t id;
+  int32_t next;
+} fg_band_node;
+
+typedef struct fg_band {
+  int64_t column0, row0; /* block coordinates of the first block: floor(pixel / 8) */
+  int64_t columns, rows;
+  int32_t *heads; /* -1: empty */
+  fg_band_node *nodes;
+  size_t node_count, node_capacity;
+  double (*spans_px)[2]; /* first and last row that a segment or shape can reach */
+} fg_band;
+
+/* `margin_px` (a multiple of 8) is kept on all sides; `rows_px` is the band's height. */
+fg_status fg_band_create(fg_context *ctx, const fg_sampler *sampler, int64_t rows_px,
+                         int64_t margin_px, fg_band *band);
+/* Fills the lists for the band whose first picture row is y0_px. */
+fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px, int64_t margin_px,
+                       fg_band *band);
+void fg_band_gather(const fg_band *band, int64_t block_x, int64_t block_y, fg_near *near);
+bool fg_band_any(const fg_band *band, int64_t x0, int64_t y0, int64_t x1, int64_t y1);
+void fg_band_free(fg_band *band);
+
+#endif

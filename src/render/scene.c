@@ -1,0 +1,296 @@
+/* Foils and discs put in their places, the size of the picture, litter, truth. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "render/random.h"
+#include "render/spec.h"
+
+static const double pi = 3.14159265358979323846;
+
+fg_point fg_segment_point(const fg_segment *segment, double t_mm) {
+  if (segment->line)
+    return (fg_point){segment->x + t_mm * segment->ax, segment->y + t_mm * segment->ay};
+  double angle = segment->angle + segment->sweep * t_mm / segment->length_mm;
+  return (fg_point){segment->x + segment->radius * cos(angle),
+                    segment->y + segment->radius * sin(angle)};
+}
+
+/* From the foil's own frame (middle along x) to the true frame. */
+static fg_point turn(const fg_foil_frame *frame, double x, double y) {
+  double c = cos(frame->axis_rad), s = sin(frame->axis_rad);
+  y *= frame->mirror;
+  return (fg_point){c * x - s * y, s * x + c * y};
+}
+
+static void turn_segment(const fg_foil_frame *frame, fg_segment *segment) {
+  fg_point at = turn(frame, segment->x, segment->y);
+  segment->x = at.x;
+  segment->y = at.y;
+  if (segment->line) {
+    fg_point a = turn(frame, segment->ax, segment->ay), b = turn(frame, segment->bx, segment->by);
+    segment->ax = a.x;
+    segment->ay = a.y;
+    segment->bx = b.x;
+    segment->by = b.y;
+    return;
+  }
+  segment->angle = frame->axis_rad + frame->mirror * segment->angle;
+  segment->sweep *= frame->mirror;
+  segment->ax = cos(segment->angle);
+  segment->ay = sin(segment->angle);
+  segment->bx = cos(segment->angle + segment->sweep);
+  segment->by = sin(segment->angle + segment->sweep);
+  segment->mx = cos(segment->angle + 0.5 * segment->sweep);
+  segment->my = sin(segment->angle + 0.5 * segment->sweep);
+}
+
+typedef struct box {
+  double low[2], high[2];
+} box;
+
+static void box_add(box *b, double x, double y, double reach) {
+  b->low[0] = fmin(b->low[0], x - reach);
+  b->low[1] = fmin(b->low[1], y - reach);
+  b->high[0] = fmax(b->high[0], x + reach);
+  b->high[1] = fmax(b->high[1], y + reach);
+}
+
+static box foil_box(const fg_scene *scene, const fg_foil_frame *frame) {
+  box b = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+  for (size_t i = 0; i < frame->segment_count; i++) {
+    const fg_segment *segment = &scene->segments[frame->first_segment + i];
+    int steps = 1 + (int)(segment->length_mm / 0.05);
+    for (int k = 0; k <= steps; k++) {
+      fg_point p = fg_segment_point(segment, segment->length_mm * k / steps);
+      box_add(&b, p.x, p.y, frame->half_thickness_mm);
+    }
+  }
+  return b;
+}
+
+static void move_foil(fg_scene *scene, fg_foil_frame *frame, double x_mm, double y_mm) {
+  frame->x += x_mm;
+  frame->y += y_mm;
+  for (size_t i = 0; i < frame->segment_count; i++) {
+    scene->segments[frame->first_segment + i].x += x_mm;
+    scene->segments[frame->first_segment + i].y += y_mm;
+  }
+}
+
+/* Foils without a place of their own fill shelves from the top; without a given width every shelf
+ * holds one foil. */
+typedef struct shelf {
+  double x_px, y_px, height_px;
+} shelf;
+
+static void place_automatically(fg_render_spec *spec, fg_foil_frame *frame, const box *b,
+                                size_t foil, shelf *at) {
+  double margin = spec->margin_px;
+  double width = (b->high[0] - b->low[0]) / spec->pixel_mm[0];
+  double height = (b->high[1] - b->low[1]) / spec->pixel_mm[1];
+  double limit = isnan(spec->width_px) ? 0 : spec->width_px;
+  if (at->x_px > margin && at->x_px + width + margin > limit) {
+    *at = (shelf){margin, at->y_px + at->height_px + margin, 0};
+  }
+  /* Somewhere within a pixel: no foil sits on the grid by rule. */
+  fg_random random;
+  fg_random_seed(&random, spec->seed, FG_STREAM_PLACE, foil);
+  double dx = fg_random_uniform(&random), dy = fg_random_uniform(&random);
+  move_foil(&spec->scene, frame, (at->x_px + dx) * spec->pixel_mm[0] - b->low[0],
+            (at->y_px + dy) * spec->pixel_mm[1] - b->low[1]);
+  at->x_px += ceil(width + 1 + margin);
+  at->height_px = fmax(at->height_px, ceil(height + 1));
+}
+
+static void finish_foil_truth(const fg_render_spec *spec, const fg_foil_frame *frame,
+                              fg_render_foil *foil) {
+  foil->rotate_deg = remainder(frame->axis_rad * 180 / pi, 360);
+  foil->overall_centre_px = (fg_point){frame->x / spec->pixel_mm[0], frame->y / spec->pixel_mm[1]};
+  fg_render_bump *bumps = (fg_render_bump *)foil->bumps;
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    fg_point c = turn(frame, bumps[i].centre_px.x, bumps[i].centre_px.y);
+    bumps[i].centre_px =
+        (fg_point){(frame->x + c.x) / spec->pixel_mm[0], (frame->y + c.y) / spec->pixel_mm[1]};
+  }
+}
+
+static fg_status build_foil(const fg_place *place, fg_render_spec *spec,
+                            const fg_foil_request *request, int copy, shelf *at, box *all) {
+  fg_scene *scene = &spec->scene;
+  size_t foil = scene->foil_count++;
+  fg_foil_frame *frame = &scene->frames[foil];
+  frame->axis_rad = (request->rotate_deg + copy * request->rotate_step_deg) * pi / 180;
+  frame->mirror = request->mirror ? -1 : 1;
+  FG_TRY(fg_outline_build(place, spec, request, scene, foil));
+  for (size_t i = 0; i < frame->segment_count; i++)
+    turn_segment(frame, &scene->segments[frame->first_segment + i]);
+  box b = foil_box(scene, frame);
+  if (isnan(request->centre_mm[0]))
+    place_automatically(spec, frame, &b, foil, at);
+  else
+    move_foil(scene, frame, request->centre_mm[0], request->centre_mm[1]);
+  b = foil_box(scene, frame);
+  box_add(all, b.low[0], b.low[1], 0);
+  box_add(all, b.high[0], b.high[1], 0);
+  finish_foil_truth(spec, frame, &scene->foils[foil]);
+  return fg_roughness_build(place->ctx, &spec->scanner, spec->seed, foil, frame);
+}
+
+static fg_status build_foils(const fg_place *place, fg_render_spec *spec, box *all) {
+  size_t count = 0;
+  for (size_t i = 0; i < spec->request_count; i++)
+    count += (size_t)spec->requests[i].repeat;
+  if (count > FG_RENDER_FOILS_MAX)
+    return fg_member_fail(place, "foils", NULL, "at most 4096 foils, copies counted");
+  fg_scene *scene = &spec->scene;
+  FG_TRY(fg_memory_allocate(place->ctx, count, sizeof *scene->frames, (void **)&scene->frames));
+  FG_TRY(fg_memory_allocate(place->ctx, count, sizeof *scene->foils, (void **)&scene->foils));
+  shelf at = {spec->margin_px, spec->margin_px, 0};
+  for (size_t i = 0; i < spec->request_count; i++) {
+    fg_place inner = fg_place_item(place, "foils", (int)i);
+    for (int copy = 0; copy < spec->requests[i].repeat; copy++)
+      FG_TRY(build_foil(&inner, spec, &spec->requests[i], copy, &at, all));
+  }
+  return FG_OK;
+}
+
+static void build_discs(fg_render_spec *spec, box *all) {
+  fg_scene *scene = &spec->scene;
+  for (size_t i = 0; i < spec->disc_request_count; i++) {
+    const fg_disc_request *request = &spec->disc_requests[i];
+    double x = request->centre_mm[0], y = request->centre_mm[1];
+    scene->shapes[scene->shape_count++] =
+        (fg_shape){.x0 = x,
+                   .y0 = y,
+                   .x1 = x,
+                   .y1 = y,
+                   .radius = request->radius_mm,
+                   .value = request->hole ? 0 : 1,
+                   .lobes = request->lobes,
+                   .lobe_mm = 1e-3 * request->lobe_um,
+                   .lobe_phase_rad = request->lobe_phase_deg * pi / 180};
+    scene->discs[scene->disc_count++] =
+        (fg_render_disc){.centre_px = {x / spec->pixel_mm[0], y / spec->pixel_mm[1]},
+                         .radius_mm = request->radius_mm,
+                         .hole = request->hole};
+    box_add(all, x, y, request->radius_mm);
+  }
+}
+
+/* Sizes vary from half to one and a half, contrast from half to full. */
+static void scatter_litter(fg_render_spec *spec, const fg_litter *litter, fg_random_stream stream) {
+  fg_random random;
+  fg_random_seed(&random, spec->seed, stream, 0);
+  double pixel = spec->pixel_mm[0];
+  for (int i = 0; i < litter->count; i++) {
+    double x = fg_random_uniform(&random) * spec->width_px * spec->pixel_mm[0];
+    double y = fg_random_uniform(&random) * spec->height_px * spec->pixel_mm[1];
+    double angle = fg_random_uniform(&random) * 2 * pi;
+    double size = 0.5 + fg_random_uniform(&random);
+    double strength = 0.5 + 0.5 * fg_random_uniform(&random);
+    double length = litter->length_px * size * pixel;
+    double lobes = fg_random_uniform(&random);
+    double radius = litter->radius_px * pixel * (litter->length_px > 0 ? 1 : size);
+    spec->scene.shapes[spec->scene.shape_count++] =
+        (fg_shape){.x0 = x,
+                   .y0 = y,
+                   .x1 = x + length * cos(angle),
+                   .y1 = y + length * sin(angle),
+                   .radius = radius,
+                   .value = strength * litter->contrast / spec->scanner.contrast,
+                   .adds = true,
+                   .lobes = litter->length_px > 0 ? 0 : 2 + (int)(3 * lobes),
+                   .lobe_mm = litter->length_px > 0 ? 0 : 0.2 * radius,
+                   .lobe_phase_rad = angle};
+  }
+}
+
+static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box *all) {
+  const char *names[2] = {"width_px", "height_px"};
+  double *sizes[2] = {&spec->width_px, &spec->height_px};
+  for (int axis = 0; axis < 2; axis++) {
+    double need = all->high[axis] / spec->pixel_mm[axis] + spec->margin_px;
+    if (isnan(*sizes[axis])) *sizes[axis] = ceil(need);
+    if (!(*sizes[axis] >= 16 && *sizes[axis] <= 200000))
+      return fg_fail(place->ctx, FG_ERR_DATA,
+                     "%s: %s would be %g to hold what is drawn: must be from 16 to 200000",
+                     place->path, names[axis], *sizes[axis]);
+    if (*sizes[axis] != floor(*sizes[axis]))
+      return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s is %g: must be a whole number", place->path,
+                     names[axis], *sizes[axis]);
+  }
+  return FG_OK;
+}
+
+fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
+  fg_scene *scene = &spec->scene;
+  const fg_scanner *scanner = &spec->scanner;
+  for (int axis = 0; axis < 2; axis++)
+    spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
+  box all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+  FG_TRY(build_foils(place, spec, &all));
+  size_t litter = (size_t)scanner->dust.count + (size_t)scanner->specks.count +
+                  (size_t)scanner->scratches.count;
+  FG_TRY(fg_memory_allocate(place->ctx, spec->disc_request_count + litter, sizeof *scene->shapes,
+                            (void **)&scene->shapes));
+  FG_TRY(fg_memory_allocate(place->ctx, spec->disc_request_count, sizeof *scene->discs,
+                            (void **)&scene->discs));
+  build_discs(spec, &all);
+  FG_TRY(fit_size(place, spec, &all));
+  scatter_litter(spec, &scanner->dust, FG_STREAM_DUST);
+  scatter_litter(spec, &scanner->specks, FG_STREAM_SPECKS);
+  scatter_litter(spec, &scanner->scratches, FG_STREAM_SCRATCHES);
+  fg_effects_resolve(&spec->effects, spec->width_px * spec->pixel_mm[0],
+                     spec->height_px * spec->pixel_mm[1]);
+  spec->truth = (fg_render_truth){.width_px = (int64_t)spec->width_px,
+                                  .height_px = (int64_t)spec->height_px,
+                                  .bits = scanner->bits,
+                                  .dpi = {scanner->dpi[0], scanner->dpi[1]},
+                                  .foils = scene->foils,
+                                  .foil_count = scene->foil_count,
+                                  .discs = scene->discs,
+                                  .disc_count = scene->disc_count};
+  return FG_OK;
+}
+
+void fg_scene_free(fg_scene *scene) {
+  for (size_t i = 0; i < scene->foil_count; i++) {
+    free((void *)scene->foils[i].bumps);
+    free(scene->frames[i].roughness[0]);
+    free(scene->frames[i].roughness[1]);
+  }
+  free(scene->segments);
+  free(scene->frames);
+  free(scene->foils);
+  free(scene->shapes);
+  free(scene->discs);
+  memset(scene, 0, sizeof *scene);
+}
+
+fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
+                            fg_point *point_px) {
+  const fg_scene *scene = &spec->scene;
+  if (foil >= scene->foil_count || !(s_mm >= 0 && s_mm <= scene->frames[foil].length_mm))
+    return fg_fail(ctx, FG_ERR_USAGE, "there is no foil %zu with a midline of %g mm", foil, s_mm);
+  const fg_foil_frame *frame = &scene->frames[foil];
+  size_t i = frame->first_segment, last = i + frame->segment_count - 1;
+  while (i < last && s_mm > scene->segments[i].s_mm + scene->segments[i].length_mm)
+    i++;
+  const fg_segment *segment = &scene->segments[i];
+  double t = s_mm - segment->s_mm;
+  fg_point p = fg_segment_point(segment, t);
+  if (segment->bump) {
+    double w = fg_effects_shape(&spec->effects, FG_EFFECT_BUMP, 2 * t / segment->length_mm - 1, 1);
+    p.x += w * (p.x - segment->x) / segment->radius;
+    p.y += w * (p.y - segment->y) / segment->radius;
+  }
+  double dx = p.x - frame->x, dy = p.y - frame->y;
+  double psi = frame->mirror * remainder(atan2(dy, dx) - frame->axis_rad, 2 * pi);
+  double radial = fg_effects_shape(&spec->effects, FG_EFFECT_PART, psi, frame->half_span_rad);
+  double distance = hypot(dx, dy);
+  point_px->x = (p.x + radial * dx / distance) / spec->pixel_mm[0];
+  point_px->y = (p.y + radial * dy / distance) / spec->pixel_mm[1];
+  return FG_OK;
+}

@@ -1,0 +1,159 @@
+/* What a spec asks for, as read; and the scene that is made of it. */
+#ifndef FG_RENDER_SPEC_H
+#define FG_RENDER_SPEC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/render.h"
+#include "render/effects.h"
+
+enum { FG_RENDER_BUMPS_MAX = 64, FG_RENDER_FOILS_MAX = 4096 };
+
+/* Design members that the renderer needs (the same names as in a design file). */
+typedef struct fg_render_design {
+  int bump_count;
+  double bump_radius_mm, bump_angle_deg, overall_radius_mm, sleeve_radius_mm, pitch_deg;
+  double fillet_radius_mm, thickness_mm, rotor_diameter_mm;
+} fg_render_design;
+
+typedef struct fg_render_lip {
+  double length_mm, bend_radius_mm;
+  bool outwards;
+} fg_render_lip;
+
+typedef struct fg_foil_request {
+  fg_render_design design;
+  double overall_radius_mm;                   /* actual; NaN: as designed */
+  double springback_mean, springback_sd;      /* R = R_D (1 + mean + sd × normal) */
+  double radius_mm[FG_RENDER_BUMPS_MAX];      /* overrides; NaN: by springback */
+  double bump_angle_deg[FG_RENDER_BUMPS_MAX]; /* NaN: constant arc length */
+  double height_factor[FG_RENDER_BUMPS_MAX];  /* 1: not crushed */
+  bool missing[FG_RENDER_BUMPS_MAX];
+  bool has_lip;
+  fg_render_lip lip;
+  double first_land_mm, last_land_mm; /* from the fillet's end */
+  double centre_mm[2];                /* NaN: placed automatically */
+  double rotate_deg, rotate_step_deg;
+  bool mirror;
+  int repeat;
+} fg_foil_request;
+
+typedef struct fg_disc_request {
+  double centre_mm[2], radius_mm;
+  bool hole;
+  int lobes;
+  double lobe_um, lobe_phase_deg; /* r = radius + lobe cos(lobes (phi - phase)) */
+} fg_disc_request;
+
+/* Things that lie on the glass, drawn at random places. Contrast in DN, either sign. */
+typedef struct fg_litter {
+  int count;
+  double radius_px, length_px, contrast;
+} fg_litter;
+
+typedef struct fg_scanner {
+  double dpi[2];
+  int bits;
+  double background, contrast, gamma, blur_px, noise, noise_correlation, clip_white;
+  double shading[3]; /* relative, at the picture's edge: x, y, quadratic */
+  fg_litter dust, specks, scratches;
+  double one_sided_blur_px;
+  double edge_roughness_um, edge_common_um, edge_correlation_um;
+  double halo_fraction, halo_length_px;
+  double wall_amplitude, wall_direction_deg, wall_length_px;
+  int jpeg_quality; /* 0: none */
+} fg_scanner;
+
+/* A piece of a midline, in mm of the true frame. Arc length runs from the lip to the free end. */
+typedef struct fg_segment {
+  bool line;
+  bool open_start, open_end; /* the strip ends here */
+  double x, y;               /* the arc's centre, or where the line starts */
+  double radius;
+  double angle, sweep;    /* of the arc: where it starts, and how far it turns; signed */
+  double ax, ay, bx, by;  /* arc: unit vectors from the centre to start and end;
+                             line: unit tangent and unit normal towards the inner side */
+  double mx, my;          /* arc: unit vector from the centre to the middle */
+  double side;            /* +1: the inner side (towards the bearing) is outside the arc */
+  double s_mm, length_mm; /* of the start, and along it */
+  int bump;               /* from 1; 0 for others */
+  size_t foil;
+} fg_segment;
+
+typedef struct fg_foil_frame {
+  double x, y, axis_rad, mirror; /* O; direction of the middle; +1 or -1 */
+  double half_span_rad, half_thickness_mm, length_mm;
+  size_t first_segment, segment_count;
+  float *roughness[2]; /* inner and outer edge, shift to the inner side in mm; NULL: none */
+  size_t roughness_count;
+  double roughness_step_mm;
+} fg_foil_frame;
+
+/* Discs, dust and scratches: a capsule, or a circle with lobes. */
+typedef struct fg_shape {
+  double x0, y0, x1, y1, radius; /* mm, true frame */
+  double value;                  /* what it sets coverage to, or adds to it */
+  bool adds;
+  int lobes;
+  double lobe_mm, lobe_phase_rad;
+} fg_shape;
+
+typedef struct fg_scene {
+  fg_segment *segments;
+  size_t segment_count, segment_capacity;
+  fg_foil_frame *frames;
+  fg_render_foil *foils;
+  size_t foil_count;
+  fg_shape *shapes;
+  size_t shape_count;
+  fg_render_disc *discs;
+  size_t disc_count;
+} fg_scene;
+
+struct fg_render_spec {
+  fg_scanner scanner;
+  fg_effect_list effects;
+  uint64_t seed;
+  double width_px, height_px, margin_px; /* NaN: fitted */
+  fg_foil_request *requests;
+  size_t request_count;
+  fg_disc_request *disc_requests;
+  size_t disc_request_count;
+  double pixel_mm[2];
+  fg_scene scene;
+  fg_render_truth truth;
+};
+
+/* Streams of random numbers: one per purpose, so that a change in one leaves the others alone. */
+typedef enum fg_random_stream {
+  FG_STREAM_SPRINGBACK = 1,
+  FG_STREAM_PLACE,
+  FG_STREAM_DUST,
+  FG_STREAM_SPECKS,
+  FG_STREAM_SCRATCHES,
+  FG_STREAM_ROUGHNESS,
+  FG_STREAM_NOISE,
+} fg_random_stream;
+
+/* Turns the requests into segments, shapes, size and truth. */
+fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec);
+void fg_scene_free(fg_scene *scene);
+
+/* Point at distance t along a segment. */
+fg_point fg_segment_point(const fg_segment *segment, double t_mm);
+
+/* Appends the segments of one foil in its own frame (O at the origin, the middle along x, bump
+ * numbers along rising angle), and fills its bumps (places in mm, same frame) and frame. */
+fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
+                           const fg_foil_request *request, fg_scene *scene, size_t foil);
+
+/* X, theta and h of a bump as designed. */
+fg_render_bump fg_outline_nominal(const fg_render_design *design);
+
+/* The edges' random deviation of one foil, where the scanner asks for it. */
+fg_status fg_roughness_build(fg_context *ctx, const fg_scanner *scanner, uint64_t seed, size_t foil,
+                             fg_foil_frame *frame);
+
+#endif

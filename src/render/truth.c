@@ -1,0 +1,137 @@
+/* The truth of a render as JSON: what was drawn, with the names of a report. */
+#include <stdlib.h>
+
+#include <cjson/cJSON.h>
+
+#include "render/spec.h"
+
+static void put(cJSON *object, const char *name, double value) {
+  cJSON_AddNumberToObject(object, name, value);
+}
+
+static void put_point(cJSON *object, const char *name, fg_point point) {
+  double pair[2] = {point.x, point.y};
+  cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(pair, 2));
+}
+
+static void put_bumps(cJSON *foil, const fg_render_foil *truth) {
+  cJSON *bumps = cJSON_AddArrayToObject(foil, "bumps");
+  for (size_t i = 0; i < truth->bump_count; i++) {
+    const fg_render_bump *bump = &truth->bumps[i];
+    cJSON *entry = cJSON_CreateObject();
+    put(entry, "index", bump->index);
+    put(entry, "radius_mm", bump->radius_mm);
+    put(entry, "bump_angle_deg", bump->bump_angle_deg);
+    put(entry, "intersection_angle_deg", bump->intersection_angle_deg);
+    put(entry, "centre_to_centre_mm", bump->centre_to_centre_mm);
+    put(entry, "height_mm", bump->height_mm);
+    put_point(entry, "centre_px", bump->centre_px);
+    if (bump->crushed) cJSON_AddTrueToObject(entry, "crushed");
+    cJSON_AddItemToArray(bumps, entry);
+  }
+}
+
+static void put_design(cJSON *foil, const fg_render_design *design) {
+  cJSON *object = cJSON_AddObjectToObject(foil, "design");
+  put(object, "bump_radius_mm", design->bump_radius_mm);
+  put(object, "bump_angle_deg", design->bump_angle_deg);
+  put(object, "bump_count", design->bump_count);
+  put(object, "overall_radius_mm", design->overall_radius_mm);
+  put(object, "sleeve_radius_mm", design->sleeve_radius_mm);
+  put(object, "pitch_deg", design->pitch_deg);
+  put(object, "thickness_mm", design->thickness_mm);
+  put(object, "fillet_radius_mm", design->fillet_radius_mm);
+  put(object, "rotor_diameter_mm", design->rotor_diameter_mm);
+  fg_render_bump nominal = fg_outline_nominal(design);
+  cJSON *derived = cJSON_AddObjectToObject(foil, "nominal");
+  double height = design->bump_radius_mm - (nominal.centre_to_centre_mm - design->sleeve_radius_mm);
+  put(derived, "centre_to_centre_mm", nominal.centre_to_centre_mm);
+  put(derived, "height_mm", height);
+  put(derived, "clearance_mm",
+      design->sleeve_radius_mm - height - design->rotor_diameter_mm / 2 - design->thickness_mm);
+}
+
+static void put_foil(cJSON *object, const fg_render_foil *truth, const fg_render_design *design) {
+  put(object, "overall_radius_mm", truth->overall_radius_mm);
+  put_point(object, "overall_centre_px", truth->overall_centre_px);
+  put(object, "thickness_mm", truth->thickness_mm);
+  put(object, "rotate_deg", truth->rotate_deg);
+  cJSON_AddBoolToObject(object, "mirror", truth->mirror);
+  put_design(object, design);
+  put_bumps(object, truth);
+}
+
+static void put_scan(cJSON *root, const fg_render_spec *spec) {
+  const fg_scanner *scanner = &spec->scanner;
+  cJSON *scan = cJSON_AddObjectToObject(root, "scan");
+  if (scanner->dpi[0] == scanner->dpi[1])
+    put(scan, "dpi", scanner->dpi[0]);
+  else
+    cJSON_AddItemToObject(scan, "dpi", cJSON_CreateDoubleArray(scanner->dpi, 2));
+  put(scan, "width", (double)spec->truth.width_px);
+  put(scan, "height", (double)spec->truth.height_px);
+  put(scan, "bits", scanner->bits);
+  put(scan, "blur_px", scanner->blur_px);
+  put(scan, "background", scanner->background);
+  put(scan, "contrast", scanner->contrast);
+  put(scan, "gamma", scanner->gamma);
+  put(scan, "noise", scanner->noise);
+  put(scan, "noise_correlation", scanner->noise_correlation);
+  put(scan, "one_sided_blur_px", scanner->one_sided_blur_px);
+  put(scan, "edge_roughness_um", scanner->edge_roughness_um);
+  put(scan, "halo_fraction", scanner->halo_fraction);
+  put(scan, "side_wall_amplitude", scanner->wall_amplitude);
+  put(scan, "seed", (double)spec->seed);
+}
+
+static void put_effects(cJSON *root, const fg_effect_list *list) {
+  cJSON *effects = cJSON_AddArrayToObject(root, "effects");
+  for (size_t i = 0; i < list->count; i++) {
+    const fg_effect *effect = &list->effects[i];
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "id", effect->row->id);
+    for (int k = 0; k < FG_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
+      put(entry, effect->row->parameters[k].name, effect->p[k]);
+    cJSON_AddItemToArray(effects, entry);
+  }
+}
+
+static void put_discs(cJSON *root, const fg_render_spec *spec) {
+  if (spec->truth.disc_count == 0) return;
+  cJSON *discs = cJSON_AddArrayToObject(root, "discs");
+  for (size_t i = 0; i < spec->truth.disc_count; i++) {
+    cJSON *entry = cJSON_CreateObject();
+    put_point(entry, "centre_px", spec->truth.discs[i].centre_px);
+    put(entry, "radius_mm", spec->truth.discs[i].radius_mm);
+    cJSON_AddBoolToObject(entry, "hole", spec->truth.discs[i].hole);
+    cJSON_AddItemToArray(discs, entry);
+  }
+}
+
+static const fg_render_design *design_of(const fg_render_spec *spec, size_t foil) {
+  size_t i = 0;
+  while (foil >= (size_t)spec->requests[i].repeat)
+    foil -= (size_t)spec->requests[i++].repeat;
+  return &spec->requests[i].design;
+}
+
+fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json) {
+  *json = NULL;
+  cJSON *root = cJSON_CreateObject();
+  cJSON_AddStringToObject(root, "schema", "foilgauge/truth/1");
+  if (spec->truth.foil_count == 1) put_foil(root, &spec->truth.foils[0], design_of(spec, 0));
+  if (spec->truth.foil_count > 1) {
+    cJSON *foils = cJSON_AddArrayToObject(root, "foils");
+    for (size_t i = 0; i < spec->truth.foil_count; i++) {
+      cJSON *foil = cJSON_CreateObject();
+      put_foil(foil, &spec->truth.foils[i], design_of(spec, i));
+      cJSON_AddItemToArray(foils, foil);
+    }
+  }
+  put_discs(root, spec);
+  put_scan(root, spec);
+  put_effects(root, &spec->effects);
+  *json = cJSON_Print(root);
+  cJSON_Delete(root);
+  return *json ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory for the truth");
+}
