@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "foilgauge/measure.h"
@@ -45,6 +46,7 @@ typedef struct measure_run {
   fg_nominal nominal;
   fg_output outputs[OUT_COUNT];
   bool open[OUT_COUNT];
+  fg_interrupt interrupt;
   fg_measurement *measurements;
   fg_report_scan *scans;
   char (*errors)[sizeof(((fg_context *)0)->message)];
@@ -215,7 +217,7 @@ static fg_status open_outputs(fg_context *ctx, measure_run *run) {
     FG_TRY(fg_output_open(ctx, run->arguments.paths[kind], &run->outputs[kind]));
     run->open[kind] = true;
   }
-  return FG_OK;
+  return fg_interrupt_start(ctx, run->outputs, OUT_COUNT, &run->interrupt);
 }
 
 static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
@@ -310,6 +312,7 @@ static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code
 }
 
 static void free_run(measure_run *run) {
+  fg_interrupt_stop(&run->interrupt);
   for (int kind = 0; kind < OUT_COUNT; kind++)
     if (run->open[kind]) fg_output_discard(&run->outputs[kind]);
   for (size_t i = 0; run->scans && i < run->arguments.scan_count; i++)

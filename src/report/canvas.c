@@ -14,9 +14,9 @@ typedef double point_px[2];
 fg_canvas fg_canvas_over(const fg_picture *picture, const fg_measurement *measurement) {
   fg_canvas canvas = {.width_px = picture->width, .height_px = picture->height};
   for (int i = 0; i < 2; i++) {
-    canvas.px_per_mm[i] = measurement->dpi[i] / 25.4 * picture->reduction;
+    canvas.px_per_mm[i] = measurement->dpi[i] / 25.4 * picture->reduction[i];
     /* The centre of scan pixel 0 lies half a scan pixel inside the picture's border. */
-    canvas.origin_px[i] = (0.5 - (double)picture->origin_px[i]) * picture->reduction - 0.5;
+    canvas.origin_px[i] = (0.5 - (double)picture->origin_px[i]) * picture->reduction[i] - 0.5;
   }
   canvas.unit_px = picture->width / 1600.0;
   return canvas;

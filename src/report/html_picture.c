@@ -44,7 +44,7 @@ static void empty_picture(const int64_t box[4], fg_picture *picture) {
   double reduction = fmin(1, WIDTH_MAX / (double)box[2]);
   *picture = (fg_picture){.width = (int32_t)fmax(1, (double)box[2] * reduction),
                           .height = (int32_t)fmax(1, (double)box[3] * reduction),
-                          .reduction = reduction,
+                          .reduction = {reduction, reduction},
                           .origin_px = {box[0], box[1]}};
 }
 
