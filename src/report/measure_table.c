@@ -44,6 +44,12 @@ static int number_width(double value, int decimals) {
   return isfinite(value) ? snprintf(NULL, 0, "%.*f", decimals, value) : 1;
 }
 
+/* U of a value that is known. */
+static double expanded_of(const fg_report_field *field, const void *object) {
+  if (!isfinite(fg_report_value(field, object))) return NAN;
+  return FG_COVERAGE_FACTOR * fg_report_uncertainty(field, object);
+}
+
 static void measure_column(column *target, const row_set *rows) {
   const fg_report_field *field = target->field;
   double largest_u = 0;
@@ -59,8 +65,7 @@ static void measure_column(column *target, const row_set *rows) {
     const void *object = rows->objects + i * rows->size;
     int width = number_width(fg_report_value(field, object), target->decimals);
     if (width > target->width) target->width = width;
-    double expanded = FG_COVERAGE_FACTOR * fg_report_uncertainty(field, object);
-    width = number_width(expanded, target->decimals);
+    width = number_width(expanded_of(field, object), target->decimals);
     if (target->u_width && width > target->u_width) target->u_width = width;
   }
 }
@@ -100,8 +105,7 @@ static void put_row(FILE *out, const column *columns, size_t count, int number, 
     put_number(out, fg_report_value(at->field, object), at->decimals, at->width);
     if (!at->u_width) continue;
     fputc(' ', out);
-    put_number(out, FG_COVERAGE_FACTOR * fg_report_uncertainty(at->field, object), at->decimals,
-               at->u_width);
+    put_number(out, expanded_of(at->field, object), at->decimals, at->u_width);
   }
   put_flags(out, fg_bump_flag_words(), flags);
   fputc('\n', out);

@@ -175,6 +175,26 @@ static void a_page_says_the_verdict_and_why(void **state) {
   synthetic_free(&measurement);
 }
 
+static void a_page_of_discs_lists_them(void **state) {
+  (void)state;
+  fg_design design = synthetic_design();
+  design.form = FG_FORM_DISCS;
+  synthetic_tolerance(&design, "roundness_um", -INFINITY, 5); /* 4.2 ± 1.2: either */
+  fg_measurement measurement = measurement_of("-");
+  measurement.discs = calloc(2, sizeof *measurement.discs);
+  measurement.disc_count = 2;
+  measurement.discs[0] = synthetic_disc(1, 1.5);
+  measurement.discs[1] = synthetic_disc(2, 2.75);
+  fg_report_scan scan = {"-", &measurement, NULL};
+  char *page = page_of(&(fg_report){&design, NULL, &scan, 1});
+  assert_non_null(strstr(page, "2 round features"));
+  assert_non_null(strstr(page, "<span class=\"verdict cannot_tell\">"));
+  assert_non_null(strstr(page, "<td class=\"no_tolerance\">5.5000 <i>± 0.0020</i></td>"));
+  assert_non_null(strstr(page, "<td class=\"cannot_tell\">4.2 <i>± 1.2</i></td>"));
+  free(page);
+  synthetic_free(&measurement);
+}
+
 static void pictures_have_ascii_only(void **state) {
   (void)state;
   char ascii[64];
@@ -189,6 +209,7 @@ int main(void) {
       cmocka_unit_test(a_line_lies_where_its_pixels_are),
       cmocka_unit_test(a_page_escapes_every_name),
       cmocka_unit_test(a_page_says_the_verdict_and_why),
+      cmocka_unit_test(a_page_of_discs_lists_them),
       cmocka_unit_test(pictures_have_ascii_only),
   };
   return cmocka_run_group_tests_name("report pictures", tests, NULL, NULL);
