@@ -68,12 +68,25 @@ static bool has_residual(const fg_station_label *label) {
   return isfinite(label->residual_um) && (label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND);
 }
 
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Nearly all residuals fit: one grain of dust must not flatten the rest. What is larger is drawn at
+ * the limit. */
 static double residual_limit(const fg_foil *foil) {
-  double largest = 0;
-  for (size_t i = 0; i < foil->strip.count; i++)
+  double *sizes = calloc(foil->strip.count, sizeof *sizes), limit = 1;
+  size_t count = 0;
+  for (size_t i = 0; sizes && i < foil->strip.count; i++)
     if (has_residual(&foil->labels[i]) && foil->labels[i].fitted)
-      largest = fmax(largest, fabs((double)foil->labels[i].residual_um));
-  return largest > 0 ? 1.15 * largest : 1;
+      sizes[count++] = fabs((double)foil->labels[i].residual_um);
+  if (count) {
+    qsort(sizes, count, sizeof *sizes, compare_doubles);
+    limit = 1.4 * sizes[(count - 1) * 199 / 200];
+  }
+  free(sizes);
+  return limit > 0 ? limit : 1;
 }
 
 static void put_bump_bands(const plot *at, const fg_foil *foil) {

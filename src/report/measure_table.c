@@ -9,7 +9,7 @@ static const char *const bump_columns[] = {"radius_mm", "bump_angle_deg", "inter
                                            "height_mm", "clearance_mm",   "radius_error_pct"};
 static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um", "coverage_deg"};
 
-enum { COLUMNS_MAX = 8, DECIMALS_MAX = 5 };
+enum { COLUMNS_MAX = 8, DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
 
 typedef struct column {
   const fg_report_field *field;
@@ -24,11 +24,12 @@ typedef struct row_set {
   size_t count, size;
 } row_set;
 
-/* So many decimals that U = k u shows two digits, within reason. */
+/* So many decimals that U = k u shows two digits; one, where two would be nanometres and less. */
 int fg_report_decimals(const fg_report_field *field, double u) {
   double expanded = FG_COVERAGE_FACTOR * u;
   if (!(expanded > 0)) return field->decimals;
   int decimals = 1 - (int)floor(log10(expanded));
+  if (decimals > DECIMALS_FINE) decimals = (int)fmax(DECIMALS_FINE, decimals - 1);
   if (decimals < field->decimals) return field->decimals;
   return decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
 }
