@@ -136,6 +136,13 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
+/* Puts the file's name before the words that are there. */
+static fg_status name_file(fg_context *ctx, const char *path, fg_status status) {
+  fg_context inner = *ctx;
+  if (status == FG_OK) return FG_OK;
+  return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);
+}
+
 static bool is_standard(const char *path) {
   return !strcmp(path, "-");
 }
@@ -208,7 +215,9 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
   FG_TRY(apply_form(ctx, run->arguments.form, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
   if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
-  return fg_report_check_tolerances(ctx, &run->design);
+  const char *path = run->arguments.design_path;
+  return name_file(ctx, path ? path : "the built-in design",
+                   fg_report_check_tolerances(ctx, &run->design));
 }
 
 static fg_status open_outputs(fg_context *ctx, measure_run *run) {
@@ -275,15 +284,12 @@ static void take_back(measure_run *run, int committed) {
   }
 }
 
-/* Names the file in a writer's error. */
 static fg_status write_one(fg_context *ctx, measure_run *run, output_kind kind) {
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
   const char *path = run->arguments.paths[kind];
   fg_status status = writers[kind](ctx, &report, run->outputs[kind].stream);
   if (status != FG_ERR_IO) return status;
-  fg_context inner = *ctx;
-  return fg_fail(ctx, status, "%s: %.900s", is_standard(path) ? "standard output" : path,
-                 inner.message);
+  return name_file(ctx, is_standard(path) ? "standard output" : path, status);
 }
 
 /* Writes and flushes everything before anything gets its final name, so that a full disk shows

@@ -7,6 +7,9 @@
 
 enum { WIDTH_MAX = 1600, FOILS_MAX = 6 };
 static const double pixels_max = 4e6;
+/* What the page's style leaves to a picture, in its own pixels: one unit of the drawing is one. */
+#define SHOWN_WIDTH  1038.0
+#define SHOWN_HEIGHT 600.0
 static const double margin_mm = 3.5; /* room for residuals and numbers */
 
 static void put_base64(FILE *out, const uint8_t *bytes, size_t size) {
@@ -72,7 +75,7 @@ static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *pictu
   }
   fg_canvas canvas = fg_canvas_over(picture, measurement);
   canvas.svg = out;
-  canvas.unit_px *= 1.4; /* a page shows the picture smaller than it is */
+  canvas.unit_px = fmax(picture->width / SHOWN_WIDTH, picture->height / SHOWN_HEIGHT);
   fputs("<g fill=\"none\" stroke-linejoin=\"round\" class=\"drawing\">\n", out);
   FG_TRY(fg_draw_measurement(ctx, &canvas, &shown));
   fputs("</g>\n", out);
@@ -90,9 +93,9 @@ fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *meas
   else
     empty_picture(box, &picture);
   fprintf(out,
-          "<svg class=\"picture\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"The scan with "
-          "fitted circles and residuals\">\n",
-          picture.width, picture.height);
+          "<svg class=\"picture\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
+          "aria-label=\"The scan with fitted circles and residuals\">\n",
+          picture.width, picture.height, picture.width, picture.height);
   fg_status status = readable ? put_image(ctx, out, &picture) : FG_OK;
   if (!readable) fputs("<rect width=\"100%\" height=\"100%\" fill=\"#20262c\"/>\n", out);
   if (status == FG_OK) status = put_drawing(ctx, out, &picture, measurement, foil);
