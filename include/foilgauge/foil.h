@@ -164,8 +164,10 @@ void fg_measurement_free(fg_measurement *measurement);
 
 /* Recognises lip, lands, bumps and free end of a strip, fits every circle, derives every quantity.
  * Takes over foil->strip (filled by the caller); everything else of `foil` is set. What is wrong
- * with the foil or a bump is a flag, not an error; errors are FG_ERR_MEMORY only. */
-fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, fg_foil *foil);
+ * with the foil or a bump is a flag, not an error; errors are FG_ERR_MEMORY only. The result does
+ * not depend on `threads` (0: all cores). */
+fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
+                          fg_foil *foil);
 
 /* Quantities that follow from the circles (thesis eq 5.3 to 5.9 and the declared springback
  * model). Reads radius_mm, centre_mm and covariance of `bump`, and centre, radius and covariance of

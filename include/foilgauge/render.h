@@ -13,6 +13,38 @@
  *   DN = 255 light^(1/gamma), where background and background + contrast keep their DN; noise;
  *   clipping; rounding to 8 or 16 bit (full scale 65535 = 255 × 257); JPEG blocks.
  *
+ * Members of a spec (default in brackets; lengths in mm of the midline, unless the name says else):
+ *   seed [0], width_px, height_px [fitted to the content], margin_px [80], comment
+ *   foils[] [one Gen II foil]:
+ *     design {bump_radius_mm, bump_angle_deg, bump_count, overall_radius_mm, pitch_deg,
+ *       fillet_radius_mm, thickness_mm ... as in a design file} [Gen II]; with "form": "sinusoidal"
+ *       there is no lip unless one is given
+ *     overall_radius_mm: R0 as it is [as designed]
+ *     radius_springback {mean [0], sd [0]}: R = R_D (1 + mean + sd × normal);
+ *     radius_mm [...] per bump instead; bump_angle_deg [...] per bump [R alpha as designed]
+ *     lip null or {length_mm [2], bend_radius_mm [0.4], side ["outwards"]}
+ *     first_land_mm [1.8], last_land_mm [1.3]: from the fillet to the lip's bend, or the free end
+ *     missing [numbers]; crushed [{bump, height_factor [0.5]}]: crossings stay, the crown gives way
+ *     rotate_deg [-90]: direction of the middle from O (x right, y down); mirror [false];
+ *     centre_mm [x, y] of O [placed on shelves from the top]; repeat [1], rotate_step_deg [0]
+ *   discs[]: centre_mm, radius_mm, hole [false], lobes [0], lobe_um, lobe_phase_deg:
+ *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
+ *   scanner:
+ *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
+ *     gamma [1], blur_px [1.2; at least 0.4], noise [1 DN], noise_correlation [0] to the next
+ *     pixel along x and y, clip_white, shading {x, y, quadratic}: relative, at the picture's edges
+ *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
+ *     rough:
+ *       one_sided_blur_px [0]: blur added (in squares) to edges that go from bright to dark along
+ *         rising rows, in proportion to the edge normal's share along the rows' way
+ *       edge_roughness_um, edge_common_um [0]: sd per edge, and of both together, with the
+ *         autocorrelation exp(-(d / correlation_um)²) along the strip [50]
+ *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
+ *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
+ *         edges that face the direction, decaying over the length, times the cosine to it
+ *       jpeg {quality}
+ *   effects[] {id, parameters}: src/render/effects.c holds the table.
+ *
  * Nothing here is shared with the measuring side.
  */
 #ifndef FOILGAUGE_RENDER_H
@@ -31,7 +63,8 @@ extern "C" {
 
 typedef struct fg_render_spec fg_render_spec;
 
-/* What one bump really is (midline). theta by cos(theta) = (X² - R² - R0²) / (2 R R0). */
+/* What one bump really is (midline), before part effects move it. theta by cos(theta) = (X² - R² -
+ * R0²) / (2 R R0). */
 typedef struct fg_render_bump {
   int index;                     /* 1 is next to the lip */
   double radius_mm;              /* R */

@@ -49,8 +49,8 @@ static double blur_shift(const fg_datum_line *line, double radius) {
 double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_t station) {
   if (!(line->strip->stations[station].weight > 0)) return NAN;
   fg_point p = line->points[station];
-  return hypot(p.x - circle->x, p.y - circle->y) - circle->radius +
-         blur_shift(line, circle->radius);
+  double dx = p.x - circle->x, dy = p.y - circle->y;
+  return sqrt(dx * dx + dy * dy) - circle->radius + blur_shift(line, circle->radius);
 }
 
 static double outlier_limit(const fg_arc *arc) {
@@ -97,21 +97,35 @@ static size_t gather(const fg_datum_line *line, const fg_arc *arc, bool all, fg_
   return n;
 }
 
-static fg_status fit_once(fg_context *ctx, const fg_datum_line *line, const fg_point *points,
-                          size_t count, const fg_circle *start, fg_arc *arc) {
+/* A way to get a circle from points; sets the circle and rms_mm. */
+typedef fg_status circle_method(fg_context *ctx, const fg_point *points, size_t count,
+                                fg_arc *arc);
+
+static fg_status by_estimate(fg_context *ctx, const fg_point *points, size_t count, fg_arc *arc) {
+  return fg_circle_estimate(ctx, points, NULL, count, &arc->circle);
+}
+
+static fg_status by_fit(fg_context *ctx, const fg_point *points, size_t count, fg_arc *arc) {
   fg_circle_fit fit;
-  if (count < POINTS_LEAST)
-    return fg_fail(ctx, FG_ERR_NUMERIC, "%zu edge points are too few for a circle", count);
-  FG_TRY(fg_circle_fit_geometric(ctx, points, NULL, count, start, &fit));
+  FG_TRY(fg_circle_fit_geometric(ctx, points, NULL, count, NULL, &fit));
   arc->circle = fit.circle;
-  arc->circle.radius += blur_shift(line, fit.circle.radius);
   arc->rms_mm = fit.rms;
-  arc->points = count;
-  memcpy(arc->covariance, fit.covariance, sizeof arc->covariance);
   return FG_OK;
 }
 
-fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
+static fg_status fit_once(fg_context *ctx, const fg_datum_line *line, circle_method *method,
+                          const fg_point *points, size_t count, fg_arc *arc) {
+  if (count < POINTS_LEAST)
+    return fg_fail(ctx, FG_ERR_NUMERIC, "%zu edge points are too few for a circle", count);
+  FG_TRY(method(ctx, points, count, arc));
+  arc->circle.radius += blur_shift(line, arc->circle.radius);
+  arc->points = count;
+  return FG_OK;
+}
+
+/* Fits, leaves outliers out, and fits again until the same points stay. */
+static fg_status fit_robustly(fg_context *ctx, const fg_datum_line *line, circle_method *method,
+                              fg_arc *arc) {
   size_t stations = count_stations(arc), usable = 0, before = 0;
   fg_point *points = NULL;
   double *work = NULL;
@@ -119,13 +133,13 @@ fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
   FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *points, (void **)&points));
   FG_TRY_EXIT(fg_memory_allocate(ctx, stations, sizeof *work, (void **)&work));
   usable = gather(line, arc, true, points);
-  FG_TRY_EXIT(fit_once(ctx, line, points, usable, NULL, arc));
+  FG_TRY_EXIT(fit_once(ctx, line, method, points, usable, arc));
   before = usable;
   for (int round = 0; round < ROUNDS_MAX; round++) {
     arc->scatter_mm = find_scatter(line, arc, work);
     size_t used = gather(line, arc, false, points);
     if (used == before) break;
-    FG_TRY_EXIT(fit_once(ctx, line, points, used, NULL, arc));
+    FG_TRY_EXIT(fit_once(ctx, line, method, points, used, arc));
     before = used;
   }
   arc->outliers = usable - arc->points;
@@ -133,6 +147,14 @@ exit:
   free(points);
   free(work);
   return status;
+}
+
+fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
+  return fit_robustly(ctx, line, by_fit, arc);
+}
+
+fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *arc) {
+  return fit_robustly(ctx, line, by_estimate, arc);
 }
 
 /* Mean departure over a few stations beyond `at`, in the direction `step`; NaN outside. */

@@ -45,6 +45,9 @@ typedef struct fg_arc {
  * when there are fewer than 8. */
 fg_status fg_arc_fit(fg_context *ctx, const fg_datum_line *line, fg_arc *arc);
 
+/* The same with the algebraic circle alone, for the search of an arc's ends. */
+fg_status fg_arc_estimate(fg_context *ctx, const fg_datum_line *line, fg_arc *arc);
+
 /* Radial residual of a station, outwards positive; NaN where the station is not usable. The blur's
  * shift is taken off. */
 double fg_arc_residual(const fg_datum_line *line, const fg_circle *circle, size_t station);

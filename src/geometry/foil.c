@@ -308,14 +308,15 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 
-fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, fg_foil *foil) {
+fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
+                          fg_foil *foil) {
   fg_layout layout;
   const char *error;
   foil->thickness_mm = foil->strip.thickness_mm;
   foil->u_thickness_mm = foil->strip.u_thickness_mm;
   foil->in_tolerance = true;
   take_over_facts(foil);
-  FG_TRY(fg_layout_find(ctx, design, &foil->strip, &layout, &error));
+  FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, &layout, &error));
   fg_status status = FG_OK;
   if (error)
     fail_foil(foil, error);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 
 enum { GROW_ROUNDS = 3, LAND_POINTS_LEAST = 24 };
 
@@ -39,7 +40,7 @@ static fg_status start_overall(fg_context *ctx, fg_layout *layout) {
   layout->land_count = n;
   layout->overall.ranges = layout->lands;
   layout->overall.range_count = n;
-  return fg_arc_fit(ctx, &layout->line, &layout->overall);
+  return fg_arc_estimate(ctx, &layout->line, &layout->overall);
 }
 
 /* Every gap's land: grown from what lies nearest to the circle. End gaps have lip or free end on
@@ -71,7 +72,9 @@ static void regrow_lands(fg_layout *layout) {
   layout->overall.range_count = n;
 }
 
-static fg_status fit_bump(fg_context *ctx, fg_layout *layout, size_t i) {
+/* One bump: its arc is grown on algebraic circles, the last one is fitted. */
+static fg_status fit_bump(fg_context *ctx, void *shared, size_t i) {
+  fg_layout *layout = shared;
   fg_arc *arc = &layout->bumps[i];
   const fg_stretch *s = &layout->turning.bumps[i];
   fg_range bounds = {s->first, s->last};
@@ -81,11 +84,12 @@ static fg_status fit_bump(fg_context *ctx, fg_layout *layout, size_t i) {
   layout->bump_ranges[i] = middle_part((fg_range){s->first, s->last}, 0.5);
   arc->ranges = &layout->bump_ranges[i];
   arc->range_count = 1;
-  fg_status status = fg_arc_fit(ctx, &layout->line, arc);
+  fg_status status = fg_arc_estimate(ctx, &layout->line, arc);
   for (int round = 0; round < GROW_ROUNDS && status == FG_OK; round++) {
     fg_arc_grow(&layout->line, arc, 1, bounds, &layout->bump_ranges[i]);
-    status = fg_arc_fit(ctx, &layout->line, arc);
+    status = fg_arc_estimate(ctx, &layout->line, arc);
   }
+  if (status == FG_OK) status = fg_arc_fit(ctx, &layout->line, arc);
   layout->fitted[i] = status == FG_OK;
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
@@ -95,8 +99,10 @@ static fg_status fit_overall(fg_context *ctx, fg_layout *layout, const char **er
   for (int round = 0; round < GROW_ROUNDS && status == FG_OK; round++) {
     regrow_lands(layout);
     if (!layout->land_count) break;
-    status = fg_arc_fit(ctx, &layout->line, &layout->overall);
+    status = fg_arc_estimate(ctx, &layout->line, &layout->overall);
   }
+  if (status == FG_OK && layout->land_count)
+    status = fg_arc_fit(ctx, &layout->line, &layout->overall);
   if (status == FG_ERR_MEMORY) return status;
   if (status != FG_OK || layout->land_count < 2)
     *error = "too little of the lands is seen for an overall circle";
@@ -104,7 +110,7 @@ static fg_status fit_overall(fg_context *ctx, fg_layout *layout, const char **er
 }
 
 fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_strip *strip,
-                         fg_layout *layout, const char **error) {
+                         unsigned threads, fg_layout *layout, const char **error) {
   memset(layout, 0, sizeof *layout);
   *error = NULL;
   fg_status status = FG_OK;
@@ -124,7 +130,7 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(bool), (void **)&layout->fitted));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps + 2, sizeof(fg_range), (void **)&layout->lands));
   FG_TRY_EXIT(fit_overall(ctx, layout, error));
-  for (size_t i = 0; i < bumps && !*error; i++) FG_TRY_EXIT(fit_bump(ctx, layout, i));
+  if (!*error) FG_TRY_EXIT(fg_parallel_run(ctx, threads, bumps, fit_bump, layout));
 exit:
   if (status != FG_OK) fg_layout_free(layout);
   return status;

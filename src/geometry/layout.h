@@ -20,7 +20,7 @@ typedef struct fg_layout {
 /* Finds and fits all arcs. `error` gets words (NULL: none) when the foil cannot be laid out:
  * no bumps, or too little land for an overall circle. Errors are FG_ERR_MEMORY only. */
 fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_strip *strip,
-                         fg_layout *layout, const char **error);
+                         unsigned threads, fg_layout *layout, const char **error);
 
 void fg_layout_free(fg_layout *layout);
 

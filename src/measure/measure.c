@@ -26,18 +26,20 @@ static fg_status add_foil(fg_context *ctx, size_t *capacity, fg_measurement *m, 
 
 /* A foil from one trace; what cannot be measured is a flag. */
 static fg_status measure_foil(fg_context *ctx, const fg_tiles *tiles, const fg_segmentation *seg,
-                              const fg_trace *trace, const fg_measurement *m, fg_foil *foil) {
-  fg_status status = fg_edges_measure(ctx, tiles, seg, trace, m->dpi, &foil->strip);
+                              const fg_trace *trace, const fg_measurement *m, unsigned threads,
+                              fg_foil *foil) {
+  fg_status status = fg_edges_measure(ctx, tiles, seg, trace, m->dpi, threads, &foil->strip);
   if (status == FG_ERR_NUMERIC) {
     foil->flags |= FG_FOIL_NOT_MEASURED;
     snprintf(foil->error, sizeof foil->error, "%.255s", ctx->message);
     return FG_OK;
   }
-  return status == FG_OK ? fg_foil_measure(ctx, &m->design, foil) : status;
+  return status == FG_OK ? fg_foil_measure(ctx, &m->design, threads, foil) : status;
 }
 
 static fg_status measure_objects(fg_context *ctx, const fg_tiles *tiles,
-                                 const fg_segmentation *seg, fg_measurement *m) {
+                                 const fg_segmentation *seg, unsigned threads,
+                                 fg_measurement *m) {
   double px_per_mm = sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
   size_t capacity = 0;
   fg_trace_list list = {0};
@@ -49,7 +51,7 @@ static fg_status measure_objects(fg_context *ctx, const fg_tiles *tiles,
     for (size_t j = 0; j < list.count; j++) {
       fg_foil *foil;
       FG_TRY_EXIT(add_foil(ctx, &capacity, m, &foil));
-      FG_TRY_EXIT(measure_foil(ctx, tiles, seg, &list.traces[j], m, foil));
+      FG_TRY_EXIT(measure_foil(ctx, tiles, seg, &list.traces[j], m, threads, foil));
     }
     fg_trace_list_free(&list);
   }
@@ -58,13 +60,14 @@ exit:
   return status;
 }
 
-static fg_status measure_tiles(fg_context *ctx, const fg_tiles *tiles, fg_measurement *m) {
+static fg_status measure_tiles(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
+                               fg_measurement *m) {
   fg_segmentation seg = {0};
   double px_per_mm = sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
   FG_TRY(fg_segment(ctx, tiles, OBJECT_LEAST * m->design.bump_radius_mm * px_per_mm, &seg));
   m->light_on_dark = seg.light_on_dark;
   m->specks = seg.speck_count;
-  fg_status status = measure_objects(ctx, tiles, &seg, m);
+  fg_status status = measure_objects(ctx, tiles, &seg, threads, m);
   if (status == FG_OK && m->foil_count == 0)
     status = fg_fail(ctx, FG_ERR_DATA,
                      "%s: no foil in the picture (%zu specks or other objects); is the scan empty, "
@@ -100,7 +103,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, &tiles, measurement->sha256));
-  FG_TRY_EXIT(measure_tiles(ctx, &tiles, measurement));
+  FG_TRY_EXIT(measure_tiles(ctx, &tiles, options ? options->threads : 0, measurement));
 exit:
   fg_tiles_free(&tiles);
   fg_scan_close(scan);

@@ -1,6 +1,7 @@
 /* Which segments and shapes are near which block of 8 × 8 pixels, for one band of rows. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/memory.h"
 #include "render/sampler.h"
@@ -169,8 +170,14 @@ void fg_band_gather(const fg_band *band, int64_t block_x, int64_t block_y, fg_ne
   near->count = 0;
   int64_t x = block_x - band->column0, y = block_y - band->row0;
   if (x < 0 || y < 0 || x >= band->columns || y >= band->rows) return;
-  for (int32_t at = band->heads[y * band->columns + x]; at >= 0; at = band->nodes[at].next)
-    if (near->count < FG_NEAR_MAX) near->ids[near->count++] = band->nodes[at].id;
+  for (int32_t at = band->heads[y * band->columns + x]; at >= 0; at = band->nodes[at].next) {
+    /* The list runs from the last thing to the first. */
+    if (near->count == FG_NEAR_MAX) {
+      near->count--;
+      memmove(near->ids, near->ids + 1, near->count * sizeof *near->ids);
+    }
+    near->ids[near->count++] = band->nodes[at].id;
+  }
   for (size_t i = 0; i < near->count / 2; i++) {
     size_t other = near->count - 1 - i, id = near->ids[i];
     near->ids[i] = near->ids[other];

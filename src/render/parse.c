@@ -276,6 +276,7 @@ static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanne
       {"amplitude", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_amplitude), -1, 1},
       {"direction_deg", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_direction_deg), -360, 360},
       {"length_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_length_px), 1, 30},
+      {"gap_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_gap_px), 0, 30},
       END,
   };
   static const fg_member jpeg[] = {

@@ -21,6 +21,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->wall_x = cos(direction);
   sampler->wall_y = sin(direction);
   sampler->wall_mm = scanner->wall_length_px * pixel;
+  sampler->wall_gap_mm = scanner->wall_gap_px * pixel;
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
   /* Part and bump shapes never exceed their amplitude by much inside the foil's span. */
@@ -30,7 +31,9 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
       reach += 2e-3 * fabs(spec->effects.effects[i].p[0]);
   }
   sampler->edge_reach_mm = reach;
-  sampler->reach_mm = reach + (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm : 0);
+  sampler->reach_mm =
+      reach +
+      (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm + sampler->wall_gap_mm : 0);
   for (int i = 0; i < FG_PHI_STEPS + 2; i++) {
     double u = phi_limit * (2.0 * i / FG_PHI_STEPS - 1);
     sampler->phi[i] = (float)(0.5 * erfc(-u / sqrt(2.0)));
@@ -53,6 +56,7 @@ typedef struct cross_section {
   double n;      /* distance from the midline, towards the inner side */
   double nx, ny; /* that direction */
   double dx, dy; /* from the segment's centre or start */
+  double bend;   /* side / r: curvature of the line of equal distance here */
 } cross_section;
 
 static void try_segment(const fg_segment *segment, double x, double y, cross_section *best) {
@@ -65,7 +69,7 @@ static void try_segment(const fg_segment *segment, double x, double y, cross_sec
       return;
     double n = dx * segment->bx + dy * segment->by;
     if (best->segment && fabs(n) >= fabs(best->n)) return;
-    *best = (cross_section){segment, n, segment->bx, segment->by, dx, dy};
+    *best = (cross_section){segment, n, segment->bx, segment->by, dx, dy, 0};
     return;
   }
   double forward = segment->sweep > 0 ? 1 : -1;
@@ -75,7 +79,14 @@ static void try_segment(const fg_segment *segment, double x, double y, cross_sec
   double n = segment->side * (r - segment->radius);
   if (best->segment && fabs(n) >= fabs(best->n)) return;
   double scale = r > 0 ? segment->side / r : 0;
-  *best = (cross_section){segment, n, dx * scale, dy * scale, dx, dy};
+  *best = (cross_section){segment, n, dx * scale, dy * scale, dx, dy, scale};
+}
+
+/* What a Gaussian of sd s does to an edge of curvature k: its profile moves by k s² / 2 towards the
+ * centre of curvature (diffusion moves a level line with half its curvature). */
+static double bend_shift(double bend, double sd) {
+  double shift = 0.5 * bend * sd * sd;
+  return fmax(-0.5 * sd, fmin(0.5 * sd, shift));
 }
 
 /* Arc length from the segment's start. */
@@ -112,8 +123,12 @@ static double wall(const fg_sampler *sampler, const cross_section *at, double in
   double distance = at->n > 0.5 * (inner + outer) ? at->n - inner : outer - at->n;
   if (at->n <= 0.5 * (inner + outer)) facing = -facing;
   if (facing <= 0) return 0;
-  return sampler->spec->scanner.wall_amplitude * facing *
-         exp(-fmax(distance, 0) / sampler->wall_mm);
+  double strength = sampler->spec->scanner.wall_amplitude * facing;
+  double past = distance - sampler->wall_gap_mm;
+  if (past >= 0) return strength * exp(-past / sampler->wall_mm);
+  if (sampler->wall_gap_mm <= 0) return strength;
+  double u = 2 * past / sampler->wall_gap_mm; /* within the gap it fades towards the edge */
+  return strength * exp(-0.5 * u * u);
 }
 
 /* Beyond the reach of the edges there is the wall or nothing. */
@@ -149,8 +164,8 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
   double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
   double inner_sd = edge_sd(sampler, sd, at->ny, bright);
   double outer_sd = edge_sd(sampler, sd, -at->ny, bright);
-  double value =
-      phi(sampler, (at->n - outer) / outer_sd) - phi(sampler, (at->n - inner) / inner_sd);
+  double n = at->n + bend_shift(at->bend, sd);
+  double value = phi(sampler, (n - outer) / outer_sd) - phi(sampler, (n - inner) / inner_sd);
   if (sampler->spec->scanner.wall_amplitude != 0)
     value += (1 - value) * wall(sampler, at, inner, outer);
   if (segment->open_start) value *= phi(sampler, t / sd);
@@ -193,6 +208,7 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   }
   double r = sqrt(dx * dx + dy * dy);
   double edge = r - shape->radius;
+  if (r > 0) edge += bend_shift(length2 > 0 ? 0 : 1 / r, sd);
   if (shape->lobes &&
       fabs(edge) < fabs(shape->lobe_mm) + phi_limit * hypot(sd, sampler->one_sided_mm))
     edge -= shape->lobe_mm * cos(shape->lobes * (atan2(dy, dx) - shape->lobe_phase_rad));

@@ -29,6 +29,7 @@ typedef struct fg_sampler {
   double one_sided_mm;   /* sd; 0 without */
   double wall_x, wall_y; /* direction */
   double wall_mm;        /* decay length */
+  double wall_gap_mm;
   float phi[FG_PHI_STEPS + 2];
 } fg_sampler;
 

@@ -62,7 +62,7 @@ typedef struct fg_scanner {
   double one_sided_blur_px;
   double edge_roughness_um, edge_common_um, edge_correlation_um;
   double halo_fraction, halo_length_px;
-  double wall_amplitude, wall_direction_deg, wall_length_px;
+  double wall_amplitude, wall_direction_deg, wall_length_px, wall_gap_px;
   int jpeg_quality; /* 0: none */
 } fg_scanner;
 

@@ -5,30 +5,54 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 
 #define STEP_PX       2.0  /* distance of stations */
 #define SMOOTH_PX     30.0 /* half window of the reference line */
 #define BAND_REACH_PX 17.0 /* beyond the strip's edges: 4 blurs of 3 px, and some background */
-#define MIDDLE_REACH_PX 6.0 /* the same while only the middle is sought */
 enum { MIDDLE_STATIONS = 4 }; /* the middle is smoothed over so many stations to either side */
 
-/* The middle of each station by the weight of its pixels, counts between 30 and 70 % of the
- * contrast rising from 0 to 1, so that neither halo nor band pulls. */
-static void find_middles(const fg_segmentation *seg, const fg_trace *trace, fg_edge_work *work) {
-  size_t count = work->reference->count;
-  for (size_t i = 0; i < work->band->count; i++) {
-    const fg_band_pixel *p = &work->band->pixels[i];
-    if (fabsf(p->across_px) > (float)(work->width_px + 4)) continue;
+void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last) {
+  *first = chunk * FG_CHUNK_STATIONS;
+  *last = *first + FG_CHUNK_STATIONS - 1;
+  if (*last >= work->reference->count) *last = work->reference->count - 1;
+}
+
+/* Weight of the stations' middles in one chunk: counts between 30 and 70 % of the contrast rise
+ * from 0 to 1, so that neither halo nor band pulls. */
+static void weigh_pixels(const fg_edge_work *work, size_t chunk) {
+  const fg_segmentation *seg = work->segmentation;
+  const fg_pixel_band *band = &work->bands[chunk];
+  float scale = 2.5f / (float)work->trace->contrast, reach = (float)(work->width_px / 2 + 6);
+  for (size_t i = 0; i < band->count; i++) {
+    const fg_band_pixel *p = &band->pixels[i];
+    if (fabsf(p->across_px) > reach) continue;
     const fg_reference_station *r = &work->reference->stations[p->station];
     int32_t bx = (int32_t)(r->x / FG_BLOCK_PX), by = (int32_t)(r->y / FG_BLOCK_PX);
     if (bx < 0 || by < 0 || bx >= seg->width || by >= seg->height) continue;
-    float background = seg->background[(size_t)by * (size_t)seg->width + (size_t)bx];
+    float background = fg_segmentation_background(seg, bx, by);
     float excess = seg->light_on_dark ? p->value - background : background - p->value;
-    float weight = (excess / (float)trace->contrast - 0.3f) * 2.5f;
-    weight = fminf(fmaxf(weight, 0), 1);
+    float weight = excess * scale - 0.75f;
+    weight = weight < 0 ? 0 : weight > 1 ? 1 : weight;
     work->stations[p->station].g1 += weight * p->across_px;
     work->stations[p->station].m11 += weight;
   }
+}
+
+static fg_status collect_task(fg_context *ctx, void *shared, size_t chunk) {
+  fg_edge_work *work = shared;
+  size_t first, last;
+  fg_edges_chunk(work, chunk, &first, &last);
+  FG_TRY(fg_pixel_band_collect(ctx, work->tiles, work->reference, first, last,
+                               work->width_px / 2 + work->reach_px, &work->bands[chunk]));
+  weigh_pixels(work, chunk);
+  return FG_OK;
+}
+
+/* Pixels of all chunks, and the middle of each station, smoothed over its neighbours. */
+static fg_status collect_pixels(fg_context *ctx, fg_edge_work *work) {
+  size_t count = work->reference->count;
+  FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, collect_task, work));
   for (size_t i = 0; i < count; i++) {
     float sum = 0, weight = 0;
     size_t from = i > MIDDLE_STATIONS ? i - MIDDLE_STATIONS : 0;
@@ -38,6 +62,7 @@ static void find_middles(const fg_segmentation *seg, const fg_trace *trace, fg_e
     }
     work->stations[i].middle_px = weight > 0 ? sum / weight : 0;
   }
+  return FG_OK;
 }
 
 /* The middle from the edges that were found, for the second round of profiles. */
@@ -152,45 +177,33 @@ static void find_box(const fg_reference *reference, fg_strip *strip) {
   }
 }
 
-/* The reference line of the measurement: the middles of a first, coarse line, smoothed. The coarse
- * line's own wiggles would shift edges by some 0.01 px where the strip crosses the lattice
- * obliquely; after this step they are below 0.001 px. */
-static fg_status build_reference(fg_context *ctx, const fg_tiles *tiles,
-                                 const fg_segmentation *segmentation, const fg_trace *trace,
-                                 fg_reference *out) {
-  fg_reference coarse = {0};
-  fg_pixel_band band = {0};
-  fg_edge_work work = {.reference = &coarse, .band = &band, .width_px = trace->width_px};
-  fg_point *middles = NULL;
-  fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX, &coarse));
-  FG_TRY_EXIT(fg_pixel_band_collect(ctx, tiles, &coarse, trace->width_px / 2 + MIDDLE_REACH_PX, &band));
-  FG_TRY_EXIT(
-      fg_memory_allocate(ctx, coarse.count, sizeof *work.stations, (void **)&work.stations));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, coarse.count, sizeof *middles, (void **)&middles));
-  find_middles(segmentation, trace, &work);
-  for (size_t i = 0; i < coarse.count; i++) {
-    const fg_reference_station *r = &coarse.stations[i];
-    double middle = work.stations[i].middle_px;
-    middles[i] = (fg_point){r->x - middle * r->ty, r->y + middle * r->tx};
-  }
-  FG_TRY_EXIT(fg_reference_build(ctx, middles, coarse.count, SMOOTH_PX, STEP_PX, out));
-exit:
-  fg_reference_free(&coarse);
-  fg_pixel_band_free(&band);
-  free(work.stations);
-  free(middles);
-  return status;
+static fg_status allocate_work(fg_context *ctx, fg_edge_work *work) {
+  size_t count = work->reference->count;
+  work->chunk_count = (count + FG_CHUNK_STATIONS - 1) / FG_CHUNK_STATIONS;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *work->stations, (void **)&work->stations));
+  FG_TRY(fg_memory_allocate(ctx, work->chunk_count, sizeof *work->bands, (void **)&work->bands));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *work->tables, (void **)&work->tables));
+  fg_edge_tables_init(work->tables, 1);
+  return FG_OK;
 }
 
-static fg_status measure_edges(fg_context *ctx, const fg_segmentation *segmentation,
-                               const fg_trace *trace, fg_edge_work *work) {
-  find_middles(segmentation, trace, work);
-  FG_TRY(fg_edges_find_shape(ctx, work, true));
-  fg_edges_solve(work, 2);
-  refine_middles(work);
+static void free_work(fg_edge_work *work) {
+  for (size_t i = 0; work->bands && i < work->chunk_count; i++)
+    fg_pixel_band_free(&work->bands[i]);
+  free(work->bands);
+  free(work->stations);
+  free(work->segments);
+  free(work->bins);
+  free(work->tables);
+}
+
+static fg_status run(fg_context *ctx, fg_edge_work *work) {
+  FG_TRY(collect_pixels(ctx, work));
   FG_TRY(fg_edges_find_shape(ctx, work, false));
-  fg_edges_solve(work, 2);
+  FG_TRY(fg_edges_solve(ctx, work, 1));
+  refine_middles(work);
+  FG_TRY(fg_edges_find_shape(ctx, work, true));
+  FG_TRY(fg_edges_solve(ctx, work, 2));
   mark_ends(work);
   scale_uncertainties(work);
   return FG_OK;
@@ -198,21 +211,18 @@ static fg_status measure_edges(fg_context *ctx, const fg_segmentation *segmentat
 
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
-                           const double dpi[2], fg_strip *strip) {
+                           const double dpi[2], unsigned threads, fg_strip *strip) {
   fg_reference reference = {0};
-  fg_pixel_band band = {0};
-  fg_edge_work work = {.reference = &reference, .band = &band, .width_px = trace->width_px,
+  fg_edge_work work = {.tiles = tiles, .segmentation = segmentation, .trace = trace,
+                       .reference = &reference, .threads = threads, .width_px = trace->width_px,
                        .reach_px = BAND_REACH_PX, .noise = 1, .contrast = trace->contrast};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(build_reference(ctx, tiles, segmentation, trace, &reference));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *work.stations,
-                                 (void **)&work.stations));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *work.tables, (void **)&work.tables));
+  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX,
+                                 &reference));
+  FG_TRY_EXIT(allocate_work(ctx, &work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *strip->stations,
                                  (void **)&strip->stations));
-  fg_edge_tables_init(work.tables, 1);
-  FG_TRY_EXIT(fg_pixel_band_collect(ctx, tiles, &reference, trace->width_px / 2 + BAND_REACH_PX, &band));
-  FG_TRY_EXIT(measure_edges(ctx, segmentation, trace, &work));
+  FG_TRY_EXIT(run(ctx, &work));
   strip->count = reference.count;
   strip->facts = trace->facts;
   fill_stations(&work, dpi, strip);
@@ -220,9 +230,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));
 exit:
   fg_reference_free(&reference);
-  fg_pixel_band_free(&band);
-  free(work.stations);
-  free(work.tables);
+  free_work(&work);
   if (status != FG_OK) fg_strip_free(strip);
   return status;
 }

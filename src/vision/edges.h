@@ -23,11 +23,11 @@
 extern "C" {
 #endif
 
-/* Fills `strip` (zeroed by the caller; fg_strip_free it). `dpi` is x and y. FG_ERR_NUMERIC when
- * no edges are found along the trace. */
+/* Fills `strip` (zeroed by the caller; fg_strip_free it). `dpi` is x and y. The result does not
+ * depend on `threads` (0: all cores). FG_ERR_NUMERIC when no edges are found along the trace. */
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
-                           const double dpi[2], fg_strip *strip);
+                           const double dpi[2], unsigned threads, fg_strip *strip);
 
 /* One station at work. */
 typedef struct fg_edge_station {
@@ -41,25 +41,53 @@ typedef struct fg_edge_station {
   float weight;
 } fg_edge_station;
 
+/* Stations are worked on in chunks, each with its own pixels; a chunk is a unit of parallel work,
+ * its size is fixed, so sums do not depend on the number of threads. A segment is the stretch of
+ * one mean profile. */
+enum { FG_SEGMENT_STATIONS = 64, FG_CHUNK_SEGMENTS = 6,
+       FG_CHUNK_STATIONS = FG_SEGMENT_STATIONS * FG_CHUNK_SEGMENTS };
+
+/* A mean profile and its fit. */
+typedef struct fg_segment_profile {
+  fg_profile_bin *bins;
+  fg_profile_fit fit;
+} fg_segment_profile;
+
 /* What one strip is measured with. */
 typedef struct fg_edge_work {
+  const fg_tiles *tiles;
+  const fg_segmentation *segmentation;
+  const fg_trace *trace;
   const fg_reference *reference;
-  const fg_pixel_band *band;
-  fg_edge_station *stations; /* reference->count */
+  unsigned threads;
+  size_t chunk_count;
+  fg_pixel_band *bands;       /* chunk_count */
+  fg_edge_station *stations;  /* reference->count */
+  fg_segment_profile *segments;
+  fg_profile_bin *bins;       /* segment_count × bin_count */
+  size_t segment_count, bin_count;
   fg_edge_tables *tables;
-  double width_px;           /* of the strip */
-  double reach_px;           /* of the band beyond the strip's edges */
-  double noise;              /* sd of a pixel, counts */
-  double contrast;           /* |P - b|, counts */
+  double width_px;            /* of the strip */
+  double reach_px;            /* of the band beyond the strip's edges */
+  double noise;               /* sd of a pixel, counts */
+  double contrast;            /* |P - b|, counts */
   bool clipped, side_band;
   double thickness_px, blur_px[2], gamma;
+  int round;                  /* of Gauss-Newton */
 } fg_edge_work;
 
-/* Step 1 and 2: the shape of every station from its middle. edges_shape.c */
-fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work, bool find_gamma);
+/* Stations [*first, *last] of a chunk. */
+void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last);
+
+/* Step 1 and 2: the shape of every station from its middle. With `again` the fits start from those
+ * before and the tone curve is kept. edges_shape.c, edges_smooth.c */
+fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work, bool again);
+
+/* The smoothed shape of every station from the segments' fits. */
+fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good);
 
 /* Step 3: `rounds` of Gauss-Newton on all stations. edges_solve.c */
-void fg_edges_solve(fg_edge_work *work, int rounds);
+fg_status fg_edges_solve(fg_context *ctx, fg_edge_work *work, int rounds);
 
 #ifdef __cplusplus
 }

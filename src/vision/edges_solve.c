@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/parallel.h"
+
 /* A pixel this far off the model is dust or a burr: so many noise sd plus a share of contrast. */
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
@@ -45,16 +47,16 @@ static void clear_sums(fg_edge_station *s) {
   s->used = s->seen = 0;
 }
 
-/* Solves the 2 × 2 system of a station and moves its edges. */
-static void move_edges(fg_edge_station *s, double noise) {
+/* Solves the 2 × 2 system of a station and moves its edges; u_px is for pixels of unit sd. */
+static void move_edges(fg_edge_station *s) {
   double det = (double)s->m11 * s->m22 - (double)s->m12 * s->m12;
   s->weight = 0;
   s->u_px[0] = s->u_px[1] = NAN;
   if (!(det > 1e-6 * (double)s->m11 * s->m22) || s->used < s->seen * 3 / 4) return;
   double a = (s->m22 * (double)s->g1 - s->m12 * (double)s->g2) / det;
   double b = (s->m11 * (double)s->g2 - s->m12 * (double)s->g1) / det;
-  s->u_px[0] = (float)(noise * sqrt(s->m22 / det));
-  s->u_px[1] = (float)(noise * sqrt(s->m11 / det));
+  s->u_px[0] = (float)sqrt(s->m22 / det);
+  s->u_px[1] = (float)sqrt(s->m11 / det);
   if (fabs(a) > 3 || fabs(b) > 3) return;
   s->edge_px[0] += (float)a;
   s->edge_px[1] += (float)b;
@@ -81,18 +83,31 @@ static void drop_misfits(fg_edge_work *work) {
   }
 }
 
-void fg_edges_solve(fg_edge_work *work, int rounds) {
-  for (int round = 0; round < rounds; round++) {
-    for (size_t i = 0; i < work->reference->count; i++) clear_sums(&work->stations[i]);
-    float limit = (float)(round == 0 ? 1e9 : OUTLIER_SIGMAS * work->noise +
-                                                 OUTLIER_SHARE * work->contrast);
-    for (size_t i = 0; i < work->band->count; i++) {
-      const fg_band_pixel *p = &work->band->pixels[i];
-      add_pixel(work->tables, &work->stations[p->station], p->across_px, p->value, limit);
-    }
-    work->noise = estimate_noise(work);
-    for (size_t i = 0; i < work->reference->count; i++)
-      move_edges(&work->stations[i], work->noise);
+/* One round on the stations of one chunk. The variance of the pixels is set afterwards. */
+static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
+  (void)ctx;
+  fg_edge_work *work = shared;
+  size_t first, last;
+  fg_edges_chunk(work, chunk, &first, &last);
+  for (size_t i = first; i <= last; i++) clear_sums(&work->stations[i]);
+  float limit = (float)(work->round == 0 ? 1e9 : OUTLIER_SIGMAS * work->noise +
+                                                     OUTLIER_SHARE * work->contrast);
+  const fg_pixel_band *band = &work->bands[chunk];
+  for (size_t i = 0; i < band->count; i++) {
+    const fg_band_pixel *p = &band->pixels[i];
+    add_pixel(work->tables, &work->stations[p->station], p->across_px, p->value, limit);
   }
+  for (size_t i = first; i <= last; i++) move_edges(&work->stations[i]);
+  return FG_OK;
+}
+
+fg_status fg_edges_solve(fg_context *ctx, fg_edge_work *work, int rounds) {
+  for (work->round = 0; work->round < rounds; work->round++) {
+    FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, solve_task, work));
+    work->noise = estimate_noise(work);
+  }
+  for (size_t i = 0; i < work->reference->count; i++)
+    for (int side = 0; side < 2; side++) work->stations[i].u_px[side] *= (float)work->noise;
   drop_misfits(work);
+  return FG_OK;
 }

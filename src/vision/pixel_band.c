@@ -95,17 +95,16 @@ static bool is_steep(const fg_reference_station *s) {
   return fabs(s->ty) > fabs(s->tx);
 }
 
-fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_reference *reference,
-                          double reach_px, fg_pixel_band *band) {
+fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles,
+                                const fg_reference *reference, size_t first, size_t last,
+                                double reach_px, fg_pixel_band *band) {
   memset(band, 0, sizeof *band);
   fg_status status = FG_OK;
-  size_t first = 0;
-  while (first < reference->count && status == FG_OK) {
+  while (first <= last && status == FG_OK) {
     run r = {.tiles = tiles, .reference = reference, .first = first, .reach_px = reach_px};
     r.steep = is_steep(&reference->stations[first]);
     r.last = first;
-    while (r.last + 1 < reference->count && is_steep(&reference->stations[r.last + 1]) == r.steep)
-      r.last++;
+    while (r.last < last && is_steep(&reference->stations[r.last + 1]) == r.steep) r.last++;
     status = collect_run(ctx, &r, band);
     first = r.last + 1;
   }

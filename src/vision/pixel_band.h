@@ -24,9 +24,11 @@ typedef struct fg_pixel_band {
   size_t count, capacity;
 } fg_pixel_band;
 
-/* All pixels within reach_px of the line. Pixels that were not kept are left out. */
-fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles, const fg_reference *reference,
-                          double reach_px, fg_pixel_band *band);
+/* All pixels within reach_px of the line that belong to stations [first, last]. Pixels that were
+ * not kept are left out. */
+fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles,
+                                const fg_reference *reference, size_t first, size_t last,
+                                double reach_px, fg_pixel_band *band);
 
 void fg_pixel_band_free(fg_pixel_band *band);
 

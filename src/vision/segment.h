@@ -23,9 +23,9 @@ typedef struct fg_object {
 } fg_object;
 
 typedef struct fg_segmentation {
+  const fg_tiles *tiles;   /* the scan's; must outlive this */
   int32_t width, height;   /* in blocks, the valid ones only */
-  float *excess;           /* width × height: block mean minus background, objects positive */
-  float *background;       /* width × height, 8-bit counts */
+  float *grid;             /* background at tile centres, 8-bit counts */
   int32_t *labels;         /* width × height: 0 background, else 1 + object of the mask */
   bool light_on_dark;
   float contrast;          /* typical excess of the objects, 8-bit counts */
@@ -34,6 +34,28 @@ typedef struct fg_segmentation {
   size_t object_count;
   size_t speck_count;      /* small ones, left alone */
 } fg_segmentation;
+
+/* Background at a block's centre, bilinear between tile centres. */
+static inline float fg_segmentation_background(const fg_segmentation *s, int32_t x, int32_t y) {
+  float u = ((float)x + 0.5f) / FG_BLOCKS_PER_TILE - 0.5f;
+  float v = ((float)y + 0.5f) / FG_BLOCKS_PER_TILE - 0.5f;
+  float right = (float)(s->tiles->columns - 1), low = (float)(s->tiles->rows - 1);
+  u = u < 0 ? 0 : u > right ? right : u;
+  v = v < 0 ? 0 : v > low ? low : v;
+  int32_t i = (int32_t)u, j = (int32_t)v;
+  int32_t i1 = i + 1 < s->tiles->columns ? i + 1 : i, j1 = j + 1 < s->tiles->rows ? j + 1 : j;
+  float fu = u - (float)i, fv = v - (float)j;
+  const float *a = s->grid + (size_t)j * (size_t)s->tiles->columns;
+  const float *b = s->grid + (size_t)j1 * (size_t)s->tiles->columns;
+  return (1 - fv) * ((1 - fu) * a[i] + fu * a[i1]) + fv * ((1 - fu) * b[i] + fu * b[i1]);
+}
+
+/* Block mean minus background, positive inside objects. */
+static inline float fg_segmentation_excess(const fg_segmentation *s, int32_t x, int32_t y) {
+  float value = s->tiles->blocks[(size_t)y * (size_t)s->tiles->block_columns + (size_t)x];
+  float excess = value - fg_segmentation_background(s, x, y);
+  return s->light_on_dark ? excess : -excess;
+}
 
 /* Objects whose box has a diagonal of at least `least_px`. No object is not an error here. */
 fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, double least_px,

@@ -28,6 +28,7 @@ fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(void *), (void **)&tiles->pixels));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&tiles->wanted));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(float), (void **)&tiles->medians));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count * FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
                                  sizeof(float), (void **)&tiles->blocks));
   for (int i = 0; i < 3; i++)
@@ -100,8 +101,30 @@ static int compare_floats(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static float tile_contrast(const fg_tiles *tiles, int32_t column, int32_t strip) {
-  float low = INFINITY, high = -INFINITY;
+/* Middle of an even number of values by selection (Hoare); reorders them. */
+static float select_median(float *values, int count) {
+  int low = 0, high = count - 1, wanted = count / 2;
+  while (low < high) {
+    float pivot = values[(low + high) / 2];
+    int i = low, j = high;
+    while (i <= j) {
+      while (values[i] < pivot) i++;
+      while (values[j] > pivot) j--;
+      if (i > j) break;
+      float swap = values[i];
+      values[i++] = values[j];
+      values[j--] = swap;
+    }
+    if (wanted <= j) high = j;
+    else if (wanted >= i) low = i;
+    else break;
+  }
+  return values[wanted];
+}
+
+/* Range of a tile's block means, and their median. */
+static float tile_contrast(const fg_tiles *tiles, int32_t column, int32_t strip, float *median) {
+  float low = INFINITY, high = -INFINITY, values[FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE];
   for (int y = 0; y < FG_BLOCKS_PER_TILE; y++) {
     const float *row = tiles->blocks +
                        ((size_t)strip * FG_BLOCKS_PER_TILE + (size_t)y) *
@@ -110,8 +133,10 @@ static float tile_contrast(const fg_tiles *tiles, int32_t column, int32_t strip)
     for (int x = 0; x < FG_BLOCKS_PER_TILE; x++) {
       low = row[x] < low ? row[x] : low;
       high = row[x] > high ? row[x] : high;
+      values[y * FG_BLOCKS_PER_TILE + x] = row[x];
     }
   }
+  *median = select_median(values, FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE);
   return high - low;
 }
 
@@ -120,7 +145,8 @@ static fg_status mark_wanted(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
   float *contrast = NULL;
   FG_TRY(fg_memory_allocate(ctx, columns * 2, sizeof *contrast, (void **)&contrast));
   for (size_t c = 0; c < columns; c++)
-    contrast[c] = contrast[columns + c] = tile_contrast(tiles, (int32_t)c, strip);
+    contrast[c] = contrast[columns + c] = tile_contrast(
+        tiles, (int32_t)c, strip, &tiles->medians[(size_t)strip * columns + c]);
   qsort(contrast + columns, columns, sizeof *contrast, compare_floats);
   float limit = CONTRAST_OVER_QUARTILE * contrast[columns + columns / 4];
   if (limit < CONTRAST_MIN) limit = CONTRAST_MIN;
@@ -191,6 +217,7 @@ void fg_tiles_free(fg_tiles *tiles) {
   free(tiles->pixels);
   free(tiles->wanted);
   free(tiles->blocks);
+  free(tiles->medians);
   for (int i = 0; i < 3; i++) free(tiles->strips[i]);
   memset(tiles, 0, sizeof *tiles);
 }

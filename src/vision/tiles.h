@@ -27,9 +27,10 @@ typedef struct fg_tiles {
   int32_t block_columns, block_rows;   /* FG_BLOCKS_PER_TILE × as many; the last may lie outside */
   void **pixels;                       /* columns × rows; NULL: background */
   float *blocks;                       /* block means, in 8-bit counts; outside: the edge's value */
+  float *medians;                      /* columns × rows: median of each tile's block means */
   /* the window of strips that are still undecided */
   void *strips[3];                     /* rows of width_px pixels each */
-  uint8_t *wanted;                     /* columns × rows: contrast above the background */
+  uint8_t *wanted;                     /* columns × rows: contrast above the background's scatter */
   int32_t received;                    /* strips so far */
 } fg_tiles;
 

@@ -30,15 +30,18 @@ typedef struct cut {
   double peak;
 } cut;
 
-/* Excess over the local background, positive inside the strip. 0 where nothing was kept. */
-static float excess_at(const walker *w, double x, double y) {
-  int64_t ix = (int64_t)floor(x + 0.5), iy = (int64_t)floor(y + 0.5);
-  float value = fg_tiles_pixel(w->tiles, ix, iy);
+/* Excess over a background, positive inside the strip. 0 where nothing was kept. */
+static float excess_over(const walker *w, float background, double x, double y) {
+  float value = fg_tiles_pixel(w->tiles, (int64_t)floor(x + 0.5), (int64_t)floor(y + 0.5));
   if (isnan(value)) return 0;
-  const fg_segmentation *s = w->segmentation;
-  float background =
-      s->background[(size_t)(iy / FG_BLOCK_PX) * (size_t)s->width + (size_t)(ix / FG_BLOCK_PX)];
-  return s->light_on_dark ? value - background : background - value;
+  return w->segmentation->light_on_dark ? value - background : background - value;
+}
+
+static float background_at(const walker *w, fg_point p) {
+  double right = (double)w->tiles->width_px - 1, low = (double)w->tiles->height_px - 1;
+  return fg_segmentation_background(w->segmentation,
+                                    (int32_t)(fmin(fmax(p.x, 0), right) / FG_BLOCK_PX),
+                                    (int32_t)(fmin(fmax(p.y, 0), low) / FG_BLOCK_PX));
 }
 
 /* Cuts across at p: the run above half of `contrast` that lies nearest to p. False when there is
@@ -46,14 +49,12 @@ static float excess_at(const walker *w, double x, double y) {
 static bool cut_across(const walker *w, fg_point p, fg_point tangent, double contrast, cut *out) {
   int half = (int)w->half_window_px;
   if (2 * half + 1 > PROFILE_MAX) half = (PROFILE_MAX - 1) / 2;
-  float profile[PROFILE_MAX];
+  float profile[PROFILE_MAX], background = background_at(w, p);
   int count = 2 * half + 1;
   for (int j = 0; j < count; j++) {
     double n = j - half, x = p.x - n * tangent.y, y = p.y + n * tangent.x;
-    float sum = 0;
-    for (int a = -1; a <= 1; a++)
-      sum += excess_at(w, x + 1.5 * a * tangent.x, y + 1.5 * a * tangent.y);
-    profile[j] = sum / 3;
+    profile[j] = 0.5f * (excess_over(w, background, x - tangent.x, y - tangent.y) +
+                         excess_over(w, background, x + tangent.x, y + tangent.y));
   }
   float limit = (float)(0.5 * contrast);
   int best = -1;
@@ -115,11 +116,15 @@ static fg_status append(fg_context *ctx, fg_trace *trace, fg_point p) {
   return FG_OK;
 }
 
-/* The walk may not come back to where it was: a strip is no ring. */
+/* The walk may not come back to where it was: a strip is no ring. Every other point is looked at,
+ * they are closer than half a width. */
 static bool visited(const fg_trace *trace, fg_point p, double width) {
   size_t recent = (size_t)(8 * TANGENT_POINTS);
-  for (size_t i = 0; i + recent < trace->count; i++)
-    if (hypot(trace->points[i].x - p.x, trace->points[i].y - p.y) < 0.5 * width) return true;
+  double limit = 0.25 * width * width;
+  for (size_t i = 0; i + recent < trace->count; i += 2) {
+    double dx = trace->points[i].x - p.x, dy = trace->points[i].y - p.y;
+    if (dx * dx + dy * dy < limit) return true;
+  }
   return false;
 }
 
@@ -171,7 +176,7 @@ static void reverse(fg_trace *trace) {
 static fg_status trace_from_seed(fg_context *ctx, walker *w, fg_point seed, fg_trace *trace) {
   fg_point tangent;
   if (!find_direction(w, &seed, &tangent)) return FG_OK;
-  w->half_window_px = 1.5 * w->width_px + 6;
+  w->half_window_px = w->width_px + 6;
   FG_TRY(walk(ctx, w, seed, (fg_point){-tangent.x, -tangent.y}, trace));
   reverse(trace);
   FG_TRY(append(ctx, trace, seed));
@@ -205,7 +210,7 @@ static bool find_seed(const walker *w, const uint8_t *open, fg_point *seed) {
   for (int32_t y = 0; y < o->height; y++)
     for (int32_t x = 0; x < o->width; x++) {
       if (!open[(size_t)y * (size_t)o->width + (size_t)x]) continue;
-      float excess = s->excess[(size_t)(y + o->y) * (size_t)s->width + (size_t)(x + o->x)];
+      float excess = fg_segmentation_excess(s, x + o->x, y + o->y);
       if (excess <= best) continue;
       best = excess;
       *seed = (fg_point){(x + o->x + 0.5) * FG_BLOCK_PX - 0.5, (y + o->y + 0.5) * FG_BLOCK_PX - 0.5};
@@ -216,11 +221,11 @@ static bool find_seed(const walker *w, const uint8_t *open, fg_point *seed) {
 /* The strip's own contrast at a seed: the largest excess of the pixels around it, less the
  * extremes (a 90th percentile over 16 × 16). */
 static double contrast_at(const walker *w, fg_point seed) {
-  float values[16 * 16];
+  float values[16 * 16], background = background_at(w, seed);
   size_t count = 0;
   for (int y = -8; y < 8; y++)
     for (int x = -8; x < 8; x++) {
-      float value = excess_at(w, seed.x + x, seed.y + y);
+      float value = excess_over(w, background, seed.x + x, seed.y + y);
       size_t i = count++;
       for (; i > 0 && values[i - 1] > value; i--) values[i] = values[i - 1];
       values[i] = value;

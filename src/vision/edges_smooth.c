@@ -1,0 +1,203 @@
+/* The shape of every station: the segments' fits, smoothed by direction and place. */
+#include "vision/edges.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+
+enum { BASIS_MAX = 7 };
+/* Segments further than this many robust deviations from the smooth course are left out of it. */
+#define OUTLIER_DEVIATIONS 4.0
+
+/* One value of the shape over all segments. */
+typedef struct course {
+  const fg_edge_work *work;
+  double (*basis)[BASIS_MAX]; /* per segment */
+  double *values;             /* per segment; NaN where the fit failed */
+  double *scratch;            /* per segment */
+  const double *sd;           /* per segment */
+  size_t unknowns;
+  double coefficients[BASIS_MAX];
+  double real; /* share of the scatter about the course that is more than the fits' own */
+} course;
+
+/* Functions of the normal's direction (two harmonics) and of the place (linear), about -1 to 1. */
+static void fill_basis(const fg_reference *reference, size_t station, double *basis) {
+  const fg_reference_station *s = &reference->stations[station];
+  const fg_reference_station *m = &reference->stations[reference->count / 2];
+  double scale = 1.0 / (1 + (double)reference->count * reference->step_px * 0.5);
+  double c = -s->ty, n = s->tx;
+  basis[0] = 1;
+  basis[1] = c;
+  basis[2] = n;
+  basis[3] = c * c - n * n;
+  basis[4] = 2 * c * n;
+  basis[5] = (s->x - m->x) * scale;
+  basis[6] = (s->y - m->y) * scale;
+}
+
+static double predict(const course *c, const double *basis) {
+  double sum = 0;
+  for (size_t b = 0; b < c->unknowns; b++) sum += c->coefficients[b] * basis[b];
+  return sum;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double median_in_place(double *values, size_t count) {
+  if (!count) return NAN;
+  qsort(values, count, sizeof *values, compare_doubles);
+  return values[count / 2];
+}
+
+/* Least squares over the segments within `limit` of the present course; the share of the scatter
+ * that is real comes from the sum of squares against the fits' own variances. */
+static bool fit_course(course *c, double limit) {
+  fg_normal_equations system;
+  fg_normal_clear(&system, c->unknowns);
+  double sum = 0, expected = 0, count = 0, x[FG_SMALL_MAX];
+  for (size_t s = 0; s < c->work->segment_count; s++) {
+    double deviation = c->values[s] - predict(c, c->basis[s]);
+    if (!isfinite(c->values[s]) || fabs(deviation) > limit) continue;
+    sum += deviation * deviation;
+    expected += c->sd[s] * c->sd[s];
+    count++;
+    fg_normal_add(&system, c->basis[s], c->values[s], 1);
+  }
+  for (size_t b = 1; b < c->unknowns; b++) system.matrix[b][b] += 1e-3 * system.matrix[0][0];
+  if (!fg_normal_solve(&system, 0, x, NULL)) return false;
+  memcpy(c->coefficients, x, c->unknowns * sizeof *x);
+  double freedom = count - (double)c->unknowns;
+  if (isfinite(limit) && freedom > 4 && sum > 0)
+    c->real = fmax(0, 1 - 2 * expected * freedom / (sum * count));
+  return true;
+}
+
+static double deviation_limit(course *c) {
+  size_t n = 0;
+  for (size_t s = 0; s < c->work->segment_count; s++)
+    if (isfinite(c->values[s])) c->scratch[n++] = fabs(c->values[s] - predict(c, c->basis[s]));
+  return OUTLIER_DEVIATIONS * 1.4826 * median_in_place(c->scratch, n) + 1e-9;
+}
+
+static void find_course(course *c) {
+  memset(c->coefficients, 0, sizeof c->coefficients);
+  c->real = 0;
+  double limit = INFINITY;
+  for (int round = 0; round < 3 && fit_course(c, limit); round++) limit = deviation_limit(c);
+}
+
+static float *station_value(fg_edge_station *s, int i) {
+  float *values[FG_EDGE_SHAPE_VALUES] = {&s->plateau,  &s->step[0],    &s->step[1],   &s->slope[0],
+                                         &s->slope[1], &s->blur_px[0], &s->blur_px[1]};
+  return values[i];
+}
+
+static double segment_value(const fg_profile_fit *fit, int i) {
+  const fg_edge_shape *s = &fit->shape;
+  const double values[FG_EDGE_SHAPE_VALUES] = {s->plateau,  s->level[0],   s->level[1],  s->slope[0],
+                                               s->slope[1], s->blur_px[0], s->blur_px[1]};
+  return fit->good ? values[i] : NAN;
+}
+
+/* The course at every station, plus the real share of the segments' own deviation, linear between
+ * their middles. */
+static void spread_course(const course *c, int i) {
+  const fg_edge_work *work = c->work;
+  double basis[BASIS_MAX];
+  for (size_t k = 0; k < work->reference->count; k++) {
+    fill_basis(work->reference, k, basis);
+    double value = predict(c, basis);
+    double at = ((double)k - FG_SEGMENT_STATIONS / 2.0) / FG_SEGMENT_STATIONS;
+    at = fmin(fmax(at, 0), (double)work->segment_count - 1);
+    size_t s0 = (size_t)at, s1 = s0 + 1 < work->segment_count ? s0 + 1 : s0;
+    for (int side = 0; side < 2 && c->real > 0; side++) {
+      size_t s = side ? s1 : s0;
+      double share = side ? at - (double)s0 : 1 - (at - (double)s0);
+      if (isfinite(c->values[s])) value += c->real * share * (c->values[s] - predict(c, c->basis[s]));
+    }
+    *station_value(&work->stations[k], i) = (float)(i >= 5 ? fmax(value, 0.3) : value);
+  }
+}
+
+/* Median over the good segments of some value. */
+static double median_of(const fg_edge_work *work, double *scratch,
+                        double (*get)(const fg_profile_fit *)) {
+  size_t n = 0;
+  for (size_t s = 0; s < work->segment_count; s++)
+    if (work->segments[s].fit.good) scratch[n++] = get(&work->segments[s].fit);
+  return median_in_place(scratch, n);
+}
+
+static double get_left(const fg_profile_fit *fit) {
+  return fit->edge_px[0];
+}
+static double get_right(const fg_profile_fit *fit) {
+  return fit->edge_px[1];
+}
+static double get_step(const fg_profile_fit *fit) {
+  return fabs(fit->shape.plateau - 0.5 * (fit->shape.level[0] + fit->shape.level[1]));
+}
+static double get_band(const fg_profile_fit *fit) {
+  return fabs(fit->shape.level[1] - fit->shape.level[0]);
+}
+static double get_blur_left(const fg_profile_fit *fit) {
+  return fit->shape.blur_px[0];
+}
+static double get_blur_right(const fg_profile_fit *fit) {
+  return fit->shape.blur_px[1];
+}
+static double get_extreme(const fg_profile_fit *fit) {
+  return fmax(fit->shape.plateau, fmax(fit->shape.level[0], fit->shape.level[1]));
+}
+
+static void summarise(fg_edge_work *work, double *scratch) {
+  double left = median_of(work, scratch, get_left), right = median_of(work, scratch, get_right);
+  work->thickness_px = right - left;
+  work->contrast = median_of(work, scratch, get_step);
+  work->blur_px[0] = median_of(work, scratch, get_blur_left);
+  work->blur_px[1] = median_of(work, scratch, get_blur_right);
+  work->side_band = median_of(work, scratch, get_band) > 0.08 * work->contrast;
+  work->clipped = median_of(work, scratch, get_extreme) > 253.5;
+  for (size_t k = 0; k < work->reference->count; k++) {
+    fg_edge_station *st = &work->stations[k];
+    st->edge_px[0] = st->middle_px + (float)left;
+    st->edge_px[1] = st->middle_px + (float)right;
+    st->step[0] -= st->plateau;
+    st->step[1] -= st->plateau;
+  }
+}
+
+fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good) {
+  size_t count = work->segment_count;
+  course c = {.work = work, .unknowns = good >= 20 ? BASIS_MAX : good >= 8 ? 3 : 1};
+  double *memory = NULL;
+  FG_TRY(fg_memory_allocate(ctx, count, (BASIS_MAX + 3) * sizeof *memory, (void **)&memory));
+  c.basis = (double(*)[BASIS_MAX])memory;
+  c.values = memory + BASIS_MAX * count;
+  c.scratch = c.values + count;
+  double *sd = c.scratch + count;
+  c.sd = sd;
+  for (size_t s = 0; s < count; s++) {
+    size_t middle = s * FG_SEGMENT_STATIONS + FG_SEGMENT_STATIONS / 2;
+    fill_basis(work->reference, middle < work->reference->count ? middle : work->reference->count - 1,
+               c.basis[s]);
+  }
+  for (int i = 0; i < FG_EDGE_SHAPE_VALUES; i++) {
+    for (size_t s = 0; s < count; s++) {
+      c.values[s] = segment_value(&work->segments[s].fit, i);
+      sd[s] = work->segments[s].fit.sd[i];
+    }
+    find_course(&c);
+    spread_course(&c, i);
+  }
+  summarise(work, c.scratch);
+  free(memory);
+  return FG_OK;
+}

@@ -1,0 +1,76 @@
+/* A render held in memory, as coverage (0 background, 1 foil), for the tests of the renderer. */
+#ifndef RENDER_PICTURE_H
+#define RENDER_PICTURE_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "foilgauge/render.h"
+
+typedef struct picture {
+  fg_render_spec *spec;
+  const fg_render_truth *truth;
+  int64_t width, height;
+  double *dn; /* 8-bit scale */
+} picture;
+
+static fg_status keep_row(fg_context *ctx, void *user, int64_t row, const void *pixels) {
+  (void)ctx;
+  picture *p = user;
+  for (int64_t x = 0; x < p->width; x++)
+    p->dn[row * p->width + x] =
+        p->truth->bits == 16 ? ((const uint16_t *)pixels)[x] / 257.0 : ((const uint8_t *)pixels)[x];
+  return FG_OK;
+}
+
+static picture draw(int64_t strip_rows, const char *json) {
+  fg_context ctx = {0};
+  picture p = {0};
+  fg_status status = fg_render_parse(&ctx, "spec.json", json, &p.spec);
+  if (status != FG_OK) fail_msg("%s", ctx.message);
+  p.truth = fg_render_get_truth(p.spec);
+  p.width = p.truth->width_px;
+  p.height = p.truth->height_px;
+  p.dn = calloc((size_t)p.width * (size_t)p.height, sizeof *p.dn);
+  assert_non_null(p.dn);
+  assert_int_equal(fg_render_rows(&ctx, p.spec, strip_rows, keep_row, &p), FG_OK);
+  return p;
+}
+
+__attribute__((format(printf, 1, 2))) static picture draw_format(const char *format, ...) {
+  char json[4096];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(json, sizeof json, format, arguments);
+  va_end(arguments);
+  return draw(0, json);
+}
+
+static void drop(picture *p) {
+  fg_render_free(p->spec);
+  free(p->dn);
+}
+
+#define assert_close(value, expected, tolerance)                                                   \
+  do {                                                                                             \
+    double value_ = (value), expected_ = (expected), tolerance_ = (tolerance);                     \
+    if (!(fabs(value_ - expected_) <= tolerance_))                                                 \
+      fail_msg("%s = %.9g, not %.9g within %.3g", #value, value_, expected_, tolerance_);          \
+  } while (0)
+
+/* All tests draw on 20 with a contrast of 200 in 16 bit without noise, unless they say so. */
+#define EXACT "\"bits\":16,\"background\":20,\"contrast\":200,\"noise\":0"
+
+static double coverage(const picture *p, int64_t x, int64_t y) {
+  return (p->dn[y * p->width + x] - 20) / 200;
+}
+
+#endif

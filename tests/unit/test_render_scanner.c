@@ -1,0 +1,368 @@
+/* What the rendered scanner does to light: tone, noise, clipping, JPEG, roughness, halo, wall; the
+ * same bytes every time; and specs that must be refused. */
+#include "render_picture.h"
+
+#include <unistd.h>
+
+#include "foilgauge/scan.h"
+#include "render/jpeg.h"
+
+typedef struct statistics {
+  double mean, sd, right, below;
+} statistics;
+
+static statistics picture_statistics(const picture *p) {
+  statistics s = {0};
+  double squares = 0, right = 0, below = 0;
+  int64_t n = p->width * p->height;
+  for (int64_t i = 0; i < n; i++)
+    s.mean += p->dn[i] / (double)n;
+  for (int64_t y = 0; y + 1 < p->height; y++)
+    for (int64_t x = 0; x + 1 < p->width; x++) {
+      const double *at = p->dn + y * p->width + x;
+      squares += (at[0] - s.mean) * (at[0] - s.mean);
+      right += (at[0] - s.mean) * (at[1] - s.mean);
+      below += (at[0] - s.mean) * (at[p->width] - s.mean);
+    }
+  s.sd = sqrt(squares / (double)((p->width - 1) * (p->height - 1)));
+  s.right = right / squares;
+  s.below = below / squares;
+  return s;
+}
+
+/* Background alone: the disc lies far outside. */
+#define EMPTY                                                                                      \
+  "{\"schema\":\"foilgauge/render/1\",\"seed\":%d,\"width_px\":800,\"height_px\":600,"             \
+  "\"discs\":[{\"centre_mm\":[50,50],\"radius_mm\":0.5}],\"scanner\":{\"background\":100,"         \
+  "\"contrast\":100,%s}}"
+
+static void noise_has_its_sd_and_correlation(void **state) {
+  (void)state;
+  const double correlations[] = {0, 0.5, 0.7};
+  for (size_t i = 0; i < 3; i++) {
+    char members[128];
+    snprintf(members, sizeof members, "\"bits\":16,\"noise\":2.5,\"noise_correlation\":%g",
+             correlations[i]);
+    picture p = draw_format(EMPTY, 3, members);
+    statistics s = picture_statistics(&p);
+    assert_close(s.mean, 100, 0.08);
+    assert_close(s.sd, 2.5, 0.03);
+    assert_close(s.right, correlations[i], 0.01);
+    assert_close(s.below, correlations[i], 0.01);
+    drop(&p);
+  }
+}
+
+/* A normal law: kurtosis 3 and the right share beyond three sd. */
+static void noise_is_normal(void **state) {
+  (void)state;
+  picture p = draw_format(EMPTY, 4, "\"bits\":16,\"noise\":2");
+  double fourth = 0, beyond = 0, n = (double)(p.width * p.height);
+  for (int64_t i = 0; i < p.width * p.height; i++) {
+    double u = (p.dn[i] - 100) / 2;
+    fourth += u * u * u * u / n;
+    beyond += fabs(u) > 3;
+  }
+  assert_close(fourth, 3, 0.06);
+  assert_close(beyond / n, 0.0027, 0.0004);
+  drop(&p);
+}
+
+static void eight_bit_rounds_to_nearest(void **state) {
+  (void)state;
+  picture p = draw_format(EMPTY, 5, "\"bits\":8,\"noise\":1");
+  statistics s = picture_statistics(&p);
+  assert_close(s.mean, 100, 0.01);
+  assert_close(s.sd, sqrt(1 + 1.0 / 12), 0.01);
+  drop(&p);
+}
+
+static void plateaus_keep_their_values_under_gamma(void **state) {
+  (void)state;
+  const double gammas[] = {0.6, 1, 2.2};
+  double middles[3];
+  for (size_t i = 0; i < 3; i++) {
+    picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":250,"
+                            "\"height_px\":250,\"discs\":[{\"centre_mm\":[0.661458333,"
+                            "0.661458333],\"radius_mm\":0.396875}],"
+                            "\"scanner\":{" EXACT ",\"gamma\":%g}}",
+                            gammas[i]);
+    assert_close(p.dn[3 * p.width + 3], 20, 0.01);
+    assert_close(p.dn[125 * p.width + 125], 220, 0.01);
+    middles[i] = p.dn[125 * p.width + 200]; /* on the edge: half of the light */
+    drop(&p);
+  }
+  for (size_t i = 0; i < 3; i++) {
+    double light = 0.5 * (pow(20 / 255.0, gammas[i]) + pow(220 / 255.0, gammas[i]));
+    assert_close(middles[i], 255 * pow(light, 1 / gammas[i]), 1.0);
+  }
+}
+
+static void shading_and_clipping(void **state) {
+  (void)state;
+  picture p = draw_format(EMPTY, 1,
+                          "\"bits\":16,\"noise\":0,\"shading\":{\"x\":0.1,\"y\":-0.05,"
+                          "\"quadratic\":0.02},\"clip_white\":111");
+  assert_close(p.dn[0], 100 * (1 - 0.1 + 0.05 + 0.04), 0.01);
+  assert_close(p.dn[599 * 800], 100 * (1 - 0.1 - 0.05 + 0.04), 0.01);
+  assert_close(p.dn[799], 111, 0.01); /* 119 */
+  drop(&p);
+}
+
+/* Light is only moved about: the sum stays, a share of it goes to the surroundings. */
+static void halo_moves_light(void **state) {
+  (void)state;
+  const char *format = "{\"schema\":\"foilgauge/render/1\",\"width_px\":601,\"height_px\":601,"
+                       "\"discs\":[{\"centre_mm\":[1.5875,1.5875],\"radius_mm\":0.3}],"
+                       "\"scanner\":{" EXACT ",\"rough\":{\"halo\":{\"fraction\":%g,"
+                       "\"length_px\":15}}}}";
+  double sums[2], near[2];
+  for (int i = 0; i < 2; i++) {
+    char json[1024];
+    snprintf(json, sizeof json, format, i ? 0.15 : 0.0);
+    picture p = draw(0, json);
+    sums[i] = 0;
+    for (int64_t k = 0; k < p.width * p.height; k++)
+      sums[i] += (p.dn[k] - 20) / 200;
+    near[i] = coverage(&p, 300 + 57 + 15, 300);
+    if (i) assert_true(coverage(&p, 300, 300) > 0.88);
+    drop(&p);
+  }
+  assert_close(sums[1] / sums[0], 1, 1e-3);
+  assert_close(near[0], 0, 1e-4);
+  assert_true(near[1] > 0.015 && near[1] < 0.06);
+}
+
+/* Across a straight piece of the strip: the wall shows beside the edge that faces it, only there.
+ */
+static void wall_shows_on_one_side(void **state) {
+  (void)state;
+  picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":null}],"
+                      "\"scanner\":{" EXACT ",\"rough\":{\"side_wall\":{\"amplitude\":0.3,"
+                      "\"direction_deg\":90,\"length_px\":10}}}}");
+  const fg_render_bump *bump = &p.truth->foils[0].bumps[4];
+  int64_t x = llround(bump->centre_px.x);
+  int64_t y = llround(bump->centre_px.y + bump->radius_mm * 4800 / 25.4);
+  double inside = coverage(&p, x, y + 9 + 10), outside = coverage(&p, x, y - 9 - 10);
+  assert_close(inside, 0.3 * exp(-1), 0.02);
+  assert_close(outside, 0, 1e-3);
+  drop(&p);
+}
+
+/* Edge of every column along the bumps' crowns: position on both sides against the smooth foil. */
+static void roughness_has_its_size(void **state) {
+  (void)state;
+  const char *format = "{\"schema\":\"foilgauge/render/1\",\"seed\":%d,\"foils\":[{"
+                       "\"centre_mm\":[22,24],\"design\":{\"bump_count\":1,"
+                       "\"fillet_radius_mm\":0.35},\"lip\":null,\"first_land_mm\":12,"
+                       "\"last_land_mm\":12}],\"width_px\":8300,\"height_px\":1600,"
+                       "\"scanner\":{" EXACT "%s}}";
+  char rough[512], smooth[512];
+  snprintf(rough, sizeof rough, format, 7,
+           ",\"rough\":{\"edge_roughness_um\":1.5,\"edge_common_um\":1,\"correlation_um\":50}");
+  snprintf(smooth, sizeof smooth, format, 7, "");
+  picture a = draw(0, rough), b = draw(0, smooth);
+  double sum = 0, squares = 0, lag = 0, before = 0;
+  int64_t count = 0;
+  for (int64_t x = 3850; x < 4450; x++) { /* the bump, nearly level */
+    double width[2] = {0, 0};
+    for (int64_t y = 0; y < a.height; y++) {
+      width[0] += coverage(&a, x, y);
+      width[1] += coverage(&b, x, y);
+    }
+    double error = (width[0] - width[1]) * 25.4e3 / 4800; /* um: difference of two edges */
+    sum += error;
+    squares += error * error;
+    lag += error * before;
+    before = error;
+    count++;
+  }
+  /* 600 columns of 5.3 um hold about 36 independent lengths: 12 % for the sd of one draw. */
+  assert_close(sqrt(squares / (double)count), 1.5 * sqrt(2.0), 0.8);
+  assert_true(lag / squares > 0.9);
+  drop(&a);
+  drop(&b);
+}
+
+/* Bright-to-dark along the rows' way is softer; turned upside down, it is the other edge. */
+static void blur_is_one_sided(void **state) {
+  (void)state;
+  picture p =
+      draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":250,\"height_px\":250,"
+              "\"discs\":[{\"centre_mm\":[0.66,0.66],\"radius_mm\":0.4}],\"scanner\":{" EXACT
+              ",\"blur_px\":1.8,\"rough\":{\"one_sided_blur_px\":2.2}}}");
+  int64_t x = llround(0.66 * 4800 / 25.4);
+  double steepest[2] = {0, 0};
+  for (int64_t y = 0; y + 1 < p.height; y++) {
+    double step = coverage(&p, x, y + 1) - coverage(&p, x, y);
+    steepest[0] = fmax(steepest[0], step);
+    steepest[1] = fmax(steepest[1], -step);
+  }
+  const double root = 2.5066282746310002; /* sqrt(2 pi) */
+  assert_close(1 / (steepest[0] * root), sqrt(1.8 * 1.8 + 1.0 / 6), 0.08);
+  assert_close(1 / (steepest[1] * root), sqrt(1.8 * 1.8 + 2.2 * 2.2 + 1.0 / 6), 0.12);
+  drop(&p);
+}
+
+static void jpeg_keeps_what_is_flat_and_rounds_the_rest(void **state) {
+  (void)state;
+  fg_jpeg jpeg;
+  uint8_t flat[16 * 16], ramp[13 * 16], once[13 * 16];
+  fg_jpeg_init(50, &jpeg);
+  memset(flat, 128, sizeof flat);
+  fg_jpeg_squeeze(&jpeg, flat, 16, 16, 16);
+  for (size_t i = 0; i < sizeof flat; i++)
+    assert_int_equal(flat[i], 128);
+  for (int i = 0; i < 13 * 16; i++)
+    ramp[i] = (uint8_t)(100 + 3 * (i % 16) + i / 16 % 3);
+  memcpy(once, ramp, sizeof ramp);
+  fg_jpeg_squeeze(&jpeg, once, 15, 13, 16); /* incomplete blocks on both sides */
+  int changed = 0, largest = 0;
+  for (int i = 0; i < 13 * 16; i++) {
+    int change = abs(once[i] - ramp[i]);
+    if (i % 16 == 15) assert_int_equal(change, 0);
+    changed += change > 0;
+    if (change > largest) largest = change;
+  }
+  assert_true(changed > 50 && largest < 30);
+  memcpy(ramp, once, sizeof ramp);
+  fg_jpeg_squeeze(&jpeg, once, 8, 8, 16);
+  for (int i = 0; i < 8 * 16; i++)
+    assert_true(abs(once[i] - ramp[i]) <= 1);
+}
+
+#define BUSY                                                                                       \
+  "{\"schema\":\"foilgauge/render/1\",\"seed\":%d,\"foils\":[{\"design\":{\"bump_count\":2},"      \
+  "\"rotate_deg\":15,\"radius_springback\":{\"mean\":0.02,\"sd\":0.01}}],\"scanner\":{"            \
+  "\"gamma\":1.3,\"noise_correlation\":0.6,\"dust\":{\"count\":30},\"specks\":{\"count\":5},"      \
+  "\"scratches\":{\"count\":4},\"shading\":{\"x\":0.05},\"rough\":{\"one_sided_blur_px\":1,"       \
+  "\"edge_roughness_um\":1.5,\"halo\":{\"fraction\":0.1,\"length_px\":12},\"side_wall\":{"         \
+  "\"amplitude\":0.2,\"direction_deg\":30},\"jpeg\":{\"quality\":85}}}}"
+
+static void same_spec_same_bytes_whatever_the_strip(void **state) {
+  (void)state;
+  char json[1024];
+  snprintf(json, sizeof json, BUSY, 9);
+  picture first = draw(64, json);
+  const int64_t strips[] = {64, 256, 100000};
+  size_t bytes = (size_t)(first.width * first.height) * sizeof *first.dn;
+  for (size_t i = 0; i < 3; i++) {
+    picture other = draw(strips[i], json);
+    assert_memory_equal(first.dn, other.dn, bytes);
+    drop(&other);
+  }
+  snprintf(json, sizeof json, BUSY, 10);
+  picture other = draw(0, json);
+  assert_true(other.truth->foils[0].bumps[0].radius_mm != first.truth->foils[0].bumps[0].radius_mm);
+  drop(&other);
+  drop(&first);
+}
+
+/* The file says what the rows said, to the last bit, at the resolution of each axis. */
+static void file_holds_the_rows(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  char path[] = "/tmp/foilgauge-render-XXXXXX";
+  int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":130,\"height_px\":140,"
+                      "\"discs\":[{\"centre_mm\":[0.3,0.35],\"radius_mm\":0.2}],"
+                      "\"scanner\":{\"dpi\":[4800,4200],\"bits\":16}}");
+  assert_int_equal(fg_render_scan(&ctx, p.spec, path, NULL), FG_OK);
+  fg_scan *scan = NULL;
+  assert_int_equal(fg_scan_open(&ctx, path, &(fg_scan_options){0}, &scan), FG_OK);
+  const fg_scan_info *info = fg_scan_get_info(scan);
+  assert_int_equal(info->width_px, 130);
+  assert_int_equal(info->height_px, 140);
+  assert_int_equal(info->bit_depth, 16);
+  assert_close(info->dpi[0], 4800, 0);
+  assert_close(info->dpi[1], 4200, 0);
+  uint16_t rows[140][130];
+  assert_int_equal(fg_scan_read_rows(&ctx, scan, 140, rows, sizeof rows[0]), FG_OK);
+  for (int i = 0; i < 130 * 140; i++)
+    assert_int_equal(rows[i / 130][i % 130], lround(p.dn[i] * 257));
+  fg_scan_close(scan);
+  remove(path);
+  drop(&p);
+}
+
+typedef struct bad_spec {
+  const char *json, *words;
+} bad_spec;
+
+#define HEAD "{\"schema\":\"foilgauge/render/1\","
+
+static void bad_specs_are_refused_by_name(void **state) {
+  (void)state;
+  static const bad_spec table[] = {
+      {"", "this is not JSON"},
+      {"{\"schema\":", "this is not JSON"},
+      {"[]", "the spec is []: must be an object"},
+      {"{}", "schema is missing: must be \"foilgauge/render/1\""},
+      {"{\"schema\":\"foilgauge/design/1\"}", "schema is \"foilgauge/design/1\""},
+      {HEAD "\"sede\":1}", "sede is 1: there is no such member"},
+      {HEAD "\"seed\":-1}", "seed is -1: must be a number from 0"},
+      {HEAD "\"seed\":1,\"seed\":2}", "seed is 2: given twice"},
+      {HEAD "\"width_px\":4}", "width_px is 4: must be a number from 16 to 200000"},
+      {HEAD "\"width_px\":100.5}", "width_px is 100.5: must be a whole number"},
+      {HEAD "\"foils\":3}", "foils is 3: must be an array"},
+      {HEAD "\"foils\":[3]}", "foils[0] is 3: must be an object"},
+      {HEAD "\"foils\":[{\"overall_radius_mm\":-20}]}", "foils[0].overall_radius_mm is -20"},
+      {HEAD "\"foils\":[{\"design\":{\"bump_radius_mm\":\"3\"}}]}",
+       "foils[0].design.bump_radius_mm is \"3\": must be a number"},
+      {HEAD "\"foils\":[{\"design\":{\"bump_count\":2.5}}]}", "must be a whole number"},
+      {HEAD "\"foils\":[{\"radius_mm\":[3.3]}]}", "foils[0].radius_mm is [3.3]: must be an array"},
+      {HEAD "\"foils\":[{\"missing\":[10]}]}",
+       "foils[0].missing[0] is 10: must be a number from 1"},
+      {HEAD "\"foils\":[{\"crushed\":[{\"height_factor\":0.5}]}]}", "crushed[0].bump is missing"},
+      {HEAD "\"foils\":[{\"lip\":{\"side\":\"up\"}}]}", "foils[0].lip.side is \"up\""},
+      {HEAD "\"foils\":[{\"mirror\":1}]}", "foils[0].mirror is 1: must be true or false"},
+      {HEAD "\"foils\":[{\"design\":{\"fillet_radius_mm\":90}}]}",
+       "cannot meet the overall circle"},
+      {HEAD "\"foils\":[{\"design\":{\"pitch_deg\":5}}]}", "overlaps the one before it"},
+      {HEAD "\"foils\":[{\"design\":{\"pitch_deg\":45}}]}", "longer than a full turn"},
+      {HEAD "\"discs\":[{\"radius_mm\":1}]}", "discs[0].centre_mm is missing"},
+      {HEAD "\"discs\":[{\"centre_mm\":[1,1]}]}", "discs[0].radius_mm is missing"},
+      {HEAD "\"scanner\":{\"bits\":12}}", "scanner.bits is 12: must be 8 or 16"},
+      {HEAD "\"scanner\":{\"dpi\":0}}", "scanner.dpi is 0: must be a number from 50"},
+      {HEAD "\"scanner\":{\"dpi\":[4800]}}", "scanner.dpi is [4800]: must be an array of 2"},
+      {HEAD "\"scanner\":{\"blur_px\":0.1}}", "scanner.blur_px is 0.1: must be a number from 0.4"},
+      {HEAD "\"scanner\":{\"background\":200,\"contrast\":100}}", "scanner.contrast is 100"},
+      {HEAD "\"scanner\":{\"bits\":16,\"rough\":{\"jpeg\":{\"quality\":90}}}}", "must be 8 where"},
+      {HEAD "\"scanner\":{\"rough\":{\"halo\":{\"fraction\":2}}}}",
+       "scanner.rough.halo.fraction is 2"},
+      {HEAD "\"effects\":[{\"id\":\"scan.magic\"}]}", "effects[0].id is \"scan.magic\""},
+      {HEAD "\"effects\":[{\"id\":\"scan.scale_y\"}]}", "effects[0].value is missing"},
+      {HEAD "\"effects\":[{\"id\":\"scan.scale_y\",\"value\":0.001,\"x\":1}]}",
+       "effects[0].x is 1"},
+  };
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+    fg_context ctx = {0};
+    fg_render_spec *spec = (fg_render_spec *)table;
+    if (fg_render_parse(&ctx, "spec.json", table[i].json, &spec) != FG_ERR_DATA)
+      fail_msg("not refused: %s", table[i].json);
+    assert_null(spec);
+    if (!strstr(ctx.message, table[i].words) || strncmp(ctx.message, "spec.json: ", 11) != 0)
+      fail_msg("'%s' does not say '%s'", ctx.message, table[i].words);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(noise_has_its_sd_and_correlation),
+      cmocka_unit_test(noise_is_normal),
+      cmocka_unit_test(eight_bit_rounds_to_nearest),
+      cmocka_unit_test(plateaus_keep_their_values_under_gamma),
+      cmocka_unit_test(shading_and_clipping),
+      cmocka_unit_test(halo_moves_light),
+      cmocka_unit_test(wall_shows_on_one_side),
+      cmocka_unit_test(roughness_has_its_size),
+      cmocka_unit_test(blur_is_one_sided),
+      cmocka_unit_test(jpeg_keeps_what_is_flat_and_rounds_the_rest),
+      cmocka_unit_test(same_spec_same_bytes_whatever_the_strip),
+      cmocka_unit_test(file_holds_the_rows),
+      cmocka_unit_test(bad_specs_are_refused_by_name),
+  };
+  return cmocka_run_group_tests_name("render scanner", tests, NULL, NULL);
+}
