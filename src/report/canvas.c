@@ -166,6 +166,6 @@ fg_status fg_canvas_text(fg_context *ctx, fg_canvas *canvas, fg_point mm, double
   char ascii[256];
   fg_text_to_ascii(text, ascii, sizeof ascii);
   int32_t thickness = raster_width(canvas, height / 8);
-  FG_TRY(fg_cv_draw_text(ctx, canvas->rgb, ascii, px, height_px, anchor, 0x101418, 3 * thickness));
-  return fg_cv_draw_text(ctx, canvas->rgb, ascii, px, height_px, anchor, colour, thickness);
+  const fg_text_style style = {height_px, anchor, colour, thickness, thickness};
+  return fg_cv_draw_text(ctx, canvas->rgb, ascii, px, &style);
 }
