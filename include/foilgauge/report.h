@@ -152,6 +152,10 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
  * numbered bumps, fitted circles, residuals magnified with their scale, dimensions in a legend. */
 fg_status fg_report_write_overlay(fg_context *ctx, const fg_report *report, FILE *out);
 
+/* One self-contained page (no scripts, prints well), a section per foil: verdict, key numbers, the
+ * picture (read again from the scan for up to six foils), tables with tolerances, plots. */
+fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "foilgauge/measure.h"
@@ -16,6 +17,7 @@ typedef enum output_kind {
   OUT_CSV,
   OUT_POINTS,
   OUT_OVERLAY,
+  OUT_HTML,
   OUT_TABLE,
   OUT_COUNT
 } output_kind;
@@ -25,7 +27,7 @@ typedef fg_status report_writer(fg_context *ctx, const fg_report *report, FILE *
 static report_writer *const writers[OUT_COUNT] = {
     [OUT_JSON] = fg_report_write_json,     [OUT_CSV] = fg_report_write_csv,
     [OUT_POINTS] = fg_report_write_points, [OUT_OVERLAY] = fg_report_write_overlay,
-    [OUT_TABLE] = fg_report_write_table,
+    [OUT_HTML] = fg_report_write_html,     [OUT_TABLE] = fg_report_write_table,
 };
 
 typedef struct measure_arguments {
@@ -44,6 +46,7 @@ typedef struct measure_run {
   fg_nominal nominal;
   fg_output outputs[OUT_COUNT];
   bool open[OUT_COUNT];
+  fg_interrupt interrupt;
   fg_measurement *measurements;
   fg_report_scan *scans;
   char (*errors)[sizeof(((fg_context *)0)->message)];
@@ -51,7 +54,15 @@ typedef struct measure_run {
   fg_status first_error;
 } measure_run;
 
-enum { OPTION_CSV = 256, OPTION_POINTS, OPTION_OVERLAY, OPTION_DPI, OPTION_FORM, OPTION_THREADS };
+enum {
+  OPTION_CSV = 256,
+  OPTION_POINTS,
+  OPTION_OVERLAY,
+  OPTION_HTML,
+  OPTION_DPI,
+  OPTION_FORM,
+  OPTION_THREADS
+};
 
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
@@ -61,6 +72,7 @@ static const struct argp_option options[] = {
     {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
     {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},
     {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
     {0},
 };
@@ -99,6 +111,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_OVERLAY:
     arguments->paths[OUT_OVERLAY] = text;
     break;
+  case OPTION_HTML:
+    arguments->paths[OUT_HTML] = text;
+    break;
   case OPTION_FORM:
     arguments->form = text;
     break;
@@ -119,6 +134,13 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return ARGP_ERR_UNKNOWN;
   }
   return 0;
+}
+
+/* Puts the file's name before the words that are there. */
+static fg_status name_file(fg_context *ctx, const char *path, fg_status status) {
+  fg_context inner = *ctx;
+  if (status == FG_OK) return FG_OK;
+  return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);
 }
 
 static bool is_standard(const char *path) {
@@ -193,7 +215,9 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
   FG_TRY(apply_form(ctx, run->arguments.form, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
   if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
-  return fg_report_check_tolerances(ctx, &run->design);
+  const char *path = run->arguments.design_path;
+  return name_file(ctx, path ? path : "the built-in design",
+                   fg_report_check_tolerances(ctx, &run->design));
 }
 
 static fg_status open_outputs(fg_context *ctx, measure_run *run) {
@@ -202,7 +226,7 @@ static fg_status open_outputs(fg_context *ctx, measure_run *run) {
     FG_TRY(fg_output_open(ctx, run->arguments.paths[kind], &run->outputs[kind]));
     run->open[kind] = true;
   }
-  return FG_OK;
+  return fg_interrupt_start(ctx, run->outputs, OUT_COUNT, &run->interrupt);
 }
 
 static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
@@ -260,15 +284,12 @@ static void take_back(measure_run *run, int committed) {
   }
 }
 
-/* Names the file in a writer's error. */
 static fg_status write_one(fg_context *ctx, measure_run *run, output_kind kind) {
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
   const char *path = run->arguments.paths[kind];
   fg_status status = writers[kind](ctx, &report, run->outputs[kind].stream);
   if (status != FG_ERR_IO) return status;
-  fg_context inner = *ctx;
-  return fg_fail(ctx, status, "%s: %.900s", is_standard(path) ? "standard output" : path,
-                 inner.message);
+  return name_file(ctx, is_standard(path) ? "standard output" : path, status);
 }
 
 /* Writes and flushes everything before anything gets its final name, so that a full disk shows
@@ -297,6 +318,7 @@ static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code
 }
 
 static void free_run(measure_run *run) {
+  fg_interrupt_stop(&run->interrupt);
   for (int kind = 0; kind < OUT_COUNT; kind++)
     if (run->open[kind]) fg_output_discard(&run->outputs[kind]);
   for (size_t i = 0; run->scans && i < run->arguments.scan_count; i++)

@@ -14,9 +14,9 @@ typedef double point_px[2];
 fg_canvas fg_canvas_over(const fg_picture *picture, const fg_measurement *measurement) {
   fg_canvas canvas = {.width_px = picture->width, .height_px = picture->height};
   for (int i = 0; i < 2; i++) {
-    canvas.px_per_mm[i] = measurement->dpi[i] / 25.4 * picture->reduction;
+    canvas.px_per_mm[i] = measurement->dpi[i] / 25.4 * picture->reduction[i];
     /* The centre of scan pixel 0 lies half a scan pixel inside the picture's border. */
-    canvas.origin_px[i] = (0.5 - (double)picture->origin_px[i]) * picture->reduction - 0.5;
+    canvas.origin_px[i] = (0.5 - (double)picture->origin_px[i]) * picture->reduction[i] - 0.5;
   }
   canvas.unit_px = picture->width / 1600.0;
   return canvas;
@@ -166,6 +166,6 @@ fg_status fg_canvas_text(fg_context *ctx, fg_canvas *canvas, fg_point mm, double
   char ascii[256];
   fg_text_to_ascii(text, ascii, sizeof ascii);
   int32_t thickness = raster_width(canvas, height / 8);
-  FG_TRY(fg_cv_draw_text(ctx, canvas->rgb, ascii, px, height_px, anchor, 0x101418, 3 * thickness));
-  return fg_cv_draw_text(ctx, canvas->rgb, ascii, px, height_px, anchor, colour, thickness);
+  const fg_text_style style = {height_px, anchor, colour, thickness, thickness};
+  return fg_cv_draw_text(ctx, canvas->rgb, ascii, px, &style);
 }

@@ -204,20 +204,63 @@ static fg_status draw_disc(fg_context *ctx, fg_canvas *canvas, const fg_disc *di
   return fg_canvas_text(ctx, canvas, disc->centre_mm, 12, 0.5, FG_COLOUR_TEXT, number);
 }
 
-/* A bar of 1 mm in the lower left corner, which says how much residual that is. */
-static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, double magnification) {
+/* The scale's box in a corner of the canvas, mm: corner 0 is the lower left, 1 the lower right, 2
+ * the upper left, 3 the upper right. */
+typedef struct box_mm {
+  fg_point low, high;
+} box_mm;
+
+static box_mm scale_box(const fg_canvas *canvas, int corner) {
+  const double size_px[2] = {30 * canvas->unit_px + canvas->px_per_mm[0] + 420 * canvas->unit_px,
+                             56 * canvas->unit_px};
+  double x = corner % 2 ? fmax(0, canvas->width_px - size_px[0]) : 0;
+  double y = corner < 2 ? canvas->height_px - size_px[1] : 0;
+  fg_point low = {(x - canvas->origin_px[0]) / canvas->px_per_mm[0],
+                  (y - canvas->origin_px[1]) / canvas->px_per_mm[1]};
+  return (box_mm){
+      low, {low.x + size_px[0] / canvas->px_per_mm[0], low.y + size_px[1] / canvas->px_per_mm[1]}};
+}
+
+/* How much of the strips, and of their residuals beside them, lies in a box. */
+static size_t crowd(const fg_measurement *measurement, box_mm box) {
+  size_t inside = 0;
+  double margin = baseline_mm + whisker_mm;
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    for (size_t k = 0; k < measurement->foils[i].strip.count; k++) {
+      fg_point at = midpoint(&measurement->foils[i].strip.stations[k]);
+      inside += at.x > box.low.x - margin && at.x < box.high.x + margin &&
+                at.y > box.low.y - margin && at.y < box.high.y + margin;
+    }
+  return inside;
+}
+
+static box_mm emptiest_corner(const fg_canvas *canvas, const fg_measurement *measurement) {
+  box_mm best = scale_box(canvas, 0);
+  size_t least = crowd(measurement, best);
+  for (int corner = 1; corner < 4; corner++) {
+    box_mm box = scale_box(canvas, corner);
+    size_t inside = crowd(measurement, box);
+    if (inside >= least) continue;
+    least = inside;
+    best = box;
+  }
+  return best;
+}
+
+/* A bar of 1 mm in the emptiest corner, which says how much residual that is. */
+static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
+                            double magnification) {
   double unit_mm = canvas->unit_px / canvas->px_per_mm[0];
-  fg_point left = {30 * unit_mm - canvas->origin_px[0] / canvas->px_per_mm[0],
-                   (canvas->height_px - canvas->origin_px[1]) / canvas->px_per_mm[1] -
-                       28 * unit_mm};
+  box_mm box = emptiest_corner(canvas, measurement);
+  fg_point left = {box.low.x + 30 * unit_mm, (box.low.y + box.high.y) / 2};
   fg_point right = {left.x + 1, left.y}, text_at = {right.x + 12 * unit_mm, left.y};
   const fg_point bar[3][2] = {{left, right},
                               {{left.x, left.y - 5 * unit_mm}, {left.x, left.y + 5 * unit_mm}},
                               {{right.x, right.y - 5 * unit_mm}, {right.x, right.y + 5 * unit_mm}}};
   FG_TRY(fg_canvas_segments(ctx, canvas, bar, 3, (fg_pen){FG_COLOUR_RESIDUAL, 2, 0}));
   char text[120];
-  snprintf(text, sizeof text, "1 mm of the part, %.4g µm of residual (drawn × %.0f)",
-           1000 / magnification, magnification);
+  snprintf(text, sizeof text, "1 mm; residual %.4g µm (drawn × %.0f)", 1000 / magnification,
+           magnification);
   return fg_canvas_text(ctx, canvas, text_at, 11, 0, FG_COLOUR_TEXT, text);
 }
 
@@ -228,5 +271,5 @@ fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
     FG_TRY(draw_foil(ctx, canvas, &measurement->foils[i], magnification));
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(draw_disc(ctx, canvas, &measurement->discs[i], magnification));
-  return draw_scale(ctx, canvas, magnification);
+  return draw_scale(ctx, canvas, measurement, magnification);
 }

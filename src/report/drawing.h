@@ -16,7 +16,7 @@ enum {
  * power of ten. 1000 when there are none. */
 double fg_drawing_magnification(const fg_measurement *measurement);
 
-/* Draws every foil and disc, and the residuals' scale in the lower left corner. */
+/* Draws every foil and disc, and the residuals' scale in the emptiest corner. */
 fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
                               const fg_measurement *measurement);
 

@@ -207,9 +207,8 @@ fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
     char names[800] = "";
     append_names(discs ? FG_REPORT_DISC : FG_REPORT_BUMP, names, sizeof names);
     if (!discs) append_names(FG_REPORT_FOIL, names, sizeof names);
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "design: tolerances.%s: no such quantity is reported; there are: %s", quantity,
-                   names);
+    return fg_fail(ctx, FG_ERR_DATA, "tolerances.%s: no such quantity is reported; there are: %s",
+                   quantity, names);
   }
   return FG_OK;
 }

@@ -196,6 +196,12 @@ static void write_foil_values(fg_json *json, const fg_foil *foil) {
   fg_json_array_end(json);
 }
 
+static bool any_exceeded(const fg_judgement *list, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (list[i].exceeded) return true;
+  return false;
+}
+
 fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
                        const fg_foil *foil) {
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
@@ -206,7 +212,7 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_integer(json, "number", foil->number);
   write_flags(json, fg_foil_flag_words(), foil->flags);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
-  fg_json_bool(json, "in_tolerance", measured && foil->in_tolerance);
+  fg_json_bool(json, "in_tolerance", measured && !any_exceeded(list, count));
   if (measured)
     write_judgements(json, list, count, "bump");
   else

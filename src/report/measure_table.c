@@ -9,7 +9,7 @@ static const char *const bump_columns[] = {"radius_mm", "bump_angle_deg", "inter
                                            "height_mm", "clearance_mm",   "radius_error_pct"};
 static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um", "coverage_deg"};
 
-enum { COLUMNS_MAX = 8, DECIMALS_MAX = 5 };
+enum { COLUMNS_MAX = 8, DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
 
 typedef struct column {
   const fg_report_field *field;
@@ -24,11 +24,12 @@ typedef struct row_set {
   size_t count, size;
 } row_set;
 
-/* So many decimals that U = k u shows two digits, within reason. */
+/* So many decimals that U = k u shows two digits; one, where two would be nanometres and less. */
 int fg_report_decimals(const fg_report_field *field, double u) {
   double expanded = FG_COVERAGE_FACTOR * u;
   if (!(expanded > 0)) return field->decimals;
   int decimals = 1 - (int)floor(log10(expanded));
+  if (decimals > DECIMALS_FINE) decimals = (int)fmax(DECIMALS_FINE, decimals - 1);
   if (decimals < field->decimals) return field->decimals;
   return decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
 }
@@ -42,6 +43,12 @@ static int text_width(const char *text) {
 
 static int number_width(double value, int decimals) {
   return isfinite(value) ? snprintf(NULL, 0, "%.*f", decimals, value) : 1;
+}
+
+/* U of a value that is known. */
+static double expanded_of(const fg_report_field *field, const void *object) {
+  if (!isfinite(fg_report_value(field, object))) return NAN;
+  return FG_COVERAGE_FACTOR * fg_report_uncertainty(field, object);
 }
 
 static void measure_column(column *target, const row_set *rows) {
@@ -59,8 +66,7 @@ static void measure_column(column *target, const row_set *rows) {
     const void *object = rows->objects + i * rows->size;
     int width = number_width(fg_report_value(field, object), target->decimals);
     if (width > target->width) target->width = width;
-    double expanded = FG_COVERAGE_FACTOR * fg_report_uncertainty(field, object);
-    width = number_width(expanded, target->decimals);
+    width = number_width(expanded_of(field, object), target->decimals);
     if (target->u_width && width > target->u_width) target->u_width = width;
   }
 }
@@ -100,8 +106,7 @@ static void put_row(FILE *out, const column *columns, size_t count, int number, 
     put_number(out, fg_report_value(at->field, object), at->decimals, at->width);
     if (!at->u_width) continue;
     fputc(' ', out);
-    put_number(out, FG_COVERAGE_FACTOR * fg_report_uncertainty(at->field, object), at->decimals,
-               at->u_width);
+    put_number(out, expanded_of(at->field, object), at->decimals, at->u_width);
   }
   put_flags(out, fg_bump_flag_words(), flags);
   fputc('\n', out);

@@ -25,7 +25,8 @@ static fg_status put_text(fg_context *ctx, const legend *at, double column_em, u
                            at->top_px + (at->line + 1) * 2.0 * at->em_px};
   int32_t thickness = (int32_t)fmax(1, round(at->em_px / 8));
   fg_text_to_ascii(text, ascii, sizeof ascii);
-  return fg_cv_draw_text(ctx, at->rgb, ascii, where, at->em_px, 0, colour, thickness);
+  const fg_text_style style = {at->em_px, 0, colour, thickness, 0};
+  return fg_cv_draw_text(ctx, at->rgb, ascii, where, &style);
 }
 
 static const char *const bump_columns[] = {"radius_mm", "bump_angle_deg", "intersection_angle_deg",
@@ -49,7 +50,7 @@ static fg_status put_heading(fg_context *ctx, legend *at, fg_report_owner owner,
     char text[64];
     const fg_report_field *field = fg_report_find(owner, names[i]);
     snprintf(text, sizeof text, "%s %s", field->symbol, field->unit);
-    FG_TRY(put_text(ctx, at, 4 + 16.0 * (double)i, 0xa8b4c0, text));
+    FG_TRY(put_text(ctx, at, 4 + 17.0 * (double)i, 0xa8b4c0, text));
   }
   at->line++;
   return FG_OK;
@@ -64,7 +65,7 @@ static fg_status put_row(fg_context *ctx, legend *at, fg_report_owner owner,
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_BUMP, text));
   for (size_t i = 0; i < count; i++) {
     value_text(fg_report_find(owner, names[i]), object, text, sizeof text);
-    FG_TRY(put_text(ctx, at, 4 + 16.0 * (double)i, colour, text));
+    FG_TRY(put_text(ctx, at, 4 + 17.0 * (double)i, colour, text));
   }
   at->line++;
   return FG_OK;

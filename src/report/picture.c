@@ -28,7 +28,6 @@ typedef struct reducer {
 static share share_of(int64_t index, double reduction, int32_t limit) {
   double begin = (double)index * reduction, end = begin + reduction;
   int32_t first = (int32_t)begin;
-  if (first >= limit) first = limit - 1;
   double split = fmin(end, first + 1.0);
   double rest = first + 1 < limit ? end - split : 0;
   return (share){first, (float)(split - begin), (float)rest};
@@ -77,7 +76,8 @@ static fg_status reduce_rows(fg_context *ctx, reducer *work, fg_picture *picture
     FG_TRY(fg_scan_read_rows(ctx, work->scan, 1, work->row, stride));
     if (y < work->box[1]) continue;
     reduce_line(work, info->bytes_per_pixel, picture->width);
-    add_line(work, picture, &row, share_of(y - work->box[1], picture->reduction, picture->height));
+    add_line(work, picture, &row,
+             share_of(y - work->box[1], picture->reduction[1], picture->height));
   }
   finish_row(work, picture, row);
   return FG_OK;
@@ -100,7 +100,7 @@ static fg_status allocate(fg_context *ctx, reducer *work, fg_picture *picture) {
     work->sums[i] = block;
   }
   for (size_t x = 0; x < columns; x++)
-    work->columns[x] = share_of((int64_t)x, picture->reduction, picture->width);
+    work->columns[x] = share_of((int64_t)x, picture->reduction[0], picture->width);
   return FG_OK;
 }
 
@@ -119,7 +119,9 @@ static void choose_size(const int64_t box[4], int32_t width_max, double pixels_m
   double reduction = fmin(1, fmin(width_max / width, sqrt(pixels_max / (width * height))));
   picture->width = (int32_t)fmax(1, floor(width * reduction));
   picture->height = (int32_t)fmax(1, floor(height * reduction));
-  picture->reduction = reduction;
+  /* Whole pictures of whole boxes: the two differ a little, and every weight adds up to 1. */
+  picture->reduction[0] = picture->width / width;
+  picture->reduction[1] = picture->height / height;
   picture->origin_px[0] = box[0];
   picture->origin_px[1] = box[1];
 }

@@ -10,7 +10,7 @@
 typedef struct fg_picture {
   uint8_t *gray; /* width × height; owned */
   int32_t width, height;
-  double reduction;     /* picture px per scan px, at most 1 */
+  double reduction[2];  /* picture px per scan px, x and y, at most 1 */
   int64_t origin_px[2]; /* of the scan: its pixel at the picture's top left */
 } fg_picture;
 

@@ -66,15 +66,19 @@ fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, siz
 }
 
 fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
-                          double height_px, double anchor, uint32_t colour, int32_t thickness_px) {
+                          const fg_text_style *style) {
   try {
-    const int font = cv::FONT_HERSHEY_SIMPLEX;
+    const int font = cv::FONT_HERSHEY_SIMPLEX, thickness = style->thickness_px;
     cv::Mat image(rgb->height, rgb->width, CV_8UC3, rgb->pixels);
-    const double scale = cv::getFontScaleFromHeight(font, int(height_px), thickness_px);
-    const cv::Size size = cv::getTextSize(text, font, scale, thickness_px, nullptr);
-    const cv::Point at(cv::saturate_cast<int>(at_px[0] - anchor * size.width),
+    /* One scale for the rim and the text: it depends on the thickness. */
+    const double scale = cv::getFontScaleFromHeight(font, int(style->height_px), thickness);
+    const cv::Size size = cv::getTextSize(text, font, scale, thickness, nullptr);
+    const cv::Point at(cv::saturate_cast<int>(at_px[0] - style->anchor * size.width),
                        cv::saturate_cast<int>(at_px[1]));
-    cv::putText(image, text, at, font, scale, colour_of(colour), thickness_px, cv::LINE_AA);
+    if (style->rim_px > 0)
+      cv::putText(image, text, at, font, scale, colour_of(0x101418), thickness + 2 * style->rim_px,
+                  cv::LINE_AA);
+    cv::putText(image, text, at, font, scale, colour_of(style->colour), thickness, cv::LINE_AA);
     return FG_OK;
   } catch (const std::exception &error) {
     return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());

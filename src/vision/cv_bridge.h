@@ -36,10 +36,18 @@ typedef struct fg_rgb {
 fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
                           uint32_t colour, int32_t thickness_px);
 
-/* Draws ASCII text, its baseline at `y_px`, its capitals `height_px` tall. `anchor` moves it to the
- * left by that share of its width: 0 starts at `x_px`, 0.5 is centred there. */
+/* How text is drawn. */
+typedef struct fg_text_style {
+  double height_px;     /* of its capitals */
+  double anchor;        /* moves it to the left by that share of its width */
+  uint32_t colour;      /* 0xRRGGBB */
+  int32_t thickness_px; /* of the strokes */
+  int32_t rim_px;       /* of a dark rim around them; 0: none */
+} fg_text_style;
+
+/* Draws ASCII text, its baseline at at_px[1]. */
 fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
-                          double height_px, double anchor, uint32_t colour, int32_t thickness_px);
+                          const fg_text_style *style);
 
 #ifdef __cplusplus
 }

@@ -187,7 +187,7 @@ static inline fg_foil synthetic_foil(const fg_design *design, const fg_nominal *
                           .contrast = 0.7,
                           .noise = 0.008,
                           .gamma = 1,
-                          .box_px = {100, 200, 7000, 3000}};
+                          .box_px = {200, 600, 7300, 2900}};
   foil.strip.stations = calloc(SYNTHETIC_STATIONS, sizeof *foil.strip.stations);
   foil.labels = calloc(SYNTHETIC_STATIONS, sizeof *foil.labels);
   double s_mm = 0;

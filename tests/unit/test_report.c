@@ -352,7 +352,9 @@ static void decimals_follow_the_uncertainty(void **state) {
   assert_int_equal(fg_report_decimals(radius, 0.0002), 5); /* U = 0.00040 */
   assert_int_equal(fg_report_decimals(radius, 0.5), 4);    /* never fewer than its own */
   assert_int_equal(fg_report_decimals(radius, NAN), 4);
-  assert_int_equal(fg_report_decimals(radius, 1e-12), 5); /* never digits without end */
+  assert_int_equal(fg_report_decimals(radius, 0.00001), 5);  /* U = 0.00002 */
+  assert_int_equal(fg_report_decimals(radius, 0.000001), 6); /* never ± 0 */
+  assert_int_equal(fg_report_decimals(radius, 1e-12), 7);    /* never digits without end */
 }
 
 static void a_full_disk_is_an_error(void **state) {

@@ -1,0 +1,477 @@
+/* The page: for every foil its verdict, key numbers and picture first, then tables and plots. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/html_parts.h"
+#include "report/json_writer.h"
+
+static const char style[] =
+    ":root{--ink:#16202a;--soft:#5b6875;--line:#dfe4e9;--ground:#f4f6f8;--good:#12804a;"
+    "--bad:#c62828;--open:#a86400;--bump:#d95f02;--blue:#1f6fd0}\n"
+    "*{box-sizing:border-box}body{margin:0;background:var(--ground);color:var(--ink);"
+    "font:15px/1.5 system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,"
+    "\"DejaVu Sans\",sans-serif}\n"
+    "main{max-width:1120px;margin:0 auto;padding:20px 16px 48px}\n"
+    "section{background:#fff;border:1px solid var(--line);border-radius:12px;padding:22px 24px;"
+    "margin-bottom:24px}\n"
+    "header{display:flex;flex-wrap:wrap;gap:6px 18px;align-items:center;margin-bottom:14px}\n"
+    "h1{font-size:24px;line-height:1.2;margin:0}h2{font-size:17px;margin:28px 0 8px}\n"
+    "header p{margin:0;color:var(--soft);overflow-wrap:anywhere}\n"
+    ".verdict{font-weight:650;padding:5px "
+    "14px;border-radius:99px;color:#fff;background:var(--soft)}"
+    ".verdict.pass{background:var(--good)}.verdict.fail{background:var(--bad)}"
+    ".verdict.cannot_tell,.verdict.not_measured{background:var(--open)}\n"
+    ".tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:10px;"
+    "margin:0 0 16px}.tiles div{background:var(--ground);border-radius:8px;padding:9px 13px}"
+    ".tiles dt{font-size:12.5px;color:var(--soft)}.tiles dd{margin:0;font-size:18px;"
+    "font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}"
+    ".tiles small{display:block;font-size:12.5px;font-weight:400;color:var(--soft)}\n"
+    "figure{margin:0}figcaption{font-size:13px;color:var(--soft);margin-top:6px}\n"
+    ".picture{display:block;width:auto;max-width:100%;height:auto;max-height:600px;margin:0 "
+    "auto;border-radius:8px;background:#"
+    "20262c}"
+    ".picture text{font-family:inherit;font-weight:600;paint-order:stroke;stroke:#10151a;"
+    "stroke-width:4px;stroke-linejoin:round}\n"
+    ".scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:13.5px;"
+    "font-variant-numeric:tabular-nums}th,td{padding:5px 10px;text-align:right;white-space:nowrap;"
+    "border-bottom:1px solid "
+    "var(--line)}th{font-weight:600;color:var(--soft);vertical-align:bottom}"
+    "th:first-child,td:first-child{text-align:left}td.words{text-align:left;white-space:normal}td."
+    "words:not(:empty){min-width:150px}"
+    "td "
+    "i{display:block;font-style:normal;font-weight:400;color:var(--soft);font-size:11.5px;line-"
+    "height:1.2}"
+    "td.fail{background:#fdeaea;color:var(--bad);font-weight:600}"
+    "td.cannot_tell{background:#fff4df;color:var(--open);font-weight:600}"
+    "td.pass{background:#edf7f1}tr.limits td{color:var(--soft);font-size:12.5px}\n"
+    ".reasons{margin:-6px 0 10px;color:var(--soft)}.reasons b{color:var(--ink)}\n"
+    "ul.flags{margin:14px 0 0;padding:10px 14px 10px 32px;background:#fff8e8;border-radius:8px}\n"
+    ".plot{display:block;width:100%;height:auto;font-size:14px}.plot text{fill:var(--ink)}"
+    ".plot .x,.plot .title{text-anchor:middle}.plot .y{text-anchor:end}.plot .title{fill:"
+    "var(--soft)}.plot .bump{fill:var(--bump);font-weight:600}.grid{stroke:#e6eaee}"
+    ".zero{stroke:#8a96a1}.band{fill:#fdf0e6}.plot path{fill:none}.land{stroke:var(--blue)}"
+    ".arc{stroke:var(--bump)}path.s1{stroke:var(--bump);stroke-width:2}circle.s1{fill:var(--bump)}"
+    "path.s2{stroke:var(--blue);stroke-width:2}circle.s2{fill:#fff;stroke:var(--blue);"
+    "stroke-width:2.5}\n"
+    "dl.facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:0;"
+    "font-size:13.5px}dl.facts dt{color:var(--soft)}dl.facts dd{margin:0;overflow-wrap:anywhere}\n"
+    ".note{font-size:13.5px;color:var(--soft);max-width:75ch}\n"
+    "@media(max-width:600px){main{padding:8px}section{padding:14px;border-radius:8px}"
+    ".tiles{grid-template-columns:1fr 1fr}.tiles dd{font-size:16px;white-space:normal}"
+    ".plot{font-size:20px}dl.facts{grid-template-columns:1fr}dl.facts dd{margin-bottom:6px}}\n"
+    "@media print{@page{margin:14mm}body{background:#fff;font-size:10.5pt;"
+    "-webkit-print-color-adjust:exact;print-color-adjust:exact}main{max-width:none;padding:0}"
+    "section{border:0;padding:0;break-after:page}section:last-child{break-after:auto}"
+    "figure,tr{break-inside:avoid}.scroll{overflow:visible}table{font-size:7.6pt}"
+    "th,td{padding:3px 4px}}\n";
+
+void fg_html_text(FILE *out, const char *text) {
+  while (*text) {
+    size_t length = fg_utf8_length(text);
+    switch (*text) {
+    case '<':
+      fputs("&lt;", out);
+      break;
+    case '>':
+      fputs("&gt;", out);
+      break;
+    case '&':
+      fputs("&amp;", out);
+      break;
+    case '"':
+      fputs("&quot;", out);
+      break;
+    case '\'':
+      fputs("&#39;", out);
+      break;
+    default:
+      if (length == 0 || (unsigned char)*text < 0x20)
+        fputs("\xEF\xBF\xBD", out);
+      else
+        fwrite(text, 1, length, out);
+    }
+    text += length ? length : 1;
+  }
+}
+
+void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
+  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+  int decimals = field->kind == FG_FIELD_COUNT ? 0 : fg_report_decimals(field, u);
+  if (!isfinite(value)) {
+    fputs("–", out);
+    return;
+  }
+  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
+  if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
+}
+
+static const char *verdict_title(fg_verdict verdict) {
+  switch (verdict) {
+  case FG_VERDICT_PASS:
+    return "Within tolerance";
+  case FG_VERDICT_FAIL:
+    return "Out of tolerance";
+  case FG_VERDICT_UNDECIDED:
+    return "Cannot tell";
+  case FG_VERDICT_NOT_MEASURED:
+    return "Not measured";
+  case FG_VERDICT_NONE:
+    return "No tolerances stated";
+  }
+  return "";
+}
+
+static void put_verdict(FILE *out, fg_verdict verdict) {
+  fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
+          verdict_title(verdict));
+}
+
+static const char *base_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash && slash[1] ? slash + 1 : path;
+}
+
+static void put_tile(FILE *out, fg_report_owner owner, const char *name, const char *title,
+                     const void *object) {
+  const fg_report_field *field = fg_report_find(owner, name);
+  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+  int decimals = fg_report_decimals(field, u);
+  fprintf(out, "<div><dt>%s</dt><dd>", title);
+  if (isfinite(value))
+    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), field->unit);
+  else
+    fputs("–", out);
+  if (isfinite(u)) fprintf(out, "<small>± %.*f</small>", decimals, FG_COVERAGE_FACTOR * u);
+  fputs("</dd></div>\n", out);
+}
+
+/* Mean over the bumps, with their spread as a standard deviation: it says more than one bump. */
+static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, const char *title) {
+  const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, name);
+  double sum = 0, squares = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    double value = fg_report_value(field, &foil->bumps[i]);
+    if (!isfinite(value)) continue;
+    count++;
+    double step = value - sum;
+    sum += step / (double)count; /* the running mean */
+    squares += step * (value - sum);
+  }
+  if (count == 0) return;
+  fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, field->decimals, sum, field->unit);
+  if (count > 1)
+    fprintf(out, "<small>s = %.*f, n = %zu</small>", field->decimals,
+            sqrt(squares / (double)(count - 1)), count);
+  fputs("</dd></div>\n", out);
+}
+
+static void put_tiles(FILE *out, const fg_foil *foil) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, FG_REPORT_FOIL, "overall.radius_mm", "Overall radius", foil);
+  put_tile(out, FG_REPORT_FOIL, "overall.springback_error_pct", "Overall springback", foil);
+  put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
+  put_mean_tile(out, foil, "height_mm", "Bump height, mean");
+  put_mean_tile(out, foil, "clearance_mm", "Clearance, mean");
+  put_tile(out, FG_REPORT_FOIL, "thickness_mm", "Thickness", foil);
+  fputs("</dl>\n", out);
+}
+
+static void put_flags(FILE *out, const fg_foil *foil) {
+  if (!foil->flags) return;
+  fputs("<ul class=\"flags\">\n", out);
+  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
+    if (foil->flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
+  fputs("</ul>\n", out);
+}
+
+static const char *const bump_columns[] = {
+    "radius_mm",    "bump_angle_deg",   "intersection_angle_deg", "height_mm",
+    "clearance_mm", "radius_error_pct", "bump_angle_error_pct",   "rms_um"};
+static const char *const disc_columns[] = {"diameter_mm", "radius_mm", "roundness_um", "rms_um",
+                                           "coverage_deg"};
+static const char *const foil_rows[] = {"overall.radius_mm", "overall.springback_error_pct",
+                                        "thickness_mm"};
+
+static const fg_tolerance *find_tolerance(const fg_design *design, const char *quantity) {
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (!strcmp(design->tolerances[i].quantity, quantity)) return &design->tolerances[i];
+  return NULL;
+}
+
+static void put_limits(FILE *out, const fg_tolerance *tolerance) {
+  if (!tolerance) return;
+  if (isfinite(tolerance->lower) && isfinite(tolerance->upper))
+    fprintf(out, "%.6g … %.6g", tolerance->lower, tolerance->upper);
+  else if (isfinite(tolerance->lower))
+    fprintf(out, "≥ %.6g", tolerance->lower);
+  else
+    fprintf(out, "≤ %.6g", tolerance->upper);
+}
+
+static void put_cell(FILE *out, const fg_design *design, const fg_report_field *field,
+                     const void *object) {
+  const fg_tolerance *tolerance = find_tolerance(design, field->name);
+  fg_verdict verdict = FG_VERDICT_NONE;
+  if (tolerance)
+    verdict = fg_judge_value(tolerance, fg_report_value(field, object),
+                             fg_report_uncertainty(field, object));
+  fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
+  fg_html_value(out, field, object);
+  fputs("</td>", out);
+}
+
+static void put_flag_cell(FILE *out, unsigned flags) {
+  const char *separator = "";
+  fputs("<td class=\"words\">", out);
+  for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++) {
+    if (!(flags & words->flag)) continue;
+    fprintf(out, "%s%s", separator, words->plain);
+    separator = "; ";
+  }
+  fputs("</td></tr>\n", out);
+}
+
+/* Columns that the table always has, then those with a tolerance that it has not. */
+static size_t choose_columns(const fg_design *design, fg_report_owner owner,
+                             const char *const *names, size_t count,
+                             const fg_report_field **columns) {
+  size_t used = 0;
+  for (size_t i = 0; i < count; i++)
+    columns[used++] = fg_report_find(owner, names[i]);
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
+    bool there = field == NULL;
+    for (size_t k = 0; k < used; k++)
+      there = there || columns[k] == field;
+    if (!there) columns[used++] = field;
+  }
+  return used;
+}
+
+typedef struct table_rows {
+  fg_report_owner owner;
+  const char *title;
+  const char *objects;
+  size_t count, size;
+} table_rows;
+
+static void put_table_head(FILE *out, const fg_design *design, const table_rows *rows,
+                           const fg_report_field *const *columns, size_t count) {
+  bool limits = false;
+  fprintf(out, "<div class=\"scroll\"><table>\n<thead><tr><th>%s</th>", rows->title);
+  for (size_t i = 0; i < count; i++) {
+    fprintf(out, "<th title=\"%s\">%s<br>%s</th>", columns[i]->words, columns[i]->symbol,
+            columns[i]->unit);
+    limits = limits || find_tolerance(design, columns[i]->name);
+  }
+  fputs("<th></th></tr></thead>\n<tbody>\n", out);
+  if (!limits) return;
+  fputs("<tr class=\"limits\"><td>tolerance</td>", out);
+  for (size_t i = 0; i < count; i++) {
+    fputs("<td>", out);
+    put_limits(out, find_tolerance(design, columns[i]->name));
+    fputs("</td>", out);
+  }
+  fputs("<td></td></tr>\n", out);
+}
+
+static void put_table(FILE *out, const fg_design *design, const table_rows *rows,
+                      const char *const *names, size_t name_count) {
+  const fg_report_field *columns[16 + FG_TOLERANCES_MAX];
+  size_t count = choose_columns(design, rows->owner, names, name_count, columns);
+  put_table_head(out, design, rows, columns, count);
+  for (size_t i = 0; i < rows->count; i++) {
+    const void *object = rows->objects + i * rows->size;
+    bool is_bump = rows->owner == FG_REPORT_BUMP;
+    const fg_bump *bump = object;
+    const fg_disc *disc = object;
+    fprintf(out, "<tr><td>%d</td>", is_bump ? bump->number : disc->number);
+    for (size_t k = 0; k < count; k++)
+      put_cell(out, design, columns[k], object);
+    put_flag_cell(out, is_bump ? bump->flags : disc->flags);
+  }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_foil_table(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_report_field *rows[16 + FG_TOLERANCES_MAX];
+  size_t count =
+      choose_columns(design, FG_REPORT_FOIL, foil_rows, sizeof foil_rows / sizeof *foil_rows, rows);
+  fputs("<h2>The whole foil</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th>"
+        "<th>value</th><th>unit</th><th>tolerance</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < count; i++) {
+    fprintf(out, "<tr><td>%s</td>", rows[i]->words);
+    put_cell(out, design, rows[i], foil);
+    fprintf(out, "<td>%s</td><td>", rows[i]->unit);
+    put_limits(out, find_tolerance(design, rows[i]->name));
+    fputs("</td></tr>\n", out);
+  }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_facts(FILE *out, const fg_design *design, const fg_measurement *measurement) {
+  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
+  fg_html_text(out, measurement->scan);
+  fprintf(out, "</dd>\n<dt>Pixels</dt><dd>%lld × %lld, %d bit</dd>\n",
+          (long long)measurement->width_px, (long long)measurement->height_px,
+          measurement->bit_depth);
+  fprintf(out, "<dt>Resolution</dt><dd>%.8g × %.8g dpi", measurement->dpi[0], measurement->dpi[1]);
+  if (isfinite(measurement->dpi_file[0]))
+    fprintf(out, " (the file says %.8g × %.8g)", measurement->dpi_file[0],
+            measurement->dpi_file[1]);
+  fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
+  fg_html_text(out, measurement->sha256);
+  fputs("</dd>\n<dt>Design</dt><dd>", out);
+  fg_html_text(out, design->name);
+  fprintf(out, " (%s)</dd>\n<dt>Program</dt><dd>foilgauge " FOILGAUGE_VERSION "</dd>\n</dl>\n",
+          fg_form_word(design->form));
+}
+
+static void put_uncertainty(FILE *out) {
+  fputs("<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
+        "factor k = 2, about 95 %). u comes from the residuals with their correlation along the "
+        "edge and from what the two edges say against each other. The scanner&#39;s own error of "
+        "scale is not in it. A value passes when value ± U lies inside its tolerance, fails when "
+        "it lies outside, and cannot be told when a limit runs through it. s is the standard "
+        "deviation over the n bumps.</p>\n",
+        out);
+}
+
+static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
+                             const fg_foil *foil) {
+  fputs("<figure>", out);
+  FG_TRY(fg_html_picture(ctx, out, measurement, foil));
+  fputs("<figcaption>Orange: bump circles, solid where the fit used them. Blue, dashed: overall "
+        "circle. Magenta: residuals, magnified as the scale says.</figcaption></figure>\n",
+        out);
+  return FG_OK;
+}
+
+static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const table_rows rows = {FG_REPORT_BUMP, "bump", (const char *)foil->bumps, foil->bump_count,
+                           sizeof *foil->bumps};
+  fputs("<h2>Bumps</h2>\n", out);
+  put_table(out, design, &rows, bump_columns, sizeof bump_columns / sizeof *bump_columns);
+  put_foil_table(out, design, foil);
+  fputs("<h2>Springback error per bump</h2>\n<figure>", out);
+  fg_html_springback(out, foil);
+  fputs("</figure>\n<h2>Residual along the foil</h2>\n<figure>", out);
+  fg_html_residuals(out, foil);
+  fprintf(out,
+          "<figcaption>The midline against its fitted circles: lands in blue, bumps in orange. "
+          "Standard deviation %.3g µm, correlation length %.3g mm.</figcaption></figure>\n",
+          foil->noise_um, foil->correlation_mm);
+}
+
+/* "Out of tolerance: h of bump 1, 8; e_R of bump 1." Judgements of one tolerance are neighbours. */
+static void put_reasons(FILE *out, const fg_judgement *list, size_t count, fg_verdict verdict) {
+  const fg_tolerance *last = NULL;
+  for (size_t i = 0; i < count; i++) {
+    if (list[i].verdict != verdict) continue;
+    if (!last) fprintf(out, "<p class=\"reasons\"><b>%s:</b> ", verdict_title(verdict));
+    if (list[i].tolerance != last) {
+      fprintf(out, "%s%s", last ? "; " : "", list[i].field->words);
+      if (list[i].number) fprintf(out, " %d", list[i].number);
+    } else {
+      fprintf(out, ", %d", list[i].number);
+    }
+    last = list[i].tolerance;
+  }
+  if (last) fputs(".</p>\n", out);
+}
+
+static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
+                            const fg_measurement *measurement, const fg_foil *foil) {
+  static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  fg_judgement *list;
+  size_t count;
+  FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
+  fg_verdict verdict = fg_judgements_verdict(list, count);
+  fprintf(out, "<header><h1>Foil %d</h1>", foil->number);
+  put_verdict(out, measured ? verdict : FG_VERDICT_NOT_MEASURED);
+  fputs("<p>", out);
+  fg_html_text(out, base_name(measurement->scan));
+  if (measured)
+    fprintf(out, " · %zu bumps, %s", foil->bump_count, fg_orientation_word(foil->orientation));
+  fputs("</p></header>\n", out);
+  for (size_t i = 0; measured && i < sizeof told / sizeof *told; i++)
+    put_reasons(out, list, count, told[i]);
+  free(list);
+  return FG_OK;
+}
+
+static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
+                          const fg_measurement *measurement, const fg_foil *foil) {
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  fputs("<section>\n", out);
+  FG_TRY(put_judged(ctx, out, design, measurement, foil));
+  if (measured) put_tiles(out, foil);
+  if (!measured) {
+    fputs("<p>", out);
+    fg_html_text(out, foil->error);
+    fputs("</p>\n", out);
+  }
+  FG_TRY(put_picture(ctx, out, measurement, foil));
+  put_flags(out, foil);
+  if (measured) put_foil_details(out, design, foil);
+  if (measured) put_uncertainty(out);
+  put_facts(out, design, measurement);
+  fputs("</section>\n", out);
+  return FG_OK;
+}
+
+static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
+                           const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  const table_rows rows = {FG_REPORT_DISC, "disc", (const char *)measurement->discs,
+                           measurement->disc_count, sizeof *measurement->discs};
+  const fg_report one = {report->design, report->nominal, scan, 1};
+  fg_report_outcome outcome;
+  FG_TRY(fg_report_judge(ctx, &one, &outcome));
+  fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
+  put_verdict(out, outcome.verdict);
+  fputs("<p>", out);
+  fg_html_text(out, base_name(measurement->scan));
+  fputs("</p></header>\n", out);
+  FG_TRY(put_picture(ctx, out, measurement, NULL));
+  put_table(out, report->design, &rows, disc_columns, sizeof disc_columns / sizeof *disc_columns);
+  put_uncertainty(out);
+  put_facts(out, report->design, measurement);
+  fputs("</section>\n", out);
+  return FG_OK;
+}
+
+static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
+                          const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  if (!measurement) {
+    fputs("<section>\n<header><h1>", out);
+    fg_html_text(out, base_name(scan->path));
+    fputs("</h1>", out);
+    put_verdict(out, FG_VERDICT_NOT_MEASURED);
+    fputs("</header>\n<p>", out);
+    fg_html_text(out, scan->error);
+    fputs("</p>\n</section>\n", out);
+    return FG_OK;
+  }
+  if (report->design->form == FG_FORM_DISCS) return put_discs(ctx, out, report, scan);
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    FG_TRY(put_foil(ctx, out, report->design, measurement, &measurement->foils[i]));
+  return FG_OK;
+}
+
+fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
+  fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
+        out);
+  fg_html_text(out, base_name(report->scans[0].path));
+  fprintf(out, " – foilgauge</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n", style);
+  for (size_t i = 0; i < report->scan_count; i++)
+    FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
+  fputs("</main>\n</body>\n</html>\n", out);
+  return fg_report_finish(ctx, out, "the page");
+}

@@ -1,0 +1,24 @@
+/* Parts of a page: text, the picture of a foil, plots. Without scripts, all in one file. */
+#ifndef FG_REPORT_HTML_PARTS_H
+#define FG_REPORT_HTML_PARTS_H
+
+#include "report/words.h"
+
+/* Text with <, >, &, quotes and stray bytes made harmless. */
+void fg_html_text(FILE *out, const char *text);
+
+/* "3.39288 ± 0.00042", or "–" when it is not known. */
+void fg_html_value(FILE *out, const fg_report_field *field, const void *object);
+
+/* The foil (NULL: the whole scan) cut out of its scan, with circles and residuals over it. Where
+ * the scan cannot be read again (standard input) the drawing stands alone. */
+fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
+                          const fg_foil *foil);
+
+/* Residual of the midline along the foil, bumps marked. */
+void fg_html_residuals(FILE *out, const fg_foil *foil);
+
+/* Radius and angle error of every bump with error bars (as the thesis's figure 5.17). */
+void fg_html_springback(FILE *out, const fg_foil *foil);
+
+#endif
