@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "foilgauge/scan.h"
+#include "measure/objects.h"
 #include "measure/reader.h"
 #include "vision/edges.h"
 #include "vision/segment.h"
@@ -60,8 +61,8 @@ exit:
   return status;
 }
 
-static fg_status measure_tiles(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
-                               fg_measurement *m) {
+fg_status fg_measure_tiles(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
+                           fg_measurement *m) {
   fg_segmentation seg = {0};
   double px_per_mm = sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
   FG_TRY(fg_segment(ctx, tiles, OBJECT_LEAST * m->design.bump_radius_mm * px_per_mm, &seg));
@@ -103,7 +104,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, &tiles, measurement->sha256));
-  FG_TRY_EXIT(measure_tiles(ctx, &tiles, options ? options->threads : 0, measurement));
+  FG_TRY_EXIT(fg_measure_tiles(ctx, &tiles, options ? options->threads : 0, measurement));
 exit:
   fg_tiles_free(&tiles);
   fg_scan_close(scan);

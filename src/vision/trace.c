@@ -14,6 +14,12 @@ enum {
 };
 #define GAP_WIDTHS   4.0  /* longest gap that is bridged, in strip widths */
 #define LENGTH_LEAST 12.0 /* shortest strip, in strip widths */
+/* The contrast follows the illumination: a share of every step's own, within these factors of the
+ * seed's. */
+#define CONTRAST_SHARE 0.1
+#define CONTRAST_RANGE 3.0
+/* Two traces are one strip when so much of the shorter lies on the longer. */
+#define OVERLAP_SHARE 0.5
 
 typedef struct walker {
   const fg_tiles *tiles;
@@ -136,10 +142,34 @@ static fg_point tangent_at_end(const fg_trace *trace, fg_point fallback) {
   return length > 0 ? (fg_point){(b.x - a.x) / length, (b.y - a.y) / length} : fallback;
 }
 
+/* The strip's cut one step ahead of p, which lies `missed` past the last good point. Where it is
+ * not straight ahead, a little to either side is tried: a tight bend in few pixels turns faster
+ * than the direction follows. */
+static bool step_ahead(const walker *w, fg_point p, fg_point *direction, double length,
+                       double missed, double contrast, fg_point *next, cut *c) {
+  static const double turns[] = {0, 0.26, -0.26, 0.52, -0.52};
+  size_t tries = missed > 0 ? 1 : sizeof turns / sizeof turns[0];
+  for (size_t i = 0; i < tries; i++) {
+    double cosine = cos(turns[i]), sine = sin(turns[i]);
+    fg_point d = {cosine * direction->x - sine * direction->y,
+                  sine * direction->x + cosine * direction->y};
+    *next = along(p, d, length);
+    if (outside(w, *next, 0)) continue;
+    if (!cut_across(w, *next, d, contrast, c) || c->width_px >= 1.6 * w->width_px ||
+        c->width_px <= 0.5 * w->width_px ||
+        fabs(c->offset_px) >= 0.5 * w->width_px + 0.5 * missed)
+      continue;
+    *direction = d;
+    return true;
+  }
+  *next = along(p, *direction, length);
+  return false;
+}
+
 /* Walks from p in one direction, appending points (p itself excluded). */
 static fg_status walk(fg_context *ctx, const walker *w, fg_point p, fg_point tangent,
                       fg_trace *trace) {
-  double step = fmax(3.0, w->width_px / 3), missed = 0;
+  double step = fmax(3.0, w->width_px / 3), missed = 0, contrast = w->contrast;
   fg_point direction = tangent;
   while (missed <= GAP_WIDTHS * w->width_px) {
     fg_point next = along(p, direction, step + missed);
@@ -148,15 +178,15 @@ static fg_status walk(fg_context *ctx, const walker *w, fg_point p, fg_point tan
       break;
     }
     cut c;
-    bool good = cut_across(w, next, direction, w->contrast, &c) &&
-                c.width_px < 1.6 * w->width_px && c.width_px > 0.5 * w->width_px &&
-                fabs(c.offset_px) < 0.5 * w->width_px + 0.5 * missed;
+    bool good = step_ahead(w, p, &direction, step + missed, missed, contrast, &next, &c);
     if (!good) {
       missed += step;
       continue;
     }
     if (missed > 2 * step) trace->facts |= FG_STRIP_GAP;
     missed = 0;
+    contrast += CONTRAST_SHARE * (c.peak - contrast);
+    contrast = fmin(fmax(contrast, w->contrast / CONTRAST_RANGE), w->contrast * CONTRAST_RANGE);
     p = along(next, normal_of(direction), c.offset_px);
     if (visited(trace, p, w->width_px)) break;
     FG_TRY(append(ctx, trace, p));
@@ -247,9 +277,36 @@ static void free_trace(fg_trace *trace) {
   memset(trace, 0, sizeof *trace);
 }
 
-/* Keeps a trace that is long enough to be a strip. */
+/* Whether the shorter of two traces lies on the longer. */
+static bool same_strip(const fg_trace *a, const fg_trace *b) {
+  const fg_trace *brief = a->count < b->count ? a : b, *full = brief == a ? b : a;
+  double limit = 0.25 * full->width_px * full->width_px;
+  size_t on = 0;
+  for (size_t i = 0; i < brief->count; i++)
+    for (size_t j = 0; j < full->count; j++) {
+      double dx = brief->points[i].x - full->points[j].x;
+      double dy = brief->points[i].y - full->points[j].y;
+      if (dx * dx + dy * dy >= limit) continue;
+      on++;
+      break;
+    }
+  return (double)on > OVERLAP_SHARE * (double)brief->count;
+}
+
+/* Keeps a trace that is long enough to be a strip; of one strip the longest trace stays. */
 static void keep_or_drop(fg_trace *trace, fg_trace_list *list) {
   double length = 0;
+  for (size_t k = 0; k < list->count; k++) {
+    fg_trace *other = &list->traces[k];
+    if (!same_strip(trace, other)) continue;
+    if (trace->count > other->count) {
+      fg_trace swap = *other;
+      *other = *trace;
+      *trace = swap;
+    }
+    free_trace(trace);
+    return;
+  }
   for (size_t i = 1; i < trace->count; i++)
     length += hypot(trace->points[i].x - trace->points[i - 1].x,
                     trace->points[i].y - trace->points[i - 1].y);
