@@ -11,7 +11,7 @@
 #define PROMINENCE_RAD (12 * M_PI / 180) /* smaller turns back are not turning points */
 #define LIP_TURN_LEAST (45 * M_PI / 180)
 #define LIP_RADIUS     0.4 /* a lip's bend is tighter than this share of the bumps' radius */
-enum { STRETCHES_MAX = 512 };
+enum { STRETCHES_MAX = 512, PAIRS_LEAST = 8 };
 
 static void find_directions(const fg_strip *strip, double *direction) {
   size_t reach = (size_t)(TANGENT_MM / strip->step_mm + 0.5);
@@ -52,8 +52,10 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
       continue;
     }
     if (cut > from)
-      out[count++] = (fg_stretch){from, cut, direction[cut] - direction[from],
-                                  strip->stations[cut].s_mm - strip->stations[from].s_mm};
+      out[count++] = (fg_stretch){.first = from, .last = cut,
+                                  .turn_rad = direction[cut] - direction[from],
+                                  .length_mm = strip->stations[cut].s_mm -
+                                               strip->stations[from].s_mm};
     from = cut;
   }
   return count;
@@ -74,27 +76,6 @@ static double get_turn(const fg_stretch *s) {
   return fabs(s->turn_rad);
 }
 
-static double get_radius(const fg_stretch *s) {
-  return s->length_mm / fabs(s->turn_rad);
-}
-
-/* Bumps turn less than what lies between them, by one pitch. With too few stretches to compare,
- * bumps are those of the larger radius. */
-static double find_sense(const fg_stretch *stretches, size_t count) {
-  double up = median_over(stretches, count, 1, get_turn);
-  double down = median_over(stretches, count, -1, get_turn);
-  if (count >= 6 && up > 0 && down > 0) return up < down ? 1 : -1;
-  return median_over(stretches, count, 1, get_radius) >
-                 median_over(stretches, count, -1, get_radius)
-             ? 1
-             : -1;
-}
-
-/* A tight bend in the bumps' sense, the first or last of its kind, is the lip's. */
-static bool is_lip(const fg_stretch *s, double typical_radius) {
-  return fabs(s->turn_rad) > LIP_TURN_LEAST && get_radius(s) < typical_radius;
-}
-
 /* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
  * radius of the bend is judged where 80 % of the turn happens. */
 static fg_stretch tight_part(const fg_strip *strip, const double *direction,
@@ -104,8 +85,61 @@ static fg_stretch tight_part(const fg_strip *strip, const double *direction,
   double sign = s->turn_rad > 0 ? 1 : -1;
   while (a < s->last && sign * (direction[a] - from) < 0) a++;
   while (b > a && sign * (direction[b] - to) > 0) b--;
-  return (fg_stretch){a, b, 0.8 * s->turn_rad,
-                      strip->stations[b].s_mm - strip->stations[a].s_mm};
+  return (fg_stretch){.first = a, .last = b, .turn_rad = 0.8 * s->turn_rad,
+                      .length_mm = strip->stations[b].s_mm - strip->stations[a].s_mm};
+}
+
+static double get_radius(const fg_stretch *s) {
+  return s->length_mm / fabs(s->turn_rad);
+}
+
+static double get_bend(const fg_stretch *s) {
+  return s->bend_radius_mm;
+}
+
+/* A bump and the gap beside it turn by one pitch round the overall circle, in the sense that bumps
+ * do not have; the median holds when a bump is crushed. With few bumps the lip has too much of a
+ * say, and bumps are what bends less tightly than fillets. */
+static double find_sense(const fg_stretch *stretches, size_t count) {
+  double sums[STRETCHES_MAX];
+  size_t n = 0;
+  for (size_t i = 1; i + 2 < count; i++)
+    sums[n++] = stretches[i].turn_rad + stretches[i + 1].turn_rad;
+  if (n >= PAIRS_LEAST) return fg_select(sums, n, n / 2) < 0 ? 1 : -1;
+  double up = median_over(stretches, count, 1, get_bend);
+  return up > median_over(stretches, count, -1, get_bend) ? 1 : -1;
+}
+
+/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them, which
+ * then turns by a right angle more than the half of a gap that it is. */
+static bool is_lip_in_gap(const fg_stretch *s, double sense, double gap_rad) {
+  return -s->turn_rad * sense > 0.5 * gap_rad + LIP_TURN_LEAST;
+}
+
+/* Where a stretch has turned by half a right angle from one of its ends: the middle of a lip's
+ * bend. */
+static size_t bend_middle(const double *direction, const fg_stretch *s, bool from_last) {
+  size_t at = from_last ? s->last : s->first, from = at;
+  while (at != (from_last ? s->first : s->last) &&
+         fabs(direction[at] - direction[from]) < LIP_TURN_LEAST)
+    at += from_last ? (size_t)-1 : 1;
+  return at;
+}
+
+static void find_lip_in_gaps(const double *direction, const fg_stretch *all, size_t count,
+                             fg_turning *out) {
+  double gap_rad = median_over(all, count, -out->sense, get_turn);
+  const fg_stretch *first = &all[0], *last = &all[count - 1];
+  if (out->lip_first || out->lip_last || out->bump_count < 2) return;
+  out->lip_first = is_lip_in_gap(first, out->sense, gap_rad);
+  out->lip_last = is_lip_in_gap(last, out->sense, gap_rad);
+  if (out->lip_first) out->lip_end[0] = bend_middle(direction, first, false);
+  if (out->lip_last) out->lip_end[1] = bend_middle(direction, last, true);
+}
+
+/* A tight bend in the bumps' sense, the first or last of its kind, is the lip's. */
+static bool is_lip(const fg_stretch *s, double typical_radius) {
+  return fabs(s->turn_rad) > LIP_TURN_LEAST && get_radius(s) < typical_radius;
 }
 
 static void pick_bumps(const fg_strip *strip, const double *direction, const fg_stretch *all,
@@ -115,8 +149,7 @@ static void pick_bumps(const fg_strip *strip, const double *direction, const fg_
   fg_stretch *bumps = out->bumps;
   for (size_t i = 0; i < count; i++)
     if (all[i].turn_rad * out->sense > PROMINENCE_RAD) {
-      fg_stretch tight = tight_part(strip, direction, &all[i]);
-      radii[n] = get_radius(&tight);
+      radii[n] = all[i].bend_radius_mm;
       bumps[n++] = all[i];
     }
   if (!n) return;
@@ -146,8 +179,13 @@ fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *tu
   if (strip->count < 8) goto exit;
   find_directions(strip, direction);
   size_t count = cut_stretches(strip, direction, stretches);
+  for (size_t i = 0; i < count; i++) {
+    fg_stretch tight = tight_part(strip, direction, &stretches[i]);
+    stretches[i].bend_radius_mm = get_radius(&tight);
+  }
   turning->sense = find_sense(stretches, count);
   pick_bumps(strip, direction, stretches, count, turning);
+  if (count) find_lip_in_gaps(direction, stretches, count, turning);
 exit:
   free(direction);
   free(stretches);
