@@ -13,15 +13,26 @@
 #define LIP_RADIUS     0.4 /* a lip's bend is tighter than this share of the bumps' radius */
 enum { STRETCHES_MAX = 512, PAIRS_LEAST = 8 };
 
+/* The usable station at or next to i, in the direction of `step`; i itself where there is none. */
+static size_t usable(const fg_strip *strip, size_t i, int step) {
+  for (size_t k = i; k < strip->count; k += (size_t)step)
+    if (strip->stations[k].weight > 0) return k;
+  return i;
+}
+
+/* Direction over ± TANGENT_MM, or further where stations are not usable. The ends, which are not
+ * usable either, go on in the direction that was seen last. */
 static void find_directions(const fg_strip *strip, double *direction) {
   size_t reach = (size_t)(TANGENT_MM / strip->step_mm + 0.5);
   if (reach < 1) reach = 1;
   double before = 0;
+  size_t first = usable(strip, 0, 1), last = usable(strip, strip->count - 1, -1);
   for (size_t i = 0; i < strip->count; i++) {
-    size_t a = i > reach ? i - reach : 0;
-    size_t b = i + reach < strip->count ? i + reach : strip->count - 1;
+    size_t middle = i < first ? first : i > last ? last : i;
+    size_t a = usable(strip, middle > first + reach ? middle - reach : first, -1);
+    size_t b = usable(strip, middle + reach < last ? middle + reach : last, 1);
     fg_point p = fg_strip_middle(strip, a), q = fg_strip_middle(strip, b);
-    double angle = atan2(q.y - p.y, q.x - p.x);
+    double angle = a < b ? atan2(q.y - p.y, q.x - p.x) : before;
     if (i > 0) angle += 2 * M_PI * round((before - angle) / (2 * M_PI));
     direction[i] = before = angle;
   }

@@ -20,6 +20,10 @@ enum {
 #define CONTRAST_RANGE 3.0
 /* Two traces are one strip when so much of the shorter lies on the longer. */
 #define OVERLAP_SHARE 0.5
+/* A strip that ends so many widths from the scan's border is cut by it. */
+#define BORDER_WIDTHS 1.5
+/* Wider than so many widths is more than one strip. */
+#define JOINED_WIDTHS 1.6
 
 typedef struct walker {
   const fg_tiles *tiles;
@@ -51,7 +55,7 @@ static float background_at(const walker *w, fg_point p) {
 }
 
 /* Cuts across at p: the run above half of `contrast` that lies nearest to p. False when there is
- * none or when it leaves the window. */
+ * none (width 0) or when it leaves the window (width infinite). */
 static bool cut_across(const walker *w, fg_point p, fg_point tangent, double contrast, cut *out) {
   int half = (int)w->half_window_px;
   if (2 * half + 1 > PROFILE_MAX) half = (PROFILE_MAX - 1) / 2;
@@ -68,7 +72,9 @@ static bool cut_across(const walker *w, fg_point p, fg_point tangent, double con
     if (profile[half + d] > limit) best = half + d;
     else if (profile[half - d] > limit) best = half - d;
   }
+  out->width_px = 0;
   if (best < 0) return false;
+  out->width_px = INFINITY;
   int from = best, to = best;
   while (from > 0 && profile[from - 1] > limit) from--;
   while (to < count - 1 && profile[to + 1] > limit) to++;
@@ -149,13 +155,16 @@ static bool step_ahead(const walker *w, fg_point p, fg_point *direction, double 
                        double missed, double contrast, fg_point *next, cut *c) {
   static const double turns[] = {0, 0.26, -0.26, 0.52, -0.52};
   size_t tries = missed > 0 ? 1 : sizeof turns / sizeof turns[0];
+  double straight_px = 0;
   for (size_t i = 0; i < tries; i++) {
     double cosine = cos(turns[i]), sine = sin(turns[i]);
     fg_point d = {cosine * direction->x - sine * direction->y,
                   sine * direction->x + cosine * direction->y};
     *next = along(p, d, length);
     if (outside(w, *next, 0)) continue;
-    if (!cut_across(w, *next, d, contrast, c) || c->width_px >= 1.6 * w->width_px ||
+    bool found = cut_across(w, *next, d, contrast, c);
+    if (i == 0) straight_px = c->width_px;
+    if (!found || c->width_px >= JOINED_WIDTHS * w->width_px ||
         c->width_px <= 0.5 * w->width_px ||
         fabs(c->offset_px) >= 0.5 * w->width_px + 0.5 * missed)
       continue;
@@ -163,6 +172,7 @@ static bool step_ahead(const walker *w, fg_point p, fg_point *direction, double 
     return true;
   }
   *next = along(p, *direction, length);
+  c->width_px = straight_px;
   return false;
 }
 
@@ -171,19 +181,20 @@ static fg_status walk(fg_context *ctx, const walker *w, fg_point p, fg_point tan
                       fg_trace *trace) {
   double step = fmax(3.0, w->width_px / 3), missed = 0, contrast = w->contrast;
   fg_point direction = tangent;
+  bool joined = false; /* since the last good point the strip was too wide: something lies on it */
   while (missed <= GAP_WIDTHS * w->width_px) {
     fg_point next = along(p, direction, step + missed);
-    if (outside(w, next, 0)) {
-      if (missed == 0) trace->facts |= FG_STRIP_TOUCHES_BORDER;
-      break;
-    }
+    if (outside(w, next, 0)) break;
     cut c;
     bool good = step_ahead(w, p, &direction, step + missed, missed, contrast, &next, &c);
     if (!good) {
+      joined |= c.width_px >= JOINED_WIDTHS * w->width_px;
       missed += step;
       continue;
     }
     if (missed > 2 * step) trace->facts |= FG_STRIP_GAP;
+    if (missed > 2 * step && joined) trace->facts |= FG_STRIP_TOUCHES_OTHER;
+    joined = false;
     missed = 0;
     contrast += CONTRAST_SHARE * (c.peak - contrast);
     contrast = fmin(fmax(contrast, w->contrast / CONTRAST_RANGE), w->contrast * CONTRAST_RANGE);
@@ -192,6 +203,8 @@ static fg_status walk(fg_context *ctx, const walker *w, fg_point p, fg_point tan
     FG_TRY(append(ctx, trace, p));
     direction = tangent_at_end(trace, direction);
   }
+  if (joined) trace->facts |= FG_STRIP_TOUCHES_OTHER;
+  if (outside(w, p, BORDER_WIDTHS * w->width_px)) trace->facts |= FG_STRIP_TOUCHES_BORDER;
   return FG_OK;
 }
 
