@@ -28,8 +28,8 @@ void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_
 static float background_at(const fg_edge_work *work, size_t station) {
   const fg_segmentation *seg = work->segmentation;
   const fg_reference_station *r = &work->reference->stations[station];
-  double bx = fmin(fmax(r->x / FG_BLOCK_PX, 0), seg->width - 1);
-  double by = fmin(fmax(r->y / FG_BLOCK_PX, 0), seg->height - 1);
+  double bx = fmin(fmax(r->x / FG_BLOCK_PX, 0), seg->tiles->block_columns - 1);
+  double by = fmin(fmax(r->y / FG_BLOCK_PX, 0), seg->tiles->block_rows - 1);
   return fg_segmentation_background(seg, (int32_t)bx, (int32_t)by);
 }
 

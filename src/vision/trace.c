@@ -257,8 +257,7 @@ static void open_blocks(const walker *w, uint8_t *open) {
   for (int32_t y = 0; y < o->height; y++)
     for (int32_t x = 0; x < o->width; x++)
       open[(size_t)y * (size_t)o->width + (size_t)x] =
-          w->segmentation->labels[(size_t)(y + o->y) * (size_t)w->segmentation->width +
-                                  (size_t)(x + o->x)] == o->label;
+          fg_segmentation_label(w->segmentation, x + o->x, y + o->y) == o->label;
 }
 
 static void free_trace(fg_trace *trace) {
