@@ -160,6 +160,7 @@ typedef struct fg_measurement {
   size_t specks;              /* objects left alone: dust, scratches, other shapes */
 } fg_measurement;
 
+void fg_foil_free(fg_foil *foil); /* what it owns; NULL is fine */
 void fg_measurement_free(fg_measurement *measurement);
 
 /* Recognises lip, lands, bumps and free end of a strip, fits every circle, derives every quantity.

@@ -14,7 +14,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/render.h"
-#include "measure/objects.h"
+#include "measure/session.h"
 
 typedef struct rendered {
   fg_render_spec *spec;
@@ -22,6 +22,7 @@ typedef struct rendered {
   fg_tiles tiles;
   void *strip; /* rows of the strip that is not full yet */
   size_t row_bytes;
+  fg_session *session; /* NULL: tiles are kept, nothing is measured */
 } rendered;
 
 typedef struct measured {
@@ -36,10 +37,11 @@ static inline fg_status rendered_row(fg_context *ctx, void *user, int64_t row, c
   size_t at = (size_t)(row % FG_TILE_PX) * r->row_bytes;
   memcpy((char *)r->strip + at, pixels, r->row_bytes);
   if (row % FG_TILE_PX != FG_TILE_PX - 1 && row != r->truth->height_px - 1) return FG_OK;
-  return fg_tiles_add_strip(ctx, &r->tiles, r->strip, (int64_t)r->row_bytes);
+  FG_TRY(fg_tiles_add_strip(ctx, &r->tiles, r->strip, (int64_t)r->row_bytes));
+  return r->session ? fg_session_advance(ctx, &r->tiles, r->session) : FG_OK;
 }
 
-static inline rendered render_tiles(const char *json) {
+static inline rendered render_open(const char *json) {
   fg_context ctx = {0};
   rendered r = {0};
   if (fg_render_parse(&ctx, "spec", json, &r.spec) != FG_OK) fail_msg("%s", ctx.message);
@@ -50,6 +52,12 @@ static inline rendered render_tiles(const char *json) {
   assert_non_null(r.strip);
   assert_int_equal(fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, &r.tiles),
                    FG_OK);
+  return r;
+}
+
+static inline rendered render_tiles(const char *json) {
+  fg_context ctx = {0};
+  rendered r = render_open(json);
   assert_int_equal(fg_render_rows(&ctx, r.spec, 0, rendered_row, &r), FG_OK);
   assert_int_equal(fg_tiles_finish(&ctx, &r.tiles), FG_OK);
   return r;
@@ -61,17 +69,29 @@ static inline void rendered_free(rendered *r) {
   free(r->strip);
 }
 
-/* NULL design: the Gen II foil. */
+/* The rows go through the stages that a file's rows go through. */
+static inline void measure_rows(measured *m) {
+  fg_context *ctx = &m->ctx;
+  rendered *r = &m->picture;
+  assert_int_equal(fg_session_create(ctx, &m->result, &r->tiles, 1, &r->session), FG_OK);
+  assert_int_equal(fg_render_rows(ctx, r->spec, 0, rendered_row, r), FG_OK);
+  assert_int_equal(fg_tiles_finish(ctx, &r->tiles), FG_OK);
+  assert_int_equal(fg_session_advance(ctx, &r->tiles, r->session), FG_OK);
+  m->status = fg_session_finish(ctx, r->session);
+  fg_session_free(r->session);
+  r->session = NULL;
+}
+
+/* Free with measured_free. NULL design: the Gen II foil. */
 static inline measured measure_render(const char *json, const fg_design *design) {
-  measured m = {.picture = render_tiles(json)};
+  measured m = {.picture = render_open(json)};
   if (design)
     m.result.design = *design;
   else
     fg_design_default(&m.result.design);
   assert_int_equal(fg_design_derive(&m.ctx, &m.result.design, &m.result.nominal), FG_OK);
   for (int i = 0; i < 2; i++) m.result.dpi[i] = m.picture.truth->dpi[i];
-  snprintf(m.result.scan, sizeof m.result.scan, "render");
-  m.status = fg_measure_tiles(&m.ctx, &m.picture.tiles, 1, &m.result);
+  measure_rows(&m);
   return m;
 }
 
