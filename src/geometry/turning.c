@@ -62,6 +62,7 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
     } else {
       continue;
     }
+    if (fabs(direction[cut] - direction[from]) < PROMINENCE_RAD) continue;
     if (cut > from)
       out[count++] = (fg_stretch){.first = from, .last = cut,
                                   .turn_rad = direction[cut] - direction[from],
@@ -72,15 +73,15 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
   return count;
 }
 
-/* Median over the stretches that turn with `sign`, the two at the ends left out when there are
- * others. 0 when there are none. */
+/* Lower median over the stretches that turn with `sign`, the two at the ends left out when there
+ * are others. 0 when there are none. */
 static double median_over(const fg_stretch *stretches, size_t count, double sign,
                           double (*get)(const fg_stretch *)) {
   double values[STRETCHES_MAX];
-  size_t n = 0, skip = count > 4 ? 1 : 0;
+  size_t n = 0, skip = count > 2 ? 1 : 0;
   for (size_t i = skip; i + skip < count; i++)
     if (stretches[i].turn_rad * sign > PROMINENCE_RAD) values[n++] = get(&stretches[i]);
-  return n ? fg_select(values, n, n / 2) : 0;
+  return n ? fg_select(values, n, (n - 1) / 2) : 0;
 }
 
 static double get_turn(const fg_stretch *s) {
