@@ -2,8 +2,8 @@
  * radius within its uncertainty of the truth. */
 #include "support/measured_render.h"
 
-/* A single value of many may lie this many standard uncertainties off: 1 in 30,000. */
-static const double many_u = 4.2;
+/* A single value of many may lie this many standard uncertainties off: 1 in 150,000. */
+static const double many_u = 4.5;
 
 /* The true bump whose centre is next to that of a measured one. */
 static const fg_render_bump *true_bump(const measured *m, const fg_render_foil *truth,
