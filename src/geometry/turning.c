@@ -64,10 +64,11 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
     }
     if (fabs(direction[cut] - direction[from]) < PROMINENCE_RAD) continue;
     if (cut > from)
-      out[count++] = (fg_stretch){.first = from, .last = cut,
-                                  .turn_rad = direction[cut] - direction[from],
-                                  .length_mm = strip->stations[cut].s_mm -
-                                               strip->stations[from].s_mm};
+      out[count++] =
+          (fg_stretch){.first = from,
+                       .last = cut,
+                       .turn_rad = direction[cut] - direction[from],
+                       .length_mm = strip->stations[cut].s_mm - strip->stations[from].s_mm};
     from = cut;
   }
   return count;
@@ -90,14 +91,17 @@ static double get_turn(const fg_stretch *s) {
 
 /* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
  * radius of the bend is judged where 80 % of the turn happens. */
-static fg_stretch tight_part(const fg_strip *strip, const double *direction,
-                             const fg_stretch *s) {
+static fg_stretch tight_part(const fg_strip *strip, const double *direction, const fg_stretch *s) {
   size_t a = s->first, b = s->last;
   double from = direction[a] + 0.1 * s->turn_rad, to = direction[a] + 0.9 * s->turn_rad;
   double sign = s->turn_rad > 0 ? 1 : -1;
-  while (a < s->last && sign * (direction[a] - from) < 0) a++;
-  while (b > a && sign * (direction[b] - to) > 0) b--;
-  return (fg_stretch){.first = a, .last = b, .turn_rad = 0.8 * s->turn_rad,
+  while (a < s->last && sign * (direction[a] - from) < 0)
+    a++;
+  while (b > a && sign * (direction[b] - to) > 0)
+    b--;
+  return (fg_stretch){.first = a,
+                      .last = b,
+                      .turn_rad = 0.8 * s->turn_rad,
                       .length_mm = strip->stations[b].s_mm - strip->stations[a].s_mm};
 }
 
@@ -122,8 +126,8 @@ static double find_sense(const fg_stretch *stretches, size_t count) {
   return up > median_over(stretches, count, -1, get_bend) ? 1 : -1;
 }
 
-/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them, which
- * then turns by a right angle more than the half of a gap that it is. */
+/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them,
+ * which then turns by a right angle more than the half of a gap that it is. */
 static bool is_lip_in_gap(const fg_stretch *s, double sense, double gap_rad) {
   return -s->turn_rad * sense > 0.5 * gap_rad + LIP_TURN_LEAST;
 }
@@ -186,8 +190,8 @@ fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *tu
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *direction, (void **)&direction));
   FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *stretches, (void **)&stretches));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turning->bumps,
-                                 (void **)&turning->bumps));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turning->bumps, (void **)&turning->bumps));
   if (strip->count < 8) goto exit;
   find_directions(strip, direction);
   size_t count = cut_stretches(strip, direction, stretches);

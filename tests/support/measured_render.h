@@ -90,7 +90,8 @@ static inline measured measure_render(const char *json, const fg_design *design)
   else
     fg_design_default(&m.result.design);
   assert_int_equal(fg_design_derive(&m.ctx, &m.result.design, &m.result.nominal), FG_OK);
-  for (int i = 0; i < 2; i++) m.result.dpi[i] = m.picture.truth->dpi[i];
+  for (int i = 0; i < 2; i++)
+    m.result.dpi[i] = m.picture.truth->dpi[i];
   measure_rows(&m);
   return m;
 }
@@ -108,11 +109,12 @@ small_foil(char *json, size_t size, int bumps, const char *foil, const char *sca
   va_start(arguments, scanner);
   vsnprintf(members, sizeof members, scanner, arguments);
   va_end(arguments);
-  snprintf(json, size,
-           "{\"schema\":\"foilgauge/render/1\",\"seed\":3,\"foils\":[{\"design\":{\"bump_count\":%d},"
-           "\"overall_radius_mm\":20.95,\"radius_springback\":{\"mean\":0.02,\"sd\":0.007}%s}],"
-           "\"scanner\":{%s}}",
-           bumps, foil, members);
+  snprintf(
+      json, size,
+      "{\"schema\":\"foilgauge/render/1\",\"seed\":3,\"foils\":[{\"design\":{\"bump_count\":%d},"
+      "\"overall_radius_mm\":20.95,\"radius_springback\":{\"mean\":0.02,\"sd\":0.007}%s}],"
+      "\"scanner\":{%s}}",
+      bumps, foil, members);
 }
 
 #define assert_close(value, expected, tolerance)                                                   \

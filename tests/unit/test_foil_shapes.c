@@ -67,7 +67,8 @@ static void any_number_of_bumps(void **state) {
   (void)state;
   const int counts[] = {1, 2, 3, 5, 12};
   for (size_t i = 0; i < 5; i++) {
-    measured m = check_foil(counts[i], "", "\"blur_px\":1.2", counts[i] == 1 ? FG_FOIL_FEW_LANDS : 0);
+    measured m =
+        check_foil(counts[i], "", "\"blur_px\":1.2", counts[i] == 1 ? FG_FOIL_FEW_LANDS : 0);
     check_bumps(&m, 0, false, 0);
     assert_close(m.result.foils[0].thickness_mm, 0.1, 0.0001);
     measured_free(&m);
@@ -154,7 +155,8 @@ static void crushed_bumps_are_flagged(void **state) {
   for (int bumps = 3; bumps <= 5; bumps += 2)
     for (int crushed = 1; crushed <= bumps; crushed++) {
       char members[100];
-      snprintf(members, sizeof members, ",\"crushed\":[{\"bump\":%d,\"height_factor\":0.5}]", crushed);
+      snprintf(members, sizeof members, ",\"crushed\":[{\"bump\":%d,\"height_factor\":0.5}]",
+               crushed);
       measured m = check_foil(bumps, members, "\"dpi\":2400", 0);
       check_bumps(&m, 0, false, 0);
       measured_free(&m);

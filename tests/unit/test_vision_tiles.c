@@ -35,8 +35,8 @@ static fg_tiles fill(const scene *s, int bytes, bool strip_by_strip) {
   assert_int_equal(fg_tiles_create(&ctx, WIDTH, HEIGHT, bytes, &tiles), FG_OK);
   for (int strip = 0; strip * FG_TILE_PX < HEIGHT; strip++) {
     if (strip_by_strip) {
-      assert_int_equal(
-          fg_tiles_add_strip(&ctx, &tiles, rows[strip * FG_TILE_PX], sizeof rows[0]), FG_OK);
+      assert_int_equal(fg_tiles_add_strip(&ctx, &tiles, rows[strip * FG_TILE_PX], sizeof rows[0]),
+                       FG_OK);
       continue;
     }
     char *to = fg_tiles_strip(&tiles, strip);
@@ -50,7 +50,8 @@ static fg_tiles fill(const scene *s, int bytes, bool strip_by_strip) {
 
 static size_t kept(const fg_tiles *tiles) {
   size_t count = 0;
-  for (int32_t i = 0; i < tiles->columns * tiles->rows; i++) count += tiles->tiles[i] != NULL;
+  for (int32_t i = 0; i < tiles->columns * tiles->rows; i++)
+    count += tiles->tiles[i] != NULL;
   return count;
 }
 
@@ -145,7 +146,8 @@ static void what_is_small_is_a_speck(void **state) {
 /* Dust, specks and scratches beside a foil change neither its polarity nor how many foils. */
 static void dust_is_no_foil(void **state) {
   (void)state;
-  const char *polarity[] = {"\"background\":30,\"contrast\":175", "\"background\":230,\"contrast\":-175"};
+  const char *polarity[] = {"\"background\":30,\"contrast\":175",
+                            "\"background\":230,\"contrast\":-175"};
   for (int i = 0; i < 2; i++) {
     char json[4096];
     small_foil(json, sizeof json, 3, "",
