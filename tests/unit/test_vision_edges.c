@@ -106,7 +106,8 @@ static void edges_are_on_the_truth(void **state) {
     assert_close(e.mean_px, 0, 0.003 + cases[i].blur_px * cases[i].blur_px / 1280);
     if (strstr(cases[i].scanner, "0.02")) {
       assert_close(e.sd_px, 0, 0.003 + cases[i].blur_px * cases[i].blur_px / 1280);
-      assert_close(e.worst_px, 0, 0.015 + cases[i].blur_px * cases[i].blur_px / 1280);
+      /* At an arc's end half of what the blur does to a fillet (R 66 px) may show. */
+      assert_close(e.worst_px, 0, 0.015 + cases[i].blur_px * cases[i].blur_px / 264);
     }
     assert_close(strip->blur_left_um / px_um, blur_seen(cases[i].blur_px), 0.02);
     assert_close(strip->blur_right_um / px_um, blur_seen(cases[i].blur_px), 0.02);
