@@ -119,7 +119,24 @@ typedef struct value_counts {
   size_t of[256], total;
 } value_counts;
 
-static bool piles_up(const value_counts *counts, bool high) {
+/* Pixels of one value, to less than a step of 16 bits: the outermost within a count of `end`. */
+static size_t count_equal(const fg_edge_work *work, int end, bool high) {
+  double outermost = high ? -INFINITY : INFINITY;
+  size_t count = 0;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t c = 0; c < work->chunk_count; c++)
+      for (size_t i = 0; i < work->bands[c].count; i++) {
+        double value = work->bands[c].pixels[i].value;
+        if ((int)(value + 0.5) != end) continue;
+        if (pass)
+          count += fabs(value - outermost) < 0.002;
+        else
+          outermost = high ? fmax(outermost, value) : fmin(outermost, value);
+      }
+  return count;
+}
+
+static bool piles_up(const fg_edge_work *work, const value_counts *counts, bool high) {
   size_t seen = 0;
   int step = high ? -1 : 1, end = high ? 255 : 0;
   while (end + step >= 0 && end + step <= 255 &&
@@ -128,8 +145,9 @@ static bool piles_up(const value_counts *counts, bool high) {
     end += step;
   }
   if (end + step < 0 || end + step > 255) return false;
-  return (double)counts->of[end] > PILE_SHARE * (double)counts->total &&
-         counts->of[end] > 2 * counts->of[end + step];
+  double least = PILE_SHARE * (double)counts->total;
+  return (double)counts->of[end] > least && counts->of[end] > 2 * counts->of[end + step] &&
+         (double)count_equal(work, end, high) > least;
 }
 
 /* Clipped values pile up at one end of what the strip's pixels have, wherever the scanner's driver
@@ -142,7 +160,7 @@ static bool find_clipping(const fg_edge_work *work) {
       counts.of[(int)(value + 0.5f)]++;
       counts.total++;
     }
-  return counts.total && piles_up(&counts, true) != piles_up(&counts, false);
+  return counts.total && piles_up(work, &counts, true) != piles_up(work, &counts, false);
 }
 
 /* gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty. The

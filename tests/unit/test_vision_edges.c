@@ -93,7 +93,7 @@ static void edges_are_on_the_truth(void **state) {
       {"\"bits\":16,\"noise\":0.02,\"blur_px\":3", 3, 1, 0.05},
       {"\"bits\":16,\"noise\":0.02,\"contrast\":-175,\"background\":230", 1.2, 1, 0.03},
       {"\"noise\":1,\"blur_px\":2", 2, 1, 0.05},
-      {"\"noise\":1,\"gamma\":2.2", 1.2, 2.2, 0.1},
+      {"\"noise\":1,\"gamma\":2.2", 1.2, 2.2, 0.3},
       {"\"noise\":1,\"gamma\":0.45", 1.2, 0.45, 0.3},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
