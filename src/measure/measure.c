@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "foilgauge/scan.h"
+#include "measure/discs.h"
 #include "measure/reader.h"
 #include "vision/edges.h"
 #include "vision/segment.h"
@@ -103,7 +104,11 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, &tiles, measurement->sha256));
-  FG_TRY_EXIT(measure_tiles(ctx, &tiles, options ? options->threads : 0, measurement));
+  unsigned threads = options ? options->threads : 0;
+  if (design->form == FG_FORM_DISCS)
+    FG_TRY_EXIT(fg_measure_discs(ctx, &tiles, threads, measurement));
+  else
+    FG_TRY_EXIT(measure_tiles(ctx, &tiles, threads, measurement));
 exit:
   fg_tiles_free(&tiles);
   fg_scan_close(scan);
