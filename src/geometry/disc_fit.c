@@ -16,7 +16,7 @@ enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MOST = 400 };
 #define OUTLIERS_SHARE     0.01
 /* Neighbouring bands of the spectrum have one level unless chance makes them differ so rarely. */
 #define BAND_P 0.01
-/* A difference between the edge's two sides counts above so many of its own deviations. */
+/* A difference between the edge's core and flanks counts above so many of its own deviations. */
 #define SPLIT_DEVIATIONS 3.0
 
 typedef struct fit_work {
@@ -115,7 +115,7 @@ static double low_level(const fit_work *w) {
   return level * student * student;
 }
 
-/* Adds what the parameters would move by if the difference of the edge's two sides were an error of
+/* Adds what the parameters would move by if the difference of the edge's core and flanks were an error of
  * the edge, where it is more than its own noise; `excess` is how much more the spectrum's low end
  * holds than white pixel noise does. */
 static void add_split(const fit_work *w, double excess, double covariance[3][3]) {
@@ -147,12 +147,12 @@ static double mean_noise(const fit_work *w) {
   return sum / (double)w->used;
 }
 
-static void fill_circle(const fit_work *w, double white_doubt_mm, fg_disc *disc) {
+static void fill_circle(const fit_work *w, double level_doubt_mm, fg_disc *disc) {
   double level = low_level(w);
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++) disc->covariance[p][q] = level * w->fit.covariance[p][q];
   add_split(w, level / mean_noise(w), disc->covariance);
-  disc->covariance[2][2] += white_doubt_mm * white_doubt_mm;
+  disc->covariance[2][2] += level_doubt_mm * level_doubt_mm;
   const fg_circle *c = &w->fit.circle;
   disc->centre_mm = (fg_point){c->x, c->y};
   disc->radius_mm = c->radius;
@@ -204,7 +204,7 @@ static fg_status fill_points(fg_context *ctx, const fit_work *w, fg_disc *disc) 
   return FG_OK;
 }
 
-fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, double white_doubt_mm,
+fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, double level_doubt_mm,
                       fg_disc *disc) {
   fit_work w = {.points = points, .count = count};
   double *block = NULL;
@@ -221,7 +221,7 @@ fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, doub
   }
   FG_TRY_EXIT(fit_robust(ctx, &w));
   if ((double)(usable - w.used) > OUTLIERS_SHARE * (double)usable) disc->flags |= FG_BUMP_OUTLIERS;
-  fill_circle(&w, white_doubt_mm, disc);
+  fill_circle(&w, level_doubt_mm, disc);
   FG_TRY_EXIT(fill_points(ctx, &w, disc));
   FG_TRY_EXIT(fill_roundness(ctx, &w, disc));
 exit:

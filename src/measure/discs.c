@@ -18,7 +18,7 @@
 #define DESIGN_SHARE     0.7
 /* Edges that leave their circle by more than this share of the radius (rms) are no round feature;
  * by more than the smaller share they are flagged. */
-#define ROUND_SHARE 0.03
+#define ROUND_SHARE 0.04
 #define POOR_SHARE  0.006
 /* What surrounds a disc is background when it is this near to it, as a share of the contrast. */
 #define BACKGROUND_SHARE 0.3
@@ -28,6 +28,8 @@ typedef struct disc_work {
   fg_pixel_shape shape;
   const fg_disc_candidates *found;
   double background; /* counts */
+  fg_tone *tones;    /* one per candidate */
+  fg_tone tone;
   fg_disc *discs;    /* one per candidate; no points: no round feature */
 } disc_work;
 
@@ -76,7 +78,7 @@ static fg_status fit_edge(fg_context *ctx, const fg_disc_edge *edge, double um, 
         .used = s->weight > 0};
     if (!points[i].used) points[i].at = (fg_point){edge->circle.x * mm, edge->circle.y * mm};
   }
-  fg_status status = fg_disc_fit(ctx, points, edge->count, edge->white_doubt_px * mm, disc);
+  fg_status status = fg_disc_fit(ctx, points, edge->count, edge->level_doubt_px * mm, disc);
   free(points);
   return status;
 }
@@ -95,13 +97,22 @@ static void clear_disc(fg_disc *disc) {
   memset(disc, 0, sizeof *disc);
 }
 
+static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
+  disc_work *work = shared;
+  fg_status status = fg_disc_edge_tone(ctx, work->tiles, &work->shape, &work->found->list[i],
+                                       &work->tones[i]);
+  if (status == FG_ERR_NUMERIC) work->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
 /* One candidate; what turns out to be no round feature is left without points. */
 static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
   disc_work *work = shared;
   fg_disc *disc = &work->discs[i];
   fg_disc_edge edge = {0};
   fg_status status =
-      fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i], &edge);
+      fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
+                           &work->tone, &edge);
   if (status == FG_OK) status = fit_edge(ctx, &edge, work->shape.um, disc);
   if (status == FG_OK) describe(work, &edge, disc);
   if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) clear_disc(disc);
@@ -152,11 +163,15 @@ static fg_status measure_candidates(fg_context *ctx, disc_work *work, unsigned t
   FG_TRY_EXIT(find_background(ctx, work->tiles, &work->background));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *work->discs, (void **)&work->discs));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *m->discs, (void **)&m->discs));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *work->tones, (void **)&work->tones));
+  FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, find_tone, work));
+  work->tone = fg_tone_pool(work->tones, count);
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, measure_candidate, work));
   hand_over(work, m);
 exit:
   for (size_t i = 0; work->discs && i < count; i++) clear_disc(&work->discs[i]);
   free(work->discs);
+  free(work->tones);
   return status;
 }
 

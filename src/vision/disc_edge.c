@@ -17,6 +17,8 @@ enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64
 #define STEP_SHARE 0.3
 /* Less contrast than this many counts is no edge. */
 #define CONTRAST_LEAST 6.0
+/* Clipped light may exceed the end of the scale by this share of the contrast. */
+#define WHITE_DOUBT 0.1
 
 static double *value_of(fg_step_fit *fit, int i) {
   return &fit->values[i];
@@ -196,49 +198,90 @@ static double typical_blur(const fg_disc_work *work) {
   return n ? fg_select(values, n, n / 2) : 1;
 }
 
-/* The sectors' final fits: slopes only where there are any, gamma only where it can be told. */
+/* Centres the ring on the edge, with levels that have no slopes. */
+static fg_status find_ring(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
+                           double *rms) {
+  double reach = candidate->doubt_px + START_PX;
+  work->ring.circle = candidate->circle;
+  for (int round = 0; round < CENTRE_ROUNDS; round++) {
+    FG_TRY(fill_ring(ctx, work, reach));
+    FG_TRY(fit_sectors(ctx, work, 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN |
+                                      1u << FG_STEP_SLOPE_OUT));
+    FG_TRY(centre_ring(ctx, work, rms));
+    reach = REACH_PX + REACH_BLURS * typical_blur(work) + 3 * *rms;
+  }
+  return fill_ring(ctx, work, reach);
+}
+
+/* The sectors' final fits: slopes only where there are any. */
 static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
   unsigned held = 1u << FG_STEP_GAMMA;
   FG_TRY(fit_sectors(ctx, work, held));
   for (int side = 0; side < 2; side++)
     if (!fg_disc_has_slope(work, FG_STEP_SLOPE_IN + side)) held |= 1u << (FG_STEP_SLOPE_IN + side);
-  FG_TRY(fit_sectors(ctx, work, held));
-  FG_TRY(fg_disc_find_gamma(ctx, work));
-  return work->gamma == 1 ? FG_OK : fit_sectors(ctx, work, held);
+  return fit_sectors(ctx, work, held);
+}
+
+static void free_work(fg_disc_work *work) {
+  fg_ring_free(&work->ring);
+  free(work->bins);
+  free(work->sectors);
+}
+
+fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                            const fg_disc_candidate *candidate, fg_tone *tone) {
+  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = 1};
+  double rms;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(find_ring(ctx, &work, candidate, &rms));
+  FG_TRY_EXIT(fit_sectors(ctx, &work, 1u << FG_STEP_GAMMA));
+  FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
+exit:
+  free_work(&work);
+  return status;
+}
+
+/* Count at the edge, where the light is the mean of both sides', for sides of given counts. */
+static double count_at_edge(double gamma, const double counts[2]) {
+  double light = 0.5 * (fg_edge_light(gamma, counts[0]) + fg_edge_light(gamma, counts[1]));
+  return 255 * pow(light / 255, 1 / gamma);
+}
+
+/* A doubt of the levels or the tone curve moves the count that is taken for the edge; over the
+ * profile's slope there, contrast / (s sqrt(2 pi)), that is a shift. */
+static double level_doubt(const fg_disc_work *work, const fg_tone *tone, const fg_disc_edge *edge) {
+  double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
+  const double lights[2] = {edge->inside, edge->outside};
+  double counts[2];
+  for (int i = 0; i < 2; i++) counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / tone->gamma);
+  if (work->white[0] || work->white[1]) white = WHITE_DOUBT * 0.5 * per_contrast;
+  if (tone->doubt > 0)
+    change = (count_at_edge(tone->gamma + tone->doubt, counts) -
+              count_at_edge(tone->gamma - tone->doubt, counts)) /
+             2 / fabs(counts[1] - counts[0]) * per_contrast;
+  return hypot(white, change);
 }
 
 static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
-                     fg_disc_edge *edge) {
-  double reach = candidate->doubt_px + START_PX;
-  for (int round = 0; round < CENTRE_ROUNDS; round++) {
-    FG_TRY(fill_ring(ctx, work, reach));
-    FG_TRY(fit_sectors(ctx, work, 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN |
-                                      1u << FG_STEP_SLOPE_OUT));
-    FG_TRY(centre_ring(ctx, work, &edge->sector_rms_px));
-    reach = REACH_PX + REACH_BLURS * typical_blur(work) + 3 * edge->sector_rms_px;
-  }
-  FG_TRY(fill_ring(ctx, work, reach));
+                     const fg_tone *tone, fg_disc_edge *edge) {
+  FG_TRY(find_ring(ctx, work, candidate, &edge->sector_rms_px));
   FG_TRY(find_shape(ctx, work));
   edge->circle = work->ring.circle;
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
   FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
-  edge->gamma = work->gamma;
-  /* Half of the contrast's change shows as a shift of the middle level, over the slope there. */
-  if (work->white[0] || work->white[1])
-    edge->white_doubt_px = 0.1 * 0.5 * edge->blur_px * sqrt(2 * M_PI);
+  edge->level_doubt_px = level_doubt(work, tone, edge);
   return fg_disc_solve(ctx, work, edge);
 }
 
 fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                               const fg_disc_candidate *candidate, fg_disc_edge *edge) {
-  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = 1};
+                               const fg_disc_candidate *candidate, const fg_tone *tone,
+                               fg_disc_edge *edge) {
+  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
   memset(edge, 0, sizeof *edge);
-  work.ring.circle = candidate->circle;
-  fg_status status = run(ctx, &work, candidate, edge);
-  fg_ring_free(&work.ring);
-  free(work.bins);
-  free(work.sectors);
+  edge->gamma = tone->gamma;
+  fg_status status = run(ctx, &work, candidate, tone, edge);
+  free_work(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;
 }

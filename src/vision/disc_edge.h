@@ -3,8 +3,8 @@
  * (1) Mean profiles of sectors tell the shape (levels, slopes, blur, tone curve) and centre the
  * circle. (2) The shape is smoothed around the circle by its first harmonics: blur is one-sided
  * along the carriage, the wall of a hole shows on one side. (3) With the shape held, the edge of
- * every station follows from its pixels by Gauss-Newton. What the pixels on either side of the edge
- * say apart from each other is kept: where they differ the model is wrong.
+ * every station follows from its pixels by Gauss-Newton. What the pixels of the core and those of the
+ * flanks say apart from each other is kept: where they differ the model's symmetry is wrong.
  *
  * A Gaussian blur of sd s moves the edge towards the centre by s²/(2R), whichever side is bright;
  * the stations have it put back. Lengths are square pixels (vision/disc_find.h).
@@ -21,11 +21,11 @@
 typedef struct fg_disc_station {
   float edge_px;           /* outwards from the circle */
   float u_px;              /* sd from pixel noise alone */
-  float split_px;          /* half of: what the pixels outside say minus what those inside say */
+  float split_px;          /* half of: what the flanks' pixels say minus what the core's say */
   float u_split_px;
   float weight;            /* 0: not usable; 1: good */
   float shape[FG_STEP_VALUES]; /* of its profile; the edge is not used */
-  float m[2], g[2];        /* sums over pixels inside and outside the edge */
+  float m[2], g[2];        /* sums over pixels of the core and of the flanks */
   float misfit;
   int32_t used, seen;
 } fg_disc_station;
@@ -37,13 +37,31 @@ typedef struct fg_disc_edge {
   double inside, outside;    /* levels, 8-bit counts */
   double blur_px, noise, gamma;
   double sector_rms_px;      /* of the sectors' edges about the circle */
-  double white_doubt_px;     /* by how much the edge moves if the light that is beyond the end of
-                                the scale exceeds it by a tenth of the contrast; 0: not clipped */
+  double level_doubt_px;     /* what all edge_px may be wrong by together: for the tone curve's
+                                doubt, and, where the scale ends at white, for light a tenth of
+                                the contrast beyond it */
 } fg_disc_edge;
+
+/* The tone curve, G(u) = 255 (u/255)^(1/gamma). */
+typedef struct fg_tone {
+  double gamma;
+  double doubt; /* standard deviation; INFINITY: not known */
+  bool slopes;  /* a halo or a wall beside the edge may have made the asymmetry */
+} fg_tone;
+
+/* What the edge around a candidate says of the tone curve: its asymmetry, where no side is white.
+ * FG_ERR_NUMERIC when there is no edge. One feature says too little: pool them. */
+fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                            const fg_disc_candidate *candidate, fg_tone *tone);
+
+/* One tone curve for all; gamma is 1, without doubt, unless they agree on another value. Where slopes
+ * may have made that value it becomes a doubt of gamma 1. */
+fg_tone fg_tone_pool(const fg_tone *tones, size_t count);
 
 /* FG_ERR_NUMERIC when there is no edge around the candidate. */
 fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                               const fg_disc_candidate *candidate, fg_disc_edge *edge);
+                               const fg_disc_candidate *candidate, const fg_tone *tone,
+                               fg_disc_edge *edge);
 void fg_disc_edge_free(fg_disc_edge *edge);
 
 /* One feature at work. */
@@ -61,8 +79,8 @@ typedef struct fg_disc_work {
 /* The shape of every station from the sectors' fits. disc_shape.c */
 fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge);
 
-/* The tone curve's gamma from the sectors' profiles; 1 where it cannot be told. */
-fg_status fg_disc_find_gamma(fg_context *ctx, fg_disc_work *work);
+/* The tone curve from the sectors' profiles, which are fitted again for it. disc_tone.c */
+fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone);
 
 /* Whether a slope (FG_STEP_SLOPE_IN or _OUT) is more than the sectors' own scatter. */
 bool fg_disc_has_slope(const fg_disc_work *work, int value);

@@ -10,7 +10,7 @@
 #include "vision/disc_contour.h"
 #include "vision/reduce.h"
 
-enum { LEVELS = 24, LEVEL_STEP_LEAST = 2, RARE_CELLS = 20, CELLS_MOST = 6000000, LEVELS_AGREE = 3 };
+enum { LEVELS = 32, LEVEL_STEP_LEAST = 2, RARE_CELLS = 20, CELLS_MOST = 6000000, LEVELS_AGREE = 2 };
 
 /* Circles of one level. */
 typedef struct level_rounds {

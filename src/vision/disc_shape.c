@@ -10,7 +10,6 @@
 
 enum { HARMONICS_MAX = 3, BASIS_MAX = 2 * HARMONICS_MAX + 1 };
 #define OUTLIER_DEVIATIONS 4.0
-#define GAMMA_LEAST_CHANGE 0.01
 
 /* One value of the shape around the turn. */
 typedef struct course {
@@ -128,28 +127,4 @@ bool fg_disc_has_slope(const fg_disc_work *work, int value) {
     n++;
   }
   return n > 0 && (sum * sum > 9 * weights || squares > n + 4 * sqrt(2 * n));
-}
-
-fg_status fg_disc_find_gamma(fg_context *ctx, fg_disc_work *work) {
-  size_t count = work->ring.sector_count, n = 0;
-  double *values;
-  work->gamma = 1;
-  if (work->white[0] || work->white[1]) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, (void **)&values));
-  for (size_t s = 0; s < count; s++) {
-    fg_step_fit fit = work->sectors[s];
-    if (!fit.good) continue;
-    fit.held &= ~(1u << FG_STEP_GAMMA);
-    fg_step_fit_model(work->bins + s * work->bin_count, work->bin_count, &fit);
-    if (fit.good) values[n++] = fit.values[FG_STEP_GAMMA];
-  }
-  if (n >= 6) {
-    double upper = fg_select(values, n, n * 3 / 4), lower = fg_select(values, n, n / 4);
-    double gamma = fg_select(values, n, n / 2);
-    double doubt = 1.2533 * 0.7413 * (upper - lower) / sqrt((double)n);
-    if (fabs(gamma - 1) > fmax(3 * doubt, GAMMA_LEAST_CHANGE))
-      work->gamma = fmin(fmax(gamma, 0.33), 3.5);
-  }
-  free(values);
-  return FG_OK;
 }

@@ -14,6 +14,8 @@ enum { ROUNDS = 4 };
 /* Pixels up to so many blurs from the edge tell where it is. */
 #define REACH_BLURS 4.0f
 #define MOVE_MAX_PX 3.0f
+/* Pixels nearer to the edge than this hold half of what all know about it. */
+#define CORE_BLURS 0.48f
 
 static void clear_sums(fg_disc_station *s) {
   s->m[0] = s->m[1] = s->g[0] = s->g[1] = s->misfit = 0;
@@ -37,7 +39,7 @@ static void add_pixel(const fg_edge_tables *tables, fg_disc_station *s, const fg
   float residual = p->value - model;
   if (fabsf(residual) > limit) return;
   float by_edge = -rate * step * density / blur;
-  int side = d > 0;
+  int side = fabsf(t) > CORE_BLURS;
   s->m[side] += by_edge * by_edge;
   s->g[side] += by_edge * residual;
   s->misfit += residual * residual;
