@@ -13,10 +13,12 @@ enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64
 #define REACH_PX    8.0
 #define REACH_BLURS 6.0
 #define START_PX    12.0
+#define SOUND_SHARE 0.01
 /* A sector whose step is below this share of the typical one has no edge. */
 #define STEP_SHARE 0.3
 /* Less contrast than this many counts is no edge. */
 #define CONTRAST_LEAST 6.0
+#define TRIM_DEVIATIONS 2.5
 /* Clipped light may exceed the end of the scale by this share of the contrast. */
 #define WHITE_DOUBT 0.1
 
@@ -144,7 +146,7 @@ static double trim(const fg_point *points, size_t n, const fg_circle *circle, do
   double sum = 0, used = 0;
   for (size_t i = 0; i < n; i++)
     scratch[i] = fabs(hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius);
-  double limit = fmax(4 * 1.4826 * fg_select(scratch, n, n / 2), 0.3);
+  double limit = fmax(TRIM_DEVIATIONS * 1.4826 * fg_select(scratch, n, n / 2), 0.3);
   for (size_t i = 0; i < n; i++) {
     double off = hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius;
     weights[i] = fabs(off) <= limit;
@@ -208,7 +210,10 @@ static fg_status find_ring(fg_context *ctx, fg_disc_work *work, const fg_disc_ca
     FG_TRY(fit_sectors(ctx, work, 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN |
                                       1u << FG_STEP_SLOPE_OUT));
     FG_TRY(centre_ring(ctx, work, rms));
-    reach = REACH_PX + REACH_BLURS * typical_blur(work) + 3 * *rms;
+    /* An edge that is damaged or not round keeps the first reach: a wider one takes in what lies
+     * beside it. */
+    if (*rms < SOUND_SHARE * work->ring.circle.radius)
+      reach = REACH_PX + REACH_BLURS * typical_blur(work) + 3 * *rms;
   }
   return fill_ring(ctx, work, reach);
 }
