@@ -18,7 +18,7 @@ static uint8_t from_blocks(const fg_tiles *tiles, const fg_reduced *r, int32_t i
   double sum = 0;
   for (int64_t y = y0; y < y0 + n && y < tiles->block_rows; y++)
     for (int64_t x = x0; x < x0 + n && x < tiles->block_columns; x++, sum_of++)
-      sum += (double)tiles->blocks[(size_t)y * (size_t)tiles->block_columns + (size_t)x];
+      sum += (double)fg_tiles_block(tiles, (int32_t)x, (int32_t)y);
   return to_byte(sum / (double)(sum_of ? sum_of : 1));
 }
 
@@ -36,10 +36,9 @@ static uint8_t from_pixels(const fg_tiles *tiles, const void *tile, int32_t cell
 static uint8_t cell_at(const fg_tiles *tiles, const fg_reduced *r, int32_t i, int32_t j) {
   if (r->cell_px >= FG_BLOCK_PX) return from_blocks(tiles, r, i, j);
   int64_t x = (int64_t)i * r->cell_px, y = (int64_t)j * r->cell_px;
-  const void *tile = tiles->pixels[(size_t)(y / FG_TILE_PX) * (size_t)tiles->columns +
-                                   (size_t)(x / FG_TILE_PX)];
+  const fg_tile *tile = fg_tiles_at(tiles, (int32_t)(x / FG_TILE_PX), (int32_t)(y / FG_TILE_PX));
   if (!tile) return from_blocks(tiles, r, i, j);
-  return from_pixels(tiles, tile, r->cell_px,
+  return from_pixels(tiles, tile->pixels, r->cell_px,
                      (size_t)(y % FG_TILE_PX) * FG_TILE_PX + (size_t)(x % FG_TILE_PX));
 }
 
