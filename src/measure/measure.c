@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "foilgauge/scan.h"
+#include "measure/discs.h"
 #include "measure/reader.h"
 #include "measure/session.h"
 
@@ -23,6 +24,23 @@ static fg_status measure_foils(fg_context *ctx, fg_scan *scan, unsigned threads,
                      m->scan, m->specks, m->dpi[0]);
 exit:
   fg_session_free(session);
+  fg_tiles_free(&tiles);
+  return status;
+}
+
+/* A part with round features may fill the scan: its tiles are all kept to the end. */
+static fg_status keep_reading(fg_context *ctx, fg_tiles *tiles, void *data) {
+  (void)ctx;
+  (void)tiles;
+  (void)data;
+  return FG_OK;
+}
+
+static fg_status measure_discs(fg_context *ctx, fg_scan *scan, unsigned threads,
+                               fg_measurement *m) {
+  fg_tiles tiles = {0};
+  fg_status status = fg_reader_run(ctx, scan, keep_reading, NULL, &tiles, m->sha256);
+  if (status == FG_OK) status = fg_measure_discs(ctx, &tiles, threads, m);
   fg_tiles_free(&tiles);
   return status;
 }
@@ -51,7 +69,11 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   measurement->design = *design;
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
-  FG_TRY_EXIT(measure_foils(ctx, scan, options ? options->threads : 0, measurement));
+  unsigned threads = options ? options->threads : 0;
+  if (design->form == FG_FORM_DISCS)
+    FG_TRY_EXIT(measure_discs(ctx, scan, threads, measurement));
+  else
+    FG_TRY_EXIT(measure_foils(ctx, scan, threads, measurement));
 exit:
   fg_scan_close(scan);
   if (status != FG_OK) fg_measurement_free(measurement);
