@@ -28,7 +28,8 @@ static uint8_t from_pixels(const fg_tiles *tiles, const void *tile, int32_t cell
   for (int32_t y = 0; y < cell_px; y++)
     for (int32_t x = 0; x < cell_px; x++) {
       size_t at = first + (size_t)y * FG_TILE_PX + (size_t)x;
-      sum += tiles->bytes_per_pixel == 1 ? ((const uint8_t *)tile)[at] : ((const uint16_t *)tile)[at];
+      sum +=
+          tiles->bytes_per_pixel == 1 ? ((const uint8_t *)tile)[at] : ((const uint16_t *)tile)[at];
     }
   return to_byte((double)sum / n / (tiles->bytes_per_pixel == 1 ? 1 : 257));
 }
@@ -36,8 +37,8 @@ static uint8_t from_pixels(const fg_tiles *tiles, const void *tile, int32_t cell
 static uint8_t cell_at(const fg_tiles *tiles, const fg_reduced *r, int32_t i, int32_t j) {
   if (r->cell_px >= FG_BLOCK_PX) return from_blocks(tiles, r, i, j);
   int64_t x = (int64_t)i * r->cell_px, y = (int64_t)j * r->cell_px;
-  const void *tile = tiles->pixels[(size_t)(y / FG_TILE_PX) * (size_t)tiles->columns +
-                                   (size_t)(x / FG_TILE_PX)];
+  const void *tile =
+      tiles->pixels[(size_t)(y / FG_TILE_PX) * (size_t)tiles->columns + (size_t)(x / FG_TILE_PX)];
   if (!tile) return from_blocks(tiles, r, i, j);
   return from_pixels(tiles, tile, r->cell_px,
                      (size_t)(y % FG_TILE_PX) * FG_TILE_PX + (size_t)(x % FG_TILE_PX));
