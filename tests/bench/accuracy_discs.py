@@ -137,8 +137,8 @@ together where gamma is not 1, and the coverage counts plates rather than discs 
 
 One-sided blur 1.6 px, edge roughness 1.5 µm over 50 µm, halo of 12 % over 15 px, noise correlated
 by 0.6. The bound is that of white noise on a clean edge, for comparison only. Beside a halo the tone
-curve cannot be told: gamma is taken for 1 with a doubt of 0.4, which is all of R's uncertainty where it
-is 1 and hardly enough where it is 1.8.
+curve cannot be told: gamma is taken for 1 with a doubt of 0.4, which is nearly all of R's uncertainty:
+far too much where gamma is 1, about what it takes where it is 1.8. The centre's uncertainty lacks it.
 
 {rough}"""
 
