@@ -16,14 +16,17 @@ enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MOST = 400 };
 #define OUTLIERS_SHARE     0.01
 /* Neighbouring bands of the spectrum have one level unless chance makes them differ so rarely. */
 #define BAND_P 0.01
+/* The shape of the edge was fitted to the same pixels, so its noise moves whole turns of stations
+ * together, unseen in their spectrum. How much more variance that is was measured on renders. */
+#define SHAPE_VARIANCE 1.12
 /* A difference between the edge's core and flanks counts above so many of its own deviations. */
 #define SPLIT_DEVIATIONS 3.0
 
 typedef struct fit_work {
   fg_disc_point *points;
   size_t count, used;
-  fg_point *at;       /* of the points */
-  double *weights;    /* 0: not used; mean 1 over those used */
+  fg_point *at;    /* of the points */
+  double *weights; /* 0: not used; mean 1 over those used */
   double *residuals;
   double *scratch;
   fg_circle_fit fit;
@@ -58,7 +61,8 @@ static void weigh(fit_work *w, double scatter) {
     w->weights[i] = w->points[i].used ? 1 / (u * u + rough + 1e-16) : 0;
     sum += w->weights[i];
   }
-  for (size_t i = 0; i < w->count; i++) w->weights[i] *= (double)n / sum;
+  for (size_t i = 0; i < w->count; i++)
+    w->weights[i] *= (double)n / sum;
   w->used = n;
 }
 
@@ -80,7 +84,8 @@ static fg_status fit_robust(fg_context *ctx, fit_work *w) {
   return FG_OK;
 }
 
-/* Mean power of harmonics [from, to) of the weighted residuals: the variance, if they were white. */
+/* Mean power of harmonics [from, to) of the weighted residuals: the variance, if they were white.
+ */
 static double band_power(const fit_work *w, size_t from, size_t to) {
   double total = 0;
   for (size_t k = from; k < to; k++) {
@@ -115,9 +120,9 @@ static double low_level(const fit_work *w) {
   return level * student * student;
 }
 
-/* Adds what the parameters would move by if the difference of the edge's core and flanks were an error of
- * the edge, where it is more than its own noise; `excess` is how much more the spectrum's low end
- * holds than white pixel noise does. */
+/* Adds what the parameters would move by if the difference of the edge's core and flanks were an
+ * error of the edge, where it is more than its own noise; `excess` is how much more the spectrum's
+ * low end holds than white pixel noise does. */
 static void add_split(const fit_work *w, double excess, double covariance[3][3]) {
   fg_normal_equations system;
   double row[3], x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
@@ -148,16 +153,18 @@ static double mean_noise(const fit_work *w) {
 }
 
 static void fill_circle(const fit_work *w, double level_doubt_mm, fg_disc *disc) {
-  double level = low_level(w);
+  double level = SHAPE_VARIANCE * low_level(w);
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) disc->covariance[p][q] = level * w->fit.covariance[p][q];
+    for (int q = 0; q < 3; q++)
+      disc->covariance[p][q] = level * w->fit.covariance[p][q];
   add_split(w, level / mean_noise(w), disc->covariance);
   disc->covariance[2][2] += level_doubt_mm * level_doubt_mm;
   const fg_circle *c = &w->fit.circle;
   disc->centre_mm = (fg_point){c->x, c->y};
   disc->radius_mm = c->radius;
   disc->diameter_mm = 2 * c->radius;
-  for (int i = 0; i < 2; i++) disc->u_centre_mm[i] = sqrt(disc->covariance[i][i]);
+  for (int i = 0; i < 2; i++)
+    disc->u_centre_mm[i] = sqrt(disc->covariance[i][i]);
   disc->u_radius_mm = sqrt(disc->covariance[2][2]);
   disc->u_diameter_mm = 2 * disc->u_radius_mm;
   disc->rms_um = 1000 * w->fit.rms;
@@ -167,7 +174,8 @@ static void fill_circle(const fit_work *w, double level_doubt_mm, fg_disc *disc)
 /* Residuals without gaps: linear between the usable neighbours. */
 static void bridge_gaps(fit_work *w) {
   size_t first = 0, n = w->count;
-  while (first < n && !w->points[first].used) first++;
+  while (first < n && !w->points[first].used)
+    first++;
   size_t last = first;
   for (size_t k = 1; k <= n && first < n; k++) {
     size_t i = (first + k) % n, gap = (i + n - last) % n;

@@ -13,7 +13,7 @@ enum { HARMONICS = 160, GRID = 720, SIMULATIONS = 48, SMOOTH = 2, SEED = 1 };
 
 /* Filtered harmonics, cos and sin, and the sd of either's noise. */
 typedef struct spectrum {
-  size_t count;                 /* harmonics 2 to count - 1 */
+  size_t count; /* harmonics 2 to count - 1 */
   double c[HARMONICS][2];
   double noise[HARMONICS];
   double cosine[GRID], sine[GRID];
@@ -38,7 +38,8 @@ static void transform(const double *values, size_t n, double u, spectrum *s) {
       sum[0] += values[i] * cos(angle);
       sum[1] += values[i] * sin(angle);
     }
-    for (int part = 0; part < 2; part++) s->c[k][part] = sum[part] * transmission(k) * 2 / (double)n;
+    for (int part = 0; part < 2; part++)
+      s->c[k][part] = sum[part] * transmission(k) * 2 / (double)n;
     s->noise[k] = u * sqrt(2 / (double)n) * transmission(k);
   }
 }
@@ -67,7 +68,8 @@ static void shrink(const spectrum *s, double c[HARMONICS][2]) {
       noise += 2 * s->noise[j] * s->noise[j];
     }
     double share = power > noise ? sqrt(1 - noise / power) : 0;
-    for (int part = 0; part < 2; part++) c[k][part] = share * s->c[k][part];
+    for (int part = 0; part < 2; part++)
+      c[k][part] = share * s->c[k][part];
   }
 }
 

@@ -13,9 +13,9 @@
 
 /* Round features below this radius are dust, unless the design states smaller ones; an edge needs
  * so many pixels of radius at the least. */
-#define RADIUS_LEAST_MM  0.2
-#define RADIUS_LEAST_PX  14.0
-#define DESIGN_SHARE     0.7
+#define RADIUS_LEAST_MM 0.2
+#define RADIUS_LEAST_PX 14.0
+#define DESIGN_SHARE    0.7
 /* Edges that leave their circle by more than this share of the radius (rms) are no round feature;
  * by more than the smaller share they are flagged. */
 #define ROUND_SHARE 0.04
@@ -30,7 +30,7 @@ typedef struct disc_work {
   double background; /* counts */
   fg_tone *tones;    /* one per candidate */
   fg_tone tone;
-  fg_disc *discs;    /* one per candidate; no points: no round feature */
+  fg_disc *discs; /* one per candidate; no points: no round feature */
 } disc_work;
 
 static double least_radius_px(const fg_design *design, const fg_pixel_shape *shape) {
@@ -70,13 +70,12 @@ static fg_status fit_edge(fg_context *ctx, const fg_disc_edge *edge, double um, 
     const fg_disc_station *s = &edge->stations[i];
     double angle = ((double)i + 0.5) * 2 * M_PI / (double)edge->count;
     double radius = edge->circle.radius + (double)s->edge_px;
-    points[i] = (fg_disc_point){
-        .at = {(edge->circle.x + radius * cos(angle)) * mm,
-               (edge->circle.y + radius * sin(angle)) * mm},
-        .u = (double)s->u_px * mm,
-        .split = (double)s->split_px * mm,
-        .u_split = (double)s->u_split_px * mm,
-        .used = s->weight > 0};
+    points[i] = (fg_disc_point){.at = {(edge->circle.x + radius * cos(angle)) * mm,
+                                       (edge->circle.y + radius * sin(angle)) * mm},
+                                .u = (double)s->u_px * mm,
+                                .split = (double)s->split_px * mm,
+                                .u_split = (double)s->u_split_px * mm,
+                                .used = s->weight > 0};
     if (!points[i].used) points[i].at = (fg_point){edge->circle.x * mm, edge->circle.y * mm};
   }
   fg_status status = fg_disc_fit(ctx, points, edge->count, edge->level_doubt_px * mm, disc);
@@ -100,8 +99,8 @@ static void clear_disc(fg_disc *disc) {
 
 static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
   disc_work *work = shared;
-  fg_status status = fg_disc_edge_tone(ctx, work->tiles, &work->shape, &work->found->list[i],
-                                       &work->tones[i]);
+  fg_status status =
+      fg_disc_edge_tone(ctx, work->tiles, &work->shape, &work->found->list[i], &work->tones[i]);
   if (status == FG_ERR_NUMERIC) work->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
@@ -111,9 +110,8 @@ static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
   disc_work *work = shared;
   fg_disc *disc = &work->discs[i];
   fg_disc_edge edge = {0};
-  fg_status status =
-      fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
-                           &work->tone, &edge);
+  fg_status status = fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
+                                          &work->tone, &edge);
   if (status == FG_OK) status = fit_edge(ctx, &edge, work->shape.um, disc);
   if (status == FG_OK) describe(work, &edge, disc);
   if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) clear_disc(disc);
@@ -170,7 +168,8 @@ static fg_status measure_candidates(fg_context *ctx, disc_work *work, unsigned t
   FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, measure_candidate, work));
   hand_over(work, m);
 exit:
-  for (size_t i = 0; work->discs && i < count; i++) clear_disc(&work->discs[i]);
+  for (size_t i = 0; work->discs && i < count; i++)
+    clear_disc(&work->discs[i]);
   free(work->discs);
   free(work->tones);
   return status;

@@ -12,8 +12,14 @@
 #define RMS_SHARE 0.02
 /* Points further off than so many tolerances are none of the circle's. */
 #define INLIER_TOLERANCES 2.5
-enum { REFITS = 4, TURN_BINS = 72, POINTS_LEAST = 12, WINDOWS = 24, WINDOW_SHARE = 10,
-       POINTS_PART_MOST = 40000 };
+enum {
+  REFITS = 4,
+  TURN_BINS = 72,
+  POINTS_LEAST = 12,
+  WINDOWS = 24,
+  WINDOW_SHARE = 10,
+  POINTS_PART_MOST = 40000
+};
 
 static double tolerance_of(const fg_outline *o, double radius) {
   return RMS_CELLS * o->cell + RMS_SHARE * radius;
@@ -35,7 +41,8 @@ static double weigh(fg_outline *o, fg_round *r) {
     int bin = (int)((atan2(dy, dx) / (2 * M_PI) + 0.5) * TURN_BINS);
     seen[bin < TURN_BINS ? bin : TURN_BINS - 1] = true;
   }
-  for (int i = 0; i < TURN_BINS; i++) bins += seen[i];
+  for (int i = 0; i < TURN_BINS; i++)
+    bins += seen[i];
   r->rms = r->inliers ? sqrt(sum / (double)r->inliers) : INFINITY;
   return bins * 360.0 / TURN_BINS;
 }

@@ -15,10 +15,10 @@ typedef struct fg_round {
 
 /* An outline at work; points that are taken move behind `count`. */
 typedef struct fg_outline {
-  fg_point *points;   /* in order along it */
-  double *weights;    /* scratch, as many */
+  fg_point *points; /* in order along it */
+  double *weights;  /* scratch, as many */
   size_t count;
-  double cell;        /* what a point is uncertain by */
+  double cell; /* what a point is uncertain by */
   double least_radius;
 } fg_outline;
 

@@ -17,7 +17,7 @@ enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64
 /* A sector whose step is below this share of the typical one has no edge. */
 #define STEP_SHARE 0.3
 /* Less contrast than this many counts is no edge. */
-#define CONTRAST_LEAST 6.0
+#define CONTRAST_LEAST  6.0
 #define TRIM_DEVIATIONS 2.5
 /* Clipped light may exceed the end of the scale by this share of the contrast. */
 #define WHITE_DOUBT 0.1
@@ -121,8 +121,7 @@ static fg_status fill_ring(fg_context *ctx, fg_disc_work *work, double reach_px)
   fg_ring *ring = &work->ring;
   double circumference = 2 * M_PI * ring->circle.radius;
   ring->reach_px = fmin(reach_px, 0.6 * ring->circle.radius);
-  ring->sector_count =
-      (size_t)fmin(fmax(circumference / SECTOR_PX, SECTORS_LEAST), SECTORS_MOST);
+  ring->sector_count = (size_t)fmin(fmax(circumference / SECTOR_PX, SECTORS_LEAST), SECTORS_MOST);
   size_t per_sector = (size_t)(circumference / STATION_PX / (double)ring->sector_count) + 1;
   ring->station_count = per_sector * ring->sector_count;
   FG_TRY(fg_ring_collect(ctx, work->tiles, work->shape, ring));
@@ -133,8 +132,8 @@ static fg_status fill_ring(fg_context *ctx, fg_disc_work *work, double reach_px)
   work->bin_count = fg_ring_bin_count(ring->reach_px);
   FG_TRY(fg_memory_allocate(ctx, ring->sector_count * work->bin_count, sizeof *work->bins,
                             (void **)&work->bins));
-  FG_TRY(fg_memory_allocate(ctx, ring->sector_count, sizeof *work->sectors,
-                            (void **)&work->sectors));
+  FG_TRY(
+      fg_memory_allocate(ctx, ring->sector_count, sizeof *work->sectors, (void **)&work->sectors));
   fg_ring_stack(ring, work->bins, work->bin_count);
   find_white(work);
   return FG_OK;
@@ -158,7 +157,8 @@ static double trim(const fg_point *points, size_t n, const fg_circle *circle, do
 
 static fg_status fit_trimmed(fg_context *ctx, fg_point *points, size_t n, double *block,
                              fg_circle *circle, double *rms) {
-  for (size_t i = 0; i < n; i++) block[i] = 1;
+  for (size_t i = 0; i < n; i++)
+    block[i] = 1;
   for (int round = 0; round < TRIM_ROUNDS; round++) {
     FG_TRY(fg_circle_estimate(ctx, points, block, n, circle));
     *rms = trim(points, n, circle, block, block + n);
@@ -207,8 +207,8 @@ static fg_status find_ring(fg_context *ctx, fg_disc_work *work, const fg_disc_ca
   work->ring.circle = candidate->circle;
   for (int round = 0; round < CENTRE_ROUNDS; round++) {
     FG_TRY(fill_ring(ctx, work, reach));
-    FG_TRY(fit_sectors(ctx, work, 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN |
-                                      1u << FG_STEP_SLOPE_OUT));
+    FG_TRY(fit_sectors(ctx, work,
+                       1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT));
     FG_TRY(centre_ring(ctx, work, rms));
     /* An edge that is damaged or not round keeps the first reach: a wider one takes in what lies
      * beside it. */
@@ -258,7 +258,8 @@ static double level_doubt(const fg_disc_work *work, const fg_tone *tone, const f
   double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
   const double lights[2] = {edge->inside, edge->outside};
   double counts[2];
-  for (int i = 0; i < 2; i++) counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / tone->gamma);
+  for (int i = 0; i < 2; i++)
+    counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / tone->gamma);
   if (work->white[0] || work->white[1]) white = WHITE_DOUBT * 0.5 * per_contrast;
   if (tone->doubt > 0)
     change = (count_at_edge(tone->gamma + tone->doubt, counts) -

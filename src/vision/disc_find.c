@@ -35,11 +35,15 @@ fg_pixel_shape fg_pixel_shape_of(const double dpi[2]) {
 static void choose_levels(search *s) {
   size_t counts[256] = {0}, n = (size_t)s->picture.width * (size_t)s->picture.height, sum = 0;
   int low = 0, high = 255;
-  for (size_t i = 0; i < n; i++) counts[s->picture.cells[i]]++;
-  while (low < 255 && (sum += counts[low]) <= RARE_CELLS) low++;
-  for (sum = 0; high > low && (sum += counts[high]) <= RARE_CELLS;) high--;
+  for (size_t i = 0; i < n; i++)
+    counts[s->picture.cells[i]]++;
+  while (low < 255 && (sum += counts[low]) <= RARE_CELLS)
+    low++;
+  for (sum = 0; high > low && (sum += counts[high]) <= RARE_CELLS;)
+    high--;
   double step = fmax((double)(high - low) / LEVELS, LEVEL_STEP_LEAST);
-  for (int i = 0; i < LEVELS; i++) s->levels[i].level = low + (i + 0.5) * step;
+  for (int i = 0; i < LEVELS; i++)
+    s->levels[i].level = low + (i + 0.5) * step;
 }
 
 /* The outline in square px, without what runs along the scan's border. */
@@ -94,11 +98,13 @@ exit:
 /* All levels' circles in one list. */
 static fg_status gather(fg_context *ctx, const search *s, fg_round **all, size_t *count) {
   *count = 0;
-  for (int i = 0; i < LEVELS; i++) *count += s->levels[i].count;
+  for (int i = 0; i < LEVELS; i++)
+    *count += s->levels[i].count;
   FG_TRY(fg_memory_allocate(ctx, *count, sizeof **all, (void **)all));
   fg_round *to = *all;
   for (int i = 0; i < LEVELS; i++)
-    for (size_t k = 0; k < s->levels[i].count; k++) *to++ = s->levels[i].rounds[k];
+    for (size_t k = 0; k < s->levels[i].count; k++)
+      *to++ = s->levels[i].rounds[k];
   return FG_OK;
 }
 
@@ -156,8 +162,10 @@ static void keep_best(const fg_round *all, const ranked *ranks, size_t count, do
     for (size_t k = 0; k < found->count && free_place; k++)
       free_place = !collide(circle, &found->list[k].circle);
     if (!free_place) continue;
-    found->list[found->count++] = (fg_disc_candidate){
-        .circle = *circle, .levels = ranks[i].levels, .doubt_px = 1.5 * cell + 0.02 * circle->radius};
+    found->list[found->count++] =
+        (fg_disc_candidate){.circle = *circle,
+                            .levels = ranks[i].levels,
+                            .doubt_px = 1.5 * cell + 0.02 * circle->radius};
   }
 }
 
@@ -194,7 +202,8 @@ fg_status fg_discs_find(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_s
   FG_TRY_EXIT(choose(ctx, &s, found));
   found->other_shapes = s.levels[LEVELS / 2].rejected;
 exit:
-  for (int i = 0; i < LEVELS; i++) free(s.levels[i].rounds);
+  for (int i = 0; i < LEVELS; i++)
+    free(s.levels[i].rounds);
   free(s.picture.cells);
   if (status != FG_OK) fg_disc_candidates_free(found);
   return status;

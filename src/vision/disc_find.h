@@ -18,15 +18,15 @@ extern "C" {
 #endif
 
 typedef struct fg_disc_candidate {
-  fg_circle circle;  /* square px */
-  double doubt_px;   /* how far the edge may lie from it */
-  int levels;        /* outlines that agree */
+  fg_circle circle; /* square px */
+  double doubt_px;  /* how far the edge may lie from it */
+  int levels;       /* outlines that agree */
 } fg_disc_candidate;
 
 typedef struct fg_disc_candidates {
   fg_disc_candidate *list; /* owned; in reading order of their centres */
   size_t count;
-  size_t other_shapes;     /* outlines at the middle level that are not round */
+  size_t other_shapes; /* outlines at the middle level that are not round */
 } fg_disc_candidates;
 
 /* How a scan's pixels become square ones. */

@@ -35,7 +35,8 @@ static double predict(const course *c, double angle) {
 
 static double deviation(const course *c, size_t sector) {
   const fg_step_fit *fit = &c->work->sectors[sector];
-  return fit->good ? fit->values[c->value] - predict(c, sector_angle(c->work, (double)sector)) : NAN;
+  return fit->good ? fit->values[c->value] - predict(c, sector_angle(c->work, (double)sector))
+                   : NAN;
 }
 
 static bool fit_course(course *c, double limit) {
@@ -56,7 +57,8 @@ static bool fit_course(course *c, double limit) {
     count++;
     fg_normal_add(&system, row, fit->values[c->value], 1);
   }
-  for (size_t b = 1; b < c->unknowns; b++) system.matrix[b][b] += 1e-3 * system.matrix[0][0];
+  for (size_t b = 1; b < c->unknowns; b++)
+    system.matrix[b][b] += 1e-3 * system.matrix[0][0];
   if (!fg_normal_solve(&system, 0, x, NULL)) return false;
   memcpy(c->coefficients, x, c->unknowns * sizeof *x);
   double freedom = count - (double)c->unknowns;
@@ -95,7 +97,8 @@ fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_dis
   size_t good = 0;
   double *scratch;
   FG_TRY(fg_memory_allocate(ctx, work->ring.sector_count, sizeof *scratch, (void **)&scratch));
-  for (size_t s = 0; s < work->ring.sector_count; s++) good += work->sectors[s].good;
+  for (size_t s = 0; s < work->ring.sector_count; s++)
+    good += work->sectors[s].good;
   course c = {.work = work, .scratch = scratch};
   c.unknowns = good >= 24 ? 7 : good >= 14 ? 5 : 3;
   for (c.value = FG_STEP_EDGE; c.value <= FG_STEP_BLUR; c.value++) {

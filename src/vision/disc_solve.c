@@ -31,8 +31,8 @@ static void add_pixel(const fg_edge_tables *tables, fg_disc_station *s, const fg
   float g = shape[FG_STEP_SLOPE_IN], h = shape[FG_STEP_SLOPE_OUT];
   fg_edge_normal(tables, t, &density, &cumulative);
   float step = shape[FG_STEP_OUTSIDE] - shape[FG_STEP_INSIDE];
-  float light = shape[FG_STEP_INSIDE] + g * d + (step + (h - g) * d) * cumulative +
-                (h - g) * blur * density;
+  float light =
+      shape[FG_STEP_INSIDE] + g * d + (step + (h - g) * d) * cumulative + (h - g) * blur * density;
   fg_edge_tone(tables, light, &model, &rate);
   s->seen++;
   if ((model >= 254.5f && p->value >= 254.5f) || (model <= 0.5f && p->value <= 0.5f)) return;
@@ -83,12 +83,14 @@ static double estimate_noise(const fg_disc_edge *edge, double *scratch) {
 
 static void solve_round(const fg_disc_work *work, const fg_edge_tables *tables, float limit,
                         fg_disc_edge *edge) {
-  for (size_t i = 0; i < edge->count; i++) clear_sums(&edge->stations[i]);
+  for (size_t i = 0; i < edge->count; i++)
+    clear_sums(&edge->stations[i]);
   for (size_t i = 0; i < work->ring.count; i++) {
     const fg_ring_pixel *p = &work->ring.pixels[i];
     add_pixel(tables, &edge->stations[p->station], p, limit);
   }
-  for (size_t i = 0; i < edge->count; i++) move_edge(&edge->stations[i]);
+  for (size_t i = 0; i < edge->count; i++)
+    move_edge(&edge->stations[i]);
 }
 
 /* Scales the deviations, drops stations whose pixels miss the model far more than usual or that
@@ -119,8 +121,8 @@ fg_status fg_disc_solve(fg_context *ctx, const fg_disc_work *work, fg_disc_edge 
   for (int round = 0; round < ROUNDS; round++) {
     solve_round(work, tables, limit, edge);
     edge->noise = estimate_noise(edge, scratch);
-    limit = (float)(OUTLIER_SIGMAS * edge->noise +
-                    OUTLIER_SHARE * fabs(edge->outside - edge->inside));
+    limit =
+        (float)(OUTLIER_SIGMAS * edge->noise + OUTLIER_SHARE * fabs(edge->outside - edge->inside));
   }
   conclude(work, edge);
 exit:

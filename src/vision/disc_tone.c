@@ -12,7 +12,8 @@
 #define GAMMA_LEAST_CHANGE 0.003
 #define GAMMA_LOWEST       0.4
 #define GAMMA_HIGHEST      2.8
-#define GAMMA_DOUBT_MOST   0.25
+/* Beside a halo or a wall gamma cannot be told: it is taken for 1, which may be wrong by this. */
+#define GAMMA_DOUBT 0.4
 /* Sectors that scatter by more than so many of their own deviations do not show a tone curve. */
 #define SECTOR_SCATTER 3.0
 enum { SECTORS_LEAST = 6 };
@@ -50,8 +51,8 @@ fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) 
   FG_TRY(fg_memory_allocate(ctx, count, 2 * sizeof *values, (void **)&values));
   /* A tone curve that is not in the model looks like slopes, so both are asked at once. */
   fit_sectors(work, true);
-  bool slopes = fg_disc_has_slope(work, FG_STEP_SLOPE_IN) ||
-                fg_disc_has_slope(work, FG_STEP_SLOPE_OUT);
+  bool slopes =
+      fg_disc_has_slope(work, FG_STEP_SLOPE_IN) || fg_disc_has_slope(work, FG_STEP_SLOPE_OUT);
   if (!slopes) fit_sectors(work, false);
   for (size_t s = 0; s < count; s++) {
     const fg_step_fit *fit = &work->sectors[s];
@@ -80,8 +81,8 @@ fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
   if (n < 1) return linear;
   double gamma = sum / weights, spread = fmax(0, squares - sum * gamma);
   double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
+  if (2 * slopes > n || gamma < GAMMA_LOWEST || gamma > GAMMA_HIGHEST)
+    return (fg_tone){.gamma = 1, .doubt = GAMMA_DOUBT};
   if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * doubt, GAMMA_LEAST_CHANGE)) return linear;
-  bool odd = gamma < GAMMA_LOWEST || gamma > GAMMA_HIGHEST || 2 * slopes > n;
-  if (odd) linear.doubt = fmin(fabs(gamma - 1), GAMMA_DOUBT_MOST);
-  return odd ? linear : (fg_tone){.gamma = gamma, .doubt = doubt};
+  return (fg_tone){.gamma = gamma, .doubt = doubt};
 }

@@ -5,9 +5,9 @@
 #include "vision/tiles.h"
 
 typedef struct fg_reduced {
-  uint8_t *cells;        /* width × height; owned */
+  uint8_t *cells; /* width × height; owned */
   int32_t width, height;
-  int32_t cell_px;       /* a cell is the mean of cell_px × cell_px pixels */
+  int32_t cell_px; /* a cell is the mean of cell_px × cell_px pixels */
 } fg_reduced;
 
 /* The finest reduction (2, 4, 8, ... px) that has at most `cells_most` cells. Where a tile was not

@@ -64,7 +64,8 @@ static bool is_sensible(const double *x) {
 
 static void advance(const double *x, const double *dx, double *moved) {
   double gamma = x[FG_STEP_GAMMA] + dx[FG_STEP_GAMMA];
-  for (int i = 0; i < FG_STEP_VALUES; i++) moved[i] = x[i] + dx[i];
+  for (int i = 0; i < FG_STEP_VALUES; i++)
+    moved[i] = x[i] + dx[i];
   if (dx[FG_STEP_GAMMA] == 0 || gamma < 0.1) return;
   for (int i = FG_STEP_INSIDE; i <= FG_STEP_OUTSIDE; i++)
     moved[i] = dx[i] + 255 * pow(fmax(x[i], 1e-3) / 255, gamma / x[FG_STEP_GAMMA]);
@@ -73,7 +74,8 @@ static void advance(const double *x, const double *dx, double *moved) {
 static void conclude(const fg_profile_bin *bins, size_t count, const fg_normal_equations *system,
                      fg_step_fit *fit) {
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], used = 0;
-  for (size_t i = 0; i < count; i++) used += bins[i].count > 0;
+  for (size_t i = 0; i < count; i++)
+    used += bins[i].count > 0;
   fit->noise = used > FG_STEP_VALUES ? sqrt(system->sum_squares / (used - FG_STEP_VALUES)) : 0;
   fit->good = fit->good && fg_normal_solve(system, 0, x, inverse);
   for (int i = 0; i < FG_STEP_VALUES && fit->good; i++)

@@ -16,8 +16,16 @@
 #include "vision/edge_model.h"
 
 /* Values of the model, in this order. */
-enum { FG_STEP_EDGE, FG_STEP_INSIDE, FG_STEP_OUTSIDE, FG_STEP_SLOPE_IN, FG_STEP_SLOPE_OUT,
-       FG_STEP_BLUR, FG_STEP_GAMMA, FG_STEP_VALUES };
+enum {
+  FG_STEP_EDGE,
+  FG_STEP_INSIDE,
+  FG_STEP_OUTSIDE,
+  FG_STEP_SLOPE_IN,
+  FG_STEP_SLOPE_OUT,
+  FG_STEP_BLUR,
+  FG_STEP_GAMMA,
+  FG_STEP_VALUES
+};
 
 #define FG_COUNT_WHITE 253.5 /* mean counts above are taken for the end of the scale */
 

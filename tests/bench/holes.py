@@ -33,6 +33,30 @@ def measure(scan, dpi):
     return lib.load(os.path.join(FOLDER, "holes.json"))["discs"], rows
 
 
+def circle_rms(x, y):
+    """Orthogonal-distance circle by Gauss-Newton: radius and rms."""
+    cx, cy, radius = x.mean(), y.mean(), np.hypot(x - x.mean(), y - y.mean()).mean()
+    for _ in range(20):
+        d = np.hypot(x - cx, y - cy)
+        jacobian = np.array([(x - cx) / d, (y - cy) / d, np.ones_like(d)]).T
+        step = np.linalg.lstsq(jacobian, d - radius, rcond=None)[0]
+        cx, cy, radius = cx + step[0], cy + step[1], radius + step[2]
+    return radius, np.sqrt(np.mean((np.hypot(x - cx, y - cy) - radius) ** 2))
+
+
+def best_row_step(disc, rows, pitch_mm):
+    """The whole number of rows that, put in below some y, makes the feature roundest."""
+    own = [row for row in rows if int(row["disc"]) == disc["number"]]
+    x, y = (np.array([float(row[name]) for row in own]) for name in ("x_mm", "y_mm"))
+    best = None
+    for at in np.arange(y.min() + 0.1, y.max() - 0.1, 0.02):
+        for count in range(-5, 6):
+            radius, rms = circle_rms(x, y + np.where(y > at, count * pitch_mm, 0))
+            if best is None or rms < best[3]:
+                best = (count, at, radius, rms)
+    return best
+
+
 def residual(disc, rows):
     """Direction (degrees, from x to y, that is clockwise as seen) and residual, sorted."""
     own = [row for row in rows if int(row["disc"]) == disc["number"]]
@@ -122,7 +146,9 @@ def main():
         file.write(f"\n## Residual of feature {disc['number']}\n\n![Residual against direction](holes.svg)\n\n")
         file.write(lib.table(["undulations per turn", "amplitude µm", "first lobe at"],
                              [[k, f"{a:.1f}", f"{p:.0f}°"] for k, a, p in waves]))
-        file.write("\n" + seen)
+        count, at, radius, rms = best_row_step(disc, rows, lib.MM_PER_INCH / (arguments.dpi or 1200))
+        file.write(f"\nThe feature is roundest with {count} rows put in below y = {at:.2f} mm: "
+                   f"rms {rms * 1000:.1f} µm, R {radius:.4f} mm.\n\n" + seen)
     print(feature_table(discs))
     print(waves)
 

@@ -31,7 +31,8 @@ static fg_status measure_file(fg_context *ctx, const char *path, unsigned thread
   return fg_measure_scan(ctx, path, &design, &options, m);
 }
 
-/* Draws a plate and measures it; `members` is what stands beside "discs" and "foils" in the spec. */
+/* Draws a plate and measures it; `members` is what stands beside "discs" and "foils" in the spec.
+ */
 static fg_status measure_plate(fg_context *ctx, const char *members, unsigned threads,
                                fg_measurement *m) {
   char json[4096], path[] = "/tmp/foilgauge_discs_XXXXXX";
@@ -55,7 +56,8 @@ static fg_measurement measure_good(const char *members) {
   return m;
 }
 
-static void assert_disc(const fg_disc *disc, double x, double y, double radius, double tolerance_um) {
+static void assert_disc(const fg_disc *disc, double x, double y, double radius,
+                        double tolerance_um) {
   assert_close(disc->radius_mm * 1000, radius * 1000, tolerance_um);
   assert_close(disc->centre_mm.x * 1000, x * 1000, 2 * tolerance_um);
   assert_close(disc->centre_mm.y * 1000, y * 1000, 2 * tolerance_um);
@@ -151,7 +153,8 @@ static void touching_discs_are_two(void **state) {
   assert_int_equal(m.disc_count, 2);
   assert_close(m.discs[0].radius_mm * 1000, 800, 0.5);
   assert_close(m.discs[1].radius_mm * 1000, 600, 0.5);
-  for (int i = 0; i < 2; i++) assert_true(m.discs[i].coverage_deg < 350);
+  for (int i = 0; i < 2; i++)
+    assert_true(m.discs[i].coverage_deg < 350);
   fg_measurement_free(&m);
 }
 
