@@ -7,6 +7,11 @@
  * factor of their own, and predictions are averaged over them. With whole plots every coefficient
  * is judged by the error of its own stratum (doe.h).
  *
+ * Where the uncertainty of the responses differs between runs so much that it matters (some u
+ * above twice the middle one and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with
+ * s, the scatter of the process, such that the weighted residuals are as large as their freedom
+ * says (Mandel and Paule 1970); split plots are not weighed.
+ *
  * What cannot be computed is NaN, and a note says why and what can still be said.
  */
 #ifndef FOILGAUGE_EXPERIMENT_H
@@ -99,6 +104,8 @@ typedef struct fg_experiment {
   double *setting;               /* rows × model.formula.variables: every run for predictions */
   double *u;                     /* rows: of the response; NULL: not known */
   double u_rms;                  /* NaN: not known */
+  double *weight;                /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
+  double process_sd;             /* scatter beside the measurement's; NaN: not separated */
 
   bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
   fg_lenth lenth;                /* of fg_effect.contrast */

@@ -171,9 +171,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
 
 static fg_status name_factors(fg_context *ctx, plan_arguments *a) {
   for (size_t i = 0; i < a->options.factors; i++)
-    a->factor[i] = (fg_plan_factor){.name = a->coding[i].name,
-                                    .low = a->coding[i].low.value,
-                                    .high = a->coding[i].high.value};
+    a->factor[i] = (fg_plan_factor){
+        .name = a->coding[i].name, .low = a->coding[i].low.value, .high = a->coding[i].high.value};
   for (size_t h = 0; h < a->hard_count; h++) {
     bool found = false;
     for (size_t i = 0; i < a->options.factors; i++)
@@ -220,8 +219,7 @@ static fg_status tell(fg_context *ctx, const fg_plan *plan) {
   fputc('\n', stderr);
   fg_status status = fg_plan_relation_text(ctx, plan, &relation);
   if (status == FG_OK) status = fg_plan_alias_text(ctx, plan, 2, 3, &aliases);
-  if (status == FG_OK && *relation)
-    fprintf(stderr, "%s\nnot told apart:\n%s", relation, aliases);
+  if (status == FG_OK && *relation) fprintf(stderr, "%s\nnot told apart:\n%s", relation, aliases);
   free(relation);
   free(aliases);
   return status;

@@ -106,8 +106,8 @@ static fg_status describe_failure(fg_context *ctx, fg_experiment_scan *scan, con
 static fg_status measure_scan(fg_context *ctx, const measuring *m, fg_experiment_scan *scan) {
   fg_measurement measurement = {0};
   fg_context words = {0};
-  fg_status status = fg_measure_scan(&words, scan->path, m->options->design, &m->options->measure,
-                                     &measurement);
+  fg_status status =
+      fg_measure_scan(&words, scan->path, m->options->design, &m->options->measure, &measurement);
   if (status == FG_ERR_MEMORY || status == FG_ERR_INTERRUPTED)
     return fg_fail(ctx, status, "%s", words.message);
   if (status != FG_OK) return describe_failure(ctx, scan, words.message);
@@ -238,8 +238,7 @@ fg_status fg_run_sheet_measure(fg_context *ctx, const fg_table *sheet,
                    sheet->source ? sheet->source : "the run sheet", options->quantity);
   FG_TRY_EXIT(fg_memory_allocate(ctx, sheet->rows, sizeof *m.value, (void **)&m.value));
   FG_TRY_EXIT(fg_memory_allocate(ctx, sheet->rows, sizeof *m.u, (void **)&m.u));
-  FG_TRY_EXIT(
-      fg_memory_allocate(ctx, sheet->rows, sizeof *measured->row, (void **)&measured->row));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, sheet->rows, sizeof *measured->row, (void **)&measured->row));
   FG_TRY_EXIT(measure_sheet(ctx, sheet, column, &m));
 exit:
   free(m.value);

@@ -13,8 +13,8 @@
 fg_status fg_experiment_note(fg_context *ctx, fg_experiment *e, const char *format, ...) {
   char text[1024];
   va_list arguments;
-  FG_TRY(fg_memory_reserve(ctx, e->notes + 1, sizeof *e->note, &e->note_capacity,
-                           (void **)&e->note));
+  FG_TRY(
+      fg_memory_reserve(ctx, e->notes + 1, sizeof *e->note, &e->note_capacity, (void **)&e->note));
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
@@ -82,9 +82,9 @@ static fg_status write_formula(fg_context *ctx, const fg_experiment_options *opt
     return fg_fail(ctx, FG_ERR_USAGE, "which column is the response? (--response NAME)");
   FG_TRY(fg_text_print(ctx, &e->response, "%s", response));
   FG_TRY(fg_formula_format(ctx, parsed, &right));
-  fg_status status = options->block ? fg_text_print(ctx, &e->formula, "factor(`%s`) + %s",
-                                                    options->block, right)
-                                    : fg_text_print(ctx, &e->formula, "%s", right);
+  fg_status status =
+      options->block ? fg_text_print(ctx, &e->formula, "factor(`%s`) + %s", options->block, right)
+                     : fg_text_print(ctx, &e->formula, "%s", right);
   free(right);
   return status;
 }
@@ -249,6 +249,7 @@ static fg_status fit(fg_context *ctx, fg_experiment *e) {
   const fg_extended *y = NULL;
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
   FG_TRY(fg_regression_fit(ctx, &e->model, y, &options, &e->regression));
+  FG_TRY(fg_experiment_weigh(ctx, e, y));
   for (size_t i = 0; i < e->regression.notes; i++)
     FG_TRY(fg_experiment_note(ctx, e, "%s", e->regression.note[i]));
   return FG_OK;
@@ -314,6 +315,7 @@ void fg_experiment_free(fg_experiment *e) {
   free(e->effect);
   free(e->setting);
   free(e->u);
+  free(e->weight);
   free(e->response);
   free(e->formula);
   free(e->block);

@@ -71,7 +71,7 @@ static void fill_effect(const fg_experiment *e, size_t j, fg_effect *effect) {
   effect->high = c->estimate + half;
 }
 
-/* b = G y with G = (X'X)^-1 X', so u²(b_j) = sum_i G_ji² u_i². `row` holds row j of (X'X)^-1. */
+/* b = G y with G = (X'WX)^-1 X'W, so u²(b_j) = sum_i G_ji² u_i². `row` holds row j of (X'X)^-1. */
 static void propagate(const fg_experiment *e, size_t j, double *row, fg_effect *effect) {
   const fg_regression *reg = &e->regression;
   double sum = 0;
@@ -81,6 +81,7 @@ static void propagate(const fg_experiment *e, size_t j, double *row, fg_effect *
     double gain = 0;
     for (size_t k = 0; k < reg->columns; k++)
       gain += row[k] * e->model.matrix[k * reg->rows + i].value;
+    if (e->weight) gain *= e->weight[i];
     sum += gain * gain * e->u[i] * e->u[i];
   }
   effect->u_measurement = sqrt(sum);
@@ -107,7 +108,7 @@ static fg_status note_measurement(fg_context *ctx, fg_experiment *e) {
                               "u_measurement is the part of a coefficient's standard error that "
                               "the measurement makes: the whole error is larger, by how much only "
                               "repeated runs can tell");
-  if (e->u_rms > reg->residual_sd)
+  if (!e->weight && e->u_rms > reg->residual_sd)
     return fg_experiment_note(ctx, e,
                               "the runs scatter less (%.3g) than the measurement's uncertainty "
                               "says (%.3g): by luck, or because the scans share an error; then the "
@@ -120,8 +121,8 @@ static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
   fg_formula formula = {0};
   if (!e->whole_plot) return FG_OK;
   FG_TRY(fg_formula_parse(ctx, e->formula, &formula));
-  fg_status status = fg_split_plot_analyse(ctx, &e->table, &formula, e->response, e->whole_plot,
-                                           &e->split_plot);
+  fg_status status =
+      fg_split_plot_analyse(ctx, &e->table, &formula, e->response, e->whole_plot, &e->split_plot);
   fg_formula_free(&formula);
   FG_TRY(status);
   e->has_split_plot = true;
@@ -162,21 +163,17 @@ static fg_status make_lenth(fg_context *ctx, fg_experiment *e) {
   for (size_t j = 0; e->has_lenth && j < e->regression.columns; j++)
     if (is_of_interest(e, j))
       e->effect[j].lenth_p_value = fg_lenth_p_value(&e->lenth, e->effect[j].contrast);
-  if (e->regression.residual_freedom) return FG_OK;
-  return fg_experiment_note(
-      ctx, e,
-      e->has_lenth
-          ? "the model has as many coefficients as there are distinct runs: no error is left to "
-            "judge by. Lenth's method takes it from the effects themselves, if most are nothing"
-          : "no error is left to judge by, and fewer than three effects are too few for Lenth's "
-            "method: leave terms out, or repeat runs");
+  if (e->regression.residual_freedom || count >= 3) return FG_OK;
+  return fg_experiment_note(ctx, e,
+                            "fewer than three effects are too few for Lenth's method: leave terms "
+                            "out, or repeat runs");
 }
 
 static fg_status make_box_cox(fg_context *ctx, fg_experiment *e) {
   const fg_extended *y = NULL;
   fg_context quiet = {0};
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
-  if (!e->regression.residual_freedom || e->table.rows > BOX_COX_RUNS) return FG_OK;
+  if (!e->regression.residual_freedom || e->table.rows > BOX_COX_RUNS || e->weight) return FG_OK;
   if (!(e->regression.residual_ss > 1e-24 * e->regression.total_ss)) return FG_OK;
   for (size_t i = 0; i < e->table.rows; i++)
     if (!(y[i].value > 0)) return FG_OK;
@@ -190,7 +187,7 @@ static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   size_t count = 0;
   for (size_t k = 0; k < e->factors; k++)
     if (e->factor[k].coded) names[count++] = e->factor[k].name;
-  if (!count || count < e->factors) return FG_OK;
+  if (!count || count < e->factors || e->weight) return FG_OK;
   fg_status status =
       fg_curvature_compute(&quiet, &e->table, names, count, e->response, &e->curvature);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", quiet.message);

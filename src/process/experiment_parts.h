@@ -7,6 +7,10 @@
 fg_status fg_experiment_note(fg_context *ctx, fg_experiment *experiment, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Fits again with weights where the measurement's uncertainty asks for it. */
+fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *experiment,
+                              const fg_extended *response);
+
 /* Split plots, coefficients by stratum, Lenth, Box-Cox, curvature, what the measurement adds. */
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
 

@@ -137,9 +137,9 @@ static fg_status make_ridge(fg_context *ctx, fg_experiment *e) {
   double radii[FG_RIDGE_POINTS], path[FG_RIDGE_POINTS * FG_SURFACE_FACTORS];
   double farthest = isfinite(e->region.radius) ? e->region.radius : 0, size = 0;
   size_t n = e->surface.factors;
-  bool highest = e->goal == FG_GOAL_HIGHEST ||
-                 (e->goal == FG_GOAL_TARGET && e->target > fg_surface_value(&e->surface,
-                                                                            e->region.centre));
+  bool highest =
+      e->goal == FG_GOAL_HIGHEST ||
+      (e->goal == FG_GOAL_TARGET && e->target > fg_surface_value(&e->surface, e->region.centre));
   for (size_t k = 0; k < n; k++)
     size = fmax(size, e->region.high[k] - e->region.low[k]);
   if (!(farthest > 0)) return FG_OK;

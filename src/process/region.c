@@ -91,8 +91,8 @@ static void project(const fg_region *r, double *x) {
 fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x) {
   bool bounded = region->radius >= 0;
   for (size_t i = 0; i < region->factors; i++)
-    bounded = bounded && region->low[i] <= region->high[i] &&
-              isfinite(region->high[i] - region->low[i]);
+    bounded =
+        bounded && region->low[i] <= region->high[i] && isfinite(region->high[i] - region->low[i]);
   double point[MOST] = {0};
   memcpy(point, x, region->factors * sizeof *x);
   if (bounded) project(region, point);
@@ -219,8 +219,7 @@ fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, 
     starts[i].cost = walk(&o, region, starts[i].x);
     bool better = starts[i].cost < best - 1e-12 * spread;
     bool as_good = starts[i].cost <= best + 1e-12 * spread;
-    bool nearer =
-        distance(starts[i].x, region->centre, n) < distance(x, region->centre, n) - SLACK;
+    bool nearer = distance(starts[i].x, region->centre, n) < distance(x, region->centre, n) - SLACK;
     if (i > 0 && !better && !(as_good && nearer)) continue;
     best = starts[i].cost;
     memcpy(x, starts[i].x, n * sizeof *x);

@@ -57,7 +57,8 @@ static double real_b(const slice *s, double i) {
   return fg_factor_real(s->fb, along(s->fb, i / GRID));
 }
 
-/* One rectangle per run of cells of one colour: from pale to blue; washed out outside the region. */
+/* One rectangle per run of cells of one colour: from pale to blue; washed out outside the region.
+ */
 static void put_bands(const fg_plot *at, const slice *s) {
   int bands = 1;
   for (int i = 0; i < GRID; i++)
@@ -127,8 +128,7 @@ static void put_runs(const fg_plot *at, const slice *s) {
   const fg_experiment *e = s->e;
   size_t variables = e->model.formula.variables, step = e->regression.rows / POINTS_SHOWN + 1;
   for (size_t i = 0; i < e->regression.rows; i += step)
-    fg_frame_dot(at, "run",
-                 fg_factor_real(s->fa, e->setting[i * variables + s->fa->variable]),
+    fg_frame_dot(at, "run", fg_factor_real(s->fa, e->setting[i * variables + s->fa->variable]),
                  fg_factor_real(s->fb, e->setting[i * variables + s->fb->variable]), 5);
   fg_frame_dot(at, "best", fg_factor_real(s->fa, e->optimum.x[s->a]),
                fg_factor_real(s->fb, e->optimum.x[s->b]), 6);

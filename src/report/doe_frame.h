@@ -15,7 +15,8 @@ void fg_frame_end(const fg_plot *at);
 void fg_range_add(double range[2], double value);
 
 void fg_frame_dot(const fg_plot *at, const char *style, double x, double y, double radius);
-void fg_frame_line(const fg_plot *at, const char *style, double x0, double y0, double x1, double y1);
+void fg_frame_line(const fg_plot *at, const char *style, double x0, double y0, double x1,
+                   double y1);
 /* Text beside a point, to its right where there is room, else to its left. */
 void fg_frame_text(const fg_plot *at, double x, double y, const char *text);
 

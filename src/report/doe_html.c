@@ -94,9 +94,10 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
     put_cell(out, c->vif, 4);
     fputs("</tr>\n", out);
   }
-  fputs("</tbody></table></div>\n<p class=\"note\">A coefficient is the change of the response over "
-        "half the range of a factor; relative: over the constant.</p>\n",
-        out);
+  fputs(
+      "</tbody></table></div>\n<p class=\"note\">A coefficient is the change of the response over "
+      "half the range of a factor; relative: over the constant.</p>\n",
+      out);
 }
 
 static void put_anova_row(FILE *out, const fg_anova_row *row, double partial, double partial_p) {
@@ -113,8 +114,8 @@ static void put_anova_row(FILE *out, const fg_anova_row *row, double partial, do
 
 static void put_error_row(FILE *out, const char *name, size_t freedom, double sum, double f,
                           double p_value) {
-  const fg_anova_row row = {(char *)(uintptr_t)name, freedom, sum,
-                            freedom ? sum / (double)freedom : NAN, f, p_value};
+  const fg_anova_row row = {
+      (char *)(uintptr_t)name, freedom, sum, freedom ? sum / (double)freedom : NAN, f, p_value};
   fputs("<tr>", out);
   put_anova_row(out, &row, NAN, NAN);
 }
@@ -170,13 +171,13 @@ static void put_runs(FILE *out, const fg_experiment_report *report) {
     fprintf(out, "<tr><td>%zu</td>", report->row ? report->row[i] : i + 1);
     for (size_t k = 0; k < e->factors; k++)
       put_cell(out,
-               fg_factor_real(&e->factor[k], e->setting[i * e->model.formula.variables +
-                                                        e->factor[k].variable]),
+               fg_factor_real(&e->factor[k],
+                              e->setting[i * e->model.formula.variables + e->factor[k].variable]),
                6);
     put_cell(out, r->fitted[i] + r->residual[i], 5);
     put_cell(out, e->u ? e->u[i] : NAN, 2);
     put_cell(out, r->fitted[i], 5);
-    put_cell(out, r->residual[i], 3);
+    put_cell(out, r->residual_freedom ? r->residual[i] : 0, 3);
     put_cell(out, r->external[i], 3);
     put_cell(out, r->leverage[i], 3);
     put_cell(out, r->cook[i], 3);
@@ -239,8 +240,9 @@ static fg_status put_plots(fg_context *ctx, FILE *out, const fg_experiment_repor
     end_panels(out);
   }
   if (e->factors) {
-    begin_panels(out, "Response along each factor",
-                 "The model with its interval, the other factors in the middle; circles: the runs.");
+    begin_panels(
+        out, "Response along each factor",
+        "The model with its interval, the other factors in the middle; circles: the runs.");
     FG_TRY(fg_doe_plot_profiles(ctx, out, e));
     end_panels(out);
   }

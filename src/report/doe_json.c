@@ -107,7 +107,9 @@ static void put_anova(fg_json *json, const fg_regression *r) {
        mean_square(r->pure_ss, r->pure_freedom), NAN, NAN},
       {(char[]){"total"}, r->residual_freedom + (size_t)model_freedom, r->total_ss, NAN, NAN, NAN},
   };
-  const fg_anova_row model = {(char[]){"model"}, (size_t)model_freedom, r->model_ss,
+  const fg_anova_row model = {(char[]){"model"},
+                              (size_t)model_freedom,
+                              r->model_ss,
                               mean_square(r->model_ss, (size_t)model_freedom),
                               r->model_ss / model_freedom / (r->residual_sd * r->residual_sd),
                               r->model_p_value};
@@ -323,6 +325,8 @@ static void put_measurement(fg_json *json, const fg_experiment *e) {
   double sd = e->regression.residual_sd;
   if (!begin_part(json, "measurement", e->u != NULL)) return;
   fg_json_number(json, "u_rms", e->u_rms);
+  fg_json_bool(json, "weighted", e->weight != NULL);
+  fg_json_number(json, "process_sd", e->process_sd);
   fg_json_number(json, "share_of_residual_variance", e->u_rms * e->u_rms / (sd * sd));
   fg_json_object_end(json);
 }

@@ -143,14 +143,15 @@ static fg_status put_pair(fg_context *ctx, FILE *out, const fg_experiment *e, co
   }
   snprintf(title, sizeof title, "%.250s × %.250s", a->name, b->name);
   fg_plot at = fg_frame_begin(out, title, x, range);
+  at.top = 48; /* the legend stands above */
   fg_plot_y_axis(&at, "response (model)");
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, a->name);
   for (int side = 0; side < 2; side++) {
     fprintf(out, "<path class=\"%s\" d=\"", side ? "s2" : "s1");
     for (int i = 0; i <= CURVE; i++)
-      fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M',
-              fg_plot_x(&at, x[0] + (x[1] - x[0]) * i / CURVE), fg_plot_y(&at, y[side][i]));
+      fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, x[0] + (x[1] - x[0]) * i / CURVE),
+              fg_plot_y(&at, y[side][i]));
     fputs("\"/>\n", out);
     fg_frame_dot(&at, side ? "s2" : "s1", x[0], y[side][0], 5);
     fg_frame_dot(&at, side ? "s2" : "s1", x[1], y[side][CURVE], 5);
@@ -159,7 +160,7 @@ static fg_status put_pair(fg_context *ctx, FILE *out, const fg_experiment *e, co
     fprintf(out,
             "<circle class=\"%s\" cx=\"%d\" cy=\"%d\" r=\"5\"/><text class=\"start\" x=\"%d\" "
             "y=\"%d\">",
-            side ? "s2" : "s1", 88, 22 + 18 * side, 98, 27 + 18 * side);
+            side ? "s2" : "s1", 84, 12 + 20 * side, 96, 17 + 20 * side);
     fg_html_text(out, text);
     fputs("</text>\n", out);
   }
@@ -211,8 +212,8 @@ static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_
                            : e->lenth.margin;
   double longest = bars[0].size;
   if (!e->has_split_plot && limit > 0) longest = fmax(longest, limit);
-  fg_plot at = {out, FG_FRAME_WIDTH, 190, FG_FRAME_WIDTH - 14, 8, height - 50, 0, longest * 1.05,
-                0,   1};
+  fg_plot at = {out, FG_FRAME_WIDTH, 190, FG_FRAME_WIDTH - 14, 8, height - 50, 0, longest * 1.05, 0,
+                1};
   fputs("<figure><h3>Pareto of effects</h3>", out);
   fg_plot_begin(&at, height, "Pareto of effects");
   fg_plot_x_numbers(&at);
@@ -226,11 +227,12 @@ static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_
             "class=\"y\" x=\"182\" y=\"%.1f\"%s>",
             is_on(e, bars[i].column) ? " on" : "", at.left, y,
             fg_plot_x(&at, bars[i].size) - at.left, y + 13,
-            strlen(name) > 24 ? " textLength=\"178\" lengthAdjust=\"spacingAndGlyphs\"" : "");
+            strlen(name) > 20 ? " textLength=\"178\" lengthAdjust=\"spacingAndGlyphs\"" : "");
     fg_html_text(out, name);
     fputs("</text>\n", out);
   }
-  if (!e->has_split_plot && (has_error || e->has_lenth)) fg_frame_line(&at, "limit", limit, 0, limit, 1);
+  if (!e->has_split_plot && (has_error || e->has_lenth))
+    fg_frame_line(&at, "limit", limit, 0, limit, 1);
   fg_plot_end(&at);
   fprintf(out, "<figcaption>%s%s</figcaption></figure>\n",
           has_error ? "Orange: told from the scatter. "
@@ -343,10 +345,10 @@ fg_status fg_doe_plot_residuals(fg_context *ctx, FILE *out, const fg_experiment_
   for (size_t i = 0; i < rows; i++)
     x[i] = (double)(report->row ? report->row[i] : i + 1);
   put_scatter(out, &(scatter){"Residual in the order of the sheet", "row", name, x, y, rows}, true);
-  put_scatter(out,
-              &(scatter){"Influence of the runs", "row", "Cook's distance", x, e->regression.cook,
-                         rows},
-              true);
+  put_scatter(
+      out,
+      &(scatter){"Influence of the runs", "row", "Cook's distance", x, e->regression.cook, rows},
+      true);
   for (size_t i = 0; i < rows; i++)
     if (isfinite(y[i])) y[finite++] = y[i];
   qsort(y, finite, sizeof *y, compare_doubles);
@@ -376,10 +378,10 @@ static fg_status put_profile(fg_context *ctx, FILE *out, const fg_experiment *e,
   }
   for (size_t i = 0; i < e->regression.rows; i++)
     fg_range_add(y, response_at(e, i));
-  double span = y[1] - y[0]; /* a wide interval must not flatten the curve */
-  for (int i = 0; i <= 2 * CURVE; i++) {
-    fg_range_add(y, fmax(p[i].low, y[0] - span));
-    fg_range_add(y, fmin(p[i].high, y[1] + span));
+  double lowest = y[0] - (y[1] - y[0]), highest = y[1] + (y[1] - y[0]);
+  for (int i = 0; i <= 2 * CURVE && isfinite(p[0].low); i++) { /* the curve must not look flat */
+    fg_range_add(y, fmax(p[i].low, lowest));
+    fg_range_add(y, fmin(p[i].high, highest));
   }
   snprintf(title, sizeof title, "Response along %.300s", f->name);
   fg_plot at = fg_frame_begin(out, title, x, y);

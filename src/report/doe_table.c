@@ -75,8 +75,8 @@ static void put_anova_row(FILE *out, const fg_anova_row *row) {
 
 static void put_error_row(FILE *out, const char *name, size_t freedom, double sum, double f,
                           double p_value) {
-  const fg_anova_row row = {(char *)(uintptr_t)name, freedom, sum,
-                            freedom ? sum / (double)freedom : NAN, f, p_value};
+  const fg_anova_row row = {
+      (char *)(uintptr_t)name, freedom, sum, freedom ? sum / (double)freedom : NAN, f, p_value};
   put_anova_row(out, &row);
 }
 

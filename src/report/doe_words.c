@@ -124,8 +124,9 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
     }
   }
   if (!judged)
-    return say(ctx, s, "No effect can be judged: there is no error to compare it with. Repeat runs "
-                       "or leave terms out.");
+    return say(ctx, s,
+               "No effect can be judged: there is no error to compare it with. Repeat runs "
+               "or leave terms out.");
   if (!found)
     return say(ctx, s, "No effect can be told from the scatter at %g %%: %s.", 100 * e->confidence,
                rest);
@@ -137,17 +138,19 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
 static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_regression *r = &e->regression;
   if (!r->residual_freedom) return FG_OK;
-  FG_TRY(say(ctx, s,
-             "The model explains %.0f %% of the variation (adjusted %.0f %%); it would predict "
-             "%s%.0f %% of it in runs that it has not seen. The runs scatter about it with a "
-             "standard deviation of %.3g (%zu degrees of freedom).",
-             100 * r->r2, 100 * r->adjusted_r2, r->predicted_r2 < 0 ? "none: " : "",
-             100 * r->predicted_r2, r->residual_sd, r->residual_freedom));
+  FG_TRY(
+      say(ctx, s,
+          "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
+          "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
+          "deviation of %.3g (%zu degrees of freedom).",
+          100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
+          r->residual_freedom));
   if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value))
-    FG_TRY(say(ctx, s, r->lack_p_value < 1 - e->confidence
-                           ? "The model does not fit: beside the scatter of repeated runs the lack "
-                             "of fit is significant (p = %.4f). Add terms or transform."
-                           : "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
+    FG_TRY(say(ctx, s,
+               r->lack_p_value < 1 - e->confidence
+                   ? "The model does not fit: beside the scatter of repeated runs the lack "
+                     "of fit is significant (p = %.4f). Add terms or transform."
+                   : "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
                r->lack_p_value));
   if (e->has_box_cox && (e->box_cox.low > 1 || e->box_cox.high < 1))
     FG_TRY(say(ctx, s,
@@ -169,7 +172,7 @@ static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sente
 
 static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   double sd = e->regression.residual_sd;
-  if (!e->u || !e->regression.residual_freedom || !(sd > 0)) return FG_OK;
+  if (!e->u || e->weight || !e->regression.residual_freedom || !(sd > 0)) return FG_OK;
   return say(ctx, s,
              "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "
              "rest is the process.",
@@ -218,10 +221,12 @@ static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentenc
                e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting,
                p->mean));
   if (e->magnitude && isfinite(p->run_low) && p->run_low < 0)
-    FG_TRY(say(ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
+    FG_TRY(
+        say(ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
   if (e->optimum.on_border)
-    FG_TRY(say(ctx, s, "It lies on the border of the region: the best may lie beyond, where there "
-                       "are no runs."));
+    FG_TRY(say(ctx, s,
+               "It lies on the border of the region: the best may lie beyond, where there "
+               "are no runs."));
   if (e->regression.model_p_value > 1 - e->confidence)
     return say(ctx, s,
                "Beware: the model as a whole is not told from the mean (p = %.3f), so the best "

@@ -55,14 +55,16 @@ static void put_residual_strokes(const fg_plot *at, const fg_foil *foil, fg_arc_
     double x = floor(fg_plot_x(at, foil->strip.stations[i].s_mm)) + 0.5;
     value = fmin(at->y_high, fmax(at->y_low, value));
     if (x != column && column >= 0)
-      fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7, fg_plot_y(at, high) - 0.7);
+      fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
+              fg_plot_y(at, high) - 0.7);
     if (x != column) low = high = value;
     column = x;
     low = fmin(low, value);
     high = fmax(high, value);
   }
   if (column >= 0)
-    fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7, fg_plot_y(at, high) - 0.7);
+    fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
+            fg_plot_y(at, high) - 0.7);
   fputs("\"/>\n", at->out);
 }
 
@@ -121,7 +123,8 @@ static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) 
           "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
           "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
           one->style, x, fg_plot_y(at, value - expanded), fg_plot_y(at, value + expanded), x - 5,
-          fg_plot_y(at, value - expanded), x - 5, fg_plot_y(at, value + expanded), one->style, x, y);
+          fg_plot_y(at, value - expanded), x - 5, fg_plot_y(at, value + expanded), one->style, x,
+          y);
 }
 
 void fg_html_springback(FILE *out, const fg_foil *foil) {

@@ -64,9 +64,10 @@ static const char style[] =
 
 /* Plots side by side, effects, contours. */
 static const char plot_style[] =
-    ".panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(330px,1fr));gap:14px 22px}"
+    ".panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(400px,100%),1fr));gap:"
+    "14px 22px}"
     ".panels figure{break-inside:avoid}.panels h3{font-size:14px;margin:4px 0 0;font-weight:600}"
-    ".wide{max-width:760px}.plot .start{text-anchor:start}.plot .soft{fill:var(--soft)}"
+    ".plot .start{text-anchor:start}.plot .soft{fill:var(--soft)}"
     ".plot .bar{fill:var(--blue)}.plot .bar.on{fill:var(--bump)}.ci{fill:#1f6fd0;fill-opacity:.14}"
     ".limit{stroke:var(--bad);stroke-width:1.5;stroke-dasharray:6 4}"
     ".hint{stroke:#8a96a1;stroke-width:1.5;stroke-dasharray:5 4}"
@@ -76,8 +77,8 @@ static const char plot_style[] =
     "stroke:#fff;stroke-width:3px;stroke-opacity:.8}\n"
     "ul.words{margin:0 0 14px;padding-left:20px}ul.words li{margin:3px 0;max-width:90ch}"
     "tr.on td{font-weight:600}tr.total td{border-top:2px solid var(--line)}\n"
-    "@media(max-width:600px){.panels .plot,.wide .plot{font-size:14px}}\n"
-    "@media print{.panels{grid-template-columns:1fr 1fr}.wide{max-width:130mm}}\n";
+    "@media(max-width:600px){.panels .plot{font-size:14px}}\n"
+    "@media print{.panels{grid-template-columns:1fr 1fr}}\n";
 
 void fg_html_text(FILE *out, const char *text) {
   while (*text) {

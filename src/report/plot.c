@@ -20,8 +20,8 @@ double fg_plot_nice_step(double span) {
 }
 
 void fg_plot_begin(const fg_plot *at, int height, const char *label) {
-  fprintf(at->out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"", at->width,
-          height);
+  fprintf(at->out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
+          at->width, height);
   fg_html_text(at->out, label);
   fputs("\">\n", at->out);
 }
