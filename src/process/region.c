@@ -68,23 +68,26 @@ static void project_on(const fg_region *r, size_t set, double *x) {
   }
 }
 
-/* Dykstra (1983): what each set's projection took away is given back before its next turn. */
+/* Dykstra (1983): what each set's projection took away is given back before its next turn. The
+ * point may stand still for many sweeps while what is given back still changes, so only when that
+ * has settled is it done (Birgin and Raydan 2005). */
 static void project(const fg_region *r, double *x) {
-  double given[SETS][MOST] = {{0}}, before[MOST], start[MOST];
+  double given[SETS][MOST] = {{0}}, before[MOST];
   size_t sets = r->planes + 2;
+  double settled = 1e-13 * size_of(r);
   if (fg_region_contains(r, x, 0)) return;
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
-    memcpy(start, x, sizeof start);
+    double change = 0;
     for (size_t s = 0; s < sets; s++) {
       for (size_t i = 0; i < r->factors; i++)
         before[i] = x[i] += given[s][i];
       project_on(r, s, x);
-      for (size_t i = 0; i < r->factors; i++)
+      for (size_t i = 0; i < r->factors; i++) {
+        change = fmax(change, fabs(before[i] - x[i] - given[s][i]));
         given[s][i] = before[i] - x[i];
+      }
     }
-    if (distance(start, x, r->factors) <= 1e-14 * size_of(r) &&
-        fg_region_contains(r, x, SLACK * size_of(r)))
-      break;
+    if (change <= settled) return;
   }
 }
 
