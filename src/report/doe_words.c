@@ -98,14 +98,16 @@ static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, f
   char p_value[16], interval[80] = "";
   double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
   fg_p_value_text(p_value, fg_effect_p_value(e, j));
+  const char *equals = *p_value == '<' ? "" : "= ";
   if (isfinite(effect->low))
     snprintf(interval, sizeof interval, ", %g %% interval %.3g to %.3g", 100 * e->confidence,
              change < 0 ? -high : low, change < 0 ? -low : high);
   if (factor)
-    return say(ctx, s, "%s matters: from %.6g to %.6g it %s the response by %.3g%s (p = %s).",
+    return say(ctx, s, "%s matters: from %.6g to %.6g it %s the response by %.3g%s (p %s%s).",
                factor->name, fg_factor_real(factor, -1), fg_factor_real(factor, 1),
-               change < 0 ? "lowers" : "raises", fabs(change), interval, p_value);
-  return say(ctx, s, "%s matters: coefficient %.4g (p = %s).", c->name, c->estimate, p_value);
+               change < 0 ? "lowers" : "raises", fabs(change), interval, equals, p_value);
+  return say(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate, equals,
+             p_value);
 }
 
 static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
