@@ -65,9 +65,9 @@ typedef struct fg_factor {
 /* What is said of a coefficient beyond regression.coefficient[i] (same index): the error is that
  * of its stratum. */
 typedef struct fg_effect {
-  bool block;           /* belongs to the blocks: not an effect of interest */
-  bool whole_plot;      /* judged by the scatter of whole plots */
-  double freedom;       /* of its error */
+  bool block;      /* belongs to the blocks: not an effect of interest */
+  bool whole_plot; /* judged by the scatter of whole plots */
+  double freedom;  /* of its error */
   double standard_error, t, p_value, low, high;
   double relative_pct;  /* 100 estimate / constant (table 5.2); NaN for the constant */
   double u_measurement; /* part of the standard error that the measurement's uncertainty makes */
@@ -90,41 +90,41 @@ typedef struct fg_ridge_point {
 } fg_ridge_point;
 
 typedef struct fg_experiment {
-  fg_table table;                /* as analysed: coded, sign applied */
-  char *response, *formula;      /* canonical, blocks included */
-  char *block, *whole_plot;      /* columns; NULL: none */
-  size_t block_variable;         /* of the model; FG_FORMULA_VARIABLES: no blocks */
+  fg_table table;           /* as analysed: coded, sign applied */
+  char *response, *formula; /* canonical, blocks included */
+  char *block, *whole_plot; /* columns; NULL: none */
+  size_t block_variable;    /* of the model; FG_FORMULA_VARIABLES: no blocks */
   double confidence;
-  bool magnitude, sign_chosen;   /* the response is |y|; by AUTO */
+  bool magnitude, sign_chosen; /* the response is |y|; by AUTO */
   fg_model model;
   fg_regression regression;
-  fg_effect *effect;             /* regression.columns */
+  fg_effect *effect; /* regression.columns */
   fg_factor factor[FG_FORMULA_VARIABLES];
   size_t factors;
-  double *setting;               /* rows × model.formula.variables: every run for predictions */
-  double *u;                     /* rows: of the response; NULL: not known */
-  double u_rms;                  /* NaN: not known */
-  double *weight;                /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
-  double process_sd;             /* scatter beside the measurement's; NaN: not separated */
+  double *setting;   /* rows × model.formula.variables: every run for predictions */
+  double *u;         /* rows: of the response; NULL: not known */
+  double u_rms;      /* NaN: not known */
+  double *weight;    /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
+  double process_sd; /* scatter beside the measurement's; NaN: not separated */
 
   bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
-  fg_lenth lenth;                /* of fg_effect.contrast */
+  fg_lenth lenth; /* of fg_effect.contrast */
   fg_box_cox box_cox;
   fg_curvature curvature;
   fg_split_plot split_plot;
   fg_surface surface;
-  bool stationary_inside;        /* the region */
-  fg_prediction stationary;      /* at the stationary point */
+  bool stationary_inside;   /* the region */
+  fg_prediction stationary; /* at the stationary point */
   fg_goal goal;
   double target;
-  fg_region region;              /* box and ball of the runs, and the constraints */
-  char **constraint;             /* as given */
+  fg_region region;  /* box and ball of the runs, and the constraints */
+  char **constraint; /* as given */
   size_t constraints;
   double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
   fg_optimum optimum;
   fg_ridge_point ridge[FG_RIDGE_POINTS];
 
-  char **note;                   /* what could not be said and why */
+  char **note; /* what could not be said and why */
   size_t notes, note_capacity;
 } fg_experiment;
 

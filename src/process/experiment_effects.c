@@ -187,7 +187,7 @@ static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
   size_t count = 0;
   for (size_t k = 0; k < e->factors; k++)
     if (e->factor[k].coded) names[count++] = e->factor[k].name;
-  if (!count || count < e->factors || e->weight) return FG_OK;
+  if (!count || count < e->factors || e->weight || e->has_split_plot) return FG_OK;
   fg_status status =
       fg_curvature_compute(&quiet, &e->table, names, count, e->response, &e->curvature);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", quiet.message);

@@ -147,7 +147,12 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
           "deviation of %.3g (%zu degrees of freedom).",
           100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
           r->residual_freedom));
-  if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value))
+  if (e->has_split_plot)
+    FG_TRY(say(ctx, s,
+               "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
+               "them by %.3g.",
+               sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_ms)));
+  if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)
     FG_TRY(say(ctx, s,
                r->lack_p_value < 1 - e->confidence
                    ? "The model does not fit: beside the scatter of repeated runs the lack "
