@@ -201,6 +201,16 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
+/* A foil that could not be measured is said on standard error too: the report may go to a file. */
+static void tell_failures(const fg_measurement *measurement) {
+  for (size_t i = 0; i < measurement->foil_count; i++) {
+    const fg_foil *foil = &measurement->foils[i];
+    if (foil->flags & FG_FOIL_NOT_MEASURED)
+      fprintf(stderr, "foilgauge: %s: foil %d could not be measured: %s\n", measurement->scan,
+              foil->number, foil->error);
+  }
+}
+
 /* A scan that fails is reported; only what stops everything is an error here. */
 static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   const fg_measure_options options_of_scan = {.dpi = run->arguments.dpi,
@@ -214,6 +224,7 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
     scan->measurement = &run->measurements[index];
     for (size_t i = 0; i < run->measurements[index].foil_count; i++)
       fg_foil_judge(&run->design, &run->measurements[index].foils[i]);
+    tell_failures(&run->measurements[index]);
     run->measured++;
     return FG_OK;
   }
