@@ -174,7 +174,7 @@ NAMES = {"coefficients: temperature_C": "coefficients: constant, temperature",
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--repetitions", type=int, default=100)
+    parser.add_argument("--repetitions", type=int, default=80)
     parser.add_argument("--output", default=str(ROOT / "reports" / "doe_end_to_end.md"))
     arguments = parser.parse_args()
     tasks = [(name, seed) for name in EXPERIMENTS for seed in range(1, arguments.repetitions + 1)]
