@@ -13,8 +13,9 @@ static fg_status measure_foils(fg_context *ctx, fg_scan *scan, unsigned threads,
   fg_tiles tiles = {0};
   fg_session *session = NULL;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_session_create(ctx, m, &tiles, threads, &session));
-  FG_TRY_EXIT(fg_reader_run(ctx, scan, fg_session_advance, session, &tiles, m->sha256));
+  FG_TRY_EXIT(fg_session_create(ctx, m, threads, &session));
+  FG_TRY_EXIT(fg_reader_run(ctx, scan, fg_session_advance, session, NULL, &tiles,
+                            m->sha256));
   FG_TRY_EXIT(fg_session_finish(ctx, session));
   if (m->foil_count == 0)
     status = fg_fail(ctx, FG_ERR_DATA,
