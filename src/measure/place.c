@@ -27,6 +27,8 @@ void fg_place_move(const int64_t origin_px[2], const double dpi[2], fg_foil *foi
   for (int k = 0; k < 2; k++) {
     by_mm[k] = (double)origin_px[k] * 25.4 / dpi[k];
     foil->strip.box_px[k] += origin_px[k];
+    foil->place_mm[k] = (double)foil->strip.box_px[k] * 25.4 / dpi[k];
+    foil->place_mm[2 + k] = (double)foil->strip.box_px[2 + k] * 25.4 / dpi[k];
   }
   move(&foil->overall.centre_mm, by_mm);
   for (size_t i = 0; i < foil->bump_count; i++) move(&foil->bumps[i].centre_mm, by_mm);
