@@ -103,8 +103,9 @@ static fg_status open_pnm(fg_context *ctx, fg_source *source, const fg_scan_opti
   reader->source = source;
   FG_TRY(read_header(ctx, reader, header));
   double bits = reader->bits ? 1 : header->bit_depth;
-  header->bytes_least = ceil((double)header->width_px * header->channels * bits / 8) *
-                        (double)header->height_px;
+  header->bytes_least = (double)source->offset +
+                        ceil((double)header->width_px * header->channels * bits / 8) *
+                            (double)header->height_px;
   reader->row_samples = (size_t)header->width_px * (size_t)header->channels;
   reader->row_bytes =
       reader->bits ? (reader->row_samples + 7) / 8 : reader->row_samples * (size_t)(bits / 8);

@@ -100,6 +100,7 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
 static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
                       va_list values) {
   fg_tiff *r = user;
+  if (strstr(format, "StripByteCounts")) r->counts_replaced = true;
   return r->strict && r->in_image ? on_error(tiff, user, module, format, values) : 1;
 }
 

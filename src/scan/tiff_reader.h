@@ -23,6 +23,7 @@ struct fg_tiff {
   bool separate;        /* each channel in a plane of its own */
   bool strict;          /* warnings about the image are errors */
   bool in_image, complained;
+  bool counts_replaced; /* libtiff found the byte counts wrong and made its own */
   char words[160];      /* libtiff's last error */
   fg_tiff_fetch *fetch;
   size_t row_bytes;     /* of a packed row, all channels */

@@ -120,18 +120,18 @@ static fg_status check_offsets(fg_context *ctx, const fg_tiff *r, uint64_t plane
   return FG_OK;
 }
 
+/* Says it when byte counts are wrong; the offsets are what counts. */
 static void note_counts(const fg_tiff *r, const uint64_t *counts, fg_scan_header *header) {
-  for (uint64_t strip = 0; strip < r->strip_count; strip++) {
+  bool wrong = r->counts_replaced;
+  for (uint64_t strip = 0; strip < r->strip_count && !wrong; strip++) {
     uint64_t first = strip * r->rows_per_strip % r->height, rows = r->height - first;
     if (rows > r->rows_per_strip) rows = r->rows_per_strip;
-    if (counts[strip] == rows * plane_row_bytes(r)) continue;
-    snprintf(header->warning, sizeof header->warning,
-             "the byte count of strip %llu is %llu and not %llu%s; the rows are taken as they follow",
-             (unsigned long long)strip + 1, (unsigned long long)counts[strip],
-             (unsigned long long)(rows * plane_row_bytes(r)),
-             counts[strip] == (uint32_t)(rows * plane_row_bytes(r)) ? " (wrapped at 4 GiB)" : "");
-    return;
+    wrong = counts[strip] != rows * plane_row_bytes(r);
   }
+  if (wrong)
+    snprintf(header->warning, sizeof header->warning,
+             "the byte counts of its strips are wrong (beyond 4 GiB they wrap round); the rows are "
+             "taken as they follow");
 }
 
 static fg_status plan_direct(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
