@@ -373,8 +373,8 @@ static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   FG_TRY(load_design(ctx, run));
   FG_TRY(open_outputs(ctx, run));
   FG_TRY(measure_all(ctx, run));
-  FG_TRY(write_outputs(ctx, run));
-  return outcome_code(ctx, run, code);
+  FG_TRY(outcome_code(ctx, run, code)); /* first: it can fail, and files that are written stay */
+  return write_outputs(ctx, run);
 }
 
 int fg_cmd_measure(int argc, char **argv) {
@@ -383,7 +383,8 @@ int fg_cmd_measure(int argc, char **argv) {
   measure_run run = {0};
   int code = 0;
   argv[0] = (char[]){"foilgauge measure"};
-  argp_parse(&parser, argc, argv, 0, NULL, &run.arguments);
+  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &run.arguments);
+  if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = measure(&ctx, &run, &code);
   free_run(&run);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);

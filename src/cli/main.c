@@ -1,3 +1,4 @@
+#include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +14,12 @@ static const fg_command commands[] = {
 int fg_cli_fail(const fg_context *ctx, fg_status status) {
   fprintf(stderr, "foilgauge: %s\n", ctx->message);
   return fg_status_exit_code(status);
+}
+
+fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                       void *input) {
+  if (argp_parse(parser, argc, argv, 0, NULL, input) == 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
 }
 
 static void print_help(FILE *out) {
