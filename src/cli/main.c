@@ -1,4 +1,5 @@
 #include <argp.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -32,6 +33,8 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+  /* Else every thread reserves 64 MiB of address space for itself, which counts where that is limited. */
+  mallopt(M_ARENA_MAX, 2);
   if (argc < 2) {
     print_help(stderr);
     return fg_status_exit_code(FG_ERR_USAGE);

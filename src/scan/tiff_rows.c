@@ -190,7 +190,7 @@ fg_status fg_tiff_read_row(fg_context *ctx, fg_tiff *r, void *samples) {
   unsigned bits = (unsigned)r->bits, mask = (1u << bits) - 1, per_byte = 8 / bits;
   uint8_t *out = samples;
   for (size_t x = 0; x < r->width; x++)
-    out[x] = (uint8_t)(r->packed[x / per_byte] >> (8 - bits * (x % per_byte + 1)) & mask);
+    out[x] = (uint8_t)((unsigned)r->packed[x / per_byte] >> (8 - bits * (x % per_byte + 1)) & mask);
   return FG_OK;
 }
 
