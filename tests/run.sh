@@ -1,6 +1,7 @@
 #!/bin/bash
 # Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
-# --long adds the accuracy and speed benchmarks, which rewrite the tables in reports/.
+# --long adds the accuracy, speed and bed benchmarks, which rewrite the tables in reports/, a minute of fuzzing
+# for each target, and a failure of every single allocation.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tests/packages.sh
@@ -22,6 +23,9 @@ build_preset sanitize build-sanitize
 if [ $long = yes ]; then
   tests/bench/accuracy.sh
   tests/bench/speed.sh
+  tests/bench/bed.sh
+  tests/fuzz/run.sh 60
+  step "failing every allocation once" bash tests/cli/test_failures.sh build/foilgauge 1
 fi
 
 # Both trees are tested even when the first fails; ctest's own summary is the last thing said.

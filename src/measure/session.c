@@ -265,16 +265,24 @@ static int compare_columns(const void *a, const void *b) {
   return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Foils whose middle lies within the first foil's height are one row of the bed. */
+/* Whether two foils lie side by side: their heights overlap by half of the lower one's. */
+static bool is_beside(const fg_foil *a, const fg_foil *b) {
+  const int64_t *p = a->strip.box_px, *q = b->strip.box_px;
+  int64_t top = p[1] > q[1] ? p[1] : q[1];
+  int64_t low = p[1] + p[3] < q[1] + q[3] ? p[1] + p[3] : q[1] + q[3];
+  return 2 * (low - top) > (p[3] < q[3] ? p[3] : q[3]);
+}
+
+/* Foils that lie beside the tallest one of a row, from its top on, are that row of the bed. */
 static void sort_foils(fg_measurement *m) {
   if (!m->foil_count) return;
   qsort(m->foils, m->foil_count, sizeof *m->foils, compare_boxes);
   for (size_t first = 0; first < m->foil_count;) {
-    int64_t low = m->foils[first].strip.box_px[1] + m->foils[first].strip.box_px[3];
-    size_t next = first + 1;
-    while (next < m->foil_count &&
-           m->foils[next].strip.box_px[1] + m->foils[next].strip.box_px[3] / 2 < low)
+    size_t next = first + 1, tallest = first;
+    while (next < m->foil_count && is_beside(&m->foils[next], &m->foils[tallest])) {
+      if (m->foils[next].strip.box_px[3] > m->foils[tallest].strip.box_px[3]) tallest = next;
       next++;
+    }
     qsort(m->foils + first, next - first, sizeof *m->foils, compare_columns);
     first = next;
   }
