@@ -18,6 +18,13 @@ fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_render;
 
+struct argp;
+
+/* Reads the command line into `input`. A wrong one ends the program (argp, exit code 64);
+ * FG_ERR_MEMORY when argp has no memory, which it says by its return value alone. */
+fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                       void *input);
+
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);
 

@@ -1,3 +1,5 @@
+#include <argp.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,6 +18,12 @@ int fg_cli_fail(const fg_context *ctx, fg_status status) {
   return fg_status_exit_code(status);
 }
 
+fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                       void *input) {
+  if (argp_parse(parser, argc, argv, 0, NULL, input) == 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
+}
+
 static void print_help(FILE *out) {
   fputs("foilgauge measures the foils of gas foil bearings from flatbed scans.\n\n"
         "Usage: foilgauge COMMAND [OPTION...]\n\nCommands:\n",
@@ -26,6 +34,8 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+  /* Else every thread reserves 64 MiB of address space for itself, which counts where that is limited. */
+  mallopt(M_ARENA_MAX, 2);
   if (argc < 2) {
     print_help(stderr);
     return fg_status_exit_code(FG_ERR_USAGE);
