@@ -122,7 +122,7 @@ static const char *verdict_title(fg_verdict verdict) {
   return "";
 }
 
-static void put_verdict(FILE *out, fg_verdict verdict) {
+void fg_html_verdict(FILE *out, fg_verdict verdict) {
   fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
           verdict_title(verdict));
 }
@@ -392,7 +392,7 @@ static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
   FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
   fg_verdict verdict = fg_judgements_verdict(list, count);
   fprintf(out, "<header><h1>Foil %d</h1>", foil->number);
-  put_verdict(out, measured ? verdict : FG_VERDICT_NOT_MEASURED);
+  fg_html_verdict(out, measured ? verdict : FG_VERDICT_NOT_MEASURED);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
   if (measured)
@@ -433,7 +433,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge(ctx, &one, &outcome));
   fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
-  put_verdict(out, outcome.verdict);
+  fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
   fputs("</p></header>\n", out);
@@ -452,7 +452,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
     fputs("<section>\n<header><h1>", out);
     fg_html_text(out, base_name(scan->path));
     fputs("</h1>", out);
-    put_verdict(out, FG_VERDICT_NOT_MEASURED);
+    fg_html_verdict(out, FG_VERDICT_NOT_MEASURED);
     fputs("</header>\n<p>", out);
     fg_html_text(out, scan->error);
     fputs("</p>\n</section>\n", out);
@@ -464,14 +464,22 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
   return FG_OK;
 }
 
-fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
+void fg_html_begin_page(FILE *out, const char *title) {
   fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
-  fg_html_text(out, base_name(report->scans[0].path));
+  fg_html_text(out, title);
   fprintf(out, " – foilgauge</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n", style);
+}
+
+void fg_html_end_page(FILE *out) {
+  fputs("</main>\n</body>\n</html>\n", out);
+}
+
+fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
+  fg_html_begin_page(out, base_name(report->scans[0].path));
   for (size_t i = 0; i < report->scan_count; i++)
     FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
-  fputs("</main>\n</body>\n</html>\n", out);
+  fg_html_end_page(out);
   return fg_report_finish(ctx, out, "the page");
 }

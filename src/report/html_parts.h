@@ -7,6 +7,13 @@
 /* Text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 
+/* Everything before and after the sections of a page; its style is shared by all pages. */
+void fg_html_begin_page(FILE *out, const char *title);
+void fg_html_end_page(FILE *out);
+
+/* The verdict as a coloured pill. */
+void fg_html_verdict(FILE *out, fg_verdict verdict);
+
 /* "3.39288 ± 0.00042", or "–" when it is not known. */
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object);
 
