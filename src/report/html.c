@@ -66,6 +66,17 @@ static const char style[] =
     "figure,tr{break-inside:avoid}.scroll{overflow:visible}table{font-size:7.6pt}"
     "th,td{padding:3px 4px}}\n";
 
+/* Of plots and of the pages of lots. */
+static const char more_style[] =
+    ".dot{fill:var(--blue);fill-opacity:.4}.signal{fill:var(--bad)}.bar{fill:#cfe0f5}"
+    ".plot .fit{stroke:var(--bump);stroke-width:2.5}.plot .curve{stroke:var(--blue);"
+    "stroke-width:2.5}.plot .thin{stroke:#8a96a1}.plot .hypothesis{stroke:var(--soft);"
+    "stroke-width:2;stroke-dasharray:7 5}.plot .limit{stroke:var(--bad);stroke-width:1.5;"
+    "stroke-dasharray:6 4}.plot .key{fill:var(--soft)}.plot .end{text-anchor:end;fill:var(--soft)}"
+    ".plot .sector{fill:#eaf1fb}.pair{display:grid;grid-template-columns:repeat(auto-fit,"
+    "minmax(300px,1fr));gap:18px}.polar{max-width:520px;margin:0 auto}\n"
+    "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";
+
 void fg_html_text(FILE *out, const char *text) {
   while (*text) {
     size_t length = fg_utf8_length(text);
@@ -469,7 +480,8 @@ void fg_html_begin_page(FILE *out, const char *title) {
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
   fg_html_text(out, title);
-  fprintf(out, " – foilgauge</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n", style);
+  fprintf(out, " – foilgauge</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n", style,
+          more_style);
 }
 
 void fg_html_end_page(FILE *out) {

@@ -3,66 +3,7 @@
 #include <stdlib.h>
 
 #include "report/html_parts.h"
-
-/* A plot's place for data, in units of its view box, and what its axes span. */
-typedef struct plot {
-  FILE *out;
-  double left, right, top, bottom;
-  double x_low, x_high, y_low, y_high;
-} plot;
-
-enum { PLOT_WIDTH = 1000, TICKS_WANTED = 5 };
-
-static double plot_x(const plot *at, double x) {
-  return at->left + (x - at->x_low) / (at->x_high - at->x_low) * (at->right - at->left);
-}
-
-static double plot_y(const plot *at, double y) {
-  return at->bottom - (y - at->y_low) / (at->y_high - at->y_low) * (at->bottom - at->top);
-}
-
-/* 1, 2 or 5 times a power of ten, about a fifth of the span. */
-static double nice_step(double span) {
-  double raw = span / TICKS_WANTED, power = pow(10, floor(log10(raw))), share = raw / power;
-  return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
-}
-
-static void begin_plot(const plot *at, int height, const char *label) {
-  fprintf(at->out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">\n",
-          PLOT_WIDTH, height, label);
-}
-
-static void put_y_axis(const plot *at, const char *title) {
-  double step = nice_step(at->y_high - at->y_low);
-  for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
-    double clean = fabs(y) < step * 1e-6 ? 0 : y;
-    fprintf(at->out,
-            "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/><text class=\"y\" x=\"%.1f\" "
-            "y=\"%.1f\">%.4g</text>\n",
-            clean == 0 ? "zero" : "grid", at->left, plot_y(at, clean), at->right, at->left - 8,
-            plot_y(at, clean) + 5, clean);
-  }
-  fprintf(at->out, "<text class=\"title\" transform=\"translate(16 %.1f) rotate(-90)\">%s</text>\n",
-          (at->top + at->bottom) / 2, title);
-}
-
-static void put_x_label(const plot *at, double x, const char *text) {
-  fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", x, at->bottom + 20, text);
-}
-
-static void put_x_numbers(const plot *at) {
-  double step = nice_step(at->x_high - at->x_low);
-  char text[32];
-  for (double x = ceil(at->x_low / step) * step; x <= at->x_high + step * 1e-6; x += step) {
-    snprintf(text, sizeof text, "%.4g", x);
-    put_x_label(at, plot_x(at, x), text);
-  }
-}
-
-static void put_x_title(const plot *at, const char *title) {
-  fprintf(at->out, "<text class=\"title\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-          (at->left + at->right) / 2, at->bottom + 40, title);
-}
+#include "report/plot.h"
 
 static bool has_residual(const fg_station_label *label) {
   return isfinite(label->residual_um) && (label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND);
@@ -89,12 +30,12 @@ static double residual_limit(const fg_foil *foil) {
   return limit > 0 ? limit : 1;
 }
 
-static void put_bump_bands(const plot *at, const fg_foil *foil) {
+static void put_bump_bands(const fg_plot *at, const fg_foil *foil) {
   char number[16];
   for (size_t i = 0; i < foil->bump_count; i++) {
     const fg_bump *bump = &foil->bumps[i];
     if (!(bump->arc_end_mm > bump->arc_start_mm)) continue;
-    double from = plot_x(at, bump->arc_start_mm), to = plot_x(at, bump->arc_end_mm);
+    double from = fg_plot_x(at, bump->arc_start_mm), to = fg_plot_x(at, bump->arc_end_mm);
     snprintf(number, sizeof number, "%d", bump->number);
     fprintf(at->out,
             "<rect class=\"band\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>"
@@ -104,39 +45,41 @@ static void put_bump_bands(const plot *at, const fg_foil *foil) {
 }
 
 /* Stations are many more than pixels: a stroke from the lowest to the highest of each column. */
-static void put_residual_strokes(const plot *at, const fg_foil *foil, fg_arc_kind kind,
+static void put_residual_strokes(const fg_plot *at, const fg_foil *foil, fg_arc_kind kind,
                                  const char *style) {
   double column = -1, low = 0, high = 0;
   fprintf(at->out, "<path class=\"%s\" d=\"", style);
   for (size_t i = 0; i < foil->strip.count; i++) {
     if (!has_residual(&foil->labels[i]) || foil->labels[i].kind != kind) continue;
     double value = foil->labels[i].residual_um;
-    double x = floor(plot_x(at, foil->strip.stations[i].s_mm)) + 0.5;
+    double x = floor(fg_plot_x(at, foil->strip.stations[i].s_mm)) + 0.5;
     value = fmin(at->y_high, fmax(at->y_low, value));
     if (x != column && column >= 0)
-      fprintf(at->out, "M%.1f %.1fV%.1f", column, plot_y(at, low) + 0.7, plot_y(at, high) - 0.7);
+      fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
+              fg_plot_y(at, high) - 0.7);
     if (x != column) low = high = value;
     column = x;
     low = fmin(low, value);
     high = fmax(high, value);
   }
   if (column >= 0)
-    fprintf(at->out, "M%.1f %.1fV%.1f", column, plot_y(at, low) + 0.7, plot_y(at, high) - 0.7);
+    fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
+            fg_plot_y(at, high) - 0.7);
   fputs("\"/>\n", at->out);
 }
 
 void fg_html_residuals(FILE *out, const fg_foil *foil) {
   if (!foil->labels || foil->strip.count < 2) return;
   double limit = residual_limit(foil);
-  plot at = {out, 70, 985, 26, 240, 0, 1, -limit, limit};
+  fg_plot at = {out, 70, 985, 26, 240, 0, 1, -limit, limit};
   at.x_low = foil->strip.stations[0].s_mm;
   at.x_high = foil->strip.stations[foil->strip.count - 1].s_mm;
   if (!(at.x_high > at.x_low)) return;
-  begin_plot(&at, 290, "Residual of the midline along the foil");
+  fg_plot_begin(&at, 290, "Residual of the midline along the foil");
   put_bump_bands(&at, foil);
-  put_y_axis(&at, "residual, µm");
-  put_x_numbers(&at);
-  put_x_title(&at, "along the foil, mm");
+  fg_plot_y_axis(&at, "residual, µm");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "along the foil, mm");
   put_residual_strokes(&at, foil, FG_ARC_LAND, "land");
   put_residual_strokes(&at, foil, FG_ARC_BUMP, "arc");
   fputs("</svg>\n", out);
@@ -170,17 +113,18 @@ static void springback_range(const fg_foil *foil, double range[2]) {
   range[1] += margin;
 }
 
-static void put_mark(const plot *at, const series *one, const fg_bump *bump) {
+static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) {
   const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, one->quantity);
   double value = fg_report_value(field, bump), u = fg_report_uncertainty(field, bump);
   if (!isfinite(value)) return;
-  double x = plot_x(at, bump->number) + one->shift, y = plot_y(at, value);
+  double x = fg_plot_x(at, bump->number) + one->shift, y = fg_plot_y(at, value);
   double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
   fprintf(at->out,
           "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
           "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
-          one->style, x, plot_y(at, value - expanded), plot_y(at, value + expanded), x - 5,
-          plot_y(at, value - expanded), x - 5, plot_y(at, value + expanded), one->style, x, y);
+          one->style, x, fg_plot_y(at, value - expanded), fg_plot_y(at, value + expanded), x - 5,
+          fg_plot_y(at, value - expanded), x - 5, fg_plot_y(at, value + expanded), one->style, x,
+          y);
 }
 
 void fg_html_springback(FILE *out, const fg_foil *foil) {
@@ -190,15 +134,15 @@ void fg_html_springback(FILE *out, const fg_foil *foil) {
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number > last) last = foil->bumps[i].number;
   springback_range(foil, range);
-  plot at = {out, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
-  begin_plot(&at, 310, "Springback error of every bump");
-  put_y_axis(&at, "springback error, %");
+  fg_plot at = {out, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
+  fg_plot_begin(&at, 310, "Springback error of every bump");
+  fg_plot_y_axis(&at, "springback error, %");
   for (size_t i = 0; i < foil->bump_count; i++) {
     char number[16];
     snprintf(number, sizeof number, "%d", foil->bumps[i].number);
-    put_x_label(&at, plot_x(&at, foil->bumps[i].number), number);
+    fg_plot_x_label(&at, fg_plot_x(&at, foil->bumps[i].number), number);
   }
-  put_x_title(&at, "bump, 1 is next to the lip");
+  fg_plot_x_title(&at, "bump, 1 is next to the lip");
   for (size_t k = 0; k < 2; k++) {
     for (size_t i = 0; i < foil->bump_count; i++)
       put_mark(&at, &both_series[k], &foil->bumps[i]);
