@@ -52,7 +52,7 @@ static void put_worst(FILE *out, const fg_lot_analysis *analysis) {
     } else if (foil->worst_field) {
       fprintf(out, ": %s", foil->worst_field->words);
       if (foil->worst_number) fprintf(out, " of bump %d", foil->worst_number);
-      fputs(" ", out);
+      fputs(": ", out);
       put_number(out, foil->worst_value, 5);
       fprintf(out, " %s", foil->worst_field->unit);
     }

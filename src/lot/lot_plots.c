@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "report/html_parts.h"
 #include "report/plot.h"
@@ -30,8 +31,11 @@ static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
       fg_plot_segment(at, at->x_low, limits[i], at->x_high, limits[i], "limit");
 }
 
+/* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
 static void axis_title(char *text, size_t size, const fg_report_field *field) {
-  snprintf(text, size, "%s%s%s", field->words, *field->unit ? ", " : "", field->unit);
+  enum { LETTERS = 28 };
+  snprintf(text, size, "%s%s%s", strlen(field->words) > LETTERS ? field->symbol : field->words,
+           *field->unit ? ", " : "", field->unit);
 }
 
 void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
@@ -151,6 +155,17 @@ static void put_constant_arc(const fg_plot *at) {
   fg_plot_line(at, x, y, CURVE_POINTS + 1, "hypothesis");
 }
 
+/* The part of the line that lies inside the plot. */
+static void put_fit(const fg_plot *at, double slope, double intercept) {
+  double x[2] = {at->x_low, at->x_high}, y[2];
+  double first = (at->y_low - intercept) / slope, second = (at->y_high - intercept) / slope;
+  x[0] = fmax(x[0], fmin(first, second));
+  x[1] = fmin(x[1], fmax(first, second));
+  for (int i = 0; i < 2; i++)
+    y[i] = intercept + slope * x[i];
+  if (x[1] > x[0]) fg_plot_line(at, x, y, 2, "fit");
+}
+
 static bool error_axes(const fg_lot_analysis *analysis, fg_plot *at) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_error_pct");
   const fg_lot_quantity *angle = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
@@ -174,8 +189,7 @@ void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
   fg_plot_x_title(&at, "radius error, %");
   put_constant_arc(&at);
   each_bump(&at, analysis, put_bump);
-  fg_plot_segment(&at, at.x_low, line->intercept + line->slope * at.x_low, at.x_high,
-                  line->intercept + line->slope * at.x_high, "fit");
+  put_fit(&at, line->slope, line->intercept);
   fg_plot_end(&at);
 }
 
