@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "foilgauge/lot.h"
 
 enum {
@@ -240,6 +241,9 @@ int fg_cmd_lot(int argc, char **argv) {
   int code = 0;
   argv[0] = (char[]){"foilgauge lot"};
   argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_status status = run(&ctx, &arguments, &code);
+  fg_interrupt interrupt = {0};
+  fg_status status = fg_interrupt_start(&ctx, NULL, 0, &interrupt);
+  if (status == FG_OK) status = run(&ctx, &arguments, &code);
+  fg_interrupt_stop(&interrupt);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

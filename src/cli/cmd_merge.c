@@ -1,6 +1,7 @@
 #include <argp.h>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "foilgauge/lot.h"
 
 typedef struct merge_arguments {
@@ -46,8 +47,12 @@ int fg_cmd_merge(int argc, char **argv) {
   fg_lot_outcome outcome;
   argv[0] = (char[]){"foilgauge merge"};
   argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_status status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
-                                  arguments.folder, &outcome);
+  fg_interrupt interrupt = {0};
+  fg_status status = fg_interrupt_start(&ctx, NULL, 0, &interrupt);
+  if (status == FG_OK)
+    status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
+                          arguments.folder, &outcome);
+  fg_interrupt_stop(&interrupt);
   return status == FG_OK ? fg_cli_lot_summary(&outcome, arguments.folder)
                          : fg_cli_fail(&ctx, status);
 }

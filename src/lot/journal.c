@@ -1,5 +1,6 @@
 #include "lot/journal.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -258,6 +259,19 @@ fg_status fg_journal_close(fg_context *ctx, fg_journal *journal) {
   return status;
 }
 
+/* Ours alone: the names that outputs have before they are whole (core/file.h). */
+static void remove_leftovers(const char *folder) {
+  static const char first[] = ".foilgauge-", last[] = ".tmp";
+  DIR *entries = opendir(folder);
+  const struct dirent *entry;
+  while (entries && (entry = readdir(entries))) {
+    size_t length = strlen(entry->d_name), end = sizeof last - 1;
+    if (strncmp(entry->d_name, first, sizeof first - 1) != 0 || length < end) continue;
+    if (!strcmp(entry->d_name + length - end, last)) unlinkat(dirfd(entries), entry->d_name, 0);
+  }
+  if (entries) closedir(entries);
+}
+
 fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock) {
   char *path = NULL;
   FG_TRY(fg_text_print(ctx, &path, "%s/.lock", folder));
@@ -272,6 +286,7 @@ fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock) {
     close(*lock);
     *lock = -1;
   }
+  if (status == FG_OK) remove_leftovers(folder);
   free(path);
   return status;
 }

@@ -62,8 +62,9 @@ fg_status fg_journal_append(fg_context *ctx, fg_journal *journal, const char *li
                             fg_journal_entry *entry);
 fg_status fg_journal_close(fg_context *ctx, fg_journal *journal);
 
-/* Takes the folder for this process until the descriptor is closed (or the process is no more).
- * FG_ERR_IO when another has it. */
+/* Takes the folder for this process until the descriptor is closed (or the process is no more),
+ * and removes the temporary files that a killed run has left there. FG_ERR_IO when another run has
+ * it. */
 fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock);
 
 #endif
