@@ -7,6 +7,9 @@ libopencv-core-dev libopencv-imgproc-dev libcmocka-dev"
 # Only the comparisons need these: what a user would write in Python instead.
 FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"
 
+# Only the long tests need it: regression is compared with R's.
+FOILGAUGE_R_PACKAGES="r-base-core"
+
 # step TEXT COMMAND...: one line per step; what the command says is shown only when it fails.
 step() {
   local text=$1 log

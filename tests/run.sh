@@ -1,6 +1,7 @@
 #!/bin/bash
 # Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
-# --long adds the accuracy and speed benchmarks, which rewrite the tables in reports/.
+# --long adds the accuracy and speed benchmarks, the rendered experiments, the thesis's experiments
+# and the comparison with R, which rewrite the tables in reports/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 . tests/packages.sh
@@ -22,6 +23,10 @@ build_preset sanitize build-sanitize
 if [ $long = yes ]; then
   tests/bench/accuracy.sh
   tests/bench/speed.sh
+  tests/bench/doe_end_to_end.sh
+  tests/bench/thesis.sh
+  install_missing $FOILGAUGE_R_PACKAGES
+  tests/bench/differential_r.sh 300 reports/differential_r.csv
 fi
 
 # Both trees are tested even when the first fails; ctest's own summary is the last thing said.

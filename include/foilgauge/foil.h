@@ -160,11 +160,13 @@ typedef struct fg_measurement {
   size_t specks;              /* objects left alone: dust, scratches, other shapes */
 } fg_measurement;
 
+void fg_foil_free(fg_foil *foil); /* what it owns; NULL is fine */
 void fg_measurement_free(fg_measurement *measurement);
 
 /* Recognises lip, lands, bumps and free end of a strip, fits every circle, derives every quantity.
  * Takes over foil->strip (filled by the caller); everything else of `foil` is set. What is wrong
- * with the foil or a bump is a flag, not an error; errors are FG_ERR_MEMORY only. The result does
+ * with the foil or a bump is a flag, not an error; errors are FG_ERR_MEMORY only. A foil that is the
+ * design's in shape but not in size is not measured: its scan's resolution must be wrong. The result does
  * not depend on `threads` (0: all cores). */
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
                           fg_foil *foil);

@@ -59,6 +59,30 @@ fg_status fg_surface_optimum_box(fg_context *ctx, const fg_surface *surface, boo
 fg_status fg_surface_optimum_ball(fg_context *ctx, const fg_surface *surface, bool highest,
                                   double radius, double *x);
 
+enum { FG_REGION_PLANES = 16 };
+
+/* Where an optimum may lie: a box, a ball and half-spaces at once (a convex region). */
+typedef struct fg_region {
+  size_t factors;
+  double low[FG_SURFACE_FACTORS], high[FG_SURFACE_FACTORS];
+  double centre[FG_SURFACE_FACTORS], radius; /* INFINITY: no ball */
+  double normal[FG_REGION_PLANES][FG_SURFACE_FACTORS], limit[FG_REGION_PLANES];
+  size_t planes; /* normal·x <= limit */
+} fg_region;
+
+typedef enum fg_goal { FG_GOAL_LOWEST, FG_GOAL_HIGHEST, FG_GOAL_TARGET } fg_goal;
+
+/* Inside, or outside by no more than `tolerance` (in the unit of x). */
+bool fg_region_contains(const fg_region *region, const double *x, double tolerance);
+/* The nearest point of the region (Dykstra 1983). FG_ERR_USAGE when the region is empty. */
+fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x);
+/* The lowest or highest point of the surface in the region, or one where it is nearest to `target`
+ * (the one nearest to the region's centre among the starts' answers): projected gradients from the
+ * best of a fixed set of scattered points. The same answer every time. FG_ERR_USAGE when the region
+ * is empty. */
+fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, fg_goal goal,
+                                    double target, const fg_region *region, double *x);
+
 /* The ridge path (Draper 1963): the best point on each sphere of radius radii[i] about the centre;
  * on a plane this is the path of steepest ascent or descent. `path` takes count × factors. */
 fg_status fg_surface_ridge_path(fg_context *ctx, const fg_surface *surface, bool highest,

@@ -1,12 +1,10 @@
 #include <argp.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/interrupt.h"
-#include "core/file.h"
+#include "cli/output_set.h"
 #include "core/memory.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/report.h"
@@ -31,7 +29,6 @@ static report_writer *const writers[OUT_COUNT] = {
 };
 
 typedef struct measure_arguments {
-  const char *paths[OUT_COUNT]; /* NULL: not asked for; "-": standard output */
   const char *design_path;
   const char *form;
   double dpi;
@@ -44,9 +41,7 @@ typedef struct measure_run {
   measure_arguments arguments;
   fg_design design;
   fg_nominal nominal;
-  fg_output outputs[OUT_COUNT];
-  bool open[OUT_COUNT];
-  fg_interrupt interrupt;
+  fg_output_set outputs;
   fg_measurement *measurements;
   fg_report_scan *scans;
   char (*errors)[sizeof(((fg_context *)0)->message)];
@@ -94,25 +89,26 @@ static double parse_number(struct argp_state *state, const char *name, const cha
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
-  measure_arguments *arguments = state->input;
+  measure_run *run = state->input;
+  measure_arguments *arguments = &run->arguments;
   switch (key) {
   case 'd':
     arguments->design_path = text;
     break;
   case 'o':
-    arguments->paths[OUT_JSON] = text;
+    run->outputs.path[OUT_JSON] = text;
     break;
   case OPTION_CSV:
-    arguments->paths[OUT_CSV] = text;
+    run->outputs.path[OUT_CSV] = text;
     break;
   case OPTION_POINTS:
-    arguments->paths[OUT_POINTS] = text;
+    run->outputs.path[OUT_POINTS] = text;
     break;
   case OPTION_OVERLAY:
-    arguments->paths[OUT_OVERLAY] = text;
+    run->outputs.path[OUT_OVERLAY] = text;
     break;
   case OPTION_HTML:
-    arguments->paths[OUT_HTML] = text;
+    run->outputs.path[OUT_HTML] = text;
     break;
   case OPTION_FORM:
     arguments->form = text;
@@ -143,53 +139,26 @@ static fg_status name_file(fg_context *ctx, const char *path, fg_status status) 
   return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);
 }
 
-static bool is_standard(const char *path) {
-  return !strcmp(path, "-");
-}
-
-/* Whether two paths are one regular file; a name that is not there yet is compared as text. */
-static bool same_file(const char *a, const char *b) {
-  struct stat stat_a, stat_b;
-  if (!strcmp(a, b)) return true;
-  if (stat(a, &stat_a) || stat(b, &stat_b)) return false;
-  return S_ISREG(stat_a.st_mode) && stat_a.st_dev == stat_b.st_dev &&
-         stat_a.st_ino == stat_b.st_ino;
-}
-
-static fg_status check_output(fg_context *ctx, const measure_arguments *arguments,
-                              output_kind kind) {
-  const char *path = arguments->paths[kind];
-  if (!path) return FG_OK;
-  for (int other = 0; other < (int)kind; other++)
-    if (arguments->paths[other] && same_file(path, arguments->paths[other]))
-      return fg_fail(ctx, FG_ERR_USAGE, "%s: two outputs cannot go to one file", path);
-  for (size_t i = 0; i < arguments->scan_count && !is_standard(path); i++)
-    if (same_file(path, arguments->scans[i]))
-      return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite the scan", path);
-  if (arguments->design_path && same_file(path, arguments->design_path))
-    return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite the design", path);
-  return FG_OK;
-}
-
 /* Results without -o go to standard output, unless another output is there already. */
-static void choose_standard_output(measure_arguments *arguments) {
-  if (arguments->paths[OUT_JSON]) return;
+static void choose_standard_output(fg_output_set *outputs) {
+  if (outputs->path[OUT_JSON]) return;
   for (int kind = 0; kind < OUT_COUNT; kind++)
-    if (arguments->paths[kind] && is_standard(arguments->paths[kind])) return;
-  arguments->paths[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
+    if (outputs->path[kind] && fg_is_standard(outputs->path[kind])) return;
+  outputs->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
 }
 
-static fg_status check_arguments(fg_context *ctx, const measure_arguments *arguments) {
+static fg_status check_arguments(fg_context *ctx, const measure_run *run) {
+  const measure_arguments *arguments = &run->arguments;
   size_t standard = 0;
   for (size_t i = 0; i < arguments->scan_count; i++)
-    standard += is_standard(arguments->scans[i]);
+    standard += fg_is_standard(arguments->scans[i]);
   if (standard > 1) return fg_fail(ctx, FG_ERR_USAGE, "-: standard input can be read only once");
-  if (arguments->paths[OUT_OVERLAY] && (arguments->scan_count > 1 || standard))
+  if (run->outputs.path[OUT_OVERLAY] && (arguments->scan_count > 1 || standard))
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--overlay shows one scan, read again from its file: give one file");
-  for (int kind = 0; kind < OUT_COUNT; kind++)
-    FG_TRY(check_output(ctx, arguments, (output_kind)kind));
-  return FG_OK;
+  for (size_t i = 0; i < arguments->scan_count; i++)
+    FG_TRY(fg_output_set_check(ctx, &run->outputs, arguments->scans[i], "the scan"));
+  return fg_output_set_check(ctx, &run->outputs, arguments->design_path, "the design");
 }
 
 static fg_status apply_form(fg_context *ctx, const char *form, fg_design *design) {
@@ -220,15 +189,6 @@ static fg_status load_design(fg_context *ctx, measure_run *run) {
                    fg_report_check_tolerances(ctx, &run->design));
 }
 
-static fg_status open_outputs(fg_context *ctx, measure_run *run) {
-  for (int kind = 0; kind < OUT_COUNT; kind++) {
-    if (!run->arguments.paths[kind]) continue;
-    FG_TRY(fg_output_open(ctx, run->arguments.paths[kind], &run->outputs[kind]));
-    run->open[kind] = true;
-  }
-  return fg_interrupt_start(ctx, run->outputs, OUT_COUNT, &run->interrupt);
-}
-
 static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
   size_t count = run->arguments.scan_count;
   void *block;
@@ -239,6 +199,16 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *run->errors, &block));
   run->errors = block;
   return FG_OK;
+}
+
+/* A foil that could not be measured is said on standard error too: the report may go to a file. */
+static void tell_failures(const fg_measurement *measurement) {
+  for (size_t i = 0; i < measurement->foil_count; i++) {
+    const fg_foil *foil = &measurement->foils[i];
+    if (foil->flags & FG_FOIL_NOT_MEASURED)
+      fprintf(stderr, "foilgauge: %s: foil %d could not be measured: %s\n", measurement->scan,
+              foil->number, foil->error);
+  }
 }
 
 /* A scan that fails is reported; only what stops everything is an error here. */
@@ -254,6 +224,7 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
     scan->measurement = &run->measurements[index];
     for (size_t i = 0; i < run->measurements[index].foil_count; i++)
       fg_foil_judge(&run->design, &run->measurements[index].foils[i]);
+    tell_failures(&run->measurements[index]);
     run->measured++;
     return FG_OK;
   }
@@ -275,38 +246,10 @@ static fg_status measure_all(fg_context *ctx, measure_run *run) {
                  run->arguments.scan_count);
 }
 
-/* An output that fails after another has its final name: none may look finished. */
-static void take_back(measure_run *run, int committed) {
-  for (int kind = 0; kind < committed; kind++) {
-    const char *path = run->arguments.paths[kind];
-    struct stat info;
-    if (path && !is_standard(path) && stat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
-  }
-}
-
-static fg_status write_one(fg_context *ctx, measure_run *run, output_kind kind) {
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  const measure_run *run = user;
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
-  const char *path = run->arguments.paths[kind];
-  fg_status status = writers[kind](ctx, &report, run->outputs[kind].stream);
-  if (status != FG_ERR_IO) return status;
-  return name_file(ctx, is_standard(path) ? "standard output" : path, status);
-}
-
-/* Writes and flushes everything before anything gets its final name, so that a full disk shows
- * first; standard output comes last, when all files are written. */
-static fg_status write_outputs(fg_context *ctx, measure_run *run) {
-  for (int standard = 0; standard <= 1; standard++)
-    for (int kind = 0; kind < OUT_COUNT; kind++)
-      if (run->open[kind] && is_standard(run->arguments.paths[kind]) == (standard == 1))
-        FG_TRY(write_one(ctx, run, (output_kind)kind));
-  for (int kind = 0; kind < OUT_COUNT; kind++) {
-    if (!run->open[kind]) continue;
-    fg_status status = fg_output_commit(ctx, &run->outputs[kind]);
-    if (status == FG_OK) continue;
-    take_back(run, kind);
-    return status;
-  }
-  return FG_OK;
+  return writers[kind](ctx, &report, out);
 }
 
 static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code) {
@@ -318,9 +261,7 @@ static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code
 }
 
 static void free_run(measure_run *run) {
-  fg_interrupt_stop(&run->interrupt);
-  for (int kind = 0; kind < OUT_COUNT; kind++)
-    if (run->open[kind]) fg_output_discard(&run->outputs[kind]);
+  fg_output_set_close(&run->outputs);
   for (size_t i = 0; run->scans && i < run->arguments.scan_count; i++)
     if (run->scans[i].measurement) fg_measurement_free(&run->measurements[i]);
   free(run->measurements);
@@ -329,22 +270,22 @@ static void free_run(measure_run *run) {
 }
 
 static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
-  choose_standard_output(&run->arguments);
-  FG_TRY(check_arguments(ctx, &run->arguments));
+  choose_standard_output(&run->outputs);
+  FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
-  FG_TRY(open_outputs(ctx, run));
+  FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));
-  FG_TRY(write_outputs(ctx, run));
+  FG_TRY(fg_output_set_write(ctx, &run->outputs, write_output, run));
   return outcome_code(ctx, run, code);
 }
 
 int fg_cmd_measure(int argc, char **argv) {
   static const struct argp parser = {options, parse_option, "SCAN...", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  measure_run run = {0};
+  measure_run run = {.outputs.count = OUT_COUNT};
   int code = 0;
   argv[0] = (char[]){"foilgauge measure"};
-  argp_parse(&parser, argc, argv, 0, NULL, &run.arguments);
+  argp_parse(&parser, argc, argv, 0, NULL, &run);
   fg_status status = measure(&ctx, &run, &code);
   free_run(&run);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);

@@ -15,6 +15,7 @@ typedef struct fg_command {
 } fg_command;
 
 fg_command_run fg_cmd_measure;
+fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_render;
 fg_command_run fg_cmd_lot;

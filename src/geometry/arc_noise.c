@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { RANGE_MOST = 4096 }; /* stations of one range that are looked at */
+
 /* One residual: of the datum line from its circle, or of the half width from its mean. */
 static double value_at(const fg_datum_line *line, const fg_arc *arc, size_t k, int values,
                        double mean) {
@@ -26,20 +28,27 @@ typedef struct lag_sums {
   double products[FG_NOISE_LAGS], pairs[FG_NOISE_LAGS];
 } lag_sums;
 
+/* Residuals of one range, NaN where a station is left out; at most RANGE_MOST of them. */
+static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range range, int values,
+                          double mean, double *list) {
+  size_t n = range.last - range.first + 1;
+  if (n > RANGE_MOST) n = RANGE_MOST;
+  for (size_t i = 0; i < n; i++) list[i] = value_at(line, arc, range.first + i, values, mean);
+  return n;
+}
+
 static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, size_t lags,
                     lag_sums *sums) {
-  double mean = values ? mean_half_width(line, arc) : 0;
-  for (size_t r = 0; r < arc->range_count; r++)
-    for (size_t i = arc->ranges[r].first; i <= arc->ranges[r].last; i++) {
-      double a = value_at(line, arc, i, values, mean);
-      if (!isfinite(a)) continue;
-      for (size_t lag = 0; lag < lags && i + lag <= arc->ranges[r].last; lag++) {
-        double b = value_at(line, arc, i + lag, values, mean);
-        if (!isfinite(b)) continue;
-        sums->products[lag] += a * b;
+  double mean = values ? mean_half_width(line, arc) : 0, list[RANGE_MOST];
+  for (size_t r = 0; r < arc->range_count; r++) {
+    size_t n = list_values(line, arc, arc->ranges[r], values, mean, list);
+    for (size_t i = 0; i < n; i++)
+      for (size_t lag = 0; isfinite(list[i]) && lag < lags && i + lag < n; lag++) {
+        if (!isfinite(list[i + lag])) continue;
+        sums->products[lag] += list[i] * list[i + lag];
         sums->pairs[lag] += 1;
       }
-    }
+  }
 }
 
 /* The first lag whose correlation is within two standard errors of nothing, or negative. */

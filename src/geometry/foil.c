@@ -23,6 +23,8 @@
 /* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
  * intensity model leaves on clean renders (reports/accuracy.md). */
 #define LINE_SHIFT_BLURS 0.001
+/* Springback moves the overall radius by less than this factor, and the thickness by nothing. */
+#define SCALE_FACTOR 1.2
 /* Correlation over more stations than this is roughness of the edge. */
 #define ROUGH_STATIONS 3.0
 
@@ -302,6 +304,15 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 
+/* A foil that is the design's in shape but not in size was scanned at another resolution than was
+ * said; every number would be wrong by the same factor. */
+static bool is_off_scale(const fg_design *design, const fg_layout *layout, const fg_strip *strip,
+                         double *factor) {
+  *factor = layout->overall.circle.radius / design->overall_radius_mm;
+  double rest = strip->thickness_mm / design->thickness_mm / *factor;
+  return fabs(log(*factor)) > log(SCALE_FACTOR) && fabs(log(rest)) < log(SCALE_FACTOR);
+}
+
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
                           fg_foil *foil) {
   fg_layout layout;
@@ -312,10 +323,19 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
   take_over_facts(foil);
   FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, &layout, &error));
   fg_status status = FG_OK;
-  if (error)
+  double factor;
+  if (error) {
     fail_foil(foil, error);
-  else
+  } else if (is_off_scale(design, &layout, &foil->strip, &factor)) {
+    char why[sizeof foil->error];
+    snprintf(why, sizeof why,
+             "thickness and overall radius are %.3g times the design's: the resolution of the scan "
+             "(--dpi) or the design (--design) is wrong",
+             factor);
+    fail_foil(foil, why);
+  } else {
     status = fill_foil(ctx, design, &layout, foil);
+  }
   fg_layout_free(&layout);
   return status;
 }

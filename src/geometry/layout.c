@@ -8,6 +8,10 @@
 #include "core/parallel.h"
 
 enum { GROW_ROUNDS = 3, LAND_POINTS_LEAST = 24 };
+/* How far an arc's end may lie inside and outside the turning point, and where it is put else. */
+#define END_EARLY_MM  0.30
+#define END_LATE_MM   0.12
+#define END_INSIDE_MM 0.12
 
 /* Stretches between bumps, and what lies beyond the outer two: the places of lands. */
 static fg_range gap_bounds(const fg_layout *layout, size_t i) {
@@ -72,6 +76,20 @@ static void regrow_lands(fg_layout *layout) {
   layout->overall.range_count = n;
 }
 
+/* The line's direction turns where a bump's arc meets its fillet: an end that was found far from
+ * there (a rough edge left the circle early, or stayed near it too long) is put a little inside of
+ * it. */
+static void check_ends(const fg_layout *layout, const fg_stretch *turns, fg_range *range) {
+  double step = layout->line.strip->step_mm;
+  long inside = lround(END_INSIDE_MM / step), early = lround(END_EARLY_MM / step);
+  long late = lround(END_LATE_MM / step);
+  long first = (long)range->first - (long)turns->first;
+  long last = (long)turns->last - (long)range->last;
+  if (2 * (inside + 1) > (long)(turns->last - turns->first)) return;
+  if (first > early || first < -late) range->first = turns->first + (size_t)inside;
+  if (last > early || last < -late) range->last = turns->last - (size_t)inside;
+}
+
 /* One bump: its arc is grown on algebraic circles, the last one is fitted. */
 static fg_status fit_bump(fg_context *ctx, void *shared, size_t i) {
   fg_layout *layout = shared;
@@ -87,6 +105,7 @@ static fg_status fit_bump(fg_context *ctx, void *shared, size_t i) {
   fg_status status = fg_arc_estimate(ctx, &layout->line, arc);
   for (int round = 0; round < GROW_ROUNDS && status == FG_OK; round++) {
     fg_arc_grow(&layout->line, arc, 1, bounds, &layout->bump_ranges[i]);
+    check_ends(layout, s, &layout->bump_ranges[i]);
     status = fg_arc_estimate(ctx, &layout->line, arc);
   }
   if (status == FG_OK) status = fg_arc_fit(ctx, &layout->line, arc);

@@ -11,17 +11,28 @@
 #define PROMINENCE_RAD (12 * M_PI / 180) /* smaller turns back are not turning points */
 #define LIP_TURN_LEAST (45 * M_PI / 180)
 #define LIP_RADIUS     0.4 /* a lip's bend is tighter than this share of the bumps' radius */
-enum { STRETCHES_MAX = 512 };
+enum { STRETCHES_MAX = 512, PAIRS_LEAST = 8 };
 
+/* The usable station at or next to i, in the direction of `step`; i itself where there is none. */
+static size_t usable(const fg_strip *strip, size_t i, int step) {
+  for (size_t k = i; k < strip->count; k += (size_t)step)
+    if (strip->stations[k].weight > 0) return k;
+  return i;
+}
+
+/* Direction over ± TANGENT_MM, or further where stations are not usable. The ends, which are not
+ * usable either, go on in the direction that was seen last. */
 static void find_directions(const fg_strip *strip, double *direction) {
   size_t reach = (size_t)(TANGENT_MM / strip->step_mm + 0.5);
   if (reach < 1) reach = 1;
   double before = 0;
+  size_t first = usable(strip, 0, 1), last = usable(strip, strip->count - 1, -1);
   for (size_t i = 0; i < strip->count; i++) {
-    size_t a = i > reach ? i - reach : 0;
-    size_t b = i + reach < strip->count ? i + reach : strip->count - 1;
+    size_t middle = i < first ? first : i > last ? last : i;
+    size_t a = usable(strip, middle > first + reach ? middle - reach : first, -1);
+    size_t b = usable(strip, middle + reach < last ? middle + reach : last, 1);
     fg_point p = fg_strip_middle(strip, a), q = fg_strip_middle(strip, b);
-    double angle = atan2(q.y - p.y, q.x - p.x);
+    double angle = a < b ? atan2(q.y - p.y, q.x - p.x) : before;
     if (i > 0) angle += 2 * M_PI * round((before - angle) / (2 * M_PI));
     direction[i] = before = angle;
   }
@@ -51,61 +62,100 @@ static size_t cut_stretches(const fg_strip *strip, const double *direction, fg_s
     } else {
       continue;
     }
+    if (fabs(direction[cut] - direction[from]) < PROMINENCE_RAD) continue;
     if (cut > from)
-      out[count++] = (fg_stretch){from, cut, direction[cut] - direction[from],
-                                  strip->stations[cut].s_mm - strip->stations[from].s_mm};
+      out[count++] =
+          (fg_stretch){.first = from,
+                       .last = cut,
+                       .turn_rad = direction[cut] - direction[from],
+                       .length_mm = strip->stations[cut].s_mm - strip->stations[from].s_mm};
     from = cut;
   }
   return count;
 }
 
-/* Median over the stretches that turn with `sign`, the two at the ends left out when there are
- * others. 0 when there are none. */
+/* Lower median over the stretches that turn with `sign`, the two at the ends left out when there
+ * are others. 0 when there are none. */
 static double median_over(const fg_stretch *stretches, size_t count, double sign,
                           double (*get)(const fg_stretch *)) {
   double values[STRETCHES_MAX];
-  size_t n = 0, skip = count > 4 ? 1 : 0;
+  size_t n = 0, skip = count > 2 ? 1 : 0;
   for (size_t i = skip; i + skip < count; i++)
     if (stretches[i].turn_rad * sign > PROMINENCE_RAD) values[n++] = get(&stretches[i]);
-  return n ? fg_select(values, n, n / 2) : 0;
+  return n ? fg_select(values, n, (n - 1) / 2) : 0;
 }
 
 static double get_turn(const fg_stretch *s) {
   return fabs(s->turn_rad);
 }
 
+/* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
+ * radius of the bend is judged where 80 % of the turn happens. */
+static fg_stretch tight_part(const fg_strip *strip, const double *direction, const fg_stretch *s) {
+  size_t a = s->first, b = s->last;
+  double from = direction[a] + 0.1 * s->turn_rad, to = direction[a] + 0.9 * s->turn_rad;
+  double sign = s->turn_rad > 0 ? 1 : -1;
+  while (a < s->last && sign * (direction[a] - from) < 0)
+    a++;
+  while (b > a && sign * (direction[b] - to) > 0)
+    b--;
+  return (fg_stretch){.first = a,
+                      .last = b,
+                      .turn_rad = 0.8 * s->turn_rad,
+                      .length_mm = strip->stations[b].s_mm - strip->stations[a].s_mm};
+}
+
 static double get_radius(const fg_stretch *s) {
   return s->length_mm / fabs(s->turn_rad);
 }
 
-/* Bumps turn less than what lies between them, by one pitch. With too few stretches to compare,
- * bumps are those of the larger radius. */
+static double get_bend(const fg_stretch *s) {
+  return s->bend_radius_mm;
+}
+
+/* A bump and the gap beside it turn by one pitch round the overall circle, in the sense that bumps
+ * do not have; the median holds when a bump is crushed. With few bumps the lip has too much of a
+ * say, and bumps are what bends less tightly than fillets. */
 static double find_sense(const fg_stretch *stretches, size_t count) {
-  double up = median_over(stretches, count, 1, get_turn);
-  double down = median_over(stretches, count, -1, get_turn);
-  if (count >= 6 && up > 0 && down > 0) return up < down ? 1 : -1;
-  return median_over(stretches, count, 1, get_radius) >
-                 median_over(stretches, count, -1, get_radius)
-             ? 1
-             : -1;
+  double sums[STRETCHES_MAX];
+  size_t n = 0;
+  for (size_t i = 1; i + 2 < count; i++)
+    sums[n++] = stretches[i].turn_rad + stretches[i + 1].turn_rad;
+  if (n >= PAIRS_LEAST) return fg_select(sums, n, n / 2) < 0 ? 1 : -1;
+  double up = median_over(stretches, count, 1, get_bend);
+  return up > median_over(stretches, count, -1, get_bend) ? 1 : -1;
+}
+
+/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them,
+ * which then turns by a right angle more than the half of a gap that it is. */
+static bool is_lip_in_gap(const fg_stretch *s, double sense, double gap_rad) {
+  return -s->turn_rad * sense > 0.5 * gap_rad + LIP_TURN_LEAST;
+}
+
+/* Where a stretch has turned by half a right angle from one of its ends: the middle of a lip's
+ * bend. */
+static size_t bend_middle(const double *direction, const fg_stretch *s, bool from_last) {
+  size_t at = from_last ? s->last : s->first, from = at;
+  while (at != (from_last ? s->first : s->last) &&
+         fabs(direction[at] - direction[from]) < LIP_TURN_LEAST)
+    at += from_last ? (size_t)-1 : 1;
+  return at;
+}
+
+static void find_lip_in_gaps(const double *direction, const fg_stretch *all, size_t count,
+                             fg_turning *out) {
+  double gap_rad = median_over(all, count, -out->sense, get_turn);
+  const fg_stretch *first = &all[0], *last = &all[count - 1];
+  if (out->lip_first || out->lip_last || out->bump_count < 2) return;
+  out->lip_first = is_lip_in_gap(first, out->sense, gap_rad);
+  out->lip_last = is_lip_in_gap(last, out->sense, gap_rad);
+  if (out->lip_first) out->lip_end[0] = bend_middle(direction, first, false);
+  if (out->lip_last) out->lip_end[1] = bend_middle(direction, last, true);
 }
 
 /* A tight bend in the bumps' sense, the first or last of its kind, is the lip's. */
 static bool is_lip(const fg_stretch *s, double typical_radius) {
   return fabs(s->turn_rad) > LIP_TURN_LEAST && get_radius(s) < typical_radius;
-}
-
-/* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
- * radius of the bend is judged where 80 % of the turn happens. */
-static fg_stretch tight_part(const fg_strip *strip, const double *direction,
-                             const fg_stretch *s) {
-  size_t a = s->first, b = s->last;
-  double from = direction[a] + 0.1 * s->turn_rad, to = direction[a] + 0.9 * s->turn_rad;
-  double sign = s->turn_rad > 0 ? 1 : -1;
-  while (a < s->last && sign * (direction[a] - from) < 0) a++;
-  while (b > a && sign * (direction[b] - to) > 0) b--;
-  return (fg_stretch){a, b, 0.8 * s->turn_rad,
-                      strip->stations[b].s_mm - strip->stations[a].s_mm};
 }
 
 static void pick_bumps(const fg_strip *strip, const double *direction, const fg_stretch *all,
@@ -115,8 +165,7 @@ static void pick_bumps(const fg_strip *strip, const double *direction, const fg_
   fg_stretch *bumps = out->bumps;
   for (size_t i = 0; i < count; i++)
     if (all[i].turn_rad * out->sense > PROMINENCE_RAD) {
-      fg_stretch tight = tight_part(strip, direction, &all[i]);
-      radii[n] = get_radius(&tight);
+      radii[n] = all[i].bend_radius_mm;
       bumps[n++] = all[i];
     }
   if (!n) return;
@@ -141,13 +190,18 @@ fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *tu
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *direction, (void **)&direction));
   FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *stretches, (void **)&stretches));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turning->bumps,
-                                 (void **)&turning->bumps));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, STRETCHES_MAX, sizeof *turning->bumps, (void **)&turning->bumps));
   if (strip->count < 8) goto exit;
   find_directions(strip, direction);
   size_t count = cut_stretches(strip, direction, stretches);
+  for (size_t i = 0; i < count; i++) {
+    fg_stretch tight = tight_part(strip, direction, &stretches[i]);
+    stretches[i].bend_radius_mm = get_radius(&tight);
+  }
   turning->sense = find_sense(stretches, count);
   pick_bumps(strip, direction, stretches, count, turning);
+  if (count) find_lip_in_gaps(direction, stretches, count, turning);
 exit:
   free(direction);
   free(stretches);

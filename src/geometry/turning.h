@@ -3,7 +3,7 @@
  * Along a foil the tangent's direction goes back and forth: a bump turns it one way, the fillet,
  * land and fillet between two bumps turn it the other way, and by one pitch more, since all of it
  * goes round the overall circle. The turning points of the direction are the inflections between
- * bump arcs and fillets. The lip is a tight bend at one end, in the bumps' sense.
+ * bump arcs and fillets. The lip is a tight bend at one end, in either sense.
  */
 #ifndef FG_GEOMETRY_TURNING_H
 #define FG_GEOMETRY_TURNING_H
@@ -17,6 +17,7 @@ typedef struct fg_stretch {
   size_t first, last;
   double turn_rad;  /* signed */
   double length_mm;
+  double bend_radius_mm; /* mean radius where 80 % of the turn happens */
 } fg_stretch;
 
 typedef struct fg_turning {

@@ -2,78 +2,46 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
 #include "foilgauge/scan.h"
+#include "measure/discs.h"
 #include "measure/reader.h"
-#include "vision/edges.h"
-#include "vision/segment.h"
-#include "vision/trace.h"
+#include "measure/session.h"
 
-/* An object smaller than this share of the design's bump radius is dust. */
-#define OBJECT_LEAST 1.0
-
-static fg_status add_foil(fg_context *ctx, size_t *capacity, fg_measurement *m, fg_foil **foil) {
-  FG_TRY(fg_memory_reserve(ctx, m->foil_count + 1, sizeof *m->foils, capacity,
-                           (void **)&m->foils));
-  *foil = &m->foils[m->foil_count++];
-  memset(*foil, 0, sizeof **foil);
-  (*foil)->number = (int)m->foil_count;
-  return FG_OK;
-}
-
-/* A foil from one trace; what cannot be measured is a flag. */
-static fg_status measure_foil(fg_context *ctx, const fg_tiles *tiles, const fg_segmentation *seg,
-                              const fg_trace *trace, const fg_measurement *m, unsigned threads,
-                              fg_foil *foil) {
-  fg_status status = fg_edges_measure(ctx, tiles, seg, trace, m->dpi, threads, &foil->strip);
-  if (status == FG_ERR_NUMERIC) {
-    foil->flags |= FG_FOIL_NOT_MEASURED;
-    snprintf(foil->error, sizeof foil->error, "%.255s", ctx->message);
-    return FG_OK;
-  }
-  return status == FG_OK ? fg_foil_measure(ctx, &m->design, threads, foil) : status;
-}
-
-static fg_status measure_objects(fg_context *ctx, const fg_tiles *tiles,
-                                 const fg_segmentation *seg, unsigned threads,
-                                 fg_measurement *m) {
-  double px_per_mm = sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
-  size_t capacity = 0;
-  fg_trace_list list = {0};
-  fg_status status = FG_OK;
-  for (size_t i = 0; i < seg->object_count; i++) {
-    FG_TRY_EXIT(fg_trace_object(ctx, tiles, seg, &seg->objects[i],
-                                m->design.thickness_mm * px_per_mm, &list));
-    if (!list.count) m->specks++;
-    for (size_t j = 0; j < list.count; j++) {
-      fg_foil *foil;
-      FG_TRY_EXIT(add_foil(ctx, &capacity, m, &foil));
-      FG_TRY_EXIT(measure_foil(ctx, tiles, seg, &list.traces[j], m, threads, foil));
-    }
-    fg_trace_list_free(&list);
-  }
-exit:
-  fg_trace_list_free(&list);
-  return status;
-}
-
-static fg_status measure_tiles(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
+static fg_status measure_foils(fg_context *ctx, fg_scan *scan, unsigned threads,
                                fg_measurement *m) {
-  fg_segmentation seg = {0};
-  double px_per_mm = sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
-  FG_TRY(fg_segment(ctx, tiles, OBJECT_LEAST * m->design.bump_radius_mm * px_per_mm, &seg));
-  m->light_on_dark = seg.light_on_dark;
-  m->specks = seg.speck_count;
-  fg_status status = measure_objects(ctx, tiles, &seg, threads, m);
-  if (status == FG_OK && m->foil_count == 0)
+  fg_tiles tiles = {0};
+  fg_session *session = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_session_create(ctx, m, &tiles, threads, &session));
+  FG_TRY_EXIT(fg_reader_run(ctx, scan, fg_session_advance, session, &tiles, m->sha256));
+  FG_TRY_EXIT(fg_session_finish(ctx, session));
+  if (m->foil_count == 0)
     status = fg_fail(ctx, FG_ERR_DATA,
                      "%s: no foil in the picture (%zu specks or other objects); is the scan empty, "
                      "or the resolution of %g dpi wrong?",
                      m->scan, m->specks, m->dpi[0]);
-  fg_segmentation_free(&seg);
+exit:
+  fg_session_free(session);
+  fg_tiles_free(&tiles);
+  return status;
+}
+
+/* A part with round features may fill the scan: its tiles are all kept to the end. */
+static fg_status keep_reading(fg_context *ctx, fg_tiles *tiles, void *data) {
+  (void)ctx;
+  (void)tiles;
+  (void)data;
+  return FG_OK;
+}
+
+static fg_status measure_discs(fg_context *ctx, fg_scan *scan, unsigned threads,
+                               fg_measurement *m) {
+  fg_tiles tiles = {0};
+  fg_status status = fg_reader_run(ctx, scan, keep_reading, NULL, &tiles, m->sha256);
+  if (status == FG_OK) status = fg_measure_discs(ctx, &tiles, threads, m);
+  fg_tiles_free(&tiles);
   return status;
 }
 
@@ -96,16 +64,17 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement) {
   fg_scan *scan = NULL;
-  fg_tiles tiles = {0};
   fg_status status = FG_OK;
   memset(measurement, 0, sizeof *measurement);
   measurement->design = *design;
   FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
-  FG_TRY_EXIT(fg_reader_run(ctx, scan, &tiles, measurement->sha256));
-  FG_TRY_EXIT(measure_tiles(ctx, &tiles, options ? options->threads : 0, measurement));
+  unsigned threads = options ? options->threads : 0;
+  if (design->form == FG_FORM_DISCS)
+    FG_TRY_EXIT(measure_discs(ctx, scan, threads, measurement));
+  else
+    FG_TRY_EXIT(measure_foils(ctx, scan, threads, measurement));
 exit:
-  fg_tiles_free(&tiles);
   fg_scan_close(scan);
   if (status != FG_OK) fg_measurement_free(measurement);
   return status;

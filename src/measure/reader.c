@@ -1,37 +1,36 @@
 #include "measure/reader.h"
 
-#include <pthread.h>
 #include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
 #include "core/parallel.h"
 
-enum { SLOTS = 4 };
-
-/* A ring of strips between the decoding thread and the caller. */
+/* The decoding thread fills the tiles' strips ahead of the caller, who takes them. */
 typedef struct ring {
   fg_scan *scan;
+  fg_tiles *tiles;
+  fg_reader_visit *visit;
+  void *data;
   fg_context decode_context;
   fg_status decode_status;
-  int64_t strips, stride_bytes, height_px;
-  uint8_t *slots[SLOTS];
-  int64_t filled, taken; /* strips */
+  int32_t filled, taken; /* strips */
   bool stop;
   pthread_mutex_t lock;
   pthread_cond_t changed;
 } ring;
 
-static int64_t rows_of(const ring *r, int64_t strip) {
-  int64_t left = r->height_px - strip * FG_TILE_PX;
-  return left < FG_TILE_PX ? left : FG_TILE_PX;
+static fg_status decode_strip(fg_context *ctx, ring *r, int32_t strip) {
+  return fg_scan_read_rows(ctx, r->scan, fg_tiles_strip_rows(r->tiles, strip),
+                           fg_tiles_strip(r->tiles, strip),
+                           r->tiles->width_px * r->tiles->bytes_per_pixel);
 }
 
-/* Waits for a free slot; false when the other side has given up. */
-static bool wait_for_slot(ring *r) {
+/* Waits until the place of a strip is free: the strip that lay there has been taken, and so has
+ * the one after it. False when the other side has given up. */
+static bool wait_for_place(ring *r, int32_t strip) {
   pthread_mutex_lock(&r->lock);
-  while (r->filled - r->taken >= SLOTS && !r->stop) pthread_cond_wait(&r->changed, &r->lock);
+  while (strip >= r->taken + FG_TILE_STRIPS - 1 && !r->stop)
+    pthread_cond_wait(&r->changed, &r->lock);
   bool go_on = !r->stop;
   pthread_mutex_unlock(&r->lock);
   return go_on;
@@ -40,9 +39,9 @@ static bool wait_for_slot(ring *r) {
 static void *decode(void *argument) {
   ring *r = argument;
   fg_status status = FG_OK;
-  for (int64_t strip = 0; strip < r->strips && status == FG_OK && wait_for_slot(r); strip++) {
-    status = fg_scan_read_rows(&r->decode_context, r->scan, rows_of(r, strip),
-                               r->slots[strip % SLOTS], r->stride_bytes);
+  for (int32_t strip = 0; strip < r->tiles->rows && status == FG_OK; strip++) {
+    if (!wait_for_place(r, strip)) break;
+    status = decode_strip(&r->decode_context, r, strip);
     pthread_mutex_lock(&r->lock);
     if (status == FG_OK) r->filled++;
     r->decode_status = status;
@@ -52,8 +51,8 @@ static void *decode(void *argument) {
   return NULL;
 }
 
-/* The next strip, or the decoder's error. */
-static fg_status wait_for_strip(fg_context *ctx, ring *r, int64_t strip) {
+/* Waits for the next strip, or for the decoder's error. */
+static fg_status wait_for_strip(fg_context *ctx, ring *r, int32_t strip) {
   pthread_mutex_lock(&r->lock);
   while (r->filled <= strip && r->decode_status == FG_OK)
     pthread_cond_wait(&r->changed, &r->lock);
@@ -70,30 +69,28 @@ static void release(ring *r, bool stop) {
   pthread_mutex_unlock(&r->lock);
 }
 
-static fg_status consume(fg_context *ctx, ring *r, fg_tiles *tiles) {
+static fg_status take_strip(fg_context *ctx, ring *r) {
+  FG_TRY(fg_tiles_take_strip(ctx, r->tiles));
+  return r->visit(ctx, r->tiles, r->data);
+}
+
+static fg_status consume(fg_context *ctx, ring *r, bool threaded) {
   fg_status status = FG_OK;
-  for (int64_t strip = 0; strip < r->strips && status == FG_OK; strip++) {
-    status = wait_for_strip(ctx, r, strip);
-    if (status == FG_OK)
-      status = fg_tiles_add_strip(ctx, tiles, r->slots[strip % SLOTS], r->stride_bytes);
-    release(r, status != FG_OK);
+  for (int32_t strip = 0; strip < r->tiles->rows && status == FG_OK; strip++) {
+    status = threaded ? wait_for_strip(ctx, r, strip) : decode_strip(ctx, r, strip);
+    if (status == FG_OK) status = take_strip(ctx, r);
+    if (threaded) release(r, status != FG_OK);
   }
-  return status == FG_OK ? fg_tiles_finish(ctx, tiles) : status;
+  if (status == FG_OK) status = fg_tiles_finish(ctx, r->tiles);
+  return status == FG_OK ? r->visit(ctx, r->tiles, r->data) : status;
 }
 
 /* Runs both sides. Where no second thread is to be had, it is one after the other. */
-static fg_status run_ring(fg_context *ctx, ring *r, fg_tiles *tiles) {
+static fg_status run_ring(fg_context *ctx, ring *r) {
   fg_thread decoder;
-  if (fg_thread_start(&decoder, decode, r) != FG_OK) {
-    fg_status status = FG_OK;
-    for (int64_t strip = 0; strip < r->strips && status == FG_OK; strip++) {
-      status = fg_scan_read_rows(ctx, r->scan, rows_of(r, strip), r->slots[0], r->stride_bytes);
-      if (status == FG_OK) status = fg_tiles_add_strip(ctx, tiles, r->slots[0], r->stride_bytes);
-    }
-    return status == FG_OK ? fg_tiles_finish(ctx, tiles) : status;
-  }
-  fg_status status = consume(ctx, r, tiles);
-  fg_thread_join(&decoder);
+  bool threaded = fg_thread_start(&decoder, decode, r) == FG_OK;
+  fg_status status = consume(ctx, r, threaded);
+  if (threaded) fg_thread_join(&decoder);
   return status;
 }
 
@@ -111,30 +108,28 @@ static void *run_digest(void *argument) {
   return NULL;
 }
 
-fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_tiles *tiles, char sha256[65]) {
-  const fg_scan_info *info = fg_scan_get_info(scan);
-  ring r = {.scan = scan, .height_px = info->height_px, .lock = PTHREAD_MUTEX_INITIALIZER,
-            .changed = PTHREAD_COND_INITIALIZER};
-  digest d = {.scan = scan, .hex = sha256};
-  fg_status status = FG_OK;
+static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
+  digest d = {.scan = r->scan, .hex = sha256};
   fg_thread digester;
-  bool beside = false;
-  r.strips = (info->height_px + FG_TILE_PX - 1) / FG_TILE_PX;
-  r.stride_bytes = info->width_px * info->bytes_per_pixel;
-  memset(tiles, 0, sizeof *tiles);
-  for (int i = 0; i < SLOTS; i++)
-    FG_TRY_EXIT(fg_memory_allocate(ctx, (size_t)r.stride_bytes, FG_TILE_PX, (void **)&r.slots[i]));
-  FG_TRY_EXIT(fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, tiles));
-  beside = fg_scan_is_file(scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
-  status = run_ring(ctx, &r, tiles);
+  bool beside =
+      fg_scan_is_file(r->scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
+  fg_status status = run_ring(ctx, r);
   if (beside) fg_thread_join(&digester);
   else if (status == FG_OK) run_digest(&d);
   if (status == FG_OK && d.status != FG_OK)
     status = fg_fail(ctx, d.status, "%s", d.context.message);
-exit:
-  for (int i = 0; i < SLOTS; i++) free(r.slots[i]);
+  return status;
+}
+
+fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,
+                        fg_tiles *tiles, char sha256[65]) {
+  const fg_scan_info *info = fg_scan_get_info(scan);
+  ring r = {.scan = scan, .tiles = tiles, .visit = visit, .data = data,
+            .lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+  memset(tiles, 0, sizeof *tiles);
+  FG_TRY(fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, tiles));
+  fg_status status = run_with_digest(ctx, &r, sha256);
   pthread_mutex_destroy(&r.lock);
   pthread_cond_destroy(&r.changed);
-  if (status != FG_OK) fg_tiles_free(tiles);
   return status;
 }

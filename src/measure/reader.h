@@ -5,8 +5,12 @@
 #include "foilgauge/scan.h"
 #include "vision/tiles.h"
 
+/* Called after each strip (and once more after the last, when all tiles are decided). */
+typedef fg_status fg_reader_visit(fg_context *ctx, fg_tiles *tiles, void *data);
+
 /* Reads the whole scan into `tiles` (created here; the caller frees them), and its SHA-256. The
- * tiles do not depend on threads: strips are added in order. */
-fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_tiles *tiles, char sha256[65]);
+ * tiles do not depend on threads: strips are taken in order. */
+fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,
+                        fg_tiles *tiles, char sha256[65]);
 
 #endif

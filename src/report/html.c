@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "report/html_parts.h"
+<<<<<<< HEAD
 #include "report/json_writer.h"
 
 static const char style[] =
@@ -105,6 +106,8 @@ void fg_html_text(FILE *out, const char *text) {
     text += length ? length : 1;
   }
 }
+=======
+>>>>>>> main
 
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
   double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
@@ -475,6 +478,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
   return FG_OK;
 }
 
+<<<<<<< HEAD
 void fg_html_begin_page(FILE *out, const char *title) {
   fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
@@ -493,5 +497,12 @@ fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *o
   for (size_t i = 0; i < report->scan_count; i++)
     FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
   fg_html_end_page(out);
+=======
+fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
+  fg_html_begin(out, base_name(report->scans[0].path));
+  for (size_t i = 0; i < report->scan_count; i++)
+    FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
+  fg_html_end(out);
+>>>>>>> main
   return fg_report_finish(ctx, out, "the page");
 }

@@ -4,6 +4,10 @@
 
 #include "report/words.h"
 
+/* A page from its doctype to its <main>, and from there to its end. */
+void fg_html_begin(FILE *out, const char *title);
+void fg_html_end(FILE *out);
+
 /* Text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 

@@ -160,7 +160,8 @@ fg_status fg_png_encode(fg_context *ctx, const uint8_t *pixels, int32_t width, i
   png_image image = {.version = PNG_IMAGE_VERSION,
                      .width = (png_uint_32)width,
                      .height = (png_uint_32)height,
-                     .format = channels == 3 ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY};
+                     .format = channels == 3 ? PNG_FORMAT_RGB : PNG_FORMAT_GRAY,
+                     .flags = PNG_IMAGE_FLAG_FAST};
   png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(image);
   void *block;
   *png = NULL;

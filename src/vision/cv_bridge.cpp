@@ -44,6 +44,53 @@ fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t heig
   }
 }
 
+static fg_status copy_contours(fg_context *ctx, const std::vector<std::vector<cv::Point>> &found,
+                               fg_contours *out) {
+  size_t points = 0;
+  for (const auto &contour : found) points += contour.size();
+  out->xy = static_cast<int32_t *>(std::calloc(points + 1, 2 * sizeof(int32_t)));
+  out->starts = static_cast<size_t *>(std::calloc(found.size() + 1, sizeof(size_t)));
+  if (!out->xy || !out->starts) {
+    fg_contours_free(out);
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu points of contours", points);
+  }
+  int32_t *to = out->xy;
+  for (const auto &contour : found) {
+    for (const cv::Point &point : contour) {
+      *to++ = point.x;
+      *to++ = point.y;
+    }
+    out->starts[++out->count] = size_t(to - out->xy) / 2;
+  }
+  return FG_OK;
+}
+
+fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
+                         double level, int32_t least, fg_contours *out) {
+  *out = {};
+  try {
+    cv::setNumThreads(0);
+    const cv::Mat source(height, width, CV_8U, const_cast<uint8_t *>(picture));
+    const cv::Mat mask = source > level;
+    std::vector<std::vector<cv::Point>> all, large;
+    cv::findContours(mask, all, cv::RETR_LIST, cv::CHAIN_APPROX_NONE);
+    for (auto &contour : all) {
+      const cv::Rect box = cv::boundingRect(contour);
+      if (box.width >= least && box.height >= least) large.push_back(std::move(contour));
+    }
+    return copy_contours(ctx, large, out);
+  } catch (const std::exception &error) {
+    return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
+  }
+}
+
+void fg_contours_free(fg_contours *contours) {
+  if (!contours) return;
+  std::free(contours->xy);
+  std::free(contours->starts);
+  *contours = {};
+}
+
 static cv::Scalar colour_of(uint32_t colour) {
   return cv::Scalar(colour >> 16 & 255, colour >> 8 & 255, colour & 255);
 }

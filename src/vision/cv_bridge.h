@@ -25,6 +25,19 @@ fg_status fg_cv_label(fg_context *ctx, const uint8_t *mask, int32_t width, int32
 /* Median over 5 × 5 of a grid of floats, in place, borders repeated. */
 fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t height);
 
+/* Closed contours: contour i holds the points starts[i] to starts[i + 1] - 1, in order. */
+typedef struct fg_contours {
+  int32_t *xy;     /* x, y of every point; owned */
+  size_t *starts;  /* count + 1; owned */
+  size_t count;
+} fg_contours;
+
+/* Outlines of what is brighter than `level` and of the gaps in it, of those whose box is at least
+ * `least` cells wide and high. Sides at most 32767. */
+fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
+                         double level, int32_t least, fg_contours *out);
+void fg_contours_free(fg_contours *contours);
+
 /* A picture to draw on: rows of R, G, B bytes, without padding. */
 typedef struct fg_rgb {
   uint8_t *pixels; /* 3 × width × height */

@@ -10,10 +10,12 @@
 
 #define STEP_PX       2.0  /* distance of stations */
 #define SMOOTH_PX     30.0 /* half window of the reference line */
-#define BAND_REACH_PX 15.0 /* beyond the strip's edges: 4 blurs of 3 px, and some background */
+#define BAND_BLURS    4.0  /* the band reaches so many blurs beyond the strip's edges */
+#define BAND_MARGIN_PX 4.0 /* and so much background */
+#define BAND_MOST_PX  18.0
 enum {
   MIDDLE_STATIONS = 4, /* the middle is smoothed over so many stations to either side */
-  SOLVE_ROUNDS = 3,
+  SOLVE_ROUNDS = 2,
 };
 
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last) {
@@ -22,24 +24,33 @@ void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_
   if (*last >= work->reference->count) *last = work->reference->count - 1;
 }
 
+/* Background count at a station. */
+static float background_at(const fg_edge_work *work, size_t station) {
+  const fg_segmentation *seg = work->segmentation;
+  const fg_reference_station *r = &work->reference->stations[station];
+  double bx = fmin(fmax(r->x / FG_BLOCK_PX, 0), seg->tiles->block_columns - 1);
+  double by = fmin(fmax(r->y / FG_BLOCK_PX, 0), seg->tiles->block_rows - 1);
+  return fg_segmentation_background(seg, (int32_t)bx, (int32_t)by);
+}
+
 /* Weight of the stations' middles in one chunk: counts between 30 and 70 % of the contrast rise
  * from 0 to 1, so that neither halo nor band pulls. */
 static void weigh_pixels(const fg_edge_work *work, size_t chunk) {
-  const fg_segmentation *seg = work->segmentation;
   const fg_pixel_band *band = &work->bands[chunk];
   float scale = 2.5f / (float)work->trace->contrast, reach = (float)(work->width_px / 2 + 6);
+  float sign = work->segmentation->light_on_dark ? scale : -scale;
+  size_t first, last;
+  fg_edges_chunk(work, chunk, &first, &last);
+  for (size_t i = first; i <= last; i++)
+    work->stations[i].plateau = background_at(work, i); /* until the plateau is known */
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];
     if (fabsf(p->across_px) > reach) continue;
-    const fg_reference_station *r = &work->reference->stations[p->station];
-    int32_t bx = (int32_t)(r->x / FG_BLOCK_PX), by = (int32_t)(r->y / FG_BLOCK_PX);
-    if (bx < 0 || by < 0 || bx >= seg->width || by >= seg->height) continue;
-    float background = fg_segmentation_background(seg, bx, by);
-    float excess = seg->light_on_dark ? p->value - background : background - p->value;
-    float weight = excess * scale - 0.75f;
+    fg_edge_station *s = &work->stations[p->station];
+    float weight = sign * (p->value - s->plateau) - 0.75f;
     weight = weight < 0 ? 0 : weight > 1 ? 1 : weight;
-    work->stations[p->station].g1 += weight * p->across_px;
-    work->stations[p->station].m11 += weight;
+    s->g1 += weight * p->across_px;
+    s->m11 += weight;
   }
 }
 
@@ -198,7 +209,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   fg_reference reference = {0};
   fg_edge_work work = {.tiles = tiles, .segmentation = segmentation, .trace = trace,
                        .reference = &reference, .threads = threads, .width_px = trace->width_px,
-                       .reach_px = BAND_REACH_PX, .noise = 1, .contrast = trace->contrast};
+                       .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX), .noise = 1, .contrast = trace->contrast};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX,
                                  &reference));

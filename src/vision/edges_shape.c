@@ -11,6 +11,10 @@
 enum {
   GAMMA_SEGMENTS = 8, /* profiles that are asked for the tone curve */
 };
+/* Pixels are clipped when more than this share of them has one value, twice as many as the next,
+ * and less than that share lies beyond. */
+#define PILE_SHARE  0.05
+#define PILE_BEYOND 0.002
 
 static fg_status allocate_segments(fg_context *ctx, fg_edge_work *work) {
   if (work->segments) return FG_OK;
@@ -110,6 +114,55 @@ static fg_status fit_tone(fg_context *ctx, void *shared, size_t i) {
   return FG_OK;
 }
 
+/* Counts of a strip's pixels by value. */
+typedef struct value_counts {
+  size_t of[256], total;
+} value_counts;
+
+/* Pixels of one value, to less than a step of 16 bits: the outermost within a count of `end`. */
+static size_t count_equal(const fg_edge_work *work, int end, bool high) {
+  double outermost = high ? -INFINITY : INFINITY;
+  size_t count = 0;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t c = 0; c < work->chunk_count; c++)
+      for (size_t i = 0; i < work->bands[c].count; i++) {
+        double value = work->bands[c].pixels[i].value;
+        if ((int)(value + 0.5) != end) continue;
+        if (pass)
+          count += fabs(value - outermost) < 0.002;
+        else
+          outermost = high ? fmax(outermost, value) : fmin(outermost, value);
+      }
+  return count;
+}
+
+static bool piles_up(const fg_edge_work *work, const value_counts *counts, bool high) {
+  size_t seen = 0;
+  int step = high ? -1 : 1, end = high ? 255 : 0;
+  while (end + step >= 0 && end + step <= 255 &&
+         (double)(seen + counts->of[end]) < PILE_BEYOND * (double)counts->total) {
+    seen += counts->of[end];
+    end += step;
+  }
+  if (end + step < 0 || end + step > 255) return false;
+  double least = PILE_SHARE * (double)counts->total;
+  return (double)counts->of[end] > least && counts->of[end] > 2 * counts->of[end + step] &&
+         (double)count_equal(work, end, high) > least;
+}
+
+/* Clipped values pile up at one end of what the strip's pixels have, wherever the scanner's driver
+ * cut them off. Both ends do where a picture is without noise. */
+static bool find_clipping(const fg_edge_work *work) {
+  value_counts counts = {.total = 0};
+  for (size_t c = 0; c < work->chunk_count; c++)
+    for (size_t i = 0; i < work->bands[c].count; i++) {
+      float value = fminf(fmaxf(work->bands[c].pixels[i].value, 0), 255);
+      counts.of[(int)(value + 0.5f)]++;
+      counts.total++;
+    }
+  return counts.total && piles_up(work, &counts, true) != piles_up(work, &counts, false);
+}
+
 /* gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty. The
  * middle of the sorted values stands for all: a profile that holds a fillet or dust is no vote. */
 static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
@@ -125,7 +178,9 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
     u += task.fits[i].u_gamma;
   }
   work->gamma = 1;
-  if (count >= 3) {
+  /* A level that is cut off looks like a tone curve. */
+  work->clipped = find_clipping(work);
+  if (count >= 3 && !work->clipped) {
     double gamma = values[count / 2], spread = values[count * 3 / 4] - values[count / 4];
     double doubt = fmax(u / count, spread) / sqrt(count);
     if (fabs(gamma - 1) > fmax(3 * doubt, 0.02)) work->gamma = fmin(fmax(gamma, 0.33), 3.5);

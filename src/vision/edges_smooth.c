@@ -158,7 +158,7 @@ static void summarise(fg_edge_work *work, double *scratch) {
   work->blur_px[0] = median_of(work, scratch, get_blur_left);
   work->blur_px[1] = median_of(work, scratch, get_blur_right);
   work->side_band = median_of(work, scratch, get_band) > 0.08 * work->contrast;
-  work->clipped = median_of(work, scratch, get_extreme) > 253.5;
+  work->clipped |= median_of(work, scratch, get_extreme) > 253.5;
   for (size_t k = 0; k < work->reference->count; k++) {
     fg_edge_station *st = &work->stations[k];
     const fg_profile_fit *fit = &work->segments[k / FG_SEGMENT_STATIONS].fit;

@@ -18,40 +18,82 @@ static int compare_floats(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, fg_segmentation *out) {
-  size_t count = (size_t)tiles->columns * (size_t)tiles->rows;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *out->grid, (void **)&out->grid));
-  memcpy(out->grid, tiles->medians, count * sizeof *out->grid);
-  return fg_cv_median(ctx, out->grid, tiles->columns, tiles->rows);
+enum { BACKGROUND_REACH = 3 }; /* tiles beyond the island that its background rests on */
+
+static int32_t clamp(int32_t value, int32_t low, int32_t high) {
+  return value < low ? low : value > high ? high : value;
 }
 
-/* Robust sd of the background: the median of |excess| on a sample of blocks. */
-static fg_status estimate_noise(fg_context *ctx, fg_segmentation *out) {
-  size_t count = (size_t)out->width * (size_t)out->height, stride = count / 4001 + 1, n = 0;
-  float *sample = NULL;
-  FG_TRY(fg_memory_allocate(ctx, count / stride + 1, sizeof *sample, (void **)&sample));
-  for (size_t i = 0; i < count; i += stride)
-    sample[n++] = fabsf(fg_segmentation_excess(out, (int32_t)(i % (size_t)out->width),
-                                               (int32_t)(i / (size_t)out->width)));
-  qsort(sample, n, sizeof *sample, compare_floats);
-  out->noise = 1.4826f * sample[n / 2] + 0.02f;
-  free(sample);
-  return FG_OK;
+/* The smoothed medians of the island's box and what lies around it. */
+static fg_status find_background(fg_context *ctx, const fg_island *island, fg_segmentation *out) {
+  const fg_tiles *tiles = out->tiles;
+  out->grid_x = clamp(island->x - BACKGROUND_REACH, 0, tiles->columns - 1);
+  out->grid_y = clamp(island->y - BACKGROUND_REACH, 0, tiles->rows - 1);
+  int32_t right = clamp(island->x + island->width + BACKGROUND_REACH, 1, tiles->columns);
+  int32_t low = clamp(island->y + island->height + BACKGROUND_REACH, 1, tiles->rows);
+  out->grid_columns = right - out->grid_x;
+  out->grid_rows = low - out->grid_y;
+  size_t width = (size_t)out->grid_columns;
+  FG_TRY(fg_memory_allocate(ctx, width * (size_t)out->grid_rows, sizeof *out->grid,
+                            (void **)&out->grid));
+  for (int32_t y = 0; y < out->grid_rows; y++)
+    memcpy(out->grid + (size_t)y * width,
+           tiles->medians + (size_t)(y + out->grid_y) * (size_t)tiles->columns +
+               (size_t)out->grid_x,
+           width * sizeof *out->grid);
+  return fg_cv_median(ctx, out->grid, out->grid_columns, out->grid_rows);
 }
 
-/* Calls for every block of every tile that stands out. Others are background as they are. */
+/* Calls for every block inside the scan of one tile. */
 typedef void visit_block(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data);
 
-static void visit_wanted(fg_segmentation *out, visit_block *visit, void *data) {
+static void visit_tile(fg_segmentation *out, int32_t column, int32_t row, visit_block *visit,
+                       void *data) {
+  for (int32_t y = row * FG_BLOCKS_PER_TILE; y < (row + 1) * FG_BLOCKS_PER_TILE; y++)
+    for (int32_t x = column * FG_BLOCKS_PER_TILE; x < (column + 1) * FG_BLOCKS_PER_TILE; x++)
+      if (x < out->tiles->block_columns && y < out->tiles->block_rows)
+        visit(out, x, y, fg_segmentation_excess(out, x, y), data);
+}
+
+static void visit_island(fg_segmentation *out, const fg_island *island, visit_block *visit,
+                         void *data) {
+  for (size_t i = 0; i < island->count; i++)
+    visit_tile(out, island->tiles[i] % out->tiles->columns, island->tiles[i] / out->tiles->columns,
+               visit, data);
+}
+
+typedef struct sample {
+  float *values;
+  size_t count;
+} sample;
+
+static void take_sample(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data) {
+  (void)out;
+  sample *s = data;
+  if ((x + y) % 3 == 0) s->values[s->count++] = fabsf(excess);
+}
+
+/* Robust sd of the background: the median of |excess| over the tiles around the island that are not
+ * wanted, where the excess is mostly noise. */
+static fg_status estimate_noise(fg_context *ctx, const fg_island *island, fg_segmentation *out) {
+  enum { TILES_MOST = 64, BLOCKS = FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE };
   const fg_tiles *tiles = out->tiles;
-  for (int32_t r = 0; r < tiles->rows; r++)
-    for (int32_t c = 0; c < tiles->columns; c++) {
-      if (!tiles->wanted[(size_t)r * (size_t)tiles->columns + (size_t)c]) continue;
-      for (int32_t y = r * FG_BLOCKS_PER_TILE; y < (r + 1) * FG_BLOCKS_PER_TILE; y++)
-        for (int32_t x = c * FG_BLOCKS_PER_TILE; x < (c + 1) * FG_BLOCKS_PER_TILE; x++)
-          if (x < out->width && y < out->height)
-            visit(out, x, y, fg_segmentation_excess(out, x, y), data);
-    }
+  sample s = {0};
+  size_t taken = 0, stride = island->count / TILES_MOST + 1;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)TILES_MOST * 9 * BLOCKS, sizeof *s.values,
+                            (void **)&s.values));
+  for (size_t i = 0; i < island->count && taken < TILES_MOST; i += stride, taken++) {
+    int32_t column = island->tiles[i] % tiles->columns, row = island->tiles[i] / tiles->columns;
+    for (int32_t y = row - 1; y <= row + 1; y++)
+      for (int32_t x = column - 1; x <= column + 1; x++)
+        if (x >= 0 && y >= 0 && x < tiles->columns && y < tiles->rows && fg_tiles_at(tiles, x, y) &&
+            !tiles->wanted[(size_t)y * (size_t)tiles->columns + (size_t)x])
+          visit_tile(out, x, y, take_sample, &s);
+  }
+  if (s.count) qsort(s.values, s.count, sizeof *s.values, compare_floats);
+  out->noise = (s.count ? 1.4826f * s.values[s.count / 2] : 0) + 0.02f;
+  free(s.values);
+  return FG_OK;
 }
 
 /* Blocks beyond the noise: sums of both signs and a histogram of either's excess in counts. */
@@ -78,10 +120,10 @@ static void tally_block(fg_segmentation *out, int32_t x, int32_t y, float excess
 
 /* Polarity by the larger sum beyond the noise; the typical contrast is the 80th percentile of
  * those blocks. */
-static void find_polarity(fg_segmentation *out) {
+static void find_polarity(const fg_island *island, fg_segmentation *out) {
   tally t = {.limit = fmaxf(MASK_SIGMAS * out->noise, 0.5f * CONTRAST_LEAST)};
   out->light_on_dark = true;
-  visit_wanted(out, tally_block, &t);
+  visit_island(out, island, tally_block, &t);
   out->light_on_dark = t.light >= t.dark;
   const size_t *counts = out->light_on_dark ? t.light_counts : t.dark_counts;
   size_t total = 0, below = 0;
@@ -107,11 +149,12 @@ static fg_status collect_objects(fg_context *ctx, const fg_blob *blobs, int32_t 
       out->speck_count++;
       continue;
     }
+    int32_t x = b->x + out->x, y = b->y + out->y;
     out->objects[out->object_count++] = (fg_object){
-        .label = i + 1, .x = b->x, .y = b->y, .width = b->width, .height = b->height,
+        .label = i + 1, .x = x, .y = y, .width = b->width, .height = b->height,
         .blocks = b->area,
-        .touches_border = b->x <= 0 || b->y <= 0 || b->x + b->width >= out->width ||
-                          b->y + b->height >= out->height};
+        .touches_border = x <= 0 || y <= 0 || x + b->width >= out->tiles->block_columns ||
+                          y + b->height >= out->tiles->block_rows};
   }
   if (out->object_count)
     qsort(out->objects, out->object_count, sizeof *out->objects, compare_objects);
@@ -125,17 +168,18 @@ typedef struct mask {
 
 static void mark_block(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data) {
   mask *m = data;
-  m->cells[(size_t)y * (size_t)out->width + (size_t)x] = excess > m->limit;
+  m->cells[(size_t)(y - out->y) * (size_t)out->width + (size_t)(x - out->x)] = excess > m->limit;
 }
 
-static fg_status label_objects(fg_context *ctx, double least_px, fg_segmentation *out) {
+static fg_status label_objects(fg_context *ctx, const fg_island *island, double least_px,
+                               fg_segmentation *out) {
   size_t count = (size_t)out->width * (size_t)out->height;
   mask m = {.limit = fmaxf(MASK_SIGMAS * out->noise, MASK_SHARE * out->contrast)};
   fg_blob *blobs = NULL;
   int32_t blob_count = 0;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&m.cells));
-  if (out->contrast >= CONTRAST_LEAST) visit_wanted(out, mark_block, &m);
+  if (out->contrast >= CONTRAST_LEAST) visit_island(out, island, mark_block, &m);
   FG_TRY_EXIT(
       fg_cv_label(ctx, m.cells, out->width, out->height, out->labels, &blobs, &blob_count));
   FG_TRY_EXIT(collect_objects(ctx, blobs, blob_count, least_px, out));
@@ -145,20 +189,29 @@ exit:
   return status;
 }
 
-fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, double least_px,
-                     fg_segmentation *out) {
+/* The island's box in blocks, cut at the scan's border. */
+static void find_box(const fg_island *island, fg_segmentation *out) {
+  out->x = island->x * FG_BLOCKS_PER_TILE;
+  out->y = island->y * FG_BLOCKS_PER_TILE;
+  int32_t right = (island->x + island->width) * FG_BLOCKS_PER_TILE;
+  int32_t low = (island->y + island->height) * FG_BLOCKS_PER_TILE;
+  out->width = (right < out->tiles->block_columns ? right : out->tiles->block_columns) - out->x;
+  out->height = (low < out->tiles->block_rows ? low : out->tiles->block_rows) - out->y;
+}
+
+fg_status fg_segment(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
+                     double least_px, fg_segmentation *out) {
   memset(out, 0, sizeof *out);
   out->tiles = tiles;
   out->light_on_dark = true;
-  out->width = (int32_t)((tiles->width_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
-  out->height = (int32_t)((tiles->height_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
+  find_box(island, out);
   size_t count = (size_t)out->width * (size_t)out->height;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(int32_t), (void **)&out->labels));
-  FG_TRY_EXIT(find_background(ctx, tiles, out));
-  FG_TRY_EXIT(estimate_noise(ctx, out));
-  find_polarity(out);
-  FG_TRY_EXIT(label_objects(ctx, least_px, out));
+  FG_TRY_EXIT(find_background(ctx, island, out));
+  FG_TRY_EXIT(estimate_noise(ctx, island, out));
+  find_polarity(island, out);
+  FG_TRY_EXIT(label_objects(ctx, island, least_px, out));
 exit:
   if (status != FG_OK) fg_segmentation_free(out);
   return status;

@@ -10,8 +10,13 @@
  * that all lie on the part must not hide it). */
 enum { CONTRAST_MIN = 3, CONTRAST_MAX = 12, CONTRAST_OVER_QUARTILE = 6 };
 
-static size_t strip_bytes(const fg_tiles *tiles) {
-  return (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel * FG_TILE_PX;
+static size_t row_bytes(const fg_tiles *tiles) {
+  return (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel;
+}
+
+/* Block means in one row of blocks, those outside the scan too. */
+static size_t blocks_across(const fg_tiles *tiles) {
+  return (size_t)tiles->columns * FG_BLOCKS_PER_TILE;
 }
 
 fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
@@ -22,38 +27,41 @@ fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
   tiles->bytes_per_pixel = bytes_per_pixel;
   tiles->columns = (int32_t)((width_px + FG_TILE_PX - 1) / FG_TILE_PX);
   tiles->rows = (int32_t)((height_px + FG_TILE_PX - 1) / FG_TILE_PX);
-  tiles->block_columns = tiles->columns * FG_BLOCKS_PER_TILE;
-  tiles->block_rows = tiles->rows * FG_BLOCKS_PER_TILE;
+  tiles->block_columns = (int32_t)((width_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
+  tiles->block_rows = (int32_t)((height_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
   size_t count = (size_t)tiles->columns * (size_t)tiles->rows;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(void *), (void **)&tiles->pixels));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(fg_tile *), (void **)&tiles->tiles));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&tiles->wanted));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(float), (void **)&tiles->medians));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count * FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
-                                 sizeof(float), (void **)&tiles->blocks));
-  for (int i = 0; i < 3; i++)
-    FG_TRY_EXIT(fg_memory_allocate(ctx, strip_bytes(tiles), 1, &tiles->strips[i]));
+  for (int i = 0; i < FG_TILE_STRIPS && i < tiles->rows; i++) {
+    FG_TRY_EXIT(
+        fg_memory_allocate(ctx, row_bytes(tiles), FG_TILE_PX, (void **)&tiles->strips[i]));
+    FG_TRY_EXIT(fg_memory_allocate(ctx, blocks_across(tiles), FG_BLOCKS_PER_TILE * sizeof(float),
+                                   (void **)&tiles->strip_blocks[i]));
+  }
 exit:
   if (status != FG_OK) fg_tiles_free(tiles);
   return status;
 }
 
-static int64_t rows_of_strip(const fg_tiles *tiles, int32_t strip) {
+int64_t fg_tiles_strip_rows(const fg_tiles *tiles, int32_t strip) {
   int64_t left = tiles->height_px - (int64_t)strip * FG_TILE_PX;
   return left < FG_TILE_PX ? left : FG_TILE_PX;
 }
 
-/* Adds `rows` rows of pixels, column by column, into sums. */
-static void add_rows(const fg_tiles *tiles, const void *rows, int64_t count, uint32_t *sums) {
+/* Adds `count` rows of pixels, column by column, into sums. */
+static void add_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count, uint32_t *sums) {
   size_t width = (size_t)tiles->width_px;
   memset(sums, 0, width * sizeof *sums);
   for (int64_t y = 0; y < count; y++) {
+    const void *row = rows + (size_t)y * row_bytes(tiles);
     if (tiles->bytes_per_pixel == 1) {
-      const uint8_t *row = (const uint8_t *)rows + (size_t)y * width;
-      for (size_t x = 0; x < width; x++) sums[x] += row[x];
+      const uint8_t *values = row;
+      for (size_t x = 0; x < width; x++) sums[x] += values[x];
     } else {
-      const uint16_t *row = (const uint16_t *)rows + (size_t)y * width;
-      for (size_t x = 0; x < width; x++) sums[x] += row[x];
+      const uint16_t *values = row;
+      for (size_t x = 0; x < width; x++) sums[x] += values[x];
     }
   }
 }
@@ -61,7 +69,8 @@ static void add_rows(const fg_tiles *tiles, const void *rows, int64_t count, uin
 /* Block means of one row of blocks; blocks outside the scan repeat the last one inside. */
 static void average_blocks(const fg_tiles *tiles, const uint32_t *sums, int64_t rows, float *out) {
   float unit = tiles->bytes_per_pixel == 1 ? 1.0f : 1.0f / 257.0f;
-  for (int32_t b = 0; b < tiles->block_columns; b++) {
+  int32_t count = tiles->columns * FG_BLOCKS_PER_TILE;
+  for (int32_t b = 0; b < count; b++) {
     int64_t from = (int64_t)b * FG_BLOCK_PX, to = from + FG_BLOCK_PX;
     if (to > tiles->width_px) to = tiles->width_px;
     if (from >= to) {
@@ -75,21 +84,19 @@ static void average_blocks(const fg_tiles *tiles, const uint32_t *sums, int64_t 
 }
 
 static fg_status reduce_strip(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
-  const uint8_t *pixels = tiles->strips[strip % 3];
-  size_t row_bytes = (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel;
-  int64_t rows = rows_of_strip(tiles, strip);
+  const uint8_t *pixels = fg_tiles_strip(tiles, strip);
+  float *out = tiles->strip_blocks[strip % FG_TILE_STRIPS];
+  int64_t rows = fg_tiles_strip_rows(tiles, strip);
   uint32_t *sums = NULL;
   FG_TRY(fg_memory_allocate(ctx, (size_t)tiles->width_px, sizeof *sums, (void **)&sums));
-  for (int b = 0; b < FG_BLOCKS_PER_TILE; b++) {
+  for (int b = 0; b < FG_BLOCKS_PER_TILE; b++, out += blocks_across(tiles)) {
     int64_t from = (int64_t)b * FG_BLOCK_PX;
-    float *out = tiles->blocks + ((size_t)strip * FG_BLOCKS_PER_TILE + (size_t)b) *
-                                     (size_t)tiles->block_columns;
     if (from >= rows) {
-      memcpy(out, out - tiles->block_columns, (size_t)tiles->block_columns * sizeof *out);
+      memcpy(out, out - blocks_across(tiles), blocks_across(tiles) * sizeof *out);
       continue;
     }
     int64_t count = rows - from < FG_BLOCK_PX ? rows - from : FG_BLOCK_PX;
-    add_rows(tiles, pixels + (size_t)from * row_bytes, count, sums);
+    add_rows(tiles, pixels + (size_t)from * row_bytes(tiles), count, sums);
     average_blocks(tiles, sums, count, out);
   }
   free(sums);
@@ -122,19 +129,22 @@ static float select_median(float *values, int count) {
   return values[wanted];
 }
 
+/* Block means of one tile of a strip that is still held. */
+static void copy_blocks(const fg_tiles *tiles, int32_t column, int32_t strip, float *out) {
+  const float *row =
+      tiles->strip_blocks[strip % FG_TILE_STRIPS] + (size_t)column * FG_BLOCKS_PER_TILE;
+  for (int y = 0; y < FG_BLOCKS_PER_TILE; y++)
+    memcpy(out + y * FG_BLOCKS_PER_TILE, row + (size_t)y * blocks_across(tiles),
+           FG_BLOCKS_PER_TILE * sizeof *out);
+}
+
 /* Range of a tile's block means, and their median. */
 static float tile_contrast(const fg_tiles *tiles, int32_t column, int32_t strip, float *median) {
   float low = INFINITY, high = -INFINITY, values[FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE];
-  for (int y = 0; y < FG_BLOCKS_PER_TILE; y++) {
-    const float *row = tiles->blocks +
-                       ((size_t)strip * FG_BLOCKS_PER_TILE + (size_t)y) *
-                           (size_t)tiles->block_columns +
-                       (size_t)column * FG_BLOCKS_PER_TILE;
-    for (int x = 0; x < FG_BLOCKS_PER_TILE; x++) {
-      low = row[x] < low ? row[x] : low;
-      high = row[x] > high ? row[x] : high;
-      values[y * FG_BLOCKS_PER_TILE + x] = row[x];
-    }
+  copy_blocks(tiles, column, strip, values);
+  for (int i = 0; i < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; i++) {
+    low = values[i] < low ? values[i] : low;
+    high = values[i] > high ? values[i] : high;
   }
   *median = select_median(values, FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE);
   return high - low;
@@ -167,30 +177,29 @@ static int is_kept(const fg_tiles *tiles, int32_t column, int32_t strip) {
   return 0;
 }
 
-static fg_status keep_tiles(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
-  const uint8_t *source = tiles->strips[strip % 3];
-  size_t bytes = (size_t)tiles->bytes_per_pixel, row_bytes = (size_t)tiles->width_px * bytes;
-  for (int32_t c = 0; c < tiles->columns; c++) {
-    if (!is_kept(tiles, c, strip)) continue;
-    uint8_t *tile = NULL;
-    FG_TRY(fg_memory_allocate(ctx, FG_TILE_PX * FG_TILE_PX, bytes, (void **)&tile));
-    size_t from = (size_t)c * FG_TILE_PX * bytes, width = FG_TILE_PX * bytes;
-    if (from + width > row_bytes) width = row_bytes - from;
-    for (int64_t y = 0; y < rows_of_strip(tiles, strip); y++)
-      memcpy(tile + (size_t)y * FG_TILE_PX * bytes, source + (size_t)y * row_bytes + from, width);
-    tiles->pixels[(size_t)strip * (size_t)tiles->columns + (size_t)c] = tile;
-  }
+static fg_status keep_tile(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t strip) {
+  size_t bytes = (size_t)tiles->bytes_per_pixel, width = FG_TILE_PX * bytes;
+  size_t from = (size_t)column * width, size = sizeof(fg_tile) + FG_TILE_PX * width;
+  const uint8_t *source = fg_tiles_strip(tiles, strip);
+  fg_tile *tile = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 1, size, (void **)&tile));
+  size_t valid = from + width > row_bytes(tiles) ? row_bytes(tiles) - from : width;
+  for (int64_t y = 0; y < fg_tiles_strip_rows(tiles, strip); y++)
+    memcpy(tile->pixels + (size_t)y * width, source + (size_t)y * row_bytes(tiles) + from, valid);
+  copy_blocks(tiles, column, strip, tile->blocks);
+  tiles->tiles[(size_t)strip * (size_t)tiles->columns + (size_t)column] = tile;
   return FG_OK;
 }
 
-fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
-                             int64_t stride_bytes) {
+static fg_status keep_tiles(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
+  for (int32_t c = 0; c < tiles->columns; c++)
+    if (is_kept(tiles, c, strip)) FG_TRY(keep_tile(ctx, tiles, c, strip));
+  return FG_OK;
+}
+
+fg_status fg_tiles_take_strip(fg_context *ctx, fg_tiles *tiles) {
   int32_t strip = tiles->received;
   if (strip >= tiles->rows) return fg_fail(ctx, FG_ERR_USAGE, "more rows than the scan has");
-  size_t row_bytes = (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel;
-  for (int64_t y = 0; y < rows_of_strip(tiles, strip); y++)
-    memcpy((uint8_t *)tiles->strips[strip % 3] + (size_t)y * row_bytes,
-           (const uint8_t *)rows + y * stride_bytes, row_bytes);
   FG_TRY(reduce_strip(ctx, tiles, strip));
   FG_TRY(mark_wanted(ctx, tiles, strip));
   if (strip > 0) FG_TRY(keep_tiles(ctx, tiles, strip - 1));
@@ -198,26 +207,48 @@ fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
   return FG_OK;
 }
 
+fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
+                             int64_t stride_bytes) {
+  int32_t strip = tiles->received;
+  if (strip >= tiles->rows) return fg_fail(ctx, FG_ERR_USAGE, "more rows than the scan has");
+  uint8_t *target = fg_tiles_strip(tiles, strip);
+  for (int64_t y = 0; y < fg_tiles_strip_rows(tiles, strip); y++)
+    memcpy(target + (size_t)y * row_bytes(tiles), (const uint8_t *)rows + y * stride_bytes,
+           row_bytes(tiles));
+  return fg_tiles_take_strip(ctx, tiles);
+}
+
+static void free_strips(fg_tiles *tiles) {
+  for (int i = 0; i < FG_TILE_STRIPS; i++) {
+    free(tiles->strips[i]);
+    free(tiles->strip_blocks[i]);
+    tiles->strips[i] = NULL;
+    tiles->strip_blocks[i] = NULL;
+  }
+}
+
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles) {
   if (tiles->received != tiles->rows)
     return fg_fail(ctx, FG_ERR_USAGE, "fewer rows than the scan has");
   FG_TRY(keep_tiles(ctx, tiles, tiles->rows - 1));
-  for (int i = 0; i < 3; i++) {
-    free(tiles->strips[i]);
-    tiles->strips[i] = NULL;
-  }
+  free_strips(tiles);
   return FG_OK;
+}
+
+void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row) {
+  size_t at = (size_t)row * (size_t)tiles->columns + (size_t)column;
+  free(tiles->tiles[at]);
+  tiles->tiles[at] = NULL;
 }
 
 void fg_tiles_free(fg_tiles *tiles) {
   if (!tiles) return;
-  if (tiles->pixels)
+  if (tiles->tiles)
     for (size_t i = 0; i < (size_t)tiles->columns * (size_t)tiles->rows; i++)
-      free(tiles->pixels[i]);
-  free(tiles->pixels);
+      free(tiles->tiles[i]);
+  free(tiles->tiles);
   free(tiles->wanted);
-  free(tiles->blocks);
   free(tiles->medians);
-  for (int i = 0; i < 3; i++) free(tiles->strips[i]);
+  free_strips(tiles);
   memset(tiles, 0, sizeof *tiles);
 }

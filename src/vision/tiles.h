@@ -1,9 +1,10 @@
 /* A scan kept as sparse tiles: only what differs from the background stays in memory.
  *
  * Rows arrive in strips of FG_TILE_PX rows. Every strip is reduced to block means (FG_BLOCK_PX a
- * side); a tile whose block means differ by more than the background's own scatter is kept with
- * its eight neighbours, all others are forgotten. Memory follows the area of the foils, not of the
- * bed. Keeping a tile depends on the rows alone, not on threads or on how the strips arrive.
+ * side); a tile whose block means differ by more than the background's own scatter is wanted, and
+ * kept with its eight neighbours; of all others the median stays. Memory follows the area of the
+ * foils, not of the bed. What is kept depends on the rows alone, not on threads or on how the
+ * strips arrive.
  */
 #ifndef FG_VISION_TILES_H
 #define FG_VISION_TILES_H
@@ -18,44 +19,83 @@
 extern "C" {
 #endif
 
-enum { FG_TILE_PX = 64, FG_BLOCK_PX = 8, FG_BLOCKS_PER_TILE = FG_TILE_PX / FG_BLOCK_PX };
+enum {
+  FG_TILE_PX = 64,
+  FG_BLOCK_PX = 8,
+  FG_BLOCKS_PER_TILE = FG_TILE_PX / FG_BLOCK_PX,
+  FG_TILE_STRIPS = 8, /* strips that are held until their tiles are decided */
+};
+
+/* A tile that was kept. Pixels outside the scan are 0, blocks outside repeat the last one. */
+typedef struct fg_tile {
+  float blocks[FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE]; /* means, in 8-bit counts */
+  uint8_t pixels[];                                      /* FG_TILE_PX² of 1 or 2 bytes */
+} fg_tile;
 
 typedef struct fg_tiles {
   int64_t width_px, height_px;
   int bytes_per_pixel;                 /* 1 or 2 */
   int32_t columns, rows;               /* of tiles */
-  int32_t block_columns, block_rows;   /* FG_BLOCKS_PER_TILE × as many; the last may lie outside */
-  void **pixels;                       /* columns × rows; NULL: background */
-  float *blocks;                       /* block means, in 8-bit counts; outside: the edge's value */
+  int32_t block_columns, block_rows;   /* of blocks inside the scan */
+  fg_tile **tiles;                     /* columns × rows; NULL: background */
   float *medians;                      /* columns × rows: median of each tile's block means */
-  /* the window of strips that are still undecided */
-  void *strips[3];                     /* rows of width_px pixels each */
   uint8_t *wanted;                     /* columns × rows: contrast above the background's scatter */
   int32_t received;                    /* strips so far */
+  /* of the strips that are still undecided: */
+  uint8_t *strips[FG_TILE_STRIPS];     /* rows of width_px pixels */
+  float *strip_blocks[FG_TILE_STRIPS]; /* FG_BLOCKS_PER_TILE rows of columns × FG_BLOCKS_PER_TILE */
 } fg_tiles;
 
 fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
                           int bytes_per_pixel, fg_tiles *tiles);
 
-/* The next strip: FG_TILE_PX rows (the last may have fewer), `stride_bytes` apart. */
+/* Where the rows of a strip go, one after the other without padding. It may be filled while
+ * strips before it are taken, as long as strip < received + FG_TILE_STRIPS - 1. */
+static inline void *fg_tiles_strip(const fg_tiles *tiles, int32_t strip) {
+  return tiles->strips[strip % FG_TILE_STRIPS];
+}
+
+/* Rows of a strip: FG_TILE_PX, fewer in the last. */
+int64_t fg_tiles_strip_rows(const fg_tiles *tiles, int32_t strip);
+
+/* Takes the next strip, whose rows are in place: decides the tiles of the strip before it. */
+fg_status fg_tiles_take_strip(fg_context *ctx, fg_tiles *tiles);
+
+/* The same for rows that lie elsewhere, `stride_bytes` apart. */
 fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
                              int64_t stride_bytes);
 
 /* After the last strip. */
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles);
 
+/* Forgets one tile. */
+void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row);
+
 void fg_tiles_free(fg_tiles *tiles);
+
+static inline const fg_tile *fg_tiles_at(const fg_tiles *tiles, int32_t column, int32_t row) {
+  return tiles->tiles[(size_t)row * (size_t)tiles->columns + (size_t)column];
+}
+
+/* Mean of a block inside the scan, in 8-bit counts; of a tile that was not kept, its median. */
+static inline float fg_tiles_block(const fg_tiles *tiles, int32_t x, int32_t y) {
+  int32_t column = x / FG_BLOCKS_PER_TILE, row = y / FG_BLOCKS_PER_TILE;
+  size_t at = (size_t)row * (size_t)tiles->columns + (size_t)column;
+  const fg_tile *tile = tiles->tiles[at];
+  if (!tile) return tiles->medians[at];
+  return tile->blocks[y % FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE + x % FG_BLOCKS_PER_TILE];
+}
 
 /* The pixel's value in 8-bit counts (16-bit data are divided by 257), NaN where it is not kept or
  * outside the scan. */
 static inline float fg_tiles_pixel(const fg_tiles *tiles, int64_t x, int64_t y) {
   if (x < 0 || y < 0 || x >= tiles->width_px || y >= tiles->height_px) return NAN;
-  const void *tile = tiles->pixels[(size_t)(y / FG_TILE_PX) * (size_t)tiles->columns +
-                                   (size_t)(x / FG_TILE_PX)];
+  size_t ux = (size_t)x, uy = (size_t)y;
+  const fg_tile *tile = tiles->tiles[uy / FG_TILE_PX * (size_t)tiles->columns + ux / FG_TILE_PX];
   if (!tile) return NAN;
-  size_t at = (size_t)(y % FG_TILE_PX) * FG_TILE_PX + (size_t)(x % FG_TILE_PX);
-  if (tiles->bytes_per_pixel == 1) return (float)((const uint8_t *)tile)[at];
-  return (float)((const uint16_t *)tile)[at] * (1.0f / 257.0f);
+  size_t at = uy % FG_TILE_PX * FG_TILE_PX + ux % FG_TILE_PX;
+  if (tiles->bytes_per_pixel == 1) return (float)tile->pixels[at];
+  return (float)((const uint16_t *)(const void *)tile->pixels)[at] * (1.0f / 257.0f);
 }
 
 #ifdef __cplusplus

@@ -14,6 +14,16 @@ enum {
 };
 #define GAP_WIDTHS   4.0  /* longest gap that is bridged, in strip widths */
 #define LENGTH_LEAST 12.0 /* shortest strip, in strip widths */
+/* The contrast follows the illumination: a share of every step's own, within these factors of the
+ * seed's. */
+#define CONTRAST_SHARE 0.1
+#define CONTRAST_RANGE 3.0
+/* Two traces are one strip when so much of the shorter lies on the longer. */
+#define OVERLAP_SHARE 0.5
+/* A strip that ends so many widths from the scan's border is cut by it. */
+#define BORDER_WIDTHS 1.5
+/* Wider than so many widths is more than one strip. */
+#define JOINED_WIDTHS 1.6
 
 typedef struct walker {
   const fg_tiles *tiles;
@@ -22,11 +32,14 @@ typedef struct walker {
   double half_window_px; /* of a cut */
   double width_px;       /* of the strip at the seed */
   double contrast;
+  double blur_sum;       /* over the cuts of a walk */
+  size_t blur_count;
 } walker;
 
 typedef struct cut {
   double offset_px; /* of the middle, along the normal */
   double width_px;
+  double blur_px; /* sd of the edges' blur */
   double peak;
 } cut;
 
@@ -44,8 +57,23 @@ static float background_at(const walker *w, fg_point p) {
                                     (int32_t)(fmin(fmax(p.y, 0), low) / FG_BLOCK_PX));
 }
 
+/* Blur of the flank that falls from inside the strip through j in the direction `step`: the way
+ * from 75 to 25 % of the contrast is 1.349 sd. */
+static double flank(const float *profile, int count, int j, int step, float half) {
+  int inner = j, outer = j;
+  while (inner - step >= 0 && inner - step < count && profile[inner] < 1.5f * half &&
+         profile[inner - step] > profile[inner])
+    inner -= step;
+  while (outer + step >= 0 && outer + step < count && profile[outer] > 0.5f * half &&
+         profile[outer + step] < profile[outer])
+    outer += step;
+  double drop = profile[inner] - profile[outer];
+  double pixels = abs(outer - inner);
+  return drop > 0 ? pixels * half / drop / 1.349 : 0;
+}
+
 /* Cuts across at p: the run above half of `contrast` that lies nearest to p. False when there is
- * none or when it leaves the window. */
+ * none (width 0) or when it leaves the window (width infinite). */
 static bool cut_across(const walker *w, fg_point p, fg_point tangent, double contrast, cut *out) {
   int half = (int)w->half_window_px;
   if (2 * half + 1 > PROFILE_MAX) half = (PROFILE_MAX - 1) / 2;
@@ -62,7 +90,9 @@ static bool cut_across(const walker *w, fg_point p, fg_point tangent, double con
     if (profile[half + d] > limit) best = half + d;
     else if (profile[half - d] > limit) best = half - d;
   }
+  out->width_px = 0;
   if (best < 0) return false;
+  out->width_px = INFINITY;
   int from = best, to = best;
   while (from > 0 && profile[from - 1] > limit) from--;
   while (to < count - 1 && profile[to + 1] > limit) to++;
@@ -73,6 +103,7 @@ static bool cut_across(const walker *w, fg_point p, fg_point tangent, double con
   out->width_px = b - a;
   out->peak = 0;
   for (int j = from; j <= to; j++) out->peak = fmax(out->peak, profile[j]);
+  out->blur_px = 0.5 * (flank(profile, count, from, -1, limit) + flank(profile, count, to, 1, limit));
   return true;
 }
 
@@ -136,32 +167,65 @@ static fg_point tangent_at_end(const fg_trace *trace, fg_point fallback) {
   return length > 0 ? (fg_point){(b.x - a.x) / length, (b.y - a.y) / length} : fallback;
 }
 
+/* The strip's cut one step ahead of p, which lies `missed` past the last good point. Where it is
+ * not straight ahead, a little to either side is tried: a tight bend in few pixels turns faster
+ * than the direction follows. */
+static bool step_ahead(const walker *w, fg_point p, fg_point *direction, double length,
+                       double missed, double contrast, fg_point *next, cut *c) {
+  static const double turns[] = {0, 0.26, -0.26, 0.52, -0.52};
+  size_t tries = missed > 0 ? 1 : sizeof turns / sizeof turns[0];
+  double straight_px = 0;
+  for (size_t i = 0; i < tries; i++) {
+    double cosine = cos(turns[i]), sine = sin(turns[i]);
+    fg_point d = {cosine * direction->x - sine * direction->y,
+                  sine * direction->x + cosine * direction->y};
+    *next = along(p, d, length);
+    if (outside(w, *next, 0)) continue;
+    bool found = cut_across(w, *next, d, contrast, c);
+    if (i == 0) straight_px = c->width_px;
+    if (!found || c->width_px >= JOINED_WIDTHS * w->width_px ||
+        c->width_px <= 0.5 * w->width_px ||
+        fabs(c->offset_px) >= 0.5 * w->width_px + 0.5 * missed)
+      continue;
+    *direction = d;
+    return true;
+  }
+  *next = along(p, *direction, length);
+  c->width_px = straight_px;
+  return false;
+}
+
 /* Walks from p in one direction, appending points (p itself excluded). */
-static fg_status walk(fg_context *ctx, const walker *w, fg_point p, fg_point tangent,
+static fg_status walk(fg_context *ctx, walker *w, fg_point p, fg_point tangent,
                       fg_trace *trace) {
-  double step = fmax(3.0, w->width_px / 3), missed = 0;
+  double step = fmax(3.0, w->width_px / 3), missed = 0, contrast = w->contrast;
   fg_point direction = tangent;
+  bool joined = false; /* since the last good point the strip was too wide: something lies on it */
   while (missed <= GAP_WIDTHS * w->width_px) {
     fg_point next = along(p, direction, step + missed);
-    if (outside(w, next, 0)) {
-      if (missed == 0) trace->facts |= FG_STRIP_TOUCHES_BORDER;
-      break;
-    }
+    if (outside(w, next, 0)) break;
     cut c;
-    bool good = cut_across(w, next, direction, w->contrast, &c) &&
-                c.width_px < 1.6 * w->width_px && c.width_px > 0.5 * w->width_px &&
-                fabs(c.offset_px) < 0.5 * w->width_px + 0.5 * missed;
+    bool good = step_ahead(w, p, &direction, step + missed, missed, contrast, &next, &c);
     if (!good) {
+      joined |= c.width_px >= JOINED_WIDTHS * w->width_px;
       missed += step;
       continue;
     }
     if (missed > 2 * step) trace->facts |= FG_STRIP_GAP;
+    if (missed > 2 * step && joined) trace->facts |= FG_STRIP_TOUCHES_OTHER;
+    joined = false;
     missed = 0;
+    contrast += CONTRAST_SHARE * (c.peak - contrast);
+    contrast = fmin(fmax(contrast, w->contrast / CONTRAST_RANGE), w->contrast * CONTRAST_RANGE);
     p = along(next, normal_of(direction), c.offset_px);
     if (visited(trace, p, w->width_px)) break;
+    w->blur_sum += c.blur_px;
+    w->blur_count++;
     FG_TRY(append(ctx, trace, p));
     direction = tangent_at_end(trace, direction);
   }
+  if (joined) trace->facts |= FG_STRIP_TOUCHES_OTHER;
+  if (outside(w, p, BORDER_WIDTHS * w->width_px)) trace->facts |= FG_STRIP_TOUCHES_BORDER;
   return FG_OK;
 }
 
@@ -183,6 +247,7 @@ static fg_status trace_from_seed(fg_context *ctx, walker *w, fg_point seed, fg_t
   FG_TRY(walk(ctx, w, seed, tangent, trace));
   trace->width_px = w->width_px;
   trace->contrast = w->contrast;
+  trace->blur_px = w->blur_count ? w->blur_sum / (double)w->blur_count : 2;
   return FG_OK;
 }
 
@@ -238,8 +303,7 @@ static void open_blocks(const walker *w, uint8_t *open) {
   for (int32_t y = 0; y < o->height; y++)
     for (int32_t x = 0; x < o->width; x++)
       open[(size_t)y * (size_t)o->width + (size_t)x] =
-          w->segmentation->labels[(size_t)(y + o->y) * (size_t)w->segmentation->width +
-                                  (size_t)(x + o->x)] == o->label;
+          fg_segmentation_label(w->segmentation, x + o->x, y + o->y) == o->label;
 }
 
 static void free_trace(fg_trace *trace) {
@@ -247,9 +311,36 @@ static void free_trace(fg_trace *trace) {
   memset(trace, 0, sizeof *trace);
 }
 
-/* Keeps a trace that is long enough to be a strip. */
+/* Whether the shorter of two traces lies on the longer. */
+static bool same_strip(const fg_trace *a, const fg_trace *b) {
+  const fg_trace *brief = a->count < b->count ? a : b, *full = brief == a ? b : a;
+  double limit = 0.25 * full->width_px * full->width_px;
+  size_t on = 0;
+  for (size_t i = 0; i < brief->count; i++)
+    for (size_t j = 0; j < full->count; j++) {
+      double dx = brief->points[i].x - full->points[j].x;
+      double dy = brief->points[i].y - full->points[j].y;
+      if (dx * dx + dy * dy >= limit) continue;
+      on++;
+      break;
+    }
+  return (double)on > OVERLAP_SHARE * (double)brief->count;
+}
+
+/* Keeps a trace that is long enough to be a strip; of one strip the longest trace stays. */
 static void keep_or_drop(fg_trace *trace, fg_trace_list *list) {
   double length = 0;
+  for (size_t k = 0; k < list->count; k++) {
+    fg_trace *other = &list->traces[k];
+    if (!same_strip(trace, other)) continue;
+    if (trace->count > other->count) {
+      fg_trace swap = *other;
+      *other = *trace;
+      *trace = swap;
+    }
+    free_trace(trace);
+    return;
+  }
   for (size_t i = 1; i < trace->count; i++)
     length += hypot(trace->points[i].x - trace->points[i - 1].x,
                     trace->points[i].y - trace->points[i - 1].y);
@@ -278,6 +369,8 @@ fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
     w.contrast = contrast_at(&w, seed);
     w.half_window_px = 3 * width_px + 8;
     w.width_px = width_px;
+    w.blur_sum = 0;
+    w.blur_count = 0;
     FG_TRY_EXIT(trace_from_seed(ctx, &w, seed, &trace));
     left = clear_along(&trace, &w, seed, open);
     keep_or_drop(&trace, list);

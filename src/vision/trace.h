@@ -18,8 +18,9 @@ extern "C" {
 typedef struct fg_trace {
   fg_point *points;   /* px, from one end to the other; owned */
   size_t count, capacity;
-  double width_px;    /* median width of the strip at half contrast */
-  double contrast;    /* median contrast, 8-bit counts */
+  double width_px;    /* of the strip at half contrast, at the seed */
+  double blur_px;     /* mean sd of the edges' blur, roughly */
+  double contrast;    /* contrast at the seed, 8-bit counts */
   unsigned facts;     /* fg_strip_fact: border, other, gap */
 } fg_trace;
 

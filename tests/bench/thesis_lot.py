@@ -2,7 +2,7 @@
 
 The normalised bump radius has its mean at 1.05, its mode at 1.02 and lies in 0.95 to 1.30: a gamma
 distribution shifted to 0.95 (mean - shift = k s = 0.10, mode - shift = (k - 1) s = 0.07, so s = 0.03, k = 10/3).
-The 126 radii are its quantiles at (i + 1/2) / 126, shuffled, so that the sample is the distribution.
+The 126 radii are its quantiles at i / 125, shuffled, so that the sample is the distribution with its ends.
 The arc length is the design's: the renderer's default. Beside the specs a manifest and a design with tolerances.
 """
 
@@ -22,7 +22,7 @@ def radii():
     draws = sorted(SHIFT + rng.gammavariate(SHAPE, SCALE) for _ in range(DRAWS))
     draws = [x for x in draws if LOWEST <= x <= HIGHEST]
     count = FOILS * BUMPS
-    values = [draws[int((i + 0.5) / count * len(draws))] for i in range(count)]
+    values = [draws[round(i / (count - 1) * (len(draws) - 1))] for i in range(count)]
     rng.shuffle(values)
     return values
 

@@ -1,0 +1,173 @@
+/* The analysis of a designed experiment, whole: from a table of runs to effects, tests, the best
+ * setting, and the report on it.
+ *
+ * It puts together what table.h, regression.h, doe.h and surface.h hold. Numeric factors are coded
+ * to -1 and +1, by the levels given or else by the lowest and highest of the data; a factor that
+ * the formula transforms (log(t)) or takes for names (factor(t)) stays as it is. Blocks enter as a
+ * factor of their own, and predictions are averaged over them. With whole plots every coefficient
+ * is judged by the error of its own stratum (doe.h).
+ *
+ * Where the uncertainty of the responses differs between runs so much that it matters (some u
+ * above twice the middle one and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with
+ * s, the scatter of the process, such that the weighted residuals are as large as their freedom
+ * says (Mandel and Paule 1970); split plots are not weighed.
+ *
+ * What cannot be computed is NaN, and a note says why and what can still be said.
+ */
+#ifndef FOILGAUGE_EXPERIMENT_H
+#define FOILGAUGE_EXPERIMENT_H
+
+#include <stdio.h>
+
+#include "foilgauge/doe.h"
+#include "foilgauge/regression.h"
+#include "foilgauge/surface.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The thesis models the magnitude of a springback error, which is negative. AUTO does so for a
+ * response whose name holds "springback_error" when all values have one sign; else as it is. */
+typedef enum fg_experiment_sign {
+  FG_SIGN_AUTO,
+  FG_SIGN_AS_IS,
+  FG_SIGN_MAGNITUDE,
+} fg_experiment_sign;
+
+typedef struct fg_experiment_options {
+  const char *response; /* NULL: the formula's left side */
+  const char *formula;
+  const fg_coding *coding; /* of some factors; the others by the data */
+  size_t codings;
+  bool uncoded; /* factors that have no coding here stay in real units */
+  fg_experiment_sign sign;
+  const char *block;       /* column that names the blocks; NULL: none */
+  const char *whole_plot;  /* column that names the whole plots; NULL: none */
+  const char *uncertainty; /* column with the response's standard uncertainty; NULL: none */
+  double confidence;       /* 0 means 0.95 */
+  fg_goal goal;
+  double target;                 /* FG_GOAL_TARGET: the response wanted */
+  const char *const *constraint; /* "temperature_C <= 700", "2*a + b >= 3", in real units */
+  size_t constraints;
+} fg_experiment_options;
+
+/* A numeric factor of the model. */
+typedef struct fg_factor {
+  const char *name; /* the table's column */
+  size_t variable;  /* index into model.formula.variable */
+  bool coded;       /* by `coding`; else -1 and +1 are themselves */
+  bool transformed; /* enters the model through a function */
+  fg_coding coding;
+  double lowest, highest; /* of the data, in the model's units */
+} fg_factor;
+
+/* What is said of a coefficient beyond regression.coefficient[i] (same index): the error is that
+ * of its stratum. */
+typedef struct fg_effect {
+  bool block;      /* belongs to the blocks: not an effect of interest */
+  bool whole_plot; /* judged by the scatter of whole plots */
+  double freedom;  /* of its error */
+  double standard_error, t, p_value, low, high;
+  double relative_pct;  /* 100 estimate / constant (table 5.2); NaN for the constant */
+  double u_measurement; /* part of the standard error that the measurement's uncertainty makes */
+  double contrast;      /* estimate as in an orthogonal design of this size, for Lenth and plots */
+  double lenth_p_value; /* NaN without Lenth */
+} fg_effect;
+
+typedef struct fg_optimum {
+  double x[FG_SURFACE_FACTORS]; /* model's units, in the order of surface.variable */
+  fg_prediction prediction;     /* mean with its interval; interval of one confirmation run */
+  bool on_border;               /* of the region: the best may lie beyond */
+} fg_optimum;
+
+enum { FG_RIDGE_POINTS = 11 };
+
+typedef struct fg_ridge_point {
+  double radius, x[FG_SURFACE_FACTORS];
+  fg_prediction prediction;
+  bool inside; /* the region of the data and the constraints */
+} fg_ridge_point;
+
+typedef struct fg_experiment {
+  fg_table table;           /* as analysed: coded, sign applied */
+  char *response, *formula; /* canonical, blocks included */
+  char *block, *whole_plot; /* columns; NULL: none */
+  size_t block_variable;    /* of the model; FG_FORMULA_VARIABLES: no blocks */
+  double confidence;
+  bool magnitude, sign_chosen; /* the response is |y|; by AUTO */
+  fg_model model;
+  fg_regression regression;
+  fg_effect *effect; /* regression.columns */
+  fg_factor factor[FG_FORMULA_VARIABLES];
+  size_t factors;
+  double *setting;   /* rows × model.formula.variables: every run for predictions */
+  double *u;         /* rows: of the response; NULL: not known */
+  double u_rms;      /* NaN: not known */
+  double *weight;    /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
+  double process_sd; /* scatter beside the measurement's; NaN: not separated */
+
+  bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
+  fg_lenth lenth; /* of fg_effect.contrast */
+  fg_box_cox box_cox;
+  fg_curvature curvature;
+  fg_split_plot split_plot;
+  fg_surface surface;
+  bool stationary_inside;   /* the region */
+  fg_prediction stationary; /* at the stationary point */
+  fg_goal goal;
+  double target;
+  fg_region region;  /* box and ball of the runs, and the constraints */
+  char **constraint; /* as given */
+  size_t constraints;
+  double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
+  fg_optimum optimum;
+  fg_ridge_point ridge[FG_RIDGE_POINTS];
+
+  char **note; /* what could not be said and why */
+  size_t notes, note_capacity;
+} fg_experiment;
+
+/* FG_ERR_DATA, with row and column: a column is missing, a word among numbers, a cell without a
+ * number, one run only, a response or a factor with one value. FG_ERR_USAGE: formula, coding,
+ * constraint that cannot be. `options` is not kept. Free with fg_experiment_free. */
+fg_status fg_experiment_analyse(fg_context *ctx, const fg_table *runs,
+                                const fg_experiment_options *options, fg_experiment *experiment);
+void fg_experiment_free(fg_experiment *experiment);
+
+/* The expected response at a setting (as in fg_model_row; blocks are averaged over), with the
+ * errors of the strata. */
+fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *experiment,
+                                const double *setting, fg_prediction *prediction);
+
+/* A factor's number in real units. */
+double fg_factor_real(const fg_factor *factor, double x);
+
+/* One scan that the responses come from. */
+typedef struct fg_experiment_scan {
+  const char *path; /* as opened */
+  size_t run;       /* row of the run sheet, from 1 */
+  char sha256[65];  /* "" when it could not be read */
+  double value, u;  /* NaN when it could not be measured */
+  const char *error;
+} fg_experiment_scan;
+
+typedef struct fg_experiment_report {
+  const fg_experiment *experiment;
+  const char *path;   /* of the run sheet */
+  const char *sha256; /* of its content */
+  const fg_experiment_scan *scan;
+  size_t scans;
+  const size_t *row; /* of the run sheet (from 1), for every run that was analysed; NULL: all */
+} fg_experiment_report;
+
+/* JSON, "schema": "foilgauge/doe/1" (reports/schema/doe.schema.json); a table for the terminal; one
+ * self-contained page. FG_ERR_IO when the stream fails. */
+fg_status fg_experiment_write_json(fg_context *ctx, const fg_experiment_report *report, FILE *out);
+fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report *report, FILE *out);
+fg_status fg_experiment_write_html(fg_context *ctx, const fg_experiment_report *report, FILE *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,351 @@
+/* foilgauge doe: a table of runs in, what matters and the best setting out. */
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/doe_plan.h"
+#include "cli/output_set.h"
+#include "core/memory.h"
+#include "core/sha256.h"
+#include "foilgauge/run_sheet.h"
+
+/* What the command can write. */
+typedef enum output_kind { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT } output_kind;
+
+typedef fg_status report_writer(fg_context *ctx, const fg_experiment_report *report, FILE *out);
+
+static report_writer *const writers[OUT_COUNT] = {
+    [OUT_JSON] = fg_experiment_write_json,
+    [OUT_HTML] = fg_experiment_write_html,
+    [OUT_TABLE] = fg_experiment_write_table,
+};
+
+enum { CODINGS = FG_FORMULA_VARIABLES, CSV_BYTES_MAX = 1 << 30 };
+
+typedef struct doe_arguments {
+  const char *data, *scans, *design_path;
+  fg_experiment_options options;
+  fg_coding coding[CODINGS];
+  const char *constraint[FG_REGION_PLANES];
+  double dpi;
+  unsigned threads;
+} doe_arguments;
+
+typedef struct doe_run {
+  doe_arguments arguments;
+  fg_output_set outputs;
+  char sha256[65];
+  fg_table sheet;
+  fg_run_sheet measured;
+  char *u_name;
+  fg_experiment experiment;
+} doe_run;
+
+enum {
+  OPTION_RESPONSE = 256,
+  OPTION_MODEL,
+  OPTION_CODE,
+  OPTION_SIGN,
+  OPTION_BLOCK,
+  OPTION_WHOLE_PLOT,
+  OPTION_UNCERTAINTY,
+  OPTION_SCANS,
+  OPTION_DPI,
+  OPTION_THREADS,
+  OPTION_CONSTRAINT,
+  OPTION_GOAL,
+  OPTION_CONFIDENCE,
+  OPTION_HTML
+};
+
+static const struct argp_option options[] = {
+    {"response", OPTION_RESPONSE, "NAME", 0,
+     "The column to explain; with --scans, the quantity to measure", 0},
+    {"model", OPTION_MODEL, "FORMULA", 0, "As in R: 'T + D + T:D + T^2'; T*D is T + D + T:D", 0},
+    {"code", OPTION_CODE, "NAME=LOW:HIGH", 0,
+     "Code a factor so that LOW is -1 and HIGH +1 (default: lowest and highest of the data); "
+     "'--code none' leaves the others in real units",
+     0},
+    {"sign", OPTION_SIGN, "SIGN", 0,
+     "magnitude models |response|, as the thesis does with springback errors; as-is keeps the "
+     "sign; auto (default): magnitude for a springback error whose values have one sign",
+     0},
+    {"block", OPTION_BLOCK, "COL", 0, "Column that names blocks (days, sheets of metal)", 0},
+    {"whole-plot", OPTION_WHOLE_PLOT, "COL", 0,
+     "Column that names whole plots: runs that shared a setting (one oven load)", 0},
+    {"confidence", OPTION_CONFIDENCE, "P", 0, "Of the intervals (default 0.95)", 0},
+    {"scans", OPTION_SCANS, "COL", 0, "Measure the scans that this column names (several: a;b)", 1},
+    {"uncertainty", OPTION_UNCERTAINTY, "COL", 0,
+     "Column with the standard uncertainty of a response typed by hand", 1},
+    {"design", 'd', "FILE", 0, "What the foils should be (default: the Gen II foil)", 1},
+    {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 1},
+    {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 1},
+    {"goal", OPTION_GOAL, "GOAL", 0, "lowest (default), highest, or the number to aim at", 2},
+    {"constraint", OPTION_CONSTRAINT, "LIMIT", 0,
+     "Keep the best setting within: 'temperature_C <= 700', '2*a + b >= 3'; may be repeated", 2},
+    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 3},
+    {0},
+};
+
+static const char doc[] =
+    "Analyse a designed experiment: effects with their errors, analysis of variance, the best "
+    "setting. `foilgauge doe plan --help` plans one.\v"
+    "DATA.csv holds a run per row; the first row names the columns. - is standard input. Without "
+    "-o the results go to standard output: as a table on a terminal, else as JSON.\n\n"
+    "Exit code: 0 done; 2 some scans could not be measured; 64 usage; 65 bad data; 74 input or "
+    "output.";
+
+static double parse_number(struct argp_state *state, const char *name, const char *text,
+                           double lowest, double highest) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text || *end || !(value >= lowest && value <= highest))
+    argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
+  return value;
+}
+
+static void parse_code(struct argp_state *state, const char *text, doe_arguments *a) {
+  fg_context ctx = {0};
+  if (!strcmp(text, "none")) {
+    a->options.uncoded = true;
+    return;
+  }
+  if (a->options.codings == CODINGS) argp_error(state, "too many --code");
+  if (fg_coding_parse(&ctx, text, &a->coding[a->options.codings]) != FG_OK)
+    argp_error(state, "--code: %s", ctx.message);
+  for (size_t i = 0; i < a->options.codings; i++)
+    if (!strcmp(a->coding[i].name, a->coding[a->options.codings].name))
+      argp_error(state, "--code: '%s' is coded twice", a->coding[i].name);
+  a->options.codings++;
+}
+
+static void parse_sign(struct argp_state *state, const char *text, doe_arguments *a) {
+  static const char *const words[] = {"auto", "as-is", "magnitude"};
+  for (int i = 0; i < 3; i++)
+    if (!strcmp(text, words[i])) {
+      a->options.sign = (fg_experiment_sign)i;
+      return;
+    }
+  argp_error(state, "--sign: '%s' is none of magnitude, as-is, auto", text);
+}
+
+static void parse_goal(struct argp_state *state, const char *text, doe_arguments *a) {
+  a->options.goal = FG_GOAL_LOWEST;
+  if (!strcmp(text, "lowest")) return;
+  a->options.goal = FG_GOAL_HIGHEST;
+  if (!strcmp(text, "highest")) return;
+  a->options.goal = FG_GOAL_TARGET;
+  a->options.target = parse_number(state, "goal", text, -1e300, 1e300);
+}
+
+static void parse_constraint(struct argp_state *state, const char *text, doe_arguments *a) {
+  if (a->options.constraints == FG_REGION_PLANES)
+    argp_error(state, "--constraint: %d are possible", FG_REGION_PLANES);
+  a->constraint[a->options.constraints++] = text;
+}
+
+/* Options whose text is kept as it is. */
+static const char **text_option(int key, doe_run *run) {
+  doe_arguments *a = &run->arguments;
+  switch (key) {
+  case OPTION_RESPONSE:
+    return &a->options.response;
+  case OPTION_MODEL:
+    return &a->options.formula;
+  case OPTION_BLOCK:
+    return &a->options.block;
+  case OPTION_WHOLE_PLOT:
+    return &a->options.whole_plot;
+  case OPTION_UNCERTAINTY:
+    return &a->options.uncertainty;
+  case OPTION_SCANS:
+    return &a->scans;
+  case 'd':
+    return &a->design_path;
+  case 'o':
+    return &run->outputs.path[OUT_JSON];
+  case OPTION_HTML:
+    return &run->outputs.path[OUT_HTML];
+  default:
+    return NULL;
+  }
+}
+
+static void check_arguments(struct argp_state *state, const doe_arguments *a) {
+  if (!a->data) argp_error(state, "no DATA.csv was given");
+  if (!a->options.formula) argp_error(state, "no --model was given");
+  if (a->scans && !a->options.response)
+    argp_error(state, "--scans needs --response: the quantity to measure");
+  if (a->scans && a->options.uncertainty)
+    argp_error(state, "--scans brings its own uncertainty: drop --uncertainty");
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  doe_run *run = state->input;
+  doe_arguments *a = &run->arguments;
+  const char **place = text_option(key, run);
+  if (place) {
+    *place = text;
+    return 0;
+  }
+  switch (key) {
+  case OPTION_CODE:
+    parse_code(state, text, a);
+    break;
+  case OPTION_SIGN:
+    parse_sign(state, text, a);
+    break;
+  case OPTION_GOAL:
+    parse_goal(state, text, a);
+    break;
+  case OPTION_CONSTRAINT:
+    parse_constraint(state, text, a);
+    break;
+  case OPTION_CONFIDENCE:
+    a->options.confidence = parse_number(state, "confidence", text, 0.5, 0.9999);
+    break;
+  case OPTION_DPI:
+    a->dpi = parse_number(state, "dpi", text, 1, 1e6);
+    break;
+  case OPTION_THREADS:
+    a->threads = (unsigned)parse_number(state, "threads", text, 1, 1024);
+    break;
+  case ARGP_KEY_ARG:
+    if (a->data) argp_error(state, "more than one DATA.csv: %s", text);
+    a->data = text;
+    break;
+  case ARGP_KEY_END:
+    check_arguments(state, a);
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+/* The whole input, NUL bytes included (the table's reader names their place). */
+static fg_status read_all(fg_context *ctx, const char *path, char **text, size_t *size) {
+  FILE *in = fg_is_standard(path) ? stdin : fopen(path, "rb");
+  size_t capacity = 0, got;
+  fg_status status = FG_OK;
+  *text = NULL;
+  *size = 0;
+  if (!in) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened; is the name right?", path);
+  do {
+    FG_TRY_EXIT(fg_memory_reserve(ctx, *size + 65536, 1, &capacity, (void **)text));
+    got = fread(*text + *size, 1, capacity - *size, in);
+    *size += got;
+    if (*size > CSV_BYTES_MAX)
+      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: more than 1 GiB; is it a table of runs?", path));
+  } while (got > 0);
+  if (ferror(in)) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_IO, "%s: cannot be read; is it a file?", path));
+exit:
+  if (in != stdin) fclose(in);
+  return status;
+}
+
+static fg_status read_sheet(fg_context *ctx, doe_run *run) {
+  const char *path = run->arguments.data;
+  struct sha256_ctx sum;
+  char *text = NULL;
+  size_t size = 0;
+  fg_status status = read_all(ctx, path, &text, &size);
+  if (status == FG_OK) {
+    sha256_init(&sum);
+    sha256_update(&sum, size, (const uint8_t *)text);
+    fg_sha256_finish(&sum, run->sha256);
+    status = fg_table_parse(ctx, fg_is_standard(path) ? "standard input" : path, text, size,
+                            &run->sheet);
+  }
+  free(text);
+  return status;
+}
+
+static fg_status measure_scans(fg_context *ctx, doe_run *run) {
+  doe_arguments *a = &run->arguments;
+  fg_design design;
+  const char *slash = strrchr(a->data, '/');
+  char folder[4096];
+  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - a->data) + (slash == a->data) : 0,
+           a->data);
+  fg_design_default(&design);
+  if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &design));
+  const fg_run_sheet_options sheet = {.column = a->scans,
+                                      .quantity = a->options.response,
+                                      .folder = folder,
+                                      .design = &design,
+                                      .measure = {a->dpi, a->threads}};
+  FG_TRY(fg_run_sheet_measure(ctx, &run->sheet, &sheet, &run->measured));
+  for (size_t i = 0; i < run->measured.scans; i++)
+    if (run->measured.scan[i].error)
+      fprintf(stderr, "foilgauge: row %zu: %s\n", run->measured.scan[i].run,
+              run->measured.scan[i].error);
+  if (asprintf(&run->u_name, "u_%s", a->options.response) < 0)
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a name");
+  const fg_column *column;
+  if (fg_table_find(NULL, &run->measured.table, run->u_name, &column) == FG_OK)
+    a->options.uncertainty = run->u_name;
+  return FG_OK;
+}
+
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  const doe_run *run = user;
+  const fg_experiment_report report = {.experiment = &run->experiment,
+                                       .path = run->arguments.data,
+                                       .sha256 = run->sha256,
+                                       .scan = run->measured.scan,
+                                       .scans = run->measured.scans,
+                                       .row = run->measured.row};
+  return writers[kind](ctx, &report, out);
+}
+
+static fg_status check_outputs(fg_context *ctx, const doe_run *run) {
+  FG_TRY(fg_output_set_check(ctx, &run->outputs, run->arguments.data, "the table of runs"));
+  return fg_output_set_check(ctx, &run->outputs, run->arguments.design_path, "the design");
+}
+
+/* Results without -o go to standard output, unless the page is there already. */
+static void choose_standard_output(fg_output_set *set) {
+  if (set->path[OUT_JSON] || (set->path[OUT_HTML] && fg_is_standard(set->path[OUT_HTML]))) return;
+  set->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
+}
+
+static fg_status analyse(fg_context *ctx, doe_run *run) {
+  doe_arguments *a = &run->arguments;
+  a->options.coding = a->coding;
+  a->options.constraint = a->constraint;
+  choose_standard_output(&run->outputs);
+  FG_TRY(check_outputs(ctx, run));
+  FG_TRY(read_sheet(ctx, run));
+  FG_TRY(fg_output_set_open(ctx, &run->outputs));
+  if (a->scans) FG_TRY(measure_scans(ctx, run));
+  FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
+                               &run->experiment));
+  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+}
+
+static void free_run(doe_run *run) {
+  fg_output_set_close(&run->outputs);
+  fg_experiment_free(&run->experiment);
+  fg_run_sheet_free(&run->measured);
+  fg_table_free(&run->sheet);
+  free(run->u_name);
+}
+
+int fg_cmd_doe(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "DATA.csv", doc, NULL, NULL, NULL};
+  if (argc > 1 && !strcmp(argv[1], "plan")) return fg_cmd_doe_plan(argc - 1, argv + 1);
+  fg_context ctx = {0};
+  doe_run run = {.outputs.count = OUT_COUNT};
+  argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
+  argv[0] = (char[]){"foilgauge doe"};
+  argp_parse(&parser, argc, argv, 0, NULL, &run);
+  fg_status status = analyse(&ctx, &run);
+  int code = run.measured.failed ? 2 : 0;
+  free_run(&run);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
+}

@@ -1,0 +1,252 @@
+/* foilgauge doe plan: factors in, a run sheet in random order out. */
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/doe_plan.h"
+#include "core/file.h"
+#include "foilgauge/doe.h"
+#include "foilgauge/plan.h"
+
+typedef struct plan_arguments {
+  fg_plan_options options;
+  fg_coding coding[FG_PLAN_FACTORS];
+  fg_plan_factor factor[FG_PLAN_FACTORS];
+  const char *generator[FG_PLAN_FACTORS], *block_generator[FG_PLAN_FACTORS];
+  const char *hard[FG_PLAN_FACTORS];
+  size_t hard_count;
+  const char *column[FG_PLAN_FACTORS]; /* empty ones, to be filled in by hand */
+  size_t columns;
+  const char *output_path;
+} plan_arguments;
+
+enum {
+  OPTION_KIND = 256,
+  OPTION_FACTOR,
+  OPTION_GENERATOR,
+  OPTION_BLOCKS,
+  OPTION_REPLICATES,
+  OPTION_CENTRES,
+  OPTION_REPLICATE_BLOCKS,
+  OPTION_AXIAL_BLOCK,
+  OPTION_AXIAL,
+  OPTION_HARD,
+  OPTION_SEED,
+  OPTION_COLUMN
+};
+
+static const struct argp_option options[] = {
+    {"factor", OPTION_FACTOR, "NAME=LOW:HIGH", 0, "A factor and its levels; once for each", 0},
+    {"kind", OPTION_KIND, "KIND", 0,
+     "factorial (default), composite, thesis (the thesis's composite: axial runs at 3, one centre "
+     "run), box-behnken",
+     0},
+    {"generator", OPTION_GENERATOR, "D=A:B:C", 0, "A fraction: D is set as the product", 0},
+    {"replicates", OPTION_REPLICATES, "N", 0, "Make every run (but the centre) N times", 1},
+    {"centre", OPTION_CENTRES, "N", 0, "Centre runs, in every block", 1},
+    {"axial", OPTION_AXIAL, "X", 0, "Axial distance, coded (default: rotatable)", 1},
+    {"blocks", OPTION_BLOCKS, "A:B:C", 0, "Two blocks by the sign of a product; may be repeated",
+     2},
+    {"block-replicates", OPTION_REPLICATE_BLOCKS, NULL, 0, "Every replicate is a block", 2},
+    {"block-axial", OPTION_AXIAL_BLOCK, NULL, 0, "Corners and axial runs are two blocks", 2},
+    {"hard", OPTION_HARD, "NAME", 0,
+     "Hard to change: runs at one setting stay together as a whole plot", 2},
+    {"seed", OPTION_SEED, "N", 0, "Of the random order (default 1)", 3},
+    {"column", OPTION_COLUMN, "NAME", 0, "An empty column to fill in (default: scan)", 3},
+    {"output", 'o', "RUNS.csv", 0, "Write the run sheet here (default: standard output)", 3},
+    {0},
+};
+
+static const char doc[] =
+    "Plan an experiment: write its run sheet, in random order.\v"
+    "Name the scans of each run in the empty column, then:\n"
+    "  foilgauge doe RUNS.csv --scans scan --response overall.springback_error_pct --model ...\n\n"
+    "What a fraction cannot tell apart is said on standard error.\n\n"
+    "Exit code: 0 done; 64 usage; 74 output.";
+
+static size_t parse_count(struct argp_state *state, const char *name, const char *text) {
+  char *end;
+  unsigned long value = strtoul(text, &end, 10);
+  if (end == text || *end || *text == '-' || value > FG_PLAN_RUNS)
+    argp_error(state, "--%s: '%s' is not a whole number from 0 to %d", name, text, FG_PLAN_RUNS);
+  return value;
+}
+
+static void add_text(struct argp_state *state, const char **list, size_t *count, const char *text) {
+  if (*count == FG_PLAN_FACTORS) argp_error(state, "more than %d: %s", FG_PLAN_FACTORS, text);
+  list[(*count)++] = text;
+}
+
+static void parse_factor(struct argp_state *state, const char *text, plan_arguments *a) {
+  fg_context ctx = {0};
+  size_t place = a->options.factors;
+  if (place == FG_PLAN_FACTORS) argp_error(state, "more than %d factors", FG_PLAN_FACTORS);
+  if (fg_coding_parse(&ctx, text, &a->coding[place]) != FG_OK)
+    argp_error(state, "--factor: %s", ctx.message);
+  a->options.factors++;
+}
+
+static void parse_kind(struct argp_state *state, const char *text, plan_arguments *a) {
+  static const struct {
+    const char *name;
+    fg_plan_kind kind;
+    double axial;
+    size_t centres;
+  } kinds[] = {{"factorial", FG_PLAN_FACTORIAL, 0, 0},
+               {"composite", FG_PLAN_COMPOSITE, 0, 0},
+               {"thesis", FG_PLAN_COMPOSITE, 3, 1},
+               {"box-behnken", FG_PLAN_BOX_BEHNKEN, 0, 0}};
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    if (strcmp(text, kinds[i].name) != 0) continue;
+    a->options.kind = kinds[i].kind;
+    if (kinds[i].axial > 0) a->options.axial = kinds[i].axial;
+    if (kinds[i].centres > 0) a->options.centre_points = kinds[i].centres;
+    return;
+  }
+  argp_error(state, "--kind: '%s' is none of factorial, composite, thesis, box-behnken", text);
+}
+
+static void parse_axial(struct argp_state *state, const char *text, plan_arguments *a) {
+  char *end;
+  a->options.axial = strtod(text, &end);
+  if (end == text || *end || !(a->options.axial > 0 && a->options.axial < 100))
+    argp_error(state, "--axial: '%s' is not a number from 0 to 100", text);
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  plan_arguments *a = state->input;
+  switch (key) {
+  case OPTION_KIND:
+    parse_kind(state, text, a);
+    break;
+  case OPTION_FACTOR:
+    parse_factor(state, text, a);
+    break;
+  case OPTION_GENERATOR:
+    add_text(state, a->generator, &a->options.generators, text);
+    break;
+  case OPTION_BLOCKS:
+    add_text(state, a->block_generator, &a->options.block_generators, text);
+    break;
+  case OPTION_HARD:
+    add_text(state, a->hard, &a->hard_count, text);
+    break;
+  case OPTION_COLUMN:
+    add_text(state, a->column, &a->columns, text);
+    break;
+  case OPTION_REPLICATES:
+    a->options.replicates = parse_count(state, "replicates", text);
+    break;
+  case OPTION_CENTRES:
+    a->options.centre_points = parse_count(state, "centre", text);
+    break;
+  case OPTION_SEED:
+    a->options.seed = parse_count(state, "seed", text);
+    break;
+  case OPTION_AXIAL:
+    parse_axial(state, text, a);
+    break;
+  case OPTION_REPLICATE_BLOCKS:
+    a->options.replicate_blocks = true;
+    break;
+  case OPTION_AXIAL_BLOCK:
+    a->options.composite_blocks = true;
+    break;
+  case 'o':
+    a->output_path = text;
+    break;
+  case ARGP_KEY_ARG:
+    argp_error(state, "what is '%s'? factors are given as --factor NAME=LOW:HIGH", text);
+    break;
+  case ARGP_KEY_END:
+    if (!a->options.factors) argp_error(state, "no --factor was given");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static fg_status name_factors(fg_context *ctx, plan_arguments *a) {
+  for (size_t i = 0; i < a->options.factors; i++)
+    a->factor[i] = (fg_plan_factor){
+        .name = a->coding[i].name, .low = a->coding[i].low.value, .high = a->coding[i].high.value};
+  for (size_t h = 0; h < a->hard_count; h++) {
+    bool found = false;
+    for (size_t i = 0; i < a->options.factors; i++)
+      if (!strcmp(a->hard[h], a->factor[i].name)) found = a->factor[i].hard_to_change = true;
+    if (!found)
+      return fg_fail(ctx, FG_ERR_USAGE, "--hard %s: there is no factor of that name", a->hard[h]);
+  }
+  a->options.factor = a->factor;
+  a->options.generator = a->generator;
+  a->options.block_generator = a->block_generator;
+  return FG_OK;
+}
+
+/* The run sheet with its empty columns: a comma per row is all that they need. */
+static fg_status write_sheet(fg_context *ctx, const plan_arguments *a, const fg_plan *plan,
+                             FILE *out) {
+  fg_table table = {0};
+  char *text = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_plan_table(ctx, plan, &table));
+  FG_TRY_EXIT(fg_table_format(ctx, &table, &text));
+  bool head = true;
+  for (const char *line = text; *line; head = false) {
+    size_t length = strcspn(line, "\n");
+    fwrite(line, 1, length, out);
+    for (size_t k = 0; k < a->columns; k++)
+      fprintf(out, ",%s", head ? a->column[k] : "");
+    fputc('\n', out);
+    line += length + (line[length] == '\n');
+  }
+exit:
+  free(text);
+  fg_table_free(&table);
+  return status;
+}
+
+static fg_status tell(fg_context *ctx, const fg_plan *plan) {
+  char *relation = NULL, *aliases = NULL;
+  fprintf(stderr, "%zu runs", plan->runs);
+  if (plan->blocks > 1) fprintf(stderr, " in %zu blocks", plan->blocks);
+  if (plan->plots) fprintf(stderr, ", %zu whole plots", plan->plots);
+  if (plan->axial > 0) fprintf(stderr, ", axial distance %.4g", plan->axial);
+  if (plan->resolution) fprintf(stderr, ", resolution %d", plan->resolution);
+  fputc('\n', stderr);
+  fg_status status = fg_plan_relation_text(ctx, plan, &relation);
+  if (status == FG_OK) status = fg_plan_alias_text(ctx, plan, 2, 3, &aliases);
+  if (status == FG_OK && *relation) fprintf(stderr, "%s\nnot told apart:\n%s", relation, aliases);
+  free(relation);
+  free(aliases);
+  return status;
+}
+
+static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
+  fg_output output;
+  FG_TRY(fg_output_open(ctx, a->output_path, &output));
+  fg_status status = write_sheet(ctx, a, plan, output.stream);
+  if (status == FG_OK) status = fg_output_commit(ctx, &output);
+  fg_output_discard(&output);
+  FG_TRY(status);
+  return tell(ctx, plan);
+}
+
+int fg_cmd_doe_plan(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "", doc, NULL, NULL, NULL};
+  fg_context ctx = {0};
+  fg_plan plan = {0};
+  plan_arguments arguments = {.options.seed = 1};
+  argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
+  argv[0] = (char[]){"foilgauge doe plan"};
+  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  if (!arguments.columns) arguments.column[arguments.columns++] = "scan";
+  fg_status status = name_factors(&ctx, &arguments);
+  if (status == FG_OK) status = fg_plan_make(&ctx, &arguments.options, &plan);
+  if (status == FG_OK) status = write_plan(&ctx, &arguments, &plan);
+  fg_plan_free(&plan);
+  return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
+}

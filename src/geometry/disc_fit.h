@@ -1,0 +1,34 @@
+/* The circle of one round feature, its uncertainty and its roundness.
+ *
+ * A full turn tells its own noise: the residuals' harmonics 2 and up are the spectrum, its level at
+ * the lowest ones is what radius (harmonic 0) and centre (harmonic 1) are uncertain by, whatever
+ * the correlation of neighbours is. A form that is not round counts as such noise as well.
+ */
+#ifndef FG_GEOMETRY_DISC_FIT_H
+#define FG_GEOMETRY_DISC_FIT_H
+
+#include "foilgauge/foil.h"
+
+/* One station of the turn, in order; equal steps of direction. Lengths in mm. */
+typedef struct fg_disc_point {
+  fg_point at;
+  double u;     /* sd of its radius from pixel noise */
+  double split; /* half of what its flanks' and its core's pixels differ by; may be NaN */
+  double u_split;
+  bool used; /* in: usable; out: took part in the fit */
+} fg_disc_point;
+
+/* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`, and
+ * FG_BUMP_OUTLIERS. `level_doubt_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer
+ * than half of the points are usable. */
+fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, double level_doubt_mm,
+                      fg_disc *disc);
+
+/* Peak to valley of a closed radial deviation after the Gaussian filter of 50 undulations per
+ * revolution (ISO 12181-2, ISO 16610-21), its first harmonic removed. Noise of sd u per value
+ * raises the peak to valley: what it does so on average is taken off, and its scatter is the
+ * uncertainty (both by simulation with a fixed seed). Unit of the values. */
+fg_status fg_roundness(fg_context *ctx, const double *values, size_t count, double u,
+                       double *roundness, double *u_roundness);
+
+#endif

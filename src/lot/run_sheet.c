@@ -1,0 +1,260 @@
+#include "foilgauge/run_sheet.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/report.h"
+
+/* A mean as it grows: independent parts add in squares, common ones as they are. */
+typedef struct mean {
+  double sum, squares, common;
+  size_t count;
+} mean;
+
+static void add(mean *m, double value, double u) {
+  if (!isfinite(value)) return;
+  m->sum += value;
+  m->squares += u * u;
+  m->common += u;
+  m->count++;
+}
+
+typedef struct measuring {
+  const fg_run_sheet_options *options;
+  const fg_report_field *field;
+  fg_report_owner owner;
+  size_t scan_capacity;
+  fg_run_sheet *out;
+  double *value, *u; /* of the runs that are kept */
+} measuring;
+
+/* What the bump's own circle says, whatever the overall circle. */
+static bool is_own(const char *quantity) {
+  static const char *const own[] = {"radius_mm", "radius_error_pct", "bump_angle_model_deg",
+                                    "height_model_mm", "rms_um"};
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    if (!strcmp(own[i], quantity)) return true;
+  return false;
+}
+
+static fg_status find_quantity(fg_context *ctx, measuring *m) {
+  static const fg_report_owner foils[] = {FG_REPORT_FOIL, FG_REPORT_BUMP};
+  static const fg_report_owner discs[] = {FG_REPORT_DISC};
+  bool is_disc = m->options->design->form == FG_FORM_DISCS;
+  const fg_report_owner *owners = is_disc ? discs : foils;
+  char list[700] = "";
+  for (size_t i = 0; i < (is_disc ? 1 : 2); i++) {
+    size_t count, used = strlen(list);
+    const fg_report_field *fields = fg_report_fields(owners[i], &count);
+    for (size_t k = 0; k < count; k++) {
+      if (fields[k].kind != FG_FIELD_NUMBER) continue;
+      if (!strcmp(fields[k].name, m->options->quantity)) {
+        m->field = &fields[k];
+        m->owner = owners[i];
+        return FG_OK;
+      }
+      fg_text_clip(list + used, sizeof list - used, "%s%s", used ? ", " : "", fields[k].name);
+      used = strlen(list);
+    }
+  }
+  return fg_fail(ctx, FG_ERR_DATA, "'%s' is no quantity that a scan gives; there are: %s",
+                 m->options->quantity, list);
+}
+
+/* Mean over the bumps (or discs) of one part; both kinds of uncertainty. */
+static void add_parts(const measuring *m, const void *objects, size_t count, size_t size,
+                      mean *foils) {
+  mean parts = {0};
+  for (size_t i = 0; i < count; i++) {
+    const void *object = (const char *)objects + i * size;
+    add(&parts, fg_report_value(m->field, object), fg_report_uncertainty(m->field, object));
+  }
+  if (!parts.count) return;
+  double n = (double)parts.count;
+  double u = is_own(m->field->name) ? sqrt(parts.squares) / n : parts.common / n;
+  add(foils, parts.sum / n, u);
+}
+
+static void read_measurement(const measuring *m, const fg_measurement *measurement,
+                             fg_experiment_scan *scan) {
+  mean foils = {0};
+  memcpy(scan->sha256, measurement->sha256, sizeof scan->sha256);
+  for (size_t i = 0; i < measurement->foil_count; i++) {
+    const fg_foil *foil = &measurement->foils[i];
+    if (m->owner == FG_REPORT_FOIL)
+      add_parts(m, foil, 1, sizeof *foil, &foils);
+    else
+      add_parts(m, foil->bumps, foil->bump_count, sizeof *foil->bumps, &foils);
+  }
+  if (m->owner == FG_REPORT_DISC)
+    add_parts(m, measurement->discs, measurement->disc_count, sizeof *measurement->discs, &foils);
+  if (!foils.count) return;
+  scan->value = foils.sum / (double)foils.count;
+  scan->u = sqrt(foils.squares) / (double)foils.count;
+}
+
+static fg_status describe_failure(fg_context *ctx, fg_experiment_scan *scan, const char *words) {
+  char *text = NULL;
+  FG_TRY(fg_text_print(ctx, &text, "%s", words));
+  scan->error = text;
+  return FG_OK;
+}
+
+static fg_status measure_scan(fg_context *ctx, const measuring *m, fg_experiment_scan *scan) {
+  fg_measurement measurement = {0};
+  fg_context words = {0};
+  fg_status status =
+      fg_measure_scan(&words, scan->path, m->options->design, &m->options->measure, &measurement);
+  if (status == FG_ERR_MEMORY || status == FG_ERR_INTERRUPTED)
+    return fg_fail(ctx, status, "%s", words.message);
+  if (status != FG_OK) return describe_failure(ctx, scan, words.message);
+  read_measurement(m, &measurement, scan);
+  if (!isfinite(scan->value)) {
+    snprintf(words.message, sizeof words.message, "%.400s: %s could not be measured%s%.400s",
+             scan->path, m->options->quantity,
+             measurement.foil_count && measurement.foils[0].error[0] ? ": " : "",
+             measurement.foil_count ? measurement.foils[0].error : "");
+    status = describe_failure(ctx, scan, words.message);
+  }
+  fg_measurement_free(&measurement);
+  return status;
+}
+
+static fg_status scan_path(fg_context *ctx, const measuring *m, const char *name, size_t length,
+                           char **path) {
+  const char *folder = m->options->folder;
+  bool relative = folder && *folder && *name != '/';
+  return fg_text_print(ctx, path, "%s%s%.*s", relative ? folder : "", relative ? "/" : "",
+                       (int)length, name);
+}
+
+static fg_status add_scan(fg_context *ctx, measuring *m, size_t run, const char *name,
+                          size_t length, mean *scans) {
+  fg_run_sheet *out = m->out;
+  char *path = NULL;
+  FG_TRY(fg_memory_reserve(ctx, out->scans + 1, sizeof *out->scan, &m->scan_capacity,
+                           (void **)&out->scan));
+  fg_experiment_scan *scan = &out->scan[out->scans];
+  *scan = (fg_experiment_scan){.run = run, .value = NAN, .u = NAN};
+  FG_TRY(scan_path(ctx, m, name, length, &path));
+  scan->path = path;
+  out->scans++;
+  FG_TRY(measure_scan(ctx, m, scan));
+  out->failed += scan->error != NULL;
+  add(scans, scan->value, scan->u);
+  return FG_OK;
+}
+
+static fg_status measure_run(fg_context *ctx, measuring *m, size_t run, const char *cell,
+                             mean *scans) {
+  for (const char *at = cell; *at;) {
+    at += strspn(at, "; \t");
+    size_t length = strcspn(at, ";");
+    size_t end = length;
+    while (end > 0 && (at[end - 1] == ' ' || at[end - 1] == '\t'))
+      end--;
+    if (end) FG_TRY(add_scan(ctx, m, run, at, end, scans));
+    at += length;
+  }
+  return FG_OK;
+}
+
+static fg_status measure_runs(fg_context *ctx, const fg_table *sheet, const fg_column *column,
+                              measuring *m) {
+  size_t kept = 0;
+  for (size_t i = 0; i < sheet->rows; i++) {
+    mean scans = {0};
+    size_t word = column->word ? column->word[i] : FG_TABLE_NOT_A_WORD;
+    if (word == FG_TABLE_NOT_A_WORD)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: row %zu, column '%s': a number (%.15g) is no name of a scan",
+                     sheet->source ? sheet->source : "the run sheet", i + 1, column->name,
+                     column->number[i].value);
+    if (word == FG_TABLE_MISSING)
+      m->out->empty++;
+    else
+      FG_TRY(measure_run(ctx, m, i + 1, column->words[word], &scans));
+    if (!scans.count) continue;
+    m->value[kept] = scans.sum / (double)scans.count;
+    m->u[kept] = sqrt(scans.squares) / (double)scans.count;
+    m->out->row[kept++] = i;
+  }
+  m->out->table.rows = kept;
+  return FG_OK;
+}
+
+static fg_status check_any(fg_context *ctx, const fg_table *sheet, const measuring *m) {
+  if (m->out->table.rows) return FG_OK;
+  for (size_t i = 0; i < m->out->scans; i++)
+    if (m->out->scan[i].error)
+      return fg_fail(ctx, FG_ERR_DATA, "not one of %zu scans could be measured; the first: %.800s",
+                     m->out->scans, m->out->scan[i].error);
+  return fg_fail(ctx, FG_ERR_DATA, "%s: column '%s' names no scan in any of %zu rows",
+                 sheet->source ? sheet->source : "the run sheet", m->options->column, sheet->rows);
+}
+
+/* The rows that are kept, and the two new columns. */
+static fg_status fill_table(fg_context *ctx, const fg_table *sheet, measuring *m) {
+  fg_run_sheet *out = m->out;
+  size_t kept = out->table.rows;
+  char *u_name = NULL;
+  bool has_u = true;
+  out->table.rows = 0;
+  FG_TRY(fg_table_select(ctx, sheet, out->row, kept, &out->table));
+  for (size_t i = 0; i < kept; i++) {
+    out->row[i]++;
+    has_u = has_u && isfinite(m->u[i]);
+  }
+  FG_TRY(fg_table_add_numbers(ctx, &out->table, m->options->quantity, m->value, kept));
+  if (!has_u) return FG_OK;
+  FG_TRY(fg_text_print(ctx, &u_name, "u_%s", m->options->quantity));
+  fg_status status = fg_table_add_numbers(ctx, &out->table, u_name, m->u, kept);
+  free(u_name);
+  return status;
+}
+
+static fg_status measure_sheet(fg_context *ctx, const fg_table *sheet, const fg_column *column,
+                               measuring *m) {
+  FG_TRY(measure_runs(ctx, sheet, column, m));
+  FG_TRY(check_any(ctx, sheet, m));
+  return fill_table(ctx, sheet, m);
+}
+
+fg_status fg_run_sheet_measure(fg_context *ctx, const fg_table *sheet,
+                               const fg_run_sheet_options *options, fg_run_sheet *measured) {
+  const fg_column *column = NULL, *there = NULL;
+  fg_status status = FG_OK;
+  measuring m = {.options = options, .out = measured};
+  *measured = (fg_run_sheet){0};
+  FG_TRY(fg_table_find(ctx, sheet, options->column, &column));
+  FG_TRY(find_quantity(ctx, &m));
+  if (fg_table_find(NULL, sheet, options->quantity, &there) == FG_OK)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: there is a column '%s' already: either measure (--scans) or take the "
+                   "column, and rename it to do both",
+                   sheet->source ? sheet->source : "the run sheet", options->quantity);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, sheet->rows, sizeof *m.value, (void **)&m.value));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, sheet->rows, sizeof *m.u, (void **)&m.u));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, sheet->rows, sizeof *measured->row, (void **)&measured->row));
+  FG_TRY_EXIT(measure_sheet(ctx, sheet, column, &m));
+exit:
+  free(m.value);
+  free(m.u);
+  if (status != FG_OK) fg_run_sheet_free(measured);
+  return status;
+}
+
+void fg_run_sheet_free(fg_run_sheet *measured) {
+  if (!measured) return;
+  for (size_t i = 0; i < measured->scans; i++) {
+    free((char *)measured->scan[i].path);
+    free((char *)measured->scan[i].error);
+  }
+  free(measured->scan);
+  free(measured->row);
+  fg_table_free(&measured->table);
+  *measured = (fg_run_sheet){0};
+}

@@ -1,0 +1,192 @@
+#include "measure/discs.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/select.h"
+#include "geometry/disc_fit.h"
+#include "vision/disc_edge.h"
+#include "vision/disc_find.h"
+
+/* Round features below this radius are dust, unless the design states smaller ones; an edge needs
+ * so many pixels of radius at the least. */
+#define RADIUS_LEAST_MM 0.2
+#define RADIUS_LEAST_PX 14.0
+#define DESIGN_SHARE    0.7
+/* Edges that leave their circle by more than this share of the radius (rms) are no round feature;
+ * by more than the smaller share they are flagged. */
+#define ROUND_SHARE 0.04
+#define POOR_SHARE  0.006
+/* What surrounds a disc is background when it is this near to it, as a share of the contrast. */
+#define BACKGROUND_SHARE 0.3
+
+typedef struct disc_work {
+  const fg_tiles *tiles;
+  fg_pixel_shape shape;
+  const fg_disc_candidates *found;
+  double background; /* counts */
+  fg_tone *tones;    /* one per candidate */
+  fg_tone tone;
+  fg_disc *discs; /* one per candidate; no points: no round feature */
+} disc_work;
+
+static double least_radius_px(const fg_design *design, const fg_pixel_shape *shape) {
+  double least = RADIUS_LEAST_MM;
+  for (size_t i = 0; i < design->diameter_count; i++) {
+    double stated = DESIGN_SHARE * 0.5 * design->diameters_mm[i];
+    least = i == 0 ? stated : fmin(least, stated);
+  }
+  return fmax(least * 1000 / shape->um, RADIUS_LEAST_PX);
+}
+
+/* Level of the scan's border: the median of the outermost blocks. */
+static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double *level) {
+  int32_t w = tiles->block_columns, h = tiles->block_rows;
+  size_t n = 0;
+  double *values;
+  FG_TRY(fg_memory_allocate(ctx, 2 * ((size_t)w + (size_t)h), sizeof *values, (void **)&values));
+  for (int32_t x = 0; x < w; x++) {
+    values[n++] = (double)fg_tiles_block(tiles, x, 0);
+    values[n++] = (double)fg_tiles_block(tiles, x, h - 1);
+  }
+  for (int32_t y = 0; y < h; y++) {
+    values[n++] = (double)fg_tiles_block(tiles, 0, y);
+    values[n++] = (double)fg_tiles_block(tiles, w - 1, y);
+  }
+  *level = fg_select(values, n, n / 2);
+  free(values);
+  return FG_OK;
+}
+
+/* Stations of the edge as points in mm, and their circle. */
+static fg_status fit_edge(fg_context *ctx, const fg_disc_edge *edge, double um, fg_disc *disc) {
+  fg_disc_point *points;
+  double mm = um / 1000;
+  FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *points, (void **)&points));
+  for (size_t i = 0; i < edge->count; i++) {
+    const fg_disc_station *s = &edge->stations[i];
+    double angle = ((double)i + 0.5) * 2 * M_PI / (double)edge->count;
+    double radius = edge->circle.radius + (double)s->edge_px;
+    points[i] = (fg_disc_point){.at = {(edge->circle.x + radius * cos(angle)) * mm,
+                                       (edge->circle.y + radius * sin(angle)) * mm},
+                                .u = (double)s->u_px * mm,
+                                .split = (double)s->split_px * mm,
+                                .u_split = (double)s->u_split_px * mm,
+                                .used = s->weight > 0};
+    if (!points[i].used) points[i].at = (fg_point){edge->circle.x * mm, edge->circle.y * mm};
+  }
+  fg_status status = fg_disc_fit(ctx, points, edge->count, edge->level_doubt_px * mm, disc);
+  free(points);
+  return status;
+}
+
+static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *disc) {
+  double contrast = fabs(edge->inside - edge->outside);
+  disc->bright = edge->inside > edge->outside;
+  disc->hole = fabs(edge->outside - work->background) > BACKGROUND_SHARE * contrast;
+  disc->blur_um = edge->blur_px * work->shape.um;
+  if (disc->rms_um > POOR_SHARE * 1000 * disc->radius_mm) disc->flags |= FG_BUMP_POOR_FIT;
+}
+
+static void clear_disc(fg_disc *disc) {
+  free(disc->edge);
+  free(disc->residual_um);
+  memset(disc, 0, sizeof *disc);
+}
+
+static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
+  disc_work *work = shared;
+  fg_status status =
+      fg_disc_edge_tone(ctx, work->tiles, &work->shape, &work->found->list[i], &work->tones[i]);
+  if (status == FG_ERR_NUMERIC) work->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* One candidate; what turns out to be no round feature is left without points. */
+static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
+  disc_work *work = shared;
+  fg_disc *disc = &work->discs[i];
+  fg_disc_edge edge = {0};
+  fg_status status = fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
+                                          &work->tone, &edge);
+  if (status == FG_OK) status = fit_edge(ctx, &edge, work->shape.um, disc);
+  if (status == FG_OK) describe(work, &edge, disc);
+  if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) clear_disc(disc);
+  if (status != FG_OK) clear_disc(disc);
+  fg_disc_edge_free(&edge);
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* Two candidates may have led to one edge: the one that is seen over more of the turn stays. */
+static bool is_same(const fg_disc *a, const fg_disc *b) {
+  double distance = hypot(a->centre_mm.x - b->centre_mm.x, a->centre_mm.y - b->centre_mm.y);
+  double limit = 0.05 * fmin(a->radius_mm, b->radius_mm);
+  return distance < limit && fabs(a->radius_mm - b->radius_mm) < limit;
+}
+
+static void drop_doubles(const disc_work *work) {
+  for (size_t i = 0; i < work->found->count; i++)
+    for (size_t k = 0; k < work->found->count && work->discs[i].points; k++) {
+      fg_disc *other = &work->discs[k];
+      if (k == i || !other->points || !is_same(&work->discs[i], other)) continue;
+      clear_disc(other->coverage_deg <= work->discs[i].coverage_deg ? other : &work->discs[i]);
+    }
+}
+
+/* Discs in reading order; the polarity is that of what lies on the background, or of what holes
+ * are surrounded by. */
+static void hand_over(disc_work *work, fg_measurement *m) {
+  int votes = 0;
+  size_t count = work->found->count;
+  drop_doubles(work);
+  for (size_t i = 0; i < count; i++) {
+    fg_disc *disc = &work->discs[i];
+    if (!disc->points) continue;
+    votes += disc->hole == disc->bright ? -1 : 1;
+    m->discs[m->disc_count] = *disc;
+    m->discs[m->disc_count].number = (int)m->disc_count + 1;
+    m->disc_count++;
+    memset(disc, 0, sizeof *disc);
+  }
+  m->light_on_dark = votes >= 0;
+  m->specks = work->found->other_shapes + count - m->disc_count;
+}
+
+static fg_status measure_candidates(fg_context *ctx, disc_work *work, unsigned threads,
+                                    fg_measurement *m) {
+  size_t count = work->found->count;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(find_background(ctx, work->tiles, &work->background));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *work->discs, (void **)&work->discs));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *m->discs, (void **)&m->discs));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *work->tones, (void **)&work->tones));
+  FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, find_tone, work));
+  work->tone = fg_tone_pool(work->tones, count);
+  FG_TRY_EXIT(fg_parallel_run(ctx, threads, count, measure_candidate, work));
+  hand_over(work, m);
+exit:
+  for (size_t i = 0; work->discs && i < count; i++)
+    clear_disc(&work->discs[i]);
+  free(work->discs);
+  free(work->tones);
+  return status;
+}
+
+fg_status fg_measure_discs(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
+                           fg_measurement *m) {
+  fg_disc_candidates found = {0};
+  disc_work work = {.tiles = tiles, .shape = fg_pixel_shape_of(m->dpi), .found = &found};
+  double least = least_radius_px(&m->design, &work.shape);
+  FG_TRY(fg_discs_find(ctx, tiles, &work.shape, least, threads, &found));
+  fg_status status = measure_candidates(ctx, &work, threads, m);
+  fg_disc_candidates_free(&found);
+  if (status == FG_OK && m->disc_count == 0)
+    status = fg_fail(ctx, FG_ERR_DATA,
+                     "%s: no round hole or disc in the picture (%zu other shapes); the smallest "
+                     "that counts has a radius of %.3g mm",
+                     m->scan, m->specks, least * work.shape.um / 1000);
+  return status;
+}

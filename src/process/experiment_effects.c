@@ -1,0 +1,260 @@
+/* Every coefficient judged by its own error, and the tests that belong to designs. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "foilgauge/distribution.h"
+#include "process/experiment_parts.h"
+
+/* Box-Cox looks at the residuals some 300 times: not worth the wait with a sea of runs. */
+enum { BOX_COX_RUNS = 100000 };
+
+/* Element (i, j) of (X'X)^-1: no residual freedom is needed for it. */
+static double inverse_at(const fg_regression *reg, size_t i, size_t j) {
+  double sum = 0;
+  for (size_t k = 0; k < reg->columns; k++)
+    sum += reg->inverse_root[i * reg->columns + k].value *
+           reg->inverse_root[j * reg->columns + k].value;
+  return sum;
+}
+
+static bool is_whole_plot(const fg_experiment *e, size_t term) {
+  if (!e->has_split_plot) return false;
+  if (term == FG_MODEL_CONSTANT) return true;
+  for (size_t t = 0; t < e->split_plot.terms; t++)
+    if (!strcmp(e->split_plot.term[t].row.name, e->model.term_name[term]))
+      return e->split_plot.term[t].whole_plot;
+  return false;
+}
+
+/* The standard deviation that a column is judged by, and its freedom. */
+static double error_of(const fg_experiment *e, bool whole_plot, double *freedom) {
+  const fg_split_plot *s = &e->split_plot;
+  *freedom = (double)e->regression.residual_freedom;
+  if (!e->has_split_plot) return e->regression.residual_freedom ? e->regression.residual_sd : NAN;
+  *freedom = (double)(whole_plot ? s->plot_freedom : s->run_freedom);
+  if (!(*freedom > 0)) return NAN;
+  return sqrt(whole_plot ? s->plot_ms : s->run_ms);
+}
+
+static bool is_block_term(const fg_experiment *e, size_t term) {
+  return term != FG_MODEL_CONSTANT && e->block_variable < FG_FORMULA_VARIABLES &&
+         e->model.formula.term[term].power[e->block_variable] > 0;
+}
+
+static void fill_effect(const fg_experiment *e, size_t j, fg_effect *effect) {
+  const fg_regression *reg = &e->regression;
+  const fg_coefficient *c = &reg->coefficient[j];
+  *effect = (fg_effect){.block = is_block_term(e, c->term),
+                        .whole_plot = is_whole_plot(e, c->term),
+                        .u_measurement = NAN,
+                        .contrast = NAN,
+                        .lenth_p_value = NAN,
+                        .standard_error = c->standard_error,
+                        .t = c->t,
+                        .p_value = c->p_value,
+                        .low = c->low,
+                        .high = c->high};
+  double variance = inverse_at(reg, j, j);
+  double sd = error_of(e, effect->whole_plot, &effect->freedom);
+  effect->relative_pct = c->term == FG_MODEL_CONSTANT ? NAN : fg_doe_relative_effect_pct(reg, j);
+  if (c->aliased) return;
+  effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
+  if (!e->has_split_plot) return;
+  effect->standard_error = sd * sqrt(variance);
+  effect->t = c->estimate / effect->standard_error;
+  effect->p_value = fg_distribution_t_two_sided(effect->t, effect->freedom);
+  double half =
+      effect->standard_error * fg_distribution_t_quantile((1 + e->confidence) / 2, effect->freedom);
+  effect->low = c->estimate - half;
+  effect->high = c->estimate + half;
+}
+
+/* b = G y with G = (X'WX)^-1 X'W, so u²(b_j) = sum_i G_ji² u_i². `row` holds row j of (X'X)^-1. */
+static void propagate(const fg_experiment *e, size_t j, double *row, fg_effect *effect) {
+  const fg_regression *reg = &e->regression;
+  double sum = 0;
+  for (size_t k = 0; k < reg->columns; k++)
+    row[k] = inverse_at(reg, j, k);
+  for (size_t i = 0; i < reg->rows; i++) {
+    double gain = 0;
+    for (size_t k = 0; k < reg->columns; k++)
+      gain += row[k] * e->model.matrix[k * reg->rows + i].value;
+    if (e->weight) gain *= e->weight[i];
+    sum += gain * gain * e->u[i] * e->u[i];
+  }
+  effect->u_measurement = sqrt(sum);
+}
+
+static fg_status fill_effects(fg_context *ctx, fg_experiment *e) {
+  size_t columns = e->regression.columns;
+  double *row = NULL;
+  FG_TRY(fg_memory_allocate(ctx, columns, sizeof *e->effect, (void **)&e->effect));
+  FG_TRY(fg_memory_allocate(ctx, columns, sizeof *row, (void **)&row));
+  for (size_t j = 0; j < columns; j++) {
+    fill_effect(e, j, &e->effect[j]);
+    if (e->u && !e->regression.coefficient[j].aliased) propagate(e, j, row, &e->effect[j]);
+  }
+  free(row);
+  return FG_OK;
+}
+
+static fg_status note_measurement(fg_context *ctx, fg_experiment *e) {
+  const fg_regression *reg = &e->regression;
+  if (!e->u) return FG_OK;
+  if (!reg->residual_freedom)
+    return fg_experiment_note(ctx, e,
+                              "u_measurement is the part of a coefficient's standard error that "
+                              "the measurement makes: the whole error is larger, by how much only "
+                              "repeated runs can tell");
+  if (!e->weight && e->u_rms > reg->residual_sd)
+    return fg_experiment_note(ctx, e,
+                              "the runs scatter less (%.3g) than the measurement's uncertainty "
+                              "says (%.3g): by luck, or because the scans share an error; then the "
+                              "constant is less certain than its interval says",
+                              reg->residual_sd, e->u_rms);
+  return FG_OK;
+}
+
+static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
+  fg_formula formula = {0};
+  if (!e->whole_plot) return FG_OK;
+  FG_TRY(fg_formula_parse(ctx, e->formula, &formula));
+  fg_status status =
+      fg_split_plot_analyse(ctx, &e->table, &formula, e->response, e->whole_plot, &e->split_plot);
+  fg_formula_free(&formula);
+  FG_TRY(status);
+  e->has_split_plot = true;
+  if (!e->split_plot.plot_freedom)
+    FG_TRY(fg_experiment_note(ctx, e,
+                              "%zu whole plots leave no freedom for their error: what is constant "
+                              "within them has no standard error; repeat whole plots",
+                              e->split_plot.plots));
+  if (!e->split_plot.run_freedom)
+    FG_TRY(fg_experiment_note(ctx, e, "no freedom is left for the error within whole plots"));
+  if (!e->split_plot.balanced)
+    FG_TRY(fg_experiment_note(ctx, e,
+                              "the whole plots hold different numbers of runs: their tests are "
+                              "approximate"));
+  return FG_OK;
+}
+
+static bool is_of_interest(const fg_experiment *e, size_t j) {
+  const fg_coefficient *c = &e->regression.coefficient[j];
+  return c->term != FG_MODEL_CONSTANT && !c->aliased && !e->effect[j].block;
+}
+
+static fg_status make_lenth(fg_context *ctx, fg_experiment *e) {
+  double *contrast = NULL;
+  size_t count = 0;
+  FG_TRY(fg_memory_allocate(ctx, e->regression.columns, sizeof *contrast, (void **)&contrast));
+  for (size_t j = 0; j < e->regression.columns; j++)
+    if (is_of_interest(e, j)) contrast[count++] = e->effect[j].contrast;
+  e->has_lenth = count >= 3;
+  if (e->has_lenth) {
+    fg_status status = fg_lenth_compute(ctx, contrast, count, e->confidence, &e->lenth);
+    free(contrast);
+    FG_TRY(status);
+    e->has_lenth = e->lenth.pseudo_standard_error > 0;
+  } else {
+    free(contrast);
+  }
+  for (size_t j = 0; e->has_lenth && j < e->regression.columns; j++)
+    if (is_of_interest(e, j))
+      e->effect[j].lenth_p_value = fg_lenth_p_value(&e->lenth, e->effect[j].contrast);
+  if (e->regression.residual_freedom || count >= 3) return FG_OK;
+  return fg_experiment_note(ctx, e,
+                            "fewer than three effects are too few for Lenth's method: leave terms "
+                            "out, or repeat runs");
+}
+
+static fg_status make_box_cox(fg_context *ctx, fg_experiment *e) {
+  const fg_extended *y = NULL;
+  fg_context quiet = {0};
+  FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
+  if (!e->regression.residual_freedom || e->table.rows > BOX_COX_RUNS || e->weight) return FG_OK;
+  if (!(e->regression.residual_ss > 1e-24 * e->regression.total_ss)) return FG_OK;
+  for (size_t i = 0; i < e->table.rows; i++)
+    if (!(y[i].value > 0)) return FG_OK;
+  e->has_box_cox = fg_box_cox_compute(&quiet, &e->model, y, &e->box_cox) == FG_OK;
+  return FG_OK;
+}
+
+static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
+  const char *names[FG_FORMULA_VARIABLES];
+  fg_context quiet = {0};
+  size_t count = 0;
+  for (size_t k = 0; k < e->factors; k++)
+    if (e->factor[k].coded) names[count++] = e->factor[k].name;
+  if (!count || count < e->factors || e->weight || e->has_split_plot) return FG_OK;
+  fg_status status =
+      fg_curvature_compute(&quiet, &e->table, names, count, e->response, &e->curvature);
+  if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", quiet.message);
+  e->has_curvature = status == FG_OK;
+  return FG_OK;
+}
+
+fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *e) {
+  FG_TRY(make_split_plot(ctx, e));
+  FG_TRY(fill_effects(ctx, e));
+  FG_TRY(make_lenth(ctx, e));
+  FG_TRY(make_box_cox(ctx, e));
+  FG_TRY(make_curvature(ctx, e));
+  return note_measurement(ctx, e);
+}
+
+/* The model row, averaged over the blocks. */
+static fg_status average_row(fg_context *ctx, const fg_experiment *e, const double *setting,
+                             double *row, double *one) {
+  double full[FG_FORMULA_VARIABLES];
+  size_t blocks = 1, columns = e->model.columns;
+  memcpy(full, setting, e->model.formula.variables * sizeof *full);
+  if (e->block_variable < FG_FORMULA_VARIABLES) blocks = e->model.levels[e->block_variable].count;
+  memset(row, 0, columns * sizeof *row);
+  for (size_t b = 0; b < blocks; b++) {
+    if (e->block_variable < FG_FORMULA_VARIABLES) full[e->block_variable] = (double)b;
+    FG_TRY(fg_model_row(ctx, &e->model, full, one));
+    for (size_t j = 0; j < columns; j++)
+      row[j] += one[j] / (double)blocks;
+  }
+  return FG_OK;
+}
+
+/* Var(row b) = |U' (row × sd of each column's stratum)|². */
+static void predict_row(const fg_experiment *e, const double *row, fg_prediction *p) {
+  const fg_regression *reg = &e->regression;
+  double variance = 0, least_freedom = INFINITY;
+  *p = (fg_prediction){0};
+  for (size_t k = 0; k < reg->columns; k++) {
+    double along = 0;
+    for (size_t j = 0; j < reg->columns; j++) {
+      double freedom;
+      if (reg->coefficient[j].aliased || row[j] == 0) continue;
+      double sd = error_of(e, e->effect[j].whole_plot, &freedom);
+      least_freedom = fmin(least_freedom, freedom);
+      along += reg->inverse_root[j * reg->columns + k].value * row[j] * sd;
+    }
+    variance += along * along;
+    if (!reg->coefficient[k].aliased) p->mean += row[k] * reg->coefficient[k].estimate;
+  }
+  double run_variance = reg->residual_sd * reg->residual_sd;
+  if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;
+  double q = fg_distribution_t_quantile((1 + e->confidence) / 2, least_freedom);
+  p->standard_error = sqrt(variance);
+  p->run_standard_error = sqrt(variance + run_variance);
+  p->low = p->mean - q * p->standard_error;
+  p->high = p->mean + q * p->standard_error;
+  p->run_low = p->mean - q * p->run_standard_error;
+  p->run_high = p->mean + q * p->run_standard_error;
+}
+
+fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *e, const double *setting,
+                                fg_prediction *prediction) {
+  double *row = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 2 * e->model.columns, sizeof *row, (void **)&row));
+  fg_status status = average_row(ctx, e, setting, row, row + e->model.columns);
+  if (status == FG_OK) predict_row(e, row, prediction);
+  free(row);
+  return status;
+}

@@ -1,0 +1,25 @@
+/* The stages of fg_experiment_analyse, in their order. */
+#ifndef FG_PROCESS_EXPERIMENT_PARTS_H
+#define FG_PROCESS_EXPERIMENT_PARTS_H
+
+#include "foilgauge/experiment.h"
+
+fg_status fg_experiment_note(fg_context *ctx, fg_experiment *experiment, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Fits again with weights where the measurement's uncertainty asks for it. */
+fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *experiment,
+                              const fg_extended *response);
+
+/* Split plots, coefficients by stratum, Lenth, Box-Cox, curvature, what the measurement adds. */
+fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
+
+/* Surface, region, stationary point, optimum, ridge. */
+fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
+                                fg_experiment *experiment);
+
+/* Adds "2*a + b <= 3" (real units) to the region as a half-space in the model's units. */
+fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experiment,
+                                  const char *text, fg_region *region);
+
+#endif

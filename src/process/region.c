@@ -1,0 +1,231 @@
+/* The best point of a quadratic surface in a convex region.
+ *
+ * The region is the intersection of simple sets, each with a projection in closed form; Dykstra's
+ * algorithm turns these into the projection on the intersection, and projected gradients walk to a
+ * local optimum from scattered starts. A quadratic may have several local optima on the border of
+ * the region (a saddle has), so the starts are the best of many. */
+#include <math.h>
+#include <string.h>
+
+#include "foilgauge/surface.h"
+
+enum {
+  MOST = FG_SURFACE_FACTORS,
+  SETS = FG_REGION_PLANES + 2,
+  SCATTERED = 2048, /* points that are looked at */
+  STARTS = 24,      /* of these, where a walk starts */
+  STEPS = 3000,
+  SWEEPS = 2000
+};
+
+/* How far from the region counts as in it, as a share of the region's size. */
+static const double SLACK = 1e-9;
+
+static double dot(const double *a, const double *b, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+static double distance(const double *a, const double *b, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sqrt(sum);
+}
+
+static double size_of(const fg_region *r) {
+  return distance(r->low, r->high, r->factors);
+}
+
+bool fg_region_contains(const fg_region *r, const double *x, double tolerance) {
+  for (size_t i = 0; i < r->factors; i++)
+    if (!(x[i] >= r->low[i] - tolerance && x[i] <= r->high[i] + tolerance)) return false;
+  if (distance(x, r->centre, r->factors) > r->radius + tolerance) return false;
+  for (size_t p = 0; p < r->planes; p++) {
+    double length = sqrt(dot(r->normal[p], r->normal[p], r->factors));
+    if (dot(r->normal[p], x, r->factors) > r->limit[p] + tolerance * length) return false;
+  }
+  return true;
+}
+
+/* On one set: 0 the box, 1 the ball, then the half-spaces. */
+static void project_on(const fg_region *r, size_t set, double *x) {
+  size_t n = r->factors;
+  if (set == 0) {
+    for (size_t i = 0; i < n; i++)
+      x[i] = fmin(fmax(x[i], r->low[i]), r->high[i]);
+  } else if (set == 1) {
+    double away = distance(x, r->centre, n);
+    for (size_t i = 0; away > r->radius && i < n; i++)
+      x[i] = r->centre[i] + (x[i] - r->centre[i]) * r->radius / away;
+  } else {
+    const double *normal = r->normal[set - 2];
+    double beyond = dot(normal, x, n) - r->limit[set - 2], square = dot(normal, normal, n);
+    for (size_t i = 0; beyond > 0 && square > 0 && i < n; i++)
+      x[i] -= beyond / square * normal[i];
+  }
+}
+
+/* Dykstra (1983): what each set's projection took away is given back before its next turn. The
+ * point may stand still for many sweeps while what is given back still changes, so only when that
+ * has settled is it done (Birgin and Raydan 2005). */
+static void project(const fg_region *r, double *x) {
+  double given[SETS][MOST] = {{0}}, before[MOST];
+  size_t sets = r->planes + 2;
+  double settled = 1e-13 * size_of(r);
+  if (fg_region_contains(r, x, 0)) return;
+  for (int sweep = 0; sweep < SWEEPS; sweep++) {
+    double change = 0;
+    for (size_t s = 0; s < sets; s++) {
+      for (size_t i = 0; i < r->factors; i++)
+        before[i] = x[i] += given[s][i];
+      project_on(r, s, x);
+      for (size_t i = 0; i < r->factors; i++) {
+        change = fmax(change, fabs(before[i] - x[i] - given[s][i]));
+        given[s][i] = before[i] - x[i];
+      }
+    }
+    if (change <= settled) return;
+  }
+}
+
+fg_status fg_region_project(fg_context *ctx, const fg_region *region, double *x) {
+  bool bounded = region->radius >= 0;
+  for (size_t i = 0; i < region->factors; i++)
+    bounded =
+        bounded && region->low[i] <= region->high[i] && isfinite(region->high[i] - region->low[i]);
+  double point[MOST] = {0};
+  memcpy(point, x, region->factors * sizeof *x);
+  if (bounded) project(region, point);
+  if (!bounded || !fg_region_contains(region, point, 1e-6 * fmax(size_of(region), 1e-300)))
+    return fg_fail(ctx, FG_ERR_USAGE, "the region is empty: the limits contradict each other");
+  memcpy(x, point, region->factors * sizeof *x);
+  return FG_OK;
+}
+
+/* What is made small, and its gradient. */
+typedef struct objective {
+  const fg_surface *surface;
+  fg_goal goal;
+  double target;
+} objective;
+
+static double cost(const objective *o, const double *x) {
+  double value = fg_surface_value(o->surface, x);
+  if (o->goal == FG_GOAL_TARGET) return (value - o->target) * (value - o->target);
+  return o->goal == FG_GOAL_HIGHEST ? -value : value;
+}
+
+static void gradient(const objective *o, const double *x, double *slope) {
+  const fg_surface *s = o->surface;
+  double factor = o->goal == FG_GOAL_HIGHEST ? -1 : 1;
+  if (o->goal == FG_GOAL_TARGET) factor = 2 * (fg_surface_value(s, x) - o->target);
+  for (size_t i = 0; i < s->factors; i++)
+    slope[i] = factor * (s->linear[i] + 2 * dot(s->quadratic[i], x, s->factors));
+}
+
+/* A step is taken when it lowers the cost by a tenth of what the slope promises; it doubles after a
+ * success and halves after a failure. */
+static double walk(const objective *o, const fg_region *r, double *x) {
+  size_t n = r->factors;
+  double here = cost(o, x), slope[MOST], next[MOST] = {0}, size = size_of(r);
+  gradient(o, x, slope);
+  double steepness = sqrt(dot(slope, slope, n));
+  double step = steepness > 0 ? 0.5 * size / steepness : 0;
+  for (int i = 0; i < STEPS && step * steepness > 1e-15 * size; i++) {
+    for (size_t k = 0; k < n; k++)
+      next[k] = x[k] - step * slope[k];
+    project(r, next);
+    double there = cost(o, next), moved = distance(x, next, n);
+    if (moved == 0) break;
+    if (there > here - 0.1 * moved * moved / step) {
+      step /= 2;
+      continue;
+    }
+    memcpy(x, next, n * sizeof *x);
+    here = there;
+    gradient(o, x, slope);
+    steepness = sqrt(dot(slope, slope, n));
+    step *= 2;
+  }
+  return here;
+}
+
+/* Halton's sequence: even cover without a seed. */
+static double halton(size_t index, unsigned base) {
+  double result = 0, share = 1;
+  for (; index; index /= base) {
+    share /= base;
+    result += share * (double)(index % base);
+  }
+  return result;
+}
+
+static void scattered_point(const fg_region *r, size_t index, double *x) {
+  static const unsigned primes[MOST] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
+  for (size_t i = 0; i < r->factors; i++)
+    x[i] = r->low[i] + (r->high[i] - r->low[i]) * halton(index + 1, primes[i]);
+  project(r, x);
+}
+
+typedef struct start {
+  double cost, x[MOST];
+} start;
+
+/* Keeps the best STARTS, best first. */
+static void keep_start(start *starts, size_t *count, const start *candidate) {
+  size_t place = *count;
+  while (place > 0 && candidate->cost < starts[place - 1].cost)
+    place--;
+  if (place == STARTS) return;
+  size_t last = *count < STARTS ? (*count)++ : STARTS - 1;
+  memmove(&starts[place + 1], &starts[place], (last - place) * sizeof *starts);
+  starts[place] = *candidate;
+}
+
+/* Candidates whose answer is exact where it lies inside: stationary point, box, ball. */
+static void keep_exact(const objective *o, const fg_region *r, start *starts, size_t *count) {
+  start s = {0};
+  bool highest = o->goal == FG_GOAL_HIGHEST;
+  memcpy(s.x, r->centre, sizeof s.x);
+  project(r, s.x);
+  s.cost = cost(o, s.x);
+  keep_start(starts, count, &s);
+  if (o->goal == FG_GOAL_TARGET) return;
+  if (fg_surface_optimum_box(NULL, o->surface, highest, r->low, r->high, s.x) != FG_OK) return;
+  project(r, s.x);
+  s.cost = cost(o, s.x);
+  keep_start(starts, count, &s);
+}
+
+fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, fg_goal goal,
+                                    double target, const fg_region *region, double *x) {
+  const objective o = {surface, goal, target};
+  start starts[STARTS + 1], s = {0};
+  size_t count = 0, n = region->factors;
+  double best = INFINITY, spread = 0;
+  if (n != surface->factors)
+    return fg_fail(ctx, FG_ERR_USAGE, "the region has %zu factors, the surface %zu", n,
+                   surface->factors);
+  memcpy(s.x, region->centre, sizeof s.x);
+  FG_TRY(fg_region_project(ctx, region, s.x));
+  for (size_t i = 0; i < SCATTERED; i++) {
+    scattered_point(region, i, s.x);
+    s.cost = cost(&o, s.x);
+    spread = fmax(spread, fabs(s.cost));
+    keep_start(starts, &count, &s);
+  }
+  keep_exact(&o, region, starts, &count);
+  for (size_t i = 0; i < count; i++) {
+    starts[i].cost = walk(&o, region, starts[i].x);
+    bool better = starts[i].cost < best - 1e-12 * spread;
+    bool as_good = starts[i].cost <= best + 1e-12 * spread;
+    bool nearer = distance(starts[i].x, region->centre, n) < distance(x, region->centre, n) - SLACK;
+    if (i > 0 && !better && !(as_good && nearer)) continue;
+    best = starts[i].cost;
+    memcpy(x, starts[i].x, n * sizeof *x);
+  }
+  return FG_OK;
+}

@@ -1,0 +1,299 @@
+#include "vision/disc_edge.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+
+enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64 };
+#define SECTOR_PX  48.0
+#define STATION_PX 1.5
+/* The ring reaches so far on both sides of the edge, for the levels and slopes to be known. */
+#define REACH_PX    8.0
+#define REACH_BLURS 6.0
+#define START_PX    12.0
+#define SOUND_SHARE 0.01
+/* A sector whose step is below this share of the typical one has no edge. */
+#define STEP_SHARE 0.3
+/* Less contrast than this many counts is no edge. */
+#define CONTRAST_LEAST  6.0
+#define TRIM_DEVIATIONS 2.5
+/* Clipped light may exceed the end of the scale by this share of the contrast. */
+#define WHITE_DOUBT 0.1
+
+static double *value_of(fg_step_fit *fit, int i) {
+  return &fit->values[i];
+}
+
+/* Mean of the profile on one side's outer half, in counts. */
+static double side_level(const fg_disc_work *work, const fg_profile_bin *bins, int side) {
+  double sum = 0, n = 0, half = 0.5 * work->ring.reach_px;
+  for (size_t i = 0; i < work->bin_count; i++) {
+    if (bins[i].count <= 0 || (side ? bins[i].across_px < half : bins[i].across_px > -half))
+      continue;
+    sum += bins[i].value * bins[i].count;
+    n += bins[i].count;
+  }
+  return n > 0 ? sum / n : NAN;
+}
+
+/* Where the profile crosses the middle of its two levels, nearest to the circle. */
+static double find_crossing(const fg_disc_work *work, const fg_profile_bin *bins, double inside,
+                            double outside) {
+  double middle = 0.5 * (inside + outside), sign = outside > inside ? 1 : -1, best = NAN;
+  const fg_profile_bin *last = NULL;
+  for (size_t i = 0; i < work->bin_count; i++) {
+    if (bins[i].count <= 0) continue;
+    if (last && sign * (last->value - middle) < 0 && sign * (bins[i].value - middle) >= 0) {
+      double at = 0.5 * (last->across_px + bins[i].across_px);
+      if (!(fabs(best) <= fabs(at))) best = at;
+    }
+    last = &bins[i];
+  }
+  return best;
+}
+
+static void start_sector(const fg_disc_work *work, size_t s, unsigned held, fg_step_fit *fit) {
+  const fg_profile_bin *bins = work->bins + s * work->bin_count;
+  double level[2] = {side_level(work, bins, 0), side_level(work, bins, 1)};
+  memset(fit, 0, sizeof *fit);
+  fit->held = held;
+  fit->values[FG_STEP_EDGE] = find_crossing(work, bins, level[0], level[1]);
+  for (int side = 0; side < 2; side++) {
+    *value_of(fit, FG_STEP_INSIDE + side) = fg_edge_light(work->gamma, level[side]);
+    if (!work->white[side]) continue;
+    *value_of(fit, FG_STEP_INSIDE + side) = 255;
+    fit->held |= 1u << (FG_STEP_INSIDE + side) | 1u << (FG_STEP_SLOPE_IN + side);
+  }
+  fit->values[FG_STEP_BLUR] = 1.2;
+  fit->values[FG_STEP_GAMMA] = work->gamma;
+}
+
+/* A side is white when it is so in half of the sectors. */
+static void find_white(fg_disc_work *work) {
+  size_t count = work->ring.sector_count;
+  for (int side = 0; side < 2; side++) {
+    size_t white = 0;
+    for (size_t s = 0; s < count; s++)
+      white += side_level(work, work->bins + s * work->bin_count, side) >= FG_COUNT_WHITE;
+    work->white[side] = 2 * white > count;
+  }
+}
+
+static double step_of(const fg_step_fit *fit) {
+  return fit->values[FG_STEP_OUTSIDE] - fit->values[FG_STEP_INSIDE];
+}
+
+/* Sectors with a much smaller step than usual, or one the other way, have no edge of this kind. */
+static fg_status drop_weak(fg_context *ctx, fg_disc_work *work) {
+  size_t count = work->ring.sector_count, n = 0;
+  double *steps;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *steps, (void **)&steps));
+  for (size_t s = 0; s < count; s++)
+    if (work->sectors[s].good) steps[n++] = step_of(&work->sectors[s]);
+  double typical = n ? fg_select(steps, n, n / 2) : 0;
+  free(steps);
+  n = 0;
+  for (size_t s = 0; s < count; s++) {
+    fg_step_fit *fit = &work->sectors[s];
+    fit->good = fit->good && step_of(fit) * typical > STEP_SHARE * typical * typical;
+    n += fit->good;
+  }
+  if (n < SECTORS_LEAST / 2 || 2 * n < count || fabs(typical) < CONTRAST_LEAST)
+    return fg_fail(ctx, FG_ERR_NUMERIC, "no edge around the circle");
+  return FG_OK;
+}
+
+static fg_status fit_sectors(fg_context *ctx, fg_disc_work *work, unsigned held) {
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    fg_step_fit *fit = &work->sectors[s];
+    start_sector(work, s, held, fit);
+    if (isnan(fit->values[FG_STEP_EDGE])) continue;
+    fg_step_fit_model(work->bins + s * work->bin_count, work->bin_count, fit);
+    fit->good = fit->good && fabs(fit->values[FG_STEP_EDGE]) < work->ring.reach_px;
+  }
+  return drop_weak(ctx, work);
+}
+
+/* Collects the ring about its circle and stacks it. */
+static fg_status fill_ring(fg_context *ctx, fg_disc_work *work, double reach_px) {
+  fg_ring *ring = &work->ring;
+  double circumference = 2 * M_PI * ring->circle.radius;
+  ring->reach_px = fmin(reach_px, 0.6 * ring->circle.radius);
+  ring->sector_count = (size_t)fmin(fmax(circumference / SECTOR_PX, SECTORS_LEAST), SECTORS_MOST);
+  size_t per_sector = (size_t)(circumference / STATION_PX / (double)ring->sector_count) + 1;
+  ring->station_count = per_sector * ring->sector_count;
+  FG_TRY(fg_ring_collect(ctx, work->tiles, work->shape, ring));
+  free(work->bins);
+  free(work->sectors);
+  work->bins = NULL;
+  work->sectors = NULL;
+  work->bin_count = fg_ring_bin_count(ring->reach_px);
+  FG_TRY(fg_memory_allocate(ctx, ring->sector_count * work->bin_count, sizeof *work->bins,
+                            (void **)&work->bins));
+  FG_TRY(
+      fg_memory_allocate(ctx, ring->sector_count, sizeof *work->sectors, (void **)&work->sectors));
+  fg_ring_stack(ring, work->bins, work->bin_count);
+  find_white(work);
+  return FG_OK;
+}
+
+/* One trim: weights of the sectors' points by their distance from the circle. Their rms. */
+static double trim(const fg_point *points, size_t n, const fg_circle *circle, double *weights,
+                   double *scratch) {
+  double sum = 0, used = 0;
+  for (size_t i = 0; i < n; i++)
+    scratch[i] = fabs(hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius);
+  double limit = fmax(TRIM_DEVIATIONS * 1.4826 * fg_select(scratch, n, n / 2), 0.3);
+  for (size_t i = 0; i < n; i++) {
+    double off = hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius;
+    weights[i] = fabs(off) <= limit;
+    sum += weights[i] * off * off;
+    used += weights[i];
+  }
+  return sqrt(sum / used);
+}
+
+static fg_status fit_trimmed(fg_context *ctx, fg_point *points, size_t n, double *block,
+                             fg_circle *circle, double *rms) {
+  for (size_t i = 0; i < n; i++)
+    block[i] = 1;
+  for (int round = 0; round < TRIM_ROUNDS; round++) {
+    FG_TRY(fg_circle_estimate(ctx, points, block, n, circle));
+    *rms = trim(points, n, circle, block, block + n);
+  }
+  return FG_OK;
+}
+
+/* The circle through the sectors' edges. */
+static fg_status centre_ring(fg_context *ctx, fg_disc_work *work, double *rms) {
+  size_t count = work->ring.sector_count, n = 0;
+  fg_circle circle = work->ring.circle;
+  fg_point *points = NULL;
+  double *block = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points, (void **)&points));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, 2 * sizeof *block, (void **)&block));
+  for (size_t s = 0; s < count; s++) {
+    const fg_step_fit *fit = &work->sectors[s];
+    if (!fit->good) continue;
+    double angle = ((double)s + 0.5) * 2 * M_PI / (double)count;
+    double radius = circle.radius + fit->values[FG_STEP_EDGE];
+    points[n++] = (fg_point){circle.x + radius * cos(angle), circle.y + radius * sin(angle)};
+  }
+  FG_TRY_EXIT(fit_trimmed(ctx, points, n, block, &circle, rms));
+  if (hypot(circle.x - work->ring.circle.x, circle.y - work->ring.circle.y) > work->ring.reach_px)
+    status = fg_fail(ctx, FG_ERR_NUMERIC, "the edge around the circle is not round");
+  work->ring.circle = circle;
+exit:
+  free(points);
+  free(block);
+  return status;
+}
+
+static double typical_blur(const fg_disc_work *work) {
+  double values[SECTORS_MOST];
+  size_t n = 0;
+  for (size_t s = 0; s < work->ring.sector_count; s++)
+    if (work->sectors[s].good) values[n++] = work->sectors[s].values[FG_STEP_BLUR];
+  return n ? fg_select(values, n, n / 2) : 1;
+}
+
+/* Centres the ring on the edge, with levels that have no slopes. */
+static fg_status find_ring(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
+                           double *rms) {
+  double reach = candidate->doubt_px + START_PX;
+  work->ring.circle = candidate->circle;
+  for (int round = 0; round < CENTRE_ROUNDS; round++) {
+    FG_TRY(fill_ring(ctx, work, reach));
+    FG_TRY(fit_sectors(ctx, work,
+                       1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT));
+    FG_TRY(centre_ring(ctx, work, rms));
+    /* An edge that is damaged or not round keeps the first reach: a wider one takes in what lies
+     * beside it. */
+    if (*rms < SOUND_SHARE * work->ring.circle.radius)
+      reach = REACH_PX + REACH_BLURS * typical_blur(work) + 3 * *rms;
+  }
+  return fill_ring(ctx, work, reach);
+}
+
+/* The sectors' final fits: slopes only where there are any. */
+static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
+  unsigned held = 1u << FG_STEP_GAMMA;
+  FG_TRY(fit_sectors(ctx, work, held));
+  for (int side = 0; side < 2; side++)
+    if (!fg_disc_has_slope(work, FG_STEP_SLOPE_IN + side)) held |= 1u << (FG_STEP_SLOPE_IN + side);
+  return fit_sectors(ctx, work, held);
+}
+
+static void free_work(fg_disc_work *work) {
+  fg_ring_free(&work->ring);
+  free(work->bins);
+  free(work->sectors);
+}
+
+fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                            const fg_disc_candidate *candidate, fg_tone *tone) {
+  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = 1};
+  double rms;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(find_ring(ctx, &work, candidate, &rms));
+  FG_TRY_EXIT(fit_sectors(ctx, &work, 1u << FG_STEP_GAMMA));
+  FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
+exit:
+  free_work(&work);
+  return status;
+}
+
+/* Count at the edge, where the light is the mean of both sides', for sides of given counts. */
+static double count_at_edge(double gamma, const double counts[2]) {
+  double light = 0.5 * (fg_edge_light(gamma, counts[0]) + fg_edge_light(gamma, counts[1]));
+  return 255 * pow(light / 255, 1 / gamma);
+}
+
+/* A doubt of the levels or the tone curve moves the count that is taken for the edge; over the
+ * profile's slope there, contrast / (s sqrt(2 pi)), that is a shift. */
+static double level_doubt(const fg_disc_work *work, const fg_tone *tone, const fg_disc_edge *edge) {
+  double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
+  const double lights[2] = {edge->inside, edge->outside};
+  double counts[2];
+  for (int i = 0; i < 2; i++)
+    counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / tone->gamma);
+  if (work->white[0] || work->white[1]) white = WHITE_DOUBT * 0.5 * per_contrast;
+  if (tone->doubt > 0)
+    change = (count_at_edge(tone->gamma + tone->doubt, counts) -
+              count_at_edge(tone->gamma - tone->doubt, counts)) /
+             2 / fabs(counts[1] - counts[0]) * per_contrast;
+  return hypot(white, change);
+}
+
+static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidate *candidate,
+                     const fg_tone *tone, fg_disc_edge *edge) {
+  FG_TRY(find_ring(ctx, work, candidate, &edge->sector_rms_px));
+  FG_TRY(find_shape(ctx, work));
+  edge->circle = work->ring.circle;
+  edge->count = work->ring.station_count;
+  FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
+  FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
+  edge->level_doubt_px = level_doubt(work, tone, edge);
+  return fg_disc_solve(ctx, work, edge);
+}
+
+fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                               const fg_disc_candidate *candidate, const fg_tone *tone,
+                               fg_disc_edge *edge) {
+  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
+  memset(edge, 0, sizeof *edge);
+  edge->gamma = tone->gamma;
+  fg_status status = run(ctx, &work, candidate, tone, edge);
+  free_work(&work);
+  if (status != FG_OK) fg_disc_edge_free(edge);
+  return status;
+}
+
+void fg_disc_edge_free(fg_disc_edge *edge) {
+  if (!edge) return;
+  free(edge->stations);
+  memset(edge, 0, sizeof *edge);
+}

@@ -1,0 +1,91 @@
+/* The edge of one round feature: an intensity model of one step, fitted to every pixel near it.
+ *
+ * (1) Mean profiles of sectors tell the shape (levels, slopes, blur, tone curve) and centre the
+ * circle. (2) The shape is smoothed around the circle by its first harmonics: blur is one-sided
+ * along the carriage, the wall of a hole shows on one side. (3) With the shape held, the edge of
+ * every station follows from its pixels by Gauss-Newton. What the pixels of the core and those of
+ * the flanks say apart from each other is kept: where they differ the model's symmetry is wrong.
+ *
+ * A Gaussian blur of sd s moves the edge towards the centre by s²/(2R), whichever side is bright;
+ * the stations have it put back. Lengths are square pixels (vision/disc_find.h).
+ */
+#ifndef FG_VISION_DISC_EDGE_H
+#define FG_VISION_DISC_EDGE_H
+
+#include <stdbool.h>
+
+#include "vision/disc_find.h"
+#include "vision/ring.h"
+#include "vision/step_model.h"
+
+typedef struct fg_disc_station {
+  float edge_px;  /* outwards from the circle */
+  float u_px;     /* sd from pixel noise alone */
+  float split_px; /* half of: what the flanks' pixels say minus what the core's say */
+  float u_split_px;
+  float weight;                /* 0: not usable; 1: good */
+  float shape[FG_STEP_VALUES]; /* of its profile; the edge is not used */
+  float m[2], g[2];            /* sums over pixels of the core and of the flanks */
+  float misfit;
+  int32_t used, seen;
+} fg_disc_station;
+
+typedef struct fg_disc_edge {
+  fg_circle circle;          /* that edge_px is counted from */
+  fg_disc_station *stations; /* around the turn, see fg_ring_angle; owned */
+  size_t count;
+  double inside, outside; /* levels, 8-bit counts */
+  double blur_px, noise, gamma;
+  double sector_rms_px;  /* of the sectors' edges about the circle */
+  double level_doubt_px; /* what all edge_px may be wrong by together: for the tone curve's
+                            doubt, and, where the scale ends at white, for light a tenth of
+                            the contrast beyond it */
+} fg_disc_edge;
+
+/* The tone curve, G(u) = 255 (u/255)^(1/gamma). */
+typedef struct fg_tone {
+  double gamma;
+  double doubt; /* standard deviation; INFINITY: not known */
+  bool slopes;  /* a halo or a wall beside the edge may have made the asymmetry */
+} fg_tone;
+
+/* What the edge around a candidate says of the tone curve: its asymmetry, where no side is white.
+ * FG_ERR_NUMERIC when there is no edge. One feature says too little: pool them. */
+fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                            const fg_disc_candidate *candidate, fg_tone *tone);
+
+/* One tone curve for all; gamma is 1, without doubt, unless they agree on another value. Where
+ * slopes hide the tone curve it is 1 with a large doubt. */
+fg_tone fg_tone_pool(const fg_tone *tones, size_t count);
+
+/* FG_ERR_NUMERIC when there is no edge around the candidate. */
+fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                               const fg_disc_candidate *candidate, const fg_tone *tone,
+                               fg_disc_edge *edge);
+void fg_disc_edge_free(fg_disc_edge *edge);
+
+/* One feature at work. */
+typedef struct fg_disc_work {
+  const fg_tiles *tiles;
+  const fg_pixel_shape *shape;
+  fg_ring ring;
+  fg_profile_bin *bins; /* of all sectors */
+  size_t bin_count;
+  fg_step_fit *sectors; /* ring.sector_count */
+  double gamma;
+  bool white[2]; /* inside, outside is at the end of the scale */
+} fg_disc_work;
+
+/* The shape of every station from the sectors' fits. disc_shape.c */
+fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge);
+
+/* The tone curve from the sectors' profiles, which are fitted again for it. disc_tone.c */
+fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone);
+
+/* Whether a slope (FG_STEP_SLOPE_IN or _OUT) is more than the sectors' own scatter. */
+bool fg_disc_has_slope(const fg_disc_work *work, int value);
+
+/* The edge of every station with its shape held. disc_solve.c */
+fg_status fg_disc_solve(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge);
+
+#endif

@@ -1,0 +1,133 @@
+/* The shape of a round edge around its turn: sectors' fits, smoothed by their first harmonics. */
+#include "vision/disc_edge.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "core/small_solve.h"
+
+enum { HARMONICS_MAX = 3, BASIS_MAX = 2 * HARMONICS_MAX + 1 };
+#define OUTLIER_DEVIATIONS 4.0
+
+/* One value of the shape around the turn. */
+typedef struct course {
+  const fg_disc_work *work;
+  int value;
+  size_t unknowns;
+  double coefficients[BASIS_MAX];
+  double real;     /* share of the scatter about the course that is more than the fits' own */
+  double *scratch; /* per sector */
+} course;
+
+static double sector_angle(const fg_disc_work *work, double sector) {
+  return (sector + 0.5) * 2 * M_PI / (double)work->ring.sector_count;
+}
+
+static double predict(const course *c, double angle) {
+  double sum = c->coefficients[0];
+  for (size_t k = 1; 2 * k < c->unknowns; k++)
+    sum += c->coefficients[2 * k - 1] * cos((double)k * angle) +
+           c->coefficients[2 * k] * sin((double)k * angle);
+  return sum;
+}
+
+static double deviation(const course *c, size_t sector) {
+  const fg_step_fit *fit = &c->work->sectors[sector];
+  return fit->good ? fit->values[c->value] - predict(c, sector_angle(c->work, (double)sector))
+                   : NAN;
+}
+
+static bool fit_course(course *c, double limit) {
+  fg_normal_equations system;
+  fg_normal_clear(&system, c->unknowns);
+  double sum = 0, expected = 0, count = 0, x[FG_SMALL_MAX], row[BASIS_MAX];
+  for (size_t s = 0; s < c->work->ring.sector_count; s++) {
+    const fg_step_fit *fit = &c->work->sectors[s];
+    double off = deviation(c, s), angle = sector_angle(c->work, (double)s);
+    if (!fit->good || fabs(off) > limit) continue;
+    row[0] = 1;
+    for (size_t k = 1; 2 * k < c->unknowns; k++) {
+      row[2 * k - 1] = cos((double)k * angle);
+      row[2 * k] = sin((double)k * angle);
+    }
+    sum += off * off;
+    expected += fit->sd[c->value] * fit->sd[c->value];
+    count++;
+    fg_normal_add(&system, row, fit->values[c->value], 1);
+  }
+  for (size_t b = 1; b < c->unknowns; b++)
+    system.matrix[b][b] += 1e-3 * system.matrix[0][0];
+  if (!fg_normal_solve(&system, 0, x, NULL)) return false;
+  memcpy(c->coefficients, x, c->unknowns * sizeof *x);
+  double freedom = count - (double)c->unknowns;
+  if (isfinite(limit) && freedom > 4 && sum > 0)
+    c->real = fmax(0, 1 - 2 * expected * freedom / (sum * count));
+  return true;
+}
+
+static void find_course(course *c) {
+  double limit = INFINITY;
+  c->real = 0;
+  memset(c->coefficients, 0, sizeof c->coefficients);
+  for (int round = 0; round < 3 && fit_course(c, limit); round++) {
+    size_t n = 0;
+    for (size_t s = 0; s < c->work->ring.sector_count; s++)
+      if (c->work->sectors[s].good) c->scratch[n++] = fabs(deviation(c, s));
+    limit = n ? OUTLIER_DEVIATIONS * 1.4826 * fg_select(c->scratch, n, n / 2) + 1e-9 : INFINITY;
+  }
+}
+
+/* The course at a station, plus the real share of the sectors' own deviation, linear between
+ * their middles. */
+static double course_at(const course *c, double turn) {
+  size_t count = c->work->ring.sector_count;
+  double at = turn * (double)count - 0.5;
+  double value = predict(c, turn * 2 * M_PI);
+  if (at < 0) at += (double)count;
+  size_t s0 = (size_t)at % count, s1 = (s0 + 1) % count;
+  double share = at - floor(at), d0 = deviation(c, s0), d1 = deviation(c, s1);
+  if (isfinite(d0)) value += c->real * (1 - share) * d0;
+  if (isfinite(d1)) value += c->real * share * d1;
+  return value;
+}
+
+fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge) {
+  size_t good = 0;
+  double *scratch;
+  FG_TRY(fg_memory_allocate(ctx, work->ring.sector_count, sizeof *scratch, (void **)&scratch));
+  for (size_t s = 0; s < work->ring.sector_count; s++)
+    good += work->sectors[s].good;
+  course c = {.work = work, .scratch = scratch};
+  c.unknowns = good >= 24 ? 7 : good >= 14 ? 5 : 3;
+  for (c.value = FG_STEP_EDGE; c.value <= FG_STEP_BLUR; c.value++) {
+    find_course(&c);
+    if (c.value == FG_STEP_EDGE) c.real = 1;
+    for (size_t i = 0; i < edge->count; i++) {
+      double value = course_at(&c, ((double)i + 0.5) / (double)edge->count);
+      if (c.value == FG_STEP_BLUR) value = fmax(value, 0.3);
+      edge->stations[i].shape[c.value] = (float)value;
+      if (c.value == FG_STEP_EDGE) edge->stations[i].edge_px = (float)value;
+    }
+    if (c.value == FG_STEP_BLUR) edge->blur_px = c.coefficients[0];
+    if (c.value == FG_STEP_INSIDE) edge->inside = c.coefficients[0];
+    if (c.value == FG_STEP_OUTSIDE) edge->outside = c.coefficients[0];
+  }
+  free(scratch);
+  return FG_OK;
+}
+
+bool fg_disc_has_slope(const fg_disc_work *work, int value) {
+  double n = 0, sum = 0, weights = 0, squares = 0;
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    const fg_step_fit *fit = &work->sectors[s];
+    if (!fit->good || !(fit->sd[value] > 0)) continue;
+    double weight = 1 / (fit->sd[value] * fit->sd[value]);
+    sum += weight * fit->values[value];
+    weights += weight;
+    squares += weight * fit->values[value] * fit->values[value];
+    n++;
+  }
+  return n > 0 && (sum * sum > 9 * weights || squares > n + 4 * sqrt(2 * n));
+}

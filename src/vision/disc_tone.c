@@ -1,0 +1,88 @@
+/* The tone curve, from the asymmetry of round edges. */
+#include "vision/disc_edge.h"
+
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+
+/* A change of gamma counts above so many of its own deviations, and only in a scanner's range:
+ * values beyond are a wall or a halo beside the edge. */
+#define GAMMA_DEVIATIONS   4.0
+#define GAMMA_LEAST_CHANGE 0.003
+#define GAMMA_LOWEST       0.4
+#define GAMMA_HIGHEST      2.8
+/* Beside a halo or a wall gamma cannot be told: it is taken for 1, which may be wrong by this. */
+#define GAMMA_DOUBT 0.4
+/* Sectors that scatter by more than so many of their own deviations do not show a tone curve. */
+#define SECTOR_SCATTER 3.0
+enum { SECTORS_LEAST = 6 };
+
+/* Median of the sectors' gammas; both arrays are reordered. */
+static fg_tone judge(double *values, double *sd, size_t n) {
+  fg_tone none = {.gamma = 1, .doubt = INFINITY};
+  if (n < SECTORS_LEAST) return none;
+  double upper = fg_select(values, n, n * 3 / 4), lower = fg_select(values, n, n / 4);
+  double scatter = 0.7413 * (upper - lower), own = fg_select(sd, n, n / 2);
+  if (scatter > SECTOR_SCATTER * own + 0.01) return none;
+  return (fg_tone){.gamma = fg_select(values, n, n / 2),
+                   .doubt = 1.2533 * fmax(scatter, own) / sqrt((double)n)};
+}
+
+/* Fits all sectors with gamma free, their slopes free or held at 0. */
+static void fit_sectors(fg_disc_work *work, bool slopes) {
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    fg_step_fit *fit = &work->sectors[s];
+    if (!fit->good) continue;
+    fit->held &= ~(1u << FG_STEP_GAMMA);
+    for (int i = FG_STEP_SLOPE_IN; i <= FG_STEP_SLOPE_OUT; i++) {
+      fit->held = slopes ? fit->held & ~(1u << i) : fit->held | 1u << i;
+      if (!slopes) fit->values[i] = 0;
+    }
+    fg_step_fit_model(work->bins + s * work->bin_count, work->bin_count, fit);
+  }
+}
+
+fg_status fg_disc_find_tone(fg_context *ctx, fg_disc_work *work, fg_tone *tone) {
+  size_t count = work->ring.sector_count, n = 0;
+  double *values;
+  *tone = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  if (work->white[0] || work->white[1]) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, count, 2 * sizeof *values, (void **)&values));
+  /* A tone curve that is not in the model looks like slopes, so both are asked at once. */
+  fit_sectors(work, true);
+  bool slopes =
+      fg_disc_has_slope(work, FG_STEP_SLOPE_IN) || fg_disc_has_slope(work, FG_STEP_SLOPE_OUT);
+  if (!slopes) fit_sectors(work, false);
+  for (size_t s = 0; s < count; s++) {
+    const fg_step_fit *fit = &work->sectors[s];
+    if (!fit->good) continue;
+    values[n] = fit->values[FG_STEP_GAMMA];
+    values[count + n++] = fit->sd[FG_STEP_GAMMA];
+  }
+  *tone = judge(values, values + count, n);
+  tone->slopes = slopes;
+  free(values);
+  return FG_OK;
+}
+
+fg_tone fg_tone_pool(const fg_tone *tones, size_t count) {
+  double sum = 0, weights = 0, squares = 0, slopes = 0, n = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (!(tones[i].doubt > 0) || !isfinite(tones[i].doubt)) continue;
+    double weight = 1 / (tones[i].doubt * tones[i].doubt);
+    sum += weight * tones[i].gamma;
+    squares += weight * tones[i].gamma * tones[i].gamma;
+    weights += weight;
+    slopes += tones[i].slopes;
+    n++;
+  }
+  fg_tone linear = {.gamma = 1};
+  if (n < 1) return linear;
+  double gamma = sum / weights, spread = fmax(0, squares - sum * gamma);
+  double doubt = sqrt((n > 1 ? fmax(1, spread / (n - 1)) : 1) / weights);
+  if (2 * slopes > n || gamma < GAMMA_LOWEST || gamma > GAMMA_HIGHEST)
+    return (fg_tone){.gamma = 1, .doubt = GAMMA_DOUBT};
+  if (fabs(gamma - 1) < fmax(GAMMA_DEVIATIONS * doubt, GAMMA_LEAST_CHANGE)) return linear;
+  return (fg_tone){.gamma = gamma, .doubt = doubt};
+}

@@ -1,0 +1,177 @@
+/* Tiles and segmentation: what is kept, that it is exact, and that nothing depends on the way. */
+#include "support/measured_render.h"
+
+#include "support/random.h"
+#include "vision/segment.h"
+
+enum { WIDTH = 700, HEIGHT = 500 };
+
+typedef struct scene {
+  uint16_t pixels[HEIGHT][WIDTH]; /* on the 16-bit scale */
+} scene;
+
+/* A bright disc on a noisy background that gets brighter along x; sign -1: dark on light. */
+static void paint(scene *s, double sign, double shade, double noise) {
+  uint64_t seed = 11;
+  double base = sign > 0 ? 30 : 220;
+  for (int y = 0; y < HEIGHT; y++)
+    for (int x = 0; x < WIDTH; x++) {
+      double value = base + shade * x / WIDTH + noise * random_gaussian(&seed);
+      if (hypot(x - 350, y - 230) < 60) value += sign * 120;
+      s->pixels[y][x] = (uint16_t)lround(fmin(fmax(value, 0), 255) * 257);
+    }
+}
+
+static fg_tiles fill(const scene *s, int bytes, bool strip_by_strip) {
+  fg_context ctx = {0};
+  fg_tiles tiles;
+  static uint8_t rows[HEIGHT][WIDTH * 2 + 6];
+  for (int y = 0; y < HEIGHT; y++)
+    for (int x = 0; x < WIDTH; x++)
+      if (bytes == 2)
+        memcpy(&rows[y][2 * x], &s->pixels[y][x], 2);
+      else
+        rows[y][x] = (uint8_t)(s->pixels[y][x] / 257);
+  assert_int_equal(fg_tiles_create(&ctx, WIDTH, HEIGHT, bytes, &tiles), FG_OK);
+  for (int strip = 0; strip * FG_TILE_PX < HEIGHT; strip++) {
+    if (strip_by_strip) {
+      assert_int_equal(fg_tiles_add_strip(&ctx, &tiles, rows[strip * FG_TILE_PX], sizeof rows[0]),
+                       FG_OK);
+      continue;
+    }
+    char *to = fg_tiles_strip(&tiles, strip);
+    for (int y = 0; y < fg_tiles_strip_rows(&tiles, strip); y++)
+      memcpy(to + y * WIDTH * bytes, rows[strip * FG_TILE_PX + y], (size_t)(WIDTH * bytes));
+    assert_int_equal(fg_tiles_take_strip(&ctx, &tiles), FG_OK);
+  }
+  assert_int_equal(fg_tiles_finish(&ctx, &tiles), FG_OK);
+  return tiles;
+}
+
+static size_t kept(const fg_tiles *tiles) {
+  size_t count = 0;
+  for (int32_t i = 0; i < tiles->columns * tiles->rows; i++)
+    count += tiles->tiles[i] != NULL;
+  return count;
+}
+
+static void kept_pixels_are_the_scans_own(void **state) {
+  (void)state;
+  static scene s;
+  paint(&s, 1, 0, 1);
+  for (int bytes = 1; bytes <= 2; bytes++) {
+    fg_tiles tiles = fill(&s, bytes, true);
+    for (int y = 0; y < HEIGHT; y++)
+      for (int x = 0; x < WIDTH; x++) {
+        float value = fg_tiles_pixel(&tiles, x, y);
+        float scan = bytes == 2 ? (float)s.pixels[y][x] / 257.0f : (float)(s.pixels[y][x] / 257);
+        bool near_disc = hypot(x - 350, y - 230) < 60 + 16;
+        if (near_disc && !isfinite(value)) fail_msg("(%d, %d) of the disc was not kept", x, y);
+        if (isfinite(value)) assert_close(value, scan, 1e-4);
+      }
+    assert_true(isnan(fg_tiles_pixel(&tiles, -1, 0)) && isnan(fg_tiles_pixel(&tiles, 0, HEIGHT)));
+    /* A disc of 2 tiles across with its neighbours, not the bed. */
+    assert_in_range(kept(&tiles), 9, 36);
+    fg_tiles_free(&tiles);
+  }
+}
+
+static void tiles_do_not_depend_on_how_rows_arrive(void **state) {
+  (void)state;
+  static scene s;
+  paint(&s, -1, 20, 1.5);
+  for (int bytes = 1; bytes <= 2; bytes++) {
+    fg_tiles a = fill(&s, bytes, true), b = fill(&s, bytes, false);
+    size_t size = sizeof(fg_tile) + (size_t)(FG_TILE_PX * FG_TILE_PX * bytes);
+    for (int32_t i = 0; i < a.columns * a.rows; i++) {
+      assert_int_equal(!a.tiles[i], !b.tiles[i]);
+      if (a.tiles[i]) assert_memory_equal(a.tiles[i], b.tiles[i], size);
+    }
+    fg_tiles_free(&a);
+    fg_tiles_free(&b);
+  }
+}
+
+/* Segments the first island. */
+static fg_segmentation segment(fg_tiles *tiles, double least_px, fg_island *island) {
+  fg_context ctx = {0};
+  fg_islands *islands = NULL;
+  fg_segmentation seg;
+  assert_int_equal(fg_islands_create(&ctx, tiles, &islands), FG_OK);
+  assert_int_equal(fg_islands_advance(&ctx, islands), FG_OK);
+  assert_true(fg_islands_next(islands, island));
+  assert_int_equal(fg_segment(&ctx, tiles, island, least_px, &seg), FG_OK);
+  fg_islands_free(islands);
+  return seg;
+}
+
+static void polarity_and_contrast_are_found_under_shading(void **state) {
+  (void)state;
+  static scene s;
+  const double shades[] = {0, 40, -25};
+  for (int sign = -1; sign <= 1; sign += 2)
+    for (size_t i = 0; i < 3; i++) {
+      paint(&s, sign, sign > 0 ? shades[i] + 25 : shades[i] - 40, 1);
+      fg_tiles tiles = fill(&s, 1, true);
+      fg_island island;
+      fg_segmentation seg = segment(&tiles, 60, &island);
+      assert_int_equal(seg.light_on_dark, sign > 0);
+      assert_close(seg.contrast, 120, 8);
+      assert_int_equal(seg.object_count, 1);
+      const fg_object *o = &seg.objects[0];
+      assert_close((o->x + 0.5 * o->width) * FG_BLOCK_PX, 350, 8);
+      assert_close((o->y + 0.5 * o->height) * FG_BLOCK_PX, 230, 8);
+      assert_close(o->width * FG_BLOCK_PX, 120, 17);
+      assert_false(o->touches_border);
+      fg_segmentation_free(&seg);
+      fg_island_free(&island);
+      fg_tiles_free(&tiles);
+    }
+}
+
+static void what_is_small_is_a_speck(void **state) {
+  (void)state;
+  static scene s;
+  paint(&s, 1, 0, 1);
+  fg_tiles tiles = fill(&s, 1, true);
+  fg_island island;
+  fg_segmentation seg = segment(&tiles, 400, &island);
+  assert_int_equal(seg.object_count, 0);
+  assert_int_equal(seg.speck_count, 1);
+  fg_segmentation_free(&seg);
+  fg_island_free(&island);
+  fg_tiles_free(&tiles);
+}
+
+/* Dust, specks and scratches beside a foil change neither its polarity nor how many foils. */
+static void dust_is_no_foil(void **state) {
+  (void)state;
+  const char *polarity[] = {"\"background\":30,\"contrast\":175",
+                            "\"background\":230,\"contrast\":-175"};
+  for (int i = 0; i < 2; i++) {
+    char json[4096];
+    small_foil(json, sizeof json, 3, "",
+               "%s,\"dpi\":2400,\"shading\":{\"x\":0.05,\"y\":-0.05,\"quadratic\":-0.05},"
+               "\"dust\":{\"count\":60,\"radius_px\":3,\"contrast\":80},"
+               "\"specks\":{\"count\":10,\"radius_px\":9,\"contrast\":100},"
+               "\"scratches\":{\"count\":6,\"length_px\":200,\"radius_px\":0.8,\"contrast\":50}",
+               polarity[i]);
+    measured m = measure_render(json, NULL);
+    assert_int_equal(m.status, FG_OK);
+    assert_int_equal(m.result.light_on_dark, i == 0);
+    assert_int_equal(m.result.foil_count, 1);
+    assert_int_equal(m.result.foils[0].bump_count, 3);
+    measured_free(&m);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(kept_pixels_are_the_scans_own),
+      cmocka_unit_test(tiles_do_not_depend_on_how_rows_arrive),
+      cmocka_unit_test(polarity_and_contrast_are_found_under_shading),
+      cmocka_unit_test(what_is_small_is_a_speck),
+      cmocka_unit_test(dust_is_no_foil),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
