@@ -82,7 +82,7 @@ fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count
                        const char *page) {
   fg_output output;
   FG_TRY(fg_output_open(ctx, page, &output));
-  fg_html_begin_page(output.stream, "Lots");
+  fg_html_begin(output.stream, "Lots");
   fputs("<section>\n<h1>Lots</h1>\n<div class=\"scroll\"><table><thead><tr><th>lot</th><th>verdict"
         "</th><th>scans</th><th>foils</th><th>pass</th><th>fail</th><th>cannot tell</th><th>not "
         "measured</th></tr></thead>\n<tbody>\n",
@@ -91,7 +91,7 @@ fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count
   for (size_t i = 0; i < count && status == FG_OK; i++)
     status = add_lot(ctx, output.stream, page, folders[i]);
   fputs("</tbody></table></div>\n</section>\n", output.stream);
-  fg_html_end_page(output.stream);
+  fg_html_end(output.stream);
   if (status == FG_OK) return fg_output_commit(ctx, &output);
   fg_output_discard(&output);
   return status;

@@ -460,7 +460,7 @@ static void put_origin(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
-  fg_html_begin_page(out, analysis->lot->settings.name);
+  fg_html_begin(out, analysis->lot->settings.name);
   put_first_screen(out, analysis);
   put_failed_scans(out, analysis);
   fputs("<section>\n", out);
@@ -475,6 +475,6 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   put_gauge(out, analysis);
   put_foils(out, analysis);
   put_origin(out, analysis);
-  fg_html_end_page(out);
+  fg_html_end(out);
   return fg_report_finish(ctx, out, "the lot's page");
 }

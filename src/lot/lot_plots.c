@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "report/html_parts.h"
-#include "report/plot.h"
+#include "report/plot_marks.h"
 
 /* More dots than these cannot be told apart, and a page must open on a phone. */
-enum { DOTS_MAX = 3000, CHART_POINTS_MAX = 600, CURVE_POINTS = 240, BARS = 30 };
+enum { PLOT_WIDTH = 1000, DOTS_MAX = 3000, CHART_POINTS_MAX = 600, CURVE_POINTS = 240, BARS = 30 };
 
 static void widen(double *low, double *high, double share) {
   double room = (*high - *low) * share;
@@ -52,7 +52,7 @@ void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
     include(quantity->tolerance->upper, &low, &high);
   }
   widen(&low, &high, 0.06);
-  fg_plot at = {out, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
   axis_title(title, sizeof title, quantity->field);
   fg_plot_begin(&at, 300, "Mean and two standard deviations of every bump number");
   fg_plot_y_axis(&at, title);
@@ -77,8 +77,8 @@ static void put_bars(const fg_plot *at, const double *bars) {
     double x = fg_plot_x(at, at->x_low + i * width), y = fg_plot_y(at, bars[i]);
     if (bars[i] > 0)
       fprintf(at->out,
-              "<rect class=\"bar\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n", x + 1,
-              y, (at->right - at->left) / BARS - 2, at->bottom - y);
+              "<rect class=\"column\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+              x + 1, y, (at->right - at->left) / BARS - 2, at->bottom - y);
   }
 }
 
@@ -98,7 +98,7 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
   char mark[64];
   if (!quantity || !quantity->has_density) return;
   double a = scale * quantity->least + shift, b = scale * quantity->most + shift;
-  fg_plot at = {out, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
   double reach = 2.5 * quantity->density.bandwidth * fabs(scale);
   at.x_low -= reach;
   at.x_high += reach;
@@ -181,7 +181,8 @@ static bool error_axes(const fg_lot_analysis *analysis, fg_plot *at) {
 
 void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_correlation *line = &analysis->correlation;
-  fg_plot at = {.out = out, .left = 92, .right = 985, .top = 14, .bottom = 380};
+  fg_plot at = {
+      .out = out, .width = PLOT_WIDTH, .left = 92, .right = 985, .top = 14, .bottom = 380};
   if (!analysis->has_correlation || !error_axes(analysis, &at)) return;
   fg_plot_begin(&at, 430, "Angle error over radius error of every bump");
   fg_plot_y_axis(&at, "angle error, %");
@@ -201,7 +202,7 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity) {
   for (size_t i = 0; i < chart->count; i++)
     include(chart->point[i].value, &low, &high);
   widen(&low, &high, 0.08);
-  fg_plot at = {out, 92, 985, 14, 250, 0.5, (double)chart->count + 0.5, low, high};
+  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.5, (double)chart->count + 0.5, low, high};
   size_t every = chart->count / CHART_POINTS_MAX + 1;
   axis_title(title, sizeof title, quantity->field);
   fg_plot_begin(&at, 300, "Control chart, foil after foil");
@@ -293,7 +294,8 @@ static void put_contour(const fg_plot *at, const fg_lot_settings *settings, doub
 void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
   static const double levels[] = {0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 1.75, 2};
   const fg_lot_settings *settings = &analysis->lot->settings;
-  fg_plot at = {.out = out, .left = 92, .right = 985, .top = 14, .bottom = 380};
+  fg_plot at = {
+      .out = out, .width = PLOT_WIDTH, .left = 92, .right = 985, .top = 14, .bottom = 380};
   if (!error_axes(analysis, &at)) return;
   fg_plot_begin(&at, 430, "Stiffness of a bump over its radius and angle errors");
   put_cells(&at, settings);

@@ -4,110 +4,6 @@
 #include <string.h>
 
 #include "report/html_parts.h"
-<<<<<<< HEAD
-#include "report/json_writer.h"
-
-static const char style[] =
-    ":root{--ink:#16202a;--soft:#5b6875;--line:#dfe4e9;--ground:#f4f6f8;--good:#12804a;"
-    "--bad:#c62828;--open:#a86400;--bump:#d95f02;--blue:#1f6fd0}\n"
-    "*{box-sizing:border-box}body{margin:0;background:var(--ground);color:var(--ink);"
-    "font:15px/1.5 system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,"
-    "\"DejaVu Sans\",sans-serif}\n"
-    "main{max-width:1120px;margin:0 auto;padding:20px 16px 48px}\n"
-    "section{background:#fff;border:1px solid var(--line);border-radius:12px;padding:22px 24px;"
-    "margin-bottom:24px}\n"
-    "header{display:flex;flex-wrap:wrap;gap:6px 18px;align-items:center;margin-bottom:14px}\n"
-    "h1{font-size:24px;line-height:1.2;margin:0}h2{font-size:17px;margin:28px 0 8px}\n"
-    "header p{margin:0;color:var(--soft);overflow-wrap:anywhere}\n"
-    ".verdict{font-weight:650;padding:5px "
-    "14px;border-radius:99px;color:#fff;background:var(--soft)}"
-    ".verdict.pass{background:var(--good)}.verdict.fail{background:var(--bad)}"
-    ".verdict.cannot_tell,.verdict.not_measured{background:var(--open)}\n"
-    ".tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:10px;"
-    "margin:0 0 16px}.tiles div{background:var(--ground);border-radius:8px;padding:9px 13px}"
-    ".tiles dt{font-size:12.5px;color:var(--soft)}.tiles dd{margin:0;font-size:18px;"
-    "font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}"
-    ".tiles small{display:block;font-size:12.5px;font-weight:400;color:var(--soft)}\n"
-    "figure{margin:0}figcaption{font-size:13px;color:var(--soft);margin-top:6px}\n"
-    ".picture{display:block;width:auto;max-width:100%;height:auto;max-height:600px;margin:0 "
-    "auto;border-radius:8px;background:#"
-    "20262c}"
-    ".picture text{font-family:inherit;font-weight:600;paint-order:stroke;stroke:#10151a;"
-    "stroke-width:4px;stroke-linejoin:round}\n"
-    ".scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:13.5px;"
-    "font-variant-numeric:tabular-nums}th,td{padding:5px 10px;text-align:right;white-space:nowrap;"
-    "border-bottom:1px solid "
-    "var(--line)}th{font-weight:600;color:var(--soft);vertical-align:bottom}"
-    "th:first-child,td:first-child{text-align:left}td.words{text-align:left;white-space:normal}td."
-    "words:not(:empty){min-width:150px}"
-    "td "
-    "i{display:block;font-style:normal;font-weight:400;color:var(--soft);font-size:11.5px;line-"
-    "height:1.2}"
-    "td.fail{background:#fdeaea;color:var(--bad);font-weight:600}"
-    "td.cannot_tell{background:#fff4df;color:var(--open);font-weight:600}"
-    "td.pass{background:#edf7f1}tr.limits td{color:var(--soft);font-size:12.5px}\n"
-    ".reasons{margin:-6px 0 10px;color:var(--soft)}.reasons b{color:var(--ink)}\n"
-    "ul.flags{margin:14px 0 0;padding:10px 14px 10px 32px;background:#fff8e8;border-radius:8px}\n"
-    ".plot{display:block;width:100%;height:auto;font-size:14px}.plot text{fill:var(--ink)}"
-    ".plot .x,.plot .title{text-anchor:middle}.plot .y{text-anchor:end}.plot .title{fill:"
-    "var(--soft)}.plot .bump{fill:var(--bump);font-weight:600}.grid{stroke:#e6eaee}"
-    ".zero{stroke:#8a96a1}.band{fill:#fdf0e6}.plot path{fill:none}.land{stroke:var(--blue)}"
-    ".arc{stroke:var(--bump)}path.s1{stroke:var(--bump);stroke-width:2}circle.s1{fill:var(--bump)}"
-    "path.s2{stroke:var(--blue);stroke-width:2}circle.s2{fill:#fff;stroke:var(--blue);"
-    "stroke-width:2.5}\n"
-    "dl.facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:0;"
-    "font-size:13.5px}dl.facts dt{color:var(--soft)}dl.facts dd{margin:0;overflow-wrap:anywhere}\n"
-    ".note{font-size:13.5px;color:var(--soft);max-width:75ch}\n"
-    "@media(max-width:600px){main{padding:8px}section{padding:14px;border-radius:8px}"
-    ".tiles{grid-template-columns:1fr 1fr}.tiles dd{font-size:16px;white-space:normal}"
-    ".plot{font-size:20px}dl.facts{grid-template-columns:1fr}dl.facts dd{margin-bottom:6px}}\n"
-    "@media print{@page{margin:14mm}body{background:#fff;font-size:10.5pt;"
-    "-webkit-print-color-adjust:exact;print-color-adjust:exact}main{max-width:none;padding:0}"
-    "section{border:0;padding:0;break-after:page}section:last-child{break-after:auto}"
-    "figure,tr{break-inside:avoid}.scroll{overflow:visible}table{font-size:7.6pt}"
-    "th,td{padding:3px 4px}}\n";
-
-/* Of plots and of the pages of lots. */
-static const char more_style[] =
-    ".dot{fill:var(--blue);fill-opacity:.4}.signal{fill:var(--bad)}.bar{fill:#cfe0f5}"
-    ".plot .fit{stroke:var(--bump);stroke-width:2.5}.plot .curve{stroke:var(--blue);"
-    "stroke-width:2.5}.plot .thin{stroke:#8a96a1}.plot .hypothesis{stroke:var(--soft);"
-    "stroke-width:2;stroke-dasharray:7 5}.plot .limit{stroke:var(--bad);stroke-width:1.5;"
-    "stroke-dasharray:6 4}.plot .key{fill:var(--soft)}.plot .end{text-anchor:end;fill:var(--soft)}"
-    ".plot .sector{fill:#eaf1fb}.pair{display:grid;grid-template-columns:repeat(auto-fit,"
-    "minmax(300px,1fr));gap:18px}.polar{max-width:520px;margin:0 auto}\n"
-    "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";
-
-void fg_html_text(FILE *out, const char *text) {
-  while (*text) {
-    size_t length = fg_utf8_length(text);
-    switch (*text) {
-    case '<':
-      fputs("&lt;", out);
-      break;
-    case '>':
-      fputs("&gt;", out);
-      break;
-    case '&':
-      fputs("&amp;", out);
-      break;
-    case '"':
-      fputs("&quot;", out);
-      break;
-    case '\'':
-      fputs("&#39;", out);
-      break;
-    default:
-      if (length == 0 || (unsigned char)*text < 0x20)
-        fputs("\xEF\xBF\xBD", out);
-      else
-        fwrite(text, 1, length, out);
-    }
-    text += length ? length : 1;
-  }
-}
-=======
->>>>>>> main
 
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
   double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
@@ -478,31 +374,10 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
   return FG_OK;
 }
 
-<<<<<<< HEAD
-void fg_html_begin_page(FILE *out, const char *title) {
-  fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
-        out);
-  fg_html_text(out, title);
-  fprintf(out, " – foilgauge</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n", style,
-          more_style);
-}
-
-void fg_html_end_page(FILE *out) {
-  fputs("</main>\n</body>\n</html>\n", out);
-}
-
-fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
-  fg_html_begin_page(out, base_name(report->scans[0].path));
-  for (size_t i = 0; i < report->scan_count; i++)
-    FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
-  fg_html_end_page(out);
-=======
 fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
   fg_html_begin(out, base_name(report->scans[0].path));
   for (size_t i = 0; i < report->scan_count; i++)
     FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
   fg_html_end(out);
->>>>>>> main
   return fg_report_finish(ctx, out, "the page");
 }

@@ -11,10 +11,6 @@ void fg_html_end(FILE *out);
 /* Text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 
-/* Everything before and after the sections of a page; its style is shared by all pages. */
-void fg_html_begin_page(FILE *out, const char *title);
-void fg_html_end_page(FILE *out);
-
 /* The verdict as a coloured pill. */
 void fg_html_verdict(FILE *out, fg_verdict verdict);
 

@@ -71,11 +71,7 @@ static void put_residual_strokes(const fg_plot *at, const fg_foil *foil, fg_arc_
 void fg_html_residuals(FILE *out, const fg_foil *foil) {
   if (!foil->labels || foil->strip.count < 2) return;
   double limit = residual_limit(foil);
-<<<<<<< HEAD
-  fg_plot at = {out, 70, 985, 26, 240, 0, 1, -limit, limit};
-=======
   fg_plot at = {out, 1000, 70, 985, 26, 240, 0, 1, -limit, limit};
->>>>>>> main
   at.x_low = foil->strip.stations[0].s_mm;
   at.x_high = foil->strip.stations[foil->strip.count - 1].s_mm;
   if (!(at.x_high > at.x_low)) return;
@@ -138,11 +134,7 @@ void fg_html_springback(FILE *out, const fg_foil *foil) {
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number > last) last = foil->bumps[i].number;
   springback_range(foil, range);
-<<<<<<< HEAD
-  fg_plot at = {out, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
-=======
   fg_plot at = {out, 1000, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
->>>>>>> main
   fg_plot_begin(&at, 310, "Springback error of every bump");
   fg_plot_y_axis(&at, "springback error, %");
   for (size_t i = 0; i < foil->bump_count; i++) {

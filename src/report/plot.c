@@ -14,25 +14,12 @@ double fg_plot_y(const fg_plot *at, double y) {
   return at->bottom - (y - at->y_low) / (at->y_high - at->y_low) * (at->bottom - at->top);
 }
 
-<<<<<<< HEAD
-/* 1, 2 or 5 times a power of ten, about a fifth of the span. */
-static double nice_step(double span) {
-=======
 double fg_plot_nice_step(double span) {
->>>>>>> main
   double raw = span / TICKS_WANTED, power = pow(10, floor(log10(raw))), share = raw / power;
   return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
 void fg_plot_begin(const fg_plot *at, int height, const char *label) {
-<<<<<<< HEAD
-  fprintf(at->out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"%s\">\n",
-          FG_PLOT_WIDTH, height, label);
-}
-
-void fg_plot_y_axis(const fg_plot *at, const char *title) {
-  double step = nice_step(at->y_high - at->y_low);
-=======
   fprintf(at->out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"",
           at->width, height);
   fg_html_text(at->out, label);
@@ -45,7 +32,6 @@ void fg_plot_end(const fg_plot *at) {
 
 void fg_plot_y_axis(const fg_plot *at, const char *title) {
   double step = fg_plot_nice_step(at->y_high - at->y_low);
->>>>>>> main
   for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
     double clean = fabs(y) < step * 1e-6 ? 0 : y;
     fprintf(at->out,
@@ -54,21 +40,6 @@ void fg_plot_y_axis(const fg_plot *at, const char *title) {
             clean == 0 ? "zero" : "grid", at->left, fg_plot_y(at, clean), at->right, at->left - 8,
             fg_plot_y(at, clean) + 5, clean);
   }
-<<<<<<< HEAD
-  fprintf(at->out, "<text class=\"title\" transform=\"translate(16 %.1f) rotate(-90)\">%s</text>\n",
-          (at->top + at->bottom) / 2, title);
-}
-
-void fg_plot_x_label(const fg_plot *at, double x, const char *text) {
-  fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", x, at->bottom + 20, text);
-}
-
-void fg_plot_x_numbers(const fg_plot *at) {
-  double step = nice_step(at->x_high - at->x_low);
-  char text[32];
-  for (double x = ceil(at->x_low / step) * step; x <= at->x_high + step * 1e-6; x += step) {
-    snprintf(text, sizeof text, "%.4g", x);
-=======
   fprintf(at->out, "<text class=\"title\" transform=\"translate(16 %.1f) rotate(-90)\">",
           (at->top + at->bottom) / 2);
   fg_html_text(at->out, title);
@@ -86,52 +57,13 @@ void fg_plot_x_numbers(const fg_plot *at) {
   char text[32];
   for (double x = ceil(at->x_low / step) * step; x <= at->x_high + step * 1e-6; x += step) {
     snprintf(text, sizeof text, "%.4g", fabs(x) < step * 1e-6 ? 0 : x);
->>>>>>> main
     fg_plot_x_label(at, fg_plot_x(at, x), text);
   }
 }
 
 void fg_plot_x_title(const fg_plot *at, const char *title) {
-<<<<<<< HEAD
-  fprintf(at->out, "<text class=\"title\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
-          (at->left + at->right) / 2, at->bottom + 40, title);
-}
-
-void fg_plot_end(const fg_plot *at) {
-  fputs("</svg>\n", at->out);
-}
-
-void fg_plot_dot(const fg_plot *at, double x, double y, double radius, const char *style) {
-  fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.3g\"/>\n", style,
-          fg_plot_x(at, x), fg_plot_y(at, y), radius);
-}
-
-void fg_plot_line(const fg_plot *at, const double *x, const double *y, size_t count,
-                  const char *style) {
-  bool open = false;
-  fprintf(at->out, "<path class=\"%s\" d=\"", style);
-  for (size_t i = 0; i < count; i++) {
-    bool known = isfinite(x[i]) && isfinite(y[i]);
-    if (known)
-      fprintf(at->out, "%c%.1f %.1f", open ? 'L' : 'M', fg_plot_x(at, x[i]), fg_plot_y(at, y[i]));
-    open = known;
-  }
-  fputs("\"/>\n", at->out);
-}
-
-void fg_plot_segment(const fg_plot *at, double x1, double y1, double x2, double y2,
-                     const char *style) {
-  fg_plot_line(at, (const double[]){x1, x2}, (const double[]){y1, y2}, 2, style);
-}
-
-void fg_plot_text(const fg_plot *at, double x, double y, const char *style, const char *text) {
-  fprintf(at->out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">", style, fg_plot_x(at, x),
-          fg_plot_y(at, y));
-  fg_html_text(at->out, text);
-=======
   fprintf(at->out, "<text class=\"title\" x=\"%.1f\" y=\"%.1f\">", (at->left + at->right) / 2,
           at->bottom + 40);
   fg_html_text(at->out, title);
->>>>>>> main
   fputs("</text>\n", at->out);
 }
