@@ -10,9 +10,11 @@
 /* More dots than these cannot be told apart, and a page must open on a phone. */
 enum { PLOT_WIDTH = 1000, DOTS_MAX = 3000, CHART_POINTS_MAX = 600, CURVE_POINTS = 240, BARS = 30 };
 
+/* Values that are equal but for rounding still get an axis with room for numbers. */
 static void widen(double *low, double *high, double share) {
-  double room = (*high - *low) * share;
-  if (!(room > 0)) room = fabs(*low) > 0 ? 0.01 * fabs(*low) : 1;
+  static const double least = 1e-9;
+  double size = fmax(fabs(*low), fabs(*high)), room = (*high - *low) * share;
+  if (!(room > least * size)) room = size > 0 ? 0.01 * size : 1;
   *low -= room;
   *high += room;
 }
@@ -97,6 +99,7 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
   double x[CURVE_POINTS + 1], y[CURVE_POINTS + 1], bars[BARS] = {0}, high = 0;
   char mark[64];
   if (!quantity || !quantity->has_density) return;
+  if (!(quantity->sd > 1e-9 * fabs(quantity->mean))) return; /* one line, no distribution */
   double a = scale * quantity->least + shift, b = scale * quantity->most + shift;
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 24, 250, fmin(a, b), fmax(a, b), 0, 1};
   double reach = 2.5 * quantity->density.bandwidth * fabs(scale);

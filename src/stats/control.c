@@ -144,9 +144,10 @@ fg_status fg_chart_individuals(fg_context *ctx, const double *values, size_t cou
   FG_TRY(open_chart(ctx, count, chart));
   double moving = 0;
   for (size_t i = 0; i < count; i++) {
-    chart->centre += values[i] / (double)count;
+    chart->centre += (values[i] - values[0]) / (double)count;
     if (i) moving += fabs(values[i] - values[i - 1]) / (double)(count - 1);
   }
+  chart->centre += values[0]; /* so that equal values have a mean that is theirs to the last bit */
   *sigma = moving / fg_chart_d2(2);
   for (size_t i = 0; i < count; i++)
     chart->point[i] =
@@ -163,10 +164,11 @@ static subgroup describe(const double *values, size_t count) {
   subgroup group = {.mean = 0};
   double low = INFINITY, high = -INFINITY, squares = 0;
   for (size_t i = 0; i < count; i++) {
-    group.mean += values[i] / (double)count;
+    group.mean += (values[i] - values[0]) / (double)count;
     low = fmin(low, values[i]);
     high = fmax(high, values[i]);
   }
+  if (count) group.mean += values[0];
   for (size_t i = 0; i < count; i++)
     squares += (values[i] - group.mean) * (values[i] - group.mean);
   group.sd = count > 1 ? sqrt(squares / (double)(count - 1)) : NAN;

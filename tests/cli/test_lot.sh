@@ -147,6 +147,17 @@ truncate -s -40 torn/results.jsonl
 expect 2 'not whole' lot -o torn --resume
 same one torn
 
+# A lot of one foil over and over: nothing varies, and the report is there all the same.
+mkdir equal
+for i in $(seq 12); do ln scans/foil1.png "equal/$i.png"; done
+expect 0 '' timeout 60 "$program" lot equal --recipe recipe.json -o same
+[ -s same/lot.json ] || fail "a lot of equal foils has no report"
+python3 - same/lot.json <<'P' || fail "a lot of equal foils shows signals"
+import json, sys
+for quantity in json.load(open(sys.argv[1]))["quantities"].values():
+    assert not quantity["individuals"]["signals"], quantity["individuals"]
+P
+
 # Shards in any number give the same lot; what does not belong together is refused.
 for count in 1 2 7 20; do
   rm -rf shards merged
