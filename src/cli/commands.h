@@ -2,6 +2,7 @@
 #ifndef FG_CLI_COMMANDS_H
 #define FG_CLI_COMMANDS_H
 
+#include "foilgauge/lot.h"
 #include "foilgauge/status.h"
 
 /* argv[0] is the command's name. Returns the exit code (DESIGN: 0, 1, 2, 64, 65, 74, 130). */
@@ -17,6 +18,8 @@ fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_render;
+fg_command_run fg_cmd_lot;
+fg_command_run fg_cmd_merge;
 
 struct argp;
 
@@ -27,5 +30,8 @@ fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, cha
 
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);
+
+/* Says on standard error what a lot came to; returns the exit code. */
+int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 
 #endif

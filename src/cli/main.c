@@ -10,6 +10,8 @@ static const fg_command commands[] = {
     {"doe", fg_cmd_doe, "plan an experiment; analyse its runs or scans; the best setting"},
     {"design", fg_cmd_design, "check a design; what follows from it; its clearance curve"},
     {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
+    {"lot", fg_cmd_lot, "measure and report a production lot; resume it, shard it"},
+    {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
     {NULL, NULL, NULL},
 };
 

@@ -32,7 +32,7 @@ static const char *verdict_title(fg_verdict verdict) {
   return "";
 }
 
-static void put_verdict(FILE *out, fg_verdict verdict) {
+void fg_html_verdict(FILE *out, fg_verdict verdict) {
   fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
           verdict_title(verdict));
 }
@@ -302,7 +302,7 @@ static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
   FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
   fg_verdict verdict = fg_judgements_verdict(list, count);
   fprintf(out, "<header><h1>Foil %d</h1>", foil->number);
-  put_verdict(out, measured ? verdict : FG_VERDICT_NOT_MEASURED);
+  fg_html_verdict(out, measured ? verdict : FG_VERDICT_NOT_MEASURED);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
   if (measured)
@@ -343,7 +343,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge(ctx, &one, &outcome));
   fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
-  put_verdict(out, outcome.verdict);
+  fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
   fputs("</p></header>\n", out);
@@ -362,7 +362,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
     fputs("<section>\n<header><h1>", out);
     fg_html_text(out, base_name(scan->path));
     fputs("</h1>", out);
-    put_verdict(out, FG_VERDICT_NOT_MEASURED);
+    fg_html_verdict(out, FG_VERDICT_NOT_MEASURED);
     fputs("</header>\n<p>", out);
     fg_html_text(out, scan->error);
     fputs("</p>\n</section>\n", out);

@@ -11,6 +11,9 @@ void fg_html_end(FILE *out);
 /* Text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 
+/* The verdict as a coloured pill. */
+void fg_html_verdict(FILE *out, fg_verdict verdict);
+
 /* "3.39288 ± 0.00042", or "–" when it is not known. */
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object);
 

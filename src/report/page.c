@@ -80,6 +80,16 @@ static const char plot_style[] =
     "@media(max-width:600px){.panels .plot{font-size:14px}}\n"
     "@media print{.panels{grid-template-columns:1fr 1fr}}\n";
 
+/* Pages of lots. */
+static const char lot_style[] =
+    ".dot{fill:var(--blue);fill-opacity:.4}.signal{fill:var(--bad)}.column{fill:#cfe0f5}"
+    ".plot .fit{stroke:var(--bump);stroke-width:2.5}.plot .curve{stroke:var(--blue);"
+    "stroke-width:2.5}.plot .thin{stroke:#8a96a1}.plot .hypothesis{stroke:var(--soft);"
+    "stroke-width:2;stroke-dasharray:7 5}.plot .key{fill:var(--soft)}"
+    ".plot .end{text-anchor:end;fill:var(--soft)}.pair{display:grid;grid-template-columns:repeat("
+    "auto-fit,minmax(min(300px,100%),1fr));gap:18px}.polar{max-width:520px;margin:0 auto}"
+    "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";
+
 void fg_html_text(FILE *out, const char *text) {
   while (*text) {
     size_t length = fg_utf8_length(text);
@@ -114,8 +124,8 @@ void fg_html_begin(FILE *out, const char *title) {
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
   fg_html_text(out, title);
-  fprintf(out, " – foilgauge</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n", style,
-          plot_style);
+  fprintf(out, " – foilgauge</title>\n<style>\n%s%s%s</style>\n</head>\n<body>\n<main>\n", style,
+          plot_style, lot_style);
 }
 
 void fg_html_end(FILE *out) {

@@ -1,0 +1,117 @@
+/* What the bumps' shapes do to the bearing that they are built into: stiffness and clearance.
+ *
+ * STIFFNESS. A bump is a thin arc of radius R (midline), bump angle alpha = 2 phi and thickness t,
+ * as wide as one likes (plane strain; everything is per mm of width):
+ *   D = E t³ / (12 (1 - nu²)),  EA = E t / (1 - nu²).
+ * psi runs from the crown, x = R sin psi, y = R (cos psi - cos phi) above the feet. The crown
+ * carries W. A foot gives V upwards and H inwards. Its land lies on the sleeve and turns freely.
+ * Right of a cut at psi (both ways of bending counted; m = M / R, n the compression):
+ *   V at the right foot   m = sin phi - sin psi       n = sin psi
+ *   H at the right foot   m = -(cos psi - cos phi)    n = cos psi
+ *   W at the crown        m = sin psi, n = -sin psi   for psi < 0, nothing for psi > 0
+ * Castigliano: the displacement along load i is the derivative of the strain energy by it,
+ *   u_i = sum over j of f_ij P_j,  f_ij = R³/D (∫ m_i m_j dpsi + e ∫ n_i n_j dpsi),
+ *   e = D / (EA R²) = t² / (12 R²).
+ * m and n are sums of 1, sin psi, cos psi, so every f_ij is a closed form in
+ *   ∫ 1, sin, cos, sin², cos², sin cos.  Shear is left out: below e times three.
+ *
+ * Free bump (both feet slide; W = 2 V, and half of the arc says all): the crown sinks by
+ *   delta = f_VV V + f_VH H,   a foot moves outwards by   -(f_VH V + f_HH H).
+ * Coulomb: a foot that slides outwards feels H = mu V. It cannot slide when mu reaches
+ * -f_VH / f_HH: then it sticks, with H = -f_VH V / f_HH, and the bump is a two-hinged arch.
+ *   K = W / delta = 2 / (f_VV + f_VH H/V).
+ * On the way back friction turns round, H = -mu V: the difference is what damps.
+ *
+ * Welded bump (left end clamped, right foot slides; Iordanoff 1999 tells the same two kinds apart;
+ * integrals over the whole arc): the right foot stays on the sleeve,
+ *   0 = f_VV V + f_VH H + f_VW W,   H = mu V,   or with the foot stuck also
+ *   0 = f_VH V + f_HH H + f_HW W,
+ * and delta = f_WV V + f_WH H + f_WW W. The top foil follows the crown sideways.
+ *
+ * For small phi all of bending scales with (R phi)³: at constant arc length the vertical stiffness
+ * hardly changes with springback, while f_HH ~ R³ phi⁵ makes the feet's sideways stiffness grow
+ * with R².
+ *
+ * CLEARANCE. The local clearances (thesis eq 5.8) at the bumps around the bearing,
+ * `pads` × `bumps_per_pad` of them equally spaced (thesis figures 5.13 and 6.3: 3 × 7, 17.14
+ * degrees). A rotor shifted by (a, b) changes them by -(a cos + b sin), to first order (an error
+ * below shift² / D).
+ */
+#ifndef FOILGAUGE_BEARING_H
+#define FOILGAUGE_BEARING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_arch_material {
+  double youngs_modulus_gpa;
+  double poisson_ratio;
+  double friction; /* Coulomb, foot on sleeve */
+} fg_arch_material;
+
+typedef struct fg_arch {
+  double radius_mm; /* midline */
+  double bump_angle_deg;
+  double thickness_mm;
+} fg_arch;
+
+typedef struct fg_arch_stiffness {
+  double stiffness_n_mm2; /* of the crown, N per mm and mm of width, while the load grows */
+  double unloading_n_mm2; /* at the start of the way back, feet sliding inwards; NaN where stuck */
+  double foot_n_mm2;      /* of a foot sideways: 1 / f_HH */
+  double foot_share;      /* V / W of the sliding foot: 1/2 for a free bump */
+  bool stuck;             /* friction holds the foot */
+} fg_arch_stiffness;
+
+/* FG_ERR_DATA for values that have no meaning (angle from 0 to 180 degrees, thickness below R). */
+fg_status fg_arch_free(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material,
+                       fg_arch_stiffness *stiffness);
+fg_status fg_arch_welded(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material,
+                         fg_arch_stiffness *stiffness);
+
+/* Percent of stiffness per percent of: radius alone, angle alone, radius at constant arc length,
+ * thickness (free bump). */
+typedef struct fg_arch_sensitivity {
+  double radius, angle, radius_at_arc_length, thickness;
+} fg_arch_sensitivity;
+fg_status fg_arch_sensitivities(fg_context *ctx, const fg_arch *arch,
+                                const fg_arch_material *material,
+                                fg_arch_sensitivity *sensitivity);
+
+typedef struct fg_bearing_layout {
+  size_t pads;          /* foils in a bearing */
+  size_t bumps_per_pad; /* of each foil, from first_bump on */
+  size_t first_bump;    /* 1 is next to the lip */
+} fg_bearing_layout;
+
+enum { FG_BEARING_BUMPS_MAX = 96 };
+
+/* Direction of a place of the bearing, degrees: pad and bump count from 0. */
+double fg_bearing_angle_deg(const fg_bearing_layout *layout, size_t pad, size_t bump);
+
+typedef struct fg_bearing_clearance {
+  size_t count;                     /* known places */
+  double mean_mm, least_mm, most_mm;
+  double least_at_deg;
+  double offset_mm[2];              /* of the least-squares circle through the crowns, about O */
+  double circularity_mm;            /* peak to valley about that circle */
+  double centred_least_mm;          /* the least clearance of a rotor where it is largest; NaN when
+                                       the crowns leave half of the bearing open */
+  double centred_at_mm[2];          /* where that rotor's axis lies */
+} fg_bearing_clearance;
+
+/* `clearance_mm` at directions `angle_deg`; NaN is a place that is not known. FG_ERR_DATA for fewer
+ * than three known places or more than FG_BEARING_BUMPS_MAX. */
+fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const double *clearance_mm,
+                            size_t count, fg_bearing_clearance *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

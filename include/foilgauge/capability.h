@@ -1,0 +1,67 @@
+/* What a process can do against a tolerance (ISO 22514-2; Bissell 1990).
+ *
+ *   Pp  = (U - L) / 6 s        Ppk = min(U - mean, mean - L) / 3 s       s: of all values
+ *   Cp  = (U - L) / 6 sigma    Cpk = min(U - mean, mean - L) / 3 sigma   sigma: within subgroups
+ * Cp and Cpk speak of what the process will do, so they are stated only when a control chart says
+ * that it is stable; otherwise Pp and Ppk tell what it did. Where values are not normal (Anderson
+ * and Darling 1954, case of unknown mean and sd; p-value after D'Agostino and Stephens 1986), the
+ * quantile method: 6 s becomes X99.865 - X0.135, the mean becomes X50, all of the kernel density.
+ *
+ * Intervals: Pp sqrt(chi2(a/2, f) / f); Ppk ± z sqrt(1/(9 n) + Ppk² / (2 f)).
+ */
+#ifndef FOILGAUGE_CAPABILITY_H
+#define FOILGAUGE_CAPABILITY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/density.h"
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_normality {
+  double a2;      /* Anderson-Darling, adjusted for n */
+  double p_value; /* NaN for fewer than 8 values */
+} fg_normality;
+
+fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
+                            fg_normality *normality);
+
+typedef struct fg_ratio {
+  double value, low, high; /* with its confidence interval; NaN where it cannot be said */
+} fg_ratio;
+
+typedef struct fg_capability {
+  size_t count;
+  double mean, sd;
+  fg_ratio p, pk;          /* one-sided tolerances have no p */
+  fg_ratio c, ck;          /* NaN unless stable */
+  double quantile_p, quantile_pk; /* by the quantile method */
+  double quantile[3];             /* X0.135, X50, X99.865 % */
+  fg_normality normality;
+  bool stable;
+  bool normal; /* p_value >= 0.05, or too few values to say */
+} fg_capability;
+
+typedef struct fg_capability_input {
+  const double *values;
+  size_t count;
+  double lower, upper;   /* -inf, +inf: none */
+  double sigma;          /* within subgroups; NaN: not known */
+  double sigma_freedom;  /* its degrees of freedom */
+  bool stable;
+  double confidence;     /* 0: 0.95 */
+  const fg_density *density; /* of the values; NULL: no quantile method */
+} fg_capability_input;
+
+/* FG_ERR_DATA for fewer than two values or no spread, FG_ERR_USAGE without any limit. */
+fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *input,
+                                fg_capability *capability);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,70 @@
+/* Control charts: does the process run as it did, or has something changed?
+ *
+ * Limits lie three sigma from the centre; sigma is what the process does within subgroups (or from
+ * one value to the next), never the spread of everything, which would hide what the chart looks
+ * for. Unbiasing factors follow from the normal distribution:
+ *   c4(n) = sqrt(2 / (n-1)) Gamma(n/2) / Gamma((n-1)/2),
+ *   d2(n) = ∫ (1 - (1 - Phi)^n - Phi^n) dx.
+ * Subgroups may differ in size: sigma is the mean of s_i / c4(n_i) (or R_i / d2(n_i)) over
+ * subgroups of two or more.
+ *
+ * Run rules (Nelson 1984), zones in sigma of the plotted points:
+ *   1 one point beyond 3          5 two of three beyond 2 on one side
+ *   2 nine in a row on one side   6 four of five beyond 1 on one side
+ *   3 six rising or falling       7 fifteen in a row within 1
+ *   4 fourteen alternating        8 eight in a row beyond 1, on both sides
+ */
+#ifndef FOILGAUGE_CONTROL_H
+#define FOILGAUGE_CONTROL_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { FG_RUN_RULES = 8 };
+
+typedef enum fg_sigma_from {
+  FG_SIGMA_FROM_SD,    /* s of each subgroup */
+  FG_SIGMA_FROM_RANGE, /* R of each subgroup */
+} fg_sigma_from;
+
+typedef struct fg_chart_point {
+  double value, lower, upper; /* limits at this point: they follow the subgroup's size */
+  unsigned rules;             /* bits: rule r that ends here is bit r - 1 */
+} fg_chart_point;
+
+typedef struct fg_chart {
+  double centre;
+  fg_chart_point *point; /* owned */
+  size_t count;
+  size_t signals; /* points at which a rule ends */
+} fg_chart;
+
+double fg_chart_c4(size_t n); /* NaN below 2 */
+double fg_chart_d2(size_t n);
+
+/* Individuals: sigma = mean moving range / d2(2). FG_ERR_DATA for fewer than two values. */
+fg_status fg_chart_individuals(fg_context *ctx, const double *values, size_t count, unsigned rules,
+                               fg_chart *chart, double *sigma);
+
+/* Means of subgroups: `values` in order of subgroup, size[i] of them each (0: left out). The chart
+ * of the means, and of the standard deviations (run rule 1 only; subgroups of one are left out of
+ * it with NaN); either may be NULL. FG_ERR_DATA when no subgroup has two values. */
+fg_status fg_chart_subgroups(fg_context *ctx, const double *values, const size_t *size,
+                             size_t subgroups, fg_sigma_from from, unsigned rules, fg_chart *means,
+                             fg_chart *deviations, double *sigma);
+
+void fg_chart_free(fg_chart *chart);
+
+/* The rule in words, 1 to FG_RUN_RULES. */
+const char *fg_run_rule_words(unsigned rule);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,121 @@
+/* Production lots: many scans to one report that a customer accepts.
+ *
+ * A lot is a folder:
+ *   recipe.json     the settings in force (fg_lot_settings; without `jobs`)
+ *   manifest.csv    every scan of the lot in its order, with the columns that it came with
+ *   results.jsonl   one line per measured scan, kept as it is made ("foilgauge/results/1")
+ *   lot.json, foils.csv, bumps.csv, index.html, results.qif, results.dfq    the report
+ *
+ * The report is a function of the first three alone: it is computed from the recorded values, never
+ * from what happens to be in memory, so a lot that was killed and resumed, measured by any number
+ * of jobs or in any number of shards reads byte for byte the same.
+ *
+ * A record is valid while the SHA-256 of its scan and of what it was measured with (program
+ * version, design without tolerances, resolution) stay the same; --resume measures the rest.
+ */
+#ifndef FOILGAUGE_LOT_H
+#define FOILGAUGE_LOT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/bearing.h"
+#include "foilgauge/density.h"
+#include "foilgauge/design.h"
+#include "foilgauge/report.h"
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Every option of a lot: the members of a recipe file, "schema": "foilgauge/recipe/1". */
+typedef struct fg_lot_settings {
+  char name[128];     /* of the lot, as the report shows it */
+  fg_design design;   /* "design": an object as in a design file, or the path of one */
+  double dpi;         /* 0: as the scans say */
+  unsigned jobs;      /* scans at a time; 0: as many as there are cores; never changes a result */
+  double trim_pct;    /* cut off each tail before radius and angle errors are correlated */
+  double confidence;  /* of every interval */
+  fg_bandwidth_rule bandwidth; /* "silverman", "scott", "sheather_jones" */
+  size_t resamples;   /* drawn from the kernel density */
+  uint64_t seed;
+  unsigned run_rules; /* bits of control.h; in a recipe the rules' numbers: [1, 2, 3, 4] */
+  char group_column[64];    /* lots are compared by this column (die, coil ...); "": none */
+  char part_column[64];     /* repeated scans: the part, and ... */
+  char operator_column[64]; /* ... who or what measured it; both needed for a gauge study */
+  char bearing_column[64];  /* which bearing a foil goes into; without: three in a row make one */
+  char pad_column[64];      /* and which of its pads it is, from 1 */
+  fg_bearing_layout layout; /* pads, bumps_per_pad, first_bump */
+  fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
+} fg_lot_settings;
+
+void fg_lot_settings_default(fg_lot_settings *settings);
+
+/* FG_ERR_DATA with the member, its value and what would be right. */
+fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings);
+
+/* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. */
+fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_settings *settings);
+fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *json,
+                                fg_lot_settings *settings);
+
+/* The recipe as text: all of it, or without `jobs`, which changes nothing in a report. */
+fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *settings, bool with_jobs,
+                                 char **json);
+
+/* One part of the work: items i - 1, i - 1 + n, ... of the manifest; {1, 1} is all of it. */
+typedef struct fg_lot_shard {
+  size_t index, count;
+} fg_lot_shard;
+
+/* How far the work is. Calls come one at a time, from any thread. */
+typedef struct fg_lot_progress {
+  size_t done, total, failed; /* `total` leaves out what was kept from before */
+  size_t kept;
+  double seconds, seconds_left; /* left is NaN until it can be said */
+  const char *scan;             /* just finished */
+  const char *error;            /* why it could not be measured, or NULL */
+} fg_lot_progress;
+typedef void fg_lot_listener(void *user, const fg_lot_progress *progress);
+
+typedef struct fg_lot_request {
+  const fg_lot_settings *settings;
+  const char *const *paths; /* folders, scans, lists (.txt: a path a line), manifests (.csv with a
+                               column `scan`); relative paths in a file count from its folder */
+  size_t path_count;
+  const char *folder; /* of the results */
+  bool resume;        /* keep valid records; without it a folder with results is FG_ERR_USAGE */
+  bool dry_run;       /* say what would be measured, and touch nothing */
+  fg_lot_shard shard;
+  fg_lot_listener *listener; /* may be NULL */
+  void *user;
+} fg_lot_request;
+
+typedef struct fg_lot_outcome {
+  fg_verdict verdict;
+  size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
+  size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
+  size_t exceeded; /* foils with a value outside its tolerance */
+  size_t torn;     /* lines of results.jsonl that were not whole, and measured again */
+} fg_lot_outcome;
+
+/* Measures what is missing and, for the whole of a lot, writes the report. A scan that cannot be
+ * measured is a record with its error, never the end. FG_ERR_IO when a record cannot be kept (disk
+ * full: what was kept stays valid) or another run is at work in the folder. */
+fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outcome *outcome);
+
+/* Shards to one lot. FG_ERR_DATA when recipes, manifests or versions differ, a shard is missing or
+ * there twice, a record is missing. */
+fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
+                       const char *folder, fg_lot_outcome *outcome);
+
+/* One page over several lots, from their lot.json; links are relative to the page. */
+fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count,
+                       const char *page);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

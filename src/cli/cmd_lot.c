@@ -1,0 +1,249 @@
+#include <argp.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "foilgauge/lot.h"
+
+enum {
+  OPTION_RECIPE = 256,
+  OPTION_PRINT_RECIPE,
+  OPTION_RESUME,
+  OPTION_DRY_RUN,
+  OPTION_SHARD,
+  OPTION_DPI,
+  OPTION_NAME,
+  OPTION_GROUP,
+  OPTION_INDEX
+};
+
+typedef struct lot_arguments {
+  const char *recipe, *design, *folder, *name, *group, *index;
+  double dpi;
+  int jobs; /* -1: not given */
+  bool print_recipe, resume, dry_run;
+  fg_lot_shard shard;
+  char **paths; /* of argv */
+  size_t path_count;
+} lot_arguments;
+
+static const struct argp_option options[] = {
+    {"output", 'o', "DIR", 0, "The lot's folder", 0},
+    {"recipe", OPTION_RECIPE, "FILE", 0, "Settings; the options below overrule them", 0},
+    {"design", 'd', "FILE", 0, "What the part should be, with tolerances", 0},
+    {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
+    {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
+    {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
+    {"jobs", 'j', "N", 0, "Scans at a time (default: one per core)", 1},
+    {"resume", OPTION_RESUME, NULL, 0, "Measure only what is missing or has changed", 1},
+    {"dry-run", OPTION_DRY_RUN, NULL, 0, "Say what would be measured; touch nothing", 1},
+    {"shard", OPTION_SHARD, "I/N", 0, "Only part I of N; `foilgauge merge` joins them", 1},
+    {"print-recipe", OPTION_PRINT_RECIPE, NULL, 0, "Print every setting in force", 2},
+    {"index", OPTION_INDEX, "FILE.html", 0, "A page over lots: the arguments are their folders", 2},
+    {0},
+};
+
+static const char doc[] =
+    "Measure a production lot and report it: which foils pass, how the process runs, what the "
+    "deviations do to the bearing."
+    "\vPATH is a folder of scans, a scan, a list (.txt, a path a line) or a manifest (.csv with a "
+    "column `scan` and any others: foil, pad, bearing, die, coil ...).\n\n"
+    "Exit code: 0 done and within tolerance; 1 out of tolerance; 2 something could not be "
+    "measured; 64 usage; 65 bad data; 74 input or output.";
+
+static double parse_number(struct argp_state *state, const char *name, const char *text,
+                           double lowest, double highest) {
+  char *end;
+  double value = strtod(text, &end);
+  if (end == text || *end || !(value >= lowest && value <= highest))
+    argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
+  return value;
+}
+
+static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
+  unsigned long long index, count;
+  char rest;
+  if (text[0] == '-' || sscanf(text, "%llu/%llu%c", &index, &count, &rest) != 2 || index < 1 ||
+      index > count || count > 1000000000ULL)
+    argp_error(state, "--shard: '%s' is not i/n with i from 1 to n", text);
+  return (fg_lot_shard){(size_t)index, (size_t)count};
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  lot_arguments *arguments = state->input;
+  switch (key) {
+  case 'o':
+    arguments->folder = text;
+    break;
+  case 'd':
+    arguments->design = text;
+    break;
+  case 'j':
+    arguments->jobs = (int)parse_number(state, "jobs", text, 1, 1024);
+    break;
+  case OPTION_RECIPE:
+    arguments->recipe = text;
+    break;
+  case OPTION_NAME:
+    arguments->name = text;
+    break;
+  case OPTION_GROUP:
+    arguments->group = text;
+    break;
+  case OPTION_DPI:
+    arguments->dpi = parse_number(state, "dpi", text, 1, 1e6);
+    break;
+  case OPTION_RESUME:
+    arguments->resume = true;
+    break;
+  case OPTION_DRY_RUN:
+    arguments->dry_run = true;
+    break;
+  case OPTION_SHARD:
+    arguments->shard = parse_shard(state, text);
+    break;
+  case OPTION_PRINT_RECIPE:
+    arguments->print_recipe = true;
+    break;
+  case OPTION_INDEX:
+    arguments->index = text;
+    break;
+  case ARGP_KEY_ARGS:
+    arguments->paths = state->argv + state->next;
+    arguments->path_count = (size_t)(state->argc - state->next);
+    break;
+  case ARGP_KEY_END:
+    if (!arguments->print_recipe && !arguments->path_count) argp_error(state, "no PATH was given");
+    if (!arguments->print_recipe && !arguments->folder && !arguments->index)
+      argp_error(state, "give the lot's folder with -o DIR");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static fg_status set_text(fg_context *ctx, const char *option, const char *text, char *target,
+                          size_t size) {
+  if (!text) return FG_OK;
+  if (strlen(text) >= size)
+    return fg_fail(ctx, FG_ERR_USAGE, "--%s: at most %zu bytes", option, size - 1);
+  strcpy(target, text);
+  return FG_OK;
+}
+
+static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
+                               fg_lot_settings *settings) {
+  fg_lot_settings_default(settings);
+  if (arguments->recipe) FG_TRY(fg_lot_settings_load(ctx, arguments->recipe, settings));
+  if (arguments->design) {
+    fg_design_default(&settings->design);
+    FG_TRY(fg_design_load(ctx, arguments->design, &settings->design));
+  }
+  if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
+  if (arguments->dpi > 0) settings->dpi = arguments->dpi;
+  FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));
+  FG_TRY(set_text(ctx, "group", arguments->group, settings->group_column,
+                  sizeof settings->group_column));
+  return fg_lot_settings_check(ctx, settings);
+}
+
+static void format_duration(double seconds, char *text, size_t size) {
+  if (seconds < 90)
+    snprintf(text, size, "%.0f s", ceil(seconds));
+  else if (seconds < 5400)
+    snprintf(text, size, "%.0f min", seconds / 60);
+  else
+    snprintf(text, size, "%.1f h", seconds / 3600);
+}
+
+/* The line is drawn over itself on a terminal; a scan that fails gets a line of its own anywhere.
+ */
+static void show_progress(void *user, const fg_lot_progress *progress) {
+  const bool *terminal = user;
+  char left[32] = "?";
+  if (progress->error)
+    fprintf(stderr, "%sfoilgauge: %s\n", *terminal ? "\r\033[K" : "", progress->error);
+  if (!*terminal) return;
+  if (isfinite(progress->seconds_left)) format_duration(progress->seconds_left, left, sizeof left);
+  fprintf(stderr, "\r\033[K%zu of %zu scans (%.0f %%), %.1f a second, %s left%s", progress->done,
+          progress->total, 100 * (double)progress->done / (double)progress->total,
+          (double)progress->done / fmax(progress->seconds, 1e-3), left,
+          progress->done == progress->total ? "\n" : "");
+}
+
+int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
+  const size_t *by = outcome->foils_by_verdict;
+  fprintf(stderr, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told", outcome->foils,
+          outcome->scans, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
+  if (by[FG_VERDICT_NONE]) fprintf(stderr, ", %zu without tolerances", by[FG_VERDICT_NONE]);
+  if (by[FG_VERDICT_NOT_MEASURED] || outcome->failed)
+    fprintf(stderr, "; not measured: %zu foils, %zu scans", by[FG_VERDICT_NOT_MEASURED],
+            outcome->failed);
+  fprintf(stderr, "\n%s/index.html\n", folder);
+  if (outcome->failed || by[FG_VERDICT_NOT_MEASURED]) return 2;
+  return outcome->exceeded ? 1 : 0;
+}
+
+static int say_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
+  fprintf(stderr, "shard %zu/%zu: %zu scans measured, %zu kept, %zu could not be measured\n",
+          arguments->shard.index, arguments->shard.count, outcome->measured, outcome->kept,
+          outcome->failed);
+  return outcome->failed ? 2 : 0;
+}
+
+static fg_status print_recipe(fg_context *ctx, const fg_lot_settings *settings) {
+  char *text;
+  FG_TRY(fg_lot_settings_format(ctx, settings, true, &text));
+  fputs(text, stdout);
+  free(text);
+  return fflush(stdout) == 0 ? FG_OK : fg_fail(ctx, FG_ERR_IO, "standard output: a write failed");
+}
+
+static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code) {
+  fg_lot_settings settings;
+  fg_lot_outcome outcome;
+  bool terminal = isatty(STDERR_FILENO);
+  const char *const *paths = (const char *const *)arguments->paths;
+  if (arguments->index) return fg_lot_index(ctx, paths, arguments->path_count, arguments->index);
+  FG_TRY(load_settings(ctx, arguments, &settings));
+  if (arguments->print_recipe) return print_recipe(ctx, &settings);
+  const fg_lot_request request = {.settings = &settings,
+                                  .paths = paths,
+                                  .path_count = arguments->path_count,
+                                  .folder = arguments->folder,
+                                  .resume = arguments->resume,
+                                  .dry_run = arguments->dry_run,
+                                  .shard = arguments->shard,
+                                  .listener = show_progress,
+                                  .user = &terminal};
+  FG_TRY(fg_lot_run(ctx, &request, &outcome));
+  if (outcome.torn)
+    fprintf(stderr, "foilgauge: %zu lines of results.jsonl were not whole; measured again\n",
+            outcome.torn);
+  if (arguments->dry_run)
+    printf("%zu scans, %zu to measure, %zu kept\n", outcome.scans, outcome.to_measure,
+           outcome.kept);
+  else
+    *code = arguments->shard.count > 1 ? say_shard(arguments, &outcome)
+                                       : fg_cli_lot_summary(&outcome, arguments->folder);
+  return FG_OK;
+}
+
+int fg_cmd_lot(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "PATH...", doc, NULL, NULL, NULL};
+  fg_context ctx = {0};
+  lot_arguments arguments = {.jobs = -1, .shard = {1, 1}};
+  int code = 0;
+  argv[0] = (char[]){"foilgauge lot"};
+  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  fg_interrupt interrupt = {0};
+  fg_status status = fg_interrupt_start(&ctx, NULL, 0, &interrupt);
+  if (status == FG_OK) status = run(&ctx, &arguments, &code);
+  fg_interrupt_stop(&interrupt);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
+}

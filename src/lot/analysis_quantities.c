@@ -1,0 +1,351 @@
+/* Statistics of each quantity, and of radius against angle. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "foilgauge/distribution.h"
+#include "lot/analysis.h"
+
+/* What every report shows; what has a tolerance comes behind. */
+static const struct {
+  fg_report_owner owner;
+  const char *name;
+} always[] = {
+    {FG_REPORT_BUMP, "radius_mm"},
+    {FG_REPORT_BUMP, "bump_angle_deg"},
+    {FG_REPORT_BUMP, "height_mm"},
+    {FG_REPORT_BUMP, "clearance_mm"},
+    {FG_REPORT_BUMP, "radius_error_pct"},
+    {FG_REPORT_BUMP, "bump_angle_error_pct"},
+    {FG_REPORT_BUMP, "clearance_error"},
+    {FG_REPORT_FOIL, "overall.radius_mm"},
+    {FG_REPORT_FOIL, "overall.springback_error_pct"},
+    {FG_REPORT_FOIL, "thickness_mm"},
+};
+
+enum { ALWAYS = sizeof always / sizeof always[0] };
+
+static bool is_listed(const fg_lot_analysis *analysis, const fg_report_field *field) {
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (analysis->quantities[i].field == field) return true;
+  return false;
+}
+
+static void list_quantity(fg_lot_analysis *analysis, fg_report_owner owner, const char *name) {
+  const fg_report_field *field = fg_report_find(owner, name);
+  if (!field || is_listed(analysis, field)) return;
+  const fg_design *design = &analysis->lot->settings.design;
+  fg_lot_quantity *quantity = &analysis->quantities[analysis->quantity_count++];
+  *quantity = (fg_lot_quantity){.field = field, .owner = owner, .mode = NAN};
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (!strcmp(design->tolerances[i].quantity, name)) quantity->tolerance = &design->tolerances[i];
+}
+
+static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, ALWAYS + 2 * FG_TOLERANCES_MAX, sizeof *analysis->quantities,
+                            &block));
+  analysis->quantities = block;
+  for (size_t i = 0; i < ALWAYS; i++)
+    list_quantity(analysis, always[i].owner, always[i].name);
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    list_quantity(analysis, FG_REPORT_BUMP, design->tolerances[i].quantity);
+    list_quantity(analysis, FG_REPORT_FOIL, design->tolerances[i].quantity);
+  }
+  return FG_OK;
+}
+
+static void take_value(fg_lot_quantity *quantity, size_t foil, double value) {
+  if (!isfinite(value)) return;
+  quantity->value[quantity->count++] = value;
+  quantity->size[foil]++;
+}
+
+static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
+                         fg_lot_quantity *quantity) {
+  size_t most = 0;
+  void *block;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    most += quantity->owner == FG_REPORT_BUMP ? analysis->foils[i].foil->bump_count : 1;
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *quantity->value, &block));
+  quantity->value = block;
+  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *quantity->size, &block));
+  quantity->size = block;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    if (foil->flags & FG_FOIL_NOT_MEASURED) continue;
+    if (quantity->owner == FG_REPORT_FOIL)
+      take_value(quantity, i, fg_report_value(quantity->field, foil));
+    for (size_t k = 0; quantity->owner == FG_REPORT_BUMP && k < foil->bump_count; k++)
+      take_value(quantity, i, fg_report_value(quantity->field, &foil->bumps[k]));
+  }
+  return FG_OK;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static fg_status describe(fg_context *ctx, const fg_lot_settings *settings,
+                          fg_lot_quantity *quantity) {
+  fg_lot_spread spread;
+  void *block;
+  FG_TRY(fg_lot_spread_of(ctx, quantity->value, quantity->count, settings->bandwidth, &spread));
+  quantity->mean = spread.mean;
+  quantity->sd = spread.sd;
+  quantity->least = spread.least;
+  quantity->most = spread.most;
+  quantity->mode = spread.mode;
+  quantity->median = NAN;
+  if (quantity->count == 0) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, quantity->count, sizeof(double), &block));
+  double *sorted = block;
+  memcpy(sorted, quantity->value, quantity->count * sizeof *sorted);
+  qsort(sorted, quantity->count, sizeof *sorted, compare_doubles);
+  quantity->median = fg_sample_quantile(sorted, quantity->count, 0.5);
+  free(sorted);
+  if (!(quantity->sd > 0)) return FG_OK;
+  quantity->has_density = true;
+  return fg_density_fit(ctx, quantity->value, quantity->count, settings->bandwidth,
+                        &quantity->density);
+}
+
+static size_t highest_number(const fg_lot_analysis *analysis) {
+  int highest = 0;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++)
+      if (analysis->foils[i].foil->bumps[k].number > highest)
+        highest = analysis->foils[i].foil->bumps[k].number;
+  return (size_t)highest;
+}
+
+static void add_to_place(fg_lot_place *place, double value) {
+  if (!isfinite(value)) return;
+  place->count++;
+  double step = value - place->mean;
+  place->mean += step / (double)place->count;
+  place->sd += step * (value - place->mean); /* the sum of squares, until all are there */
+}
+
+/* Mean and sd of each bump number over the foils (Welford's running sums). */
+static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysis,
+                                 fg_lot_quantity *quantity) {
+  void *block;
+  if (quantity->owner != FG_REPORT_BUMP) return FG_OK;
+  quantity->places = highest_number(analysis);
+  FG_TRY(fg_memory_allocate(ctx, quantity->places, sizeof *quantity->place, &block));
+  quantity->place = block;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    for (size_t k = 0; k < foil->bump_count; k++)
+      if (foil->bumps[k].number >= 1)
+        add_to_place(&quantity->place[foil->bumps[k].number - 1],
+                     fg_report_value(quantity->field, &foil->bumps[k]));
+  }
+  for (size_t i = 0; i < quantity->places; i++) {
+    fg_lot_place *place = &quantity->place[i];
+    place->sd = place->count > 1 ? sqrt(place->sd / (double)(place->count - 1)) : NAN;
+    if (!place->count) place->mean = NAN;
+  }
+  return FG_OK;
+}
+
+/* The mean of each foil's values, foils without any left out. */
+static fg_status foil_means(fg_context *ctx, const fg_lot_analysis *analysis,
+                            const fg_lot_quantity *quantity, double **means, size_t *count) {
+  void *block;
+  size_t at = 0;
+  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof **means, &block));
+  *means = block;
+  *count = 0;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    double sum = 0;
+    for (size_t k = 0; k < quantity->size[i]; k++)
+      sum += quantity->value[at + k];
+    at += quantity->size[i];
+    if (quantity->size[i]) (*means)[(*count)++] = sum / (double)quantity->size[i];
+  }
+  return FG_OK;
+}
+
+static fg_status chart(fg_context *ctx, const fg_lot_analysis *analysis,
+                       fg_lot_quantity *quantity) {
+  unsigned rules = analysis->lot->settings.run_rules;
+  double *means;
+  size_t count;
+  FG_TRY(foil_means(ctx, analysis, quantity, &means, &count));
+  fg_status status = FG_OK;
+  quantity->has_chart = count >= 2;
+  if (quantity->has_chart)
+    status =
+        fg_chart_individuals(ctx, means, count, rules, &quantity->chart, &quantity->chart_sigma);
+  free(means);
+  FG_TRY(status);
+  fg_context unused;
+  quantity->has_subgroups =
+      quantity->owner == FG_REPORT_BUMP &&
+      fg_chart_subgroups(&unused, quantity->value, quantity->size, analysis->foil_count,
+                         FG_SIGMA_FROM_SD, rules, &quantity->means, &quantity->deviations,
+                         &quantity->within_sigma) == FG_OK;
+  quantity->stable = quantity->has_chart && quantity->chart.signals == 0 &&
+                     (!quantity->has_subgroups || quantity->deviations.signals == 0);
+  return FG_OK;
+}
+
+/* Sigma of the process over the lot: what foils vary by from one to the next, and bumps within a
+ * foil. The mean of n bumps carries within² / n of the variance of one: it is taken out of the
+ * first before the second is added. The degrees of freedom are those of a moving range (0.62 (n -
+ * 1), Wetherill and Brown 1991), the fewer of the two. */
+static double process_sigma(const fg_lot_quantity *quantity) {
+  if (!quantity->has_subgroups) return quantity->chart_sigma;
+  double bumps = (double)quantity->count / (double)quantity->chart.count;
+  double within = quantity->within_sigma * quantity->within_sigma;
+  double between = quantity->chart_sigma * quantity->chart_sigma - within / bumps;
+  return sqrt(fmax(between, 0) + within);
+}
+
+static fg_status judge_capability(fg_context *ctx, const fg_lot_settings *settings,
+                                  fg_lot_quantity *quantity) {
+  if (!quantity->tolerance || !quantity->has_chart || !(quantity->sd > 0)) return FG_OK;
+  const fg_capability_input input = {.values = quantity->value,
+                                     .count = quantity->count,
+                                     .lower = quantity->tolerance->lower,
+                                     .upper = quantity->tolerance->upper,
+                                     .sigma = process_sigma(quantity),
+                                     .sigma_freedom = 0.62 * (double)(quantity->chart.count - 1),
+                                     .stable = quantity->stable,
+                                     .confidence = settings->confidence,
+                                     .density = quantity->has_density ? &quantity->density : NULL};
+  quantity->has_capability = isfinite(input.lower) || isfinite(input.upper);
+  if (!quantity->has_capability) return FG_OK;
+  return fg_capability_compute(ctx, &input, &quantity->capability);
+}
+
+typedef struct pairs {
+  double *radius_pct, *angle_pct; /* errors */
+  size_t count;
+} pairs;
+
+static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis, pairs *p) {
+  size_t most = 0;
+  void *block;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    most += analysis->foils[i].foil->bump_count;
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof(double), &block));
+  p->radius_pct = block;
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof(double), &block));
+  p->angle_pct = block;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
+      const fg_bump *bump = &analysis->foils[i].foil->bumps[k];
+      if (!isfinite(bump->radius_error_pct) || !isfinite(bump->bump_angle_error_pct)) continue;
+      p->radius_pct[p->count] = bump->radius_error_pct;
+      p->angle_pct[p->count++] = bump->bump_angle_error_pct;
+    }
+  return FG_OK;
+}
+
+/* The value that `share` of the values lie below. */
+static fg_status tail_of(fg_context *ctx, const double *values, size_t count, double share,
+                         double limits[2]) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
+  double *sorted = block;
+  memcpy(sorted, values, count * sizeof *values);
+  qsort(sorted, count, sizeof *sorted, compare_doubles);
+  limits[0] = fg_sample_quantile(sorted, count, share);
+  limits[1] = fg_sample_quantile(sorted, count, 1 - share);
+  free(sorted);
+  return FG_OK;
+}
+
+static bool inside(double value, const double limits[2]) {
+  return value >= limits[0] && value <= limits[1];
+}
+
+static fg_status trim(fg_context *ctx, double trim_pct, pairs *p) {
+  double radius[2], angle[2];
+  size_t kept = 0;
+  FG_TRY(tail_of(ctx, p->radius_pct, p->count, trim_pct / 100, radius));
+  FG_TRY(tail_of(ctx, p->angle_pct, p->count, trim_pct / 100, angle));
+  for (size_t i = 0; i < p->count; i++) {
+    if (!inside(p->radius_pct[i], radius) || !inside(p->angle_pct[i], angle)) continue;
+    p->radius_pct[kept] = p->radius_pct[i];
+    p->angle_pct[kept++] = p->angle_pct[i];
+  }
+  p->count = kept;
+  return FG_OK;
+}
+
+typedef struct line {
+  double slope, intercept, r, slope_error;
+} line;
+
+static line fit_line(const double *x, const double *y, size_t count) {
+  double mx = 0, my = 0, sxx = 0, sxy = 0, syy = 0, n = (double)count;
+  for (size_t i = 0; i < count; i++) {
+    mx += x[i] / n;
+    my += y[i] / n;
+  }
+  for (size_t i = 0; i < count; i++) {
+    sxx += (x[i] - mx) * (x[i] - mx);
+    sxy += (x[i] - mx) * (y[i] - my);
+    syy += (y[i] - my) * (y[i] - my);
+  }
+  line l = {.slope = sxy / sxx, .r = sxy / sqrt(sxx * syy)};
+  l.intercept = my - l.slope * mx;
+  l.slope_error = sqrt(fmax(0, syy - l.slope * sxy) / (n - 2) / sxx);
+  return l;
+}
+
+static void fit_errors(const fg_lot_settings *settings, pairs *p, fg_lot_correlation *result) {
+  line errors = fit_line(p->radius_pct, p->angle_pct, p->count);
+  fg_lot_place arc = {0};
+  result->trimmed = result->count - p->count;
+  result->r = errors.r;
+  result->slope = errors.slope;
+  result->intercept = errors.intercept;
+  for (size_t i = 0; i < p->count; i++) {
+    double radius = 1 + p->radius_pct[i] / 100, angle = 1 + p->angle_pct[i] / 100;
+    add_to_place(&arc, 100 * (radius * angle - 1));
+    p->radius_pct[i] = log(radius);
+    p->angle_pct[i] = log(angle);
+  }
+  line logs = fit_line(p->radius_pct, p->angle_pct, p->count);
+  double reach = logs.slope_error *
+                 fg_distribution_t_quantile((1 + settings->confidence) / 2, (double)p->count - 2);
+  result->log_slope = logs.slope;
+  result->log_low = logs.slope - reach;
+  result->log_high = logs.slope + reach;
+  result->arc_length_mean_pct = arc.mean;
+  result->arc_length_sd_pct = sqrt(arc.sd / (double)(arc.count - 1));
+}
+
+static fg_status correlate(fg_context *ctx, fg_lot_analysis *analysis) {
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  pairs p = {0};
+  fg_status status = collect_pairs(ctx, analysis, &p);
+  analysis->correlation.count = p.count;
+  if (status == FG_OK && p.count >= 5) status = trim(ctx, settings->trim_pct, &p);
+  analysis->has_correlation = status == FG_OK && p.count >= 5;
+  if (analysis->has_correlation) fit_errors(settings, &p, &analysis->correlation);
+  free(p.radius_pct);
+  free(p.angle_pct);
+  return status;
+}
+
+fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
+  FG_TRY(list_quantities(ctx, analysis));
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    fg_lot_quantity *quantity = &analysis->quantities[i];
+    FG_TRY(collect(ctx, analysis, quantity));
+    FG_TRY(describe(ctx, &analysis->lot->settings, quantity));
+    FG_TRY(describe_places(ctx, analysis, quantity));
+    FG_TRY(chart(ctx, analysis, quantity));
+    FG_TRY(judge_capability(ctx, &analysis->lot->settings, quantity));
+  }
+  return correlate(ctx, analysis);
+}

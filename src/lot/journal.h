@@ -1,0 +1,70 @@
+/* results.jsonl: records as they are made, and the lock of the folder they lie in.
+ *
+ * A record is one write of one line. What a crash leaves is at worst a last line that is not whole;
+ * it is dropped when the file is read, and what it was about is measured again. A write that fails
+ * (disk full) is cut off again, so that every line before it stays whole. */
+#ifndef FG_LOT_JOURNAL_H
+#define FG_LOT_JOURNAL_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <sys/types.h>
+#include <time.h>
+
+#include "foilgauge/lot.h"
+#include "lot/record.h"
+
+/* The first line: what the records belong to. */
+typedef struct fg_journal_head {
+  char version[32];
+  fg_lot_shard shard;
+  size_t items; /* of the manifest */
+  char manifest_sha256[65], recipe_sha256[65], measured_with[65];
+} fg_journal_head;
+
+/* Where a record lies in the file. */
+typedef struct fg_journal_entry {
+  off_t offset;
+  size_t length; /* with its newline; 0: no record */
+} fg_journal_entry;
+
+/* Called for every whole record (`head_only`: without foils); what it takes over it sets to zero.
+ */
+typedef fg_status fg_journal_visit(fg_context *ctx, void *user, fg_record *record,
+                                   fg_journal_entry entry);
+
+/* Reads the file; lines that are not whole are counted in *torn and left out. FG_ERR_DATA when the
+ * first line is not that of a journal. */
+fg_status fg_journal_read(fg_context *ctx, const char *path, bool head_only, fg_journal_head *head,
+                          size_t *torn, fg_journal_visit *visit, void *user);
+
+/* Only the first line. */
+fg_status fg_journal_read_head(fg_context *ctx, const char *path, fg_journal_head *head);
+
+/* A new file `to` of the head and the entries of the files `from` (the one number from_of[i], or
+ * the first when from_of is NULL), in their order; it replaces `to` when it is whole. */
+fg_status fg_journal_rewrite(fg_context *ctx, const char *to, const fg_journal_head *head,
+                             const char *const *from, const size_t *from_of,
+                             const fg_journal_entry *entries, size_t count);
+
+typedef struct fg_journal {
+  char *path;
+  int descriptor;
+  off_t end;
+  size_t unsynced;
+  struct timespec synced;
+  pthread_mutex_t mutex;
+} fg_journal;
+
+fg_status fg_journal_open(fg_context *ctx, const char *path, fg_journal *journal);
+/* One line; from any thread. On the disk within a second. FG_ERR_IO: nothing was added. */
+fg_status fg_journal_append(fg_context *ctx, fg_journal *journal, const char *line, size_t length,
+                            fg_journal_entry *entry);
+fg_status fg_journal_close(fg_context *ctx, fg_journal *journal);
+
+/* Takes the folder for this process until the descriptor is closed (or the process is no more),
+ * and removes the temporary files that a killed run has left there. FG_ERR_IO when another run has
+ * it. */
+fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock);
+
+#endif

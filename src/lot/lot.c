@@ -1,0 +1,113 @@
+/* The folder of a lot: paths, sums, loading. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/sha256.h"
+#include "core/text.h"
+#include "lot/report.h"
+
+fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, char **path) {
+  return fg_text_print(ctx, path, "%s/%s", folder, name);
+}
+
+void fg_lot_sum_text(const char *text, char sum[65]) {
+  struct sha256_ctx state;
+  sha256_init(&state);
+  sha256_update(&state, strlen(text), (const uint8_t *)text);
+  fg_sha256_finish(&state, sum);
+}
+
+/* Tolerances judge a measurement and statistics follow it: neither makes it another one. */
+fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]) {
+  fg_lot_settings bare;
+  char *text;
+  fg_lot_settings_default(&bare);
+  bare.design = settings->design;
+  bare.design.tolerance_count = 0;
+  bare.dpi = settings->dpi;
+  FG_TRY(fg_lot_settings_format(ctx, &bare, false, &text));
+  fg_lot_sum_text(text, sum);
+  free(text);
+  return FG_OK;
+}
+
+fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *name,
+                            const char *text) {
+  char *path;
+  fg_output output;
+  FG_TRY(fg_lot_path(ctx, folder, name, &path));
+  fg_status status = fg_output_open(ctx, path, &output);
+  free(path);
+  FG_TRY(status);
+  fputs(text, output.stream);
+  return fg_output_commit(ctx, &output);
+}
+
+static const char *const report_files[] = {"lot.json",  "index.html",  "foils.csv",
+                                           "bumps.csv", "results.qif", "results.dfq"};
+
+fg_status fg_lot_remove_report(fg_context *ctx, const char *folder) {
+  for (size_t i = 0; i < sizeof report_files / sizeof *report_files; i++) {
+    char *path;
+    FG_TRY(fg_lot_path(ctx, folder, report_files[i], &path));
+    bool gone = unlink(path) == 0 || errno == ENOENT;
+    fg_status status =
+        gone ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
+    free(path);
+    FG_TRY(status);
+  }
+  return FG_OK;
+}
+
+typedef struct loader {
+  fg_lot *lot;
+  fg_manifest_index index;
+} loader;
+
+static fg_status take_record(fg_context *ctx, void *user, fg_record *record,
+                             fg_journal_entry entry) {
+  loader *l = user;
+  (void)ctx;
+  (void)entry;
+  size_t item = fg_manifest_index_find(&l->index, &l->lot->manifest, record->scan);
+  if (item == l->lot->manifest.items) return FG_OK;
+  fg_record_free(&l->lot->records[item]);
+  l->lot->records[item] = *record;
+  *record = (fg_record){0};
+  return FG_OK;
+}
+
+fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
+  loader l = {.lot = lot};
+  char *path = NULL;
+  void *block;
+  size_t torn;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_design_derive(ctx, &lot->settings.design, &lot->nominal));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, lot->manifest.items, sizeof *lot->records, &block));
+  lot->records = block;
+  FG_TRY_EXIT(fg_manifest_index_build(ctx, &lot->manifest, &l.index));
+  FG_TRY_EXIT(fg_lot_path(ctx, folder, "results.jsonl", &path));
+  FG_TRY_EXIT(fg_journal_read(ctx, path, false, &lot->head, &torn, take_record, &l));
+  for (size_t i = 0; i < lot->manifest.items; i++)
+    if (!lot->records[i].scan)
+      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
+                          fg_manifest_scan(&lot->manifest, i)));
+exit:
+  free(path);
+  fg_manifest_index_free(&l.index);
+  return status;
+}
+
+void fg_lot_free(fg_lot *lot) {
+  for (size_t i = 0; lot->records && i < lot->manifest.items; i++)
+    fg_record_free(&lot->records[i]);
+  free(lot->records);
+  fg_manifest_free(&lot->manifest);
+  *lot = (fg_lot){0};
+}

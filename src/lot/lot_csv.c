@@ -1,0 +1,123 @@
+/* foils.csv and bumps.csv: the manifest's columns first, so that any program can pivot by them. */
+#include <math.h>
+#include <string.h>
+
+#include "lot/writers.h"
+#include "report/json_writer.h"
+#include "report/words.h"
+
+static void put_text(FILE *out, const char *text) {
+  if (!strpbrk(text, ",\"\r\n")) {
+    fputs(text, out);
+    return;
+  }
+  fputc('"', out);
+  for (; *text; text++) {
+    if (*text == '"') fputc('"', out);
+    fputc(*text, out);
+  }
+  fputc('"', out);
+}
+
+static void put_number(FILE *out, double value) {
+  char text[32];
+  fputc(',', out);
+  if (!isfinite(value)) return;
+  fg_json_format(text, value);
+  fputs(text, out);
+}
+
+static void put_columns(FILE *out, const fg_manifest *manifest, size_t item) {
+  for (size_t i = 0; i < manifest->columns; i++) {
+    if (i) fputc(',', out);
+    put_text(out, fg_manifest_cell(manifest, item, i));
+  }
+}
+
+static void put_heading(FILE *out, const fg_manifest *manifest, const char *more,
+                        fg_report_owner owner) {
+  size_t count;
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  for (size_t i = 0; i < manifest->columns; i++) {
+    if (i) fputc(',', out);
+    put_text(out, manifest->name[i]);
+  }
+  fputs(more, out);
+  for (size_t i = 0; i < count; i++) {
+    if (fields[i].kind == FG_FIELD_PAIR) continue;
+    fprintf(out, ",%s", fields[i].name);
+    if (fields[i].u_offset != FG_NO_UNCERTAINTY) {
+      const char *dot = strrchr(fields[i].name, '.');
+      int group = dot ? (int)(dot - fields[i].name) + 1 : 0;
+      fprintf(out, ",%.*su_%s", group, fields[i].name, fields[i].name + group);
+    }
+  }
+  fputc('\n', out);
+}
+
+static void put_values(FILE *out, fg_report_owner owner, const void *object) {
+  size_t count;
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    if (fields[i].kind == FG_FIELD_PAIR) continue;
+    put_number(out, fg_report_value(&fields[i], object));
+    if (fields[i].u_offset != FG_NO_UNCERTAINTY)
+      put_number(out, fg_report_uncertainty(&fields[i], object));
+  }
+  fputc('\n', out);
+}
+
+static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
+  const char *separator = "";
+  fputc(',', out);
+  for (; words->name; words++) {
+    if (!(flags & words->flag)) continue;
+    fprintf(out, "%s%s", separator, words->name);
+    separator = " ";
+  }
+}
+
+static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
+  put_columns(out, &lot->manifest, item);
+  fputs(",,not_measured,,", out);
+  put_text(out, lot->records[item].error);
+  fputc('\n', out);
+}
+
+fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  const fg_lot *lot = analysis->lot;
+  size_t next = 0;
+  put_heading(out, &lot->manifest, ",foil_number,verdict,flags,error", FG_REPORT_FOIL);
+  for (size_t item = 0; item < lot->manifest.items; item++) {
+    if (lot->records[item].error) put_failed(out, lot, item);
+    for (; next < analysis->foil_count && analysis->foils[next].item == item; next++) {
+      const fg_lot_foil *foil = &analysis->foils[next];
+      put_columns(out, &lot->manifest, item);
+      fprintf(out, ",%d,%s", foil->foil->number, fg_verdict_word(foil->verdict));
+      put_flags(out, fg_foil_flag_words(), foil->foil->flags);
+      fputc(',', out);
+      put_text(out, foil->foil->error);
+      put_values(out, FG_REPORT_FOIL, foil->foil);
+    }
+  }
+  return fg_report_finish(ctx, out, "foils.csv");
+}
+
+fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  const fg_manifest *manifest = &analysis->lot->manifest;
+  const double *stiffness = analysis->stiffness.normalised;
+  size_t at = 0;
+  put_heading(out, manifest, ",foil_number,bump,flags,normalised_stiffness", FG_REPORT_BUMP);
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_lot_foil *foil = &analysis->foils[i];
+    for (size_t k = 0; k < foil->foil->bump_count; k++) {
+      const fg_bump *bump = &foil->foil->bumps[k];
+      put_columns(out, manifest, foil->item);
+      fprintf(out, ",%d,%d", foil->foil->number, bump->number);
+      put_flags(out, fg_bump_flag_words(), bump->flags);
+      put_number(out, stiffness[at++]);
+      put_values(out, FG_REPORT_BUMP, bump);
+    }
+  }
+  return fg_report_finish(ctx, out, "bumps.csv");
+}

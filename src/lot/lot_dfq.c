@@ -1,0 +1,65 @@
+/* results.dfq: the Q-DAS ASCII transfer format. A line is a K field, its characteristic and its
+ * text; lines end with CR LF. Values stand in fields of their own: K0001 the value, K0002 its
+ * attribute (0: valid, 255: no value), K0014 the part's ident, here the foil. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "lot/characteristics.h"
+#include "lot/writers.h"
+#include "report/json_writer.h"
+#include "report/words.h"
+
+/* A control character would start another field. */
+static void put_text(FILE *out, const char *text) {
+  for (; *text; text++)
+    fputc((unsigned char)*text < 0x20 || *text == 0x7F ? ' ' : *text, out);
+}
+
+static void put_number(FILE *out, const char *field, size_t number, double value) {
+  char text[32];
+  if (!isfinite(value)) return;
+  fg_json_format(text, value);
+  fprintf(out, "%s/%zu %s\r\n", field, number, text);
+}
+
+static void put_characteristic(FILE *out, size_t number, const fg_characteristic *one) {
+  const fg_report_field *field = one->quantity->field;
+  const fg_tolerance *tolerance = one->quantity->tolerance;
+  fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s", number, number, number, field->words);
+  if (one->bump) fprintf(out, " %d", one->bump);
+  fprintf(out, "\r\nK2022/%zu 6\r\n", number); /* decimal places */
+  put_number(out, "K2101", number, one->nominal);
+  if (tolerance) put_number(out, "K2110", number, tolerance->lower);
+  if (tolerance) put_number(out, "K2111", number, tolerance->upper);
+  fprintf(out, "K2142/%zu %s\r\n", number, field->unit);
+}
+
+static void put_foil(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil,
+                     const fg_characteristic *list, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    double u, value = fg_characteristic_value(&list[i], foil->foil, &u);
+    bool known = isfinite(value);
+    put_number(out, "K0001", i + 1, known ? value : 0);
+    fprintf(out, "K0002/%zu %d\r\nK0014/%zu ", i + 1, known ? 0 : 255, i + 1);
+    put_text(out, fg_manifest_label(&analysis->lot->manifest, foil->item));
+    if (analysis->lot->records[foil->item].foil_count > 1) fprintf(out, " #%d", foil->foil->number);
+    fputs("\r\n", out);
+  }
+}
+
+fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  fg_characteristic *list;
+  size_t count;
+  FG_TRY(fg_characteristics_list(ctx, analysis, &list, &count));
+  fprintf(out, "K0100 %zu\r\nK1001 ", count);
+  put_text(out, analysis->lot->settings.design.name);
+  fputs("\r\nK1002 ", out);
+  put_text(out, analysis->lot->settings.name);
+  fputs("\r\n", out);
+  for (size_t i = 0; i < count; i++)
+    put_characteristic(out, i + 1, &list[i]);
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    put_foil(out, analysis, &analysis->foils[i], list, count);
+  free(list);
+  return fg_report_finish(ctx, out, "results.dfq");
+}

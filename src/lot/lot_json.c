@@ -1,0 +1,347 @@
+/* lot.json: "schema": "foilgauge/lot/1" (reports/schema/lot.schema.json). */
+#include <math.h>
+
+#include "lot/writers.h"
+#include "report/measure_json.h"
+#include "report/words.h"
+
+static void write_inputs(fg_json *json, const fg_lot *lot) {
+  fg_json_array(json, "inputs");
+  for (size_t i = 0; i < lot->manifest.items; i++) {
+    const fg_record *record = &lot->records[i];
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_string(json, "path", record->scan);
+    fg_json_string(json, "sha256", record->sha256[0] ? record->sha256 : NULL);
+    fg_json_string(json, "error", record->error);
+    fg_json_object_end(json);
+    fg_json_line_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
+  fg_json_object(json, "counts");
+  fg_json_integer(json, "scans", (int64_t)analysis->lot->manifest.items);
+  fg_json_integer(json, "scans_not_measured", (int64_t)analysis->failed_scans);
+  fg_json_integer(json, "foils", (int64_t)analysis->foil_count);
+  for (int verdict = FG_VERDICT_PASS; verdict <= FG_VERDICT_NONE; verdict++)
+    fg_json_integer(json, fg_verdict_word((fg_verdict)verdict),
+                    (int64_t)analysis->by_verdict[verdict]);
+  fg_json_integer(json, "exceeded", (int64_t)analysis->exceeded);
+  fg_json_object_end(json);
+}
+
+static void write_flags(fg_json *json, unsigned flags) {
+  fg_json_array(json, "flags");
+  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
+    if (flags & words->flag) fg_json_string(json, NULL, words->name);
+  fg_json_array_end(json);
+}
+
+static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  const fg_manifest *manifest = &analysis->lot->manifest;
+  fg_json_object(json, NULL);
+  fg_json_line(json);
+  fg_json_integer(json, "input", (int64_t)foil->item);
+  fg_json_string(json, "label", fg_manifest_label(manifest, foil->item));
+  fg_json_integer(json, "number", foil->foil->number);
+  write_flags(json, foil->foil->flags);
+  fg_json_string(json, "verdict", fg_verdict_word(foil->verdict));
+  fg_json_bool(json, "exceeded", foil->exceeded);
+  fg_json_number(json, "severity", foil->severity);
+  fg_json_string(json, "worst_quantity", foil->worst_field ? foil->worst_field->name : NULL);
+  fg_json_integer(json, "worst_bump", foil->worst_number);
+  fg_json_number(json, "worst_value", foil->worst_field ? foil->worst_value : NAN);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_foils(fg_json *json, const fg_lot_analysis *analysis) {
+  fg_json_array(json, "foils");
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    write_foil(json, analysis, &analysis->foils[i]);
+  fg_json_array_end(json);
+  fg_json_array(json, "worst");
+  for (int i = 0; i < 3; i++)
+    if (analysis->worst[i]) write_foil(json, analysis, analysis->worst[i]);
+  fg_json_array_end(json);
+}
+
+static void write_ratio(fg_json *json, const char *name, const fg_ratio *ratio) {
+  fg_json_object(json, name);
+  fg_json_line(json);
+  fg_json_number(json, "value", ratio->value);
+  fg_json_number(json, "low", ratio->low);
+  fg_json_number(json, "high", ratio->high);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_capability(fg_json *json, const fg_lot_quantity *quantity) {
+  const fg_capability *capability = &quantity->capability;
+  fg_json_object(json, "capability");
+  fg_json_number(json, "min", quantity->tolerance->lower);
+  fg_json_number(json, "max", quantity->tolerance->upper);
+  fg_json_bool(json, "stable", capability->stable);
+  fg_json_bool(json, "normal", capability->normal);
+  fg_json_number(json, "anderson_darling", capability->normality.a2);
+  fg_json_number(json, "normality_p_value", capability->normality.p_value);
+  write_ratio(json, "pp", &capability->p);
+  write_ratio(json, "ppk", &capability->pk);
+  write_ratio(json, "cp", &capability->c);
+  write_ratio(json, "cpk", &capability->ck);
+  fg_json_number(json, "pp_quantile", capability->quantile_p);
+  fg_json_number(json, "ppk_quantile", capability->quantile_pk);
+  fg_json_numbers(json, "quantiles", capability->quantile, 3);
+  fg_json_object_end(json);
+}
+
+static void write_chart(fg_json *json, const char *name, const fg_chart *chart, double sigma) {
+  fg_json_object(json, name);
+  fg_json_number(json, "centre", chart->centre);
+  fg_json_number(json, "sigma", sigma);
+  fg_json_integer(json, "points", (int64_t)chart->count);
+  fg_json_array(json, "signals");
+  for (size_t i = 0; i < chart->count; i++) {
+    if (!chart->point[i].rules) continue;
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_integer(json, "point", (int64_t)i + 1);
+    fg_json_number(json, "value", chart->point[i].value);
+    fg_json_array(json, "rules");
+    for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
+      if (chart->point[i].rules & (1u << (rule - 1))) fg_json_integer(json, NULL, rule);
+    fg_json_array_end(json);
+    fg_json_object_end(json);
+    fg_json_line_end(json);
+  }
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
+static void write_places(fg_json *json, const fg_lot_quantity *quantity) {
+  fg_json_array(json, "bumps");
+  for (size_t i = 0; i < quantity->places; i++) {
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_integer(json, "number", (int64_t)i + 1);
+    fg_json_integer(json, "count", (int64_t)quantity->place[i].count);
+    fg_json_number(json, "mean", quantity->place[i].mean);
+    fg_json_number(json, "sd", quantity->place[i].sd);
+    fg_json_object_end(json);
+    fg_json_line_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static void write_quantity(fg_json *json, const fg_lot_quantity *quantity) {
+  fg_json_object(json, quantity->field->name);
+  fg_json_integer(json, "count", (int64_t)quantity->count);
+  fg_json_number(json, "mean", quantity->mean);
+  fg_json_number(json, "sd", quantity->sd);
+  fg_json_number(json, "median", quantity->median);
+  fg_json_number(json, "mode", quantity->mode);
+  fg_json_number(json, "min", quantity->least);
+  fg_json_number(json, "max", quantity->most);
+  fg_json_number(json, "bandwidth", quantity->has_density ? quantity->density.bandwidth : NAN);
+  if (quantity->owner == FG_REPORT_BUMP) write_places(json, quantity);
+  if (quantity->has_chart) {
+    write_chart(json, "individuals", &quantity->chart, quantity->chart_sigma);
+    fg_json_bool(json, "stable", quantity->stable);
+  }
+  if (quantity->has_subgroups) {
+    write_chart(json, "means", &quantity->means, quantity->within_sigma);
+    write_chart(json, "deviations", &quantity->deviations, quantity->within_sigma);
+  }
+  if (quantity->has_capability) write_capability(json, quantity);
+  fg_json_object_end(json);
+}
+
+static void write_correlation(fg_json *json, const fg_lot_correlation *correlation) {
+  fg_json_object(json, "correlation");
+  fg_json_integer(json, "count", (int64_t)correlation->count);
+  fg_json_integer(json, "trimmed", (int64_t)correlation->trimmed);
+  fg_json_number(json, "r", correlation->r);
+  fg_json_number(json, "slope", correlation->slope);
+  fg_json_number(json, "intercept_pct", correlation->intercept);
+  fg_json_number(json, "log_slope", correlation->log_slope);
+  fg_json_number(json, "log_slope_low", correlation->log_low);
+  fg_json_number(json, "log_slope_high", correlation->log_high);
+  fg_json_number(json, "arc_length_mean_pct", correlation->arc_length_mean_pct);
+  fg_json_number(json, "arc_length_sd_pct", correlation->arc_length_sd_pct);
+  fg_json_object_end(json);
+}
+
+static void write_spread(fg_json *json, const char *name, const fg_lot_spread *spread) {
+  fg_json_object(json, name);
+  fg_json_line(json);
+  fg_json_integer(json, "count", (int64_t)spread->count);
+  fg_json_number(json, "mean", spread->mean);
+  fg_json_number(json, "mode", spread->mode);
+  fg_json_number(json, "sd", spread->sd);
+  fg_json_number(json, "relative_sd_pct", spread->relative_sd_pct);
+  fg_json_number(json, "min", spread->least);
+  fg_json_number(json, "max", spread->most);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_arch(fg_json *json, const char *name, const fg_arch_stiffness *stiffness) {
+  fg_json_object(json, name);
+  fg_json_line(json);
+  fg_json_number(json, "stiffness_n_mm2", stiffness->stiffness_n_mm2);
+  fg_json_number(json, "unloading_n_mm2", stiffness->unloading_n_mm2);
+  fg_json_number(json, "foot_n_mm2", stiffness->foot_n_mm2);
+  fg_json_number(json, "foot_share", stiffness->foot_share);
+  fg_json_bool(json, "stuck", stiffness->stuck);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
+  const fg_lot_stiffness *stiffness = &analysis->stiffness;
+  fg_json_object(json, "stiffness");
+  write_arch(json, "design_free", &stiffness->design_free);
+  write_arch(json, "design_welded", &stiffness->design_welded);
+  fg_json_object(json, "sensitivity");
+  fg_json_line(json);
+  fg_json_number(json, "radius", stiffness->sensitivity.radius);
+  fg_json_number(json, "angle", stiffness->sensitivity.angle);
+  fg_json_number(json, "radius_at_arc_length", stiffness->sensitivity.radius_at_arc_length);
+  fg_json_number(json, "thickness", stiffness->sensitivity.thickness);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+  if (analysis->has_stiffness) {
+    write_spread(json, "normalised", &stiffness->measured);
+    write_spread(json, "normalised_resampled", &stiffness->resampled);
+    write_spread(json, "normalised_foot", &stiffness->foot);
+  }
+  fg_json_object_end(json);
+}
+
+static void write_pads(fg_json *json, const fg_lot_analysis *analysis,
+                       const fg_lot_bearing *bearing) {
+  fg_json_array(json, "pads");
+  fg_json_line(json);
+  for (size_t pad = 0; pad < analysis->lot->settings.layout.pads; pad++)
+    fg_json_string(json, NULL,
+                   bearing->pad[pad]
+                       ? fg_manifest_label(&analysis->lot->manifest, bearing->pad[pad]->item)
+                       : NULL);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_bearing(fg_json *json, const fg_lot_analysis *analysis,
+                          const fg_lot_bearing *bearing) {
+  const fg_bearing_clearance *clearance = &bearing->clearance;
+  fg_json_object(json, NULL);
+  fg_json_string(json, "name", bearing->name);
+  fg_json_integer(json, "number", (int64_t)bearing->number);
+  write_pads(json, analysis, bearing);
+  fg_json_numbers(json, "angle_deg", bearing->angle_deg, bearing->places);
+  fg_json_numbers(json, "clearance_mm", bearing->clearance_mm, bearing->places);
+  if (bearing->known) {
+    fg_json_integer(json, "count", (int64_t)clearance->count);
+    fg_json_number(json, "mean_mm", clearance->mean_mm);
+    fg_json_number(json, "min_mm", clearance->least_mm);
+    fg_json_number(json, "min_at_deg", clearance->least_at_deg);
+    fg_json_number(json, "max_mm", clearance->most_mm);
+    fg_json_number(json, "circularity_mm", clearance->circularity_mm);
+    fg_json_numbers(json, "offset_mm", clearance->offset_mm, 2);
+    fg_json_number(json, "centred_min_mm", clearance->centred_least_mm);
+    fg_json_numbers(json, "centred_at_mm", clearance->centred_at_mm, 2);
+  }
+  fg_json_object_end(json);
+}
+
+static void write_difference(fg_json *json, const fg_lot_difference *difference) {
+  const fg_comparison *comparison = &difference->comparison;
+  fg_json_object(json, NULL);
+  fg_json_string(json, "quantity", difference->quantity->field->name);
+  fg_json_string(json, "a", difference->a);
+  fg_json_string(json, "b", difference->b);
+  fg_json_integer(json, "count_a", (int64_t)difference->count_a);
+  fg_json_integer(json, "count_b", (int64_t)difference->count_b);
+  fg_json_number(json, "mean_a", difference->mean_a);
+  fg_json_number(json, "mean_b", difference->mean_b);
+  fg_json_number(json, "sd_a", difference->sd_a);
+  fg_json_number(json, "sd_b", difference->sd_b);
+  fg_json_number(json, "difference", comparison->difference);
+  fg_json_number(json, "difference_low", comparison->low);
+  fg_json_number(json, "difference_high", comparison->high);
+  fg_json_number(json, "p_means", comparison->p_means);
+  fg_json_number(json, "variance_ratio", comparison->variance_ratio);
+  fg_json_number(json, "p_variances", comparison->p_variances);
+  fg_json_number(json, "p_levene", comparison->p_levene);
+  fg_json_object_end(json);
+}
+
+static void write_gauge(fg_json *json, const fg_lot_gauge *gauge) {
+  const fg_gauge_study *study = &gauge->study;
+  fg_json_object(json, NULL);
+  fg_json_line(json);
+  fg_json_string(json, "quantity", gauge->quantity->field->name);
+  fg_json_integer(json, "bump", gauge->bump);
+  fg_json_integer(json, "parts", (int64_t)study->parts);
+  fg_json_integer(json, "operators", (int64_t)study->operators);
+  fg_json_integer(json, "trials", (int64_t)study->trials);
+  fg_json_number(json, "repeatability", study->repeatability);
+  fg_json_number(json, "reproducibility", study->reproducibility);
+  fg_json_number(json, "grr", study->grr);
+  fg_json_number(json, "part", study->part);
+  fg_json_number(json, "grr_pct", study->grr_pct);
+  fg_json_number(json, "distinct_categories", study->distinct_categories);
+  fg_json_number(json, "p_interaction", study->p_interaction);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_bearings(fg_json *json, const fg_lot_analysis *analysis) {
+  const fg_manifest *manifest = &analysis->lot->manifest;
+  bool assumed =
+      fg_manifest_column(manifest, analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
+  fg_json_bool(json, "bearings_assumed", assumed);
+  fg_json_array(json, "bearings");
+  for (size_t i = 0; i < analysis->bearing_count; i++)
+    write_bearing(json, analysis, &analysis->bearings[i]);
+  fg_json_array_end(json);
+  if (analysis->clearance_pct.count)
+    write_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);
+}
+
+fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  const fg_lot *lot = analysis->lot;
+  fg_json json;
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/lot/1");
+  fg_json_string(&json, "name", lot->settings.name);
+  fg_json_string(&json, "verdict", fg_verdict_word(analysis->verdict));
+  write_counts(&json, analysis);
+  fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
+  fg_json_string(&json, "manifest_sha256", lot->head.manifest_sha256);
+  fg_json_design(&json, "design", &lot->settings.design);
+  fg_json_nominal(&json, "nominal", &lot->nominal);
+  write_inputs(&json, lot);
+  write_foils(&json, analysis);
+  fg_json_object(&json, "quantities");
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    write_quantity(&json, &analysis->quantities[i]);
+  fg_json_object_end(&json);
+  if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
+  write_stiffness(&json, analysis);
+  write_bearings(&json, analysis);
+  fg_json_array(&json, "comparisons");
+  for (size_t i = 0; i < analysis->difference_count; i++)
+    write_difference(&json, &analysis->differences[i]);
+  fg_json_array_end(&json);
+  fg_json_array(&json, "gauge_studies");
+  for (size_t i = 0; i < analysis->gauge_count; i++)
+    write_gauge(&json, &analysis->gauges[i]);
+  fg_json_array_end(&json);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  return fg_report_finish(ctx, out, "lot.json");
+}

@@ -1,0 +1,30 @@
+/* Plots of a lot's page; each is one <svg>. */
+#ifndef FG_LOT_PLOTS_H
+#define FG_LOT_PLOTS_H
+
+#include <stdio.h>
+
+#include "lot/analysis.h"
+
+/* Mean ± 2 sd of each bump number, with the tolerance (thesis figure 5.17). */
+void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity);
+
+/* Histogram and kernel density, with the mode (figure 5.11). `scale` and `shift` turn the values
+ * into what the axis shows: scale × value + shift. */
+void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scale, double shift,
+                         const char *title);
+
+/* Angle error over radius error, the line through the trimmed values and what a constant arc length
+ * says (figure 5.8). */
+void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis);
+
+/* The chart of individuals: foil after foil, limits, signals. */
+void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity);
+
+/* Stiffness over radius and angle deviation, with the measured bumps (figures 5.4, 5.10). */
+void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis);
+
+/* Clearance around one bearing (figure 6.3). */
+void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing);
+
+#endif

@@ -1,0 +1,38 @@
+/* One measured scan as a line of results.jsonl: compact, and exact to the ten digits of a report.
+ *
+ * {"scan", "sha256", "measured_with", "error", "foils": [{"number", "flags", "error", "values",
+ *  "bumps": [{"number", "flags", "values"}]}]}
+ * `values` are those of the table of fields (report.h) in its order; the first line of the file
+ * names them. A quantity with an uncertainty takes two places, a pair four. */
+#ifndef FG_LOT_RECORD_H
+#define FG_LOT_RECORD_H
+
+#include <stdio.h>
+
+#include "foilgauge/report.h"
+#include "report/json_writer.h"
+
+typedef struct fg_record {
+  char *scan;
+  char sha256[65];        /* "": the scan could not be read, so the record is never kept */
+  char measured_with[65]; /* SHA-256 of version, design without tolerances, resolution */
+  char *error;            /* NULL: it was measured */
+  fg_foil *foils;         /* without strips and labels; owned, with their bumps */
+  size_t foil_count;
+} fg_record;
+
+/* A line with its newline; `measurement` NULL: `record->error` says why. The caller frees. */
+fg_status fg_record_format(fg_context *ctx, const fg_record *record,
+                           const fg_measurement *measurement, char **line, size_t *length);
+
+/* Only scan, sums and error; FG_ERR_DATA when the line is no record. */
+fg_status fg_record_parse_head(fg_context *ctx, const char *line, fg_record *record);
+
+/* All of it. */
+fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record);
+void fg_record_free(fg_record *record);
+
+/* Names of the places of `values`, as members of the first line. */
+void fg_record_write_names(fg_json *json);
+
+#endif

@@ -1,0 +1,52 @@
+/* Writes the files of a report. */
+#include <stdlib.h>
+
+#include "core/file.h"
+#include "lot/writers.h"
+
+static const struct {
+  const char *name;
+  fg_lot_writer *write;
+} files[] = {
+    {"bumps.csv", fg_lot_write_bumps_csv}, {"foils.csv", fg_lot_write_foils_csv},
+    {"results.qif", fg_lot_write_qif},     {"results.dfq", fg_lot_write_dfq},
+    {"index.html", fg_lot_write_page},     {"lot.json", fg_lot_write_json},
+};
+
+static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
+                            const fg_lot_analysis *analysis) {
+  char *path;
+  fg_output output;
+  FG_TRY(fg_lot_path(ctx, folder, files[i].name, &path));
+  fg_status status = fg_output_open(ctx, path, &output);
+  free(path);
+  FG_TRY(status);
+  fg_context inner;
+  status = files[i].write(&inner, analysis, output.stream);
+  /* A stream that has failed says why when it is committed. */
+  if (status == FG_OK || status == FG_ERR_IO) return fg_output_commit(ctx, &output);
+  fg_output_discard(&output);
+  return fg_fail(ctx, status, "%s", inner.message);
+}
+
+static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {
+  outcome->verdict = analysis->verdict;
+  outcome->scans = analysis->lot->manifest.items;
+  outcome->failed = analysis->failed_scans;
+  outcome->foils = analysis->foil_count;
+  outcome->exceeded = analysis->exceeded;
+  for (int i = 0; i <= FG_VERDICT_NONE; i++)
+    outcome->foils_by_verdict[i] = analysis->by_verdict[i];
+}
+
+fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,
+                              fg_lot_outcome *outcome) {
+  fg_lot_analysis analysis;
+  FG_TRY(fg_lot_analyse(ctx, lot, &analysis));
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < sizeof files / sizeof files[0] && status == FG_OK; i++)
+    status = write_file(ctx, folder, i, &analysis);
+  if (status == FG_OK) take_outcome(&analysis, outcome);
+  fg_lot_analysis_free(&analysis);
+  return status;
+}

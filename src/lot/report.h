@@ -1,0 +1,41 @@
+/* From a lot's records to its report. */
+#ifndef FG_LOT_REPORT_H
+#define FG_LOT_REPORT_H
+
+#include "foilgauge/lot.h"
+#include "lot/journal.h"
+#include "lot/manifest.h"
+
+/* A lot in memory, in the manifest's order. */
+typedef struct fg_lot {
+  fg_lot_settings settings;
+  fg_nominal nominal;
+  fg_manifest manifest;
+  fg_journal_head head;
+  fg_record *records; /* manifest.items */
+} fg_lot;
+
+/* Reads folder/results.jsonl; settings and manifest are there already (and belong to the lot from
+ * then on). */
+fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot);
+void fg_lot_free(fg_lot *lot);
+
+/* Writes every file of the report, lot.json last, so that it says that all are there. */
+fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,
+                              fg_lot_outcome *outcome);
+
+/* Removes the report of an earlier run: it must not stand beside other results. */
+fg_status fg_lot_remove_report(fg_context *ctx, const char *folder);
+
+/* folder/name; the caller frees. */
+fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, char **path);
+
+/* SHA-256 of a text, and of what a scan is measured with. */
+void fg_lot_sum_text(const char *text, char sum[65]);
+fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]);
+
+/* A whole text under its name. */
+fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *name,
+                            const char *text);
+
+#endif

@@ -1,0 +1,284 @@
+/* Measuring a lot: what is there is kept, what is missing is measured, then the report. */
+#include <errno.h>
+#include <math.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "core/sha256.h"
+#include "core/text.h"
+#include "foilgauge/measure.h"
+#include "lot/report.h"
+
+/* What is known of an item before it is measured. */
+typedef struct item_state {
+  fg_journal_entry entry; /* its record; length 0: to be measured */
+  char sha256[65];        /* as recorded */
+  bool mine;              /* of this shard */
+} item_state;
+
+typedef struct lot_run {
+  const fg_lot_request *request;
+  fg_manifest manifest;
+  fg_manifest_index index;
+  char *manifest_text, *recipe_text, *results_path;
+  fg_journal_head head;
+  item_state *items;
+  size_t *todo, todo_count;
+  fg_journal journal;
+  fg_lot_outcome *outcome;
+  struct timespec start;
+  pthread_mutex_t listening;
+  atomic_bool stop;
+  int lock;
+} lot_run;
+
+static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
+  if (shard.index >= 1 && shard.index <= shard.count) return FG_OK;
+  return fg_fail(ctx, FG_ERR_USAGE, "shard %zu/%zu: give i/n with i from 1 to n", shard.index,
+                 shard.count);
+}
+
+static fg_status prepare(fg_context *ctx, lot_run *run) {
+  const fg_lot_request *request = run->request;
+  void *block;
+  FG_TRY(check_shard(ctx, request->shard));
+  FG_TRY(fg_lot_settings_check(ctx, request->settings));
+  FG_TRY(fg_manifest_collect(ctx, request->paths, request->path_count, request->folder,
+                             &run->manifest));
+  FG_TRY(fg_manifest_index_build(ctx, &run->manifest, &run->index));
+  FG_TRY(fg_manifest_format(ctx, &run->manifest, &run->manifest_text));
+  FG_TRY(fg_lot_settings_format(ctx, request->settings, false, &run->recipe_text));
+  FG_TRY(fg_lot_path(ctx, request->folder, "results.jsonl", &run->results_path));
+  run->head = (fg_journal_head){
+      .version = FOILGAUGE_VERSION, .shard = request->shard, .items = run->manifest.items};
+  fg_lot_sum_text(run->manifest_text, run->head.manifest_sha256);
+  fg_lot_sum_text(run->recipe_text, run->head.recipe_sha256);
+  FG_TRY(fg_lot_sum_settings(ctx, request->settings, run->head.measured_with));
+  FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->items, &block));
+  run->items = block;
+  for (size_t i = 0; i < run->manifest.items; i++)
+    run->items[i].mine = i % request->shard.count == request->shard.index - 1;
+  return FG_OK;
+}
+
+static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
+                            fg_journal_entry entry) {
+  lot_run *run = user;
+  (void)ctx;
+  size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
+  if (item == run->manifest.items || !run->items[item].mine || !record->sha256[0] ||
+      strcmp(record->measured_with, run->head.measured_with) != 0)
+    return FG_OK;
+  run->items[item].entry = entry;
+  strcpy(run->items[item].sha256, record->sha256);
+  return FG_OK;
+}
+
+/* A record stands while its scan is what it was. A scan that is gone takes nothing with it. */
+static fg_status check_scan(fg_context *ctx, void *shared, size_t i) {
+  lot_run *run = shared;
+  item_state *item = &run->items[i];
+  const char *scan = fg_manifest_scan(&run->manifest, i);
+  char sum[65];
+  (void)ctx;
+  if (!item->entry.length || (access(scan, F_OK) != 0 && errno == ENOENT)) return FG_OK;
+  fg_context inner;
+  if (fg_sha256_file(&inner, scan, sum) != FG_OK || strcmp(sum, item->sha256) != 0)
+    item->entry.length = 0;
+  return FG_OK;
+}
+
+static fg_status read_earlier(fg_context *ctx, lot_run *run) {
+  fg_journal_head head;
+  if (access(run->results_path, F_OK) != 0) return FG_OK;
+  if (!run->request->resume)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "%s: the folder holds results; --resume goes on with them, or choose another "
+                   "folder",
+                   run->request->folder);
+  FG_TRY(
+      fg_journal_read(ctx, run->results_path, true, &head, &run->outcome->torn, take_entry, run));
+  return fg_parallel_run(ctx, run->request->settings->jobs, run->manifest.items, check_scan, run);
+}
+
+static fg_status list_todo(fg_context *ctx, lot_run *run) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->todo, &block));
+  run->todo = block;
+  for (size_t i = 0; i < run->manifest.items; i++) {
+    if (!run->items[i].mine) continue;
+    run->outcome->scans++;
+    if (run->items[i].entry.length)
+      run->outcome->kept++;
+    else
+      run->todo[run->todo_count++] = i;
+  }
+  run->outcome->to_measure = run->todo_count;
+  return FG_OK;
+}
+
+static double seconds_since(const struct timespec *start) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
+}
+
+/* One at a time; the first tenth of a second says nothing about the rest. */
+static void tell(lot_run *run, const char *scan, const char *error) {
+  pthread_mutex_lock(&run->listening);
+  fg_lot_outcome *outcome = run->outcome;
+  outcome->measured += error == NULL;
+  outcome->failed += error != NULL;
+  size_t done = outcome->measured + outcome->failed;
+  double seconds = seconds_since(&run->start);
+  const fg_lot_progress progress = {
+      .done = done,
+      .total = run->todo_count,
+      .failed = outcome->failed,
+      .kept = outcome->kept,
+      .seconds = seconds,
+      .seconds_left =
+          seconds > 0.1 ? seconds * (double)(run->todo_count - done) / (double)done : NAN,
+      .scan = scan,
+      .error = error};
+  if (run->request->listener) run->request->listener(run->request->user, &progress);
+  pthread_mutex_unlock(&run->listening);
+}
+
+static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_record *record,
+                      const fg_measurement *measurement) {
+  char *line;
+  size_t length;
+  FG_TRY(fg_record_format(ctx, record, measurement, &line, &length));
+  fg_status status = fg_journal_append(ctx, &run->journal, line, length, &run->items[item].entry);
+  free(line);
+  return status;
+}
+
+/* Whatever is wrong with a scan is its record; only a record that cannot be kept is an error. A
+ * scan that could be read but not measured is the same tomorrow; one that could not be read, or
+ * for which there was no memory, has no checksum and is tried again. */
+static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
+  const fg_lot_settings *settings = run->request->settings;
+  const fg_measure_options options = {.dpi = settings->dpi, .threads = 1};
+  const char *scan = fg_manifest_scan(&run->manifest, item);
+  fg_context inner = {.message = ""}, unused;
+  fg_measurement measurement;
+  fg_record record = {.scan = (char *)(uintptr_t)scan, .error = inner.message};
+  memcpy(record.measured_with, run->head.measured_with, sizeof record.measured_with);
+  fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
+  if (failure == FG_OK)
+    memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
+  else if (failure == FG_ERR_MEMORY || fg_sha256_file(&unused, scan, record.sha256) != FG_OK)
+    record.sha256[0] = '\0';
+  fg_status status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
+  if (failure == FG_OK) fg_measurement_free(&measurement);
+  if (status == FG_OK) tell(run, scan, failure == FG_OK ? NULL : inner.message);
+  return status;
+}
+
+static fg_status measure_next(fg_context *ctx, void *shared, size_t i) {
+  lot_run *run = shared;
+  if (atomic_load(&run->stop)) return FG_OK;
+  fg_status status = measure_item(ctx, run, run->todo[i]);
+  if (status != FG_OK) atomic_store(&run->stop, true);
+  return status;
+}
+
+static fg_status make_folder(fg_context *ctx, const char *folder) {
+  if (mkdir(folder, 0777) == 0 || errno == EEXIST) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", folder, strerror(errno));
+}
+
+/* The file in the manifest's order, with one record per item: the same bytes however it came. */
+static fg_status rewrite(fg_context *ctx, lot_run *run) {
+  void *block;
+  const char *from[] = {run->results_path};
+  FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof(fg_journal_entry), &block));
+  fg_journal_entry *entries = block;
+  for (size_t i = 0; i < run->manifest.items; i++)
+    entries[i] = run->items[i].entry;
+  fg_status status = fg_journal_rewrite(ctx, run->results_path, &run->head, from, NULL, entries,
+                                        run->manifest.items);
+  free(entries);
+  return status;
+}
+
+static fg_status measure_missing(fg_context *ctx, lot_run *run) {
+  const fg_lot_request *request = run->request;
+  if (run->todo_count) FG_TRY(fg_lot_remove_report(ctx, request->folder));
+  FG_TRY(fg_lot_write_text(ctx, request->folder, "recipe.json", run->recipe_text));
+  FG_TRY(fg_lot_write_text(ctx, request->folder, "manifest.csv", run->manifest_text));
+  FG_TRY(rewrite(ctx, run));
+  if (!run->todo_count) return FG_OK;
+  FG_TRY(fg_journal_open(ctx, run->results_path, &run->journal));
+  clock_gettime(CLOCK_MONOTONIC, &run->start);
+  fg_status status =
+      fg_parallel_run(ctx, request->settings->jobs, run->todo_count, measure_next, run);
+  fg_context inner;
+  fg_status closed = fg_journal_close(&inner, &run->journal);
+  if (status == FG_OK && closed != FG_OK) return fg_fail(ctx, closed, "%s", inner.message);
+  return status;
+}
+
+/* Offsets have moved with the first rewrite: they are read again. */
+static fg_status take_any(fg_context *ctx, void *user, fg_record *record, fg_journal_entry entry) {
+  lot_run *run = user;
+  (void)ctx;
+  size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
+  if (item < run->manifest.items) run->items[item].entry = entry;
+  return FG_OK;
+}
+
+static fg_status put_in_order(fg_context *ctx, lot_run *run) {
+  fg_journal_head head;
+  size_t torn;
+  FG_TRY(fg_journal_read(ctx, run->results_path, true, &head, &torn, take_any, run));
+  return rewrite(ctx, run);
+}
+
+static fg_status report(fg_context *ctx, lot_run *run) {
+  fg_lot lot = {.settings = *run->request->settings, .manifest = run->manifest};
+  run->manifest = (fg_manifest){0};
+  fg_status status = fg_lot_load(ctx, run->request->folder, &lot);
+  if (status == FG_OK) status = fg_lot_write_report(ctx, run->request->folder, &lot, run->outcome);
+  fg_lot_free(&lot);
+  return status;
+}
+
+static fg_status work(fg_context *ctx, lot_run *run) {
+  FG_TRY(prepare(ctx, run));
+  if (!run->request->dry_run) {
+    FG_TRY(make_folder(ctx, run->request->folder));
+    FG_TRY(fg_folder_lock(ctx, run->request->folder, &run->lock));
+  }
+  FG_TRY(read_earlier(ctx, run));
+  FG_TRY(list_todo(ctx, run));
+  if (run->request->dry_run) return FG_OK;
+  FG_TRY(measure_missing(ctx, run));
+  if (run->todo_count) FG_TRY(put_in_order(ctx, run));
+  return run->request->shard.count == 1 ? report(ctx, run) : FG_OK;
+}
+
+fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outcome *outcome) {
+  lot_run run = {.request = request, .outcome = outcome, .lock = -1};
+  *outcome = (fg_lot_outcome){.verdict = FG_VERDICT_NONE};
+  pthread_mutex_init(&run.listening, NULL);
+  fg_status status = work(ctx, &run);
+  pthread_mutex_destroy(&run.listening);
+  if (run.lock >= 0) close(run.lock);
+  fg_manifest_index_free(&run.index);
+  fg_manifest_free(&run.manifest);
+  free(run.manifest_text);
+  free(run.recipe_text);
+  free(run.results_path);
+  free(run.items);
+  free(run.todo);
+  return status;
+}

@@ -1,0 +1,134 @@
+#include "foilgauge/capability.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "foilgauge/distribution.h"
+
+enum { NORMALITY_LEAST = 8 };
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static void describe(const double *values, size_t count, double *mean, double *sd) {
+  double squares = 0;
+  *mean = 0;
+  for (size_t i = 0; i < count; i++)
+    *mean += (values[i] - values[0]) / (double)count;
+  *mean += values[0];
+  for (size_t i = 0; i < count; i++)
+    squares += (values[i] - *mean) * (values[i] - *mean);
+  *sd = count > 1 ? sqrt(squares / (double)(count - 1)) : NAN;
+}
+
+/* ln of the normal distribution's lower tail, also far out. */
+static double log_below(double z) {
+  return log(fmax(erfc(-z / sqrt(2)) / 2, 1e-300));
+}
+
+/* D'Agostino and Stephens 1986, table 4.9. */
+static double anderson_darling_p(double a2) {
+  if (a2 >= 10) return 0;
+  if (a2 >= 0.6) return exp(1.2937 - 5.709 * a2 + 0.0186 * a2 * a2);
+  if (a2 > 0.34) return exp(0.9177 - 4.279 * a2 - 1.38 * a2 * a2);
+  if (a2 > 0.2) return 1 - exp(-8.318 + 42.796 * a2 - 59.938 * a2 * a2);
+  return 1 - exp(-13.436 + 101.14 * a2 - 223.73 * a2 * a2);
+}
+
+static double anderson_darling(const double *sorted, size_t count, double mean, double sd) {
+  double sum = 0, n = (double)count;
+  for (size_t i = 0; i < count; i++) {
+    double low = (sorted[i] - mean) / sd, high = (sorted[count - 1 - i] - mean) / sd;
+    sum += (2 * (double)i + 1) * (log_below(low) + log_below(-high));
+  }
+  return (-n - sum / n) * (1 + 0.75 / n + 2.25 / (n * n));
+}
+
+fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
+                            fg_normality *normality) {
+  void *block;
+  double mean, sd;
+  *normality = (fg_normality){NAN, NAN};
+  if (count < NORMALITY_LEAST) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
+  double *sorted = block;
+  memcpy(sorted, values, count * sizeof *values);
+  qsort(sorted, count, sizeof *sorted, compare_doubles);
+  describe(sorted, count, &mean, &sd);
+  if (sd > 0) {
+    normality->a2 = anderson_darling(sorted, count, mean, sd);
+    normality->p_value = anderson_darling_p(normality->a2);
+  }
+  free(sorted);
+  return FG_OK;
+}
+
+static double room(double lower, double centre, double upper) {
+  return fmin(upper - centre, centre - lower);
+}
+
+static fg_ratio spread_ratio(double width, double sigma, double freedom, double alpha) {
+  fg_ratio ratio = {NAN, NAN, NAN};
+  if (!isfinite(width) || !(sigma > 0)) return ratio;
+  ratio.value = width / (6 * sigma);
+  ratio.low = ratio.value * sqrt(fg_distribution_chi2_quantile(alpha / 2, freedom) / freedom);
+  ratio.high = ratio.value * sqrt(fg_distribution_chi2_quantile(1 - alpha / 2, freedom) / freedom);
+  return ratio;
+}
+
+static fg_ratio room_ratio(double distance, double sigma, double count, double freedom,
+                           double alpha) {
+  fg_ratio ratio = {NAN, NAN, NAN};
+  if (!(sigma > 0)) return ratio;
+  ratio.value = distance / (3 * sigma);
+  double z = fg_distribution_normal_quantile(1 - alpha / 2);
+  double reach = z * sqrt(1 / (9 * count) + ratio.value * ratio.value / (2 * freedom));
+  ratio.low = ratio.value - reach;
+  ratio.high = ratio.value + reach;
+  return ratio;
+}
+
+static void apply_quantiles(const fg_capability_input *input, fg_capability *capability) {
+  static const double probability[3] = {0.00135, 0.5, 0.99865};
+  double *x = capability->quantile;
+  for (int i = 0; i < 3; i++)
+    x[i] = fg_density_quantile(input->density, probability[i]);
+  if (isfinite(input->upper - input->lower))
+    capability->quantile_p = (input->upper - input->lower) / (x[2] - x[0]);
+  capability->quantile_pk =
+      fmin((input->upper - x[1]) / (x[2] - x[1]), (x[1] - input->lower) / (x[1] - x[0]));
+}
+
+fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *input,
+                                fg_capability *capability) {
+  const fg_ratio unknown = {NAN, NAN, NAN};
+  double alpha = 1 - (input->confidence > 0 ? input->confidence : 0.95);
+  double n = (double)input->count, width = input->upper - input->lower;
+  *capability = (fg_capability){.count = input->count,
+                                .c = unknown,
+                                .ck = unknown,
+                                .quantile_p = NAN,
+                                .quantile_pk = NAN,
+                                .quantile = {NAN, NAN, NAN},
+                                .stable = input->stable};
+  if (!isfinite(input->lower) && !isfinite(input->upper))
+    return fg_fail(ctx, FG_ERR_USAGE, "a capability needs a limit");
+  describe(input->values, input->count, &capability->mean, &capability->sd);
+  if (!(capability->sd > 0))
+    return fg_fail(ctx, FG_ERR_DATA, "a capability needs two different values at least");
+  double distance = room(input->lower, capability->mean, input->upper);
+  capability->p = spread_ratio(width, capability->sd, n - 1, alpha);
+  capability->pk = room_ratio(distance, capability->sd, n, n - 1, alpha);
+  if (input->stable && input->sigma > 0) {
+    capability->c = spread_ratio(width, input->sigma, input->sigma_freedom, alpha);
+    capability->ck = room_ratio(distance, input->sigma, n, input->sigma_freedom, alpha);
+  }
+  FG_TRY(fg_normality_test(ctx, input->values, input->count, &capability->normality));
+  capability->normal = !(capability->normality.p_value < 0.05);
+  if (input->density) apply_quantiles(input, capability);
+  return FG_OK;
+}

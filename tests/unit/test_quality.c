@@ -1,0 +1,377 @@
+/* Density, control charts, capability, comparison, gauge study: against R and published answers. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../support/random.h"
+#include "../support/shared.h"
+#include "foilgauge/capability.h"
+#include "foilgauge/comparison.h"
+#include "foilgauge/control.h"
+#include "foilgauge/density.h"
+#include "foilgauge/distribution.h"
+#include "foilgauge/table.h"
+
+/* Says both numbers when they differ: cmocka 1.1 compares no doubles. */
+static void near_at(double value, double expected, double tolerance, int line) {
+  if (fabs(value - expected) <= tolerance) return;
+  fail_msg("line %d: %.12g, not %.12g ± %.3g", line, value, expected, tolerance);
+}
+#define assert_near(value, expected, tolerance) near_at(value, expected, tolerance, __LINE__)
+
+static const double x[] = {3.1, 2.7, 4.4, 5.2, 3.9, 4.8, 2.2, 3.3,
+                           6.1, 4.0, 3.6, 5.5, 4.1, 2.9, 3.8};
+static const double y[] = {4.9, 5.6, 3.8, 7.9, 6.2, 8.4, 5.1, 4.4, 6.6, 7.2};
+enum { NX = sizeof x / sizeof *x, NY = sizeof y / sizeof *y };
+
+/* bw.nrd0, bw.nrd and bw.SJ(method = "ste") of R 4.2. */
+static void bandwidths_are_r_s(void **state) {
+  (void)state;
+  fg_context ctx;
+  const struct {
+    fg_bandwidth_rule rule;
+    double bandwidth, tolerance;
+  } expected[] = {{FG_BANDWIDTH_SILVERMAN, 0.547075788457005, 1e-12},
+                  {FG_BANDWIDTH_SCOTT, 0.644333706404917, 1e-12},
+                  {FG_BANDWIDTH_SHEATHER_JONES, 0.755226846142903, 2e-3}};
+  for (size_t i = 0; i < 3; i++) {
+    fg_density density;
+    assert_int_equal(fg_density_fit(&ctx, x, NX, expected[i].rule, &density), FG_OK);
+    assert_near(density.bandwidth, expected[i].bandwidth, expected[i].tolerance);
+    fg_density_free(&density);
+  }
+}
+
+static void density_is_r_s_and_integrates_to_one(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_density density;
+  assert_int_equal(fg_density_fit(&ctx, x, NX, FG_BANDWIDTH_SILVERMAN, &density), FG_OK);
+  density.bandwidth = 0.5;
+  assert_near(fg_density_at(&density, 4.0), 0.339311221143906, 1e-12);
+  double sum = 0;
+  for (int i = 0; i < 4000; i++)
+    sum += fg_density_at(&density, -6 + 0.005 * i) * 0.005;
+  assert_near(sum, 1, 1e-9);
+  for (double p = 0.01; p < 1; p += 0.07)
+    assert_near(fg_density_probability(&density, fg_density_quantile(&density, p)), p, 1e-9);
+  double mode = fg_density_mode(&density);
+  assert_true(fg_density_at(&density, mode) >= fg_density_at(&density, mode + 1e-3));
+  assert_true(fg_density_at(&density, mode) >= fg_density_at(&density, mode - 1e-3));
+  fg_density_free(&density);
+}
+
+/* Binning a large sample moves its density by less than the eye or a test could see. */
+static void binned_density_is_the_same(void **state) {
+  (void)state;
+  enum { MANY = 20000 };
+  fg_context ctx;
+  double *values = malloc(MANY * sizeof *values);
+  uint64_t seed = 3;
+  for (int i = 0; i < MANY; i++)
+    values[i] = random_gaussian(&seed) + (i % 3 ? 0 : 4);
+  fg_density density;
+  assert_int_equal(fg_density_fit(&ctx, values, MANY, FG_BANDWIDTH_SHEATHER_JONES, &density),
+                   FG_OK);
+  for (double at = -2; at < 7; at += 0.5) {
+    double exact = 0, h = density.bandwidth;
+    for (int i = 0; i < MANY; i++)
+      exact += exp(-pow((at - values[i]) / h, 2) / 2) / (MANY * h * sqrt(2 * 3.14159265358979));
+    assert_near(fg_density_at(&density, at), exact, 1e-4);
+  }
+  double mean = 0, squares = 0;
+  uint64_t draw = 9;
+  for (int i = 0; i < MANY; i++)
+    mean += fg_density_draw(&density, &draw) / MANY;
+  draw = 9;
+  for (int i = 0; i < MANY; i++)
+    squares += pow(fg_density_draw(&density, &draw) - mean, 2) / MANY;
+  assert_near(mean, 4.0 / 3, 0.06);
+  assert_near(squares, 1 + 16 * 2.0 / 9 + pow(density.bandwidth, 2), 0.12);
+  fg_density_free(&density);
+  free(values);
+}
+
+static void equal_values_have_no_density(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_density density;
+  const double same[] = {2, 2, 2};
+  assert_int_equal(fg_density_fit(&ctx, same, 3, FG_BANDWIDTH_SCOTT, &density), FG_ERR_DATA);
+  assert_int_equal(fg_density_fit(&ctx, same, 0, FG_BANDWIDTH_SCOTT, &density), FG_ERR_DATA);
+}
+
+/* Tables of Montgomery, Introduction to Statistical Quality Control. */
+static void unbiasing_factors(void **state) {
+  (void)state;
+  assert_near(fg_chart_c4(2), 0.7979, 5e-5);
+  assert_near(fg_chart_c4(9), 0.9693, 5e-5);
+  assert_near(fg_chart_d2(2), 1.128, 5e-4);
+  assert_near(fg_chart_d2(5), 2.326, 5e-4);
+  assert_near(fg_chart_d2(10), 3.078, 5e-4);
+}
+
+/* Rules on a long steady series with the pattern at its end, so that the centre stays put. */
+static void rules_end_where_they_should(void **state) {
+  (void)state;
+  enum { STEADY = 400, LONGEST = 16 };
+  static const struct {
+    unsigned rule;
+    double before; /* so that the pattern does not start earlier */
+    size_t count, at;
+    double values[LONGEST];
+  } patterns[] = {
+      {1, 0, 1, 0, {3.8}},
+      {2, -.5, 9, 8, {.4, .3, .6, .2, .5, .3, .7, .2, .4}},
+      {3, -.5, 6, 5, {-1.5, -.8, -.2, .3, .7, 1.6}},
+      {4, 1.5, 14, 13, {.4, -.4, .5, -.3, .6, -.5, .3, -.4, .6, -.3, .4, -.6, .5, -.4}},
+      {5, 0, 3, 2, {2.5, -.3, 2.6}},
+      {6, -.5, 5, 4, {1.4, 1.5, -.2, 1.6, 1.4}},
+      {7, 1.5, 15, 14, {.2, -.3, .4, -.2, .3, .1, -.5, .2, .4, -.3, -.2, .3, -.1, .2, -.2}},
+      {8, .2, 8, 7, {1.5, -1.4, 1.6, 1.5, -1.4, -1.6, 1.3, -1.5}},
+  };
+  fg_context ctx;
+  uint64_t seed = 11;
+  double base[STEADY];
+  for (int i = 0; i < STEADY; i++)
+    base[i] = random_gaussian(&seed);
+  for (size_t p = 0; p < sizeof patterns / sizeof *patterns; p++) {
+    double values[STEADY + LONGEST], sigma;
+    fg_chart chart;
+    memcpy(values, base, sizeof base);
+    values[STEADY - 1] = patterns[p].before;
+    memcpy(values + STEADY, patterns[p].values, patterns[p].count * sizeof *values);
+    assert_int_equal(
+        fg_chart_individuals(&ctx, values, STEADY + patterns[p].count, 0xFF, &chart, &sigma),
+        FG_OK);
+    unsigned bit = 1u << (patterns[p].rule - 1);
+    assert_true(chart.point[STEADY + patterns[p].at].rules & bit);
+    if (patterns[p].at > 0) assert_false(chart.point[STEADY + patterns[p].at - 1].rules & bit);
+    fg_chart_free(&chart);
+  }
+  assert_string_equal(fg_run_rule_words(9), "");
+}
+
+static void limits_follow_the_subgroups(void **state) {
+  (void)state;
+  fg_context ctx;
+  const double values[] = {1, 2, 3, 2, 4, 1, 3, 2, 2.5};
+  const size_t size[] = {3, 2, 0, 4};
+  fg_chart means, deviations;
+  double sigma;
+  assert_int_equal(
+      fg_chart_subgroups(&ctx, values, size, 4, FG_SIGMA_FROM_SD, 1, &means, &deviations, &sigma),
+      FG_OK);
+  double squares = pow(1 - 2.125, 2) + pow(3 - 2.125, 2) + pow(2 - 2.125, 2) + pow(2.5 - 2.125, 2);
+  double s[3] = {1, sqrt(2), sqrt(squares / 3)};
+  double expected = (s[0] / fg_chart_c4(3) + s[1] / fg_chart_c4(2) + s[2] / fg_chart_c4(4)) / 3;
+  assert_near(sigma, expected, 1e-12);
+  assert_int_equal(means.count, 3);
+  assert_near(means.point[1].upper - means.point[1].lower, 6 * sigma / sqrt(2), 1e-12);
+  assert_near(deviations.point[2].value, s[2], 1e-12);
+  fg_chart_free(&means);
+  fg_chart_free(&deviations);
+}
+
+static fg_table load(const char *rest) {
+  fg_context ctx;
+  size_t size = 0;
+  fg_table table = {0};
+  char *text = shared_read(rest, &size);
+  if (!text) skip();
+  assert_int_equal(fg_table_parse(&ctx, rest, text, size, &table), FG_OK);
+  free(text);
+  return table;
+}
+
+static double *numbers_of(const fg_table *table, const char *name) {
+  fg_context ctx;
+  const fg_extended *numbers;
+  assert_int_equal(fg_table_numbers(&ctx, table, name, &numbers), FG_OK);
+  double *values = malloc(table->rows * sizeof *values);
+  for (size_t i = 0; i < table->rows; i++)
+    values[i] = numbers[i].value;
+  return values;
+}
+
+/* qcc's piston rings, samples 1 to 25 of 5: limits and capability as published. */
+static void piston_rings(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_table table = load("reference/doe/qcc_pistonrings.csv");
+  double *values = numbers_of(&table, "diameter"), sigma;
+  size_t size[25] = {0};
+  fg_chart chart;
+  for (int i = 0; i < 25; i++)
+    size[i] = 5;
+  assert_int_equal(
+      fg_chart_subgroups(&ctx, values, size, 25, FG_SIGMA_FROM_RANGE, 1, &chart, NULL, &sigma),
+      FG_OK);
+  assert_near(chart.centre, 74.001176, 5e-7);
+  assert_near(sigma, 0.0097853, 5e-7);
+  assert_near(chart.point[0].lower, 73.98805, 5e-6);
+  assert_near(chart.point[0].upper, 74.01430, 5e-6);
+  assert_int_equal(chart.signals, 0);
+  const fg_capability_input input = {.values = values,
+                                     .count = 125,
+                                     .lower = 73.95,
+                                     .upper = 74.05,
+                                     .sigma = sigma,
+                                     .sigma_freedom = 100,
+                                     .stable = true};
+  fg_capability result;
+  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
+  assert_near(result.c.value, 1.7032, 1e-4);
+  assert_near(result.ck.value, 1.6632, 1e-4);
+  assert_near(result.p.value, 1.6551, 1e-4);
+  assert_near(result.pk.value, 1.6162, 1e-4);
+  assert_true(result.normal);
+  assert_true(result.p.low < result.p.value && result.p.value < result.p.high);
+  fg_chart_free(&chart);
+  fg_table_free(&table);
+  free(values);
+}
+
+static void capability_needs_stability(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_capability result;
+  fg_capability_input input = {
+      .values = x, .count = NX, .lower = 0, .upper = INFINITY, .sigma = 1, .sigma_freedom = 14};
+  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
+  assert_true(isnan(result.ck.value) && isnan(result.p.value));
+  assert_near(result.pk.value, result.mean / (3 * result.sd), 1e-12);
+  input.lower = -INFINITY;
+  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_ERR_USAGE);
+}
+
+/* The quantile method on a density that is nearly one normal kernel agrees with the other. */
+static void quantiles_agree_where_normal(void **state) {
+  (void)state;
+  enum { MANY = 4000 };
+  fg_context ctx;
+  fg_density density;
+  fg_capability result;
+  double *values = malloc(MANY * sizeof *values);
+  for (int i = 0; i < MANY; i++)
+    values[i] = fg_distribution_normal_quantile((i + 0.5) / MANY);
+  assert_int_equal(fg_density_fit(&ctx, values, MANY, FG_BANDWIDTH_SILVERMAN, &density), FG_OK);
+  const fg_capability_input input = {
+      .values = values, .count = MANY, .lower = -4, .upper = 5, .sigma = NAN, .density = &density};
+  assert_int_equal(fg_capability_compute(&ctx, &input, &result), FG_OK);
+  assert_near(result.quantile_p / result.p.value, 1, 0.03);
+  assert_near(result.quantile_pk / result.pk.value, 1, 0.03);
+  assert_true(result.normal);
+  for (int i = 0; i < MANY; i++)
+    values[i] = exp(values[i]);
+  fg_normality normality;
+  assert_int_equal(fg_normality_test(&ctx, values, MANY, &normality), FG_OK);
+  assert_true(normality.p_value < 1e-6);
+  fg_density_free(&density);
+  free(values);
+}
+
+/* A² by R: 0.161227772888307. */
+static void anderson_darling_is_r_s(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_normality normality;
+  assert_int_equal(fg_normality_test(&ctx, x, NX, &normality), FG_OK);
+  assert_near(normality.a2, 0.161227772888307, 1e-12);
+  assert_true(normality.p_value > 0.9);
+}
+
+/* t.test, var.test and an analysis of variance of the distances from the medians, by R. */
+static void comparison_is_r_s(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_comparison result;
+  assert_int_equal(
+      fg_comparison_compute(&ctx, (fg_sample){x, NX}, (fg_sample){y, NY}, 0.95, &result), FG_OK);
+  assert_near(result.t, -3.65916999921187, 1e-11);
+  assert_near(result.freedom, 15.0616131999752, 1e-10);
+  assert_near(result.p_means, 0.00231174070569478, 1e-12);
+  assert_near(result.low, -3.222593003306090, 1e-10);
+  assert_near(result.variance_ratio, 0.511754155700473, 1e-12);
+  assert_near(result.p_variances, 0.252075038439558, 1e-11);
+  assert_near(result.f_high, 1.642372786344825, 1e-10);
+  assert_near(result.levene, 2.08364, 5e-6);
+  assert_near(result.p_levene, 0.16237, 5e-6);
+}
+
+/* AIAG's study of 10 parts, 3 appraisers, 3 trials. */
+static void published_gauge_study(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_table table = load("reference/doe/aiag_grr_10x3x3.csv");
+  double *values = numbers_of(&table, "y"), *parts = numbers_of(&table, "part");
+  double *trials = numbers_of(&table, "trial"), ordered[90];
+  fg_levels who;
+  assert_int_equal(fg_table_levels(&ctx, &table, "appraiser", false, &who), FG_OK);
+  for (size_t i = 0; i < table.rows; i++)
+    ordered[((size_t)parts[i] - 1) * 9 + who.index[i] * 3 + (size_t)trials[i] - 1] = values[i];
+  fg_gauge_study study;
+  assert_int_equal(fg_gauge_study_compute(&ctx, ordered, 10, 3, 3, &study), FG_OK);
+  assert_true(study.pooled);
+  assert_near(study.f_interaction, 0.434, 5e-4);
+  assert_near(study.ss_operator, 3.1673, 5e-5);
+  assert_near(study.ss_part, 88.3619, 5e-5);
+  assert_near(study.ss_interaction, 0.3590, 5e-5);
+  assert_near(study.ss_repeat, 2.7589, 5e-5);
+  assert_near(study.repeatability, 0.199933, 5e-7);
+  assert_near(study.reproducibility, 0.226838, 5e-7);
+  assert_near(study.grr, 0.302373, 2e-6);
+  assert_near(study.part, 1.042327, 5e-7);
+  assert_near(study.grr_pct, 27.9, 0.05);
+  assert_near(study.distinct_categories, 4.861, 5e-4);
+  /* Means and ranges: K1 = 1 / d2, K2 and K3 = 1 / d2* of one set. */
+  assert_near(study.range_repeatability, 0.20186, 5e-4);
+  assert_near(study.range_reproducibility, 0.22967, 5e-4);
+  assert_near(study.range_grr, 0.30577, 5e-4);
+  assert_near(study.range_part, 1.1046, 5e-4);
+  assert_near(study.range_total, 1.1461, 5e-4);
+  fg_levels_free(&who);
+  fg_table_free(&table);
+  free(values);
+  free(parts);
+  free(trials);
+}
+
+/* GUM H.1: contributions in nm with their degrees of freedom; u 32 nm, nu 16, U at 99 % 93 nm. */
+static void gum_end_gauge(void **state) {
+  (void)state;
+  const double u[] = {25, 5.8, 3.9, 6.7, 2.9, 16.6}, freedom[] = {18, 24, 5, 8, 50, 2};
+  double squares = 0;
+  for (int i = 0; i < 6; i++)
+    squares += u[i] * u[i];
+  double nu = floor(fg_effective_freedom(u, freedom, 6));
+  assert_near(round(sqrt(squares)), 32, 0);
+  assert_near(nu, 16, 0);
+  assert_near(fg_distribution_t_quantile(0.995, nu) * 32, 93, 0.6);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bandwidths_are_r_s),
+      cmocka_unit_test(density_is_r_s_and_integrates_to_one),
+      cmocka_unit_test(binned_density_is_the_same),
+      cmocka_unit_test(equal_values_have_no_density),
+      cmocka_unit_test(unbiasing_factors),
+      cmocka_unit_test(rules_end_where_they_should),
+      cmocka_unit_test(limits_follow_the_subgroups),
+      cmocka_unit_test(piston_rings),
+      cmocka_unit_test(capability_needs_stability),
+      cmocka_unit_test(quantiles_agree_where_normal),
+      cmocka_unit_test(anderson_darling_is_r_s),
+      cmocka_unit_test(comparison_is_r_s),
+      cmocka_unit_test(published_gauge_study),
+      cmocka_unit_test(gum_end_gauge),
+  };
+  return cmocka_run_group_tests_name("quality statistics", tests, NULL, NULL);
+}
