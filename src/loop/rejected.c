@@ -174,7 +174,7 @@ static fg_status advise_one(fg_context *ctx, loop_run *run, size_t m, fg_loop_ad
   const fg_loop_claim *claim = &run->result->claim[m];
   const fg_loop_alias *alias = &claim->alias[0];
   const fg_loop_candidate *rival = &alias->candidate;
-  double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES] = {0}, value[2], apart;
+  double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES] = {0}, value[2] = {0}, apart = 0;
   fg_loop_claim other;
   char first[160], second[160];
   if (alias->sum || loop_is_lone(rival) || loop_is_lone(&claim->candidate)) {

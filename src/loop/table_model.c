@@ -123,7 +123,7 @@ fg_status table_fill_arc_length(fg_context *ctx, const table_build *build) {
   const fg_design *design = build->spec->design;
   const fg_extended *radius;
   fg_nominal nominal;
-  springback_value *value;
+  springback_value *value = NULL;
   fg_loop_coordinate *constant, *slope;
   FG_TRY(find_value(ctx, build->spec->response, &value));
   FG_TRY(radius_column(ctx, build->table, &radius));
