@@ -72,6 +72,7 @@ typedef struct fg_loop_coordinate {
   size_t levels;     /* words: how many; numbers: 0 */
   char **level_name; /* levels */
   size_t distinct;   /* different values */
+  double few[FG_LOOP_COLUMNS + 1]; /* numbers: the lowest of them, ascending */
   unsigned roles;
   double kelvin_offset; /* value + kelvin_offset = kelvin */
   double low, high;     /* of all rows; a basis is scaled by them */
@@ -123,6 +124,7 @@ typedef struct fg_loop_effect {
                    double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
   /* The shape is a place between rows: it cannot be refined by small steps. */
   bool stepwise;
+  bool from_zero; /* the amplitude is the largest size, not half the range */
 } fg_loop_effect;
 
 typedef struct fg_loop_options {

@@ -78,14 +78,27 @@ static void amplitude(const loop_frame *frame, const loop_fit *fit, const loop_f
   claim->amplitude_u = sqrt(fmax(sum, 0) * variance);
 }
 
+/* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom. */
+static double freedom_of(const loop_frame *frame, size_t first, size_t count, double freedom) {
+  if (!frame->levels) return freedom;
+  for (size_t k = first; k < first + count; k++)
+    for (size_t i = 1; i < frame->n; i++)
+      if (frame->group[i] == frame->group[i - 1] &&
+          frame->x[k * frame->n + i] != frame->x[k * frame->n + i - 1])
+        return freedom;
+  return fmax((double)frame->groups - 1 - (double)count, 1);
+}
+
 static void describe(const loop_frame *frame, const loop_fit *fit, const loop_fit *wide,
-                     const loop_set *set, double variance, double t, fg_loop_claim *claim) {
+                     const loop_set *set, double variance, double freedom, fg_loop_claim *claim) {
   size_t first = frame->problem->parameters, slope = fit->columns;
   for (size_t m = 0; m < set->count; m++) {
     const fg_loop_candidate *candidate = &set->candidate[m];
     const fg_loop_effect *effect = candidate->effect;
     size_t slopes = effect->stepwise ? 0 : effect->shapes;
     size_t count = loop_candidate_columns(frame->problem, candidate);
+    double own = loop_is_lone(candidate) ? freedom : freedom_of(frame, first, count, freedom);
+    double t = gsl_cdf_tdist_Qinv(0.025, own);
     memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
     claim[m].candidate = *candidate;
     claim[m].columns = count;
@@ -101,7 +114,7 @@ static void describe(const loop_frame *frame, const loop_fit *fit, const loop_fi
         claim[m].coefficient_u[k] = sqrt(variance * wide->inverse[at * wide->columns + at]);
       }
       amplitude(frame, fit, wide, first, count, slope, slopes, variance, &claim[m]);
-      if (loop_is_lone(candidate)) {
+      if (loop_is_lone(candidate) || effect->from_zero) {
         claim[m].amplitude = fabs(claim[m].coefficient[0]);
         claim[m].amplitude_u = claim[m].coefficient_u[0];
       }
@@ -130,7 +143,7 @@ fg_status loop_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const
   FG_TRY_EXIT(loop_least_squares(ctx, &frame, noise, &wide));
   double freedom = frame.n > wide.rank ? (double)(frame.n - wide.rank) : NAN;
   double variance = fit.rss / freedom;
-  describe(&frame, &fit, &wide, set, variance, gsl_cdf_tdist_Qinv(0.025, freedom), claim);
+  describe(&frame, &fit, &wide, set, variance, freedom, claim);
   for (size_t k = 0; k < problem->parameters; k++) {
     parameter[k] = fit.beta[k];
     parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);

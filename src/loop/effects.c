@@ -57,7 +57,7 @@ static bool smooth(const fg_loop_problem *problem, size_t a, size_t b) {
 }
 
 static bool smooth_many(const fg_loop_problem *problem, size_t a, size_t b) {
-  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 14 && problem->rows >= 28;
+  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 28;
 }
 
 static size_t few_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
@@ -67,7 +67,7 @@ static size_t few_columns(const fg_loop_problem *problem, const fg_loop_candidat
 
 static size_t many_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
   (void)problem;
-  return problem->coordinate[candidate->a].distinct >= 40 && problem->rows >= 60 ? 11 : 7;
+  return problem->coordinate[candidate->a].distinct >= 60 ? 11 : 7;
 }
 
 static double cubed(double x) {

@@ -6,23 +6,52 @@
 
 #include "core/memory.h"
 
+static fg_status criterion(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                           double *value) {
+  loop_fit fit;
+  FG_TRY(loop_least_squares(ctx, frame, noise, &fit));
+  double freedom = (double)frame->n - (double)fit.rank;
+  *value = freedom * log(fit.rss) + loop_log_det(frame, noise) + fit.log_det;
+  loop_fit_free(&fit);
+  return FG_OK;
+}
+
+/* Between the points of the grid: steps that shrink, in rho and in the logarithm of lambda. */
+static fg_status polish(fg_context *ctx, const loop_frame *frame, double best, loop_noise *noise) {
+  double rho_step = 0.1, lambda_step = 0.4;
+  for (int round = 0; round < 4; round++) {
+    const loop_noise tries[] = {
+        {fmin(noise->rho + rho_step, 0.98), noise->lambda},
+        {fmax(noise->rho - rho_step, 0), noise->lambda},
+        {noise->rho, noise->lambda * exp(lambda_step)},
+        {noise->rho, noise->lambda * exp(-lambda_step)},
+    };
+    for (size_t i = 0; i < 4; i++) {
+      double value;
+      if (i < 2 ? !frame->problem->correlated : !frame->levels) continue;
+      FG_TRY(criterion(ctx, frame, tries[i], &value));
+      if (!(value < best)) continue;
+      best = value;
+      *noise = tries[i];
+    }
+    rho_step /= 2;
+    lambda_step /= 2;
+  }
+  return FG_OK;
+}
+
 fg_status loop_choose_noise(fg_context *ctx, const loop_frame *frame, loop_noise *noise) {
   loop_noise grid[LOOP_NOISES];
-  double best = INFINITY;
+  double best = INFINITY, value;
   size_t count = loop_noise_grid(frame, grid);
   *noise = grid[0];
   for (size_t j = 0; j < count; j++) {
-    loop_fit fit;
-    FG_TRY(loop_least_squares(ctx, frame, grid[j], &fit));
-    double freedom = (double)frame->n - (double)fit.rank;
-    double value = freedom * log(fit.rss) + loop_log_det(frame, grid[j]) + fit.log_det;
-    if (value < best) {
-      best = value;
-      *noise = grid[j];
-    }
-    loop_fit_free(&fit);
+    FG_TRY(criterion(ctx, frame, grid[j], &value));
+    if (!(value < best)) continue;
+    best = value;
+    *noise = grid[j];
   }
-  return FG_OK;
+  return frame->n <= LOOP_SMALL_ROWS ? polish(ctx, frame, best, noise) : FG_OK;
 }
 
 static fg_status residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,

@@ -91,25 +91,42 @@ exit:
 
 /* The strongest correlation that the data do not rule out (2.7 in twice the log likelihood), so
  * that a short series does not pass for white by luck. */
-static loop_noise cautious_noise(const loop_bench *bench, size_t best, const double *criterion) {
-  loop_noise noise = bench->noise[best];
+static size_t cautious_noise(const loop_bench *bench, const double *criterion) {
+  size_t best = 0;
+  for (size_t j = 1; j < bench->noises; j++)
+    if (criterion[j] < criterion[best]) best = j;
+  size_t chosen = best;
   double allowed = criterion[best] * exp(2.7 / (double)bench->freedom);
-  for (size_t j = 0; j < bench->noises; j++)
-    if (criterion[j] <= allowed &&
-        (bench->noise[j].rho > noise.rho ||
-         (bench->noise[j].rho == noise.rho && bench->noise[j].lambda > noise.lambda)))
-      noise = bench->noise[j];
-  return noise;
+  for (size_t j = 0; j < bench->noises; j++) {
+    loop_noise noise = bench->noise[chosen], other = bench->noise[j];
+    bool stronger =
+        other.rho > noise.rho || (other.rho == noise.rho && other.lambda > noise.lambda);
+    if (criterion[j] <= allowed && stronger) chosen = j;
+  }
+  return chosen;
 }
 
-static fg_status noise_criteria(fg_context *ctx, const loop_bench *bench, double *criterion) {
+/* With the best candidate in the model: an effect over the order must not pass for correlation, nor
+ * raise the bar for itself. */
+static void noise_criteria(const loop_bench *bench, const loop_version *best, double *criterion) {
+  const loop_frame *frame = bench->frame;
+  size_t n = frame->n, width = bench->rank + bench->columns;
   for (size_t j = 0; j < bench->noises; j++) {
-    loop_fit fit;
-    FG_TRY(loop_least_squares(ctx, bench->frame, bench->noise[j], &fit));
-    criterion[j] = fit.rss * bench->weight[j];
-    loop_fit_free(&fit);
+    double *y = bench->scratch + width, *sums = bench->scratch, rss = 0;
+    memcpy(y, frame->y, n * sizeof *y);
+    loop_whiten(frame, bench->noise[j], y);
+    memset(sums, 0, width * sizeof *sums);
+    for (size_t i = 0; i < n; i++) {
+      rss += y[i] * y[i];
+      for (size_t k = 0; k < width; k++)
+        sums[k] += bench->rows[j][i * width + k] * y[i];
+    }
+    for (size_t k = 0; k < bench->rank; k++)
+      rss -= sums[k] * sums[k];
+    for (size_t k = 0; k < best->rank; k++)
+      rss -= pow(sums[bench->rank + best->first + k], 2);
+    criterion[j] = fmax(rss, 1e-300) * bench->weight[j];
   }
-  return FG_OK;
 }
 
 /* Mean and sd of every candidate's own null put all on one scale. */
@@ -139,34 +156,39 @@ static void simulate(const loop_bench *bench, loop_noise noise, size_t draws, ui
   }
 }
 
+static size_t best_candidate(const loop_bench *bench, const loop_score *score) {
+  size_t best = 0;
+  for (size_t c = 1; c < bench->candidates; c++)
+    if (score[c].z > score[best].z || isnan(score[best].z)) best = c;
+  return best;
+}
+
 /* The F ratio at which a candidate would just pass: at the 99 % point of its family's maxima. */
 static void critical_ratios(const loop_bench *bench, const double critical[2], const double *shift,
                             const double *scale, loop_judgement *judgement) {
   for (size_t c = 0; c < bench->candidates; c++) {
-    judgement->f_critical[c] = INFINITY;
     if (!isfinite(judgement->score[c].z)) continue;
     double k = loop_version_freedom(bench, &bench->version[judgement->score[c].version]);
     double z = critical[family(bench, c)];
     if (shift) z = shift[c] + scale[c] * z;
-    judgement->f_critical[c] = loop_deviate_to_f(z, k, (double)bench->freedom - k);
+    double f = loop_deviate_to_f(z, k, (double)bench->freedom - k);
+    judgement->f_critical[c] = fmax(judgement->f_critical[c], f);
+    judgement->z_critical[c] = z;
   }
 }
 
-static fg_status simulate_all(fg_context *ctx, const loop_bench *bench, size_t draws, uint64_t seed,
-                              loop_judgement *judgement) {
+static fg_status simulate_all(fg_context *ctx, const loop_bench *bench, size_t noise, size_t draws,
+                              uint64_t seed, loop_judgement *judgement) {
   size_t count = bench->candidates;
   fg_status status = FG_OK;
-  double *z = NULL, *y = NULL, *maxima = NULL, *shift = NULL, criterion[LOOP_NOISES];
-  double critical[2];
+  double *z = NULL, *y = NULL, *maxima = NULL, *shift = NULL, critical[2];
   loop_score *score = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, draws, count * sizeof *z + 1, (void **)&z));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bench->frame->n, sizeof *y, (void **)&y));
   FG_TRY_EXIT(fg_memory_allocate(ctx, draws, 2 * sizeof *maxima, (void **)&maxima));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 2 * sizeof *shift, (void **)&shift));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *score, (void **)&score));
-  FG_TRY_EXIT(noise_criteria(ctx, bench, criterion));
-  simulate(bench, cautious_noise(bench, judgement->null_noise, criterion), draws, seed, y, score,
-           z);
+  simulate(bench, bench->noise[noise], draws, seed, y, score, z);
   double *scale = shift + count;
   standardise(draws, count, z, shift, scale);
   for (size_t b = 0; b < draws; b++) {
@@ -193,13 +215,6 @@ exit:
   return status;
 }
 
-static size_t best_candidate(const loop_bench *bench, const loop_score *score) {
-  size_t best = 0;
-  for (size_t c = 1; c < bench->candidates; c++)
-    if (score[c].z > score[best].z || isnan(score[best].z)) best = c;
-  return best;
-}
-
 static fg_status allocate(fg_context *ctx, size_t count, loop_judgement *judgement) {
   *judgement = (loop_judgement){.candidates = count};
   size_t size = sizeof *judgement->p_flip;
@@ -207,8 +222,9 @@ static fg_status allocate(fg_context *ctx, size_t count, loop_judgement *judgeme
   FG_TRY(fg_memory_allocate(ctx, count, size, (void **)&judgement->p_flip));
   FG_TRY(fg_memory_allocate(ctx, count, size, (void **)&judgement->p_simulated));
   FG_TRY(fg_memory_allocate(ctx, count, size, (void **)&judgement->f_critical));
+  FG_TRY(fg_memory_allocate(ctx, count, size, (void **)&judgement->z_critical));
   for (size_t c = 0; c < count; c++)
-    judgement->p_simulated[c] = NAN;
+    judgement->p_simulated[c] = judgement->z_critical[c] = NAN;
   return FG_OK;
 }
 
@@ -216,18 +232,21 @@ fg_status loop_judge(fg_context *ctx, loop_bench *bench, size_t draws, uint64_t 
                      loop_judgement *judgement) {
   fg_status status = FG_OK;
   bool small = bench->frame->n <= LOOP_SMALL_ROWS;
-  double critical = INFINITY;
+  double critical = INFINITY, criterion[LOOP_NOISES];
   FG_TRY_EXIT(allocate(ctx, bench->candidates, judgement));
   if (bench->candidates == 0) goto exit;
   if (small) loop_bench_score(bench, bench->frame->y, judgement->score, &judgement->null_noise);
   size_t best = best_candidate(bench, judgement->score);
-  size_t noise = small ? judgement->score[best].noise : 0;
+  size_t noise = 0;
+  if (small) {
+    noise_criteria(bench, &bench->version[judgement->score[best].version], criterion);
+    noise = judgement->cautious_noise = cautious_noise(bench, criterion);
+  }
   FG_TRY_EXIT(loop_bench_prepare_flips(ctx, bench, noise, small ? NULL : judgement->score));
   FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));
+  critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
   if (small)
-    FG_TRY_EXIT(simulate_all(ctx, bench, draws, seed ^ 0x5851f42d4c957f2du, judgement));
-  else
-    critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
+    FG_TRY_EXIT(simulate_all(ctx, bench, noise, draws, seed ^ 0x5851f42d4c957f2du, judgement));
 exit:
   if (status != FG_OK) loop_judgement_free(judgement);
   return status;
@@ -238,5 +257,6 @@ void loop_judgement_free(loop_judgement *judgement) {
   free(judgement->p_flip);
   free(judgement->p_simulated);
   free(judgement->f_critical);
+  free(judgement->z_critical);
   *judgement = (loop_judgement){0};
 }

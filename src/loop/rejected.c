@@ -43,7 +43,7 @@ static fg_loop_verdict judge_rejected(const loop_run *run, const fg_loop_rejecte
 }
 
 static void describe(const loop_run *run, const loop_step *step, size_t c, double sd_white,
-                     fg_loop_rejected *one) {
+                     const double *amplitude, fg_loop_rejected *one) {
   const loop_judgement *judgement = &step->judgement;
   const loop_version *version = &step->bench.version[judgement->score[c].version];
   *one = (fg_loop_rejected){.candidate = run->candidate[c], .smallest_detectable = NAN};
@@ -55,7 +55,11 @@ static void describe(const loop_run *run, const loop_step *step, size_t c, doubl
                                                   ? judgement->p_simulated[c]
                                                   : 0);
     one->retained_share = version->share;
-    if (step->judgement.smallest_p < run->options.accept_p)
+    if (step->judgement.smallest_p >= run->options.accept_p)
+      one->smallest_detectable = NAN;
+    else if (amplitude)
+      one->smallest_detectable = amplitude[c] * sd_white;
+    else
       one->smallest_detectable =
           detectable(judgement->f_critical[c], k, sd_white, version->length);
   } else {
@@ -84,14 +88,21 @@ fg_status loop_list_rejected(fg_context *ctx, loop_run *run) {
   FG_TRY(loop_step_open(ctx, run, &run->set, true, &step));
   fg_status status = fg_memory_allocate(ctx, run->candidates + 2, sizeof *result->rejected,
                                         (void **)&result->rejected);
-  double sd_white = run->sd / sqrt(1 + run->noise.lambda);
+  double sd_white = sqrt(step.bench.flip_rss / (double)step.bench.freedom), *amplitude = NULL;
+  if (status == FG_OK && step.frame.n <= LOOP_SMALL_ROWS) {
+    status = fg_memory_allocate(ctx, run->candidates, sizeof *amplitude, (void **)&amplitude);
+    if (status == FG_OK)
+      status = loop_smallest_amplitudes(ctx, &step.bench, &step.judgement, run->options.seed + 2,
+                                        amplitude);
+  }
   result->smallest_p = step.judgement.smallest_p;
   for (size_t c = 0; status == FG_OK && c < run->candidates; c++)
     if (!loop_is_curve(&run->candidate[c]) && !is_claimed(run, &run->candidate[c]))
-      describe(run, &step, c, sd_white, &result->rejected[result->rejects++]);
+      describe(run, &step, c, sd_white, amplitude, &result->rejected[result->rejects++]);
   for (size_t k = 0; status == FG_OK && k < 2; k++)
     if (step.lone[k].known)
       describe_lone(run, &step.lone[k], sd_white, &result->rejected[result->rejects++]);
+  free(amplitude);
   loop_step_close(&step);
   return status;
 }

@@ -59,13 +59,35 @@ static double total_p(const loop_judgement *judgement, size_t c) {
   return isfinite(simulated) ? fmax(simulated, judgement->p_flip[c]) : judgement->p_flip[c];
 }
 
+/* What comes after a first claim must be twice as sure: its null leans on the first. */
+static double bar(const loop_run *run) {
+  return run->options.accept_p / (run->set.count ? 2 : 1);
+}
+
+static void remove_member(loop_set *set, size_t member) {
+  for (size_t k = member + 1; k < set->count; k++) {
+    set->candidate[k - 1] = set->candidate[k];
+    memcpy(set->shape[k - 1], set->shape[k], sizeof set->shape[k]);
+  }
+  set->count--;
+}
+
+/* Beside the others it explains nothing any more (one-sided 1 % of the deviate). */
+static void drop_claim(loop_run *run, size_t m) {
+  fg_loop_result *result = run->result;
+  remove_member(&run->set, m);
+  for (size_t k = m + 1; k < result->claims; k++)
+    result->claim[k - 1] = result->claim[k];
+  result->claims--;
+}
+
 /* The best of a family that passes; candidates that are in the set already are none. */
 static bool best_passing(const loop_run *run, const loop_step *step, bool curves, size_t *best) {
   bool found = false;
   for (size_t c = 0; c < run->candidates; c++) {
     const loop_score *score = &step->judgement.score[c];
     if (loop_is_curve(&run->candidate[c]) != curves || !isfinite(score->z)) continue;
-    if (!(total_p(&step->judgement, c) < run->options.accept_p)) continue;
+    if (!(total_p(&step->judgement, c) < bar(run))) continue;
     if (found && score->z <= step->judgement.score[*best].z) continue;
     *best = c;
     found = true;
@@ -73,10 +95,9 @@ static bool best_passing(const loop_run *run, const loop_step *step, bool curves
   return found;
 }
 
-static loop_noise stand_noise(const loop_step *step, size_t stand) {
-  size_t index = step->judgement.null_noise;
-  if (stand < step->bench.candidates) index = step->judgement.score[stand].noise;
-  return step->bench.noise[index];
+/* Nothing is judged at the noise that flatters the winner. */
+static loop_noise step_noise(const loop_step *step) {
+  return step->bench.noise[step->judgement.cautious_noise];
 }
 
 static void extend_set(const loop_run *run, const loop_stand *stand, loop_set *set) {
@@ -93,6 +114,16 @@ static void extend_set(const loop_run *run, const loop_stand *stand, loop_set *s
   set->count++;
 }
 
+/* Moves a stand's shape off the grid of its start values. */
+static fg_status sharpen(fg_context *ctx, const loop_run *run, loop_step *step, size_t stand) {
+  loop_set with;
+  extend_set(run, &step->stand[stand], &with);
+  FG_TRY(loop_refine(ctx, run->problem, run->train, step_noise(step), &with));
+  memcpy(step->stand[stand].shape, with.shape[with.count - 1 - run->has_curve],
+         sizeof step->stand[stand].shape);
+  return FG_OK;
+}
+
 /* The best curve over the winner's coordinate explains what the winner does not: the form is not in
  * the table, whatever its nearest relative. */
 static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_step *step,
@@ -105,10 +136,10 @@ static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_ste
     double p;
     if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(loop_beside(ctx, &step->frame, stand_noise(step, c), &step->stand[winner],
+    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[winner],
                        &step->stand[c], &p));
     if (p > 0.003 || !(total_p(&step->judgement, c) < run->options.accept_p)) continue;
-    if (step->stand[c].z > best && step->stand[c].z > step->stand[winner].z) {
+    if (step->stand[c].z > best) {
       best = step->stand[c].z;
       *curve = c;
       *wrong = true;
@@ -130,8 +161,8 @@ static fg_status take_curve(fg_context *ctx, loop_run *run, const loop_step *ste
   double gain, se;
   if (run->has_curve) return FG_OK;
   extend_set(run, &step->stand[curve], &with);
-  FG_TRY(loop_refine(ctx, run->problem, run->train, stand_noise(step, curve), &with));
-  FG_TRY(gate(ctx, run, &with, stand_noise(step, curve), &gain, &se, accepted));
+  FG_TRY(loop_refine(ctx, run->problem, run->train, step_noise(step), &with));
+  FG_TRY(gate(ctx, run, &with, step_noise(step), &gain, &se, accepted));
   if (!*accepted) return FG_OK;
   run->set = with;
   run->has_curve = true;
@@ -163,7 +194,7 @@ static fg_status take_claim(fg_context *ctx, loop_run *run, const loop_step *ste
                             bool *accepted) {
   fg_loop_claim claim = {0};
   loop_set with;
-  loop_noise noise = stand_noise(step, winner);
+  loop_noise noise = step_noise(step);
   describe(run, step, winner, &claim);
   extend_set(run, &step->stand[winner], &with);
   FG_TRY(loop_refine(ctx, run->problem, run->train, noise, &with));
@@ -189,7 +220,7 @@ static bool lone_first(const loop_run *run, const loop_step *step, bool listed, 
   bool found = false;
   for (size_t s = run->candidates; s < step->stands; s++) {
     const loop_lone *lone = &step->lone[loop_is_exchange(&step->stand[s].candidate)];
-    if (lone->p_value < run->options.accept_p && lone->ratio <= ratio) {
+    if (lone->p_value < bar(run) && lone->ratio <= ratio) {
       ratio = lone->ratio;
       *winner = s;
       found = true;
@@ -198,18 +229,51 @@ static bool lone_first(const loop_run *run, const loop_step *step, bool listed, 
   return found;
 }
 
-static fg_status decide(fg_context *ctx, loop_run *run, const loop_step *step, bool *accepted) {
+/* A second form over a coordinate that a claim lives on already: two forms that the table lists make
+ * one that it does not. The claim gives way to a curve, where one serves. */
+static fg_status second_form(fg_context *ctx, loop_run *run, const loop_step *step, size_t winner,
+                             bool *accepted) {
+  const fg_loop_candidate *candidate = &step->stand[winner].candidate;
+  size_t m = 0, best = run->candidates;
+  if (candidate->effect->pair || run->has_curve) return FG_OK;
+  while (m < run->result->claims &&
+         (run->set.candidate[m].effect->pair || loop_is_lone(&run->set.candidate[m]) ||
+          run->set.candidate[m].a != candidate->a))
+    m++;
+  if (m == run->result->claims) return FG_OK;
+  loop_run without = *run;
+  loop_step other;
+  remove_member(&without.set, m);
+  FG_TRY(loop_step_open(ctx, &without, &without.set, true, &other));
+  for (size_t c = 0; c < run->candidates; c++)
+    if (loop_is_curve(&run->candidate[c]) && run->candidate[c].a == candidate->a &&
+        total_p(&other.judgement, c) < run->options.accept_p &&
+        (best == run->candidates || other.stand[c].z > other.stand[best].z))
+      best = c;
+  fg_status status = FG_OK;
+  if (best < run->candidates) status = take_curve(ctx, &without, &other, best, accepted);
+  if (status == FG_OK && *accepted) {
+    drop_claim(run, m);
+    *run = without;
+  }
+  loop_step_close(&other);
+  return status;
+}
+
+static fg_status decide(fg_context *ctx, loop_run *run, loop_step *step, bool *accepted) {
   size_t winner = 0, curve = 0;
   bool listed = best_passing(run, step, false, &winner), wrong = false;
   if (lone_first(run, step, listed, winner, &winner))
     return take_claim(ctx, run, step, winner, accepted);
   if (listed) {
+    FG_TRY(sharpen(ctx, run, step, winner));
     FG_TRY(wrong_form(ctx, run, step, winner, &curve, &wrong));
     if (wrong) FG_TRY(take_curve(ctx, run, step, curve, accepted));
     if (wrong && *accepted) return FG_OK;
-    FG_TRY(loop_simplify(ctx, &step->frame, stand_noise(step, winner), step->stand,
+    FG_TRY(loop_simplify(ctx, &step->frame, step_noise(step), step->stand,
                          run->candidates, winner, &winner));
-    FG_TRY(take_claim(ctx, run, step, winner, accepted));
+    FG_TRY(second_form(ctx, run, step, winner, accepted));
+    if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));
     if (*accepted) return FG_OK;
   }
   if (best_passing(run, step, true, &curve)) return take_curve(ctx, run, step, curve, accepted);
@@ -234,11 +298,7 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
     loop_step step;
     fg_loop_claim *claim = &run->result->claim[m];
     if (loop_is_lone(&claim->candidate)) continue;
-    for (size_t k = m + 1; k < others.count; k++) {
-      others.candidate[k - 1] = others.candidate[k];
-      memcpy(others.shape[k - 1], others.shape[k], sizeof others.shape[k]);
-    }
-    others.count--;
+    remove_member(&others, m);
     FG_TRY(loop_step_open(ctx, run, &others, false, &step));
     size_t best = 0, own = 0;
     for (size_t c = 0; c < run->candidates; c++) {
@@ -247,8 +307,13 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
       if (!isfinite(step.stand[best].z) || step.stand[c].z > step.stand[best].z) best = c;
     }
     fg_status status = FG_OK;
+    if (!(step.stand[own].z > 2.33) && !(step.stand[best].z > 4)) {
+      drop_claim(run, m--);
+      loop_step_close(&step);
+      continue;
+    }
     if (step.stand[best].z > step.stand[own].z)
-      status = loop_simplify(ctx, &step.frame, stand_noise(&step, best), step.stand,
+      status = loop_simplify(ctx, &step.frame, step_noise(&step), step.stand,
                              run->candidates, best, &best);
     if (status == FG_OK) {
       size_t chosen = step.stand[best].z > step.stand[own].z ? best : own;
@@ -257,7 +322,7 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
       loop_candidate_name(run->problem, &claim->candidate, claim->name);
       run->set.candidate[m] = claim->candidate;
       memcpy(run->set.shape[m], step.stand[chosen].shape, sizeof run->set.shape[m]);
-      status = loop_alias_class(ctx, &step.frame, stand_noise(&step, chosen), step.stand,
+      status = loop_alias_class(ctx, &step.frame, step_noise(&step), step.stand,
                                 step.stands, &step.stand[chosen], claim);
       claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
     }

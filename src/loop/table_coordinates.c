@@ -54,9 +54,12 @@ void table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate 
   qsort(sorted, problem->rows, sizeof *sorted, by_size);
   at->low = sorted[0];
   at->high = sorted[problem->rows - 1];
-  at->distinct = 1;
-  for (size_t i = 1; i < problem->rows; i++)
-    at->distinct += sorted[i] > sorted[i - 1];
+  at->distinct = 0;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (i > 0 && !(sorted[i] > sorted[i - 1])) continue;
+    if (at->distinct <= FG_LOOP_COLUMNS) at->few[at->distinct] = sorted[i];
+    at->distinct++;
+  }
   free(sorted);
 }
 

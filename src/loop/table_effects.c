@@ -106,20 +106,6 @@ static bool accepts_factor(problem_t *problem, size_t a, size_t b) {
          problem->rows >= 4 * at->distinct;
 }
 
-/* The distinct values of a number with few, ascending. */
-static size_t values_of(const fg_loop_coordinate *at, size_t rows, size_t most, double *values) {
-  size_t count = 0;
-  double last = -INFINITY;
-  while (count < most) {
-    double next = INFINITY;
-    for (size_t i = 0; i < rows; i++)
-      if (at->value[i] > last && at->value[i] < next) next = at->value[i];
-    if (!isfinite(next)) break;
-    last = values[count++] = next;
-  }
-  return count;
-}
-
 static size_t factor_columns(problem_t *problem, candidate_t *candidate) {
   const fg_loop_coordinate *at = first(problem, candidate);
   return (at->levels ? at->levels : at->distinct) - 1;
@@ -128,14 +114,12 @@ static size_t factor_columns(problem_t *problem, candidate_t *candidate) {
 static void factor_basis(problem_t *problem, candidate_t *candidate, const double *shape,
                          double *columns) {
   const fg_loop_coordinate *at = first(problem, candidate);
-  double values[FG_LOOP_COLUMNS + 1];
-  size_t count = at->levels ? at->levels
-                            : values_of(at, problem->rows, FG_LOOP_COLUMNS + 1, values);
+  size_t count = at->levels ? at->levels : at->distinct;
   (void)shape;
   memset(columns, 0, factor_columns(problem, candidate) * problem->rows * sizeof *columns);
   for (size_t i = 0; i < problem->rows; i++)
     for (size_t k = 1; k < count; k++)
-      if (at->value[i] == (at->levels ? (double)k : values[k]))
+      if (at->value[i] == (at->levels ? (double)k : at->few[k]))
         columns[(k - 1) * problem->rows + i] = 1;
 }
 
@@ -158,12 +142,10 @@ enum { THRESHOLDS = 23 };
 static size_t threshold_starts(problem_t *problem, candidate_t *candidate,
                                double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
   const fg_loop_coordinate *at = first(problem, candidate);
-  double values[THRESHOLDS + 2];
   size_t count = 0;
-  if (at->distinct <= THRESHOLDS + 1) {
-    size_t found = values_of(at, problem->rows, THRESHOLDS + 2, values);
-    for (size_t i = 1; i < found; i++)
-      starts[count++][0] = (values[i - 1] + values[i]) / 2;
+  if (at->distinct <= FG_LOOP_COLUMNS + 1) {
+    for (size_t i = 1; i < at->distinct; i++)
+      starts[count++][0] = (at->few[i - 1] + at->few[i]) / 2;
     return count;
   }
   for (size_t i = 1; i <= THRESHOLDS; i++)
@@ -345,34 +327,34 @@ static void sensitivity_basis(problem_t *problem, candidate_t *candidate, const 
 
 static const fg_loop_effect effects[] = {
     {"table.linear", "runs", "column", "a trend with", false, 0, {0}, accepts_linear, one_column,
-     linear_basis, NULL, false},
+     linear_basis, NULL, false, false},
     {"table.quadratic", "runs", "column", "a bent trend with", false, 0, {0}, accepts_quadratic,
-     two_columns, quadratic_basis, NULL, false},
+     two_columns, quadratic_basis, NULL, false, false},
     {"table.interaction", "runs", "column", "an interaction of", true, 0, {0}, accepts_interaction,
-     interaction_columns, interaction_basis, NULL, false},
+     interaction_columns, interaction_basis, NULL, false, false},
     {"table.factor", "runs", "column", "levels of", false, 0, {0}, accepts_factor, factor_columns,
-     factor_basis, NULL, false},
+     factor_basis, NULL, false, false},
     {"table.threshold", "runs", "column", "a step over", false, 1, {"at"}, accepts_threshold,
-     one_column, threshold_basis, threshold_starts, true},
+     one_column, threshold_basis, threshold_starts, true, false},
     {"table.order_drift", "runs", "order", "a drift over", false, 0, {0}, accepts_drift, one_column,
-     linear_basis, NULL, false},
+     linear_basis, NULL, false, false},
     {"table.order_transient", "runs", "order", "a warm-up that fades over", false, 1,
-     {"decay_length"}, accepts_transient, one_column, decay_basis, transient_starts, false},
+     {"decay_length"}, accepts_transient, one_column, decay_basis, transient_starts, false, false},
     {"table.periodic", "runs", "order", "a periodic change over", false, 1, {"period"},
-     accepts_periodic, two_columns, periodic_basis, periodic_starts, false},
+     accepts_periodic, two_columns, periodic_basis, periodic_starts, false, false},
     {"part.lip_decay", "bumps", "bump table", "a decay from the lip over", false, 1,
-     {"decay_length"}, accepts_lip, one_column, decay_basis, lip_starts, false},
+     {"decay_length"}, accepts_lip, one_column, decay_basis, lip_starts, false, false},
     {"part.stretch", "bumps", "bump table", "an arc length that differs,", false, 0, {0},
-     accepts_sensitivity, one_column, sensitivity_basis, NULL, false},
+     accepts_sensitivity, one_column, sensitivity_basis, NULL, false, true},
     {"process.arrhenius", "runs", "column", "a rate by Arrhenius of", false, 1,
      {"activation_energy_kj_per_mol"}, accepts_temperature, one_column, arrhenius_basis,
-     arrhenius_starts, false},
+     arrhenius_starts, false, false},
     {"process.larson_miller", "runs", "column", "the Larson-Miller parameter of", true, 0, {0},
-     accepts_both, one_column, larson_miller_basis, NULL, false},
+     accepts_both, one_column, larson_miller_basis, NULL, false, false},
     {"process.log_time", "runs", "column", "the logarithm of", false, 0, {0}, accepts_duration,
-     one_column, log_time_basis, NULL, false},
+     one_column, log_time_basis, NULL, false, false},
     {"process.jmak", "runs", "column", "a transformation (JMAK) over", false, 2,
-     {"time_constant", "exponent"}, accepts_duration, one_column, jmak_basis, jmak_starts, false},
+     {"time_constant", "exponent"}, accepts_duration, one_column, jmak_basis, jmak_starts, false, false},
     {0},
 };
 

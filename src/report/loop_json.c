@@ -126,6 +126,8 @@ static void write_rejected(fg_json *json, const fg_loop_rejected *one) {
   fg_json_object_end(json);
 }
 
+enum { LISTED_ASIDE = 1000 }; /* rows; more are only counted */
+
 static void write_inputs(fg_json *json, const fg_loop_report *report) {
   const fg_loop_problem *problem = &report->problem->problem;
   size_t aside = 0;
@@ -137,6 +139,13 @@ static void write_inputs(fg_json *json, const fg_loop_report *report) {
   fg_json_string(json, "sha256", report->sha256);
   fg_json_integer(json, "rows", (int64_t)problem->rows);
   fg_json_integer(json, "rows_kept_aside", (int64_t)aside);
+  fg_json_array(json, "kept_aside");
+  fg_json_line(json);
+  for (size_t i = 0; aside <= LISTED_ASIDE && i < problem->rows; i++)
+    if (problem->aside && problem->aside[i])
+      fg_json_integer(json, NULL, (int64_t)report->problem->row[i] + 1);
+  fg_json_line_end(json);
+  fg_json_array_end(json);
   fg_json_object_end(json);
   fg_json_array_end(json);
   fg_json_object(json, "declared");
