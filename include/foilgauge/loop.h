@@ -73,6 +73,7 @@ typedef struct fg_loop_coordinate {
   char **level_name; /* levels */
   size_t distinct;   /* different values */
   double few[FG_LOOP_COLUMNS + 1]; /* numbers: the lowest of them, ascending */
+  double quantile[FG_LOOP_COLUMNS + 1]; /* of the rows, 0 to 1 in equal steps: knots of curves */
   unsigned roles;
   double kelvin_offset; /* value + kelvin_offset = kelvin */
   double low, high;     /* of all rows; a basis is scaled by them */

@@ -23,6 +23,7 @@ typedef struct alias_bench {
   size_t n, rank;
   double *basis, *y, *columns, *unit;
   double rss, freedom;
+  bool between; /* the columns added last */
 } alias_bench;
 
 enum { ROOM = 3 * FG_LOOP_COLUMNS };
@@ -54,12 +55,23 @@ static void close_bench(alias_bench *bench) {
   free(bench->unit);
 }
 
+/* Constant in every group that shares a level: judged between groups, with their freedom. */
+static bool between_groups(const loop_frame *frame, const double *columns, size_t count) {
+  for (size_t k = 0; k < count; k++)
+    for (size_t i = 1; i < frame->n; i++)
+      if (frame->group[i] == frame->group[i - 1] &&
+          columns[k * frame->n + i] != columns[k * frame->n + i - 1])
+        return false;
+  return frame->levels > 0;
+}
+
 /* Adds the candidate's columns behind those already there; returns how many are new. */
 static fg_status extend(fg_context *ctx, alias_bench *bench, const loop_stand *stand, size_t rank,
                         size_t *added) {
   const fg_loop_problem *problem = bench->frame->problem;
   size_t count = loop_candidate_columns(problem, &stand->candidate);
   FG_TRY(loop_gather(ctx, bench->frame, &stand->candidate, stand->shape, bench->columns));
+  bench->between = between_groups(bench->frame, bench->columns, count);
   for (size_t k = 0; k < count; k++)
     loop_whiten(bench->frame, bench->noise, bench->columns + k * bench->n);
   *added = loop_orthonormal(bench->n, bench->basis, rank, bench->columns, count,
@@ -124,7 +136,8 @@ static fg_status compare(fg_context *ctx, alias_bench *bench, const loop_stand *
   double surplus = explained(bench, bench->rank + test->rank, test->more);
   double k = (double)test->more + (double)winner->candidate.effect->shapes;
   double left = bench->rss - test->gain - surplus;
-  double freedom = bench->freedom - (double)test->rank - shapes - k;
+  double freedom = bench->between ? (double)bench->frame->groups - 1 : bench->freedom;
+  freedom -= (double)test->rank + shapes + k;
   test->p_value = 1;
   if (test->more > 0 && freedom >= 1 && left > 0)
     test->p_value = gsl_cdf_fdist_Q(surplus / k / (left / freedom), k, freedom);

@@ -57,7 +57,7 @@ static bool smooth(const fg_loop_problem *problem, size_t a, size_t b) {
 }
 
 static bool smooth_many(const fg_loop_problem *problem, size_t a, size_t b) {
-  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 28;
+  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 20;
 }
 
 static size_t few_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
@@ -66,30 +66,55 @@ static size_t few_columns(const fg_loop_problem *problem, const fg_loop_candidat
 }
 
 static size_t many_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
-  (void)problem;
-  return problem->coordinate[candidate->a].distinct >= 60 ? 11 : 7;
+  (void)problem, (void)candidate;
+  return 7;
 }
 
 static double cubed(double x) {
   return x > 0 ? x * x * x : 0;
 }
 
-/* Truncated powers of a natural spline (Hastie, Tibshirani and Friedman 2009, eq 5.4), knots evenly
- * over the coordinate's range; the constant is left to the model. */
+static bool smooth_most(const fg_loop_problem *problem, size_t a, size_t b) {
+  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 36;
+}
+
+static size_t most_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 11;
+}
+
+/* Knots at quantiles, so that every piece rests on rows; evenly where quantiles coincide. */
+static void place_knots(const fg_loop_coordinate *at, size_t knots, double *knot) {
+  double width = at->high > at->low ? at->high - at->low : 1;
+  bool distinct = true;
+  for (size_t k = 0; k < knots; k++) {
+    double place = (double)k / (double)(knots - 1) * FG_LOOP_COLUMNS;
+    size_t below = (size_t)fmin(place, FG_LOOP_COLUMNS - 1);
+    double share = place - (double)below;
+    knot[k] = ((1 - share) * at->quantile[below] + share * at->quantile[below + 1] - at->low) / width;
+    if (k > 0 && knot[k] - knot[k - 1] < 0.25 / (double)knots) distinct = false;
+  }
+  for (size_t k = 0; !distinct && k < knots; k++)
+    knot[k] = (double)k / (double)(knots - 1);
+}
+
+/* Truncated powers of a natural spline (Hastie, Tibshirani and Friedman 2009, eq 5.4); the constant
+ * is left to the model. */
 static void spline_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                          const double *shape, double *columns) {
   const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
-  size_t count = candidate->effect->columns(problem, candidate), knots = count + 1;
-  double width = at->high > at->low ? at->high - at->low : 1, last = (double)(knots - 2);
+  size_t count = candidate->effect->columns(problem, candidate), last = count;
+  double knot[FG_LOOP_COLUMNS + 1], width = at->high > at->low ? at->high - at->low : 1;
   (void)shape;
+  place_knots(at, count + 1, knot);
   for (size_t i = 0; i < problem->rows; i++) {
-    double x = fmin(fmax((at->value[i] - at->low) / width, 0), 1) * (double)(knots - 1);
-    double tail = cubed(x - last) - cubed(x - last - 1);
-    columns[i] = x / (double)(knots - 1);
-    for (size_t k = 0; k + 2 < knots; k++) {
-      double d = (cubed(x - (double)k) - cubed(x - last - 1)) / (last + 1 - (double)k);
-      columns[(k + 1) * problem->rows + i] = (d - tail) / 6;
-    }
+    double x = fmin(fmax((at->value[i] - at->low) / width, 0), 1);
+    double end = cubed(x - knot[last]);
+    double tail = (cubed(x - knot[last - 1]) - end) / (knot[last] - knot[last - 1]);
+    columns[i] = x;
+    for (size_t k = 0; k + 1 < last; k++)
+      columns[(k + 1) * problem->rows + i] =
+          (cubed(x - knot[k]) - end) / (knot[last] - knot[k]) - tail;
   }
 }
 
@@ -132,6 +157,13 @@ static const fg_loop_effect curve_effects[] = {
      .words = "a curve over",
      .accepts = smooth_many,
      .columns = many_columns,
+     .basis = spline_basis},
+    {.id = "unattributed.winding",
+     .level = "any",
+     .frame = "coordinate",
+     .words = "a winding curve over",
+     .accepts = smooth_most,
+     .columns = most_columns,
      .basis = spline_basis},
     {.id = "unattributed.wave",
      .level = "any",

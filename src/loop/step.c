@@ -124,11 +124,31 @@ static fg_status sharpen(fg_context *ctx, const loop_run *run, loop_step *step, 
   return FG_OK;
 }
 
+/* Unless another listed effect leaves the curve nothing to explain: levels of a die in turn look
+ * like a wave over the foils. */
+static fg_status right_form(fg_context *ctx, const loop_run *run, const loop_step *step,
+                            size_t curve, size_t *winner, bool *wrong) {
+  double best = -INFINITY;
+  for (size_t c = 0; c < run->candidates; c++) {
+    double p;
+    if (loop_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
+        !(total_p(&step->judgement, c) < bar(run)) || step->stand[c].z <= best)
+      continue;
+    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[c], &step->stand[curve],
+                       &p));
+    if (p <= 0.003) continue;
+    best = step->stand[c].z;
+    *winner = c;
+    *wrong = false;
+  }
+  return FG_OK;
+}
+
 /* The best curve over the winner's coordinate explains what the winner does not: the form is not in
  * the table, whatever its nearest relative. */
 static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_step *step,
-                            size_t winner, size_t *curve, bool *wrong) {
-  const fg_loop_candidate *candidate = &step->stand[winner].candidate;
+                            size_t *winner, size_t *curve, bool *wrong) {
+  const fg_loop_candidate *candidate = &step->stand[*winner].candidate;
   *wrong = false;
   if (candidate->effect->pair || run->has_curve) return FG_OK;
   double best = -INFINITY;
@@ -136,7 +156,7 @@ static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_ste
     double p;
     if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[winner],
+    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[*winner],
                        &step->stand[c], &p));
     if (p > 0.003 || !(total_p(&step->judgement, c) < run->options.accept_p)) continue;
     if (step->stand[c].z > best) {
@@ -145,7 +165,7 @@ static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_ste
       *wrong = true;
     }
   }
-  return FG_OK;
+  return *wrong ? right_form(ctx, run, step, *curve, winner, wrong) : FG_OK;
 }
 
 static fg_status gate(fg_context *ctx, const loop_run *run, const loop_set *with, loop_noise noise,
@@ -168,6 +188,29 @@ static fg_status take_curve(fg_context *ctx, loop_run *run, const loop_step *ste
   run->has_curve = true;
   run->curve_at = step->stand[curve].candidate.a;
   run->curve_p = total_p(&step->judgement, curve);
+  return FG_OK;
+}
+
+/* The curve given, then the next best over the same coordinate: knots are chosen by what predicts. */
+static fg_status take_best_curve(fg_context *ctx, loop_run *run, const loop_step *step, size_t curve,
+                                 bool *accepted) {
+  double below = step->stand[curve].z;
+  size_t coordinate = step->stand[curve].candidate.a, next = curve;
+  while (next < run->candidates) {
+    FG_TRY(take_curve(ctx, run, step, next, accepted));
+    if (*accepted) return FG_OK;
+    double best = -INFINITY;
+    next = run->candidates;
+    for (size_t c = 0; c < run->candidates; c++) {
+      double z = step->stand[c].z;
+      if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != coordinate || !(z < below) ||
+          !(z > best) || !(total_p(&step->judgement, c) < bar(run)))
+        continue;
+      best = z;
+      next = c;
+    }
+    below = best;
+  }
   return FG_OK;
 }
 
@@ -251,7 +294,7 @@ static fg_status second_form(fg_context *ctx, loop_run *run, const loop_step *st
         (best == run->candidates || other.stand[c].z > other.stand[best].z))
       best = c;
   fg_status status = FG_OK;
-  if (best < run->candidates) status = take_curve(ctx, &without, &other, best, accepted);
+  if (best < run->candidates) status = take_best_curve(ctx, &without, &other, best, accepted);
   if (status == FG_OK && *accepted) {
     drop_claim(run, m);
     *run = without;
@@ -267,8 +310,8 @@ static fg_status decide(fg_context *ctx, loop_run *run, loop_step *step, bool *a
     return take_claim(ctx, run, step, winner, accepted);
   if (listed) {
     FG_TRY(sharpen(ctx, run, step, winner));
-    FG_TRY(wrong_form(ctx, run, step, winner, &curve, &wrong));
-    if (wrong) FG_TRY(take_curve(ctx, run, step, curve, accepted));
+    FG_TRY(wrong_form(ctx, run, step, &winner, &curve, &wrong));
+    if (wrong) FG_TRY(take_best_curve(ctx, run, step, curve, accepted));
     if (wrong && *accepted) return FG_OK;
     FG_TRY(loop_simplify(ctx, &step->frame, step_noise(step), step->stand,
                          run->candidates, winner, &winner));
@@ -276,7 +319,7 @@ static fg_status decide(fg_context *ctx, loop_run *run, loop_step *step, bool *a
     if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));
     if (*accepted) return FG_OK;
   }
-  if (best_passing(run, step, true, &curve)) return take_curve(ctx, run, step, curve, accepted);
+  if (best_passing(run, step, true, &curve)) return take_best_curve(ctx, run, step, curve, accepted);
   return FG_OK;
 }
 

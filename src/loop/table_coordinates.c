@@ -60,6 +60,10 @@ void table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate 
     if (at->distinct <= FG_LOOP_COLUMNS) at->few[at->distinct] = sorted[i];
     at->distinct++;
   }
+  for (size_t k = 0; k <= FG_LOOP_COLUMNS; k++) {
+    double at_row = (double)k / FG_LOOP_COLUMNS * (double)(problem->rows - 1);
+    at->quantile[k] = sorted[(size_t)(at_row + 0.5)];
+  }
   free(sorted);
 }
 

@@ -173,7 +173,7 @@ def plateau(x, rng):
     return 1 / (1 + np.exp(-(x - at) / 0.03)) - 1 / (1 + np.exp(-(x - at - 0.3) / 0.03))
 
 
-SHAPES = [hump, two_humps, plateau, triangles]
+SHAPES = [hump, plateau, two_humps, triangles]
 
 
 def write_table(path, layout, y):
@@ -337,8 +337,8 @@ def run_unlisted(job, rng):
     least = smallest(clean, f"table.threshold({column})")
     if least is None:
         return None
-    # a triangle wave over the order is a periodic change, which the table lists
-    shape = SHAPES[job["index"] // 3 % (len(SHAPES) - (column == "run"))]
+    # over the order waves and two humps are (nearly) a periodic change, which the table lists
+    shape = SHAPES[job["index"] // 3 % (2 if column == "run" else len(SHAPES))]
     x = layout["columns"][column]
     f = unit(shape((x - x.min()) / (x.max() - x.min()), rng))
     job["truth"] = f"{shape.__name__}({column})"
