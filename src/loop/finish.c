@@ -171,10 +171,10 @@ exit:
 static fg_status errors(fg_context *ctx, loop_run *run, loop_noise *noise) {
   fg_loop_result *result = run->result;
   loop_set none = {0};
-  loop_noise first;
-  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &none, &first, result->before_fit, NULL,
+  loop_noise first = {0, 0}; /* as its owner would fit it */
+  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &none, false, &first, result->before_fit, NULL,
                       NULL));
-  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, noise, result->after_fit,
+  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
                       result->effect_fit, &result->noise.sd));
   result->noise.rho = noise->rho;
   result->noise.lambda = noise->lambda;

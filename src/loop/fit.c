@@ -211,14 +211,14 @@ static void add_effects(const loop_frame *frame, const loop_fit *fit, double *ef
 }
 
 fg_status loop_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                       const loop_set *set, loop_noise *noise, double *residual, double *effect,
-                       double *sd) {
+                       const loop_set *set, bool choose, loop_noise *noise, double *residual,
+                       double *effect, double *sd) {
   fg_status status = FG_OK;
   loop_frame frame = {0}, all = {0};
   loop_fit fit = {0};
   FG_TRY_EXIT(loop_frame_build(ctx, problem, keep, set, &frame));
   FG_TRY_EXIT(loop_frame_build(ctx, problem, NULL, set, &all));
-  FG_TRY_EXIT(loop_choose_noise(ctx, &frame, noise));
+  if (choose) FG_TRY_EXIT(loop_choose_noise(ctx, &frame, noise));
   FG_TRY_EXIT(loop_least_squares(ctx, &frame, *noise, &fit));
   if (residual) subtract_fit(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);

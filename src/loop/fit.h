@@ -23,10 +23,11 @@ fg_status loop_cross_validated_gain(fg_context *ctx, const fg_loop_problem *prob
                                     loop_noise noise, double *gain, double *standard_error);
 
 /* Fitted on the rows kept, predicted at all: residual of every row of the problem, and the part
- * that the set contributes (either may be NULL). `sd` is of one row. */
+ * that the set contributes (either may be NULL). `sd` is of one row. The noise is the caller's, or
+ * chosen by the data. */
 fg_status loop_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                       const loop_set *set, loop_noise *noise, double *residual, double *effect,
-                       double *sd);
+                       const loop_set *set, bool choose, loop_noise *noise, double *residual,
+                       double *effect, double *sd);
 
 /* Coefficients, amplitudes and uncertainties of the set's claims (one each, in order; the curve at
  * `curve` is left out) and of the declared parameters. */

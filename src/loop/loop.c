@@ -105,7 +105,7 @@ static fg_status search(fg_context *ctx, loop_run *run) {
   bool accepted = true, last = false;
   while (!last && run->result->claims < FG_LOOP_CLAIMS) {
     FG_TRY(loop_accept_one(ctx, run, &accepted, &last));
-    FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, &run->noise, NULL, NULL,
+    FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, &run->noise, NULL, NULL,
                         &run->sd));
     FG_TRY(loop_refine(ctx, run->problem, run->train, run->noise, &run->set));
   }

@@ -75,7 +75,26 @@ static void draw_noise(power_bench *power, loop_noise noise, uint64_t seed) {
   }
 }
 
-/* The first column of the middle version, half range 1. */
+/* The column of which most is left beside the null, whitened: an absorbed part cannot show. */
+static size_t clearest_column(const power_bench *power, size_t count, const double *columns) {
+  const loop_bench *bench = power->bench;
+  size_t n = bench->frame->n, best = 0;
+  double most = -1, *sums = power->effect[0];
+  for (size_t k = 0; k < count; k++) {
+    memcpy(power->white, columns + k * n, n * sizeof *columns);
+    loop_whiten(bench->frame, bench->noise[0], power->white);
+    products(power, 0, power->white, sums);
+    double left = sums[power->width];
+    for (size_t i = 0; i < bench->rank; i++)
+      left -= sums[i] * sums[i];
+    if (left <= most * (1 + 1e-9)) continue;
+    most = left;
+    best = k;
+  }
+  return best;
+}
+
+/* One column of the middle version, half range 1. */
 static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version) {
   const loop_bench *bench = power->bench;
   const loop_frame *frame = bench->frame;
@@ -83,13 +102,14 @@ static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version)
   double low = INFINITY, high = -INFINITY, *f = power->f, *other = power->white + n;
   FG_TRY(loop_gather(ctx, frame, &bench->candidate[bench->version[version].candidate],
                      bench->shape[version], f));
+  const fg_loop_candidate *candidate = &bench->candidate[bench->version[version].candidate];
+  size_t count = loop_candidate_columns(frame->problem, candidate);
+  memmove(f, f + n * clearest_column(power, count, f), n * sizeof *f);
   for (size_t i = 0; i < n; i++) {
     low = fmin(low, f[i]);
     high = fmax(high, f[i]);
   }
-  double scale = bench->candidate[bench->version[version].candidate].effect->from_zero
-                     ? fmax(fabs(low), fabs(high))
-                     : (high - low) / 2;
+  double scale = candidate->effect->from_zero ? fmax(fabs(low), fabs(high)) : (high - low) / 2;
   for (size_t i = 0; i < n; i++)
     f[i] /= scale > 0 ? scale : 1;
   for (size_t j = 0; j < bench->noises; j++) {
