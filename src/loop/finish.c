@@ -176,13 +176,16 @@ static fg_status errors(fg_context *ctx, loop_run *run, loop_noise *noise) {
                       NULL));
   FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
                       result->effect_fit, &result->noise.sd));
+  if (run->set.count == 0) /* nothing found: the same fit, before and after */
+    memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
   result->noise.rho = noise->rho;
   result->noise.lambda = noise->lambda;
   result->noise_floor = result->noise.sd;
   FG_TRY(measure(ctx, run, result->before_fit, &result->before));
   FG_TRY(measure(ctx, run, result->after_fit, &result->after));
   FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
-  FG_TRY(cross_validated(ctx, run, &run->set, *noise, &result->after.cross_validated_rms));
+  FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
+                         &result->after.cross_validated_rms));
   double before = result->before.rms;
   result->ratio_rms = before > 0 ? result->after.rms / before : 1;
   result->ratio_held_out = result->before.held_out_rms > 0
