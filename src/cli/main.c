@@ -9,6 +9,7 @@ static const fg_command commands[] = {
     {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
     {"doe", fg_cmd_doe, "plan an experiment; analyse its runs or scans; the best setting"},
     {"design", fg_cmd_design, "check a design; what follows from it; its clearance curve"},
+    {"loop", fg_cmd_loop, "find the effect that a declared model lacks; error before and after"},
     {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
     {"lot", fg_cmd_lot, "measure and report a production lot; resume it, shard it"},
     {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
