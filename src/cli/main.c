@@ -6,6 +6,7 @@
 static const fg_command commands[] = {
     {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
     {"design", fg_cmd_design, "check a design; what follows from it; its clearance curve"},
+    {"loop", fg_cmd_loop, "find the effect that a declared model lacks; error before and after"},
     {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
     {NULL, NULL, NULL},
 };
