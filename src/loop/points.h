@@ -32,6 +32,8 @@ typedef struct fg_points_row {
   size_t bump_index;   /* in the part's bumps */
   size_t group;        /* bump of a part, land of a view */
   fg_point at;         /* nominal position of the datum line, mm of the scan */
+  fg_point ideal;      /* the same on its circle: fields are taken there, else a dilation of the
+                          picture, which the geometry follows, would leave the residual itself */
   double half_width_mm;
   double s_mm;         /* along the foil, from the lip's side */
   double phi;          /* place in the arc, -1 to 1, towards higher numbers; lands too */

@@ -105,7 +105,7 @@ static size_t field_columns(const fg_points *points, const fg_field_row *field,
   fg_point d[FG_FIELD_COLUMNS];
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
-    field->basis(&points->frame, shape, row->at, d);
+    field->basis(&points->frame, shape, row->ideal, d);
     for (size_t c = 0; c < field->columns; c++)
       columns[c * points->row_count + i] = -(d[c].x * row->normal.x + d[c].y * row->normal.y);
   }

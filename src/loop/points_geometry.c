@@ -115,6 +115,8 @@ void fg_points_residual(fg_points *points, const fg_points_correction *correctio
     row->normal = (fg_point){dx / d, dy / d};
     row->normal_rad = atan2(dy, dx);
     residual[i] = d - circle.radius;
+    row->ideal = (fg_point){row->at.x - residual[i] * row->normal.x,
+                            row->at.y - residual[i] * row->normal.y};
     if (correction && correction->shift_mm) residual[i] -= correction->shift_mm[i];
     place_row(points, row, p);
     if (jacobian) fill_jacobian(points, i, jacobian);

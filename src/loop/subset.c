@@ -6,9 +6,12 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/small_solve.h"
 
-enum { COLUMNS_MOST = 16, RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 40 };
+enum { COLUMNS_MOST = 96, LISTED_MOST = 12, RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 24, REFINE_LEVELS = 4 };
+/* A column whose mean square is less than this beside the geometry is nothing. */
+#define VANISHED 1e-8
 /* A set is right when what it leaves beyond all effects is likelier than this. */
 #define ACCEPT_P 0.001
 /* Error of the edge model, um: effects below it are not told apart. */
@@ -17,13 +20,27 @@ enum { COLUMNS_MOST = 16, RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 4
  * places stands for ln of their number more. */
 #define SHAPED_CHI2 45.0
 #define SHAPED_LEAST_UM 0.15
+/* Rows this far off are left out, if they are fewer than this share. */
+#define OUTLIER_SIGMAS 5.0
+#define OUTLIER_SHARE 0.02
 
 static const fg_subset_effect smooth[] = {
-    {"scan.scale_y", 1, 0, {0}},           {"scan.shear", 1, 0, {0}},
-    {"scan.optical_quadratic", 1, 0, {0}}, {"scan.optical_cubic", 1, 0, {0}},
-    {"scan.carriage_quadratic", 1, 0, {0}}, {"part.ovality", 2, 0, {0}},
-    {"part.spiral", 1, 0, {0}},            {"part.bump_crown", 1, 0, {0}},
-    {"part.bump_skew", 1, 0, {0}},
+    {.id = "scan.scale_y", .columns = 1},
+    {.id = "scan.shear", .columns = 1},
+    {.id = "scan.optical_quadratic", .columns = 1},
+    {.id = "scan.optical_cubic", .columns = 1},
+    {.id = "scan.carriage_quadratic", .columns = 1},
+    {.id = "part.ovality", .columns = 2},
+    {.id = "part.spiral", .columns = 1},
+    {.id = "part.bump_crown", .columns = 1},
+    {.id = "part.bump_skew", .columns = 1},
+    {.id = "free.scan.x.dx", .columns = 12, .free = true},
+    {.id = "free.scan.x.dy", .columns = 12, .free = true},
+    {.id = "free.scan.y.dx", .columns = 12, .free = true},
+    {.id = "free.scan.y.dy", .columns = 12, .free = true},
+    {.id = "free.foil.s", .columns = 10, .free = true},
+    {.id = "free.bump.phi", .columns = 6, .free = true},
+    {.id = "free.edge.normal", .columns = 6, .free = true},
 };
 
 typedef struct search {
@@ -36,6 +53,8 @@ typedef struct search {
   double *columns;      /* COLUMNS_MOST × rows: effects beside the geometry */
   size_t column_count, first_column[FG_SUBSET_EFFECTS];
   double *work;         /* FG_LOOP_COLUMNS × all rows */
+  double full;          /* residual sum beside everything, and the columns that took it */
+  size_t full_rank;
   fg_subset *out;
 } search;
 
@@ -53,13 +72,13 @@ static void take_out(const search *s, size_t rank, double *v) {
     }
 }
 
-/* Adds v to the basis unless it lies in it already. */
-static bool extend(search *s, size_t rank, const double *v) {
+/* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
+static bool extend(search *s, size_t rank, const double *v, double least) {
   double *to = s->basis + rank * s->rows, whole = dot(s->rows, v, v);
   memcpy(to, v, s->rows * sizeof *to);
   take_out(s, rank, to);
   double left = dot(s->rows, to, to);
-  if (!(left > 1e-14 * whole)) return false;
+  if (!(left > fmax(1e-12 * whole, least))) return false;
   for (size_t i = 0; i < s->rows; i++) to[i] /= sqrt(left);
   return true;
 }
@@ -101,8 +120,10 @@ static double residual_sum(const search *s, unsigned mask, double *freedom,
   fg_normal_equations system;
   size_t index[FG_SMALL_MAX], n = 0;
   for (size_t e = 0; e < s->out->effect_count; e++)
-    for (size_t c = 0; (mask >> e & 1) && c < s->out->effects[e].columns && n < FG_SMALL_MAX; c++)
-      index[n++] = s->first_column[e] + c;
+    for (size_t c = 0; (mask >> e & 1) && c < s->out->effects[e].columns && n < FG_SMALL_MAX; c++) {
+      const double *p = s->columns + (s->first_column[e] + c) * s->rows;
+      if (dot(s->rows, p, p) > VANISHED * (double)s->rows) index[n++] = s->first_column[e] + c;
+    }
   fg_normal_clear(&system, n);
   double sum = dot(s->rows, s->residual, s->residual), x[FG_SMALL_MAX];
   double inverse[FG_SMALL_MAX][FG_SMALL_MAX], scale[FG_SMALL_MAX];
@@ -143,10 +164,12 @@ static double find_integral(const search *s, const double *left) {
 static size_t find_noise(search *s, double *left) {
   size_t rank = s->geometry_rank;
   for (size_t c = 0; c < s->column_count; c++)
-    if (extend(s, rank, s->columns + c * s->rows)) rank++;
+    if (extend(s, rank, s->columns + c * s->rows, VANISHED * (double)s->rows)) rank++;
   memcpy(left, s->residual, s->rows * sizeof *left);
   take_out(s, rank, left);
   double freedom = fmax((double)s->rows - (double)rank, 1);
+  s->full = dot(s->rows, left, left);
+  s->full_rank = rank - s->geometry_rank;
   s->out->noise_um = sqrt(dot(s->rows, left, left) / freedom);
   s->out->integral = find_integral(s, left);
   return rank;
@@ -193,13 +216,18 @@ static bool find_shaped(search *s, size_t rank, const double *left, const fg_sub
   }
   double low = start(s->points, which > 0 ? which - 1 : 0, count);
   double high = start(s->points, which + 1 < count ? which + 1 : which, count);
-  for (size_t i = 0; i <= REFINE_STEPS && best > 0; i++) {
-    double place = low + (high - low) * (double)i / REFINE_STEPS;
-    double gain = shaped_gain(s, rank, left, effect->id, place, columns, &amplitude);
-    if (gain <= best) continue;
-    best = gain;
-    at = place;
-    size = amplitude;
+  for (int level = 0; level < REFINE_LEVELS && best > 0; level++) {
+    double step = (high - low) / REFINE_STEPS;
+    for (size_t i = 0; i <= REFINE_STEPS; i++) {
+      double place = low + step * (double)i;
+      double gain = shaped_gain(s, rank, left, effect->id, place, columns, &amplitude);
+      if (gain <= best) continue;
+      best = gain;
+      at = place;
+      size = amplitude;
+    }
+    low = at - step;
+    high = at + step;
   }
   *found = *effect;
   found->shape[0] = at;
@@ -219,8 +247,8 @@ static double step_place(const fg_points *points, size_t i, size_t count) {
 
 /* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. */
 static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
-  static const fg_subset_effect ripple = {"scan.carriage_ripple", 2, 1, {0}};
-  static const fg_subset_effect step = {"scan.row_step", 1, 1, {0}};
+  static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
+  static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
   double *columns = NULL;
   FG_TRY(fg_memory_allocate(ctx, s->rows, 2 * sizeof *columns, (void **)&columns));
   for (int round = 0; round < 2 && s->out->effect_count < FG_SUBSET_EFFECTS; round++) {
@@ -255,34 +283,84 @@ static void keep_member(fg_subset *out, fg_subset_member member) {
   out->members[at] = member;
 }
 
-/* All sets by size; the first size with one that is right ends the search. When none is, the best
- * of the largest size stands, and something is left for the free curves. */
+static unsigned mask_of(const fg_subset *out, bool of_free) {
+  unsigned mask = 0;
+  for (size_t e = 0; e < out->effect_count; e++)
+    if (out->effects[e].free == of_free) mask |= 1u << e;
+  return mask;
+}
+
+/* What the search compares with: everything at once. */
+typedef struct yardstick {
+  double full, freedom, unit, allowance;
+} yardstick;
+
+static fg_subset_member try_set(const search *s, const yardstick *y, unsigned mask) {
+  double used, left = residual_sum(s, mask, &used, NULL);
+  return (fg_subset_member){mask, fmax(0, left - y->full) / y->unit, y->freedom - used};
+}
+
+static bool is_right(const yardstick *y, const fg_subset_member *m) {
+  return m->excess <= (m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0) + y->allowance;
+}
+
+/* Listed sets by size; the first size with one that is right ends the search. */
+static fg_subset_member try_listed(search *s, const yardstick *y, size_t most) {
+  unsigned listed = mask_of(s->out, false);
+  fg_subset_member best = {0, INFINITY, 0};
+  for (size_t size = 0; size <= most && !s->out->member_count; size++)
+    for (unsigned mask = 0; mask <= listed; mask++) {
+      if ((mask & ~listed) || bits(mask) != size) continue;
+      fg_subset_member member = try_set(s, y, mask);
+      if (is_right(y, &member)) keep_member(s->out, member);
+      if (member.excess < best.excess - 12) best = member;
+    }
+  return best;
+}
+
+/* A free curve, alone or beside one listed effect: the one that leaves least for its columns
+ * (Schwarz's criterion); the best listed set stands when none does better. */
+static void try_free(search *s, const yardstick *y, fg_subset_member best) {
+  fg_subset *out = s->out;
+  double price = log((double)s->rows / out->integral);
+  double score = best.excess - price * best.freedom;
+  for (size_t e = 0; e < out->effect_count; e++)
+    for (size_t with = 0; with <= out->effect_count && out->effects[e].free; with++) {
+      if (with < out->effect_count && out->effects[with].free) continue;
+      unsigned mask = 1u << e | (with < out->effect_count ? 1u << with : 0);
+      fg_subset_member member = try_set(s, y, mask);
+      if (member.excess - price * member.freedom >= score - 10) continue;
+      score = member.excess - price * member.freedom;
+      best = member;
+    }
+  out->right = is_right(y, &best);
+  keep_member(out, best);
+}
+
+static bool scanned_again(const fg_points *points) {
+  return points->view_count > points->part_count;
+}
+
 static void try_sets(search *s) {
   fg_subset *out = s->out;
-  unsigned all = (1u << out->effect_count) - 1;
-  double whole, full = residual_sum(s, all, &whole, NULL);
-  double unit = out->noise_um * out->noise_um * out->integral;
-  double allowance = (double)s->rows * EDGE_ERROR_UM * EDGE_ERROR_UM / unit;
-  fg_subset_member best = {0, INFINITY, 0};
-  for (size_t size = 0; size <= FG_SUBSET_MOST && !out->member_count; size++)
-    for (unsigned mask = 0; mask <= all; mask++) {
-      if (bits(mask) != size) continue;
-      double used, left = residual_sum(s, mask, &used, NULL);
-      fg_subset_member member = {mask, fmax(0, left - full) / unit, whole - used};
-      double limit = whole > used ? gsl_cdf_chisq_Qinv(ACCEPT_P, whole - used) : 0;
-      if (member.excess <= limit + allowance) keep_member(out, member);
-      if (member.excess < best.excess) best = member;
-    }
-  if (!out->member_count) keep_member(out, best);
+  yardstick y = {.unit = out->noise_um * out->noise_um * out->integral};
+  y.full = s->full;
+  y.freedom = (double)s->full_rank;
+  y.allowance = (double)s->rows * EDGE_ERROR_UM * EDGE_ERROR_UM / y.unit;
+  fg_subset_member best = try_listed(s, &y, scanned_again(s->points) ? 3 : 2);
+  out->right = out->member_count > 0;
+  if (!out->member_count) try_free(s, &y, best);
   double used, none = residual_sum(s, 0, &used, NULL);
-  out->p_value = gsl_cdf_chisq_Q(fmax(0, none - full) / unit / (1 + allowance / whole), whole);
+  out->p_value = gsl_cdf_chisq_Q(fmax(0, none - y.full) / y.unit / (1 + y.allowance / y.freedom),
+                                 y.freedom);
   for (size_t e = 0; e < out->effect_count; e++) {
     double u = 0;
     unsigned lone = 1u << e;
     out->alone[e] = 1 - residual_sum(s, lone, &used, NULL) / none;
+    if (out->effects[e].free) continue;
     /* Three and a half standard deviations beside the winner: found in most cases. */
-    residual_sum(s, (out->members[0].mask & ~lone) | lone, &used, &u);
-    out->smallest_um[e] = 3.5 * sqrt(unit) * u;
+    residual_sum(s, (out->members[0].mask & mask_of(out, false) & ~lone) | lone, &used, &u);
+    out->smallest_um[e] = 3.5 * sqrt(y.unit) * u;
   }
 }
 
@@ -307,7 +385,7 @@ static fg_status span_geometry(fg_context *ctx, search *s, const double *residua
   for (size_t a = 0; a < points->parameters; a++) {
     for (size_t i = 0; i < s->rows; i++)
       column[i] = weight_of(s, i) * jacobian[a * points->row_count + s->row[i]];
-    if (dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column)) s->geometry_rank++;
+    if (dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0)) s->geometry_rank++;
   }
   for (size_t i = 0; i < s->rows; i++) s->residual[i] = weight_of(s, i) * residual_um[s->row[i]];
   take_out(s, s->geometry_rank, s->residual);
@@ -317,14 +395,15 @@ static fg_status span_geometry(fg_context *ctx, search *s, const double *residua
 static void add_known(search *s, const fg_scan_set *known) {
   for (size_t e = 0; known && e < known->count; e++) {
     const fg_scan_effect *from = &known->effects[e];
-    fg_subset_effect effect = {from->id, from->columns, from->shapes, {0}};
+    fg_subset_effect effect = {.id = from->id, .columns = from->columns, .shapes = from->shapes};
     memcpy(effect.shape, from->shape, sizeof effect.shape);
     if (from->shapes && s->out->effect_count < FG_SUBSET_EFFECTS) add_effect(s, &effect);
   }
 }
 
 fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double *residual_um,
-                         const double *jacobian, const fg_scan_set *known, fg_subset *subset) {
+                         const double *jacobian, const fg_scan_set *known, bool look,
+                         fg_subset *subset) {
   memset(subset, 0, sizeof *subset);
   search s = {.points = points, .out = subset};
   double *left = NULL;
@@ -334,7 +413,8 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double 
   FG_TRY_EXIT(fg_memory_allocate(ctx, s.rows, sizeof *left, (void **)&left));
   for (size_t e = 0; e < sizeof smooth / sizeof smooth[0]; e++) add_effect(&s, &smooth[e]);
   add_known(&s, known);
-  FG_TRY_EXIT(find_shaped_effects(ctx, &s, left));
+  if (look) FG_TRY_EXIT(find_shaped_effects(ctx, &s, left));
+  else find_noise(&s, left);
   try_sets(&s);
 exit:
   free(s.row);
@@ -399,9 +479,27 @@ exit:
   return status;
 }
 
+/* Rows far outside what the set leaves elsewhere are no effect of the scanner or the part: an arc
+ * that reached into its fillet, a burr. They lose their weight; should there be many, they are no
+ * outliers. */
+static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double *residual_um) {
+  double *absolute = NULL;
+  size_t n = 0, out = 0, rows = points->row_count;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *absolute, (void **)&absolute));
+  for (size_t i = 0; i < rows; i++)
+    if (points->rows[i].weight > 0) absolute[n++] = fabs(residual_um[i]);
+  double limit = n ? OUTLIER_SIGMAS * 1.4826 * fg_select(absolute, n, n / 2) : INFINITY;
+  free(absolute);
+  for (size_t i = 0; i < rows; i++) out += fabs(residual_um[i]) > limit;
+  if ((double)out > OUTLIER_SHARE * (double)rows) return FG_OK;
+  for (size_t i = 0; i < rows; i++)
+    if (fabs(residual_um[i]) > limit) points->rows[i].weight = 0;
+  return FG_OK;
+}
+
 fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
                            fg_subset *subset, double *residual_um) {
-  enum { ROUNDS = 4 };
+  enum { ROUNDS = 6 };
   double *jacobian = NULL;
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
@@ -411,13 +509,14 @@ fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
   for (int round = 0; round < ROUNDS; round++) {
     fg_scan_set next;
     FG_TRY_EXIT(put_back(ctx, points, set, residual_um, jacobian));
-    FG_TRY_EXIT(fg_subset_find(ctx, points, residual_um, jacobian, set, subset));
+    FG_TRY_EXIT(fg_subset_find(ctx, points, residual_um, jacobian, set, round > 0, subset));
     fg_subset_take(subset, 0, &next);
     bool settled = same_effects(set, &next);
     keep_numbers(set, &next);
     *set = next;
     FG_TRY_EXIT(fg_scan_refit(ctx, points, set, residual_um));
-    if (settled) break;
+    FG_TRY_EXIT(drop_outliers(ctx, points, residual_um));
+    if (settled && round > 0) break;
   }
 exit:
   free(jacobian);
