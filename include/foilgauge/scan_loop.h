@@ -32,7 +32,6 @@ typedef struct fg_scan_effect {
   size_t columns, shapes;
   double coefficient_um[FG_LOOP_COLUMNS], u_coefficient_um[FG_LOOP_COLUMNS];
   double shape[FG_LOOP_SHAPES], u_shape[FG_LOOP_SHAPES];
-  size_t claim; /* index into the engine's claims; >= FG_LOOP_CLAIMS: unattributed */
 } fg_scan_effect;
 
 /* Lowest and highest value of a dimension over the tied explanations. */

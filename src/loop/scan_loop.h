@@ -5,12 +5,7 @@
 #include "foilgauge/scan_loop.h"
 #include "loop/points.h"
 #include "loop/points_effects.h"
-
-/* Effects in force, with the noise that is left. */
-typedef struct fg_scan_set {
-  fg_scan_effect effects[FG_SCAN_EFFECTS];
-  size_t count;
-} fg_scan_set;
+#include "loop/subset.h"
 
 struct fg_scan_loop {
   fg_scan_loop_options options;
@@ -18,12 +13,9 @@ struct fg_scan_loop {
   bool *hold_out;
   size_t scan_count;
   fg_points points;      /* all views; geometry of the final model */
-  fg_loop_result engine; /* of the listed effects */
-  fg_loop_result free_engine; /* of the free curves */
-  bool has_free;
-  fg_scan_set set;
+  fg_subset subset;      /* what was tried, and the class of what explains */
+  fg_scan_set set;       /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of points */
-  double *effect_um;     /* what the set does, per row */
   fg_scan_error error_before, error_after;
   double noise_floor_um;
   bool tied;

@@ -1,4 +1,4 @@
-#include "loop/subset.h"
+#include "loop/scan_loop.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
@@ -55,6 +55,7 @@ typedef struct search {
   double *work;         /* FG_LOOP_COLUMNS × all rows */
   double full;          /* residual sum beside everything, and the columns that took it */
   size_t full_rank;
+  size_t new_shapes;    /* ripples and steps that were found in this round */
   fg_subset *out;
 } search;
 
@@ -254,13 +255,11 @@ static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
   for (int round = 0; round < 2 && s->out->effect_count < FG_SUBSET_EFFECTS; round++) {
     size_t rank = find_noise(s, left);
     fg_subset_effect found;
-    if (find_shaped(s, rank, left, &ripple, ripple_period, RIPPLE_STEPS, columns, &found)) {
-      add_effect(s, &found);
-    } else if (find_shaped(s, rank, left, &step, step_place, STEP_STEPS, columns, &found)) {
-      add_effect(s, &found);
-    } else {
+    if (!find_shaped(s, rank, left, &ripple, ripple_period, RIPPLE_STEPS, columns, &found) &&
+        !find_shaped(s, rank, left, &step, step_place, STEP_STEPS, columns, &found))
       break;
-    }
+    add_effect(s, &found);
+    s->new_shapes++;
   }
   find_noise(s, left);
   free(columns);
@@ -349,6 +348,8 @@ static void try_sets(search *s) {
   y.allowance = (double)s->rows * EDGE_ERROR_UM * EDGE_ERROR_UM / y.unit;
   fg_subset_member best = try_listed(s, &y, scanned_again(s->points) ? 3 : 2);
   out->right = out->member_count > 0;
+  /* A ripple or step that was found just now has not been fitted with the geometry yet. */
+  if (!out->member_count && s->new_shapes) keep_member(out, best);
   if (!out->member_count) try_free(s, &y, best);
   double used, none = residual_sum(s, 0, &used, NULL);
   out->p_value = gsl_cdf_chisq_Q(fmax(0, none - y.full) / y.unit / (1 + y.allowance / y.freedom),

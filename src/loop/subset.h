@@ -10,7 +10,14 @@
 #ifndef FG_LOOP_SUBSET_H
 #define FG_LOOP_SUBSET_H
 
-#include "loop/scan_loop.h"
+#include "foilgauge/scan_loop.h"
+#include "loop/points.h"
+
+/* Effects in force. */
+typedef struct fg_scan_set {
+  fg_scan_effect effects[FG_SCAN_EFFECTS];
+  size_t count;
+} fg_scan_set;
 
 enum { FG_SUBSET_EFFECTS = 20, FG_SUBSET_CLASS = 8 };
 
