@@ -17,6 +17,7 @@ fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_render;
 fg_command_run fg_cmd_loop;
+fg_command_run fg_cmd_loop_scan; /* `loop` without --table */
 
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);
