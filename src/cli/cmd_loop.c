@@ -230,7 +230,15 @@ exit:
   return status;
 }
 
+/* The loop on a table, or on scans (cmd_loop_scan.c). */
+static bool is_about_a_table(int argc, char **argv) {
+  for (int i = 1; i < argc; i++)
+    if (!strncmp(argv[i], "--table", 7)) return true;
+  return false;
+}
+
 int fg_cmd_loop(int argc, char **argv) {
+  if (!is_about_a_table(argc, argv)) return fg_cmd_loop_scan(argc, argv);
   static const struct argp parser = {options, parse_option, "", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
   loop_arguments arguments = {.spec = {.seed = 1}};

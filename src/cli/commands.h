@@ -19,6 +19,7 @@ fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_render;
 fg_command_run fg_cmd_loop;
+fg_command_run fg_cmd_loop_scan; /* `loop` without --table */
 fg_command_run fg_cmd_lot;
 fg_command_run fg_cmd_merge;
 

@@ -222,6 +222,8 @@ static fg_status advise_one(fg_context *ctx, loop_run *run, size_t m, fg_loop_ad
 
 fg_status loop_advise(fg_context *ctx, loop_run *run) {
   fg_loop_result *result = run->result;
+  /* Points are not had by repeating rows: their advice is another scan. */
+  if (!strcmp(run->problem->level, "points")) return FG_OK;
   for (size_t m = 0; m < result->claims; m++)
     if (result->claim[m].aliases)
       FG_TRY(advise_one(ctx, run, m, &result->advice[result->advices++]));
