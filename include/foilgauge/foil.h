@@ -14,6 +14,7 @@
 
 #include "foilgauge/circle.h"
 #include "foilgauge/design.h"
+#include "foilgauge/scan.h"
 #include "foilgauge/strip.h"
 
 #ifdef __cplusplus
@@ -104,6 +105,7 @@ typedef enum fg_orientation {
 
 typedef struct fg_foil {
   int number;                /* reading order in the scan, from 1 */
+  double place_mm[4];        /* the box that holds it in the scan: x, y, width, height */
   unsigned flags;            /* fg_foil_flag */
   char error[256];           /* why it was not measured; empty when it was */
   fg_orientation orientation;
@@ -150,6 +152,10 @@ typedef struct fg_measurement {
   int bit_depth;
   double dpi[2];              /* used, x and y */
   double dpi_file[2];         /* as the file says, before it was snapped; NaN without */
+  char format[8];             /* "PNG", "TIFF", "PNM" */
+  bool colour;                /* the scan holds colours */
+  fg_channel channel;         /* what of them was measured */
+  char warning[256];          /* what is odd about the file; empty when nothing is */
   fg_design design;
   fg_nominal nominal;
   bool light_on_dark;

@@ -165,7 +165,8 @@ int fg_cmd_design(int argc, char **argv) {
   fg_context ctx = {0};
   design_arguments arguments = {0};
   argv[0] = (char[]){"foilgauge design"};
-  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
+  if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = show_design(&ctx, &arguments);
   return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
 }

@@ -5,9 +5,11 @@
 
 #include "cli/commands.h"
 #include "cli/output_set.h"
+#include "cli/progress.h"
 #include "core/memory.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/report.h"
+#include "report/words.h"
 
 /* What the command can write, in the order of writing. */
 typedef enum output_kind {
@@ -31,8 +33,7 @@ static report_writer *const writers[OUT_COUNT] = {
 typedef struct measure_arguments {
   const char *design_path;
   const char *form;
-  double dpi;
-  unsigned threads;
+  fg_measure_options options;
   char **scans; /* of argv */
   size_t scan_count;
 } measure_arguments;
@@ -56,25 +57,37 @@ enum {
   OPTION_HTML,
   OPTION_DPI,
   OPTION_FORM,
-  OPTION_THREADS
+  OPTION_THREADS,
+  OPTION_CHANNEL,
+  OPTION_ALLOW_LOSSY,
+  OPTION_MAX_PIXELS,
+  OPTION_MAX_MEMORY
 };
 
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
     {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
+    {"channel", OPTION_CHANNEL, "CHANNEL", 0,
+     "Of a colour scan: red, green, blue, luminance, or auto: the one with the most contrast, which "
+     "takes a second reading (default: auto)",
+     0},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, "Take a TIFF with JPEG inside, edges and all", 0},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 1},
     {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
     {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},
     {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
     {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
+    {"max-pixels", OPTION_MAX_PIXELS, "N", 0, "Refuse larger scans (default: 4e9)", 2},
+    {"max-memory", OPTION_MAX_MEMORY, "MIB", 0,
+     "Stop when the scan's rows and foils take more memory (default: 2048)", 2},
     {0},
 };
 
 static const char doc[] =
     "Measure every foil in a scan: radii, angles, heights, clearances, each with its uncertainty."
-    "\vSCAN is a PNG file, or - for standard input. Without -o the results go to standard "
+    "\vSCAN is a PNG, TIFF or PNM file, or - for standard input. Without -o the results go to standard "
     "output: as a table on a terminal, else as JSON.\n\n"
     "Exit code: 0 done and within tolerance; 1 out of tolerance; 2 something could not be "
     "measured; 64 usage; 65 bad data; 74 input or output.";
@@ -86,6 +99,13 @@ static double parse_number(struct argp_state *state, const char *name, const cha
   if (end == text || *end || !(value >= lowest && value <= highest))
     argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
   return value;
+}
+
+static fg_channel parse_channel(struct argp_state *state, const char *text) {
+  for (int channel = FG_CHANNEL_AUTO; channel <= FG_CHANNEL_LUMINANCE; channel++)
+    if (!strcmp(text, fg_channel_word((fg_channel)channel))) return (fg_channel)channel;
+  argp_error(state, "--channel: '%s' is none of auto, red, green, blue, luminance", text);
+  return FG_CHANNEL_AUTO;
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
@@ -114,10 +134,23 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     arguments->form = text;
     break;
   case OPTION_DPI:
-    arguments->dpi = parse_number(state, "dpi", text, 1, 1e6);
+    arguments->options.dpi = parse_number(state, "dpi", text, 1, 1e6);
     break;
   case OPTION_THREADS:
-    arguments->threads = (unsigned)parse_number(state, "threads", text, 1, 1024);
+    arguments->options.threads = (unsigned)parse_number(state, "threads", text, 1, 1024);
+    break;
+  case OPTION_CHANNEL:
+    arguments->options.channel = parse_channel(state, text);
+    break;
+  case OPTION_ALLOW_LOSSY:
+    arguments->options.allow_lossy = true;
+    break;
+  case OPTION_MAX_PIXELS:
+    arguments->options.pixel_cap = (uint64_t)parse_number(state, "max-pixels", text, 1, 1e15);
+    break;
+  case OPTION_MAX_MEMORY:
+    arguments->options.memory_cap =
+        (size_t)parse_number(state, "max-memory", text, 1, 1 << 24) << 20;
     break;
   case ARGP_KEY_ARGS:
     arguments->scans = state->argv + state->next;
@@ -213,15 +246,21 @@ static void tell_failures(const fg_measurement *measurement) {
 
 /* A scan that fails is reported; only what stops everything is an error here. */
 static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
-  const fg_measure_options options_of_scan = {.dpi = run->arguments.dpi,
-                                              .threads = run->arguments.threads};
+  fg_measure_options options_of_scan = run->arguments.options;
+  fg_progress progress;
   const char *path = run->arguments.scans[index];
   fg_report_scan *scan = &run->scans[index];
+  fg_progress_begin(&progress, path);
+  options_of_scan.progress = fg_progress_show;
+  options_of_scan.progress_user = &progress;
   fg_status status =
       fg_measure_scan(ctx, path, &run->design, &options_of_scan, &run->measurements[index]);
+  fg_progress_end(&progress);
   scan->path = path;
   if (status == FG_OK) {
     scan->measurement = &run->measurements[index];
+    if (run->measurements[index].warning[0])
+      fprintf(stderr, "foilgauge: %s: note: %s\n", path, run->measurements[index].warning);
     for (size_t i = 0; i < run->measurements[index].foil_count; i++)
       fg_foil_judge(&run->design, &run->measurements[index].foils[i]);
     tell_failures(&run->measurements[index]);
@@ -275,8 +314,8 @@ static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   FG_TRY(load_design(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));
-  FG_TRY(fg_output_set_write(ctx, &run->outputs, write_output, run));
-  return outcome_code(ctx, run, code);
+  FG_TRY(outcome_code(ctx, run, code)); /* first: it can fail, and files that are written stay */
+  return fg_output_set_write(ctx, &run->outputs, write_output, run);
 }
 
 int fg_cmd_measure(int argc, char **argv) {
@@ -285,7 +324,8 @@ int fg_cmd_measure(int argc, char **argv) {
   measure_run run = {.outputs.count = OUT_COUNT};
   int code = 0;
   argv[0] = (char[]){"foilgauge measure"};
-  argp_parse(&parser, argc, argv, 0, NULL, &run);
+  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &run);
+  if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = measure(&ctx, &run, &code);
   free_run(&run);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);

@@ -49,7 +49,8 @@ int fg_cmd_render(int argc, char **argv) {
   fg_context ctx = {0};
   fg_render_spec *spec = NULL;
   argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
-  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
+  if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = fg_render_load(&ctx, arguments.spec, &spec);
   if (status == FG_OK) status = fg_render_scan(&ctx, spec, arguments.scan, arguments.truth);
   fg_render_free(spec);

@@ -18,8 +18,17 @@ fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
 fg_command_run fg_cmd_render;
+fg_command_run fg_cmd_loop;
+fg_command_run fg_cmd_loop_scan; /* `loop` without --table */
 fg_command_run fg_cmd_lot;
 fg_command_run fg_cmd_merge;
+
+struct argp;
+
+/* Reads the command line into `input`. A wrong one ends the program (argp, exit code 64);
+ * FG_ERR_MEMORY when argp has no memory, which it says by its return value alone. */
+fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                       void *input);
 
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);

@@ -4,6 +4,7 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -17,6 +18,7 @@ typedef struct fg_interrupt {
   size_t count;
   sigset_t signals, before;
   pthread_t thread;
+  atomic_bool stopping;
   bool running;
 } fg_interrupt;
 

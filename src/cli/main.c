@@ -1,3 +1,5 @@
+#include <argp.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -7,6 +9,7 @@ static const fg_command commands[] = {
     {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
     {"doe", fg_cmd_doe, "plan an experiment; analyse its runs or scans; the best setting"},
     {"design", fg_cmd_design, "check a design; what follows from it; its clearance curve"},
+    {"loop", fg_cmd_loop, "find the effect that a declared model lacks; error before and after"},
     {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
     {"lot", fg_cmd_lot, "measure and report a production lot; resume it, shard it"},
     {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
@@ -16,6 +19,12 @@ static const fg_command commands[] = {
 int fg_cli_fail(const fg_context *ctx, fg_status status) {
   fprintf(stderr, "foilgauge: %s\n", ctx->message);
   return fg_status_exit_code(status);
+}
+
+fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                       void *input) {
+  if (argp_parse(parser, argc, argv, 0, NULL, input) == 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
 }
 
 static void print_help(FILE *out) {
@@ -28,6 +37,8 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+  /* Else every thread reserves 64 MiB of address space for itself, which counts where that is limited. */
+  mallopt(M_ARENA_MAX, 2);
   if (argc < 2) {
     print_help(stderr);
     return fg_status_exit_code(FG_ERR_USAGE);

@@ -16,13 +16,16 @@ static void *run_anywhere(void *argument) {
   return thread->run(thread->argument);
 }
 
-/* Attributes that keep a thread off the caller's core at its start. False: no other core. */
+/* What a worker needs, many times over; the usual 8 MiB count where address space is limited. */
+#define STACK_BYTES ((size_t)2 << 20)
+
+/* Keeps a thread off the caller's core at its start. False: no other core. */
 static bool avoid_this_core(pthread_attr_t *attributes) {
   cpu_set_t set;
   int here = sched_getcpu();
   if (here < 0 || pthread_getaffinity_np(pthread_self(), sizeof set, &set) != 0) return false;
   CPU_CLR((size_t)here, &set);
-  return CPU_COUNT(&set) > 0 && pthread_attr_init(attributes) == 0 &&
+  return CPU_COUNT(&set) > 0 &&
          pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0;
 }
 
@@ -30,12 +33,18 @@ fg_status fg_thread_start(fg_thread *thread, void *(*run)(void *), void *argumen
   pthread_attr_t attributes;
   thread->run = run;
   thread->argument = argument;
-  if (avoid_this_core(&attributes)) {
-    int failed = pthread_create(&thread->handle, &attributes, run_anywhere, thread);
-    pthread_attr_destroy(&attributes);
-    if (!failed) return FG_OK;
-  }
-  return pthread_create(&thread->handle, NULL, run, argument) == 0 ? FG_OK : FG_ERR_MEMORY;
+  if (pthread_attr_init(&attributes) != 0) return FG_ERR_MEMORY;
+  pthread_attr_setstacksize(&attributes, STACK_BYTES);
+  int failed = 1;
+  if (avoid_this_core(&attributes))
+    failed = pthread_create(&thread->handle, &attributes, run_anywhere, thread);
+  pthread_attr_destroy(&attributes);
+  if (!failed) return FG_OK;
+  if (pthread_attr_init(&attributes) != 0) return FG_ERR_MEMORY;
+  pthread_attr_setstacksize(&attributes, STACK_BYTES);
+  failed = pthread_create(&thread->handle, &attributes, run, argument);
+  pthread_attr_destroy(&attributes);
+  return failed ? FG_ERR_MEMORY : FG_OK;
 }
 
 void fg_thread_join(fg_thread *thread) {

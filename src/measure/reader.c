@@ -122,12 +122,13 @@ static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
 }
 
 fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,
-                        fg_tiles *tiles, char sha256[65]) {
+                        fg_budget *budget, fg_tiles *tiles, char sha256[65]) {
   const fg_scan_info *info = fg_scan_get_info(scan);
   ring r = {.scan = scan, .tiles = tiles, .visit = visit, .data = data,
             .lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
   memset(tiles, 0, sizeof *tiles);
-  FG_TRY(fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, tiles));
+  FG_TRY(fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, budget,
+                         tiles));
   fg_status status = run_with_digest(ctx, &r, sha256);
   pthread_mutex_destroy(&r.lock);
   pthread_cond_destroy(&r.changed);

@@ -11,6 +11,6 @@ typedef fg_status fg_reader_visit(fg_context *ctx, fg_tiles *tiles, void *data);
 /* Reads the whole scan into `tiles` (created here; the caller frees them), and its SHA-256. The
  * tiles do not depend on threads: strips are taken in order. */
 fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,
-                        fg_tiles *tiles, char sha256[65]);
+                        fg_budget *budget, fg_tiles *tiles, char sha256[65]);
 
 #endif

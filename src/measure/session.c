@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "measure/place.h"
 #include "vision/edges.h"
 #include "vision/segment.h"
 #include "vision/trace.h"
@@ -19,17 +20,28 @@ enum { WORKERS_MAX = 63 };
  * and some other thing (a scratch, a hair) when it is not. */
 #define WIDTH_FACTOR 1.6
 
+/* The reader helps when islands wait with more than this: workers that fall behind would otherwise
+ * fill the memory with tiles. */
+#define WAITING_BYTES_MOST ((size_t)32 << 20)
+
+/* An island on its way through a worker. */
+typedef struct job {
+  fg_island island;
+  fg_tiles view;
+  int64_t origin_px[2];
+} job;
+
 struct fg_session {
   fg_measurement *measurement;
-  fg_tiles *tiles;
   fg_islands *islands;
   unsigned threads;
   fg_thread workers[WORKERS_MAX];
   unsigned worker_count;
   pthread_mutex_t lock; /* of everything below */
   pthread_cond_t changed;
-  fg_island *queue;
-  size_t queued, queue_capacity, taken, done;
+  job *queue;
+  size_t queued, queue_capacity, taken;
+  size_t waiting_bytes; /* of the jobs that are queued and not taken */
   bool ended; /* nothing more will be queued */
   fg_status status;
   fg_context context;
@@ -55,36 +67,22 @@ static void count_specks(fg_session *s, size_t specks) {
   pthread_mutex_unlock(&s->lock);
 }
 
-static void box_from_trace(const fg_trace *trace, int64_t box[4]) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  for (size_t i = 0; i < trace->count; i++) {
-    low[0] = fmin(low[0], trace->points[i].x);
-    low[1] = fmin(low[1], trace->points[i].y);
-    high[0] = fmax(high[0], trace->points[i].x);
-    high[1] = fmax(high[1], trace->points[i].y);
-  }
-  for (int k = 0; k < 2; k++) {
-    box[k] = (int64_t)floor(low[k]);
-    box[2 + k] = (int64_t)ceil(high[k] - low[k]) + 1;
-  }
-}
-
 static double expected_width_px(const fg_measurement *m) {
   return m->design.thickness_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
 /* A foil from one trace. What cannot be measured is a flag; what is no foil is a speck. */
-static fg_status measure_trace(fg_context *ctx, fg_session *s, const fg_segmentation *seg,
-                               const fg_trace *trace) {
+static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
+                               const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
   fg_foil foil = {0};
   fg_status status =
-      fg_edges_measure(ctx, s->tiles, seg, trace, m->dpi, s->threads, &foil.strip);
+      fg_edges_measure(ctx, &j->view, seg, trace, m->dpi, s->threads, &foil.strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, &m->design, s->threads, &foil);
   if (status == FG_ERR_NUMERIC) {
     foil.flags |= FG_FOIL_NOT_MEASURED;
     snprintf(foil.error, sizeof foil.error, "%.255s", ctx->message);
-    box_from_trace(trace, foil.strip.box_px);
+    fg_place_from_trace(trace, &foil);
     status = FG_OK;
   }
   double ratio = trace->width_px / expected_width_px(m);
@@ -95,88 +93,97 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const fg_segmenta
     if (other) count_specks(s, 1);
     return status;
   }
+  fg_place_move(j->origin_px, m->dpi, &foil);
   return add_foil(ctx, s, &foil);
 }
 
-static fg_status measure_objects(fg_context *ctx, fg_session *s, const fg_segmentation *seg) {
+static fg_status measure_objects(fg_context *ctx, fg_session *s, const job *j,
+                                 const fg_segmentation *seg) {
   fg_trace_list list = {0};
   fg_status status = FG_OK;
   for (size_t i = 0; i < seg->object_count && status == FG_OK; i++) {
-    status = fg_trace_object(ctx, s->tiles, seg, &seg->objects[i],
+    status = fg_trace_object(ctx, &j->view, seg, &seg->objects[i],
                              expected_width_px(s->measurement), &list);
     if (status == FG_OK && !list.count) count_specks(s, 1);
-    for (size_t j = 0; j < list.count && status == FG_OK; j++)
-      status = measure_trace(ctx, s, seg, &list.traces[j]);
+    for (size_t k = 0; k < list.count && status == FG_OK; k++)
+      status = measure_trace(ctx, s, j, seg, &list.traces[k]);
     fg_trace_list_free(&list);
   }
   return status;
 }
 
-static fg_status measure_island(fg_context *ctx, fg_session *s, const fg_island *island) {
-  const fg_measurement *m = s->measurement;
-  double px_per_mm = sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
-  double least_px = OBJECT_LEAST * m->design.bump_radius_mm * px_per_mm;
-  if (hypot(island->width, island->height) * FG_TILE_PX < least_px) {
-    count_specks(s, 1);
-    return FG_OK;
-  }
+/* Diagonal of the smallest object that is no dust. */
+static double least_object_px(const fg_measurement *m) {
+  return OBJECT_LEAST * m->design.bump_radius_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+}
+
+static fg_status measure_island(fg_context *ctx, fg_session *s, const job *j) {
   fg_segmentation seg;
-  FG_TRY(fg_segment(ctx, s->tiles, island, least_px, &seg));
+  FG_TRY(fg_segment(ctx, &j->view, &j->island, least_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
   pthread_mutex_lock(&s->lock);
   if (seg.object_count) *(seg.light_on_dark ? &s->light : &s->dark) += 1;
   pthread_mutex_unlock(&s->lock);
-  fg_status status = measure_objects(ctx, s, &seg);
+  fg_status status = measure_objects(ctx, s, j, &seg);
   fg_segmentation_free(&seg);
   return status;
 }
 
-/* The next island of the queue; waits for one while more may come. */
-static bool take_island(fg_session *s, bool wait, fg_island *island) {
+static void free_job(job *j) {
+  fg_tiles_free(&j->view);
+  fg_island_free(&j->island);
+}
+
+/* About what a job's pixels take, the tiles around the island with them. */
+static size_t job_bytes(const job *j) {
+  return j->island.count * 3 * FG_TILE_PX * FG_TILE_PX * (size_t)j->view.bytes_per_pixel;
+}
+
+/* The next job of the queue; waits for one while more may come. */
+static bool take_job(fg_session *s, bool wait, job *j) {
   pthread_mutex_lock(&s->lock);
   while (wait && s->taken == s->queued && !s->ended && s->status == FG_OK)
     pthread_cond_wait(&s->changed, &s->lock);
   bool got = s->taken < s->queued && s->status == FG_OK;
-  if (got) *island = s->queue[s->taken++];
+  if (got) {
+    *j = s->queue[s->taken++];
+    s->waiting_bytes -= job_bytes(j);
+  }
   pthread_mutex_unlock(&s->lock);
   return got;
 }
 
-static void finish_island(fg_session *s, fg_island *island, const fg_context *ctx,
-                          fg_status status) {
+static void note_failure(fg_session *s, const fg_context *ctx, fg_status status) {
   pthread_mutex_lock(&s->lock);
-  fg_island_drop(s->tiles, island);
-  s->done++;
-  if (status != FG_OK && s->status == FG_OK) {
+  if (s->status == FG_OK) {
     s->status = status;
     s->context = *ctx;
   }
   pthread_cond_broadcast(&s->changed);
   pthread_mutex_unlock(&s->lock);
-  fg_island_free(island);
 }
 
-static void work_on_islands(fg_session *s, bool wait) {
-  fg_island island;
-  while (take_island(s, wait, &island)) {
-    fg_context ctx = {.message = ""};
-    fg_status status = measure_island(&ctx, s, &island);
-    finish_island(s, &island, &ctx, status);
-  }
+static bool work_on_one(fg_session *s, bool wait) {
+  job j;
+  if (!take_job(s, wait, &j)) return false;
+  fg_context ctx = {.message = ""};
+  fg_status status = measure_island(&ctx, s, &j);
+  free_job(&j);
+  if (status != FG_OK) note_failure(s, &ctx, status);
+  return true;
 }
 
 static void *run_worker(void *session) {
-  work_on_islands(session, true);
+  while (work_on_one(session, true)) continue;
   return NULL;
 }
 
-fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, fg_tiles *tiles,
-                            unsigned threads, fg_session **session) {
+fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, unsigned threads,
+                            fg_session **session) {
   *session = NULL;
   fg_session *s = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *s, (void **)&s));
   s->measurement = measurement;
-  s->tiles = tiles;
   s->threads = threads ? threads : (unsigned)sysconf(_SC_NPROCESSORS_ONLN);
   pthread_mutex_init(&s->lock, NULL);
   pthread_cond_init(&s->changed, NULL);
@@ -193,7 +200,7 @@ static fg_status start_workers(fg_session *s) {
   return FG_OK;
 }
 
-static fg_status push_island(fg_context *ctx, fg_session *s, const fg_island *island) {
+static fg_status push_job(fg_context *ctx, fg_session *s, const job *j) {
   pthread_mutex_lock(&s->lock);
   fg_status status = s->status;
   if (status != FG_OK)
@@ -201,10 +208,35 @@ static fg_status push_island(fg_context *ctx, fg_session *s, const fg_island *is
   else
     status = fg_memory_reserve(ctx, s->queued + 1, sizeof *s->queue, &s->queue_capacity,
                                (void **)&s->queue);
-  if (status == FG_OK) s->queue[s->queued++] = *island;
+  if (status == FG_OK) {
+    s->queue[s->queued++] = *j;
+    s->waiting_bytes += job_bytes(j);
+  }
   pthread_cond_signal(&s->changed);
   pthread_mutex_unlock(&s->lock);
   return status;
+}
+
+/* Hands an island to the workers; dust is counted and forgotten. */
+static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg_island *island) {
+  if (hypot(island->width, island->height) * FG_TILE_PX < least_object_px(s->measurement)) {
+    fg_island_forget(tiles, island);
+    fg_island_free(island);
+    count_specks(s, 1);
+    return FG_OK;
+  }
+  job j = {.island = *island};
+  fg_status status = fg_island_cut(ctx, tiles, &j.island, &j.view, j.origin_px);
+  if (status == FG_OK) status = push_job(ctx, s, &j);
+  if (status != FG_OK) free_job(&j);
+  return status;
+}
+
+static bool is_behind(fg_session *s) {
+  pthread_mutex_lock(&s->lock);
+  bool behind = s->waiting_bytes > WAITING_BYTES_MOST;
+  pthread_mutex_unlock(&s->lock);
+  return behind;
 }
 
 fg_status fg_session_advance(fg_context *ctx, fg_tiles *tiles, void *session) {
@@ -213,14 +245,11 @@ fg_status fg_session_advance(fg_context *ctx, fg_tiles *tiles, void *session) {
   if (!s->islands) FG_TRY(fg_islands_create(ctx, tiles, &s->islands));
   FG_TRY(fg_islands_advance(ctx, s->islands));
   while (fg_islands_next(s->islands, &island)) {
-    fg_status status = push_island(ctx, s, &island);
-    if (status != FG_OK) {
-      fg_island_free(&island);
-      return status;
-    }
+    FG_TRY(take_island(ctx, s, tiles, &island));
     bool reading = tiles->received < tiles->rows;
-    if (!s->worker_count && reading) FG_TRY(start_workers(s));
+    if (!s->worker_count && reading && s->queued) FG_TRY(start_workers(s));
   }
+  while (is_behind(s) && work_on_one(s, false)) continue;
   return FG_OK;
 }
 
@@ -236,16 +265,24 @@ static int compare_columns(const void *a, const void *b) {
   return (p[1] > q[1]) - (p[1] < q[1]);
 }
 
-/* Foils whose middle lies within the first foil's height are one row of the bed. */
+/* Whether two foils lie side by side: their heights overlap by half of the lower one's. */
+static bool is_beside(const fg_foil *a, const fg_foil *b) {
+  const int64_t *p = a->strip.box_px, *q = b->strip.box_px;
+  int64_t top = p[1] > q[1] ? p[1] : q[1];
+  int64_t low = p[1] + p[3] < q[1] + q[3] ? p[1] + p[3] : q[1] + q[3];
+  return 2 * (low - top) > (p[3] < q[3] ? p[3] : q[3]);
+}
+
+/* Foils that lie beside the tallest one of a row, from its top on, are that row of the bed. */
 static void sort_foils(fg_measurement *m) {
   if (!m->foil_count) return;
   qsort(m->foils, m->foil_count, sizeof *m->foils, compare_boxes);
   for (size_t first = 0; first < m->foil_count;) {
-    int64_t low = m->foils[first].strip.box_px[1] + m->foils[first].strip.box_px[3];
-    size_t next = first + 1;
-    while (next < m->foil_count &&
-           m->foils[next].strip.box_px[1] + m->foils[next].strip.box_px[3] / 2 < low)
+    size_t next = first + 1, tallest = first;
+    while (next < m->foil_count && is_beside(&m->foils[next], &m->foils[tallest])) {
+      if (m->foils[next].strip.box_px[3] > m->foils[tallest].strip.box_px[3]) tallest = next;
       next++;
+    }
     qsort(m->foils + first, next - first, sizeof *m->foils, compare_columns);
     first = next;
   }
@@ -262,7 +299,7 @@ static void end_work(fg_session *s) {
 
 fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   end_work(s);
-  work_on_islands(s, false);
+  while (work_on_one(s, false)) continue;
   for (unsigned i = 0; i < s->worker_count; i++) fg_thread_join(&s->workers[i]);
   s->worker_count = 0;
   if (s->status != FG_OK) return fg_fail(ctx, s->status, "%s", s->context.message);
@@ -278,7 +315,7 @@ void fg_session_free(fg_session *s) {
   pthread_mutex_unlock(&s->lock);
   end_work(s);
   for (unsigned i = 0; i < s->worker_count; i++) fg_thread_join(&s->workers[i]);
-  for (size_t i = s->taken; i < s->queued; i++) fg_island_free(&s->queue[i]);
+  for (size_t i = s->taken; i < s->queued; i++) free_job(&s->queue[i]);
   free(s->queue);
   fg_islands_free(s->islands);
   pthread_mutex_destroy(&s->lock);

@@ -68,16 +68,19 @@ static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
   }
 }
 
-static void put_object(FILE *out, const char *scan, int foil, fg_report_owner owner, int number,
-                       unsigned flags, const void *object) {
+/* `foil` is the bump's; NULL for a disc. */
+static void put_object(FILE *out, const char *scan, const fg_foil *foil, fg_report_owner owner,
+                       int number, unsigned flags, const void *object) {
   size_t count;
   const fg_report_field *fields = fg_report_fields(owner, &count);
   put_text(out, scan);
-  if (owner == FG_REPORT_BUMP) fprintf(out, ",%d", foil);
+  if (owner == FG_REPORT_BUMP) fprintf(out, ",%d", foil->number);
   fprintf(out, ",%d", number);
   put_flags(out, fg_bump_flag_words(), flags);
   for (size_t i = 0; i < count; i++)
     put_field(out, &fields[i], object);
+  for (int i = 0; foil && i < 4; i++)
+    put_number(out, foil->place_mm[i]);
   fputs("\n", out);
 }
 
@@ -87,6 +90,8 @@ static void put_heading(FILE *out, fg_report_owner owner) {
   fputs(owner == FG_REPORT_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
   for (size_t i = 0; i < count; i++)
     put_field_names(out, &fields[i]);
+  if (owner == FG_REPORT_BUMP)
+    fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
   fputs("\n", out);
 }
 
@@ -99,11 +104,11 @@ fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *ou
     for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
       const fg_foil *foil = &measurement->foils[k];
       for (size_t b = 0; b < foil->bump_count; b++)
-        put_object(out, scan, foil->number, FG_REPORT_BUMP, foil->bumps[b].number,
+        put_object(out, scan, foil, FG_REPORT_BUMP, foil->bumps[b].number,
                    foil->bumps[b].flags, &foil->bumps[b]);
     }
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
-      put_object(out, scan, 0, FG_REPORT_DISC, measurement->discs[k].number,
+      put_object(out, scan, NULL, FG_REPORT_DISC, measurement->discs[k].number,
                  measurement->discs[k].flags, &measurement->discs[k]);
   }
   return fg_report_finish(ctx, out, "the CSV file");

@@ -73,6 +73,10 @@ void fg_json_input(fg_json *json, const fg_report_scan *scan) {
     fg_json_integer(json, "width_px", measurement->width_px);
     fg_json_integer(json, "height_px", measurement->height_px);
     fg_json_integer(json, "bit_depth", measurement->bit_depth);
+    if (measurement->format[0]) fg_json_string(json, "format", measurement->format);
+    fg_json_string(json, "channel",
+                   measurement->colour ? fg_channel_word(measurement->channel) : "gray");
+    if (measurement->warning[0]) fg_json_string(json, "note", measurement->warning);
     fg_json_numbers(json, "dpi", measurement->dpi, 2);
     fg_json_numbers(json, "dpi_file", measurement->dpi_file, 2);
   }
@@ -211,6 +215,7 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
   write_flags(json, fg_foil_flag_words(), foil->flags);
+  fg_json_numbers(json, "place_mm", foil->place_mm, 4);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_bool(json, "in_tolerance", measured && !any_exceeded(list, count));
   if (measured)

@@ -167,14 +167,21 @@ static void put_foil_flags(FILE *out, unsigned flags) {
     if (flags & words->flag) fprintf(out, "  %s: %s\n", words->name, words->plain);
 }
 
+static void put_place(FILE *out, const fg_foil *foil) {
+  fprintf(out, "  place on the bed x %.1f, y %.1f mm (%.1f × %.1f mm)\n", foil->place_mm[0],
+          foil->place_mm[1], foil->place_mm[2], foil->place_mm[3]);
+}
+
 static void put_foil(FILE *out, const fg_foil *foil) {
   if (foil->flags & FG_FOIL_NOT_MEASURED) {
     fprintf(out, "\nfoil %d: not measured: %s\n", foil->number, foil->error);
+    put_place(out, foil);
     put_foil_flags(out, foil->flags & ~(unsigned)FG_FOIL_NOT_MEASURED);
     return;
   }
   fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
           fg_orientation_word(foil->orientation));
+  put_place(out, foil);
   put_quantity(out, foil, "overall.radius_mm");
   put_quantity(out, foil, "overall.springback_error_pct");
   put_quantity(out, foil, "thickness_mm");
@@ -192,7 +199,9 @@ static void put_scan(FILE *out, const fg_report_scan *scan) {
   fprintf(out, "%s: %lld × %lld px, %d bit, %.6g", scan->path, (long long)measurement->width_px,
           (long long)measurement->height_px, measurement->bit_depth, measurement->dpi[0]);
   if (measurement->dpi[0] != measurement->dpi[1]) fprintf(out, " × %.6g", measurement->dpi[1]);
-  fputs(" dpi\n", out);
+  fputs(" dpi", out);
+  if (measurement->colour) fprintf(out, ", channel %s", fg_channel_word(measurement->channel));
+  fputc('\n', out);
   for (size_t i = 0; i < measurement->foil_count; i++)
     put_foil(out, &measurement->foils[i]);
   if (measurement->disc_count) put_discs(out, measurement);

@@ -129,7 +129,10 @@ static void choose_size(const int64_t box[4], int32_t width_max, double pixels_m
 fg_status fg_picture_load(fg_context *ctx, const fg_measurement *measurement,
                           const int64_t box_px[4], int32_t width_max, double pixels_max,
                           fg_picture *picture) {
-  const fg_scan_options options = {.dpi = measurement->dpi[0]};
+  const fg_scan_options options = {.dpi = measurement->dpi[0],
+                                   .pixel_cap = UINT64_MAX,
+                                   .channel = measurement->channel,
+                                   .allow_lossy = true};
   reducer work = {.box = box_px};
   fg_status status = FG_OK;
   *picture = (fg_picture){0};

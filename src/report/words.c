@@ -42,6 +42,22 @@ const fg_flag_words *fg_bump_flag_words(void) {
   return bump_flags;
 }
 
+const char *fg_channel_word(fg_channel channel) {
+  switch (channel) {
+  case FG_CHANNEL_AUTO:
+    return "auto";
+  case FG_CHANNEL_RED:
+    return "red";
+  case FG_CHANNEL_GREEN:
+    return "green";
+  case FG_CHANNEL_BLUE:
+    return "blue";
+  case FG_CHANNEL_LUMINANCE:
+    return "luminance";
+  }
+  return "";
+}
+
 const char *fg_form_word(fg_form form) {
   switch (form) {
   case FG_FORM_CLASSICAL:

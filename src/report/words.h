@@ -18,6 +18,7 @@ const char *fg_form_word(fg_form form);
 const char *fg_datum_word(fg_datum datum);
 const char *fg_orientation_word(fg_orientation orientation);
 const char *fg_arc_kind_word(fg_arc_kind kind);
+const char *fg_channel_word(fg_channel channel);
 
 /* The two values of a pair and of their uncertainties (field->kind FG_FIELD_PAIR). */
 void fg_report_pair(const fg_report_field *field, const void *object, double value[2], double u[2]);

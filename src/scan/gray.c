@@ -1,5 +1,6 @@
 #include "scan/gray.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 /* Rec. 709 luminance, 0.2126 R + 0.7152 G + 0.0722 B, in 1/65536 so that equal R, G and B come out
@@ -18,65 +19,114 @@ static void look_up(const fg_gray *gray, const void *samples, size_t width, void
     row[x] = gray->table[in[x]];
 }
 
-static void drop_alpha_8(const fg_gray *gray, const void *samples, size_t width, void *out) {
-  (void)gray;
-  const uint8_t *in = samples;
+/* A table over one of several channels. */
+static void look_up_one(const fg_gray *gray, const void *samples, size_t width, void *out) {
+  const uint8_t *in = (const uint8_t *)samples + gray->taken;
   uint8_t *row = out;
-  for (size_t x = 0; x < width; x++)
-    row[x] = in[2 * x];
+  for (size_t x = 0; x < width; x++, in += gray->channels)
+    row[x] = gray->table[*in];
 }
 
-static void drop_alpha_16(const fg_gray *gray, const void *samples, size_t width, void *out) {
-  (void)gray;
-  const uint16_t *in = samples;
-  for (size_t x = 0; x < width; x++)
-    memcpy((char *)out + 2 * x, in + 2 * x, 2);
+static void take_one_8(const fg_gray *gray, const void *samples, size_t width, void *out) {
+  const uint8_t *in = (const uint8_t *)samples + gray->taken;
+  uint8_t *row = out;
+  for (size_t x = 0; x < width; x++, in += gray->channels)
+    row[x] = *in;
+}
+
+static uint16_t spread_16(unsigned value, unsigned white) {
+  if (white == 65535) return (uint16_t)value;
+  return (uint16_t)(((uint64_t)value * 65535 + white / 2) / white);
+}
+
+static void take_one_16(const fg_gray *gray, const void *samples, size_t width, void *out) {
+  const uint16_t *in = (const uint16_t *)samples + gray->taken;
+  for (size_t x = 0; x < width; x++, in += gray->channels) {
+    uint16_t value = spread_16(*in, gray->white);
+    memcpy((char *)out + 2 * x, &value, 2);
+  }
+}
+
+static void invert_one_16(const fg_gray *gray, const void *samples, size_t width, void *out) {
+  const uint16_t *in = (const uint16_t *)samples + gray->taken;
+  for (size_t x = 0; x < width; x++, in += gray->channels) {
+    uint16_t value = (uint16_t)(65535 - spread_16(*in, gray->white));
+    memcpy((char *)out + 2 * x, &value, 2);
+  }
 }
 
 static void mix_colours_8(const fg_gray *gray, const void *samples, size_t width, void *out) {
-  const uint8_t *in = samples;
+  const uint8_t *in = samples, *table = gray->table;
   uint8_t *row = out;
   for (size_t x = 0; x < width; x++, in += gray->channels)
-    row[x] = (uint8_t)luminance(in[0], in[1], in[2]);
+    row[x] = (uint8_t)luminance(table[in[0]], table[in[1]], table[in[2]]);
 }
 
 static void mix_colours_16(const fg_gray *gray, const void *samples, size_t width, void *out) {
   const uint16_t *in = samples;
   for (size_t x = 0; x < width; x++, in += gray->channels) {
-    uint16_t value = (uint16_t)luminance(in[0], in[1], in[2]);
+    uint16_t value = spread_16(luminance(in[0], in[1], in[2]), gray->white);
     memcpy((char *)out + 2 * x, &value, 2);
   }
 }
 
-static void fill_palette(fg_gray *gray, const fg_gray_colour *palette, size_t size) {
-  gray->table_size = size < 256 ? size : 256;
-  for (size_t i = 0; i < gray->table_size; i++)
-    gray->table[i] = (uint8_t)luminance(palette[i].red, palette[i].green, palette[i].blue);
+static void fill_palette(const fg_scan_header *header, fg_channel channel, fg_gray *gray) {
+  gray->table_size = header->palette_size < 256 ? header->palette_size : 256;
+  for (size_t i = 0; i < gray->table_size; i++) {
+    const fg_scan_colour *c = &header->palette[i];
+    uint32_t values[] = {[FG_CHANNEL_LUMINANCE] = luminance(c->red, c->green, c->blue),
+                         [FG_CHANNEL_RED] = c->red,
+                         [FG_CHANNEL_GREEN] = c->green,
+                         [FG_CHANNEL_BLUE] = c->blue};
+    gray->table[i] = (uint8_t)values[channel];
+  }
 }
 
-static void fill_spread(fg_gray *gray, int bit_depth) {
-  gray->table_size = (size_t)1 << bit_depth;
-  for (size_t i = 0; i < gray->table_size; i++)
-    gray->table[i] = (uint8_t)(i * 255 / (gray->table_size - 1));
+/* 0 to `white` over 0 to 255, or back to front. */
+static void fill_spread(const fg_scan_header *header, fg_gray *gray) {
+  unsigned white = header->white ? header->white : (1u << header->bit_depth) - 1;
+  gray->table_size = header->white ? white + 1 : (size_t)1 << header->bit_depth;
+  for (size_t i = 0; i < gray->table_size; i++) {
+    uint8_t value = (uint8_t)((i * 255 + (header->white ? white / 2 : 0)) / white);
+    gray->table[i] = header->inverted ? (uint8_t)(255 - value) : value;
+  }
 }
 
-void fg_gray_init(fg_gray *gray, int channels, int bit_depth, const fg_gray_colour *palette,
-                  size_t palette_size) {
-  static fg_gray_convert *const conversions[5][2] = {
-      [2] = {drop_alpha_8, drop_alpha_16},
-      [3] = {mix_colours_8, mix_colours_16},
-      [4] = {mix_colours_8, mix_colours_16},
-  };
-  *gray = (fg_gray){.channels = channels, .bytes_per_pixel = bit_depth == 16 ? 2 : 1};
-  if (palette)
-    fill_palette(gray, palette, palette_size);
-  else if (channels == 1 && bit_depth < 8)
-    fill_spread(gray, bit_depth);
-  gray->convert = gray->table_size ? look_up : conversions[channels][bit_depth == 16];
+/* Whether 8-bit gray samples are gray values as they are. */
+static bool is_plain(const fg_scan_header *header) {
+  return header->bit_depth == 8 && !header->inverted && !header->white;
 }
 
+static fg_gray_convert *choose_8(const fg_scan_header *header, const fg_gray *gray, bool mix) {
+  if (mix) return mix_colours_8;
+  if (is_plain(header) && !header->has_palette) return header->channels > 1 ? take_one_8 : NULL;
+  return gray->channels > 1 ? look_up_one : look_up;
+}
+
+static fg_gray_convert *choose_16(const fg_scan_header *header, bool mix) {
+  if (mix) return mix_colours_16;
+  if (header->inverted) return invert_one_16;
+  return header->channels > 1 || header->white ? take_one_16 : NULL;
+}
+
+void fg_gray_init(const fg_scan_header *header, fg_channel channel, fg_gray *gray) {
+  bool mix = header->colour && channel == FG_CHANNEL_LUMINANCE;
+  *gray = (fg_gray){.channels = header->channels,
+                    .bytes_per_pixel = header->bit_depth == 16 ? 2 : 1,
+                    .white = header->white ? header->white : 65535};
+  if (header->colour && !mix) gray->taken = (int)channel - FG_CHANNEL_RED;
+  if (header->bit_depth == 16) {
+    gray->convert = choose_16(header, mix);
+    return;
+  }
+  if (header->has_palette) fill_palette(header, channel, gray);
+  else if (mix || !is_plain(header)) fill_spread(header, gray);
+  gray->convert = choose_8(header, gray, mix);
+}
+
+/* Only palettes have gaps: other formats check their samples. */
 size_t fg_gray_find_invalid(const fg_gray *gray, const void *samples, size_t width) {
-  if (gray->table_size == 0 || gray->table_size == 256) return width;
+  if (gray->table_size == 0 || gray->table_size == 256 || gray->channels > 1) return width;
   const uint8_t *in = samples;
   uint8_t largest = 0;
   for (size_t x = 0; x < width; x++)

@@ -8,30 +8,26 @@ static const struct pass {
 } passes[] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4},
               {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
 
-static void scatter(const uint8_t *grays, const fg_row_place *place, size_t bytes, uint8_t *row) {
-  for (size_t i = 0; i < place->count; i++)
-    memcpy(row + (place->begin + i * place->step) * bytes, grays + i * bytes, bytes);
+static size_t pixel_bytes(const fg_png_header *header) {
+  return (size_t)header->channels * (header->bit_depth == 16 ? 2 : 1);
 }
 
-static fg_status read_pass(fg_context *ctx, const fg_row_reader *reader, const struct pass *pass,
-                           void *grays, uint8_t *image) {
-  const fg_png_header *header = fg_png_get_header(reader->png);
-  size_t bytes = (size_t)reader->gray.bytes_per_pixel;
-  size_t width = header->width_px;
+static fg_status read_pass(fg_context *ctx, fg_png *png, const struct pass *pass, void *row,
+                           uint8_t *image) {
+  const fg_png_header *header = fg_png_get_header(png);
+  size_t bytes = pixel_bytes(header), width = header->width_px;
   if (pass->x >= width) return FG_OK;
-  fg_row_place place = {.count = (width - pass->x + pass->step_x - 1) / pass->step_x,
-                        .begin = pass->x,
-                        .step = pass->step_x};
-  for (place.y = pass->y; place.y < header->height_px; place.y += pass->step_y) {
-    FG_TRY(fg_row_read(ctx, reader, &place, grays));
-    scatter(grays, &place, bytes, image + place.y * width * bytes);
+  for (size_t y = pass->y; y < header->height_px; y += pass->step_y) {
+    FG_TRY(fg_png_read_row(ctx, png, row));
+    const uint8_t *from = row;
+    for (size_t x = pass->x; x < width; x += pass->step_x, from += bytes)
+      memcpy(image + (y * width + x) * bytes, from, bytes);
   }
   return FG_OK;
 }
 
-fg_status fg_interlace_read(fg_context *ctx, const fg_row_reader *reader, void *grays,
-                            void *image) {
+fg_status fg_interlace_read(fg_context *ctx, fg_png *png, void *row, uint8_t *image) {
   for (size_t i = 0; i < sizeof passes / sizeof passes[0]; i++)
-    FG_TRY(read_pass(ctx, reader, &passes[i], grays, image));
+    FG_TRY(read_pass(ctx, png, &passes[i], row, image));
   return FG_OK;
 }

@@ -2,9 +2,9 @@
 #ifndef FG_SCAN_INTERLACE_H
 #define FG_SCAN_INTERLACE_H
 
-#include "scan/row.h"
+#include "scan/png_reader.h"
 
-/* All rows as gray, one after another, to `image`; `grays` is room for one row of gray. */
-fg_status fg_interlace_read(fg_context *ctx, const fg_row_reader *reader, void *grays, void *image);
+/* All rows of samples, one after another, to `image`; `row` is room for one of them. */
+fg_status fg_interlace_read(fg_context *ctx, fg_png *png, void *row, uint8_t *image);
 
 #endif

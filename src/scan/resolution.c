@@ -2,7 +2,6 @@
 
 #include <math.h>
 
-#define METRES_PER_INCH 0.0254
 #define SNAP_DPI        0.02
 #define GIVE_DPI        "give the resolution with --dpi"
 
@@ -27,36 +26,31 @@ fg_status fg_scan_check_dpi(fg_context *ctx, double dpi) {
   return FG_OK;
 }
 
-static fg_status check_file(fg_context *ctx, const char *name, const fg_png_header *header,
-                            const double dpi[2]) {
-  if (!header->has_phys)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: does not say its resolution (no usable pHYs chunk); " GIVE_DPI, name);
-  if (!header->phys_in_metres)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: does not say its resolution (chunk pHYs holds the shape "
-                   "of its pixels only); " GIVE_DPI,
+static fg_status check_file(fg_context *ctx, const char *name, const fg_scan_header *header) {
+  if (header->no_dpi)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: does not say its resolution (%s); " GIVE_DPI, name,
+                   header->no_dpi);
+  if (isnan(header->dpi[0]) || isnan(header->dpi[1]))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: cannot say its resolution (its format has none); " GIVE_DPI,
                    name);
   for (int axis = 0; axis < 2; axis++)
-    if (!is_plausible(dpi[axis]))
+    if (!is_plausible(header->dpi[axis]))
       return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: says %g dpi in %c (chunk pHYs: %u pixels per metre), which no scanner "
-                     "has; " GIVE_DPI,
-                     name, dpi[axis], "xy"[axis], header -> per_metre[axis]);
+                     "%s: says %g dpi in %c (%s), which no scanner has; " GIVE_DPI, name,
+                     header->dpi[axis], "xy"[axis], header->dpi_source);
   return FG_OK;
 }
 
-fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_png_header *header,
+fg_status fg_resolution_find(fg_context *ctx, const char *name, const fg_scan_header *header,
                              double dpi, fg_scan_info *info) {
-  bool known = header->has_phys && header->phys_in_metres;
   for (int axis = 0; axis < 2; axis++)
-    info->dpi_file[axis] = known ? header->per_metre[axis] * METRES_PER_INCH : NAN;
+    info->dpi_file[axis] = header->dpi[axis];
   if (dpi != 0) {
     info->dpi[0] = info->dpi[1] = dpi;
     return FG_OK;
   }
-  FG_TRY(check_file(ctx, name, header, info->dpi_file));
+  FG_TRY(check_file(ctx, name, header));
   for (int axis = 0; axis < 2; axis++)
-    info->dpi[axis] = snap(info->dpi_file[axis]);
+    info->dpi[axis] = snap(header->dpi[axis]);
   return FG_OK;
 }

@@ -6,107 +6,139 @@
 
 #include "core/memory.h"
 #include "core/sha256.h"
+#include "scan/contrast.h"
 #include "scan/format.h"
-#include "scan/interlace.h"
+#include "scan/gray.h"
 #include "scan/resolution.h"
-#include "scan/row.h"
 #include "scan/source.h"
 
 #define DEFAULT_PIXEL_CAP 4000000000u
-/* An interlaced image lies in memory whole; a scanner does not write such files. */
-#define INTERLACED_BYTES_CAP ((uint64_t)1 << 30)
-/* The most that deflate can make of a byte: 258 bytes from 2 bits. */
-#define DEFLATE_RATIO_MAX 1032.0
+enum { HEAD_BYTES = 512 }; /* that tell the format */
 
 struct fg_scan {
   fg_source source;
-  fg_row_reader rows;
+  const fg_format *format;
+  void *reader; /* of the format */
+  fg_scan_header header;
+  fg_gray gray;
+  void *samples; /* room for a row of samples; NULL where they need no conversion */
   fg_scan_info info;
-  bool interlaced;
-  uint8_t *image; /* of an interlaced scan, once it is decoded */
   int64_t rows_read;
   bool broken; /* an error ended it */
   bool ended;  /* all was read and checked, to the end of the file */
 };
 
-static fg_status check_format(fg_context *ctx, fg_source *source) {
+static fg_status find_format(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
+  fg_source *source = &scan->source;
   const uint8_t *head = NULL;
-  size_t length = fg_source_peek(source, 512, &head);
+  size_t length = fg_source_peek(source, HEAD_BYTES, &head);
   if (source->error)
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s; check the disk or copy it again",
                    source->name, strerror(source->error));
-  const char *problem = fg_format_problem(head, length);
-  return problem ? fg_fail(ctx, FG_ERR_DATA, "%s: %s", source->name, problem) : FG_OK;
-}
-
-static double count_decoded_bytes(const fg_png_header *header) {
-  double row_bits = (double)header->width_px * header->channels * header->bit_depth;
-  return header->height_px * (row_bits / 8 + 1);
+  scan->format = fg_format_find(head, length);
+  if (!scan->format)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: %s", source->name, fg_format_problem(head, length));
+  bool twice = options->channel == FG_CHANNEL_AUTO && scan->format->has_colour(head, length);
+  return twice || scan->format->needs_file ? fg_source_store(ctx, source) : FG_OK;
 }
 
 /* A few bytes can declare a size that fills the memory or takes days: refuse it before any of it
  * is decoded. */
 static fg_status check_size(fg_context *ctx, const fg_scan *scan, uint64_t cap) {
-  const fg_png_header *header = fg_png_get_header(scan->rows.png);
+  const fg_scan_header *header = &scan->header;
   const char *name = scan->source.name;
-  uint64_t pixels = (uint64_t)header->width_px * header->height_px;
+  uint64_t pixels = 0;
   if (cap == 0) cap = DEFAULT_PIXEL_CAP;
-  if (pixels > cap)
+  if (__builtin_mul_overflow(header->width_px, header->height_px, &pixels) || pixels > cap)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: has %" PRIu32 " x %" PRIu32 " pixels, more than the %" PRIu64
+                   "%s: has %" PRIu64 " x %" PRIu64 " pixels, more than the %" PRIu64
                    " that are read; scan a smaller area",
                    name, header->width_px, header->height_px, cap);
   if (header->width_px > FG_SCAN_WIDTH_MAX_PX)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: is %" PRIu32 " pixels wide, more than the %d that are read; scan a "
+                   "%s: is %" PRIu64 " pixels wide, more than the %d that are read; scan a "
                    "narrower area",
                    name, header->width_px, FG_SCAN_WIDTH_MAX_PX);
-  if (scan->source.regular &&
-      count_decoded_bytes(header) > DEFLATE_RATIO_MAX * (double)scan->source.size)
+  if (scan->source.regular && header->bytes_least > (double)scan->source.size)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: declares %" PRIu32 " x %" PRIu32 " pixels, which its %" PRIu64
+                   "%s: declares %" PRIu64 " x %" PRIu64 " pixels, which its %" PRIu64
                    " bytes cannot hold; copy or scan it again",
                    name, header->width_px, header->height_px, scan->source.size);
-  uint64_t image_bytes = pixels * (header->bit_depth == 16 ? 2 : 1);
-  if (header->interlaced && image_bytes > INTERLACED_BYTES_CAP)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: is interlaced and needs %" PRIu64
-                   " MiB of memory; save it without interlacing",
-                   name, image_bytes >> 20);
   return FG_OK;
 }
 
-static void fill_info(fg_scan *scan) {
-  const fg_png_header *header = fg_png_get_header(scan->rows.png);
-  fg_gray_init(&scan->rows.gray, header->channels, header->bit_depth,
-               header->has_palette ? header->palette : NULL, header->palette_size);
-  scan->interlaced = header->interlaced;
-  scan->info.width_px = header->width_px;
-  scan->info.height_px = header->height_px;
-  scan->info.bit_depth = header->bit_depth;
-  scan->info.bytes_per_pixel = scan->rows.gray.bytes_per_pixel;
+static fg_status check_memory(fg_context *ctx, const fg_scan *scan, uint64_t cap) {
+  const fg_scan_header *header = &scan->header;
+  if (cap == 0 || header->memory_bytes <= cap) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: needs %" PRIu64 " MiB to be decoded, more than the %" PRIu64
+                 " MiB that it may take (--max-memory); save it in strips of a few rows, not "
+                 "interlaced",
+                 scan->source.name, header->memory_bytes >> 20, cap >> 20);
 }
 
-static fg_status prepare_rows(fg_context *ctx, fg_scan *scan) {
-  fg_row_reader *rows = &scan->rows;
-  FG_TRY(fg_png_start(ctx, rows->png));
-  if (!rows->gray.convert) return FG_OK;
-  size_t sample_bytes = (size_t)(rows->gray.channels * rows->gray.bytes_per_pixel);
-  return fg_memory_allocate(ctx, (size_t)scan->info.width_px, sample_bytes, &rows->samples);
+static void fill_info(fg_scan *scan) {
+  const fg_scan_header *header = &scan->header;
+  fg_scan_info *info = &scan->info;
+  info->width_px = (int64_t)header->width_px;
+  info->height_px = (int64_t)header->height_px;
+  info->bit_depth = header->bit_depth;
+  info->bytes_per_pixel = header->bit_depth == 16 ? 2 : 1;
+  info->format = scan->format->name;
+  info->colour = header->colour || header->has_palette;
+  info->memory_bytes = header->memory_bytes;
+  memcpy(info->warning, header->warning, sizeof info->warning);
+}
+
+static fg_status open_format(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
+  FG_TRY(scan->format->open(ctx, &scan->source, options, &scan->reader, &scan->header));
+  FG_TRY(check_size(ctx, scan, options->pixel_cap));
+  return check_memory(ctx, scan, options->memory_cap);
+}
+
+static size_t count_sample_bytes(const fg_scan *scan) {
+  return (size_t)(scan->header.channels * scan->info.bytes_per_pixel);
+}
+
+/* Reads the scan once to find the channel, and begins again. */
+static fg_status find_channel(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
+  fg_contrast contrast = {.header = &scan->header};
+  for (int64_t y = 0; y < scan->info.height_px; y++) {
+    FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
+    fg_contrast_add_row(&contrast, y, scan->samples);
+  }
+  scan->info.channel = fg_contrast_best(&contrast);
+  scan->format->close(scan->reader);
+  scan->reader = NULL;
+  FG_TRY(fg_source_rewind(ctx, &scan->source));
+  FG_TRY(open_format(ctx, options, scan));
+  return scan->format->start(ctx, scan->reader);
+}
+
+static fg_status prepare_rows(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
+  FG_TRY(scan->format->start(ctx, scan->reader));
+  scan->info.channel = options->channel;
+  bool find = options->channel == FG_CHANNEL_AUTO && scan->info.colour;
+  if (options->channel == FG_CHANNEL_AUTO) scan->info.channel = FG_CHANNEL_LUMINANCE;
+  fg_gray_init(&scan->header, scan->info.channel, &scan->gray);
+  if (!scan->gray.convert) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)scan->info.width_px, count_sample_bytes(scan),
+                            &scan->samples));
+  if (!find) return FG_OK;
+  FG_TRY(find_channel(ctx, options, scan));
+  fg_gray_init(&scan->header, scan->info.channel, &scan->gray);
+  return FG_OK;
 }
 
 static fg_status open_scan(fg_context *ctx, const char *path, const fg_scan_options *options,
                            fg_scan *scan) {
   if (options->dpi != 0) FG_TRY(fg_scan_check_dpi(ctx, options->dpi));
   FG_TRY(fg_source_open(ctx, path, &scan->source));
-  FG_TRY(check_format(ctx, &scan->source));
-  scan->rows.name = scan->source.name;
-  FG_TRY(fg_png_open(ctx, &scan->source, &scan->rows.png));
-  FG_TRY(check_size(ctx, scan, options->pixel_cap));
+  FG_TRY(find_format(ctx, options, scan));
+  FG_TRY(open_format(ctx, options, scan));
   fill_info(scan);
-  FG_TRY(fg_resolution_find(ctx, scan->source.name, fg_png_get_header(scan->rows.png), options->dpi,
-                            &scan->info));
-  return prepare_rows(ctx, scan);
+  FG_TRY(fg_resolution_find(ctx, scan->source.name, &scan->header, options->dpi, &scan->info));
+  return prepare_rows(ctx, options, scan);
 }
 
 fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options *options,
@@ -130,7 +162,7 @@ const fg_scan_info *fg_scan_get_info(const fg_scan *scan) {
 }
 
 static fg_status finish(fg_context *ctx, fg_scan *scan) {
-  FG_TRY(fg_png_finish(ctx, scan->rows.png));
+  FG_TRY(scan->format->finish(ctx, scan->reader));
   fg_source_drain(&scan->source);
   if (scan->source.error)
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read behind the image: %s", scan->source.name,
@@ -143,32 +175,29 @@ static size_t count_row_bytes(const fg_scan *scan) {
   return (size_t)scan->info.width_px * (size_t)scan->info.bytes_per_pixel;
 }
 
-static fg_status decode_whole(fg_context *ctx, fg_scan *scan) {
-  void *grays = NULL;
-  fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count_row_bytes(scan), 1, &grays));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count_row_bytes(scan), (size_t)scan->info.height_px,
-                                 (void **)&scan->image));
-  FG_TRY_EXIT(fg_interlace_read(ctx, &scan->rows, grays, scan->image));
-exit:
-  free(grays);
-  return status;
+static fg_status convert_row(fg_context *ctx, fg_scan *scan, void *out) {
+  size_t width = (size_t)scan->info.width_px;
+  FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
+  size_t invalid = fg_gray_find_invalid(&scan->gray, scan->samples, width);
+  if (invalid < width)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: is a damaged %s: the pixel at row %" PRId64 ", column %zu has colour %d of "
+                   "a palette of %zu; copy or scan it again",
+                   scan->source.name, scan->format->name, scan->rows_read + 1, invalid + 1,
+                   ((const uint8_t *)scan->samples)[invalid], scan->gray.table_size);
+  scan->gray.convert(&scan->gray, scan->samples, width, out);
+  return FG_OK;
 }
 
 static fg_status read_one_row(fg_context *ctx, fg_scan *scan, void *out) {
-  size_t row = (size_t)scan->rows_read;
-  if (scan->interlaced)
-    memcpy(out, scan->image + row * count_row_bytes(scan), count_row_bytes(scan));
-  else
-    FG_TRY(fg_row_read(ctx, &scan->rows, &(fg_row_place){(size_t)scan->info.width_px, row, 0, 1},
-                       out));
+  FG_TRY(scan->gray.convert ? convert_row(ctx, scan, out)
+                            : scan->format->read_row(ctx, scan->reader, out));
   scan->rows_read++;
   return FG_OK;
 }
 
 static fg_status read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                            int64_t stride_bytes) {
-  if (scan->interlaced && !scan->image) FG_TRY(decode_whole(ctx, scan));
   for (int64_t i = 0; i < rows; i++)
     FG_TRY(read_one_row(ctx, scan, (char *)out + i * stride_bytes));
   bool complete = scan->rows_read == scan->info.height_px;
@@ -208,9 +237,8 @@ fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]) {
 
 void fg_scan_close(fg_scan *scan) {
   if (!scan) return;
-  fg_png_close(scan->rows.png);
+  if (scan->format) scan->format->close(scan->reader);
   fg_source_close(&scan->source);
-  free(scan->rows.samples);
-  free(scan->image);
+  free(scan->samples);
   free(scan);
 }

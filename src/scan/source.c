@@ -106,6 +106,64 @@ size_t fg_source_read(fg_source *source, void *out, size_t wanted) {
   return done;
 }
 
+static fg_status open_store(fg_context *ctx, const fg_source *source, int *store) {
+  const char *folder = getenv("TMPDIR");
+  if (!folder || !*folder) folder = "/tmp";
+  *store = open(folder, O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (*store >= 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO,
+                 "%s: must be stored before it is read, and %s takes no file: %s; set TMPDIR to a "
+                 "folder with room, or give a file",
+                 source->name, folder, strerror(errno));
+}
+
+static fg_status copy_to_store(fg_context *ctx, fg_source *source, int store) {
+  size_t held = source->end;
+  do {
+    for (size_t done = 0; done < held;) {
+      ssize_t wrote = write(store, source->buffer + done, held - done);
+      if (wrote < 0 && errno == EINTR) continue;
+      if (wrote <= 0)
+        return fg_fail(ctx, FG_ERR_IO,
+                       "%s: cannot be stored before it is read: %s; set TMPDIR to a folder with "
+                       "room, or give a file",
+                       source->name, strerror(errno));
+      done += (size_t)wrote;
+    }
+    held = receive(source, source->buffer, BUFFER_BYTES);
+  } while (held > 0);
+  if (!source->error) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", source->name, strerror(source->error));
+}
+
+fg_status fg_source_store(fg_context *ctx, fg_source *source) {
+  int store = -1;
+  if (source->regular) return FG_OK;
+  FG_TRY(open_store(ctx, source, &store));
+  fg_status status = copy_to_store(ctx, source, store);
+  if (status != FG_OK) {
+    close(store);
+    return status;
+  }
+  if (source->owned) close(source->descriptor);
+  off_t size = lseek(store, 0, SEEK_CUR);
+  source->descriptor = store;
+  source->owned = source->regular = true;
+  source->start = 0;
+  source->size = size > 0 ? (uint64_t)size : 0;
+  return fg_source_rewind(ctx, source);
+}
+
+fg_status fg_source_rewind(fg_context *ctx, fg_source *source) {
+  if (lseek(source->descriptor, source->start, SEEK_SET) < 0)
+    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read again: %s", source->name, strerror(errno));
+  source->begin = source->end = 0;
+  source->offset = 0;
+  source->ended = false;
+  source->error = 0;
+  return FG_OK;
+}
+
 void fg_source_drain(fg_source *source) {
   if (source->regular) return;
   source->begin = source->end = 0;

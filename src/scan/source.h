@@ -37,6 +37,13 @@ size_t fg_source_peek(fg_source *source, size_t wanted, const uint8_t **bytes);
 /* Hands out exactly `wanted` bytes, or fewer at the end of the file or after a failure. */
 size_t fg_source_read(fg_source *source, void *out, size_t wanted);
 
+/* Stores a pipe in a temporary file without a name (in TMPDIR) and goes on from there as with a
+ * regular file; nothing may have been handed out. A regular file stays. */
+fg_status fg_source_store(fg_context *ctx, fg_source *source);
+
+/* Back to the first byte of a regular file. */
+fg_status fg_source_rewind(fg_context *ctx, fg_source *source);
+
 /* Receives and hashes what is left of a pipe; a regular file is left alone. */
 void fg_source_drain(fg_source *source);
 

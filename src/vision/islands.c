@@ -181,23 +181,89 @@ void fg_island_free(fg_island *island) {
   memset(island, 0, sizeof *island);
 }
 
-/* Whether any tile around is wanted and not yet measured. */
+enum {
+  REACH = 2,       /* tiles around an island that its pixels are taken from */
+  VIEW_MARGIN = 4, /* tiles that a view is wider than its island: its edge is not the scan's */
+};
+
+/* Whether any tile within reach is wanted and not yet taken. */
 static bool is_needed(const fg_tiles *tiles, int32_t column, int32_t row) {
-  for (int32_t y = row - 1; y <= row + 1; y++)
-    for (int32_t x = column - 1; x <= column + 1; x++)
+  for (int32_t y = row - REACH; y <= row + REACH; y++)
+    for (int32_t x = column - REACH; x <= column + REACH; x++)
       if (x >= 0 && y >= 0 && x < tiles->columns && y < tiles->rows &&
           tiles->wanted[(size_t)y * (size_t)tiles->columns + (size_t)x] == 1)
         return true;
   return false;
 }
 
-void fg_island_drop(fg_tiles *tiles, const fg_island *island) {
+void fg_island_forget(fg_tiles *tiles, const fg_island *island) {
   for (size_t i = 0; i < island->count; i++) tiles->wanted[island->tiles[i]] = 2;
   for (size_t i = 0; i < island->count; i++) {
     int32_t column = island->tiles[i] % tiles->columns, row = island->tiles[i] / tiles->columns;
-    for (int32_t y = row - 1; y <= row + 1; y++)
-      for (int32_t x = column - 1; x <= column + 1; x++)
-        if (x >= 0 && y >= 0 && x < tiles->columns && y < tiles->rows && !is_needed(tiles, x, y))
+    for (int32_t y = row - REACH; y <= row + REACH; y++)
+      for (int32_t x = column - REACH; x <= column + REACH; x++)
+        if (x >= 0 && y >= 0 && x < tiles->columns && y < tiles->rows && fg_tiles_at(tiles, x, y) &&
+            !is_needed(tiles, x, y))
           fg_tiles_drop(tiles, x, y);
   }
+}
+
+static int32_t least(int32_t a, int32_t b) {
+  return a < b ? a : b;
+}
+
+static int32_t most(int32_t a, int32_t b) {
+  return a > b ? a : b;
+}
+
+/* Medians and wants of the view's area, and the tiles within reach of the island. */
+static void fill_view(const fg_tiles *tiles, const fg_island *island, int32_t x0, int32_t y0,
+                      fg_tiles *view) {
+  size_t width = (size_t)view->columns;
+  for (int32_t y = 0; y < view->rows; y++) {
+    size_t from = (size_t)(y + y0) * (size_t)tiles->columns + (size_t)x0, to = (size_t)y * width;
+    memcpy(view->medians + to, tiles->medians + from, width * sizeof *view->medians);
+    for (size_t x = 0; x < width; x++) view->wanted[to + x] = tiles->wanted[from + x] != 0;
+  }
+  for (size_t i = 0; i < island->count; i++) {
+    int32_t column = island->tiles[i] % tiles->columns, row = island->tiles[i] / tiles->columns;
+    for (int32_t y = row - REACH; y <= row + REACH; y++)
+      for (int32_t x = column - REACH; x <= column + REACH; x++)
+        fg_tiles_share(tiles, x, y, view, x - x0, y - y0);
+  }
+}
+
+static void move_island(fg_island *island, int32_t columns, int32_t x0, int32_t y0,
+                        int32_t view_columns) {
+  for (size_t i = 0; i < island->count; i++) {
+    int32_t column = island->tiles[i] % columns - x0, row = island->tiles[i] / columns - y0;
+    island->tiles[i] = row * view_columns + column;
+  }
+  island->x -= x0;
+  island->y -= y0;
+}
+
+fg_status fg_island_cut(fg_context *ctx, fg_tiles *tiles, fg_island *island, fg_tiles *view,
+                        int64_t origin_px[2]) {
+  int32_t x0 = most(island->x - VIEW_MARGIN, 0), y0 = most(island->y - VIEW_MARGIN, 0);
+  int32_t x1 = least(island->x + island->width + VIEW_MARGIN, tiles->columns);
+  int32_t y1 = least(island->y + island->height + VIEW_MARGIN, tiles->rows);
+  origin_px[0] = (int64_t)x0 * FG_TILE_PX;
+  origin_px[1] = (int64_t)y0 * FG_TILE_PX;
+  int64_t right = (int64_t)x1 * FG_TILE_PX, low = (int64_t)y1 * FG_TILE_PX;
+  if (right > tiles->width_px) right = tiles->width_px;
+  if (low > tiles->height_px) low = tiles->height_px;
+  *view = (fg_tiles){.budget = tiles->budget,
+                     .width_px = right - origin_px[0],
+                     .height_px = low - origin_px[1],
+                     .bytes_per_pixel = tiles->bytes_per_pixel};
+  fg_status status = fg_tiles_allocate(ctx, view);
+  if (status != FG_OK) {
+    fg_tiles_free(view);
+    return status;
+  }
+  fill_view(tiles, island, x0, y0, view);
+  fg_island_forget(tiles, island);
+  move_island(island, tiles->columns, x0, y0, view->columns);
+  return FG_OK;
 }

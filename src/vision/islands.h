@@ -1,7 +1,7 @@
 /* Islands: connected groups of wanted tiles, known as soon as the scan has passed them.
  *
  * An island is handed out when every tile that can matter to it is there: three rows of tiles after
- * its last one. It can then be measured, and its tiles dropped, while the scan is still read.
+ * its last one. It is then cut out and measured while the scan is still read.
  */
 #ifndef FG_VISION_ISLANDS_H
 #define FG_VISION_ISLANDS_H
@@ -34,9 +34,16 @@ bool fg_islands_next(fg_islands *islands, fg_island *island);
 void fg_islands_free(fg_islands *islands);
 void fg_island_free(fg_island *island);
 
-/* Drops the tiles of an island that was measured, as far as no other island needs them. Call it
- * from one thread at a time. */
-void fg_island_drop(fg_tiles *tiles, const fg_island *island);
+/* Cuts an island out of the scan: `view` shows its tiles and what lies around them, in coordinates
+ * of its own (origin_px is where its pixel (0, 0) lies in the scan), and the island is then in these
+ * coordinates too. What an island measures can so depend on its surroundings alone. The scan lets
+ * go the tiles that no other island needs. The caller frees `view` with fg_tiles_free; that and
+ * measuring it are safe in another thread. */
+fg_status fg_island_cut(fg_context *ctx, fg_tiles *tiles, fg_island *island, fg_tiles *view,
+                        int64_t origin_px[2]);
+
+/* Lets go the tiles of an island that is not worth measuring, as far as no other needs them. */
+void fg_island_forget(fg_tiles *tiles, const fg_island *island);
 
 #ifdef __cplusplus
 }

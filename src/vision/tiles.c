@@ -1,14 +1,17 @@
 #include "vision/tiles.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
 
-/* Contrast of block means, in 8-bit counts, above which a tile is kept: six times the lower
- * quartile of its tile row, but never less than MIN (noise) nor more than MAX (a row of tiles
- * that all lie on the part must not hide it). */
-enum { CONTRAST_MIN = 3, CONTRAST_MAX = 12, CONTRAST_OVER_QUARTILE = 6 };
+/* Contrast (range) of a tile's block means, in 8-bit counts, above which it is kept: as many times
+ * the median step between neighbouring blocks, which a strip through the tile hardly changes. For
+ * white noise the range over 64 blocks is 5 of these steps. Never less than MIN (noise) nor more than
+ * MAX (texture must not hide a part). A tile is judged by itself alone, so that a foil is kept
+ * in the same way whatever else lies on the bed. */
+enum { CONTRAST_MIN = 3, CONTRAST_MAX = 12, CONTRAST_OVER_STEP = 27 };
 
 static size_t row_bytes(const fg_tiles *tiles) {
   return (size_t)tiles->width_px * (size_t)tiles->bytes_per_pixel;
@@ -19,27 +22,40 @@ static size_t blocks_across(const fg_tiles *tiles) {
   return (size_t)tiles->columns * FG_BLOCKS_PER_TILE;
 }
 
-fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
-                          int bytes_per_pixel, fg_tiles *tiles) {
-  memset(tiles, 0, sizeof *tiles);
-  tiles->width_px = width_px;
-  tiles->height_px = height_px;
-  tiles->bytes_per_pixel = bytes_per_pixel;
-  tiles->columns = (int32_t)((width_px + FG_TILE_PX - 1) / FG_TILE_PX);
-  tiles->rows = (int32_t)((height_px + FG_TILE_PX - 1) / FG_TILE_PX);
-  tiles->block_columns = (int32_t)((width_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
-  tiles->block_rows = (int32_t)((height_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
+fg_status fg_tiles_allocate(fg_context *ctx, fg_tiles *tiles) {
+  tiles->columns = (int32_t)((tiles->width_px + FG_TILE_PX - 1) / FG_TILE_PX);
+  tiles->rows = (int32_t)((tiles->height_px + FG_TILE_PX - 1) / FG_TILE_PX);
+  tiles->block_columns = (int32_t)((tiles->width_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
+  tiles->block_rows = (int32_t)((tiles->height_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX);
   size_t count = (size_t)tiles->columns * (size_t)tiles->rows;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof(fg_tile *), (void **)&tiles->tiles));
+  FG_TRY(fg_memory_allocate(ctx, count, 1, (void **)&tiles->wanted));
+  return fg_memory_allocate(ctx, count, sizeof(float), (void **)&tiles->medians);
+}
+
+static size_t strip_bytes(const fg_tiles *tiles) {
+  return row_bytes(tiles) * FG_TILE_PX +
+         blocks_across(tiles) * FG_BLOCKS_PER_TILE * sizeof(float);
+}
+
+static fg_status allocate_strip(fg_context *ctx, fg_tiles *tiles, int i) {
+  FG_TRY(fg_budget_take(ctx, tiles->budget, strip_bytes(tiles)));
+  tiles->strip_budget += strip_bytes(tiles);
+  FG_TRY(fg_memory_allocate(ctx, row_bytes(tiles), FG_TILE_PX, (void **)&tiles->strips[i]));
+  return fg_memory_allocate(ctx, blocks_across(tiles), FG_BLOCKS_PER_TILE * sizeof(float),
+                            (void **)&tiles->strip_blocks[i]);
+}
+
+fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
+                          int bytes_per_pixel, fg_budget *budget, fg_tiles *tiles) {
+  *tiles = (fg_tiles){.budget = budget,
+                      .width_px = width_px,
+                      .height_px = height_px,
+                      .bytes_per_pixel = bytes_per_pixel};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(fg_tile *), (void **)&tiles->tiles));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&tiles->wanted));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(float), (void **)&tiles->medians));
-  for (int i = 0; i < FG_TILE_STRIPS && i < tiles->rows; i++) {
-    FG_TRY_EXIT(
-        fg_memory_allocate(ctx, row_bytes(tiles), FG_TILE_PX, (void **)&tiles->strips[i]));
-    FG_TRY_EXIT(fg_memory_allocate(ctx, blocks_across(tiles), FG_BLOCKS_PER_TILE * sizeof(float),
-                                   (void **)&tiles->strip_blocks[i]));
-  }
+  FG_TRY_EXIT(fg_tiles_allocate(ctx, tiles));
+  for (int i = 0; i < FG_TILE_STRIPS && i < tiles->rows; i++)
+    FG_TRY_EXIT(allocate_strip(ctx, tiles, i));
 exit:
   if (status != FG_OK) fg_tiles_free(tiles);
   return status;
@@ -103,11 +119,6 @@ static fg_status reduce_strip(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
   return FG_OK;
 }
 
-static int compare_floats(const void *a, const void *b) {
-  float x = *(const float *)a, y = *(const float *)b;
-  return (x > y) - (x < y);
-}
-
 /* Middle of an even number of values by selection (Hoare); reorders them. */
 static float select_median(float *values, int count) {
   int low = 0, high = count - 1, wanted = count / 2;
@@ -138,33 +149,37 @@ static void copy_blocks(const fg_tiles *tiles, int32_t column, int32_t strip, fl
            FG_BLOCKS_PER_TILE * sizeof *out);
 }
 
-/* Range of a tile's block means, and their median. */
-static float tile_contrast(const fg_tiles *tiles, int32_t column, int32_t strip, float *median) {
-  float low = INFINITY, high = -INFINITY, values[FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE];
-  copy_blocks(tiles, column, strip, values);
-  for (int i = 0; i < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; i++) {
-    low = values[i] < low ? values[i] : low;
-    high = values[i] > high ? values[i] : high;
-  }
-  *median = select_median(values, FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE);
-  return high - low;
+/* Median step between blocks that lie side by side. */
+static float median_step(const float *blocks) {
+  float steps[FG_BLOCKS_PER_TILE * (FG_BLOCKS_PER_TILE - 1)];
+  int count = 0;
+  for (int y = 0; y < FG_BLOCKS_PER_TILE; y++)
+    for (int x = 1; x < FG_BLOCKS_PER_TILE; x++) {
+      const float *b = blocks + y * FG_BLOCKS_PER_TILE + x;
+      steps[count++] = fabsf(b[0] - b[-1]);
+    }
+  return select_median(steps, count);
 }
 
-static fg_status mark_wanted(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
-  size_t columns = (size_t)tiles->columns;
-  float *contrast = NULL;
-  FG_TRY(fg_memory_allocate(ctx, columns * 2, sizeof *contrast, (void **)&contrast));
-  for (size_t c = 0; c < columns; c++)
-    contrast[c] = contrast[columns + c] = tile_contrast(
-        tiles, (int32_t)c, strip, &tiles->medians[(size_t)strip * columns + c]);
-  qsort(contrast + columns, columns, sizeof *contrast, compare_floats);
-  float limit = CONTRAST_OVER_QUARTILE * contrast[columns + columns / 4];
-  if (limit < CONTRAST_MIN) limit = CONTRAST_MIN;
-  if (limit > CONTRAST_MAX) limit = CONTRAST_MAX;
-  uint8_t *wanted = tiles->wanted + (size_t)strip * columns;
-  for (size_t c = 0; c < columns; c++) wanted[c] = contrast[c] > limit;
-  free(contrast);
-  return FG_OK;
+static bool has_contrast(const float *blocks) {
+  float low = INFINITY, high = -INFINITY;
+  for (int i = 0; i < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; i++) {
+    low = blocks[i] < low ? blocks[i] : low;
+    high = blocks[i] > high ? blocks[i] : high;
+  }
+  if (high - low <= CONTRAST_MIN) return false;
+  return high - low > CONTRAST_MAX || high - low > CONTRAST_OVER_STEP * median_step(blocks);
+}
+
+static void mark_wanted(fg_tiles *tiles, int32_t strip) {
+  size_t first = (size_t)strip * (size_t)tiles->columns;
+  float blocks[FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE];
+  for (int32_t c = 0; c < tiles->columns; c++) {
+    copy_blocks(tiles, c, strip, blocks);
+    tiles->wanted[first + (size_t)c] = has_contrast(blocks);
+    tiles->medians[first + (size_t)c] =
+        select_median(blocks, FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE);
+  }
 }
 
 /* Wanted itself, or beside a wanted tile. */
@@ -177,12 +192,22 @@ static int is_kept(const fg_tiles *tiles, int32_t column, int32_t strip) {
   return 0;
 }
 
+static size_t tile_bytes(const fg_tiles *tiles) {
+  return sizeof(fg_tile) + FG_TILE_PX * FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
+}
+
 static fg_status keep_tile(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t strip) {
-  size_t bytes = (size_t)tiles->bytes_per_pixel, width = FG_TILE_PX * bytes;
-  size_t from = (size_t)column * width, size = sizeof(fg_tile) + FG_TILE_PX * width;
+  size_t width = FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
+  size_t from = (size_t)column * width, size = tile_bytes(tiles);
   const uint8_t *source = fg_tiles_strip(tiles, strip);
   fg_tile *tile = NULL;
-  FG_TRY(fg_memory_allocate(ctx, 1, size, (void **)&tile));
+  FG_TRY(fg_budget_take(ctx, tiles->budget, size));
+  fg_status status = fg_memory_allocate(ctx, 1, size, (void **)&tile);
+  if (status != FG_OK) {
+    fg_budget_give(tiles->budget, size);
+    return status;
+  }
+  atomic_init(&tile->holders, 1);
   size_t valid = from + width > row_bytes(tiles) ? row_bytes(tiles) - from : width;
   for (int64_t y = 0; y < fg_tiles_strip_rows(tiles, strip); y++)
     memcpy(tile->pixels + (size_t)y * width, source + (size_t)y * row_bytes(tiles) + from, valid);
@@ -201,7 +226,7 @@ fg_status fg_tiles_take_strip(fg_context *ctx, fg_tiles *tiles) {
   int32_t strip = tiles->received;
   if (strip >= tiles->rows) return fg_fail(ctx, FG_ERR_USAGE, "more rows than the scan has");
   FG_TRY(reduce_strip(ctx, tiles, strip));
-  FG_TRY(mark_wanted(ctx, tiles, strip));
+  mark_wanted(tiles, strip);
   if (strip > 0) FG_TRY(keep_tiles(ctx, tiles, strip - 1));
   tiles->received++;
   return FG_OK;
@@ -225,6 +250,8 @@ static void free_strips(fg_tiles *tiles) {
     tiles->strips[i] = NULL;
     tiles->strip_blocks[i] = NULL;
   }
+  fg_budget_give(tiles->budget, tiles->strip_budget);
+  tiles->strip_budget = 0;
 }
 
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles) {
@@ -235,17 +262,34 @@ fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles) {
   return FG_OK;
 }
 
-void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row) {
-  size_t at = (size_t)row * (size_t)tiles->columns + (size_t)column;
-  free(tiles->tiles[at]);
+static void let_go(fg_tiles *tiles, size_t at) {
+  fg_tile *tile = tiles->tiles[at];
   tiles->tiles[at] = NULL;
+  if (!tile || atomic_fetch_sub(&tile->holders, 1) != 1) return;
+  free(tile);
+  fg_budget_give(tiles->budget, tile_bytes(tiles));
+}
+
+void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row) {
+  let_go(tiles, (size_t)row * (size_t)tiles->columns + (size_t)column);
+}
+
+void fg_tiles_share(const fg_tiles *from, int32_t column, int32_t row, fg_tiles *to,
+                    int32_t to_column, int32_t to_row) {
+  if (column < 0 || row < 0 || column >= from->columns || row >= from->rows) return;
+  if (to_column < 0 || to_row < 0 || to_column >= to->columns || to_row >= to->rows) return;
+  fg_tile *tile = from->tiles[(size_t)row * (size_t)from->columns + (size_t)column];
+  fg_tile **place = &to->tiles[(size_t)to_row * (size_t)to->columns + (size_t)to_column];
+  if (!tile || *place) return;
+  atomic_fetch_add(&tile->holders, 1);
+  *place = tile;
 }
 
 void fg_tiles_free(fg_tiles *tiles) {
   if (!tiles) return;
   if (tiles->tiles)
     for (size_t i = 0; i < (size_t)tiles->columns * (size_t)tiles->rows; i++)
-      free(tiles->tiles[i]);
+      let_go(tiles, i);
   free(tiles->tiles);
   free(tiles->wanted);
   free(tiles->medians);

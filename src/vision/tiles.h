@@ -1,18 +1,20 @@
 /* A scan kept as sparse tiles: only what differs from the background stays in memory.
  *
  * Rows arrive in strips of FG_TILE_PX rows. Every strip is reduced to block means (FG_BLOCK_PX a
- * side); a tile whose block means differ by more than the background's own scatter is wanted, and
- * kept with its eight neighbours; of all others the median stays. Memory follows the area of the
- * foils, not of the bed. What is kept depends on the rows alone, not on threads or on how the
- * strips arrive.
+ * side); a tile whose block means differ by more than its own scatter is wanted, and kept with its
+ * eight neighbours; of all others the median stays. Memory follows the area of the foils, not of the
+ * bed. What is kept depends on the pixels around alone: not on threads, not on how the strips
+ * arrive, not on what else lies on the bed.
  */
 #ifndef FG_VISION_TILES_H
 #define FG_VISION_TILES_H
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
+#include "core/budget.h"
 #include "foilgauge/status.h"
 
 #ifdef __cplusplus
@@ -29,10 +31,12 @@ enum {
 /* A tile that was kept. Pixels outside the scan are 0, blocks outside repeat the last one. */
 typedef struct fg_tile {
   float blocks[FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE]; /* means, in 8-bit counts */
+  atomic_int holders;                                    /* fg_tiles that show it */
   uint8_t pixels[];                                      /* FG_TILE_PX² of 1 or 2 bytes */
 } fg_tile;
 
 typedef struct fg_tiles {
+  fg_budget *budget;                   /* of kept tiles and held strips; NULL: no limit */
   int64_t width_px, height_px;
   int bytes_per_pixel;                 /* 1 or 2 */
   int32_t columns, rows;               /* of tiles */
@@ -44,10 +48,12 @@ typedef struct fg_tiles {
   /* of the strips that are still undecided: */
   uint8_t *strips[FG_TILE_STRIPS];     /* rows of width_px pixels */
   float *strip_blocks[FG_TILE_STRIPS]; /* FG_BLOCKS_PER_TILE rows of columns × FG_BLOCKS_PER_TILE */
+  size_t strip_budget;                 /* bytes that they took from the budget */
 } fg_tiles;
 
+/* `budget` (NULL: none) must outlive the tiles. */
 fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
-                          int bytes_per_pixel, fg_tiles *tiles);
+                          int bytes_per_pixel, fg_budget *budget, fg_tiles *tiles);
 
 /* Where the rows of a strip go, one after the other without padding. It may be filled while
  * strips before it are taken, as long as strip < received + FG_TILE_STRIPS - 1. */
@@ -68,8 +74,15 @@ fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
 /* After the last strip. */
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles);
 
-/* Forgets one tile. */
+/* Lets one tile go. Its memory is free when nobody else shows it. */
 void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row);
+
+/* Lets `to` show a tile of `from` as well, where both exist and `to` has none there yet. */
+void fg_tiles_share(const fg_tiles *from, int32_t column, int32_t row, fg_tiles *to,
+                    int32_t to_column, int32_t to_row);
+
+/* Memory for the tables of an area whose width, height and bytes_per_pixel are set. */
+fg_status fg_tiles_allocate(fg_context *ctx, fg_tiles *tiles);
 
 void fg_tiles_free(fg_tiles *tiles);
 

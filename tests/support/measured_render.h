@@ -50,7 +50,7 @@ static inline rendered render_open(const char *json) {
   r.row_bytes = (size_t)r.truth->width_px * (size_t)bytes;
   r.strip = calloc(FG_TILE_PX, r.row_bytes);
   assert_non_null(r.strip);
-  assert_int_equal(fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, &r.tiles),
+  assert_int_equal(fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, NULL, &r.tiles),
                    FG_OK);
   return r;
 }
@@ -73,7 +73,7 @@ static inline void rendered_free(rendered *r) {
 static inline void measure_rows(measured *m) {
   fg_context *ctx = &m->ctx;
   rendered *r = &m->picture;
-  assert_int_equal(fg_session_create(ctx, &m->result, &r->tiles, 1, &r->session), FG_OK);
+  assert_int_equal(fg_session_create(ctx, &m->result, 1, &r->session), FG_OK);
   assert_int_equal(fg_render_rows(ctx, r->spec, 0, rendered_row, r), FG_OK);
   assert_int_equal(fg_tiles_finish(ctx, &r->tiles), FG_OK);
   assert_int_equal(fg_session_advance(ctx, &r->tiles, r->session), FG_OK);

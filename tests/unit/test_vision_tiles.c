@@ -32,7 +32,7 @@ static fg_tiles fill(const scene *s, int bytes, bool strip_by_strip) {
         memcpy(&rows[y][2 * x], &s->pixels[y][x], 2);
       else
         rows[y][x] = (uint8_t)(s->pixels[y][x] / 257);
-  assert_int_equal(fg_tiles_create(&ctx, WIDTH, HEIGHT, bytes, &tiles), FG_OK);
+  assert_int_equal(fg_tiles_create(&ctx, WIDTH, HEIGHT, bytes, NULL, &tiles), FG_OK);
   for (int strip = 0; strip * FG_TILE_PX < HEIGHT; strip++) {
     if (strip_by_strip) {
       assert_int_equal(fg_tiles_add_strip(&ctx, &tiles, rows[strip * FG_TILE_PX], sizeof rows[0]),

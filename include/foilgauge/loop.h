@@ -1,0 +1,327 @@
+/* Closing the loop: what the residual of a declared model holds, and what that is worth.
+ *
+ * One engine for every level (bumps, runs, points). It knows no tables and no scans:
+ *
+ *   a problem   is a residual with its Jacobian, the coordinates an effect may live on, the groups
+ *               that were drawn independently, and the order along which noise may be correlated;
+ *   an effect   is a row of a table: an id, the coordinates it needs, its basis, its non-linear
+ *               parameters with their start values; a new effect is a new row;
+ *   a candidate is an effect on given coordinates of a problem.
+ *
+ * Method (score tests with the noise re-estimated under every candidate; max-T: Westfall and Young
+ * 1993; sign flips of score contributions: Hemerik, Goeman and Finos 2020; residual likelihood:
+ * Patterson and Thompson 1971):
+ *
+ *   1  Rows that are kept aside take no part in any choice.
+ *   2  Noise: variance, correlation rho along a series (first order), and where groups share a
+ *      level the ratio lambda of its variance to the rows'; all from the data, at every step.
+ *   3  A candidate is scored by the residual sum that it takes away, whitened and with every
+ *      parameter of the declared model projected out.
+ *   4  Its p-value is the larger of two: flips of the groups' signs (right under unequal variance
+ *      and outliers) and simulation of the null with its correlation (right in small tables and
+ *      for effects over the order). Both are max-T over all candidates.
+ *   5  Accepted at p < 0.01, with a gain above one standard error in grouped cross-validation.
+ *   6  Its alias class: every candidate beside which the winner explains nothing more that the data
+ *      can show, and every sum of two such.
+ *   7  Refit of all together, swaps, drops; at most five effects.
+ *   8  What no candidate explains: a smooth curve over one coordinate (unattributed).
+ *
+ * Lone rows are judged apart: flips keep an outlier an outlier, so `table.outlier` and
+ * `table.exchanged_runs` must stand out from simulated noise with heavy tails (Student's t, 4
+ * degrees of freedom).
+ */
+#ifndef FOILGAUGE_LOOP_H
+#define FOILGAUGE_LOOP_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "foilgauge/design.h"
+#include "foilgauge/status.h"
+#include "foilgauge/table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum {
+  FG_LOOP_SHAPES = 2,   /* non-linear parameters of an effect, at most */
+  FG_LOOP_COLUMNS = 12, /* linear columns of an effect, at most */
+  FG_LOOP_CLAIMS = 5,   /* effects in one report, at most */
+  FG_LOOP_STARTS = 256,  /* start values of an effect's shape, at most */
+  FG_LOOP_ALIASES = 12, /* members of an alias class that are reported, at most */
+  FG_LOOP_NAME = 96,
+};
+
+/* What a coordinate is; effects ask for these. */
+typedef enum fg_loop_role {
+  FG_LOOP_ORDER = 1,        /* when a run or group was made */
+  FG_LOOP_BUMP = 2,         /* the bump's number from the lip */
+  FG_LOOP_DECLARED = 4,     /* the declared model uses it */
+  FG_LOOP_TEMPERATURE = 8,  /* see kelvin_offset */
+  FG_LOOP_DURATION = 16,    /* a time of treatment */
+  FG_LOOP_SENSITIVITY = 32, /* a basis by itself: the response's change by one unit of a part's
+                               parameter */
+} fg_loop_role;
+
+typedef struct fg_loop_coordinate {
+  char name[FG_LOOP_NAME];
+  double *value;     /* rows; the level's index for words */
+  size_t levels;     /* words: how many; numbers: 0 */
+  char **level_name; /* levels */
+  size_t distinct;   /* different values */
+  double few[FG_LOOP_COLUMNS + 1]; /* numbers: the lowest of them, ascending */
+  double quantile[FG_LOOP_COLUMNS + 1]; /* of the rows, 0 to 1 in equal steps: knots of curves */
+  unsigned roles;
+  double kelvin_offset; /* value + kelvin_offset = kelvin */
+  double low, high;     /* of all rows; a basis is scaled by them */
+} fg_loop_coordinate;
+
+/* The rows of a series are consecutive and in order. The problem belongs to whoever built it; the
+ * engine reads it only. */
+typedef struct fg_loop_problem {
+  const char *level; /* "runs", "bumps", "points" */
+  size_t rows, parameters;
+  double *residual;      /* rows: response minus the declared model at its start */
+  double *jacobian;      /* parameters × rows: its change by each parameter */
+  char **parameter_name; /* parameters */
+  size_t *group;         /* rows: 0 .. groups - 1, what was drawn independently */
+  size_t groups;
+  bool group_level; /* rows of a group share a random level */
+  size_t *series;   /* rows: along equal values noise may be correlated */
+  bool correlated;  /* estimate that correlation */
+  double rho_most;  /* ... up to this, where more would be an effect and not noise; 0: any */
+  bool *aside;      /* rows kept aside, whole groups; NULL: none */
+  bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
+  double *response;  /* rows, for exchanged runs: the measured response */
+  fg_loop_coordinate *coordinate;
+  size_t coordinates;
+  void *self; /* for the effects of a level */
+} fg_loop_problem;
+
+struct fg_loop_effect;
+
+typedef struct fg_loop_candidate {
+  const struct fg_loop_effect *effect;
+  size_t a, b; /* coordinates; b = a where there is one */
+  size_t row[2]; /* outlier, exchanged runs */
+} fg_loop_candidate;
+
+typedef struct fg_loop_effect {
+  const char *id, *level, *frame;
+  const char *words; /* "a trend with" */
+  bool pair;         /* of coordinates */
+  size_t shapes;
+  const char *shape_name[FG_LOOP_SHAPES];
+  bool (*accepts)(const fg_loop_problem *problem, size_t a, size_t b);
+  size_t (*columns)(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
+  /* columns × rows, scaled so that one column's half range is about 1: its coefficient is then the
+   * amplitude in the response's unit. */
+  void (*basis)(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                const double *shape, double *columns);
+  /* Start values; returns how many (1 for effects without shape). */
+  size_t (*starts)(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                   double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
+  /* The shape is a place between rows: it cannot be refined by small steps. */
+  bool stepwise;
+  bool from_zero; /* the amplitude is the largest size, not half the range */
+} fg_loop_effect;
+
+typedef struct fg_loop_options {
+  const fg_loop_effect *effects; /* a table that ends with id NULL */
+  uint64_t seed;
+  double accept_p;    /* 0: 0.01 */
+  size_t simulations; /* 0: 999 */
+  double matters;     /* amplitude that matters, in the response's unit; 0: one noise sd */
+} fg_loop_options;
+
+typedef enum fg_loop_verdict {
+  FG_LOOP_FOUND,
+  FG_LOOP_TIED,
+  FG_LOOP_ABSENT,
+  FG_LOOP_INCONCLUSIVE,
+  FG_LOOP_ABSORBED,
+  FG_LOOP_EXPLAINED_BY_OTHERS, /* passed, but a member of a claim's alias class */
+} fg_loop_verdict;
+
+typedef struct fg_loop_alias {
+  char name[2 * FG_LOOP_NAME]; /* of the candidate, or of a sum of two */
+  double correlation;          /* of its best fit with the winner's, both beside the model */
+  double loss;                 /* share of the winner's explained sum that it misses */
+  fg_loop_candidate candidate, second;
+  bool sum;
+} fg_loop_alias;
+
+typedef struct fg_loop_claim {
+  fg_loop_candidate candidate;
+  char name[FG_LOOP_NAME]; /* "table.linear(humidity_pct)" */
+  fg_loop_verdict verdict;
+  size_t columns;
+  double shape[FG_LOOP_SHAPES], shape_u[FG_LOOP_SHAPES];
+  double coefficient[FG_LOOP_COLUMNS], coefficient_u[FG_LOOP_COLUMNS];
+  double amplitude;       /* half the range of the effect over the rows, response's unit */
+  double amplitude_u;     /* standard uncertainty */
+  double interval[2];     /* 95 % */
+  double p_value;         /* max-T */
+  double p_flip, p_simulated; /* NaN where not used */
+  double retained_share;  /* |M W f|² / |W f|² */
+  double cv_gain, cv_gain_se; /* NaN for lone rows */
+  int held_out;           /* +1 confirmed, 0 not contradicted, -1 none kept aside */
+  fg_loop_alias alias[FG_LOOP_ALIASES];
+  size_t aliases, aliases_unlisted;
+} fg_loop_claim;
+
+typedef struct fg_loop_rejected {
+  fg_loop_candidate candidate;
+  char name[FG_LOOP_NAME];
+  fg_loop_verdict verdict;
+  double would_explain;       /* share of the residual sum that it would take away */
+  double p_value;             /* max-T, last step */
+  double retained_share;
+  double smallest_detectable; /* amplitude found with a power of 80 %; NaN where nothing would */
+} fg_loop_rejected;
+
+typedef struct fg_loop_curve {
+  size_t coordinate; /* of the problem */
+  char name[FG_LOOP_NAME];
+  size_t count;
+  double (*shape)[2]; /* coordinate, value: piecewise linear between them */
+  double rms, p_value;
+  size_t nearest[8]; /* rows with the largest values */
+  size_t nearest_count;
+  double freedom; /* effective, of the penalised spline */
+} fg_loop_curve;
+
+/* Errors over a set of rows. */
+typedef struct fg_loop_error {
+  double rms, robust_sd, p95, maximum;
+  double held_out_rms;         /* rows kept aside; NaN without */
+  double cross_validated_rms;  /* whole groups left out in turn */
+} fg_loop_error;
+
+typedef struct fg_loop_noise {
+  double sd;          /* of one row, group level included */
+  double rho, lambda; /* correlation along a series; level's variance over the rows' */
+} fg_loop_noise;
+
+typedef struct fg_loop_advice {
+  char text[400];
+  double runs; /* needed for a power of 80 % */
+} fg_loop_advice;
+
+typedef enum fg_loop_outcome {
+  FG_LOOP_CLEAN,
+  FG_LOOP_EXPLAINED,
+  FG_LOOP_PARTLY,
+  FG_LOOP_UNATTRIBUTED,
+} fg_loop_outcome;
+
+typedef struct fg_loop_result {
+  fg_loop_outcome verdict;
+  fg_loop_noise noise;
+  double noise_floor;
+  double smallest_p; /* that flips of this many groups can give */
+  fg_loop_error before, after;
+  double ratio_rms, ratio_held_out, ratio_interval[2]; /* after / before; 95 % block bootstrap */
+  fg_loop_claim claim[FG_LOOP_CLAIMS];
+  size_t claims;
+  bool has_curve;
+  fg_loop_curve curve;
+  fg_loop_rejected *rejected;
+  size_t rejects;
+  fg_loop_advice advice[FG_LOOP_CLAIMS];
+  size_t advices;
+  double *parameter, *parameter_u; /* of the declared model, refitted with everything */
+  double *before_fit, *after_fit;  /* rows: residual before and after */
+  double *effect_fit;              /* rows: what was found, in the response's unit */
+  char **note;
+  size_t notes, note_capacity;
+} fg_loop_result;
+
+/* Runs the engine. FG_ERR_DATA when nothing can be judged at all: fewer than four rows beyond the
+ * parameters, a residual that is zero or constant within rounding is not an error but a result
+ * (`clean` with a note). Free with fg_loop_result_free. */
+fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
+                      const fg_loop_options *options, fg_loop_result *result);
+void fg_loop_result_free(fg_loop_result *result);
+
+const char *fg_loop_verdict_word(fg_loop_verdict verdict);
+const char *fg_loop_outcome_word(fg_loop_outcome outcome);
+
+/* The effect of a claim at the rows of a problem (rows numbers). */
+fg_status fg_loop_claim_evaluate(fg_context *ctx, const fg_loop_problem *problem,
+                                 const fg_loop_claim *claim, double *effect);
+/* The curve at a value of its coordinate; constant beyond its ends. */
+double fg_loop_curve_at(const fg_loop_curve *curve, double value);
+
+/* ---- tables: levels `runs` and `bumps` ---- */
+
+/* The effects of tables, parts over bumps, and heat treatment (DESIGN section 5). */
+const fg_loop_effect *fg_loop_table_effects(void);
+
+typedef struct fg_loop_table_spec {
+  const char *response; /* column */
+  const char *model;    /* a formula, or "arc_length" */
+  const char *group;    /* column, or NULL */
+  const char *order;    /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
+  const char *hold_out; /* "0.2", "COLUMN=VALUE", "0"; NULL: a fifth where there are 20 groups or
+                           more, or 10 foils */
+  const fg_design *design; /* arc_length only */
+  uint64_t seed;
+} fg_loop_table_spec;
+
+/* A problem built from a table; owns everything in it. `row` maps its rows to the table's. */
+typedef struct fg_loop_table_problem {
+  fg_loop_problem problem;
+  size_t *row;
+  char *excluded; /* words: columns that were left out and why; NULL: none */
+} fg_loop_table_problem;
+
+/* Cells that are missing, columns that are not there, a formula that cannot be built: FG_ERR_DATA
+ * or FG_ERR_USAGE with words. Columns that are results of the same measurement (bump radius and
+ * angle, height ...) are no causes and are left out. */
+fg_status fg_loop_table_problem_build(fg_context *ctx, const fg_table *table,
+                                      const fg_loop_table_spec *spec,
+                                      fg_loop_table_problem *problem);
+void fg_loop_table_problem_free(fg_loop_table_problem *problem);
+
+/* ---- reports ---- */
+
+typedef struct fg_loop_report {
+  const char *path, *sha256;
+  const fg_loop_table_spec *spec;
+  const fg_loop_table_problem *problem;
+  const fg_loop_result *result;
+  uint64_t seed;
+} fg_loop_report;
+
+/* "foilgauge/loop/1" (reports/schema/loop.schema.json). */
+fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE *out);
+fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE *out);
+fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE *out);
+/* One sentence for a process engineer; the caller frees it. */
+fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text);
+
+/* ---- the model file: declared model plus what was found ---- */
+
+typedef struct fg_loop_model fg_loop_model;
+
+/* "foilgauge/loop-model/1". */
+fg_status fg_loop_write_model(fg_context *ctx, const fg_loop_report *report, FILE *out);
+/* FG_ERR_DATA for a file that is not one. Free with fg_loop_model_free. */
+fg_status fg_loop_model_load(fg_context *ctx, const char *path, fg_loop_model **model);
+/* Takes the effects that were found out of the response column of a table, so that an analysis
+ * with the declared formula starts from the better model. Lone rows (outlier, exchanged runs) are
+ * of the table they were found in and are not applied. A value outside the range the model was
+ * found in, or a level it has not seen, is FG_ERR_DATA with its row. */
+fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_table *table);
+const char *fg_loop_model_response(const fg_loop_model *model);
+const char *fg_loop_model_formula(const fg_loop_model *model);
+void fg_loop_model_free(fg_loop_model *model);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,77 @@
+/* Closing the loop on scans: what the scanner or the foil does that the declared geometry lacks.
+ *
+ * The scans are measured, the edge points of all arcs and lands are held against one geometry, and
+ * the engine of loop.h looks for effects of scanner and part in what is left. What is found is
+ * fitted together with the geometry, non-linearly, and the edges are corrected and measured again.
+ */
+#ifndef FOILGAUGE_SCAN_LOOP_H
+#define FOILGAUGE_SCAN_LOOP_H
+
+#include <stdio.h>
+
+#include "foilgauge/loop.h"
+#include "foilgauge/measure.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { FG_SCAN_EFFECTS = FG_LOOP_CLAIMS + 2 };
+
+typedef struct fg_scan_loop_options {
+  double dpi;       /* 0: as the files say */
+  unsigned threads; /* 0: all cores */
+  bool same_foil;   /* foil k of every scan is one foil, turned or shifted in between */
+  uint64_t seed;
+} fg_scan_loop_options;
+
+/* One effect that is in the corrected model. Coefficients are linear amplitudes in um of its
+ * columns (src/loop/fields.c, points_effects.c). */
+typedef struct fg_scan_effect {
+  const char *id;
+  size_t columns, shapes;
+  double coefficient_um[FG_LOOP_COLUMNS], u_coefficient_um[FG_LOOP_COLUMNS];
+  double shape[FG_LOOP_SHAPES], u_shape[FG_LOOP_SHAPES];
+} fg_scan_effect;
+
+/* Lowest and highest value of a dimension over the tied explanations. */
+typedef struct fg_scan_range {
+  double radius_mm[2], height_mm[2];
+} fg_scan_range;
+
+/* Errors of the points, um. */
+typedef struct fg_scan_error {
+  double rms, robust_sd, p95, maximum, held_out_rms; /* NaN without scans kept aside */
+} fg_scan_error;
+
+typedef struct fg_scan_loop fg_scan_loop; /* src/loop/scan_loop.h */
+
+/* `hold_out[i]`: scan i only confirms. At least one scan must not be kept aside. FG_ERR_DATA when
+ * the scans do not fit together (resolution, foils under same_foil). */
+fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
+                           size_t count, const fg_design *design,
+                           const fg_scan_loop_options *options, fg_scan_loop **loop);
+void fg_scan_loop_free(fg_scan_loop *loop);
+
+/* "foilgauge/loop/1", domain "scan". */
+fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
+fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
+fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
+/* "foilgauge/scan-model/1". */
+fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
+
+/* A model that was found, to correct other scans. */
+typedef struct fg_scan_model fg_scan_model;
+fg_status fg_scan_model_load(fg_context *ctx, const char *path, fg_scan_model **model);
+void fg_scan_model_free(fg_scan_model *model);
+/* Corrects the edges of every foil and measures it again, with the model's uncertainty in every
+ * u_. FG_ERR_DATA when the model is of another resolution; `warning` (200 bytes, or NULL) gets
+ * words when the scan reaches beyond the region the model was found in. Part effects are of the
+ * foil they were found on and are not applied. */
+fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_measurement *m,
+                              unsigned threads, char *warning);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,249 @@
+#include <argp.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cjson/cJSON.h>
+
+#include "cli/commands.h"
+#include "core/file.h"
+#include "core/sha256.h"
+#include "foilgauge/loop.h"
+
+typedef struct loop_arguments {
+  const char *table_path, *design_path, *declared_path;
+  const char *output_path, *model_path, *page_path;
+  fg_loop_table_spec spec;
+  double matters;
+  cJSON *declared; /* owns the strings that came from --declared */
+} loop_arguments;
+
+enum {
+  OPTION_TABLE = 256,
+  OPTION_RESPONSE,
+  OPTION_MODEL,
+  OPTION_GROUP,
+  OPTION_ORDER,
+  OPTION_DESIGN,
+  OPTION_DECLARED,
+  OPTION_HOLD_OUT,
+  OPTION_SEED,
+  OPTION_MODEL_OUT,
+  OPTION_HTML,
+  OPTION_MATTERS,
+};
+
+static const struct argp_option options[] = {
+    {"table", OPTION_TABLE, "DATA.csv", 0, "The measured data", 0},
+    {"response", OPTION_RESPONSE, "COLUMN", 0, "What was measured", 0},
+    {"model", OPTION_MODEL, "FORMULA", 0,
+     "The declared model: a formula ('1 + T + D + T:D + T^2'), or arc_length (from the bump radius)",
+     0},
+    {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
+    {"order", OPTION_ORDER, "COLUMN", 0,
+     "Order of the rows, in groups of their rows (default: run, or bump)", 0},
+    {"design", OPTION_DESIGN, "FILE", 0, "The foil's design, for arc_length", 0},
+    {"declared", OPTION_DECLARED, "FILE", 0,
+     "JSON with response, model, group and design; options win over it", 0},
+    {"hold-out", OPTION_HOLD_OUT, "SHARE", 0,
+     "Whole groups kept aside: a share, 0, or COLUMN=VALUE", 0},
+    {"matters", OPTION_MATTERS, "AMPLITUDE", 0,
+     "An effect this small does not matter, in the response's unit (default: one noise sd)", 0},
+    {"seed", OPTION_SEED, "N", 0, "Of every random step (default 1)", 0},
+    {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
+    {"model-out", OPTION_MODEL_OUT, "FILE", 0, "Declared model and what was found, as JSON", 0},
+    {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},
+    {0},
+};
+
+static const char doc[] =
+    "Find what the residual of a declared model holds: which effect the model lacks, how sure that "
+    "is, what it could be confused with, which measurement would tell.\v"
+    "Columns that the model does not use are candidates, and so are the order of the runs and the "
+    "bump's number. Without -o a table is printed on a terminal and JSON elsewhere.\n\n"
+    "Exit code: 0 done; 64 usage; 65 bad data; 74 input or output.";
+
+static void parse_number(struct argp_state *state, const char *name, const char *text,
+                         double *value) {
+  char *end;
+  *value = strtod(text, &end);
+  if (*end || end == text || !(*value > 0)) argp_error(state, "--%s %s: above 0", name, text);
+}
+
+static void parse_seed(struct argp_state *state, const char *text, uint64_t *seed) {
+  char *end;
+  *seed = strtoull(text, &end, 10);
+  if (*end || end == text || *text == '-') argp_error(state, "--seed %s: a whole number", text);
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  loop_arguments *arguments = state->input;
+  const struct {
+    int key;
+    const char **into;
+  } texts[] = {
+      {OPTION_TABLE, &arguments->table_path},     {OPTION_RESPONSE, &arguments->spec.response},
+      {OPTION_MODEL, &arguments->spec.model},     {OPTION_GROUP, &arguments->spec.group},
+      {OPTION_ORDER, &arguments->spec.order},     {OPTION_DESIGN, &arguments->design_path},
+      {OPTION_DECLARED, &arguments->declared_path}, {OPTION_HOLD_OUT, &arguments->spec.hold_out},
+      {OPTION_MODEL_OUT, &arguments->model_path}, {OPTION_HTML, &arguments->page_path},
+      {'o', &arguments->output_path},
+  };
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+    if (texts[i].key == key) {
+      *texts[i].into = text;
+      return 0;
+    }
+  switch (key) {
+  case OPTION_MATTERS:
+    parse_number(state, "matters", text, &arguments->matters);
+    return 0;
+  case OPTION_SEED:
+    parse_seed(state, text, &arguments->spec.seed);
+    return 0;
+  case ARGP_KEY_ARG:
+    argp_error(state, "%s: give the data by --table", text);
+    return 0;
+  case ARGP_KEY_END:
+    if (!arguments->table_path) argp_error(state, "--table DATA.csv is missing");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static fg_status take_text(fg_context *ctx, const loop_arguments *arguments, const char *name,
+                           const char **into) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(arguments->declared, name);
+  if (!item || cJSON_IsNull(item) || *into) return FG_OK;
+  if (!cJSON_IsString(item))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: %s must be a text", arguments->declared_path, name);
+  *into = item->valuestring;
+  return FG_OK;
+}
+
+static fg_status take_design(fg_context *ctx, const loop_arguments *arguments, fg_design *design) {
+  const struct {
+    const char *name;
+    double *value;
+  } members[] = {
+      {"bump_radius_mm", &design->bump_radius_mm},
+      {"bump_angle_deg", &design->bump_angle_deg},
+      {"overall_radius_mm", &design->overall_radius_mm},
+      {"thickness_mm", &design->thickness_mm},
+      {"rotor_diameter_mm", &design->rotor_diameter_mm},
+  };
+  const cJSON *object = cJSON_GetObjectItemCaseSensitive(arguments->declared, "design");
+  for (size_t i = 0; object && i < sizeof members / sizeof *members; i++) {
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, members[i].name);
+    if (!item) continue;
+    if (!cJSON_IsNumber(item))
+      return fg_fail(ctx, FG_ERR_DATA, "%s: design.%s must be a number", arguments->declared_path,
+                     members[i].name);
+    *members[i].value = item->valuedouble;
+  }
+  return FG_OK;
+}
+
+static fg_status read_declared(fg_context *ctx, loop_arguments *arguments, fg_design *design) {
+  char *text = NULL;
+  if (arguments->declared_path) {
+    FG_TRY(fg_file_read_text(ctx, arguments->declared_path, 1 << 20, &text));
+    arguments->declared = cJSON_Parse(text);
+    free(text);
+    if (!cJSON_IsObject(arguments->declared))
+      return fg_fail(ctx, FG_ERR_DATA, "%s: not a JSON object", arguments->declared_path);
+    FG_TRY(take_text(ctx, arguments, "response", &arguments->spec.response));
+    FG_TRY(take_text(ctx, arguments, "model", &arguments->spec.model));
+    FG_TRY(take_text(ctx, arguments, "group", &arguments->spec.group));
+    FG_TRY(take_text(ctx, arguments, "order", &arguments->spec.order));
+    FG_TRY(take_design(ctx, arguments, design));
+  }
+  if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, design));
+  if (!arguments->spec.response)
+    return fg_fail(ctx, FG_ERR_USAGE, "which column was measured? --response COLUMN");
+  if (!arguments->spec.model)
+    return fg_fail(ctx, FG_ERR_USAGE, "which model is declared? --model FORMULA, or arc_length");
+  return FG_OK;
+}
+
+typedef fg_status loop_writer(fg_context *ctx, const fg_loop_report *report, FILE *out);
+
+static fg_status write_file(fg_context *ctx, const char *path, const fg_loop_report *report,
+                            loop_writer *writer) {
+  fg_output output;
+  FG_TRY(fg_output_open(ctx, path, &output));
+  fg_status status = writer(ctx, report, output.stream);
+  if (status == FG_OK) status = fg_output_commit(ctx, &output);
+  fg_output_discard(&output);
+  return status;
+}
+
+static fg_status write_all(fg_context *ctx, const loop_arguments *arguments,
+                           const fg_loop_report *report) {
+  bool terminal = isatty(STDOUT_FILENO);
+  bool quiet = arguments->page_path || arguments->model_path;
+  if (arguments->page_path)
+    FG_TRY(write_file(ctx, arguments->page_path, report, fg_loop_write_html));
+  if (arguments->model_path)
+    FG_TRY(write_file(ctx, arguments->model_path, report, fg_loop_write_model));
+  if (arguments->output_path)
+    return write_file(ctx, arguments->output_path, report, fg_loop_write_json);
+  if (terminal) return write_file(ctx, "-", report, fg_loop_write_text);
+  return quiet ? FG_OK : write_file(ctx, "-", report, fg_loop_write_json);
+}
+
+static fg_status read_table(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
+  char *text = NULL;
+  FG_TRY(fg_file_read_text(ctx, path, (size_t)1 << 30, &text));
+  fg_status status = fg_table_parse(ctx, path, text, strlen(text), table);
+  if (status == FG_OK) status = fg_sha256_file(ctx, path, sha256);
+  free(text);
+  return status;
+}
+
+static fg_status run_loop(fg_context *ctx, loop_arguments *arguments) {
+  fg_status status = FG_OK;
+  fg_table table = {0};
+  fg_design design;
+  fg_loop_table_problem problem = {0};
+  fg_loop_result result = {0};
+  char sha256[65] = "";
+  fg_design_default(&design);
+  FG_TRY_EXIT(read_declared(ctx, arguments, &design));
+  arguments->spec.design = &design;
+  FG_TRY_EXIT(read_table(ctx, arguments->table_path, &table, sha256));
+  FG_TRY_EXIT(fg_loop_table_problem_build(ctx, &table, &arguments->spec, &problem));
+  fg_loop_options loop_options = {.effects = fg_loop_table_effects(),
+                                  .seed = arguments->spec.seed,
+                                  .matters = arguments->matters};
+  FG_TRY_EXIT(fg_loop_run(ctx, &problem.problem, &loop_options, &result));
+  fg_loop_report report = {arguments->table_path, sha256, &arguments->spec, &problem, &result,
+                           arguments->spec.seed};
+  FG_TRY_EXIT(write_all(ctx, arguments, &report));
+exit:
+  fg_loop_result_free(&result);
+  fg_loop_table_problem_free(&problem);
+  fg_table_free(&table);
+  cJSON_Delete(arguments->declared);
+  return status;
+}
+
+/* The loop on a table, or on scans (cmd_loop_scan.c). */
+static bool is_about_a_table(int argc, char **argv) {
+  for (int i = 1; i < argc; i++)
+    if (!strncmp(argv[i], "--table", 7)) return true;
+  return false;
+}
+
+int fg_cmd_loop(int argc, char **argv) {
+  if (!is_about_a_table(argc, argv)) return fg_cmd_loop_scan(argc, argv);
+  static const struct argp parser = {options, parse_option, "", doc, NULL, NULL, NULL};
+  fg_context ctx = {0};
+  loop_arguments arguments = {.spec = {.seed = 1}};
+  argv[0] = (char[]){"foilgauge loop"};
+  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  fg_status status = run_loop(&ctx, &arguments);
+  return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
+}

@@ -1,0 +1,264 @@
+/* Alias classes. A rival belongs to the winner's class when, beside it, the winner explains nothing
+ * more that the data can show. Were the rival the truth, the winner's surplus would be noise: the
+ * truth is left out of its class with the probability of the test alone. */
+#include "loop/alias.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+
+static const double shows = 0.002;   /* the winner's surplus shows below this */
+static const double pair_loss = 0.1; /* a sum of two must explain all but this */
+enum { PAIR_POOL = 10 };
+
+/* Whitened residual and columns of a frame at one noise; `basis` has room for more columns. */
+typedef struct alias_bench {
+  const loop_frame *frame;
+  loop_noise noise;
+  size_t n, rank;
+  double *basis, *y, *columns, *unit;
+  double rss, freedom;
+  bool between; /* the columns added last */
+} alias_bench;
+
+enum { ROOM = 3 * FG_LOOP_COLUMNS };
+
+static fg_status open_bench(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                            alias_bench *bench) {
+  size_t n = frame->n;
+  *bench = (alias_bench){.frame = frame, .noise = noise, .n = n};
+  FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + ROOM) * sizeof *bench->basis,
+                            (void **)&bench->basis));
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
+  FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->columns));
+  FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->unit));
+  memcpy(bench->basis, frame->x, n * frame->columns * sizeof *bench->basis);
+  for (size_t k = 0; k < frame->columns; k++)
+    loop_whiten(frame, noise, bench->basis + k * n);
+  bench->rank = loop_orthonormal(n, NULL, 0, bench->basis, frame->columns, bench->basis, NULL);
+  memcpy(bench->y, frame->y, n * sizeof *bench->y);
+  loop_whiten(frame, noise, bench->y);
+  bench->rss = loop_project_out(n, bench->basis, bench->rank, bench->y);
+  bench->freedom = (double)n - (double)bench->rank;
+  return FG_OK;
+}
+
+static void close_bench(alias_bench *bench) {
+  free(bench->basis);
+  free(bench->y);
+  free(bench->columns);
+  free(bench->unit);
+}
+
+/* Constant in every group that shares a level: judged between groups, with their freedom. */
+static bool between_groups(const loop_frame *frame, const double *columns, size_t count) {
+  for (size_t k = 0; k < count; k++)
+    for (size_t i = 1; i < frame->n; i++)
+      if (frame->group[i] == frame->group[i - 1] &&
+          columns[k * frame->n + i] != columns[k * frame->n + i - 1])
+        return false;
+  return frame->levels > 0;
+}
+
+/* Adds the candidate's columns behind those already there; returns how many are new. */
+static fg_status extend(fg_context *ctx, alias_bench *bench, const loop_stand *stand, size_t rank,
+                        size_t *added) {
+  const fg_loop_problem *problem = bench->frame->problem;
+  size_t count = loop_candidate_columns(problem, &stand->candidate);
+  FG_TRY(loop_gather(ctx, bench->frame, &stand->candidate, stand->shape, bench->columns));
+  bench->between = between_groups(bench->frame, bench->columns, count);
+  for (size_t k = 0; k < count; k++)
+    loop_whiten(bench->frame, bench->noise, bench->columns + k * bench->n);
+  *added = loop_orthonormal(bench->n, bench->basis, rank, bench->columns, count,
+                            bench->basis + rank * bench->n, NULL);
+  return FG_OK;
+}
+
+static double explained(const alias_bench *bench, size_t from, size_t count) {
+  double gain = 0;
+  for (size_t k = from; k < from + count; k++) {
+    double along = 0;
+    for (size_t i = 0; i < bench->n; i++)
+      along += bench->basis[k * bench->n + i] * bench->y[i];
+    gain += along * along;
+  }
+  return gain;
+}
+
+static void fitted(const alias_bench *bench, size_t from, size_t count, double *fit) {
+  memset(fit, 0, bench->n * sizeof *fit);
+  for (size_t k = from; k < from + count; k++) {
+    double along = 0;
+    for (size_t i = 0; i < bench->n; i++)
+      along += bench->basis[k * bench->n + i] * bench->y[i];
+    for (size_t i = 0; i < bench->n; i++)
+      fit[i] += along * bench->basis[k * bench->n + i];
+  }
+}
+
+static double cosine(size_t n, const double *a, const double *b) {
+  double aa = 0, bb = 0, ab = 0;
+  for (size_t i = 0; i < n; i++) {
+    aa += a[i] * a[i];
+    bb += b[i] * b[i];
+    ab += a[i] * b[i];
+  }
+  return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
+}
+
+typedef struct alias_test {
+  size_t rank, more;      /* of the rival; of the winner beside it */
+  double gain, p_value;   /* of the rival; of the winner's surplus */
+  double correlation;
+} alias_test;
+
+/* The winner beside one rival, or a sum of two. */
+static fg_status compare(fg_context *ctx, alias_bench *bench, const loop_stand *winner,
+                         const loop_stand *rival, const loop_stand *second,
+                         const double *winner_fit, alias_test *test) {
+  size_t more = 0;
+  double shapes = (double)rival->candidate.effect->shapes;
+  FG_TRY(extend(ctx, bench, rival, bench->rank, &test->rank));
+  if (second) {
+    FG_TRY(extend(ctx, bench, second, bench->rank + test->rank, &more));
+    test->rank += more;
+    shapes += (double)second->candidate.effect->shapes;
+  }
+  test->gain = explained(bench, bench->rank, test->rank);
+  fitted(bench, bench->rank, test->rank, bench->unit);
+  test->correlation = winner_fit ? cosine(bench->n, winner_fit, bench->unit) : 0;
+  FG_TRY(extend(ctx, bench, winner, bench->rank + test->rank, &test->more));
+  double surplus = explained(bench, bench->rank + test->rank, test->more);
+  double k = (double)test->more + (double)winner->candidate.effect->shapes;
+  double left = bench->rss - test->gain - surplus;
+  double freedom = bench->between ? (double)bench->frame->groups - 1 : bench->freedom;
+  freedom -= (double)test->rank + shapes + k;
+  test->p_value = 1;
+  if (test->more > 0 && freedom >= 1 && left > 0)
+    test->p_value = gsl_cdf_fdist_Q(surplus / k / (left / freedom), k, freedom);
+  else if (test->more > 0)
+    test->p_value = left > 0 ? 1 : 0;
+  return FG_OK;
+}
+
+fg_status loop_beside(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                      const loop_stand *base, const loop_stand *other, double *p_value) {
+  alias_bench bench;
+  alias_test test = {0};
+  fg_status status = open_bench(ctx, frame, noise, &bench);
+  if (status == FG_OK) status = compare(ctx, &bench, other, base, NULL, NULL, &test);
+  *p_value = test.p_value;
+  close_bench(&bench);
+  return status;
+}
+
+fg_status loop_simplify(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                        const loop_stand *stand, size_t count, size_t winner, size_t *simplest) {
+  alias_bench bench;
+  size_t rank = 0, inside;
+  double best = -INFINITY;
+  fg_status status = FG_OK;
+  *simplest = winner;
+  FG_TRY_EXIT(open_bench(ctx, frame, noise, &bench));
+  FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
+  size_t whole = rank + stand[winner].candidate.effect->shapes;
+  for (size_t c = 0; c < count; c++) {
+    alias_test test;
+    if (c == winner || loop_is_curve(&stand[c].candidate)) continue;
+    FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
+    FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.rank + rank, &inside));
+    if (inside > 0) continue;
+    FG_TRY_EXIT(compare(ctx, &bench, &stand[winner], &stand[c], NULL, NULL, &test));
+    if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < 0.01) continue;
+    if (stand[c].z > best) {
+      best = stand[c].z;
+      *simplest = c;
+    }
+  }
+exit:
+  close_bench(&bench);
+  return status;
+}
+
+static void add_alias(const fg_loop_problem *problem, const loop_stand *rival,
+                      const loop_stand *second, const alias_test *test, double winner_gain,
+                      fg_loop_claim *claim) {
+  char name[FG_LOOP_NAME], other[FG_LOOP_NAME];
+  if (claim->aliases == FG_LOOP_ALIASES) {
+    claim->aliases_unlisted++;
+    return;
+  }
+  fg_loop_alias *alias = &claim->alias[claim->aliases++];
+  *alias = (fg_loop_alias){.candidate = rival->candidate, .sum = second != NULL};
+  loop_candidate_name(problem, &rival->candidate, name);
+  if (second) {
+    alias->second = second->candidate;
+    loop_candidate_name(problem, &second->candidate, other);
+    fg_text_clip(alias->name, sizeof alias->name, "%s + %s", name, other);
+  } else {
+    fg_text_clip(alias->name, sizeof alias->name, "%s", name);
+  }
+  alias->correlation = test->correlation;
+  alias->loss = winner_gain > 0 ? 1 - test->gain / winner_gain : 0;
+}
+
+static int by_gain(const void *a, const void *b) {
+  const loop_stand *x = *(const loop_stand *const *)a, *y = *(const loop_stand *const *)b;
+  if (x->z != y->z) return x->z < y->z ? 1 : -1;
+  return (x > y) - (x < y);
+}
+
+static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const loop_stand **pool,
+                            size_t pooled, const loop_stand *winner, const double *winner_fit,
+                            double gain, size_t winner_rank, fg_loop_claim *claim) {
+  for (size_t i = 0; i < pooled && i < PAIR_POOL; i++)
+    for (size_t k = 0; k < i; k++) {
+      alias_test test;
+      FG_TRY(compare(ctx, bench, winner, pool[k], pool[i], winner_fit, &test));
+      bool contains = test.more == 0 && test.rank > winner_rank;
+      if (contains || test.p_value < shows || test.gain < (1 - pair_loss) * gain) continue;
+      add_alias(bench->frame->problem, pool[k], pool[i], &test, gain, claim);
+    }
+  return FG_OK;
+}
+
+fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                           const loop_stand *stand, size_t count, const loop_stand *winner,
+                           fg_loop_claim *claim) {
+  alias_bench bench;
+  const loop_stand **pool = NULL;
+  double *winner_fit = NULL;
+  size_t rank = 0, pooled = 0, listed = 0;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_bench(ctx, frame, noise, &bench));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof *pool, (void **)&pool));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bench.n, sizeof *winner_fit, (void **)&winner_fit));
+  FG_TRY_EXIT(extend(ctx, &bench, winner, bench.rank, &rank));
+  double gain = explained(&bench, bench.rank, rank);
+  fitted(&bench, bench.rank, rank, winner_fit);
+  for (size_t c = 0; c < count; c++)
+    if (isfinite(stand[c].z) && !loop_is_curve(&stand[c].candidate) &&
+        !loop_same_candidate(&stand[c].candidate, &winner->candidate))
+      pool[listed++] = &stand[c];
+  qsort(pool, listed, sizeof *pool, by_gain);
+  for (size_t c = 0; c < listed; c++) {
+    alias_test test;
+    FG_TRY_EXIT(compare(ctx, &bench, winner, pool[c], NULL, winner_fit, &test));
+    bool contains = test.more == 0 && test.rank > rank;
+    if (!contains && test.p_value >= shows)
+      add_alias(frame->problem, pool[c], NULL, &test, gain, claim);
+    else if (!contains && !loop_is_lone(&pool[c]->candidate) && test.rank <= 2)
+      pool[pooled++] = pool[c];
+  }
+  FG_TRY_EXIT(find_pairs(ctx, &bench, pool, pooled, winner, winner_fit, gain, rank, claim));
+exit:
+  free(pool);
+  free(winner_fit);
+  close_bench(&bench);
+  return status;
+}

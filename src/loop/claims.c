@@ -1,0 +1,156 @@
+/* Coefficients and uncertainties of what was found, shapes included. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_cdf.h>
+
+#include "core/memory.h"
+#include "loop/fit.h"
+
+/* d(effect)/d(shape) at fixed coefficients: columns × n, where the shape may move by small steps. */
+static fg_status shape_slope(fg_context *ctx, const loop_frame *frame,
+                             const fg_loop_candidate *candidate, const double *shape, size_t d,
+                             const double *beta, double *slope) {
+  size_t count = loop_candidate_columns(frame->problem, candidate), n = frame->n;
+  double *columns = NULL, moved[FG_LOOP_SHAPES], step = 1e-4 * fabs(shape[d]) + 1e-12;
+  FG_TRY(fg_memory_allocate(ctx, n, count * sizeof *columns, (void **)&columns));
+  fg_status status = FG_OK;
+  memset(slope, 0, n * sizeof *slope);
+  for (int side = -1; side <= 1 && status == FG_OK; side += 2) {
+    memcpy(moved, shape, sizeof moved);
+    moved[d] += side * step;
+    status = loop_gather(ctx, frame, candidate, moved, columns);
+    for (size_t k = 0; k < count; k++)
+      for (size_t i = 0; i < n; i++)
+        slope[i] += side * beta[k] * columns[k * n + i] / (2 * step);
+  }
+  free(columns);
+  return status;
+}
+
+/* The frame's columns and, behind them, the slopes of all shapes. */
+static fg_status append_slopes(fg_context *ctx, loop_frame *frame, const loop_set *set,
+                               const loop_fit *fit) {
+  size_t n = frame->n, extra = 0, first = frame->problem->parameters;
+  for (size_t m = 0; m < set->count; m++)
+    if (!set->candidate[m].effect->stepwise) extra += set->candidate[m].effect->shapes;
+  if (extra == 0) return FG_OK;
+  double *x = NULL;
+  FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + extra) * sizeof *x, (void **)&x));
+  memcpy(x, frame->x, n * frame->columns * sizeof *x);
+  free(frame->x);
+  frame->x = x;
+  for (size_t m = 0; m < set->count; m++) {
+    const fg_loop_effect *effect = set->candidate[m].effect;
+    for (size_t d = 0; d < effect->shapes && !effect->stepwise; d++)
+      FG_TRY(shape_slope(ctx, frame, &set->candidate[m], set->shape[m], d, fit->beta + first,
+                         x + n * frame->columns++));
+    if (!loop_is_exchange(&set->candidate[m]))
+      first += loop_candidate_columns(frame->problem, &set->candidate[m]);
+  }
+  return FG_OK;
+}
+
+/* Half the range over the rows: extremes at rows a and b; its gradient by the coefficients (and
+ * shapes) is half the difference of the columns there. */
+static void amplitude(const loop_frame *frame, const loop_fit *fit, const loop_fit *wide,
+                      size_t first, size_t count, size_t slope, size_t slopes, double variance,
+                      fg_loop_claim *claim) {
+  size_t n = frame->n, low = 0, high = 0, index[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
+  double lowest = INFINITY, highest = -INFINITY, gradient[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
+  for (size_t i = 0; i < n; i++) {
+    double value = 0;
+    for (size_t k = first; k < first + count; k++)
+      value += fit->beta[k] * frame->x[k * n + i];
+    if (value < lowest) lowest = value, low = i;
+    if (value > highest) highest = value, high = i;
+  }
+  for (size_t k = 0; k < count + slopes; k++) {
+    index[k] = k < count ? first + k : slope + k - count;
+    gradient[k] = (frame->x[index[k] * n + high] - frame->x[index[k] * n + low]) / 2;
+  }
+  double sum = 0;
+  for (size_t i = 0; i < count + slopes; i++)
+    for (size_t k = 0; k < count + slopes; k++)
+      sum += gradient[i] * gradient[k] * wide->inverse[index[i] * wide->columns + index[k]];
+  claim->amplitude = (highest - lowest) / 2;
+  claim->amplitude_u = sqrt(fmax(sum, 0) * variance);
+}
+
+/* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom. */
+static double freedom_of(const loop_frame *frame, size_t first, size_t count, double freedom) {
+  if (!frame->levels) return freedom;
+  for (size_t k = first; k < first + count; k++)
+    for (size_t i = 1; i < frame->n; i++)
+      if (frame->group[i] == frame->group[i - 1] &&
+          frame->x[k * frame->n + i] != frame->x[k * frame->n + i - 1])
+        return freedom;
+  return fmax((double)frame->groups - 1 - (double)count, 1);
+}
+
+static void describe(const loop_frame *frame, const loop_fit *fit, const loop_fit *wide,
+                     const loop_set *set, double variance, double freedom, fg_loop_claim *claim) {
+  size_t first = frame->problem->parameters, slope = fit->columns;
+  for (size_t m = 0; m < set->count; m++) {
+    const fg_loop_candidate *candidate = &set->candidate[m];
+    const fg_loop_effect *effect = candidate->effect;
+    size_t slopes = effect->stepwise ? 0 : effect->shapes;
+    size_t count = loop_candidate_columns(frame->problem, candidate);
+    double own = loop_is_lone(candidate) ? freedom : freedom_of(frame, first, count, freedom);
+    double t = gsl_cdf_tdist_Qinv(0.025, own);
+    memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
+    claim[m].candidate = *candidate;
+    claim[m].columns = count;
+    if (loop_is_exchange(candidate)) {
+      const double *response = frame->problem->response;
+      claim[m].coefficient[0] = (response[candidate->row[0]] - response[candidate->row[1]]) / 2;
+      claim[m].amplitude = fabs(claim[m].coefficient[0]);
+      claim[m].amplitude_u = claim[m].coefficient_u[0] = sqrt(variance / 2);
+    } else {
+      for (size_t k = 0; k < count; k++) {
+        size_t at = first + k;
+        claim[m].coefficient[k] = fit->beta[at];
+        claim[m].coefficient_u[k] = sqrt(variance * wide->inverse[at * wide->columns + at]);
+      }
+      amplitude(frame, fit, wide, first, count, slope, slopes, variance, &claim[m]);
+      if (loop_is_lone(candidate) || effect->from_zero) {
+        claim[m].amplitude = fabs(claim[m].coefficient[0]);
+        claim[m].amplitude_u = claim[m].coefficient_u[0];
+      }
+      first += count;
+    }
+    for (size_t d = 0; d < effect->shapes; d++)
+      claim[m].shape_u[d] =
+          d < slopes
+              ? sqrt(variance * wide->inverse[(slope + d) * wide->columns + slope + d])
+              : NAN;
+    slope += slopes;
+    claim[m].interval[0] = claim[m].amplitude - t * claim[m].amplitude_u;
+    claim[m].interval[1] = claim[m].amplitude + t * claim[m].amplitude_u;
+  }
+}
+
+fg_status loop_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                          const loop_set *set, loop_noise noise, fg_loop_claim *claim,
+                          double *parameter, double *parameter_u) {
+  fg_status status = FG_OK;
+  loop_frame frame = {0};
+  loop_fit fit = {0}, wide = {0};
+  FG_TRY_EXIT(loop_frame_build(ctx, problem, keep, set, &frame));
+  FG_TRY_EXIT(loop_least_squares(ctx, &frame, noise, &fit));
+  FG_TRY_EXIT(append_slopes(ctx, &frame, set, &fit));
+  FG_TRY_EXIT(loop_least_squares(ctx, &frame, noise, &wide));
+  double freedom = frame.n > wide.rank ? (double)(frame.n - wide.rank) : NAN;
+  double variance = fit.rss / freedom;
+  describe(&frame, &fit, &wide, set, variance, freedom, claim);
+  for (size_t k = 0; k < problem->parameters; k++) {
+    parameter[k] = fit.beta[k];
+    parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);
+  }
+exit:
+  loop_fit_free(&fit);
+  loop_fit_free(&wide);
+  loop_frame_free(&frame);
+  return status;
+}

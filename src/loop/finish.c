@@ -1,0 +1,240 @@
+/* After the search: errors before and after, confirmation, parameters, the curve, the verdict. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "core/text.h"
+#include "loop/random.h"
+#include "loop/run.h"
+
+static int by_size(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static fg_status measure(fg_context *ctx, const loop_run *run, const double *residual,
+                         fg_loop_error *error) {
+  size_t count = 0, rows = run->problem->rows, held = 0;
+  double *size = NULL, squares = 0, held_squares = 0;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *size, (void **)&size));
+  for (size_t i = 0; i < rows; i++) {
+    if (run->train[i]) {
+      size[count++] = fabs(residual[i]);
+      squares += residual[i] * residual[i];
+    } else {
+      held++;
+      held_squares += residual[i] * residual[i];
+    }
+  }
+  qsort(size, count, sizeof *size, by_size);
+  error->rms = sqrt(squares / (double)count);
+  error->robust_sd = 1.4826 * (size[(count - 1) / 2] + size[count / 2]) / 2;
+  error->p95 = size[(count - 1) * 95 / 100];
+  error->maximum = size[count - 1];
+  error->held_out_rms = held ? sqrt(held_squares / (double)held) : NAN;
+  free(size);
+  return FG_OK;
+}
+
+static fg_status cross_validated(fg_context *ctx, const loop_run *run, const loop_set *set,
+                                 loop_noise noise, double *rms) {
+  double *residual = NULL, squares = 0;
+  size_t count = 0;
+  FG_TRY(fg_memory_allocate(ctx, run->problem->rows, sizeof *residual, (void **)&residual));
+  fg_status status = loop_cross_validate(ctx, run->problem, run->train, set, noise, residual);
+  for (size_t i = 0; i < run->problem->rows; i++)
+    count += run->train[i];
+  for (size_t i = 0; i < count; i++)
+    squares += residual[i] * residual[i];
+  *rms = sqrt(squares / (double)count);
+  free(residual);
+  return status;
+}
+
+/* 95 % interval of after / before: groups drawn with replacement, kept-aside ones where there are
+ * enough of them, else all that took part. */
+static fg_status bootstrap(fg_context *ctx, loop_run *run, double interval[2]) {
+  enum { DRAWS = 999, ENOUGH = 8 };
+  const fg_loop_problem *problem = run->problem;
+  const fg_loop_result *result = run->result;
+  uint64_t seed = run->options.seed ^ 0xb0075;
+  double *sum = NULL, ratio[DRAWS];
+  size_t *group = NULL, count = 0, held = 0;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->groups, 2 * sizeof *sum, (void **)&sum));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->groups, sizeof *group, (void **)&group));
+  for (size_t i = 0; i < problem->rows; i++)
+    if (!run->train[i] && (i == 0 || problem->group[i] != problem->group[i - 1])) held++;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (run->train[i] == (held >= ENOUGH)) continue;
+    if (count == 0 || group[count - 1] != problem->group[i]) group[count++] = problem->group[i];
+    sum[2 * problem->group[i]] += result->before_fit[i] * result->before_fit[i];
+    sum[2 * problem->group[i] + 1] += result->after_fit[i] * result->after_fit[i];
+  }
+  for (size_t b = 0; b < DRAWS; b++) {
+    double before = 0, after = 0;
+    for (size_t i = 0; i < count; i++) {
+      size_t g = group[(size_t)(loop_random_uniform(&seed) * (double)count)];
+      before += sum[2 * g];
+      after += sum[2 * g + 1];
+    }
+    ratio[b] = before > 0 ? sqrt(after / before) : 1;
+  }
+  qsort(ratio, DRAWS, sizeof *ratio, by_size);
+  interval[0] = ratio[DRAWS * 25 / 1000];
+  interval[1] = ratio[DRAWS * 975 / 1000];
+exit:
+  free(sum);
+  free(group);
+  return status;
+}
+
+/* +1: the kept-aside error falls by more than one standard error of the change; 0: neither way;
+ * -1 where nothing is kept aside; -2: it rises by more than two: contradicted. */
+static int confirm(const loop_run *run) {
+  const fg_loop_problem *problem = run->problem;
+  const double *before = run->result->before_fit, *after = run->result->after_fit;
+  double sum = 0, squares = 0, group_sum = 0;
+  size_t groups = 0;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (run->train[i]) continue;
+    group_sum += before[i] * before[i] - after[i] * after[i];
+    if (i + 1 < problem->rows && problem->group[i + 1] == problem->group[i]) continue;
+    sum += group_sum;
+    squares += group_sum * group_sum;
+    group_sum = 0;
+    groups++;
+  }
+  if (groups == 0) return -1;
+  if (groups < 2) return sum > 0;
+  double mean = sum / (double)groups, count = (double)groups;
+  double se = sqrt(fmax(squares - count * mean * mean, 0) / (count - 1) * count);
+  if (sum > se) return 1;
+  return groups >= 5 && sum < -2 * se ? -2 : 0;
+}
+
+/* The curve alone, drawn over its coordinate's range, its mean over the rows taken out. */
+static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim *fit) {
+  enum { POINTS = 61 };
+  const fg_loop_problem *problem = run->problem;
+  const fg_loop_coordinate *at = &problem->coordinate[run->curve_at];
+  fg_loop_curve *curve = &run->result->curve;
+  double value[POINTS], *effect = NULL, mean = 0, squares = 0;
+  fg_loop_coordinate *coordinate = NULL;
+  fg_loop_problem grid = *problem;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows + POINTS, sizeof *effect, (void **)&effect));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->coordinates, sizeof *coordinate,
+                                 (void **)&coordinate));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, POINTS, sizeof *curve->shape, (void **)&curve->shape));
+  FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, problem, fit, effect));
+  for (size_t i = 0; i < problem->rows; i++)
+    mean += effect[i] / (double)problem->rows;
+  for (size_t i = 0; i < problem->rows; i++)
+    squares += (effect[i] - mean) * (effect[i] - mean);
+  curve->rms = sqrt(squares / (double)problem->rows);
+  curve->nearest_count = 0;
+  for (size_t k = 0; k < 5 && k < problem->rows; k++) { /* the rows it moves most */
+    size_t best = problem->rows;
+    for (size_t i = 0; i < problem->rows; i++)
+      if (isfinite(effect[i]) &&
+          (best == problem->rows || fabs(effect[i] - mean) > fabs(effect[best] - mean)))
+        best = i;
+    curve->nearest[curve->nearest_count++] = best;
+    effect[best] = NAN;
+  }
+  memcpy(coordinate, problem->coordinate, problem->coordinates * sizeof *coordinate);
+  for (size_t i = 0; i < POINTS; i++)
+    value[i] = at->low + (at->high - at->low) * (double)i / (POINTS - 1);
+  coordinate[run->curve_at].value = value;
+  grid.coordinate = coordinate;
+  grid.rows = POINTS;
+  FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, &grid, fit, effect));
+  for (size_t i = 0; i < POINTS; i++) {
+    curve->shape[i][0] = value[i];
+    curve->shape[i][1] = effect[i] - mean;
+  }
+  curve->count = POINTS;
+  curve->coordinate = run->curve_at;
+  curve->p_value = run->curve_p;
+  curve->freedom = (double)fit->columns;
+  fg_text_clip(curve->name, sizeof curve->name, "%s", at->name);
+  run->result->has_curve = true;
+exit:
+  free(effect);
+  free(coordinate);
+  return status;
+}
+
+static fg_status errors(fg_context *ctx, loop_run *run, loop_noise *noise) {
+  fg_loop_result *result = run->result;
+  loop_set none = {0};
+  loop_noise first = {0, 0}; /* as its owner would fit it */
+  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &none, false, &first, result->before_fit, NULL,
+                      NULL));
+  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
+                      result->effect_fit, &result->noise.sd));
+  if (run->set.count == 0) /* nothing found: the same fit, before and after */
+    memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
+  result->noise.rho = noise->rho;
+  result->noise.lambda = noise->lambda;
+  result->noise_floor = result->noise.sd;
+  FG_TRY(measure(ctx, run, result->before_fit, &result->before));
+  FG_TRY(measure(ctx, run, result->after_fit, &result->after));
+  FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
+  FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
+                         &result->after.cross_validated_rms));
+  double before = result->before.rms;
+  result->ratio_rms = before > 0 ? result->after.rms / before : 1;
+  result->ratio_held_out = result->before.held_out_rms > 0
+                               ? result->after.held_out_rms / result->before.held_out_rms
+                               : NAN;
+  return bootstrap(ctx, run, result->ratio_interval);
+}
+
+/* Parameters are of all rows: what is kept aside has done its work. */
+static fg_status parameters(fg_context *ctx, loop_run *run, loop_noise noise) {
+  fg_loop_result *result = run->result;
+  fg_loop_claim fit[FG_LOOP_CLAIMS + 1] = {0};
+  FG_TRY(loop_fit_claims(ctx, run->problem, NULL, &run->set, noise, fit, result->parameter,
+                         result->parameter_u));
+  for (size_t m = 0; m < result->claims; m++) {
+    fg_loop_claim *claim = &result->claim[m];
+    claim->columns = fit[m].columns;
+    memcpy(claim->shape, fit[m].shape, sizeof fit[m].shape);
+    memcpy(claim->shape_u, fit[m].shape_u, sizeof fit[m].shape_u);
+    memcpy(claim->coefficient, fit[m].coefficient, sizeof fit[m].coefficient);
+    memcpy(claim->coefficient_u, fit[m].coefficient_u, sizeof fit[m].coefficient_u);
+    claim->amplitude = fit[m].amplitude;
+    claim->amplitude_u = fit[m].amplitude_u;
+    memcpy(claim->interval, fit[m].interval, sizeof fit[m].interval);
+  }
+  return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
+}
+
+fg_status loop_finish(fg_context *ctx, loop_run *run) {
+  fg_loop_result *result = run->result;
+  loop_noise noise = {0};
+  FG_TRY(errors(ctx, run, &noise));
+  int confirmed = confirm(run);
+  if (confirmed == -2 && run->set.count) {
+    FG_TRY(loop_note(ctx, result,
+                     "What was found made the kept-aside rows worse by more than two standard "
+                     "errors; it is withdrawn."));
+    result->claims = 0;
+    run->has_curve = false;
+    run->set.count = 0;
+    FG_TRY(errors(ctx, run, &noise));
+  }
+  for (size_t m = 0; m < result->claims; m++)
+    result->claim[m].held_out = confirmed;
+  FG_TRY(parameters(ctx, run, noise));
+  run->noise = noise;
+  run->sd = result->noise.sd;
+  result->verdict = run->has_curve ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
+                    : result->claims ? FG_LOOP_EXPLAINED
+                                     : FG_LOOP_CLEAN;
+  return FG_OK;
+}

@@ -1,0 +1,46 @@
+/* P-values of all candidates of a bench, and of lone rows. */
+#ifndef FG_LOOP_JUDGE_H
+#define FG_LOOP_JUDGE_H
+
+#include "loop/engine.h"
+
+/* Simulated p-values are multiplied by this: listed effects, lone rows and curves are three
+ * families that are judged one after the other. */
+enum { LOOP_FAMILIES = 3 };
+
+typedef struct loop_judgement {
+  size_t candidates;
+  loop_score *score;     /* candidates */
+  double *p_flip;        /* candidates */
+  double *p_simulated;   /* NaN in large frames */
+  double *f_critical;    /* F ratio that would just pass, as max-T asks; infinity: none does */
+  double *z_critical;    /* deviate that would just pass; simulated */
+  size_t null_noise;     /* best noise of the null, index into the bench's */
+  size_t cautious_noise; /* the strongest correlation that the data do not rule out */
+  double smallest_p;     /* of flips */
+} loop_judgement;
+
+fg_status loop_judge(fg_context *ctx, loop_bench *bench, size_t draws, uint64_t seed,
+                     loop_judgement *judgement);
+void loop_judgement_free(loop_judgement *judgement);
+
+/* Small frames: for every candidate the amplitude (half range; of unit variance of the rows' own
+ * noise) that passes max-T in four draws of five; NaN where none does. Curves included. */
+fg_status loop_smallest_amplitudes(fg_context *ctx, const loop_bench *bench,
+                                   const loop_judgement *judgement, uint64_t seed,
+                                   double *amplitude);
+
+/* The best outlier and the best exchange of two rows. */
+typedef struct loop_lone {
+  fg_loop_candidate candidate;
+  bool known;           /* there is one */
+  double ratio;         /* residual sum after / before */
+  double p_value;       /* against heavy tails, families counted */
+  double f_critical;    /* as above, one freedom */
+  double length;        /* mean |M W e|² of a row */
+} loop_lone;
+
+fg_status loop_judge_lone(fg_context *ctx, const loop_frame *frame, loop_noise noise, size_t draws,
+                          uint64_t seed, loop_lone lone[2]);
+
+#endif

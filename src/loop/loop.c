@@ -1,0 +1,171 @@
+/* The loop from end to end (DESIGN section 6). */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "loop/run.h"
+
+const char *fg_loop_verdict_word(fg_loop_verdict verdict) {
+  static const char *const words[] = {"found",  "tied", "absent", "inconclusive",
+                                      "absorbed by geometry", "explained by others"};
+  return words[verdict];
+}
+
+const char *fg_loop_outcome_word(fg_loop_outcome outcome) {
+  static const char *const words[] = {"clean", "explained", "partly explained", "unattributed"};
+  return words[outcome];
+}
+
+fg_status loop_note(fg_context *ctx, fg_loop_result *result, const char *format, ...) {
+  char text[600];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  FG_TRY(fg_memory_reserve(ctx, result->notes + 1, sizeof *result->note, &result->note_capacity,
+                           (void **)&result->note));
+  result->note[result->notes] = NULL;
+  FG_TRY(fg_text_print(ctx, &result->note[result->notes], "%s", text));
+  result->notes++;
+  return FG_OK;
+}
+
+static fg_status add_candidates(fg_context *ctx, loop_run *run, const fg_loop_effect *effects,
+                                size_t *capacity) {
+  const fg_loop_problem *problem = run->problem;
+  for (const fg_loop_effect *effect = effects; effect->id; effect++)
+    for (size_t a = 0; a < problem->coordinates; a++)
+      for (size_t b = effect->pair ? 0 : a; b < (effect->pair ? problem->coordinates : a + 1);
+           b++) {
+        if (!effect->accepts(problem, a, b)) continue;
+        fg_loop_candidate candidate = {.effect = effect, .a = a, .b = b};
+        size_t columns = loop_candidate_columns(problem, &candidate);
+        if (columns == 0 || columns > FG_LOOP_COLUMNS) continue;
+        FG_TRY(fg_memory_reserve(ctx, run->candidates + 1, sizeof *run->candidate, capacity,
+                                 (void **)&run->candidate));
+        run->candidate[run->candidates++] = candidate;
+      }
+  return FG_OK;
+}
+
+static fg_status open_run(fg_context *ctx, const fg_loop_problem *problem,
+                          const fg_loop_options *options, fg_loop_result *result, loop_run *run) {
+  size_t capacity = 0, rows = problem->rows;
+  *run = (loop_run){.problem = problem, .options = *options, .result = result};
+  if (!(run->options.accept_p > 0)) run->options.accept_p = 0.01;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *run->train, (void **)&run->train));
+  for (size_t i = 0; i < rows; i++)
+    run->train[i] = !problem->aside || !problem->aside[i];
+  FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
+  FG_TRY(add_candidates(ctx, run, loop_curve_effects(), &capacity));
+  size_t size = sizeof *result->before_fit;
+  FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->before_fit));
+  FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->after_fit));
+  FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->effect_fit));
+  FG_TRY(fg_memory_allocate(ctx, problem->parameters, size, (void **)&result->parameter));
+  return fg_memory_allocate(ctx, problem->parameters, size, (void **)&result->parameter_u);
+}
+
+/* Enough rows, and a residual that is more than rounding? */
+static fg_status check(fg_context *ctx, loop_run *run, bool *worth) {
+  loop_frame frame;
+  loop_fit fit = {0};
+  double size = 0;
+  FG_TRY(loop_frame_build(ctx, run->problem, run->train, NULL, &frame));
+  fg_status status = loop_least_squares(ctx, &frame, (loop_noise){0}, &fit);
+  if (status == FG_OK && frame.n < fit.rank + 3)
+    status = fg_fail(ctx, FG_ERR_DATA,
+                     "%zu rows for %zu parameters of the declared model leave %zu to judge it by; "
+                     "the loop needs 3 at least: measure more rows, or declare fewer terms",
+                     frame.n, fit.rank, frame.n - fit.rank);
+  for (size_t i = 0; i < frame.n; i++) {
+    double value = run->problem->response ? run->problem->response[frame.row[i]] : frame.y[i];
+    size += value * value;
+  }
+  *worth = status == FG_OK && fit.rss > 1e-20 * size;
+  if (status == FG_OK && !*worth)
+    status = loop_note(ctx, run->result,
+                       "The declared model fits every row to the last digit: no residual is left "
+                       "to look into.");
+  if (status == FG_OK && frame.groups < 8)
+    status = loop_note(ctx, run->result,
+                       "%zu groups take part: flipping their signs can give no p-value below "
+                       "%.3g, so nothing can be claimed at p < 0.01. Measure 8 groups or more.",
+                       frame.groups, ldexp(1, 1 - (int)frame.groups));
+  loop_fit_free(&fit);
+  loop_frame_free(&frame);
+  return status;
+}
+
+static fg_status search(fg_context *ctx, loop_run *run) {
+  bool accepted = true, last = false;
+  while (!last && run->result->claims < FG_LOOP_CLAIMS) {
+    FG_TRY(loop_accept_one(ctx, run, &accepted, &last));
+    FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, &run->noise, NULL, NULL,
+                        &run->sd));
+    FG_TRY(loop_refine(ctx, run->problem, run->train, run->noise, &run->set));
+  }
+  return loop_swap(ctx, run);
+}
+
+fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
+                      const fg_loop_options *options, fg_loop_result *result) {
+  fg_status status = FG_OK;
+  loop_run run = {0};
+  bool worth = false;
+  memset(result, 0, sizeof *result);
+  result->smallest_p = NAN;
+  FG_TRY_EXIT(open_run(ctx, problem, options, result, &run));
+  FG_TRY_EXIT(check(ctx, &run, &worth));
+  if (worth) FG_TRY_EXIT(search(ctx, &run));
+  FG_TRY_EXIT(loop_finish(ctx, &run));
+  if (worth) FG_TRY_EXIT(loop_list_rejected(ctx, &run));
+  if (worth) FG_TRY_EXIT(loop_advise(ctx, &run));
+exit:
+  free(run.train);
+  free(run.candidate);
+  if (status != FG_OK) fg_loop_result_free(result);
+  return status;
+}
+
+void fg_loop_result_free(fg_loop_result *result) {
+  for (size_t i = 0; i < result->notes; i++)
+    free(result->note[i]);
+  free(result->note);
+  free(result->curve.shape);
+  free(result->rejected);
+  free(result->parameter);
+  free(result->parameter_u);
+  free(result->before_fit);
+  free(result->after_fit);
+  free(result->effect_fit);
+  *result = (fg_loop_result){0};
+}
+
+fg_status fg_loop_claim_evaluate(fg_context *ctx, const fg_loop_problem *problem,
+                                 const fg_loop_claim *claim, double *effect) {
+  double *columns = NULL;
+  size_t rows = problem->rows;
+  memset(effect, 0, rows * sizeof *effect);
+  FG_TRY(fg_memory_allocate(ctx, rows, (claim->columns + 1) * sizeof *columns, (void **)&columns));
+  claim->candidate.effect->basis(problem, &claim->candidate, claim->shape, columns);
+  for (size_t k = 0; k < claim->columns; k++)
+    for (size_t i = 0; i < rows; i++)
+      effect[i] += claim->coefficient[k] * columns[k * rows + i];
+  free(columns);
+  return FG_OK;
+}
+
+double fg_loop_curve_at(const fg_loop_curve *curve, double value) {
+  size_t k = 0;
+  if (value <= curve->shape[0][0]) return curve->shape[0][1];
+  while (k + 1 < curve->count && curve->shape[k + 1][0] < value)
+    k++;
+  if (k + 1 >= curve->count) return curve->shape[curve->count - 1][1];
+  double share = (value - curve->shape[k][0]) / (curve->shape[k + 1][0] - curve->shape[k][0]);
+  return curve->shape[k][1] + share * (curve->shape[k + 1][1] - curve->shape[k][1]);
+}

@@ -1,0 +1,105 @@
+/* Level `points`: the residuals of all arcs and lands of one or more scans, against one geometry.
+ *
+ * Geometry of a foil, in its own frame (origin in the overall centre): R0, and for each bump the
+ * distance X and direction beta of its centre and its radius R. A scan of it adds a pose: O and,
+ * from the second scan on, a turn. Scans of one foil share the geometry; that is what tells the
+ * scanner (it stays with the glass) from the part (it turns with the foil).
+ *
+ * Rows are means over FG_POINTS_BLOCK stations: the engine's rows must be few and nearly
+ * independent, and no effect is shorter.
+ */
+#ifndef FG_LOOP_POINTS_H
+#define FG_LOOP_POINTS_H
+
+#include "foilgauge/foil.h"
+#include "loop/fields.h"
+
+enum { FG_POINTS_BLOCK = 4 };
+
+/* One foil on one scan. */
+typedef struct fg_points_view {
+  const fg_foil *foil;
+  const fg_measurement *measurement;
+  size_t scan;      /* which input */
+  size_t part;      /* which physical foil; views of one part share its geometry */
+  bool aside;       /* of a scan that only confirms */
+} fg_points_view;
+
+/* One row. */
+typedef struct fg_points_row {
+  size_t view, part;
+  int bump;            /* number; 0: a land */
+  size_t bump_index;   /* in the part's bumps */
+  size_t group;        /* bump of a part, land of a view */
+  fg_point at;         /* nominal position of the datum line, mm of the scan */
+  fg_point ideal;      /* the same on its circle: fields are taken there, else a dilation of the
+                          picture, which the geometry follows, would leave the residual itself */
+  double half_width_mm;
+  double s_mm;         /* along the foil, from the lip's side */
+  double phi;          /* place in the arc, -1 to 1, towards higher numbers; lands too */
+  double psi;          /* direction from O, from the foil's middle towards the free end, rad */
+  double normal_rad;   /* direction of the outward normal of the residual in the scan */
+  fg_point normal;     /* that normal; outwards from the arc's own centre */
+  fg_point radial;     /* from O outwards */
+  double weight;       /* stations in the mean */
+} fg_points_row;
+
+typedef struct fg_points_bump {
+  int number;
+  double distance_mm, direction_rad, radius_mm; /* X, beta, R */
+} fg_points_bump;
+
+typedef struct fg_points_part {
+  double overall_radius_mm;
+  fg_points_bump *bumps; /* owned */
+  size_t bump_count;
+  double sense;          /* +1: numbers rise with the angle (clockwise as seen) */
+  double middle_rad;     /* beta of the foil's middle */
+  double half_span_rad;
+} fg_points_part;
+
+typedef struct fg_points_pose {
+  fg_point origin_mm; /* O */
+  double turn_rad;    /* 0 in a part's first view */
+} fg_points_pose;
+
+typedef struct fg_points {
+  fg_points_view *views; /* owned */
+  fg_points_pose *poses; /* owned; one per view */
+  size_t view_count;
+  fg_points_part *parts; /* owned */
+  size_t part_count;
+  fg_points_row *rows;   /* owned */
+  size_t row_count, row_capacity;
+  size_t group_count;
+  fg_field_frame frame;  /* the picture all fields live in */
+  size_t parameters;     /* of the geometry */
+} fg_points;
+
+/* Rows and a start of the geometry from measured foils. Views of one part must have the same bumps
+ * (by number) and the same hand: FG_ERR_DATA. Foils that were not measured are left out. */
+fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
+                          fg_points *points);
+
+void fg_points_free(fg_points *points);
+
+/* Corrections in force: fields of the scanner, and shifts of the midline in the part's frame
+ * (`shift_mm`, one per row along the row's normal; NULL: none). */
+typedef struct fg_points_correction {
+  const fg_field_list *fields;
+  const double *shift_mm;
+} fg_points_correction;
+
+/* Residual of every row (mm, along its normal, outwards positive) and, unless NULL, its Jacobian
+ * by the geometry (parameters × row_count). Updates the rows' normals. */
+void fg_points_residual(fg_points *points, const fg_points_correction *correction,
+                        double *residual, double *jacobian);
+
+/* Least squares of the geometry under a correction, Gauss-Newton to convergence. */
+fg_status fg_points_fit(fg_context *ctx, fg_points *points,
+                        const fg_points_correction *correction);
+
+/* Name of a geometry parameter, for reports; `name` holds 48 bytes. */
+void fg_points_parameter_name(const fg_points *points, size_t parameter, char *name);
+
+#endif

@@ -1,0 +1,206 @@
+/* The smallest amplitude that would have been found: by simulation, noise estimated anew in every
+ * draw as in the search itself. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "loop/judge.h"
+#include "loop/random.h"
+
+enum { DRAWS = 60, HALVINGS = 14 };
+static const double wanted = 0.8;
+
+/* Products with the bench's columns at every noise: of each draw of noise, and of the effect. */
+typedef struct power_bench {
+  const loop_bench *bench;
+  size_t width;
+  double *noise[LOOP_NOISES];  /* DRAWS × (width + 1), |We|² last */
+  double *effect[LOOP_NOISES]; /* width + 1, |Wf|² last */
+  double *cross[LOOP_NOISES];  /* DRAWS: (We)'(Wf) */
+  double *draws;               /* DRAWS × n, not whitened */
+  double *white, *f;
+} power_bench;
+
+static fg_status open_power(fg_context *ctx, const loop_bench *bench, power_bench *power) {
+  size_t n = bench->frame->n;
+  *power = (power_bench){.bench = bench, .width = bench->rank + bench->columns};
+  size_t row = (power->width + 1) * sizeof(double);
+  for (size_t j = 0; j < bench->noises; j++) {
+    FG_TRY(fg_memory_allocate(ctx, DRAWS, row, (void **)&power->noise[j]));
+    FG_TRY(fg_memory_allocate(ctx, 1, row, (void **)&power->effect[j]));
+    FG_TRY(fg_memory_allocate(ctx, DRAWS, sizeof(double), (void **)&power->cross[j]));
+  }
+  FG_TRY(fg_memory_allocate(ctx, DRAWS, n * sizeof(double), (void **)&power->draws));
+  FG_TRY(fg_memory_allocate(ctx, n, 2 * sizeof(double), (void **)&power->white));
+  return fg_memory_allocate(ctx, bench->frame->problem->rows, FG_LOOP_COLUMNS * sizeof(double),
+                            (void **)&power->f);
+}
+
+static void close_power(power_bench *power) {
+  for (size_t j = 0; j < LOOP_NOISES; j++) {
+    free(power->noise[j]);
+    free(power->effect[j]);
+    free(power->cross[j]);
+  }
+  free(power->draws);
+  free(power->white);
+  free(power->f);
+}
+
+static void products(const power_bench *power, size_t j, const double *white, double *sums) {
+  const loop_bench *bench = power->bench;
+  memset(sums, 0, (power->width + 1) * sizeof *sums);
+  for (size_t i = 0; i < bench->frame->n; i++) {
+    const double *row = bench->rows[j] + i * power->width;
+    for (size_t k = 0; k < power->width; k++)
+      sums[k] += row[k] * white[i];
+    sums[power->width] += white[i] * white[i];
+  }
+}
+
+static void draw_noise(power_bench *power, loop_noise noise, uint64_t seed) {
+  const loop_bench *bench = power->bench;
+  size_t n = bench->frame->n;
+  for (size_t b = 0; b < DRAWS; b++) {
+    double *y = power->draws + b * n;
+    for (size_t i = 0; i < n; i++)
+      y[i] = loop_random_normal(&seed);
+    loop_colour(bench->frame, noise, y);
+    for (size_t j = 0; j < bench->noises; j++) {
+      memcpy(power->white, y, n * sizeof *y);
+      loop_whiten(bench->frame, bench->noise[j], power->white);
+      products(power, j, power->white, power->noise[j] + b * (power->width + 1));
+    }
+  }
+}
+
+/* The column of which most is left beside the null, whitened: an absorbed part cannot show. */
+static size_t clearest_column(const power_bench *power, size_t count, const double *columns) {
+  const loop_bench *bench = power->bench;
+  size_t n = bench->frame->n, best = 0;
+  double most = -1, *sums = power->effect[0];
+  for (size_t k = 0; k < count; k++) {
+    memcpy(power->white, columns + k * n, n * sizeof *columns);
+    loop_whiten(bench->frame, bench->noise[0], power->white);
+    products(power, 0, power->white, sums);
+    double left = sums[power->width];
+    for (size_t i = 0; i < bench->rank; i++)
+      left -= sums[i] * sums[i];
+    if (left <= most * (1 + 1e-9)) continue;
+    most = left;
+    best = k;
+  }
+  return best;
+}
+
+/* One column of the middle version, half range 1. */
+static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version) {
+  const loop_bench *bench = power->bench;
+  const loop_frame *frame = bench->frame;
+  size_t n = frame->n;
+  double low = INFINITY, high = -INFINITY, *f = power->f, *other = power->white + n;
+  FG_TRY(loop_gather(ctx, frame, &bench->candidate[bench->version[version].candidate],
+                     bench->shape[version], f));
+  const fg_loop_candidate *candidate = &bench->candidate[bench->version[version].candidate];
+  size_t count = loop_candidate_columns(frame->problem, candidate);
+  memmove(f, f + n * clearest_column(power, count, f), n * sizeof *f);
+  for (size_t i = 0; i < n; i++) {
+    low = fmin(low, f[i]);
+    high = fmax(high, f[i]);
+  }
+  double scale = candidate->effect->from_zero ? fmax(fabs(low), fabs(high)) : (high - low) / 2;
+  for (size_t i = 0; i < n; i++)
+    f[i] /= scale > 0 ? scale : 1;
+  for (size_t j = 0; j < bench->noises; j++) {
+    memcpy(power->white, f, n * sizeof *f);
+    loop_whiten(frame, bench->noise[j], power->white);
+    products(power, j, power->white, power->effect[j]);
+    for (size_t b = 0; b < DRAWS; b++) {
+      memcpy(other, power->draws + b * n, n * sizeof *other);
+      loop_whiten(frame, bench->noise[j], other);
+      power->cross[j][b] = 0;
+      for (size_t i = 0; i < n; i++)
+        power->cross[j][b] += other[i] * power->white[i];
+    }
+  }
+  return FG_OK;
+}
+
+/* Residual sums of noise + a f at one noise model: without the candidate, and with its best
+ * version. */
+static void residual_sums(const power_bench *power, size_t c, size_t b, size_t j, double a,
+                          double *null, double *with) {
+  const loop_bench *bench = power->bench;
+  const double *e = power->noise[j] + b * (power->width + 1), *f = power->effect[j];
+  double rss = e[power->width] + 2 * a * power->cross[j][b] + a * a * f[power->width], gain = 0;
+  for (size_t k = 0; k < bench->rank; k++)
+    rss -= (e[k] + a * f[k]) * (e[k] + a * f[k]);
+  for (size_t v = 0; v < bench->versions; v++) {
+    const loop_version *version = &bench->version[v];
+    double sum = 0;
+    if (version->candidate != c) continue;
+    for (size_t k = bench->rank + version->first; k < bench->rank + version->first + version->rank;
+         k++)
+      sum += (e[k] + a * f[k]) * (e[k] + a * f[k]);
+    gain = fmax(gain, sum);
+  }
+  *null = rss * bench->weight[j];
+  *with = fmax(rss - gain, 1e-12 * rss) * bench->weight[j];
+}
+
+static double share_found(const power_bench *power, size_t c, double k, double critical, double a) {
+  const loop_bench *bench = power->bench;
+  size_t found = 0;
+  for (size_t b = 0; b < DRAWS; b++) {
+    double null = INFINITY, with = INFINITY;
+    for (size_t j = 0; j < bench->noises; j++) {
+      double one_null, one_with;
+      residual_sums(power, c, b, j, a, &one_null, &one_with);
+      null = fmin(null, one_null);
+      with = fmin(with, one_with);
+    }
+    found += loop_deviate(with / null, k, (double)bench->freedom) >= critical;
+  }
+  return (double)found / DRAWS;
+}
+
+static fg_status one_amplitude(fg_context *ctx, power_bench *power, size_t c, double critical,
+                               double *amplitude) {
+  const loop_bench *bench = power->bench;
+  size_t first = bench->versions, count = 0;
+  for (size_t v = 0; v < bench->versions; v++)
+    if (bench->version[v].candidate == c) {
+      if (!count++) first = v;
+    }
+  size_t middle = first + count / 2;
+  double k = loop_version_freedom(bench, &bench->version[middle]);
+  *amplitude = NAN;
+  if (bench->version[middle].rank == 0 || k + 2 > (double)bench->freedom) return FG_OK;
+  FG_TRY(set_effect(ctx, power, middle));
+  double low = 1e-3, high = 1e3;
+  if (share_found(power, c, k, critical, high) < wanted) return FG_OK;
+  for (int i = 0; i < HALVINGS; i++) {
+    double between = sqrt(low * high);
+    if (share_found(power, c, k, critical, between) < wanted)
+      low = between;
+    else
+      high = between;
+  }
+  *amplitude = high;
+  return FG_OK;
+}
+
+fg_status loop_smallest_amplitudes(fg_context *ctx, const loop_bench *bench,
+                                   const loop_judgement *judgement, uint64_t seed,
+                                   double *amplitude) {
+  power_bench power;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_power(ctx, bench, &power));
+  draw_noise(&power, bench->noise[judgement->cautious_noise], seed);
+  for (size_t c = 0; c < bench->candidates; c++)
+    FG_TRY_EXIT(one_amplitude(ctx, &power, c, judgement->z_critical[c], &amplitude[c]));
+exit:
+  close_power(&power);
+  return status;
+}

@@ -1,0 +1,152 @@
+/* Projections and least squares of a frame (modified Gram-Schmidt, taken out twice). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "loop/engine.h"
+
+/* A column of which less than this share of its squared length is left lies in the span. */
+static const double same_span = 1e-9;
+
+static double dot(size_t n, const double *a, const double *b) {
+  double sum[4] = {0};
+  size_t i = 0;
+  for (; i + 4 <= n; i += 4)
+    for (size_t k = 0; k < 4; k++)
+      sum[k] += a[i + k] * b[i + k];
+  for (; i < n; i++)
+    sum[0] += a[i] * b[i];
+  return sum[0] + sum[1] + sum[2] + sum[3];
+}
+
+double loop_project_out(size_t n, const double *basis, size_t rank, double *v) {
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t k = 0; k < rank; k++) {
+      double along = dot(n, basis + k * n, v);
+      for (size_t i = 0; i < n; i++)
+        v[i] -= along * basis[k * n + i];
+    }
+  return dot(n, v, v);
+}
+
+size_t loop_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,
+                        size_t count, double *out, double *lengths) {
+  size_t added = 0;
+  for (size_t k = 0; k < count; k++) {
+    double *v = out + added * n;
+    memmove(v, columns + k * n, n * sizeof *v);
+    double whole = dot(n, v, v);
+    double left = loop_project_out(n, basis, rank, v);
+    if (lengths) lengths[k] = left;
+    left = loop_project_out(n, out, added, v);
+    if (!(left > same_span * whole)) continue;
+    for (size_t i = 0; i < n; i++)
+      v[i] /= sqrt(left);
+    added++;
+  }
+  return added;
+}
+
+/* X = Q R column by column; coefficients and (X'X)^-1 from R. */
+typedef struct triangle {
+  size_t columns, rank;
+  size_t *kept;  /* columns of X */
+  double *basis; /* rank × n */
+  double *r;     /* columns × columns, r[i * columns + j]: row i of kept column j */
+} triangle;
+
+static void decompose(size_t n, const double *x, triangle *t) {
+  for (size_t k = 0; k < t->columns; k++) {
+    double *v = t->basis + t->rank * n, *r = t->r;
+    memcpy(v, x + k * n, n * sizeof *v);
+    double whole = dot(n, v, v);
+    for (int pass = 0; pass < 2; pass++)
+      for (size_t i = 0; i < t->rank; i++) {
+        double along = dot(n, t->basis + i * n, v);
+        r[i * t->columns + t->rank] += along;
+        for (size_t m = 0; m < n; m++)
+          v[m] -= along * t->basis[i * n + m];
+      }
+    double left = dot(n, v, v);
+    if (!(left > same_span * whole)) {
+      for (size_t i = 0; i < t->rank; i++)
+        r[i * t->columns + t->rank] = 0;
+      continue;
+    }
+    r[t->rank * t->columns + t->rank] = sqrt(left);
+    for (size_t m = 0; m < n; m++)
+      v[m] /= sqrt(left);
+    t->kept[t->rank++] = k;
+  }
+}
+
+/* column j of R^-1, written to u (rank numbers). */
+static void invert_column(const triangle *t, size_t j, double *u) {
+  memset(u, 0, t->rank * sizeof *u);
+  for (size_t i = j + 1; i-- > 0;) {
+    double sum = i == j;
+    for (size_t k = i + 1; k <= j; k++)
+      sum -= t->r[i * t->columns + k] * u[k];
+    u[i] = sum / t->r[i * t->columns + i];
+  }
+}
+
+static void solve(const triangle *t, const double *along, double *u, loop_fit *fit) {
+  for (size_t j = 0; j < t->rank; j++) {
+    invert_column(t, j, u);
+    fit->log_det += 2 * log(t->r[j * t->columns + j]);
+    for (size_t i = 0; i <= j; i++) {
+      fit->beta[t->kept[i]] += u[i] * along[j];
+      for (size_t k = 0; k <= j; k++)
+        fit->inverse[t->kept[i] * t->columns + t->kept[k]] += u[i] * u[k];
+    }
+  }
+}
+
+static fg_status fit_allocate(fg_context *ctx, size_t columns, loop_fit *fit) {
+  *fit = (loop_fit){.columns = columns};
+  FG_TRY(fg_memory_allocate(ctx, columns, sizeof *fit->beta, (void **)&fit->beta));
+  return fg_memory_allocate(ctx, columns, columns * sizeof *fit->beta, (void **)&fit->inverse);
+}
+
+fg_status loop_least_squares(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                             loop_fit *fit) {
+  fg_status status = FG_OK;
+  size_t n = frame->n, columns = frame->columns;
+  triangle t = {.columns = columns};
+  double *x = NULL, *y = NULL, *small = NULL;
+  FG_TRY_EXIT(fit_allocate(ctx, columns, fit));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, columns * sizeof *x + 1, (void **)&x));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, (columns + 1) * sizeof *x, (void **)&t.basis));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, columns, columns * sizeof *x, (void **)&t.r));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, columns, sizeof *t.kept, (void **)&t.kept));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *y, (void **)&y));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, columns, 2 * sizeof *y, (void **)&small));
+  memcpy(x, frame->x, n * columns * sizeof *x);
+  memcpy(y, frame->y, n * sizeof *y);
+  for (size_t k = 0; k < columns; k++)
+    loop_whiten(frame, noise, x + k * n);
+  loop_whiten(frame, noise, y);
+  decompose(n, x, &t);
+  for (size_t k = 0; k < t.rank; k++)
+    small[k] = dot(n, t.basis + k * n, y);
+  solve(&t, small, small + columns, fit);
+  fit->rank = t.rank;
+  fit->rss = loop_project_out(n, t.basis, t.rank, y);
+exit:
+  free(x);
+  free(t.basis);
+  free(t.r);
+  free(t.kept);
+  free(y);
+  free(small);
+  if (status != FG_OK) loop_fit_free(fit);
+  return status;
+}
+
+void loop_fit_free(loop_fit *fit) {
+  free(fit->beta);
+  free(fit->inverse);
+  *fit = (loop_fit){0};
+}

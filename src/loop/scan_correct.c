@@ -1,0 +1,97 @@
+/* Foils with corrected edges, measured again. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "loop/scan_loop.h"
+
+static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to) {
+  *to = *from;
+  to->stations = NULL;
+  FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *to->stations, (void **)&to->stations));
+  memcpy(to->stations, from->stations, from->count * sizeof *to->stations);
+  return FG_OK;
+}
+
+static void move_edges(const fg_field_list *fields, fg_strip *strip) {
+  for (size_t k = 0; k < strip->count; k++) {
+    fg_station *s = &strip->stations[k];
+    fg_point *edges[2] = {&s->left, &s->right};
+    for (int side = 0; side < 2; side++) {
+      if (!isfinite(edges[side]->x)) continue;
+      fg_point d = fg_field_at(fields, *edges[side]);
+      edges[side]->x += d.x;
+      edges[side]->y += d.y;
+    }
+  }
+}
+
+/* The shift at a station: that of the nearest row of its view. It is outwards from the arc's own
+ * centre; the station's normal may point the other way. */
+static void take_shift(const fg_points *points, size_t view, const double *shift_mm,
+                       fg_strip *strip) {
+  for (size_t k = 0; k < strip->count; k++) {
+    fg_station *s = &strip->stations[k];
+    double x = 0.5 * (s->left.x + s->right.x), y = 0.5 * (s->left.y + s->right.y);
+    double nearest = INFINITY;
+    size_t row = points->row_count;
+    for (size_t i = 0; i < points->row_count; i++) {
+      if (points->rows[i].view != view) continue;
+      double dx = points->rows[i].at.x - x, dy = points->rows[i].at.y - y;
+      if (dx * dx + dy * dy >= nearest) continue;
+      nearest = dx * dx + dy * dy;
+      row = i;
+    }
+    if (row == points->row_count) return;
+    fg_point n = points->rows[row].normal;
+    s->left.x -= shift_mm[row] * n.x;
+    s->left.y -= shift_mm[row] * n.y;
+    s->right.x -= shift_mm[row] * n.x;
+    s->right.y -= shift_mm[row] * n.y;
+  }
+}
+
+fg_status fg_scan_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
+                               const fg_field_list *fields, const fg_points *points, size_t view,
+                               const double *shift_mm, unsigned threads, fg_foil *corrected) {
+  memset(corrected, 0, sizeof *corrected);
+  FG_TRY(copy_strip(ctx, &foil->strip, &corrected->strip));
+  if (fields && fields->count) move_edges(fields, &corrected->strip);
+  if (shift_mm) take_shift(points, view, shift_mm, &corrected->strip);
+  fg_status status = fg_foil_measure(ctx, design, threads, corrected);
+  corrected->number = foil->number;
+  if (status != FG_OK) fg_foil_free(corrected);
+  return status;
+}
+
+/* The view of a foil of a scan; the number of views when it has none. */
+static size_t find_view(const fg_points *points, const fg_foil *foil) {
+  size_t v = 0;
+  while (points && v < points->view_count && points->views[v].foil != foil) v++;
+  return v;
+}
+
+fg_status fg_scan_correct(fg_context *ctx, const fg_measurement *m, const fg_field_list *fields,
+                          const fg_points *points, size_t scan, const double *shift_mm,
+                          unsigned threads, fg_measurement *corrected) {
+  (void)scan;
+  *corrected = *m;
+  corrected->foils = NULL;
+  corrected->foil_count = 0;
+  corrected->discs = NULL;
+  corrected->disc_count = 0;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils,
+                                 (void **)&corrected->foils));
+  for (size_t f = 0; f < m->foil_count; f++) {
+    size_t view = find_view(points, &m->foils[f]);
+    bool known = points && view < points->view_count;
+    FG_TRY_EXIT(fg_scan_correct_foil(ctx, &m->foils[f], &m->design, fields, points, view,
+                                     known ? shift_mm : NULL, threads, &corrected->foils[f]));
+    corrected->foil_count++;
+  }
+exit:
+  if (status != FG_OK) fg_measurement_free(corrected);
+  return status;
+}

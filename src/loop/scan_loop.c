@@ -1,0 +1,239 @@
+#include "loop/scan_loop.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+
+/* Rows fewer than this cannot carry a search for effects. */
+enum { ROWS_LEAST = 60 };
+
+static fg_status measure_all(fg_context *ctx, const char *const *paths, const fg_design *design,
+                             fg_scan_loop *loop) {
+  fg_measure_options options = {.dpi = loop->options.dpi, .threads = loop->options.threads};
+  for (size_t i = 0; i < loop->scan_count; i++)
+    FG_TRY(fg_measure_scan(ctx, paths[i], design, &options, &loop->before[i]));
+  const fg_measurement *first = &loop->before[0];
+  for (size_t i = 1; i < loop->scan_count; i++)
+    for (int axis = 0; axis < 2; axis++)
+      if (fabs(loop->before[i].dpi[axis] / first->dpi[axis] - 1) > 1e-4)
+        return fg_fail(ctx, FG_ERR_DATA,
+                       "%s has %g dpi and %s has %g dpi: scans of one loop must have one resolution",
+                       paths[0], first->dpi[axis], paths[i], loop->before[i].dpi[axis]);
+  return FG_OK;
+}
+
+static fg_status check_same_foils(fg_context *ctx, const fg_scan_loop *loop) {
+  for (size_t i = 1; i < loop->scan_count; i++)
+    if (loop->before[i].foil_count != loop->before[0].foil_count)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s shows %zu foils and %s %zu: not the same foils (--same-foil)",
+                     loop->before[0].scan, loop->before[0].foil_count, loop->before[i].scan,
+                     loop->before[i].foil_count);
+  return FG_OK;
+}
+
+/* Every foil of every scan as a view; with --same-foil, foil k of each scan is one part. */
+static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
+  size_t total = 0, n = 0;
+  for (size_t i = 0; i < loop->scan_count; i++) total += loop->before[i].foil_count;
+  fg_points_view *views = NULL;
+  FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, n++)
+      views[n] = (fg_points_view){&loop->before[i].foils[f], &loop->before[i], i,
+                                  loop->options.same_foil ? f : n, loop->hold_out[i]};
+  fg_status status = fg_points_build(ctx, views, n, &loop->points);
+  free(views);
+  if (status == FG_OK && loop->points.row_count < ROWS_LEAST)
+    status = fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects",
+                     loop->points.row_count);
+  return status;
+}
+
+static fg_scan_error summarise(fg_context *ctx, const fg_points *points, const double *residual) {
+  fg_scan_error e = {NAN, NAN, NAN, NAN, NAN};
+  double sum = 0, n = 0, held = 0, held_n = 0, *absolute = NULL;
+  size_t count = 0;
+  if (fg_memory_allocate(ctx, points->row_count, sizeof *absolute, (void **)&absolute) != FG_OK)
+    return e;
+  for (size_t i = 0; i < points->row_count; i++) {
+    if (!(points->rows[i].weight > 0)) continue;
+    double square = residual[i] * residual[i];
+    if (points->views[points->rows[i].view].aside) {
+      held += square;
+      held_n++;
+      continue;
+    }
+    sum += square;
+    n++;
+    absolute[count++] = fabs(residual[i]);
+  }
+  if (n > 0) {
+    e.rms = sqrt(sum / n);
+    e.robust_sd = 1.4826 * fg_select(absolute, count, count / 2);
+    e.p95 = fg_select(absolute, count, count * 95 / 100);
+    e.maximum = fg_select(absolute, count, count - 1);
+  }
+  if (held_n > 0) e.held_out_rms = sqrt(held / held_n);
+  free(absolute);
+  return e;
+}
+
+static fg_status correct_all(fg_context *ctx, const fg_scan_loop *loop, const fg_scan_set *set,
+                             fg_measurement *after) {
+  fg_field_list fields;
+  double *shift = NULL;
+  fg_scan_fields(&loop->points, set, &fields);
+  fg_status status = fg_scan_shift(ctx, &loop->points, set, &shift);
+  for (size_t i = 0; i < loop->scan_count && status == FG_OK; i++)
+    status = fg_scan_correct(ctx, &loop->before[i], &fields, &loop->points, i, shift,
+                             loop->options.threads, &after[i]);
+  free(shift);
+  return status;
+}
+
+/* ---- ties ---- */
+
+static void widen(double range[2], double value) {
+  if (!isfinite(value)) return;
+  if (!(value >= range[0])) range[0] = value;
+  if (!(value <= range[1])) range[1] = value;
+}
+
+static void widen_ranges(const fg_measurement *m, fg_scan_range *ranges, size_t foil) {
+  const fg_foil *f = &m->foils[foil];
+  for (size_t b = 0; b < f->bump_count; b++) {
+    /* A range holds its value's own uncertainty too: the truth lies in it, not between fits. */
+    double ur = 2 * f->bumps[b].u_radius_mm, uh = 2 * f->bumps[b].u_height_mm;
+    widen(ranges[b].radius_mm, f->bumps[b].radius_mm - ur);
+    widen(ranges[b].radius_mm, f->bumps[b].radius_mm + ur);
+    widen(ranges[b].height_mm, f->bumps[b].height_mm - uh);
+    widen(ranges[b].height_mm, f->bumps[b].height_mm + uh);
+  }
+  widen(ranges[f->bump_count].radius_mm, f->overall.radius_mm - 2 * f->overall.u_radius_mm);
+  widen(ranges[f->bump_count].radius_mm, f->overall.radius_mm + 2 * f->overall.u_radius_mm);
+}
+
+static fg_status allocate_ranges(fg_context *ctx, fg_scan_loop *loop) {
+  size_t foils = 0;
+  for (size_t i = 0; i < loop->scan_count; i++) foils += loop->before[i].foil_count;
+  FG_TRY(fg_memory_allocate(ctx, foils, sizeof *loop->ranges, (void **)&loop->ranges));
+  for (size_t i = 0, k = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
+      size_t count = loop->before[i].foils[f].bump_count + 1;
+      FG_TRY(fg_memory_allocate(ctx, count, sizeof **loop->ranges, (void **)&loop->ranges[k]));
+      for (size_t b = 0; b < count; b++)
+        loop->ranges[k][b] = (fg_scan_range){{NAN, NAN}, {NAN, NAN}};
+    }
+  return FG_OK;
+}
+
+static void widen_all(fg_scan_loop *loop, const fg_measurement *measurements) {
+  for (size_t i = 0, k = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, k++)
+      if (f < measurements[i].foil_count &&
+          measurements[i].foils[f].bump_count == loop->before[i].foils[f].bump_count)
+        widen_ranges(&measurements[i], loop->ranges[k], f);
+}
+
+/* What the dimensions are under every member of the class. */
+static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
+  fg_status status = FG_OK;
+  fg_measurement *tried = NULL;
+  FG_TRY(allocate_ranges(ctx, loop));
+  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *tried, (void **)&tried));
+  widen_all(loop, loop->after);
+  for (size_t m = 1; m < loop->subset.member_count && status == FG_OK; m++) {
+    fg_scan_set set;
+    fg_subset_take(&loop->subset, m, &set);
+    status = fg_scan_refit(ctx, &loop->points, &set, NULL);
+    if (status == FG_ERR_NUMERIC) {
+      status = FG_OK;
+      continue;
+    }
+    if (status == FG_OK) status = correct_all(ctx, loop, &set, tried);
+    if (status == FG_OK) widen_all(loop, tried);
+    for (size_t i = 0; i < loop->scan_count; i++) fg_measurement_free(&tried[i]);
+  }
+  free(tried);
+  /* The geometry in force is the winner's again. */
+  return status == FG_OK ? fg_scan_refit(ctx, &loop->points, &loop->set, NULL) : status;
+}
+
+/* ---- the loop ---- */
+
+static bool has_free(const fg_scan_set *set, bool wanted) {
+  for (size_t e = 0; e < set->count; e++)
+    if ((strncmp(set->effects[e].id, "free.", 5) == 0) == wanted) return true;
+  return false;
+}
+
+static void find_verdict(fg_scan_loop *loop) {
+  bool listed = has_free(&loop->set, false), rest = has_free(&loop->set, true);
+  loop->verdict = listed && (rest || !loop->subset.right) ? FG_LOOP_PARTLY
+                  : listed                                ? FG_LOOP_EXPLAINED
+                  : rest                                  ? FG_LOOP_UNATTRIBUTED
+                                                          : FG_LOOP_CLEAN;
+}
+
+static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
+  size_t rows = loop->points.row_count;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_after));
+  FG_TRY(fg_scan_refit(ctx, &loop->points, &loop->set, loop->residual_before));
+  FG_TRY(fg_subset_settle(ctx, &loop->points, &loop->set, &loop->subset, loop->residual_after));
+  loop->error_before = summarise(ctx, &loop->points, loop->residual_before);
+  loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
+  loop->noise_floor_um = loop->subset.noise_um;
+  loop->tied = loop->subset.member_count > 1;
+  FG_TRY(correct_all(ctx, loop, &loop->set, loop->after));
+  if (loop->tied) FG_TRY(find_ranges(ctx, loop));
+  find_verdict(loop);
+  return FG_OK;
+}
+
+fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
+                           size_t count, const fg_design *design,
+                           const fg_scan_loop_options *options, fg_scan_loop **result) {
+  fg_scan_loop *loop = NULL;
+  fg_status status = FG_OK;
+  *result = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
+  loop->options = *options;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->before, (void **)&loop->before));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->after, (void **)&loop->after));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->hold_out, (void **)&loop->hold_out));
+  memcpy(loop->hold_out, hold_out, count * sizeof *hold_out);
+  loop->scan_count = count;
+  FG_TRY_EXIT(measure_all(ctx, paths, design, loop));
+  if (options->same_foil) FG_TRY_EXIT(check_same_foils(ctx, loop));
+  FG_TRY_EXIT(build_points(ctx, loop));
+  FG_TRY_EXIT(search(ctx, loop));
+  *result = loop;
+exit:
+  if (status != FG_OK) fg_scan_loop_free(loop);
+  return status;
+}
+
+void fg_scan_loop_free(fg_scan_loop *loop) {
+  if (!loop) return;
+  size_t foils = 0;
+  for (size_t i = 0; i < loop->scan_count; i++)
+    foils += loop->before ? loop->before[i].foil_count : 0;
+  for (size_t k = 0; loop->ranges && k < foils; k++) free(loop->ranges[k]);
+  free(loop->ranges);
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    if (loop->before) fg_measurement_free(&loop->before[i]);
+    if (loop->after) fg_measurement_free(&loop->after[i]);
+  }
+  fg_points_free(&loop->points);
+  free(loop->before);
+  free(loop->after);
+  free(loop->hold_out);
+  free(loop->residual_before);
+  free(loop->residual_after);
+  free(loop);
+}

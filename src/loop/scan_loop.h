@@ -1,0 +1,47 @@
+/* What the parts of the loop on scans share. */
+#ifndef FG_LOOP_SCAN_LOOP_H
+#define FG_LOOP_SCAN_LOOP_H
+
+#include "foilgauge/scan_loop.h"
+#include "loop/points.h"
+#include "loop/points_effects.h"
+#include "loop/subset.h"
+
+struct fg_scan_loop {
+  fg_scan_loop_options options;
+  fg_measurement *before, *after; /* one per scan */
+  bool *hold_out;
+  size_t scan_count;
+  fg_points points;      /* all views; geometry of the final model */
+  fg_subset subset;      /* what was tried, and the class of what explains */
+  fg_scan_set set;       /* the winner, fitted */
+  double *residual_before, *residual_after; /* um, per row of points */
+  fg_scan_error error_before, error_after;
+  double noise_floor_um;
+  bool tied;
+  fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
+  fg_loop_outcome verdict;
+};
+
+/* Joint fit of geometry and effects, from the effects' present numbers. `residual_um` (rows, or
+ * NULL) gets what is left. */
+fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set, double *residual_um);
+
+/* The set's fields, and the shift of every row by part effects (mm; NULL: not wanted). */
+void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields);
+fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
+                        double **shift_mm);
+
+/* Copies a measured foil with corrected edges and measures it again: fields move the edges by
+ * d(x, y); `shift` (one per row of `points`, for the rows of `view`) takes the part's own deviation
+ * out. Either may be NULL. */
+fg_status fg_scan_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
+                               const fg_field_list *fields, const fg_points *points, size_t view,
+                               const double *shift_mm, unsigned threads, fg_foil *corrected);
+
+/* A measurement with every foil corrected. `first_view` is the view of its first measured foil. */
+fg_status fg_scan_correct(fg_context *ctx, const fg_measurement *m, const fg_field_list *fields,
+                          const fg_points *points, size_t scan, const double *shift_mm,
+                          unsigned threads, fg_measurement *corrected);
+
+#endif

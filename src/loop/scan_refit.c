@@ -1,0 +1,270 @@
+/* Geometry and effects fitted together, through the geometry. */
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/numerics.h"
+#include "loop/scan_loop.h"
+
+enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_LOOP_COLUMNS + FG_LOOP_SHAPES) };
+#define STEP_END_UM 1e-5
+
+void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
+  memset(fields, 0, sizeof *fields);
+  fields->frame = points->frame;
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_scan_effect *effect = &set->effects[e];
+    const fg_field_row *row = fg_field_find(effect->id);
+    if (!row || fields->count == FG_FIELDS_MAX) continue;
+    fg_field *field = &fields->fields[fields->count++];
+    field->row = row;
+    for (size_t c = 0; c < row->columns; c++) {
+      field->amplitude_mm[c] = effect->coefficient_um[c] / 1000;
+      field->u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
+    }
+    for (size_t s = 0; s < row->shapes; s++) {
+      field->shape[s] = effect->shape[s];
+      field->u_shape[s] = effect->u_shape[s];
+    }
+  }
+}
+
+fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
+                        double **shift_mm) {
+  size_t rows = points->row_count;
+  double *columns = NULL;
+  *shift_mm = NULL;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof **shift_mm, (void **)shift_mm));
+  fg_status status =
+      fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *columns, (void **)&columns);
+  for (size_t e = 0; e < set->count && status == FG_OK; e++) {
+    const fg_scan_effect *effect = &set->effects[e];
+    if (fg_field_find(effect->id)) continue;
+    size_t count = fg_points_effect_columns(points, effect->id, effect->shape, columns);
+    for (size_t c = 0; c < count; c++)
+      for (size_t i = 0; i < rows; i++)
+        (*shift_mm)[i] += effect->coefficient_um[c] / 1000 * columns[c * rows + i];
+  }
+  free(columns);
+  if (status != FG_OK) {
+    free(*shift_mm);
+    *shift_mm = NULL;
+  }
+  return status;
+}
+
+/* One unknown of the effects: a coefficient, or a shape by its numerical derivative. */
+typedef struct unknown {
+  size_t effect, index;
+  bool shape;
+} unknown;
+
+static size_t list_unknowns(const fg_scan_set *set, unknown *list) {
+  size_t n = 0;
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_scan_effect *effect = &set->effects[e];
+    for (size_t c = 0; c < effect->columns; c++) list[n++] = (unknown){e, c, false};
+    bool jumps = !strcmp(effect->id, "scan.row_step");
+    for (size_t s = 0; s < effect->shapes && !jumps; s++) list[n++] = (unknown){e, s, true};
+  }
+  return n;
+}
+
+/* Columns of the effects' unknowns, um of residual per um or per unit of shape. */
+static void effect_design(const fg_points *points, const fg_scan_set *set, const unknown *list,
+                          size_t count, double *work, double *design) {
+  size_t rows = points->row_count;
+  for (size_t k = 0; k < count; k++) {
+    const fg_scan_effect *effect = &set->effects[list[k].effect];
+    double *to = design + k * rows, shape[FG_LOOP_SHAPES];
+    if (!list[k].shape) {
+      fg_points_effect_columns(points, effect->id, effect->shape, work);
+      memcpy(to, work + list[k].index * rows, rows * sizeof *to);
+      continue;
+    }
+    memset(to, 0, rows * sizeof *to);
+    double step = 1e-5 * fmax(fabs(effect->shape[list[k].index]), 1e-3);
+    for (int side = -1; side <= 1; side += 2) {
+      memcpy(shape, effect->shape, sizeof shape);
+      shape[list[k].index] += side * step;
+      fg_points_effect_columns(points, effect->id, shape, work);
+      for (size_t c = 0; c < effect->columns; c++)
+        for (size_t i = 0; i < rows; i++)
+          to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
+    }
+  }
+}
+
+typedef struct refit {
+  fg_points *points;
+  fg_scan_set *set;
+  unknown list[UNKNOWNS_MAX];
+  size_t unknowns, parameters;
+  double *residual, *jacobian, *design, *work; /* per row */
+  gsl_matrix *normal;
+  gsl_vector *right;
+} refit;
+
+static const double *column_of(const refit *r, size_t k) {
+  size_t rows = r->points->row_count;
+  return k < r->parameters ? r->jacobian + k * rows : r->design + (k - r->parameters) * rows;
+}
+
+/* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
+static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
+  const fg_points_row *row = &r->points->rows[i];
+  if (!r->points->views[row->view].aside) return row->weight;
+  return a < r->parameters && b < r->parameters ? row->weight * 1e-6 : 0;
+}
+
+static fg_status solve(fg_context *ctx, refit *r) {
+  size_t n = r->parameters + r->unknowns, rows = r->points->row_count;
+  for (size_t a = 0; a < n; a++) {
+    const double *x = column_of(r, a);
+    double right = 0, unit = a < r->parameters ? 1000 : 1; /* geometry in mm */
+    for (size_t i = 0; i < rows; i++) right += row_weight(r, i, a, a) * unit * x[i] * r->residual[i];
+    gsl_vector_set(r->right, a, right);
+    for (size_t b = 0; b <= a; b++) {
+      const double *y = column_of(r, b);
+      double sum = 0, other = b < r->parameters ? 1000 : 1;
+      for (size_t i = 0; i < rows; i++) sum += row_weight(r, i, a, b) * unit * x[i] * other * y[i];
+      gsl_matrix_set(r->normal, a, b, sum);
+      gsl_matrix_set(r->normal, b, a, sum);
+    }
+  }
+  for (size_t a = 0; a < n; a++) {
+    double d = gsl_matrix_get(r->normal, a, a);
+    gsl_matrix_set(r->normal, a, a, d * (1 + 1e-10) + 1e-12);
+  }
+  if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_svx(r->normal, r->right))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "geometry and effects cannot be told apart");
+  return FG_OK;
+}
+
+/* Moves coefficients and shapes; returns the largest move in um of residual. */
+static double move(refit *r) {
+  double largest = 0;
+  for (size_t k = 0; k < r->unknowns; k++) {
+    fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
+    double step = gsl_vector_get(r->right, r->parameters + k);
+    if (r->list[k].shape) {
+      double most = 0.02 * fabs(effect->shape[r->list[k].index]);
+      step = fmax(-most, fmin(most, step));
+      effect->shape[r->list[k].index] += step;
+      largest = fmax(largest, 100 * fabs(step) / most * STEP_END_UM);
+    } else {
+      effect->coefficient_um[r->list[k].index] += step;
+      largest = fmax(largest, fabs(step));
+    }
+  }
+  return largest;
+}
+
+/* Integral of the residuals' correlation along each view's rows. */
+static double correlation_integral(const refit *r) {
+  enum { LAGS = 24 };
+  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
+  for (size_t i = 0; i < r->points->row_count; i++)
+    for (size_t lag = 0; lag < LAGS && i + lag < r->points->row_count; lag++) {
+      const fg_points_row *a = &r->points->rows[i], *b = &r->points->rows[i + lag];
+      if (a->view != b->view || a->group != b->group) break;
+      products[lag] += r->residual[i] * r->residual[i + lag];
+      pairs[lag]++;
+    }
+  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
+    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
+    if (rho < 2 / sqrt(pairs[lag])) break;
+    integral += 2 * rho;
+  }
+  return integral;
+}
+
+/* Standard uncertainties from the last normal equations, for correlated noise. */
+static void find_uncertainties(refit *r) {
+  size_t n = r->parameters + r->unknowns, rows = r->points->row_count;
+  double sum = 0, weight = 0;
+  for (size_t i = 0; i < rows; i++) {
+    if (r->points->views[r->points->rows[i].view].aside) continue;
+    sum += r->points->rows[i].weight * r->residual[i] * r->residual[i];
+    weight++;
+  }
+  double variance = sum / fmax(weight - (double)n, 1) * correlation_integral(r);
+  if (gsl_linalg_cholesky_invert(r->normal)) return;
+  for (size_t k = 0; k < r->unknowns; k++) {
+    fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
+    double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));
+    if (r->list[k].shape) effect->u_shape[r->list[k].index] = u;
+    else effect->u_coefficient_um[r->list[k].index] = u;
+  }
+}
+
+/* Residual in um and Jacobian with the set's present correction, geometry fitted to it. */
+static fg_status evaluate(fg_context *ctx, refit *r) {
+  fg_field_list fields;
+  double *shift = NULL;
+  fg_scan_fields(r->points, r->set, &fields);
+  fg_status status = FG_OK;
+  for (int twice = 0; twice < 2 && status == FG_OK; twice++) {
+    /* Directions in the part's frame come from the geometry, and the geometry from the shift. */
+    free(shift);
+    shift = NULL;
+    status = fg_scan_shift(ctx, r->points, r->set, &shift);
+    fg_points_correction correction = {&fields, shift};
+    if (status == FG_OK) status = fg_points_fit(ctx, r->points, &correction);
+    if (status == FG_OK) fg_points_residual(r->points, &correction, r->residual, r->jacobian);
+  }
+  for (size_t i = 0; i < r->points->row_count; i++) r->residual[i] *= 1000;
+  free(shift);
+  return status;
+}
+
+static fg_status allocate(fg_context *ctx, refit *r) {
+  size_t rows = r->points->row_count, n = r->parameters + r->unknowns;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->residual));
+  FG_TRY(fg_memory_allocate(ctx, rows * r->parameters, sizeof(double), (void **)&r->jacobian));
+  FG_TRY(fg_memory_allocate(ctx, rows * (r->unknowns + 1), sizeof(double), (void **)&r->design));
+  FG_TRY(fg_memory_allocate(ctx, rows * FG_LOOP_COLUMNS, sizeof(double), (void **)&r->work));
+  r->normal = gsl_matrix_alloc(n, n);
+  r->right = gsl_vector_alloc(n);
+  if (!r->normal || !r->right) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu unknowns", n);
+  return FG_OK;
+}
+
+static void release(refit *r) {
+  free(r->residual);
+  free(r->jacobian);
+  free(r->design);
+  free(r->work);
+  gsl_matrix_free(r->normal);
+  gsl_vector_free(r->right);
+}
+
+fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set,
+                        double *residual_um) {
+  refit r = {.points = points, .set = set};
+  fg_status status = FG_OK;
+  fg_numerics_start();
+  FG_TRY(fg_points_fit(ctx, points, NULL)); /* counts the parameters */
+  r.parameters = points->parameters;
+  r.unknowns = list_unknowns(set, r.list);
+  FG_TRY_EXIT(allocate(ctx, &r));
+  for (int round = 0; round < REFIT_ROUNDS; round++) {
+    FG_TRY_EXIT(evaluate(ctx, &r));
+    if (!r.unknowns) break;
+    effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    FG_TRY_EXIT(solve(ctx, &r));
+    if (move(&r) < STEP_END_UM) break;
+  }
+  if (r.unknowns) {
+    FG_TRY_EXIT(evaluate(ctx, &r));
+    effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    FG_TRY_EXIT(solve(ctx, &r));
+    find_uncertainties(&r);
+  }
+  if (residual_um) memcpy(residual_um, r.residual, points->row_count * sizeof *residual_um);
+exit:
+  release(&r);
+  return status;
+}

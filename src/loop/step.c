@@ -1,0 +1,377 @@
+/* One step of the loop: score everything, and accept at most one effect. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "loop/run.h"
+
+enum { DRAWS_SMALL = 1999, DRAWS = 999, SMALL_TABLE = 60 };
+
+static fg_status fill_stands(fg_context *ctx, const loop_run *run, loop_step *step) {
+  FG_TRY(fg_memory_allocate(ctx, run->candidates + 2, sizeof *step->stand, (void **)&step->stand));
+  for (size_t c = 0; c < run->candidates; c++) {
+    const loop_score *score = &step->judgement.score[c];
+    loop_stand *stand = &step->stand[step->stands++];
+    stand->candidate = run->candidate[c];
+    stand->z = score->z;
+    memcpy(stand->shape, step->bench.shape[score->version], sizeof stand->shape);
+  }
+  for (size_t k = 0; k < 2; k++) {
+    if (!step->lone[k].known || !(step->lone[k].ratio < 1)) continue;
+    loop_stand *stand = &step->stand[step->stands++];
+    stand->candidate = step->lone[k].candidate;
+    stand->z = loop_deviate(step->lone[k].ratio, 1, (double)step->bench.freedom);
+  }
+  return FG_OK;
+}
+
+fg_status loop_step_open(fg_context *ctx, loop_run *run, const loop_set *set, bool judged,
+                         loop_step *step) {
+  size_t draws = run->options.simulations;
+  fg_status status = FG_OK;
+  memset(step, 0, sizeof *step);
+  FG_TRY_EXIT(loop_frame_build(ctx, run->problem, run->train, set, &step->frame));
+  if (!draws) draws = step->frame.n <= SMALL_TABLE ? DRAWS_SMALL : DRAWS;
+  if (!judged) draws = 20;
+  FG_TRY_EXIT(loop_bench_build(ctx, &step->frame, run->candidate, run->candidates, &step->bench));
+  FG_TRY_EXIT(loop_judge(ctx, &step->bench, draws, run->options.seed, &step->judgement));
+  loop_noise noise = step->bench.noise[step->judgement.null_noise];
+  if (judged)
+    FG_TRY_EXIT(loop_judge_lone(ctx, &step->frame, noise, draws, run->options.seed + 1,
+                                step->lone));
+  FG_TRY_EXIT(fill_stands(ctx, run, step));
+exit:
+  if (status != FG_OK) loop_step_close(step);
+  return status;
+}
+
+void loop_step_close(loop_step *step) {
+  loop_judgement_free(&step->judgement);
+  loop_bench_free(&step->bench);
+  loop_frame_free(&step->frame);
+  free(step->stand);
+  step->stand = NULL;
+}
+
+static double total_p(const loop_judgement *judgement, size_t c) {
+  double simulated = judgement->p_simulated[c];
+  return isfinite(simulated) ? fmax(simulated, judgement->p_flip[c]) : judgement->p_flip[c];
+}
+
+/* What comes after a first claim must be twice as sure: its null leans on the first. */
+static double bar(const loop_run *run) {
+  return run->options.accept_p / (run->set.count ? 2 : 1);
+}
+
+static void remove_member(loop_set *set, size_t member) {
+  for (size_t k = member + 1; k < set->count; k++) {
+    set->candidate[k - 1] = set->candidate[k];
+    memcpy(set->shape[k - 1], set->shape[k], sizeof set->shape[k]);
+  }
+  set->count--;
+}
+
+/* Beside the others it explains nothing any more (one-sided 1 % of the deviate). */
+static void drop_claim(loop_run *run, size_t m) {
+  fg_loop_result *result = run->result;
+  remove_member(&run->set, m);
+  for (size_t k = m + 1; k < result->claims; k++)
+    result->claim[k - 1] = result->claim[k];
+  result->claims--;
+}
+
+/* The best of a family that passes; candidates that are in the set already are none. */
+static bool best_passing(const loop_run *run, const loop_step *step, bool curves, size_t *best) {
+  bool found = false;
+  for (size_t c = 0; c < run->candidates; c++) {
+    const loop_score *score = &step->judgement.score[c];
+    if (loop_is_curve(&run->candidate[c]) != curves || !isfinite(score->z)) continue;
+    if (!(total_p(&step->judgement, c) < bar(run))) continue;
+    if (found && score->z <= step->judgement.score[*best].z) continue;
+    *best = c;
+    found = true;
+  }
+  return found;
+}
+
+/* Nothing is judged at the noise that flatters the winner. */
+static loop_noise step_noise(const loop_step *step) {
+  return step->bench.noise[step->judgement.cautious_noise];
+}
+
+static void extend_set(const loop_run *run, const loop_stand *stand, loop_set *set) {
+  *set = run->set;
+  if (run->has_curve) { /* the curve stays last */
+    set->candidate[set->count] = set->candidate[set->count - 1];
+    memcpy(set->shape[set->count], set->shape[set->count - 1], sizeof set->shape[0]);
+    set->candidate[set->count - 1] = stand->candidate;
+    memcpy(set->shape[set->count - 1], stand->shape, sizeof stand->shape);
+  } else {
+    set->candidate[set->count] = stand->candidate;
+    memcpy(set->shape[set->count], stand->shape, sizeof stand->shape);
+  }
+  set->count++;
+}
+
+/* Moves a stand's shape off the grid of its start values. */
+static fg_status sharpen(fg_context *ctx, const loop_run *run, loop_step *step, size_t stand) {
+  loop_set with;
+  extend_set(run, &step->stand[stand], &with);
+  FG_TRY(loop_refine(ctx, run->problem, run->train, step_noise(step), &with));
+  memcpy(step->stand[stand].shape, with.shape[with.count - 1 - run->has_curve],
+         sizeof step->stand[stand].shape);
+  return FG_OK;
+}
+
+/* Unless another listed effect leaves the curve nothing to explain: levels of a die in turn look
+ * like a wave over the foils. */
+static fg_status right_form(fg_context *ctx, const loop_run *run, const loop_step *step,
+                            size_t curve, size_t *winner, bool *wrong) {
+  double best = -INFINITY;
+  for (size_t c = 0; c < run->candidates; c++) {
+    double p;
+    if (loop_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
+        !(total_p(&step->judgement, c) < bar(run)) || step->stand[c].z <= best)
+      continue;
+    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[c], &step->stand[curve],
+                       &p));
+    if (p <= 0.003) continue;
+    best = step->stand[c].z;
+    *winner = c;
+    *wrong = false;
+  }
+  return FG_OK;
+}
+
+/* The best curve over the winner's coordinate explains what the winner does not: the form is not in
+ * the table, whatever its nearest relative. */
+static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_step *step,
+                            size_t *winner, size_t *curve, bool *wrong) {
+  const fg_loop_candidate *candidate = &step->stand[*winner].candidate;
+  *wrong = false;
+  if (candidate->effect->pair || run->has_curve) return FG_OK;
+  double best = -INFINITY;
+  for (size_t c = 0; c < run->candidates; c++) {
+    double p;
+    if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
+    if (!isfinite(step->stand[c].z)) continue;
+    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[*winner],
+                       &step->stand[c], &p));
+    if (p > 0.003 || !(total_p(&step->judgement, c) < run->options.accept_p)) continue;
+    if (step->stand[c].z > best) {
+      best = step->stand[c].z;
+      *curve = c;
+      *wrong = true;
+    }
+  }
+  return *wrong ? right_form(ctx, run, step, *curve, winner, wrong) : FG_OK;
+}
+
+static fg_status gate(fg_context *ctx, const loop_run *run, const loop_set *with, loop_noise noise,
+                      double *gain, double *se, bool *passes) {
+  FG_TRY(loop_cross_validated_gain(ctx, run->problem, run->train, &run->set, with, noise, gain, se));
+  *passes = *gain > *se;
+  return FG_OK;
+}
+
+static fg_status take_curve(fg_context *ctx, loop_run *run, const loop_step *step, size_t curve,
+                            bool *accepted) {
+  loop_set with;
+  double gain, se;
+  if (run->has_curve) return FG_OK;
+  extend_set(run, &step->stand[curve], &with);
+  FG_TRY(loop_refine(ctx, run->problem, run->train, step_noise(step), &with));
+  FG_TRY(gate(ctx, run, &with, step_noise(step), &gain, &se, accepted));
+  if (!*accepted) return FG_OK;
+  run->set = with;
+  run->has_curve = true;
+  run->curve_at = step->stand[curve].candidate.a;
+  run->curve_p = total_p(&step->judgement, curve);
+  return FG_OK;
+}
+
+/* The curve given, then the next best over the same coordinate: knots are chosen by what predicts. */
+static fg_status take_best_curve(fg_context *ctx, loop_run *run, const loop_step *step, size_t curve,
+                                 bool *accepted) {
+  double below = step->stand[curve].z;
+  size_t coordinate = step->stand[curve].candidate.a, next = curve;
+  while (next < run->candidates) {
+    FG_TRY(take_curve(ctx, run, step, next, accepted));
+    if (*accepted) return FG_OK;
+    double best = -INFINITY;
+    next = run->candidates;
+    for (size_t c = 0; c < run->candidates; c++) {
+      double z = step->stand[c].z;
+      if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != coordinate || !(z < below) ||
+          !(z > best) || !(total_p(&step->judgement, c) < bar(run)))
+        continue;
+      best = z;
+      next = c;
+    }
+    below = best;
+  }
+  return FG_OK;
+}
+
+static void describe(const loop_run *run, const loop_step *step, size_t winner,
+                     fg_loop_claim *claim) {
+  const loop_judgement *judgement = &step->judgement;
+  claim->candidate = step->stand[winner].candidate;
+  loop_candidate_name(run->problem, &claim->candidate, claim->name);
+  claim->p_flip = claim->p_simulated = claim->cv_gain = claim->cv_gain_se = NAN;
+  if (winner < run->candidates) {
+    const loop_version *version = &step->bench.version[judgement->score[winner].version];
+    claim->p_value = total_p(judgement, winner);
+    claim->p_flip = judgement->p_flip[winner];
+    claim->p_simulated = judgement->p_simulated[winner];
+    claim->retained_share = version->share;
+    return;
+  }
+  const loop_lone *lone = &step->lone[loop_is_exchange(&claim->candidate)];
+  claim->p_value = claim->p_simulated = lone->p_value;
+  claim->retained_share = fmin(lone->length, 1);
+}
+
+static fg_status take_claim(fg_context *ctx, loop_run *run, const loop_step *step, size_t winner,
+                            bool *accepted) {
+  fg_loop_claim claim = {0};
+  loop_set with;
+  loop_noise noise = step_noise(step);
+  describe(run, step, winner, &claim);
+  extend_set(run, &step->stand[winner], &with);
+  FG_TRY(loop_refine(ctx, run->problem, run->train, noise, &with));
+  if (!loop_is_lone(&claim.candidate)) {
+    bool passes;
+    FG_TRY(gate(ctx, run, &with, noise, &claim.cv_gain, &claim.cv_gain_se, &passes));
+    if (!passes) return FG_OK;
+  }
+  loop_stand refined = step->stand[winner];
+  memcpy(refined.shape, with.shape[with.count - 1 - run->has_curve], sizeof refined.shape);
+  FG_TRY(loop_alias_class(ctx, &step->frame, noise, step->stand, step->stands, &refined, &claim));
+  claim.verdict = claim.aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
+  run->set = with;
+  run->result->claim[run->result->claims++] = claim;
+  *accepted = true;
+  return FG_OK;
+}
+
+/* Lone rows that pass, when they explain at least as much as the best candidate. */
+static bool lone_first(const loop_run *run, const loop_step *step, bool listed, size_t best,
+                       size_t *winner) {
+  double ratio = listed ? step->judgement.score[best].ratio : 1;
+  bool found = false;
+  for (size_t s = run->candidates; s < step->stands; s++) {
+    const loop_lone *lone = &step->lone[loop_is_exchange(&step->stand[s].candidate)];
+    if (lone->p_value < bar(run) && lone->ratio <= ratio) {
+      ratio = lone->ratio;
+      *winner = s;
+      found = true;
+    }
+  }
+  return found;
+}
+
+/* A second form over a coordinate that a claim lives on already: two forms that the table lists make
+ * one that it does not. The claim gives way to a curve, where one serves. */
+static fg_status second_form(fg_context *ctx, loop_run *run, const loop_step *step, size_t winner,
+                             bool *accepted) {
+  const fg_loop_candidate *candidate = &step->stand[winner].candidate;
+  size_t m = 0, best = run->candidates;
+  if (candidate->effect->pair || run->has_curve) return FG_OK;
+  while (m < run->result->claims &&
+         (run->set.candidate[m].effect->pair || loop_is_lone(&run->set.candidate[m]) ||
+          run->set.candidate[m].a != candidate->a))
+    m++;
+  if (m == run->result->claims) return FG_OK;
+  loop_run without = *run;
+  loop_step other;
+  remove_member(&without.set, m);
+  FG_TRY(loop_step_open(ctx, &without, &without.set, true, &other));
+  for (size_t c = 0; c < run->candidates; c++)
+    if (loop_is_curve(&run->candidate[c]) && run->candidate[c].a == candidate->a &&
+        total_p(&other.judgement, c) < run->options.accept_p &&
+        (best == run->candidates || other.stand[c].z > other.stand[best].z))
+      best = c;
+  fg_status status = FG_OK;
+  if (best < run->candidates) status = take_best_curve(ctx, &without, &other, best, accepted);
+  if (status == FG_OK && *accepted) {
+    drop_claim(run, m);
+    *run = without;
+  }
+  loop_step_close(&other);
+  return status;
+}
+
+static fg_status decide(fg_context *ctx, loop_run *run, loop_step *step, bool *accepted) {
+  size_t winner = 0, curve = 0;
+  bool listed = best_passing(run, step, false, &winner), wrong = false;
+  if (lone_first(run, step, listed, winner, &winner))
+    return take_claim(ctx, run, step, winner, accepted);
+  if (listed) {
+    FG_TRY(sharpen(ctx, run, step, winner));
+    FG_TRY(wrong_form(ctx, run, step, &winner, &curve, &wrong));
+    if (wrong) FG_TRY(take_best_curve(ctx, run, step, curve, accepted));
+    if (wrong && *accepted) return FG_OK;
+    FG_TRY(loop_simplify(ctx, &step->frame, step_noise(step), step->stand,
+                         run->candidates, winner, &winner));
+    FG_TRY(second_form(ctx, run, step, winner, accepted));
+    if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));
+    if (*accepted) return FG_OK;
+  }
+  if (best_passing(run, step, true, &curve)) return take_best_curve(ctx, run, step, curve, accepted);
+  return FG_OK;
+}
+
+fg_status loop_accept_one(fg_context *ctx, loop_run *run, bool *accepted, bool *last) {
+  loop_step step;
+  *accepted = false;
+  FG_TRY(loop_step_open(ctx, run, &run->set, true, &step));
+  run->result->smallest_p = step.judgement.smallest_p;
+  fg_status status = decide(ctx, run, &step, accepted);
+  *last = !*accepted;
+  loop_step_close(&step);
+  return status;
+}
+
+/* With the others fitted, would another candidate serve better in a claim's place? */
+fg_status loop_swap(fg_context *ctx, loop_run *run) {
+  for (size_t m = 0; m < run->result->claims && run->result->claims > 1; m++) {
+    loop_set others = run->set;
+    loop_step step;
+    fg_loop_claim *claim = &run->result->claim[m];
+    if (loop_is_lone(&claim->candidate)) continue;
+    remove_member(&others, m);
+    FG_TRY(loop_step_open(ctx, run, &others, false, &step));
+    size_t best = 0, own = 0;
+    for (size_t c = 0; c < run->candidates; c++) {
+      if (loop_same_candidate(&run->candidate[c], &claim->candidate)) own = c;
+      if (loop_is_curve(&run->candidate[c]) || !isfinite(step.stand[c].z)) continue;
+      if (!isfinite(step.stand[best].z) || step.stand[c].z > step.stand[best].z) best = c;
+    }
+    fg_status status = FG_OK;
+    if (!(step.stand[own].z > 2.33) && !(step.stand[best].z > 4)) {
+      drop_claim(run, m--);
+      loop_step_close(&step);
+      continue;
+    }
+    if (step.stand[best].z > step.stand[own].z)
+      status = loop_simplify(ctx, &step.frame, step_noise(&step), step.stand,
+                             run->candidates, best, &best);
+    if (status == FG_OK) {
+      size_t chosen = step.stand[best].z > step.stand[own].z ? best : own;
+      claim->candidate = run->candidate[chosen];
+      claim->aliases = claim->aliases_unlisted = 0;
+      loop_candidate_name(run->problem, &claim->candidate, claim->name);
+      run->set.candidate[m] = claim->candidate;
+      memcpy(run->set.shape[m], step.stand[chosen].shape, sizeof run->set.shape[m]);
+      status = loop_alias_class(ctx, &step.frame, step_noise(&step), step.stand,
+                                step.stands, &step.stand[chosen], claim);
+      claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
+    }
+    loop_step_close(&step);
+    FG_TRY(status);
+    FG_TRY(loop_refine(ctx, run->problem, run->train, run->noise, &run->set));
+  }
+  return FG_OK;
+}

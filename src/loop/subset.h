@@ -1,0 +1,69 @@
+/* Which effects, of all that could, explain the points: every subset is tried.
+ *
+ * The smooth effects of scanner and part are nearly the same thing in one scan (they correlate at
+ * 0.83 to 0.99), so a search that adds the best one first can take a wrong one and never come back.
+ * There are few of them: all sets of up to two (three where a part was scanned more than once) are
+ * fitted beside the geometry. Those of the smallest size that leave no more than all effects and
+ * free curves together would, within what noise and the edge model's own error allow, are the alias
+ * class. When there are none, a free curve, alone or beside one listed effect, stands in.
+ */
+#ifndef FG_LOOP_SUBSET_H
+#define FG_LOOP_SUBSET_H
+
+#include "foilgauge/scan_loop.h"
+#include "loop/points.h"
+
+/* Effects in force. */
+typedef struct fg_scan_set {
+  fg_scan_effect effects[FG_SCAN_EFFECTS];
+  size_t count;
+} fg_scan_set;
+
+enum { FG_SUBSET_EFFECTS = 20, FG_SUBSET_CLASS = 8 };
+
+/* An effect as it enters the search: its shape is known by now. */
+typedef struct fg_subset_effect {
+  const char *id;
+  size_t columns, shapes;
+  double shape[FG_LOOP_SHAPES];
+  bool free; /* a curve for what no listed effect explains */
+} fg_subset_effect;
+
+/* One set of effects (bits of `effects`) and what it leaves. */
+typedef struct fg_subset_member {
+  unsigned mask;
+  double excess; /* residual sum beyond that of all effects, in units of the noise; chi² of
+                    `freedom` when the set is right */
+  double freedom;
+} fg_subset_member;
+
+typedef struct fg_subset {
+  fg_subset_effect effects[FG_SUBSET_EFFECTS];
+  size_t effect_count;
+  fg_subset_member members[FG_SUBSET_CLASS]; /* the class; the one that leaves least first */
+  size_t member_count, member_total;
+  bool right;          /* the members leave no more than they should */
+  double noise_um, integral; /* of a row; of its correlation */
+  double p_value;      /* that no effect is needed; 1 when members[0].mask is 0 */
+  double share[FG_SUBSET_EFFECTS];    /* |M f|² / |f|² beside the geometry */
+  double smallest_um[FG_SUBSET_EFFECTS]; /* amplitude that would have shown beside the winner */
+  double alone[FG_SUBSET_EFFECTS];    /* share of the residual sum that it alone takes */
+} fg_subset;
+
+/* Searches the residuals (um) of points whose geometry is fitted; `jacobian` as from
+ * fg_points_residual. Shaped effects of `known` (NULL: none) are in the search with their shapes;
+ * others are looked for when `look` is set. */
+fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double *residual_um,
+                         const double *jacobian, const fg_scan_set *known, bool look,
+                         fg_subset *subset);
+
+/* The same with the geometry and the effects fitted together in between, until the set stays: what
+ * is linear at the wrong geometry leaves traces that look like further effects. `set` gets the
+ * winner, fitted; `residual_um` (rows) what it leaves. */
+fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
+                           fg_subset *subset, double *residual_um);
+
+/* One member of the class as a set without numbers. */
+void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set);
+
+#endif

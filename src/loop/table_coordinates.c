@@ -1,0 +1,155 @@
+/* Columns as coordinates: every one that is not itself a result of the measurement. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "loop/table_parts.h"
+
+/* What a foil measurement gives: consequences of springback, not its causes. */
+static const char *const results[] = {
+    "bump_radius_mm",  "radius_mm",           "bump_angle_deg",       "intersection_angle_deg",
+    "height_mm",       "clearance_mm",        "clearance_error",      "radius_error_pct",
+    "bump_angle_error_pct", "springback_error_pct", "overall_radius_mm", "centre_to_centre_mm",
+    "height_model_mm", "bump_angle_model_deg", "rms_um", "u_radius_mm"};
+
+static bool is_result(const char *name) {
+  for (size_t i = 0; i < sizeof results / sizeof *results; i++)
+    if (!strcmp(name, results[i])) return true;
+  return false;
+}
+
+fg_loop_coordinate *table_coordinate(const fg_loop_problem *problem, const char *name) {
+  for (size_t i = 0; i < problem->coordinates; i++)
+    if (!strcmp(problem->coordinate[i].name, name)) return &problem->coordinate[i];
+  return NULL;
+}
+
+fg_status table_add_coordinate(fg_context *ctx, const table_build *build, const char *name,
+                               unsigned roles, fg_loop_coordinate **added) {
+  fg_loop_problem *problem = &build->out->problem;
+  size_t capacity = problem->coordinates;
+  FG_TRY(fg_memory_reserve(ctx, problem->coordinates + 1, sizeof *problem->coordinate, &capacity,
+                           (void **)&problem->coordinate));
+  fg_loop_coordinate *at = &problem->coordinate[problem->coordinates];
+  *at = (fg_loop_coordinate){.roles = roles};
+  FG_TRY(fg_memory_allocate(ctx, problem->rows, sizeof *at->value, (void **)&at->value));
+  fg_text_clip(at->name, sizeof at->name, "%s", name);
+  problem->coordinates++;
+  *added = at;
+  return FG_OK;
+}
+
+static int by_size(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+void table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at) {
+  double *sorted = malloc((problem->rows + 1) * sizeof *sorted);
+  if (!sorted) return;
+  memcpy(sorted, at->value, problem->rows * sizeof *sorted);
+  qsort(sorted, problem->rows, sizeof *sorted, by_size);
+  at->low = sorted[0];
+  at->high = sorted[problem->rows - 1];
+  at->distinct = 0;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (i > 0 && !(sorted[i] > sorted[i - 1])) continue;
+    if (at->distinct <= FG_LOOP_COLUMNS) at->few[at->distinct] = sorted[i];
+    at->distinct++;
+  }
+  for (size_t k = 0; k <= FG_LOOP_COLUMNS; k++) {
+    double at_row = (double)k / FG_LOOP_COLUMNS * (double)(problem->rows - 1);
+    at->quantile[k] = sorted[(size_t)(at_row + 0.5)];
+  }
+  free(sorted);
+}
+
+static bool ends_with(const char *name, const char *end) {
+  size_t length = strlen(name), size = strlen(end);
+  return length > size && !strcmp(name + length - size, end);
+}
+
+/* The unit in the name says what a column is; without one it is taken for neither. */
+static void give_roles(fg_loop_coordinate *at) {
+  if (strcasestr(at->name, "temp") && ends_with(at->name, "_C")) {
+    at->roles |= FG_LOOP_TEMPERATURE;
+    at->kelvin_offset = 273.15;
+  } else if (strcasestr(at->name, "temp") && ends_with(at->name, "_K")) {
+    at->roles |= FG_LOOP_TEMPERATURE;
+  }
+  if ((strcasestr(at->name, "duration") || strcasestr(at->name, "time")) &&
+      (ends_with(at->name, "_h") || ends_with(at->name, "_min") || ends_with(at->name, "_s")))
+    at->roles |= FG_LOOP_DURATION;
+}
+
+static fg_status leave_out(fg_context *ctx, const table_build *build, const char *name,
+                           const char *why) {
+  char **text = &build->out->excluded;
+  return fg_text_append(ctx, text, "%s%s: %s", *text ? "; " : "", name, why);
+}
+
+static fg_status fill_words(fg_context *ctx, const table_build *build, const fg_column *column,
+                            fg_loop_coordinate *at) {
+  const size_t *row = build->out->row;
+  fg_levels levels = {0};
+  FG_TRY(fg_table_levels(ctx, build->table, column->name, true, &levels));
+  for (size_t i = 0; i < build->out->problem.rows; i++)
+    at->value[i] = (double)levels.index[row[i]];
+  at->levels = levels.count;
+  at->level_name = levels.name;
+  levels.name = NULL;
+  levels.count = 0;
+  fg_levels_free(&levels);
+  return FG_OK;
+}
+
+static fg_status add_column(fg_context *ctx, const table_build *build, const fg_column *column) {
+  fg_loop_problem *problem = &build->out->problem;
+  const fg_loop_table_spec *spec = build->spec;
+  fg_loop_coordinate *at;
+  unsigned roles = 0;
+  bool words = column->word_count > 0;
+  if (!strcmp(column->name, spec->response)) return FG_OK;
+  if (is_result(column->name))
+    return leave_out(ctx, build, column->name, "a result of the same measurement, not a cause");
+  if (column->missing_count) return leave_out(ctx, build, column->name, "cells are missing");
+  if (words && column->number_count)
+    return leave_out(ctx, build, column->name, "words among numbers");
+  if (spec->group && !strcmp(column->name, spec->group)) roles = FG_LOOP_ORDER;
+  if (build->order && !strcmp(column->name, build->order))
+    roles = spec->group ? FG_LOOP_BUMP : FG_LOOP_ORDER;
+  if (words && column->word_count > FG_LOOP_COLUMNS && !roles)
+    return leave_out(ctx, build, column->name, "more levels than an effect may have");
+  FG_TRY(table_add_coordinate(ctx, build, column->name, roles, &at));
+  for (size_t i = 0; i < problem->rows && !words; i++)
+    at->value[i] = column->number[build->out->row[i]].value;
+  for (size_t i = 0; i < problem->rows && words && roles; i++)
+    at->value[i] = (double)problem->group[i] + 1; /* foils by name: in order of appearance */
+  if (words && !roles) FG_TRY(fill_words(ctx, build, column, at));
+  table_finish_coordinate(problem, at);
+  give_roles(at);
+  if (at->distinct >= 2) return FG_OK;
+  FG_TRY(leave_out(ctx, build, column->name, "the same in every row"));
+  for (size_t i = 0; i < at->levels; i++)
+    free(at->level_name[i]);
+  free(at->level_name);
+  free(at->value);
+  problem->coordinates--;
+  return FG_OK;
+}
+
+fg_status table_fill_coordinates(fg_context *ctx, const table_build *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  for (size_t c = 0; c < build->table->columns; c++)
+    FG_TRY(add_column(ctx, build, &build->table->column[c]));
+  if (build->order || build->spec->group) return FG_OK;
+  fg_loop_coordinate *at;
+  FG_TRY(table_add_coordinate(ctx, build, "row", FG_LOOP_ORDER, &at));
+  for (size_t i = 0; i < problem->rows; i++)
+    at->value[i] = (double)build->out->row[i] + 1;
+  table_finish_coordinate(problem, at);
+  return FG_OK;
+}

@@ -1,0 +1,363 @@
+/* The effects of tables: of columns, of the order, of bumps, of the heat treatment. */
+#include <math.h>
+#include <string.h>
+
+#include "foilgauge/loop.h"
+
+static const double two_pi = 6.28318530717958647692;
+static const double gas_constant_kj = 8.314462618e-3; /* per mol and K */
+
+typedef const fg_loop_problem problem_t;
+typedef const fg_loop_candidate candidate_t;
+
+static const fg_loop_coordinate *first(problem_t *problem, candidate_t *candidate) {
+  return &problem->coordinate[candidate->a];
+}
+
+static bool is_number(const fg_loop_coordinate *at) {
+  return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 2;
+}
+
+static bool is_sequence(const fg_loop_coordinate *at) {
+  return (at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP)) != 0;
+}
+
+/* -1 at the lowest value, +1 at the highest. */
+static double scaled(const fg_loop_coordinate *at, size_t row) {
+  return at->high > at->low ? (2 * at->value[row] - at->low - at->high) / (at->high - at->low) : 0;
+}
+
+static size_t one_column(problem_t *problem, candidate_t *candidate) {
+  (void)problem, (void)candidate;
+  return 1;
+}
+
+static size_t two_columns(problem_t *problem, candidate_t *candidate) {
+  (void)problem, (void)candidate;
+  return 2;
+}
+
+static bool accepts_linear(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return is_number(at) && !is_sequence(at);
+}
+
+static void linear_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                         double *columns) {
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scaled(first(problem, candidate), i);
+}
+
+static bool accepts_quadratic(problem_t *problem, size_t a, size_t b) {
+  return accepts_linear(problem, a, b) && problem->coordinate[a].distinct >= 3;
+}
+
+static void quadratic_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                            double *columns) {
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++) {
+    double x = scaled(first(problem, candidate), i);
+    columns[i] = x;
+    columns[problem->rows + i] = 2 * x * x - 1;
+  }
+}
+
+/* Numbers with numbers; the difference in slope where one is a factor of few levels. */
+static bool accepts_interaction(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
+  if (a >= b || is_sequence(x) || is_sequence(y)) return false;
+  if (x->levels && y->levels) return false;
+  if (x->levels) return is_number(y) && x->levels <= 4;
+  if (y->levels) return is_number(x) && y->levels <= 4;
+  return is_number(x) && is_number(y);
+}
+
+static size_t interaction_columns(problem_t *problem, candidate_t *candidate) {
+  size_t levels =
+      problem->coordinate[candidate->a].levels + problem->coordinate[candidate->b].levels;
+  return levels ? levels - 1 : 1;
+}
+
+static void interaction_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                              double *columns) {
+  const fg_loop_coordinate *x = first(problem, candidate);
+  const fg_loop_coordinate *y = &problem->coordinate[candidate->b];
+  const fg_loop_coordinate *factor = x->levels ? x : y, *number = x->levels ? y : x;
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (!factor->levels) {
+      columns[i] = scaled(x, i) * scaled(y, i);
+      continue;
+    }
+    for (size_t k = 1; k < factor->levels; k++)
+      columns[(k - 1) * problem->rows + i] =
+          factor->value[i] == (double)k ? scaled(number, i) : 0;
+  }
+}
+
+/* Words, or numbers that take few values often. */
+static bool accepts_factor(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  if (at->levels) return at->levels >= 2 && at->levels <= FG_LOOP_COLUMNS;
+  return is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
+         problem->rows >= 4 * at->distinct;
+}
+
+static size_t factor_columns(problem_t *problem, candidate_t *candidate) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  return (at->levels ? at->levels : at->distinct) - 1;
+}
+
+static void factor_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                         double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  size_t count = at->levels ? at->levels : at->distinct;
+  (void)shape;
+  memset(columns, 0, factor_columns(problem, candidate) * problem->rows * sizeof *columns);
+  for (size_t i = 0; i < problem->rows; i++)
+    for (size_t k = 1; k < count; k++)
+      if (at->value[i] == (at->levels ? (double)k : at->few[k]))
+        columns[(k - 1) * problem->rows + i] = 1;
+}
+
+static bool accepts_threshold(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return is_number(at) && at->distinct >= 4;
+}
+
+static void threshold_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                            double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = at->value[i] > shape[0] ? 1 : -1;
+}
+
+enum { THRESHOLDS = 23 };
+
+/* Between neighbouring values; where there are many, spread over the range. */
+static size_t threshold_starts(problem_t *problem, candidate_t *candidate,
+                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  size_t count = 0;
+  if (at->distinct <= FG_LOOP_COLUMNS + 1) {
+    for (size_t i = 1; i < at->distinct; i++)
+      starts[count++][0] = (at->few[i - 1] + at->few[i]) / 2;
+    return count;
+  }
+  for (size_t i = 1; i <= THRESHOLDS; i++)
+    starts[count++][0] = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
+  return count;
+}
+
+static bool accepts_drift(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return is_number(at) && is_sequence(at) && at->distinct >= 4;
+}
+
+static bool accepts_transient(problem_t *problem, size_t a, size_t b) {
+  return accepts_drift(problem, a, b) && problem->coordinate[a].roles & FG_LOOP_ORDER;
+}
+
+static bool accepts_lip(problem_t *problem, size_t a, size_t b) {
+  return accepts_drift(problem, a, b) && problem->coordinate[a].roles & FG_LOOP_BUMP;
+}
+
+/* From 1 at the first to nearly 0: half its range is half its height. */
+static void decay_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                        double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = 2 * exp(-(at->value[i] - at->low) / fmax(shape[0], 1e-6)) - 1;
+}
+
+static size_t transient_starts(problem_t *problem, candidate_t *candidate,
+                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  static const double share[] = {0.05, 0.1, 0.2, 0.4};
+  const fg_loop_coordinate *at = first(problem, candidate);
+  for (size_t i = 0; i < 4; i++)
+    starts[i][0] = share[i] * (at->high - at->low);
+  return 4;
+}
+
+static size_t lip_starts(problem_t *problem, candidate_t *candidate,
+                         double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  static const double bumps[] = {0.6, 1.2, 2.4, 4};
+  (void)problem, (void)candidate;
+  for (size_t i = 0; i < 4; i++)
+    starts[i][0] = bumps[i];
+  return 4;
+}
+
+static bool accepts_periodic(problem_t *problem, size_t a, size_t b) {
+  return accepts_drift(problem, a, b) && problem->coordinate[a].distinct >= 8;
+}
+
+static void periodic_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                           double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  for (size_t i = 0; i < problem->rows; i++) {
+    double phase = two_pi * (at->value[i] - at->low) / shape[0];
+    columns[i] = sin(phase);
+    columns[problem->rows + i] = cos(phase);
+  }
+}
+
+/* From one cycle over the order to a period of 2.2 steps, half a cycle apart. */
+static size_t periodic_starts(problem_t *problem, candidate_t *candidate,
+                              double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  double range = at->high - at->low;
+  double most = fmin(20, ((double)at->distinct - 1) / 2.2);
+  size_t count = 0;
+  for (double cycles = 1; cycles <= most && count < FG_LOOP_STARTS; cycles += 0.5)
+    starts[count++][0] = range / cycles;
+  return count;
+}
+
+/* A monotone form, scaled to -1 and +1 at the ends of the coordinate. */
+static double scaled_form(double value, double at_low, double at_high) {
+  return at_high != at_low ? (2 * value - at_low - at_high) / (at_high - at_low) : 0;
+}
+
+static bool accepts_temperature(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return is_number(at) && at->roles & FG_LOOP_TEMPERATURE && at->low + at->kelvin_offset > 0;
+}
+
+static bool accepts_duration(problem_t *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return is_number(at) && at->roles & FG_LOOP_DURATION && at->low > 0;
+}
+
+static bool accepts_both(problem_t *problem, size_t a, size_t b) {
+  return a != b && accepts_temperature(problem, a, a) && accepts_duration(problem, b, b);
+}
+
+/* A rate with activation energy `shape` kJ/mol. */
+static double rate(const fg_loop_coordinate *at, double value, double energy) {
+  double kelvin = value + at->kelvin_offset, top = at->high + at->kelvin_offset;
+  return exp(-energy / gas_constant_kj * (1 / kelvin - 1 / top));
+}
+
+static void arrhenius_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                            double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  double low = rate(at, at->low, shape[0]), high = rate(at, at->high, shape[0]);
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scaled_form(rate(at, at->value[i], shape[0]), low, high);
+}
+
+static size_t arrhenius_starts(problem_t *problem, candidate_t *candidate,
+                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  static const double energy[] = {20, 60, 120, 240};
+  (void)problem, (void)candidate;
+  for (size_t i = 0; i < 4; i++)
+    starts[i][0] = energy[i];
+  return 4;
+}
+
+/* T (20 + log10 t), kelvin and hours (Larson and Miller 1952). */
+static double larson_miller(const fg_loop_coordinate *at, double temperature, double duration) {
+  return (temperature + at->kelvin_offset) * (20 + log10(duration));
+}
+
+static void larson_miller_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                                double *columns) {
+  const fg_loop_coordinate *t = first(problem, candidate);
+  const fg_loop_coordinate *d = &problem->coordinate[candidate->b];
+  double low = larson_miller(t, t->low, d->low), high = larson_miller(t, t->high, d->high);
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scaled_form(larson_miller(t, t->value[i], d->value[i]), low, high);
+}
+
+static void log_time_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                           double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scaled_form(log(at->value[i]), log(at->low), log(at->high));
+}
+
+/* Share transformed after a time: 1 - exp(-(t / tau)^n) (Johnson, Mehl, Avrami, Kolmogorov). */
+static double transformed(double time, const double *shape) {
+  return -expm1(-pow(time / shape[0], shape[1]));
+}
+
+static void jmak_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                       double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  double low = transformed(at->low, shape), high = transformed(at->high, shape);
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scaled_form(transformed(at->value[i], shape), low, high);
+}
+
+static size_t jmak_starts(problem_t *problem, candidate_t *candidate,
+                          double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  size_t count = 0;
+  for (double share = 0.2; share < 1; share *= 2)
+    for (double n = 1; n <= 3; n++) {
+      starts[count][0] = at->low + share * (at->high - at->low);
+      starts[count++][1] = n;
+    }
+  return count;
+}
+
+static bool accepts_sensitivity(problem_t *problem, size_t a, size_t b) {
+  (void)b;
+  return (problem->coordinate[a].roles & FG_LOOP_SENSITIVITY) != 0;
+}
+
+static void sensitivity_basis(problem_t *problem, candidate_t *candidate, const double *shape,
+                              double *columns) {
+  const fg_loop_coordinate *at = first(problem, candidate);
+  double scale = fmax(fabs(at->low), fabs(at->high));
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scale > 0 ? at->value[i] / scale : 0;
+}
+
+static const fg_loop_effect effects[] = {
+    {"table.linear", "runs", "column", "a trend with", false, 0, {0}, accepts_linear, one_column,
+     linear_basis, NULL, false, false},
+    {"table.quadratic", "runs", "column", "a bent trend with", false, 0, {0}, accepts_quadratic,
+     two_columns, quadratic_basis, NULL, false, false},
+    {"table.interaction", "runs", "column", "an interaction of", true, 0, {0}, accepts_interaction,
+     interaction_columns, interaction_basis, NULL, false, false},
+    {"table.factor", "runs", "column", "levels of", false, 0, {0}, accepts_factor, factor_columns,
+     factor_basis, NULL, false, false},
+    {"table.threshold", "runs", "column", "a step over", false, 1, {"at"}, accepts_threshold,
+     one_column, threshold_basis, threshold_starts, true, false},
+    {"table.order_drift", "runs", "order", "a drift over", false, 0, {0}, accepts_drift, one_column,
+     linear_basis, NULL, false, false},
+    {"table.order_transient", "runs", "order", "a warm-up that fades over", false, 1,
+     {"decay_length"}, accepts_transient, one_column, decay_basis, transient_starts, false, false},
+    {"table.periodic", "runs", "order", "a periodic change over", false, 1, {"period"},
+     accepts_periodic, two_columns, periodic_basis, periodic_starts, false, false},
+    {"part.lip_decay", "bumps", "bump table", "a decay from the lip over", false, 1,
+     {"decay_length"}, accepts_lip, one_column, decay_basis, lip_starts, false, false},
+    {"part.stretch", "bumps", "bump table", "an arc length that differs,", false, 0, {0},
+     accepts_sensitivity, one_column, sensitivity_basis, NULL, false, true},
+    {"process.arrhenius", "runs", "column", "a rate by Arrhenius of", false, 1,
+     {"activation_energy_kj_per_mol"}, accepts_temperature, one_column, arrhenius_basis,
+     arrhenius_starts, false, false},
+    {"process.larson_miller", "runs", "column", "the Larson-Miller parameter of", true, 0, {0},
+     accepts_both, one_column, larson_miller_basis, NULL, false, false},
+    {"process.log_time", "runs", "column", "the logarithm of", false, 0, {0}, accepts_duration,
+     one_column, log_time_basis, NULL, false, false},
+    {"process.jmak", "runs", "column", "a transformation (JMAK) over", false, 2,
+     {"time_constant", "exponent"}, accepts_duration, one_column, jmak_basis, jmak_starts, false, false},
+    {0},
+};
+
+const fg_loop_effect *fg_loop_table_effects(void) {
+  return effects;
+}

@@ -1,0 +1,149 @@
+/* The declared model of a table: a formula, or the constant arc length of the springback model. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/formula.h"
+#include "loop/table_parts.h"
+
+bool table_is_arc_length(const fg_loop_table_spec *spec) {
+  return !strcmp(spec->model, "arc_length");
+}
+
+static fg_status copy_model(fg_context *ctx, const table_build *build, const fg_model *model) {
+  fg_loop_problem *problem = &build->out->problem;
+  problem->parameters = model->columns;
+  FG_TRY(fg_memory_allocate(ctx, model->columns, problem->rows * sizeof *problem->jacobian,
+                            (void **)&problem->jacobian));
+  FG_TRY(fg_memory_allocate(ctx, model->columns, sizeof *problem->parameter_name,
+                            (void **)&problem->parameter_name));
+  for (size_t k = 0; k < model->columns; k++) {
+    FG_TRY(fg_text_print(ctx, &problem->parameter_name[k], "%s", model->column[k].name));
+    for (size_t i = 0; i < problem->rows; i++)
+      problem->jacobian[k * problem->rows + i] =
+          model->matrix[k * model->rows + build->out->row[i]].value;
+  }
+  for (size_t v = 0; v < model->formula.variables; v++) {
+    fg_loop_coordinate *at = table_coordinate(problem, model->formula.variable[v].column);
+    if (at) at->roles |= FG_LOOP_DECLARED;
+  }
+  return FG_OK;
+}
+
+fg_status table_fill_model(fg_context *ctx, const table_build *build) {
+  fg_status status = FG_OK;
+  fg_formula formula = {0};
+  fg_model model = {0};
+  FG_TRY(fg_formula_parse(ctx, build->spec->model, &formula));
+  FG_TRY_EXIT(fg_model_build(ctx, build->table, &formula, &model));
+  for (size_t v = 0; v < formula.variables; v++)
+    if (!strcmp(formula.variable[v].column, build->spec->response)) {
+      status = fg_fail(ctx, FG_ERR_USAGE, "the model uses the response '%s' itself",
+                       build->spec->response);
+      goto exit;
+    }
+  FG_TRY_EXIT(copy_model(ctx, build, &model));
+exit:
+  fg_model_free(&model);
+  fg_formula_free(&formula);
+  return status;
+}
+
+typedef double springback_value(const fg_design *design, const fg_springback *model);
+
+static double value_angle(const fg_design *design, const fg_springback *model) {
+  (void)design;
+  return model->bump_angle_deg;
+}
+
+static double value_height(const fg_design *design, const fg_springback *model) {
+  (void)design;
+  return model->height_mm;
+}
+
+static double value_clearance(const fg_design *design, const fg_springback *model) {
+  (void)design;
+  return model->clearance_mm;
+}
+
+/* eq 5.9 */
+static double value_clearance_error(const fg_design *design, const fg_springback *model) {
+  fg_nominal nominal;
+  if (fg_design_derive(NULL, design, &nominal) != FG_OK) return NAN;
+  return (nominal.clearance_mm - model->clearance_mm) / nominal.clearance_mm;
+}
+
+static const struct {
+  const char *response;
+  springback_value *value;
+} arc_length_responses[] = {
+    {"bump_angle_deg", value_angle},
+    {"height_mm", value_height},
+    {"clearance_mm", value_clearance},
+    {"clearance_error", value_clearance_error},
+};
+
+static fg_status find_value(fg_context *ctx, const char *response, springback_value **value) {
+  for (size_t i = 0; i < sizeof arc_length_responses / sizeof *arc_length_responses; i++)
+    if (!strcmp(response, arc_length_responses[i].response)) {
+      *value = arc_length_responses[i].value;
+      return FG_OK;
+    }
+  return fg_fail(ctx, FG_ERR_USAGE,
+                 "model arc_length predicts bump_angle_deg, height_mm, clearance_mm or "
+                 "clearance_error from the bump radius, not '%s'",
+                 response);
+}
+
+/* The prediction with an arc longer by the share `stretch`; nothing else of the design changes. */
+static double predict(const fg_design *design, const fg_nominal *nominal, double radius_mm,
+                      double stretch, springback_value *value) {
+  fg_design stretched = *design;
+  fg_springback model;
+  stretched.bump_angle_deg *= 1 + stretch;
+  fg_design_springback(&stretched, nominal, radius_mm, &model);
+  return value(design, &model);
+}
+
+static fg_status radius_column(fg_context *ctx, const fg_table *table,
+                               const fg_extended **radius) {
+  fg_context ignored = {0};
+  if (fg_table_numbers(&ignored, table, "bump_radius_mm", radius) == FG_OK) return FG_OK;
+  if (fg_table_numbers(&ignored, table, "radius_mm", radius) == FG_OK) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: model arc_length needs the bump radius of every row in a column "
+                 "bump_radius_mm or radius_mm",
+                 table->source);
+}
+
+fg_status table_fill_arc_length(fg_context *ctx, const table_build *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  const fg_design *design = build->spec->design;
+  const fg_extended *radius;
+  fg_nominal nominal;
+  springback_value *value = NULL;
+  fg_loop_coordinate *constant, *slope;
+  FG_TRY(find_value(ctx, build->spec->response, &value));
+  FG_TRY(radius_column(ctx, build->table, &radius));
+  FG_TRY(fg_design_derive(ctx, design, &nominal));
+  FG_TRY(table_add_coordinate(ctx, build, "constant", FG_LOOP_SENSITIVITY, &constant));
+  FG_TRY(table_add_coordinate(ctx, build, "with the radius", FG_LOOP_SENSITIVITY, &slope));
+  constant = table_coordinate(problem, "constant");
+  for (size_t i = 0; i < problem->rows; i++) {
+    size_t row = build->out->row[i];
+    double r = radius[row].value, small = 1e-4;
+    if (!(r > 0))
+      return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: the bump radius is %g mm; it must be above 0",
+                     build->table->source, row + 1, r);
+    problem->residual[i] -= predict(design, &nominal, r, 0, value);
+    constant->value[i] = (predict(design, &nominal, r, small, value) -
+                          predict(design, &nominal, r, -small, value)) /
+                         (2 * small);
+    slope->value[i] = constant->value[i] * (r / design->bump_radius_mm - 1);
+  }
+  table_finish_coordinate(problem, constant);
+  table_finish_coordinate(problem, slope);
+  return FG_OK;
+}

@@ -1,0 +1,228 @@
+/* A problem from a table: rows in order, groups, model, coordinates, what is kept aside. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "loop/random.h"
+#include "loop/table_parts.h"
+
+static const char *const order_names[] = {"run", "order", "run_order", "experiment", "sequence"};
+static const char *const bump_names[] = {"bump", "bump_number", "bump_index"};
+
+static const char *first_column(const fg_table *table, const char *const *names, size_t count) {
+  fg_context ignored = {0};
+  const fg_column *column;
+  for (size_t i = 0; i < count; i++)
+    if (fg_table_find(&ignored, table, names[i], &column) == FG_OK && !column->word_count &&
+        !column->missing_count)
+      return names[i];
+  return NULL;
+}
+
+static fg_status choose_order(fg_context *ctx, table_build *build) {
+  const fg_extended *ignored;
+  build->order = build->spec->order;
+  if (build->order) return fg_table_numbers(ctx, build->table, build->order, &ignored);
+  build->order = build->spec->group
+                     ? first_column(build->table, bump_names, 3)
+                     : first_column(build->table, order_names, 5);
+  return FG_OK;
+}
+
+typedef struct row_key {
+  size_t group, row;
+  double order;
+} row_key;
+
+static int by_key(const void *a, const void *b) {
+  const row_key *x = a, *y = b;
+  if (x->group != y->group) return x->group < y->group ? -1 : 1;
+  if (x->order != y->order) return x->order < y->order ? -1 : 1;
+  return (x->row > y->row) - (x->row < y->row);
+}
+
+/* Groups are numbered in order of appearance; numbers as names in their own order. */
+static fg_status group_keys(fg_context *ctx, const table_build *build, row_key *key) {
+  size_t rows = build->table->rows;
+  fg_levels levels = {0};
+  const fg_column *column;
+  if (!build->spec->group) return FG_OK;
+  FG_TRY(fg_table_find(ctx, build->table, build->spec->group, &column));
+  FG_TRY(fg_table_levels(ctx, build->table, build->spec->group, true, &levels));
+  size_t *number = NULL, next = 0;
+  fg_status status =
+      fg_memory_allocate(ctx, levels.count, sizeof *number, (void **)&number);
+  for (size_t i = 0; status == FG_OK && i < rows; i++) {
+    size_t level = levels.index[i];
+    if (column->word_count && !number[level]) number[level] = ++next;
+    key[i].group = column->word_count ? number[level] - 1 : level;
+  }
+  free(number);
+  fg_levels_free(&levels);
+  return status;
+}
+
+static fg_status sort_rows(fg_context *ctx, const table_build *build) {
+  fg_loop_table_problem *out = build->out;
+  size_t rows = build->table->rows;
+  const fg_extended *order = NULL;
+  row_key *key = NULL;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *key, (void **)&key));
+  fg_status status = FG_OK;
+  if (build->order)
+    FG_TRY_EXIT(fg_table_numbers(ctx, build->table, build->order, &order));
+  FG_TRY_EXIT(group_keys(ctx, build, key));
+  for (size_t i = 0; i < rows; i++) {
+    key[i].row = i;
+    key[i].order = order ? order[i].value : (double)i;
+  }
+  qsort(key, rows, sizeof *key, by_key);
+  for (size_t i = 0; i < rows; i++) {
+    out->row[i] = key[i].row;
+    out->problem.group[i] = build->spec->group ? key[i].group : i;
+    out->problem.series[i] = key[i].group;
+  }
+  out->problem.groups = out->problem.group[rows - 1] + 1;
+exit:
+  free(key);
+  return status;
+}
+
+static fg_status allocate(fg_context *ctx, size_t rows, fg_loop_table_problem *out) {
+  fg_loop_problem *problem = &out->problem;
+  problem->rows = rows;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *out->row, (void **)&out->row));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->group, (void **)&problem->group));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->series, (void **)&problem->series));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->aside, (void **)&problem->aside));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *problem->residual, (void **)&problem->residual));
+  return fg_memory_allocate(ctx, rows, sizeof *problem->response, (void **)&problem->response);
+}
+
+static fg_status fill_response(fg_context *ctx, const table_build *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  const fg_extended *response;
+  FG_TRY(fg_table_numbers(ctx, build->table, build->spec->response, &response));
+  for (size_t i = 0; i < problem->rows; i++)
+    problem->response[i] = problem->residual[i] = response[build->out->row[i]].value;
+  return FG_OK;
+}
+
+static fg_status build_all(fg_context *ctx, table_build *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  size_t rows = build->table->rows;
+  if (rows == 0) return fg_fail(ctx, FG_ERR_DATA, "%s: no rows", build->table->source);
+  FG_TRY(choose_order(ctx, build));
+  FG_TRY(allocate(ctx, rows, build->out));
+  FG_TRY(sort_rows(ctx, build));
+  FG_TRY(fill_response(ctx, build));
+  FG_TRY(table_fill_coordinates(ctx, build));
+  if (table_is_arc_length(build->spec))
+    FG_TRY(table_fill_arc_length(ctx, build));
+  else
+    FG_TRY(table_fill_model(ctx, build));
+  bool grouped = build->spec->group != NULL;
+  problem->level = grouped ? "bumps" : "runs";
+  problem->group_level = grouped && rows >= 2 * problem->groups;
+  problem->correlated = grouped ? rows >= 4 * problem->groups : rows >= 8;
+  problem->exchangeable = true;
+  return table_hold_out(ctx, build);
+}
+
+fg_status fg_loop_table_problem_build(fg_context *ctx, const fg_table *table,
+                                      const fg_loop_table_spec *spec,
+                                      fg_loop_table_problem *problem) {
+  table_build build = {table, spec, problem, NULL};
+  *problem = (fg_loop_table_problem){0};
+  fg_status status = build_all(ctx, &build);
+  if (status != FG_OK) fg_loop_table_problem_free(problem);
+  return status;
+}
+
+void fg_loop_table_problem_free(fg_loop_table_problem *out) {
+  fg_loop_problem *problem = &out->problem;
+  for (size_t i = 0; i < problem->coordinates; i++) {
+    for (size_t k = 0; k < problem->coordinate[i].levels; k++)
+      free(problem->coordinate[i].level_name[k]);
+    free(problem->coordinate[i].level_name);
+    free(problem->coordinate[i].value);
+  }
+  for (size_t i = 0; problem->parameter_name && i < problem->parameters; i++)
+    free(problem->parameter_name[i]);
+  free(problem->coordinate);
+  free(problem->parameter_name);
+  free(problem->jacobian);
+  free(problem->group);
+  free(problem->series);
+  free(problem->aside);
+  free(problem->residual);
+  free(problem->response);
+  free(out->row);
+  free(out->excluded);
+  *out = (fg_loop_table_problem){0};
+}
+
+static size_t default_count(const fg_loop_problem *problem) {
+  size_t groups = problem->groups;
+  if (groups < (problem->group_level ? 10 : 20)) return 0;
+  return groups < 40 ? groups / 8 + (groups % 8 >= 4) : groups / 5;
+}
+
+static fg_status keep_share(fg_context *ctx, const table_build *build, size_t count) {
+  fg_loop_problem *problem = &build->out->problem;
+  uint64_t seed = build->spec->seed ^ 0x9e3779b97f4a7c15u;
+  size_t *order = NULL, groups = problem->groups;
+  FG_TRY(fg_memory_allocate(ctx, groups, sizeof *order, (void **)&order));
+  for (size_t i = 0; i < groups; i++)
+    order[i] = i;
+  for (size_t i = 0; i < count; i++) {
+    size_t k = i + (size_t)(loop_random_uniform(&seed) * (double)(groups - i));
+    size_t chosen = order[k];
+    order[k] = order[i];
+    order[i] = chosen;
+    for (size_t r = 0; r < problem->rows; r++)
+      if (problem->group[r] == chosen) problem->aside[r] = true;
+  }
+  free(order);
+  return FG_OK;
+}
+
+/* Whole groups that hold a row with the value. */
+static fg_status keep_value(fg_context *ctx, const table_build *build, const char *text) {
+  fg_loop_problem *problem = &build->out->problem;
+  char name[256];
+  const char *equals = strchr(text, '='), *value = equals + 1;
+  const fg_column *column;
+  fg_text_clip(name, sizeof name, "%.*s", (int)(equals - text), text);
+  FG_TRY(fg_table_find(ctx, build->table, name, &column));
+  char *end;
+  double number = strtod(value, &end);
+  size_t found = 0;
+  for (size_t i = 0; i < problem->rows; i++) {
+    size_t row = build->out->row[i];
+    bool word = column->word && column->word[row] < column->word_count;
+    bool same = word ? !strcmp(column->words[column->word[row]], value)
+                     : !*end && *value && column->number[row].value == number;
+    if (!same) continue;
+    found++;
+    for (size_t r = 0; r < problem->rows; r++)
+      if (problem->group[r] == problem->group[i]) problem->aside[r] = true;
+  }
+  if (found) return FG_OK;
+  return fg_fail(ctx, FG_ERR_USAGE, "--hold-out %s: no row has that value", text);
+}
+
+fg_status table_hold_out(fg_context *ctx, const table_build *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  const char *text = build->spec->hold_out;
+  if (!text) return keep_share(ctx, build, default_count(problem));
+  if (strchr(text, '=')) return keep_value(ctx, build, text);
+  char *end;
+  double share = strtod(text, &end);
+  if (*end || end == text || !(share >= 0 && share < 0.6))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--hold-out %s: a share from 0 to below 0.6, or COLUMN=VALUE", text);
+  return keep_share(ctx, build, (size_t)(share * (double)problem->groups + 0.5));
+}

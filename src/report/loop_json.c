@@ -1,0 +1,237 @@
+/* "foilgauge/loop/1": the loop's report. Rows are numbered as in the table, the first data row 1. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "foilgauge/loop.h"
+#include "report/json_writer.h"
+#include "report/words.h"
+
+static void write_error(fg_json *json, const char *name, const fg_loop_error *error) {
+  fg_json_object(json, name);
+  fg_json_number(json, "rms", error->rms);
+  fg_json_number(json, "held_out_rms", error->held_out_rms);
+  fg_json_number(json, "cross_validated_rms", error->cross_validated_rms);
+  fg_json_number(json, "robust_sd", error->robust_sd);
+  fg_json_number(json, "p95", error->p95);
+  fg_json_number(json, "maximum", error->maximum);
+  fg_json_array(json, "foils");
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
+static bool is_lone(const fg_loop_claim *claim) {
+  return !claim->candidate.effect->accepts;
+}
+
+/* Names of the parameters of an effect: its shapes, and its coefficients per column. */
+static void write_parameters(fg_json *json, const fg_loop_report *report,
+                             const fg_loop_claim *claim, bool uncertainty) {
+  const fg_loop_effect *effect = claim->candidate.effect;
+  const double *coefficient = uncertainty ? claim->coefficient_u : claim->coefficient;
+  const double *shape = uncertainty ? claim->shape_u : claim->shape;
+  char name[32];
+  fg_json_object(json, uncertainty ? "uncertainty" : "parameters");
+  for (size_t k = 0; k < claim->columns; k++) {
+    snprintf(name, sizeof name, claim->columns > 1 ? "coefficient_%zu" : "coefficient", k + 1);
+    fg_json_number(json, name, coefficient[k]);
+  }
+  for (size_t d = 0; d < effect->shapes; d++)
+    fg_json_number(json, effect->shape_name[d], shape[d]);
+  if (!uncertainty && is_lone(claim)) {
+    bool pair = !strcmp(effect->id, "table.exchanged_runs");
+    fg_json_integer(json, "row", (int64_t)report->problem->row[claim->candidate.row[0]] + 1);
+    if (pair)
+      fg_json_integer(json, "second_row",
+                      (int64_t)report->problem->row[claim->candidate.row[1]] + 1);
+  }
+  fg_json_object_end(json);
+}
+
+static void write_claim(fg_json *json, const fg_loop_report *report, const fg_loop_claim *claim) {
+  static const char *const held_out[] = {"none kept aside", "not contradicted", "confirmed"};
+  fg_json_object(json, NULL);
+  fg_json_string(json, "id", claim->candidate.effect->id);
+  fg_json_string(json, "name", claim->name);
+  fg_json_string(json, "level", report->problem->problem.level);
+  fg_json_string(json, "verdict", fg_loop_verdict_word(claim->verdict));
+  fg_json_array(json, "coordinates");
+  if (!is_lone(claim)) {
+    const fg_loop_coordinate *at = report->problem->problem.coordinate;
+    fg_json_string(json, NULL, at[claim->candidate.a].name);
+    if (claim->candidate.effect->pair) fg_json_string(json, NULL, at[claim->candidate.b].name);
+  }
+  fg_json_array_end(json);
+  write_parameters(json, report, claim, false);
+  write_parameters(json, report, claim, true);
+  fg_json_number(json, "amplitude", claim->amplitude);
+  fg_json_number(json, "u_amplitude", claim->amplitude_u);
+  fg_json_numbers(json, "amplitude_interval_95", claim->interval, 2);
+  fg_json_number(json, "p_value", claim->p_value);
+  fg_json_number(json, "p_sign_flips", claim->p_flip);
+  fg_json_number(json, "p_simulated", claim->p_simulated);
+  fg_json_number(json, "retained_share", claim->retained_share);
+  fg_json_number(json, "cross_validated_gain", claim->cv_gain);
+  fg_json_number(json, "u_cross_validated_gain", claim->cv_gain_se);
+  fg_json_string(json, "kept_aside", held_out[claim->held_out < 0 ? 0 : claim->held_out + 1]);
+  fg_json_array(json, "alias_class");
+  for (size_t i = 0; i < claim->aliases; i++) {
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_string(json, "name", claim->alias[i].name);
+    fg_json_string(json, "id", claim->alias[i].candidate.effect->id);
+    fg_json_bool(json, "sum_of_two", claim->alias[i].sum);
+    fg_json_number(json, "correlation", claim->alias[i].correlation);
+    fg_json_number(json, "loss", claim->alias[i].loss);
+    fg_json_line_end(json);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+  fg_json_integer(json, "aliases_not_listed", (int64_t)claim->aliases_unlisted);
+  fg_json_object_end(json);
+}
+
+static void write_curve(fg_json *json, const fg_loop_report *report) {
+  const fg_loop_result *result = report->result;
+  const fg_loop_curve *curve = &result->curve;
+  if (!result->has_curve) {
+    fg_json_string(json, "unattributed", NULL);
+    return;
+  }
+  fg_json_object(json, "unattributed");
+  fg_json_string(json, "coordinate", curve->name);
+  fg_json_array(json, "shape");
+  for (size_t i = 0; i < curve->count; i++)
+    fg_json_numbers(json, NULL, curve->shape[i], 2);
+  fg_json_array_end(json);
+  fg_json_number(json, "rms", curve->rms);
+  fg_json_number(json, "p_value", curve->p_value);
+  fg_json_array(json, "nearest");
+  for (size_t i = 0; i < curve->nearest_count; i++)
+    fg_json_integer(json, NULL, (int64_t)report->problem->row[curve->nearest[i]] + 1);
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
+static void write_rejected(fg_json *json, const fg_loop_rejected *one) {
+  fg_json_object(json, NULL);
+  fg_json_line(json);
+  fg_json_string(json, "id", one->candidate.effect->id);
+  fg_json_string(json, "name", one->name);
+  fg_json_string(json, "verdict", fg_loop_verdict_word(one->verdict));
+  fg_json_number(json, "would_explain", one->would_explain);
+  fg_json_number(json, "p_value", one->p_value);
+  fg_json_number(json, "retained_share", one->retained_share);
+  fg_json_number(json, "smallest_amplitude", one->smallest_detectable);
+  fg_json_line_end(json);
+  fg_json_object_end(json);
+}
+
+enum { LISTED_ASIDE = 1000 }; /* rows; more are only counted */
+
+static void write_inputs(fg_json *json, const fg_loop_report *report) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  size_t aside = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    aside += problem->aside && problem->aside[i];
+  fg_json_array(json, "inputs");
+  fg_json_object(json, NULL);
+  fg_json_string(json, "path", report->path);
+  fg_json_string(json, "sha256", report->sha256);
+  fg_json_integer(json, "rows", (int64_t)problem->rows);
+  fg_json_integer(json, "rows_kept_aside", (int64_t)aside);
+  fg_json_array(json, "kept_aside");
+  fg_json_line(json);
+  for (size_t i = 0; aside <= LISTED_ASIDE && i < problem->rows; i++)
+    if (problem->aside && problem->aside[i])
+      fg_json_integer(json, NULL, (int64_t)report->problem->row[i] + 1);
+  fg_json_line_end(json);
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+  fg_json_array_end(json);
+  fg_json_object(json, "declared");
+  fg_json_string(json, "response", report->spec->response);
+  fg_json_string(json, "model", report->spec->model);
+  fg_json_string(json, "group", report->spec->group);
+  fg_json_integer(json, "groups", (int64_t)problem->groups);
+  fg_json_object_end(json);
+  fg_json_integer(json, "seed", (int64_t)report->seed);
+}
+
+static void write_model(fg_json *json, const fg_loop_report *report) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  fg_json_array(json, "declared_parameters");
+  for (size_t k = 0; k < problem->parameters; k++) {
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_string(json, "name", problem->parameter_name[k]);
+    fg_json_number(json, "value", report->result->parameter[k]);
+    fg_json_number(json, "u_value", report->result->parameter_u[k]);
+    fg_json_line_end(json);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static void write_findings(fg_json *json, const fg_loop_report *report) {
+  const fg_loop_result *result = report->result;
+  write_error(json, "before", &result->before);
+  fg_json_array(json, "claims");
+  for (size_t i = 0; i < result->claims; i++)
+    write_claim(json, report, &result->claim[i]);
+  fg_json_array_end(json);
+  write_curve(json, report);
+  write_error(json, "after", &result->after);
+  fg_json_object(json, "error_ratio");
+  fg_json_number(json, "rms", result->ratio_rms);
+  fg_json_number(json, "held_out", result->ratio_held_out);
+  fg_json_number(json, "cross_validated",
+                 result->after.cross_validated_rms / result->before.cross_validated_rms);
+  fg_json_numbers(json, "interval_95", result->ratio_interval, 2);
+  fg_json_number(json, "after_to_noise_floor", result->after.rms / result->noise_floor);
+  fg_json_object_end(json);
+  write_model(json, report);
+  fg_json_array(json, "rejected");
+  for (size_t i = 0; i < result->rejects; i++)
+    write_rejected(json, &result->rejected[i]);
+  fg_json_array_end(json);
+  fg_json_array(json, "separating_measurement");
+  for (size_t i = 0; i < result->advices; i++) {
+    fg_json_object(json, NULL);
+    fg_json_string(json, "advice", result->advice[i].text);
+    fg_json_number(json, "runs", result->advice[i].runs);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE *out) {
+  const fg_loop_result *result = report->result;
+  char *sentence = NULL;
+  fg_json json;
+  FG_TRY(fg_loop_sentence(ctx, report, &sentence));
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_string(&json, "schema", "foilgauge/loop/1");
+  fg_json_string(&json, "version", FOILGAUGE_VERSION);
+  fg_json_string(&json, "domain", "table");
+  fg_json_string(&json, "verdict", fg_loop_outcome_word(result->verdict));
+  fg_json_string(&json, "summary", sentence);
+  write_inputs(&json, report);
+  fg_json_number(&json, "noise_floor", result->noise_floor);
+  fg_json_object(&json, "noise");
+  fg_json_number(&json, "sd", result->noise.sd);
+  fg_json_number(&json, "correlation", result->noise.rho);
+  fg_json_number(&json, "group_to_row_variance", result->noise.lambda);
+  fg_json_number(&json, "smallest_p", result->smallest_p);
+  fg_json_object_end(&json);
+  write_findings(&json, report);
+  fg_json_string(&json, "not_candidates", report->problem->excluded);
+  fg_json_array(&json, "notes");
+  for (size_t i = 0; i < result->notes; i++)
+    fg_json_string(&json, NULL, result->note[i]);
+  fg_json_array_end(&json);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  free(sentence);
+  return fg_report_finish(ctx, out, "the loop's report");
+}

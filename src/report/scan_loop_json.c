@@ -1,0 +1,325 @@
+/* "foilgauge/loop/1", domain "scan". */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "loop/scan_loop.h"
+#include "report/measure_json.h"
+
+static bool is_free(const char *id) {
+  return !strncmp(id, "free.", 5);
+}
+
+/* Coordinate of a free curve: what stands between "free." and the direction it moves. */
+static void coordinate_of(const char *id, char *out, size_t size) {
+  snprintf(out, size, "%s", id + 5);
+  char *tail = strrchr(out, '.');
+  if (tail && (!strcmp(tail, ".dx") || !strcmp(tail, ".dy"))) *tail = 0;
+}
+
+/* Half the range of an effect over the rows, um. */
+static double amplitude_of(const fg_scan_loop *loop, const fg_scan_effect *effect) {
+  static const int most = FG_LOOP_COLUMNS;
+  double square = 0;
+  for (size_t c = 0; c < effect->columns && c < (size_t)most; c++)
+    square += effect->coefficient_um[c] * effect->coefficient_um[c];
+  (void)loop;
+  return sqrt(square);
+}
+
+static double amplitude_u(const fg_scan_effect *effect) {
+  double a = amplitude_of(NULL, effect), sum = 0;
+  for (size_t c = 0; c < effect->columns && a > 0; c++) {
+    double part = effect->coefficient_um[c] / a * effect->u_coefficient_um[c];
+    sum += part * part;
+  }
+  return sqrt(sum);
+}
+
+static fg_field as_field(const fg_scan_effect *effect, const fg_field_row *row) {
+  fg_field field = {.row = row};
+  for (size_t c = 0; c < row->columns; c++) {
+    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
+    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
+  }
+  for (size_t s = 0; s < row->shapes; s++) {
+    field.shape[s] = effect->shape[s];
+    field.u_shape[s] = effect->u_shape[s];
+  }
+  return field;
+}
+
+/* Parameters by their names; with `u`, their standard uncertainties. */
+static void write_parameters(fg_json *json, const fg_scan_effect *effect, bool u) {
+  const fg_field_row *row = fg_field_find(effect->id);
+  fg_json_object(json, u ? "uncertainty" : "parameters");
+  if (row) {
+    fg_field field = as_field(effect, row);
+    const char *name;
+    double value, sd;
+    for (size_t i = 0; fg_field_parameter(&field, i, &name, &value, &sd); i++)
+      fg_json_number(json, name, u ? sd : value);
+  } else {
+    fg_json_number(json, "amplitude_um", u ? amplitude_u(effect) : amplitude_of(NULL, effect));
+    if (!strcmp(effect->id, "part.ovality") && !u)
+      fg_json_number(json, "phase_deg",
+                     0.5 * atan2(effect->coefficient_um[1], effect->coefficient_um[0]) * 180 / M_PI);
+  }
+  fg_json_object_end(json);
+}
+
+static size_t find_effect(const fg_subset *subset, const char *id) {
+  size_t e = 0;
+  while (e < subset->effect_count && strcmp(subset->effects[e].id, id)) e++;
+  return e;
+}
+
+/* What stands in an effect's place in the other members of the class; the effects that both hold
+ * are left out. */
+static void write_class(fg_json *json, const fg_scan_loop *loop) {
+  const fg_subset *subset = &loop->subset;
+  fg_json_array(json, "alias_class");
+  for (size_t m = 0; m < subset->member_count && subset->member_count > 1; m++) {
+    char text[256] = "";
+    for (size_t e = 0; e < subset->effect_count; e++) {
+      if (!(subset->members[m].mask >> e & 1)) continue;
+      size_t used = strlen(text);
+      snprintf(text + used, sizeof text - used, "%s%s", used ? " + " : "", subset->effects[e].id);
+    }
+    fg_json_string(json, NULL, text);
+  }
+  fg_json_array_end(json);
+}
+
+/* Whether every member of the class holds the effect. */
+static bool in_every_member(const fg_subset *subset, const char *id) {
+  size_t e = find_effect(subset, id);
+  for (size_t m = 0; m < subset->member_count; m++)
+    if (e == subset->effect_count || !(subset->members[m].mask >> e & 1)) return false;
+  return true;
+}
+
+static void write_claims(fg_json *json, const fg_scan_loop *loop) {
+  fg_json_array(json, "claims");
+  for (size_t i = 0; i < loop->set.count; i++) {
+    const fg_scan_effect *effect = &loop->set.effects[i];
+    if (is_free(effect->id)) continue;
+    bool sure = in_every_member(&loop->subset, effect->id);
+    size_t e = find_effect(&loop->subset, effect->id);
+    fg_json_object(json, NULL);
+    fg_json_string(json, "id", effect->id);
+    fg_json_string(json, "level", "points");
+    fg_json_string(json, "verdict", sure ? "found" : "tied");
+    write_parameters(json, effect, false);
+    write_parameters(json, effect, true);
+    fg_json_number(json, "amplitude", amplitude_of(loop, effect));
+    fg_json_number(json, "p_value", loop->subset.p_value);
+    fg_json_number(json, "retained_share",
+                   e < loop->subset.effect_count ? loop->subset.share[e] : NAN);
+    if (!sure) write_class(json, loop);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static void write_unattributed(fg_json *json, const fg_scan_loop *loop) {
+  const fg_scan_effect *curve = NULL;
+  for (size_t i = 0; i < loop->set.count; i++)
+    if (is_free(loop->set.effects[i].id)) curve = &loop->set.effects[i];
+  if (!curve) {
+    fg_json_string(json, "unattributed", NULL);
+    return;
+  }
+  char coordinate[48];
+  coordinate_of(curve->id, coordinate, sizeof coordinate);
+  fg_json_object(json, "unattributed");
+  fg_json_string(json, "coordinate", coordinate);
+  const char *direction = strrchr(curve->id, '.');
+  fg_json_string(json, "moves", !strcmp(direction, ".dx")   ? "x"
+                                : !strcmp(direction, ".dy") ? "y"
+                                                            : "along the normal");
+  const fg_field_row *row = fg_field_find(curve->id);
+  fg_json_array(json, "shape");
+  for (int i = 0; row && i <= 40; i++) {
+    const fg_field_frame *f = &loop->points.frame;
+    double t = i / 40.0;
+    fg_point at = {f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
+                   f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])};
+    fg_field_list list = {.frame = *f, .count = 1};
+    list.fields[0] = as_field(curve, row);
+    fg_point d = fg_field_at(&list, at);
+    double pair[2] = {strstr(curve->id, "scan.x") ? at.x : at.y,
+                      1000 * (direction[2] == 'x' ? d.x : d.y)};
+    fg_json_numbers(json, NULL, pair, 2);
+  }
+  fg_json_array_end(json);
+  fg_json_number(json, "rms", loop->error_before.rms);
+  fg_json_number(json, "p_value", loop->subset.p_value);
+  fg_json_array(json, "nearest");
+  for (size_t e = 0; e < loop->subset.effect_count; e++)
+    if (!loop->subset.effects[e].free && loop->subset.alone[e] > 0.3)
+      fg_json_string(json, NULL, loop->subset.effects[e].id);
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
+/* Ranges of a foil over the tied explanations, one per bump, the overall circle's last. */
+static void write_ranges(fg_json *json, const fg_scan_range *ranges, const fg_foil *foil) {
+  fg_json_array(json, "tie_ranges");
+  for (size_t b = 0; b <= foil->bump_count; b++) {
+    fg_json_object(json, NULL);
+    if (b < foil->bump_count) fg_json_integer(json, "bump", foil->bumps[b].number);
+    else fg_json_string(json, "bump", NULL);
+    fg_json_numbers(json, "radius_range_mm", ranges[b].radius_mm, 2);
+    if (b < foil->bump_count) fg_json_numbers(json, "height_range_mm", ranges[b].height_mm, 2);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
+                            const fg_scan_loop *loop, const fg_measurement *measurements,
+                            const fg_scan_error *error, bool ranges) {
+  fg_json_object(json, name);
+  fg_json_number(json, "rms", error->rms);
+  fg_json_number(json, "held_out_rms", error->held_out_rms);
+  fg_json_number(json, "robust_sd", error->robust_sd);
+  fg_json_number(json, "p95", error->p95);
+  fg_json_number(json, "maximum", error->maximum);
+  fg_json_array(json, "foils");
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < measurements[i].foil_count; f++)
+      FG_TRY(fg_json_foil(ctx, json, &measurements[i].design, &measurements[i].foils[f]));
+  fg_json_array_end(json);
+  if (ranges && loop->ranges) {
+    size_t k = 0;
+    fg_json_array(json, "ranges");
+    for (size_t i = 0; i < loop->scan_count; i++)
+      for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
+        fg_json_object(json, NULL);
+        write_ranges(json, loop->ranges[k], &loop->before[i].foils[f]);
+        fg_json_object_end(json);
+      }
+    fg_json_array_end(json);
+  }
+  fg_json_object_end(json);
+  return FG_OK;
+}
+
+static bool is_claimed(const fg_scan_loop *loop, const char *id) {
+  for (size_t i = 0; i < loop->set.count; i++)
+    if (!strcmp(loop->set.effects[i].id, id)) return true;
+  return false;
+}
+
+/* What the data could not have shown at 3 um is inconclusive, or absorbed by the geometry. */
+static void write_rejected(fg_json *json, const fg_scan_loop *loop) {
+  static const double matters_um = 3;
+  fg_json_array(json, "rejected");
+  for (size_t e = 0; e < loop->subset.effect_count; e++) {
+    const fg_subset_effect *effect = &loop->subset.effects[e];
+    if (effect->free || is_claimed(loop, effect->id)) continue;
+    double smallest = loop->subset.smallest_um[e];
+    bool shown = smallest <= matters_um;
+    fg_json_object(json, NULL);
+    fg_json_string(json, "id", effect->id);
+    fg_json_string(json, "level", "points");
+    fg_json_string(json, "verdict",
+                   shown                            ? "absent"
+                   : loop->subset.share[e] < 1e-4 ? "absorbed by geometry"
+                                                    : "inconclusive");
+    fg_json_number(json, "would_explain", loop->subset.alone[e]);
+    fg_json_number(json, "smallest_amplitude", smallest);
+    fg_json_number(json, "retained_share", loop->subset.share[e]);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static void write_advice(fg_json *json, const fg_scan_loop *loop) {
+  fg_json_array(json, "separating_measurement");
+  if (loop->tied && !loop->options.same_foil)
+    fg_json_string(json, NULL,
+                   "scan the same foil again, turned by about 90 degrees, and run the loop on both "
+                   "scans with --same-foil: what stays with the glass is the scanner, what turns "
+                   "is the part");
+  else if (loop->tied)
+    fg_json_string(json, NULL, "scan another foil on the same scanner: what repeats is the scanner");
+  fg_json_array_end(json);
+}
+
+fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  fg_json json;
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/loop/1");
+  fg_json_string(&json, "domain", "scan");
+  fg_json_string(&json, "verdict", fg_loop_outcome_word(loop->verdict));
+  fg_json_array(&json, "inputs");
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    fg_json_object(&json, NULL);
+    fg_json_string(&json, "path", loop->before[i].scan);
+    fg_json_string(&json, "sha256", loop->before[i].sha256);
+    fg_json_bool(&json, "hold_out", loop->hold_out[i]);
+    fg_json_object_end(&json);
+  }
+  fg_json_array_end(&json);
+  fg_json_bool(&json, "same_foil", loop->options.same_foil);
+  fg_json_number(&json, "noise_floor", loop->noise_floor_um);
+  fg_json_string(&json, "unit", "um");
+  FG_TRY(write_side(ctx, &json, "before", loop, loop->before, &loop->error_before, false));
+  write_claims(&json, loop);
+  write_unattributed(&json, loop);
+  FG_TRY(write_side(ctx, &json, "after", loop, loop->after, &loop->error_after, true));
+  fg_json_object(&json, "error_ratio");
+  fg_json_number(&json, "rms", loop->error_after.rms / loop->error_before.rms);
+  fg_json_number(&json, "held_out",
+                 loop->error_after.held_out_rms / loop->error_before.held_out_rms);
+  fg_json_object_end(&json);
+  write_rejected(&json, loop);
+  write_advice(&json, loop);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  return FG_OK;
+}
+
+fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  (void)ctx;
+  fprintf(out, "%s: edge residual %.3f um before, %.3f um after; noise %.3f um\n",
+          fg_loop_outcome_word(loop->verdict), loop->error_before.rms, loop->error_after.rms,
+          loop->noise_floor_um);
+  for (size_t i = 0; i < loop->set.count; i++) {
+    const fg_scan_effect *effect = &loop->set.effects[i];
+    if (is_free(effect->id)) {
+      char coordinate[48];
+      coordinate_of(effect->id, coordinate, sizeof coordinate);
+      fprintf(out, "  unattributed, over %s: %.2f um\n", coordinate, amplitude_of(loop, effect));
+      continue;
+    }
+    bool sure = in_every_member(&loop->subset, effect->id);
+    fprintf(out, "  %s %s:", sure ? "found" : "tied ", effect->id);
+    const fg_field_row *row = fg_field_find(effect->id);
+    fg_field field = {.row = row};
+    const char *name;
+    double value, u;
+    if (row) field = as_field(effect, row);
+    for (size_t p = 0; row && fg_field_parameter(&field, p, &name, &value, &u); p++)
+      fprintf(out, " %s %.6g +- %.2g", name, value, 2 * u);
+    if (!row)
+      fprintf(out, " amplitude_um %.4g +- %.2g", amplitude_of(loop, effect), 2 * amplitude_u(effect));
+    fputc('\n', out);
+  }
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count && f < loop->after[i].foil_count; f++) {
+      const fg_foil *b = &loop->before[i].foils[f], *a = &loop->after[i].foils[f];
+      fprintf(out, "%s foil %d: R0 %.5f -> %.5f mm\n", loop->before[i].scan, b->number,
+              b->overall.radius_mm, a->overall.radius_mm);
+      for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++)
+        fprintf(out, "  bump %d: R %.5f -> %.5f mm, h %.5f -> %.5f mm\n", b->bumps[k].number,
+                b->bumps[k].radius_mm, a->bumps[k].radius_mm, b->bumps[k].height_mm,
+                a->bumps[k].height_mm);
+    }
+  if (loop->tied) fputs("Several explanations do equally well; --html and -o list them.\n", out);
+  fputs("+- is U = 2 u.\n", out);
+  return FG_OK;
+}

@@ -1,0 +1,79 @@
+#!/bin/bash
+# Memory that runs out at any allocation, a disk that is full at any write: an error each time, no
+# crash, and nothing under a final name but whole files.
+# Usage: test_failures.sh PROGRAM [STRIDE]; with a stride of 1 every allocation fails once.
+set -euo pipefail
+program=$1
+stride=${2:-23}
+shim=$(dirname "$program")/tests/libfailing_malloc.so
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+fail() {
+  echo "test_failures: $*" >&2
+  exit 1
+}
+
+# Exit code 0 and every file whole, or another code, words, and no file at all.
+check() {
+  local code=$1 what=$2 left
+  left=$(find "$work/out" -type f | wc -l)
+  case $code in
+    0) cmp -s "$work/out/report.json" "$work/report.json" || fail "$what: exit code 0 and another report" ;;
+    65 | 74)
+      [ "$left" -eq 0 ] || fail "$what: exit code $code leaves $(ls -A "$work/out")"
+      grep -q '^foilgauge: .' "$work/said" || fail "$what: exit code $code without words"
+      ;;
+    *) fail "$what: exit code $code: $(cat "$work/said")" ;;
+  esac
+  rm -rf "$work/out"
+  mkdir "$work/out"
+}
+
+mkdir "$work/out"
+cat >"$work/spec.json" <<'SPEC'
+{"schema": "foilgauge/render/1", "seed": 3, "foils": [{"rotate_deg": -90}], "scanner": {"dpi": 1200}}
+SPEC
+"$program" render "$work/spec.json" -o "$work/scan.png"
+"$program" measure "$work/scan.png" -o "$work/report.json"
+
+# Disk full: a limit on the size of files, at every KiB of what is written.
+size=$((($(stat -c %s "$work/report.json") + 1023) / 1024))
+for ((kib = 0; kib < size; kib++)); do
+  code=0
+  (ulimit -f "$kib" && exec "$program" measure "$work/scan.png" -o "$work/out/report.json" \
+    --csv "$work/out/bumps.csv" 2>&1 >/dev/null) | cat >"$work/said" || code=$?
+  [ $code -eq 74 ] || fail "disk full at $kib KiB: exit code $code"
+  check $code "disk full at $kib KiB"
+done
+code=0
+"$program" measure "$work/scan.png" >/dev/full 2>"$work/said" || code=$?
+[ $code -eq 74 ] || fail "/dev/full: exit code $code"
+echo "disk full: $((size + 1)) places"
+
+# A sanitizer has its own malloc: the shim cannot stand before it.
+if ldd "$program" | grep -q libasan || [ ! -e "$shim" ]; then
+  echo "allocations: not in this build"
+  exit 0
+fi
+# run_failing N [ON]: the Nth allocation fails; with ON all after it too.
+run_failing() {
+  code=0
+  (
+    export LD_PRELOAD=$shim FOILGAUGE_FAIL_AT=$1
+    [ $# -eq 1 ] || export FOILGAUGE_FAIL_ON=1
+    exec "$program" measure "$work/scan.png" --threads 1 -o "$work/out/report.json"
+  ) >/dev/null 2>"$work/said" || code=$?
+}
+run_failing 0
+total=$(sed -n 's/^allocations: //p' "$work/said")
+check $code "no failure"
+tried=0
+for ((at = 1; at <= total; at += at < 60 ? 1 : stride)); do
+  run_failing "$at"
+  check $code "allocation $at of $total"
+  run_failing "$at" on
+  check $code "allocation $at of $total and all after it"
+  tried=$((tried + 2))
+done
+echo "allocations: $tried failures over $total"

@@ -1,0 +1,31 @@
+#!/bin/bash
+# Runs every fuzz target for some seconds (libFuzzer, AddressSanitizer, UndefinedBehaviorSanitizer), from the
+# committed corpus. Fails at the first input that breaks something, and keeps that input.
+# Usage: tests/fuzz/run.sh [SECONDS [RUNS]]; default 60 s; with RUNS it ends after so many executions.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$root/tests/packages.sh"
+seconds=${1:-60}
+runs=${2:--1}
+
+install_missing $FOILGAUGE_PACKAGES clang
+cd "$root"
+step "configuring fuzz in build-fuzz/" cmake --preset fuzz
+step "building fuzz" cmake --build --preset fuzz -j"$(nproc)"
+kept=$root/build-fuzz/found
+mkdir -p "$kept"
+for target in png tiff design measure; do
+  grown=$(mktemp -d)
+  log=$kept/$target.log
+  code=0
+  "build-fuzz/fuzz/fuzz_$target" -max_total_time="$seconds" -runs="$runs" -rss_limit_mb=2048 \
+    -timeout=30 -print_final_stats=1 -artifact_prefix="$kept/$target-" "$grown" "tests/fuzz/corpus/$target" \
+    >"$log" 2>&1 || code=$?
+  rm -rf "$grown"
+  echo "fuzz_$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") executions, exit code $code"
+  if [ $code -ne 0 ]; then
+    grep -E "ERROR|SUMMARY" "$log" || tail -5 "$log"
+    echo "the input is in $kept" >&2
+    exit 1
+  fi
+done

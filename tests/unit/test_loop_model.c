@@ -1,0 +1,106 @@
+/* The model file: what is written loads again, and takes the effect out of another table. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "foilgauge/loop.h"
+#include "support/near.h"
+#include "support/random.h"
+
+enum { RUNS = 30 };
+
+static void make_table(fg_table *table, uint64_t seed, double humidity_slope, double sd) {
+  double run[RUNS], t[RUNS], humidity[RUNS], y[RUNS];
+  for (size_t i = 0; i < RUNS; i++) {
+    run[i] = (double)i + 1;
+    t[i] = 500 + 50 * (double)(i % 3);
+    humidity[i] = i == 0 ? 20 : i == 1 ? 60 : 20 + 40 * random_uniform(&seed);
+    y[i] = 3 + t[i] / 100 + humidity_slope * humidity[i] + sd * random_gaussian(&seed);
+  }
+  assert_int_equal(fg_table_add_numbers(NULL, table, "run", run, RUNS), FG_OK);
+  assert_int_equal(fg_table_add_numbers(NULL, table, "t", t, RUNS), FG_OK);
+  assert_int_equal(fg_table_add_numbers(NULL, table, "humidity", humidity, RUNS), FG_OK);
+  assert_int_equal(fg_table_add_numbers(NULL, table, "y", y, RUNS), FG_OK);
+}
+
+static void write_model(const char *path) {
+  fg_context ctx = {0};
+  fg_table table = {0};
+  fg_loop_table_problem problem;
+  fg_loop_result result;
+  fg_loop_table_spec spec = {.response = "y", .model = "1 + t", .seed = 1};
+  fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
+  make_table(&table, 7, 0.1, 0.2);
+  assert_int_equal(fg_loop_table_problem_build(&ctx, &table, &spec, &problem), FG_OK);
+  assert_int_equal(fg_loop_run(&ctx, &problem.problem, &options, &result), FG_OK);
+  assert_int_equal(result.claims, 1);
+  fg_loop_report report = {"found.csv", "", &spec, &problem, &result, 1};
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  assert_int_equal(fg_loop_write_model(&ctx, &report, file), FG_OK);
+  fclose(file);
+  fg_loop_result_free(&result);
+  fg_loop_table_problem_free(&problem);
+  fg_table_free(&table);
+}
+
+/* Left in the response: t alone, and the constant that the effect's centre went into. */
+static void the_effect_is_taken_out(void **state) {
+  char path[] = "/tmp/foilgauge_loop_model_XXXXXX";
+  fg_context ctx = {0};
+  fg_table other = {0};
+  fg_loop_model *model = NULL;
+  (void)state;
+  close(mkstemp(path));
+  write_model(path);
+  if (fg_loop_model_load(&ctx, path, &model) != FG_OK) fail_msg("%s", ctx.message);
+  assert_string_equal(fg_loop_model_response(model), "y");
+  assert_string_equal(fg_loop_model_formula(model), "1 + t");
+  make_table(&other, 99, 0.1, 0);
+  if (fg_loop_model_apply(&ctx, model, &other) != FG_OK) fail_msg("%s", ctx.message);
+  for (size_t i = 0; i < RUNS; i++) {
+    double expected = 3 + other.column[1].number[i].value / 100 + 0.1 * 40;
+    assert_near(other.column[3].number[i].value, expected, 0.25);
+  }
+  other.column[2].number[4].value = 90;
+  assert_int_equal(fg_loop_model_apply(&ctx, model, &other), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "row 5: humidity is 90"));
+  fg_table_free(&other);
+  fg_loop_model_free(model);
+  unlink(path);
+}
+
+static void what_is_no_model_is_refused(void **state) {
+  static const char *const texts[] = {"", "[]", "{}", "{\"schema\": \"foilgauge/loop/1\"}",
+                                      "{\"schema\": \"foilgauge/loop-model/1\"}"};
+  char path[] = "/tmp/foilgauge_loop_model_XXXXXX";
+  (void)state;
+  close(mkstemp(path));
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    fg_context ctx = {0};
+    fg_loop_model *model = NULL;
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(texts[i], file);
+    fclose(file);
+    assert_int_equal(fg_loop_model_load(&ctx, path, &model), FG_ERR_DATA);
+    assert_null(model);
+    assert_non_null(strstr(ctx.message, path));
+  }
+  unlink(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_effect_is_taken_out),
+      cmocka_unit_test(what_is_no_model_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
