@@ -24,6 +24,9 @@ build_preset sanitize build-sanitize
 if [ $long = yes ]; then
   tests/bench/accuracy.sh
   tests/bench/speed.sh
+  tests/bench/thesis_lot.sh
+  tests/bench/lot_speed.sh
+  tests/bench/slurm_lot.sh || [ $? = 77 ]
   tests/bench/doe_end_to_end.sh
   tests/bench/thesis.sh
   install_missing $FOILGAUGE_R_PACKAGES

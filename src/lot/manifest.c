@@ -66,8 +66,11 @@ static fg_status add_scan(fg_context *ctx, fg_manifest *manifest, const char *fo
  * every locale. */
 
 static bool is_picture(const char *name) {
+  static const char *const endings[] = {".png", ".tif", ".tiff", ".pgm", ".pnm"};
   const char *dot = strrchr(name, '.');
-  return dot && !strcasecmp(dot, ".png");
+  for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
+    if (!strcasecmp(dot, endings[i])) return true;
+  return false;
 }
 
 static int keep_visible(const struct dirent *entry) {
@@ -300,7 +303,8 @@ static fg_status add_path(const search *s, const char *path) {
 static fg_status check_scans(fg_context *ctx, fg_manifest *manifest) {
   fg_manifest_index index;
   if (manifest->items == 0)
-    return fg_fail(ctx, FG_ERR_DATA, "no scan: the folders hold no .png file, the lists no line");
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "no scan: the folders hold no .png, .tif or .pgm file, the lists no line");
   FG_TRY(fg_manifest_index_build(ctx, manifest, &index));
   fg_status status = FG_OK;
   for (size_t i = 0; i < manifest->items && status == FG_OK; i++) {

@@ -16,9 +16,9 @@ typedef struct fg_manifest {
   size_t name_capacity, cell_capacity; /* private */
 } fg_manifest;
 
-/* Folders (every .png below them, in order of their names' bytes), scans, lists and manifests; see
- * fg_lot_request. FG_ERR_DATA for a scan that is there twice or for no scan at all. `leave_out` is
- * a folder that is not searched (the results'). */
+/* Folders (every PNG, TIFF and PGM file below them, in order of their names' bytes), scans, lists
+ * and manifests; see fg_lot_request. FG_ERR_DATA for a scan that is there twice or for no scan at
+ * all. `leave_out` is a folder that is not searched (the results'). */
 fg_status fg_manifest_collect(fg_context *ctx, const char *const *paths, size_t count,
                               const char *leave_out, fg_manifest *manifest);
 
