@@ -65,10 +65,13 @@ typedef struct fg_bump {
   size_t points;              /* datum points in the fit */
   double arc_start_mm, arc_end_mm; /* s of the arc that was used */
   double position_deg;        /* direction of C seen from O, about the scan's x axis */
+  /* Lowest and highest value over explanations that a loop could not tell apart; both 0: none. */
+  double radius_range_mm[2], height_range_mm[2];
   double covariance[3][3];    /* of (C_x, C_y, R), mm² */
 } fg_bump;
 
 typedef struct fg_overall {
+  double radius_range_mm[2];                 /* as of a bump; both 0: none */
   fg_point centre_mm;                        /* O */
   double u_centre_mm[2];
   double radius_mm, u_radius_mm;             /* R0 */

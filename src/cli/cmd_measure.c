@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/report.h"
+#include "foilgauge/scan_loop.h"
 #include "report/words.h"
 
 /* What the command can write, in the order of writing. */
@@ -31,7 +32,7 @@ static report_writer *const writers[OUT_COUNT] = {
 };
 
 typedef struct measure_arguments {
-  const char *design_path;
+  const char *design_path, *model_path;
   const char *form;
   fg_measure_options options;
   char **scans; /* of argv */
@@ -39,6 +40,7 @@ typedef struct measure_arguments {
 } measure_arguments;
 
 typedef struct measure_run {
+  fg_scan_model *model; /* NULL: none */
   measure_arguments arguments;
   fg_design design;
   fg_nominal nominal;
@@ -61,12 +63,15 @@ enum {
   OPTION_CHANNEL,
   OPTION_ALLOW_LOSSY,
   OPTION_MAX_PIXELS,
-  OPTION_MAX_MEMORY
+  OPTION_MAX_MEMORY,
+  OPTION_MODEL,
 };
 
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
     {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
+    {"model", OPTION_MODEL, "FILE.json", 0,
+     "Correct by what `foilgauge loop --model-out` found of this scanner", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
     {"channel", OPTION_CHANNEL, "CHANNEL", 0,
      "Of a colour scan: red, green, blue, luminance, or auto: the one with the most contrast, which "
@@ -118,6 +123,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case 'o':
     run->outputs.path[OUT_JSON] = text;
     break;
+  case OPTION_MODEL:
+    arguments->model_path = text;
+    return 0;
   case OPTION_CSV:
     run->outputs.path[OUT_CSV] = text;
     break;
@@ -244,6 +252,15 @@ static void tell_failures(const fg_measurement *measurement) {
   }
 }
 
+/* Corrects by the scanner's model, where one is given. */
+static fg_status apply_model(fg_context *ctx, const measure_run *run, fg_measurement *m) {
+  char warning[200];
+  if (!run->model) return FG_OK;
+  FG_TRY(fg_scan_model_apply(ctx, run->model, m, run->arguments.options.threads, warning));
+  if (warning[0]) fprintf(stderr, "foilgauge: note: %s\n", warning);
+  return FG_OK;
+}
+
 /* A scan that fails is reported; only what stops everything is an error here. */
 static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   fg_measure_options options_of_scan = run->arguments.options;
@@ -256,6 +273,7 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   fg_status status =
       fg_measure_scan(ctx, path, &run->design, &options_of_scan, &run->measurements[index]);
   fg_progress_end(&progress);
+  if (status == FG_OK) status = apply_model(ctx, run, &run->measurements[index]);
   scan->path = path;
   if (status == FG_OK) {
     scan->measurement = &run->measurements[index];
@@ -300,6 +318,7 @@ static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code
 }
 
 static void free_run(measure_run *run) {
+  fg_scan_model_free(run->model);
   fg_output_set_close(&run->outputs);
   for (size_t i = 0; run->scans && i < run->arguments.scan_count; i++)
     if (run->scans[i].measurement) fg_measurement_free(&run->measurements[i]);
@@ -312,6 +331,8 @@ static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   choose_standard_output(&run->outputs);
   FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
+  if (run->arguments.model_path)
+    FG_TRY(fg_scan_model_load(ctx, run->arguments.model_path, &run->model));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));
   FG_TRY(outcome_code(ctx, run, code)); /* first: it can fail, and files that are written stay */

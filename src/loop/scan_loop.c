@@ -139,6 +139,21 @@ static void widen_all(fg_scan_loop *loop, const fg_measurement *measurements) {
         widen_ranges(&measurements[i], loop->ranges[k], f);
 }
 
+/* The corrected foils carry their ranges. */
+static void put_ranges(fg_scan_loop *loop) {
+  for (size_t i = 0, k = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
+      if (f >= loop->after[i].foil_count) continue;
+      fg_foil *foil = &loop->after[i].foils[f];
+      size_t count = loop->before[i].foils[f].bump_count;
+      for (size_t b = 0; b < foil->bump_count && foil->bump_count == count; b++) {
+        memcpy(foil->bumps[b].radius_range_mm, loop->ranges[k][b].radius_mm, 2 * sizeof(double));
+        memcpy(foil->bumps[b].height_range_mm, loop->ranges[k][b].height_mm, 2 * sizeof(double));
+      }
+      memcpy(foil->overall.radius_range_mm, loop->ranges[k][count].radius_mm, 2 * sizeof(double));
+    }
+}
+
 /* What the dimensions are under every member of the class. */
 static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
   fg_status status = FG_OK;
@@ -159,6 +174,7 @@ static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
     for (size_t i = 0; i < loop->scan_count; i++) fg_measurement_free(&tried[i]);
   }
   free(tried);
+  put_ranges(loop);
   /* The geometry in force is the winner's again. */
   return status == FG_OK ? fg_scan_refit(ctx, &loop->points, &loop->set, NULL) : status;
 }

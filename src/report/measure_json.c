@@ -137,12 +137,19 @@ static void write_covariance(fg_json *json, const double covariance[3][3]) {
   fg_json_line_end(json);
 }
 
+/* Only where a loop left a tie. */
+static void write_range(fg_json *json, const char *name, const double range[2]) {
+  if (range[0] != 0 || range[1] != 0) fg_json_numbers(json, name, range, 2);
+}
+
 static void write_bump(fg_json *json, const fg_bump *bump) {
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", bump->number);
   write_flags(json, fg_bump_flag_words(), bump->flags);
   write_fields(json, FG_REPORT_BUMP, "", bump);
   write_covariance(json, bump->covariance);
+  write_range(json, "radius_range_mm", bump->radius_range_mm);
+  write_range(json, "height_range_mm", bump->height_range_mm);
   fg_json_object_end(json);
 }
 
@@ -192,6 +199,7 @@ static void write_foil_values(fg_json *json, const fg_foil *foil) {
   fg_json_object(json, "overall");
   write_fields(json, FG_REPORT_FOIL, "overall.", foil);
   write_covariance(json, foil->overall.covariance);
+  write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
   write_strip(json, &foil->strip);
   fg_json_array(json, "bumps");

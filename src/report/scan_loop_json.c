@@ -163,23 +163,9 @@ static void write_unattributed(fg_json *json, const fg_scan_loop *loop) {
   fg_json_object_end(json);
 }
 
-/* Ranges of a foil over the tied explanations, one per bump, the overall circle's last. */
-static void write_ranges(fg_json *json, const fg_scan_range *ranges, const fg_foil *foil) {
-  fg_json_array(json, "tie_ranges");
-  for (size_t b = 0; b <= foil->bump_count; b++) {
-    fg_json_object(json, NULL);
-    if (b < foil->bump_count) fg_json_integer(json, "bump", foil->bumps[b].number);
-    else fg_json_string(json, "bump", NULL);
-    fg_json_numbers(json, "radius_range_mm", ranges[b].radius_mm, 2);
-    if (b < foil->bump_count) fg_json_numbers(json, "height_range_mm", ranges[b].height_mm, 2);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
-}
-
 static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
                             const fg_scan_loop *loop, const fg_measurement *measurements,
-                            const fg_scan_error *error, bool ranges) {
+                            const fg_scan_error *error) {
   fg_json_object(json, name);
   fg_json_number(json, "rms", error->rms);
   fg_json_number(json, "held_out_rms", error->held_out_rms);
@@ -191,17 +177,6 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
     for (size_t f = 0; f < measurements[i].foil_count; f++)
       FG_TRY(fg_json_foil(ctx, json, &measurements[i].design, &measurements[i].foils[f]));
   fg_json_array_end(json);
-  if (ranges && loop->ranges) {
-    size_t k = 0;
-    fg_json_array(json, "ranges");
-    for (size_t i = 0; i < loop->scan_count; i++)
-      for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
-        fg_json_object(json, NULL);
-        write_ranges(json, loop->ranges[k], &loop->before[i].foils[f]);
-        fg_json_object_end(json);
-      }
-    fg_json_array_end(json);
-  }
   fg_json_object_end(json);
   return FG_OK;
 }
@@ -267,10 +242,10 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_bool(&json, "same_foil", loop->options.same_foil);
   fg_json_number(&json, "noise_floor", loop->noise_floor_um);
   fg_json_string(&json, "unit", "um");
-  FG_TRY(write_side(ctx, &json, "before", loop, loop->before, &loop->error_before, false));
+  FG_TRY(write_side(ctx, &json, "before", loop, loop->before, &loop->error_before));
   write_claims(&json, loop);
   write_unattributed(&json, loop);
-  FG_TRY(write_side(ctx, &json, "after", loop, loop->after, &loop->error_after, true));
+  FG_TRY(write_side(ctx, &json, "after", loop, loop->after, &loop->error_after));
   fg_json_object(&json, "error_ratio");
   fg_json_number(&json, "rms", loop->error_after.rms / loop->error_before.rms);
   fg_json_number(&json, "held_out",
