@@ -1,0 +1,99 @@
+#!/bin/bash
+# The loop on scans: clean renders are clean, known effects are named and taken out, a model carries
+# over to another foil, and what does not fit together is refused.
+set -u
+program=$(realpath "$1")
+root=$(pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+
+fail() {
+  echo "FAIL: $*"
+  failed=1
+}
+
+# render NAME SEED ROTATION EFFECTS
+render() {
+  cat >"$1.json" <<SPEC
+{"schema":"foilgauge/render/1","seed":$2,
+ "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
+           "rotate_deg":$3}],
+ "scanner":{"dpi":4800,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
+ "effects":[$4]}
+SPEC
+  "$program" render "$1.json" -o "$1.png" --truth "$1.truth.json" || fail "render $1"
+}
+
+# value FILE EXPRESSION: a number or word out of a report.
+value() {
+  python3 -c "import json,sys; r=json.load(open(sys.argv[1])); print(eval(sys.argv[2]))" "$1" "$2"
+}
+
+# near NAME VALUE EXPECTED TOLERANCE
+near() {
+  python3 -c "import sys; sys.exit(abs(float(sys.argv[1]) - float(sys.argv[2])) > float(sys.argv[3]))" \
+    "$2" "$3" "$4" || fail "$1 is $2, not $3 within $4"
+}
+
+render clean 1 -70 ''
+"$program" loop clean.png -o clean.out || fail "loop on a clean scan"
+[ "$(value clean.out "r['verdict']")" = clean ] || fail "a clean scan is called $(value clean.out "r['verdict']")"
+
+render ripple 2 -60 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
+"$program" loop ripple.png -o ripple.out || fail "loop on a ripple"
+[ "$(value ripple.out "r['claims'][0]['id']")" = scan.carriage_ripple ] || fail "the ripple is not named"
+near amplitude "$(value ripple.out "r['claims'][0]['parameters']['amplitude_um']")" 7 0.05
+near period "$(value ripple.out "r['claims'][0]['parameters']['period_mm']")" 2.7 0.003
+near R0 "$(value ripple.out "r['after']['foils'][0]['overall']['radius_mm']")" 20.95 0.0001
+near R "$(value ripple.out "r['after']['foils'][0]['bumps'][3]['radius_mm']")" 3.44 0.001
+
+# One foil, scanned twice, turned by 90 degrees: the scanner's scale is told from an oval foil.
+render a 3 -75 '{"id":"scan.scale_y","value":0.001}'
+render b 4 15 '{"id":"scan.scale_y","value":0.001}'
+"$program" loop --same-foil a.png b.png -o pair.out --model-out scanner.json || fail "loop on a pair"
+[ "$(value pair.out "len(r['claims'])")" = 1 ] || fail "a pair with one effect has other claims"
+[ "$(value pair.out "r['claims'][0]['id'] + ' ' + r['claims'][0]['verdict']")" = "scan.scale_y found" ] ||
+  fail "the scale is not named from a pair"
+near scale "$(value pair.out "r['claims'][0]['parameters']['value']")" 0.001 0.000002
+
+render oval_a 5 -75 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'
+render oval_b 6 15 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'
+"$program" loop --same-foil oval_a.png oval_b.png -o oval.out || fail "loop on an oval pair"
+[ "$(value oval.out "r['claims'][0]['id']")" = part.ovality ] || fail "the ovality is not named from a pair"
+
+# The scanner's model corrects another foil.
+render other 7 -120 '{"id":"scan.scale_y","value":0.001}'
+"$program" measure other.png -o plain.out && "$program" measure other.png --model scanner.json -o corrected.out ||
+  fail "measure with a model"
+near "corrected R0" "$(value corrected.out "r['foils'][0]['overall']['radius_mm']")" 20.95 0.0002
+before=$(value plain.out "abs(r['foils'][0]['overall']['radius_mm'] - 20.95)")
+after=$(value corrected.out "abs(r['foils'][0]['overall']['radius_mm'] - 20.95)")
+python3 -c "import sys; sys.exit(float(sys.argv[1]) * 10 > float(sys.argv[2]))" "$after" "$before" ||
+  fail "the model takes the error of R0 from $before only to $after mm"
+
+# expect CODE WORDS ARGUMENTS...
+expect() {
+  local code=$1 words=$2
+  shift 2
+  "$program" "$@" >out.txt 2>err.txt </dev/null
+  local got=$?
+  [ $got -eq "$code" ] || fail "$*: exit code $got, not $code"
+  grep -q -- "$words" err.txt || fail "$*: does not say '$words' but: $(cat err.txt)"
+}
+
+sed 's/4800/2400/' a.json >half.json && "$program" render half.json -o half.png || fail "render at 2400 dpi"
+expect 65 "one resolution" loop a.png half.png
+expect 64 "given twice" loop a.png --hold-out a.png
+expect 64 "give a scan" loop
+render third 8 -70 ''
+sed -i 's/3.34,3.41/3.84,3.11/' third.json && "$program" render third.json -o third.png || fail "render another foil"
+expect 65 "not the same foil" loop --same-foil a.png third.png
+printf '{"schema":"foilgauge/design/1"}' >wrong.json
+expect 65 "not a model of a scanner" measure a.png --model wrong.json
+expect 65 "2400 dpi" measure half.png --model scanner.json -o never.json
+[ ! -e never.json ] || fail "a refused model leaves a report behind"
+expect 74 "" loop a.png -o /nowhere/x.json
+
+exit $failed
