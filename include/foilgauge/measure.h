@@ -13,19 +13,20 @@ extern "C" {
 typedef void fg_measure_progress(void *user, int64_t rows_done, int64_t rows);
 
 typedef struct fg_measure_options {
-  double dpi;          /* 0: as the file says */
-  unsigned threads;    /* 0: as many as there are cores */
-  fg_channel channel;  /* of a colour scan */
-  bool allow_lossy;    /* as in fg_scan_options */
-  uint64_t pixel_cap;  /* refuse larger scans; 0: 4e9 */
-  size_t memory_cap;   /* bytes that rows and tiles may take; 0: 2 GiB */
+  double dpi;                    /* 0: as the file says */
+  unsigned threads;              /* 0: as many as there are cores */
+  fg_channel channel;            /* of a colour scan */
+  bool allow_lossy;              /* as in fg_scan_options */
+  uint64_t pixel_cap;            /* refuse larger scans; 0: 4e9 */
+  size_t memory_cap;             /* bytes that rows and tiles may take; 0: 2 GiB */
   fg_measure_progress *progress; /* NULL: none */
   void *progress_user;
 } fg_measure_options;
 
 /* Reads the scan once and measures every foil (or disc) in it. `path` may be "-" for standard
  * input. On success the caller frees with fg_measurement_free. FG_ERR_DATA when there is nothing
- * to measure, or when memory_cap is reached (a scan that is dirty all over); a foil that cannot be measured is flagged FG_FOIL_NOT_MEASURED. */
+ * to measure, or when memory_cap is reached (a scan that is dirty all over); a foil that cannot be
+ * measured is flagged FG_FOIL_NOT_MEASURED. */
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement);
 

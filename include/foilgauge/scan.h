@@ -2,11 +2,11 @@
  *
  * PNG of any kind (gray, RGB, palette, with or without alpha, 1 to 16 bit), TIFF and BigTIFF (gray,
  * RGB, palette; strips or tiles; both byte orders; any compression without loss), PNM (P4, P5, P6)
- * come out as rows of 8- or 16-bit gray: 16 when the file has 16, else 8. Fewer bits are spread over
- * 0 to 255; TIFF's min-is-white is turned round. Of colours one channel is taken, or the luminance
- * (Rec. 709 weights); alpha and infrared are dropped. Interlaced PNG are decoded whole in memory and
- * served row by row. CRC errors and truncation are fatal. A TIFF on a pipe is stored in an unnamed
- * temporary file first (TMPDIR), and so is anything whose channel must be found.
+ * come out as rows of 8- or 16-bit gray: 16 when the file has 16, else 8. Fewer bits are spread
+ * over 0 to 255; TIFF's min-is-white is turned round. Of colours one channel is taken, or the
+ * luminance (Rec. 709 weights); alpha and infrared are dropped. Interlaced PNG are decoded whole in
+ * memory and served row by row. CRC errors and truncation are fatal. A TIFF on a pipe is stored in
+ * an unnamed temporary file first (TMPDIR), and so is anything whose channel must be found.
  */
 #ifndef FOILGAUGE_SCAN_H
 #define FOILGAUGE_SCAN_H
@@ -42,20 +42,20 @@ typedef struct fg_scan_options {
   uint64_t pixel_cap;  /* refuse larger ones; 0: 4e9 */
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
-  bool allow_lossy;    /* take a TIFF whose compression has moved edges (JPEG) */
+  bool allow_lossy; /* take a TIFF whose compression has moved edges (JPEG) */
 } fg_scan_options;
 
 typedef struct fg_scan_info {
   int64_t width_px, height_px;
-  int bit_depth;           /* of the file: 1, 2, 4, 8, 16 */
-  int bytes_per_pixel;     /* of the rows: 1 or 2 (host byte order, uint16_t) */
-  double dpi[2];           /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
-  double dpi_file[2];      /* what the file says, before snapping; NaN when it says none */
-  const char *format;      /* "PNG", "TIFF", "PNM" */
-  bool colour;             /* the file holds colours */
-  fg_channel channel;      /* what of them is taken; never FG_CHANNEL_AUTO */
-  uint64_t memory_bytes;   /* that the reader holds beyond a row */
-  char warning[256];       /* what is odd about the file; empty when nothing is */
+  int bit_depth;         /* of the file: 1, 2, 4, 8, 16 */
+  int bytes_per_pixel;   /* of the rows: 1 or 2 (host byte order, uint16_t) */
+  double dpi[2];         /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
+  double dpi_file[2];    /* what the file says, before snapping; NaN when it says none */
+  const char *format;    /* "PNG", "TIFF", "PNM" */
+  bool colour;           /* the file holds colours */
+  fg_channel channel;    /* what of them is taken; never FG_CHANNEL_AUTO */
+  uint64_t memory_bytes; /* that the reader holds beyond a row */
+  char warning[256];     /* what is odd about the file; empty when nothing is */
 } fg_scan_info;
 
 /* For a caller that takes a resolution from its user: FG_ERR_USAGE, with words, unless `dpi` is
@@ -63,9 +63,9 @@ typedef struct fg_scan_info {
 fg_status fg_scan_check_dpi(fg_context *ctx, double dpi);
 
 /* Opens a scan and reads its header. `path` "-" is standard input. Errors: FG_ERR_IO (cannot open
- * or read), FG_ERR_DATA (empty, no known format, broken, over the cap, no resolution and no dpi given:
- * the message says `--dpi`), FG_ERR_USAGE (options->dpi neither 0 nor as fg_scan_check_dpi wants
- * it). Rows and columns in error texts count from 1. NULL options are all zero. */
+ * or read), FG_ERR_DATA (empty, no known format, broken, over the cap, no resolution and no dpi
+ * given: the message says `--dpi`), FG_ERR_USAGE (options->dpi neither 0 nor as fg_scan_check_dpi
+ * wants it). Rows and columns in error texts count from 1. NULL options are all zero. */
 fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options *options,
                        fg_scan **scan);
 

@@ -74,7 +74,8 @@ static const struct argp_option options[] = {
      "Correct by what `foilgauge loop --model-out` found of this scanner", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
     {"channel", OPTION_CHANNEL, "CHANNEL", 0,
-     "Of a colour scan: red, green, blue, luminance, or auto: the one with the most contrast, which "
+     "Of a colour scan: red, green, blue, luminance, or auto: the one with the most contrast, "
+     "which "
      "takes a second reading (default: auto)",
      0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, "Take a TIFF with JPEG inside, edges and all", 0},
@@ -92,7 +93,8 @@ static const struct argp_option options[] = {
 
 static const char doc[] =
     "Measure every foil in a scan: radii, angles, heights, clearances, each with its uncertainty."
-    "\vSCAN is a PNG, TIFF or PNM file, or - for standard input. Without -o the results go to standard "
+    "\vSCAN is a PNG, TIFF or PNM file, or - for standard input. Without -o the results go to "
+    "standard "
     "output: as a table on a terminal, else as JSON.\n\n"
     "Exit code: 0 done and within tolerance; 1 out of tolerance; 2 something could not be "
     "measured; 64 usage; 65 bad data; 74 input or output.";
@@ -157,8 +159,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     arguments->options.pixel_cap = (uint64_t)parse_number(state, "max-pixels", text, 1, 1e15);
     break;
   case OPTION_MAX_MEMORY:
-    arguments->options.memory_cap =
-        (size_t)parse_number(state, "max-memory", text, 1, 1 << 24) << 20;
+    arguments->options.memory_cap = (size_t)parse_number(state, "max-memory", text, 1, 1 << 24)
+                                    << 20;
     break;
   case ARGP_KEY_ARGS:
     arguments->scans = state->argv + state->next;

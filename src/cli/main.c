@@ -37,7 +37,8 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
-  /* Else every thread reserves 64 MiB of address space for itself, which counts where that is limited. */
+  /* Else every thread reserves 64 MiB of address space for itself, which counts where that is
+   * limited. */
   mallopt(M_ARENA_MAX, 2);
   if (argc < 2) {
     print_help(stderr);

@@ -15,6 +15,6 @@ typedef struct fg_progress {
 
 void fg_progress_begin(fg_progress *progress, const char *name);
 void fg_progress_show(void *progress, int64_t done, int64_t all); /* fg_measure_progress */
-void fg_progress_end(fg_progress *progress); /* wipes the bar */
+void fg_progress_end(fg_progress *progress);                      /* wipes the bar */
 
 #endif

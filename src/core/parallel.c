@@ -11,7 +11,8 @@ static void *run_anywhere(void *argument) {
   fg_thread *thread = argument;
   cpu_set_t all;
   CPU_ZERO(&all);
-  for (size_t cpu = 0; cpu < CPU_SETSIZE; cpu++) CPU_SET(cpu, &all);
+  for (size_t cpu = 0; cpu < CPU_SETSIZE; cpu++)
+    CPU_SET(cpu, &all);
   pthread_setaffinity_np(pthread_self(), sizeof all, &all);
   return thread->run(thread->argument);
 }
@@ -25,8 +26,7 @@ static bool avoid_this_core(pthread_attr_t *attributes) {
   int here = sched_getcpu();
   if (here < 0 || pthread_getaffinity_np(pthread_self(), sizeof set, &set) != 0) return false;
   CPU_CLR((size_t)here, &set);
-  return CPU_COUNT(&set) > 0 &&
-         pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0;
+  return CPU_COUNT(&set) > 0 && pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0;
 }
 
 fg_status fg_thread_start(fg_thread *thread, void *(*run)(void *), void *argument) {
@@ -89,13 +89,15 @@ fg_status fg_parallel_run(fg_context *ctx, unsigned threads, size_t count, fg_pa
   if (threads > THREADS_MAX) threads = THREADS_MAX;
   if (threads > count) threads = (unsigned)count;
   unsigned started = 0;
-  for (unsigned i = 0; i < threads || i == 0; i++) workers[i].pool = &p;
+  for (unsigned i = 0; i < threads || i == 0; i++)
+    workers[i].pool = &p;
   while (started + 1 < threads &&
          fg_thread_start(&handles[started], work, &workers[started + 1]) == FG_OK)
     started++;
   work(&workers[0]);
   const worker *first = NULL;
-  for (unsigned i = 0; i < started; i++) fg_thread_join(&handles[i]);
+  for (unsigned i = 0; i < started; i++)
+    fg_thread_join(&handles[i]);
   for (unsigned i = 0; i <= started; i++)
     if (workers[i].status != FG_OK && (!first || workers[i].failed < first->failed))
       first = &workers[i];

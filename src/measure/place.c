@@ -31,7 +31,8 @@ void fg_place_move(const int64_t origin_px[2], const double dpi[2], fg_foil *foi
     foil->place_mm[2 + k] = (double)foil->strip.box_px[2 + k] * 25.4 / dpi[k];
   }
   move(&foil->overall.centre_mm, by_mm);
-  for (size_t i = 0; i < foil->bump_count; i++) move(&foil->bumps[i].centre_mm, by_mm);
+  for (size_t i = 0; i < foil->bump_count; i++)
+    move(&foil->bumps[i].centre_mm, by_mm);
   for (size_t i = 0; i < foil->strip.count; i++) {
     move(&foil->strip.stations[i].left, by_mm);
     move(&foil->strip.stations[i].right, by_mm);

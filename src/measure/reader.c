@@ -111,11 +111,12 @@ static void *run_digest(void *argument) {
 static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
   digest d = {.scan = r->scan, .hex = sha256};
   fg_thread digester;
-  bool beside =
-      fg_scan_is_file(r->scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
+  bool beside = fg_scan_is_file(r->scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
   fg_status status = run_ring(ctx, r);
-  if (beside) fg_thread_join(&digester);
-  else if (status == FG_OK) run_digest(&d);
+  if (beside)
+    fg_thread_join(&digester);
+  else if (status == FG_OK)
+    run_digest(&d);
   if (status == FG_OK && d.status != FG_OK)
     status = fg_fail(ctx, d.status, "%s", d.context.message);
   return status;
@@ -124,11 +125,15 @@ static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
 fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,
                         fg_budget *budget, fg_tiles *tiles, char sha256[65]) {
   const fg_scan_info *info = fg_scan_get_info(scan);
-  ring r = {.scan = scan, .tiles = tiles, .visit = visit, .data = data,
-            .lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+  ring r = {.scan = scan,
+            .tiles = tiles,
+            .visit = visit,
+            .data = data,
+            .lock = PTHREAD_MUTEX_INITIALIZER,
+            .changed = PTHREAD_COND_INITIALIZER};
   memset(tiles, 0, sizeof *tiles);
-  FG_TRY(fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, budget,
-                         tiles));
+  FG_TRY(
+      fg_tiles_create(ctx, info->width_px, info->height_px, info->bytes_per_pixel, budget, tiles));
   fg_status status = run_with_digest(ctx, &r, sha256);
   pthread_mutex_destroy(&r.lock);
   pthread_cond_destroy(&r.changed);

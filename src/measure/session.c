@@ -42,7 +42,7 @@ struct fg_session {
   job *queue;
   size_t queued, queue_capacity, taken;
   size_t waiting_bytes; /* of the jobs that are queued and not taken */
-  bool ended; /* nothing more will be queued */
+  bool ended;           /* nothing more will be queued */
   fg_status status;
   fg_context context;
   size_t light, dark; /* islands by polarity */
@@ -53,8 +53,8 @@ struct fg_session {
 static fg_status add_foil(fg_context *ctx, fg_session *s, fg_foil *foil) {
   fg_measurement *m = s->measurement;
   pthread_mutex_lock(&s->lock);
-  fg_status status = fg_memory_reserve(ctx, m->foil_count + 1, sizeof *m->foils,
-                                       &s->foil_capacity, (void **)&m->foils);
+  fg_status status = fg_memory_reserve(ctx, m->foil_count + 1, sizeof *m->foils, &s->foil_capacity,
+                                       (void **)&m->foils);
   if (status == FG_OK) m->foils[m->foil_count++] = *foil;
   pthread_mutex_unlock(&s->lock);
   if (status != FG_OK) fg_foil_free(foil);
@@ -76,8 +76,7 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
                                const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
   fg_foil foil = {0};
-  fg_status status =
-      fg_edges_measure(ctx, &j->view, seg, trace, m->dpi, s->threads, &foil.strip);
+  fg_status status = fg_edges_measure(ctx, &j->view, seg, trace, m->dpi, s->threads, &foil.strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, &m->design, s->threads, &foil);
   if (status == FG_ERR_NUMERIC) {
     foil.flags |= FG_FOIL_NOT_MEASURED;
@@ -174,7 +173,8 @@ static bool work_on_one(fg_session *s, bool wait) {
 }
 
 static void *run_worker(void *session) {
-  while (work_on_one(session, true)) continue;
+  while (work_on_one(session, true))
+    continue;
   return NULL;
 }
 
@@ -249,7 +249,8 @@ fg_status fg_session_advance(fg_context *ctx, fg_tiles *tiles, void *session) {
     bool reading = tiles->received < tiles->rows;
     if (!s->worker_count && reading && s->queued) FG_TRY(start_workers(s));
   }
-  while (is_behind(s) && work_on_one(s, false)) continue;
+  while (is_behind(s) && work_on_one(s, false))
+    continue;
   return FG_OK;
 }
 
@@ -286,7 +287,8 @@ static void sort_foils(fg_measurement *m) {
     qsort(m->foils + first, next - first, sizeof *m->foils, compare_columns);
     first = next;
   }
-  for (size_t i = 0; i < m->foil_count; i++) m->foils[i].number = (int)i + 1;
+  for (size_t i = 0; i < m->foil_count; i++)
+    m->foils[i].number = (int)i + 1;
 }
 
 /* No more islands: the workers run out and end. */
@@ -299,8 +301,10 @@ static void end_work(fg_session *s) {
 
 fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   end_work(s);
-  while (work_on_one(s, false)) continue;
-  for (unsigned i = 0; i < s->worker_count; i++) fg_thread_join(&s->workers[i]);
+  while (work_on_one(s, false))
+    continue;
+  for (unsigned i = 0; i < s->worker_count; i++)
+    fg_thread_join(&s->workers[i]);
   s->worker_count = 0;
   if (s->status != FG_OK) return fg_fail(ctx, s->status, "%s", s->context.message);
   s->measurement->light_on_dark = s->light >= s->dark;
@@ -314,8 +318,10 @@ void fg_session_free(fg_session *s) {
   if (s->status == FG_OK) s->status = FG_ERR_INTERRUPTED; /* queued islands are left */
   pthread_mutex_unlock(&s->lock);
   end_work(s);
-  for (unsigned i = 0; i < s->worker_count; i++) fg_thread_join(&s->workers[i]);
-  for (size_t i = s->taken; i < s->queued; i++) free_job(&s->queue[i]);
+  for (unsigned i = 0; i < s->worker_count; i++)
+    fg_thread_join(&s->workers[i]);
+  for (size_t i = s->taken; i < s->queued; i++)
+    free_job(&s->queue[i]);
   free(s->queue);
   fg_islands_free(s->islands);
   pthread_mutex_destroy(&s->lock);

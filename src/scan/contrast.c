@@ -1,7 +1,7 @@
 #include "scan/contrast.h"
 
 enum {
-  ROW_STEP = 8,   /* a strip is some 20 pixels thick at 4800 dpi */
+  ROW_STEP = 8, /* a strip is some 20 pixels thick at 4800 dpi */
   RUN_PX = 64,
   RANGE_LEAST = 24, /* in 8-bit counts */
 };

@@ -119,8 +119,10 @@ void fg_gray_init(const fg_scan_header *header, fg_channel channel, fg_gray *gra
     gray->convert = choose_16(header, mix);
     return;
   }
-  if (header->has_palette) fill_palette(header, channel, gray);
-  else if (mix || !is_plain(header)) fill_spread(header, gray);
+  if (header->has_palette)
+    fill_palette(header, channel, gray);
+  else if (mix || !is_plain(header))
+    fill_spread(header, gray);
   gray->convert = choose_8(header, gray, mix);
 }
 

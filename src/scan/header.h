@@ -14,20 +14,20 @@ typedef struct fg_scan_colour {
  * host order (16 bits). */
 typedef struct fg_scan_header {
   uint64_t width_px, height_px;
-  int bit_depth;  /* of a sample: 1, 2, 4, 8, 16 */
-  int channels;   /* samples of a pixel */
-  bool colour;    /* the first three are red, green, blue; else the first is gray; others are left */
-  bool inverted;  /* gray: 0 is white */
-  unsigned white; /* a sample's largest value where that is not 2^bit_depth - 1; else 0 */
+  int bit_depth; /* of a sample: 1, 2, 4, 8, 16 */
+  int channels;  /* samples of a pixel */
+  bool colour;   /* the first three are red, green, blue; else the first is gray; others are left */
+  bool inverted; /* gray: 0 is white */
+  unsigned white;   /* a sample's largest value where that is not 2^bit_depth - 1; else 0 */
   bool has_palette; /* samples are indices into `palette` */
   size_t palette_size;
   fg_scan_colour palette[256];
-  double dpi[2];               /* as the file says, x and y; NaN when it says none */
-  const char *no_dpi;          /* then: why, in words; NULL: the format has no resolution */
-  char dpi_source[64];         /* which field says it, for error texts */
-  double bytes_least;          /* that the file must have to hold the image; 0: not known */
-  uint64_t memory_bytes;       /* that the reader will hold: a whole image, a row of tiles */
-  char warning[256];           /* what is odd and not wrong; empty when nothing is */
+  double dpi[2];         /* as the file says, x and y; NaN when it says none */
+  const char *no_dpi;    /* then: why, in words; NULL: the format has no resolution */
+  char dpi_source[64];   /* which field says it, for error texts */
+  double bytes_least;    /* that the file must have to hold the image; 0: not known */
+  uint64_t memory_bytes; /* that the reader will hold: a whole image, a row of tiles */
+  char warning[256];     /* what is odd and not wrong; empty when nothing is */
 } fg_scan_header;
 
 #endif

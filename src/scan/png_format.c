@@ -37,8 +37,10 @@ static void fill_resolution(const fg_png_header *png, fg_scan_header *header) {
   bool known = png->has_phys && png->phys_in_metres;
   for (int axis = 0; axis < 2; axis++)
     header->dpi[axis] = known ? png->per_metre[axis] * METRES_PER_INCH : NAN;
-  if (!png->has_phys) header->no_dpi = "no usable pHYs chunk";
-  else if (!known) header->no_dpi = "chunk pHYs holds the shape of its pixels only";
+  if (!png->has_phys)
+    header->no_dpi = "no usable pHYs chunk";
+  else if (!known)
+    header->no_dpi = "chunk pHYs holds the shape of its pixels only";
   snprintf(header->dpi_source, sizeof header->dpi_source, "chunk pHYs: %u × %u pixels per metre",
            png->per_metre[0], png->per_metre[1]);
 }
@@ -86,8 +88,7 @@ static fg_status decode_whole(fg_context *ctx, png_reader *reader) {
   void *row = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, reader->row_bytes, 1, &row));
-  FG_TRY_EXIT(
-      fg_memory_allocate(ctx, reader->row_bytes, png->height_px, (void **)&reader->image));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, reader->row_bytes, png->height_px, (void **)&reader->image));
   FG_TRY_EXIT(fg_interlace_read(ctx, reader->png, row, reader->image));
 exit:
   free(row);

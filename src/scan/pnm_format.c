@@ -53,7 +53,8 @@ static fg_status read_number(fg_context *ctx, fg_source *source, const char *wha
   int c = next_byte(source);
   while (is_space(c) || c == '#') {
     while (c == '#' || (c >= 0 && c != '\n' && !is_space(c))) {
-      do c = next_byte(source);
+      do
+        c = next_byte(source);
       while (c >= 0 && c != '\n');
     }
     c = next_byte(source);
@@ -103,9 +104,9 @@ static fg_status open_pnm(fg_context *ctx, fg_source *source, const fg_scan_opti
   reader->source = source;
   FG_TRY(read_header(ctx, reader, header));
   double bits = reader->bits ? 1 : header->bit_depth;
-  header->bytes_least = (double)source->offset +
-                        ceil((double)header->width_px * header->channels * bits / 8) *
-                            (double)header->height_px;
+  header->bytes_least =
+      (double)source->offset +
+      ceil((double)header->width_px * header->channels * bits / 8) * (double)header->height_px;
   reader->row_samples = (size_t)header->width_px * (size_t)header->channels;
   reader->row_bytes =
       reader->bits ? (reader->row_samples + 7) / 8 : reader->row_samples * (size_t)(bits / 8);
@@ -130,9 +131,11 @@ static void swap_bytes(uint8_t *bytes, size_t count) {
 static size_t find_too_large(const pnm_reader *reader, const void *samples) {
   size_t i = 0;
   if (reader->white > 255)
-    for (const uint16_t *v = samples; i < reader->row_samples && v[i] <= reader->white;) i++;
+    for (const uint16_t *v = samples; i < reader->row_samples && v[i] <= reader->white;)
+      i++;
   else
-    for (const uint8_t *v = samples; i < reader->row_samples && v[i] <= reader->white;) i++;
+    for (const uint8_t *v = samples; i < reader->row_samples && v[i] <= reader->white;)
+      i++;
   return i;
 }
 
@@ -163,10 +166,11 @@ static fg_status read_row(fg_context *ctx, void *r, void *samples) {
 static fg_status finish(fg_context *ctx, void *r) {
   pnm_reader *reader = r;
   if (next_byte(reader->source) < 0) return FG_OK;
-  return fg_fail(ctx, FG_ERR_DATA,
-                 "%s: goes on after its last row (%zu): more than one image, or a wrong header; give "
-                 "one image",
-                 reader->source->name, reader->height);
+  return fg_fail(
+      ctx, FG_ERR_DATA,
+      "%s: goes on after its last row (%zu): more than one image, or a wrong header; give "
+      "one image",
+      reader->source->name, reader->height);
 }
 
 static void close_pnm(void *r) {

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-#define SNAP_DPI        0.02
-#define GIVE_DPI        "give the resolution with --dpi"
+#define SNAP_DPI 0.02
+#define GIVE_DPI "give the resolution with --dpi"
 
 /* pHYs counts whole pixels per metre, so 4800 dpi = 188976.38 per metre reads as 4799.99. */
 static double snap(double dpi) {
@@ -31,13 +31,13 @@ static fg_status check_file(fg_context *ctx, const char *name, const fg_scan_hea
     return fg_fail(ctx, FG_ERR_DATA, "%s: does not say its resolution (%s); " GIVE_DPI, name,
                    header->no_dpi);
   if (isnan(header->dpi[0]) || isnan(header->dpi[1]))
-    return fg_fail(ctx, FG_ERR_DATA, "%s: cannot say its resolution (its format has none); " GIVE_DPI,
-                   name);
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: cannot say its resolution (its format has none); " GIVE_DPI, name);
   for (int axis = 0; axis < 2; axis++)
     if (!is_plausible(header->dpi[axis]))
       return fg_fail(ctx, FG_ERR_DATA,
                      "%s: says %g dpi in %c (%s), which no scanner has; " GIVE_DPI, name,
-                     header->dpi[axis], "xy"[axis], header->dpi_source);
+                     header->dpi[axis], "xy"[axis], header -> dpi_source);
   return FG_OK;
 }
 

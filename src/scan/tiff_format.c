@@ -25,10 +25,10 @@ static const struct {
     {COMPRESSION_CCITTRLE, "CCITT RLE", false, true, 0},
     {COMPRESSION_CCITTFAX3, "CCITT group 3", false, true, 0},
     {COMPRESSION_CCITTFAX4, "CCITT group 4", false, true, 0},
-    {COMPRESSION_LZW, "LZW", false, false, 3700},          /* 4096 bytes from 9 bits */
+    {COMPRESSION_LZW, "LZW", false, false, 3700},               /* 4096 bytes from 9 bits */
     {COMPRESSION_ADOBE_DEFLATE, "Deflate", false, false, 1032}, /* 258 bytes from 2 bits */
     {COMPRESSION_DEFLATE, "Deflate", false, false, 1032},
-    {COMPRESSION_PACKBITS, "PackBits", false, false, 64},  /* 128 bytes from 2 */
+    {COMPRESSION_PACKBITS, "PackBits", false, false, 64}, /* 128 bytes from 2 */
     {COMPRESSION_LZMA, "LZMA", false, false, 0},
     {COMPRESSION_ZSTD, "Zstandard", false, false, 0},
     {COMPRESSION_JPEG, "JPEG", true, false, 0},
@@ -53,8 +53,7 @@ static tmsize_t on_read(thandle_t handle, void *out, tmsize_t wanted) {
   fg_tiff *r = handle;
   ssize_t got;
   do
-    got = pread(r->source->descriptor, out, (size_t)wanted,
-                r->source->start + (off_t)r->position);
+    got = pread(r->source->descriptor, out, (size_t)wanted, r->source->start + (off_t)r->position);
   while (got < 0 && errno == EINTR);
   if (got < 0) r->source->error = errno;
   if (got > 0) r->position += (uint64_t)got;
@@ -85,7 +84,8 @@ static toff_t on_size(thandle_t handle) {
   return ((fg_tiff *)handle)->source->size;
 }
 
-static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list values) {
+static int on_error(TIFF *tiff, void *user, const char *module, const char *format,
+                    va_list values) {
   (void)tiff;
   (void)module;
   fg_tiff *r = user;
@@ -117,8 +117,11 @@ fg_status fg_tiff_fail(fg_context *ctx, const fg_tiff *r, const char *what) {
 }
 
 static fg_status refuse(fg_context *ctx, const fg_tiff *r, const char *what, unsigned value) {
-  return fg_fail(ctx, FG_ERR_DATA, "%s: has %s (%u), which is not read; " "save it as 8- or 16-bit "
-                 "gray or RGB without loss", r->source->name, what, value);
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: has %s (%u), which is not read; "
+                 "save it as 8- or 16-bit "
+                 "gray or RGB without loss",
+                 r->source->name, what, value);
 }
 
 static fg_status open_tiff(fg_context *ctx, fg_tiff *r) {
@@ -183,8 +186,8 @@ static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *heade
   header->has_palette = true;
   header->palette_size = (size_t)1 << r->bits;
   for (size_t i = 0; i < header->palette_size; i++)
-    header->palette[i] = (fg_scan_colour){(uint8_t)(red[i] >> 8), (uint8_t)(green[i] >> 8),
-                                          (uint8_t)(blue[i] >> 8)};
+    header->palette[i] =
+        (fg_scan_colour){(uint8_t)(red[i] >> 8), (uint8_t)(green[i] >> 8), (uint8_t)(blue[i] >> 8)};
   return FG_OK;
 }
 
@@ -262,8 +265,7 @@ static fg_status read_tags(fg_context *ctx, fg_tiff *r, const fg_scan_options *o
   header->channels = r->channels;
   fill_resolution(r, header);
   if (ratio > 0)
-    header->bytes_least =
-        (double)r->height * (double)r->width * r->bits * r->channels / 8 / ratio;
+    header->bytes_least = (double)r->height * (double)r->width * r->bits * r->channels / 8 / ratio;
   return FG_OK;
 }
 

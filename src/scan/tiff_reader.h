@@ -16,19 +16,19 @@ typedef fg_status fg_tiff_fetch(fg_context *ctx, fg_tiff *reader, uint8_t *row);
 struct fg_tiff {
   TIFF *tiff;
   fg_source *source;
-  uint64_t position;    /* of libtiff in the file */
+  uint64_t position; /* of libtiff in the file */
   uint64_t width, height, row;
-  int bits, channels;   /* of a sample; of a pixel */
+  int bits, channels; /* of a sample; of a pixel */
   uint16_t compression;
-  bool separate;        /* each channel in a plane of its own */
-  bool strict;          /* warnings about the image are errors */
+  bool separate; /* each channel in a plane of its own */
+  bool strict;   /* warnings about the image are errors */
   bool in_image, complained;
   bool counts_replaced; /* libtiff found the byte counts wrong and made its own */
   char words[160];      /* libtiff's last error */
   fg_tiff_fetch *fetch;
-  size_t row_bytes;     /* of a packed row, all channels */
-  uint8_t *packed;      /* room for it where samples must be unpacked or interleaved */
-  uint64_t *offsets;    /* of strips, where they are read directly */
+  size_t row_bytes;  /* of a packed row, all channels */
+  uint8_t *packed;   /* room for it where samples must be unpacked or interleaved */
+  uint64_t *offsets; /* of strips, where they are read directly */
   uint64_t strip_count, rows_per_strip;
   uint32_t tile_width, tile_height;
   size_t tile_bytes;

@@ -97,8 +97,7 @@ static fg_status plan_tiles(fg_context *ctx, fg_tiff *r, fg_scan_header *header)
   if (r->separate) return fg_tiff_fail(ctx, r, "its colours lie in separate tiles");
   if (r->tile_width == 0 || r->tile_height == 0 || r->tile_width % 8 || size == 0 ||
       size > TILE_BYTES_MOST || r->tile_width > TILE_BYTES_MOST ||
-      r->tile_height > TILE_BYTES_MOST ||
-      size != r->tile_width * pixel_bits / 8 * r->tile_height)
+      r->tile_height > TILE_BYTES_MOST || size != r->tile_width * pixel_bits / 8 * r->tile_height)
     return fg_tiff_fail(ctx, r, "its tiles have no sensible size");
   r->tile_bytes = (size_t)size;
   header->memory_bytes = size + (uint64_t)r->row_bytes * r->tile_height;

@@ -5,8 +5,10 @@
 
 #include "core/memory.h"
 
-enum { ROWS_AFTER = 3 }; /* rows of tiles beyond an island that must be there: its neighbours, and
-                            the background over two tiles */
+enum {
+  ROWS_AFTER = 3
+}; /* rows of tiles beyond an island that must be there: its neighbours, and
+      the background over two tiles */
 
 /* A group on its way. Groups that are merged point to the one that took them in. */
 typedef struct group {
@@ -24,7 +26,7 @@ struct fg_islands {
   int32_t row;          /* rows taken in */
   size_t *ready;        /* closed groups in order; owned */
   size_t ready_count, ready_capacity, handed_out;
-  size_t first_open;    /* groups before it are closed or merged */
+  size_t first_open; /* groups before it are closed or merged */
 };
 
 fg_status fg_islands_create(fg_context *ctx, const fg_tiles *tiles, fg_islands **islands) {
@@ -43,7 +45,8 @@ exit:
 }
 
 static size_t find(const fg_islands *islands, size_t i) {
-  while (islands->groups[i].into != i) i = islands->groups[i].into;
+  while (islands->groups[i].into != i)
+    i = islands->groups[i].into;
   return i;
 }
 
@@ -90,8 +93,8 @@ static fg_status start_group(fg_context *ctx, fg_islands *islands, int32_t x, si
   FG_TRY(fg_memory_reserve(ctx, islands->count + 1, sizeof *islands->groups, &islands->capacity,
                            (void **)&islands->groups));
   *made = islands->count++;
-  islands->groups[*made] = (group){
-      .island = {.x = x, .y = islands->row, .width = 1, .height = 1}, .into = *made};
+  islands->groups[*made] =
+      (group){.island = {.x = x, .y = islands->row, .width = 1, .height = 1}, .into = *made};
   return FG_OK;
 }
 
@@ -149,7 +152,8 @@ static fg_status take_row(fg_context *ctx, fg_islands *islands) {
 }
 
 fg_status fg_islands_advance(fg_context *ctx, fg_islands *islands) {
-  while (islands->row < islands->tiles->received) FG_TRY(take_row(ctx, islands));
+  while (islands->row < islands->tiles->received)
+    FG_TRY(take_row(ctx, islands));
   return FG_OK;
 }
 
@@ -167,7 +171,8 @@ bool fg_islands_next(fg_islands *islands, fg_island *island) {
 
 void fg_islands_free(fg_islands *islands) {
   if (!islands) return;
-  for (size_t i = 0; i < islands->count; i++) fg_island_free(&islands->groups[i].island);
+  for (size_t i = 0; i < islands->count; i++)
+    fg_island_free(&islands->groups[i].island);
   free(islands->groups);
   free(islands->above);
   free(islands->here);
@@ -197,7 +202,8 @@ static bool is_needed(const fg_tiles *tiles, int32_t column, int32_t row) {
 }
 
 void fg_island_forget(fg_tiles *tiles, const fg_island *island) {
-  for (size_t i = 0; i < island->count; i++) tiles->wanted[island->tiles[i]] = 2;
+  for (size_t i = 0; i < island->count; i++)
+    tiles->wanted[island->tiles[i]] = 2;
   for (size_t i = 0; i < island->count; i++) {
     int32_t column = island->tiles[i] % tiles->columns, row = island->tiles[i] / tiles->columns;
     for (int32_t y = row - REACH; y <= row + REACH; y++)
@@ -223,7 +229,8 @@ static void fill_view(const fg_tiles *tiles, const fg_island *island, int32_t x0
   for (int32_t y = 0; y < view->rows; y++) {
     size_t from = (size_t)(y + y0) * (size_t)tiles->columns + (size_t)x0, to = (size_t)y * width;
     memcpy(view->medians + to, tiles->medians + from, width * sizeof *view->medians);
-    for (size_t x = 0; x < width; x++) view->wanted[to + x] = tiles->wanted[from + x] != 0;
+    for (size_t x = 0; x < width; x++)
+      view->wanted[to + x] = tiles->wanted[from + x] != 0;
   }
   for (size_t i = 0; i < island->count; i++) {
     int32_t column = island->tiles[i] % tiles->columns, row = island->tiles[i] / tiles->columns;

@@ -15,7 +15,7 @@ extern "C" {
 #endif
 
 typedef struct fg_island {
-  int32_t *tiles;              /* row × columns + column of every wanted tile; owned */
+  int32_t *tiles; /* row × columns + column of every wanted tile; owned */
   size_t count, capacity;
   int32_t x, y, width, height; /* bounding box in tiles */
 } fg_island;
@@ -35,10 +35,10 @@ void fg_islands_free(fg_islands *islands);
 void fg_island_free(fg_island *island);
 
 /* Cuts an island out of the scan: `view` shows its tiles and what lies around them, in coordinates
- * of its own (origin_px is where its pixel (0, 0) lies in the scan), and the island is then in these
- * coordinates too. What an island measures can so depend on its surroundings alone. The scan lets
- * go the tiles that no other island needs. The caller frees `view` with fg_tiles_free; that and
- * measuring it are safe in another thread. */
+ * of its own (origin_px is where its pixel (0, 0) lies in the scan), and the island is then in
+ * these coordinates too. What an island measures can so depend on its surroundings alone. The scan
+ * lets go the tiles that no other island needs. The caller frees `view` with fg_tiles_free; that
+ * and measuring it are safe in another thread. */
 fg_status fg_island_cut(fg_context *ctx, fg_tiles *tiles, fg_island *island, fg_tiles *view,
                         int64_t origin_px[2]);
 

@@ -8,8 +8,8 @@
 
 /* Contrast (range) of a tile's block means, in 8-bit counts, above which it is kept: as many times
  * the median step between neighbouring blocks, which a strip through the tile hardly changes. For
- * white noise the range over 64 blocks is 5 of these steps. Never less than MIN (noise) nor more than
- * MAX (texture must not hide a part). A tile is judged by itself alone, so that a foil is kept
+ * white noise the range over 64 blocks is 5 of these steps. Never less than MIN (noise) nor more
+ * than MAX (texture must not hide a part). A tile is judged by itself alone, so that a foil is kept
  * in the same way whatever else lies on the bed. */
 enum { CONTRAST_MIN = 3, CONTRAST_MAX = 12, CONTRAST_OVER_STEP = 27 };
 
@@ -34,8 +34,7 @@ fg_status fg_tiles_allocate(fg_context *ctx, fg_tiles *tiles) {
 }
 
 static size_t strip_bytes(const fg_tiles *tiles) {
-  return row_bytes(tiles) * FG_TILE_PX +
-         blocks_across(tiles) * FG_BLOCKS_PER_TILE * sizeof(float);
+  return row_bytes(tiles) * FG_TILE_PX + blocks_across(tiles) * FG_BLOCKS_PER_TILE * sizeof(float);
 }
 
 static fg_status allocate_strip(fg_context *ctx, fg_tiles *tiles, int i) {
@@ -46,8 +45,8 @@ static fg_status allocate_strip(fg_context *ctx, fg_tiles *tiles, int i) {
                             (void **)&tiles->strip_blocks[i]);
 }
 
-fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
-                          int bytes_per_pixel, fg_budget *budget, fg_tiles *tiles) {
+fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px, int bytes_per_pixel,
+                          fg_budget *budget, fg_tiles *tiles) {
   *tiles = (fg_tiles){.budget = budget,
                       .width_px = width_px,
                       .height_px = height_px,
@@ -74,10 +73,12 @@ static void add_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count, 
     const void *row = rows + (size_t)y * row_bytes(tiles);
     if (tiles->bytes_per_pixel == 1) {
       const uint8_t *values = row;
-      for (size_t x = 0; x < width; x++) sums[x] += values[x];
+      for (size_t x = 0; x < width; x++)
+        sums[x] += values[x];
     } else {
       const uint16_t *values = row;
-      for (size_t x = 0; x < width; x++) sums[x] += values[x];
+      for (size_t x = 0; x < width; x++)
+        sums[x] += values[x];
     }
   }
 }
@@ -94,7 +95,8 @@ static void average_blocks(const fg_tiles *tiles, const uint32_t *sums, int64_t 
       continue;
     }
     uint64_t sum = 0;
-    for (int64_t x = from; x < to; x++) sum += sums[x];
+    for (int64_t x = from; x < to; x++)
+      sum += sums[x];
     out[b] = (float)sum * unit / (float)((to - from) * rows);
   }
 }
@@ -126,16 +128,21 @@ static float select_median(float *values, int count) {
     float pivot = values[(low + high) / 2];
     int i = low, j = high;
     while (i <= j) {
-      while (values[i] < pivot) i++;
-      while (values[j] > pivot) j--;
+      while (values[i] < pivot)
+        i++;
+      while (values[j] > pivot)
+        j--;
       if (i > j) break;
       float swap = values[i];
       values[i++] = values[j];
       values[j--] = swap;
     }
-    if (wanted <= j) high = j;
-    else if (wanted >= i) low = i;
-    else break;
+    if (wanted <= j)
+      high = j;
+    else if (wanted >= i)
+      low = i;
+    else
+      break;
   }
   return values[wanted];
 }

@@ -2,8 +2,8 @@
  *
  * Rows arrive in strips of FG_TILE_PX rows. Every strip is reduced to block means (FG_BLOCK_PX a
  * side); a tile whose block means differ by more than its own scatter is wanted, and kept with its
- * eight neighbours; of all others the median stays. Memory follows the area of the foils, not of the
- * bed. What is kept depends on the pixels around alone: not on threads, not on how the strips
+ * eight neighbours; of all others the median stays. Memory follows the area of the foils, not of
+ * the bed. What is kept depends on the pixels around alone: not on threads, not on how the strips
  * arrive, not on what else lies on the bed.
  */
 #ifndef FG_VISION_TILES_H
@@ -36,15 +36,15 @@ typedef struct fg_tile {
 } fg_tile;
 
 typedef struct fg_tiles {
-  fg_budget *budget;                   /* of kept tiles and held strips; NULL: no limit */
+  fg_budget *budget; /* of kept tiles and held strips; NULL: no limit */
   int64_t width_px, height_px;
-  int bytes_per_pixel;                 /* 1 or 2 */
-  int32_t columns, rows;               /* of tiles */
-  int32_t block_columns, block_rows;   /* of blocks inside the scan */
-  fg_tile **tiles;                     /* columns × rows; NULL: background */
-  float *medians;                      /* columns × rows: median of each tile's block means */
-  uint8_t *wanted;                     /* columns × rows: contrast above the background's scatter */
-  int32_t received;                    /* strips so far */
+  int bytes_per_pixel;               /* 1 or 2 */
+  int32_t columns, rows;             /* of tiles */
+  int32_t block_columns, block_rows; /* of blocks inside the scan */
+  fg_tile **tiles;                   /* columns × rows; NULL: background */
+  float *medians;                    /* columns × rows: median of each tile's block means */
+  uint8_t *wanted;                   /* columns × rows: contrast above the background's scatter */
+  int32_t received;                  /* strips so far */
   /* of the strips that are still undecided: */
   uint8_t *strips[FG_TILE_STRIPS];     /* rows of width_px pixels */
   float *strip_blocks[FG_TILE_STRIPS]; /* FG_BLOCKS_PER_TILE rows of columns × FG_BLOCKS_PER_TILE */
@@ -52,8 +52,8 @@ typedef struct fg_tiles {
 } fg_tiles;
 
 /* `budget` (NULL: none) must outlive the tiles. */
-fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px,
-                          int bytes_per_pixel, fg_budget *budget, fg_tiles *tiles);
+fg_status fg_tiles_create(fg_context *ctx, int64_t width_px, int64_t height_px, int bytes_per_pixel,
+                          fg_budget *budget, fg_tiles *tiles);
 
 /* Where the rows of a strip go, one after the other without padding. It may be filled while
  * strips before it are taken, as long as strip < received + FG_TILE_STRIPS - 1. */

@@ -84,7 +84,8 @@ int main(int argc, char **argv) {
   bed b = open_bed(argv[1]);
   size_t count = 0;
   for (piece *p = pieces; count < PIECES_MAX && scanf("%u %u %u %u %1023s", &p->x, &p->y, &p->width,
-                                                      &p->height, p->path) == 5; count++, p++)
+                                                      &p->height, p->path) == 5;
+       count++, p++)
     if (p->x + p->width > b.width || p->y + p->height > b.height) stop("lies outside", p->path);
   unsigned char *row = malloc(png_get_rowbytes(b.png, b.info));
   if (!row) stop("out of memory", argv[1]);

@@ -35,7 +35,8 @@ static int run_folder(const char *path) {
 
 int main(int argc, char **argv) {
   int count = 0;
-  for (int i = 1; i < argc; i++) count += run_folder(argv[i]);
+  for (int i = 1; i < argc; i++)
+    count += run_folder(argv[i]);
   printf("%d inputs\n", count);
   return count > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,4 +1,5 @@
-/* PNG: chunk checksums are put right first, or nearly every input would end at the first of them. */
+/* PNG: chunk checksums are put right first, or nearly every input would end at the first of them.
+ */
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -14,7 +15,8 @@ static void repair(uint8_t *data, size_t size) {
     size_t length = read_32(data + at);
     if (length > size - at - 12) return;
     uint32_t crc = (uint32_t)crc32(0, data + at + 4, (uInt)length + 4);
-    for (int i = 0; i < 4; i++) data[at + 8 + length + (size_t)i] = (uint8_t)(crc >> (24 - 8 * i));
+    for (int i = 0; i < 4; i++)
+      data[at + 8 + length + (size_t)i] = (uint8_t)(crc >> (24 - 8 * i));
     at += length + 12;
   }
 }

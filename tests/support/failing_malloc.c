@@ -1,13 +1,13 @@
 /* Preloaded into the program: the allocation of a given number, counted from main, fails.
  *
- * FOILGAUGE_FAIL_AT=N: the Nth fails, and all those after it when FOILGAUGE_FAIL_ON is set; 0: none,
- * and the number of allocations goes to standard error at the end.
+ * FOILGAUGE_FAIL_AT=N: the Nth fails, and all those after it when FOILGAUGE_FAIL_ON is set; 0:
+ * none, and the number of allocations goes to standard error at the end.
  */
 #include <dlfcn.h>
+#include <errno.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <errno.h>
 
 extern void *__libc_malloc(size_t size);
 extern void *__libc_calloc(size_t count, size_t size);

@@ -1,6 +1,6 @@
-/* Bad files by the hundred: an error each time, never a crash, and never a number from a damaged PNG
- * (every one of its bytes is under a checksum). TIFF has no checksums: there a changed pixel is a pixel, and
- * what is asked is that nothing breaks and that what is missing is missed. */
+/* Bad files by the hundred: an error each time, never a crash, and never a number from a damaged
+ * PNG (every one of its bytes is under a checksum). TIFF has no checksums: there a changed pixel is
+ * a pixel, and what is asked is that nothing breaks and that what is missing is missed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -110,7 +110,8 @@ static bytes make_tiff(const char *mode, uint16_t compression, bool tiled) {
   char *path = save_bytes(NULL, 0);
   TIFF *tiff = TIFFOpen(path, mode);
   uint8_t block[W * T];
-  for (size_t i = 0; i < sizeof block; i++) block[i] = (uint8_t)(i * 7 ^ i >> 3);
+  for (size_t i = 0; i < sizeof block; i++)
+    block[i] = (uint8_t)(i * 7 ^ i >> 3);
   TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, W);
   TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, H);
   TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
@@ -123,10 +124,12 @@ static bytes make_tiff(const char *mode, uint16_t compression, bool tiled) {
     TIFFSetField(tiff, TIFFTAG_TILEWIDTH, T);
     TIFFSetField(tiff, TIFFTAG_TILELENGTH, T);
     for (uint32_t y = 0; y < H; y += T)
-      for (uint32_t x = 0; x < W; x += T) TIFFWriteTile(tiff, block, x, y, 0, 0);
+      for (uint32_t x = 0; x < W; x += T)
+        TIFFWriteTile(tiff, block, x, y, 0, 0);
   } else {
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 8);
-    for (uint32_t y = 0; y < H; y++) TIFFWriteScanline(tiff, block + y % T, y, 0);
+    for (uint32_t y = 0; y < H; y++)
+      TIFFWriteScanline(tiff, block + y % T, y, 0);
   }
   TIFFClose(tiff);
   bytes file = load(path);
@@ -135,7 +138,8 @@ static bytes make_tiff(const char *mode, uint16_t compression, bool tiled) {
   return file;
 }
 
-/* Opens and reads all; any status is fine as long as an error has words and rows are what they say. */
+/* Opens and reads all; any status is fine as long as an error has words and rows are what they say.
+ */
 static fg_status read_scan(fixture *f, const bytes *file) {
   fg_context ctx = {0};
   fg_scan *scan = NULL;
@@ -172,7 +176,8 @@ static void a_tiff_that_is_cut_off_is_refused(void **state) {
     bytes file = make_tiff(layouts[k].mode, layouts[k].compression, layouts[k].tiled);
     for (size_t i = 0; i < PLACES / 4; i++) {
       bytes cut = {file.data, i * (file.size - 1) / (PLACES / 4 - 1)};
-      if (read_scan(*state, &cut) == FG_OK) fail_msg("cut at %zu of %zu: read", cut.size, file.size);
+      if (read_scan(*state, &cut) == FG_OK)
+        fail_msg("cut at %zu of %zu: read", cut.size, file.size);
     }
     free(file.data);
   }
@@ -195,8 +200,8 @@ static void wrong_bits_in_a_tiff_break_nothing(void **state) {
 
 /* Every field of every tag of a little-endian TIFF gets values that make no sense. */
 static void absurd_tags_break_nothing(void **state) {
-  static const uint32_t values[] = {0, 1, 3, 0x7fff, 0xffff, 0x10000, 0x7fffffff, 0x80000000,
-                                    0xfffffff0, 0xffffffff};
+  static const uint32_t values[] = {0,       1,          3,          0x7fff,     0xffff,
+                                    0x10000, 0x7fffffff, 0x80000000, 0xfffffff0, 0xffffffff};
   bytes file = make_tiff("wl", COMPRESSION_NONE, false);
   uint32_t directory;
   memcpy(&directory, file.data + 4, 4);

@@ -27,9 +27,12 @@ static unsigned sample_at(const kind *k, int x, int y, int channel) {
 }
 
 static void put_sample(const kind *k, uint8_t *row, int at, unsigned value) {
-  if (k->bits == 16) ((uint16_t *)(void *)row)[at] = (uint16_t)value;
-  else if (k->bits == 8) row[at] = (uint8_t)value;
-  else row[at * k->bits / 8] |= (uint8_t)(value << (8 - k->bits - at * k->bits % 8));
+  if (k->bits == 16)
+    ((uint16_t *)(void *)row)[at] = (uint16_t)value;
+  else if (k->bits == 8)
+    row[at] = (uint8_t)value;
+  else
+    row[at * k->bits / 8] |= (uint8_t)(value << (8 - k->bits - at * k->bits % 8));
 }
 
 /* A row, or the part of it that a tile holds; only one channel when `channel` is not -1. */
@@ -47,7 +50,8 @@ static void write_tiles(TIFF *tiff, const kind *k) {
   for (int y = 0; y < HEIGHT; y += TILE)
     for (int x = 0; x < WIDTH; x += TILE) {
       memset(tile, 0, sizeof tile);
-      for (int i = 0; i < TILE; i++) fill_row(k, x, TILE, y + i, -1, tile + (size_t)i * row);
+      for (int i = 0; i < TILE; i++)
+        fill_row(k, x, TILE, y + i, -1, tile + (size_t)i * row);
       assert_true(TIFFWriteTile(tiff, tile, (uint32_t)x, (uint32_t)y, 0, 0) > 0);
     }
 }
@@ -93,8 +97,10 @@ static char *write_tiff(const kind *k) {
   TIFF *tiff = TIFFOpen(path, k->mode);
   assert_non_null(tiff);
   set_tags(tiff, k);
-  if (k->tiled) write_tiles(tiff, k);
-  else write_rows(tiff, k);
+  if (k->tiled)
+    write_tiles(tiff, k);
+  else
+    write_rows(tiff, k);
   TIFFClose(tiff);
   return path;
 }
@@ -118,8 +124,7 @@ static void check_scan(const kind *k, const char *path, fg_channel channel) {
   assert_int_equal(info->width_px, WIDTH);
   assert_int_equal(info->height_px, HEIGHT);
   assert_int_equal(info->bytes_per_pixel, k->bits == 16 ? 2 : 1);
-  if (k->dpi > 0)
-    assert_true(info->dpi[0] == (k->unit == RESUNIT_INCH ? (double)k->dpi : 4800));
+  if (k->dpi > 0) assert_true(info->dpi[0] == (k->unit == RESUNIT_INCH ? (double)k->dpi : 4800));
   uint8_t row[WIDTH * 2];
   for (int y = 0; y < HEIGHT; y++) {
     if (fg_scan_read_rows(&ctx, scan, 1, row, sizeof row) != FG_OK) fail_msg("%s", ctx.message);
@@ -172,8 +177,13 @@ static void every_kind_comes_out_as_it_went_in(void **state) {
 
 static void separate_planes_are_read(void **state) {
   (void)state;
-  kind k = {.bits = 16, .channels = 3, .photometric = PHOTOMETRIC_RGB, .mode = "wb",
-            .compression = COMPRESSION_NONE, .rows_per_strip = 9, .planar = PLANARCONFIG_SEPARATE};
+  kind k = {.bits = 16,
+            .channels = 3,
+            .photometric = PHOTOMETRIC_RGB,
+            .mode = "wb",
+            .compression = COMPRESSION_NONE,
+            .rows_per_strip = 9,
+            .planar = PLANARCONFIG_SEPARATE};
   char *path = write_tiff(&k);
   check_scan(&k, path, FG_CHANNEL_GREEN);
   unlink(path);
@@ -182,8 +192,13 @@ static void separate_planes_are_read(void **state) {
 
 static void resolution_is_in_inch_or_cm(void **state) {
   (void)state;
-  kind k = {.bits = 8, .channels = 1, .photometric = PHOTOMETRIC_MINISBLACK, .mode = "wl",
-            .compression = COMPRESSION_NONE, .rows_per_strip = HEIGHT, .dpi = 2400,
+  kind k = {.bits = 8,
+            .channels = 1,
+            .photometric = PHOTOMETRIC_MINISBLACK,
+            .mode = "wl",
+            .compression = COMPRESSION_NONE,
+            .rows_per_strip = HEIGHT,
+            .dpi = 2400,
             .unit = RESUNIT_INCH};
   char *path = write_tiff(&k);
   check_scan(&k, path, FG_CHANNEL_AUTO);
@@ -214,14 +229,18 @@ static fg_status read_all(fg_context *ctx, const char *path, const fg_scan_optio
 static void loss_is_refused_unless_allowed(void **state) {
   (void)state;
   fg_context ctx = {0};
-  kind k = {.bits = 8, .channels = 1, .photometric = PHOTOMETRIC_MINISBLACK, .mode = "wl",
-            .compression = COMPRESSION_JPEG, .rows_per_strip = 8};
+  kind k = {.bits = 8,
+            .channels = 1,
+            .photometric = PHOTOMETRIC_MINISBLACK,
+            .mode = "wl",
+            .compression = COMPRESSION_JPEG,
+            .rows_per_strip = 8};
   if (!TIFFIsCODECConfigured(COMPRESSION_JPEG)) skip();
   char *path = write_tiff(&k);
   assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.dpi = 600}, NULL), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "--allow-lossy"));
-  assert_int_equal(
-      read_all(&ctx, path, &(fg_scan_options){.dpi = 600, .allow_lossy = true}, NULL), FG_OK);
+  assert_int_equal(read_all(&ctx, path, &(fg_scan_options){.dpi = 600, .allow_lossy = true}, NULL),
+                   FG_OK);
   unlink(path);
   free(path);
 }
@@ -232,8 +251,12 @@ static void wrapped_byte_counts_are_said_and_read(void **state) {
   (void)state;
   fg_context ctx = {0};
   char warning[256];
-  kind k = {.bits = 8, .channels = 1, .photometric = PHOTOMETRIC_MINISBLACK, .mode = "wl",
-            .compression = COMPRESSION_NONE, .rows_per_strip = HEIGHT};
+  kind k = {.bits = 8,
+            .channels = 1,
+            .photometric = PHOTOMETRIC_MINISBLACK,
+            .mode = "wl",
+            .compression = COMPRESSION_NONE,
+            .rows_per_strip = HEIGHT};
   char *path = write_tiff(&k);
   FILE *file = fopen(path, "r+b");
   uint8_t content[WIDTH * HEIGHT + 1024];
@@ -258,9 +281,9 @@ static void beyond_4_gib_the_last_rows_are_there(void **state) {
   const struct __attribute__((packed)) entry {
     uint16_t tag, type;
     uint32_t count, value;
-  } entries[] = {{256, 4, 1, BIG_WIDTH}, {257, 4, 1, BIG_HEIGHT}, {258, 3, 1, 16}, {259, 3, 1, 1},
-                 {262, 3, 1, 1}, {273, 4, 1, 256}, {277, 3, 1, 1}, {278, 4, 1, BIG_HEIGHT},
-                 {279, 4, 1, count}};
+  } entries[] = {{256, 4, 1, BIG_WIDTH}, {257, 4, 1, BIG_HEIGHT}, {258, 3, 1, 16},
+                 {259, 3, 1, 1},         {262, 3, 1, 1},          {273, 4, 1, 256},
+                 {277, 3, 1, 1},         {278, 4, 1, BIG_HEIGHT}, {279, 4, 1, count}};
   const uint16_t entry_count = sizeof entries / sizeof *entries;
   char *path = save_bytes((const uint8_t *)"II*\0\x8\0\0\0", 8);
   FILE *file = fopen(path, "r+b");
@@ -286,13 +309,14 @@ static void expect_pnm(const char *text, size_t size, fg_status wanted, const ch
   fg_scan *scan = NULL;
   uint8_t row[256];
   char *path = save_bytes((const uint8_t *)text, size);
-  fg_status status = fg_scan_open(
-      &ctx, path, &(fg_scan_options){.dpi = 600, .channel = FG_CHANNEL_GREEN}, &scan);
+  fg_status status =
+      fg_scan_open(&ctx, path, &(fg_scan_options){.dpi = 600, .channel = FG_CHANNEL_GREEN}, &scan);
   for (int64_t y = 0; scan && y < fg_scan_get_info(scan)->height_px && status == FG_OK; y++)
     status = fg_scan_read_rows(&ctx, scan, 1, row, sizeof row);
   if (status != wanted || (says && wanted != FG_OK && !strstr(ctx.message, says)))
     fail_msg("%.20s: %d %s", text, status, ctx.message);
-  if (wanted == FG_OK) assert_memory_equal(row, says, 2 * (size_t)fg_scan_get_info(scan)->bytes_per_pixel);
+  if (wanted == FG_OK)
+    assert_memory_equal(row, says, 2 * (size_t)fg_scan_get_info(scan)->bytes_per_pixel);
   fg_scan_close(scan);
   unlink(path);
   free(path);
