@@ -68,11 +68,11 @@ typedef enum fg_loop_role {
 
 typedef struct fg_loop_coordinate {
   char name[FG_LOOP_NAME];
-  double *value;     /* rows; the level's index for words */
-  size_t levels;     /* words: how many; numbers: 0 */
-  char **level_name; /* levels */
-  size_t distinct;   /* different values */
-  double few[FG_LOOP_COLUMNS + 1]; /* numbers: the lowest of them, ascending */
+  double *value;                        /* rows; the level's index for words */
+  size_t levels;                        /* words: how many; numbers: 0 */
+  char **level_name;                    /* levels */
+  size_t distinct;                      /* different values */
+  double few[FG_LOOP_COLUMNS + 1];      /* numbers: the lowest of them, ascending */
   double quantile[FG_LOOP_COLUMNS + 1]; /* of the rows, 0 to 1 in equal steps: knots of curves */
   unsigned roles;
   double kelvin_offset; /* value + kelvin_offset = kelvin */
@@ -105,7 +105,7 @@ struct fg_loop_effect;
 
 typedef struct fg_loop_candidate {
   const struct fg_loop_effect *effect;
-  size_t a, b; /* coordinates; b = a where there is one */
+  size_t a, b;   /* coordinates; b = a where there is one */
   size_t row[2]; /* outlier, exchanged runs */
 } fg_loop_candidate;
 
@@ -161,14 +161,14 @@ typedef struct fg_loop_claim {
   size_t columns;
   double shape[FG_LOOP_SHAPES], shape_u[FG_LOOP_SHAPES];
   double coefficient[FG_LOOP_COLUMNS], coefficient_u[FG_LOOP_COLUMNS];
-  double amplitude;       /* half the range of the effect over the rows, response's unit */
-  double amplitude_u;     /* standard uncertainty */
-  double interval[2];     /* 95 % */
-  double p_value;         /* max-T */
+  double amplitude;           /* half the range of the effect over the rows, response's unit */
+  double amplitude_u;         /* standard uncertainty */
+  double interval[2];         /* 95 % */
+  double p_value;             /* max-T */
   double p_flip, p_simulated; /* NaN where not used */
-  double retained_share;  /* |M W f|² / |W f|² */
+  double retained_share;      /* |M W f|² / |W f|² */
   double cv_gain, cv_gain_se; /* NaN for lone rows */
-  int held_out;           /* +1 confirmed, 0 not contradicted, -1 none kept aside */
+  int held_out;               /* +1 confirmed, 0 not contradicted, -1 none kept aside */
   fg_loop_alias alias[FG_LOOP_ALIASES];
   size_t aliases, aliases_unlisted;
 } fg_loop_claim;
@@ -177,8 +177,8 @@ typedef struct fg_loop_rejected {
   fg_loop_candidate candidate;
   char name[FG_LOOP_NAME];
   fg_loop_verdict verdict;
-  double would_explain;       /* share of the residual sum that it would take away */
-  double p_value;             /* max-T, last step */
+  double would_explain; /* share of the residual sum that it would take away */
+  double p_value;       /* max-T, last step */
   double retained_share;
   double smallest_detectable; /* amplitude found with a power of 80 %; NaN where nothing would */
 } fg_loop_rejected;
@@ -197,8 +197,8 @@ typedef struct fg_loop_curve {
 /* Errors over a set of rows. */
 typedef struct fg_loop_error {
   double rms, robust_sd, p95, maximum;
-  double held_out_rms;         /* rows kept aside; NaN without */
-  double cross_validated_rms;  /* whole groups left out in turn */
+  double held_out_rms;        /* rows kept aside; NaN without */
+  double cross_validated_rms; /* whole groups left out in turn */
 } fg_loop_error;
 
 typedef struct fg_loop_noise {
@@ -262,12 +262,12 @@ double fg_loop_curve_at(const fg_loop_curve *curve, double value);
 const fg_loop_effect *fg_loop_table_effects(void);
 
 typedef struct fg_loop_table_spec {
-  const char *response; /* column */
-  const char *model;    /* a formula, or "arc_length" */
-  const char *group;    /* column, or NULL */
-  const char *order;    /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
-  const char *hold_out; /* "0.2", "COLUMN=VALUE", "0"; NULL: a fifth where there are 20 groups or
-                           more, or 10 foils */
+  const char *response;    /* column */
+  const char *model;       /* a formula, or "arc_length" */
+  const char *group;       /* column, or NULL */
+  const char *order;       /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
+  const char *hold_out;    /* "0.2", "COLUMN=VALUE", "0"; NULL: a fifth where there are 20 groups or
+                              more, or 10 foils */
   const fg_design *design; /* arc_length only */
   uint64_t seed;
 } fg_loop_table_spec;

@@ -38,7 +38,8 @@ static const struct argp_option options[] = {
     {"table", OPTION_TABLE, "DATA.csv", 0, "The measured data", 0},
     {"response", OPTION_RESPONSE, "COLUMN", 0, "What was measured", 0},
     {"model", OPTION_MODEL, "FORMULA", 0,
-     "The declared model: a formula ('1 + T + D + T:D + T^2'), or arc_length (from the bump radius)",
+     "The declared model: a formula ('1 + T + D + T:D + T^2'), or arc_length (from the bump "
+     "radius)",
      0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
     {"order", OPTION_ORDER, "COLUMN", 0,
@@ -83,11 +84,16 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     int key;
     const char **into;
   } texts[] = {
-      {OPTION_TABLE, &arguments->table_path},     {OPTION_RESPONSE, &arguments->spec.response},
-      {OPTION_MODEL, &arguments->spec.model},     {OPTION_GROUP, &arguments->spec.group},
-      {OPTION_ORDER, &arguments->spec.order},     {OPTION_DESIGN, &arguments->design_path},
-      {OPTION_DECLARED, &arguments->declared_path}, {OPTION_HOLD_OUT, &arguments->spec.hold_out},
-      {OPTION_MODEL_OUT, &arguments->model_path}, {OPTION_HTML, &arguments->page_path},
+      {OPTION_TABLE, &arguments->table_path},
+      {OPTION_RESPONSE, &arguments->spec.response},
+      {OPTION_MODEL, &arguments->spec.model},
+      {OPTION_GROUP, &arguments->spec.group},
+      {OPTION_ORDER, &arguments->spec.order},
+      {OPTION_DESIGN, &arguments->design_path},
+      {OPTION_DECLARED, &arguments->declared_path},
+      {OPTION_HOLD_OUT, &arguments->spec.hold_out},
+      {OPTION_MODEL_OUT, &arguments->model_path},
+      {OPTION_HTML, &arguments->page_path},
       {'o', &arguments->output_path},
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)

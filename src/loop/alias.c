@@ -112,8 +112,8 @@ static double cosine(size_t n, const double *a, const double *b) {
 }
 
 typedef struct alias_test {
-  size_t rank, more;      /* of the rival; of the winner beside it */
-  double gain, p_value;   /* of the rival; of the winner's surplus */
+  size_t rank, more;    /* of the rival; of the winner beside it */
+  double gain, p_value; /* of the rival; of the winner's surplus */
   double correlation;
 } alias_test;
 

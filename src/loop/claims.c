@@ -8,7 +8,8 @@
 #include "core/memory.h"
 #include "loop/fit.h"
 
-/* d(effect)/d(shape) at fixed coefficients: columns × n, where the shape may move by small steps. */
+/* d(effect)/d(shape) at fixed coefficients: columns × n, where the shape may move by small steps.
+ */
 static fg_status shape_slope(fg_context *ctx, const loop_frame *frame,
                              const fg_loop_candidate *candidate, const double *shape, size_t d,
                              const double *beta, double *slope) {
@@ -78,7 +79,8 @@ static void amplitude(const loop_frame *frame, const loop_fit *fit, const loop_f
   claim->amplitude_u = sqrt(fmax(sum, 0) * variance);
 }
 
-/* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom. */
+/* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom.
+ */
 static double freedom_of(const loop_frame *frame, size_t first, size_t count, double freedom) {
   if (!frame->levels) return freedom;
   for (size_t k = first; k < first + count; k++)
@@ -122,9 +124,8 @@ static void describe(const loop_frame *frame, const loop_fit *fit, const loop_fi
     }
     for (size_t d = 0; d < effect->shapes; d++)
       claim[m].shape_u[d] =
-          d < slopes
-              ? sqrt(variance * wide->inverse[(slope + d) * wide->columns + slope + d])
-              : NAN;
+          d < slopes ? sqrt(variance * wide->inverse[(slope + d) * wide->columns + slope + d])
+                     : NAN;
     slope += slopes;
     claim[m].interval[0] = claim[m].amplitude - t * claim[m].amplitude_u;
     claim[m].interval[1] = claim[m].amplitude + t * claim[m].amplitude_u;

@@ -91,7 +91,8 @@ static void place_knots(const fg_loop_coordinate *at, size_t knots, double *knot
     double place = (double)k / (double)(knots - 1) * FG_LOOP_COLUMNS;
     size_t below = (size_t)fmin(place, FG_LOOP_COLUMNS - 1);
     double share = place - (double)below;
-    knot[k] = ((1 - share) * at->quantile[below] + share * at->quantile[below + 1] - at->low) / width;
+    knot[k] =
+        ((1 - share) * at->quantile[below] + share * at->quantile[below + 1] - at->low) / width;
     if (k > 0 && knot[k] - knot[k - 1] < 0.25 / (double)knots) distinct = false;
   }
   for (size_t k = 0; !distinct && k < knots; k++)

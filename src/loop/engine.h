@@ -28,12 +28,12 @@ typedef struct loop_set {
 
 typedef struct loop_frame {
   const fg_loop_problem *problem;
-  size_t n, *row;           /* rows of the problem */
-  size_t *group, groups;    /* renumbered */
-  size_t *flip, flips;      /* units of sign flips */
-  size_t *start, blocks;    /* series: first row of each, and n at the end */
+  size_t n, *row;              /* rows of the problem */
+  size_t *group, groups;       /* renumbered */
+  size_t *flip, flips;         /* units of sign flips */
+  size_t *start, blocks;       /* series: first row of each, and n at the end */
   size_t *level_start, levels; /* the same of groups that share a level */
-  double *y;                /* n, exchanged runs put back */
+  double *y;                   /* n, exchanged runs put back */
   size_t columns;
   double *x; /* columns × n */
 } loop_frame;

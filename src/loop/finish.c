@@ -126,8 +126,8 @@ static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim 
   fg_loop_problem grid = *problem;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows + POINTS, sizeof *effect, (void **)&effect));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->coordinates, sizeof *coordinate,
-                                 (void **)&coordinate));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, problem->coordinates, sizeof *coordinate, (void **)&coordinate));
   FG_TRY_EXIT(fg_memory_allocate(ctx, POINTS, sizeof *curve->shape, (void **)&curve->shape));
   FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, problem, fit, effect));
   for (size_t i = 0; i < problem->rows; i++)
@@ -180,9 +180,10 @@ static fg_status errors(fg_context *ctx, loop_run *run, loop_noise *noise) {
     memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
   result->noise.rho = noise->rho;
   result->noise.lambda = noise->lambda;
-  result->noise_floor = result->noise.sd;
   FG_TRY(measure(ctx, run, result->before_fit, &result->before));
   FG_TRY(measure(ctx, run, result->after_fit, &result->after));
+  /* Strong correlation makes the sd of a row larger than what these rows show. */
+  result->noise_floor = fmin(result->noise.sd, 1.25 * result->after.rms);
   FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
   FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
                          &result->after.cross_validated_rms));
@@ -233,7 +234,7 @@ fg_status loop_finish(fg_context *ctx, loop_run *run) {
   FG_TRY(parameters(ctx, run, noise));
   run->noise = noise;
   run->sd = result->noise.sd;
-  result->verdict = run->has_curve ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
+  result->verdict = run->has_curve   ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
                     : result->claims ? FG_LOOP_EXPLAINED
                                      : FG_LOOP_CLEAN;
   return FG_OK;

@@ -186,7 +186,8 @@ fg_status loop_cross_validated_gain(fg_context *ctx, const fg_loop_problem *prob
   loop_whiten(&frame, noise, residual + frame.n);
   *gain = 0;
   for (size_t i = 0; i < frame.n; i++)
-    sum[frame.group[i]] += residual[i] * residual[i] - residual[frame.n + i] * residual[frame.n + i];
+    sum[frame.group[i]] +=
+        residual[i] * residual[i] - residual[frame.n + i] * residual[frame.n + i];
   for (size_t g = 0; g < frame.groups; g++)
     *gain += sum[g];
   double groups = (double)frame.groups, mean = *gain / groups;

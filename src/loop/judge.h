@@ -33,11 +33,11 @@ fg_status loop_smallest_amplitudes(fg_context *ctx, const loop_bench *bench,
 /* The best outlier and the best exchange of two rows. */
 typedef struct loop_lone {
   fg_loop_candidate candidate;
-  bool known;           /* there is one */
-  double ratio;         /* residual sum after / before */
-  double p_value;       /* against heavy tails, families counted */
-  double f_critical;    /* as above, one freedom */
-  double length;        /* mean |M W e|² of a row */
+  bool known;        /* there is one */
+  double ratio;      /* residual sum after / before */
+  double p_value;    /* against heavy tails, families counted */
+  double f_critical; /* as above, one freedom */
+  double length;     /* mean |M W e|² of a row */
 } loop_lone;
 
 fg_status loop_judge_lone(fg_context *ctx, const loop_frame *frame, loop_noise noise, size_t draws,

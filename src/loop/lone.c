@@ -15,7 +15,7 @@
 
 typedef struct lone_bench {
   size_t n;
-  double *a;    /* n × n; only the diagonal in large frames */
+  double *a; /* n × n; only the diagonal in large frames */
   double *diagonal;
   double *mean; /* fitted response */
 } lone_bench;
@@ -62,9 +62,8 @@ static void best_exchange(const lone_bench *bench, const double *response, const
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < i; j++) {
       double d = response[j] - response[i];
-      double change =
-          2 * d * (ay[i] - ay[j]) +
-          d * d * (bench->diagonal[i] + bench->diagonal[j] - 2 * bench->a[i * n + j]);
+      double change = 2 * d * (ay[i] - ay[j]) +
+                      d * d * (bench->diagonal[i] + bench->diagonal[j] - 2 * bench->a[i * n + j]);
       double ratio = fmax(1 + change / rss, 1e-12);
       if (ratio < best->ratio[1]) {
         best->ratio[1] = ratio;
@@ -115,8 +114,8 @@ static fg_status fill_mean(fg_context *ctx, const loop_frame *frame, loop_noise 
     for (size_t k = 0; k < frame->columns; k++)
       residual -= fit.beta[k] * frame->x[k * frame->n + i];
     size_t row = frame->row[i];
-    bench->mean[i] = frame->y[i] - frame->problem->residual[row] +
-                     frame->problem->response[row] - residual;
+    bench->mean[i] =
+        frame->y[i] - frame->problem->residual[row] + frame->problem->response[row] - residual;
   }
   loop_fit_free(&fit);
   return FG_OK;
@@ -153,8 +152,7 @@ static void take_p(const lone_null *null, size_t kind, double ratio, double free
   while (below < null->draws && null->ratio[kind][below] <= ratio + 1e-12)
     below++;
   lone->ratio = ratio;
-  lone->p_value =
-      fmin(1, LOOP_FAMILIES * (1 + (double)below) / (1 + (double)null->draws));
+  lone->p_value = fmin(1, LOOP_FAMILIES * (1 + (double)below) / (1 + (double)null->draws));
   double edge = null->ratio[kind][(size_t)((double)null->draws * 0.01 / LOOP_FAMILIES)];
   lone->f_critical = (1 / edge - 1) * (freedom - 1);
 }
@@ -223,8 +221,7 @@ static fg_status judge_large(fg_context *ctx, const loop_frame *frame, loop_nois
   lone[0].known = true;
   lone[0].ratio = 1 - largest * largest / sum;
   lone[0].length = 1;
-  lone[0].p_value =
-      fmin(1, LOOP_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
+  lone[0].p_value = fmin(1, LOOP_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
   lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(0.01 / LOOP_FAMILIES / 2 / n, 4), 2) / 2;
   lone[0].candidate.row[0] = frame->row[worst];
   return FG_OK;

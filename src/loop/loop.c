@@ -10,8 +10,8 @@
 #include "loop/run.h"
 
 const char *fg_loop_verdict_word(fg_loop_verdict verdict) {
-  static const char *const words[] = {"found",  "tied", "absent", "inconclusive",
-                                      "absorbed by geometry", "explained by others"};
+  static const char *const words[] = {
+      "found", "tied", "absent", "inconclusive", "absorbed by geometry", "explained by others"};
   return words[verdict];
 }
 
@@ -112,6 +112,24 @@ static fg_status search(fg_context *ctx, loop_run *run) {
   return loop_swap(ctx, run);
 }
 
+/* Nothing claimed over an order along which the residual is correlated: say what that leaves open.
+ */
+static fg_status note_correlation(fg_context *ctx, const loop_run *run) {
+  enum { SHARE_PCT = 50 };
+  fg_loop_result *result = run->result;
+  const fg_loop_rejected *nearest = NULL;
+  if (result->verdict != FG_LOOP_CLEAN || 100 * result->noise.rho < SHARE_PCT) return FG_OK;
+  for (size_t i = 0; i < result->rejects; i++)
+    if (!nearest || result->rejected[i].p_value < nearest->p_value) nearest = &result->rejected[i];
+  if (!nearest) return FG_OK;
+  return loop_note(
+      ctx, result,
+      "The residual is not white: neighbours correlate at %.2f along the order. In %zu "
+      "rows a slow change and correlated noise look alike; the nearest effect is %s "
+      "(p = %.2g). Repeating the first settings at the end would tell.",
+      result->noise.rho, run->problem->rows, nearest->name, nearest->p_value);
+}
+
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result) {
   fg_status status = FG_OK;
@@ -125,6 +143,7 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
   FG_TRY_EXIT(loop_finish(ctx, &run));
   if (worth) FG_TRY_EXIT(loop_list_rejected(ctx, &run));
   if (worth) FG_TRY_EXIT(loop_advise(ctx, &run));
+  if (worth) FG_TRY_EXIT(note_correlation(ctx, &run));
 exit:
   free(run.train);
   free(run.candidate);

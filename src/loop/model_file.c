@@ -145,7 +145,8 @@ static fg_status fill_words(fg_context *ctx, const fg_loop_model *model, const f
     const cJSON *level;
     size_t index = 0;
     cJSON_ArrayForEach(level, from->levels) {
-      if (word && cJSON_IsString(level) && !strcmp(level->valuestring, column->words[column->word[i]])) {
+      if (word && cJSON_IsString(level) &&
+          !strcmp(level->valuestring, column->words[column->word[i]])) {
         at->value[i] = (double)index;
         known = true;
       }
@@ -229,12 +230,10 @@ static fg_status apply_curve(fg_context *ctx, const fg_loop_model *model, const 
   FG_TRY(fg_memory_allocate(ctx, (size_t)count, sizeof *curve.shape, (void **)&curve.shape));
   for (int k = 0; k < count; k++)
     for (int d = 0; d < 2; d++)
-      curve.shape[k][d] =
-          cJSON_GetNumberValue(cJSON_GetArrayItem(cJSON_GetArrayItem(shape, k), d));
+      curve.shape[k][d] = cJSON_GetNumberValue(cJSON_GetArrayItem(cJSON_GetArrayItem(shape, k), d));
   curve.count = (size_t)count;
-  model_coordinate range = {.name = name,
-                            .low = curve.shape[0][0],
-                            .high = curve.shape[count - 1][0]};
+  model_coordinate range = {
+      .name = name, .low = curve.shape[0][0], .high = curve.shape[count - 1][0]};
   for (size_t i = 0; i < table->rows && status == FG_OK; i++) {
     char text[32];
     double margin = 1e-9 * (range.high - range.low), value = numbers[i].value;
@@ -256,7 +255,7 @@ fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_ta
   FG_TRY(fg_table_numbers(ctx, table, model->response, &response));
   FG_TRY(fg_memory_allocate(ctx, table->rows + 1, sizeof *change, (void **)&change));
   cJSON_ArrayForEach(claim, cJSON_GetObjectItemCaseSensitive(model->json, "claims"))
-    FG_TRY_EXIT(apply_claim(ctx, model, claim, table, change));
+      FG_TRY_EXIT(apply_claim(ctx, model, claim, table, change));
   const cJSON *curve = cJSON_GetObjectItemCaseSensitive(model->json, "unattributed");
   if (cJSON_IsObject(curve)) FG_TRY_EXIT(apply_curve(ctx, model, curve, table, change));
   for (size_t c = 0; c < table->columns; c++)

@@ -51,17 +51,15 @@ static void describe(const loop_run *run, const loop_step *step, size_t c, doubl
   if (isfinite(judgement->score[c].z)) {
     double k = loop_version_freedom(&step->bench, version);
     one->would_explain = 1 - judgement->score[c].ratio;
-    one->p_value = fmax(judgement->p_flip[c], isfinite(judgement->p_simulated[c])
-                                                  ? judgement->p_simulated[c]
-                                                  : 0);
+    one->p_value = fmax(judgement->p_flip[c],
+                        isfinite(judgement->p_simulated[c]) ? judgement->p_simulated[c] : 0);
     one->retained_share = version->share;
     if (step->judgement.smallest_p >= run->options.accept_p)
       one->smallest_detectable = NAN;
     else if (amplitude)
       one->smallest_detectable = amplitude[c] * sd_white;
     else
-      one->smallest_detectable =
-          detectable(judgement->f_critical[c], k, sd_white, version->length);
+      one->smallest_detectable = detectable(judgement->f_critical[c], k, sd_white, version->length);
   } else {
     one->p_value = 1;
     for (size_t v = 0; v < step->bench.versions; v++)
@@ -128,8 +126,8 @@ static fg_status fit_alone(fg_context *ctx, const loop_run *run, size_t m,
 }
 
 static fg_status difference(fg_context *ctx, const fg_loop_problem *problem,
-                            const fg_loop_claim *winner, const fg_loop_claim *rival,
-                            double *work, double *apart) {
+                            const fg_loop_claim *winner, const fg_loop_claim *rival, double *work,
+                            double *apart) {
   FG_TRY(fg_loop_claim_evaluate(ctx, problem, winner, apart));
   FG_TRY(fg_loop_claim_evaluate(ctx, problem, rival, work));
   for (size_t i = 0; i < problem->rows; i++)

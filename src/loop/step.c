@@ -38,8 +38,8 @@ fg_status loop_step_open(fg_context *ctx, loop_run *run, const loop_set *set, bo
   FG_TRY_EXIT(loop_judge(ctx, &step->bench, draws, run->options.seed, &step->judgement));
   loop_noise noise = step->bench.noise[step->judgement.null_noise];
   if (judged)
-    FG_TRY_EXIT(loop_judge_lone(ctx, &step->frame, noise, draws, run->options.seed + 1,
-                                step->lone));
+    FG_TRY_EXIT(
+        loop_judge_lone(ctx, &step->frame, noise, draws, run->options.seed + 1, step->lone));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) loop_step_close(step);
@@ -134,8 +134,8 @@ static fg_status right_form(fg_context *ctx, const loop_run *run, const loop_ste
     if (loop_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
         !(total_p(&step->judgement, c) < bar(run)) || step->stand[c].z <= best)
       continue;
-    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[c], &step->stand[curve],
-                       &p));
+    FG_TRY(
+        loop_beside(ctx, &step->frame, step_noise(step), &step->stand[c], &step->stand[curve], &p));
     if (p <= 0.003) continue;
     best = step->stand[c].z;
     *winner = c;
@@ -156,8 +156,8 @@ static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_ste
     double p;
     if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[*winner],
-                       &step->stand[c], &p));
+    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[*winner], &step->stand[c],
+                       &p));
     if (p > 0.003 || !(total_p(&step->judgement, c) < run->options.accept_p)) continue;
     if (step->stand[c].z > best) {
       best = step->stand[c].z;
@@ -170,7 +170,8 @@ static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_ste
 
 static fg_status gate(fg_context *ctx, const loop_run *run, const loop_set *with, loop_noise noise,
                       double *gain, double *se, bool *passes) {
-  FG_TRY(loop_cross_validated_gain(ctx, run->problem, run->train, &run->set, with, noise, gain, se));
+  FG_TRY(
+      loop_cross_validated_gain(ctx, run->problem, run->train, &run->set, with, noise, gain, se));
   *passes = *gain > *se;
   return FG_OK;
 }
@@ -191,9 +192,10 @@ static fg_status take_curve(fg_context *ctx, loop_run *run, const loop_step *ste
   return FG_OK;
 }
 
-/* The curve given, then the next best over the same coordinate: knots are chosen by what predicts. */
-static fg_status take_best_curve(fg_context *ctx, loop_run *run, const loop_step *step, size_t curve,
-                                 bool *accepted) {
+/* The curve given, then the next best over the same coordinate: knots are chosen by what predicts.
+ */
+static fg_status take_best_curve(fg_context *ctx, loop_run *run, const loop_step *step,
+                                 size_t curve, bool *accepted) {
   double below = step->stand[curve].z;
   size_t coordinate = step->stand[curve].candidate.a, next = curve;
   while (next < run->candidates) {
@@ -272,8 +274,8 @@ static bool lone_first(const loop_run *run, const loop_step *step, bool listed, 
   return found;
 }
 
-/* A second form over a coordinate that a claim lives on already: two forms that the table lists make
- * one that it does not. The claim gives way to a curve, where one serves. */
+/* A second form over a coordinate that a claim lives on already: two forms that the table lists
+ * make one that it does not. The claim gives way to a curve, where one serves. */
 static fg_status second_form(fg_context *ctx, loop_run *run, const loop_step *step, size_t winner,
                              bool *accepted) {
   const fg_loop_candidate *candidate = &step->stand[winner].candidate;
@@ -313,13 +315,14 @@ static fg_status decide(fg_context *ctx, loop_run *run, loop_step *step, bool *a
     FG_TRY(wrong_form(ctx, run, step, &winner, &curve, &wrong));
     if (wrong) FG_TRY(take_best_curve(ctx, run, step, curve, accepted));
     if (wrong && *accepted) return FG_OK;
-    FG_TRY(loop_simplify(ctx, &step->frame, step_noise(step), step->stand,
-                         run->candidates, winner, &winner));
+    FG_TRY(loop_simplify(ctx, &step->frame, step_noise(step), step->stand, run->candidates, winner,
+                         &winner));
     FG_TRY(second_form(ctx, run, step, winner, accepted));
     if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));
     if (*accepted) return FG_OK;
   }
-  if (best_passing(run, step, true, &curve)) return take_best_curve(ctx, run, step, curve, accepted);
+  if (best_passing(run, step, true, &curve))
+    return take_best_curve(ctx, run, step, curve, accepted);
   return FG_OK;
 }
 
@@ -356,8 +359,8 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
       continue;
     }
     if (step.stand[best].z > step.stand[own].z)
-      status = loop_simplify(ctx, &step.frame, step_noise(&step), step.stand,
-                             run->candidates, best, &best);
+      status = loop_simplify(ctx, &step.frame, step_noise(&step), step.stand, run->candidates, best,
+                             &best);
     if (status == FG_OK) {
       size_t chosen = step.stand[best].z > step.stand[own].z ? best : own;
       claim->candidate = run->candidate[chosen];
@@ -365,8 +368,8 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
       loop_candidate_name(run->problem, &claim->candidate, claim->name);
       run->set.candidate[m] = claim->candidate;
       memcpy(run->set.shape[m], step.stand[chosen].shape, sizeof run->set.shape[m]);
-      status = loop_alias_class(ctx, &step.frame, step_noise(&step), step.stand,
-                                step.stands, &step.stand[chosen], claim);
+      status = loop_alias_class(ctx, &step.frame, step_noise(&step), step.stand, step.stands,
+                                &step.stand[chosen], claim);
       claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
     }
     loop_step_close(&step);

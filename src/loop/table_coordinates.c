@@ -9,11 +9,22 @@
 #include "loop/table_parts.h"
 
 /* What a foil measurement gives: consequences of springback, not its causes. */
-static const char *const results[] = {
-    "bump_radius_mm",  "radius_mm",           "bump_angle_deg",       "intersection_angle_deg",
-    "height_mm",       "clearance_mm",        "clearance_error",      "radius_error_pct",
-    "bump_angle_error_pct", "springback_error_pct", "overall_radius_mm", "centre_to_centre_mm",
-    "height_model_mm", "bump_angle_model_deg", "rms_um", "u_radius_mm"};
+static const char *const results[] = {"bump_radius_mm",
+                                      "radius_mm",
+                                      "bump_angle_deg",
+                                      "intersection_angle_deg",
+                                      "height_mm",
+                                      "clearance_mm",
+                                      "clearance_error",
+                                      "radius_error_pct",
+                                      "bump_angle_error_pct",
+                                      "springback_error_pct",
+                                      "overall_radius_mm",
+                                      "centre_to_centre_mm",
+                                      "height_model_mm",
+                                      "bump_angle_model_deg",
+                                      "rms_um",
+                                      "u_radius_mm"};
 
 static bool is_result(const char *name) {
   for (size_t i = 0; i < sizeof results / sizeof *results; i++)

@@ -107,8 +107,7 @@ static double predict(const fg_design *design, const fg_nominal *nominal, double
   return value(design, &model);
 }
 
-static fg_status radius_column(fg_context *ctx, const fg_table *table,
-                               const fg_extended **radius) {
+static fg_status radius_column(fg_context *ctx, const fg_table *table, const fg_extended **radius) {
   fg_context ignored = {0};
   if (fg_table_numbers(&ignored, table, "bump_radius_mm", radius) == FG_OK) return FG_OK;
   if (fg_table_numbers(&ignored, table, "radius_mm", radius) == FG_OK) return FG_OK;
@@ -138,9 +137,9 @@ fg_status table_fill_arc_length(fg_context *ctx, const table_build *build) {
       return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: the bump radius is %g mm; it must be above 0",
                      build->table->source, row + 1, r);
     problem->residual[i] -= predict(design, &nominal, r, 0, value);
-    constant->value[i] = (predict(design, &nominal, r, small, value) -
-                          predict(design, &nominal, r, -small, value)) /
-                         (2 * small);
+    constant->value[i] =
+        (predict(design, &nominal, r, small, value) - predict(design, &nominal, r, -small, value)) /
+        (2 * small);
     slope->value[i] = constant->value[i] * (r / design->bump_radius_mm - 1);
   }
   table_finish_coordinate(problem, constant);

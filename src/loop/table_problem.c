@@ -25,9 +25,8 @@ static fg_status choose_order(fg_context *ctx, table_build *build) {
   const fg_extended *ignored;
   build->order = build->spec->order;
   if (build->order) return fg_table_numbers(ctx, build->table, build->order, &ignored);
-  build->order = build->spec->group
-                     ? first_column(build->table, bump_names, 3)
-                     : first_column(build->table, order_names, 5);
+  build->order = build->spec->group ? first_column(build->table, bump_names, 3)
+                                    : first_column(build->table, order_names, 5);
   return FG_OK;
 }
 
@@ -52,8 +51,7 @@ static fg_status group_keys(fg_context *ctx, const table_build *build, row_key *
   FG_TRY(fg_table_find(ctx, build->table, build->spec->group, &column));
   FG_TRY(fg_table_levels(ctx, build->table, build->spec->group, true, &levels));
   size_t *number = NULL, next = 0;
-  fg_status status =
-      fg_memory_allocate(ctx, levels.count, sizeof *number, (void **)&number);
+  fg_status status = fg_memory_allocate(ctx, levels.count, sizeof *number, (void **)&number);
   for (size_t i = 0; status == FG_OK && i < rows; i++) {
     size_t level = levels.index[i];
     if (column->word_count && !number[level]) number[level] = ++next;
@@ -71,8 +69,7 @@ static fg_status sort_rows(fg_context *ctx, const table_build *build) {
   row_key *key = NULL;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *key, (void **)&key));
   fg_status status = FG_OK;
-  if (build->order)
-    FG_TRY_EXIT(fg_table_numbers(ctx, build->table, build->order, &order));
+  if (build->order) FG_TRY_EXIT(fg_table_numbers(ctx, build->table, build->order, &order));
   FG_TRY_EXIT(group_keys(ctx, build, key));
   for (size_t i = 0; i < rows; i++) {
     key[i].row = i;
@@ -222,7 +219,7 @@ fg_status table_hold_out(fg_context *ctx, const table_build *build) {
   char *end;
   double share = strtod(text, &end);
   if (*end || end == text || !(share >= 0 && share < 0.6))
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "--hold-out %s: a share from 0 to below 0.6, or COLUMN=VALUE", text);
+    return fg_fail(ctx, FG_ERR_USAGE, "--hold-out %s: a share from 0 to below 0.6, or COLUMN=VALUE",
+                   text);
   return keep_share(ctx, build, (size_t)(share * (double)problem->groups + 0.5));
 }

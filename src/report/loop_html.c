@@ -1,5 +1,5 @@
-/* The loop's page: the sentence, the residual before and after over the coordinate that explains it,
- * with the effect drawn over it, kept-aside rows apart; errors; candidates and verdicts. */
+/* The loop's page: the sentence, the residual before and after over the coordinate that explains
+ * it, with the effect drawn over it, kept-aside rows apart; errors; candidates and verdicts. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -53,7 +53,10 @@ static double at_y(const loop_plot *at, double y) {
 
 static double nice_step(double range) {
   double step = pow(10, floor(log10(range / 5)));
-  return range / step > 25 ? 5 * step : range / step > 12 ? 2.5 * step : range / step > 10 ? 2 * step : step;
+  return range / step > 25   ? 5 * step
+         : range / step > 12 ? 2.5 * step
+         : range / step > 10 ? 2 * step
+                             : step;
 }
 
 static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, const char *title) {
@@ -199,8 +202,7 @@ static fg_status put_findings(fg_context *ctx, FILE *out, const fg_loop_report *
     bool lone = !claim->candidate.effect->accepts;
     size_t at = lone ? order_coordinate(problem) : claim->candidate.a;
     FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, problem, claim, effect));
-    if (problem->coordinates)
-      FG_TRY_EXIT(put_pair(ctx, out, report, claim->name, at, effect));
+    if (problem->coordinates) FG_TRY_EXIT(put_pair(ctx, out, report, claim->name, at, effect));
   }
   if (result->has_curve) {
     char heading[FG_LOOP_NAME + 40];
@@ -236,8 +238,7 @@ static void put_errors(FILE *out, const fg_loop_result *result) {
   put_error(out, "kept aside, rms", before->held_out_rms, after->held_out_rms);
   put_error(out, "cross-validated, rms", before->cross_validated_rms, after->cross_validated_rms);
   fprintf(out, "</table></div><p class=\"soft\">Noise floor %.4g", result->noise_floor);
-  if (result->noise.rho > 0)
-    fprintf(out, ", correlation along the order %.2f", result->noise.rho);
+  if (result->noise.rho > 0) fprintf(out, ", correlation along the order %.2f", result->noise.rho);
   if (result->noise.lambda > 0)
     fprintf(out, ", variance between groups %.2g times that within", result->noise.lambda);
   fprintf(out, ". 95 %% interval of the ratio: %.3f to %.3f.</p></section>\n",
@@ -247,8 +248,7 @@ static void put_errors(FILE *out, const fg_loop_result *result) {
 static void put_claim_row(FILE *out, const fg_loop_claim *claim) {
   fputs("<tr><td><b>", out);
   fg_html_text(out, claim->name);
-  fprintf(out,
-          "</b></td><td class=\"w\">%s</td><td>%.3g ± %.2g</td><td>%.2g</td><td class=\"w\">",
+  fprintf(out, "</b></td><td class=\"w\">%s</td><td>%.3g ± %.2g</td><td>%.2g</td><td class=\"w\">",
           fg_loop_verdict_word(claim->verdict), claim->amplitude, 2 * claim->amplitude_u,
           claim->p_value);
   for (size_t k = 0; k < claim->aliases; k++) {

@@ -1,4 +1,6 @@
-/* "foilgauge/loop/1": the loop's report. Rows are numbered as in the table, the first data row 1. */
+/* "foilgauge/loop/1": the loop's report. Rows are numbered as in the table, the first data row 1.
+ */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +25,17 @@ static bool is_lone(const fg_loop_claim *claim) {
   return !claim->candidate.effect->accepts;
 }
 
+/* What turns the coefficient into a slope per unit of its column, or into a share of the arc length;
+ * NaN for other forms. */
+static double natural_unit(const fg_loop_report *report, const fg_loop_claim *claim) {
+  const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
+  const char *id = claim->candidate.effect->id;
+  if (claim->candidate.effect->from_zero) return 1 / fmax(fabs(at->low), fabs(at->high));
+  if (!strcmp(id, "table.linear") || !strcmp(id, "table.order_drift"))
+    return 2 / (at->high - at->low);
+  return NAN;
+}
+
 /* Names of the parameters of an effect: its shapes, and its coefficients per column. */
 static void write_parameters(fg_json *json, const fg_loop_report *report,
                              const fg_loop_claim *claim, bool uncertainty) {
@@ -37,6 +50,9 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
   }
   for (size_t d = 0; d < effect->shapes; d++)
     fg_json_number(json, effect->shape_name[d], shape[d]);
+  double unit = natural_unit(report, claim);
+  if (isfinite(unit))
+    fg_json_number(json, effect->from_zero ? "stretch" : "slope_per_unit", unit * coefficient[0]);
   if (!uncertainty && is_lone(claim)) {
     bool pair = !strcmp(effect->id, "table.exchanged_runs");
     fg_json_integer(json, "row", (int64_t)report->problem->row[claim->candidate.row[0]] + 1);

@@ -73,13 +73,13 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
 }
 
 static void write_errors(const fg_loop_result *result, FILE *out) {
-  static const char *const names[] = {"rms", "robust sd", "95th percentile", "maximum",
-                                      "kept aside, rms", "cross-validated, rms"};
-  const double before[] = {result->before.rms,     result->before.robust_sd,
-                           result->before.p95,     result->before.maximum,
+  static const char *const names[] = {"rms",     "robust sd",       "95th percentile",
+                                      "maximum", "kept aside, rms", "cross-validated, rms"};
+  const double before[] = {result->before.rms,          result->before.robust_sd,
+                           result->before.p95,          result->before.maximum,
                            result->before.held_out_rms, result->before.cross_validated_rms};
-  const double after[] = {result->after.rms,     result->after.robust_sd,
-                          result->after.p95,     result->after.maximum,
+  const double after[] = {result->after.rms,          result->after.robust_sd,
+                          result->after.p95,          result->after.maximum,
                           result->after.held_out_rms, result->after.cross_validated_rms};
   fprintf(out, "\n%-24s %12s %12s %8s\n", "error", "before", "after", "ratio");
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
