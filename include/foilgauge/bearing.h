@@ -81,8 +81,7 @@ typedef struct fg_arch_sensitivity {
   double radius, angle, radius_at_arc_length, thickness;
 } fg_arch_sensitivity;
 fg_status fg_arch_sensitivities(fg_context *ctx, const fg_arch *arch,
-                                const fg_arch_material *material,
-                                fg_arch_sensitivity *sensitivity);
+                                const fg_arch_material *material, fg_arch_sensitivity *sensitivity);
 
 typedef struct fg_bearing_layout {
   size_t pads;          /* foils in a bearing */
@@ -96,14 +95,14 @@ enum { FG_BEARING_BUMPS_MAX = 96 };
 double fg_bearing_angle_deg(const fg_bearing_layout *layout, size_t pad, size_t bump);
 
 typedef struct fg_bearing_clearance {
-  size_t count;                     /* known places */
+  size_t count; /* known places */
   double mean_mm, least_mm, most_mm;
   double least_at_deg;
-  double offset_mm[2];              /* of the least-squares circle through the crowns, about O */
-  double circularity_mm;            /* peak to valley about that circle */
-  double centred_least_mm;          /* the least clearance of a rotor where it is largest; NaN when
-                                       the crowns leave half of the bearing open */
-  double centred_at_mm[2];          /* where that rotor's axis lies */
+  double offset_mm[2];     /* of the least-squares circle through the crowns, about O */
+  double circularity_mm;   /* peak to valley about that circle */
+  double centred_least_mm; /* the least clearance of a rotor where it is largest; NaN when
+                              the crowns leave half of the bearing open */
+  double centred_at_mm[2]; /* where that rotor's axis lies */
 } fg_bearing_clearance;
 
 /* `clearance_mm` at directions `angle_deg`; NaN is a place that is not known. FG_ERR_DATA for fewer

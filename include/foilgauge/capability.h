@@ -37,8 +37,8 @@ typedef struct fg_ratio {
 typedef struct fg_capability {
   size_t count;
   double mean, sd;
-  fg_ratio p, pk;          /* one-sided tolerances have no p */
-  fg_ratio c, ck;          /* NaN unless stable */
+  fg_ratio p, pk;                 /* one-sided tolerances have no p */
+  fg_ratio c, ck;                 /* NaN unless stable */
   double quantile_p, quantile_pk; /* by the quantile method */
   double quantile[3];             /* X0.135, X50, X99.865 % */
   fg_normality normality;
@@ -49,11 +49,11 @@ typedef struct fg_capability {
 typedef struct fg_capability_input {
   const double *values;
   size_t count;
-  double lower, upper;   /* -inf, +inf: none */
-  double sigma;          /* within subgroups; NaN: not known */
-  double sigma_freedom;  /* its degrees of freedom */
+  double lower, upper;  /* -inf, +inf: none */
+  double sigma;         /* within subgroups; NaN: not known */
+  double sigma_freedom; /* its degrees of freedom */
   bool stable;
-  double confidence;     /* 0: 0.95 */
+  double confidence;         /* 0: 0.95 */
   const fg_density *density; /* of the values; NULL: no quantile method */
 } fg_capability_input;
 

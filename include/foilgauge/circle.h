@@ -3,8 +3,8 @@
  * The algebraic estimate is the hyper-accurate fit (Al-Sharadqah and Chernov 2009, Electronic
  * Journal of Statistics 3, 886): no essential bias on short arcs, unlike Kåsa's. The geometric fit
  * minimises sum w_i (|p_i - c| - R)² with Nelder-Mead (GSL nmsimplex2) on centred, scaled
- * coordinates, and is polished by damped Newton to the last digits. Both work on the arc (curvature,
- * direction, crown), so that a radius of thousands of times the arc is no special case.
+ * coordinates, and is polished by damped Newton to the last digits. Both work on the arc
+ * (curvature, direction, crown), so that a radius of thousands of times the arc is no special case.
  */
 #ifndef FOILGAUGE_CIRCLE_H
 #define FOILGAUGE_CIRCLE_H
@@ -42,8 +42,8 @@ fg_status fg_circle_estimate(fg_context *ctx, const fg_point *points, const doub
                              size_t count, fg_circle *circle);
 
 /* Orthogonal-distance fit. `start` may be NULL: the algebraic estimate is used; a start that is
- * given may be bad: it is tried first only where it is better than the algebraic one. The same errors
- * as above. */
+ * given may be bad: it is tried first only where it is better than the algebraic one. The same
+ * errors as above. */
 fg_status fg_circle_fit_geometric(fg_context *ctx, const fg_point *points, const double *weights,
                                   size_t count, const fg_circle *start, fg_circle_fit *fit);
 

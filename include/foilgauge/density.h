@@ -43,7 +43,7 @@ fg_status fg_density_fit(fg_context *ctx, const double *values, size_t count,
                          fg_bandwidth_rule rule, fg_density *density);
 void fg_density_free(fg_density *density);
 
-double fg_density_at(const fg_density *density, double x);         /* f(x), per unit of x */
+double fg_density_at(const fg_density *density, double x);          /* f(x), per unit of x */
 double fg_density_probability(const fg_density *density, double x); /* P(X < x) */
 double fg_density_quantile(const fg_density *density, double probability);
 double fg_density_mode(const fg_density *density); /* where f is highest */

@@ -23,10 +23,10 @@ typedef enum fg_form {
 
 /* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
  * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
- * at a crown R + offset meets R0 - offset and h = R0 - (X - R) keeps its value. R_sleeve is the bore
- * that the lands rest on and t the whole thickness, so the crown's shaft side stands h + t above
- * the bore and eq 5.8 holds as it stands for every datum. Eq 5.5 takes R_sleeve for the radius of
- * the datum line of the lands once the foil is in the bearing. */
+ * at a crown R + offset meets R0 - offset and h = R0 - (X - R) keeps its value. R_sleeve is the
+ * bore that the lands rest on and t the whole thickness, so the crown's shaft side stands h + t
+ * above the bore and eq 5.8 holds as it stands for every datum. Eq 5.5 takes R_sleeve for the
+ * radius of the datum line of the lands once the foil is in the bearing. */
 typedef enum fg_datum {
   FG_DATUM_MID,   /* the midline */
   FG_DATUM_INNER, /* the edge on the shaft's side */
@@ -36,7 +36,8 @@ typedef enum fg_datum {
 /* A tolerance: lower <= value <= upper, in the unit of the quantity. Unset limits are -inf, +inf.
  * `quantity` is the JSON name of a reported quantity: of a bump ("height_mm"), or of the whole
  * foil ("overall.radius_mm", "thickness_mm"). In a design file:
- *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } } */
+ *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } }
+ */
 typedef struct fg_tolerance {
   char quantity[48];
   double lower, upper;
@@ -48,16 +49,16 @@ typedef struct fg_design {
   char name[64];
   fg_form form;
   fg_datum datum;
-  size_t bump_count;         /* expected; 0: not stated */
-  double bump_radius_mm;     /* R_D */
-  double bump_angle_deg;     /* alpha_D */
-  double overall_radius_mm;  /* of the foil as designed; also R0_design of eq e */
-  double sleeve_radius_mm;   /* R_sleeve; default: overall_radius_mm */
-  double pitch_deg;          /* angle from bump to bump about O; default 13 1/3 */
-  double fillet_radius_mm;   /* default 0.35 */
-  double thickness_mm;       /* t */
-  double rotor_diameter_mm;  /* D */
-  size_t diameter_count;     /* discs only: known diameters, in any order */
+  size_t bump_count;        /* expected; 0: not stated */
+  double bump_radius_mm;    /* R_D */
+  double bump_angle_deg;    /* alpha_D */
+  double overall_radius_mm; /* of the foil as designed; also R0_design of eq e */
+  double sleeve_radius_mm;  /* R_sleeve; default: overall_radius_mm */
+  double pitch_deg;         /* angle from bump to bump about O; default 13 1/3 */
+  double fillet_radius_mm;  /* default 0.35 */
+  double thickness_mm;      /* t */
+  double rotor_diameter_mm; /* D */
+  size_t diameter_count;    /* discs only: known diameters, in any order */
   double diameters_mm[FG_DIAMETERS_MAX];
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];

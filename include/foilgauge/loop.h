@@ -50,7 +50,7 @@ enum {
   FG_LOOP_SHAPES = 2,   /* non-linear parameters of an effect, at most */
   FG_LOOP_COLUMNS = 12, /* linear columns of an effect, at most */
   FG_LOOP_CLAIMS = 5,   /* effects in one report, at most */
-  FG_LOOP_STARTS = 256,  /* start values of an effect's shape, at most */
+  FG_LOOP_STARTS = 256, /* start values of an effect's shape, at most */
   FG_LOOP_ALIASES = 12, /* members of an alias class that are reported, at most */
   FG_LOOP_NAME = 96,
 };
@@ -89,11 +89,11 @@ typedef struct fg_loop_problem {
   char **parameter_name; /* parameters */
   size_t *group;         /* rows: 0 .. groups - 1, what was drawn independently */
   size_t groups;
-  bool group_level; /* rows of a group share a random level */
-  size_t *series;   /* rows: along equal values noise may be correlated */
-  bool correlated;  /* estimate that correlation */
-  double rho_most;  /* ... up to this, where more would be an effect and not noise; 0: any */
-  bool *aside;      /* rows kept aside, whole groups; NULL: none */
+  bool group_level;  /* rows of a group share a random level */
+  size_t *series;    /* rows: along equal values noise may be correlated */
+  bool correlated;   /* estimate that correlation */
+  double rho_most;   /* ... up to this, where more would be an effect and not noise; 0: any */
+  bool *aside;       /* rows kept aside, whole groups; NULL: none */
   bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
   double *response;  /* rows, for exchanged runs: the measured response */
   fg_loop_coordinate *coordinate;

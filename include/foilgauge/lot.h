@@ -32,22 +32,22 @@ extern "C" {
 
 /* Every option of a lot: the members of a recipe file, "schema": "foilgauge/recipe/1". */
 typedef struct fg_lot_settings {
-  char name[128];     /* of the lot, as the report shows it */
-  fg_design design;   /* "design": an object as in a design file, or the path of one */
-  double dpi;         /* 0: as the scans say */
-  unsigned jobs;      /* scans at a time; 0: as many as there are cores; never changes a result */
-  double trim_pct;    /* cut off each tail before radius and angle errors are correlated */
-  double confidence;  /* of every interval */
+  char name[128];    /* of the lot, as the report shows it */
+  fg_design design;  /* "design": an object as in a design file, or the path of one */
+  double dpi;        /* 0: as the scans say */
+  unsigned jobs;     /* scans at a time; 0: as many as there are cores; never changes a result */
+  double trim_pct;   /* cut off each tail before radius and angle errors are correlated */
+  double confidence; /* of every interval */
   fg_bandwidth_rule bandwidth; /* "silverman", "scott", "sheather_jones" */
-  size_t resamples;   /* drawn from the kernel density */
+  size_t resamples;            /* drawn from the kernel density */
   uint64_t seed;
-  unsigned run_rules; /* bits of control.h; in a recipe the rules' numbers: [1, 2, 3, 4] */
-  char group_column[64];    /* lots are compared by this column (die, coil ...); "": none */
-  char part_column[64];     /* repeated scans: the part, and ... */
-  char operator_column[64]; /* ... who or what measured it; both needed for a gauge study */
-  char bearing_column[64];  /* which bearing a foil goes into; without: three in a row make one */
-  char pad_column[64];      /* and which of its pads it is, from 1 */
-  fg_bearing_layout layout; /* pads, bumps_per_pad, first_bump */
+  unsigned run_rules;        /* bits of control.h; in a recipe the rules' numbers: [1, 2, 3, 4] */
+  char group_column[64];     /* lots are compared by this column (die, coil ...); "": none */
+  char part_column[64];      /* repeated scans: the part, and ... */
+  char operator_column[64];  /* ... who or what measured it; both needed for a gauge study */
+  char bearing_column[64];   /* which bearing a foil goes into; without: three in a row make one */
+  char pad_column[64];       /* and which of its pads it is, from 1 */
+  fg_bearing_layout layout;  /* pads, bumps_per_pad, first_bump */
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
 } fg_lot_settings;
 
@@ -112,8 +112,7 @@ fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count
                        const char *folder, fg_lot_outcome *outcome);
 
 /* One page over several lots, from their lot.json; links are relative to the page. */
-fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count,
-                       const char *page);
+fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count, const char *page);
 
 #ifdef __cplusplus
 }

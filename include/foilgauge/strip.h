@@ -28,27 +28,27 @@ typedef enum fg_strip_fact {
 /* One cross-section. Left and right are as seen when walking along the strip with y down:
  * the normal is the tangent turned by +90 degrees (from x to y), and `right` lies on its side. */
 typedef struct fg_station {
-  double s_mm;      /* arc length of the midline from the strip's first end */
-  fg_point left;    /* left edge, mm */
-  fg_point right;   /* right edge, mm */
-  fg_point normal;  /* unit normal, in mm coordinates */
-  float u_left_um;  /* standard deviation of the edge along the normal, from pixel noise alone */
+  double s_mm;     /* arc length of the midline from the strip's first end */
+  fg_point left;   /* left edge, mm */
+  fg_point right;  /* right edge, mm */
+  fg_point normal; /* unit normal, in mm coordinates */
+  float u_left_um; /* standard deviation of the edge along the normal, from pixel noise alone */
   float u_right_um;
-  float weight;     /* 0: not usable (dust, burr, hidden edge); 1: good */
+  float weight; /* 0: not usable (dust, burr, hidden edge); 1: good */
 } fg_station;
 
 typedef struct fg_strip {
   fg_station *stations; /* in order along the strip, from one end to the other; owned */
   size_t count;
-  double step_mm;       /* nominal distance of stations */
-  double thickness_mm;  /* median distance of the edges */
+  double step_mm;      /* nominal distance of stations */
+  double thickness_mm; /* median distance of the edges */
   double u_thickness_mm;
   double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */
-  double contrast;      /* strip minus background, in units of the scan's full scale */
-  double noise;         /* pixel noise sd, same unit */
-  double gamma;         /* exponent of the tone curve found */
-  unsigned facts;       /* fg_strip_fact */
-  int64_t box_px[4];    /* x, y, width, height of what belongs to it in the scan */
+  double contrast;   /* strip minus background, in units of the scan's full scale */
+  double noise;      /* pixel noise sd, same unit */
+  double gamma;      /* exponent of the tone curve found */
+  unsigned facts;    /* fg_strip_fact */
+  int64_t box_px[4]; /* x, y, width, height of what belongs to it in the scan */
 } fg_strip;
 
 void fg_strip_free(fg_strip *strip); /* frees the stations; NULL is fine */

@@ -10,8 +10,15 @@
 #include "foilgauge/scan_loop.h"
 
 enum { SCANS_MOST = 64 };
-enum { OPTION_DESIGN = 256, OPTION_DPI, OPTION_SAME, OPTION_HOLD_OUT, OPTION_MODEL_OUT,
-       OPTION_SEED, OPTION_THREADS };
+enum {
+  OPTION_DESIGN = 256,
+  OPTION_DPI,
+  OPTION_SAME,
+  OPTION_HOLD_OUT,
+  OPTION_MODEL_OUT,
+  OPTION_SEED,
+  OPTION_THREADS
+};
 
 typedef struct arguments {
   const char *paths[SCANS_MOST];
@@ -26,7 +33,8 @@ static const struct argp_option options[] = {
     {"dpi", OPTION_DPI, "N", 0, "Resolution, where the scan does not say it", 0},
     {"same-foil", OPTION_SAME, NULL, 0,
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
-     "scanner, what turns is the part", 0},
+     "scanner, what turns is the part",
+     0},
     {"hold-out", OPTION_HOLD_OUT, "SCAN", 0, "A scan that only confirms (may be repeated)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "The scanner's model, for `measure --model`", 0},
@@ -40,7 +48,8 @@ static const char doc[] =
     "ripple or step of the carriage, an optical distortion, an oval or spiral foil, flattened or "
     "skewed bumps, or a curve that is none of these; correct the dimensions.\v"
     "One scan detects almost everything and tells almost nothing smooth apart: the report names "
-    "the class and the range of every dimension over it. A second scan of the foil, turned by about "
+    "the class and the range of every dimension over it. A second scan of the foil, turned by "
+    "about "
     "90 degrees, with --same-foil, names one.\n\n"
     "With --table DATA.csv the loop is closed on a table: `foilgauge loop --table X --help`.\n\n"
     "Exit code: 0 done; 64 usage; 65 bad data; 74 input or output.";
@@ -58,26 +67,46 @@ static void add_scan(struct argp_state *state, const char *path, bool aside) {
 static double parse_number(struct argp_state *state, const char *name, const char *text) {
   char *end;
   double value = strtod(text, &end);
-  if (*end || end == text || !(value > 0)) argp_error(state, "--%s %s: a number above 0", name, text);
+  if (*end || end == text || !(value > 0))
+    argp_error(state, "--%s %s: a number above 0", name, text);
   return value;
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
   switch (key) {
-  case OPTION_DESIGN: a->design_path = text; return 0;
-  case OPTION_DPI: a->options.dpi = parse_number(state, "dpi", text); return 0;
-  case OPTION_SAME: a->options.same_foil = true; return 0;
-  case OPTION_HOLD_OUT: add_scan(state, text, true); return 0;
-  case OPTION_MODEL_OUT: a->model_path = text; return 0;
-  case OPTION_SEED: a->options.seed = (uint64_t)parse_number(state, "seed", text); return 0;
-  case OPTION_THREADS: a->options.threads = (unsigned)parse_number(state, "threads", text); return 0;
-  case 'o': a->output_path = text; return 0;
-  case ARGP_KEY_ARG: add_scan(state, text, false); return 0;
+  case OPTION_DESIGN:
+    a->design_path = text;
+    return 0;
+  case OPTION_DPI:
+    a->options.dpi = parse_number(state, "dpi", text);
+    return 0;
+  case OPTION_SAME:
+    a->options.same_foil = true;
+    return 0;
+  case OPTION_HOLD_OUT:
+    add_scan(state, text, true);
+    return 0;
+  case OPTION_MODEL_OUT:
+    a->model_path = text;
+    return 0;
+  case OPTION_SEED:
+    a->options.seed = (uint64_t)parse_number(state, "seed", text);
+    return 0;
+  case OPTION_THREADS:
+    a->options.threads = (unsigned)parse_number(state, "threads", text);
+    return 0;
+  case 'o':
+    a->output_path = text;
+    return 0;
+  case ARGP_KEY_ARG:
+    add_scan(state, text, false);
+    return 0;
   case ARGP_KEY_END:
     if (a->count == a->kept_aside) argp_error(state, "give a scan, or --table DATA.csv");
     return 0;
-  default: return ARGP_ERR_UNKNOWN;
+  default:
+    return ARGP_ERR_UNKNOWN;
   }
 }
 

@@ -6,16 +6,21 @@ double fg_select(double *values, size_t count, size_t k) {
     double pivot = values[low + (high - low) / 2];
     ptrdiff_t i = low, j = high;
     while (i <= j) {
-      while (values[i] < pivot) i++;
-      while (values[j] > pivot) j--;
+      while (values[i] < pivot)
+        i++;
+      while (values[j] > pivot)
+        j--;
       if (i > j) break;
       double swap = values[i];
       values[i++] = values[j];
       values[j--] = swap;
     }
-    if (wanted <= j) high = j;
-    else if (wanted >= i) low = i;
-    else break;
+    if (wanted <= j)
+      high = j;
+    else if (wanted >= i)
+      low = i;
+    else
+      break;
   }
   return values[k];
 }

@@ -11,7 +11,8 @@ void fg_normal_clear(fg_normal_equations *system, size_t unknowns) {
 void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
   for (size_t i = 0; i < system->unknowns; i++) {
     double scaled = weight * row[i];
-    for (size_t j = 0; j <= i; j++) system->matrix[i][j] += scaled * row[j];
+    for (size_t j = 0; j <= i; j++)
+      system->matrix[i][j] += scaled * row[j];
     system->right[i] += scaled * value;
   }
   system->sum_squares += weight * value * value;
@@ -24,7 +25,8 @@ static bool factor(const fg_normal_equations *system, double damping,
     for (size_t j = 0; j <= i; j++) {
       double sum = system->matrix[i][j];
       if (i == j) sum += damping * sum;
-      for (size_t k = 0; k < j; k++) sum -= lower[i][k] * lower[j][k];
+      for (size_t k = 0; k < j; k++)
+        sum -= lower[i][k] * lower[j][k];
       if (i == j) {
         if (!(sum > 1e-14 * system->matrix[i][i])) return false;
         lower[i][i] = sqrt(sum);
@@ -37,11 +39,13 @@ static bool factor(const fg_normal_equations *system, double damping,
 
 static void substitute(size_t n, double lower[FG_SMALL_MAX][FG_SMALL_MAX], double *x) {
   for (size_t i = 0; i < n; i++) {
-    for (size_t k = 0; k < i; k++) x[i] -= lower[i][k] * x[k];
+    for (size_t k = 0; k < i; k++)
+      x[i] -= lower[i][k] * x[k];
     x[i] /= lower[i][i];
   }
   for (size_t i = n; i-- > 0;) {
-    for (size_t k = i + 1; k < n; k++) x[i] -= lower[k][i] * x[k];
+    for (size_t k = i + 1; k < n; k++)
+      x[i] -= lower[k][i] * x[k];
     x[i] /= lower[i][i];
   }
 }
@@ -57,7 +61,8 @@ bool fg_normal_solve(const fg_normal_equations *system, double damping, double *
     double unit[FG_SMALL_MAX] = {0};
     unit[c] = 1;
     substitute(n, lower, unit);
-    for (size_t r = 0; r < n; r++) inverse[r][c] = unit[r];
+    for (size_t r = 0; r < n; r++)
+      inverse[r][c] = unit[r];
   }
   return true;
 }

@@ -15,13 +15,18 @@ fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...) {
 
 int fg_status_exit_code(fg_status status) {
   switch (status) {
-  case FG_OK: return 0;
-  case FG_ERR_USAGE: return 64;
+  case FG_OK:
+    return 0;
+  case FG_ERR_USAGE:
+    return 64;
   case FG_ERR_DATA:
-  case FG_ERR_NUMERIC: return 65;
+  case FG_ERR_NUMERIC:
+    return 65;
   case FG_ERR_IO:
-  case FG_ERR_MEMORY: return 74;
-  case FG_ERR_INTERRUPTED: return 130;
+  case FG_ERR_MEMORY:
+    return 74;
+  case FG_ERR_INTERRUPTED:
+    return 130;
   }
   return 70;
 }

@@ -40,15 +40,18 @@ static void add_correlated(const fg_datum_line *line, const fg_arc *arc,
       if (!fg_arc_used(line, arc, i)) continue;
       double a[3], sum[3] = {0};
       jacobian_row(line, arc, i, a);
-      for (int p = 0; p < 3; p++) sum[p] = 0.5 * noise->covariance[0] * a[p];
+      for (int p = 0; p < 3; p++)
+        sum[p] = 0.5 * noise->covariance[0] * a[p];
       for (size_t lag = 1; lag < noise->lags && i + lag <= arc->ranges[r].last; lag++) {
         if (!fg_arc_used(line, arc, i + lag)) continue;
         double b[3];
         jacobian_row(line, arc, i + lag, b);
-        for (int p = 0; p < 3; p++) sum[p] += noise->covariance[lag] * b[p];
+        for (int p = 0; p < 3; p++)
+          sum[p] += noise->covariance[lag] * b[p];
       }
       for (int p = 0; p < 3; p++)
-        for (int q = 0; q < 3; q++) middle[p][q] += a[p] * sum[q] + a[q] * sum[p];
+        for (int q = 0; q < 3; q++)
+          middle[p][q] += a[p] * sum[q] + a[q] * sum[p];
     }
 }
 
@@ -59,7 +62,8 @@ static void sandwich(double inverse[FG_SMALL_MAX][FG_SMALL_MAX], double middle[3
     for (int q = 0; q < 3; q++) {
       double sum = 0;
       for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++) sum += inverse[p][a] * middle[a][b] * inverse[b][q];
+        for (int b = 0; b < 3; b++)
+          sum += inverse[p][a] * middle[a][b] * inverse[b][q];
       out[p][q] = sum;
     }
 }
@@ -68,7 +72,8 @@ void fg_arc_covariance(const fg_datum_line *line, const fg_noise_model *noise, f
   double inverse[FG_SMALL_MAX][FG_SMALL_MAX], middle[3][3] = {{0}};
   if (!normal_inverse(line, arc, inverse)) {
     for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) arc->covariance[p][q] = NAN;
+      for (int q = 0; q < 3; q++)
+        arc->covariance[p][q] = NAN;
     return;
   }
   add_correlated(line, arc, noise, middle);
@@ -78,7 +83,8 @@ void fg_arc_covariance(const fg_datum_line *line, const fg_noise_model *noise, f
   for (int p = 0; p < 3; p++)
     sound &= arc->covariance[p][p] > 0.05 * noise->covariance[0] * inverse[p][p];
   for (int p = 0; p < 3 && !sound; p++)
-    for (int q = 0; q < 3; q++) arc->covariance[p][q] = white * inverse[p][q];
+    for (int q = 0; q < 3; q++)
+      arc->covariance[p][q] = white * inverse[p][q];
 }
 
 double fg_arc_cluster_covariance(const fg_datum_line *line, double p_limit, fg_arc *arc) {
@@ -91,10 +97,12 @@ double fg_arc_cluster_covariance(const fg_datum_line *line, double p_limit, fg_a
       if (!fg_arc_used(line, arc, k)) continue;
       jacobian_row(line, arc, k, row);
       double residual = fg_arc_residual(line, &arc->circle, k);
-      for (int p = 0; p < 3; p++) g[p] += row[p] * residual;
+      for (int p = 0; p < 3; p++)
+        g[p] += row[p] * residual;
     }
     for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) middle[p][q] += g[p] * g[q] * n / (n - 3);
+      for (int q = 0; q < 3; q++)
+        middle[p][q] += g[p] * g[q] * n / (n - 3);
   }
   sandwich(inverse, middle, cluster);
   double ratio = cluster[2][2] / arc->covariance[2][2];

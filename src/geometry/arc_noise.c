@@ -33,7 +33,8 @@ static size_t list_values(const fg_datum_line *line, const fg_arc *arc, fg_range
                           double mean, double *list) {
   size_t n = range.last - range.first + 1;
   if (n > RANGE_MOST) n = RANGE_MOST;
-  for (size_t i = 0; i < n; i++) list[i] = value_at(line, arc, range.first + i, values, mean);
+  for (size_t i = 0; i < n; i++)
+    list[i] = value_at(line, arc, range.first + i, values, mean);
   return n;
 }
 
@@ -54,7 +55,8 @@ static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, si
 /* The first lag whose correlation is within two standard errors of nothing, or negative. */
 static size_t find_cut(const double *correlation, const double *pairs, size_t lags) {
   size_t lag = 1;
-  while (lag < lags && correlation[lag] > 2 / sqrt(fmax(pairs[lag], 1))) lag++;
+  while (lag < lags && correlation[lag] > 2 / sqrt(fmax(pairs[lag], 1)))
+    lag++;
   return lag;
 }
 
@@ -76,11 +78,15 @@ static void span_fit(double half, size_t n, double q[3][TYPICAL_POINTS]) {
     double square = 0;
     for (int b = 0; b < a; b++) {
       double dot = 0;
-      for (size_t i = 0; i < n; i++) dot += q[a][i] * q[b][i];
-      for (size_t i = 0; i < n; i++) q[a][i] -= dot * q[b][i];
+      for (size_t i = 0; i < n; i++)
+        dot += q[a][i] * q[b][i];
+      for (size_t i = 0; i < n; i++)
+        q[a][i] -= dot * q[b][i];
     }
-    for (size_t i = 0; i < n; i++) square += q[a][i] * q[a][i];
-    for (size_t i = 0; i < n; i++) q[a][i] /= sqrt(square);
+    for (size_t i = 0; i < n; i++)
+      square += q[a][i] * q[a][i];
+    for (size_t i = 0; i < n; i++)
+      q[a][i] /= sqrt(square);
   }
 }
 
@@ -96,14 +102,16 @@ static void project_noise(double q[3][TYPICAL_POINTS], size_t n, const fg_noise_
         if (i >= lag) b[a][i] += noise->covariance[lag] * q[a][i - lag];
         if (i + lag < n) b[a][i] += noise->covariance[lag] * q[a][i + lag];
       }
-      for (int c = 0; c < 3; c++) s[c][a] += q[c][i] * b[a][i];
+      for (int c = 0; c < 3; c++)
+        s[c][a] += q[c][i] * b[a][i];
     }
   for (size_t lag = 0; lag < noise->lags; lag++) {
     double sum = 0;
     for (size_t i = 0; i + lag < n; i++)
       for (int a = 0; a < 3; a++) {
         sum -= b[a][i] * q[a][i + lag] + q[a][i] * b[a][i + lag];
-        for (int c = 0; c < 3; c++) sum += q[a][i] * s[a][c] * q[c][i + lag];
+        for (int c = 0; c < 3; c++)
+          sum += q[a][i] * s[a][c] * q[c][i + lag];
       }
     seen[lag] = noise->covariance[lag] + sum / (double)(n - lag);
   }
@@ -138,12 +146,12 @@ void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t cou
   size_t cut = 1;
   for (size_t lags = 8; lags <= FG_NOISE_LAGS; lags *= 2) {
     memset(&sums, 0, sizeof sums);
-    for (size_t i = 0; i < count; i++) add_arc(line, &arcs[i], values, lags, &sums);
+    for (size_t i = 0; i < count; i++)
+      add_arc(line, &arcs[i], values, lags, &sums);
     if (!(sums.pairs[0] > 4) || !(sums.products[0] > 0)) return;
     variance = sums.products[0] / sums.pairs[0];
     for (size_t lag = 0; lag < lags; lag++)
-      correlation[lag] =
-          sums.pairs[lag] > 0 ? sums.products[lag] / sums.pairs[lag] / variance : 0;
+      correlation[lag] = sums.pairs[lag] > 0 ? sums.products[lag] / sums.pairs[lag] / variance : 0;
     cut = find_cut(correlation, sums.pairs, lags);
     if (cut < lags) break;
   }

@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-#define OUTLIER_SIGMAS 5.0
+#define OUTLIER_SIGMAS   5.0
 #define OUTLIER_LEAST_MM 0.0003
 enum { POINTS_LEAST = 8, ROUNDS_MAX = 6 };
 
@@ -16,10 +16,9 @@ fg_status fg_datum_line_build(fg_context *ctx, const fg_strip *strip, fg_datum d
   memset(line, 0, sizeof *line);
   line->strip = strip;
   fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *line->points, (void **)&line->points));
   FG_TRY_EXIT(
-      fg_memory_allocate(ctx, strip->count, sizeof *line->points, (void **)&line->points));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *line->half_width,
-                                 (void **)&line->half_width));
+      fg_memory_allocate(ctx, strip->count, sizeof *line->half_width, (void **)&line->half_width));
   bool right = (datum == FG_DATUM_INNER) == inner_is_right;
   for (size_t i = 0; i < strip->count; i++) {
     const fg_station *s = &strip->stations[i];
@@ -93,8 +92,7 @@ static size_t gather(const fg_datum_line *line, const fg_arc *arc, bool all, fg_
 }
 
 /* A way to get a circle from points; sets the circle and rms_mm. */
-typedef fg_status circle_method(fg_context *ctx, const fg_point *points, size_t count,
-                                fg_arc *arc);
+typedef fg_status circle_method(fg_context *ctx, const fg_point *points, size_t count, fg_arc *arc);
 
 static fg_status by_estimate(fg_context *ctx, const fg_point *points, size_t count, fg_arc *arc) {
   return fg_circle_estimate(ctx, points, NULL, count, &arc->circle);

@@ -33,9 +33,9 @@ typedef struct fg_range {
 typedef struct fg_arc {
   const fg_range *ranges;
   size_t range_count;
-  fg_circle circle;     /* as fitted, with the blur's shift put back */
-  double scatter_mm;    /* robust sd of the residuals */
-  double rms_mm;        /* of the residuals that were used */
+  fg_circle circle;  /* as fitted, with the blur's shift put back */
+  double scatter_mm; /* robust sd of the residuals */
+  double rms_mm;     /* of the residuals that were used */
   size_t points, outliers;
   double covariance[3][3];
 } fg_arc;

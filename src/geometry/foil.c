@@ -16,7 +16,7 @@
 #define CRUSHED_HEIGHT 0.6
 #define CRUSHED_RADIUS 1.6
 /* A bump fits poorly when it scatters by this factor more than the median bump. */
-#define POOR_SCATTER 3.0
+#define POOR_SCATTER  3.0
 #define OUTLIER_SHARE 0.02
 /* The edge model's systematic error counts when chance would show it less often than this. */
 #define EDGE_MODEL_P 0.005
@@ -45,7 +45,8 @@ static void bump_frame(const fg_layout *layout, const fg_arc *arc, double frame[
 
 /* A shift of (x, y, R) in the bump's frame: (u, v, R). */
 static void to_frame(double frame[2][2], const double in[3], double out[3]) {
-  for (int i = 0; i < 2; i++) out[i] = frame[i][0] * in[0] + frame[i][1] * in[1];
+  for (int i = 0; i < 2; i++)
+    out[i] = frame[i][0] * in[0] + frame[i][1] * in[1];
   out[2] = in[2];
 }
 
@@ -64,12 +65,14 @@ static bool find_edge_model(const fg_layout *layout, const fg_noise_model *noise
     to_frame(frame, shift, local);
     ratio += shift[2] * shift[2] / arc.covariance[2][2];
     for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) systematic[p][q] += local[p] * local[q];
+      for (int q = 0; q < 3; q++)
+        systematic[p][q] += local[p] * local[q];
     bumps++;
   }
   if (bumps < 1 || !(ratio > gsl_cdf_chisq_Qinv(EDGE_MODEL_P, bumps))) return false;
   for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) systematic[p][q] *= (1 - bumps / ratio) / bumps;
+    for (int q = 0; q < 3; q++)
+      systematic[p][q] *= (1 - bumps / ratio) / bumps;
   return true;
 }
 
@@ -78,7 +81,8 @@ static void add_systematic(const fg_layout *layout, double systematic[3][3], fg_
   double frame[2][2], turn[3][3] = {{0}};
   bump_frame(layout, arc, frame);
   for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++) turn[j][i] = frame[i][j];
+    for (int j = 0; j < 2; j++)
+      turn[j][i] = frame[i][j];
   turn[2][2] = 1;
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++)
@@ -155,7 +159,8 @@ static void fill_overall(const fg_layout *layout, const fg_design *design, fg_fo
   o->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
   o->radius_mm = arc->circle.radius;
   memcpy(o->covariance, arc->covariance, sizeof o->covariance);
-  for (int i = 0; i < 2; i++) o->u_centre_mm[i] = sqrt(arc->covariance[i][i]);
+  for (int i = 0; i < 2; i++)
+    o->u_centre_mm[i] = sqrt(arc->covariance[i][i]);
   o->u_radius_mm = sqrt(arc->covariance[2][2]);
   double design_mm = design->overall_radius_mm;
   o->springback_error_pct = 100 * (design_mm - o->radius_mm) / design_mm;
@@ -166,7 +171,8 @@ static void fill_overall(const fg_layout *layout, const fg_design *design, fg_fo
 
 static double position_deg(const fg_foil *foil, const fg_arc *arc) {
   return atan2(arc->circle.y - foil->overall.centre_mm.y,
-               arc->circle.x - foil->overall.centre_mm.x) * 180 / M_PI;
+               arc->circle.x - foil->overall.centre_mm.x) *
+         180 / M_PI;
 }
 
 static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design,
@@ -183,9 +189,11 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
     bump->flags |= FG_BUMP_NOT_FITTED;
     bump->radius_mm = bump->centre_mm.x = bump->centre_mm.y = NAN;
     for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++) bump->covariance[p][q] = NAN;
+      for (int q = 0; q < 3; q++)
+        bump->covariance[p][q] = NAN;
   }
-  for (int k = 0; k < 2; k++) bump->u_centre_mm[k] = sqrt(bump->covariance[k][k]);
+  for (int k = 0; k < 2; k++)
+    bump->u_centre_mm[k] = sqrt(bump->covariance[k][k]);
   bump->u_radius_mm = sqrt(bump->covariance[2][2]);
   bump->rms_um = 1000 * arc->rms_mm;
   bump->points = arc->points;
@@ -278,8 +286,10 @@ static void find_rotation(fg_foil *foil) {
 
 static void take_over_facts(fg_foil *foil) {
   static const unsigned pairs[][2] = {
-      {FG_STRIP_TOUCHES_BORDER, FG_FOIL_TOUCHES_BORDER}, {FG_STRIP_TOUCHES_OTHER, FG_FOIL_TOUCHES_OTHER},
-      {FG_STRIP_CLIPPED, FG_FOIL_CLIPPED},               {FG_STRIP_SIDE_BAND, FG_FOIL_SIDE_BAND},
+      {FG_STRIP_TOUCHES_BORDER, FG_FOIL_TOUCHES_BORDER},
+      {FG_STRIP_TOUCHES_OTHER, FG_FOIL_TOUCHES_OTHER},
+      {FG_STRIP_CLIPPED, FG_FOIL_CLIPPED},
+      {FG_STRIP_SIDE_BAND, FG_FOIL_SIDE_BAND},
       {FG_STRIP_GAP, FG_FOIL_GAP},
   };
   for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
@@ -350,7 +360,8 @@ void fg_foil_free(fg_foil *foil) {
 
 void fg_measurement_free(fg_measurement *measurement) {
   if (!measurement) return;
-  for (size_t i = 0; i < measurement->foil_count; i++) fg_foil_free(&measurement->foils[i]);
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    fg_foil_free(&measurement->foils[i]);
   for (size_t i = 0; i < measurement->disc_count; i++) {
     free(measurement->discs[i].edge);
     free(measurement->discs[i].residual_um);

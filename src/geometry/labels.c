@@ -65,8 +65,7 @@ static int number_at(const fg_foil *foil, double s_mm) {
   return 0;
 }
 
-fg_status fg_labels_fill(fg_context *ctx, const fg_layout *layout, fg_datum datum,
-                         fg_foil *foil) {
+fg_status fg_labels_fill(fg_context *ctx, const fg_layout *layout, fg_datum datum, fg_foil *foil) {
   size_t count = foil->strip.count;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *foil->labels, (void **)&foil->labels));
   for (size_t k = 0; k < count; k++)

@@ -18,10 +18,14 @@ static fg_range gap_bounds(const fg_layout *layout, size_t i) {
   const fg_turning *t = &layout->turning;
   size_t last = layout->line.strip->count - 1;
   fg_range gap = {0, last};
-  if (i > 0) gap.first = t->bumps[i - 1].last;
-  else if (t->lip_first) gap.first = t->lip_end[0];
-  if (i < t->bump_count) gap.last = t->bumps[i].first;
-  else if (t->lip_last) gap.last = t->lip_end[1];
+  if (i > 0)
+    gap.first = t->bumps[i - 1].last;
+  else if (t->lip_first)
+    gap.first = t->lip_end[0];
+  if (i < t->bump_count)
+    gap.last = t->bumps[i].first;
+  else if (t->lip_last)
+    gap.last = t->lip_end[1];
   return gap;
 }
 
@@ -142,8 +146,8 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
   /* Bumps turn round their own centre, which lies on the sleeve's side: when they turn towards the
    * normal (to the right), the shaft is on the left. */
   layout->inner_is_right = layout->turning.sense < 0;
-  FG_TRY_EXIT(fg_datum_line_build(ctx, strip, design->datum, layout->inner_is_right,
-                                  &layout->line));
+  FG_TRY_EXIT(
+      fg_datum_line_build(ctx, strip, design->datum, layout->inner_is_right, &layout->line));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(fg_range), (void **)&layout->bump_ranges));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(fg_arc), (void **)&layout->bumps));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bumps, sizeof(bool), (void **)&layout->fitted));

@@ -8,13 +8,13 @@
 typedef struct fg_layout {
   fg_turning turning;
   fg_datum_line line;
-  bool inner_is_right;  /* the shaft's side of the strip */
+  bool inner_is_right;   /* the shaft's side of the strip */
   fg_range *bump_ranges; /* turning.bump_count; owned */
   fg_arc *bumps;         /* one range each; owned */
   bool *fitted;          /* whether the bump's circle was found; owned */
   fg_range *lands;       /* owned */
   size_t land_count;
-  fg_arc overall;        /* over the lands */
+  fg_arc overall; /* over the lands */
 } fg_layout;
 
 /* Finds and fits all arcs. `error` gets words (NULL: none) when the foil cannot be laid out:

@@ -15,17 +15,17 @@
 /* A stretch between two turning points: stations [first, last]. */
 typedef struct fg_stretch {
   size_t first, last;
-  double turn_rad;  /* signed */
+  double turn_rad; /* signed */
   double length_mm;
   double bend_radius_mm; /* mean radius where 80 % of the turn happens */
 } fg_stretch;
 
 typedef struct fg_turning {
-  fg_stretch *bumps;     /* in the order of the stations; owned */
+  fg_stretch *bumps; /* in the order of the stations; owned */
   size_t bump_count;
   bool lip_first, lip_last; /* a lip was seen at the first, the last station's end */
-  size_t lip_end[2];     /* station where the lip's bend ends; valid where there is a lip */
-  double sense;          /* +1: bumps turn towards the normal (right), -1: away from it */
+  size_t lip_end[2];        /* station where the lip's bend ends; valid where there is a lip */
+  double sense;             /* +1: bumps turn towards the normal (right), -1: away from it */
 } fg_turning;
 
 /* Finds the bumps and the lip. No bump is no error: bump_count is 0. */

@@ -71,28 +71,32 @@ static void free_xx(const fg_field_frame *frame, const double *shape, fg_point a
   (void)shape;
   double values[FG_FIELD_COLUMNS];
   free_curve(frame->low_mm[0], frame->high_mm[0], at.x, values);
-  for (int i = 0; i < FG_FIELD_COLUMNS; i++) d[i] = (fg_point){values[i], 0};
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){values[i], 0};
 }
 
 static void free_yx(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
   free_curve(frame->low_mm[0], frame->high_mm[0], at.x, values);
-  for (int i = 0; i < FG_FIELD_COLUMNS; i++) d[i] = (fg_point){0, values[i]};
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){0, values[i]};
 }
 
 static void free_xy(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
   free_curve(frame->low_mm[1], frame->high_mm[1], at.y, values);
-  for (int i = 0; i < FG_FIELD_COLUMNS; i++) d[i] = (fg_point){values[i], 0};
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){values[i], 0};
 }
 
 static void free_yy(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
   free_curve(frame->low_mm[1], frame->high_mm[1], at.y, values);
-  for (int i = 0; i < FG_FIELD_COLUMNS; i++) d[i] = (fg_point){0, values[i]};
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){0, values[i]};
 }
 
 static const fg_field_row rows[] = {

@@ -18,7 +18,7 @@ enum { FG_FIELD_COLUMNS = 12, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
 
 /* Where a scan's fields live. */
 typedef struct fg_field_frame {
-  double centre_mm[2];       /* of the picture */
+  double centre_mm[2];          /* of the picture */
   double low_mm[2], high_mm[2]; /* of the picture */
 } fg_field_frame;
 

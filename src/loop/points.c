@@ -6,9 +6,14 @@
 
 #include "core/memory.h"
 
+/* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a tenth
+ * and more. */
+#define SAME_SHARE 0.2
+
 void fg_points_free(fg_points *points) {
   if (!points) return;
-  for (size_t i = 0; points->parts && i < points->part_count; i++) free(points->parts[i].bumps);
+  for (size_t i = 0; points->parts && i < points->part_count; i++)
+    free(points->parts[i].bumps);
   free(points->views);
   free(points->poses);
   free(points->parts);
@@ -41,8 +46,8 @@ static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part
     double direction = bump_direction(foil, bump);
     if (part->bump_count) direction = turn_to(direction, before);
     before = direction;
-    part->bumps[part->bump_count++] = (fg_points_bump){
-        bump->number, bump->centre_to_centre_mm, direction, bump->radius_mm};
+    part->bumps[part->bump_count++] =
+        (fg_points_bump){bump->number, bump->centre_to_centre_mm, direction, bump->radius_mm};
   }
   if (!part->bump_count) return FG_OK;
   double first = part->bumps[0].direction_rad;
@@ -70,14 +75,15 @@ static fg_status start_pose(fg_context *ctx, const fg_points_part *part, const f
     c += cos(turn);
     s += sin(turn);
     matched++;
-    if (fabs(bump->radius_mm / part->bumps[i].radius_mm - 1) > 0.05)
+    if (fabs(bump->radius_mm / part->bumps[i].radius_mm - 1) > SAME_SHARE)
       return fg_fail(ctx, FG_ERR_DATA,
                      "bump %d is %.3f mm in one scan and %.3f mm in another: not the same foil",
                      bump->number, part->bumps[i].radius_mm, bump->radius_mm);
   }
   if (sense != part->sense)
-    return fg_fail(ctx, FG_ERR_DATA, "the foil lies mirrored in one of the scans: not the same "
-                                     "side on the glass, or not the same foil");
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "the foil lies mirrored in one of the scans: not the same "
+                   "side on the glass, or not the same foil");
   if (matched < part->bump_count || matched != foil->bump_count)
     return fg_fail(ctx, FG_ERR_DATA,
                    "the scans do not show the same bumps (%zu and %zu): not the same foil",
@@ -105,8 +111,7 @@ static fg_point datum_at(const fg_foil *foil, fg_datum datum, const fg_station *
 }
 
 /* Mean over the fitted stations of [from, to). */
-static bool average_block(const fg_points_view *view, size_t from, size_t to,
-                          fg_points_row *row) {
+static bool average_block(const fg_points_view *view, size_t from, size_t to, fg_points_row *row) {
   const fg_foil *foil = view->foil;
   double n = 0;
   *row = (fg_points_row){0};
@@ -130,8 +135,8 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to,
 }
 
 static fg_status add_row(fg_context *ctx, fg_points *points, const fg_points_row *row) {
-  FG_TRY(fg_memory_reserve(ctx, points->row_count + 1, sizeof *points->rows,
-                           &points->row_capacity, (void **)&points->rows));
+  FG_TRY(fg_memory_reserve(ctx, points->row_count + 1, sizeof *points->rows, &points->row_capacity,
+                           (void **)&points->rows));
   points->rows[points->row_count++] = *row;
   return FG_OK;
 }
@@ -182,11 +187,13 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
   for (size_t k = 0; k < foil->strip.count;) {
     const fg_station_label *label = &foil->labels[k];
     size_t last = k;
-    while (last + 1 < foil->strip.count && same_run(&foil->labels[last + 1], label)) last++;
+    while (last + 1 < foil->strip.count && same_run(&foil->labels[last + 1], label))
+      last++;
     size_t group = label->kind == FG_ARC_BUMP
                        ? first_group + index_of_bump(part, label->number)
                        : first_group + part->bump_count + (size_t)label->number;
-    bool known = label->kind != FG_ARC_BUMP || index_of_bump(part, label->number) < part->bump_count;
+    bool known =
+        label->kind != FG_ARC_BUMP || index_of_bump(part, label->number) < part->bump_count;
     if (is_arc(label) && known) FG_TRY(add_run(ctx, points, v, k, last, group));
     k = last + 1;
   }
@@ -195,7 +202,8 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
 
 static void find_frame(fg_points *points) {
   fg_field_frame *f = &points->frame;
-  for (int axis = 0; axis < 2; axis++) f->low_mm[axis] = 0;
+  for (int axis = 0; axis < 2; axis++)
+    f->low_mm[axis] = 0;
   for (size_t v = 0; v < points->view_count; v++) {
     const fg_measurement *m = points->views[v].measurement;
     f->high_mm[0] = fmax(f->high_mm[0], (double)m->width_px * 25.4 / m->dpi[0]);
@@ -209,9 +217,11 @@ static void find_frame(fg_points *points) {
 static fg_status pack_groups(fg_context *ctx, fg_points *points, size_t most) {
   size_t *packed = NULL;
   FG_TRY(fg_memory_allocate(ctx, most, sizeof *packed, (void **)&packed));
-  for (size_t i = 0; i < points->row_count; i++) packed[points->rows[i].group] = 1;
+  for (size_t i = 0; i < points->row_count; i++)
+    packed[points->rows[i].group] = 1;
   size_t next = 0;
-  for (size_t g = 0; g < most; g++) packed[g] = packed[g] ? next++ : 0;
+  for (size_t g = 0; g < most; g++)
+    packed[g] = packed[g] ? next++ : 0;
   for (size_t i = 0; i < points->row_count; i++)
     points->rows[i].group = packed[points->rows[i].group];
   points->group_count = next;
@@ -224,8 +234,8 @@ static fg_status fill(fg_context *ctx, fg_points *points) {
   for (size_t v = 0; v < points->view_count; v++)
     if (points->views[v].part + 1 > points->part_count)
       points->part_count = points->views[v].part + 1;
-  FG_TRY(fg_memory_allocate(ctx, points->part_count, sizeof *points->parts,
-                            (void **)&points->parts));
+  FG_TRY(
+      fg_memory_allocate(ctx, points->part_count, sizeof *points->parts, (void **)&points->parts));
   for (size_t p = 0; p < points->part_count; p++) {
     size_t groups = 0;
     for (size_t v = 0; v < points->view_count; v++) {
@@ -262,10 +272,10 @@ fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t c
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
   for (size_t i = 0; i < count; i++)
-    if (!(views[i].foil->flags & FG_FOIL_NOT_MEASURED)) points->views[points->view_count++] = views[i];
+    if (!(views[i].foil->flags & FG_FOIL_NOT_MEASURED))
+      points->views[points->view_count++] = views[i];
   FG_TRY_EXIT(fill(ctx, points));
-  if (points->row_count)
-    qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
+  if (points->row_count) qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
 exit:
   if (status != FG_OK) fg_points_free(points);
   return status;

@@ -20,28 +20,28 @@ enum { FG_POINTS_BLOCK = 4 };
 typedef struct fg_points_view {
   const fg_foil *foil;
   const fg_measurement *measurement;
-  size_t scan;      /* which input */
-  size_t part;      /* which physical foil; views of one part share its geometry */
-  bool aside;       /* of a scan that only confirms */
+  size_t scan; /* which input */
+  size_t part; /* which physical foil; views of one part share its geometry */
+  bool aside;  /* of a scan that only confirms */
 } fg_points_view;
 
 /* One row. */
 typedef struct fg_points_row {
   size_t view, part;
-  int bump;            /* number; 0: a land */
-  size_t bump_index;   /* in the part's bumps */
-  size_t group;        /* bump of a part, land of a view */
-  fg_point at;         /* nominal position of the datum line, mm of the scan */
-  fg_point ideal;      /* the same on its circle: fields are taken there, else a dilation of the
-                          picture, which the geometry follows, would leave the residual itself */
+  int bump;          /* number; 0: a land */
+  size_t bump_index; /* in the part's bumps */
+  size_t group;      /* bump of a part, land of a view */
+  fg_point at;       /* nominal position of the datum line, mm of the scan */
+  fg_point ideal;    /* the same on its circle: fields are taken there, else a dilation of the
+                        picture, which the geometry follows, would leave the residual itself */
   double half_width_mm;
-  double s_mm;         /* along the foil, from the lip's side */
-  double phi;          /* place in the arc, -1 to 1, towards higher numbers; lands too */
-  double psi;          /* direction from O, from the foil's middle towards the free end, rad */
-  double normal_rad;   /* direction of the outward normal of the residual in the scan */
-  fg_point normal;     /* that normal; outwards from the arc's own centre */
-  fg_point radial;     /* from O outwards */
-  double weight;       /* stations in the mean */
+  double s_mm;       /* along the foil, from the lip's side */
+  double phi;        /* place in the arc, -1 to 1, towards higher numbers; lands too */
+  double psi;        /* direction from O, from the foil's middle towards the free end, rad */
+  double normal_rad; /* direction of the outward normal of the residual in the scan */
+  fg_point normal;   /* that normal; outwards from the arc's own centre */
+  fg_point radial;   /* from O outwards */
+  double weight;     /* stations in the mean */
 } fg_points_row;
 
 typedef struct fg_points_bump {
@@ -53,8 +53,8 @@ typedef struct fg_points_part {
   double overall_radius_mm;
   fg_points_bump *bumps; /* owned */
   size_t bump_count;
-  double sense;          /* +1: numbers rise with the angle (clockwise as seen) */
-  double middle_rad;     /* beta of the foil's middle */
+  double sense;      /* +1: numbers rise with the angle (clockwise as seen) */
+  double middle_rad; /* beta of the foil's middle */
   double half_span_rad;
 } fg_points_part;
 
@@ -69,11 +69,11 @@ typedef struct fg_points {
   size_t view_count;
   fg_points_part *parts; /* owned */
   size_t part_count;
-  fg_points_row *rows;   /* owned */
+  fg_points_row *rows; /* owned */
   size_t row_count, row_capacity;
   size_t group_count;
-  fg_field_frame frame;  /* the picture all fields live in */
-  size_t parameters;     /* of the geometry */
+  fg_field_frame frame; /* the picture all fields live in */
+  size_t parameters;    /* of the geometry */
 } fg_points;
 
 /* Rows and a start of the geometry from measured foils. Views of one part must have the same bumps
@@ -92,12 +92,11 @@ typedef struct fg_points_correction {
 
 /* Residual of every row (mm, along its normal, outwards positive) and, unless NULL, its Jacobian
  * by the geometry (parameters × row_count). Updates the rows' normals. */
-void fg_points_residual(fg_points *points, const fg_points_correction *correction,
-                        double *residual, double *jacobian);
+void fg_points_residual(fg_points *points, const fg_points_correction *correction, double *residual,
+                        double *jacobian);
 
 /* Least squares of the geometry under a correction, Gauss-Newton to convergence. */
-fg_status fg_points_fit(fg_context *ctx, fg_points *points,
-                        const fg_points_correction *correction);
+fg_status fg_points_fit(fg_context *ctx, fg_points *points, const fg_points_correction *correction);
 
 /* Name of a geometry parameter, for reports; `name` holds 48 bytes. */
 void fg_points_parameter_name(const fg_points *points, size_t parameter, char *name);

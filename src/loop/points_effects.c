@@ -78,9 +78,9 @@ typedef struct part_row {
 } part_row;
 
 static const part_row part_rows[] = {
-    {"part.ovality", 2, ovality},       {"part.spiral", 1, spiral},
-    {"part.bump_crown", 1, bump_crown}, {"part.bump_skew", 1, bump_skew},
-    {"free.bump.phi", 6, free_phi},     {"free.foil.s", 10, free_s},
+    {"part.ovality", 2, ovality},         {"part.spiral", 1, spiral},
+    {"part.bump_crown", 1, bump_crown},   {"part.bump_skew", 1, bump_skew},
+    {"free.bump.phi", 6, free_phi},       {"free.foil.s", 10, free_s},
     {"free.edge.normal", 6, free_normal}, {NULL, 0, NULL},
 };
 
@@ -94,14 +94,15 @@ static size_t part_columns(const fg_points *points, const part_row *part, double
   double values[FG_LOOP_COLUMNS];
   for (size_t i = 0; i < points->row_count; i++) {
     part->basis(points, &points->rows[i], values);
-    for (size_t c = 0; c < part->columns; c++) columns[c * points->row_count + i] = values[c];
+    for (size_t c = 0; c < part->columns; c++)
+      columns[c * points->row_count + i] = values[c];
   }
   return part->columns;
 }
 
 /* The true position is d beyond the nominal one: along the normal the nominal lacks d. */
-static size_t field_columns(const fg_points *points, const fg_field_row *field,
-                            const double *shape, double *columns) {
+static size_t field_columns(const fg_points *points, const fg_field_row *field, const double *shape,
+                            double *columns) {
   fg_point d[FG_FIELD_COLUMNS];
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
@@ -124,7 +125,8 @@ static void engine_basis(const fg_loop_problem *problem, const fg_loop_candidate
                          const double *shape, double *columns) {
   const fg_points_problem *p = problem->self;
   size_t count = fg_points_effect_columns(p->points, candidate->effect->id, shape, columns);
-  for (size_t c = 0; c < count; c++) fg_points_project(p, columns + c * problem->rows);
+  for (size_t c = 0; c < count; c++)
+    fg_points_project(p, columns + c * problem->rows);
 }
 
 static size_t engine_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
@@ -163,7 +165,8 @@ static size_t ripple_starts(const fg_loop_problem *problem, const fg_loop_candid
   double span = y->high - y->low, step = 0.6 / span, frequency = 1.2 / span;
   if ((1 / 0.4 - frequency) / step > FG_LOOP_STARTS) step = (1 / 0.4 - frequency) / FG_LOOP_STARTS;
   size_t n = 0;
-  for (; n < FG_LOOP_STARTS && frequency < 1 / 0.4; frequency += step) starts[n++][0] = 1 / frequency;
+  for (; n < FG_LOOP_STARTS && frequency < 1 / 0.4; frequency += step)
+    starts[n++][0] = 1 / frequency;
   return n;
 }
 
@@ -177,12 +180,16 @@ static size_t step_starts(const fg_loop_problem *problem, const fg_loop_candidat
 }
 
 #define SCANNER(id_, on_, shapes_, name_, starts_, stepwise_, words_)                              \
-  {.id = id_, .level = "points", .frame = "scanner", .words = words_, .shapes = shapes_,           \
-   .shape_name = {name_}, .accepts = on_, .columns = engine_columns, .basis = engine_basis,        \
-   .starts = starts_, .stepwise = stepwise_}
+  {                                                                                                \
+    .id = id_, .level = "points", .frame = "scanner", .words = words_, .shapes = shapes_,          \
+    .shape_name = {name_}, .accepts = on_, .columns = engine_columns, .basis = engine_basis,       \
+    .starts = starts_, .stepwise = stepwise_                                                       \
+  }
 #define PART(id_, on_, frame_, words_)                                                             \
-  {.id = id_, .level = "points", .frame = frame_, .words = words_, .accepts = on_,                 \
-   .columns = engine_columns, .basis = engine_basis}
+  {                                                                                                \
+    .id = id_, .level = "points", .frame = frame_, .words = words_, .accepts = on_,                \
+    .columns = engine_columns, .basis = engine_basis                                               \
+  }
 
 static const fg_loop_effect effects[] = {
     SCANNER("scan.scale_y", on_y, 0, NULL, NULL, false, "a wrong scale along"),

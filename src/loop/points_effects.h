@@ -31,16 +31,16 @@ typedef struct fg_points_problem {
 /* Builds it from points whose geometry is fitted; residual and jacobian as fg_points_residual gave
  * them. `extra` more columns (effects that were accepted: extra_count × rows, in um of residual per
  * unit) become parameters. The points must outlive it. */
-fg_status fg_points_problem_build(fg_context *ctx, const fg_points *points,
-                                  const double *residual, const double *jacobian,
-                                  const double *extra, size_t extra_count,
+fg_status fg_points_problem_build(fg_context *ctx, const fg_points *points, const double *residual,
+                                  const double *jacobian, const double *extra, size_t extra_count,
                                   fg_points_problem *problem);
 /* v := scale × M v within every group: takes the groups' own geometry out of a column of rows. */
 void fg_points_project(const fg_points_problem *problem, double *v);
 
 void fg_points_problem_free(fg_points_problem *problem);
 
-/* The listed effects, and the free curves for what no listed one explains. Both end with id NULL. */
+/* The listed effects, and the free curves for what no listed one explains. Both end with id NULL.
+ */
 const fg_loop_effect *fg_points_effects(void);
 const fg_loop_effect *fg_points_free_effects(void);
 

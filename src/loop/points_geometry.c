@@ -15,7 +15,8 @@ enum { FIT_ROUNDS = 8 };
  * is not the part's first. */
 static size_t first_of_part(const fg_points *points, size_t part) {
   size_t at = 0;
-  for (size_t p = 0; p < part; p++) at += 1 + 3 * points->parts[p].bump_count;
+  for (size_t p = 0; p < part; p++)
+    at += 1 + 3 * points->parts[p].bump_count;
   return at;
 }
 
@@ -27,7 +28,8 @@ static bool is_first_view(const fg_points *points, size_t view) {
 
 static size_t first_of_view(const fg_points *points, size_t view) {
   size_t at = first_of_part(points, points->part_count);
-  for (size_t v = 0; v < view; v++) at += is_first_view(points, v) ? 2 : 3;
+  for (size_t v = 0; v < view; v++)
+    at += is_first_view(points, v) ? 2 : 3;
   return at;
 }
 
@@ -41,9 +43,11 @@ void fg_points_parameter_name(const fg_points *points, size_t parameter, char *n
     if (parameter < at || parameter >= at + count) continue;
     static const char *const names[3] = {"centre_to_centre_mm", "direction_rad", "radius_mm"};
     size_t k = parameter - at;
-    if (k == 0) snprintf(name, 48, "foil %zu overall.radius_mm", p + 1);
-    else snprintf(name, 48, "foil %zu bump %d %s", p + 1, points->parts[p].bumps[(k - 1) / 3].number,
-                  names[(k - 1) % 3]);
+    if (k == 0)
+      snprintf(name, 48, "foil %zu overall.radius_mm", p + 1);
+    else
+      snprintf(name, 48, "foil %zu bump %d %s", p + 1, points->parts[p].bumps[(k - 1) / 3].number,
+               names[(k - 1) % 3]);
     return;
   }
   snprintf(name, 48, "pose %zu", parameter);
@@ -103,8 +107,8 @@ static void place_row(fg_points *points, fg_points_row *row, fg_point p) {
   row->psi = part->sense * (angle - 2 * M_PI * round(angle / (2 * M_PI)));
 }
 
-void fg_points_residual(fg_points *points, const fg_points_correction *correction,
-                        double *residual, double *jacobian) {
+void fg_points_residual(fg_points *points, const fg_points_correction *correction, double *residual,
+                        double *jacobian) {
   points->parameters = count_parameters(points);
   if (jacobian) memset(jacobian, 0, points->parameters * points->row_count * sizeof *jacobian);
   for (size_t i = 0; i < points->row_count; i++) {

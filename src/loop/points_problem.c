@@ -16,11 +16,16 @@ static const char *const coordinate_names[FG_POINTS_COORDINATES] = {"scan.x", "s
 
 static double coordinate_of(const fg_points_row *row, size_t coordinate) {
   switch (coordinate) {
-  case FG_POINTS_SCAN_X: return row->at.x;
-  case FG_POINTS_SCAN_Y: return row->at.y;
-  case FG_POINTS_FOIL_S: return row->s_mm;
-  case FG_POINTS_BUMP_PHI: return row->phi;
-  default: return row->normal_rad * 180 / M_PI;
+  case FG_POINTS_SCAN_X:
+    return row->at.x;
+  case FG_POINTS_SCAN_Y:
+    return row->at.y;
+  case FG_POINTS_FOIL_S:
+    return row->s_mm;
+  case FG_POINTS_BUMP_PHI:
+    return row->phi;
+  default:
+    return row->normal_rad * 180 / M_PI;
   }
 }
 
@@ -69,7 +74,8 @@ static void span_group(const fg_points *points, const double *jacobian, size_t g
   p->scale[g] = 1;
   if (!sample->bump) return;
   size_t at = 0;
-  for (size_t q = 0; q < sample->part; q++) at += 1 + 3 * points->parts[q].bump_count;
+  for (size_t q = 0; q < sample->part; q++)
+    at += 1 + 3 * points->parts[q].bump_count;
   at += 1 + 3 * sample->bump_index;
   for (size_t c = 0; c < 3; c++) {
     double square = 0, whole = 0;
@@ -92,7 +98,8 @@ static void span_group(const fg_points *points, const double *jacobian, size_t g
       square += v * v;
     }
     if (!(square > 1e-16 * whole)) continue;
-    for (size_t i = first; i < last; i++) p->own[3 * p->group_row[i] + k] /= sqrt(square);
+    for (size_t i = first; i < last; i++)
+      p->own[3 * p->group_row[i] + k] /= sqrt(square);
     p->own_count[g]++;
   }
   double n = (double)(last - first), left = n - (double)p->own_count[g];
@@ -109,7 +116,8 @@ void fg_points_project(const fg_points_problem *p, double *v) {
       for (size_t k = first; k < last; k++)
         v[p->group_row[k]] -= dot * p->own[3 * p->group_row[k] + c];
     }
-    for (size_t k = first; k < last; k++) v[p->group_row[k]] *= p->scale[g];
+    for (size_t k = first; k < last; k++)
+      v[p->group_row[k]] *= p->scale[g];
   }
 }
 
@@ -129,22 +137,24 @@ static fg_status fill_parameters(fg_context *ctx, const fg_points *points, const
                                  const double *extra, size_t extra_count, fg_points_problem *p) {
   fg_loop_problem *problem = &p->problem;
   size_t rows = problem->rows, most = points->parameters + extra_count;
-  FG_TRY(fg_memory_allocate(ctx, most, rows * sizeof *problem->jacobian,
-                            (void **)&problem->jacobian));
+  FG_TRY(
+      fg_memory_allocate(ctx, most, rows * sizeof *problem->jacobian, (void **)&problem->jacobian));
   FG_TRY(fg_memory_allocate(ctx, most, sizeof *problem->parameter_name,
                             (void **)&problem->parameter_name));
   for (size_t a = 0; a < most; a++) {
     if (a < points->parameters && is_own(points, a)) continue;
-    const double *from = a < points->parameters ? jacobian + a * rows
-                                                : extra + (a - points->parameters) * rows;
+    const double *from =
+        a < points->parameters ? jacobian + a * rows : extra + (a - points->parameters) * rows;
     double *to = problem->jacobian + problem->parameters * rows;
     memcpy(to, from, rows * sizeof *to);
     fg_points_project(p, to);
     char *name;
     FG_TRY(fg_memory_allocate(ctx, 48, 1, (void **)&name));
     problem->parameter_name[problem->parameters++] = name;
-    if (a < points->parameters) fg_points_parameter_name(points, a, name);
-    else snprintf(name, 48, "accepted %zu", a - points->parameters + 1);
+    if (a < points->parameters)
+      fg_points_parameter_name(points, a, name);
+    else
+      snprintf(name, 48, "accepted %zu", a - points->parameters + 1);
   }
   return FG_OK;
 }
@@ -176,9 +186,8 @@ static fg_status fill_rows(fg_context *ctx, const fg_points *points, const doubl
   return FG_OK;
 }
 
-fg_status fg_points_problem_build(fg_context *ctx, const fg_points *points,
-                                  const double *residual, const double *jacobian,
-                                  const double *extra, size_t extra_count,
+fg_status fg_points_problem_build(fg_context *ctx, const fg_points *points, const double *residual,
+                                  const double *jacobian, const double *extra, size_t extra_count,
                                   fg_points_problem *p) {
   memset(p, 0, sizeof *p);
   p->points = points;
@@ -195,7 +204,8 @@ fg_status fg_points_problem_build(fg_context *ctx, const fg_points *points,
   FG_TRY_EXIT(fg_memory_allocate(ctx, groups, sizeof *p->own_count, (void **)&p->own_count));
   FG_TRY_EXIT(fg_memory_allocate(ctx, groups, sizeof *p->scale, (void **)&p->scale));
   FG_TRY_EXIT(list_groups(ctx, points, p));
-  for (size_t g = 0; g < groups; g++) span_group(points, jacobian, g, p);
+  for (size_t g = 0; g < groups; g++)
+    span_group(points, jacobian, g, p);
   FG_TRY_EXIT(fill_rows(ctx, points, residual, p));
   FG_TRY_EXIT(fill_coordinates(ctx, points, problem));
   FG_TRY_EXIT(fill_parameters(ctx, points, jacobian, extra, extra_count, p));
@@ -209,7 +219,8 @@ void fg_points_problem_free(fg_points_problem *p) {
   fg_loop_problem *problem = &p->problem;
   for (size_t c = 0; problem->coordinate && c < problem->coordinates; c++)
     free(problem->coordinate[c].value);
-  for (size_t a = 0; a < problem->parameters; a++) free(problem->parameter_name[a]);
+  for (size_t a = 0; a < problem->parameters; a++)
+    free(problem->parameter_name[a]);
   free(problem->parameter_name);
   free(problem->coordinate);
   free(problem->residual);

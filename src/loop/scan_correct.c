@@ -68,7 +68,8 @@ fg_status fg_scan_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_de
 /* The view of a foil of a scan; the number of views when it has none. */
 static size_t find_view(const fg_points *points, const fg_foil *foil) {
   size_t v = 0;
-  while (points && v < points->view_count && points->views[v].foil != foil) v++;
+  while (points && v < points->view_count && points->views[v].foil != foil)
+    v++;
   return v;
 }
 
@@ -82,8 +83,7 @@ fg_status fg_scan_correct(fg_context *ctx, const fg_measurement *m, const fg_fie
   corrected->discs = NULL;
   corrected->disc_count = 0;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils,
-                                 (void **)&corrected->foils));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils, (void **)&corrected->foils));
   for (size_t f = 0; f < m->foil_count; f++) {
     size_t view = find_view(points, &m->foils[f]);
     bool known = points && view < points->view_count;

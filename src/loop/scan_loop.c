@@ -19,9 +19,10 @@ static fg_status measure_all(fg_context *ctx, const char *const *paths, const fg
   for (size_t i = 1; i < loop->scan_count; i++)
     for (int axis = 0; axis < 2; axis++)
       if (fabs(loop->before[i].dpi[axis] / first->dpi[axis] - 1) > 1e-4)
-        return fg_fail(ctx, FG_ERR_DATA,
-                       "%s has %g dpi and %s has %g dpi: scans of one loop must have one resolution",
-                       paths[0], first->dpi[axis], paths[i], loop->before[i].dpi[axis]);
+        return fg_fail(
+            ctx, FG_ERR_DATA,
+            "%s has %g dpi and %s has %g dpi: scans of one loop must have one resolution", paths[0],
+            first->dpi[axis], paths[i], loop->before[i].dpi[axis]);
   return FG_OK;
 }
 
@@ -38,7 +39,8 @@ static fg_status check_same_foils(fg_context *ctx, const fg_scan_loop *loop) {
 /* Every foil of every scan as a view; with --same-foil, foil k of each scan is one part. */
 static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   size_t total = 0, n = 0;
-  for (size_t i = 0; i < loop->scan_count; i++) total += loop->before[i].foil_count;
+  for (size_t i = 0; i < loop->scan_count; i++)
+    total += loop->before[i].foil_count;
   fg_points_view *views = NULL;
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
   for (size_t i = 0; i < loop->scan_count; i++)
@@ -119,7 +121,8 @@ static void widen_ranges(const fg_measurement *m, fg_scan_range *ranges, size_t 
 
 static fg_status allocate_ranges(fg_context *ctx, fg_scan_loop *loop) {
   size_t foils = 0;
-  for (size_t i = 0; i < loop->scan_count; i++) foils += loop->before[i].foil_count;
+  for (size_t i = 0; i < loop->scan_count; i++)
+    foils += loop->before[i].foil_count;
   FG_TRY(fg_memory_allocate(ctx, foils, sizeof *loop->ranges, (void **)&loop->ranges));
   for (size_t i = 0, k = 0; i < loop->scan_count; i++)
     for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
@@ -171,7 +174,8 @@ static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
     }
     if (status == FG_OK) status = correct_all(ctx, loop, &set, tried);
     if (status == FG_OK) widen_all(loop, tried);
-    for (size_t i = 0; i < loop->scan_count; i++) fg_measurement_free(&tried[i]);
+    for (size_t i = 0; i < loop->scan_count; i++)
+      fg_measurement_free(&tried[i]);
   }
   free(tried);
   put_ranges(loop);
@@ -239,7 +243,8 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
   size_t foils = 0;
   for (size_t i = 0; i < loop->scan_count; i++)
     foils += loop->before ? loop->before[i].foil_count : 0;
-  for (size_t k = 0; loop->ranges && k < foils; k++) free(loop->ranges[k]);
+  for (size_t k = 0; loop->ranges && k < foils; k++)
+    free(loop->ranges[k]);
   free(loop->ranges);
   for (size_t i = 0; i < loop->scan_count; i++) {
     if (loop->before) fg_measurement_free(&loop->before[i]);

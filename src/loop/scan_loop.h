@@ -12,9 +12,9 @@ struct fg_scan_loop {
   fg_measurement *before, *after; /* one per scan */
   bool *hold_out;
   size_t scan_count;
-  fg_points points;      /* all views; geometry of the final model */
-  fg_subset subset;      /* what was tried, and the class of what explains */
-  fg_scan_set set;       /* the winner, fitted */
+  fg_points points;                         /* all views; geometry of the final model */
+  fg_subset subset;                         /* what was tried, and the class of what explains */
+  fg_scan_set set;                          /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of points */
   fg_scan_error error_before, error_after;
   double noise_floor_um;

@@ -33,7 +33,8 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
     for (size_t c = 0; c < f->row->columns; c++)
       fprintf(out, "%s%.10g", c ? ", " : "", f->u_amplitude_mm[c]);
     fputs("], \"shape\": [", out);
-    for (size_t s = 0; s < f->row->shapes; s++) fprintf(out, "%s%.10g", s ? ", " : "", f->shape[s]);
+    for (size_t s = 0; s < f->row->shapes; s++)
+      fprintf(out, "%s%.10g", s ? ", " : "", f->shape[s]);
     fputs("]}", out);
   }
   fputs("\n ]\n}\n", out);
@@ -162,15 +163,17 @@ fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_me
   if (warning) warning[0] = 0;
   for (int axis = 0; axis < 2; axis++)
     if (fabs(m->dpi[axis] / model->dpi[axis] - 1) > 1e-4)
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: the scan has %g dpi and the model is of a scanner at %g dpi; find a model "
-                     "at this resolution",
-                     m->scan, m->dpi[axis], model->dpi[axis]);
+      return fg_fail(
+          ctx, FG_ERR_DATA,
+          "%s: the scan has %g dpi and the model is of a scanner at %g dpi; find a model "
+          "at this resolution",
+          m->scan, m->dpi[axis], model->dpi[axis]);
   const fg_field_frame *frame = &model->fields.frame;
   if (warning && ((double)m->width_px * 25.4 / m->dpi[0] > frame->high_mm[0] * 1.1 ||
                   (double)m->height_px * 25.4 / m->dpi[1] > frame->high_mm[1] * 1.1))
-    snprintf(warning, 200, "%.80s: the scan reaches beyond the %.0f x %.0f mm the model was found in",
-             m->scan, frame->high_mm[0], frame->high_mm[1]);
+    snprintf(warning, 200,
+             "%.80s: the scan reaches beyond the %.0f x %.0f mm the model was found in", m->scan,
+             frame->high_mm[0], frame->high_mm[1]);
   fg_measurement corrected;
   FG_TRY(fg_scan_correct(ctx, m, &model->fields, NULL, 0, NULL, threads, &corrected));
   fg_status status = widen_by_model(ctx, model, m, threads, &corrected);
@@ -180,7 +183,8 @@ fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_me
   }
   fg_foil *foils = corrected.foils;
   size_t count = corrected.foil_count;
-  for (size_t f = 0; f < m->foil_count; f++) fg_foil_free(&m->foils[f]);
+  for (size_t f = 0; f < m->foil_count; f++)
+    fg_foil_free(&m->foils[f]);
   free(m->foils);
   m->foils = foils;
   m->foil_count = count;

@@ -65,9 +65,11 @@ static size_t list_unknowns(const fg_scan_set *set, unknown *list) {
   size_t n = 0;
   for (size_t e = 0; e < set->count; e++) {
     const fg_scan_effect *effect = &set->effects[e];
-    for (size_t c = 0; c < effect->columns; c++) list[n++] = (unknown){e, c, false};
+    for (size_t c = 0; c < effect->columns; c++)
+      list[n++] = (unknown){e, c, false};
     bool jumps = !strcmp(effect->id, "scan.row_step");
-    for (size_t s = 0; s < effect->shapes && !jumps; s++) list[n++] = (unknown){e, s, true};
+    for (size_t s = 0; s < effect->shapes && !jumps; s++)
+      list[n++] = (unknown){e, s, true};
   }
   return n;
 }
@@ -124,12 +126,14 @@ static fg_status solve(fg_context *ctx, refit *r) {
   for (size_t a = 0; a < n; a++) {
     const double *x = column_of(r, a);
     double right = 0, unit = a < r->parameters ? 1000 : 1; /* geometry in mm */
-    for (size_t i = 0; i < rows; i++) right += row_weight(r, i, a, a) * unit * x[i] * r->residual[i];
+    for (size_t i = 0; i < rows; i++)
+      right += row_weight(r, i, a, a) * unit * x[i] * r->residual[i];
     gsl_vector_set(r->right, a, right);
     for (size_t b = 0; b <= a; b++) {
       const double *y = column_of(r, b);
       double sum = 0, other = b < r->parameters ? 1000 : 1;
-      for (size_t i = 0; i < rows; i++) sum += row_weight(r, i, a, b) * unit * x[i] * other * y[i];
+      for (size_t i = 0; i < rows; i++)
+        sum += row_weight(r, i, a, b) * unit * x[i] * other * y[i];
       gsl_matrix_set(r->normal, a, b, sum);
       gsl_matrix_set(r->normal, b, a, sum);
     }
@@ -195,8 +199,10 @@ static void find_uncertainties(refit *r) {
   for (size_t k = 0; k < r->unknowns; k++) {
     fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
     double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));
-    if (r->list[k].shape) effect->u_shape[r->list[k].index] = u;
-    else effect->u_coefficient_um[r->list[k].index] = u;
+    if (r->list[k].shape)
+      effect->u_shape[r->list[k].index] = u;
+    else
+      effect->u_coefficient_um[r->list[k].index] = u;
   }
 }
 
@@ -215,7 +221,8 @@ static fg_status evaluate(fg_context *ctx, refit *r) {
     if (status == FG_OK) status = fg_points_fit(ctx, r->points, &correction);
     if (status == FG_OK) fg_points_residual(r->points, &correction, r->residual, r->jacobian);
   }
-  for (size_t i = 0; i < r->points->row_count; i++) r->residual[i] *= 1000;
+  for (size_t i = 0; i < r->points->row_count; i++)
+    r->residual[i] *= 1000;
   free(shift);
   return status;
 }
@@ -241,8 +248,7 @@ static void release(refit *r) {
   gsl_vector_free(r->right);
 }
 
-fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set,
-                        double *residual_um) {
+fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set, double *residual_um) {
   refit r = {.points = points, .set = set};
   fg_status status = FG_OK;
   fg_numerics_start();

@@ -9,7 +9,14 @@
 #include "core/select.h"
 #include "core/small_solve.h"
 
-enum { COLUMNS_MOST = 96, LISTED_MOST = 12, RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 24, REFINE_LEVELS = 4 };
+enum {
+  COLUMNS_MOST = 96,
+  LISTED_MOST = 12,
+  RIPPLE_STEPS = 400,
+  STEP_STEPS = 200,
+  REFINE_STEPS = 24,
+  REFINE_LEVELS = 4
+};
 /* A column whose mean square is less than this beside the geometry is nothing. */
 #define VANISHED 1e-8
 /* A set is right when what it leaves beyond all effects is likelier than this. */
@@ -18,11 +25,11 @@ enum { COLUMNS_MOST = 96, LISTED_MOST = 12, RIPPLE_STEPS = 400, STEP_STEPS = 200
 #define EDGE_ERROR_UM 0.01
 /* Gain in chi² that makes a ripple or a step worth a place in the search: its best of some hundred
  * places stands for ln of their number more. */
-#define SHAPED_CHI2 45.0
+#define SHAPED_CHI2     45.0
 #define SHAPED_LEAST_UM 0.15
 /* Rows this far off are left out, if they are fewer than this share. */
 #define OUTLIER_SIGMAS 5.0
-#define OUTLIER_SHARE 0.02
+#define OUTLIER_SHARE  0.02
 
 static const fg_subset_effect smooth[] = {
     {.id = "scan.scale_y", .columns = 1},
@@ -45,23 +52,24 @@ static const fg_subset_effect smooth[] = {
 
 typedef struct search {
   const fg_points *points;
-  size_t rows;          /* that are not kept aside */
+  size_t rows; /* that are not kept aside */
   size_t *row;
-  double *basis;        /* orthonormal columns of the geometry, then of all effects */
+  double *basis; /* orthonormal columns of the geometry, then of all effects */
   size_t geometry_rank;
-  double *residual;     /* beside the geometry */
-  double *columns;      /* COLUMNS_MOST × rows: effects beside the geometry */
+  double *residual; /* beside the geometry */
+  double *columns;  /* COLUMNS_MOST × rows: effects beside the geometry */
   size_t column_count, first_column[FG_SUBSET_EFFECTS];
-  double *work;         /* FG_LOOP_COLUMNS × all rows */
-  double full;          /* residual sum beside everything, and the columns that took it */
+  double *work; /* FG_LOOP_COLUMNS × all rows */
+  double full;  /* residual sum beside everything, and the columns that took it */
   size_t full_rank;
-  size_t new_shapes;    /* ripples and steps that were found in this round */
+  size_t new_shapes; /* ripples and steps that were found in this round */
   fg_subset *out;
 } search;
 
 static double dot(size_t n, const double *a, const double *b) {
   double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
+  for (size_t i = 0; i < n; i++)
+    sum += a[i] * b[i];
   return sum;
 }
 
@@ -69,7 +77,8 @@ static void take_out(const search *s, size_t rank, double *v) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < rank; k++) {
       double d = dot(s->rows, s->basis + k * s->rows, v);
-      for (size_t i = 0; i < s->rows; i++) v[i] -= d * s->basis[k * s->rows + i];
+      for (size_t i = 0; i < s->rows; i++)
+        v[i] -= d * s->basis[k * s->rows + i];
     }
 }
 
@@ -80,7 +89,8 @@ static bool extend(search *s, size_t rank, const double *v, double least) {
   take_out(s, rank, to);
   double left = dot(s->rows, to, to);
   if (!(left > fmax(1e-12 * whole, least))) return false;
-  for (size_t i = 0; i < s->rows; i++) to[i] /= sqrt(left);
+  for (size_t i = 0; i < s->rows; i++)
+    to[i] /= sqrt(left);
   return true;
 }
 
@@ -116,8 +126,7 @@ static void add_effect(search *s, const fg_subset_effect *effect) {
 }
 
 /* Residual sum with the columns of a mask fitted; the geometry is out already. */
-static double residual_sum(const search *s, unsigned mask, double *freedom,
-                           double *amplitude_u) {
+static double residual_sum(const search *s, unsigned mask, double *freedom, double *amplitude_u) {
   fg_normal_equations system;
   size_t index[FG_SMALL_MAX], n = 0;
   for (size_t e = 0; e < s->out->effect_count; e++)
@@ -137,7 +146,8 @@ static double residual_sum(const search *s, unsigned mask, double *freedom,
   }
   *freedom = (double)n;
   if (n && fg_normal_solve(&system, 1e-12, x, inverse))
-    for (size_t a = 0; a < n; a++) sum -= x[a] * system.right[a];
+    for (size_t a = 0; a < n; a++)
+      sum -= x[a] * system.right[a];
   if (amplitude_u && n) *amplitude_u = scale[n - 1] * sqrt(inverse[n - 1][n - 1]);
   return sum;
 }
@@ -184,7 +194,8 @@ static double shaped_gain(const search *s, size_t rank, const double *left, cons
   fg_normal_equations system;
   double x[FG_SMALL_MAX], gain = 0, square = 0;
   fg_normal_clear(&system, count);
-  for (size_t a = 0; a < count; a++) take_out(s, rank, columns + a * s->rows);
+  for (size_t a = 0; a < count; a++)
+    take_out(s, rank, columns + a * s->rows);
   for (size_t a = 0; a < count; a++) {
     system.right[a] = dot(s->rows, columns + a * s->rows, left);
     for (size_t b = 0; b <= a; b++)
@@ -268,7 +279,8 @@ static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
 
 static size_t bits(unsigned mask) {
   size_t n = 0;
-  for (; mask; mask &= mask - 1) n++;
+  for (; mask; mask &= mask - 1)
+    n++;
   return n;
 }
 
@@ -300,7 +312,8 @@ static fg_subset_member try_set(const search *s, const yardstick *y, unsigned ma
 }
 
 static bool is_right(const yardstick *y, const fg_subset_member *m) {
-  return m->excess <= (m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0) + y->allowance;
+  return m->excess <=
+         (m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0) + y->allowance;
 }
 
 /* Listed sets by size; the first size with one that is right ends the search. */
@@ -352,8 +365,8 @@ static void try_sets(search *s) {
   if (!out->member_count && s->new_shapes) keep_member(out, best);
   if (!out->member_count) try_free(s, &y, best);
   double used, none = residual_sum(s, 0, &used, NULL);
-  out->p_value = gsl_cdf_chisq_Q(fmax(0, none - y.full) / y.unit / (1 + y.allowance / y.freedom),
-                                 y.freedom);
+  out->p_value =
+      gsl_cdf_chisq_Q(fmax(0, none - y.full) / y.unit / (1 + y.allowance / y.freedom), y.freedom);
   for (size_t e = 0; e < out->effect_count; e++) {
     double u = 0;
     unsigned lone = 1u << e;
@@ -386,9 +399,11 @@ static fg_status span_geometry(fg_context *ctx, search *s, const double *residua
   for (size_t a = 0; a < points->parameters; a++) {
     for (size_t i = 0; i < s->rows; i++)
       column[i] = weight_of(s, i) * jacobian[a * points->row_count + s->row[i]];
-    if (dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0)) s->geometry_rank++;
+    if (dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0))
+      s->geometry_rank++;
   }
-  for (size_t i = 0; i < s->rows; i++) s->residual[i] = weight_of(s, i) * residual_um[s->row[i]];
+  for (size_t i = 0; i < s->rows; i++)
+    s->residual[i] = weight_of(s, i) * residual_um[s->row[i]];
   take_out(s, s->geometry_rank, s->residual);
   return FG_OK;
 }
@@ -412,10 +427,13 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double 
   FG_TRY_EXIT(list_rows(ctx, &s));
   FG_TRY_EXIT(span_geometry(ctx, &s, residual_um, jacobian));
   FG_TRY_EXIT(fg_memory_allocate(ctx, s.rows, sizeof *left, (void **)&left));
-  for (size_t e = 0; e < sizeof smooth / sizeof smooth[0]; e++) add_effect(&s, &smooth[e]);
+  for (size_t e = 0; e < sizeof smooth / sizeof smooth[0]; e++)
+    add_effect(&s, &smooth[e]);
   add_known(&s, known);
-  if (look) FG_TRY_EXIT(find_shaped_effects(ctx, &s, left));
-  else find_noise(&s, left);
+  if (look)
+    FG_TRY_EXIT(find_shaped_effects(ctx, &s, left));
+  else
+    find_noise(&s, left);
   try_sets(&s);
 exit:
   free(s.row);
@@ -466,7 +484,8 @@ static fg_status put_back(fg_context *ctx, fg_points *points, const fg_scan_set 
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *columns, (void **)&columns));
   fg_points_correction correction = {&fields, shift};
   fg_points_residual(points, &correction, residual_um, jacobian);
-  for (size_t i = 0; i < rows; i++) residual_um[i] *= 1000;
+  for (size_t i = 0; i < rows; i++)
+    residual_um[i] *= 1000;
   for (size_t e = 0; e < set->count; e++) {
     const fg_scan_effect *effect = &set->effects[e];
     size_t count = fg_points_effect_columns(points, effect->id, effect->shape, columns);
@@ -491,15 +510,16 @@ static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double 
     if (points->rows[i].weight > 0) absolute[n++] = fabs(residual_um[i]);
   double limit = n ? OUTLIER_SIGMAS * 1.4826 * fg_select(absolute, n, n / 2) : INFINITY;
   free(absolute);
-  for (size_t i = 0; i < rows; i++) out += fabs(residual_um[i]) > limit;
+  for (size_t i = 0; i < rows; i++)
+    out += fabs(residual_um[i]) > limit;
   if ((double)out > OUTLIER_SHARE * (double)rows) return FG_OK;
   for (size_t i = 0; i < rows; i++)
     if (fabs(residual_um[i]) > limit) points->rows[i].weight = 0;
   return FG_OK;
 }
 
-fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
-                           fg_subset *subset, double *residual_um) {
+fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set, fg_subset *subset,
+                           double *residual_um) {
   enum { ROUNDS = 6 };
   double *jacobian = NULL;
   fg_status status = FG_OK;

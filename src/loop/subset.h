@@ -42,12 +42,12 @@ typedef struct fg_subset {
   size_t effect_count;
   fg_subset_member members[FG_SUBSET_CLASS]; /* the class; the one that leaves least first */
   size_t member_count, member_total;
-  bool right;          /* the members leave no more than they should */
-  double noise_um, integral; /* of a row; of its correlation */
-  double p_value;      /* that no effect is needed; 1 when members[0].mask is 0 */
-  double share[FG_SUBSET_EFFECTS];    /* |M f|² / |f|² beside the geometry */
+  bool right;                            /* the members leave no more than they should */
+  double noise_um, integral;             /* of a row; of its correlation */
+  double p_value;                        /* that no effect is needed; 1 when members[0].mask is 0 */
+  double share[FG_SUBSET_EFFECTS];       /* |M f|² / |f|² beside the geometry */
   double smallest_um[FG_SUBSET_EFFECTS]; /* amplitude that would have shown beside the winner */
-  double alone[FG_SUBSET_EFFECTS];    /* share of the residual sum that it alone takes */
+  double alone[FG_SUBSET_EFFECTS];       /* share of the residual sum that it alone takes */
 } fg_subset;
 
 /* Searches the residuals (um) of points whose geometry is fitted; `jacobian` as from
@@ -60,8 +60,8 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double 
 /* The same with the geometry and the effects fitted together in between, until the set stays: what
  * is linear at the wrong geometry leaves traces that look like further effects. `set` gets the
  * winner, fitted; `residual_um` (rows) what it leaves. */
-fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
-                           fg_subset *subset, double *residual_um);
+fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set, fg_subset *subset,
+                           double *residual_um);
 
 /* One member of the class as a set without numbers. */
 void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set);

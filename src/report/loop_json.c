@@ -25,8 +25,8 @@ static bool is_lone(const fg_loop_claim *claim) {
   return !claim->candidate.effect->accepts;
 }
 
-/* What turns the coefficient into a slope per unit of its column, or into a share of the arc length;
- * NaN for other forms. */
+/* What turns the coefficient into a slope per unit of its column, or into a share of the arc
+ * length; NaN for other forms. */
 static double natural_unit(const fg_loop_report *report, const fg_loop_claim *claim) {
   const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
   const char *id = claim->candidate.effect->id;

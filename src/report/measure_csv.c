@@ -90,8 +90,7 @@ static void put_heading(FILE *out, fg_report_owner owner) {
   fputs(owner == FG_REPORT_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
   for (size_t i = 0; i < count; i++)
     put_field_names(out, &fields[i]);
-  if (owner == FG_REPORT_BUMP)
-    fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
+  if (owner == FG_REPORT_BUMP) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
   fputs("\n", out);
 }
 
@@ -104,8 +103,8 @@ fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *ou
     for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
       const fg_foil *foil = &measurement->foils[k];
       for (size_t b = 0; b < foil->bump_count; b++)
-        put_object(out, scan, foil, FG_REPORT_BUMP, foil->bumps[b].number,
-                   foil->bumps[b].flags, &foil->bumps[b]);
+        put_object(out, scan, foil, FG_REPORT_BUMP, foil->bumps[b].number, foil->bumps[b].flags,
+                   &foil->bumps[b]);
     }
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
       put_object(out, scan, NULL, FG_REPORT_DISC, measurement->discs[k].number,

@@ -63,14 +63,16 @@ static void write_parameters(fg_json *json, const fg_scan_effect *effect, bool u
     fg_json_number(json, "amplitude_um", u ? amplitude_u(effect) : amplitude_of(NULL, effect));
     if (!strcmp(effect->id, "part.ovality") && !u)
       fg_json_number(json, "phase_deg",
-                     0.5 * atan2(effect->coefficient_um[1], effect->coefficient_um[0]) * 180 / M_PI);
+                     0.5 * atan2(effect->coefficient_um[1], effect->coefficient_um[0]) * 180 /
+                         M_PI);
   }
   fg_json_object_end(json);
 }
 
 static size_t find_effect(const fg_subset *subset, const char *id) {
   size_t e = 0;
-  while (e < subset->effect_count && strcmp(subset->effects[e].id, id)) e++;
+  while (e < subset->effect_count && strcmp(subset->effects[e].id, id))
+    e++;
   return e;
 }
 
@@ -135,9 +137,10 @@ static void write_unattributed(fg_json *json, const fg_scan_loop *loop) {
   fg_json_object(json, "unattributed");
   fg_json_string(json, "coordinate", coordinate);
   const char *direction = strrchr(curve->id, '.');
-  fg_json_string(json, "moves", !strcmp(direction, ".dx")   ? "x"
-                                : !strcmp(direction, ".dy") ? "y"
-                                                            : "along the normal");
+  fg_json_string(json, "moves",
+                 !strcmp(direction, ".dx")   ? "x"
+                 : !strcmp(direction, ".dy") ? "y"
+                                             : "along the normal");
   const fg_field_row *row = fg_field_find(curve->id);
   fg_json_array(json, "shape");
   for (int i = 0; row && i <= 40; i++) {
@@ -200,9 +203,9 @@ static void write_rejected(fg_json *json, const fg_scan_loop *loop) {
     fg_json_string(json, "id", effect->id);
     fg_json_string(json, "level", "points");
     fg_json_string(json, "verdict",
-                   shown                            ? "absent"
+                   shown                          ? "absent"
                    : loop->subset.share[e] < 1e-4 ? "absorbed by geometry"
-                                                    : "inconclusive");
+                                                  : "inconclusive");
     fg_json_number(json, "would_explain", loop->subset.alone[e]);
     fg_json_number(json, "smallest_amplitude", smallest);
     fg_json_number(json, "retained_share", loop->subset.share[e]);
@@ -219,7 +222,8 @@ static void write_advice(fg_json *json, const fg_scan_loop *loop) {
                    "scans with --same-foil: what stays with the glass is the scanner, what turns "
                    "is the part");
   else if (loop->tied)
-    fg_json_string(json, NULL, "scan another foil on the same scanner: what repeats is the scanner");
+    fg_json_string(json, NULL,
+                   "scan another foil on the same scanner: what repeats is the scanner");
   fg_json_array_end(json);
 }
 
@@ -281,7 +285,8 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
     for (size_t p = 0; row && fg_field_parameter(&field, p, &name, &value, &u); p++)
       fprintf(out, " %s %.6g +- %.2g", name, value, 2 * u);
     if (!row)
-      fprintf(out, " amplitude_um %.4g +- %.2g", amplitude_of(loop, effect), 2 * amplitude_u(effect));
+      fprintf(out, " amplitude_um %.4g +- %.2g", amplitude_of(loop, effect),
+              2 * amplitude_u(effect));
     fputc('\n', out);
   }
   for (size_t i = 0; i < loop->scan_count; i++)

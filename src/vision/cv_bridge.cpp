@@ -47,7 +47,8 @@ fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t heig
 static fg_status copy_contours(fg_context *ctx, const std::vector<std::vector<cv::Point>> &found,
                                fg_contours *out) {
   size_t points = 0;
-  for (const auto &contour : found) points += contour.size();
+  for (const auto &contour : found)
+    points += contour.size();
   out->xy = static_cast<int32_t *>(std::calloc(points + 1, 2 * sizeof(int32_t)));
   out->starts = static_cast<size_t *>(std::calloc(found.size() + 1, sizeof(size_t)));
   if (!out->xy || !out->starts) {

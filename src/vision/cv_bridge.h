@@ -27,8 +27,8 @@ fg_status fg_cv_median(fg_context *ctx, float *grid, int32_t width, int32_t heig
 
 /* Closed contours: contour i holds the points starts[i] to starts[i + 1] - 1, in order. */
 typedef struct fg_contours {
-  int32_t *xy;     /* x, y of every point; owned */
-  size_t *starts;  /* count + 1; owned */
+  int32_t *xy;    /* x, y of every point; owned */
+  size_t *starts; /* count + 1; owned */
   size_t count;
 } fg_contours;
 

@@ -5,8 +5,19 @@
 #include "core/small_solve.h"
 
 /* Order of unknowns in a profile fit. */
-enum { EDGE_LEFT, EDGE_RIGHT, PLATEAU, LEVEL_L, LEVEL_R, SLOPE_L, SLOPE_R, BLUR_L, BLUR_R, GAMMA,
-       UNKNOWNS };
+enum {
+  EDGE_LEFT,
+  EDGE_RIGHT,
+  PLATEAU,
+  LEVEL_L,
+  LEVEL_R,
+  SLOPE_L,
+  SLOPE_R,
+  BLUR_L,
+  BLUR_R,
+  GAMMA,
+  UNKNOWNS
+};
 
 enum { ITERATIONS_MAX = 30 };
 
@@ -48,10 +59,10 @@ static step step_at(const fg_edge_tables *tables, double d, double level, double
 }
 
 static void pack(const fg_profile_fit *fit, double *x) {
-  const double values[UNKNOWNS] = {fit->edge_px[0], fit->edge_px[1], fit->shape.plateau,
-                                   fit->shape.level[0], fit->shape.level[1], fit->shape.slope[0],
-                                   fit->shape.slope[1], fit->shape.blur_px[0],
-                                   fit->shape.blur_px[1], fit->gamma};
+  const double values[UNKNOWNS] = {
+      fit->edge_px[0],       fit->edge_px[1],     fit->shape.plateau,  fit->shape.level[0],
+      fit->shape.level[1],   fit->shape.slope[0], fit->shape.slope[1], fit->shape.blur_px[0],
+      fit->shape.blur_px[1], fit->gamma};
   memcpy(x, values, sizeof values);
 }
 
@@ -69,7 +80,8 @@ static void unpack(const double *x, fg_profile_fit *fit) {
 static double model_at(const fg_edge_tables *tables, const double *x, double across,
                        size_t unknowns, double *row) {
   step left = step_at(tables, x[EDGE_LEFT] - across, x[LEVEL_L], x[SLOPE_L], x[PLATEAU], x[BLUR_L]);
-  step right = step_at(tables, across - x[EDGE_RIGHT], x[LEVEL_R], x[SLOPE_R], x[PLATEAU], x[BLUR_R]);
+  step right =
+      step_at(tables, across - x[EDGE_RIGHT], x[LEVEL_R], x[SLOPE_R], x[PLATEAU], x[BLUR_R]);
   double light = fmax(x[PLATEAU] + left.value + right.value, 1e-3);
   double gamma = x[GAMMA], value = light, rate = 1;
   if (gamma != 1) {
@@ -101,8 +113,8 @@ static void hold_counts(const double *x, double *row) {
   }
 }
 
-static void build(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count, const double *x, size_t unknowns,
-                  fg_normal_equations *system) {
+static void build(const fg_edge_tables *tables, const fg_profile_bin *bins, size_t count,
+                  const double *x, size_t unknowns, fg_normal_equations *system) {
   fg_normal_clear(system, unknowns);
   double row[UNKNOWNS];
   for (size_t i = 0; i < count; i++) {
@@ -115,8 +127,7 @@ static void build(const fg_edge_tables *tables, const fg_profile_bin *bins, size
 
 static bool is_sensible(const double *x) {
   return x[EDGE_RIGHT] > x[EDGE_LEFT] && x[BLUR_L] > 0.2 && x[BLUR_R] > 0.2 && x[BLUR_L] < 12 &&
-         x[BLUR_R] < 12 && x[GAMMA] > 0.25 && x[GAMMA] < 5 && x[PLATEAU] > -20 &&
-         x[PLATEAU] < 600;
+         x[BLUR_R] < 12 && x[GAMMA] > 0.25 && x[GAMMA] < 5 && x[PLATEAU] > -20 && x[PLATEAU] < 600;
 }
 
 /* A step in the unknowns; the levels follow gamma at constant counts. */
@@ -136,7 +147,8 @@ static void conclude(const fg_profile_bin *bins, size_t count, size_t unknowns,
                      const fg_normal_equations *system, fg_profile_fit *fit) {
   double x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   size_t used = 0;
-  for (size_t i = 0; i < count; i++) used += bins[i].count > 0;
+  for (size_t i = 0; i < count; i++)
+    used += bins[i].count > 0;
   fit->noise = used > unknowns ? sqrt(system->sum_squares / (double)(used - unknowns)) : 0;
   fit->good = fit->good && fg_normal_solve(system, 0, x, inverse);
   for (int i = 0; i < FG_EDGE_SHAPE_VALUES && fit->good; i++)

@@ -24,10 +24,10 @@ extern "C" {
 
 /* What the profile looks like apart from where its edges are. */
 typedef struct fg_edge_shape {
-  double plateau;        /* P */
-  double level[2];       /* bL, bR */
-  double slope[2];       /* gL, gR per px */
-  double blur_px[2];     /* sL, sR */
+  double plateau;    /* P */
+  double level[2];   /* bL, bR */
+  double slope[2];   /* gL, gR per px */
+  double blur_px[2]; /* sL, sR */
 } fg_edge_shape;
 
 enum { FG_EDGE_SHAPE_VALUES = 7, FG_NORMAL_STEPS = 64, FG_NORMAL_REACH = 6, FG_TONE_STEPS = 1024 };
@@ -37,7 +37,7 @@ typedef struct fg_edge_tables {
   float density[2 * FG_NORMAL_REACH * FG_NORMAL_STEPS + 2];    /* phi */
   float cumulative[2 * FG_NORMAL_REACH * FG_NORMAL_STEPS + 2]; /* Phi */
   double gamma;
-  float tone[FG_TONE_STEPS + 2];                               /* G at 255 i / FG_TONE_STEPS */
+  float tone[FG_TONE_STEPS + 2]; /* G at 255 i / FG_TONE_STEPS */
 } fg_edge_tables;
 
 void fg_edge_tables_init(fg_edge_tables *tables, double gamma);

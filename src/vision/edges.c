@@ -8,11 +8,11 @@
 #include "core/parallel.h"
 #include "core/select.h"
 
-#define STEP_PX       2.0  /* distance of stations */
-#define SMOOTH_PX     30.0 /* half window of the reference line */
-#define BAND_BLURS    4.0  /* the band reaches so many blurs beyond the strip's edges */
-#define BAND_MARGIN_PX 4.0 /* and so much background */
-#define BAND_MOST_PX  18.0
+#define STEP_PX        2.0  /* distance of stations */
+#define SMOOTH_PX      30.0 /* half window of the reference line */
+#define BAND_BLURS     4.0  /* the band reaches so many blurs beyond the strip's edges */
+#define BAND_MARGIN_PX 4.0  /* and so much background */
+#define BAND_MOST_PX   18.0
 enum {
   MIDDLE_STATIONS = 4, /* the middle is smoothed over so many stations to either side */
   SOLVE_ROUNDS = 2,
@@ -106,7 +106,8 @@ static void scale_uncertainties(fg_edge_work *work) {
   }
   double factor = expected > 0 ? sqrt(fmax(1, sum / expected)) : 1;
   for (size_t i = 0; i < work->reference->count; i++)
-    for (int side = 0; side < 2; side++) work->stations[i].u_px[side] *= (float)factor;
+    for (int side = 0; side < 2; side++)
+      work->stations[i].u_px[side] *= (float)factor;
 }
 
 /* Stations of the strip in mm. */
@@ -207,15 +208,20 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                            const fg_segmentation *segmentation, const fg_trace *trace,
                            const double dpi[2], unsigned threads, fg_strip *strip) {
   fg_reference reference = {0};
-  fg_edge_work work = {.tiles = tiles, .segmentation = segmentation, .trace = trace,
-                       .reference = &reference, .threads = threads, .width_px = trace->width_px,
-                       .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX), .noise = 1, .contrast = trace->contrast};
+  fg_edge_work work = {.tiles = tiles,
+                       .segmentation = segmentation,
+                       .trace = trace,
+                       .reference = &reference,
+                       .threads = threads,
+                       .width_px = trace->width_px,
+                       .reach_px = fmin(BAND_BLURS * trace->blur_px + BAND_MARGIN_PX, BAND_MOST_PX),
+                       .noise = 1,
+                       .contrast = trace->contrast};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX,
-                                 &reference));
+  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX, &reference));
   FG_TRY_EXIT(allocate_work(ctx, &work));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, reference.count, sizeof *strip->stations,
-                                 (void **)&strip->stations));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, reference.count, sizeof *strip->stations, (void **)&strip->stations));
   FG_TRY_EXIT(run(ctx, &work));
   strip->count = reference.count;
   strip->facts = trace->facts;

@@ -14,8 +14,8 @@
 #define FG_VISION_EDGES_H
 
 #include "foilgauge/strip.h"
-#include "vision/pixel_band.h"
 #include "vision/edge_model.h"
+#include "vision/pixel_band.h"
 #include "vision/segment.h"
 #include "vision/trace.h"
 
@@ -44,8 +44,11 @@ typedef struct fg_edge_station {
 /* Stations are worked on in chunks, each with its own pixels; a chunk is a unit of parallel work,
  * its size is fixed, so sums do not depend on the number of threads. A segment is the stretch of
  * one mean profile. */
-enum { FG_SEGMENT_STATIONS = 64, FG_CHUNK_SEGMENTS = 6,
-       FG_CHUNK_STATIONS = FG_SEGMENT_STATIONS * FG_CHUNK_SEGMENTS };
+enum {
+  FG_SEGMENT_STATIONS = 64,
+  FG_CHUNK_SEGMENTS = 6,
+  FG_CHUNK_STATIONS = FG_SEGMENT_STATIONS * FG_CHUNK_SEGMENTS
+};
 
 /* A mean profile and its fit. */
 typedef struct fg_segment_profile {
@@ -61,19 +64,19 @@ typedef struct fg_edge_work {
   const fg_reference *reference;
   unsigned threads;
   size_t chunk_count;
-  fg_pixel_band *bands;       /* chunk_count */
-  fg_edge_station *stations;  /* reference->count */
+  fg_pixel_band *bands;      /* chunk_count */
+  fg_edge_station *stations; /* reference->count */
   fg_segment_profile *segments;
-  fg_profile_bin *bins;       /* segment_count × bin_count */
+  fg_profile_bin *bins; /* segment_count × bin_count */
   size_t segment_count, bin_count;
   fg_edge_tables *tables;
-  double width_px;            /* of the strip */
-  double reach_px;            /* of the band beyond the strip's edges */
-  double noise;               /* sd of a pixel, counts */
-  double contrast;            /* |P - b|, counts */
+  double width_px; /* of the strip */
+  double reach_px; /* of the band beyond the strip's edges */
+  double noise;    /* sd of a pixel, counts */
+  double contrast; /* |P - b|, counts */
   bool clipped, side_band;
   double thickness_px, blur_px[2], gamma;
-  int round;                  /* of Gauss-Newton */
+  int round; /* of Gauss-Newton */
 } fg_edge_work;
 
 /* Stations [*first, *last] of a chunk. */

@@ -57,8 +57,7 @@ static void stack_chunk(const fg_edge_work *work, size_t chunk) {
 }
 
 /* A start for the fit: levels from the ends and the middle of the profile. */
-static void start_fit(const fg_edge_work *work, const fg_segment_profile *s,
-                      fg_profile_fit *fit) {
+static void start_fit(const fg_edge_work *work, const fg_segment_profile *s, fg_profile_fit *fit) {
   double level[3] = {0}, weight[3] = {0};
   double half = work->width_px / 2;
   for (size_t i = 0; i < work->bin_count; i++) {
@@ -68,13 +67,14 @@ static void start_fit(const fg_edge_work *work, const fg_segment_profile *s,
     level[where] += b->value * b->count;
     weight[where] += b->count;
   }
-  for (int i = 0; i < 3; i++) level[i] = weight[i] > 0 ? level[i] / weight[i] : 0;
+  for (int i = 0; i < 3; i++)
+    level[i] = weight[i] > 0 ? level[i] / weight[i] : 0;
   memset(fit, 0, sizeof *fit);
   double gamma = work->tables->gamma;
-  fit->shape = (fg_edge_shape){.plateau = fg_edge_light(gamma, level[1]),
-                               .level = {fg_edge_light(gamma, level[0]),
-                                         fg_edge_light(gamma, level[2])},
-                               .blur_px = {1.5, 1.5}};
+  fit->shape =
+      (fg_edge_shape){.plateau = fg_edge_light(gamma, level[1]),
+                      .level = {fg_edge_light(gamma, level[0]), fg_edge_light(gamma, level[2])},
+                      .blur_px = {1.5, 1.5}};
   fit->edge_px[0] = -half;
   fit->edge_px[1] = half;
   fit->gamma = gamma;
@@ -173,7 +173,8 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
   for (int i = 0; i < GAMMA_SEGMENTS; i++) {
     if (!task.fits[i].good) continue;
     int j = count++;
-    for (; j > 0 && values[j - 1] > task.fits[i].gamma; j--) values[j] = values[j - 1];
+    for (; j > 0 && values[j - 1] > task.fits[i].gamma; j--)
+      values[j] = values[j - 1];
     values[j] = task.fits[i].gamma;
     u += task.fits[i].u_gamma;
   }
@@ -195,7 +196,8 @@ fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work) {
   FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
   FG_TRY(find_gamma(ctx, work));
   FG_TRY(fg_parallel_run(ctx, work->threads, work->segment_count, fit_task, work));
-  for (size_t i = 0; i < work->segment_count; i++) good += work->segments[i].fit.good != 0;
+  for (size_t i = 0; i < work->segment_count; i++)
+    good += work->segments[i].fit.good != 0;
   if (good < 3 || good * 3 < work->segment_count)
     return fg_fail(ctx, FG_ERR_NUMERIC, "no pair of edges along the strip");
   return fg_edges_smooth_shape(ctx, work, good);

@@ -42,7 +42,8 @@ static void fill_basis(const fg_reference *reference, size_t station, double *ba
 
 static double predict(const course *c, const double *basis) {
   double sum = 0;
-  for (size_t b = 0; b < c->unknowns; b++) sum += c->coefficients[b] * basis[b];
+  for (size_t b = 0; b < c->unknowns; b++)
+    sum += c->coefficients[b] * basis[b];
   return sum;
 }
 
@@ -64,7 +65,8 @@ static bool fit_course(course *c, double limit) {
     count++;
     fg_normal_add(&system, c->basis[s], c->values[s], 1);
   }
-  for (size_t b = 1; b < c->unknowns; b++) system.matrix[b][b] += 1e-3 * system.matrix[0][0];
+  for (size_t b = 1; b < c->unknowns; b++)
+    system.matrix[b][b] += 1e-3 * system.matrix[0][0];
   if (!fg_normal_solve(&system, 0, x, NULL)) return false;
   memcpy(c->coefficients, x, c->unknowns * sizeof *x);
   double freedom = count - (double)c->unknowns;
@@ -84,7 +86,8 @@ static void find_course(course *c) {
   memset(c->coefficients, 0, sizeof c->coefficients);
   c->real = 0;
   double limit = INFINITY;
-  for (int round = 0; round < 3 && fit_course(c, limit); round++) limit = deviation_limit(c);
+  for (int round = 0; round < 3 && fit_course(c, limit); round++)
+    limit = deviation_limit(c);
 }
 
 static float *station_value(fg_edge_station *s, int i) {
@@ -95,8 +98,8 @@ static float *station_value(fg_edge_station *s, int i) {
 
 static double segment_value(const fg_profile_fit *fit, int i) {
   const fg_edge_shape *s = &fit->shape;
-  const double values[FG_EDGE_SHAPE_VALUES] = {s->plateau,  s->level[0],   s->level[1],  s->slope[0],
-                                               s->slope[1], s->blur_px[0], s->blur_px[1]};
+  const double values[FG_EDGE_SHAPE_VALUES] = {
+      s->plateau, s->level[0], s->level[1], s->slope[0], s->slope[1], s->blur_px[0], s->blur_px[1]};
   return fit->good ? values[i] : NAN;
 }
 
@@ -114,7 +117,8 @@ static void spread_course(const course *c, int i) {
     for (int side = 0; side < 2 && c->real > 0; side++) {
       size_t s = side ? s1 : s0;
       double share = side ? at - (double)s0 : 1 - (at - (double)s0);
-      if (isfinite(c->values[s])) value += c->real * share * (c->values[s] - predict(c, c->basis[s]));
+      if (isfinite(c->values[s]))
+        value += c->real * share * (c->values[s] - predict(c, c->basis[s]));
     }
     *station_value(&work->stations[k], i) = (float)(i >= 5 ? fmax(value, 0.3) : value);
   }
@@ -182,8 +186,8 @@ fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good
   c.sd = sd;
   for (size_t s = 0; s < count; s++) {
     size_t middle = s * FG_SEGMENT_STATIONS + FG_SEGMENT_STATIONS / 2;
-    fill_basis(work->reference, middle < work->reference->count ? middle : work->reference->count - 1,
-               c.basis[s]);
+    fill_basis(work->reference,
+               middle < work->reference->count ? middle : work->reference->count - 1, c.basis[s]);
   }
   for (int i = 0; i < FG_EDGE_SHAPE_VALUES; i++) {
     for (size_t s = 0; s < count; s++) {

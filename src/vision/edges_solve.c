@@ -89,15 +89,18 @@ static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
   fg_edge_work *work = shared;
   size_t first, last;
   fg_edges_chunk(work, chunk, &first, &last);
-  for (size_t i = first; i <= last; i++) clear_sums(&work->stations[i]);
-  float limit = (float)(work->round == 0 ? 1e9 : OUTLIER_SIGMAS * work->noise +
-                                                     OUTLIER_SHARE * work->contrast);
+  for (size_t i = first; i <= last; i++)
+    clear_sums(&work->stations[i]);
+  float limit =
+      (float)(work->round == 0 ? 1e9
+                               : OUTLIER_SIGMAS * work->noise + OUTLIER_SHARE * work->contrast);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];
     add_pixel(work->tables, &work->stations[p->station], p->across_px, p->value, limit);
   }
-  for (size_t i = first; i <= last; i++) move_edges(&work->stations[i]);
+  for (size_t i = first; i <= last; i++)
+    move_edges(&work->stations[i]);
   return FG_OK;
 }
 
@@ -107,7 +110,8 @@ fg_status fg_edges_solve(fg_context *ctx, fg_edge_work *work, int rounds) {
     work->noise = estimate_noise(work);
   }
   for (size_t i = 0; i < work->reference->count; i++)
-    for (int side = 0; side < 2; side++) work->stations[i].u_px[side] *= (float)work->noise;
+    for (int side = 0; side < 2; side++)
+      work->stations[i].u_px[side] *= (float)work->noise;
   drop_misfits(work);
   return FG_OK;
 }

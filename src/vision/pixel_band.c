@@ -49,8 +49,8 @@ static long project(const fg_reference *line, double x, double y, long station, 
 }
 
 /* All pixels of one lattice line that crosses the reference between stations i and i+1. */
-static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const view *a,
-                              const view *b, int64_t u, fg_pixel_band *band) {
+static fg_status collect_line(fg_context *ctx, const run *r, size_t i, const view *a, const view *b,
+                              int64_t u, fg_pixel_band *band) {
   double step = r->reference->step_px, f = ((double)u - a->u) / (b->u - a->u);
   double v0 = (1 - f) * a->v + f * b->v;
   double span = r->reach_px / fabs(a->tu) * 1.05 + 1;
@@ -91,7 +91,8 @@ static fg_status collect_run(fg_context *ctx, const run *r, fg_pixel_band *band)
     /* Half-open, so that a line through a station is counted once. */
     int64_t first = b.u > a.u ? (int64_t)ceil(a.u) : (int64_t)floor(b.u) + 1;
     int64_t last = b.u > a.u ? (int64_t)ceil(b.u) - 1 : (int64_t)floor(a.u);
-    for (int64_t u = first; u <= last; u++) FG_TRY(collect_line(ctx, r, i, &a, &b, u, band));
+    for (int64_t u = first; u <= last; u++)
+      FG_TRY(collect_line(ctx, r, i, &a, &b, u, band));
   }
   return FG_OK;
 }
@@ -111,7 +112,8 @@ fg_status fg_pixel_band_collect(fg_context *ctx, const fg_tiles *tiles,
     run r = {.tiles = tiles, .reference = reference, .first = first, .reach_px = reach_px};
     r.steep = is_steep(&reference->stations[first]);
     r.last = first;
-    while (r.last < last && is_steep(&reference->stations[r.last + 1]) == r.steep) r.last++;
+    while (r.last < last && is_steep(&reference->stations[r.last + 1]) == r.steep)
+      r.last++;
     status = collect_run(ctx, &r, band);
     first = r.last + 1;
   }

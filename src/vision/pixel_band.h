@@ -14,9 +14,9 @@ extern "C" {
 #endif
 
 typedef struct fg_band_pixel {
-  float across_px;  /* signed distance from the reference line, along its normal */
-  float value;      /* 8-bit counts */
-  int32_t station;  /* whose step it falls into */
+  float across_px; /* signed distance from the reference line, along its normal */
+  float value;     /* 8-bit counts */
+  int32_t station; /* whose step it falls into */
 } fg_band_pixel;
 
 typedef struct fg_pixel_band {

@@ -28,7 +28,8 @@ static uint8_t from_pixels(const fg_tiles *tiles, const void *tile, int32_t cell
   for (int32_t y = 0; y < cell_px; y++)
     for (int32_t x = 0; x < cell_px; x++) {
       size_t at = first + (size_t)y * FG_TILE_PX + (size_t)x;
-      sum += tiles->bytes_per_pixel == 1 ? ((const uint8_t *)tile)[at] : ((const uint16_t *)tile)[at];
+      sum +=
+          tiles->bytes_per_pixel == 1 ? ((const uint8_t *)tile)[at] : ((const uint16_t *)tile)[at];
     }
   return to_byte((double)sum / n / (tiles->bytes_per_pixel == 1 ? 1 : 257));
 }

@@ -15,8 +15,10 @@ typedef fg_reference_station node;
 static bool smooth_node(const fg_point *points, const double *chord, size_t count, size_t i,
                         double window_px, node *out) {
   size_t from = i, to = i;
-  while (from > 0 && (chord[i] - chord[from - 1] <= window_px || i - from < 3)) from--;
-  while (to + 1 < count && (chord[to + 1] - chord[i] <= window_px || to - i < 3)) to++;
+  while (from > 0 && (chord[i] - chord[from - 1] <= window_px || i - from < 3))
+    from--;
+  while (to + 1 < count && (chord[to + 1] - chord[i] <= window_px || to - i < 3))
+    to++;
   fg_normal_equations sx, sy;
   fg_normal_clear(&sx, 3);
   fg_normal_clear(&sy, 3);
@@ -31,8 +33,10 @@ static bool smooth_node(const fg_point *points, const double *chord, size_t coun
   if (!fg_normal_solve(&sx, 0, cx, NULL) || !fg_normal_solve(&sy, 0, cy, NULL)) return false;
   double speed = hypot(cx[1], cy[1]);
   if (!(speed > 0)) return false;
-  *out = (node){.x = points[i].x + cx[0], .y = points[i].y + cy[0],
-                .tx = cx[1] / speed, .ty = cy[1] / speed,
+  *out = (node){.x = points[i].x + cx[0],
+                .y = points[i].y + cy[0],
+                .tx = cx[1] / speed,
+                .ty = cy[1] / speed,
                 .curvature = 2 * (cx[1] * cy[2] - cy[1] * cx[2]) / (speed * speed * speed)};
   return true;
 }
@@ -64,7 +68,8 @@ static double arc_between(const node *a, const node *b) {
 static fg_status resample(fg_context *ctx, const node *nodes, size_t count, double step_px,
                           fg_reference *out) {
   double total = 0;
-  for (size_t i = 1; i < count; i++) total += arc_between(&nodes[i - 1], &nodes[i]);
+  for (size_t i = 1; i < count; i++)
+    total += arc_between(&nodes[i - 1], &nodes[i]);
   size_t wanted = (size_t)(total / step_px) + 1;
   FG_TRY(fg_memory_allocate(ctx, wanted, sizeof *out->stations, (void **)&out->stations));
   double at = 0, next = 0;

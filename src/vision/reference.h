@@ -14,9 +14,9 @@ extern "C" {
 #endif
 
 typedef struct fg_reference_station {
-  double x, y;       /* px */
-  double tx, ty;     /* unit tangent; the normal is (-ty, tx) */
-  double curvature;  /* 1/px, positive when the line bends towards the normal */
+  double x, y;      /* px */
+  double tx, ty;    /* unit tangent; the normal is (-ty, tx) */
+  double curvature; /* 1/px, positive when the line bends towards the normal */
 } fg_reference_station;
 
 typedef struct fg_reference {

@@ -128,8 +128,10 @@ static void find_polarity(const fg_island *island, fg_segmentation *out) {
   const size_t *counts = out->light_on_dark ? t.light_counts : t.dark_counts;
   size_t total = 0, below = 0;
   int bin = 0;
-  for (int i = 0; i < 256; i++) total += counts[i];
-  while (bin < 255 && below + counts[bin] <= total * 4 / 5) below += counts[bin++];
+  for (int i = 0; i < 256; i++)
+    total += counts[i];
+  while (bin < 255 && below + counts[bin] <= total * 4 / 5)
+    below += counts[bin++];
   out->contrast = total ? (float)bin + 0.5f : 0;
 }
 
@@ -141,8 +143,7 @@ static int compare_objects(const void *a, const void *b) {
 
 static fg_status collect_objects(fg_context *ctx, const fg_blob *blobs, int32_t blob_count,
                                  double least_px, fg_segmentation *out) {
-  FG_TRY(fg_memory_allocate(ctx, (size_t)blob_count, sizeof *out->objects,
-                            (void **)&out->objects));
+  FG_TRY(fg_memory_allocate(ctx, (size_t)blob_count, sizeof *out->objects, (void **)&out->objects));
   for (int32_t i = 0; i < blob_count; i++) {
     const fg_blob *b = &blobs[i];
     if (hypot((double)b->width, (double)b->height) * FG_BLOCK_PX < least_px) {
@@ -151,7 +152,11 @@ static fg_status collect_objects(fg_context *ctx, const fg_blob *blobs, int32_t 
     }
     int32_t x = b->x + out->x, y = b->y + out->y;
     out->objects[out->object_count++] = (fg_object){
-        .label = i + 1, .x = x, .y = y, .width = b->width, .height = b->height,
+        .label = i + 1,
+        .x = x,
+        .y = y,
+        .width = b->width,
+        .height = b->height,
         .blocks = b->area,
         .touches_border = x <= 0 || y <= 0 || x + b->width >= out->tiles->block_columns ||
                           y + b->height >= out->tiles->block_rows};
@@ -180,8 +185,7 @@ static fg_status label_objects(fg_context *ctx, const fg_island *island, double 
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&m.cells));
   if (out->contrast >= CONTRAST_LEAST) visit_island(out, island, mark_block, &m);
-  FG_TRY_EXIT(
-      fg_cv_label(ctx, m.cells, out->width, out->height, out->labels, &blobs, &blob_count));
+  FG_TRY_EXIT(fg_cv_label(ctx, m.cells, out->width, out->height, out->labels, &blobs, &blob_count));
   FG_TRY_EXIT(collect_objects(ctx, blobs, blob_count, least_px, out));
 exit:
   free(m.cells);

@@ -17,24 +17,24 @@ extern "C" {
 #endif
 
 typedef struct fg_object {
-  int32_t label;                   /* its value in `labels` */
-  int32_t x, y, width, height;     /* bounding box in blocks of the scan */
-  int32_t blocks;                  /* how many blocks */
-  bool touches_border;             /* within one block of the scan's border */
+  int32_t label;               /* its value in `labels` */
+  int32_t x, y, width, height; /* bounding box in blocks of the scan */
+  int32_t blocks;              /* how many blocks */
+  bool touches_border;         /* within one block of the scan's border */
 } fg_object;
 
 typedef struct fg_segmentation {
-  const fg_tiles *tiles;           /* the scan's; must outlive this */
-  int32_t x, y, width, height;     /* the island's box in blocks of the scan */
+  const fg_tiles *tiles;                           /* the scan's; must outlive this */
+  int32_t x, y, width, height;                     /* the island's box in blocks of the scan */
   int32_t grid_x, grid_y, grid_columns, grid_rows; /* tiles that `grid` covers */
-  float *grid;                     /* background at tile centres, 8-bit counts */
-  int32_t *labels;                 /* width × height: 0 background, else 1 + object of the mask */
+  float *grid;                                     /* background at tile centres, 8-bit counts */
+  int32_t *labels; /* width × height: 0 background, else 1 + object of the mask */
   bool light_on_dark;
-  float contrast;                  /* typical excess of the objects, 8-bit counts */
-  float noise;                     /* sd of background block means, 8-bit counts */
-  fg_object *objects;              /* large ones, in reading order of their boxes; owned */
+  float contrast;     /* typical excess of the objects, 8-bit counts */
+  float noise;        /* sd of background block means, 8-bit counts */
+  fg_object *objects; /* large ones, in reading order of their boxes; owned */
   size_t object_count;
-  size_t speck_count;              /* small ones, left alone */
+  size_t speck_count; /* small ones, left alone */
 } fg_segmentation;
 
 /* Background at the centre of a block of the scan, bilinear between tile centres. */

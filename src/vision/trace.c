@@ -7,10 +7,10 @@
 #include "foilgauge/strip.h"
 
 enum {
-  PROFILE_MAX = 1024,   /* samples across */
-  SEED_ANGLES = 24,     /* directions tried at a seed */
-  TANGENT_POINTS = 3,   /* the tangent is taken over so many steps */
-  STRIPS_MAX = 16,      /* strips in one object */
+  PROFILE_MAX = 1024, /* samples across */
+  SEED_ANGLES = 24,   /* directions tried at a seed */
+  TANGENT_POINTS = 3, /* the tangent is taken over so many steps */
+  STRIPS_MAX = 16,    /* strips in one object */
 };
 #define GAP_WIDTHS   4.0  /* longest gap that is bridged, in strip widths */
 #define LENGTH_LEAST 12.0 /* shortest strip, in strip widths */
@@ -32,7 +32,7 @@ typedef struct walker {
   double half_window_px; /* of a cut */
   double width_px;       /* of the strip at the seed */
   double contrast;
-  double blur_sum;       /* over the cuts of a walk */
+  double blur_sum; /* over the cuts of a walk */
   size_t blur_count;
 } walker;
 
@@ -87,23 +87,29 @@ static bool cut_across(const walker *w, fg_point p, fg_point tangent, double con
   float limit = (float)(0.5 * contrast);
   int best = -1;
   for (int d = 0; d <= half && best < 0; d++) {
-    if (profile[half + d] > limit) best = half + d;
-    else if (profile[half - d] > limit) best = half - d;
+    if (profile[half + d] > limit)
+      best = half + d;
+    else if (profile[half - d] > limit)
+      best = half - d;
   }
   out->width_px = 0;
   if (best < 0) return false;
   out->width_px = INFINITY;
   int from = best, to = best;
-  while (from > 0 && profile[from - 1] > limit) from--;
-  while (to < count - 1 && profile[to + 1] > limit) to++;
+  while (from > 0 && profile[from - 1] > limit)
+    from--;
+  while (to < count - 1 && profile[to + 1] > limit)
+    to++;
   if (from == 0 || to == count - 1) return false;
   double a = from - (double)(profile[from] - limit) / (profile[from] - profile[from - 1]);
   double b = to + (double)(profile[to] - limit) / (profile[to] - profile[to + 1]);
   out->offset_px = 0.5 * (a + b) - half;
   out->width_px = b - a;
   out->peak = 0;
-  for (int j = from; j <= to; j++) out->peak = fmax(out->peak, profile[j]);
-  out->blur_px = 0.5 * (flank(profile, count, from, -1, limit) + flank(profile, count, to, 1, limit));
+  for (int j = from; j <= to; j++)
+    out->peak = fmax(out->peak, profile[j]);
+  out->blur_px =
+      0.5 * (flank(profile, count, from, -1, limit) + flank(profile, count, to, 1, limit));
   return true;
 }
 
@@ -183,8 +189,7 @@ static bool step_ahead(const walker *w, fg_point p, fg_point *direction, double 
     if (outside(w, *next, 0)) continue;
     bool found = cut_across(w, *next, d, contrast, c);
     if (i == 0) straight_px = c->width_px;
-    if (!found || c->width_px >= JOINED_WIDTHS * w->width_px ||
-        c->width_px <= 0.5 * w->width_px ||
+    if (!found || c->width_px >= JOINED_WIDTHS * w->width_px || c->width_px <= 0.5 * w->width_px ||
         fabs(c->offset_px) >= 0.5 * w->width_px + 0.5 * missed)
       continue;
     *direction = d;
@@ -196,8 +201,7 @@ static bool step_ahead(const walker *w, fg_point p, fg_point *direction, double 
 }
 
 /* Walks from p in one direction, appending points (p itself excluded). */
-static fg_status walk(fg_context *ctx, walker *w, fg_point p, fg_point tangent,
-                      fg_trace *trace) {
+static fg_status walk(fg_context *ctx, walker *w, fg_point p, fg_point tangent, fg_trace *trace) {
   double step = fmax(3.0, w->width_px / 3), missed = 0, contrast = w->contrast;
   fg_point direction = tangent;
   bool joined = false; /* since the last good point the strip was too wide: something lies on it */
@@ -263,7 +267,8 @@ static int32_t clear_along(const fg_trace *trace, const walker *w, fg_point seed
         if (x >= 0 && y >= 0 && x < o->width && y < o->height)
           open[(size_t)y * (size_t)o->width + (size_t)x] = 0;
   }
-  for (size_t i = 0; i < (size_t)o->width * (size_t)o->height; i++) left += open[i];
+  for (size_t i = 0; i < (size_t)o->width * (size_t)o->height; i++)
+    left += open[i];
   return left;
 }
 
@@ -278,7 +283,8 @@ static bool find_seed(const walker *w, const uint8_t *open, fg_point *seed) {
       float excess = fg_segmentation_excess(s, x + o->x, y + o->y);
       if (excess <= best) continue;
       best = excess;
-      *seed = (fg_point){(x + o->x + 0.5) * FG_BLOCK_PX - 0.5, (y + o->y + 0.5) * FG_BLOCK_PX - 0.5};
+      *seed =
+          (fg_point){(x + o->x + 0.5) * FG_BLOCK_PX - 0.5, (y + o->y + 0.5) * FG_BLOCK_PX - 0.5};
     }
   return best > 0;
 }
@@ -292,7 +298,8 @@ static double contrast_at(const walker *w, fg_point seed) {
     for (int x = -8; x < 8; x++) {
       float value = excess_over(w, background, seed.x + x, seed.y + y);
       size_t i = count++;
-      for (; i > 0 && values[i - 1] > value; i--) values[i] = values[i - 1];
+      for (; i > 0 && values[i - 1] > value; i--)
+        values[i] = values[i - 1];
       values[i] = value;
     }
   return values[count * 9 / 10];
@@ -358,8 +365,8 @@ fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
   uint8_t *open = NULL;
   fg_status status = FG_OK;
   fg_trace trace = {0};
-  FG_TRY_EXIT(fg_memory_allocate(ctx, (size_t)object->width * (size_t)object->height, 1,
-                                 (void **)&open));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, (size_t)object->width * (size_t)object->height, 1, (void **)&open));
   FG_TRY_EXIT(fg_memory_allocate(ctx, STRIPS_MAX, sizeof *list->traces, (void **)&list->traces));
   open_blocks(&w, open);
   fg_point seed = {0, 0};
@@ -377,7 +384,8 @@ fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
     trace = (fg_trace){0};
   }
   if (list->count > 1)
-    for (size_t i = 0; i < list->count; i++) list->traces[i].facts |= FG_STRIP_TOUCHES_OTHER;
+    for (size_t i = 0; i < list->count; i++)
+      list->traces[i].facts |= FG_STRIP_TOUCHES_OTHER;
 exit:
   free(open);
   free_trace(&trace);
@@ -387,7 +395,8 @@ exit:
 
 void fg_trace_list_free(fg_trace_list *list) {
   if (!list) return;
-  for (size_t i = 0; i < list->count; i++) free_trace(&list->traces[i]);
+  for (size_t i = 0; i < list->count; i++)
+    free_trace(&list->traces[i]);
   free(list->traces);
   memset(list, 0, sizeof *list);
 }

@@ -50,8 +50,8 @@ static inline rendered render_open(const char *json) {
   r.row_bytes = (size_t)r.truth->width_px * (size_t)bytes;
   r.strip = calloc(FG_TILE_PX, r.row_bytes);
   assert_non_null(r.strip);
-  assert_int_equal(fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, NULL, &r.tiles),
-                   FG_OK);
+  assert_int_equal(
+      fg_tiles_create(&ctx, r.truth->width_px, r.truth->height_px, bytes, NULL, &r.tiles), FG_OK);
   return r;
 }
 

@@ -29,7 +29,8 @@ static void growth_keeps_content(void **state) {
         fg_memory_reserve(&ctx, (size_t)i + 1, sizeof *items, &capacity, (void **)&items), FG_OK);
     items[i] = i;
   }
-  for (int i = 0; i < 1000; i++) assert_int_equal(items[i], i);
+  for (int i = 0; i < 1000; i++)
+    assert_int_equal(items[i], i);
   free(items);
 }
 

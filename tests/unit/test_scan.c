@@ -71,7 +71,8 @@ static void round_trip(const picture *p, uint32_t seed) {
   char *path = save_bytes(file.data, file.size);
   fg_context ctx = {0};
   fg_scan *scan = NULL;
-  if (fg_scan_open(&ctx, path, &(fg_scan_options){.channel = FG_CHANNEL_LUMINANCE}, &scan) != FG_OK) fail_msg("%s", ctx.message);
+  if (fg_scan_open(&ctx, path, &(fg_scan_options){.channel = FG_CHANNEL_LUMINANCE}, &scan) != FG_OK)
+    fail_msg("%s", ctx.message);
   const fg_scan_info *info = fg_scan_get_info(scan);
   assert_int_equal(info->width_px, p->width);
   assert_int_equal(info->height_px, p->height);

@@ -44,7 +44,8 @@ static int visit_all(const char *part, visit *look) {
 
 static fg_status read_scan(fg_context *ctx, const char *path, fg_scan_info *info, uint8_t **rows) {
   fg_scan *scan = NULL;
-  fg_status status = fg_scan_open(ctx, path, &(fg_scan_options){.dpi = 4800, .channel = FG_CHANNEL_LUMINANCE}, &scan);
+  fg_status status = fg_scan_open(
+      ctx, path, &(fg_scan_options){.dpi = 4800, .channel = FG_CHANNEL_LUMINANCE}, &scan);
   if (status != FG_OK) return status;
   *info = *fg_scan_get_info(scan);
   size_t stride = (size_t)info->width_px * (size_t)info->bytes_per_pixel;
