@@ -92,7 +92,6 @@ typedef struct fg_loop_problem {
   bool group_level;  /* rows of a group share a random level */
   size_t *series;    /* rows: along equal values noise may be correlated */
   bool correlated;   /* estimate that correlation */
-  double rho_most;   /* ... up to this, where more would be an effect and not noise; 0: any */
   bool *aside;       /* rows kept aside, whole groups; NULL: none */
   bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
   double *response;  /* rows, for exchanged runs: the measured response */

@@ -78,8 +78,7 @@ size_t loop_noise_grid(const loop_frame *frame, loop_noise grid[LOOP_NOISES]) {
     rhos = sizeof large_rho / sizeof *large_rho;
   }
   if (!frame->problem->correlated) rhos = 1;
-  double most = frame->problem->rho_most > 0 ? frame->problem->rho_most : 1;
-  for (size_t i = 0; i < rhos && rho[i] <= most; i++)
+  for (size_t i = 0; i < rhos; i++)
     for (size_t j = 0; j < lambdas; j++)
       grid[count++] = (loop_noise){rho[i], lambda[j]};
   return count;

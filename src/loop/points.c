@@ -6,8 +6,8 @@
 
 #include "core/memory.h"
 
-/* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a tenth
- * and more. */
+/* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
+ * tenth and more. */
 #define SAME_SHARE 0.2
 
 void fg_points_free(fg_points *points) {

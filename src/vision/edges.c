@@ -125,8 +125,8 @@ static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_stri
                         .left = {(r->x + at[0] * nx) * kx, (r->y + at[0] * ny) * ky},
                         .right = {(r->x + at[1] * nx) * kx, (r->y + at[1] * ny) * ky},
                         .normal = {nx / kx / norm, ny / ky / norm},
-                        .u_left_um = (float)(e->u_px[0] * scale),
-                        .u_right_um = (float)(e->u_px[1] * scale),
+                        .u_left_um = e->weight > 0 ? (float)(e->u_px[0] * scale) : NAN,
+                        .u_right_um = e->weight > 0 ? (float)(e->u_px[1] * scale) : NAN,
                         .weight = e->weight};
   }
 }
