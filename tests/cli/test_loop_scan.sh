@@ -63,6 +63,17 @@ render oval_b 6 15 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'
 "$program" loop --same-foil oval_a.png oval_b.png -o oval.out || fail "loop on an oval pair"
 [ "$(value oval.out "r['claims'][0]['id']")" = part.ovality ] || fail "the ovality is not named from a pair"
 
+for report in clean ripple pair oval; do
+  python3 - "$root/reports/schema/loop_scan.schema.json" $report.out <<'PYTHON' || fail "$report does not validate"
+import json, sys
+try:
+    import jsonschema
+except ImportError:
+    sys.exit(0)
+jsonschema.validate(json.load(open(sys.argv[2])), json.load(open(sys.argv[1])))
+PYTHON
+done
+
 # The scanner's model corrects another foil.
 render other 7 -120 '{"id":"scan.scale_y","value":0.001}'
 "$program" measure other.png -o plain.out && "$program" measure other.png --model scanner.json -o corrected.out ||
