@@ -33,8 +33,10 @@ def draw_effect(rng):
     return effect
 
 
-def make_spec(rng, radii, rotation, effects):
-    return {"schema": "foilgauge/render/1", "seed": int(rng.integers(1, 2**31)),
+def make_spec(rng, radii, rotation, effects, pair):
+    # A scanner's fields are centred on its glass: both pictures of a pair show the same piece of it.
+    size = {"width_px": 8200, "height_px": 8200} if pair else {}
+    return {"schema": "foilgauge/render/1", "seed": int(rng.integers(1, 2**31)), **size,
             "foils": [{"overall_radius_mm": 20.95, "radius_mm": radii, "rotate_deg": rotation}],
             "scanner": {"dpi": 4800, "background": 30, "contrast": 175, "bits": 8,
                         "blur_px": float(rng.uniform(0.9, 2)), "noise": float(rng.uniform(0.5, 2))},
@@ -60,7 +62,7 @@ def run_case(job):
         for k, turn in enumerate(turns):
             base = os.path.join(folder, f"s{k}")
             with open(base + ".json", "w") as f:
-                json.dump(make_spec(rng, radii, rotation + turn, effects), f)
+                json.dump(make_spec(rng, radii, rotation + turn, effects, tier == "pair"), f)
             subprocess.run([program, "render", base + ".json", "-o", base + ".png", "--truth",
                             base + ".truth.json"], check=True)
             paths.append(base + ".png")
