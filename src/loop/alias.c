@@ -28,8 +28,8 @@ typedef struct alias_bench {
 
 enum { ROOM = 3 * FG_LOOP_COLUMNS };
 
-static fg_status open_bench(fg_context *ctx, const loop_frame *frame, loop_noise noise,
-                            alias_bench *bench) {
+static fg_status open_one(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+                          alias_bench *bench) {
   size_t n = frame->n;
   *bench = (alias_bench){.frame = frame, .noise = noise, .n = n};
   FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + ROOM) * sizeof *bench->basis,
@@ -48,11 +48,20 @@ static fg_status open_bench(fg_context *ctx, const loop_frame *frame, loop_noise
   return FG_OK;
 }
 
-static void close_bench(alias_bench *bench) {
-  free(bench->basis);
-  free(bench->y);
-  free(bench->columns);
-  free(bench->unit);
+static fg_status open_bench(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
+                            alias_bench bench[2]) {
+  bench[1] = (alias_bench){0};
+  FG_TRY(open_one(ctx, frame, noise[0], &bench[0]));
+  return open_one(ctx, frame, noise[1], &bench[1]);
+}
+
+static void close_bench(alias_bench bench[2]) {
+  for (size_t k = 0; k < 2; k++) {
+    free(bench[k].basis);
+    free(bench[k].y);
+    free(bench[k].columns);
+    free(bench[k].unit);
+  }
 }
 
 /* Constant in every group that shares a level: judged between groups, with their freedom. */
@@ -117,10 +126,9 @@ typedef struct alias_test {
   double correlation;
 } alias_test;
 
-/* The winner beside one rival, or a sum of two. */
-static fg_status compare(fg_context *ctx, alias_bench *bench, const loop_stand *winner,
-                         const loop_stand *rival, const loop_stand *second,
-                         const double *winner_fit, alias_test *test) {
+static fg_status compare_one(fg_context *ctx, alias_bench *bench, const loop_stand *winner,
+                             const loop_stand *rival, const loop_stand *second,
+                             const double *winner_fit, alias_test *test) {
   size_t more = 0;
   double shapes = (double)rival->candidate.effect->shapes;
   FG_TRY(extend(ctx, bench, rival, bench->rank, &test->rank));
@@ -146,34 +154,45 @@ static fg_status compare(fg_context *ctx, alias_bench *bench, const loop_stand *
   return FG_OK;
 }
 
-fg_status loop_beside(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+/* The winner beside one rival, or a sum of two. */
+static fg_status compare(fg_context *ctx, alias_bench bench[2], const loop_stand *winner,
+                         const loop_stand *rival, const loop_stand *second,
+                         const double *winner_fit, alias_test *test) {
+  alias_test other;
+  FG_TRY(compare_one(ctx, &bench[0], winner, rival, second, winner_fit, test));
+  FG_TRY(compare_one(ctx, &bench[1], winner, rival, second, NULL, &other));
+  test->p_value = fmax(test->p_value, other.p_value);
+  return FG_OK;
+}
+
+fg_status loop_beside(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
                       const loop_stand *base, const loop_stand *other, double *p_value) {
-  alias_bench bench;
+  alias_bench bench[2] = {0};
   alias_test test = {0};
-  fg_status status = open_bench(ctx, frame, noise, &bench);
-  if (status == FG_OK) status = compare(ctx, &bench, other, base, NULL, NULL, &test);
+  fg_status status = open_bench(ctx, frame, noise, bench);
+  if (status == FG_OK) status = compare(ctx, bench, other, base, NULL, NULL, &test);
   *p_value = test.p_value;
-  close_bench(&bench);
+  close_bench(bench);
   return status;
 }
 
-fg_status loop_simplify(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+fg_status loop_simplify(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
                         const loop_stand *stand, size_t count, size_t winner, size_t *simplest) {
-  alias_bench bench;
+  alias_bench bench[2] = {0};
   size_t rank = 0, inside;
   double best = -INFINITY;
   fg_status status = FG_OK;
   *simplest = winner;
-  FG_TRY_EXIT(open_bench(ctx, frame, noise, &bench));
-  FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
+  FG_TRY_EXIT(open_bench(ctx, frame, noise, bench));
+  FG_TRY_EXIT(extend(ctx, bench, &stand[winner], bench->rank, &rank));
   size_t whole = rank + stand[winner].candidate.effect->shapes;
   for (size_t c = 0; c < count; c++) {
     alias_test test;
     if (c == winner || loop_is_curve(&stand[c].candidate)) continue;
-    FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
-    FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.rank + rank, &inside));
+    FG_TRY_EXIT(extend(ctx, bench, &stand[winner], bench->rank, &rank));
+    FG_TRY_EXIT(extend(ctx, bench, &stand[c], bench->rank + rank, &inside));
     if (inside > 0) continue;
-    FG_TRY_EXIT(compare(ctx, &bench, &stand[winner], &stand[c], NULL, NULL, &test));
+    FG_TRY_EXIT(compare(ctx, bench, &stand[winner], &stand[c], NULL, NULL, &test));
     if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < 0.01) continue;
     if (stand[c].z > best) {
       best = stand[c].z;
@@ -181,7 +200,7 @@ fg_status loop_simplify(fg_context *ctx, const loop_frame *frame, loop_noise noi
     }
   }
 exit:
-  close_bench(&bench);
+  close_bench(bench);
   return status;
 }
 
@@ -227,20 +246,20 @@ static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const loop_stan
   return FG_OK;
 }
 
-fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
                            const loop_stand *stand, size_t count, const loop_stand *winner,
                            fg_loop_claim *claim) {
-  alias_bench bench;
+  alias_bench bench[2] = {0};
   const loop_stand **pool = NULL;
   double *winner_fit = NULL;
   size_t rank = 0, pooled = 0, listed = 0;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_bench(ctx, frame, noise, &bench));
+  FG_TRY_EXIT(open_bench(ctx, frame, noise, bench));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof *pool, (void **)&pool));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, bench.n, sizeof *winner_fit, (void **)&winner_fit));
-  FG_TRY_EXIT(extend(ctx, &bench, winner, bench.rank, &rank));
-  double gain = explained(&bench, bench.rank, rank);
-  fitted(&bench, bench.rank, rank, winner_fit);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bench->n, sizeof *winner_fit, (void **)&winner_fit));
+  FG_TRY_EXIT(extend(ctx, bench, winner, bench->rank, &rank));
+  double gain = explained(bench, bench->rank, rank);
+  fitted(bench, bench->rank, rank, winner_fit);
   for (size_t c = 0; c < count; c++)
     if (isfinite(stand[c].z) && !loop_is_curve(&stand[c].candidate) &&
         !loop_same_candidate(&stand[c].candidate, &winner->candidate))
@@ -248,17 +267,17 @@ fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, loop_noise 
   qsort(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
     alias_test test;
-    FG_TRY_EXIT(compare(ctx, &bench, winner, pool[c], NULL, winner_fit, &test));
+    FG_TRY_EXIT(compare(ctx, bench, winner, pool[c], NULL, winner_fit, &test));
     bool contains = test.more == 0 && test.rank > rank;
     if (!contains && test.p_value >= shows)
       add_alias(frame->problem, pool[c], NULL, &test, gain, claim);
     else if (!contains && !loop_is_lone(&pool[c]->candidate) && test.rank <= 2)
       pool[pooled++] = pool[c];
   }
-  FG_TRY_EXIT(find_pairs(ctx, &bench, pool, pooled, winner, winner_fit, gain, rank, claim));
+  FG_TRY_EXIT(find_pairs(ctx, bench, pool, pooled, winner, winner_fit, gain, rank, claim));
 exit:
   free(pool);
   free(winner_fit);
-  close_bench(&bench);
+  close_bench(bench);
   return status;
 }

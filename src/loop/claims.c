@@ -142,7 +142,9 @@ fg_status loop_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const
   FG_TRY_EXIT(loop_least_squares(ctx, &frame, noise, &fit));
   FG_TRY_EXIT(append_slopes(ctx, &frame, set, &fit));
   FG_TRY_EXIT(loop_least_squares(ctx, &frame, noise, &wide));
-  double freedom = frame.n > wide.rank ? (double)(frame.n - wide.rank) : NAN;
+  /* The correlation was estimated too. */
+  size_t used = wide.rank + problem->correlated;
+  double freedom = frame.n > used ? (double)(frame.n - used) : NAN;
   double variance = fit.rss / freedom;
   describe(&frame, &fit, &wide, set, variance, freedom, claim);
   for (size_t k = 0; k < problem->parameters; k++) {

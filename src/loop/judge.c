@@ -91,10 +91,7 @@ exit:
 
 /* The strongest correlation that the data do not rule out (2.7 in twice the log likelihood), so
  * that a short series does not pass for white by luck. */
-static size_t cautious_noise(const loop_bench *bench, const double *criterion) {
-  size_t best = 0;
-  for (size_t j = 1; j < bench->noises; j++)
-    if (criterion[j] < criterion[best]) best = j;
+static size_t cautious_noise(const loop_bench *bench, const double *criterion, size_t best) {
   size_t chosen = best;
   double allowed = criterion[best] * exp(2.7 / (double)bench->freedom);
   for (size_t j = 0; j < bench->noises; j++) {
@@ -240,7 +237,10 @@ fg_status loop_judge(fg_context *ctx, loop_bench *bench, size_t draws, uint64_t 
   size_t noise = 0;
   if (small) {
     noise_criteria(bench, &bench->version[judgement->score[best].version], criterion);
-    noise = judgement->cautious_noise = cautious_noise(bench, criterion);
+    for (size_t j = 1; j < bench->noises; j++)
+      if (criterion[j] < criterion[judgement->best_noise]) judgement->best_noise = j;
+    noise = cautious_noise(bench, criterion, judgement->best_noise);
+    judgement->cautious_noise = noise;
   }
   FG_TRY_EXIT(loop_bench_prepare_flips(ctx, bench, noise, small ? NULL : judgement->score));
   FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));

@@ -4,9 +4,9 @@
 
 #include "loop/engine.h"
 
-/* Simulated p-values are multiplied by this: listed effects, lone rows and curves are three
- * families that are judged one after the other. */
-enum { LOOP_FAMILIES = 3 };
+/* Simulated p-values are multiplied by this: listed effects, outliers, exchanges and curves are
+ * four families judged one after the other, and there are second looks after every claim. */
+enum { LOOP_FAMILIES = 5 };
 
 typedef struct loop_judgement {
   size_t candidates;
@@ -16,6 +16,7 @@ typedef struct loop_judgement {
   double *f_critical;    /* F ratio that would just pass, as max-T asks; infinity: none does */
   double *z_critical;    /* deviate that would just pass; simulated */
   size_t null_noise;     /* best noise of the null, index into the bench's */
+  size_t best_noise;     /* best noise with the best candidate */
   size_t cautious_noise; /* the strongest correlation that the data do not rule out */
   double smallest_p;     /* of flips */
 } loop_judgement;

@@ -75,26 +75,8 @@ static void draw_noise(power_bench *power, loop_noise noise, uint64_t seed) {
   }
 }
 
-/* The column of which most is left beside the null, whitened: an absorbed part cannot show. */
-static size_t clearest_column(const power_bench *power, size_t count, const double *columns) {
-  const loop_bench *bench = power->bench;
-  size_t n = bench->frame->n, best = 0;
-  double most = -1, *sums = power->effect[0];
-  for (size_t k = 0; k < count; k++) {
-    memcpy(power->white, columns + k * n, n * sizeof *columns);
-    loop_whiten(bench->frame, bench->noise[0], power->white);
-    products(power, 0, power->white, sums);
-    double left = sums[power->width];
-    for (size_t i = 0; i < bench->rank; i++)
-      left -= sums[i] * sums[i];
-    if (left <= most * (1 + 1e-9)) continue;
-    most = left;
-    best = k;
-  }
-  return best;
-}
-
-/* One column of the middle version, half range 1. */
+/* The columns of the middle version, the k-th k times: neither the clearest pattern of many nor the
+ * one that the declared model absorbs. Half range 1. */
 static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version) {
   const loop_bench *bench = power->bench;
   const loop_frame *frame = bench->frame;
@@ -104,8 +86,9 @@ static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version)
                      bench->shape[version], f));
   const fg_loop_candidate *candidate = &bench->candidate[bench->version[version].candidate];
   size_t count = loop_candidate_columns(frame->problem, candidate);
-  memmove(f, f + n * clearest_column(power, count, f), n * sizeof *f);
   for (size_t i = 0; i < n; i++) {
+    for (size_t k = 1; k < count; k++)
+      f[i] += (double)(k + 1) * f[k * n + i];
     low = fmin(low, f[i]);
     high = fmax(high, f[i]);
   }
@@ -174,8 +157,9 @@ static fg_status one_amplitude(fg_context *ctx, power_bench *power, size_t c, do
       if (!count++) first = v;
     }
   size_t middle = first + count / 2;
-  double k = loop_version_freedom(bench, &bench->version[middle]);
   *amplitude = NAN;
+  if (count == 0) return FG_OK;
+  double k = loop_version_freedom(bench, &bench->version[middle]);
   if (bench->version[middle].rank == 0 || k + 2 > (double)bench->freedom) return FG_OK;
   FG_TRY(set_effect(ctx, power, middle));
   double low = 1e-3, high = 1e3;

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "loop/run.h"
 
-enum { DRAWS_SMALL = 1999, DRAWS = 999, SMALL_TABLE = 60 };
+enum { DRAWS_SMALL = 1999, DRAWS = 999 };
 
 static fg_status fill_stands(fg_context *ctx, const loop_run *run, loop_step *step) {
   FG_TRY(fg_memory_allocate(ctx, run->candidates + 2, sizeof *step->stand, (void **)&step->stand));
@@ -32,7 +32,7 @@ fg_status loop_step_open(fg_context *ctx, loop_run *run, const loop_set *set, bo
   fg_status status = FG_OK;
   memset(step, 0, sizeof *step);
   FG_TRY_EXIT(loop_frame_build(ctx, run->problem, run->train, set, &step->frame));
-  if (!draws) draws = step->frame.n <= SMALL_TABLE ? DRAWS_SMALL : DRAWS;
+  if (!draws) draws = step->frame.n <= LOOP_SMALL_ROWS ? DRAWS_SMALL : DRAWS;
   if (!judged) draws = 20;
   FG_TRY_EXIT(loop_bench_build(ctx, &step->frame, run->candidate, run->candidates, &step->bench));
   FG_TRY_EXIT(loop_judge(ctx, &step->bench, draws, run->options.seed, &step->judgement));
@@ -79,6 +79,16 @@ static void drop_claim(loop_run *run, size_t m) {
   for (size_t k = m + 1; k < result->claims; k++)
     result->claim[k - 1] = result->claim[k];
   result->claims--;
+}
+
+typedef struct noise_pair {
+  loop_noise at[2];
+} noise_pair;
+
+static noise_pair step_noises(const loop_step *step) {
+  const loop_judgement *judgement = &step->judgement;
+  return (noise_pair){
+      {step->bench.noise[judgement->cautious_noise], step->bench.noise[judgement->best_noise]}};
 }
 
 /* The best of a family that passes; candidates that are in the set already are none. */
@@ -134,8 +144,8 @@ static fg_status right_form(fg_context *ctx, const loop_run *run, const loop_ste
     if (loop_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
         !(total_p(&step->judgement, c) < bar(run)) || step->stand[c].z <= best)
       continue;
-    FG_TRY(
-        loop_beside(ctx, &step->frame, step_noise(step), &step->stand[c], &step->stand[curve], &p));
+    FG_TRY(loop_beside(ctx, &step->frame, step_noises(step).at, &step->stand[c],
+                       &step->stand[curve], &p));
     if (p <= 0.003) continue;
     best = step->stand[c].z;
     *winner = c;
@@ -156,8 +166,8 @@ static fg_status wrong_form(fg_context *ctx, const loop_run *run, const loop_ste
     double p;
     if (!loop_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(loop_beside(ctx, &step->frame, step_noise(step), &step->stand[*winner], &step->stand[c],
-                       &p));
+    FG_TRY(loop_beside(ctx, &step->frame, step_noises(step).at, &step->stand[*winner],
+                       &step->stand[c], &p));
     if (p > 0.003 || !(total_p(&step->judgement, c) < run->options.accept_p)) continue;
     if (step->stand[c].z > best) {
       best = step->stand[c].z;
@@ -176,11 +186,30 @@ static fg_status gate(fg_context *ctx, const loop_run *run, const loop_set *with
   return FG_OK;
 }
 
+/* What hinges on one row is that row's doing: beside the best outlier it must still show. In groups
+ * the flips see to that. */
+static fg_status hinges_on_a_row(fg_context *ctx, const loop_run *run, const loop_step *step,
+                                 size_t stand, bool *hinges) {
+  *hinges = false;
+  if (run->problem->group_level) return FG_OK;
+  for (size_t s = run->candidates; s < step->stands && !*hinges; s++) {
+    double p;
+    if (loop_is_exchange(&step->stand[s].candidate)) continue;
+    FG_TRY(loop_beside(ctx, &step->frame, step_noises(step).at, &step->stand[s],
+                       &step->stand[stand], &p));
+    *hinges = p > 0.02;
+  }
+  return FG_OK;
+}
+
 static fg_status take_curve(fg_context *ctx, loop_run *run, const loop_step *step, size_t curve,
                             bool *accepted) {
   loop_set with;
   double gain, se;
+  bool hinges;
   if (run->has_curve) return FG_OK;
+  FG_TRY(hinges_on_a_row(ctx, run, step, curve, &hinges));
+  if (hinges) return FG_OK;
   extend_set(run, &step->stand[curve], &with);
   FG_TRY(loop_refine(ctx, run->problem, run->train, step_noise(step), &with));
   FG_TRY(gate(ctx, run, &with, step_noise(step), &gain, &se, accepted));
@@ -244,13 +273,16 @@ static fg_status take_claim(fg_context *ctx, loop_run *run, const loop_step *ste
   extend_set(run, &step->stand[winner], &with);
   FG_TRY(loop_refine(ctx, run->problem, run->train, noise, &with));
   if (!loop_is_lone(&claim.candidate)) {
-    bool passes;
+    bool passes, hinges;
+    FG_TRY(hinges_on_a_row(ctx, run, step, winner, &hinges));
+    if (hinges) return FG_OK;
     FG_TRY(gate(ctx, run, &with, noise, &claim.cv_gain, &claim.cv_gain_se, &passes));
     if (!passes) return FG_OK;
   }
   loop_stand refined = step->stand[winner];
   memcpy(refined.shape, with.shape[with.count - 1 - run->has_curve], sizeof refined.shape);
-  FG_TRY(loop_alias_class(ctx, &step->frame, noise, step->stand, step->stands, &refined, &claim));
+  FG_TRY(loop_alias_class(ctx, &step->frame, step_noises(step).at, step->stand, step->stands,
+                          &refined, &claim));
   claim.verdict = claim.aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
   run->set = with;
   run->result->claim[run->result->claims++] = claim;
@@ -315,8 +347,8 @@ static fg_status decide(fg_context *ctx, loop_run *run, loop_step *step, bool *a
     FG_TRY(wrong_form(ctx, run, step, &winner, &curve, &wrong));
     if (wrong) FG_TRY(take_best_curve(ctx, run, step, curve, accepted));
     if (wrong && *accepted) return FG_OK;
-    FG_TRY(loop_simplify(ctx, &step->frame, step_noise(step), step->stand, run->candidates, winner,
-                         &winner));
+    FG_TRY(loop_simplify(ctx, &step->frame, step_noises(step).at, step->stand, run->candidates,
+                         winner, &winner));
     FG_TRY(second_form(ctx, run, step, winner, accepted));
     if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));
     if (*accepted) return FG_OK;
@@ -359,8 +391,8 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
       continue;
     }
     if (step.stand[best].z > step.stand[own].z)
-      status = loop_simplify(ctx, &step.frame, step_noise(&step), step.stand, run->candidates, best,
-                             &best);
+      status = loop_simplify(ctx, &step.frame, step_noises(&step).at, step.stand, run->candidates,
+                             best, &best);
     if (status == FG_OK) {
       size_t chosen = step.stand[best].z > step.stand[own].z ? best : own;
       claim->candidate = run->candidate[chosen];
@@ -368,7 +400,7 @@ fg_status loop_swap(fg_context *ctx, loop_run *run) {
       loop_candidate_name(run->problem, &claim->candidate, claim->name);
       run->set.candidate[m] = claim->candidate;
       memcpy(run->set.shape[m], step.stand[chosen].shape, sizeof run->set.shape[m]);
-      status = loop_alias_class(ctx, &step.frame, step_noise(&step), step.stand, step.stands,
+      status = loop_alias_class(ctx, &step.frame, step_noises(&step).at, step.stand, step.stands,
                                 &step.stand[chosen], claim);
       claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
     }

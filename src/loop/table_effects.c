@@ -128,6 +128,9 @@ static bool accepts_threshold(problem_t *problem, size_t a, size_t b) {
   return is_number(at) && at->distinct >= 4;
 }
 
+/* Fewer rows than these on one side are rows, not a level. */
+enum { SIDE_ROWS = 3 };
+
 static void threshold_basis(problem_t *problem, candidate_t *candidate, const double *shape,
                             double *columns) {
   const fg_loop_coordinate *at = first(problem, candidate);
@@ -137,6 +140,14 @@ static void threshold_basis(problem_t *problem, candidate_t *candidate, const do
 
 enum { THRESHOLDS = 23 };
 
+static bool sides_hold(problem_t *problem, const fg_loop_coordinate *at, double place) {
+  size_t above = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    above += at->value[i] > place;
+  size_t least = problem->rows / 8 > SIDE_ROWS ? problem->rows / 8 : SIDE_ROWS;
+  return above >= least && problem->rows - above >= least;
+}
+
 /* Between neighbouring values; where there are many, spread over the range. */
 static size_t threshold_starts(problem_t *problem, candidate_t *candidate,
                                double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
@@ -144,11 +155,14 @@ static size_t threshold_starts(problem_t *problem, candidate_t *candidate,
   size_t count = 0;
   if (at->distinct <= FG_LOOP_COLUMNS + 1) {
     for (size_t i = 1; i < at->distinct; i++)
-      starts[count++][0] = (at->few[i - 1] + at->few[i]) / 2;
+      if (sides_hold(problem, at, (at->few[i - 1] + at->few[i]) / 2))
+        starts[count++][0] = (at->few[i - 1] + at->few[i]) / 2;
     return count;
   }
-  for (size_t i = 1; i <= THRESHOLDS; i++)
-    starts[count++][0] = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
+  for (size_t i = 1; i <= THRESHOLDS; i++) {
+    double place = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
+    if (sides_hold(problem, at, place)) starts[count++][0] = place;
+  }
   return count;
 }
 
