@@ -299,7 +299,10 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
                 b->bumps[k].radius_mm, a->bumps[k].radius_mm, b->bumps[k].height_mm,
                 a->bumps[k].height_mm);
     }
-  if (loop->tied) fputs("Several explanations do equally well: -o lists them, and the range of every dimension.\n", out);
+  if (loop->tied)
+    fputs(
+        "Several explanations do equally well: -o lists them, and the range of every dimension.\n",
+        out);
   fputs("+- is U = 2 u.\n", out);
   return FG_OK;
 }
