@@ -43,7 +43,9 @@ def make_spec(rng, radii, rotation, effects, pair):
             "effects": effects}
 
 
-def error_of(foil, truth, radius_only=False):
+def error_of(foil, truth):
+    if any(b["radius_mm"] is None for b in foil["bumps"]) or not foil["bumps"]:
+        return 1e3, 1e3, 1e3  # nothing was measured: as bad as a millimetre
     r = [b["radius_mm"] - t["radius_mm"] for b, t in zip(foil["bumps"], truth["bumps"])]
     h = [b["height_mm"] - t["height_mm"] for b, t in zip(foil["bumps"], truth["bumps"])]
     rms = lambda v: float(np.sqrt(np.mean(np.square(v)))) * 1000
