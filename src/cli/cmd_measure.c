@@ -275,7 +275,10 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   fg_status status =
       fg_measure_scan(ctx, path, &run->design, &options_of_scan, &run->measurements[index]);
   fg_progress_end(&progress);
-  if (status == FG_OK) status = apply_model(ctx, run, &run->measurements[index]);
+  if (status == FG_OK) {
+    status = apply_model(ctx, run, &run->measurements[index]);
+    if (status != FG_OK) fg_measurement_free(&run->measurements[index]);
+  }
   scan->path = path;
   if (status == FG_OK) {
     scan->measurement = &run->measurements[index];
