@@ -2,19 +2,15 @@
 #include <math.h>
 #include <string.h>
 
-#include "foilgauge/loop.h"
+#include "loop/heat_forms.h"
 
 static const double two_pi = 6.28318530717958647692;
-static const double gas_constant_kj = 8.314462618e-3; /* per mol and K */
-
-typedef const fg_loop_problem problem_t;
-typedef const fg_loop_candidate candidate_t;
 
 static const fg_loop_coordinate *first(problem_t *problem, candidate_t *candidate) {
   return &problem->coordinate[candidate->a];
 }
 
-static bool is_number(const fg_loop_coordinate *at) {
+bool loop_is_number(const fg_loop_coordinate *at) {
   return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 2;
 }
 
@@ -40,7 +36,7 @@ static size_t two_columns(problem_t *problem, candidate_t *candidate) {
 static bool accepts_linear(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  return is_number(at) && !is_sequence(at);
+  return loop_is_number(at) && !is_sequence(at);
 }
 
 static void linear_basis(problem_t *problem, candidate_t *candidate, const double *shape,
@@ -69,9 +65,9 @@ static bool accepts_interaction(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
   if (a >= b || is_sequence(x) || is_sequence(y)) return false;
   if (x->levels && y->levels) return false;
-  if (x->levels) return is_number(y) && x->levels <= 4;
-  if (y->levels) return is_number(x) && y->levels <= 4;
-  return is_number(x) && is_number(y);
+  if (x->levels) return loop_is_number(y) && x->levels <= 4;
+  if (y->levels) return loop_is_number(x) && y->levels <= 4;
+  return loop_is_number(x) && loop_is_number(y);
 }
 
 static size_t interaction_columns(problem_t *problem, candidate_t *candidate) {
@@ -101,7 +97,7 @@ static bool accepts_factor(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
   if (at->levels) return at->levels >= 2 && at->levels <= FG_LOOP_COLUMNS;
-  return is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
+  return loop_is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
          problem->rows >= 4 * at->distinct;
 }
 
@@ -125,7 +121,7 @@ static void factor_basis(problem_t *problem, candidate_t *candidate, const doubl
 static bool accepts_threshold(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  return is_number(at) && at->distinct >= 4;
+  return loop_is_number(at) && at->distinct >= 4;
 }
 
 /* Fewer rows than these on one side are rows, not a level. */
@@ -169,7 +165,7 @@ static size_t threshold_starts(problem_t *problem, candidate_t *candidate,
 static bool accepts_drift(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  return is_number(at) && is_sequence(at) && at->distinct >= 4;
+  return loop_is_number(at) && is_sequence(at) && at->distinct >= 4;
 }
 
 static bool accepts_transient(problem_t *problem, size_t a, size_t b) {
@@ -229,98 +225,6 @@ static size_t periodic_starts(problem_t *problem, candidate_t *candidate,
   size_t count = 0;
   for (double cycles = 1; cycles <= most && count < FG_LOOP_STARTS; cycles += 0.5)
     starts[count++][0] = range / cycles;
-  return count;
-}
-
-/* A monotone form, scaled to -1 and +1 at the ends of the coordinate. */
-static double scaled_form(double value, double at_low, double at_high) {
-  return at_high != at_low ? (2 * value - at_low - at_high) / (at_high - at_low) : 0;
-}
-
-static bool accepts_temperature(problem_t *problem, size_t a, size_t b) {
-  const fg_loop_coordinate *at = &problem->coordinate[a];
-  (void)b;
-  return is_number(at) && at->roles & FG_LOOP_TEMPERATURE && at->low + at->kelvin_offset > 0;
-}
-
-static bool accepts_duration(problem_t *problem, size_t a, size_t b) {
-  const fg_loop_coordinate *at = &problem->coordinate[a];
-  (void)b;
-  return is_number(at) && at->roles & FG_LOOP_DURATION && at->low > 0;
-}
-
-static bool accepts_both(problem_t *problem, size_t a, size_t b) {
-  return a != b && accepts_temperature(problem, a, a) && accepts_duration(problem, b, b);
-}
-
-/* A rate with activation energy `shape` kJ/mol. */
-static double rate(const fg_loop_coordinate *at, double value, double energy) {
-  double kelvin = value + at->kelvin_offset, top = at->high + at->kelvin_offset;
-  return exp(-energy / gas_constant_kj * (1 / kelvin - 1 / top));
-}
-
-static void arrhenius_basis(problem_t *problem, candidate_t *candidate, const double *shape,
-                            double *columns) {
-  const fg_loop_coordinate *at = first(problem, candidate);
-  double low = rate(at, at->low, shape[0]), high = rate(at, at->high, shape[0]);
-  for (size_t i = 0; i < problem->rows; i++)
-    columns[i] = scaled_form(rate(at, at->value[i], shape[0]), low, high);
-}
-
-static size_t arrhenius_starts(problem_t *problem, candidate_t *candidate,
-                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
-  static const double energy[] = {20, 60, 120, 240};
-  (void)problem, (void)candidate;
-  for (size_t i = 0; i < 4; i++)
-    starts[i][0] = energy[i];
-  return 4;
-}
-
-/* T (20 + log10 t), kelvin and hours (Larson and Miller 1952). */
-static double larson_miller(const fg_loop_coordinate *at, double temperature, double duration) {
-  return (temperature + at->kelvin_offset) * (20 + log10(duration));
-}
-
-static void larson_miller_basis(problem_t *problem, candidate_t *candidate, const double *shape,
-                                double *columns) {
-  const fg_loop_coordinate *t = first(problem, candidate);
-  const fg_loop_coordinate *d = &problem->coordinate[candidate->b];
-  double low = larson_miller(t, t->low, d->low), high = larson_miller(t, t->high, d->high);
-  (void)shape;
-  for (size_t i = 0; i < problem->rows; i++)
-    columns[i] = scaled_form(larson_miller(t, t->value[i], d->value[i]), low, high);
-}
-
-static void log_time_basis(problem_t *problem, candidate_t *candidate, const double *shape,
-                           double *columns) {
-  const fg_loop_coordinate *at = first(problem, candidate);
-  (void)shape;
-  for (size_t i = 0; i < problem->rows; i++)
-    columns[i] = scaled_form(log(at->value[i]), log(at->low), log(at->high));
-}
-
-/* Share transformed after a time: 1 - exp(-(t / tau)^n) (Johnson, Mehl, Avrami, Kolmogorov). */
-static double transformed(double time, const double *shape) {
-  return -expm1(-pow(time / shape[0], shape[1]));
-}
-
-static void jmak_basis(problem_t *problem, candidate_t *candidate, const double *shape,
-                       double *columns) {
-  const fg_loop_coordinate *at = first(problem, candidate);
-  double low = transformed(at->low, shape), high = transformed(at->high, shape);
-  for (size_t i = 0; i < problem->rows; i++)
-    columns[i] = scaled_form(transformed(at->value[i], shape), low, high);
-}
-
-static size_t jmak_starts(problem_t *problem, candidate_t *candidate,
-                          double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
-  const fg_loop_coordinate *at = first(problem, candidate);
-  size_t count = 0;
-  for (double share = 0.2; share < 1; share *= 2)
-    for (double n = 1; n <= 3; n++) {
-      starts[count][0] = at->low + share * (at->high - at->low);
-      starts[count++][1] = n;
-    }
   return count;
 }
 
@@ -476,10 +380,10 @@ static const fg_loop_effect effects[] = {
      false,
      1,
      {"activation_energy_kj_per_mol"},
-     accepts_temperature,
+     loop_accepts_temperature,
      one_column,
-     arrhenius_basis,
-     arrhenius_starts,
+     loop_arrhenius_basis,
+     loop_arrhenius_starts,
      false,
      false},
     {"process.larson_miller",
@@ -489,9 +393,9 @@ static const fg_loop_effect effects[] = {
      true,
      0,
      {0},
-     accepts_both,
+     loop_accepts_both,
      one_column,
-     larson_miller_basis,
+     loop_larson_miller_basis,
      NULL,
      false,
      false},
@@ -502,9 +406,9 @@ static const fg_loop_effect effects[] = {
      false,
      0,
      {0},
-     accepts_duration,
+     loop_accepts_duration,
      one_column,
-     log_time_basis,
+     loop_log_time_basis,
      NULL,
      false,
      false},
@@ -515,10 +419,10 @@ static const fg_loop_effect effects[] = {
      false,
      2,
      {"time_constant", "exponent"},
-     accepts_duration,
+     loop_accepts_duration,
      one_column,
-     jmak_basis,
-     jmak_starts,
+     loop_jmak_basis,
+     loop_jmak_starts,
      false,
      false},
     {0},
