@@ -10,6 +10,7 @@
 #include "cli/output_set.h"
 #include "core/memory.h"
 #include "core/sha256.h"
+#include "foilgauge/loop.h"
 #include "foilgauge/run_sheet.h"
 
 /* What the command can write. */
@@ -35,6 +36,7 @@ typedef struct doe_arguments {
 } doe_arguments;
 
 typedef struct doe_run {
+  fg_loop_model *loop_model; /* NULL: --model is a formula */
   doe_arguments arguments;
   fg_output_set outputs;
   char sha256[65];
@@ -64,7 +66,9 @@ enum {
 static const struct argp_option options[] = {
     {"response", OPTION_RESPONSE, "NAME", 0,
      "The column to explain; with --scans, the quantity to measure", 0},
-    {"model", OPTION_MODEL, "FORMULA", 0, "As in R: 'T + D + T:D + T^2'; T*D is T + D + T:D", 0},
+    {"model", OPTION_MODEL, "FORMULA", 0,
+     "As in R: 'T + D + T:D + T^2'; T*D is T + D + T:D; or the file that `loop --model-out` wrote",
+     0},
     {"code", OPTION_CODE, "NAME=LOW:HIGH", 0,
      "Code a factor so that LOW is -1 and HIGH +1 (default: lowest and highest of the data); "
      "'--code none' leaves the others in real units",
@@ -314,6 +318,18 @@ static void choose_standard_output(fg_output_set *set) {
   set->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
 }
 
+/* --model may name what `foilgauge loop --model-out` wrote: its effects are taken out of the
+ * response, and its formula is the one to analyse. */
+static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
+  const char *name = run->arguments.options.formula;
+  size_t length = name ? strlen(name) : 0;
+  if (length < 5 || strcmp(name + length - 5, ".json")) return FG_OK;
+  FG_TRY(fg_loop_model_load(ctx, name, &run->loop_model));
+  FG_TRY(fg_loop_model_apply(ctx, run->loop_model, table));
+  run->arguments.options.formula = fg_loop_model_formula(run->loop_model);
+  return FG_OK;
+}
+
 static fg_status analyse(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
   a->options.coding = a->coding;
@@ -323,6 +339,7 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   FG_TRY(read_sheet(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
+  FG_TRY(take_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));
   FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
                                &run->experiment));
   return fg_output_set_write(ctx, &run->outputs, write_output, run);
@@ -332,6 +349,7 @@ static void free_run(doe_run *run) {
   fg_output_set_close(&run->outputs);
   fg_experiment_free(&run->experiment);
   fg_run_sheet_free(&run->measured);
+  fg_loop_model_free(run->loop_model);
   fg_table_free(&run->sheet);
   free(run->u_name);
 }
