@@ -3,19 +3,18 @@
 #include <math.h>
 #include <string.h>
 
-static fg_point centred(const fg_field_frame *frame, fg_point at) {
-  return (fg_point){(at.x - frame->centre_mm[0]) / FG_FIELD_HALF_MM,
-                    (at.y - frame->centre_mm[1]) / FG_FIELD_HALF_MM};
+static double from_middle(const fg_field_frame *frame, int axis, double at) {
+  return (at - frame->centre_mm[axis]) / FG_FIELD_HALF_MM;
 }
 
 static void scale_y(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
-  d[0] = (fg_point){0, centred(frame, at).y};
+  d[0] = (fg_point){0, from_middle(frame, 1, at.y)};
 }
 
 static void shear(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
-  d[0] = (fg_point){centred(frame, at).y, 0};
+  d[0] = (fg_point){from_middle(frame, 1, at.y), 0};
 }
 
 /* a sin(2 pi y / p + phi) as a sine and a cosine. */
@@ -33,22 +32,22 @@ static void row_step(const fg_field_frame *frame, const double *shape, fg_point 
 
 static void optical_quadratic(const fg_field_frame *frame, const double *shape, fg_point at,
                               fg_point *d) {
-  (void)shape;
-  double u = centred(frame, at).x;
+  (void)frame;
+  double u = (at.x - shape[0]) / FG_FIELD_HALF_MM;
   d[0] = (fg_point){u * u, 0};
 }
 
 static void optical_cubic(const fg_field_frame *frame, const double *shape, fg_point at,
                           fg_point *d) {
-  (void)shape;
-  double u = centred(frame, at).x;
+  (void)frame;
+  double u = (at.x - shape[0]) / FG_FIELD_HALF_MM;
   d[0] = (fg_point){u * u * u, 0};
 }
 
 static void carriage_quadratic(const fg_field_frame *frame, const double *shape, fg_point at,
                                fg_point *d) {
-  (void)shape;
-  double v = centred(frame, at).y;
+  (void)frame;
+  double v = (at.y - shape[0]) / FG_FIELD_HALF_MM;
   d[0] = (fg_point){0, v * v};
 }
 
@@ -104,9 +103,9 @@ static const fg_field_row rows[] = {
     {"scan.shear", 1, 0, {NULL}, shear},
     {"scan.carriage_ripple", 2, 1, {"period_mm"}, ripple},
     {"scan.row_step", 1, 1, {"y_mm"}, row_step},
-    {"scan.optical_quadratic", 1, 0, {NULL}, optical_quadratic},
-    {"scan.optical_cubic", 1, 0, {NULL}, optical_cubic},
-    {"scan.carriage_quadratic", 1, 0, {NULL}, carriage_quadratic},
+    {"scan.optical_quadratic", 1, 1, {"centre_mm"}, optical_quadratic},
+    {"scan.optical_cubic", 1, 1, {"centre_mm"}, optical_cubic},
+    {"scan.carriage_quadratic", 1, 1, {"centre_mm"}, carriage_quadratic},
     {"free.scan.x.dx", FG_FIELD_COLUMNS, 0, {NULL}, free_xx},
     {"free.scan.x.dy", FG_FIELD_COLUMNS, 0, {NULL}, free_yx},
     {"free.scan.y.dx", FG_FIELD_COLUMNS, 0, {NULL}, free_xy},

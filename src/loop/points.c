@@ -141,6 +141,12 @@ static fg_status add_row(fg_context *ctx, fg_points *points, const fg_points_row
   return FG_OK;
 }
 
+static void count_arc(fg_points_part *part, int number, double length_mm) {
+  double radius = part->bumps[index_of_bump(part, number)].radius_mm, n = (double)++part->arcs;
+  part->half_arc_rad += (0.5 * length_mm / radius - part->half_arc_rad) / n;
+  part->mean_radius_mm += (radius - part->mean_radius_mm) / n;
+}
+
 /* The mean of points on an arc lies inside it by the sagitta's mean, (2h)²/24R with h half the
  * block; a shift of some nanometres, put back by the caller's geometry being fitted to the same
  * means. Rows of one run of labels [first, last]. */
@@ -154,6 +160,8 @@ static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t fi
                   foil->bumps[0].arc_start_mm > foil->bumps[foil->bump_count - 1].arc_start_mm;
   double whole = foil->strip.stations[foil->strip.count - 1].s_mm;
   double start = foil->strip.stations[first].s_mm;
+  fg_points_part *part = &points->parts[view->part];
+  if (label->kind == FG_ARC_BUMP) count_arc(part, label->number, length - start);
   for (size_t k = first; k + FG_POINTS_BLOCK <= last + 1; k += FG_POINTS_BLOCK) {
     fg_points_row row;
     if (!average_block(view, k, k + FG_POINTS_BLOCK, &row)) continue;
@@ -161,7 +169,7 @@ static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t fi
     row.part = view->part;
     row.group = group;
     row.bump = label->kind == FG_ARC_BUMP ? label->number : 0;
-    row.bump_index = index_of_bump(&points->parts[view->part], row.bump);
+    row.bump_index = index_of_bump(part, row.bump);
     row.phi = 2 * (row.s_mm - start) / (length - start) - 1;
     if (reversed) {
       row.phi = -row.phi;

@@ -36,7 +36,8 @@ typedef struct fg_points_row {
                         picture, which the geometry follows, would leave the residual itself */
   double half_width_mm;
   double s_mm;       /* along the foil, from the lip's side */
-  double phi;        /* place in the arc, -1 to 1, towards higher numbers; lands too */
+  double phi;        /* place in the arc, -1 to 1, towards higher numbers; a bump's from its axis
+                        and in units of the part's mean arc: where labels end is no place */
   double psi;        /* direction from O, from the foil's middle towards the free end, rad */
   double normal_rad; /* direction of the outward normal of the residual in the scan */
   fg_point normal;   /* that normal; outwards from the arc's own centre */
@@ -53,8 +54,11 @@ typedef struct fg_points_part {
   double overall_radius_mm;
   fg_points_bump *bumps; /* owned */
   size_t bump_count;
-  double sense;      /* +1: numbers rise with the angle (clockwise as seen) */
-  double middle_rad; /* beta of the foil's middle */
+  double sense;          /* +1: numbers rise with the angle (clockwise as seen) */
+  double middle_rad;     /* beta of the foil's middle */
+  double half_arc_rad;   /* mean over the bumps of half the arc that is used */
+  double mean_radius_mm; /* of the bumps, as measured */
+  size_t arcs;
   double half_span_rad;
 } fg_points_part;
 
@@ -97,6 +101,11 @@ void fg_points_residual(fg_points *points, const fg_points_correction *correctio
 
 /* Least squares of the geometry under a correction, Gauss-Newton to convergence. */
 fg_status fg_points_fit(fg_context *ctx, fg_points *points, const fg_points_correction *correction);
+
+/* The geometry's numbers, to come back to: fg_points_geometry_size doubles. */
+size_t fg_points_geometry_size(const fg_points *points);
+void fg_points_geometry_save(const fg_points *points, double *numbers);
+void fg_points_geometry_load(fg_points *points, double *numbers);
 
 /* Name of a geometry parameter, for reports; `name` holds 48 bytes. */
 void fg_points_parameter_name(const fg_points *points, size_t parameter, char *name);

@@ -6,82 +6,129 @@
 /* A part effect's columns at one row. */
 typedef size_t part_basis(const fg_points *points, const fg_points_row *row, double *values);
 
-static double radial_share(const fg_points_row *row) {
+/* A part that was bent moves along its own normal; a part that was drawn with another radius moves
+ * along the radius. On a land they are one, on the flank of a bump they differ. */
+static double along_radius(const fg_points_row *row) {
   return row->radial.x * row->normal.x + row->radial.y * row->normal.y;
 }
 
-/* Radial a cos 2(psi - psi0): a cosine and a sine. */
-static size_t ovality(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
-  values[0] = cos(2 * row->psi) * radial_share(row);
-  values[1] = sin(2 * row->psi) * radial_share(row);
+/* The rows' normals point out of their own arc: on a bump towards the shaft. */
+static double along_normal(const fg_points_row *row) {
+  return along_radius(row) < 0 ? -1 : 1;
+}
+
+/* a cos 2(psi - psi0): a cosine and a sine. */
+static size_t oval(const fg_points_row *row, double share, double *values) {
+  values[0] = cos(2 * row->psi) * share;
+  values[1] = sin(2 * row->psi) * share;
   return 2;
 }
 
-static size_t spiral(const fg_points *points, const fg_points_row *row, double *values) {
+static size_t ovality(const fg_points *points, const fg_points_row *row, double *values) {
+  (void)points;
+  return oval(row, along_normal(row), values);
+}
+
+static size_t ovality_radial(const fg_points *points, const fg_points_row *row, double *values) {
+  (void)points;
+  return oval(row, along_radius(row), values);
+}
+
+static double cubic_of_psi(const fg_points *points, const fg_points_row *row) {
   double u = row->psi / points->parts[row->part].half_span_rad;
-  values[0] = u * u * u * radial_share(row);
+  return u * u * u;
+}
+
+static size_t spiral(const fg_points *points, const fg_points_row *row, double *values) {
+  values[0] = cubic_of_psi(points, row) * along_normal(row);
   return 1;
 }
 
-/* Even and odd deviations of a bump's arc beyond what a circle can follow (1, u, u²). */
-static size_t bump_crown(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
-  /* Legendre's P4: no part of it is a circle's (P0 and P2). */
-  double u2 = row->phi * row->phi;
-  values[0] = row->bump ? (35 * u2 * u2 - 30 * u2 + 3) / 8 : 0;
+static size_t spiral_radial(const fg_points *points, const fg_points_row *row, double *values) {
+  values[0] = cubic_of_psi(points, row) * along_radius(row);
   return 1;
+}
+
+/* Legendre polynomials first, first + step, ... of the place in the arc, the same on every bump.
+ * P0, P1 and P2 are a circle's own. */
+static size_t legendre(const fg_points_row *row, int first, int step, int count, double *values) {
+  double before = 1, at = row->phi;
+  for (int n = 1, k = 0; k < count; n++) {
+    if (n == first + k * step) values[k++] = row->bump ? at : 0;
+    double next = ((2 * n + 1) * row->phi * at - n * before) / (n + 1);
+    before = at;
+    at = next;
+  }
+  return (size_t)count;
+}
+
+/* Bumps of unlike radii may be alike over the angle or over the length of their arcs. The place is
+ * the angle; over the length it is stretched by R over the mean R, which adds this much of phi P'.
+ */
+static double stretch(const fg_points *points, const fg_points_row *row) {
+  const fg_points_part *part = &points->parts[row->part];
+  return row->bump ? part->bumps[row->bump_index].radius_mm / part->mean_radius_mm - 1 : 0;
+}
+
+static double phi_slope_3(const fg_points_row *row) {
+  return row->phi * (15 * row->phi * row->phi - 3) / 2;
+}
+
+static double phi_slope_4(const fg_points_row *row) {
+  double square = row->phi * row->phi;
+  return square * (35 * square - 15) / 2;
+}
+
+static size_t bump_crown(const fg_points *points, const fg_points_row *row, double *values) {
+  size_t count = legendre(row, 4, 2, 4, values);
+  values[count] = stretch(points, row) * phi_slope_4(row);
+  return count + 1;
 }
 
 static size_t bump_skew(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
-  double u = row->phi; /* P3 */
-  values[0] = row->bump ? (5 * u * u * u - 3 * u) / 2 : 0;
-  return 1;
+  size_t count = legendre(row, 3, 2, 4, values);
+  values[count] = stretch(points, row) * phi_slope_3(row);
+  return count + 1;
 }
 
-/* The residual over the place in the arc, the same on every bump. */
 static size_t free_phi(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
-  double power = row->phi * row->phi * row->phi;
-  for (int i = 0; i < 6; i++) {
-    values[i] = row->bump ? power : 0;
-    power *= row->phi;
-  }
-  return 6;
+  size_t count = legendre(row, 3, 1, 10, values);
+  values[count] = stretch(points, row) * phi_slope_3(row);
+  values[count + 1] = stretch(points, row) * phi_slope_4(row);
+  return count + 2;
 }
 
-/* Radial deviation over the foil: harmonics 1.5 to 5 of its span. */
+/* Over the foil, along its normal: harmonics of its span. */
 static size_t free_s(const fg_points *points, const fg_points_row *row, double *values) {
   double u = row->psi / points->parts[row->part].half_span_rad * M_PI;
-  for (int i = 0; i < 5; i++) {
-    values[2 * i] = cos((i + 1) * u) * radial_share(row);
-    values[2 * i + 1] = sin((i + 1) * u) * radial_share(row);
+  for (int i = 0; i < 6; i++) {
+    values[2 * i] = cos((i + 1) * u) * along_normal(row);
+    values[2 * i + 1] = sin((i + 1) * u) * along_normal(row);
   }
-  return 10;
+  return 12;
 }
 
-/* The residual over the direction of the edge in the scan: what the edge model does not know. */
+/* Over the direction of the edge in the scan: what the edge model does not know. */
 static size_t free_normal(const fg_points *points, const fg_points_row *row, double *values) {
   (void)points;
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < 6; i++) {
     values[2 * i] = cos((i + 2) * row->normal_rad);
     values[2 * i + 1] = sin((i + 2) * row->normal_rad);
   }
-  return 6;
+  return 12;
 }
 
 typedef struct part_row {
   const char *id;
-  size_t columns;
   part_basis *basis;
 } part_row;
 
 static const part_row part_rows[] = {
-    {"part.ovality", 2, ovality},         {"part.spiral", 1, spiral},
-    {"part.bump_crown", 1, bump_crown},   {"part.bump_skew", 1, bump_skew},
-    {"free.bump.phi", 6, free_phi},       {"free.foil.s", 10, free_s},
-    {"free.edge.normal", 6, free_normal}, {NULL, 0, NULL},
+    {"part.ovality", ovality},         {"part.ovality:radial", ovality_radial},
+    {"part.spiral", spiral},           {"part.spiral:radial", spiral_radial},
+    {"part.bump_crown", bump_crown},   {"part.bump_skew", bump_skew},
+    {"free.bump.phi", free_phi},       {"free.foil.s", free_s},
+    {"free.edge.normal", free_normal}, {NULL, NULL},
 };
 
 static const part_row *find_part(const char *id) {
@@ -92,31 +139,84 @@ static const part_row *find_part(const char *id) {
 
 static size_t part_columns(const fg_points *points, const part_row *part, double *columns) {
   double values[FG_LOOP_COLUMNS];
+  size_t count = 0;
   for (size_t i = 0; i < points->row_count; i++) {
-    part->basis(points, &points->rows[i], values);
-    for (size_t c = 0; c < part->columns; c++)
+    count = part->basis(points, &points->rows[i], values);
+    for (size_t c = 0; c < count; c++)
       columns[c * points->row_count + i] = values[c];
   }
-  return part->columns;
+  return count;
 }
 
-/* The true position is d beyond the nominal one: along the normal the nominal lacks d. */
-static size_t field_columns(const fg_points *points, const fg_field_row *field, const double *shape,
-                            double *columns) {
-  fg_point d[FG_FIELD_COLUMNS];
-  for (size_t i = 0; i < points->row_count; i++) {
-    const fg_points_row *row = &points->rows[i];
-    field->basis(&points->frame, shape, row->ideal, d);
-    for (size_t c = 0; c < field->columns; c++)
-      columns[c * points->row_count + i] = -(d[c].x * row->normal.x + d[c].y * row->normal.y);
-  }
+/* u, u² and u³ of one axis, from the middle of the picture, moving along that axis. */
+static size_t power_field(const fg_field_frame *frame, int axis, fg_point at, fg_point *d) {
+  double u = ((axis ? at.y : at.x) - frame->centre_mm[axis]) / FG_FIELD_HALF_MM, power = u;
+  for (int i = 0; i < 3; i++, power *= u)
+    d[i] = axis ? (fg_point){0, power} : (fg_point){power, 0};
+  return 3;
+}
+
+/* Displacements of the columns of a scanner's effect; 0 when it is none. */
+static size_t field_at(const fg_points *points, const char *id, const double *shape, fg_point at,
+                       fg_point *d) {
+  if (!strcmp(id, FG_POWERS_X)) return power_field(&points->frame, 0, at, d);
+  if (!strcmp(id, FG_POWERS_Y)) return power_field(&points->frame, 1, at, d);
+  const fg_field_row *field = fg_field_find(id);
+  if (!field) return 0;
+  field->basis(&points->frame, shape, at, d);
   return field->columns;
 }
 
+/* The true position is d beyond the nominal one: along the normal the nominal lacks d. */
 size_t fg_points_effect_columns(const fg_points *points, const char *id, const double *shape,
                                 double *columns) {
   const part_row *part = find_part(id);
   if (part) return part_columns(points, part, columns);
-  const fg_field_row *field = fg_field_find(id);
-  return field ? field_columns(points, field, shape, columns) : 0;
+  fg_point d[FG_FIELD_COLUMNS];
+  size_t count = 0;
+  for (size_t i = 0; i < points->row_count; i++) {
+    const fg_points_row *row = &points->rows[i];
+    count = field_at(points, id, shape, row->ideal, d);
+    for (size_t c = 0; c < count; c++)
+      columns[c * points->row_count + i] = -(d[c].x * row->normal.x + d[c].y * row->normal.y);
+  }
+  return count;
+}
+
+size_t fg_points_width_columns(const fg_points *points, const char *id, const double *shape,
+                               double *columns) {
+  fg_point d[2][FG_FIELD_COLUMNS];
+  size_t count = 0;
+  for (size_t i = 0; i < points->row_count && !find_part(id); i++) {
+    const fg_points_row *row = &points->rows[i];
+    fg_point n = row->normal;
+    for (int side = 0; side < 2; side++) {
+      double w = side ? -row->half_width_mm : row->half_width_mm;
+      fg_point at = {row->ideal.x + w * n.x, row->ideal.y + w * n.y};
+      count = field_at(points, id, shape, at, d[side]);
+    }
+    for (size_t c = 0; c < count; c++)
+      columns[c * points->row_count + i] =
+          -0.5 * ((d[0][c].x - d[1][c].x) * n.x + (d[0][c].y - d[1][c].y) * n.y);
+  }
+  return count;
+}
+
+const char *fg_effect_name(const char *id) {
+  for (const part_row *row = part_rows; row->id; row++) {
+    size_t length = strlen(row->id);
+    if (!strncmp(row->id, id, length) && id[length] == ':') return row->id;
+  }
+  return id;
+}
+
+const char *fg_effect_form(const char *id) {
+  const char *colon = strchr(id, ':');
+  if (colon) return colon + 1;
+  bool has_other = !strcmp(id, "part.ovality") || !strcmp(id, "part.spiral");
+  return has_other ? "normal" : NULL;
+}
+
+bool fg_effect_same(const char *a, const char *b) {
+  return !strcmp(fg_effect_name(a), fg_effect_name(b));
 }

@@ -105,6 +105,12 @@ static void place_row(fg_points *points, fg_points_row *row, fg_point p) {
   row->radial = (fg_point){dx / d, dy / d};
   double angle = atan2(dy, dx) - pose->turn_rad - part->middle_rad;
   row->psi = part->sense * (angle - 2 * M_PI * round(angle / (2 * M_PI)));
+  if (!row->bump) return;
+  /* The crown faces O; seen from C the numbers run against the angle. */
+  const fg_points_bump *bump = &part->bumps[row->bump_index];
+  double turn = row->normal_rad - (bump->direction_rad + pose->turn_rad + M_PI);
+  turn -= 2 * M_PI * round(turn / (2 * M_PI));
+  row->phi = -part->sense * turn / part->half_arc_rad;
 }
 
 void fg_points_residual(fg_points *points, const fg_points_correction *correction, double *residual,
@@ -200,4 +206,41 @@ exit:
   gsl_matrix_free(normal);
   gsl_vector_free(step);
   return status;
+}
+
+size_t fg_points_geometry_size(const fg_points *points) {
+  size_t size = 3 * points->view_count;
+  for (size_t p = 0; p < points->part_count; p++)
+    size += 1 + 3 * points->parts[p].bump_count;
+  return size;
+}
+
+/* Visits every number of the geometry in one order. */
+static void visit(fg_points *points, double *numbers, bool load) {
+  size_t n = 0;
+#define VISIT(value) (load ? (void)((value) = numbers[n]) : (void)(numbers[n] = (value)), n++)
+  for (size_t p = 0; p < points->part_count; p++) {
+    fg_points_part *part = &points->parts[p];
+    VISIT(part->overall_radius_mm);
+    for (size_t b = 0; b < part->bump_count; b++) {
+      VISIT(part->bumps[b].distance_mm);
+      VISIT(part->bumps[b].direction_rad);
+      VISIT(part->bumps[b].radius_mm);
+    }
+  }
+  for (size_t v = 0; v < points->view_count; v++) {
+    VISIT(points->poses[v].origin_mm.x);
+    VISIT(points->poses[v].origin_mm.y);
+    VISIT(points->poses[v].turn_rad);
+  }
+#undef VISIT
+}
+
+void fg_points_geometry_save(const fg_points *points, double *numbers) {
+  fg_points shallow = *points; /* only read */
+  visit(&shallow, numbers, false);
+}
+
+void fg_points_geometry_load(fg_points *points, double *numbers) {
+  visit(points, numbers, true);
 }

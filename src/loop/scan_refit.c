@@ -154,7 +154,8 @@ static double move(refit *r) {
     fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
     double step = gsl_vector_get(r->right, r->parameters + k);
     if (r->list[k].shape) {
-      double most = 0.02 * fabs(effect->shape[r->list[k].index]);
+      /* A period moves by its share; the middle of a lens, which may lie at 0, by its size. */
+      double most = 0.02 * fabs(effect->shape[r->list[k].index]) + (effect->columns == 1 ? 0.5 : 0);
       step = fmax(-most, fmin(most, step));
       effect->shape[r->list[k].index] += step;
       largest = fmax(largest, 100 * fabs(step) / most * STEP_END_UM);

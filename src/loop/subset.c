@@ -1,162 +1,115 @@
-#include "loop/scan_loop.h"
+#include "loop/subset.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/memory.h"
-#include "core/small_solve.h"
+#include "loop/points_effects.h"
+#include "loop/subset_search.h"
 
-enum {
-  COLUMNS_MOST = 96,
-  LISTED_MOST = 12,
-  RIPPLE_STEPS = 400,
-  STEP_STEPS = 200,
-  REFINE_STEPS = 24,
-  REFINE_LEVELS = 4
-};
-/* A column whose mean square is less than this beside the geometry is nothing. */
-#define VANISHED 1e-8
 /* A set is right when what it leaves beyond all effects is likelier than this. */
 #define ACCEPT_P 0.001
-/* Error of the edge model, um: effects below it are not told apart. */
-#define EDGE_ERROR_UM 0.01
-/* Gain in chi² that makes a ripple or a step worth a place in the search: its best of some hundred
- * places stands for ln of their number more. */
-#define SHAPED_CHI2     45.0
-#define SHAPED_LEAST_UM 0.15
+/* What 1 in 1000 gains by chance in one column: a quadratic must gain more than its slope. */
+#define GAIN_LEAST 10.8
+/* Sets this much worse than the best of their size are worse as far as data can show. */
+#define WORSE 25.0
+/* Error of the edge model that clean renders leave at most, um (reports/loop_scans.md). */
+#define EDGE_ERROR_UM 0.002
+/* The middle of a polynomial lies within so many picture sizes of the picture's. */
+#define MIDDLE_REACH 1.5
+/* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
+ * neither a crown nor a skew but a curve. */
+#define LOWEST_SHARE 0.6
+enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
 
-static const fg_subset_effect smooth[] = {
-    {.id = "scan.scale_y", .columns = 1},
-    {.id = "scan.shear", .columns = 1},
-    {.id = "scan.optical_quadratic", .columns = 1},
-    {.id = "scan.optical_cubic", .columns = 1},
-    {.id = "scan.carriage_quadratic", .columns = 1},
-    {.id = "part.ovality", .columns = 2},
-    {.id = "part.spiral", .columns = 1},
-    {.id = "part.bump_crown", .columns = 1},
-    {.id = "part.bump_skew", .columns = 1},
-    {.id = "free.scan.x.dx", .columns = 12, .free = true},
-    {.id = "free.scan.x.dy", .columns = 12, .free = true},
-    {.id = "free.scan.y.dx", .columns = 12, .free = true},
-    {.id = "free.scan.y.dy", .columns = 12, .free = true},
-    {.id = "free.foil.s", .columns = 10, .free = true},
-    {.id = "free.bump.phi", .columns = 6, .free = true},
-    {.id = "free.edge.normal", .columns = 6, .free = true},
+typedef struct listed_row {
+  fg_subset_effect effect;
+  const char *source; /* of its columns; NULL: its own */
+  size_t pick[3];     /* which of them */
+} listed_row;
+
+static const listed_row smooth[] = {
+    {{.id = "scan.scale_y", .columns = 1, .terms = 1}, FG_POWERS_Y, {0}},
+    {{.id = "scan.shear", .columns = 1}, NULL, {0}},
+    {{.id = "scan.optical_quadratic",
+      .form = FG_SUBSET_QUADRATIC,
+      .columns = 1,
+      .shapes = 1,
+      .terms = 2},
+     FG_POWERS_X,
+     {1, 0}},
+    {{.id = "scan.optical_cubic", .form = FG_SUBSET_CUBIC, .columns = 1, .shapes = 1, .terms = 1},
+     FG_POWERS_X,
+     {2, 1, 0}},
+    {{.id = "scan.carriage_quadratic",
+      .form = FG_SUBSET_QUADRATIC,
+      .columns = 1,
+      .shapes = 1,
+      .terms = 2},
+     FG_POWERS_Y,
+     {1, 0}},
+    {{.id = "part.ovality"}, NULL, {0}},
+    {{.id = "part.ovality:radial"}, NULL, {0}},
+    {{.id = "part.spiral"}, NULL, {0}},
+    {{.id = "part.spiral:radial"}, NULL, {0}},
+    {{.id = "part.bump_crown"}, NULL, {0}},
+    {{.id = "part.bump_skew"}, NULL, {0}},
+    {{.id = "free.scan.x.dx", .free = true}, NULL, {0}},
+    {{.id = "free.scan.x.dy", .free = true}, NULL, {0}},
+    {{.id = "free.scan.y.dx", .free = true}, NULL, {0}},
+    {{.id = "free.scan.y.dy", .free = true}, NULL, {0}},
+    {{.id = "free.foil.s", .free = true}, NULL, {0}},
+    {{.id = "free.bump.phi", .free = true}, NULL, {0}},
+    {{.id = "free.edge.normal", .free = true}, NULL, {0}},
 };
 
-typedef struct search {
-  const fg_points *points;
-  size_t rows; /* that are not kept aside */
-  size_t *row;
-  double *basis; /* orthonormal columns of the geometry, then of all effects */
-  size_t geometry_rank;
-  double *residual; /* beside the geometry */
-  double *columns;  /* COLUMNS_MOST × rows: effects beside the geometry */
-  size_t column_count, first_column[FG_SUBSET_EFFECTS];
-  double *work; /* FG_LOOP_COLUMNS × all rows */
-  double full;  /* residual sum beside everything, and the columns that took it */
-  size_t full_rank;
-  size_t new_shapes; /* ripples and steps that were found in this round */
-  fg_subset *out;
-} search;
+/* ---- effects and their columns ---- */
 
-static double dot(size_t n, const double *a, const double *b) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
-static void take_out(const search *s, size_t rank, double *v) {
-  for (int twice = 0; twice < 2; twice++)
-    for (size_t k = 0; k < rank; k++) {
-      double d = dot(s->rows, s->basis + k * s->rows, v);
-      for (size_t i = 0; i < s->rows; i++)
-        v[i] -= d * s->basis[k * s->rows + i];
-    }
-}
-
-/* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
-static bool extend(search *s, size_t rank, const double *v, double least) {
-  double *to = s->basis + rank * s->rows, whole = dot(s->rows, v, v);
-  memcpy(to, v, s->rows * sizeof *to);
-  take_out(s, rank, to);
-  double left = dot(s->rows, to, to);
-  if (!(left > fmax(1e-12 * whole, least))) return false;
-  for (size_t i = 0; i < s->rows; i++)
-    to[i] /= sqrt(left);
-  return true;
-}
-
-static double weight_of(const search *s, size_t i) {
-  return sqrt(s->points->rows[s->row[i]].weight / FG_POINTS_BLOCK);
-}
-
-/* Weighted columns of an effect at the rows in use; returns how many. */
-static size_t gather(const search *s, const char *id, const double *shape, double *out) {
-  size_t all = s->points->row_count;
-  size_t count = fg_points_effect_columns(s->points, id, shape, s->work);
-  for (size_t c = 0; c < count; c++)
-    for (size_t i = 0; i < s->rows; i++)
-      out[c * s->rows + i] = weight_of(s, i) * s->work[c * all + s->row[i]];
-  return count;
-}
-
-static void add_effect(search *s, const fg_subset_effect *effect) {
+void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect) {
   fg_subset *out = s->out;
-  size_t e = out->effect_count++;
-  out->effects[e] = *effect;
-  s->first_column[e] = s->column_count;
-  double *to = s->columns + s->column_count * s->rows;
-  gather(s, effect->id, effect->shape, to);
-  double whole = 0, left = 0;
-  for (size_t c = 0; c < effect->columns; c++) {
-    whole += dot(s->rows, to + c * s->rows, to + c * s->rows);
-    take_out(s, s->geometry_rank, to + c * s->rows);
-    left += dot(s->rows, to + c * s->rows, to + c * s->rows);
-  }
-  out->share[e] = whole > 0 ? left / whole : 0;
-  s->column_count += effect->columns;
+  size_t e = out->effect_count++, first;
+  fg_subset_effect *to = &out->effects[e];
+  *to = *effect;
+  to->columns = to->terms =
+      fg_subset_columns_add(&s->columns, effect->id, effect->shape, &first, &out->share[e]);
+  for (size_t c = 0; c < to->columns; c++)
+    to->column[c] = first + c;
 }
 
-/* Residual sum with the columns of a mask fitted; the geometry is out already. */
-static double residual_sum(const search *s, unsigned mask, double *freedom, double *amplitude_u) {
-  fg_normal_equations system;
-  size_t index[FG_SMALL_MAX], n = 0;
-  for (size_t e = 0; e < s->out->effect_count; e++)
-    for (size_t c = 0; (mask >> e & 1) && c < s->out->effects[e].columns && n < FG_SMALL_MAX; c++) {
-      const double *p = s->columns + (s->first_column[e] + c) * s->rows;
-      if (dot(s->rows, p, p) > VANISHED * (double)s->rows) index[n++] = s->first_column[e] + c;
+/* The powers are shared by the polynomials that are made of them. */
+static void add_smooth(fg_subset_search *s) {
+  const char *source = NULL;
+  size_t first[2] = {0, 0};
+  double share[2] = {0, 0}, none[FG_LOOP_SHAPES] = {0};
+  for (int axis = 0; axis < 2; axis++)
+    fg_subset_columns_add(&s->columns, axis ? FG_POWERS_Y : FG_POWERS_X, none, &first[axis],
+                          &share[axis]);
+  for (size_t i = 0; i < sizeof smooth / sizeof smooth[0]; i++) {
+    source = smooth[i].source;
+    if (!source) {
+      fg_subset_add(s, &smooth[i].effect);
+      continue;
     }
-  fg_normal_clear(&system, n);
-  double sum = dot(s->rows, s->residual, s->residual), x[FG_SMALL_MAX];
-  double inverse[FG_SMALL_MAX][FG_SMALL_MAX], scale[FG_SMALL_MAX];
-  for (size_t a = 0; a < n; a++) {
-    const double *p = s->columns + index[a] * s->rows;
-    scale[a] = 1 / sqrt(fmax(dot(s->rows, p, p), 1e-30));
-    system.right[a] = scale[a] * dot(s->rows, p, s->residual);
-    for (size_t b = 0; b <= a; b++)
-      system.matrix[a][b] = scale[a] * scale[b] * dot(s->rows, p, s->columns + index[b] * s->rows);
+    size_t e = s->out->effect_count++;
+    int axis = !strcmp(source, FG_POWERS_Y);
+    s->out->effects[e] = smooth[i].effect;
+    for (int k = 0; k < 3; k++)
+      s->out->effects[e].column[k] = first[axis] + smooth[i].pick[k];
+    size_t lead = first[axis] + smooth[i].pick[0];
+    s->out->share[e] = s->columns.gram[lead * FG_SUBSET_COLUMNS + lead] / (double)s->columns.rows;
   }
-  *freedom = (double)n;
-  if (n && fg_normal_solve(&system, 1e-12, x, inverse))
-    for (size_t a = 0; a < n; a++)
-      sum -= x[a] * system.right[a];
-  if (amplitude_u && n) *amplitude_u = scale[n - 1] * sqrt(inverse[n - 1][n - 1]);
-  return sum;
 }
 
 /* Integral of the correlation of what all effects leave. */
-static double find_integral(const search *s, const double *left) {
+static double find_integral(const fg_subset_columns *s) {
   enum { LAGS = 16 };
   double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
   for (size_t i = 0; i < s->rows; i++)
     for (size_t lag = 0; lag < LAGS && i + lag < s->rows; lag++) {
       const fg_points_row *a = &s->points->rows[s->row[i]], *b = &s->points->rows[s->row[i + lag]];
       if (a->view != b->view || a->group != b->group) break;
-      products[lag] += left[i] * left[i + lag];
+      products[lag] += s->left[i] * s->left[i + lag];
       pairs[lag]++;
     }
   for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
@@ -167,127 +120,147 @@ static double find_integral(const search *s, const double *left) {
   return integral;
 }
 
-/* Noise of a row and its correlation, from what is left beside geometry and all effects. */
-static size_t find_noise(search *s, double *left) {
-  size_t rank = s->geometry_rank;
-  for (size_t c = 0; c < s->column_count; c++)
-    if (extend(s, rank, s->columns + c * s->rows, VANISHED * (double)s->rows)) rank++;
-  memcpy(left, s->residual, s->rows * sizeof *left);
-  take_out(s, rank, left);
-  double freedom = fmax((double)s->rows - (double)rank, 1);
-  s->full = dot(s->rows, left, left);
-  s->full_rank = rank - s->geometry_rank;
-  s->out->noise_um = sqrt(dot(s->rows, left, left) / freedom);
-  s->out->integral = find_integral(s, left);
+size_t fg_subset_noise(fg_subset_search *s) {
+  size_t rank = fg_subset_columns_span(&s->columns);
+  double freedom = fmax((double)s->columns.rows - (double)rank, 1);
+  s->full = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left);
+  s->freedom = rank - s->columns.geometry_rank;
+  s->out->noise_um = sqrt(s->full / freedom);
+  s->out->integral = find_integral(&s->columns);
   return rank;
 }
 
-/* Gain of a shaped effect beside everything else, in chi². `best` (amplitude um) is set. */
-static double shaped_gain(const search *s, size_t rank, const double *left, const char *id,
-                          double shape, double *columns, double *amplitude) {
-  double shapes[FG_LOOP_SHAPES] = {shape};
-  size_t count = gather(s, id, shapes, columns);
-  fg_normal_equations system;
-  double x[FG_SMALL_MAX], gain = 0, square = 0;
-  fg_normal_clear(&system, count);
-  for (size_t a = 0; a < count; a++)
-    take_out(s, rank, columns + a * s->rows);
-  for (size_t a = 0; a < count; a++) {
-    system.right[a] = dot(s->rows, columns + a * s->rows, left);
-    for (size_t b = 0; b <= a; b++)
-      system.matrix[a][b] = dot(s->rows, columns + a * s->rows, columns + b * s->rows);
-    if (!(system.matrix[a][a] > 1e-3 * (double)s->rows / 64)) return 0;
-  }
-  if (!fg_normal_solve(&system, 1e-9, x, NULL)) return 0;
-  for (size_t a = 0; a < count; a++) {
-    gain += x[a] * system.right[a];
-    square += x[a] * x[a];
-  }
-  *amplitude = sqrt(square);
-  return gain / (s->out->noise_um * s->out->noise_um * s->out->integral);
+/* ---- one set ---- */
+
+/* What the search compares with: everything at once. */
+typedef struct yardstick {
+  double full, freedom, unit, allowance;
+  double reach; /* of a polynomial's middle, in units of FG_FIELD_HALF_MM */
+} yardstick;
+
+typedef struct set_terms {
+  fg_subset_term term[FG_SUBSET_TERMS];
+  size_t count, first[FG_SUBSET_EFFECTS], cubic; /* cubic: that effect, or FG_SUBSET_EFFECTS */
+} set_terms;
+
+static void put_cubic(const fg_subset_effect *e, double t, fg_subset_term *term) {
+  *term = (fg_subset_term){3, {e->column[0], e->column[1], e->column[2]}, {1, -3 * t, 3 * t * t}};
 }
 
-/* The best place of a shaped effect over a grid of `count` starts, then finer around it. */
-static bool find_shaped(search *s, size_t rank, const double *left, const fg_subset_effect *effect,
-                        double (*start)(const fg_points *, size_t, size_t), size_t count,
-                        double *columns, fg_subset_effect *found) {
-  double best = 0, amplitude = 0, at = 0, size = 0;
-  size_t which = 0;
-  for (size_t i = 0; i < count; i++) {
-    double place = start(s->points, i, count);
-    double gain = shaped_gain(s, rank, left, effect->id, place, columns, &amplitude);
-    if (gain <= best) continue;
-    best = gain;
-    which = i;
-    at = place;
-    size = amplitude;
-  }
-  double low = start(s->points, which > 0 ? which - 1 : 0, count);
-  double high = start(s->points, which + 1 < count ? which + 1 : which, count);
-  for (int level = 0; level < REFINE_LEVELS && best > 0; level++) {
-    double step = (high - low) / REFINE_STEPS;
-    for (size_t i = 0; i <= REFINE_STEPS; i++) {
-      double place = low + step * (double)i;
-      double gain = shaped_gain(s, rank, left, effect->id, place, columns, &amplitude);
-      if (gain <= best) continue;
-      best = gain;
-      at = place;
-      size = amplitude;
+static void list_terms(const fg_subset *out, unsigned mask, set_terms *set) {
+  set->count = 0;
+  set->cubic = FG_SUBSET_EFFECTS;
+  for (size_t e = 0; e < out->effect_count; e++) {
+    const fg_subset_effect *effect = &out->effects[e];
+    set->first[e] = set->count;
+    if (!(mask >> e & 1)) continue;
+    if (effect->form == FG_SUBSET_CUBIC) {
+      put_cubic(effect, 0, &set->term[set->count++]);
+      set->cubic = e;
+      continue;
     }
+    for (size_t c = 0; c < effect->terms && set->count < FG_SUBSET_TERMS; c++)
+      set->term[set->count++] = (fg_subset_term){1, {effect->column[c]}, {1}};
+  }
+}
+
+/* The middle of a cubic: the best of a grid, then finer. */
+static double find_middle(const fg_subset_search *s, const yardstick *y, set_terms *set) {
+  fg_subset_term *term = &set->term[set->first[set->cubic]];
+  const fg_subset_effect *effect = &s->out->effects[set->cubic];
+  double low = -y->reach, high = y->reach, best = INFINITY, at = 0;
+  for (int level = 0; level < MIDDLE_LEVELS; level++) {
+    int steps = level ? MIDDLE_FINER : MIDDLE_STEPS;
+    for (int i = 0; i <= steps; i++) {
+      size_t rank;
+      double t = low + (high - low) * i / steps;
+      put_cubic(effect, t, term);
+      double sum = fg_subset_solve(&s->columns, set->term, set->count, NULL, NULL, &rank);
+      if (sum >= best) continue;
+      best = sum;
+      at = t;
+    }
+    double step = (high - low) / steps;
     low = at - step;
     high = at + step;
   }
-  *found = *effect;
-  found->shape[0] = at;
-  return best > SHAPED_CHI2 && size > SHAPED_LEAST_UM;
+  put_cubic(effect, at, term);
+  return at;
 }
 
-static double ripple_period(const fg_points *points, size_t i, size_t count) {
-  double span = points->frame.high_mm[1] - points->frame.low_mm[1];
-  double low = 1.5 / span, high = 2.5;
-  return 1 / (low + (high - low) * (double)i / (double)count);
+static double middle_of(const fg_subset_search *s, const fg_subset_effect *effect, double t) {
+  int axis = !strncmp(effect->id, "scan.carriage", 13);
+  return s->columns.points->frame.centre_mm[axis] + FG_FIELD_HALF_MM * t;
 }
 
-static double step_place(const fg_points *points, size_t i, size_t count) {
-  double low = points->frame.low_mm[1], high = points->frame.high_mm[1];
-  return low + (high - low) * ((double)i + 1) / ((double)count + 1);
+/* A quadratic whose middle is far off is a scale; one that gains nothing over it is one. */
+static bool is_quadratic(const fg_subset_search *s, const yardstick *y, const set_terms *set,
+                         size_t e, const double *x, double sum, double *t) {
+  const double *own = x + set->first[e];
+  *t = own[0] != 0 ? -0.5 * own[1] / own[0] : INFINITY;
+  if (!(fabs(*t) <= y->reach)) return false;
+  set_terms without = *set;
+  size_t at = set->first[e], rank;
+  memmove(&without.term[at], &without.term[at + 1], (set->count - at - 1) * sizeof without.term[0]);
+  without.count--;
+  double alone = fg_subset_solve(&s->columns, without.term, without.count, NULL, NULL, &rank);
+  return alone - sum > GAIN_LEAST * y->unit;
 }
 
-/* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. */
-static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
-  static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
-  static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
-  double *columns = NULL;
-  FG_TRY(fg_memory_allocate(ctx, s->rows, 2 * sizeof *columns, (void **)&columns));
-  for (int round = 0; round < 2 && s->out->effect_count < FG_SUBSET_EFFECTS; round++) {
-    size_t rank = find_noise(s, left);
-    fg_subset_effect found;
-    if (!find_shaped(s, rank, left, &ripple, ripple_period, RIPPLE_STEPS, columns, &found) &&
-        !find_shaped(s, rank, left, &step, step_place, STEP_STEPS, columns, &found))
-      break;
-    add_effect(s, &found);
-    s->new_shapes++;
+/* Crown and skew are led by their lowest polynomial. */
+static bool is_led(const fg_subset_columns *c, const fg_subset_effect *effect, const double *own) {
+  double lead = 0, rest = 0;
+  for (size_t k = 0; k < effect->terms; k++) {
+    size_t column = effect->column[k];
+    double square = own[k] * own[k] * c->gram[column * FG_SUBSET_COLUMNS + column];
+    *(k ? &rest : &lead) += square;
   }
-  find_noise(s, left);
-  free(columns);
-  return FG_OK;
+  return lead > 0 && lead >= LOWEST_SHARE * (lead + rest);
 }
+
+static bool has_form(const fg_subset_search *s, const yardstick *y, const set_terms *set, size_t e,
+                     const double *x, double sum, fg_subset_member *member) {
+  const fg_subset_effect *effect = &s->out->effects[e];
+  double t = 0;
+  if (effect->form == FG_SUBSET_QUADRATIC) {
+    if (!is_quadratic(s, y, set, e, x, sum, &t)) return false;
+    member->middle_mm[e] = middle_of(s, effect, t);
+  }
+  if (!strncmp(effect->id, "part.bump_", 10)) return is_led(&s->columns, effect, x + set->first[e]);
+  return true;
+}
+
+/* Fits a set; an excess of INFINITY says that it is no set of its own. */
+static fg_subset_member try_set(const fg_subset_search *s, const yardstick *y, unsigned mask) {
+  const fg_subset *out = s->out;
+  fg_subset_member member = {.mask = mask};
+  set_terms set;
+  double x[FG_SUBSET_TERMS];
+  size_t rank;
+  list_terms(out, mask, &set);
+  if (set.cubic < FG_SUBSET_EFFECTS)
+    member.middle_mm[set.cubic] = middle_of(s, &out->effects[set.cubic], find_middle(s, y, &set));
+  double sum = fg_subset_solve(&s->columns, set.term, set.count, x, NULL, &rank);
+  member.excess = fmax(0, sum - y->full) / y->unit;
+  member.freedom = y->freedom - (double)rank - (set.cubic < FG_SUBSET_EFFECTS);
+  for (size_t e = 0; e < out->effect_count; e++)
+    if ((mask >> e & 1) && !has_form(s, y, &set, e, x, sum, &member)) member.excess = INFINITY;
+  if (s->columns.has_width) member.width = fg_subset_width_sum(&s->columns, set.term, set.count, x);
+  return member;
+}
+
+static bool is_right(const yardstick *y, const fg_subset_member *m) {
+  return m->excess <=
+         (m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0) + y->allowance;
+}
+
+/* ---- all sets ---- */
 
 static size_t bits(unsigned mask) {
   size_t n = 0;
   for (; mask; mask &= mask - 1)
     n++;
   return n;
-}
-
-static void keep_member(fg_subset *out, fg_subset_member member) {
-  out->member_total++;
-  size_t at = out->member_count < FG_SUBSET_CLASS ? out->member_count++ : FG_SUBSET_CLASS;
-  if (at == FG_SUBSET_CLASS && member.excess >= out->members[FG_SUBSET_CLASS - 1].excess) return;
-  if (at == FG_SUBSET_CLASS) at--;
-  for (; at > 0 && out->members[at - 1].excess > member.excess; at--)
-    out->members[at] = out->members[at - 1];
-  out->members[at] = member;
 }
 
 static unsigned mask_of(const fg_subset *out, bool of_free) {
@@ -297,119 +270,167 @@ static unsigned mask_of(const fg_subset *out, bool of_free) {
   return mask;
 }
 
-/* What the search compares with: everything at once. */
-typedef struct yardstick {
-  double full, freedom, unit, allowance;
-} yardstick;
-
-static fg_subset_member try_set(const search *s, const yardstick *y, unsigned mask) {
-  double used, left = residual_sum(s, mask, &used, NULL);
-  return (fg_subset_member){mask, fmax(0, left - y->full) / y->unit, y->freedom - used};
+/* Two forms of one effect are no set. */
+static bool has_twins(const fg_subset *out, unsigned mask) {
+  for (size_t a = 0; a < out->effect_count; a++)
+    for (size_t b = a + 1; (mask >> a & 1) && b < out->effect_count; b++)
+      if ((mask >> b & 1) && fg_effect_same(out->effects[a].id, out->effects[b].id) &&
+          strchr(out->effects[b].id, ':'))
+        return true;
+  return false;
 }
 
-static bool is_right(const yardstick *y, const fg_subset_member *m) {
-  return m->excess <=
-         (m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0) + y->allowance;
+static void keep_member(fg_subset *out, const fg_subset_member *member) {
+  out->member_total++;
+  size_t at = out->member_count < FG_SUBSET_CLASS ? out->member_count++ : FG_SUBSET_CLASS;
+  if (at == FG_SUBSET_CLASS && member->excess >= out->members[FG_SUBSET_CLASS - 1].excess) return;
+  if (at == FG_SUBSET_CLASS) at--;
+  for (; at > 0 && out->members[at - 1].excess > member->excess; at--)
+    out->members[at] = out->members[at - 1];
+  out->members[at] = *member;
 }
 
-/* Listed sets by size; the first size with one that is right ends the search. */
-static fg_subset_member try_listed(search *s, const yardstick *y, size_t most) {
-  unsigned listed = mask_of(s->out, false);
-  fg_subset_member best = {0, INFINITY, 0};
-  for (size_t size = 0; size <= most && !s->out->member_count; size++)
+/* Schwarz's criterion. */
+static double score_of(const fg_subset_search *s, const fg_subset_member *m) {
+  return m->excess - log((double)s->columns.rows / s->out->integral) * m->freedom;
+}
+
+/* Listed sets by size; the first size with one that is right ends the search. Returns the best by
+ * Schwarz's criterion of those that were tried. */
+static fg_subset_member try_listed(fg_subset_search *s, const yardstick *y, size_t most) {
+  fg_subset *out = s->out;
+  unsigned listed = mask_of(out, false);
+  fg_subset_member best = {.excess = INFINITY};
+  for (size_t size = 0; size <= most && !out->member_count; size++)
     for (unsigned mask = 0; mask <= listed; mask++) {
-      if ((mask & ~listed) || bits(mask) != size) continue;
+      if ((mask & ~listed) || bits(mask) != size || has_twins(out, mask)) continue;
       fg_subset_member member = try_set(s, y, mask);
-      if (is_right(y, &member)) keep_member(s->out, member);
-      if (member.excess < best.excess - 12) best = member;
+      if (is_right(y, &member)) keep_member(out, &member);
+      if (isfinite(member.excess) &&
+          (!isfinite(best.excess) || score_of(s, &member) < score_of(s, &best)))
+        best = member;
     }
   return best;
 }
 
-/* A free curve, alone or beside one listed effect: the one that leaves least for its columns
- * (Schwarz's criterion); the best listed set stands when none does better. */
-static void try_free(search *s, const yardstick *y, fg_subset_member best) {
+/* Members that are worse than the best as far as the data can show leave; the width of the strip
+ * puts those that stay in order. Its noise is what the best of them leaves of it. */
+static void order_members(fg_subset_search *s, const yardstick *y) {
   fg_subset *out = s->out;
-  double price = log((double)s->rows / out->integral);
-  double score = best.excess - price * best.freedom;
-  for (size_t e = 0; e < out->effect_count; e++)
-    for (size_t with = 0; with <= out->effect_count && out->effects[e].free; with++) {
-      if (with < out->effect_count && out->effects[with].free) continue;
-      unsigned mask = 1u << e | (with < out->effect_count ? 1u << with : 0);
-      fg_subset_member member = try_set(s, y, mask);
-      if (member.excess - price * member.freedom >= score - 10) continue;
-      score = member.excess - price * member.freedom;
-      best = member;
+  size_t kept = 0;
+  double width = INFINITY;
+  for (size_t m = 0; m < out->member_count; m++)
+    if (out->members[m].excess <= out->members[0].excess + WORSE + y->allowance)
+      out->members[kept++] = out->members[m];
+  out->member_count = kept;
+  for (size_t m = 0; m < kept; m++)
+    width = fmin(width, out->members[m].width);
+  for (size_t m = 0; m < kept; m++)
+    out->members[m].width =
+        width > 0 ? (out->members[m].width / width - 1) * (double)s->columns.rows : 0;
+  for (size_t m = 1; m < kept; m++)
+    for (size_t k = m; k > 0 && out->members[k].excess + out->members[k].width <
+                                    out->members[k - 1].excess + out->members[k - 1].width;
+         k--) {
+      fg_subset_member swap = out->members[k];
+      out->members[k] = out->members[k - 1];
+      out->members[k - 1] = swap;
+    }
+}
+
+/* A free curve, alone or beside up to two listed effects: the one that leaves least for its
+ * columns; the best listed set stands when none does better. */
+static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member best) {
+  fg_subset *out = s->out;
+  unsigned listed = mask_of(out, false);
+  double score = isfinite(best.excess) ? score_of(s, &best) : INFINITY;
+  for (size_t size = 0; size <= 2; size++)
+    for (unsigned mask = 0; mask <= listed; mask++) {
+      if ((mask & ~listed) || bits(mask) != size || has_twins(out, mask)) continue;
+      for (size_t e = 0; e < out->effect_count; e++) {
+        if (!out->effects[e].free) continue;
+        fg_subset_member member = try_set(s, y, mask | 1u << e);
+        /* Every further effect must be worth its while. */
+        if (!(score_of(s, &member) < score - 10)) continue;
+        score = score_of(s, &member);
+        best = member;
+      }
     }
   out->right = is_right(y, &best);
-  keep_member(out, best);
+  keep_member(out, &best);
 }
 
 static bool scanned_again(const fg_points *points) {
   return points->view_count > points->part_count;
 }
 
-static void try_sets(search *s) {
+/* Three and a half standard deviations beside the winner: found in most cases. */
+static double smallest_amplitude(const fg_subset_search *s, const yardstick *y, size_t e) {
+  const fg_subset *out = s->out;
+  set_terms set;
+  double u = INFINITY;
+  size_t rank;
+  unsigned others = out->members[0].mask & mask_of(out, false) & ~(1u << e);
+  list_terms(out, others, &set);
+  const fg_subset_effect *effect = &out->effects[e];
+  if (set.count < FG_SUBSET_TERMS) {
+    set.term[set.count++] = (fg_subset_term){1, {effect->column[0]}, {1}};
+    size_t before;
+    fg_subset_solve(&s->columns, set.term, set.count - 1, NULL, NULL, &before);
+    fg_subset_solve(&s->columns, set.term, set.count, NULL, &u, &rank);
+    if (rank == before) u = INFINITY;
+  }
+  return 3.5 * sqrt(y->unit) * u;
+}
+
+static void describe_effects(fg_subset_search *s, const yardstick *y) {
   fg_subset *out = s->out;
-  yardstick y = {.unit = out->noise_um * out->noise_um * out->integral};
-  y.full = s->full;
-  y.freedom = (double)s->full_rank;
-  y.allowance = (double)s->rows * EDGE_ERROR_UM * EDGE_ERROR_UM / y.unit;
-  fg_subset_member best = try_listed(s, &y, scanned_again(s->points) ? 3 : 2);
-  out->right = out->member_count > 0;
-  /* A ripple or step that was found just now has not been fitted with the geometry yet. */
-  if (!out->member_count && s->new_shapes) keep_member(out, best);
-  if (!out->member_count) try_free(s, &y, best);
-  double used, none = residual_sum(s, 0, &used, NULL);
-  out->p_value =
-      gsl_cdf_chisq_Q(fmax(0, none - y.full) / y.unit / (1 + y.allowance / y.freedom), y.freedom);
+  double none = s->columns.square;
+  out->p_value = gsl_cdf_chisq_Q(
+      fmax(0, none - y->full) / y->unit / (1 + y->allowance / y->freedom), y->freedom);
   for (size_t e = 0; e < out->effect_count; e++) {
-    double u = 0;
-    unsigned lone = 1u << e;
-    out->alone[e] = 1 - residual_sum(s, lone, &used, NULL) / none;
-    if (out->effects[e].free) continue;
-    /* Three and a half standard deviations beside the winner: found in most cases. */
-    residual_sum(s, (out->members[0].mask & mask_of(out, false) & ~lone) | lone, &used, &u);
-    out->smallest_um[e] = 3.5 * sqrt(y.unit) * u;
+    set_terms set;
+    size_t rank;
+    list_terms(out, 1u << e, &set);
+    if (set.cubic < FG_SUBSET_EFFECTS) find_middle(s, y, &set);
+    double sum = fg_subset_solve(&s->columns, set.term, set.count, NULL, NULL, &rank);
+    out->alone[e] = none > 0 ? 1 - sum / none : 0;
+    if (!out->effects[e].free) out->smallest_um[e] = smallest_amplitude(s, y, e);
   }
 }
 
-static fg_status list_rows(fg_context *ctx, search *s) {
-  const fg_points *points = s->points;
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *s->row, (void **)&s->row));
-  for (size_t i = 0; i < points->row_count; i++)
-    if (!points->views[points->rows[i].view].aside) s->row[s->rows++] = i;
-  return FG_OK;
+static yardstick make_yardstick(fg_subset_search *s) {
+  fg_subset *out = s->out;
+  const fg_field_frame *frame = &s->columns.points->frame;
+  double extent = fmax(frame->high_mm[0] - frame->low_mm[0], frame->high_mm[1] - frame->low_mm[1]);
+  yardstick y = {.full = s->full,
+                 .freedom = (double)s->freedom,
+                 .unit = out->noise_um * out->noise_um * out->integral,
+                 .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
+  out->edge_error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + s->columns.width_part);
+  y.allowance = (double)s->columns.rows * out->edge_error_um * out->edge_error_um / y.unit;
+  return y;
 }
 
-static fg_status span_geometry(fg_context *ctx, search *s, const double *residual_um,
-                               const double *jacobian) {
-  const fg_points *points = s->points;
-  FG_TRY(fg_memory_allocate(ctx, points->parameters + COLUMNS_MOST, s->rows * sizeof *s->basis,
-                            (void **)&s->basis));
-  FG_TRY(fg_memory_allocate(ctx, s->rows, sizeof *s->residual, (void **)&s->residual));
-  FG_TRY(fg_memory_allocate(ctx, COLUMNS_MOST, s->rows * sizeof *s->columns, (void **)&s->columns));
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, FG_LOOP_COLUMNS * sizeof *s->work,
-                            (void **)&s->work));
-  double *column = s->residual; /* borrowed until the residual is put there */
-  for (size_t a = 0; a < points->parameters; a++) {
-    for (size_t i = 0; i < s->rows; i++)
-      column[i] = weight_of(s, i) * jacobian[a * points->row_count + s->row[i]];
-    if (dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0))
-      s->geometry_rank++;
-  }
-  for (size_t i = 0; i < s->rows; i++)
-    s->residual[i] = weight_of(s, i) * residual_um[s->row[i]];
-  take_out(s, s->geometry_rank, s->residual);
-  return FG_OK;
+static void try_sets(fg_subset_search *s) {
+  fg_subset *out = s->out;
+  yardstick y = make_yardstick(s);
+  fg_subset_member best = try_listed(s, &y, scanned_again(s->columns.points) ? 3 : 2);
+  out->right = out->member_count > 0;
+  if (out->right) order_members(s, &y);
+  /* A ripple or step that was found just now has not been fitted with the geometry yet. */
+  if (!out->member_count && s->new_shapes) keep_member(out, &best);
+  if (!out->member_count) try_free(s, &y, best);
+  describe_effects(s, &y);
 }
 
-static void add_known(search *s, const fg_scan_set *known) {
+static void add_known(fg_subset_search *s, const fg_scan_set *known) {
   for (size_t e = 0; known && e < known->count; e++) {
     const fg_scan_effect *from = &known->effects[e];
+    bool kept = !strcmp(from->id, "scan.carriage_ripple") || !strcmp(from->id, "scan.row_step");
     fg_subset_effect effect = {.id = from->id, .columns = from->columns, .shapes = from->shapes};
     memcpy(effect.shape, from->shape, sizeof effect.shape);
-    if (from->shapes && s->out->effect_count < FG_SUBSET_EFFECTS) add_effect(s, &effect);
+    if (kept && s->out->effect_count < FG_SUBSET_EFFECTS) fg_subset_add(s, &effect);
   }
 }
 
@@ -417,26 +438,18 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double 
                          const double *jacobian, const fg_scan_set *known, bool look,
                          fg_subset *subset) {
   memset(subset, 0, sizeof *subset);
-  search s = {.points = points, .out = subset};
-  double *left = NULL;
+  fg_subset_search s = {.out = subset};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(list_rows(ctx, &s));
-  FG_TRY_EXIT(span_geometry(ctx, &s, residual_um, jacobian));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, s.rows, sizeof *left, (void **)&left));
-  for (size_t e = 0; e < sizeof smooth / sizeof smooth[0]; e++)
-    add_effect(&s, &smooth[e]);
+  FG_TRY(fg_subset_columns_open(ctx, points, residual_um, jacobian, &s.columns));
+  add_smooth(&s);
   add_known(&s, known);
+  FG_TRY_EXIT(fg_subset_width_doubt(ctx, &s.columns));
   if (look)
-    FG_TRY_EXIT(find_shaped_effects(ctx, &s, left));
+    FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));
   else
-    find_noise(&s, left);
+    fg_subset_noise(&s);
   try_sets(&s);
 exit:
-  free(s.row);
-  free(s.basis);
-  free(s.residual);
-  free(s.columns);
-  free(s.work);
-  free(left);
+  fg_subset_columns_close(&s.columns);
   return status;
 }

@@ -5,7 +5,11 @@
  * There are few of them: all sets of up to two (three where a part was scanned more than once) are
  * fitted beside the geometry. Those of the smallest size that leave no more than all effects and
  * free curves together would, within what noise and the edge model's own error allow, are the alias
- * class. When there are none, a free curve, alone or beside one listed effect, stands in.
+ * class. When there are none, a free curve, alone or beside up to two listed effects, stands in.
+ *
+ * The width of the strip orders the class: a scanner's field stretches it as it stretches the foil,
+ * a part's effect does not. It does not decide: an edge model that errs with the direction of the
+ * edge would look the same.
  */
 #ifndef FG_LOOP_SUBSET_H
 #define FG_LOOP_SUBSET_H
@@ -19,12 +23,23 @@ typedef struct fg_scan_set {
   size_t count;
 } fg_scan_set;
 
-enum { FG_SUBSET_EFFECTS = 20, FG_SUBSET_CLASS = 8 };
+enum { FG_SUBSET_EFFECTS = 26, FG_SUBSET_CLASS = 8 };
 
-/* An effect as it enters the search: its shape is known by now. */
+/* How an effect's columns make it. */
+typedef enum fg_subset_form {
+  FG_SUBSET_PLAIN,     /* every column with its own coefficient */
+  FG_SUBSET_QUADRATIC, /* a ((x - c) / w)²: u² and u, which give a and c */
+  FG_SUBSET_CUBIC,     /* a ((x - c) / w)³: u³, u² and u in the proportion that c gives */
+} fg_subset_form;
+
+/* An effect as it enters the search: its shape is known by now, but for the middle c of a
+ * polynomial, which is found with every set anew. */
 typedef struct fg_subset_effect {
   const char *id;
-  size_t columns, shapes;
+  fg_subset_form form;
+  size_t columns, shapes;         /* of the effect as it is fitted in the end */
+  size_t terms;                   /* in the search */
+  size_t column[FG_LOOP_COLUMNS]; /* of the search, one per term (cubic: three) */
   double shape[FG_LOOP_SHAPES];
   bool free; /* a curve for what no listed effect explains */
 } fg_subset_effect;
@@ -35,15 +50,18 @@ typedef struct fg_subset_member {
   double excess; /* residual sum beyond that of all effects, in units of the noise; chi² of
                     `freedom` when the set is right */
   double freedom;
+  double width; /* of the same kind: what the strip's width says against it */
+  double middle_mm[FG_SUBSET_EFFECTS]; /* of the polynomials in it */
 } fg_subset_member;
 
 typedef struct fg_subset {
   fg_subset_effect effects[FG_SUBSET_EFFECTS];
   size_t effect_count;
-  fg_subset_member members[FG_SUBSET_CLASS]; /* the class; the one that leaves least first */
+  fg_subset_member members[FG_SUBSET_CLASS]; /* the class; the likeliest first */
   size_t member_count, member_total;
   bool right;                            /* the members leave no more than they should */
   double noise_um, integral;             /* of a row; of its correlation */
+  double edge_error_um;                  /* of the edge model, allowed for */
   double p_value;                        /* that no effect is needed; 1 when members[0].mask is 0 */
   double share[FG_SUBSET_EFFECTS];       /* |M f|² / |f|² beside the geometry */
   double smallest_um[FG_SUBSET_EFFECTS]; /* amplitude that would have shown beside the winner */

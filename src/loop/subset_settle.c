@@ -10,6 +10,9 @@
 /* Rows this far off are left out, if they are fewer than this share. */
 #define OUTLIER_SIGMAS 5.0
 #define OUTLIER_SHARE  0.02
+/* Largest change of an overall radius, and largest coefficient, that an effect may have. */
+#define SANE_SHARE 0.03
+#define SANE_UM    2000.0
 
 void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set) {
   memset(set, 0, sizeof *set);
@@ -19,7 +22,13 @@ void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set) {
     fg_scan_effect *to = &set->effects[set->count++];
     *to = (fg_scan_effect){.id = from->id, .columns = from->columns, .shapes = from->shapes};
     memcpy(to->shape, from->shape, sizeof to->shape);
+    if (from->form != FG_SUBSET_PLAIN) to->shape[0] = subset->members[member].middle_mm[e];
   }
+}
+
+/* Its shape is the middle, which every search finds anew; the fit's is the better one. */
+static bool is_polynomial(const fg_scan_effect *effect) {
+  return effect->columns == 1 && effect->shapes == 1 && strcmp(effect->id, "scan.row_step") != 0;
 }
 
 /* Numbers of the effects that both sets hold. */
@@ -27,7 +36,7 @@ static void keep_numbers(const fg_scan_set *from, fg_scan_set *to) {
   for (size_t e = 0; e < to->count; e++)
     for (size_t k = 0; k < from->count; k++)
       if (!strcmp(to->effects[e].id, from->effects[k].id) &&
-          to->effects[e].shape[0] == from->effects[k].shape[0])
+          (to->effects[e].shape[0] == from->effects[k].shape[0] || is_polynomial(&to->effects[e])))
         to->effects[e] = from->effects[k];
 }
 
@@ -84,15 +93,44 @@ static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double 
   return FG_OK;
 }
 
+/* An effect that bends the geometry so far is none. */
+static bool is_sane(const fg_points *points, const double *geometry, const fg_scan_set *set) {
+  size_t at = 0;
+  for (size_t p = 0; p < points->part_count; p++) {
+    double was = geometry[at];
+    if (!(fabs(points->parts[p].overall_radius_mm / was - 1) < SANE_SHARE)) return false;
+    at += 1 + 3 * points->parts[p].bump_count;
+  }
+  for (size_t e = 0; e < set->count; e++)
+    for (size_t c = 0; c < set->effects[e].columns; c++)
+      if (!(fabs(set->effects[e].coefficient_um[c]) < SANE_UM)) return false;
+  return true;
+}
+
+/* Fits a set from the geometry that stands; one that runs away is given up for none. */
+static fg_status fit_set(fg_context *ctx, fg_points *points, fg_scan_set *set, double *geometry,
+                         double *residual_um) {
+  fg_points_geometry_save(points, geometry);
+  fg_status status = fg_scan_refit(ctx, points, set, residual_um);
+  if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
+  if (status == FG_OK && is_sane(points, geometry, set)) return FG_OK;
+  fg_points_geometry_load(points, geometry);
+  memset(set, 0, sizeof *set);
+  ctx->message[0] = 0;
+  return fg_scan_refit(ctx, points, set, residual_um);
+}
+
 fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set, fg_subset *subset,
                            double *residual_um) {
   enum { ROUNDS = 6 };
-  double *jacobian = NULL;
+  double *jacobian = NULL, *geometry = NULL;
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
   FG_TRY(fg_scan_refit(ctx, points, set, NULL));
   FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *jacobian,
                             (void **)&jacobian));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *geometry,
+                                 (void **)&geometry));
   for (int round = 0; round < ROUNDS; round++) {
     fg_scan_set next;
     FG_TRY_EXIT(put_back(ctx, points, set, residual_um, jacobian));
@@ -101,11 +139,12 @@ fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
     bool settled = same_effects(set, &next);
     keep_numbers(set, &next);
     *set = next;
-    FG_TRY_EXIT(fg_scan_refit(ctx, points, set, residual_um));
+    FG_TRY_EXIT(fit_set(ctx, points, set, geometry, residual_um));
     FG_TRY_EXIT(drop_outliers(ctx, points, residual_um));
     if (settled && round > 0) break;
   }
 exit:
   free(jacobian);
+  free(geometry);
   return status;
 }

@@ -17,19 +17,19 @@ static void coordinate_of(const char *id, char *out, size_t size) {
   if (tail && (!strcmp(tail, ".dx") || !strcmp(tail, ".dy"))) *tail = 0;
 }
 
-/* Half the range of an effect over the rows, um. */
-static double amplitude_of(const fg_scan_loop *loop, const fg_scan_effect *effect) {
-  static const int most = FG_LOOP_COLUMNS;
+/* Size of an effect, um: of its sine and cosine, or of what leads it. */
+static double amplitude_of(const fg_scan_effect *effect) {
+  bool led = !strncmp(effect->id, "part.bump_", 10);
   double square = 0;
-  for (size_t c = 0; c < effect->columns && c < (size_t)most; c++)
+  for (size_t c = 0; c < (led ? 1 : effect->columns); c++)
     square += effect->coefficient_um[c] * effect->coefficient_um[c];
-  (void)loop;
-  return sqrt(square);
+  return effect->columns == 1 ? effect->coefficient_um[0] : sqrt(square);
 }
 
 static double amplitude_u(const fg_scan_effect *effect) {
-  double a = amplitude_of(NULL, effect), sum = 0;
-  for (size_t c = 0; c < effect->columns && a > 0; c++) {
+  double a = fabs(amplitude_of(effect)), sum = 0;
+  bool led = !strncmp(effect->id, "part.bump_", 10);
+  for (size_t c = 0; c < (led ? 1 : effect->columns) && a > 0; c++) {
     double part = effect->coefficient_um[c] / a * effect->u_coefficient_um[c];
     sum += part * part;
   }
@@ -60,8 +60,8 @@ static void write_parameters(fg_json *json, const fg_scan_effect *effect, bool u
     for (size_t i = 0; fg_field_parameter(&field, i, &name, &value, &sd); i++)
       fg_json_number(json, name, u ? sd : value);
   } else {
-    fg_json_number(json, "amplitude_um", u ? amplitude_u(effect) : amplitude_of(NULL, effect));
-    if (!strcmp(effect->id, "part.ovality") && !u)
+    fg_json_number(json, "amplitude_um", u ? amplitude_u(effect) : amplitude_of(effect));
+    if (fg_effect_same(effect->id, "part.ovality") && !u)
       fg_json_number(json, "phase_deg",
                      0.5 * atan2(effect->coefficient_um[1], effect->coefficient_um[0]) * 180 /
                          M_PI);
@@ -76,28 +76,42 @@ static size_t find_effect(const fg_subset *subset, const char *id) {
   return e;
 }
 
+/* The effects of a member of the class as a sum. */
+static void name_member(const fg_subset *subset, size_t member, char *text, size_t size) {
+  size_t used = 0;
+  text[0] = 0;
+  for (size_t e = 0; e < subset->effect_count && used < size; e++)
+    if (subset->members[member].mask >> e & 1)
+      used += (size_t)snprintf(text + used, size - used, "%s%s", used ? " + " : "",
+                               fg_effect_name(subset->effects[e].id));
+}
+
 /* What stands in an effect's place in the other members of the class; the effects that both hold
  * are left out. */
 static void write_class(fg_json *json, const fg_scan_loop *loop) {
   const fg_subset *subset = &loop->subset;
   fg_json_array(json, "alias_class");
   for (size_t m = 0; m < subset->member_count && subset->member_count > 1; m++) {
-    char text[256] = "";
-    for (size_t e = 0; e < subset->effect_count; e++) {
-      if (!(subset->members[m].mask >> e & 1)) continue;
-      size_t used = strlen(text);
-      snprintf(text + used, sizeof text - used, "%s%s", used ? " + " : "", subset->effects[e].id);
+    char text[256], before[256];
+    bool known = false;
+    name_member(subset, m, text, sizeof text);
+    for (size_t k = 0; k < m && !known; k++) {
+      name_member(subset, k, before, sizeof before);
+      known = !strcmp(text, before);
     }
-    fg_json_string(json, NULL, text);
+    if (!known) fg_json_string(json, NULL, text);
   }
   fg_json_array_end(json);
 }
 
-/* Whether every member of the class holds the effect. */
+/* Whether every member of the class holds the effect, in whatever form. */
 static bool in_every_member(const fg_subset *subset, const char *id) {
-  size_t e = find_effect(subset, id);
-  for (size_t m = 0; m < subset->member_count; m++)
-    if (e == subset->effect_count || !(subset->members[m].mask >> e & 1)) return false;
+  for (size_t m = 0; m < subset->member_count; m++) {
+    bool held = false;
+    for (size_t e = 0; e < subset->effect_count && !held; e++)
+      held = (subset->members[m].mask >> e & 1) && fg_effect_same(subset->effects[e].id, id);
+    if (!held) return false;
+  }
   return true;
 }
 
@@ -109,12 +123,13 @@ static void write_claims(fg_json *json, const fg_scan_loop *loop) {
     bool sure = in_every_member(&loop->subset, effect->id);
     size_t e = find_effect(&loop->subset, effect->id);
     fg_json_object(json, NULL);
-    fg_json_string(json, "id", effect->id);
+    fg_json_string(json, "id", fg_effect_name(effect->id));
+    if (fg_effect_form(effect->id)) fg_json_string(json, "form", fg_effect_form(effect->id));
     fg_json_string(json, "level", "points");
     fg_json_string(json, "verdict", sure ? "found" : "tied");
     write_parameters(json, effect, false);
     write_parameters(json, effect, true);
-    fg_json_number(json, "amplitude", amplitude_of(loop, effect));
+    fg_json_number(json, "amplitude", amplitude_of(effect));
     fg_json_number(json, "p_value", loop->subset.p_value);
     fg_json_number(json, "retained_share",
                    e < loop->subset.effect_count ? loop->subset.share[e] : NAN);
@@ -186,7 +201,7 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
 
 static bool is_claimed(const fg_scan_loop *loop, const char *id) {
   for (size_t i = 0; i < loop->set.count; i++)
-    if (!strcmp(loop->set.effects[i].id, id)) return true;
+    if (fg_effect_same(loop->set.effects[i].id, id)) return true;
   return false;
 }
 
@@ -196,7 +211,8 @@ static void write_rejected(fg_json *json, const fg_scan_loop *loop) {
   fg_json_array(json, "rejected");
   for (size_t e = 0; e < loop->subset.effect_count; e++) {
     const fg_subset_effect *effect = &loop->subset.effects[e];
-    if (effect->free || is_claimed(loop, effect->id)) continue;
+    /* Of two forms of one effect the first speaks for both. */
+    if (effect->free || is_claimed(loop, effect->id) || strchr(effect->id, ':')) continue;
     double smallest = loop->subset.smallest_um[e];
     bool shown = smallest <= matters_um;
     fg_json_object(json, NULL);
@@ -245,6 +261,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_array_end(&json);
   fg_json_bool(&json, "same_foil", loop->options.same_foil);
   fg_json_number(&json, "noise_floor", loop->noise_floor_um);
+  fg_json_number(&json, "edge_model_error", loop->subset.edge_error_um);
   fg_json_string(&json, "unit", "um");
   FG_TRY(write_side(ctx, &json, "before", loop, loop->before, &loop->error_before));
   write_claims(&json, loop);
@@ -272,11 +289,11 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
     if (is_free(effect->id)) {
       char coordinate[48];
       coordinate_of(effect->id, coordinate, sizeof coordinate);
-      fprintf(out, "  unattributed, over %s: %.2f um\n", coordinate, amplitude_of(loop, effect));
+      fprintf(out, "  unattributed, over %s: %.2f um\n", coordinate, amplitude_of(effect));
       continue;
     }
     bool sure = in_every_member(&loop->subset, effect->id);
-    fprintf(out, "  %s %s:", sure ? "found" : "tied ", effect->id);
+    fprintf(out, "  %s %s:", sure ? "found" : "tied ", fg_effect_name(effect->id));
     const fg_field_row *row = fg_field_find(effect->id);
     fg_field field = {.row = row};
     const char *name;
@@ -285,8 +302,7 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
     for (size_t p = 0; row && fg_field_parameter(&field, p, &name, &value, &u); p++)
       fprintf(out, " %s %.6g +- %.2g", name, value, 2 * u);
     if (!row)
-      fprintf(out, " amplitude_um %.4g +- %.2g", amplitude_of(loop, effect),
-              2 * amplitude_u(effect));
+      fprintf(out, " amplitude_um %.4g +- %.2g", amplitude_of(effect), 2 * amplitude_u(effect));
     fputc('\n', out);
   }
   for (size_t i = 0; i < loop->scan_count; i++)

@@ -1,0 +1,69 @@
+/* The columns of all effects beside the geometry, and least squares of any set of them. */
+#ifndef FG_LOOP_SUBSET_COLUMNS_H
+#define FG_LOOP_SUBSET_COLUMNS_H
+
+#include "loop/subset.h"
+
+enum { FG_SUBSET_COLUMNS = 128, FG_SUBSET_TERMS = 48 };
+
+typedef struct fg_subset_columns {
+  const fg_points *points;
+  size_t rows; /* that are not kept aside */
+  size_t *row;
+  double *basis; /* orthonormal: the geometry, then all effects; FG_SUBSET_COLUMNS beyond the
+                    geometry's parameters */
+  size_t geometry_rank;
+  double *residual; /* beside the geometry, um */
+  double *values;   /* FG_SUBSET_COLUMNS × rows: effects beside the geometry */
+  double *strain;   /* the same columns in half the width */
+  size_t count;
+  double *gram;      /* FG_SUBSET_COLUMNS²: products of the columns */
+  double *right;     /* products with the residual */
+  double square;     /* of the residual */
+  double *work;      /* FG_LOOP_COLUMNS × all rows */
+  double *left;      /* residual beside everything */
+  double *width;     /* half the strip's width, um, without its mean over the part */
+  bool has_width;    /* false for discs */
+  double width_part; /* mean square of the widths' smooth part that no field of the scanner makes */
+} fg_subset_columns;
+
+/* A term of a set: a weighted sum of up to three columns. */
+typedef struct fg_subset_term {
+  size_t count, column[3];
+  double weight[3];
+} fg_subset_term;
+
+fg_status fg_subset_columns_open(fg_context *ctx, const fg_points *points,
+                                 const double *residual_um, const double *jacobian,
+                                 fg_subset_columns *columns);
+void fg_subset_columns_close(fg_subset_columns *columns);
+
+double fg_subset_dot(size_t n, const double *a, const double *b);
+
+/* Weighted columns of an effect at the rows in use, as they are; returns how many. */
+size_t fg_subset_gather(const fg_subset_columns *columns, const char *id, const double *shape,
+                        double *out);
+/* Takes the first `rank` vectors of the basis out of v. */
+void fg_subset_take_out(const fg_subset_columns *columns, size_t rank, double *v);
+
+/* Adds an effect's columns; `first` is where they stand, `share` what the geometry leaves of
+ * their square. Returns how many. */
+size_t fg_subset_columns_add(fg_subset_columns *columns, const char *id, const double *shape,
+                             size_t *first, double *share);
+
+/* Everything at once: fills `left`, returns the rank of the basis. */
+size_t fg_subset_columns_span(fg_subset_columns *columns);
+
+/* Least squares of the residual by terms. Terms that lie in what stands before them get 0 and do
+ * not count. `x` (or NULL) gets the coefficients, `last_u` (or NULL) the standard deviation of the
+ * last one for noise of 1 um. Returns the residual sum; `rank` what was used. */
+double fg_subset_solve(const fg_subset_columns *columns, const fg_subset_term *terms, size_t count,
+                       double *x, double *last_u, size_t *rank);
+
+/* Residual sum of the widths when terms have these coefficients. */
+double fg_subset_width_sum(const fg_subset_columns *columns, const fg_subset_term *terms,
+                           size_t count, const double *x);
+/* Fills `width_part`; once all effects are there. */
+fg_status fg_subset_width_doubt(fg_context *ctx, fg_subset_columns *columns);
+
+#endif

@@ -1,0 +1,25 @@
+/* What the parts of the search for a subset share. */
+#ifndef FG_LOOP_SUBSET_SEARCH_H
+#define FG_LOOP_SUBSET_SEARCH_H
+
+#include "loop/subset_columns.h"
+
+typedef struct fg_subset_search {
+  fg_subset_columns columns;
+  fg_subset *out;
+  double full;       /* residual sum beside everything */
+  size_t freedom;    /* columns that took it */
+  size_t new_shapes; /* ripples and steps that were found in this round */
+} fg_subset_search;
+
+/* Adds an effect whose columns are its own. */
+void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect);
+
+/* Noise of a row and its correlation, from what is left beside geometry and all effects; returns
+ * the rank of the basis that took them out. */
+size_t fg_subset_noise(fg_subset_search *s);
+
+/* Looks for ripples and steps beside everything else, and adds those that stand out. */
+fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s);
+
+#endif

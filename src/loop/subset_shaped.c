@@ -1,0 +1,128 @@
+/* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "loop/subset_search.h"
+
+enum { RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
+
+/* Gain in chi² that makes a ripple or a step worth a place in the search: its best of some hundred
+ * places stands for ln of their number more. */
+#define SHAPED_CHI2     45.0
+#define SHAPED_LEAST_UM 0.15
+
+typedef struct shaped {
+  const fg_subset_effect *effect;
+  double (*start)(const fg_points *points, size_t i, size_t count);
+  size_t starts;
+} shaped;
+
+typedef struct hit {
+  double gain, amplitude, at;
+} hit;
+
+/* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
+static bool has_both_sides(const fg_subset_columns *c, double y_mm) {
+  size_t low = 0, all = 0;
+  for (size_t i = 0; i < c->rows; i++) {
+    const fg_points_row *row = &c->points->rows[c->row[i]];
+    low += row->weight > 0 && row->at.y < y_mm;
+    all += row->weight > 0;
+  }
+  return low >= SIDE_ROWS && all - low >= SIDE_ROWS;
+}
+
+/* Gain beside everything else, in chi². */
+static hit gain_at(const fg_subset_search *s, size_t rank, const char *id, double place,
+                   double *work) {
+  const fg_subset_columns *c = &s->columns;
+  if (!strcmp(id, "scan.row_step") && !has_both_sides(c, place)) return (hit){0, 0, place};
+  double shape[FG_LOOP_SHAPES] = {place}, x[FG_SMALL_MAX], square = 0;
+  size_t count = fg_subset_gather(c, id, shape, work);
+  fg_normal_equations system;
+  hit none = {0, 0, place}, found = none;
+  fg_normal_clear(&system, count);
+  for (size_t a = 0; a < count; a++)
+    fg_subset_take_out(c, rank, work + a * c->rows);
+  for (size_t a = 0; a < count; a++) {
+    system.right[a] = fg_subset_dot(c->rows, work + a * c->rows, c->left);
+    for (size_t b = 0; b <= a; b++)
+      system.matrix[a][b] = fg_subset_dot(c->rows, work + a * c->rows, work + b * c->rows);
+    if (!(system.matrix[a][a] > 1e-3 * (double)c->rows / 64)) return none;
+  }
+  if (!fg_normal_solve(&system, 1e-9, x, NULL)) return none;
+  for (size_t a = 0; a < count; a++) {
+    found.gain += x[a] * system.right[a];
+    square += x[a] * x[a];
+  }
+  found.gain /= s->out->noise_um * s->out->noise_um * s->out->integral;
+  found.amplitude = sqrt(square);
+  return found;
+}
+
+/* The best place over a grid of starts, then finer around it. */
+static hit find_place(const fg_subset_search *s, size_t rank, const shaped *kind, double *work) {
+  const fg_points *points = s->columns.points;
+  hit best = {0};
+  size_t which = 0;
+  for (size_t i = 0; i < kind->starts; i++) {
+    hit tried = gain_at(s, rank, kind->effect->id, kind->start(points, i, kind->starts), work);
+    if (tried.gain <= best.gain) continue;
+    best = tried;
+    which = i;
+  }
+  double low = kind->start(points, which > 0 ? which - 1 : 0, kind->starts);
+  double high = kind->start(points, which + 1 < kind->starts ? which + 1 : which, kind->starts);
+  for (int level = 0; level < REFINE_LEVELS && best.gain > 0; level++) {
+    double step = (high - low) / REFINE_STEPS;
+    for (size_t i = 0; i <= REFINE_STEPS; i++) {
+      hit tried = gain_at(s, rank, kind->effect->id, low + step * (double)i, work);
+      if (tried.gain > best.gain) best = tried;
+    }
+    low = best.at - step;
+    high = best.at + step;
+  }
+  return best;
+}
+
+static double ripple_period(const fg_points *points, size_t i, size_t count) {
+  double span = points->frame.high_mm[1] - points->frame.low_mm[1];
+  double low = 1.5 / span, high = 2.5;
+  return 1 / (low + (high - low) * (double)i / (double)count);
+}
+
+static double step_place(const fg_points *points, size_t i, size_t count) {
+  double low = points->frame.low_mm[1], high = points->frame.high_mm[1];
+  return low + (high - low) * ((double)i + 1) / ((double)count + 1);
+}
+
+fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s) {
+  static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
+  static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
+  const shaped kinds[] = {{&ripple, ripple_period, RIPPLE_STEPS}, {&step, step_place, STEP_STEPS}};
+  double *work = NULL;
+  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
+  for (int round = 0; round < 2 && s->out->effect_count < FG_SUBSET_EFFECTS; round++) {
+    size_t rank = fg_subset_noise(s);
+    hit best = {0};
+    const shaped *which = NULL;
+    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+      hit found = find_place(s, rank, &kinds[k], work);
+      if (found.gain <= SHAPED_CHI2 || found.amplitude <= SHAPED_LEAST_UM) continue;
+      if (which && found.gain <= best.gain) continue;
+      best = found;
+      which = &kinds[k];
+    }
+    if (!which) break;
+    fg_subset_effect found = *which->effect;
+    found.shape[0] = best.at;
+    fg_subset_add(s, &found);
+    s->new_shapes++;
+  }
+  fg_subset_noise(s);
+  free(work);
+  return FG_OK;
+}
