@@ -87,6 +87,7 @@ static void add_smooth(fg_subset_search *s) {
                           &share[axis]);
   for (size_t i = 0; i < sizeof smooth / sizeof smooth[0]; i++) {
     source = smooth[i].source;
+    if (smooth[i].effect.free && !s->free_column) s->free_column = s->columns.count;
     if (!source) {
       fg_subset_add(s, &smooth[i].effect);
       continue;
@@ -99,6 +100,7 @@ static void add_smooth(fg_subset_search *s) {
     size_t lead = first[axis] + smooth[i].pick[0];
     s->out->share[e] = s->columns.gram[lead * FG_SUBSET_COLUMNS + lead] / (double)s->columns.rows;
   }
+  s->free_end = s->columns.count;
 }
 
 /* Integral of the correlation of what all effects leave. */
@@ -120,8 +122,9 @@ static double find_integral(const fg_subset_columns *s) {
   return integral;
 }
 
-size_t fg_subset_noise(fg_subset_search *s) {
-  size_t rank = fg_subset_columns_span(&s->columns);
+size_t fg_subset_noise(fg_subset_search *s, bool listed_only) {
+  size_t end = listed_only ? s->free_end : s->free_column;
+  size_t rank = fg_subset_columns_span(&s->columns, s->free_column, end);
   double freedom = fmax((double)s->columns.rows - (double)rank, 1);
   s->full = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left);
   s->freedom = rank - s->columns.geometry_rank;
@@ -447,7 +450,7 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double 
   if (look)
     FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));
   else
-    fg_subset_noise(&s);
+    fg_subset_noise(&s, false);
   try_sets(&s);
 exit:
   fg_subset_columns_close(&s.columns);

@@ -86,10 +86,12 @@ size_t fg_subset_columns_add(fg_subset_columns *s, const char *id, const double 
   return count;
 }
 
-size_t fg_subset_columns_span(fg_subset_columns *s) {
+size_t fg_subset_columns_span(fg_subset_columns *s, size_t skip, size_t end) {
   size_t rank = s->geometry_rank;
   for (size_t c = 0; c < s->count; c++)
-    if (extend(s, rank, s->values + c * s->rows, VANISHED * (double)s->rows)) rank++;
+    if ((c < skip || c >= end) &&
+        extend(s, rank, s->values + c * s->rows, VANISHED * (double)s->rows))
+      rank++;
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_subset_take_out(s, rank, s->left);
   return rank;

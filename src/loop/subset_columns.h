@@ -51,8 +51,8 @@ void fg_subset_take_out(const fg_subset_columns *columns, size_t rank, double *v
 size_t fg_subset_columns_add(fg_subset_columns *columns, const char *id, const double *shape,
                              size_t *first, double *share);
 
-/* Everything at once: fills `left`, returns the rank of the basis. */
-size_t fg_subset_columns_span(fg_subset_columns *columns);
+/* All columns but [skip, end) at once: fills `left`, returns the rank of the basis. */
+size_t fg_subset_columns_span(fg_subset_columns *columns, size_t skip, size_t end);
 
 /* Least squares of the residual by terms. Terms that lie in what stands before them get 0 and do
  * not count. `x` (or NULL) gets the coefficients, `last_u` (or NULL) the standard deviation of the

@@ -7,17 +7,18 @@
 typedef struct fg_subset_search {
   fg_subset_columns columns;
   fg_subset *out;
-  double full;       /* residual sum beside everything */
-  size_t freedom;    /* columns that took it */
-  size_t new_shapes; /* ripples and steps that were found in this round */
+  size_t free_column, free_end; /* columns of the free curves */
+  double full;                  /* residual sum beside everything */
+  size_t freedom;               /* columns that took it */
+  size_t new_shapes;            /* ripples and steps that were found in this round */
 } fg_subset_search;
 
 /* Adds an effect whose columns are its own. */
 void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect);
 
-/* Noise of a row and its correlation, from what is left beside geometry and all effects; returns
- * the rank of the basis that took them out. */
-size_t fg_subset_noise(fg_subset_search *s);
+/* Noise of a row and its correlation, from what is left beside geometry and all effects, or all
+ * that are listed; returns the rank of the basis that took them out. */
+size_t fg_subset_noise(fg_subset_search *s, bool listed_only);
 
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
 fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s);

@@ -99,30 +99,38 @@ static double step_place(const fg_points *points, size_t i, size_t count) {
   return low + (high - low) * ((double)i + 1) / ((double)count + 1);
 }
 
-fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s) {
+/* Adds what stands out most, once. */
+static bool add_best(fg_subset_search *s, bool listed_only, double *work) {
   static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
   static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
   const shaped kinds[] = {{&ripple, ripple_period, RIPPLE_STEPS}, {&step, step_place, STEP_STEPS}};
+  size_t rank = fg_subset_noise(s, listed_only);
+  hit best = {0};
+  const shaped *which = NULL;
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
+    hit found = find_place(s, rank, &kinds[k], work);
+    if (found.gain <= SHAPED_CHI2 || found.amplitude <= SHAPED_LEAST_UM) continue;
+    if (which && found.gain <= best.gain) continue;
+    best = found;
+    which = &kinds[k];
+  }
+  if (!which || s->out->effect_count >= FG_SUBSET_EFFECTS) return false;
+  fg_subset_effect found = *which->effect;
+  found.shape[0] = best.at;
+  fg_subset_add(s, &found);
+  s->new_shapes++;
+  return true;
+}
+
+/* Free curves can follow a long ripple: it is sought beside the listed effects too. What is found
+ * there is a candidate like any other; a curve that is no ripple stays the better explanation. */
+fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s) {
   double *work = NULL;
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
-  for (int round = 0; round < 2 && s->out->effect_count < FG_SUBSET_EFFECTS; round++) {
-    size_t rank = fg_subset_noise(s);
-    hit best = {0};
-    const shaped *which = NULL;
-    for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
-      hit found = find_place(s, rank, &kinds[k], work);
-      if (found.gain <= SHAPED_CHI2 || found.amplitude <= SHAPED_LEAST_UM) continue;
-      if (which && found.gain <= best.gain) continue;
-      best = found;
-      which = &kinds[k];
-    }
-    if (!which) break;
-    fg_subset_effect found = *which->effect;
-    found.shape[0] = best.at;
-    fg_subset_add(s, &found);
-    s->new_shapes++;
-  }
-  fg_subset_noise(s);
+  for (int pass = 0; pass < 2; pass++)
+    for (int round = 0; round < 2; round++)
+      if (!add_best(s, pass == 0, work)) break;
+  fg_subset_noise(s, false);
   free(work);
   return FG_OK;
 }
