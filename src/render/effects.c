@@ -1,6 +1,7 @@
 #include "render/effects.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
@@ -74,9 +75,19 @@ static double lip_decay(const double *p, double index, double count) {
   return 1 + p[0] * exp(-(index - 1) / p[1]);
 }
 
+static double stretch(const double *p, double beyond_mm, double unused) {
+  (void)unused;
+  return 1 + p[0] + p[1] * beyond_mm;
+}
+
+/* Where a picture's place is looked for at its true position takes fields that change slowly. */
+static const fg_curve_axis along_mm = {"mm", -1000, 1000, 0, 100};
+static const fg_curve_axis unit_axis = {"u", -1, 1, 0, 0};
+static const fg_curve_axis direction = {"deg", 0, 360, 360, 0};
+
 static const fg_effect_row rows[] = {
-    {"scan.scale_y", FG_EFFECT_SCANNER, {{"value", NAN, -0.1, 0.1}}, scale_y, NULL, 0},
-    {"scan.shear", FG_EFFECT_SCANNER, {{"value", NAN, -0.1, 0.1}}, shear, NULL, 0},
+    {"scan.scale_y", FG_EFFECT_SCANNER, {{"value", NAN, -0.1, 0.1}}, scale_y, NULL, 0, NULL},
+    {"scan.shear", FG_EFFECT_SCANNER, {{"value", NAN, -0.1, 0.1}}, shear, NULL, 0, NULL},
     {"scan.carriage_ripple",
      FG_EFFECT_SCANNER,
      {{"amplitude_um", NAN, -200, 200},
@@ -84,13 +95,15 @@ static const fg_effect_row rows[] = {
       {"phase_deg", 0, -360, 360}},
      carriage_ripple,
      NULL,
-     0},
+     0,
+     NULL},
     {"scan.row_step",
      FG_EFFECT_STEP,
      {{"amplitude_um", NAN, -500, 500}, {"y_mm", INFINITY, -1000, 1000}},
      row_step,
      NULL,
-     1},
+     1,
+     NULL},
     {"scan.optical_quadratic",
      FG_EFFECT_SCANNER,
      {{"amplitude_um", NAN, -500, 500},
@@ -98,7 +111,8 @@ static const fg_effect_row rows[] = {
       {"half_width_mm", 18, 0.1, 1000}},
      optical_quadratic,
      NULL,
-     0},
+     0,
+     NULL},
     {"scan.optical_cubic",
      FG_EFFECT_SCANNER,
      {{"amplitude_um", NAN, -500, 500},
@@ -106,7 +120,8 @@ static const fg_effect_row rows[] = {
       {"half_width_mm", 18, 0.1, 1000}},
      optical_cubic,
      NULL,
-     0},
+     0,
+     NULL},
     {"scan.carriage_quadratic",
      FG_EFFECT_SCANNER,
      {{"amplitude_um", NAN, -500, 500},
@@ -114,24 +129,86 @@ static const fg_effect_row rows[] = {
       {"half_width_mm", 18, 0.1, 1000}},
      carriage_quadratic,
      NULL,
-     1},
+     1,
+     NULL},
     {"part.ovality",
      FG_EFFECT_PART,
      {{"amplitude_um", NAN, -1000, 1000}, {"phase_deg", 0, -360, 360}},
      NULL,
      ovality,
-     0},
-    {"part.spiral", FG_EFFECT_PART, {{"amplitude_um", NAN, -1000, 1000}}, NULL, spiral, 0},
-    {"part.bump_crown", FG_EFFECT_BUMP, {{"amplitude_um", NAN, -50, 50}}, NULL, bump_crown, 0},
-    {"part.bump_skew", FG_EFFECT_BUMP, {{"amplitude_um", NAN, -50, 50}}, NULL, bump_skew, 0},
+     0,
+     NULL},
+    {"part.spiral", FG_EFFECT_PART, {{"amplitude_um", NAN, -1000, 1000}}, NULL, spiral, 0, NULL},
+    {"part.bump_crown",
+     FG_EFFECT_BUMP,
+     {{"amplitude_um", NAN, -50, 50}},
+     NULL,
+     bump_crown,
+     0,
+     NULL},
+    {"part.bump_skew", FG_EFFECT_BUMP, {{"amplitude_um", NAN, -50, 50}}, NULL, bump_skew, 0, NULL},
     {"part.lip_decay",
      FG_EFFECT_TABLE,
      {{"amplitude_rel", NAN, -0.5, 0.5}, {"decay_bumps", 2, 0.1, 100}},
      NULL,
      lip_decay,
-     0},
+     0,
+     NULL},
+    {"part.stretch",
+     FG_EFFECT_STRETCH,
+     {{"value_rel", NAN, -0.3, 0.3}, {"slope_rel_per_mm", 0, -2, 2}},
+     NULL,
+     stretch,
+     0,
+     NULL},
+    {"free.scan.x", FG_EFFECT_SCANNER, {{0}}, NULL, NULL, 0, &along_mm},
+    {"free.scan.y", FG_EFFECT_SCANNER, {{0}}, NULL, NULL, 1, &along_mm},
+    {"free.foil.s", FG_EFFECT_PART, {{0}}, NULL, NULL, 0, &unit_axis},
+    {"free.bump.phi", FG_EFFECT_BUMP, {{0}}, NULL, NULL, 0, &unit_axis},
+    {"free.edge.normal", FG_EFFECT_EDGE, {{0}}, NULL, NULL, 0, &direction},
     {0},
 };
+
+/* One of two words; absent: the first. */
+static fg_status parse_choice(const fg_place *place, const cJSON *object, const char *name,
+                              const char *const words[2], int *choice) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+  if (!item) return FG_OK;
+  for (int i = 0; i < 2; i++)
+    if (cJSON_IsString(item) && !strcmp(item->valuestring, words[i])) {
+      *choice = i;
+      return FG_OK;
+    }
+  char what[64];
+  snprintf(what, sizeof what, "must be \"%s\" or \"%s\"", words[0], words[1]);
+  return fg_member_fail(place, name, item, what);
+}
+
+static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_effect *effect) {
+  static const fg_member scan[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {"knots", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {"moves", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {0}};
+  static const fg_member edge[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {"knots", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {"edges", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {0}};
+  static const fg_member part[] = {
+      {"id", FG_MEMBER_OTHER, 0, 0, 0}, {"knots", FG_MEMBER_OTHER, 0, 0, 0}, {0}};
+  fg_effect_frame frame = effect->row->frame;
+  FG_TRY(fg_members_read(place, object,
+                         frame == FG_EFFECT_SCANNER ? scan
+                         : frame == FG_EFFECT_EDGE  ? edge
+                                                    : part,
+                         effect));
+  int apart = 0;
+  effect->moves = effect->row->axis;
+  FG_TRY(parse_choice(place, object, "moves", (const char *const[]){"x", "y"}, &effect->moves));
+  FG_TRY(parse_choice(place, object, "edges", (const char *const[]){"together", "apart"}, &apart));
+  effect->apart = apart == 1;
+  return fg_curve_parse(place, cJSON_GetObjectItemCaseSensitive(object, "knots"),
+                        effect->row->curve, &effect->curve);
+}
 
 static fg_status parse_parameters(const fg_place *place, const cJSON *object, fg_effect *effect) {
   fg_member table[FG_EFFECT_PARAMETERS_MAX + 2] = {{"id", FG_MEMBER_OTHER, 0, 0, 0}};
@@ -165,7 +242,8 @@ fg_status fg_effects_parse(const fg_place *place, const cJSON *array, fg_effect_
     if (!row->id)
       return fg_member_fail(&inner, "id", id, "must be the name of an effect such as scan.scale_y");
     list->effects[list->count] = (fg_effect){.row = row};
-    FG_TRY(parse_parameters(&inner, item, &list->effects[list->count]));
+    FG_TRY(
+        (row->curve ? parse_curve : parse_parameters)(&inner, item, &list->effects[list->count]));
     list->count++;
   }
   return FG_OK;
@@ -175,7 +253,7 @@ void fg_effects_resolve(fg_effect_list *list, double width_mm, double height_mm)
   for (size_t i = 0; i < list->count; i++)
     for (int k = 0; k < FG_EFFECT_PARAMETERS_MAX; k++)
       if (isinf(list->effects[i].p[k]))
-        list->effects[i].p[k] = 0.5 * (list->effects[i].row->middle_axis ? height_mm : width_mm);
+        list->effects[i].p[k] = 0.5 * (list->effects[i].row->axis ? height_mm : width_mm);
 }
 
 bool fg_effects_have(const fg_effect_list *list, fg_effect_frame frame) {
@@ -184,12 +262,21 @@ bool fg_effects_have(const fg_effect_list *list, fg_effect_frame frame) {
   return false;
 }
 
+/* Of a radius about O, a bump's circle or an edge: in mm. */
+static double effect_shape(const fg_effect *effect, double coordinate, double extent) {
+  if (effect->row->curve) return 1e-3 * fg_curve_value_um(&effect->curve, coordinate / extent);
+  return effect->row->shape(effect->p, coordinate, extent);
+}
+
 void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, double row_y_mm,
                       double d_mm[2]) {
   d_mm[0] = d_mm[1] = 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
-    if (effect->row->frame == FG_EFFECT_SCANNER) effect->row->field(effect->p, x_mm, y_mm, d_mm);
+    if (effect->row->frame == FG_EFFECT_SCANNER && effect->row->curve)
+      d_mm[effect->moves] += effect_shape(effect, effect->row->axis ? y_mm : x_mm, 1);
+    else if (effect->row->frame == FG_EFFECT_SCANNER)
+      effect->row->field(effect->p, x_mm, y_mm, d_mm);
     if (effect->row->frame == FG_EFFECT_STEP) effect->row->field(effect->p, x_mm, row_y_mm, d_mm);
   }
 }
@@ -206,12 +293,49 @@ double fg_effects_next_step(const fg_effect_list *list, double low_mm, double hi
 
 double fg_effects_shape(const fg_effect_list *list, fg_effect_frame frame, double coordinate,
                         double extent) {
-  double result = frame == FG_EFFECT_TABLE ? 1 : 0;
+  bool factor = frame == FG_EFFECT_TABLE || frame == FG_EFFECT_STRETCH;
+  double result = factor ? 1 : 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
     if (effect->row->frame != frame) continue;
-    double value = effect->row->shape(effect->p, coordinate, extent);
-    result = frame == FG_EFFECT_TABLE ? result * value : result + value;
+    double value = effect_shape(effect, coordinate, extent);
+    result = factor ? result * value : result + value;
   }
   return result;
+}
+
+void fg_effects_bump_end(const fg_effect_list *list, double u, double *value_mm, double *slope_mm) {
+  *value_mm = *slope_mm = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    const fg_effect *effect = &list->effects[i];
+    if (effect->row->frame != FG_EFFECT_BUMP || !effect->row->curve) continue;
+    *value_mm += 1e-3 * fg_curve_value_um(&effect->curve, u);
+    *slope_mm += 1e-3 * u * fg_curve_slope_um(&effect->curve, u);
+  }
+}
+
+void fg_effects_edges(const fg_effect_list *list, double nx, double ny, double shift_mm[2]) {
+  double direction_deg = atan2(ny, nx) * 180 / pi;
+  shift_mm[0] = shift_mm[1] = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    const fg_effect *effect = &list->effects[i];
+    if (effect->row->frame != FG_EFFECT_EDGE) continue;
+    double shift = effect_shape(effect, direction_deg, 1);
+    shift_mm[0] += shift;
+    shift_mm[1] += effect->apart ? -shift : shift;
+  }
+}
+
+/* The listed shapes never exceed their amplitude by much inside the foil's span; a fillet that
+ * fades a bump's curve out overshoots it by less than as much again. */
+double fg_effects_reach(const fg_effect_list *list) {
+  double reach = 0;
+  for (size_t i = 0; i < list->count; i++) {
+    const fg_effect *effect = &list->effects[i];
+    fg_effect_frame frame = effect->row->frame;
+    if (frame != FG_EFFECT_PART && frame != FG_EFFECT_BUMP && frame != FG_EFFECT_EDGE) continue;
+    double size = effect->row->curve ? fg_curve_largest_um(&effect->curve) : fabs(effect->p[0]);
+    reach += 2e-3 * size;
+  }
+  return reach;
 }

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "render/curve.h"
 #include "render/members.h"
 
 enum { FG_EFFECT_PARAMETERS_MAX = 4, FG_EFFECTS_MAX = 16 };
@@ -21,7 +22,9 @@ typedef enum fg_effect_frame {
                         is counted from the foil's middle, towards the free end */
   FG_EFFECT_BUMP,    /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
                         where the arc meets its fillets */
+  FG_EFFECT_EDGE,    /* curve over the direction of the strip's inner side in the scan, degrees */
   FG_EFFECT_TABLE,   /* shape(p, index, count): factor on the bump's radius; index from 1 */
+  FG_EFFECT_STRETCH, /* shape(p, R - R_D in mm, ·): factor on the bump's arc length R alpha */
 } fg_effect_frame;
 
 typedef struct fg_effect_parameter {
@@ -36,12 +39,16 @@ typedef struct fg_effect_row {
   fg_effect_parameter parameters[FG_EFFECT_PARAMETERS_MAX];
   void (*field)(const double *p, double x_mm, double y_mm, double d_mm[2]);
   double (*shape)(const double *p, double coordinate, double extent);
-  int middle_axis; /* which axis a fallback of +inf is the middle of: 0 x, 1 y */
+  int axis; /* 0 x, 1 y: of whose middle a fallback of +inf is, or what a curve runs over */
+  const fg_curve_axis *curve; /* NULL: none. With one, it takes the place of field or shape */
 } fg_effect_row;
 
 typedef struct fg_effect {
   const fg_effect_row *row;
   double p[FG_EFFECT_PARAMETERS_MAX];
+  fg_curve curve;
+  int moves;  /* FG_EFFECT_SCANNER with a curve: the axis of the displacement, 0 x, 1 y */
+  bool apart; /* FG_EFFECT_EDGE: the edges move away from each other, not together */
 } fg_effect;
 
 typedef struct fg_effect_list {
@@ -64,8 +71,19 @@ void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, doub
 /* The first jump at or above low_mm and below high_mm; NaN without. */
 double fg_effects_next_step(const fg_effect_list *list, double low_mm, double high_mm);
 
-/* Sum (FG_EFFECT_TABLE: product) of the shapes of one frame. */
+/* Sum (factors: product) of the shapes of one frame. */
 double fg_effects_shape(const fg_effect_list *list, fg_effect_frame frame, double coordinate,
                         double extent);
+
+/* A bump's curves need not end at 0: the fillets take over with their value and slope (per u,
+ * outwards) at the end u = -1 or 1, and fade them out. */
+void fg_effects_bump_end(const fg_effect_list *list, double u, double *value_mm, double *slope_mm);
+
+/* Shift of the two edges of a strip whose inner side lies in the direction (nx, ny) of the scan, to
+ * that side, mm: [0] the inner edge, [1] the outer. */
+void fg_effects_edges(const fg_effect_list *list, double nx, double ny, double shift_mm[2]);
+
+/* The farthest that a part, bump or edge effect moves anything, mm. */
+double fg_effects_reach(const fg_effect_list *list);
 
 #endif

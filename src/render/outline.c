@@ -81,7 +81,8 @@ static fg_status plan_bump(const outline *o, const fg_render_bump *bump, bump_pl
   double of = overall - fillet, cf = bump->radius_mm + fillet;
   double cos_land = (of * of + x * x - cf * cf) / (2 * of * x);
   double cos_arc = (x * x + cf * cf - of * of) / (2 * x * cf);
-  if (!(fabs(cos_land) < 1) || !(fabs(cos_arc) < 1))
+  if (!(fabs(cos_land) < 1) || !(fabs(cos_arc) < 1) || !(bump->bump_angle_deg > 0) ||
+      !(bump->bump_angle_deg < 180))
     return fg_fail(o->place->ctx, FG_ERR_DATA,
                    "%s: %s: bump %d (radius_mm %g, bump_angle_deg %g, fillet_radius_mm %g) cannot "
                    "meet the overall circle (overall_radius_mm %g)",
@@ -153,12 +154,15 @@ static fg_status append_bump(outline *o, const bump_plan *plan, int index) {
   double of = o->request->overall_radius_mm - fillet;
   double turn = plan->land_rad + plan->arc_rad;
   double first = plan->axis_rad - plan->land_rad, last = plan->axis_rad + plan->land_rad;
+  double bump_mm = 2 * plan->arc_rad * plan->radius;
   FG_TRY(append_arc(o, (fg_segment){.x = of * cos(first),
                                     .y = of * sin(first),
                                     .radius = fillet,
                                     .angle = first,
                                     .sweep = turn,
-                                    .side = -1}));
+                                    .side = -1,
+                                    .joins = -1,
+                                    .bump_mm = bump_mm}));
   FG_TRY(append_arc(o, (fg_segment){.x = plan->centre_distance * cos(plan->axis_rad),
                                     .y = plan->centre_distance * sin(plan->axis_rad),
                                     .radius = plan->radius,
@@ -171,7 +175,9 @@ static fg_status append_bump(outline *o, const bump_plan *plan, int index) {
                                     .radius = fillet,
                                     .angle = last - turn,
                                     .sweep = turn,
-                                    .side = -1});
+                                    .side = -1,
+                                    .joins = 1,
+                                    .bump_mm = bump_mm});
 }
 
 static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps, size_t *count) {
@@ -194,7 +200,9 @@ static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps,
           fg_effects_shape(&o->spec->effects, FG_EFFECT_TABLE, i + 1, design->bump_count);
     bump.bump_angle_deg = request->bump_angle_deg[i];
     if (isnan(bump.bump_angle_deg))
-      bump.bump_angle_deg = design->bump_angle_deg * design->bump_radius_mm / bump.radius_mm;
+      bump.bump_angle_deg = design->bump_angle_deg * design->bump_radius_mm / bump.radius_mm *
+                            fg_effects_shape(&o->spec->effects, FG_EFFECT_STRETCH,
+                                             bump.radius_mm - design->bump_radius_mm, 1);
     derive_bump(request, &bump);
     FG_TRY(plan_bump(o, &bump, &plans[i]));
     bump.centre_px = (fg_point){bump.centre_to_centre_mm * cos(plans[i].axis_rad),

@@ -16,6 +16,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
                        fg_effects_have(&spec->effects, FG_EFFECT_STEP);
   sampler->has_part = fg_effects_have(&spec->effects, FG_EFFECT_PART);
   sampler->has_bump = fg_effects_have(&spec->effects, FG_EFFECT_BUMP);
+  sampler->has_edge = fg_effects_have(&spec->effects, FG_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
   double direction = scanner->wall_direction_deg * 3.14159265358979323846 / 180;
   sampler->wall_x = cos(direction);
@@ -24,12 +25,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->wall_gap_mm = scanner->wall_gap_px * pixel;
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
-  /* Part and bump shapes never exceed their amplitude by much inside the foil's span. */
-  for (size_t i = 0; i < spec->effects.count; i++) {
-    fg_effect_frame frame = spec->effects.effects[i].row->frame;
-    if (frame == FG_EFFECT_PART || frame == FG_EFFECT_BUMP)
-      reach += 2e-3 * fabs(spec->effects.effects[i].p[0]);
-  }
+  reach += fg_effects_reach(&spec->effects);
   sampler->edge_reach_mm = reach;
   sampler->reach_mm =
       reach +
@@ -150,12 +146,18 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
   double inner = frame->half_thickness_mm, outer = -inner;
   double t = 0;
   bool ends = segment->open_start || segment->open_end;
-  if (ends || frame->roughness[0] || (segment->bump && sampler->has_bump)) t = along(at);
-  if (segment->bump && sampler->has_bump) {
-    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_BUMP,
-                                    2 * t / segment->length_mm - 1, 1);
+  bool bump = sampler->has_bump && (segment->bump || segment->joins);
+  if (ends || frame->roughness[0] || bump) t = along(at);
+  if (bump) {
+    double shift = fg_segment_bump_shift(&sampler->spec->effects, segment, t);
     inner += shift;
     outer += shift;
+  }
+  if (sampler->has_edge) {
+    double shift[2];
+    fg_effects_edges(&sampler->spec->effects, at->nx, at->ny, shift);
+    inner += shift[0];
+    outer += shift[1];
   }
   if (frame->roughness[0]) {
     inner += roughness(frame, 0, segment->s_mm + t);
@@ -212,6 +214,12 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   if (shape->lobes &&
       fabs(edge) < fabs(shape->lobe_mm) + phi_limit * hypot(sd, sampler->one_sided_mm))
     edge -= shape->lobe_mm * cos(shape->lobes * (atan2(dy, dx) - shape->lobe_phase_rad));
+  if (!shape->adds && r > 0 && sampler->has_edge) {
+    /* A hole's edge looks inwards: its normal, and what moves it, turn round. */
+    double out = shape->value > 0.5 ? 1 : -1, shift[2];
+    fg_effects_edges(&sampler->spec->effects, out * dx / r, out * dy / r, shift);
+    edge -= out * shift[0];
+  }
   if (!shape->adds && r > 0) {
     double bright = sampler->spec->scanner.contrast * (shape->value - 0.5) > 0 ? 1 : -1;
     sd = edge_sd(sampler, sd, dy / r, bright);

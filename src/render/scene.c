@@ -17,6 +17,20 @@ fg_point fg_segment_point(const fg_segment *segment, double t_mm) {
                     segment->y + segment->radius * sin(angle)};
 }
 
+double fg_segment_bump_shift(const fg_effect_list *effects, const fg_segment *segment,
+                             double t_mm) {
+  if (segment->bump)
+    return fg_effects_shape(effects, FG_EFFECT_BUMP, 2 * t_mm / segment->length_mm - 1, 1);
+  if (!segment->joins) return 0;
+  double value, slope;
+  fg_effects_bump_end(effects, segment->joins, &value, &slope);
+  double from = segment->joins > 0 ? t_mm : segment->length_mm - t_mm;
+  double s = fmin(1, fmax(0, from / segment->length_mm));
+  /* Hermite's cubic from (value, slope) to (0, 0); du = 2 / bump_mm. */
+  return (1 - s) * (1 - s) *
+         (value * (1 + 2 * s) + slope * 2 / segment->bump_mm * s * segment->length_mm);
+}
+
 /* From the foil's own frame (middle along x) to the true frame. */
 static fg_point turn(const fg_foil_frame *frame, double x, double y) {
   double c = cos(frame->axis_rad), s = sin(frame->axis_rad);
@@ -269,6 +283,13 @@ void fg_scene_free(fg_scene *scene) {
   memset(scene, 0, sizeof *scene);
 }
 
+/* Unit vector to the strip's inner side. */
+static fg_point inner_side(const fg_segment *segment, fg_point at) {
+  if (segment->line) return (fg_point){segment->bx, segment->by};
+  double scale = segment->side / segment->radius;
+  return (fg_point){scale * (at.x - segment->x), scale * (at.y - segment->y)};
+}
+
 fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
                             fg_point *point_px) {
   const fg_scene *scene = &spec->scene;
@@ -281,11 +302,12 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
   const fg_segment *segment = &scene->segments[i];
   double t = s_mm - segment->s_mm;
   fg_point p = fg_segment_point(segment, t);
-  if (segment->bump) {
-    double w = fg_effects_shape(&spec->effects, FG_EFFECT_BUMP, 2 * t / segment->length_mm - 1, 1);
-    p.x += w * (p.x - segment->x) / segment->radius;
-    p.y += w * (p.y - segment->y) / segment->radius;
-  }
+  fg_point inner = inner_side(segment, p);
+  double shift[2];
+  fg_effects_edges(&spec->effects, inner.x, inner.y, shift);
+  double w = fg_segment_bump_shift(&spec->effects, segment, t) + 0.5 * (shift[0] + shift[1]);
+  p.x += w * inner.x;
+  p.y += w * inner.y;
   double dx = p.x - frame->x, dy = p.y - frame->y;
   double psi = frame->mirror * remainder(atan2(dy, dx) - frame->axis_rad, 2 * pi);
   double radial = fg_effects_shape(&spec->effects, FG_EFFECT_PART, psi, frame->half_span_rad);

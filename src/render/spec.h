@@ -79,6 +79,8 @@ typedef struct fg_segment {
   double side;            /* +1: the inner side (towards the bearing) is outside the arc */
   double s_mm, length_mm; /* of the start, and along it */
   int bump;               /* from 1; 0 for others */
+  int joins;              /* a fillet: -1 it ends, 1 it starts where the bump has u = -1, 1 */
+  double bump_mm;         /* a fillet: length of that bump's arc */
   size_t foil;
 } fg_segment;
 
@@ -143,6 +145,10 @@ void fg_scene_free(fg_scene *scene);
 
 /* Point at distance t along a segment. */
 fg_point fg_segment_point(const fg_segment *segment, double t_mm);
+
+/* Shift of a bump's arc by its effects, towards the inner side, mm; on a fillet that joins it, what
+ * fades the shift out. */
+double fg_segment_bump_shift(const fg_effect_list *effects, const fg_segment *segment, double t_mm);
 
 /* Appends the segments of one foil in its own frame (O at the origin, the middle along x, bump
  * numbers along rising angle), and fills its bumps (places in mm, same frame) and frame. */

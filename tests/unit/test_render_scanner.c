@@ -293,6 +293,24 @@ typedef struct bad_spec {
 
 #define HEAD "{\"schema\":\"foilgauge/render/1\","
 
+#define CURVE(id, members) HEAD "\"effects\":[{\"id\":\"free." id "\"," members "}]}"
+
+static void too_many_knots_are_refused(void **state) {
+  (void)state;
+  for (int count = 64; count <= 65; count++) {
+    char json[2048] = HEAD "\"effects\":[{\"id\":\"free.scan.y\",\"knots\":[";
+    for (int i = 0; i < count; i++)
+      snprintf(json + strlen(json), sizeof json - strlen(json), "%s[%d,1]", i ? "," : "", i);
+    strcat(json, "]}]}");
+    fg_context ctx = {0};
+    fg_render_spec *spec = NULL;
+    assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &spec),
+                     count == 64 ? FG_OK : FG_ERR_DATA);
+    if (count > 64) assert_non_null(strstr(ctx.message, "2 to 64 knots"));
+    fg_render_free(spec);
+  }
+}
+
 static void bad_specs_are_refused_by_name(void **state) {
   (void)state;
   static const bad_spec table[] = {
@@ -336,6 +354,20 @@ static void bad_specs_are_refused_by_name(void **state) {
       {HEAD "\"effects\":[{\"id\":\"scan.scale_y\"}]}", "effects[0].value is missing"},
       {HEAD "\"effects\":[{\"id\":\"scan.scale_y\",\"value\":0.001,\"x\":1}]}",
        "effects[0].x is 1"},
+      {HEAD "\"effects\":[{\"id\":\"free.scan.x\"}]}", "effects[0].knots is missing"},
+      {CURVE("scan.x", "\"knots\":[[1,2]]"), "effects[0].knots is [[1,2]]: must be an array of 2"},
+      {CURVE("scan.x", "\"knots\":[[1,2],[3]]"), "knots[1] is [3]: must be [mm, um]"},
+      {CURVE("scan.x", "\"knots\":[[1,2],[1,3]]"), "ascend, and the one before is at 1"},
+      {CURVE("scan.x", "\"knots\":[[1,2],[3,NaN]]"), "this is not JSON"},
+      {CURVE("scan.x", "\"knots\":[[1,2],[3,null]]"), "knots[1].um is null: must be a number"},
+      {CURVE("scan.x", "\"knots\":[[1,2],[3,1e999]]"), "knots[1].um is"},
+      {CURVE("scan.x", "\"knots\":[[1,2],[1.1,50]]"), "at most 100"},
+      {CURVE("scan.x", "\"moves\":\"z\",\"knots\":[[1,2],[3,4]]"), "moves is \"z\": must be \"x\""},
+      {CURVE("foil.s", "\"moves\":\"x\",\"knots\":[[0,2],[1,4]]"), "moves is \"x\": there is no"},
+      {CURVE("foil.s", "\"knots\":[[0,2],[1.5,4]]"), "knots[1].u is 1.5: must be a number from -1"},
+      {CURVE("edge.normal", "\"edges\":1,\"knots\":[[0,2],[1,4]]"), "edges is 1: must be"},
+      {CURVE("edge.normal", "\"knots\":[[0,2],[360,2]]"), "0 and 360 are one direction"},
+      {HEAD "\"effects\":[{\"id\":\"part.stretch\"}]}", "effects[0].value_rel is missing"},
   };
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
     fg_context ctx = {0};
@@ -362,6 +394,7 @@ int main(void) {
       cmocka_unit_test(jpeg_keeps_what_is_flat_and_rounds_the_rest),
       cmocka_unit_test(same_spec_same_bytes_whatever_the_strip),
       cmocka_unit_test(file_holds_the_rows),
+      cmocka_unit_test(too_many_knots_are_refused),
       cmocka_unit_test(bad_specs_are_refused_by_name),
   };
   return cmocka_run_group_tests_name("render scanner", tests, NULL, NULL);

@@ -1,0 +1,161 @@
+"""A rendered foil's true midline, and how far a measured foil's circles lie from it."""
+
+import numpy as np
+
+
+def natural_spline(knots, at, period=0.0):
+    """What the renderer draws: a natural cubic spline, constant beyond; closed with a period."""
+    x, y = np.array(knots, dtype=float).T
+    at = np.asarray(at, dtype=float)
+    if period:
+        at = x[0] + np.mod(at - x[0], period)
+        x, y = np.append(x, x[0] + period), np.append(y, y[0])
+    h, slope = np.diff(x), np.diff(y) / np.diff(x)
+    n = len(x)
+    matrix, right = np.eye(n), np.zeros(n)
+    for i in range(1, n - 1):
+        matrix[i, i - 1 : i + 2] = h[i - 1], 2 * (h[i - 1] + h[i]), h[i]
+        right[i] = 6 * (slope[i] - slope[i - 1])
+    if period:
+        matrix[-1, 0] = -1
+        matrix[0, 0], matrix[0, 1] = 2 * (h[0] + h[-1]), h[0]
+        matrix[0, n - 2] += h[-1]
+        right[0] = 6 * (slope[0] - slope[-1])
+    bend = np.linalg.solve(matrix, right)
+    at = np.clip(at, x[0], x[-1])
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, n - 2)
+    b = (at - x[i]) / h[i]
+    a = 1 - b
+    cubic = (a**3 - a) * bend[i] + (b**3 - b) * bend[i + 1]
+    return a * y[i] + b * y[i + 1] + cubic * h[i] ** 2 / 6
+
+
+class Midline:
+    """Points of the arcs and lands of one foil as a spec asks for it. Own frame: O at the origin, the
+    middle along x, bump numbers along rising angle. Arrays, one entry per point: xy, normal (outwards
+    from the arc's own centre), psi, u (bumps: -1 to 1 between the fillets; lands: NaN), bump (index
+    from 0; lands: -1)."""
+
+    def __init__(self, foil, design, step_mm=0.1):
+        self.count = design["bump_count"]
+        overall, fillet = foil["overall_radius_mm"], design["fillet_radius_mm"]
+        radius = np.array(foil["radius_mm"])
+        half = np.radians(design["bump_angle_deg"]) * design["bump_radius_mm"] / radius / 2
+        distance = radius * np.cos(half) + np.sqrt(overall**2 - (radius * np.sin(half)) ** 2)
+        of, cf = overall - fillet, radius + fillet
+        land = np.arccos((of**2 + distance**2 - cf**2) / (2 * of * distance))
+        arc = np.arccos((distance**2 + cf**2 - of**2) / (2 * distance * cf))
+        axis = (np.arange(self.count) - 0.5 * (self.count - 1)) * np.radians(design["pitch_deg"])
+        self.overall, self.radius, self.distance, self.axis = overall, radius, distance, axis
+        self.height = overall - (distance - radius)
+        start = axis[0] - land[0] - foil["first_land_mm"] / overall
+        end = axis[-1] + land[-1] + foil["last_land_mm"] / overall
+        self.half_span, self.span = (end - start) / 2, (start, end)
+        self.direction = np.radians(foil["rotate_deg"])
+        self.mirror = -1.0 if foil.get("mirror") else 1.0
+        pieces = []
+        for i in range(self.count):
+            n = max(5, int(2 * arc[i] * radius[i] / step_mm))
+            u = np.linspace(-0.97, 0.97, n)
+            angle = axis[i] + np.pi - u * arc[i]
+            normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            centre = distance[i] * np.array([np.cos(axis[i]), np.sin(axis[i])])
+            pieces.append((centre + radius[i] * normal, normal, u, np.full(n, i)))
+        edges = np.concatenate([[start], np.stack([axis - land, axis + land], axis=1).ravel(), [end]])
+        for low, high in edges.reshape(-1, 2):
+            n = int((high - low) * overall / step_mm)
+            angle = np.linspace(low, high, n + 2)[1:-1]
+            normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+            pieces.append((overall * normal, normal, np.full(n, np.nan), np.full(n, -1)))
+        self.xy, self.normal, self.u, self.bump = (np.concatenate(p) for p in zip(*pieces))
+        self.psi = np.arctan2(self.xy[:, 1], self.xy[:, 0])
+
+    def radial_share(self):
+        radial = self.xy / np.linalg.norm(self.xy, axis=1, keepdims=True)
+        return np.sum(radial * self.normal, axis=1)
+
+    def part_shift_um(self, effects):
+        """What the spec's part effects move, along the normal."""
+        shift = np.zeros(len(self.xy))
+        for e in effects:
+            if e["id"] == "part.ovality":
+                wave = np.cos(2 * (self.psi - np.radians(e.get("phase_deg", 0))))
+                shift += e["amplitude_um"] * wave * self.radial_share()
+            elif e["id"] == "part.spiral":
+                shift += e["amplitude_um"] * (self.psi / self.half_span) ** 3 * self.radial_share()
+            elif e["id"] == "free.foil.s":
+                shift += natural_spline(e["knots"], self.psi / self.half_span) * self.radial_share()
+            elif self.on_bumps(e) is not None:
+                shift += np.where(self.bump >= 0, self.on_bumps(e), 0)
+        return shift
+
+    def on_bumps(self, effect):
+        u = np.nan_to_num(self.u)
+        if effect["id"] == "part.bump_crown":
+            return effect["amplitude_um"] * (1 - u * u) ** 2
+        if effect["id"] == "part.bump_skew":
+            return effect["amplitude_um"] * u * (1 - u * u) ** 2 * np.sqrt(5) * 25 / 16
+        return natural_spline(effect["knots"], u) if effect["id"] == "free.bump.phi" else None
+
+    def claimed_shift_um(self, report):
+        """The part's own deviation as a report describes it, along the normal: one column per claim,
+        because a report need not say which sign a lone amplitude has. Curves of the report run over
+        [-1, 1] of the foil, and of the bump."""
+        half = 0.5 * (self.axis[-1] - self.axis[0]) * (1 + 1 / self.count)
+        u = np.nan_to_num(self.u)
+        on = self.bump >= 0
+        columns = []
+        for claim in report["claims"]:
+            p = claim["parameters"]
+            if claim["id"] == "part.ovality":
+                wave = np.cos(2 * (self.psi - np.radians(p["phase_deg"])))
+                columns.append(p["amplitude_um"] * wave * self.radial_share())
+            elif claim["id"] == "part.spiral":
+                columns.append(p["amplitude_um"] * (self.psi / half) ** 3 * self.radial_share())
+            elif claim["id"] == "part.bump_crown":
+                columns.append(np.where(on, p["amplitude_um"] * (35 * u**4 - 30 * u**2 + 3) / 8, 0))
+            elif claim["id"] == "part.bump_skew":
+                columns.append(np.where(on, p["amplitude_um"] * (5 * u**3 - 3 * u) / 2, 0))
+        curve = report["unattributed"]
+        if curve and curve.get("shape") and curve["coordinate"] in ("foil.s", "bump.phi"):
+            x, y = np.array(curve["shape"]).T
+            if curve["coordinate"] == "foil.s":
+                columns.append(np.interp(self.psi / half, x, y) * self.radial_share())
+            else:
+                columns.append(np.where(on, np.interp(u, x, y), 0))
+        return columns
+
+    def to_scan(self, points):
+        """Directions, or places about O, turned as the foil lies on the scan."""
+        c, s = np.cos(self.direction), np.sin(self.direction)
+        turned = points * [1, self.mirror]
+        return turned @ np.array([[c, s], [-s, c]])
+
+
+def profile_error_um(midline, centre_mm, shift_um, foil, columns):
+    """rms distance of the true midline (its arcs moved by shift_um) from the circles of a measured foil
+    and what was claimed to deviate from them; the foil's place and direction are left free. `columns`:
+    claimed shifts whose sign the report does not state."""
+    normal = midline.to_scan(midline.normal)
+    points = midline.to_scan(midline.xy) + centre_mm + normal * shift_um[:, None] / 1000
+    distance = np.full(len(points), np.nan)
+    own = {}
+    for index in range(midline.count):
+        true = midline.distance[index] * np.array([np.cos(midline.axis[index]), np.sin(midline.axis[index])])
+        place = midline.to_scan(true[None])[0] + centre_mm
+        own[index] = min(foil["bumps"], key=lambda b: np.hypot(*(np.array(b["centre_mm"]) - place)))
+    own[-1] = foil["overall"]
+    for index, circle in own.items():
+        on = midline.bump == index
+        distance[on] = np.linalg.norm(points[on] - circle["centre_mm"], axis=1) - circle["radius_mm"]
+    offset = points - centre_mm
+    turn = offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0]
+    rigid = np.stack([normal[:, 0], normal[:, 1], turn], axis=1)
+    best = np.inf
+    for signs in range(2 ** len(columns)):
+        rest = distance * 1000
+        for k, column in enumerate(columns):
+            rest = rest - (column if signs >> k & 1 else -column)
+        rest = rest - rigid @ np.linalg.lstsq(rigid, rest, rcond=None)[0]
+        best = min(best, float(np.sqrt(np.mean(rest**2))))
+    return best

@@ -1,0 +1,209 @@
+"""Renders one case, runs `foilgauge loop` on it, and sets the answer against the truth."""
+
+import csv
+import json
+import os
+import subprocess
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from loop_foil import Midline, profile_error_um
+
+MM_PER_PX = 25.4 / 4800
+NOT_MEASURED_UM = 1e3  # as bad as a millimetre
+
+
+def render(program, folder, specs):
+    paths = []
+    for k, spec in enumerate(specs):
+        base = os.path.join(folder, f"s{k}")
+        with open(base + ".json", "w", encoding="utf-8") as f:
+            json.dump(spec, f)
+        subprocess.run([program, "render", base + ".json", "-o", base + ".png"], check=True)
+        paths.append(base + ".png")
+    return paths
+
+
+def write_design(folder, design):
+    path = os.path.join(folder, "design.json")
+    with open(path, "w", encoding="utf-8") as f:
+        json.dump({"schema": "foilgauge/design/1", **design}, f)
+    return path
+
+
+def run_loop(program, folder, case, more=()):
+    """(report or None, exit status, seconds)."""
+    paths = render(program, folder, case["specs"])
+    out = os.path.join(folder, "loop.json")
+    options = ["--same-foil"] if case["same_foil"] else []
+    command = [program, "loop", *options, *paths, "--design", write_design(folder, case["design"])]
+    start = time.monotonic()
+    done = subprocess.run(command + ["-o", out, *more], stderr=subprocess.DEVNULL)
+    seconds = time.monotonic() - start
+    if not os.path.exists(out):
+        return None, done.returncode, seconds
+    with open(out, encoding="utf-8") as f:
+        return json.load(f), done.returncode, seconds
+
+
+def true_foils(case):
+    """(midline, O on the scan in mm, which scan) of every foil, scans in order."""
+    return [
+        (Midline(foil, case["design"]), np.array(foil["centre_mm"]), k)
+        for k, spec in enumerate(case["specs"])
+        for foil in spec["foils"]
+    ]
+
+
+def pair_foils(case, measured):
+    """Measured foils in the order of the true ones: of a scan that shows several, the nearest by O. None
+    where a foil, or a bump of it, was not measured."""
+    true = true_foils(case)
+    if len(measured) != len(true):
+        return None
+    result = []
+    at = 0
+    for k, spec in enumerate(case["specs"]):
+        own = measured[at : at + len(spec["foils"])]
+        at += len(spec["foils"])
+        for midline, centre, _ in (t for t in true if t[2] == k):
+            far = [np.hypot(*(np.array(f["overall"]["centre_mm"] or [1e9, 1e9]) - centre)) for f in own]
+            foil = own[int(np.argmin(far))]
+            if len(foil["bumps"]) != midline.count or any(b["radius_mm"] is None for b in foil["bumps"]):
+                return None
+            result.append((midline, centre, foil))
+    return result
+
+
+def pair_bumps(midline, centre, foil):
+    """(index, measured bump): the nearest by centre."""
+    for i in range(midline.count):
+        axis = np.array([np.cos(midline.axis[i]), np.sin(midline.axis[i])])
+        place = midline.to_scan(midline.distance[i] * axis[None])[0] + centre
+        yield i, min(foil["bumps"], key=lambda b: np.hypot(*(np.array(b["centre_mm"]) - place)))
+
+
+def errors_um(pairs):
+    """rms over all bumps of R and h, over all foils of R0."""
+    if pairs is None:
+        return dict.fromkeys(("R", "h", "R0"), NOT_MEASURED_UM)
+    radius, height, overall = [], [], []
+    for midline, centre, foil in pairs:
+        for i, bump in pair_bumps(midline, centre, foil):
+            radius.append(bump["radius_mm"] - midline.radius[i])
+            height.append(bump["height_mm"] - midline.height[i])
+        overall.append(foil["overall"]["radius_mm"] - midline.overall)
+    rms = lambda v: float(1000 * np.sqrt(np.mean(np.square(v))))
+    return {"R": rms(radius), "h": rms(height), "R0": rms(overall)}
+
+
+def profile_um(case, pairs, report):
+    """rms over foils; report: whose claims deviate from the circles, None for none."""
+    if pairs is None:
+        return NOT_MEASURED_UM
+    squares = []
+    for midline, centre, foil in pairs:
+        columns = midline.claimed_shift_um(report) if report else []
+        shift = midline.part_shift_um(case["effects"])
+        squares.append(profile_error_um(midline, centre, shift, foil, columns) ** 2)
+    return float(np.sqrt(np.mean(squares)))
+
+
+def ranges(pairs):
+    """How many reported ranges hold the truth: {R, h, R0: (held, stated)}."""
+    count = {"R": [0, 0], "h": [0, 0], "R0": [0, 0]}
+
+    def look(name, circle, member, truth):
+        if member in circle:
+            low, high = circle[member]
+            count[name][1] += 1
+            count[name][0] += low <= truth <= high
+
+    for midline, centre, foil in pairs or []:
+        for i, bump in pair_bumps(midline, centre, foil):
+            look("R", bump, "radius_range_mm", midline.radius[i])
+            look("h", bump, "height_range_mm", midline.height[i])
+        look("R0", foil["overall"], "radius_range_mm", midline.overall)
+    return count
+
+
+def judge_names(report, wanted):
+    """named: the claims are what is there, and nothing else is. in_class: what is there is one of the
+    explanations that the report says it cannot tell apart. Curves count as `unattributed`."""
+    claims = [c["id"] for c in report["claims"]]
+    curve = report["unattributed"]
+    said = sorted(claims + (["free." + curve["coordinate"]] if curve else []))
+    named = said == wanted
+    classes = {frozenset(member.split(" + ")) for c in report["claims"] for member in c.get("alias_class", [])}
+    right = any(w == "free." + (curve or {}).get("coordinate", "") for w in wanted)
+    return {
+        "claims": " + ".join(claims),
+        "class": " | ".join(sorted(" + ".join(sorted(m)) for m in classes)),
+        "unattributed": curve["coordinate"] + ":" + str(curve.get("moves")) if curve else "",
+        "named": int(named),
+        "in_class": int(named or frozenset(wanted) in classes),
+        "right_coordinate": int(right),
+    }
+
+
+def judge(case, report, code, seconds):
+    wanted = sorted(e["id"] for e in case["effects"])
+    row = {"wanted": " + ".join(wanted), "exit": code, "seconds": round(seconds, 2)}
+    if report is None:
+        blank = {"claims": "", "class": "", "unattributed": "", "named": 0, "in_class": 0, "right_coordinate": 0}
+        row.update(verdict="failed", **blank)
+        before = after = None
+    else:
+        row.update(verdict=report["verdict"], **judge_names(report, wanted))
+        before, after = (pair_foils(case, report[side]["foils"]) for side in ("before", "after"))
+    for name, pairs in (("before", before), ("after", after)):
+        for quantity, error in errors_um(pairs).items():
+            row[f"{quantity}_{name}_um"] = float(f"{error:.5g}")
+        claims = report if name == "after" else None
+        row[f"profile_{name}_um"] = float(f"{profile_um(case, pairs, claims):.5g}")
+    for quantity, (held, stated) in ranges(after).items():
+        row[f"{quantity}_ranges"] = stated
+        row[f"{quantity}_ranges_hold"] = held
+    row["effects"] = json.dumps(case["effects"], separators=(",", ":"))
+    return row
+
+
+class Results:
+    """A CSV that grows by a row as each case is done; what it holds already is not done again."""
+
+    def __init__(self, path, fresh):
+        self.path, self.rows, self.lock = path, [], threading.Lock()
+        if fresh and os.path.exists(path):
+            os.remove(path)
+        if os.path.exists(path):
+            with open(path, newline="", encoding="utf-8") as f:
+                self.rows = list(csv.DictReader(f))
+
+    def has(self, **key):
+        return any(all(row[k] == str(v) for k, v in key.items()) for row in self.rows)
+
+    def add(self, row):
+        with self.lock:
+            new = not os.path.exists(self.path)
+            with open(self.path, "a", newline="", encoding="utf-8") as f:
+                writer = csv.DictWriter(f, fieldnames=list(row), lineterminator="\n")
+                if new:
+                    writer.writeheader()
+                writer.writerow(row)
+            self.rows.append({k: str(v) for k, v in row.items()})
+
+    def run(self, jobs, work, threads):
+        """jobs: keys as dicts; work(key) gives the rest of the row."""
+        todo = [key for key in jobs if not self.has(**key)]
+        print(f"{len(jobs) - len(todo)} done, {len(todo)} to do", flush=True)
+
+        def one(key):
+            self.add({**key, **work(key)})
+
+        with ThreadPoolExecutor(threads) as pool:
+            for n, _ in enumerate(pool.map(one, todo), 1):
+                if n % 20 == 0:
+                    print(f"{n} of {len(todo)}", flush=True)
