@@ -131,6 +131,9 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to, fg
   row->half_width_mm /= n;
   row->s_mm /= n;
   row->weight = n;
+  double step = foil->strip.step_mm, length = step * (double)(to - from);
+  double blur = 5e-4 * (foil->strip.blur_left_um + foil->strip.blur_right_um);
+  row->spread_mm = sqrt(length * length / 12 + blur * blur);
   return true;
 }
 

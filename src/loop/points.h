@@ -32,9 +32,10 @@ typedef struct fg_points_row {
   size_t bump_index; /* in the part's bumps */
   size_t group;      /* bump of a part, land of a view */
   fg_point at;       /* nominal position of the datum line, mm of the scan */
-  fg_point ideal;    /* the same on its circle: fields are taken there, else a dilation of the
-                        picture, which the geometry follows, would leave the residual itself */
+  fg_point ideal;    /* on its circle: columns of fields are taken there. Anywhere else a dilation
+                        of the picture, which the geometry follows, leaves the residual itself */
   double half_width_mm;
+  double spread_mm;  /* sd of the places along the edge that the row is a mean of */
   double s_mm;       /* along the foil, from the lip's side */
   double phi;        /* place in the arc, -1 to 1, towards higher numbers; a bump's from its axis
                         and in units of the part's mean arc: where labels end is no place */
@@ -93,6 +94,13 @@ typedef struct fg_points_correction {
   const fg_field_list *fields;
   const double *shift_mm;
 } fg_points_correction;
+
+/* Mean over two places along the edge, `spread_mm` to either side: what a row that is a mean of
+ * places and of the blur sees of a field that bends, to second order. */
+typedef struct fg_points_places {
+  fg_point at[2];
+} fg_points_places;
+fg_points_places fg_points_spread(const fg_points_row *row, fg_point middle);
 
 /* Residual of every row (mm, along its normal, outwards positive) and, unless NULL, its Jacobian
  * by the geometry (parameters × row_count). Updates the rows' normals. */

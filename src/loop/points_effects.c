@@ -63,39 +63,37 @@ static size_t legendre(const fg_points_row *row, int first, int step, int count,
 }
 
 /* Bumps of unlike radii may be alike over the angle or over the length of their arcs. The place is
- * the angle; over the length it is stretched by R over the mean R, which adds this much of phi P'.
- */
-static double stretch(const fg_points *points, const fg_points_row *row) {
+ * the angle; over the length it is stretched by R over the mean R, which adds this much of
+ * phi P'n, n = first and first + 2. */
+static size_t stretch(const fg_points *points, const fg_points_row *row, int first,
+                      double *values) {
   const fg_points_part *part = &points->parts[row->part];
-  return row->bump ? part->bumps[row->bump_index].radius_mm / part->mean_radius_mm - 1 : 0;
+  double u = row->phi, u2 = u * u, share = 0;
+  if (row->bump) share = part->bumps[row->bump_index].radius_mm / part->mean_radius_mm - 1;
+  values[0] = share * (first == 3 ? u * (15 * u2 - 3) / 2 : u2 * (35 * u2 - 15) / 2);
+  values[1] = share * (first == 3 ? u * ((315 * u2 - 210) * u2 + 15) / 8
+                                  : u2 * ((1386 * u2 - 1260) * u2 + 210) / 16);
+  return 2;
 }
 
-static double phi_slope_3(const fg_points_row *row) {
-  return row->phi * (15 * row->phi * row->phi - 3) / 2;
-}
-
-static double phi_slope_4(const fg_points_row *row) {
-  double square = row->phi * row->phi;
-  return square * (35 * square - 15) / 2;
-}
-
+/* A deviation takes the arc's centre with it, and so the zero of the angle: an even one shows as
+ * its slope too, of which P3 is what a circle leaves, and an odd one as P4. */
 static size_t bump_crown(const fg_points *points, const fg_points_row *row, double *values) {
   size_t count = legendre(row, 4, 2, 4, values);
-  values[count] = stretch(points, row) * phi_slope_4(row);
-  return count + 1;
+  count += stretch(points, row, 4, values + count);
+  return count + legendre(row, 3, 1, 1, values + count);
 }
 
 static size_t bump_skew(const fg_points *points, const fg_points_row *row, double *values) {
   size_t count = legendre(row, 3, 2, 4, values);
-  values[count] = stretch(points, row) * phi_slope_3(row);
-  return count + 1;
+  count += stretch(points, row, 3, values + count);
+  return count + legendre(row, 4, 1, 1, values + count);
 }
 
 static size_t free_phi(const fg_points *points, const fg_points_row *row, double *values) {
-  size_t count = legendre(row, 3, 1, 10, values);
-  values[count] = stretch(points, row) * phi_slope_3(row);
-  values[count + 1] = stretch(points, row) * phi_slope_4(row);
-  return count + 2;
+  size_t count = legendre(row, 3, 1, 8, values);
+  count += stretch(points, row, 3, values + count);
+  return count + stretch(points, row, 4, values + count);
 }
 
 /* Over the foil, along its normal: harmonics of its span. */
@@ -172,13 +170,16 @@ size_t fg_points_effect_columns(const fg_points *points, const char *id, const d
                                 double *columns) {
   const part_row *part = find_part(id);
   if (part) return part_columns(points, part, columns);
-  fg_point d[FG_FIELD_COLUMNS];
+  fg_point d[2][FG_FIELD_COLUMNS];
   size_t count = 0;
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
-    count = field_at(points, id, shape, row->ideal, d);
+    fg_points_places places = fg_points_spread(row, row->ideal);
+    for (int k = 0; k < 2; k++)
+      count = field_at(points, id, shape, places.at[k], d[k]);
     for (size_t c = 0; c < count; c++)
-      columns[c * points->row_count + i] = -(d[c].x * row->normal.x + d[c].y * row->normal.y);
+      columns[c * points->row_count + i] = -0.5 * ((d[0][c].x + d[1][c].x) * row->normal.x +
+                                                   (d[0][c].y + d[1][c].y) * row->normal.y);
   }
   return count;
 }

@@ -53,13 +53,21 @@ void fg_points_parameter_name(const fg_points *points, size_t parameter, char *n
   snprintf(name, 48, "pose %zu", parameter);
 }
 
+fg_points_places fg_points_spread(const fg_points_row *row, fg_point middle) {
+  double dx = -row->normal.y * row->spread_mm, dy = row->normal.x * row->spread_mm;
+  return (fg_points_places){{{middle.x + dx, middle.y + dy}, {middle.x - dx, middle.y - dy}}};
+}
+
 /* Position of a row with the corrections in force. */
 static fg_point corrected(const fg_points_row *row, const fg_points_correction *c) {
   fg_point p = row->at;
   if (c && c->fields && c->fields->count) {
-    fg_point d = fg_field_at(c->fields, p);
-    p.x += d.x;
-    p.y += d.y;
+    fg_points_places places = fg_points_spread(row, row->at);
+    for (int i = 0; i < 2; i++) {
+      fg_point d = fg_field_at(c->fields, places.at[i]);
+      p.x += 0.5 * d.x;
+      p.y += 0.5 * d.y;
+    }
   }
   return p;
 }
@@ -125,8 +133,8 @@ void fg_points_residual(fg_points *points, const fg_points_correction *correctio
     row->normal = (fg_point){dx / d, dy / d};
     row->normal_rad = atan2(dy, dx);
     residual[i] = d - circle.radius;
-    row->ideal = (fg_point){row->at.x - residual[i] * row->normal.x,
-                            row->at.y - residual[i] * row->normal.y};
+    row->ideal = (fg_point){circle.x + circle.radius * row->normal.x,
+                            circle.y + circle.radius * row->normal.y};
     if (correction && correction->shift_mm) residual[i] -= correction->shift_mm[i];
     place_row(points, row, p);
     if (jacobian) fill_jacobian(points, i, jacobian);

@@ -16,11 +16,18 @@
 #define WORSE 25.0
 /* Error of the edge model that clean renders leave at most, um (reports/loop_scans.md). */
 #define EDGE_ERROR_UM 0.002
+/* The edges of a picture that is stretched are measured, and an effect's form is known, to this
+ * share of what the effect does to the points. */
+#define EFFECT_ERROR 0.002
 /* The middle of a polynomial lies within so many picture sizes of the picture's. */
 #define MIDDLE_REACH 1.5
 /* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
  * neither a crown nor a skew but a curve. */
 #define LOWEST_SHARE 0.6
+/* Shapes nearer to each other than this are one. */
+#define TWIN_SHARE 0.05
+/* No coefficient is larger, um: columns that nearly cancel would explain anything. */
+#define LARGEST_UM 400.0
 enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
 
 typedef struct listed_row {
@@ -138,6 +145,7 @@ size_t fg_subset_noise(fg_subset_search *s, bool listed_only) {
 /* What the search compares with: everything at once. */
 typedef struct yardstick {
   double full, freedom, unit, allowance;
+  double none;  /* excess of no effect */
   double reach; /* of a polynomial's middle, in units of FG_FIELD_HALF_MM */
 } yardstick;
 
@@ -253,8 +261,9 @@ static fg_subset_member try_set(const fg_subset_search *s, const yardstick *y, u
 }
 
 static bool is_right(const yardstick *y, const fg_subset_member *m) {
-  return m->excess <=
-         (m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0) + y->allowance;
+  double chance = m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0;
+  double taken = fmax(0, y->none - m->excess);
+  return m->excess <= chance + y->allowance + EFFECT_ERROR * EFFECT_ERROR * taken;
 }
 
 /* ---- all sets ---- */
@@ -273,13 +282,16 @@ static unsigned mask_of(const fg_subset *out, bool of_free) {
   return mask;
 }
 
-/* Two forms of one effect are no set. */
+/* Two forms of one effect, and two ripples of one period or two steps at one place, are no set. */
+static bool are_twins(const fg_subset_effect *a, const fg_subset_effect *b) {
+  if (!fg_effect_same(a->id, b->id)) return false;
+  return strchr(b->id, ':') || fabs(a->shape[0] / b->shape[0] - 1) < TWIN_SHARE;
+}
+
 static bool has_twins(const fg_subset *out, unsigned mask) {
   for (size_t a = 0; a < out->effect_count; a++)
     for (size_t b = a + 1; (mask >> a & 1) && b < out->effect_count; b++)
-      if ((mask >> b & 1) && fg_effect_same(out->effects[a].id, out->effects[b].id) &&
-          strchr(out->effects[b].id, ':'))
-        return true;
+      if ((mask >> b & 1) && are_twins(&out->effects[a], &out->effects[b])) return true;
   return false;
 }
 
@@ -409,6 +421,8 @@ static yardstick make_yardstick(fg_subset_search *s) {
   yardstick y = {.full = s->full,
                  .freedom = (double)s->freedom,
                  .unit = out->noise_um * out->noise_um * out->integral,
+                 .none = (s->columns.square - s->full) /
+                         (out->noise_um * out->noise_um * out->integral),
                  .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
   out->edge_error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + s->columns.width_part);
   y.allowance = (double)s->columns.rows * out->edge_error_um * out->edge_error_um / y.unit;

@@ -10,7 +10,7 @@
 /* A column whose mean square is less than this beside the geometry is nothing. */
 #define VANISHED 1e-8
 /* A term of which less than this share stands beside the terms before it is one of them. */
-#define DEPENDENT 1e-9
+#define DEPENDENT 1e-6
 
 double fg_subset_dot(size_t n, const double *a, const double *b) {
   double sum = 0;

@@ -13,6 +13,11 @@
 /* Largest change of an overall radius, and largest coefficient, that an effect may have. */
 #define SANE_SHARE 0.03
 #define SANE_UM    2000.0
+/* Half the height of the rows that a step in the picture blurs. */
+#define STEP_HALF_MM 0.08
+#define THERE_SIGMAS 4.0
+#define END_SIGMAS   8.0
+enum { END_ROWS = 3 };
 
 void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set) {
   memset(set, 0, sizeof *set);
@@ -93,6 +98,77 @@ static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double 
   return FG_OK;
 }
 
+static double third_difference(const double *r, size_t at, int step) {
+  size_t k[4];
+  for (int i = 0; i < 4; i++)
+    k[i] = (size_t)((ptrdiff_t)at + i * step);
+  return r[k[0]] - 3 * r[k[1]] + 3 * r[k[2]] - r[k[3]];
+}
+
+static bool same_run(const fg_points *points, size_t a, size_t b) {
+  const fg_points_row *p = &points->rows[a], *q = &points->rows[b];
+  return b < points->row_count && p->view == q->view && p->group == q->group;
+}
+
+/* A run's last rows may reach into a fillet; they leave the line of those before them as no others
+ * do. Third differences: what is smooth stays out of them. */
+static fg_status drop_bad_ends(fg_context *ctx, fg_points *points, const double *residual_um) {
+  size_t rows = points->row_count, n = 0;
+  double *size = NULL;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *size, (void **)&size));
+  for (size_t i = 0; i + 3 < rows; i++)
+    if (same_run(points, i, i + 3)) size[n++] = fabs(third_difference(residual_um, i, 1));
+  double limit = n ? END_SIGMAS * 1.4826 * fg_select(size, n, n / 2) : INFINITY;
+  free(size);
+  for (size_t from = 0, to; from < rows; from = to) {
+    for (to = from + 1; to < rows && same_run(points, from, to);)
+      to++;
+    for (size_t k = 0; k < END_ROWS && from + 2 * END_ROWS + 4 < to; k++) {
+      size_t low = from + END_ROWS - 1 - k, high = to - END_ROWS + k;
+      if (fabs(third_difference(residual_um, low, 1)) > limit)
+        for (size_t i = from; i <= low; i++)
+          points->rows[i].weight = 0;
+      if (fabs(third_difference(residual_um, high, -1)) > limit)
+        for (size_t i = high; i < to; i++)
+          points->rows[i].weight = 0;
+    }
+  }
+  return FG_OK;
+}
+
+/* Blocks of rows that lie across a step hold some of both sides. */
+static void leave_steps_out(fg_points *points, const fg_scan_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    for (size_t i = 0; i < points->row_count; i++)
+      if (!strcmp(set->effects[e].id, "scan.row_step") &&
+          fabs(points->rows[i].at.y - set->effects[e].shape[0]) < STEP_HALF_MM)
+        points->rows[i].weight = 0;
+}
+
+/* Whether an effect's numbers are more than its uncertainty. */
+static bool is_there(const fg_scan_effect *effect) {
+  for (size_t c = 0; c < effect->columns; c++)
+    if (!(fabs(effect->coefficient_um[c]) < THERE_SIGMAS * effect->u_coefficient_um[c]))
+      return true;
+  return false;
+}
+
+/* What the fit has made nothing of is dropped: a second ripple that stood for the curvature of a
+ * first one, a smooth effect beside one that has found its shape since. */
+static void drop_nothings(fg_scan_set *set) {
+  size_t kept = 0;
+  for (size_t e = 0; e < set->count; e++)
+    if (is_there(&set->effects[e])) set->effects[kept++] = set->effects[e];
+  set->count = kept;
+}
+
+/* A search under way. */
+typedef struct settling {
+  fg_scan_set set;
+  fg_subset subset;
+  double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
+} settling;
+
 /* An effect that bends the geometry so far is none. */
 static bool is_sane(const fg_points *points, const double *geometry, const fg_scan_set *set) {
   size_t at = 0;
@@ -120,31 +196,80 @@ static fg_status fit_set(fg_context *ctx, fg_points *points, fg_scan_set *set, d
   return fg_scan_refit(ctx, points, set, residual_um);
 }
 
-fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set, fg_subset *subset,
-                           double *residual_um) {
-  enum { ROUNDS = 6 };
-  double *jacobian = NULL, *geometry = NULL;
-  fg_status status = FG_OK;
-  memset(set, 0, sizeof *set);
-  FG_TRY(fg_scan_refit(ctx, points, set, NULL));
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *jacobian,
-                            (void **)&jacobian));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *geometry,
-                                 (void **)&geometry));
+/* Search and fit in turns from a start without effects. With `eager`, ripples and steps are looked
+ * for at once: right for them, while a large smooth effect leaves traces in the first round that
+ * look like them. */
+static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, settling *at) {
+  enum { ROUNDS = 8 };
+  memset(&at->set, 0, sizeof at->set);
+  FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
   for (int round = 0; round < ROUNDS; round++) {
     fg_scan_set next;
-    FG_TRY_EXIT(put_back(ctx, points, set, residual_um, jacobian));
-    FG_TRY_EXIT(fg_subset_find(ctx, points, residual_um, jacobian, set, round > 0, subset));
-    fg_subset_take(subset, 0, &next);
-    bool settled = same_effects(set, &next);
-    keep_numbers(set, &next);
-    *set = next;
-    FG_TRY_EXIT(fit_set(ctx, points, set, geometry, residual_um));
-    FG_TRY_EXIT(drop_outliers(ctx, points, residual_um));
+    FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
+    FG_TRY(fg_subset_find(ctx, points, at->residual_um, at->jacobian, &at->set, eager || round > 0,
+                          &at->subset));
+    fg_subset_take(&at->subset, 0, &next);
+    bool settled = same_effects(&at->set, &next) && (at->subset.right || round >= ROUNDS / 2);
+    keep_numbers(&at->set, &next);
+    at->set = next;
+    leave_steps_out(points, &at->set);
+    FG_TRY(fit_set(ctx, points, &at->set, at->geometry, at->residual_um));
+    FG_TRY(drop_outliers(ctx, points, at->residual_um));
     if (settled && round > 0) break;
+    drop_nothings(&at->set);
   }
-exit:
-  free(jacobian);
+  return FG_OK;
+}
+
+static double residual_square(const fg_points *points, const double *residual_um) {
+  double sum = 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    if (!points->views[points->rows[i].view].aside)
+      sum += points->rows[i].weight * residual_um[i] * residual_um[i];
+  return sum;
+}
+
+/* The eager start, and where it does not come to rest at an explanation that is right, the other;
+ * the better one stays. */
+static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
+  FG_TRY(settle_from(ctx, points, true, at));
+  if (at->subset.right) return FG_OK;
+  double left = residual_square(points, at->residual_um), *geometry = NULL;
+  fg_scan_set set = at->set;
+  fg_subset subset = at->subset;
+  size_t numbers = fg_points_geometry_size(points);
+  FG_TRY(
+      fg_memory_allocate(ctx, numbers + points->row_count, sizeof *geometry, (void **)&geometry));
+  double *residual_um = geometry + numbers;
+  fg_points_geometry_save(points, geometry);
+  memcpy(residual_um, at->residual_um, points->row_count * sizeof *residual_um);
+  fg_status status = settle_from(ctx, points, false, at);
+  if (status == FG_OK && !at->subset.right && residual_square(points, at->residual_um) > left) {
+    at->set = set;
+    at->subset = subset;
+    fg_points_geometry_load(points, geometry);
+    memcpy(at->residual_um, residual_um, points->row_count * sizeof *residual_um);
+  }
   free(geometry);
+  return status;
+}
+
+fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set, fg_subset *subset,
+                           double *residual_um) {
+  settling at = {.residual_um = residual_um};
+  fg_status status = FG_OK;
+  memset(set, 0, sizeof *set);
+  FG_TRY(fg_scan_refit(ctx, points, set, residual_um));
+  FG_TRY(drop_bad_ends(ctx, points, residual_um));
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *at.jacobian,
+                            (void **)&at.jacobian));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *at.geometry,
+                                 (void **)&at.geometry));
+  FG_TRY_EXIT(settle_best(ctx, points, &at));
+  *set = at.set;
+  *subset = at.subset;
+exit:
+  free(at.jacobian);
+  free(at.geometry);
   return status;
 }
