@@ -95,12 +95,10 @@ typedef struct fg_points_correction {
   const double *shift_mm;
 } fg_points_correction;
 
-/* Mean over two places along the edge, `spread_mm` to either side: what a row that is a mean of
- * places and of the blur sees of a field that bends, to second order. */
-typedef struct fg_points_places {
-  fg_point at[2];
-} fg_points_places;
-fg_points_places fg_points_spread(const fg_points_row *row, fg_point middle);
+/* The places whose mean a row sees of a field: both edges of the strip, and on each two places
+ * along it, `spread_mm` to either side, which stand for its length and the blur to second order. */
+enum { FG_POINTS_PLACES = 4 };
+void fg_points_places(const fg_points_row *row, fg_point middle, fg_point at[FG_POINTS_PLACES]);
 
 /* Residual of every row (mm, along its normal, outwards positive) and, unless NULL, its Jacobian
  * by the geometry (parameters × row_count). Updates the rows' normals. */

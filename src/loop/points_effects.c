@@ -170,16 +170,18 @@ size_t fg_points_effect_columns(const fg_points *points, const char *id, const d
                                 double *columns) {
   const part_row *part = find_part(id);
   if (part) return part_columns(points, part, columns);
-  fg_point d[2][FG_FIELD_COLUMNS];
-  size_t count = 0;
-  for (size_t i = 0; i < points->row_count; i++) {
+  fg_point at[FG_POINTS_PLACES], d[FG_FIELD_COLUMNS];
+  size_t count = 0, rows = points->row_count;
+  for (size_t i = 0; i < rows; i++) {
     const fg_points_row *row = &points->rows[i];
-    fg_points_places places = fg_points_spread(row, row->ideal);
-    for (int k = 0; k < 2; k++)
-      count = field_at(points, id, shape, places.at[k], d[k]);
-    for (size_t c = 0; c < count; c++)
-      columns[c * points->row_count + i] = -0.5 * ((d[0][c].x + d[1][c].x) * row->normal.x +
-                                                   (d[0][c].y + d[1][c].y) * row->normal.y);
+    fg_points_places(row, row->ideal, at);
+    for (int k = 0; k < FG_POINTS_PLACES; k++) {
+      count = field_at(points, id, shape, at[k], d);
+      for (size_t c = 0; c < count; c++)
+        columns[c * rows + i] =
+            (k ? columns[c * rows + i] : 0) -
+            (d[c].x * row->normal.x + d[c].y * row->normal.y) / FG_POINTS_PLACES;
+    }
   }
   return count;
 }

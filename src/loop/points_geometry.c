@@ -53,20 +53,26 @@ void fg_points_parameter_name(const fg_points *points, size_t parameter, char *n
   snprintf(name, 48, "pose %zu", parameter);
 }
 
-fg_points_places fg_points_spread(const fg_points_row *row, fg_point middle) {
-  double dx = -row->normal.y * row->spread_mm, dy = row->normal.x * row->spread_mm;
-  return (fg_points_places){{{middle.x + dx, middle.y + dy}, {middle.x - dx, middle.y - dy}}};
+void fg_points_places(const fg_points_row *row, fg_point middle, fg_point at[FG_POINTS_PLACES]) {
+  fg_point n = row->normal;
+  for (int i = 0; i < FG_POINTS_PLACES; i++) {
+    double across = i < 2 ? row->half_width_mm : -row->half_width_mm;
+    double along = i % 2 ? row->spread_mm : -row->spread_mm;
+    at[i] =
+        (fg_point){middle.x + across * n.x - along * n.y, middle.y + across * n.y + along * n.x};
+  }
 }
 
 /* Position of a row with the corrections in force. */
 static fg_point corrected(const fg_points_row *row, const fg_points_correction *c) {
   fg_point p = row->at;
   if (c && c->fields && c->fields->count) {
-    fg_points_places places = fg_points_spread(row, row->at);
-    for (int i = 0; i < 2; i++) {
-      fg_point d = fg_field_at(c->fields, places.at[i]);
-      p.x += 0.5 * d.x;
-      p.y += 0.5 * d.y;
+    fg_point at[FG_POINTS_PLACES];
+    fg_points_places(row, row->at, at);
+    for (int i = 0; i < FG_POINTS_PLACES; i++) {
+      fg_point d = fg_field_at(c->fields, at[i]);
+      p.x += d.x / FG_POINTS_PLACES;
+      p.y += d.y / FG_POINTS_PLACES;
     }
   }
   return p;

@@ -24,6 +24,8 @@
 /* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
  * neither a crown nor a skew but a curve. */
 #define LOWEST_SHARE 0.6
+/* A set with a shape that is not fitted yet may leave this share of what there is. */
+#define FITTING_SHARE 0.1
 /* Shapes nearer to each other than this are one. */
 #define TWIN_SHARE 0.05
 /* No coefficient is larger, um: columns that nearly cancel would explain anything. */
@@ -429,14 +431,21 @@ static yardstick make_yardstick(fg_subset_search *s) {
   return y;
 }
 
+/* A ripple or step that was found just now has not been fitted with the geometry yet: a set that
+ * holds one and takes most of what there is to take gets its chance before any curve. */
+static bool is_worth_fitting(const fg_subset_search *s, const yardstick *y,
+                             const fg_subset_member *best) {
+  size_t count = s->out->effect_count, first = count - s->new_shapes;
+  return best->mask >> first && best->excess < FITTING_SHARE * y->none;
+}
+
 static void try_sets(fg_subset_search *s) {
   fg_subset *out = s->out;
   yardstick y = make_yardstick(s);
   fg_subset_member best = try_listed(s, &y, scanned_again(s->columns.points) ? 3 : 2);
   out->right = out->member_count > 0;
   if (out->right) order_members(s, &y);
-  /* A ripple or step that was found just now has not been fitted with the geometry yet. */
-  if (!out->member_count && s->new_shapes) keep_member(out, &best);
+  if (!out->member_count && is_worth_fitting(s, &y, &best)) keep_member(out, &best);
   if (!out->member_count) try_free(s, &y, best);
   describe_effects(s, &y);
 }

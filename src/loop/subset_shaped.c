@@ -104,7 +104,12 @@ static bool add_best(fg_subset_search *s, bool listed_only, double *work) {
   static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
   static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
   const shaped kinds[] = {{&ripple, ripple_period, RIPPLE_STEPS}, {&step, step_place, STEP_STEPS}};
-  size_t rank = fg_subset_noise(s, listed_only);
+  size_t rank = fg_subset_noise(s, false);
+  double noise_um = s->out->noise_um, integral = s->out->integral;
+  if (listed_only) rank = fg_subset_noise(s, true);
+  /* What the listed effects leave may be the very thing that is sought: it is no noise. */
+  s->out->noise_um = noise_um;
+  s->out->integral = integral;
   hit best = {0};
   const shaped *which = NULL;
   for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
