@@ -1,0 +1,258 @@
+/* What the page of the loop on scans says in words. */
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "report/scan_loop_parts.h"
+
+typedef struct effect_words {
+  const char *id, *words, *equation;
+} effect_words;
+
+static const effect_words table[] = {
+    {"scan.scale_y", "a wrong scale along the carriage's way", "d_y = q y"},
+    {"scan.shear", "a shear: rows lie further sideways the further the carriage has come",
+     "d_x = q y"},
+    {"scan.carriage_ripple", "a ripple of the carriage", "d_y = a sin(2π y/p + φ)"},
+    {"scan.row_step", "a step of the carriage: rows lost or doubled", "d_y = a where y > y0"},
+    {"scan.optical_quadratic", "a quadratic distortion of the optics", "d_x = a (x/18 mm)²"},
+    {"scan.optical_cubic", "a cubic distortion of the optics", "d_x = a (x/18 mm)³"},
+    {"scan.carriage_quadratic", "a carriage that becomes faster or slower", "d_y = a (y/18 mm)²"},
+    {"part.ovality", "an oval foil", "radial a cos 2(ψ − ψ0)"},
+    {"part.spiral", "a spiral foil: its radius changes from end to end", "radial a (ψ/ψ_end)³"},
+    {"part.bump_crown", "bumps that are flatter or sharper at the crown than a circle",
+     "a P4(place in the arc)"},
+    {"part.bump_skew", "bumps that lean to one side", "a P3(place in the arc)"},
+    {"free.scan.x.dx", "a free curve over x that moves the picture in x", ""},
+    {"free.scan.x.dy", "a free curve over x that moves the picture in y", ""},
+    {"free.scan.y.dx", "a free curve over y that moves the picture in x", ""},
+    {"free.scan.y.dy", "a free curve over y that moves the picture in y", ""},
+    {"free.foil.s", "a free radial curve along the foil", ""},
+    {"free.bump.phi", "a free deviation of every bump from its circle", ""},
+    {"free.edge.normal", "a free curve over the direction of the edge", ""},
+    {NULL, NULL, NULL},
+};
+
+static const effect_words *find(const char *id) {
+  const effect_words *row = table;
+  while (row->id && strcmp(row->id, id))
+    row++;
+  return row->id ? row : NULL;
+}
+
+void fg_scan_effect_words(const char *id, char *words, size_t size) {
+  const effect_words *row = find(id);
+  fg_text_clip(words, size, "%s", row ? row->words : id);
+}
+
+const char *fg_scan_effect_equation(const char *id) {
+  const effect_words *row = find(id);
+  return row ? row->equation : "";
+}
+
+bool fg_scan_effect_is_free(const fg_scan_effect *effect) {
+  return !strncmp(effect->id, "free.", 5);
+}
+
+bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id) {
+  size_t e = 0;
+  while (e < subset->effect_count && strcmp(subset->effects[e].id, id))
+    e++;
+  for (size_t m = 0; m < subset->member_count; m++)
+    if (e == subset->effect_count || !(subset->members[m].mask >> e & 1)) return false;
+  return true;
+}
+
+void fg_scan_member_words(const fg_subset *subset, size_t member, char *words, size_t size) {
+  size_t used = 0;
+  words[0] = 0;
+  for (size_t e = 0; e < subset->effect_count && used + 1 < size; e++) {
+    char one[120];
+    if (!(subset->members[member].mask >> e & 1)) continue;
+    fg_scan_effect_words(subset->effects[e].id, one, sizeof one);
+    fg_text_clip(words + used, size - used, "%s%s", used ? ", together with " : "", one);
+    used = strlen(words);
+  }
+}
+
+/* ---- parameters ---- */
+
+static fg_field as_field(const fg_scan_effect *effect, const fg_field_row *row) {
+  fg_field field = {.row = row};
+  for (size_t c = 0; c < row->columns; c++) {
+    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
+    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
+  }
+  for (size_t s = 0; s < row->shapes; s++) {
+    field.shape[s] = effect->shape[s];
+    field.u_shape[s] = effect->u_shape[s];
+  }
+  return field;
+}
+
+fg_field_list fg_scan_page_fields(const fg_scan_loop *loop) {
+  fg_field_list list = {.frame = loop->points.frame};
+  for (size_t i = 0; i < loop->set.count && list.count < FG_FIELDS_MAX; i++) {
+    const fg_field_row *row = fg_field_find(loop->set.effects[i].id);
+    if (row) list.fields[list.count++] = as_field(&loop->set.effects[i], row);
+  }
+  return list;
+}
+
+/* Names of fg_field_parameter with their units for people; a ratio is told in ppm. */
+static void put_unit(fg_scan_parameter *p) {
+  static const struct {
+    const char *name, *people, *unit;
+    double factor;
+  } units[] = {{"value", "q", "ppm", 1e6},
+               {"amplitude_um", "a", "µm", 1},
+               {"period_mm", "p", "mm", 1},
+               {"phase_deg", "φ", "°", 1},
+               {"y_mm", "y0", "mm", 1}};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    if (strcmp(p->name, units[i].name) != 0) continue;
+    p->name = units[i].people;
+    p->unit = units[i].unit;
+    p->value *= units[i].factor;
+    p->u *= units[i].factor;
+    return;
+  }
+}
+
+/* A part effect: the length of its coefficients; an ovality's two are a direction too. */
+static bool part_parameter(const fg_scan_effect *effect, size_t i, fg_scan_parameter *p) {
+  const double *c = effect->coefficient_um, *u = effect->u_coefficient_um;
+  double square = 0, spread = 0;
+  for (size_t k = 0; k < effect->columns; k++)
+    square += c[k] * c[k];
+  double a = sqrt(square);
+  if (i == 0) {
+    for (size_t k = 0; k < effect->columns; k++)
+      spread += pow((a > 0 ? c[k] / a : 1) * u[k], 2);
+    *p = (fg_scan_parameter){"a", "µm", effect->columns == 1 ? c[0] : a, sqrt(spread)};
+    return true;
+  }
+  if (i > 1 || strcmp(effect->id, "part.ovality") != 0) return false;
+  double degrees = 180 / M_PI;
+  *p = (fg_scan_parameter){"ψ0", "°", 0.5 * atan2(c[1], c[0]) * degrees,
+                           a > 0 ? 0.5 * hypot(c[1] * u[0], c[0] * u[1]) / square * degrees : NAN};
+  return true;
+}
+
+bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i,
+                              fg_scan_parameter *parameter) {
+  if (fg_scan_effect_is_free(effect)) return false;
+  const fg_field_row *row = fg_field_find(effect->id);
+  if (!row) return part_parameter(effect, i, parameter);
+  fg_field field = as_field(effect, row);
+  *parameter = (fg_scan_parameter){"", "", 0, 0};
+  if (!fg_field_parameter(&field, i, &parameter->name, &parameter->value, &parameter->u))
+    return false;
+  put_unit(parameter);
+  return true;
+}
+
+void fg_scan_value_words(double value, double u, char *words, size_t size) {
+  double expanded = FG_COVERAGE_FACTOR * u;
+  if (!isfinite(value)) {
+    fg_text_clip(words, size, "–");
+  } else if (!(expanded > 0) || !isfinite(expanded)) {
+    fg_text_clip(words, size, "%.5g", value);
+  } else {
+    int decimals = (int)fmin(9, fmax(0, 1 - floor(log10(expanded))));
+    fg_text_clip(words, size, "%.*f ± %.*f", decimals, value, decimals, expanded);
+  }
+}
+
+void fg_scan_length_words(double um, char *words, size_t size) {
+  if (!isfinite(um))
+    fg_text_clip(words, size, "–");
+  else if (fabs(um) < 0.5)
+    fg_text_clip(words, size, "%.3g nm", 1000 * um);
+  else
+    fg_text_clip(words, size, "%.3g µm", um);
+}
+
+/* ---- the sentence ---- */
+
+static fg_status say_parameters(fg_context *ctx, const fg_scan_effect *effect, char **text) {
+  fg_scan_parameter p;
+  char value[64];
+  for (size_t i = 0; fg_scan_effect_parameter(effect, i, &p); i++) {
+    fg_scan_value_words(p.value, p.u, value, sizeof value);
+    FG_TRY(fg_text_append(ctx, text, "%s%s = %s%s%s", i ? ", " : " (", p.name, value,
+                          strcmp(p.unit, "°") ? " " : "", p.unit));
+    if (!fg_scan_effect_parameter(effect, i + 1, &p)) FG_TRY(fg_text_append(ctx, text, ")"));
+  }
+  return FG_OK;
+}
+
+static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool sure, char **text) {
+  bool first = true;
+  for (size_t i = 0; i < loop->set.count; i++) {
+    const fg_scan_effect *effect = &loop->set.effects[i];
+    char words[120];
+    if (fg_scan_effect_is_sure(&loop->subset, effect->id) != sure) continue;
+    fg_scan_effect_words(effect->id, words, sizeof words);
+    FG_TRY(fg_text_append(ctx, text, "%s%s", first ? "" : " and ", words));
+    FG_TRY(say_parameters(ctx, effect, text));
+    first = false;
+  }
+  return FG_OK;
+}
+
+static size_t count_effects(const fg_scan_loop *loop, bool sure) {
+  size_t count = 0;
+  for (size_t i = 0; i < loop->set.count; i++)
+    count += fg_scan_effect_is_sure(&loop->subset, loop->set.effects[i].id) == sure;
+  return count;
+}
+
+static fg_status say_errors(fg_context *ctx, const fg_scan_loop *loop, char **text) {
+  char before[32], after[32], floor_words[32];
+  fg_scan_length_words(loop->error_before.rms, before, sizeof before);
+  fg_scan_length_words(loop->error_after.rms, after, sizeof after);
+  fg_scan_length_words(loop->noise_floor_um, floor_words, sizeof floor_words);
+  FG_TRY(fg_text_append(ctx, text,
+                        " The edge residual falls from %s to %s rms; the noise alone makes %s.",
+                        before, after, floor_words));
+  if (!isfinite(loop->error_before.held_out_rms)) return FG_OK;
+  fg_scan_length_words(loop->error_before.held_out_rms, before, sizeof before);
+  fg_scan_length_words(loop->error_after.held_out_rms, after, sizeof after);
+  return fg_text_append(ctx, text, " On scans kept aside it falls from %s to %s.", before, after);
+}
+
+static fg_status say_chance(fg_context *ctx, double p, char **text) {
+  if (p < 1e-12) return fg_text_append(ctx, text, "chance is excluded (p < 1e-12).");
+  return fg_text_append(ctx, text, "chance alone would do this with p = %.2g.", p);
+}
+
+static fg_status say_clean(fg_context *ctx, const fg_scan_loop *loop, char **text) {
+  char rms[32];
+  fg_scan_length_words(loop->error_before.rms, rms, sizeof rms);
+  return fg_text_print(ctx, text,
+                       "Nothing is claimed: what the circles leave of the edges (%s rms) is noise "
+                       "as far as %s can tell. The dimensions stand as measured.",
+                       rms, loop->scan_count > 1 ? "these scans" : "this scan");
+}
+
+fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text) {
+  size_t sure = count_effects(loop, true), tied = count_effects(loop, false);
+  *text = NULL;
+  if (!loop->set.count) return say_clean(ctx, loop, text);
+  if (sure) {
+    FG_TRY(fg_text_append(ctx, text, "Found: "));
+    FG_TRY(say_effects(ctx, loop, true, text));
+  }
+  if (tied) {
+    FG_TRY(fg_text_append(ctx, text, "%s", sure ? ". Not told apart: " : "Found, but not named: "));
+    FG_TRY(say_effects(ctx, loop, false, text));
+    size_t others = loop->subset.member_count > 1 ? loop->subset.member_count - 1 : 0;
+    if (loop->subset.member_total > others + 1) others = loop->subset.member_total - 1;
+    FG_TRY(fg_text_append(ctx, text, ", or %zu other explanation%s that %s as well", others,
+                          others == 1 ? "" : "s", others == 1 ? "does" : "do"));
+  }
+  FG_TRY(fg_text_append(ctx, text, "; "));
+  FG_TRY(say_chance(ctx, loop->subset.p_value, text));
+  return say_errors(ctx, loop, text);
+}
