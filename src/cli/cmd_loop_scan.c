@@ -154,7 +154,8 @@ int fg_cmd_loop_scan(int argc, char **argv) {
   fg_context ctx = {0};
   arguments a = {.options = {.seed = 1}};
   argv[0] = (char[]){"foilgauge loop"};
-  argp_parse(&parser, argc, argv, 0, NULL, &a);
+  /* in order: reports list the scans as they are given, those kept aside between the others */
+  argp_parse(&parser, argc, argv, ARGP_IN_ORDER, NULL, &a);
   fg_status status = run(&ctx, &a);
   return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
 }

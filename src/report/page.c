@@ -106,7 +106,8 @@ static const char loop_style[] =
     ".outwards{stroke:#5e3c99}.inwards{stroke:#e66101}.tips{stroke:#5b6875;stroke-width:.7}"
     ".plot .bar{stroke:var(--ink);stroke-width:3}.vectors .bump{text-anchor:middle;"
     "fill:var(--soft)}.key{font-weight:600}.outkey{color:#5e3c99}.inkey{color:#b34a00}"
-    ".plot .noise{fill:#dfe4e9}.plot .reach{fill:#fff}.plot path.shape{fill:#1f6fd0;"
+    ".plot .noise{fill:#dfe4e9}.plot .beyond{fill:#e9edf1}.plot .reach{fill:#fff}.plot "
+    "path.shape{fill:#1f6fd0;"
     "fill-opacity:.2}.effect{stroke:var(--bump);stroke-width:2.5}"
     ".still{stroke:#cfd6dd;stroke-width:.8}.moved{stroke:var(--bump);stroke-width:1}"
     ".dots{stroke-width:3;stroke-linecap:round;stroke-opacity:.3;stroke:var(--ink)}"
@@ -116,9 +117,12 @@ static const char loop_style[] =
     "span.k3{color:#aa4499}span.k4{color:#5b6875}"
     "td.moved-on{background:#fff0d6;font-weight:650}th.group{text-align:center;border-left:1px "
     "solid var(--line)}details summary{cursor:pointer;font-weight:600;margin:14px 0 8px}"
-    ".dimensions th,.dimensions td{padding:4px 7px}"
+    ".dimensions th,.dimensions td{padding:4px 7px}.dimensions.narrow{width:auto}"
+    ".dimensions td:first-child{position:sticky;left:0;background:#fff}"
+    ".two{display:grid;grid-template-columns:1fr 1fr;gap:16px 22px;margin-bottom:14px}"
     "code{font-size:12.5px;overflow-wrap:anywhere}\n"
-    "@media(max-width:600px){.pair .plot{font-size:16px}.say{font-size:16px}}\n";
+    "@media(max-width:600px){.two{grid-template-columns:minmax(0,1fr)}.two "
+    ".plot{font-size:16px}.say{font-size:16px}}\n";
 
 void fg_html_text(FILE *out, const char *text) {
   while (*text) {

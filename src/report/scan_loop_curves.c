@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "loop/engine.h"
 #include "loop/points_effects.h"
 #include "report/plot.h"
 #include "report/plot_marks.h"
@@ -156,16 +157,37 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_co
   return FG_OK;
 }
 
-/* Bins without rows are bridged. */
-static size_t pack(curve *line) {
-  size_t kept = 0;
+/* A free curve says nothing of what circles take over: the bump's own, or the overall circle with
+ * its centre. */
+static void take_circles(fg_scan_coordinate coordinate, curve *line) {
+  double columns[3 * SAMPLES], basis[3 * SAMPLES], d[SAMPLES];
+  size_t n = 0, at[SAMPLES];
+  for (size_t i = 0; i < SAMPLES; i++)
+    if (isfinite(line->d[i])) at[n++] = i;
+  for (size_t k = 0; k < n; k++) {
+    double x = line->x[at[k]], angle = x * M_PI / 180;
+    columns[k] = 1;
+    columns[n + k] = coordinate == FG_SCAN_PHI ? x : cos(angle);
+    columns[2 * n + k] = coordinate == FG_SCAN_PHI ? x * x : sin(angle);
+    d[k] = line->d[at[k]];
+  }
+  size_t rank = loop_orthonormal(n, NULL, 0, columns, 3, basis, NULL);
+  loop_project_out(n, basis, rank, d);
+  for (size_t k = 0; k < n; k++)
+    line->d[at[k]] = d[k];
+}
+
+/* Gaps of a few bins are bridged, wider ones stay: no edge looks that way. */
+static void bridge(curve *line) {
+  enum { WIDEST = 12 };
+  size_t last = SAMPLES;
   for (size_t i = 0; i < SAMPLES; i++) {
     if (!isfinite(line->d[i])) continue;
-    line->x[kept] = line->x[i];
-    line->d[kept] = line->d[i];
-    line->u[kept++] = line->u[i];
+    for (size_t k = last + 1; last < SAMPLES && i - last <= WIDEST && k < i; k++)
+      line->d[k] =
+          line->d[last] + (line->d[i] - line->d[last]) * (double)(k - last) / (double)(i - last);
+    last = i;
   }
-  return kept;
 }
 
 /* Where the foils' edges lie: beyond, a curve is not held by data. */
@@ -177,13 +199,17 @@ static void put_reach(const fg_plot *at, const fg_points *points, int axis) {
     high = fmax(high, x);
   }
   if (!(high > low)) return;
+  fprintf(at->out,
+          "<rect class=\"beyond\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          at->left, at->top, at->right - at->left, at->bottom - at->top);
   fprintf(at->out, "<rect class=\"reach\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
           fg_plot_x(at, low), at->top, fg_plot_x(at, high) - fg_plot_x(at, low),
           at->bottom - at->top);
 }
 
-static void put_band(const fg_plot *at, const curve *line, size_t count) {
-  if (!count || !isfinite(line->u[0])) return;
+static void put_band(const fg_plot *at, const curve *line) {
+  size_t count = SAMPLES;
+  if (!isfinite(line->u[0])) return;
   fputs("<path class=\"ci shape\" d=\"", at->out);
   for (size_t i = 0; i < count; i++)
     fprintf(at->out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(at, line->x[i]),
@@ -195,17 +221,18 @@ static void put_band(const fg_plot *at, const curve *line, size_t count) {
 }
 
 static void put_curve(FILE *out, const fg_scan_loop *loop, fg_scan_coordinate coordinate,
-                      const char *moves, curve *line) {
-  size_t count = pack(line);
-  double low = 0, high = 0;
-  if (count < 2) return;
-  for (size_t i = 0; i < count; i++) {
+                      const char *moves, const char *caption, curve *line) {
+  double low = 0, high = 0, widest = 0;
+  bridge(line);
+  for (size_t i = 0; i < SAMPLES; i++) {
+    if (!isfinite(line->d[i])) continue;
     double u = isfinite(line->u[i]) ? line->u[i] : 0;
+    widest = fmax(widest, u);
     low = fmin(low, line->d[i] - u);
     high = fmax(high, line->d[i] + u);
   }
   double margin = 0.08 * (high - low) + 1e-6;
-  fg_plot at = {out,          WIDTH,        72, 508, 14, 240, line->x[0], line->x[count - 1],
+  fg_plot at = {out,          WIDTH,        72, 508, 14, 240, line->x[0], line->x[SAMPLES - 1],
                 low - margin, high + margin};
   char title[64];
   snprintf(title, sizeof title, "%s, µm", moves);
@@ -216,17 +243,16 @@ static void put_curve(FILE *out, const fg_scan_loop *loop, fg_scan_coordinate co
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, coordinate == FG_SCAN_FOIL ? "angle from the foil's middle about O, °"
                                                   : fg_scan_coordinate_title(coordinate));
-  put_band(&at, line, count);
-  fg_plot_line(&at, line->x, line->d, count, "effect");
+  put_band(&at, line);
+  fg_plot_line(&at, line->x, line->d, SAMPLES, "effect");
   fg_plot_end(&at);
   fputs("<figcaption>", out);
-  fg_html_text(out, moves);
-  fputs(coordinate <= FG_SCAN_Y ? " over the scan. White: where the edges lie that were measured"
-                                : " that the part adds to its circles",
-        out);
-  fputs(isfinite(line->u[0]) ? "; band: U = 2u.</figcaption></figure>\n"
-                             : ".</figcaption></figure>\n",
-        out);
+  fputs(caption, out);
+  if (widest > 0) {
+    fg_scan_length_words(widest, title, sizeof title);
+    fprintf(out, "; band: U = 2u, at most %s", title);
+  }
+  fputs(".</figcaption></figure>\n", out);
 }
 
 static void put_parameters(FILE *out, const fg_scan_loop *loop) {
@@ -252,29 +278,59 @@ static void put_parameters(FILE *out, const fg_scan_loop *loop) {
     if (fg_scan_effect_is_free(effect)) fputs("the curve itself", out);
     fputs("</td></tr>\n", out);
   }
-  fputs("</table></div>\n", out);
+  fputs("</table></div>\n<p class=\"note\">x, y: of the smooth effects from the middle of the "
+        "picture, of ripple and step from its top left. ψ: about O from the foil's middle.</p>\n",
+        out);
+}
+
+static bool has_free(const fg_scan_loop *loop, fg_scan_coordinate coordinate) {
+  for (size_t e = 0; e < loop->set.count; e++) {
+    const fg_scan_effect *effect = &loop->set.effects[e];
+    if (fg_scan_effect_is_free(effect) && !fg_field_find(effect->id) &&
+        place_of(effect->id) == coordinate)
+      return true;
+  }
+  return false;
+}
+
+static fg_status put_part(fg_context *ctx, FILE *out, const fg_scan_loop *loop,
+                          fg_scan_coordinate coordinate) {
+  static const char *const captions[2][3] = {
+      {"Radial deviation of the foil, outwards from O positive",
+       "Deviation of every bump from its circle, away from its centre positive",
+       "What the direction of the edge does, outwards positive"},
+      {"Radial deviation of the foil from its best circle, outwards positive",
+       "Deviation of every bump from its best circle, away from its centre positive",
+       "What the direction of the edge does, outwards positive"}};
+  curve line;
+  size_t count;
+  FG_TRY(sum_parts(ctx, loop, coordinate, &line, &count));
+  if (!count) return FG_OK;
+  bool free_curve = has_free(loop, coordinate);
+  if (free_curve && coordinate != FG_SCAN_NORMAL) take_circles(coordinate, &line);
+  put_curve(out, loop, coordinate, "deviation", captions[free_curve][coordinate - FG_SCAN_FOIL],
+            &line);
+  return FG_OK;
 }
 
 fg_status fg_scan_page_effects(fg_context *ctx, FILE *out, const fg_scan_loop *loop) {
   fg_field_list fields = fg_scan_page_fields(loop);
   curve line;
-  size_t count;
   if (!loop->set.count) return FG_OK;
   fputs("<section><h2 class=\"first\">What was found, drawn</h2>\n", out);
   put_parameters(out, loop);
-  fputs("<div class=\"pair\">\n", out);
+  fputs("<div class=\"two\">\n", out);
   if (fields.count) fg_scan_page_grid(out, loop);
   for (int axis = 0; axis < 2; axis++)
     for (int direction = 0; direction < 2; direction++)
       if (sum_fields(&fields, (fg_scan_coordinate)axis, direction, &line))
         put_curve(out, loop, (fg_scan_coordinate)axis,
-                  direction ? "displacement in y" : "displacement in x", &line);
-  for (int c = FG_SCAN_FOIL; c <= FG_SCAN_NORMAL; c++) {
-    FG_TRY(sum_parts(ctx, loop, (fg_scan_coordinate)c, &line, &count));
-    if (count)
-      put_curve(out, loop, (fg_scan_coordinate)c,
-                c == FG_SCAN_FOIL ? "radial deviation" : "deviation along the normal", &line);
-  }
+                  direction ? "displacement in y" : "displacement in x",
+                  "What must be added to the picture's coordinate. White: where edges lie that "
+                  "were measured",
+                  &line);
+  for (int c = FG_SCAN_FOIL; c <= FG_SCAN_NORMAL; c++)
+    FG_TRY(put_part(ctx, out, loop, (fg_scan_coordinate)c));
   fputs("</div></section>\n", out);
   return FG_OK;
 }

@@ -100,8 +100,8 @@ static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_
 
 static void put_heads(FILE *out, const quantity *q, size_t count, const char *first, bool corrected,
                       bool tied) {
-  fprintf(out, "<div class=\"scroll\"><table class=\"dimensions\"><tr><th rowspan=\"2\">%s</th>",
-          first);
+  fprintf(out, "<div class=\"scroll\"><table class=\"dimensions%s\"><tr><th rowspan=\"2\">%s</th>",
+          count < 3 ? " narrow" : "", first);
   for (size_t i = 0; i < count; i++)
     fprintf(out, "<th class=\"group\" colspan=\"%d\">%s, %s</th>",
             !corrected           ? 1
@@ -234,7 +234,7 @@ static void put_agreement(FILE *out, const fg_scan_loop *loop) {
 
 void fg_scan_page_dimensions(FILE *out, const fg_scan_loop *loop) {
   fputs("<section><h2 class=\"first\">Dimensions</h2>\n<p class=\"note\">± is U = 2u.", out);
-  if (loop->set.count) fputs(" A change larger than U is marked.", out);
+  if (loop->set.count) fputs(" A change larger than U of the corrected value is marked.", out);
   if (loop->tied)
     fputs(" Range: lowest and highest value, U included, over the explanations that the data "
           "cannot tell apart.",

@@ -13,12 +13,6 @@ typedef struct deformation {
   double magnified; /* how much larger displacements are drawn */
 } deformation;
 
-/* Five steps of 1, 2, 5 in a decade: the largest that is not above `most`. */
-static double nice_below(double most) {
-  double power = pow(10, floor(log10(most))), share = most / power;
-  return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
-}
-
 static double largest(const fg_field_list *fields) {
   const fg_field_frame *f = &fields->frame;
   double size = 0;
@@ -30,6 +24,16 @@ static double largest(const fg_field_list *fields) {
       size = fmax(size, hypot(d.x, d.y));
     }
   return size;
+}
+
+/* How far a point may be drawn off its place: within its cell, and without a ripple's lines passing
+ * each other. */
+static double reach(const fg_scan_loop *loop, double cell) {
+  double most = 0.6 * cell;
+  for (size_t e = 0; e < loop->set.count; e++)
+    if (!strcmp(loop->set.effects[e].id, "scan.carriage_ripple"))
+      most = fmin(most, 0.13 * loop->set.effects[e].shape[0]);
+  return most;
 }
 
 /* Lines of a grid one cell apart; a ripple needs several lines in each period to be seen. */
@@ -86,8 +90,8 @@ void fg_scan_page_grid(FILE *out, const fg_scan_loop *loop) {
   double size = largest(&fields), cell = fmax(width, height) / 14;
   if (!(size > 0) || !(width > 0) || !(height > 0)) return;
   deformation d = {out, &fields, (WIDTH - 2.0 * MARGIN) / fmax(width, height), 0};
-  d.magnified = nice_below(0.6 * cell / size);
-  double bar = nice_below(1.5 * cell * 1000 / d.magnified);
+  d.magnified = fg_scan_nice_below(reach(loop, cell) / size);
+  double bar = fg_scan_nice_below(1.5 * cell * 1000 / d.magnified);
   int tall = (int)(2 * MARGIN + d.scale * height + 34);
   char words[32];
   fprintf(out,

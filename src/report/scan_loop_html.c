@@ -61,8 +61,9 @@ static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) 
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fprintf(out,
           "<section><header><h1>Closing the loop</h1><span class=\"verdict loop-%s\">%s</span>"
-          "</header>\n<p class=\"say\">",
-          classes[loop->verdict], fg_loop_outcome_word(loop->verdict));
+          "%s</header>\n<p class=\"say\">",
+          classes[loop->verdict], fg_loop_outcome_word(loop->verdict),
+          loop->tied ? "<span class=\"verdict loop-partly\">tied: not named</span>" : "");
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
   put_tiles(out, loop);
@@ -114,8 +115,8 @@ static void put_claim(FILE *out, const fg_scan_loop *loop, const fg_scan_effect 
 static void put_shares(FILE *out, const fg_subset *subset, const char *id) {
   for (size_t e = 0; e < subset->effect_count; e++)
     if (!strcmp(subset->effects[e].id, id)) {
-      fprintf(out, "<td>%.0f %%</td><td>%.2g %%</td></tr>\n", 100 * subset->alone[e],
-              100 * subset->share[e]);
+      fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * subset->alone[e],
+              subset->share[e] < 0.1 ? 2 : 0, 100 * subset->share[e]);
       return;
     }
   fputs("<td>–</td><td>–</td></tr>\n", out);
@@ -164,11 +165,18 @@ static void put_candidates(FILE *out, const fg_scan_loop *loop) {
 static void put_class(FILE *out, const fg_scan_loop *loop) {
   const fg_subset *subset = &loop->subset;
   if (!loop->tied) return;
-  fputs("<section><h2 class=\"first\">What the data cannot tell apart</h2>\n<ol class=\"words\">\n",
-        out);
+  unsigned common = fg_scan_common(subset);
+  char words[512];
+  fputs("<section><h2 class=\"first\">What the data cannot tell apart</h2>\n", out);
+  if (common) {
+    fg_scan_mask_words(subset, common, words, sizeof words);
+    fputs("<p class=\"note\">Beside what is sure (", out);
+    fg_html_text(out, words);
+    fputs("):</p>\n", out);
+  }
+  fputs("<ol class=\"words\">\n", out);
   for (size_t m = 0; m < subset->member_count; m++) {
-    char words[512];
-    fg_scan_member_words(subset, m, words, sizeof words);
+    fg_scan_mask_words(subset, subset->members[m].mask & ~common, words, sizeof words);
     fputs("<li>", out);
     fg_html_text(out, words);
     fputs(m ? "</li>\n" : " <b>(drawn and applied here: it leaves least)</b></li>\n", out);

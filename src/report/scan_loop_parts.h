@@ -16,8 +16,10 @@ bool fg_scan_effect_is_free(const fg_scan_effect *effect);
 /* Whether every explanation that the data allow holds the effect. */
 bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id);
 
-/* A member of the alias class: "a + b" in words. */
-void fg_scan_member_words(const fg_subset *subset, size_t member, char *words, size_t size);
+/* The effects that all members of the class hold, and the words of a set of effects: "a together
+ * with b". */
+unsigned fg_scan_common(const fg_subset *subset);
+void fg_scan_mask_words(const fg_subset *subset, unsigned mask, char *words, size_t size);
 
 /* Parameter i of an effect with the name and unit that people read; false: there are no more. */
 typedef struct fg_scan_parameter {
@@ -29,8 +31,11 @@ bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i, fg_scan_pa
 /* "0.0010003 ± 0.0000012": value and U = 2u, U with two digits. */
 void fg_scan_value_words(double value, double u, char *words, size_t size);
 
-/* "3.02 µm", nm below half a micrometre. */
+/* "0.0302 µm"; nm below a nanometre, so that figures beside each other have one unit. */
 void fg_scan_length_words(double um, char *words, size_t size);
+
+/* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
+double fg_scan_nice_below(double most);
 
 /* The page's one sentence; the caller frees it. */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text);

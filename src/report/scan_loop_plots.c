@@ -101,7 +101,7 @@ static void put_noise(const fg_plot *at, double noise_um) {
 static void put_plot(FILE *out, const series *s, const double range[2], double limit_um,
                      const char *caption) {
   fg_plot at = {out, WIDTH, 70, 510, 12, 214, range[0], range[1], -limit_um, limit_um};
-  fputs("<figure>", out);
+  fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
   fg_plot_begin(&at, HEIGHT, caption);
   put_noise(&at, s->loop->noise_floor_um);
   fg_plot_y_axis(&at, "residual, µm");
@@ -112,7 +112,7 @@ static void put_plot(FILE *out, const series *s, const double range[2], double l
   for (size_t scan = 0; scan < s->loop->scan_count && scan < COLOURS; scan++)
     put_mean(&at, s, scan);
   fg_plot_end(&at);
-  fprintf(out, "<figcaption>%s</figcaption></figure>\n", caption);
+  fputs("</figure>\n", out);
 }
 
 static bool find_range(const series *s, double range[2]) {
@@ -127,17 +127,18 @@ static bool find_range(const series *s, double range[2]) {
   return range[1] > range[0];
 }
 
+/* Pairs of before and after; without a correction one plot each. */
 static void put_all(FILE *out, const fg_scan_loop *loop, const double limit_um[2]) {
+  fputs("<div class=\"two\">\n", out);
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
     series s = {loop, (fg_scan_coordinate)c, loop->residual_before};
     double range[2];
     if (!find_range(&s, range)) continue;
-    fputs("<div class=\"pair\">\n", out);
     put_plot(out, &s, range, limit_um[0], loop->set.count ? "Before" : "As measured");
     s.residual_um = loop->residual_after;
     if (loop->set.count) put_plot(out, &s, range, limit_um[0], "After, to the same scale");
-    fputs("</div>\n", out);
   }
+  fputs("</div>\n", out);
 }
 
 /* On the scale of what was there before, what is left is often a line: enlarged, it shows whether
@@ -149,7 +150,7 @@ static void put_enlarged(FILE *out, const fg_scan_loop *loop, const double limit
   snprintf(caption, sizeof caption, "After, enlarged %.3g times", limit_um[0] / limit_um[1]);
   fprintf(out,
           "<details open><summary>What is left, enlarged %.3g times: is it noise?</summary><div "
-          "class=\"pair\">\n",
+          "class=\"two\">\n",
           limit_um[0] / limit_um[1]);
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
     series s = {loop, (fg_scan_coordinate)c, loop->residual_after};

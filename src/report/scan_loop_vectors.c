@@ -9,13 +9,13 @@
 enum {
   WIDTH = 520,
   HEIGHT_MOST = 560,
-  MARGIN = 40,
+  MARGIN = 44,
   FOOT = 40,
   NEEDLES_MOST = 420,
   NUMBERS_MOST = 40
 };
 enum { SCANS_DRAWN = 6 };
-static const double needle_length = 34; /* of a large residual, in units of the drawing */
+static const double needle_length = 44; /* of a large residual, in units of the drawing */
 
 typedef struct vectors {
   FILE *out;
@@ -145,18 +145,13 @@ static void put_numbers(const vectors *v) {
   }
 }
 
-static double nice_below(double most) {
-  double power = pow(10, floor(log10(most))), share = most / power;
-  return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
-}
-
 static void put_bar(const vectors *v, int height) {
-  double um = nice_below(2 * needle_length / v->unit_per_um), length = um * v->unit_per_um;
+  double um = fg_scan_nice_below(2 * needle_length / v->unit_per_um), length = um * v->unit_per_um;
   char words[32];
   fg_scan_length_words(um, words, sizeof words);
   fprintf(v->out,
           "<path class=\"bar\" d=\"M%d %dh%.1f\"/><text class=\"start\" x=\"%.1f\" y=\"%d\">%s of "
-          "residual, drawn %.3g times as large as the foil</text>\n",
+          "residual, drawn %.0f times as large</text>\n",
           MARGIN, height - 18, length, MARGIN + length + 10, height - 13, words,
           1000 * v->unit_per_um / v->scale);
 }
@@ -176,15 +171,16 @@ static void put_figure(const vectors *v, const char *when) {
   char rms[32];
   fg_scan_length_words(rms_of(v), rms, sizeof rms);
   fprintf(v->out,
-          "<figure><svg class=\"plot vectors\" viewBox=\"0 0 %d %d\" role=\"img\" "
+          "<figure><figcaption><b>%s</b>: %s rms</figcaption><svg class=\"plot vectors\" "
+          "viewBox=\"0 0 %d %d\" role=\"img\" "
           "aria-label=\"Residual vectors %s\">\n",
-          WIDTH, height, when);
+          when, rms, WIDTH, height, when);
   put_strip(v);
   for (int part = NEEDLES_OUT; part <= BASES; part++)
     put_needles(v, (needle_part)part);
   put_numbers(v);
   put_bar(v, height);
-  fprintf(v->out, "</svg><figcaption><b>%s</b>: %s rms</figcaption></figure>\n", when, rms);
+  fputs("</svg></figure>\n", v->out);
 }
 
 static void find_box(vectors *v) {
@@ -207,37 +203,50 @@ static void find_box(vectors *v) {
                   (HEIGHT_MOST - 2.0 * MARGIN) / (v->high[1] - v->low[1]));
 }
 
-static void put_scan(FILE *out, const fg_scan_loop *loop, size_t scan, double limit_um) {
-  vectors v = {.out = out, .points = &loop->points, .scan = scan};
-  find_box(&v);
-  if (!(v.high[0] > v.low[0]) || !(v.high[1] > v.low[1])) return;
-  v.unit_per_um = needle_length / limit_um;
+static void put_scan(const fg_scan_loop *loop, vectors *v) {
   if (loop->scan_count > 1) {
-    fputs("<h3>", out);
-    fg_html_text(out, loop->before[scan].scan);
-    fputs(loop->hold_out[scan] ? " (kept aside: it only confirms)</h3>" : "</h3>", out);
+    fputs("<h3>", v->out);
+    fg_html_text(v->out, loop->before[v->scan].scan);
+    fputs(loop->hold_out[v->scan] ? " (kept aside: it only confirms)</h3>" : "</h3>", v->out);
   }
-  fputs("<div class=\"pair\">\n", out);
-  v.residual_um = loop->residual_before;
-  put_figure(&v, loop->set.count ? "Before" : "As measured");
+  fputs("<div class=\"two\">\n", v->out);
+  v->residual_um = loop->residual_before;
+  put_figure(v, loop->set.count ? "Before" : "As measured");
   if (loop->set.count) {
-    v.residual_um = loop->residual_after;
-    put_figure(&v, "After");
+    v->residual_um = loop->residual_after;
+    put_figure(v, "After");
   }
-  fputs("</div>\n", out);
+  fputs("</div>\n", v->out);
+}
+
+/* All drawings have one scale, so that they compare. */
+static void put_scans(FILE *out, const fg_scan_loop *loop, double limit_um) {
+  double scale = INFINITY;
+  vectors v = {.out = out, .points = &loop->points};
+  for (int drawn = 0; drawn < 2; drawn++)
+    for (v.scan = 0; v.scan < loop->scan_count && v.scan < SCANS_DRAWN; v.scan++) {
+      find_box(&v);
+      if (!(v.high[0] > v.low[0]) || !(v.high[1] > v.low[1])) continue;
+      scale = fmin(scale, v.scale);
+      v.scale = scale;
+      v.unit_per_um = fg_scan_nice_below(1000 * needle_length / limit_um / scale) * scale / 1000;
+      if (drawn) put_scan(loop, &v);
+    }
 }
 
 fg_status fg_scan_page_vectors(fg_context *ctx, FILE *out, const fg_scan_loop *loop) {
   double limit = 0;
   FG_TRY(fg_scan_residual_limit(ctx, &loop->points, loop->residual_before, 0.01, &limit));
   if (!(limit > 0)) return FG_OK;
-  fputs("<section><h2 class=\"first\">Where the edges leave their circles</h2>\n"
-        "<p class=\"note\">The midline of every arc, and how far the measured edges lie from the "
-        "circles that were fitted to them: <span class=\"key outkey\">outside</span> or "
-        "<span class=\"key inkey\">inside</span> of the circle. All drawings have one scale.</p>\n",
-        out);
-  for (size_t i = 0; i < loop->scan_count && i < SCANS_DRAWN; i++)
-    put_scan(out, loop, i, limit);
+  fprintf(out,
+          "<section><h2 class=\"first\">Where the edges leave their circles</h2>\n"
+          "<p class=\"note\">The midline of every arc, and how far the measured edges lie %s: "
+          "<span class=\"key outkey\">outside</span> or <span class=\"key inkey\">inside</span> of "
+          "the circle. All drawings have one scale.</p>\n",
+          loop->options.same_foil && loop->scan_count > 1
+              ? "from the one set of circles that was fitted to all scans of the foil"
+              : "from the circles that were fitted to them");
+  put_scans(out, loop, limit);
   if (loop->scan_count > SCANS_DRAWN)
     fprintf(out, "<p class=\"note\">%zu more scans are not drawn.</p>\n",
             loop->scan_count - SCANS_DRAWN);

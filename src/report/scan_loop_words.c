@@ -11,25 +11,25 @@ typedef struct effect_words {
 
 static const effect_words table[] = {
     {"scan.scale_y", "a wrong scale along the carriage's way", "d_y = q y"},
-    {"scan.shear", "a shear: rows lie further sideways the further the carriage has come",
-     "d_x = q y"},
+    {"scan.shear", "a shear of the picture", "d_x = q y"},
     {"scan.carriage_ripple", "a ripple of the carriage", "d_y = a sin(2π y/p + φ)"},
-    {"scan.row_step", "a step of the carriage: rows lost or doubled", "d_y = a where y > y0"},
+    {"scan.row_step", "a step of the carriage (rows lost or doubled)", "d_y = a where y > y0"},
     {"scan.optical_quadratic", "a quadratic distortion of the optics", "d_x = a (x/18 mm)²"},
     {"scan.optical_cubic", "a cubic distortion of the optics", "d_x = a (x/18 mm)³"},
     {"scan.carriage_quadratic", "a carriage that becomes faster or slower", "d_y = a (y/18 mm)²"},
     {"part.ovality", "an oval foil", "radial a cos 2(ψ − ψ0)"},
-    {"part.spiral", "a spiral foil: its radius changes from end to end", "radial a (ψ/ψ_end)³"},
-    {"part.bump_crown", "bumps that are flatter or sharper at the crown than a circle",
+    {"part.spiral", "a spiral foil", "radial a (ψ/ψ_end)³"},
+    {"part.bump_crown", "bumps flatter or sharper at the crown than a circle",
      "a P4(place in the arc)"},
     {"part.bump_skew", "bumps that lean to one side", "a P3(place in the arc)"},
-    {"free.scan.x.dx", "a free curve over x that moves the picture in x", ""},
-    {"free.scan.x.dy", "a free curve over x that moves the picture in y", ""},
-    {"free.scan.y.dx", "a free curve over y that moves the picture in x", ""},
-    {"free.scan.y.dy", "a free curve over y that moves the picture in y", ""},
-    {"free.foil.s", "a free radial curve along the foil", ""},
-    {"free.bump.phi", "a free deviation of every bump from its circle", ""},
-    {"free.edge.normal", "a free curve over the direction of the edge", ""},
+    {"free.scan.x.dx", "a shift in x that varies over x", "a smooth curve, freely fitted"},
+    {"free.scan.x.dy", "a shift in y that varies over x", "a smooth curve, freely fitted"},
+    {"free.scan.y.dx", "a shift in x that varies over y", "a smooth curve, freely fitted"},
+    {"free.scan.y.dy", "a shift in y that varies over y", "a smooth curve, freely fitted"},
+    {"free.foil.s", "a radial deviation along the foil", "a smooth curve, freely fitted"},
+    {"free.bump.phi", "a deviation of every bump from its circle", "a smooth curve, freely fitted"},
+    {"free.edge.normal", "a shift that depends on the edge's direction",
+     "a smooth curve, freely fitted"},
     {NULL, NULL, NULL},
 };
 
@@ -63,14 +63,21 @@ bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id) {
   return true;
 }
 
-void fg_scan_member_words(const fg_subset *subset, size_t member, char *words, size_t size) {
+unsigned fg_scan_common(const fg_subset *subset) {
+  unsigned common = subset->member_count ? ~0u : 0;
+  for (size_t m = 0; m < subset->member_count; m++)
+    common &= subset->members[m].mask;
+  return common;
+}
+
+void fg_scan_mask_words(const fg_subset *subset, unsigned mask, char *words, size_t size) {
   size_t used = 0;
-  words[0] = 0;
+  fg_text_clip(words, size, "nothing more");
   for (size_t e = 0; e < subset->effect_count && used + 1 < size; e++) {
     char one[120];
-    if (!(subset->members[member].mask >> e & 1)) continue;
+    if (!(mask >> e & 1)) continue;
     fg_scan_effect_words(subset->effects[e].id, one, sizeof one);
-    fg_text_clip(words + used, size - used, "%s%s", used ? ", together with " : "", one);
+    fg_text_clip(words + used, size - used, "%s%s", used ? " together with " : "", one);
     used = strlen(words);
   }
 }
@@ -167,10 +174,15 @@ void fg_scan_value_words(double value, double u, char *words, size_t size) {
 void fg_scan_length_words(double um, char *words, size_t size) {
   if (!isfinite(um))
     fg_text_clip(words, size, "–");
-  else if (fabs(um) < 0.5)
+  else if (fabs(um) < 1e-3 && um != 0)
     fg_text_clip(words, size, "%.3g nm", 1000 * um);
   else
     fg_text_clip(words, size, "%.3g µm", um);
+}
+
+double fg_scan_nice_below(double most) {
+  double power = pow(10, floor(log10(most))), share = most / power;
+  return power * (share >= 5 ? 5 : share >= 2 ? 2 : 1);
 }
 
 /* ---- the sentence ---- */
@@ -187,25 +199,43 @@ static fg_status say_parameters(fg_context *ctx, const fg_scan_effect *effect, c
   return FG_OK;
 }
 
-static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool sure, char **text) {
+/* The effects that every explanation holds: listed ones, or free curves. */
+static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool free_curves,
+                             const char *before, char **text) {
   bool first = true;
   for (size_t i = 0; i < loop->set.count; i++) {
     const fg_scan_effect *effect = &loop->set.effects[i];
     char words[120];
-    if (fg_scan_effect_is_sure(&loop->subset, effect->id) != sure) continue;
+    if (fg_scan_effect_is_free(effect) != free_curves ||
+        !fg_scan_effect_is_sure(&loop->subset, effect->id))
+      continue;
     fg_scan_effect_words(effect->id, words, sizeof words);
-    FG_TRY(fg_text_append(ctx, text, "%s%s", first ? "" : " and ", words));
+    FG_TRY(fg_text_append(ctx, text, "%s%s%s", *text ? "; " : "", first ? before : "", words));
     FG_TRY(say_parameters(ctx, effect, text));
     first = false;
   }
   return FG_OK;
 }
 
-static size_t count_effects(const fg_scan_loop *loop, bool sure) {
-  size_t count = 0;
-  for (size_t i = 0; i < loop->set.count; i++)
-    count += fg_scan_effect_is_sure(&loop->subset, loop->set.effects[i].id) == sure;
-  return count;
+/* What stands beside the common effects in each explanation. */
+static fg_status say_class(fg_context *ctx, const fg_scan_loop *loop, char **text) {
+  enum { NAMED = 3 };
+  const fg_subset *subset = &loop->subset;
+  unsigned common = fg_scan_common(subset);
+  size_t total =
+      subset->member_total > subset->member_count ? subset->member_total : subset->member_count;
+  size_t named = total <= NAMED ? subset->member_count : NAMED - 1;
+  FG_TRY(fg_text_append(ctx, text, "%s",
+                        *text ? "; beside it the data cannot tell which it is: "
+                              : "Found, but the data cannot tell which it is: "));
+  for (size_t m = 0; m < named; m++) {
+    char words[400];
+    fg_scan_mask_words(subset, subset->members[m].mask & ~common, words, sizeof words);
+    FG_TRY(fg_text_append(ctx, text, "%s%s", m == 0 ? "" : m + 1 == total ? " or " : ", ", words));
+  }
+  if (total > named)
+    FG_TRY(fg_text_append(ctx, text, " or one of %zu other explanations", total - named));
+  return FG_OK;
 }
 
 static fg_status say_errors(fg_context *ctx, const fg_scan_loop *loop, char **text) {
@@ -214,17 +244,21 @@ static fg_status say_errors(fg_context *ctx, const fg_scan_loop *loop, char **te
   fg_scan_length_words(loop->error_after.rms, after, sizeof after);
   fg_scan_length_words(loop->noise_floor_um, floor_words, sizeof floor_words);
   FG_TRY(fg_text_append(ctx, text,
-                        " The edge residual falls from %s to %s rms; the noise alone makes %s.",
-                        before, after, floor_words));
+                        " The edge residual %s from %s to %s rms; the noise alone makes %s.",
+                        loop->error_after.rms <= loop->error_before.rms ? "falls" : "rises", before,
+                        after, floor_words));
   if (!isfinite(loop->error_before.held_out_rms)) return FG_OK;
   fg_scan_length_words(loop->error_before.held_out_rms, before, sizeof before);
   fg_scan_length_words(loop->error_after.held_out_rms, after, sizeof after);
-  return fg_text_append(ctx, text, " On scans kept aside it falls from %s to %s.", before, after);
+  return fg_text_append(ctx, text, " On scans kept aside it %s from %s to %s.",
+                        loop->error_after.held_out_rms <= loop->error_before.held_out_rms ? "falls"
+                                                                                          : "rises",
+                        before, after);
 }
 
 static fg_status say_chance(fg_context *ctx, double p, char **text) {
-  if (p < 1e-12) return fg_text_append(ctx, text, "chance is excluded (p < 1e-12).");
-  return fg_text_append(ctx, text, "chance alone would do this with p = %.2g.", p);
+  if (p < 1e-12) return fg_text_append(ctx, text, "Noise alone would do this with p < 10⁻¹².");
+  return fg_text_append(ctx, text, "Noise alone would do this with p = %.2g.", p);
 }
 
 static fg_status say_clean(fg_context *ctx, const fg_scan_loop *loop, char **text) {
@@ -237,22 +271,12 @@ static fg_status say_clean(fg_context *ctx, const fg_scan_loop *loop, char **tex
 }
 
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text) {
-  size_t sure = count_effects(loop, true), tied = count_effects(loop, false);
   *text = NULL;
   if (!loop->set.count) return say_clean(ctx, loop, text);
-  if (sure) {
-    FG_TRY(fg_text_append(ctx, text, "Found: "));
-    FG_TRY(say_effects(ctx, loop, true, text));
-  }
-  if (tied) {
-    FG_TRY(fg_text_append(ctx, text, "%s", sure ? ". Not told apart: " : "Found, but not named: "));
-    FG_TRY(say_effects(ctx, loop, false, text));
-    size_t others = loop->subset.member_count > 1 ? loop->subset.member_count - 1 : 0;
-    if (loop->subset.member_total > others + 1) others = loop->subset.member_total - 1;
-    FG_TRY(fg_text_append(ctx, text, ", or %zu other explanation%s that %s as well", others,
-                          others == 1 ? "" : "s", others == 1 ? "does" : "do"));
-  }
-  FG_TRY(fg_text_append(ctx, text, "; "));
+  FG_TRY(say_effects(ctx, loop, false, "Found: ", text));
+  FG_TRY(say_effects(ctx, loop, true, "no listed effect explains ", text));
+  if (loop->tied) FG_TRY(say_class(ctx, loop, text));
+  FG_TRY(fg_text_append(ctx, text, ". "));
   FG_TRY(say_chance(ctx, loop->subset.p_value, text));
   return say_errors(ctx, loop, text);
 }
