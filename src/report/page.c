@@ -98,6 +98,7 @@ static const char loop_style[] =
     ".verdict.loop-partly,.verdict.loop-unattributed{background:var(--open)}"
     "h3{font-size:14px;margin:16px 0 4px;overflow-wrap:anywhere}th.w,td.w{text-align:left}"
     "td.path{white-space:normal;overflow-wrap:anywhere;min-width:140px}"
+    ".doubt{color:var(--bad);font-weight:650;max-width:82ch;margin:0 0 14px}"
     ".nobreak{white-space:nowrap}figcaption b{color:var(--ink)}"
     ".tag{padding:1px 9px;border-radius:99px;font-size:12.5px;font-weight:600;background:#e8ecf0}"
     ".tag.found{background:#dcebfb;color:#0b4f9e}.tag.tied,.tag.open{background:#fff0d6;"

@@ -20,7 +20,7 @@ typedef struct quantity {
 static int decimals_for(double u) {
   double expanded = FG_COVERAGE_FACTOR * u;
   if (!(expanded > 0) || !isfinite(expanded)) return 5;
-  return (int)fmin(6, fmax(2, 1 - floor(log10(expanded))));
+  return (int)fmin(6, fmax(0, 1 - floor(log10(expanded))));
 }
 
 static void put_value(FILE *out, value v) {
@@ -40,9 +40,12 @@ static void put_change(FILE *out, const quantity *q) {
     fputs("<td>–</td>", out);
     return;
   }
-  bool large = fabs(change) > FG_COVERAGE_FACTOR * q->after.u;
-  fprintf(out, "<td class=\"%s\">%+.*f</td>", large ? "moved-on" : "",
-          fabs(change * q->to_fine) < 10 ? 2 : 1, change * q->to_fine + 0.0);
+  double expanded = FG_COVERAGE_FACTOR * q->after.u;
+  bool large = fabs(change) > expanded;
+  int decimals = isfinite(expanded) && expanded > 0 ? decimals_for(q->after.u * q->to_fine) : 2;
+  double step = pow(10, decimals), rounded = round(change * q->to_fine * step) / step;
+  fprintf(out, "<td class=\"%s\">%+.*f</td>", large ? "moved-on" : "", decimals,
+          rounded == 0 ? 0.0 : rounded);
 }
 
 static bool has_range(const quantity *q) {

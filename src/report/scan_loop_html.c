@@ -28,6 +28,12 @@ static void put_tiles(FILE *out, const fg_scan_loop *loop) {
   fg_text_clip(small, sizeof small, "what is left is %.3g times this",
                after->rms / loop->noise_floor_um);
   put_tile(out, "Noise floor", words, small);
+  if (loop->set.count && isfinite(before->held_out_rms)) {
+    fg_scan_length_words(after->held_out_rms, words, sizeof words);
+    fg_text_clip(small, sizeof small, "after / before = %.3g",
+                 after->held_out_rms / before->held_out_rms);
+    put_tile(out, "Scans kept aside, after", words, small);
+  }
   fputs("</dl>\n", out);
 }
 
@@ -57,6 +63,14 @@ static void put_inputs(FILE *out, const fg_scan_loop *loop) {
           out);
 }
 
+/* What was found must hold on scans that had no say in finding it. */
+static void put_doubt(FILE *out, const fg_scan_loop *loop) {
+  if (loop->set.count && loop->error_after.held_out_rms > loop->error_before.held_out_rms)
+    fputs("<p class=\"doubt\">The scans kept aside do not confirm it: there the residual becomes "
+          "larger. Do they lie at the same place of the same glass?</p>\n",
+          out);
+}
+
 static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fprintf(out,
@@ -66,6 +80,7 @@ static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) 
           loop->tied ? "<span class=\"verdict loop-partly\">tied: not named</span>" : "");
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
+  put_doubt(out, loop);
   put_tiles(out, loop);
   put_inputs(out, loop);
   fputs("</section>\n", out);
