@@ -112,7 +112,7 @@ static const char loop_style[] =
     "fill-opacity:.2}.effect{stroke:var(--bump);stroke-width:2.5}"
     ".still{stroke:#cfd6dd;stroke-width:.8}.moved{stroke:var(--bump);stroke-width:1}"
     ".dots{stroke-width:3;stroke-linecap:round;stroke-opacity:.3;stroke:var(--ink)}"
-    ".aside{stroke-opacity:.55}.mean{stroke-width:2}"
+    "path.pale{stroke:#aeb8c2}.aside{stroke-opacity:.55}.mean{stroke-width:2}"
     "path.k0{stroke:#0072b2}path.k1{stroke:#d55e00}path.k2{stroke:#009e73}path.k3{stroke:#aa4499}"
     "path.k4{stroke:#5b6875}span.k0{color:#0072b2}span.k1{color:#c04f00}span.k2{color:#00795a}"
     "span.k3{color:#aa4499}span.k4{color:#5b6875}"

@@ -101,21 +101,20 @@ static size_t sum_fields(const fg_field_list *list, fg_scan_coordinate along, in
   return count;
 }
 
-static void row_place(const fg_points *points, const fg_points_row *row,
-                      fg_scan_coordinate coordinate, double *x, double *share) {
+static bool row_place(const fg_points_row *row, fg_scan_coordinate coordinate, double *x) {
   double degrees = 180 / M_PI;
-  (void)points;
-  *share = 1;
-  if (coordinate == FG_SCAN_PHI) {
-    *x = row->phi;
-    if (!row->bump) *share = 0;
-  } else if (coordinate == FG_SCAN_NORMAL) {
-    *x = row->normal_rad * degrees;
-  } else {
-    *x = row->psi * degrees;
-    *share = row->radial.x * row->normal.x + row->radial.y * row->normal.y;
-    if (fabs(*share) < 0.5) *share = 0;
-  }
+  *x = coordinate == FG_SCAN_PHI      ? row->phi
+       : coordinate == FG_SCAN_NORMAL ? row->normal_rad * degrees
+                                      : row->psi * degrees;
+  return coordinate != FG_SCAN_PHI || row->bump;
+}
+
+/* Rows look along the normal of their own arc, which on a bump points to the shaft; over the foil
+ * the deviation is told outwards, in the direction that the effect's form moves it. */
+static double share_of(const fg_points_row *row, fg_scan_coordinate coordinate, const char *form) {
+  double along = row->radial.x * row->normal.x + row->radial.y * row->normal.y;
+  if (coordinate != FG_SCAN_FOIL) return 1;
+  return form && !strcmp(form, "radial") ? along : along < 0 ? -1 : 1;
 }
 
 /* Sum of the part's effects on one coordinate, from their columns at the rows, in bins. */
@@ -123,12 +122,11 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_co
                            curve *line, size_t *count) {
   const fg_points *points = &loop->points;
   size_t rows = points->row_count;
-  double *columns = NULL, n[SAMPLES] = {0}, low = INFINITY, high = -INFINITY, x, share;
+  double *columns = NULL, n[SAMPLES] = {0}, low = INFINITY, high = -INFINITY, x;
   *count = 0;
   memset(line, 0, sizeof *line);
   for (size_t i = 0; i < rows; i++) {
-    row_place(points, &points->rows[i], coordinate, &x, &share);
-    if (share == 0) continue;
+    if (!row_place(&points->rows[i], coordinate, &x)) continue;
     low = fmin(low, x);
     high = fmax(high, x);
   }
@@ -140,8 +138,8 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_co
     size_t filled = fg_points_effect_columns(points, effect->id, effect->shape, columns);
     *count += filled > 0;
     for (size_t i = 0; i < rows; i++) {
-      row_place(points, &points->rows[i], coordinate, &x, &share);
-      if (share == 0) continue;
+      if (!row_place(&points->rows[i], coordinate, &x)) continue;
+      double share = share_of(&points->rows[i], coordinate, fg_effect_form(effect->id));
       size_t bin = (size_t)fmin(SAMPLES - 1, (x - low) / (high - low) * SAMPLES);
       for (size_t c = 0; c < filled; c++)
         line->d[bin] += effect->coefficient_um[c] * columns[c * rows + i] / share;
@@ -255,6 +253,10 @@ static void put_curve(FILE *out, const fg_scan_loop *loop, fg_scan_coordinate co
   fputs(".</figcaption></figure>\n", out);
 }
 
+static const char *along(const char *id) {
+  return !strcmp(fg_effect_form(id), "radial") ? "radius" : "normal";
+}
+
 static void put_parameters(FILE *out, const fg_scan_loop *loop) {
   fputs("<div class=\"scroll\"><table><tr><th>effect</th><th class=\"w\">equation</th>"
         "<th class=\"w\">parameters, ± U = 2u</th></tr>\n",
@@ -267,7 +269,8 @@ static void put_parameters(FILE *out, const fg_scan_loop *loop) {
     fputs("<tr><td class=\"words\">", out);
     fg_html_text(out, words);
     fputs("<i>", out);
-    fg_html_text(out, effect->id);
+    fg_html_text(out, fg_effect_name(effect->id));
+    if (fg_effect_form(effect->id)) fprintf(out, ", along the %s", along(effect->id));
     fprintf(out, "</i></td><td class=\"words\">%s</td><td class=\"words\">",
             fg_scan_effect_equation(effect->id));
     for (size_t i = 0; fg_scan_effect_parameter(effect, i, &p); i++) {
@@ -278,9 +281,10 @@ static void put_parameters(FILE *out, const fg_scan_loop *loop) {
     if (fg_scan_effect_is_free(effect)) fputs("the curve itself", out);
     fputs("</td></tr>\n", out);
   }
-  fputs("</table></div>\n<p class=\"note\">x, y: of the smooth effects from the middle of the "
-        "picture, of ripple and step from its top left. ψ: about O from the foil's middle.</p>\n",
-        out);
+  fputs(
+      "</table></div>\n<p class=\"note\">x, y: of scale and shear from the middle of the picture, "
+      "else from its top left. ψ: about O from the foil's middle.</p>\n",
+      out);
 }
 
 static bool has_free(const fg_scan_loop *loop, fg_scan_coordinate coordinate) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "loop/points_effects.h"
 #include "report/scan_loop_parts.h"
 
 static void put_tile(FILE *out, const char *name, const char *value, const char *small) {
@@ -63,6 +64,11 @@ static void put_inputs(FILE *out, const fg_scan_loop *loop) {
           out);
 }
 
+static bool is_tied(const fg_scan_loop *loop) {
+  size_t members[FG_SUBSET_CLASS];
+  return loop->tied && fg_scan_class(&loop->subset, members) > 1;
+}
+
 /* What was found must hold on scans that had no say in finding it. */
 static void put_doubt(FILE *out, const fg_scan_loop *loop) {
   if (loop->set.count && loop->error_after.held_out_rms > loop->error_before.held_out_rms)
@@ -77,7 +83,7 @@ static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) 
           "<section><header><h1>Closing the loop</h1><span class=\"verdict loop-%s\">%s</span>"
           "%s</header>\n<p class=\"say\">",
           classes[loop->verdict], fg_loop_outcome_word(loop->verdict),
-          loop->tied ? "<span class=\"verdict loop-partly\">tied: not named</span>" : "");
+          is_tied(loop) ? "<span class=\"verdict loop-partly\">tied: not named</span>" : "");
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
   put_doubt(out, loop);
@@ -90,7 +96,7 @@ static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) 
 
 static bool is_claimed(const fg_scan_loop *loop, const char *id) {
   for (size_t i = 0; i < loop->set.count; i++)
-    if (!strcmp(loop->set.effects[i].id, id)) return true;
+    if (fg_effect_same(loop->set.effects[i].id, id)) return true;
   return false;
 }
 
@@ -100,7 +106,7 @@ static void put_name(FILE *out, const char *id) {
   fputs("<td class=\"words\">", out);
   fg_html_text(out, words);
   fputs("<i>", out);
-  fg_html_text(out, id);
+  fg_html_text(out, fg_effect_name(id));
   fputs("</i></td>", out);
 }
 
@@ -166,7 +172,8 @@ static void put_candidates(FILE *out, const fg_scan_loop *loop) {
   }
   for (size_t e = 0; e < loop->subset.effect_count; e++) {
     const fg_subset_effect *effect = &loop->subset.effects[e];
-    if (effect->free || is_claimed(loop, effect->id)) continue;
+    /* Of two forms of one effect the first speaks for both. */
+    if (effect->free || is_claimed(loop, effect->id) || strchr(effect->id, ':')) continue;
     put_rejected(out, loop, e);
     put_shares(out, &loop->subset, effect->id);
   }
@@ -179,22 +186,22 @@ static void put_candidates(FILE *out, const fg_scan_loop *loop) {
 
 static void put_class(FILE *out, const fg_scan_loop *loop) {
   const fg_subset *subset = &loop->subset;
-  if (!loop->tied) return;
-  unsigned common = fg_scan_common(subset);
-  char words[512];
+  size_t members[FG_SUBSET_CLASS], count = fg_scan_class(subset, members);
+  char words[FG_SCAN_CLASS_WORDS];
+  if (!is_tied(loop)) return;
   fputs("<section><h2 class=\"first\">What the data cannot tell apart</h2>\n", out);
-  if (common) {
-    fg_scan_mask_words(subset, common, words, sizeof words);
+  fg_scan_member_words(subset, 0, true, words, sizeof words);
+  if (words[0]) {
     fputs("<p class=\"note\">Beside what is sure (", out);
     fg_html_text(out, words);
     fputs("):</p>\n", out);
   }
   fputs("<ol class=\"words\">\n", out);
-  for (size_t m = 0; m < subset->member_count; m++) {
-    fg_scan_mask_words(subset, subset->members[m].mask & ~common, words, sizeof words);
+  for (size_t m = 0; m < count; m++) {
+    fg_scan_member_words(subset, members[m], false, words, sizeof words);
     fputs("<li>", out);
     fg_html_text(out, words);
-    fputs(m ? "</li>\n" : " <b>(drawn and applied here: it leaves least)</b></li>\n", out);
+    fputs(m ? "</li>\n" : " <b>(the likeliest: drawn and applied here)</b></li>\n", out);
   }
   fputs("</ol>\n", out);
   if (subset->member_total > subset->member_count)

@@ -13,13 +13,17 @@ const char *fg_scan_effect_equation(const char *id);
 
 bool fg_scan_effect_is_free(const fg_scan_effect *effect);
 
-/* Whether every explanation that the data allow holds the effect. */
+/* Whether every explanation that the data allow holds the effect, in whatever form. */
 bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id);
 
-/* The effects that all members of the class hold, and the words of a set of effects: "a together
- * with b". */
-unsigned fg_scan_common(const fg_subset *subset);
-void fg_scan_mask_words(const fg_subset *subset, unsigned mask, char *words, size_t size);
+/* Members of the alias class that differ in more than an effect's form; returns how many. */
+size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]);
+
+/* What a member shares with all others (`common`), or what it has of its own: "a together with b".
+ */
+enum { FG_SCAN_CLASS_WORDS = 512 };
+void fg_scan_member_words(const fg_subset *subset, size_t member, bool common, char *words,
+                          size_t size);
 
 /* Parameter i of an effect with the name and unit that people read; false: there are no more. */
 typedef struct fg_scan_parameter {
@@ -69,7 +73,10 @@ fg_status fg_scan_page_residuals(fg_context *ctx, FILE *out, const fg_scan_loop 
 /* Colour class of a scan's marks: "k0" to "k3", "k4" from the fifth on. */
 const char *fg_scan_colour(const fg_scan_loop *loop, size_t scan);
 
-/* Size that all but `share` of |values| stay below, over rows that take part; 0 without any. */
+/* Rows up to this weight hardly take part: the edge of a disc that is not round. */
+double fg_scan_light(const fg_points *points);
+
+/* Size that all but `share` of |values| stay below, over rows that weigh; 0 without any. */
 fg_status fg_scan_residual_limit(fg_context *ctx, const fg_points *points, const double *values,
                                  double share, double *limit);
 

@@ -14,6 +14,7 @@ typedef struct series {
   const fg_scan_loop *loop;
   fg_scan_coordinate coordinate;
   const double *residual_um;
+  double light; /* rows up to this weight are drawn pale and are not in the mean */
 } series;
 
 const char *fg_scan_colour(const fg_scan_loop *loop, size_t scan) {
@@ -52,14 +53,18 @@ static size_t scan_of(const series *s, size_t i) {
   return s->loop->points.views[s->loop->points.rows[i].view].scan;
 }
 
-static void put_points(const fg_plot *at, const series *s, size_t scan) {
+static bool is_light(const series *s, size_t i) {
+  return s->loop->points.rows[i].weight <= s->light;
+}
+
+static void put_points(const fg_plot *at, const series *s, size_t scan, bool light) {
   size_t rows = s->loop->points.row_count, stride = 1 + rows / POINTS_MOST;
   bool aside = s->loop->hold_out[scan];
   fprintf(at->out, "<path class=\"%s %s\" d=\"", aside ? "aside" : "dots",
-          fg_scan_colour(s->loop, scan));
+          light ? "pale" : fg_scan_colour(s->loop, scan));
   for (size_t i = 0; i < rows; i += stride) {
     double x, y;
-    if (scan_of(s, i) != scan || !point_at(s, i, &x, &y)) continue;
+    if (scan_of(s, i) != scan || is_light(s, i) != light || !point_at(s, i, &x, &y)) continue;
     y = fmin(at->y_high, fmax(at->y_low, y));
     fprintf(at->out, aside ? "M%.1f %.1fm-2-2l4 4m0-4l-4 4" : "M%.1f %.1fh0", fg_plot_x(at, x),
             fg_plot_y(at, y));
@@ -72,11 +77,11 @@ static void put_mean(const fg_plot *at, const series *s, size_t scan) {
   double sum[BINS] = {0}, n[BINS] = {0}, x, y, place[BINS];
   size_t rows = s->loop->points.row_count, count = 0;
   for (size_t i = 0; i < rows; i++)
-    count += scan_of(s, i) == scan && point_at(s, i, &x, &y);
+    count += scan_of(s, i) == scan && !is_light(s, i) && point_at(s, i, &x, &y);
   size_t bins = count / ROWS_IN_BIN < BINS ? count / ROWS_IN_BIN : BINS;
   if (bins < 4) return;
   for (size_t i = 0; i < rows; i++) {
-    if (scan_of(s, i) != scan || !point_at(s, i, &x, &y)) continue;
+    if (scan_of(s, i) != scan || is_light(s, i) || !point_at(s, i, &x, &y)) continue;
     double share = (x - at->x_low) / (at->x_high - at->x_low);
     size_t bin = (size_t)fmin((double)bins - 1, share * (double)bins);
     sum[bin] += y;
@@ -108,7 +113,8 @@ static void put_plot(FILE *out, const series *s, const double range[2], double l
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, fg_scan_coordinate_title(s->coordinate));
   for (size_t scan = 0; scan < s->loop->scan_count; scan++)
-    put_points(&at, s, scan);
+    for (int light = 1; light >= 0; light--)
+      put_points(&at, s, scan, light);
   for (size_t scan = 0; scan < s->loop->scan_count && scan < COLOURS; scan++)
     put_mean(&at, s, scan);
   fg_plot_end(&at);
@@ -131,7 +137,7 @@ static bool find_range(const series *s, double range[2]) {
 static void put_all(FILE *out, const fg_scan_loop *loop, const double limit_um[2]) {
   fputs("<div class=\"two\">\n", out);
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
-    series s = {loop, (fg_scan_coordinate)c, loop->residual_before};
+    series s = {loop, (fg_scan_coordinate)c, loop->residual_before, fg_scan_light(&loop->points)};
     double range[2];
     if (!find_range(&s, range)) continue;
     put_plot(out, &s, range, limit_um[0], loop->set.count ? "Before" : "As measured");
@@ -153,17 +159,26 @@ static void put_enlarged(FILE *out, const fg_scan_loop *loop, const double limit
           "class=\"two\">\n",
           limit_um[0] / limit_um[1]);
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
-    series s = {loop, (fg_scan_coordinate)c, loop->residual_after};
+    series s = {loop, (fg_scan_coordinate)c, loop->residual_after, fg_scan_light(&loop->points)};
     double range[2];
     if (find_range(&s, range)) put_plot(out, &s, range, limit_um[1], caption);
   }
   fputs("</div></details>\n", out);
 }
 
+static bool has_light(const fg_points *points) {
+  double light = fg_scan_light(points);
+  for (size_t i = 0; i < points->row_count; i++)
+    if (points->rows[i].weight > 0 && points->rows[i].weight <= light) return true;
+  return false;
+}
+
 static void put_key(FILE *out, const fg_scan_loop *loop) {
   fputs("<p class=\"note\">Dots: edge rows (thinned). Line: their mean. Grey band: two sd of the "
         "noise of one row.",
         out);
+  if (has_light(&loop->points))
+    fputs(" Pale: rows that hardly weigh, at the frame where they lie beyond it.", out);
   if (loop->scan_count > 1) {
     fputs(" Scans:", out);
     for (size_t i = 0; i < loop->scan_count && i <= COLOURS; i++) {

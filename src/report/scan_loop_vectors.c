@@ -12,21 +12,32 @@ enum {
   MARGIN = 44,
   FOOT = 40,
   NEEDLES_MOST = 420,
+  RING_NEEDLES_MOST = 1100,
   NUMBERS_MOST = 40
 };
 enum { SCANS_DRAWN = 6 };
-static const double needle_length = 44; /* of a large residual, in units of the drawing */
+static const double needle_length = 44,
+                    ring_needle_length = 16; /* of a large residual, in units of the drawing */
 
 typedef struct vectors {
   FILE *out;
   const fg_points *points;
   const double *residual_um;
   size_t scan;
+  bool rings;             /* nothing but discs: needles must stay inside and between them */
+  double longest;         /* needle of a large residual */
   size_t block;           /* rows in one needle */
   double low[2], high[2]; /* of the rows, mm */
   double scale;           /* units per mm */
   double unit_per_um;     /* of a needle */
 } vectors;
+
+double fg_scan_light(const fg_points *points) {
+  double most = 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    most = fmax(most, points->rows[i].weight);
+  return 0.1 * most;
+}
 
 fg_status fg_scan_residual_limit(fg_context *ctx, const fg_points *points, const double *values,
                                  double share, double *limit) {
@@ -34,9 +45,10 @@ fg_status fg_scan_residual_limit(fg_context *ctx, const fg_points *points, const
   size_t count = 0;
   *limit = 0;
   if (!points->row_count) return FG_OK;
+  double least = fg_scan_light(points);
   FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *sizes, (void **)&sizes));
   for (size_t i = 0; i < points->row_count; i++)
-    if (points->rows[i].weight > 0 && isfinite(values[i])) sizes[count++] = fabs(values[i]);
+    if (points->rows[i].weight > least && isfinite(values[i])) sizes[count++] = fabs(values[i]);
   if (count) *limit = fg_select(sizes, count, (size_t)((double)(count - 1) * (1 - share)));
   free(sizes);
   return FG_OK;
@@ -99,12 +111,17 @@ static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_
   if (!(n > 0) || !(length > 0)) return false;
   *value = sum / n;
   *base = place(v, (fg_point){at.x / n, at.y / n});
-  double reach = fmax(-1.6, fmin(1.6, *value * v->unit_per_um / needle_length)) * needle_length;
+  double reach = fmax(-1.6, fmin(1.6, *value * v->unit_per_um / v->longest)) * v->longest;
   *tip = (fg_point){base->x + reach * normal.x / length, base->y + reach * normal.y / length};
   return true;
 }
 
 typedef enum needle_part { NEEDLES_OUT, NEEDLES_IN, TIPS, BASES } needle_part;
+
+static bool is_ring(const vectors *v, size_t from, size_t end) {
+  fg_point a = v->points->rows[from].at, b = v->points->rows[end - 1].at;
+  return end - from > 8 && hypot(a.x - b.x, a.y - b.y) < 0.5;
+}
 
 static void put_needles(const vectors *v, needle_part part) {
   static const char *const styles[] = {"outwards", "inwards", "tips", "bases"};
@@ -124,6 +141,7 @@ static void put_needles(const vectors *v, needle_part part) {
         fprintf(v->out, "M%.1f %.1fL%.1f %.1f", base.x, base.y, tip.x, tip.y);
       }
     }
+    if (open && is_ring(v, i, end)) fputc('Z', v->out);
   }
   fputs("\"/>\n", v->out);
 }
@@ -146,7 +164,7 @@ static void put_numbers(const vectors *v) {
 }
 
 static void put_bar(const vectors *v, int height) {
-  double um = fg_scan_nice_below(2 * needle_length / v->unit_per_um), length = um * v->unit_per_um;
+  double um = fg_scan_nice_below(88 / v->unit_per_um), length = um * v->unit_per_um;
   char words[32];
   fg_scan_length_words(um, words, sizeof words);
   fprintf(v->out,
@@ -160,8 +178,9 @@ static double rms_of(const vectors *v) {
   double sum = 0, n = 0;
   for (size_t i = 0; i < v->points->row_count; i++)
     if (is_shown(v, i) && v->points->rows[i].weight > 0) {
-      sum += v->residual_um[i] * v->residual_um[i];
-      n++;
+      double weight = v->points->rows[i].weight;
+      sum += weight * v->residual_um[i] * v->residual_um[i];
+      n += weight;
     }
   return sqrt(sum / n);
 }
@@ -198,7 +217,7 @@ static void find_box(vectors *v) {
     v->high[0] = fmax(v->high[0], row->at.x);
     v->high[1] = fmax(v->high[1], row->at.y);
   }
-  v->block = 1 + count / NEEDLES_MOST;
+  v->block = 1 + count / (v->rings ? RING_NEEDLES_MOST : NEEDLES_MOST);
   v->scale = fmin((WIDTH - 2.0 * MARGIN) / (v->high[0] - v->low[0]),
                   (HEIGHT_MOST - 2.0 * MARGIN) / (v->high[1] - v->low[1]));
 }
@@ -222,14 +241,17 @@ static void put_scan(const fg_scan_loop *loop, vectors *v) {
 /* All drawings have one scale, so that they compare. */
 static void put_scans(FILE *out, const fg_scan_loop *loop, double limit_um) {
   double scale = INFINITY;
-  vectors v = {.out = out, .points = &loop->points};
+  vectors v = {.out = out, .points = &loop->points, .rings = true};
+  for (size_t k = 0; k < v.points->part_count; k++)
+    if (v.points->parts[k].bump_count) v.rings = false;
+  v.longest = v.rings ? ring_needle_length : needle_length;
   for (int drawn = 0; drawn < 2; drawn++)
     for (v.scan = 0; v.scan < loop->scan_count && v.scan < SCANS_DRAWN; v.scan++) {
       find_box(&v);
       if (!(v.high[0] > v.low[0]) || !(v.high[1] > v.low[1])) continue;
       scale = fmin(scale, v.scale);
       v.scale = scale;
-      v.unit_per_um = fg_scan_nice_below(1000 * needle_length / limit_um / scale) * scale / 1000;
+      v.unit_per_um = fg_scan_nice_below(1000 * v.longest / limit_um / scale) * scale / 1000;
       if (drawn) put_scan(loop, &v);
     }
 }
@@ -240,12 +262,12 @@ fg_status fg_scan_page_vectors(fg_context *ctx, FILE *out, const fg_scan_loop *l
   if (!(limit > 0)) return FG_OK;
   fprintf(out,
           "<section><h2 class=\"first\">Where the edges leave their circles</h2>\n"
-          "<p class=\"note\">The midline of every arc, and how far the measured edges lie %s: "
+          "<p class=\"note\">Every arc, and how far the measured edges lie from %s: "
           "<span class=\"key outkey\">outside</span> or <span class=\"key inkey\">inside</span> of "
           "the circle. All drawings have one scale.</p>\n",
           loop->options.same_foil && loop->scan_count > 1
-              ? "from the one set of circles that was fitted to all scans of the foil"
-              : "from the circles that were fitted to them");
+              ? "the one set of circles that was fitted to all scans of the foil"
+              : "the circles that were fitted to them");
   put_scans(out, loop, limit);
   if (loop->scan_count > SCANS_DRAWN)
     fprintf(out, "<p class=\"note\">%zu more scans are not drawn.</p>\n",

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "loop/points_effects.h"
 #include "report/scan_loop_parts.h"
 
 typedef struct effect_words {
@@ -14,14 +15,15 @@ static const effect_words table[] = {
     {"scan.shear", "a shear of the picture", "d_x = q y"},
     {"scan.carriage_ripple", "a ripple of the carriage", "d_y = a sin(2π y/p + φ)"},
     {"scan.row_step", "a step of the carriage (rows lost or doubled)", "d_y = a where y > y0"},
-    {"scan.optical_quadratic", "a quadratic distortion of the optics", "d_x = a (x/18 mm)²"},
-    {"scan.optical_cubic", "a cubic distortion of the optics", "d_x = a (x/18 mm)³"},
-    {"scan.carriage_quadratic", "a carriage that becomes faster or slower", "d_y = a (y/18 mm)²"},
-    {"part.ovality", "an oval foil", "radial a cos 2(ψ − ψ0)"},
-    {"part.spiral", "a spiral foil", "radial a (ψ/ψ_end)³"},
+    {"scan.optical_quadratic", "a quadratic distortion of the optics", "d_x = a ((x − c)/18 mm)²"},
+    {"scan.optical_cubic", "a cubic distortion of the optics", "d_x = a ((x − c)/18 mm)³"},
+    {"scan.carriage_quadratic", "a carriage that becomes faster or slower",
+     "d_y = a ((y − c)/18 mm)²"},
+    {"part.ovality", "an oval foil", "a cos 2(ψ − ψ0)"},
+    {"part.spiral", "a spiral foil", "a (ψ/ψ_end)³"},
     {"part.bump_crown", "bumps flatter or sharper at the crown than a circle",
-     "a P4(place in the arc)"},
-    {"part.bump_skew", "bumps that lean to one side", "a P3(place in the arc)"},
+     "even in the place in the arc, led by a P4"},
+    {"part.bump_skew", "bumps that lean to one side", "odd in the place in the arc, led by a P3"},
     {"free.scan.x.dx", "a shift in x that varies over x", "a smooth curve, freely fitted"},
     {"free.scan.x.dy", "a shift in y that varies over x", "a smooth curve, freely fitted"},
     {"free.scan.y.dx", "a shift in x that varies over y", "a smooth curve, freely fitted"},
@@ -35,14 +37,14 @@ static const effect_words table[] = {
 
 static const effect_words *find(const char *id) {
   const effect_words *row = table;
-  while (row->id && strcmp(row->id, id))
+  while (row->id && !fg_effect_same(row->id, id))
     row++;
   return row->id ? row : NULL;
 }
 
 void fg_scan_effect_words(const char *id, char *words, size_t size) {
   const effect_words *row = find(id);
-  fg_text_clip(words, size, "%s", row ? row->words : id);
+  fg_text_clip(words, size, "%s", row ? row->words : fg_effect_name(id));
 }
 
 const char *fg_scan_effect_equation(const char *id) {
@@ -54,32 +56,48 @@ bool fg_scan_effect_is_free(const fg_scan_effect *effect) {
   return !strncmp(effect->id, "free.", 5);
 }
 
+static bool holds(const fg_subset *subset, size_t member, const char *id) {
+  for (size_t e = 0; e < subset->effect_count; e++)
+    if ((subset->members[member].mask >> e & 1) && fg_effect_same(subset->effects[e].id, id))
+      return true;
+  return false;
+}
+
 bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id) {
-  size_t e = 0;
-  while (e < subset->effect_count && strcmp(subset->effects[e].id, id))
-    e++;
   for (size_t m = 0; m < subset->member_count; m++)
-    if (e == subset->effect_count || !(subset->members[m].mask >> e & 1)) return false;
+    if (!holds(subset, m, id)) return false;
   return true;
 }
 
-unsigned fg_scan_common(const fg_subset *subset) {
-  unsigned common = subset->member_count ? ~0u : 0;
-  for (size_t m = 0; m < subset->member_count; m++)
-    common &= subset->members[m].mask;
-  return common;
-}
-
-void fg_scan_mask_words(const fg_subset *subset, unsigned mask, char *words, size_t size) {
+void fg_scan_member_words(const fg_subset *subset, size_t member, bool common, char *words,
+                          size_t size) {
   size_t used = 0;
-  fg_text_clip(words, size, "nothing more");
+  fg_text_clip(words, size, "%s", common ? "" : "nothing more");
   for (size_t e = 0; e < subset->effect_count && used + 1 < size; e++) {
+    const char *id = subset->effects[e].id;
     char one[120];
-    if (!(mask >> e & 1)) continue;
-    fg_scan_effect_words(subset->effects[e].id, one, sizeof one);
+    if (!(subset->members[member].mask >> e & 1) || fg_scan_effect_is_sure(subset, id) != common)
+      continue;
+    fg_scan_effect_words(id, one, sizeof one);
     fg_text_clip(words + used, size - used, "%s%s", used ? " together with " : "", one);
     used = strlen(words);
   }
+}
+
+/* Two forms of one effect are one explanation. */
+size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]) {
+  size_t count = 0;
+  char words[FG_SCAN_CLASS_WORDS], before[FG_SCAN_CLASS_WORDS];
+  for (size_t m = 0; m < subset->member_count; m++) {
+    bool known = false;
+    fg_scan_member_words(subset, m, false, words, sizeof words);
+    for (size_t k = 0; k < count && !known; k++) {
+      fg_scan_member_words(subset, members[k], false, before, sizeof before);
+      known = !strcmp(words, before);
+    }
+    if (!known) members[count++] = m;
+  }
+  return count;
 }
 
 /* ---- parameters ---- */
@@ -111,11 +129,9 @@ static void put_unit(fg_scan_parameter *p) {
   static const struct {
     const char *name, *people, *unit;
     double factor;
-  } units[] = {{"value", "q", "ppm", 1e6},
-               {"amplitude_um", "a", "µm", 1},
-               {"period_mm", "p", "mm", 1},
-               {"phase_deg", "φ", "°", 1},
-               {"y_mm", "y0", "mm", 1}};
+  } units[] = {{"value", "q", "ppm", 1e6},  {"amplitude_um", "a", "µm", 1},
+               {"period_mm", "p", "mm", 1}, {"phase_deg", "φ", "°", 1},
+               {"y_mm", "y0", "mm", 1},     {"centre_mm", "c", "mm", 1}};
   for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
     if (strcmp(p->name, units[i].name) != 0) continue;
     p->name = units[i].people;
@@ -126,24 +142,22 @@ static void put_unit(fg_scan_parameter *p) {
   }
 }
 
-/* A part effect: the length of its coefficients; an ovality's two are a direction too. */
+/* Size of a part effect: its only coefficient, the one that leads, or a cosine's and a sine's. */
 static bool part_parameter(const fg_scan_effect *effect, size_t i, fg_scan_parameter *p) {
   const double *c = effect->coefficient_um, *u = effect->u_coefficient_um;
-  double square = 0, spread = 0;
-  for (size_t k = 0; k < effect->columns; k++)
-    square += c[k] * c[k];
-  double a = sqrt(square);
-  if (i == 0) {
-    for (size_t k = 0; k < effect->columns; k++)
-      spread += pow((a > 0 ? c[k] / a : 1) * u[k], 2);
-    *p = (fg_scan_parameter){"a", "µm", effect->columns == 1 ? c[0] : a, sqrt(spread)};
-    return true;
+  double degrees = 180 / M_PI, square = c[0] * c[0] + c[1] * c[1], a = sqrt(square);
+  if (!fg_effect_same(effect->id, "part.ovality")) {
+    *p = (fg_scan_parameter){"a", "µm", c[0], u[0]};
+    return i == 0;
   }
-  if (i > 1 || strcmp(effect->id, "part.ovality") != 0) return false;
-  double degrees = 180 / M_PI;
-  *p = (fg_scan_parameter){"ψ0", "°", 0.5 * atan2(c[1], c[0]) * degrees,
-                           a > 0 ? 0.5 * hypot(c[1] * u[0], c[0] * u[1]) / square * degrees : NAN};
-  return true;
+  if (i == 0)
+    *p = (fg_scan_parameter){"a", "µm", a,
+                             a > 0 ? hypot(c[0] * u[0], c[1] * u[1]) / a : hypot(u[0], u[1])};
+  else
+    *p =
+        (fg_scan_parameter){"ψ0", "°", 0.5 * atan2(c[1], c[0]) * degrees,
+                            a > 0 ? 0.5 * hypot(c[1] * u[0], c[0] * u[1]) / square * degrees : NAN};
+  return i < 2;
 }
 
 bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i,
@@ -221,16 +235,18 @@ static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool fre
 static fg_status say_class(fg_context *ctx, const fg_scan_loop *loop, char **text) {
   enum { NAMED = 3 };
   const fg_subset *subset = &loop->subset;
-  unsigned common = fg_scan_common(subset);
-  size_t total =
-      subset->member_total > subset->member_count ? subset->member_total : subset->member_count;
-  size_t named = total <= NAMED ? subset->member_count : NAMED - 1;
+  size_t members[FG_SUBSET_CLASS], count = fg_scan_class(subset, members);
+  size_t total = count + (subset->member_total > subset->member_count
+                              ? subset->member_total - subset->member_count
+                              : 0);
+  size_t named = total <= NAMED ? count : NAMED - 1;
+  if (count < 2) return FG_OK;
   FG_TRY(fg_text_append(ctx, text, "%s",
                         *text ? "; beside it the data cannot tell which it is: "
                               : "Found, but the data cannot tell which it is: "));
   for (size_t m = 0; m < named; m++) {
-    char words[400];
-    fg_scan_mask_words(subset, subset->members[m].mask & ~common, words, sizeof words);
+    char words[FG_SCAN_CLASS_WORDS];
+    fg_scan_member_words(subset, members[m], false, words, sizeof words);
     FG_TRY(fg_text_append(ctx, text, "%s%s", m == 0 ? "" : m + 1 == total ? " or " : ", ", words));
   }
   if (total > named)
@@ -270,9 +286,16 @@ static fg_status say_clean(fg_context *ctx, const fg_scan_loop *loop, char **tex
                        rms, loop->scan_count > 1 ? "these scans" : "this scan");
 }
 
+static fg_status say_edges(fg_context *ctx, const fg_scan_loop *loop, char **text) {
+  char rms[32];
+  fg_scan_length_words(loop->error_before.rms, rms, sizeof rms);
+  return fg_text_print(ctx, text, "The edges lie on their circles within the noise (%s rms).", rms);
+}
+
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text) {
   *text = NULL;
-  if (!loop->set.count) return say_clean(ctx, loop, text);
+  if (loop->verdict == FG_LOOP_CLEAN) return say_clean(ctx, loop, text);
+  if (!loop->set.count) return say_edges(ctx, loop, text);
   FG_TRY(say_effects(ctx, loop, false, "Found: ", text));
   FG_TRY(say_effects(ctx, loop, true, "no listed effect explains ", text));
   if (loop->tied) FG_TRY(say_class(ctx, loop, text));
