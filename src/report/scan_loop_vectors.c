@@ -25,6 +25,7 @@ typedef struct vectors {
   const double *residual_um;
   size_t scan;
   bool rings;             /* nothing but discs: needles must stay inside and between them */
+  double light;           /* weight that hardly counts */
   double longest;         /* needle of a large residual */
   size_t block;           /* rows in one needle */
   double low[2], high[2]; /* of the rows, mm */
@@ -92,7 +93,8 @@ static void put_strip(const vectors *v) {
   }
 }
 
-/* Mean of a block of rows: where it is, and the tip of its needle. */
+/* Mean of a block of rows: where it is, and the tip of its needle. Rows that hardly weigh have
+ * none. */
 static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_point *tip,
                    double *value) {
   fg_point at = {0, 0}, normal = {0, 0};
@@ -111,6 +113,7 @@ static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_
   if (!(n > 0) || !(length > 0)) return false;
   *value = sum / n;
   *base = place(v, (fg_point){at.x / n, at.y / n});
+  if (v->points->rows[from].weight <= v->light) *value = 0;
   double reach = fmax(-1.6, fmin(1.6, *value * v->unit_per_um / v->longest)) * v->longest;
   *tip = (fg_point){base->x + reach * normal.x / length, base->y + reach * normal.y / length};
   return true;
@@ -137,7 +140,7 @@ static void put_needles(const vectors *v, needle_part part) {
         fg_point p = part == TIPS ? tip : base;
         fprintf(v->out, "%c%.1f %.1f", open ? 'L' : 'M', p.x, p.y);
         open = true;
-      } else if ((value > 0) == (part == NEEDLES_OUT)) {
+      } else if (value != 0 && (value > 0) == (part == NEEDLES_OUT)) {
         fprintf(v->out, "M%.1f %.1fL%.1f %.1f", base.x, base.y, tip.x, tip.y);
       }
     }
@@ -244,6 +247,7 @@ static void put_scans(FILE *out, const fg_scan_loop *loop, double limit_um) {
   vectors v = {.out = out, .points = &loop->points, .rings = true};
   for (size_t k = 0; k < v.points->part_count; k++)
     if (v.points->parts[k].bump_count) v.rings = false;
+  v.light = fg_scan_light(v.points);
   v.longest = v.rings ? ring_needle_length : needle_length;
   for (int drawn = 0; drawn < 2; drawn++)
     for (v.scan = 0; v.scan < loop->scan_count && v.scan < SCANS_DRAWN; v.scan++) {
