@@ -25,6 +25,7 @@ typedef struct vectors {
   const double *residual_um;
   size_t scan;
   bool rings;             /* nothing but discs: needles must stay inside and between them */
+  double light;           /* weight that hardly counts */
   double longest;         /* needle of a large residual */
   size_t block;           /* rows in one needle */
   double low[2], high[2]; /* of the rows, mm */
