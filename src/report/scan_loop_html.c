@@ -265,6 +265,7 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   FG_TRY(fg_scan_page_effects(ctx, out, loop));
   FG_TRY(fg_scan_page_residuals(ctx, out, loop));
   fg_scan_page_dimensions(out, loop);
+  fg_scan_page_bumps(out, &loop->bumps);
   put_candidates(out, loop);
   put_errors(out, loop);
   fg_html_end(out);

@@ -84,4 +84,10 @@ fg_status fg_scan_residual_limit(fg_context *ctx, const fg_points *points, const
 
 void fg_scan_page_dimensions(FILE *out, const fg_scan_loop *loop);
 
+/* ---- the bumps (scan_loop_bump_page.c) ---- */
+
+/* Appends what was found over the bumps. */
+fg_status fg_scan_bumps_sentence(fg_context *ctx, const fg_scan_bumps *bumps, char **text);
+void fg_scan_page_bumps(FILE *out, const fg_scan_bumps *bumps);
+
 #endif

@@ -292,8 +292,7 @@ static fg_status say_edges(fg_context *ctx, const fg_scan_loop *loop, char **tex
   return fg_text_print(ctx, text, "The edges lie on their circles within the noise (%s rms).", rms);
 }
 
-fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text) {
-  *text = NULL;
+static fg_status say_points(fg_context *ctx, const fg_scan_loop *loop, char **text) {
   if (loop->verdict == FG_LOOP_CLEAN) return say_clean(ctx, loop, text);
   if (!loop->set.count) return say_edges(ctx, loop, text);
   FG_TRY(say_effects(ctx, loop, false, "Found: ", text));
@@ -302,4 +301,10 @@ fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char 
   FG_TRY(fg_text_append(ctx, text, ". "));
   FG_TRY(say_chance(ctx, loop->subset.p_value, text));
   return say_errors(ctx, loop, text);
+}
+
+fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text) {
+  *text = NULL;
+  FG_TRY(say_points(ctx, loop, text));
+  return fg_scan_bumps_sentence(ctx, &loop->bumps, text);
 }
