@@ -300,10 +300,10 @@ static bool has_free(const fg_scan_loop *loop, fg_scan_coordinate coordinate) {
 static fg_status put_part(fg_context *ctx, FILE *out, const fg_scan_loop *loop,
                           fg_scan_coordinate coordinate) {
   static const char *const captions[2][3] = {
-      {"Radial deviation of the foil, outwards from O positive",
+      {"Deviation of the foil, outwards from O positive",
        "Deviation of every bump from its circle, away from its centre positive",
        "What the direction of the edge does, outwards positive"},
-      {"Radial deviation of the foil from its best circle, outwards positive",
+      {"Deviation of the foil from its best circle, outwards positive",
        "Deviation of every bump from its best circle, away from its centre positive",
        "What the direction of the edge does, outwards positive"}};
   curve line;

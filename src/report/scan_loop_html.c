@@ -143,21 +143,32 @@ static void put_shares(FILE *out, const fg_subset *subset, const char *id) {
   fputs("<td>–</td><td>–</td></tr>\n", out);
 }
 
-/* The same rule as the JSON's. */
-static void put_rejected(FILE *out, const fg_scan_loop *loop, size_t e) {
+/* What the data could not have shown at 3 um is inconclusive, or absorbed by the geometry: the same
+ * rule as the JSON's. */
+static const char *rejected_word(const fg_subset *subset, size_t e) {
   static const double matters_um = 3, absorbed_share = 1e-4;
-  double smallest = loop->subset.smallest_um[e];
-  bool shown = smallest <= matters_um, absorbed = loop->subset.share[e] < absorbed_share;
+  if (subset->smallest_um[e] <= matters_um) return "absent";
+  return subset->share[e] < absorbed_share ? "absorbed by geometry" : "inconclusive";
+}
+
+static void put_rejected(FILE *out, const fg_scan_loop *loop, size_t e) {
+  const fg_subset *subset = &loop->subset;
+  bool tied = fg_scan_class_holds(subset, subset->effects[e].id);
+  const char *word = tied ? "tied" : rejected_word(subset, e);
   char words[32];
   fputs("<tr>", out);
-  put_name(out, loop->subset.effects[e].id);
-  fg_scan_length_words(smallest, words, sizeof words);
-  fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">%s%s</td>",
-          shown ? "absent" : "open",
-          shown      ? "absent"
-          : absorbed ? "absorbed by geometry"
-                     : "inconclusive",
-          isfinite(smallest) ? "would have shown from " : "", words);
+  put_name(out, subset->effects[e].id);
+  fg_scan_length_words(subset->smallest_um[e], words, sizeof words);
+  fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
+          tied                      ? "tied"
+          : !strcmp(word, "absent") ? "absent"
+                                    : "open",
+          word);
+  if (tied)
+    fputs("could be it: see above</td>", out);
+  else
+    fprintf(out, "%s%s</td>", isfinite(subset->smallest_um[e]) ? "would have shown from " : "",
+            words);
 }
 
 static void put_candidates(FILE *out, const fg_scan_loop *loop) {
@@ -204,9 +215,8 @@ static void put_class(FILE *out, const fg_scan_loop *loop) {
     fputs(m ? "</li>\n" : " <b>(the likeliest: drawn and applied here)</b></li>\n", out);
   }
   fputs("</ol>\n", out);
-  if (subset->member_total > subset->member_count)
-    fprintf(out, "<p class=\"note\">And %zu more.</p>\n",
-            subset->member_total - subset->member_count);
+  if (fg_scan_class_unlisted(subset))
+    fprintf(out, "<p class=\"note\">And %zu more.</p>\n", fg_scan_class_unlisted(subset));
   fputs("<p class=\"note\">Each explains the residual as well as the noise and the edge model "
         "allow to say. The dimensions below carry their range over all of them.</p>\n"
         "<p class=\"say\"><b>To tell them apart:</b> ",

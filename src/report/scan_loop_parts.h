@@ -19,6 +19,12 @@ bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id);
 /* Members of the alias class that differ in more than an effect's form; returns how many. */
 size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]);
 
+/* Members beyond those that the class has room for. */
+size_t fg_scan_class_unlisted(const fg_subset *subset);
+
+/* Whether a member of the class holds the effect, in whatever form. */
+bool fg_scan_class_holds(const fg_subset *subset, const char *id);
+
 /* What a member shares with all others (`common`), or what it has of its own: "a together with b".
  */
 enum { FG_SCAN_CLASS_WORDS = 512 };

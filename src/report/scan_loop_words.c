@@ -69,6 +69,12 @@ bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id) {
   return true;
 }
 
+bool fg_scan_class_holds(const fg_subset *subset, const char *id) {
+  for (size_t m = 0; m < subset->member_count; m++)
+    if (holds(subset, m, id)) return true;
+  return false;
+}
+
 void fg_scan_member_words(const fg_subset *subset, size_t member, bool common, char *words,
                           size_t size) {
   size_t used = 0;
@@ -98,6 +104,12 @@ size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]) {
     if (!known) members[count++] = m;
   }
   return count;
+}
+
+size_t fg_scan_class_unlisted(const fg_subset *subset) {
+  bool full = subset->member_count == FG_SUBSET_CLASS;
+  return full && subset->member_total > FG_SUBSET_CLASS ? subset->member_total - FG_SUBSET_CLASS
+                                                        : 0;
 }
 
 /* ---- parameters ---- */
@@ -236,9 +248,7 @@ static fg_status say_class(fg_context *ctx, const fg_scan_loop *loop, char **tex
   enum { NAMED = 3 };
   const fg_subset *subset = &loop->subset;
   size_t members[FG_SUBSET_CLASS], count = fg_scan_class(subset, members);
-  size_t total = count + (subset->member_total > subset->member_count
-                              ? subset->member_total - subset->member_count
-                              : 0);
+  size_t total = count + fg_scan_class_unlisted(subset);
   size_t named = total <= NAMED ? count : NAMED - 1;
   if (count < 2) return FG_OK;
   FG_TRY(fg_text_append(ctx, text, "%s",
@@ -249,7 +259,8 @@ static fg_status say_class(fg_context *ctx, const fg_scan_loop *loop, char **tex
     fg_scan_member_words(subset, members[m], false, words, sizeof words);
     FG_TRY(fg_text_append(ctx, text, "%s%s", m == 0 ? "" : m + 1 == total ? " or " : ", ", words));
   }
-  if (total > named)
+  if (total == named + 1) FG_TRY(fg_text_append(ctx, text, " or one other explanation"));
+  if (total > named + 1)
     FG_TRY(fg_text_append(ctx, text, " or one of %zu other explanations", total - named));
   return FG_OK;
 }

@@ -29,6 +29,7 @@ render clean 1 -70 2400 ''
 render ripple 2 -60 4800 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
 render a 3 -75 2400 '{"id":"scan.scale_y","value":0.001}'
 render b 4 15 2400 '{"id":"scan.scale_y","value":0.001}'
+render faint 5 -75 4800 '{"id":"scan.scale_y","value":0.00008}'
 render other 7 -120 2400 '{"id":"scan.scale_y","value":0.001}'
 
 page() { # page FILE ARGUMENTS...
@@ -73,14 +74,16 @@ cp ripple.png "$odd"
 page odd.html "$odd"
 holds odd.html '>explained<' scan.carriage_ripple 'a&lt;b&gt;&amp;&quot;c&#39;.png' "$(sha256sum <"$odd" | cut -c1-12)"
 grep -q -F '<b>&"c' odd.html && fail "a file's name goes into the page as it is"
-page again.html "$odd"
-cmp -s odd.html again.html || fail "two runs give two pages"
 page clean.html clean.png
+page again.html clean.png
+cmp -s clean.html again.html || fail "two runs give two pages"
 holds clean.html '>clean<' 'Nothing is claimed' 'As measured'
 grep -q 'After' clean.html && fail "the page of a clean scan has an After"
 page pair.html --same-foil a.png b.png
 holds pair.html '>explained<' scan.scale_y part.ovality 'of one bump differs between the scans'
 [ "$(grep -c 'class="plot vectors"' pair.html)" = 4 ] || fail "a pair is not drawn before and after"
+page tie.html faint.png
+holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
 page aside.html a.png --hold-out other.png
 holds aside.html 'only confirms' 'On scans kept aside' 'class="aside k1"'
 "$program" loop clean.png --html /nowhere/x.html 2>err.txt
