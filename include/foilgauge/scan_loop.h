@@ -56,6 +56,8 @@ void fg_scan_loop_free(fg_scan_loop *loop);
 /* "foilgauge/loop/1", domain "scan". */
 fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
 fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
+/* The same as one page with drawings inside, without scripts. */
+fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
 /* "foilgauge/scan-model/1". */
 fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
 

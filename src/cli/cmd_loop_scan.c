@@ -16,6 +16,7 @@ enum {
   OPTION_SAME,
   OPTION_HOLD_OUT,
   OPTION_MODEL_OUT,
+  OPTION_HTML,
   OPTION_SEED,
   OPTION_THREADS
 };
@@ -24,7 +25,7 @@ typedef struct arguments {
   const char *paths[SCANS_MOST];
   bool hold_out[SCANS_MOST];
   size_t count, kept_aside;
-  const char *design_path, *output_path, *model_path;
+  const char *design_path, *output_path, *model_path, *page_path;
   fg_scan_loop_options options;
 } arguments;
 
@@ -38,6 +39,7 @@ static const struct argp_option options[] = {
     {"hold-out", OPTION_HOLD_OUT, "SCAN", 0, "A scan that only confirms (may be repeated)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "The scanner's model, for `measure --model`", 0},
+    {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},
     {"seed", OPTION_SEED, "N", 0, "Of every random step (default 1)", 0},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: all cores)", 0},
     {0},
@@ -90,6 +92,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_MODEL_OUT:
     a->model_path = text;
     return 0;
+  case OPTION_HTML:
+    a->page_path = text;
+    return 0;
   case OPTION_SEED:
     a->options.seed = (uint64_t)parse_number(state, "seed", text);
     return 0;
@@ -124,9 +129,11 @@ static fg_status write_file(fg_context *ctx, const char *path, const fg_scan_loo
 
 static fg_status write_all(fg_context *ctx, const arguments *a, const fg_scan_loop *loop) {
   if (a->model_path) FG_TRY(write_file(ctx, a->model_path, loop, fg_scan_loop_write_model));
+  if (a->page_path) FG_TRY(write_file(ctx, a->page_path, loop, fg_scan_loop_write_html));
   if (a->output_path) return write_file(ctx, a->output_path, loop, fg_scan_loop_write_json);
   if (isatty(STDOUT_FILENO)) return write_file(ctx, "-", loop, fg_scan_loop_write_text);
-  return a->model_path ? FG_OK : write_file(ctx, "-", loop, fg_scan_loop_write_json);
+  return a->model_path || a->page_path ? FG_OK
+                                       : write_file(ctx, "-", loop, fg_scan_loop_write_json);
 }
 
 static fg_status run(fg_context *ctx, const arguments *a) {
@@ -147,7 +154,8 @@ int fg_cmd_loop_scan(int argc, char **argv) {
   fg_context ctx = {0};
   arguments a = {.options = {.seed = 1}};
   argv[0] = (char[]){"foilgauge loop"};
-  argp_parse(&parser, argc, argv, 0, NULL, &a);
+  /* in order: reports list the scans as they are given, those kept aside between the others */
+  argp_parse(&parser, argc, argv, ARGP_IN_ORDER, NULL, &a);
   fg_status status = run(&ctx, &a);
   return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
 }

@@ -90,6 +90,41 @@ static const char lot_style[] =
     "auto-fit,minmax(min(300px,100%),1fr));gap:18px}.polar{max-width:520px;margin:0 auto}"
     "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";
 
+/* The loop on scans. Colours that the colour-blind tell apart: purple and orange for the two sides
+ * of a circle, blue, orange, green and pink for scans. */
+static const char loop_style[] =
+    "h2.first{margin-top:0}.say{font-size:17px;max-width:82ch;margin:4px 0 16px}"
+    ".verdict.loop-clean{background:var(--good)}.verdict.loop-explained{background:var(--blue)}"
+    ".verdict.loop-partly,.verdict.loop-unattributed{background:var(--open)}"
+    "h3{font-size:14px;margin:16px 0 4px;overflow-wrap:anywhere}th.w,td.w{text-align:left}"
+    "td.path{white-space:normal;overflow-wrap:anywhere;min-width:140px}"
+    ".doubt{color:var(--bad);font-weight:650;max-width:82ch;margin:0 0 14px}"
+    ".nobreak{white-space:nowrap}figcaption b{color:var(--ink)}"
+    ".tag{padding:1px 9px;border-radius:99px;font-size:12.5px;font-weight:600;background:#e8ecf0}"
+    ".tag.found{background:#dcebfb;color:#0b4f9e}.tag.tied,.tag.open{background:#fff0d6;"
+    "color:#7a4a00}.tag.absent{color:var(--soft)}\n"
+    ".strip{stroke:#d3dae1;stroke-width:3}.bases{stroke:#16202a;stroke-width:1}"
+    ".outwards{stroke:#5e3c99}.inwards{stroke:#e66101}.tips{stroke:#5b6875;stroke-width:.7}"
+    ".plot .bar{stroke:var(--ink);stroke-width:3}.vectors .bump{text-anchor:middle;"
+    "fill:var(--soft)}.key{font-weight:600}.outkey{color:#5e3c99}.inkey{color:#b34a00}"
+    ".plot .noise{fill:#dfe4e9}.plot .beyond{fill:#e9edf1}.plot .reach{fill:#fff}.plot "
+    "path.shape{fill:#1f6fd0;"
+    "fill-opacity:.2}.effect{stroke:var(--bump);stroke-width:2.5}"
+    ".still{stroke:#cfd6dd;stroke-width:.8}.moved{stroke:var(--bump);stroke-width:1}"
+    ".dots{stroke-width:3;stroke-linecap:round;stroke-opacity:.3;stroke:var(--ink)}"
+    "path.pale{stroke:#aeb8c2}.aside{stroke-opacity:.55}.mean{stroke-width:2}"
+    "path.k0{stroke:#0072b2}path.k1{stroke:#d55e00}path.k2{stroke:#009e73}path.k3{stroke:#aa4499}"
+    "path.k4{stroke:#5b6875}span.k0{color:#0072b2}span.k1{color:#c04f00}span.k2{color:#00795a}"
+    "span.k3{color:#aa4499}span.k4{color:#5b6875}"
+    "td.moved-on{background:#fff0d6;font-weight:650}th.group{text-align:center;border-left:1px "
+    "solid var(--line)}details summary{cursor:pointer;font-weight:600;margin:14px 0 8px}"
+    ".dimensions th,.dimensions td{padding:4px 7px}.dimensions.narrow{width:auto}"
+    ".dimensions td:first-child{position:sticky;left:0;background:#fff}"
+    ".two{display:grid;grid-template-columns:1fr 1fr;gap:16px 22px;margin-bottom:14px}"
+    "code{font-size:12.5px;overflow-wrap:anywhere}\n"
+    "@media(max-width:600px){.two{grid-template-columns:minmax(0,1fr)}.two "
+    ".plot{font-size:16px}.say{font-size:16px}}\n";
+
 void fg_html_text(FILE *out, const char *text) {
   while (*text) {
     size_t length = fg_utf8_length(text);
@@ -124,8 +159,8 @@ void fg_html_begin(FILE *out, const char *title) {
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
   fg_html_text(out, title);
-  fprintf(out, " – foilgauge</title>\n<style>\n%s%s%s</style>\n</head>\n<body>\n<main>\n", style,
-          plot_style, lot_style);
+  fprintf(out, " – foilgauge</title>\n<style>\n%s%s%s%s</style>\n</head>\n<body>\n<main>\n", style,
+          plot_style, lot_style, loop_style);
 }
 
 void fg_html_end(FILE *out) {

@@ -1,0 +1,283 @@
+/* The page of the loop on scans: what was found and how sure; where the edges leave their circles;
+ * the effect; the dimensions; what was tried. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "loop/points_effects.h"
+#include "report/scan_loop_parts.h"
+
+static void put_tile(FILE *out, const char *name, const char *value, const char *small) {
+  fprintf(out, "<div><dt>%s</dt><dd>%s<small>%s</small></dd></div>\n", name, value, small);
+}
+
+static void put_tiles(FILE *out, const fg_scan_loop *loop) {
+  char words[32], small[80];
+  const fg_scan_error *before = &loop->error_before, *after = &loop->error_after;
+  fputs("<dl class=\"tiles\">\n", out);
+  fg_scan_length_words(before->rms, words, sizeof words);
+  put_tile(out, loop->set.count ? "Edge residual before" : "Edge residual", words, "rms");
+  if (loop->set.count) {
+    fg_scan_length_words(after->rms, words, sizeof words);
+    put_tile(out, "Edge residual after", words, "rms");
+    fg_text_clip(words, sizeof words, "%.3g ×", before->rms / after->rms);
+    fg_text_clip(small, sizeof small, "after / before = %.3g", after->rms / before->rms);
+    put_tile(out, "Smaller by", words, small);
+  }
+  fg_scan_length_words(loop->noise_floor_um, words, sizeof words);
+  fg_text_clip(small, sizeof small, "what is left is %.3g times this",
+               after->rms / loop->noise_floor_um);
+  put_tile(out, "Noise floor", words, small);
+  if (loop->set.count && isfinite(before->held_out_rms)) {
+    fg_scan_length_words(after->held_out_rms, words, sizeof words);
+    fg_text_clip(small, sizeof small, "after / before = %.3g",
+                 after->held_out_rms / before->held_out_rms);
+    put_tile(out, "Scans kept aside, after", words, small);
+  }
+  fputs("</dl>\n", out);
+}
+
+static void put_inputs(FILE *out, const fg_scan_loop *loop) {
+  fputs("<div class=\"scroll\"><table><tr><th>scan</th><th class=\"w\">SHA-256</th>"
+        "<th class=\"w\">dpi</th><th class=\"w\">shows</th><th class=\"w\">role</th></tr>\n",
+        out);
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    const fg_measurement *m = &loop->before[i];
+    fputs("<tr><td class=\"path\">", out);
+    fg_html_text(out, m->scan);
+    fprintf(out, "</td><td class=\"w\"><code>%.12s</code></td><td class=\"w\">%.6g", m->sha256,
+            m->dpi[0]);
+    if (fabs(m->dpi[1] / m->dpi[0] - 1) > 1e-9) fprintf(out, " × %.6g", m->dpi[1]);
+    fputs("</td><td class=\"w\">", out);
+    if (m->foil_count) fprintf(out, "%zu foil%s", m->foil_count, m->foil_count > 1 ? "s" : "");
+    if (m->disc_count)
+      fprintf(out, "%s%zu disc%s", m->foil_count ? ", " : "", m->disc_count,
+              m->disc_count > 1 ? "s" : "");
+    fprintf(out, "</td><td class=\"w\">%s</td></tr>\n",
+            loop->hold_out[i] ? "kept aside: only confirms" : "searched");
+  }
+  fputs("</table></div>\n", out);
+  if (loop->options.same_foil)
+    fputs("<p class=\"note\">The scans show the same foil: what stays with the glass is the "
+          "scanner, what turns is the part.</p>\n",
+          out);
+}
+
+static bool is_tied(const fg_scan_loop *loop) {
+  size_t members[FG_SUBSET_CLASS];
+  return loop->tied && fg_scan_class(&loop->subset, members) > 1;
+}
+
+/* What was found must hold on scans that had no say in finding it. */
+static void put_doubt(FILE *out, const fg_scan_loop *loop) {
+  if (loop->set.count && loop->error_after.held_out_rms > loop->error_before.held_out_rms)
+    fputs("<p class=\"doubt\">The scans kept aside do not confirm it: there the residual becomes "
+          "larger. Do they lie at the same place of the same glass?</p>\n",
+          out);
+}
+
+static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) {
+  static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
+  fprintf(out,
+          "<section><header><h1>Closing the loop</h1><span class=\"verdict loop-%s\">%s</span>"
+          "%s</header>\n<p class=\"say\">",
+          classes[loop->verdict], fg_loop_outcome_word(loop->verdict),
+          is_tied(loop) ? "<span class=\"verdict loop-partly\">tied: not named</span>" : "");
+  fg_html_text(out, sentence);
+  fputs("</p>\n", out);
+  put_doubt(out, loop);
+  put_tiles(out, loop);
+  put_inputs(out, loop);
+  fputs("</section>\n", out);
+}
+
+/* ---- candidates ---- */
+
+static bool is_claimed(const fg_scan_loop *loop, const char *id) {
+  for (size_t i = 0; i < loop->set.count; i++)
+    if (fg_effect_same(loop->set.effects[i].id, id)) return true;
+  return false;
+}
+
+static void put_name(FILE *out, const char *id) {
+  char words[120];
+  fg_scan_effect_words(id, words, sizeof words);
+  fputs("<td class=\"words\">", out);
+  fg_html_text(out, words);
+  fputs("<i>", out);
+  fg_html_text(out, fg_effect_name(id));
+  fputs("</i></td>", out);
+}
+
+static void put_claim(FILE *out, const fg_scan_loop *loop, const fg_scan_effect *effect) {
+  bool sure = fg_scan_effect_is_sure(&loop->subset, effect->id);
+  bool free_curve = fg_scan_effect_is_free(effect);
+  fg_scan_parameter p;
+  char words[64];
+  fputs("<tr class=\"on\">", out);
+  put_name(out, effect->id);
+  fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
+          sure ? free_curve ? "open" : "found" : "tied",
+          free_curve ? "unattributed"
+          : sure     ? "found"
+                     : "tied");
+  if (fg_scan_effect_parameter(effect, 0, &p)) {
+    fg_scan_value_words(p.value, p.u, words, sizeof words);
+    fprintf(out, "%s = %s %s", p.name, words, p.unit);
+  } else {
+    fputs("see its curve", out);
+  }
+  fputs("</td>", out);
+}
+
+/* The two last columns: what it alone would take of the residual, and how much of it the geometry
+ * does not take over. */
+static void put_shares(FILE *out, const fg_subset *subset, const char *id) {
+  for (size_t e = 0; e < subset->effect_count; e++)
+    if (!strcmp(subset->effects[e].id, id)) {
+      fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * subset->alone[e],
+              subset->share[e] < 0.1 ? 2 : 0, 100 * subset->share[e]);
+      return;
+    }
+  fputs("<td>–</td><td>–</td></tr>\n", out);
+}
+
+/* What the data could not have shown at 3 um is inconclusive, or absorbed by the geometry: the same
+ * rule as the JSON's. */
+static const char *rejected_word(const fg_subset *subset, size_t e) {
+  static const double matters_um = 3, absorbed_share = 1e-4;
+  if (subset->smallest_um[e] <= matters_um) return "absent";
+  return subset->share[e] < absorbed_share ? "absorbed by geometry" : "inconclusive";
+}
+
+static void put_rejected(FILE *out, const fg_scan_loop *loop, size_t e) {
+  const fg_subset *subset = &loop->subset;
+  bool tied = fg_scan_class_holds(subset, subset->effects[e].id);
+  const char *word = tied ? "tied" : rejected_word(subset, e);
+  char words[32];
+  fputs("<tr>", out);
+  put_name(out, subset->effects[e].id);
+  fg_scan_length_words(subset->smallest_um[e], words, sizeof words);
+  fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
+          tied                      ? "tied"
+          : !strcmp(word, "absent") ? "absent"
+                                    : "open",
+          word);
+  if (tied)
+    fputs("could be it: see above</td>", out);
+  else
+    fprintf(out, "%s%s</td>", isfinite(subset->smallest_um[e]) ? "would have shown from " : "",
+            words);
+}
+
+static void put_candidates(FILE *out, const fg_scan_loop *loop) {
+  fputs("<section><h2 class=\"first\">Candidates and verdicts</h2>\n<div class=\"scroll\"><table>"
+        "<tr><th>effect</th><th class=\"w\">verdict</th><th class=\"w\">size, ± U = 2u</th>"
+        "<th>alone it would take<br>of the residual</th><th>not absorbed<br>by the circles</th>"
+        "</tr>\n",
+        out);
+  for (size_t i = 0; i < loop->set.count; i++) {
+    put_claim(out, loop, &loop->set.effects[i]);
+    put_shares(out, &loop->subset, loop->set.effects[i].id);
+  }
+  for (size_t e = 0; e < loop->subset.effect_count; e++) {
+    const fg_subset_effect *effect = &loop->subset.effects[e];
+    /* Of two forms of one effect the first speaks for both. */
+    if (effect->free || is_claimed(loop, effect->id) || strchr(effect->id, ':')) continue;
+    put_rejected(out, loop, e);
+    put_shares(out, &loop->subset, effect->id);
+  }
+  fputs("</table></div>\n<p class=\"note\">Absent: 3 µm of it would have shown. Inconclusive: the "
+        "data could not have shown that much. Absorbed by geometry: circles that move and change "
+        "their radius look the same. Sizes of smooth effects are what they do 18 mm from the "
+        "middle.</p></section>\n",
+        out);
+}
+
+static void put_class(FILE *out, const fg_scan_loop *loop) {
+  const fg_subset *subset = &loop->subset;
+  size_t members[FG_SUBSET_CLASS], count = fg_scan_class(subset, members);
+  char words[FG_SCAN_CLASS_WORDS];
+  if (!is_tied(loop)) return;
+  fputs("<section><h2 class=\"first\">What the data cannot tell apart</h2>\n", out);
+  fg_scan_member_words(subset, 0, true, words, sizeof words);
+  if (words[0]) {
+    fputs("<p class=\"note\">Beside what is sure (", out);
+    fg_html_text(out, words);
+    fputs("):</p>\n", out);
+  }
+  fputs("<ol class=\"words\">\n", out);
+  for (size_t m = 0; m < count; m++) {
+    fg_scan_member_words(subset, members[m], false, words, sizeof words);
+    fputs("<li>", out);
+    fg_html_text(out, words);
+    fputs(m ? "</li>\n" : " <b>(the likeliest: drawn and applied here)</b></li>\n", out);
+  }
+  fputs("</ol>\n", out);
+  if (fg_scan_class_unlisted(subset))
+    fprintf(out, "<p class=\"note\">And %zu more.</p>\n", fg_scan_class_unlisted(subset));
+  fputs("<p class=\"note\">Each explains the residual as well as the noise and the edge model "
+        "allow to say. The dimensions below carry their range over all of them.</p>\n"
+        "<p class=\"say\"><b>To tell them apart:</b> ",
+        out);
+  fputs(loop->options.same_foil
+            ? "scan another foil on the same scanner: what repeats is the scanner.</p></section>\n"
+            : "scan the same foil again, turned by about 90°, and run the loop on both scans with "
+              "<code>--same-foil</code>: what stays with the glass is the scanner, what turns is "
+              "the part.</p></section>\n",
+        out);
+}
+
+/* ---- errors ---- */
+
+static void put_error(FILE *out, const char *name, double before, double after) {
+  char words[2][32];
+  if (!isfinite(before)) return;
+  fg_scan_length_words(before, words[0], sizeof words[0]);
+  fg_scan_length_words(after, words[1], sizeof words[1]);
+  fprintf(out, "<tr><td>%s</td><td>%s</td><td>%s</td><td>%.3g</td></tr>\n", name, words[0],
+          words[1], after / before);
+}
+
+static void put_errors(FILE *out, const fg_scan_loop *loop) {
+  const fg_scan_error *b = &loop->error_before, *a = &loop->error_after;
+  size_t left_out = 0;
+  char words[32];
+  for (size_t i = 0; i < loop->points.row_count; i++)
+    left_out += !(loop->points.rows[i].weight > 0);
+  fputs("<section><h2 class=\"first\">Errors of the edge rows</h2>\n<div class=\"scroll\"><table>"
+        "<tr><th>error</th><th>before</th><th>after</th><th>ratio</th></tr>\n",
+        out);
+  put_error(out, "rms", b->rms, a->rms);
+  put_error(out, "robust sd", b->robust_sd, a->robust_sd);
+  put_error(out, "95th percentile", b->p95, a->p95);
+  put_error(out, "maximum", b->maximum, a->maximum);
+  put_error(out, "scans kept aside, rms", b->held_out_rms, a->held_out_rms);
+  fg_scan_length_words(loop->noise_floor_um, words, sizeof words);
+  fprintf(out,
+          "</table></div>\n<p class=\"note\">%zu rows, each the mean of %d neighbours along the "
+          "strip; %zu of them left out as outliers. Noise floor of a row: %s; after / noise floor "
+          "= %.3g.",
+          loop->points.row_count, FG_POINTS_BLOCK, left_out, words, a->rms / loop->noise_floor_um);
+  if (!isfinite(b->held_out_rms)) fputs(" No scan was kept aside (<code>--hold-out</code>).", out);
+  fputs("</p></section>\n", out);
+}
+
+fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  char *sentence = NULL;
+  FG_TRY(fg_scan_loop_sentence(ctx, loop, &sentence));
+  fg_html_begin(out, "Closing the loop");
+  put_head(out, loop, sentence);
+  free(sentence);
+  put_class(out, loop);
+  FG_TRY(fg_scan_page_vectors(ctx, out, loop));
+  FG_TRY(fg_scan_page_effects(ctx, out, loop));
+  FG_TRY(fg_scan_page_residuals(ctx, out, loop));
+  fg_scan_page_dimensions(out, loop);
+  fg_scan_page_bumps(out, &loop->bumps);
+  put_candidates(out, loop);
+  put_errors(out, loop);
+  fg_html_end(out);
+  return fg_report_finish(ctx, out, "the loop's page");
+}

@@ -1,0 +1,99 @@
+/* Parts of the page of the loop on scans. All write into an open <main>. */
+#ifndef FG_REPORT_SCAN_LOOP_PARTS_H
+#define FG_REPORT_SCAN_LOOP_PARTS_H
+
+#include "loop/scan_loop.h"
+#include "report/html_parts.h"
+
+/* ---- words (scan_loop_words.c) ---- */
+
+/* An effect for people: what it is, and its equation (empty: none is known). */
+void fg_scan_effect_words(const char *id, char *words, size_t size);
+const char *fg_scan_effect_equation(const char *id);
+
+bool fg_scan_effect_is_free(const fg_scan_effect *effect);
+
+/* Whether every explanation that the data allow holds the effect, in whatever form. */
+bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id);
+
+/* Members of the alias class that differ in more than an effect's form; returns how many. */
+size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]);
+
+/* Members beyond those that the class has room for. */
+size_t fg_scan_class_unlisted(const fg_subset *subset);
+
+/* Whether a member of the class holds the effect, in whatever form. */
+bool fg_scan_class_holds(const fg_subset *subset, const char *id);
+
+/* What a member shares with all others (`common`), or what it has of its own: "a together with b".
+ */
+enum { FG_SCAN_CLASS_WORDS = 512 };
+void fg_scan_member_words(const fg_subset *subset, size_t member, bool common, char *words,
+                          size_t size);
+
+/* Parameter i of an effect with the name and unit that people read; false: there are no more. */
+typedef struct fg_scan_parameter {
+  const char *name, *unit;
+  double value, u;
+} fg_scan_parameter;
+bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i, fg_scan_parameter *parameter);
+
+/* "0.0010003 ± 0.0000012": value and U = 2u, U with two digits. */
+void fg_scan_value_words(double value, double u, char *words, size_t size);
+
+/* "0.0302 µm"; nm below a nanometre, so that figures beside each other have one unit. */
+void fg_scan_length_words(double um, char *words, size_t size);
+
+/* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
+double fg_scan_nice_below(double most);
+
+/* The page's one sentence; the caller frees it. */
+fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char **text);
+
+/* ---- what an effect does (scan_loop_curves.c) ---- */
+
+/* Where an effect lives. */
+typedef enum fg_scan_coordinate {
+  FG_SCAN_X,
+  FG_SCAN_Y,
+  FG_SCAN_FOIL,   /* psi, degrees from the foil's middle */
+  FG_SCAN_PHI,    /* in the bump's arc, -1 to 1 */
+  FG_SCAN_NORMAL, /* direction of the edge's normal, degrees */
+  FG_SCAN_COORDINATES
+} fg_scan_coordinate;
+
+/* The axis's name with its unit. */
+const char *fg_scan_coordinate_title(fg_scan_coordinate coordinate);
+
+fg_field_list fg_scan_page_fields(const fg_scan_loop *loop);
+
+/* The deformation of the picture, curves over the coordinates, parameters. */
+fg_status fg_scan_page_effects(fg_context *ctx, FILE *out, const fg_scan_loop *loop);
+void fg_scan_page_grid(FILE *out, const fg_scan_loop *loop);
+
+/* ---- residuals (scan_loop_vectors.c, scan_loop_plots.c) ---- */
+
+fg_status fg_scan_page_vectors(fg_context *ctx, FILE *out, const fg_scan_loop *loop);
+fg_status fg_scan_page_residuals(fg_context *ctx, FILE *out, const fg_scan_loop *loop);
+
+/* Colour class of a scan's marks: "k0" to "k3", "k4" from the fifth on. */
+const char *fg_scan_colour(const fg_scan_loop *loop, size_t scan);
+
+/* Rows up to this weight hardly take part: the edge of a disc that is not round. */
+double fg_scan_light(const fg_points *points);
+
+/* Size that all but `share` of |values| stay below, over rows that weigh; 0 without any. */
+fg_status fg_scan_residual_limit(fg_context *ctx, const fg_points *points, const double *values,
+                                 double share, double *limit);
+
+/* ---- dimensions (scan_loop_dimensions.c) ---- */
+
+void fg_scan_page_dimensions(FILE *out, const fg_scan_loop *loop);
+
+/* ---- the bumps (scan_loop_bump_page.c) ---- */
+
+/* Appends what was found over the bumps. */
+fg_status fg_scan_bumps_sentence(fg_context *ctx, const fg_scan_bumps *bumps, char **text);
+void fg_scan_page_bumps(FILE *out, const fg_scan_bumps *bumps);
+
+#endif

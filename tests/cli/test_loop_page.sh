@@ -1,0 +1,109 @@
+#!/bin/bash
+# The page of the loop on scans (--html): it says what the report says, is whole and its own, makes
+# names of files harmless, and appears only when it could be written.
+set -u
+program=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+
+fail() {
+  echo "FAIL: $*"
+  failed=1
+}
+
+# render NAME SEED ROTATION DPI EFFECTS
+render() {
+  cat >"$1.json" <<SPEC
+{"schema":"foilgauge/render/1","seed":$2,
+ "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
+           "rotate_deg":$3}],
+ "scanner":{"dpi":$4,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
+ "effects":[$5]}
+SPEC
+  "$program" render "$1.json" -o "$1.png" || fail "render $1"
+}
+
+render clean 1 -70 2400 ''
+render ripple 2 -60 4800 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
+render a 3 -75 2400 '{"id":"scan.scale_y","value":0.001}'
+render b 4 15 2400 '{"id":"scan.scale_y","value":0.001}'
+render faint 5 -75 4800 '{"id":"scan.scale_y","value":0.00008}'
+render other 7 -120 2400 '{"id":"scan.scale_y","value":0.001}'
+
+page() { # page FILE ARGUMENTS...
+  local file=$1
+  shift
+  "$program" loop "$@" --html "$file" >stdout.txt || fail "loop $* --html"
+  [ ! -s stdout.txt ] || fail "--html $file writes to standard output"
+  python3 - "$file" <<'PYTHON' || fail "$file is not a whole page of its own"
+import re, sys
+from html.parser import HTMLParser
+text = open(sys.argv[1], encoding="utf-8").read()
+void = {"meta", "br", "rect", "path", "circle", "image"}
+stack, bad, tables = [], [], 0
+class Reader(HTMLParser):
+    def handle_starttag(self, tag, attributes):
+        if tag == "script" or any(k in ("src", "href") or k.startswith("on") for k, v in attributes):
+            bad.append("from outside: " + tag)
+        if tag not in void: stack.append(tag)
+    def handle_endtag(self, tag):
+        if tag in void: return
+        if not stack or stack.pop() != tag: bad.append(f"</{tag}> at {self.getpos()}")
+reader = Reader()
+reader.feed(text)
+reader.close()
+if stack or bad: sys.exit(f"{stack} {bad[:3]}")
+if re.search(r"[^a-z](nan|inf)[^a-z]", re.sub(r"<style>.*?</style>", "", text, flags=re.S), re.I):
+    sys.exit("a number that is none")
+if len(text) > 2_000_000: sys.exit(f"{len(text)} bytes")
+PYTHON
+}
+
+holds() { # holds FILE WORDS...
+  local file=$1 words
+  shift
+  for words in "$@"; do
+    grep -q -F -- "$words" "$file" || fail "$file does not say '$words'"
+  done
+}
+
+odd="a<b>&\"c'.png"
+cp ripple.png "$odd"
+page odd.html "$odd"
+holds odd.html '>explained<' scan.carriage_ripple 'a&lt;b&gt;&amp;&quot;c&#39;.png' "$(sha256sum <"$odd" | cut -c1-12)"
+grep -q -F '<b>&"c' odd.html && fail "a file's name goes into the page as it is"
+page clean.html clean.png
+page again.html clean.png
+cmp -s clean.html again.html || fail "two runs give two pages"
+holds clean.html '>clean<' 'Nothing is claimed' 'As measured'
+grep -q 'After' clean.html && fail "the page of a clean scan has an After"
+page pair.html --same-foil a.png b.png
+holds pair.html '>explained<' scan.scale_y part.ovality 'of one bump differs between the scans'
+[ "$(grep -c 'class="plot vectors"' pair.html)" = 4 ] || fail "a pair is not drawn before and after"
+render decay 9 -70 2400 ''
+sed -i 's/"radius_mm":\[[^]]*\]/"radius_mm":[3.60,3.50,3.45,3.43,3.42,3.415,3.41,3.41,3.41]/' decay.json
+"$program" render decay.json -o decay.png || fail "render a decay"
+page decay.html decay.png
+holds decay.html '>explained<' part.lip_decay 'Over the bumps: a decay from the lip' 'uniform springback'
+page tie.html faint.png
+holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
+page aside.html a.png --hold-out other.png
+holds aside.html 'only confirms' 'On scans kept aside' 'class="aside k1"'
+"$program" loop clean.png --html /nowhere/x.html 2>err.txt
+[ $? -eq 74 ] || fail "a page that cannot be written is not an error of output"
+if [ -e /dev/full ]; then
+  "$program" loop clean.png --html /dev/full 2>err.txt
+  [ $? -eq 74 ] || fail "a full disk is not an error of output"
+  grep -q 'No space left' err.txt || fail "a full disk is not named: $(cat err.txt)"
+fi
+(
+  ulimit -f 40
+  trap '' XFSZ
+  exec "$program" loop clean.png --html full.html
+) 2>err.txt
+[ $? -eq 74 ] || fail "a disk that is full half-way is not an error of output"
+[ ! -e full.html ] || fail "a page that is not whole has its final name"
+
+exit $failed
