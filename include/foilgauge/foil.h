@@ -125,6 +125,15 @@ typedef struct fg_foil {
   bool in_tolerance;        /* false when a tolerance of the design is exceeded */
 } fg_foil;
 
+/* One station of the turn around a round feature; equal steps of direction. Lengths in mm. */
+typedef struct fg_disc_point {
+  fg_point at;
+  double u;     /* sd of its radius from pixel noise */
+  double split; /* half of what its flanks' and its core's pixels differ by; may be NaN */
+  double u_split;
+  bool used; /* usable */
+} fg_disc_point;
+
 /* One round hole or disc (form discs). */
 typedef struct fg_disc {
   int number;
@@ -145,6 +154,11 @@ typedef struct fg_disc {
   double covariance[3][3];
   fg_point *edge;     /* owned; `points` long, mm, in order around the circle */
   float *residual_um; /* owned; radial, outwards positive */
+  /* Lowest and highest radius over explanations that a loop could not tell apart; both 0: none. */
+  double radius_range_mm[2];
+  fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
+  size_t station_count;
+  double level_doubt_mm; /* what the level of the edge may move the radius by */
 } fg_disc;
 
 /* A measured scan. */
@@ -170,6 +184,7 @@ typedef struct fg_measurement {
 } fg_measurement;
 
 void fg_foil_free(fg_foil *foil); /* what it owns; NULL is fine */
+void fg_disc_free(fg_disc *disc); /* likewise */
 void fg_measurement_free(fg_measurement *measurement);
 
 /* Recognises lip, lands, bumps and free end of a strip, fits every circle, derives every quantity.

@@ -12,6 +12,7 @@
 enum { SCANS_MOST = 64 };
 enum {
   OPTION_DESIGN = 256,
+  OPTION_FORM,
   OPTION_DPI,
   OPTION_SAME,
   OPTION_HOLD_OUT,
@@ -25,12 +26,14 @@ typedef struct arguments {
   const char *paths[SCANS_MOST];
   bool hold_out[SCANS_MOST];
   size_t count, kept_aside;
-  const char *design_path, *output_path, *model_path, *page_path;
+  const char *design_path, *form, *output_path, *model_path, *page_path;
   fg_scan_loop_options options;
 } arguments;
 
 static const struct argp_option options[] = {
-    {"design", OPTION_DESIGN, "FILE", 0, "The foil's design (default: Gen II)", 0},
+    {"design", OPTION_DESIGN, "FILE", 0,
+     "The design of the foil or of the gauges (default: Gen II)", 0},
+    {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution, where the scan does not say it", 0},
     {"same-foil", OPTION_SAME, NULL, 0,
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
@@ -53,6 +56,9 @@ static const char doc[] =
     "the class and the range of every dimension over it. A second scan of the foil, turned by "
     "about "
     "90 degrees, with --same-foil, names one.\n\n"
+    "With a design of form \"discs\" (or --form discs) the scan shows round holes or discs: a "
+    "plate "
+    "of gauges tells the scanner's errors, known diameters_mm in the design its absolute scale.\n\n"
     "With --table DATA.csv the loop is closed on a table: `foilgauge loop --table X --help`.\n\n"
     "Exit code: 0 done; 64 usage; 65 bad data; 74 input or output.";
 
@@ -79,6 +85,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   switch (key) {
   case OPTION_DESIGN:
     a->design_path = text;
+    return 0;
+  case OPTION_FORM:
+    a->form = text;
     return 0;
   case OPTION_DPI:
     a->options.dpi = parse_number(state, "dpi", text);
@@ -141,8 +150,10 @@ static fg_status run(fg_context *ctx, const arguments *a) {
   fg_scan_loop *loop = NULL;
   fg_design_default(&design);
   if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &design));
-  if (design.form == FG_FORM_DISCS)
-    return fg_fail(ctx, FG_ERR_USAGE, "the loop works on foils; form discs is for `measure`");
+  FG_TRY(fg_cli_apply_form(ctx, a->form, &design));
+  if (design.form == FG_FORM_DISCS && a->options.same_foil)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--same-foil is for foils: a disc does not show how far it was turned");
   FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
   fg_status status = write_all(ctx, a, loop);
   fg_scan_loop_free(loop);

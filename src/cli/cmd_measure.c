@@ -204,27 +204,11 @@ static fg_status check_arguments(fg_context *ctx, const measure_run *run) {
   return fg_output_set_check(ctx, &run->outputs, arguments->design_path, "the design");
 }
 
-static fg_status apply_form(fg_context *ctx, const char *form, fg_design *design) {
-  static const struct {
-    const char *name;
-    fg_form form;
-  } forms[] = {{"classical", FG_FORM_CLASSICAL},
-               {"sinusoidal", FG_FORM_SINUSOIDAL},
-               {"discs", FG_FORM_DISCS}};
-  if (!form) return FG_OK;
-  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
-    if (strcmp(form, forms[i].name) != 0) continue;
-    design->form = forms[i].form;
-    return FG_OK;
-  }
-  return fg_fail(ctx, FG_ERR_USAGE, "--form: '%s' is none of classical, sinusoidal, discs", form);
-}
-
 static fg_status load_design(fg_context *ctx, measure_run *run) {
   fg_design_default(&run->design);
   if (run->arguments.design_path)
     FG_TRY(fg_design_load(ctx, run->arguments.design_path, &run->design));
-  FG_TRY(apply_form(ctx, run->arguments.form, &run->design));
+  FG_TRY(fg_cli_apply_form(ctx, run->arguments.form, &run->design));
   FG_TRY(fg_design_check(ctx, &run->design));
   if (run->design.form != FG_FORM_DISCS) FG_TRY(fg_design_derive(ctx, &run->design, &run->nominal));
   const char *path = run->arguments.design_path;

@@ -36,4 +36,7 @@ int fg_cli_fail(const fg_context *ctx, fg_status status);
 /* Says on standard error what a lot came to; returns the exit code. */
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 
+/* --form: overrules the design's; NULL leaves it. */
+fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design);
+
 #endif

@@ -21,6 +21,8 @@ enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MOST = 400 };
 #define SHAPE_VARIANCE 1.12
 /* A difference between the edge's core and flanks counts above so many of its own deviations. */
 #define SPLIT_DEVIATIONS 3.0
+/* An edge that leaves its circle by more than this share of the radius (rms) is flagged. */
+#define POOR_SHARE 0.006
 
 typedef struct fit_work {
   fg_disc_point *points;
@@ -230,10 +232,25 @@ fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, doub
   FG_TRY_EXIT(fit_robust(ctx, &w));
   if ((double)(usable - w.used) > OUTLIERS_SHARE * (double)usable) disc->flags |= FG_BUMP_OUTLIERS;
   fill_circle(&w, level_doubt_mm, disc);
+  if (disc->rms_um > POOR_SHARE * 1000 * disc->radius_mm) disc->flags |= FG_BUMP_POOR_FIT;
   FG_TRY_EXIT(fill_points(ctx, &w, disc));
   FG_TRY_EXIT(fill_roundness(ctx, &w, disc));
 exit:
   free(block);
   free(w.at);
+  return status;
+}
+
+fg_status fg_disc_measure_again(fg_context *ctx, fg_disc *disc) {
+  fg_disc_point *points;
+  FG_TRY(fg_memory_allocate(ctx, disc->station_count, sizeof *points, (void **)&points));
+  memcpy(points, disc->stations, disc->station_count * sizeof *points);
+  free(disc->edge);
+  free(disc->residual_um);
+  disc->edge = NULL;
+  disc->residual_um = NULL;
+  disc->flags &= ~(unsigned)(FG_BUMP_OUTLIERS | FG_BUMP_POOR_FIT);
+  fg_status status = fg_disc_fit(ctx, points, disc->station_count, disc->level_doubt_mm, disc);
+  free(points);
   return status;
 }

@@ -9,20 +9,15 @@
 
 #include "foilgauge/foil.h"
 
-/* One station of the turn, in order; equal steps of direction. Lengths in mm. */
-typedef struct fg_disc_point {
-  fg_point at;
-  double u;     /* sd of its radius from pixel noise */
-  double split; /* half of what its flanks' and its core's pixels differ by; may be NaN */
-  double u_split;
-  bool used; /* in: usable; out: took part in the fit */
-} fg_disc_point;
-
-/* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`, and
- * FG_BUMP_OUTLIERS. `level_doubt_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer
- * than half of the points are usable. */
+/* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`,
+ * FG_BUMP_OUTLIERS and FG_BUMP_POOR_FIT. `points` are in order; what is left out of the fit loses
+ * its `used`. `level_doubt_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half
+ * of the points are usable. */
 fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, double level_doubt_mm,
                       fg_disc *disc);
+
+/* Measures disc->stations, which were moved, again; what does not come from the circle stays. */
+fg_status fg_disc_measure_again(fg_context *ctx, fg_disc *disc);
 
 /* Peak to valley of a closed radial deviation after the Gaussian filter of 50 undulations per
  * revolution (ISO 12181-2, ISO 16610-21), its first harmonic removed. Noise of sd u per value

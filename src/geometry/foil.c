@@ -358,14 +358,20 @@ void fg_foil_free(fg_foil *foil) {
   memset(foil, 0, sizeof *foil);
 }
 
+void fg_disc_free(fg_disc *disc) {
+  if (!disc) return;
+  free(disc->edge);
+  free(disc->residual_um);
+  free(disc->stations);
+  memset(disc, 0, sizeof *disc);
+}
+
 void fg_measurement_free(fg_measurement *measurement) {
   if (!measurement) return;
   for (size_t i = 0; i < measurement->foil_count; i++)
     fg_foil_free(&measurement->foils[i]);
-  for (size_t i = 0; i < measurement->disc_count; i++) {
-    free(measurement->discs[i].edge);
-    free(measurement->discs[i].residual_um);
-  }
+  for (size_t i = 0; i < measurement->disc_count; i++)
+    fg_disc_free(&measurement->discs[i]);
   free(measurement->foils);
   free(measurement->discs);
   memset(measurement, 0, sizeof *measurement);

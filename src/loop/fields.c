@@ -17,6 +17,12 @@ static void shear(const fg_field_frame *frame, const double *shape, fg_point at,
   d[0] = (fg_point){from_middle(frame, 1, at.y), 0};
 }
 
+/* Both axes: only known lengths tell it from larger parts. */
+static void scale(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
+  (void)shape;
+  d[0] = (fg_point){from_middle(frame, 0, at.x), from_middle(frame, 1, at.y)};
+}
+
 /* a sin(2 pi y / p + phi) as a sine and a cosine. */
 static void ripple(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)frame;
@@ -100,6 +106,7 @@ static void free_yy(const fg_field_frame *frame, const double *shape, fg_point a
 
 static const fg_field_row rows[] = {
     {"scan.scale_y", 1, 0, {NULL}, scale_y},
+    {"scan.scale", 1, 0, {NULL}, scale},
     {"scan.shear", 1, 0, {NULL}, shear},
     {"scan.carriage_ripple", 2, 1, {"period_mm"}, ripple},
     {"scan.row_step", 1, 1, {"y_mm"}, row_step},
@@ -167,7 +174,8 @@ bool fg_field_parameter(const fg_field *field, size_t i, const char **name, doub
                         double *u) {
   if (field->row->basis == ripple) return ripple_parameter(field, i, name, value, u);
   if (i == 0) {
-    bool ratio = field->row->basis == scale_y || field->row->basis == shear;
+    bool ratio =
+        field->row->basis == scale_y || field->row->basis == scale || field->row->basis == shear;
     double unit = ratio ? 1 / FG_FIELD_HALF_MM : 1000;
     *name = ratio ? "value" : "amplitude_um";
     *value = unit * field->amplitude_mm[0];

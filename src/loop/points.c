@@ -137,7 +137,7 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to, fg
   return true;
 }
 
-static fg_status add_row(fg_context *ctx, fg_points *points, const fg_points_row *row) {
+fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row) {
   FG_TRY(fg_memory_reserve(ctx, points->row_count + 1, sizeof *points->rows, &points->row_capacity,
                            (void **)&points->rows));
   points->rows[points->row_count++] = *row;
@@ -178,7 +178,7 @@ static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t fi
       row.phi = -row.phi;
       row.s_mm = whole - row.s_mm;
     }
-    FG_TRY(add_row(ctx, points, &row));
+    FG_TRY(fg_points_add_row(ctx, points, &row));
   }
   return FG_OK;
 }
@@ -211,7 +211,7 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
   return FG_OK;
 }
 
-static void find_frame(fg_points *points) {
+void fg_points_find_frame(fg_points *points) {
   fg_field_frame *f = &points->frame;
   for (int axis = 0; axis < 2; axis++)
     f->low_mm[axis] = 0;
@@ -264,7 +264,7 @@ static fg_status fill(fg_context *ctx, fg_points *points) {
     }
     first_group += groups;
   }
-  find_frame(points);
+  fg_points_find_frame(points);
   return pack_groups(ctx, points, first_group + 1);
 }
 
@@ -279,6 +279,7 @@ static int compare_rows(const void *a, const void *b) {
 fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
                           fg_points *points) {
   memset(points, 0, sizeof *points);
+  if (count && views[0].disc) return fg_points_build_discs(ctx, views, count, points);
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));

@@ -14,11 +14,12 @@
 #include "foilgauge/foil.h"
 #include "loop/fields.h"
 
-enum { FG_POINTS_BLOCK = 4 };
+enum { FG_POINTS_BLOCK = 4, FG_POINTS_BARRED = 24 };
 
-/* One foil on one scan. */
+/* One foil or disc on one scan. */
 typedef struct fg_points_view {
   const fg_foil *foil;
+  const fg_disc *disc; /* in a foil's place; NULL: a foil */
   const fg_measurement *measurement;
   size_t scan; /* which input */
   size_t part; /* which physical foil; views of one part share its geometry */
@@ -61,12 +62,19 @@ typedef struct fg_points_part {
   double mean_radius_mm; /* of the bumps, as measured */
   size_t arcs;
   double half_span_rad;
+  bool radius_known; /* the overall radius is a gauge's and is not fitted */
 } fg_points_part;
 
 typedef struct fg_points_pose {
   fg_point origin_mm; /* O */
   double turn_rad;    /* 0 in a part's first view */
 } fg_points_pose;
+
+/* An effect that was found and that not all parts confirm. */
+typedef struct fg_points_barred {
+  const char *id;
+  double would_explain, share, smallest_um; /* as in fg_subset */
+} fg_points_barred;
 
 typedef struct fg_points {
   fg_points_view *views; /* owned */
@@ -79,14 +87,31 @@ typedef struct fg_points {
   size_t group_count;
   fg_field_frame frame; /* the picture all fields live in */
   size_t parameters;    /* of the geometry */
+  bool discs;           /* parts are discs: an overall circle each, and nothing else */
+  size_t known_count;   /* parts whose radius is known */
+  fg_points_barred barred[FG_POINTS_BARRED]; /* effects that a search leaves out */
+  size_t barred_count;
 } fg_points;
 
 /* Rows and a start of the geometry from measured foils. Views of one part must have the same bumps
- * (by number) and the same hand: FG_ERR_DATA. Foils that were not measured are left out. */
+ * (by number) and the same hand: FG_ERR_DATA. Foils that were not measured are left out. Views are
+ * all of foils or all of discs. */
 fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
                           fg_points *points);
 
 void fg_points_free(fg_points *points);
+
+/* The same for discs; fg_points_build calls it. */
+fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, size_t count,
+                                fg_points *points);
+
+fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row);
+/* The frame of the fields, from the pictures. */
+void fg_points_find_frame(fg_points *points);
+
+/* Whether an effect can be sought in these points: not every one leaves a trace in a disc, nor is
+ * every trace another one than the disc's own form. */
+bool fg_points_shows(const fg_points *points, const char *id);
 
 /* Corrections in force: fields of the scanner, and shifts of the midline in the part's frame
  * (`shift_mm`, one per row along the row's normal; NULL: none). */

@@ -98,7 +98,7 @@ static void fill_jacobian(const fg_points *points, size_t i, double *jacobian) {
   jacobian[view * rows + i] = -n.x;
   jacobian[(view + 1) * rows + i] = -n.y;
   if (!row->bump) {
-    jacobian[at * rows + i] = -1;
+    jacobian[at * rows + i] = points->parts[row->part].radius_known ? 0 : -1;
     return;
   }
   const fg_points_bump *bump = &points->parts[row->part].bumps[row->bump_index];

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "geometry/disc_fit.h"
 #include "loop/scan_loop.h"
 
 static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to) {
@@ -14,15 +15,18 @@ static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to)
   return FG_OK;
 }
 
+static fg_point moved(const fg_field_list *fields, fg_point at) {
+  fg_point d = fg_field_at(fields, at);
+  return (fg_point){at.x + d.x, at.y + d.y};
+}
+
 static void move_edges(const fg_field_list *fields, fg_strip *strip) {
   for (size_t k = 0; k < strip->count; k++) {
     fg_station *s = &strip->stations[k];
     fg_point *edges[2] = {&s->left, &s->right};
     for (int side = 0; side < 2; side++) {
       if (!isfinite(edges[side]->x)) continue;
-      fg_point d = fg_field_at(fields, *edges[side]);
-      edges[side]->x += d.x;
-      edges[side]->y += d.y;
+      *edges[side] = moved(fields, *edges[side]);
     }
   }
 }
@@ -65,6 +69,54 @@ fg_status fg_scan_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_de
   return status;
 }
 
+static void take_disc_shift(const fg_points *points, size_t view, const double *shift_mm,
+                            fg_disc *disc) {
+  for (size_t k = 0; k < disc->station_count; k++) {
+    fg_point *p = &disc->stations[k].at;
+    double nearest = INFINITY;
+    size_t row = points->row_count;
+    for (size_t i = 0; i < points->row_count; i++) {
+      if (points->rows[i].view != view) continue;
+      double d = hypot(points->rows[i].at.x - p->x, points->rows[i].at.y - p->y);
+      if (d >= nearest) continue;
+      nearest = d;
+      row = i;
+    }
+    if (row == points->row_count) return;
+    p->x -= shift_mm[row] * points->rows[row].normal.x;
+    p->y -= shift_mm[row] * points->rows[row].normal.y;
+  }
+}
+
+static fg_status correct_disc(fg_context *ctx, const fg_disc *disc, const fg_field_list *fields,
+                              const fg_points *points, const double *shift_mm, fg_disc *corrected) {
+  *corrected = *disc;
+  corrected->edge = NULL;
+  corrected->residual_um = NULL;
+  corrected->stations = NULL;
+  FG_TRY(fg_memory_allocate(ctx, disc->station_count, sizeof *disc->stations,
+                            (void **)&corrected->stations));
+  memcpy(corrected->stations, disc->stations, disc->station_count * sizeof *disc->stations);
+  for (size_t k = 0; fields && k < disc->station_count; k++)
+    corrected->stations[k].at = moved(fields, disc->stations[k].at);
+  size_t v = 0;
+  while (points && v < points->view_count && points->views[v].disc != disc)
+    v++;
+  if (shift_mm && points && v < points->view_count) take_disc_shift(points, v, shift_mm, corrected);
+  return fg_disc_measure_again(ctx, corrected);
+}
+
+static fg_status correct_discs(fg_context *ctx, const fg_measurement *m,
+                               const fg_field_list *fields, const fg_points *points,
+                               const double *shift_mm, fg_measurement *corrected) {
+  FG_TRY(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&corrected->discs));
+  for (size_t d = 0; d < m->disc_count; d++) {
+    corrected->disc_count++;
+    FG_TRY(correct_disc(ctx, &m->discs[d], fields, points, shift_mm, &corrected->discs[d]));
+  }
+  return FG_OK;
+}
+
 /* The view of a foil of a scan; the number of views when it has none. */
 static size_t find_view(const fg_points *points, const fg_foil *foil) {
   size_t v = 0;
@@ -91,6 +143,7 @@ fg_status fg_scan_correct(fg_context *ctx, const fg_measurement *m, const fg_fie
                                      known ? shift_mm : NULL, threads, &corrected->foils[f]));
     corrected->foil_count++;
   }
+  FG_TRY_EXIT(correct_discs(ctx, m, fields, points, shift_mm, corrected));
 exit:
   if (status != FG_OK) fg_measurement_free(corrected);
   return status;

@@ -40,13 +40,17 @@ static fg_status check_same_foils(fg_context *ctx, const fg_scan_loop *loop) {
 static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   size_t total = 0, n = 0;
   for (size_t i = 0; i < loop->scan_count; i++)
-    total += loop->before[i].foil_count;
+    total += loop->before[i].foil_count + loop->before[i].disc_count;
   fg_points_view *views = NULL;
   FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
-  for (size_t i = 0; i < loop->scan_count; i++)
-    for (size_t f = 0; f < loop->before[i].foil_count; f++, n++)
-      views[n] = (fg_points_view){&loop->before[i].foils[f], &loop->before[i], i,
-                                  loop->options.same_foil ? f : n, loop->hold_out[i]};
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    const fg_measurement *m = &loop->before[i];
+    for (size_t f = 0; f < m->foil_count; f++, n++)
+      views[n] = (fg_points_view){&m->foils[f],     NULL, m, i, loop->options.same_foil ? f : n,
+                                  loop->hold_out[i]};
+    for (size_t d = 0; d < m->disc_count; d++, n++)
+      views[n] = (fg_points_view){NULL, &m->discs[d], m, i, n, loop->hold_out[i]};
+  }
   fg_status status = fg_points_build(ctx, views, n, &loop->points);
   free(views);
   if (status == FG_OK && loop->points.row_count < ROWS_LEAST)
@@ -57,20 +61,20 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
 
 static fg_scan_error summarise(fg_context *ctx, const fg_points *points, const double *residual) {
   fg_scan_error e = {NAN, NAN, NAN, NAN, NAN};
-  double sum = 0, n = 0, held = 0, held_n = 0, *absolute = NULL;
+  double sum = 0, n = 0, held = 0, held_n = 0, *absolute = NULL; /* n: weights */
   size_t count = 0;
   if (fg_memory_allocate(ctx, points->row_count, sizeof *absolute, (void **)&absolute) != FG_OK)
     return e;
   for (size_t i = 0; i < points->row_count; i++) {
     if (!(points->rows[i].weight > 0)) continue;
-    double square = residual[i] * residual[i];
+    double weight = points->rows[i].weight, square = weight * residual[i] * residual[i];
     if (points->views[points->rows[i].view].aside) {
       held += square;
-      held_n++;
+      held_n += weight;
       continue;
     }
     sum += square;
-    n++;
+    n += weight;
     absolute[count++] = fabs(residual[i]);
   }
   if (n > 0) {
@@ -134,7 +138,19 @@ static fg_status allocate_ranges(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
+/* The corrected discs carry their ranges at once. */
+static void widen_discs(fg_measurement *after, const fg_measurement *m) {
+  for (size_t d = 0; d < after->disc_count && d < m->disc_count; d++) {
+    double *range = after->discs[d].radius_range_mm;
+    if (range[0] == 0 && range[1] == 0) range[0] = range[1] = NAN;
+    widen(range, m->discs[d].radius_mm - 2 * m->discs[d].u_radius_mm);
+    widen(range, m->discs[d].radius_mm + 2 * m->discs[d].u_radius_mm);
+  }
+}
+
 static void widen_all(fg_scan_loop *loop, const fg_measurement *measurements) {
+  for (size_t i = 0; i < loop->scan_count; i++)
+    widen_discs(&loop->after[i], &measurements[i]);
   for (size_t i = 0, k = 0; i < loop->scan_count; i++)
     for (size_t f = 0; f < loop->before[i].foil_count; f++, k++)
       if (f < measurements[i].foil_count &&
@@ -243,7 +259,11 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_after));
   FG_TRY(fg_scan_refit(ctx, &loop->points, &loop->set, loop->residual_before));
-  FG_TRY(fg_subset_settle(ctx, &loop->points, &loop->set, &loop->subset, loop->residual_after));
+  if (loop->points.discs)
+    FG_TRY(fg_disc_effects_confirm(ctx, &loop->points, &loop->set, &loop->subset,
+                                   loop->residual_after));
+  else
+    FG_TRY(fg_subset_settle(ctx, &loop->points, &loop->set, &loop->subset, loop->residual_after));
   loop->error_before = summarise(ctx, &loop->points, loop->residual_before);
   loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
   loop->noise_floor_um = loop->subset.noise_um;
@@ -251,7 +271,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(correct_all(ctx, loop, &loop->set, loop->after));
   if (loop->tied) FG_TRY(find_ranges(ctx, loop));
   find_verdict(loop);
-  return search_bumps(ctx, loop);
+  return loop->points.discs ? FG_OK : search_bumps(ctx, loop);
 }
 
 fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,

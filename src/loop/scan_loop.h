@@ -21,7 +21,7 @@ struct fg_scan_loop {
   double noise_floor_um;
   bool tied;
   fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
-  fg_scan_bumps bumps;  /* the bumps of `after` against the declared springback model */
+  fg_scan_bumps bumps;    /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;
 };
 

@@ -142,6 +142,13 @@ static void add_doubt(fg_foil *foil, const fg_foil *moved) {
 #undef WIDEN
 }
 
+static void add_disc_doubt(fg_disc *disc, const fg_disc *moved) {
+  double off = moved->radius_mm - disc->radius_mm;
+  disc->u_radius_mm = hypot(disc->u_radius_mm, off);
+  disc->u_diameter_mm = 2 * disc->u_radius_mm;
+  disc->covariance[2][2] += off * off;
+}
+
 static fg_status widen_by_model(fg_context *ctx, const fg_scan_model *model,
                                 const fg_measurement *m, unsigned threads,
                                 fg_measurement *corrected) {
@@ -153,6 +160,8 @@ static fg_status widen_by_model(fg_context *ctx, const fg_scan_model *model,
       FG_TRY(fg_scan_correct(ctx, m, &moved, NULL, 0, NULL, threads, &other));
       for (size_t k = 0; k < corrected->foil_count; k++)
         add_doubt(&corrected->foils[k], &other.foils[k]);
+      for (size_t k = 0; k < corrected->disc_count; k++)
+        add_disc_doubt(&corrected->discs[k], &other.discs[k]);
       fg_measurement_free(&other);
     }
   return FG_OK;
@@ -181,12 +190,12 @@ fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_me
     fg_measurement_free(&corrected);
     return status;
   }
-  fg_foil *foils = corrected.foils;
-  size_t count = corrected.foil_count;
   for (size_t f = 0; f < m->foil_count; f++)
     fg_foil_free(&m->foils[f]);
+  for (size_t d = 0; d < m->disc_count; d++)
+    fg_disc_free(&m->discs[d]);
   free(m->foils);
-  m->foils = foils;
-  m->foil_count = count;
+  free(m->discs);
+  *m = corrected;
   return FG_OK;
 }

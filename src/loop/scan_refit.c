@@ -175,7 +175,7 @@ static double correlation_integral(const refit *r) {
     for (size_t lag = 0; lag < LAGS && i + lag < r->points->row_count; lag++) {
       const fg_points_row *a = &r->points->rows[i], *b = &r->points->rows[i + lag];
       if (a->view != b->view || a->group != b->group) break;
-      products[lag] += r->residual[i] * r->residual[i + lag];
+      products[lag] += sqrt(a->weight * b->weight) * r->residual[i] * r->residual[i + lag];
       pairs[lag]++;
     }
   for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
@@ -184,6 +184,24 @@ static double correlation_integral(const refit *r) {
     integral += 2 * rho;
   }
   return integral;
+}
+
+/* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
+ * hardly count do not hold it. */
+static double step_place_u(const fg_points *points, double y_mm) {
+  double above = -INFINITY, below = INFINITY, most = 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    most = fmax(most, points->rows[i].weight);
+  for (size_t i = 0; i < points->row_count; i++) {
+    const fg_points_row *row = &points->rows[i];
+    bool rough = row->weight > 0 && row->weight < 0.1 * most; /* 0: left out for the step itself */
+    if (rough || fabs(row->normal.y) < 0.3) continue;
+    if (row->ideal.y <= y_mm)
+      above = fmax(above, row->ideal.y);
+    else
+      below = fmin(below, row->ideal.y);
+  }
+  return isfinite(below - above) ? (below - above) / sqrt(12) : 0;
 }
 
 /* Standard uncertainties from the last normal equations, for correlated noise. */
@@ -197,6 +215,9 @@ static void find_uncertainties(refit *r) {
   }
   double variance = sum / fmax(weight - (double)n, 1) * correlation_integral(r);
   if (gsl_linalg_cholesky_invert(r->normal)) return;
+  for (size_t e = 0; e < r->set->count; e++)
+    if (!strcmp(r->set->effects[e].id, "scan.row_step"))
+      r->set->effects[e].u_shape[0] = step_place_u(r->points, r->set->effects[e].shape[0]);
   for (size_t k = 0; k < r->unknowns; k++) {
     fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
     double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));

@@ -81,6 +81,15 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double 
 fg_status fg_subset_settle(fg_context *ctx, fg_points *points, fg_scan_set *set, fg_subset *subset,
                            double *residual_um);
 
+/* The same for discs (disc_search.c, disc_settle.c, discs_confirm.c); what they do not confirm from
+ * one to the next is barred. */
+fg_status fg_disc_effects_find(fg_context *ctx, const fg_points *points, const double *residual_um,
+                               const double *jacobian, const fg_scan_set *known, fg_subset *subset);
+fg_status fg_disc_effects_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
+                                 fg_subset *subset, double *residual_um);
+fg_status fg_disc_effects_confirm(fg_context *ctx, fg_points *points, fg_scan_set *set,
+                                  fg_subset *subset, double *residual_um);
+
 /* One member of the class as a set without numbers. */
 void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set);
 

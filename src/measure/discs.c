@@ -16,10 +16,9 @@
 #define RADIUS_LEAST_MM 0.2
 #define RADIUS_LEAST_PX 14.0
 #define DESIGN_SHARE    0.7
-/* Edges that leave their circle by more than this share of the radius (rms) are no round feature;
- * by more than the smaller share they are flagged. */
+/* Edges that leave their circle by more than this share of the radius (rms) are no round feature.
+ */
 #define ROUND_SHARE 0.04
-#define POOR_SHARE  0.006
 /* What surrounds a disc is background when it is this near to it, as a share of the contrast. */
 #define BACKGROUND_SHARE 0.3
 
@@ -78,9 +77,10 @@ static fg_status fit_edge(fg_context *ctx, const fg_disc_edge *edge, double um, 
                                 .used = s->weight > 0};
     if (!points[i].used) points[i].at = (fg_point){edge->circle.x * mm, edge->circle.y * mm};
   }
-  fg_status status = fg_disc_fit(ctx, points, edge->count, edge->level_doubt_px * mm, disc);
-  free(points);
-  return status;
+  disc->stations = points;
+  disc->station_count = edge->count;
+  disc->level_doubt_mm = edge->level_doubt_px * mm;
+  return fg_disc_measure_again(ctx, disc);
 }
 
 static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *disc) {
@@ -88,13 +88,6 @@ static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *d
   disc->bright = edge->inside > edge->outside;
   disc->hole = fabs(edge->outside - work->background) > BACKGROUND_SHARE * contrast;
   disc->blur_um = edge->blur_px * work->shape.um;
-  if (disc->rms_um > POOR_SHARE * 1000 * disc->radius_mm) disc->flags |= FG_BUMP_POOR_FIT;
-}
-
-static void clear_disc(fg_disc *disc) {
-  free(disc->edge);
-  free(disc->residual_um);
-  memset(disc, 0, sizeof *disc);
 }
 
 static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
@@ -114,8 +107,8 @@ static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
                                           &work->tone, &edge);
   if (status == FG_OK) status = fit_edge(ctx, &edge, work->shape.um, disc);
   if (status == FG_OK) describe(work, &edge, disc);
-  if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) clear_disc(disc);
-  if (status != FG_OK) clear_disc(disc);
+  if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) fg_disc_free(disc);
+  if (status != FG_OK) fg_disc_free(disc);
   fg_disc_edge_free(&edge);
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
@@ -132,7 +125,7 @@ static void drop_doubles(const disc_work *work) {
     for (size_t k = 0; k < work->found->count && work->discs[i].points; k++) {
       fg_disc *other = &work->discs[k];
       if (k == i || !other->points || !is_same(&work->discs[i], other)) continue;
-      clear_disc(other->coverage_deg <= work->discs[i].coverage_deg ? other : &work->discs[i]);
+      fg_disc_free(other->coverage_deg <= work->discs[i].coverage_deg ? other : &work->discs[i]);
     }
 }
 
@@ -169,7 +162,7 @@ static fg_status measure_candidates(fg_context *ctx, disc_work *work, unsigned t
   hand_over(work, m);
 exit:
   for (size_t i = 0; work->discs && i < count; i++)
-    clear_disc(&work->discs[i]);
+    fg_disc_free(&work->discs[i]);
   free(work->discs);
   free(work->tones);
   return status;

@@ -249,6 +249,7 @@ fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
   write_judgements(json, list, count, "disc");
   write_fields(json, FG_REPORT_DISC, "", disc);
   write_covariance(json, disc->covariance);
+  write_range(json, "radius_range_mm", disc->radius_range_mm);
   fg_json_object_end(json);
   free(list);
   return FG_OK;

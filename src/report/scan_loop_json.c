@@ -197,6 +197,11 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
     for (size_t f = 0; f < measurements[i].foil_count; f++)
       FG_TRY(fg_json_foil(ctx, json, &measurements[i].design, &measurements[i].foils[f]));
   fg_json_array_end(json);
+  if (loop->points.discs) fg_json_array(json, "discs");
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t d = 0; d < measurements[i].disc_count; d++)
+      FG_TRY(fg_json_disc(ctx, json, &measurements[i].design, &measurements[i].discs[d]));
+  if (loop->points.discs) fg_json_array_end(json);
   fg_json_object_end(json);
   return FG_OK;
 }
@@ -229,13 +234,29 @@ static void write_rejected(fg_json *json, const fg_scan_loop *loop) {
     fg_json_number(json, "retained_share", loop->subset.share[e]);
     fg_json_object_end(json);
   }
+  for (size_t b = 0; b < loop->points.barred_count; b++) {
+    const fg_points_barred *barred = &loop->points.barred[b];
+    if (is_free(barred->id)) continue;
+    fg_json_object(json, NULL);
+    fg_json_string(json, "id", barred->id);
+    fg_json_string(json, "level", "points");
+    fg_json_string(json, "verdict", "inconclusive");
+    fg_json_number(json, "would_explain", barred->would_explain);
+    fg_json_number(json, "smallest_amplitude", barred->smallest_um);
+    fg_json_number(json, "retained_share", barred->share);
+    fg_json_object_end(json);
+  }
   fg_json_bump_rejected(json, &loop->bumps);
   fg_json_array_end(json);
 }
 
 static void write_advice(fg_json *json, const fg_scan_loop *loop) {
   fg_json_array(json, "separating_measurement");
-  if (loop->tied && !loop->options.same_foil)
+  if (loop->tied && loop->points.discs)
+    fg_json_string(json, NULL,
+                   "scan a plate of several gauges on the same scanner: what all of them show is "
+                   "the scanner, and an oval is each one's own");
+  else if (loop->tied && !loop->options.same_foil)
     fg_json_string(json, NULL,
                    "scan the same foil again, turned by about 90 degrees, and run the loop on both "
                    "scans with --same-foil: what stays with the glass is the scanner, what turns "
@@ -320,6 +341,14 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
                 b->bumps[k].radius_mm, a->bumps[k].radius_mm, b->bumps[k].height_mm,
                 a->bumps[k].height_mm);
     }
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t d = 0; d < loop->before[i].disc_count && d < loop->after[i].disc_count; d++) {
+      const fg_disc *b = &loop->before[i].discs[d], *a = &loop->after[i].discs[d];
+      fprintf(out, "%s disc %d: D %.5f -> %.5f mm, rms %.2f -> %.2f um\n", loop->before[i].scan,
+              b->number, b->diameter_mm, a->diameter_mm, b->rms_um, a->rms_um);
+    }
+  for (size_t b = 0; b < loop->points.barred_count; b++)
+    fprintf(out, "  not confirmed from disc to disc: %s\n", loop->points.barred[b].id);
   if (loop->tied)
     fputs(
         "Several explanations do equally well: -o lists them, and the range of every dimension.\n",

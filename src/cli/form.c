@@ -1,0 +1,19 @@
+#include <string.h>
+
+#include "cli/commands.h"
+
+fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design) {
+  static const struct {
+    const char *name;
+    fg_form form;
+  } forms[] = {{"classical", FG_FORM_CLASSICAL},
+               {"sinusoidal", FG_FORM_SINUSOIDAL},
+               {"discs", FG_FORM_DISCS}};
+  if (!form) return FG_OK;
+  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
+    if (strcmp(form, forms[i].name) != 0) continue;
+    design->form = forms[i].form;
+    return FG_OK;
+  }
+  return fg_fail(ctx, FG_ERR_USAGE, "--form: '%s' is none of classical, sinusoidal, discs", form);
+}

@@ -1,0 +1,152 @@
+#!/bin/bash
+# The loop on round gauges: a plate names what the scanner does and corrects foils that were scanned
+# on it, known diameters give the absolute scale, a single ring is a tie, pins that are not round are
+# not taken for the scanner.
+set -u
+program=$(realpath "$1")
+root=$(pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+
+fail() {
+  echo "FAIL: $*"
+  failed=1
+}
+
+# Centres and radii of twelve pins over 32 x 20 mm.
+pins='[1.2,1.6,1],[5.0,2.2,1.5],[10.1,2.9,2],[16.2,3.2,2.5],[23.1,3.6,3],[29.8,2.9,2.25],[2.1,9.4,1.25],[7.2,10.1,2.75],[13.9,11.3,3],[20.8,12.0,2.5],[26.9,12.9,1.75],[6.2,16.9,1.5]'
+scanner='"scanner":{"dpi":2400,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2}'
+effects='{"id":"scan.scale_y","value":0.001},{"id":"scan.shear","value":0.0006},
+ {"id":"scan.carriage_ripple","amplitude_um":6,"period_mm":3.1,"phase_deg":30},
+ {"id":"scan.row_step","amplitude_um":15,"y_mm":9.2}'
+
+# plate NAME SEED EFFECTS [UM of two lobes at most, each pin its own]
+plate() {
+  python3 - "$1" "$2" "$3" "${4:-0}" "$pins" "$scanner" <<'PYTHON' || fail "spec $1"
+import json, random, sys
+name, seed, effects, lobe, pins, scanner = sys.argv[1:]
+random.seed(int(seed))
+discs = [{"centre_mm": p[:2], "radius_mm": p[2]} for p in json.loads("[" + pins + "]")]
+for d in discs if float(lobe) else []:
+    d.update(lobes=2, lobe_um=random.uniform(0, float(lobe)), lobe_phase_deg=random.uniform(0, 360))
+spec = {"schema": "foilgauge/render/1", "seed": int(seed), "discs": discs, "effects": json.loads("[" + effects + "]")}
+spec.update(json.loads("{" + scanner + "}"))
+json.dump(spec, open(name + ".json", "w"))
+PYTHON
+  "$program" render "$1.json" -o "$1.png" || fail "render $1"
+}
+
+# value FILE EXPRESSION: a number or word out of a report.
+value() {
+  python3 -c "import json,sys; r=json.load(open(sys.argv[1])); print(eval(sys.argv[2]))" "$1" "$2"
+}
+
+# near NAME VALUE EXPECTED TOLERANCE
+near() {
+  python3 -c "import sys; sys.exit(not abs(float(sys.argv[1]) - float(sys.argv[2])) <= float(sys.argv[3]))" \
+    "$2" "$3" "$4" || fail "$1 is $2, not $3 within $4"
+}
+
+# Largest error of a radius in um, against the pins in order of size.
+error_of() {
+  python3 - "$1" "$2" "$pins" <<'PYTHON'
+import json, sys
+report, side, pins = sys.argv[1:]
+r = json.load(open(report))
+got = sorted(d["radius_mm"] for d in (r[side] if side else r)["discs"])
+true = sorted(p[2] for p in json.loads("[" + pins + "]"))
+assert len(got) == len(true), (len(got), len(true))
+print(max(abs(a - b) for a, b in zip(got, true)) * 1000)
+PYTHON
+}
+
+plate clean 1 ''
+"$program" loop clean.png --form discs -o clean.out || fail "loop on a clean plate"
+[ "$(value clean.out "r['verdict'], len(r['claims'])")" = "('clean', 0)" ] || fail "a clean plate is $(value clean.out "r['verdict']")"
+
+plate all 2 "$effects"
+"$program" loop all.png --form discs -o all.out --model-out scanner.json || fail "loop on a plate"
+[ "$(value all.out "sorted(c['id'] + ' ' + c['verdict'] for c in r['claims'])")" = \
+  "['scan.carriage_ripple found', 'scan.row_step found', 'scan.scale_y found', 'scan.shear found']" ] ||
+  fail "the plate's effects: $(value all.out "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")"
+claim() { value all.out "next(c for c in r['claims'] if c['id'] == '$1')['parameters']['$2']"; }
+near scale "$(claim scan.scale_y value)" 0.001 0.00001
+near shear "$(claim scan.shear value)" 0.0006 0.00001
+near ripple "$(claim scan.carriage_ripple amplitude_um)" 6 0.05
+near period "$(claim scan.carriage_ripple period_mm)" 3.1 0.002
+near step "$(claim scan.row_step amplitude_um)" 15 0.1
+near "place of the step" "$(claim scan.row_step y_mm)" 9.2 0.06
+before=$(error_of all.out before)
+after=$(error_of all.out after)
+near "radius after" "$after" 0 0.15
+python3 -c "import sys; sys.exit(float(sys.argv[1]) * 10 > float(sys.argv[2]))" "$after" "$before" ||
+  fail "the error of a radius goes from $before only to $after um"
+[ "$(value all.out "r['before']['foils'] + r['after']['foils']")" = "[]" ] || fail "a plate has foils"
+
+# The plate's model corrects the plate, and a foil that was scanned on the same scanner.
+"$program" measure all.png --form discs --model scanner.json -o plate.out || fail "measure a plate with its model"
+near "radius of the plate by its model" "$(error_of plate.out "")" 0 0.15
+cat >foil.json <<SPEC
+{"schema":"foilgauge/render/1","seed":7,
+ "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],"rotate_deg":-90}],
+ $scanner,"effects":[$effects]}
+SPEC
+"$program" render foil.json -o foil.png && "$program" measure foil.png -o plain.out &&
+  "$program" measure foil.png --model scanner.json -o corrected.out || fail "measure a foil with the plate's model"
+python3 - <<'PYTHON' || fail "the plate's model does not correct the foil"
+import json
+true = [3.34, 3.41, 3.36, 3.44, 3.38, 3.35, 3.42, 3.37, 3.40]
+def error(path):
+    foil = json.load(open(path))["foils"][0]
+    r = sum((b["radius_mm"] - t) ** 2 for b, t in zip(foil["bumps"], true)) / len(true)
+    return 1000 * r ** 0.5, 1000 * abs(foil["overall"]["radius_mm"] - 20.95)
+before, after = error("plain.out"), error("corrected.out")
+print("R, R0 of the foil, um: before %.3f, %.3f, after %.3f, %.3f" % (before + after))
+raise SystemExit(after[0] * 10 > before[0] or after[1] > 0.5 or after[1] * 5 > before[1])
+PYTHON
+
+# Known diameters, in any order: the picture is too small by 0.2 %.
+python3 -c "
+import json
+pins = json.loads('[' + '''$pins''' + ']')
+json.dump({'schema': 'foilgauge/design/1', 'name': 'plate', 'form': 'discs',
+           'diameters_mm': [2.004 * p[2] for p in pins][::-1]}, open('known.json', 'w'))"
+"$program" loop clean.png --design known.json -o known.out || fail "loop with known diameters"
+[ "$(value known.out "[c['id'] for c in r['claims']]")" = "['scan.scale']" ] || fail "known diameters give no scale"
+near "absolute scale" "$(value known.out "r['claims'][0]['parameters']['value']")" 0.002 0.00001
+near "radius at the known scale" "$(value known.out "max(d['radius_mm'] for d in r['after']['discs'])")" 3.006 0.0002
+
+# One ring: an oval and a scale with a shear are one and the same.
+pins='[7,7,6]'
+plate ring 3 '{"id":"scan.scale_y","value":0.001}'
+"$program" loop ring.png --form discs -o ring.out || fail "loop on a ring"
+[ "$(value ring.out "len(r['claims']) == 1 and r['claims'][0]['verdict'] == 'tied' and {'part.ovality', 'scan.scale_y'} <= set(r['claims'][0]['alias_class'])")" = True ] ||
+  fail "a single ring is no tie"
+[ "$(value ring.out "(lambda x: x[0] < 6 < x[1])(r['after']['discs'][0]['radius_range_mm'])")" = True ] ||
+  fail "the ring's range does not hold its radius"
+
+# Pins that are oval, each in its own direction, are no scanner.
+pins='[1.2,1.6,1],[5.0,2.2,1.5],[10.1,2.9,2],[16.2,3.2,2.5],[23.1,3.6,3],[29.8,2.9,2.25],[2.1,9.4,1.25],[7.2,10.1,2.75],[13.9,11.3,3],[20.8,12.0,2.5],[26.9,12.9,1.75],[6.2,16.9,1.5]'
+plate oval 5 '' 3
+"$program" loop oval.png --form discs -o oval.out || fail "loop on oval pins"
+[ "$(value oval.out "len(r['claims'])")" = 0 ] || fail "oval pins are called $(value oval.out "[c['id'] for c in r['claims']]")"
+
+for report in clean all known ring oval; do
+  python3 - "$root/reports/schema/loop_scan.schema.json" $report.out <<'PYTHON' || fail "$report does not validate"
+import json, sys
+try:
+    import jsonschema
+except ImportError:
+    sys.exit(0)
+jsonschema.validate(json.load(open(sys.argv[2])), json.load(open(sys.argv[1])))
+PYTHON
+done
+
+"$program" loop --same-foil all.png ring.png --form discs >out.txt 2>err.txt
+[ $? -eq 64 ] && grep -q "does not show how far it was turned" err.txt || fail "--same-foil on discs: $(cat err.txt)"
+"$program" loop clean.png --form square >out.txt 2>err.txt
+[ $? -eq 64 ] || fail "--form square is taken"
+
+exit $failed
