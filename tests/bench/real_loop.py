@@ -1,5 +1,5 @@
 """The loop on a real scan of round holes, and what the rest of the picture says to it. Writes
-reports/real/loop.json, loop.csv and loop.md; every number comes from the run.
+reports/real/loop.json, loop.html and loop.md; every number comes from the run.
 
     tests/bench/real_loop.py SCAN.png --dpi 1200
 
@@ -26,7 +26,7 @@ def run_loop(scan, dpi):
     folder, name = os.path.split(os.path.abspath(scan))
     report, points = os.path.join(FOLDER, "loop.json"), os.path.join(FOLDER, "points.csv")
     common = ["--form", "discs", name, "--dpi", str(dpi)]
-    subprocess.run([lib.FOILGAUGE, "loop", *common, "-o", report], check=True, cwd=folder)
+    subprocess.run([lib.FOILGAUGE, "loop", *common, "-o", report, "--html", os.path.join(FOLDER, "loop.html")], check=True, cwd=folder)
     subprocess.run([lib.FOILGAUGE, "measure", *common, "--points", points, "-o", os.devnull], check=True, cwd=folder)
     with open(points, encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -270,7 +270,7 @@ def write_page(path, name, dpi, report, edges, image):
     before = next(d for d in report["before"]["discs"] if d["number"] == hole)
     after = next(d for d in report["after"]["discs"] if d["number"] == hole)
     p = []
-    p.append(f"# The loop on {name}\n\n`tests/bench/real_loop.sh {name} --dpi {dpi:g}` writes this page and loop.json. "
+    p.append(f"# The loop on {name}\n\n`tests/bench/real_loop.sh {name} --dpi {dpi:g}` writes this page, loop.json and loop.html. "
              f"{lib.program_version()}.\n")
     p.append("## What the loop found\n")
     p.append(f"Verdict: {report['verdict']}. Found: `{step['id']}`, {amplitude:.1f} ± {u:.1f} µm (standard uncertainty) at "
