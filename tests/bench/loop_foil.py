@@ -98,32 +98,32 @@ class Midline:
         return natural_spline(effect["knots"], u) if effect["id"] == "free.bump.phi" else None
 
     def claimed_shift_um(self, report):
-        """The part's own deviation as a report describes it, along the normal: one column per claim,
-        because a report need not say which sign a lone amplitude has. Curves of the report run over
-        [-1, 1] of the foil, and of the bump."""
+        """The part's own deviation as a report describes it, along the normal: (sum, columns whose sign
+        the report does not state). Effects move along the normal, or along the radius where the claim's
+        form says so; a shape runs over [-1, 1] of the foil, or of the bump."""
         half = 0.5 * (self.axis[-1] - self.axis[0]) * (1 + 1 / self.count)
-        u = np.nan_to_num(self.u)
-        on = self.bump >= 0
-        columns = []
-        for claim in report["claims"]:
-            p = claim["parameters"]
-            if claim["id"] == "part.ovality":
-                wave = np.cos(2 * (self.psi - np.radians(p["phase_deg"])))
-                columns.append(p["amplitude_um"] * wave * self.radial_share())
-            elif claim["id"] == "part.spiral":
-                columns.append(p["amplitude_um"] * (self.psi / half) ** 3 * self.radial_share())
-            elif claim["id"] == "part.bump_crown":
-                columns.append(np.where(on, p["amplitude_um"] * (35 * u**4 - 30 * u**2 + 3) / 8, 0))
-            elif claim["id"] == "part.bump_skew":
-                columns.append(np.where(on, p["amplitude_um"] * (5 * u**3 - 3 * u) / 2, 0))
+        u, on = np.nan_to_num(self.u), self.bump >= 0
+        total, unsigned = np.zeros(len(self.xy)), []
+        said = [(c["id"], c.get("form"), c["parameters"], c.get("shape")) for c in report["claims"]]
         curve = report["unattributed"]
-        if curve and curve.get("shape") and curve["coordinate"] in ("foil.s", "bump.phi"):
-            x, y = np.array(curve["shape"]).T
-            if curve["coordinate"] == "foil.s":
-                columns.append(np.interp(self.psi / half, x, y) * self.radial_share())
-            else:
-                columns.append(np.where(on, np.interp(u, x, y), 0))
-        return columns
+        if curve and curve["coordinate"] in ("foil.s", "bump.phi"):
+            said.append((curve["coordinate"], None, {}, curve.get("shape")))
+        for name, form, p, shape in said:
+            share = self.radial_share()
+            share = share if form == "radial" else np.sign(share)
+            if name == "part.ovality":
+                total += p["amplitude_um"] * np.cos(2 * (self.psi - np.radians(p["phase_deg"]))) * share
+            elif name == "part.spiral":
+                total += p["amplitude_um"] * (self.psi / half) ** 3 * share
+            elif name == "foil.s" and shape:
+                total += np.interp(self.psi / half, *np.array(shape).T) * share
+            elif name in ("bump.phi", "part.bump_crown", "part.bump_skew") and shape:
+                total += np.where(on, np.interp(u, *np.array(shape).T), 0)
+            elif name == "part.bump_crown":
+                unsigned.append(np.where(on, p["amplitude_um"] * (35 * u**4 - 30 * u**2 + 3) / 8, 0))
+            elif name == "part.bump_skew":
+                unsigned.append(np.where(on, p["amplitude_um"] * (5 * u**3 - 3 * u) / 2, 0))
+        return total, unsigned
 
     def to_scan(self, points):
         """Directions, or places about O, turned as the foil lies on the scan."""
@@ -132,10 +132,10 @@ class Midline:
         return turned @ np.array([[c, s], [-s, c]])
 
 
-def profile_error_um(midline, centre_mm, shift_um, foil, columns):
+def profile_error_um(midline, centre_mm, shift_um, foil, report):
     """rms distance of the true midline (its arcs moved by shift_um) from the circles of a measured foil
-    and what was claimed to deviate from them; the foil's place and direction are left free. `columns`:
-    claimed shifts whose sign the report does not state."""
+    and what a report (or None) claims to deviate from them; the foil's place and direction are left
+    free."""
     normal = midline.to_scan(midline.normal)
     points = midline.to_scan(midline.xy) + centre_mm + normal * shift_um[:, None] / 1000
     distance = np.full(len(points), np.nan)
@@ -151,10 +151,11 @@ def profile_error_um(midline, centre_mm, shift_um, foil, columns):
     offset = points - centre_mm
     turn = offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0]
     rigid = np.stack([normal[:, 0], normal[:, 1], turn], axis=1)
+    claimed, unsigned = midline.claimed_shift_um(report) if report else (0, [])
     best = np.inf
-    for signs in range(2 ** len(columns)):
-        rest = distance * 1000
-        for k, column in enumerate(columns):
+    for signs in range(2 ** len(unsigned)):
+        rest = distance * 1000 - claimed
+        for k, column in enumerate(unsigned):
             rest = rest - (column if signs >> k & 1 else -column)
         rest = rest - rigid @ np.linalg.lstsq(rigid, rest, rcond=None)[0]
         best = min(best, float(np.sqrt(np.mean(rest**2))))

@@ -106,9 +106,8 @@ def profile_um(case, pairs, report):
         return NOT_MEASURED_UM
     squares = []
     for midline, centre, foil in pairs:
-        columns = midline.claimed_shift_um(report) if report else []
         shift = midline.part_shift_um(case["effects"])
-        squares.append(profile_error_um(midline, centre, shift, foil, columns) ** 2)
+        squares.append(profile_error_um(midline, centre, shift, foil, report) ** 2)
     return float(np.sqrt(np.mean(squares)))
 
 
