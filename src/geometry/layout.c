@@ -43,7 +43,7 @@ static fg_status start_overall(fg_context *ctx, fg_layout *layout) {
     layout->lands[n++] = middle_part(gap_bounds(layout, i), 0.25);
   for (size_t end = 0; end < 2 && bumps < 4; end++) {
     fg_range gap = gap_bounds(layout, end ? bumps : 0);
-    if (gap.last - gap.first > 40) layout->lands[n++] = middle_part(gap, 0.3);
+    if (gap.last > gap.first + 40) layout->lands[n++] = middle_part(gap, 0.3);
   }
   layout->land_count = n;
   layout->overall.ranges = layout->lands;
@@ -73,6 +73,8 @@ static void regrow_lands(fg_layout *layout) {
     fg_arc_grow(&layout->line, &layout->overall, -1, gap, &grown);
     if (grown.first < best.first) grown.first = best.first;
     if (grown.last > best.last) grown.last = best.last;
+    /* On a badly bent strip the core may have grown away from the land altogether. */
+    if (grown.last <= grown.first) continue;
     layout->lands[n++] = grown;
   }
   layout->land_count = n;
