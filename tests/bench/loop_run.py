@@ -173,13 +173,15 @@ def judge(case, report, code, seconds):
 class Results:
     """A CSV that grows by a row as each case is done; what it holds already is not done again."""
 
-    def __init__(self, path, fresh):
+    def __init__(self, path, fresh, column):
         self.path, self.rows, self.lock = path, [], threading.Lock()
         if fresh and os.path.exists(path):
             os.remove(path)
         if os.path.exists(path):
             with open(path, newline="", encoding="utf-8") as f:
                 self.rows = list(csv.DictReader(f))
+        if self.rows and column not in self.rows[0]:
+            raise SystemExit(f"{path}: has no column {column}: another benchmark's; --fresh starts anew")
 
     def has(self, **key):
         return any(all(row[k] == str(v) for k, v in key.items()) for row in self.rows)

@@ -80,7 +80,7 @@ def run_scans(program, options):
     for name in options.tier or TIERS:
         count = TIERS[name].count if options.cases is None else min(options.cases, TIERS[name].count)
         jobs += [{"tier": name, "index": k} for k in range(count)]
-    results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh)
+    results = Results(os.path.join(options.out, "loop_scans.csv"), options.fresh, "profile_after_um")
     if not options.report_only:
         results.run(jobs, work, options.threads)
     loop_scans_report.write_scans(options.out, results.rows, TIERS, seed)
@@ -104,7 +104,7 @@ def run_curve(program, options):
         for kind, layout in CURVE_KINDS
         for size in CURVE_SIZES
     ]
-    results = Results(os.path.join(options.out, "loop_scans_curve.csv"), options.fresh)
+    results = Results(os.path.join(options.out, "loop_scans_curve.csv"), options.fresh, "size_um")
     if not options.report_only:
         results.run(jobs, work, options.threads)
     loop_scans_report.write_curve(options.out, results.rows, CURVE_KINDS, CURVE_SIZES)
