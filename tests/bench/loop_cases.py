@@ -143,7 +143,7 @@ def draw_knots(rng, coordinate, low, high):
         amplitude, phase = rng.uniform(0.3, 1, 2), rng.uniform(0, 2 * np.pi, 2)
         waves = zip(amplitude, (3, 5), phase)
         return at, sum(a * np.cos(k * np.radians(at) + p) for a, k, p in waves)
-    count = int(rng.integers(5, 8))
+    count = int(rng.integers(3, 8))
     gaps = rng.uniform(0.6, 1.4, count + 1)
     at = low + (high - low) * (np.cumsum(gaps)[:-1] / gaps.sum())
     value = rng.uniform(0.4, 1, count) * (-1) ** np.arange(count)
