@@ -94,6 +94,8 @@ typedef struct fg_loop_problem {
   bool correlated;   /* estimate that correlation */
   bool *aside;       /* rows kept aside, whole groups; NULL: none */
   bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
+  bool unflipped;    /* too few groups for flips to tell: the simulation judges alone, and whoever
+                        built the problem tests the claims by other means */
   double *response;  /* rows, for exchanged runs: the measured response */
   fg_loop_coordinate *coordinate;
   size_t coordinates;

@@ -243,8 +243,11 @@ fg_status loop_judge(fg_context *ctx, loop_bench *bench, size_t draws, uint64_t 
     judgement->cautious_noise = noise;
   }
   FG_TRY_EXIT(loop_bench_prepare_flips(ctx, bench, noise, small ? NULL : judgement->score));
-  FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));
-  critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
+  /* Unflipped: p_flip and smallest_p stay 0. */
+  if (!bench->frame->problem->unflipped || !small) {
+    FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));
+    critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
+  }
   if (small)
     FG_TRY_EXIT(simulate_all(ctx, bench, noise, draws, seed ^ 0x5851f42d4c957f2du, judgement));
 exit:

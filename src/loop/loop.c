@@ -91,7 +91,7 @@ static fg_status check(fg_context *ctx, loop_run *run, bool *worth) {
     status = loop_note(ctx, run->result,
                        "The declared model fits every row to the last digit: no residual is left "
                        "to look into.");
-  if (status == FG_OK && frame.groups < 8)
+  if (status == FG_OK && frame.groups < 8 && !run->problem->unflipped)
     status = loop_note(ctx, run->result,
                        "%zu groups take part: flipping their signs can give no p-value below "
                        "%.3g, so nothing can be claimed at p < 0.01. Measure 8 groups or more.",

@@ -199,6 +199,28 @@ static void find_verdict(fg_scan_loop *loop) {
                                                           : FG_LOOP_CLEAN;
 }
 
+/* Points come first; only where they are clean the bumps decide. */
+static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
+  size_t response;
+  const fg_scan_bumps_request request = {
+      .before = loop->before,
+      .after = loop->after,
+      .hold_out = loop->hold_out,
+      .scan_count = loop->scan_count,
+      .same_foil = loop->options.same_foil,
+      .open =
+          loop->tied || loop->verdict == FG_LOOP_PARTLY || loop->verdict == FG_LOOP_UNATTRIBUTED,
+      .seed = loop->options.seed,
+  };
+  FG_TRY(fg_scan_bumps_run(ctx, &request, &loop->bumps));
+  if (loop->verdict != FG_LOOP_CLEAN) return FG_OK;
+  bool listed = fg_scan_bumps_claimed(&loop->bumps);
+  bool rest = fg_scan_bumps_curve(&loop->bumps, &response) != NULL;
+  if (listed || rest)
+    loop->verdict = !listed ? FG_LOOP_UNATTRIBUTED : rest ? FG_LOOP_PARTLY : FG_LOOP_EXPLAINED;
+  return FG_OK;
+}
+
 static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   size_t rows = loop->points.row_count;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
@@ -212,7 +234,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(correct_all(ctx, loop, &loop->set, loop->after));
   if (loop->tied) FG_TRY(find_ranges(ctx, loop));
   find_verdict(loop);
-  return FG_OK;
+  return search_bumps(ctx, loop);
 }
 
 fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
@@ -251,6 +273,7 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
     if (loop->after) fg_measurement_free(&loop->after[i]);
   }
   fg_points_free(&loop->points);
+  fg_scan_bumps_free(&loop->bumps);
   free(loop->before);
   free(loop->after);
   free(loop->hold_out);

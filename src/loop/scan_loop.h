@@ -5,6 +5,7 @@
 #include "foilgauge/scan_loop.h"
 #include "loop/points.h"
 #include "loop/points_effects.h"
+#include "loop/scan_bumps.h"
 #include "loop/subset.h"
 
 struct fg_scan_loop {
@@ -20,6 +21,7 @@ struct fg_scan_loop {
   double noise_floor_um;
   bool tied;
   fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
+  fg_scan_bumps bumps;  /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;
 };
 

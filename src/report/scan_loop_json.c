@@ -5,6 +5,7 @@
 
 #include "loop/scan_loop.h"
 #include "report/measure_json.h"
+#include "report/scan_loop_bumps.h"
 
 static bool is_free(const char *id) {
   return !strncmp(id, "free.", 5);
@@ -136,6 +137,7 @@ static void write_claims(fg_json *json, const fg_scan_loop *loop) {
     if (!sure) write_class(json, loop);
     fg_json_object_end(json);
   }
+  fg_json_bump_claims(json, &loop->bumps);
   fg_json_array_end(json);
 }
 
@@ -144,7 +146,7 @@ static void write_unattributed(fg_json *json, const fg_scan_loop *loop) {
   for (size_t i = 0; i < loop->set.count; i++)
     if (is_free(loop->set.effects[i].id)) curve = &loop->set.effects[i];
   if (!curve) {
-    fg_json_string(json, "unattributed", NULL);
+    if (!fg_json_bump_curve(json, &loop->bumps)) fg_json_string(json, "unattributed", NULL);
     return;
   }
   char coordinate[48];
@@ -227,6 +229,7 @@ static void write_rejected(fg_json *json, const fg_scan_loop *loop) {
     fg_json_number(json, "retained_share", loop->subset.share[e]);
     fg_json_object_end(json);
   }
+  fg_json_bump_rejected(json, &loop->bumps);
   fg_json_array_end(json);
 }
 
@@ -274,6 +277,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_object_end(&json);
   write_rejected(&json, loop);
   write_advice(&json, loop);
+  fg_json_bumps(&json, &loop->bumps);
   fg_json_object_end(&json);
   fg_json_end(&json);
   return FG_OK;
@@ -305,6 +309,7 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
       fprintf(out, " amplitude_um %.4g +- %.2g", amplitude_of(effect), 2 * amplitude_u(effect));
     fputc('\n', out);
   }
+  fg_text_bumps(&loop->bumps, out);
   for (size_t i = 0; i < loop->scan_count; i++)
     for (size_t f = 0; f < loop->before[i].foil_count && f < loop->after[i].foil_count; f++) {
       const fg_foil *b = &loop->before[i].foils[f], *a = &loop->after[i].foils[f];
