@@ -94,9 +94,9 @@ typedef struct fg_loop_problem {
   bool correlated;   /* estimate that correlation */
   bool *aside;       /* rows kept aside, whole groups; NULL: none */
   bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
-  bool unflipped;    /* too few groups for flips to tell: the simulation judges alone, and whoever
-                        built the problem tests the claims by other means */
-  double *response;  /* rows, for exchanged runs: the measured response */
+  bool few; /* too few groups for flips or curves to tell: listed effects only, by simulation alone;
+               whoever built the problem tests the claims by other means */
+  double *response; /* rows, for exchanged runs: the measured response */
   fg_loop_coordinate *coordinate;
   size_t coordinates;
   void *self; /* for the effects of a level */

@@ -243,8 +243,8 @@ fg_status loop_judge(fg_context *ctx, loop_bench *bench, size_t draws, uint64_t 
     judgement->cautious_noise = noise;
   }
   FG_TRY_EXIT(loop_bench_prepare_flips(ctx, bench, noise, small ? NULL : judgement->score));
-  /* Unflipped: p_flip and smallest_p stay 0. */
-  if (!bench->frame->problem->unflipped || !small) {
+  /* Few: p_flip and smallest_p stay 0. */
+  if (!bench->frame->problem->few || !small) {
     FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));
     critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
   }

@@ -61,7 +61,7 @@ static fg_status open_run(fg_context *ctx, const fg_loop_problem *problem,
   for (size_t i = 0; i < rows; i++)
     run->train[i] = !problem->aside || !problem->aside[i];
   FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
-  FG_TRY(add_candidates(ctx, run, loop_curve_effects(), &capacity));
+  if (!problem->few) FG_TRY(add_candidates(ctx, run, loop_curve_effects(), &capacity));
   size_t size = sizeof *result->before_fit;
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->before_fit));
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->after_fit));
@@ -91,7 +91,7 @@ static fg_status check(fg_context *ctx, loop_run *run, bool *worth) {
     status = loop_note(ctx, run->result,
                        "The declared model fits every row to the last digit: no residual is left "
                        "to look into.");
-  if (status == FG_OK && frame.groups < 8 && !run->problem->unflipped)
+  if (status == FG_OK && frame.groups < 8 && !run->problem->few)
     status = loop_note(ctx, run->result,
                        "%zu groups take part: flipping their signs can give no p-value below "
                        "%.3g, so nothing can be claimed at p < 0.01. Measure 8 groups or more.",

@@ -187,7 +187,7 @@ static fg_status build_problem(fg_context *ctx, const fg_scan_bumps *bumps, cons
   drop_coordinate(problem, "foil");
   if (!bumps->lip) drop_coordinate(problem, "bump");
   if (!few) return FG_OK;
-  problem->unflipped = true;
+  problem->few = true;
   for (size_t i = 0; i < problem->rows; i++)
     problem->group[i] = i;
   problem->groups = problem->rows;
@@ -248,6 +248,11 @@ static void find_errors(fg_scan_bump_level *level, const fg_scan_bumps *bumps, b
   level->base = base / n[0];
 }
 
+/* Of few bumps the engine knows no curves, but counts them: that pays for the second response. */
+static double over_responses(const fg_loop_problem *problem, double p_value) {
+  return fmin(1, (problem->few ? 1 : FG_SCAN_BUMP_RESPONSES) * p_value);
+}
+
 static bool is_exchange(const fg_loop_candidate *candidate) {
   return candidate->effect && !strcmp(candidate->effect->id, "table.exchanged_runs");
 }
@@ -271,6 +276,7 @@ static fg_status judge_claim(fg_context *ctx, fg_scan_bumps *bumps, size_t respo
   const fg_loop_problem *problem = &level->problem.problem;
   const fg_scan_bump_response *what = &fg_scan_bump_responses[response];
   double least = level->least, p_value;
+  claim->p_value = over_responses(problem, claim->p_value);
   const char *id = claim->candidate.effect->id;
   *kept = false;
   strip_aliases(claim);
@@ -286,11 +292,12 @@ static fg_status judge_claim(fg_context *ctx, fg_scan_bumps *bumps, size_t respo
                 "(%.3g %s): no claim",
                 id, what->name, what->scale * claim->amplitude, what->unit, what->scale * least,
                 what->unit);
-  if (problem->unflipped) {
+  if (problem->few) {
     FG_TRY(fg_scan_bumps_null_p(ctx, problem, claim, seed, &p_value));
-    claim->p_value = fmax(claim->p_value, p_value);
+    p_value *= FG_SCAN_BUMP_RESPONSES;
+    claim->p_value = fmin(1, fmax(claim->p_value, p_value));
   }
-  *kept = fg_scan_bumps_p(claim->p_value) < accept_p;
+  *kept = claim->p_value < accept_p;
   return FG_OK;
 }
 
@@ -327,6 +334,10 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_bumps *bumps, size_t resp
       level->dropped[level->drops++] = result->claim[m];
   }
   result->claims = count;
+  for (size_t k = 0; k < result->rejects; k++)
+    result->rejected[k].p_value =
+        over_responses(&level->problem.problem, result->rejected[k].p_value);
+  result->curve.p_value = over_responses(&level->problem.problem, result->curve.p_value);
   if (result->has_curve && !(result->curve.rms > level->least)) result->has_curve = false;
   return find_effects(ctx, level);
 }
@@ -334,11 +345,14 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_bumps *bumps, size_t resp
 static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, size_t response,
                        const fg_table *table, fg_scan_bumps *bumps) {
   fg_scan_bump_level *level = &bumps->level[response];
-  const fg_loop_options options = {
-      .effects = bumps->effect, .seed = seed, .accept_p = accept_p / FG_SCAN_BUMP_RESPONSES};
   double sum = 0, n = 0;
   FG_TRY(build_problem(ctx, bumps, table, design, response, &level->problem));
-  fg_status status = fg_loop_run(ctx, &level->problem.problem, &options, &level->result);
+  const fg_loop_problem *problem = &level->problem.problem;
+  const fg_loop_options options = {.effects = bumps->effect,
+                                   .seed = seed,
+                                   .accept_p =
+                                       problem->few ? accept_p : accept_p / FG_SCAN_BUMP_RESPONSES};
+  fg_status status = fg_loop_run(ctx, problem, &options, &level->result);
   if (status != FG_OK) {
     fg_loop_table_problem_free(&level->problem);
     return status;
@@ -454,10 +468,6 @@ const fg_loop_curve *fg_scan_bumps_curve(const fg_scan_bumps *bumps, size_t *res
     if (result->has_curve) return &result->curve;
   }
   return NULL;
-}
-
-double fg_scan_bumps_p(double p_value) {
-  return fmin(1, FG_SCAN_BUMP_RESPONSES * p_value);
 }
 
 /* ---- parameters ---- */

@@ -39,7 +39,7 @@ typedef struct fg_scan_bump_error {
 typedef struct fg_scan_bump_level {
   bool judged; /* `problem` and `result` are there */
   fg_loop_table_problem problem;
-  fg_loop_result result; /* with the claims that stand */
+  fg_loop_result result; /* with the claims that stand; p-values over both responses */
   fg_loop_claim dropped[FG_LOOP_CLAIMS];
   size_t drops;
   double least; /* smallest amplitude beyond doubt, the response's unit */
@@ -82,14 +82,13 @@ void fg_scan_bumps_free(fg_scan_bumps *bumps);
 bool fg_scan_bumps_claimed(const fg_scan_bumps *bumps);
 /* What no listed effect explains, and of which response; NULL: nothing. */
 const fg_loop_curve *fg_scan_bumps_curve(const fg_scan_bumps *bumps, size_t *response);
-/* The p-value of a claim among the rows that are not aside, for units too few to flip. */
+/* The p-value of a claim of one response among the rows that are not aside, for units too few to
+ * flip. */
 fg_status fg_scan_bumps_null_p(fg_context *ctx, const fg_loop_problem *problem,
                                const fg_loop_claim *claim, uint64_t seed, double *p_value);
 /* The i-th parameter of a claim; false beyond the last. */
 bool fg_scan_bumps_parameter(const fg_scan_bumps *bumps, size_t response,
                              const fg_loop_claim *claim, size_t i, const char **name, double *value,
                              double *u);
-/* Over both responses. */
-double fg_scan_bumps_p(double p_value);
 
 #endif

@@ -87,19 +87,26 @@ static double trend_p(const trend_bench *bench, double *residual, uint64_t seed)
   return (double)beyond / (DRAWS + 1);
 }
 
-static double sign_p(const double *basis, const double *residual, size_t n, uint64_t seed) {
-  double observed = 0;
-  size_t beyond = 1;
+/* |sum| with the signs of the bits that are set turned round. */
+static double signed_sum(const double *product, size_t n, uint64_t signs) {
+  double sum = 0;
   for (size_t i = 0; i < n; i++)
-    observed += basis[i] * residual[i];
-  observed = fabs(observed) * (1 - 1e-9);
-  for (size_t d = 0; d < DRAWS; d++) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++)
-      sum += (loop_random_next(&seed) >> 63 ? 1 : -1) * basis[i] * residual[i];
-    beyond += fabs(sum) >= observed;
+    sum += i < 64 && signs >> i & 1 ? -product[i] : product[i];
+  return fabs(sum);
+}
+
+/* All patterns where they are few (a pattern and its mirror image are one), else random ones. */
+static double sign_p(double *product, size_t n, uint64_t seed) {
+  enum { FEW = 12 };
+  double observed = signed_sum(product, n, 0) * (1 - 1e-9);
+  size_t draws = n <= FEW ? ((size_t)1 << (n - 1)) - 1 : DRAWS, beyond = 1;
+  for (size_t d = 1; d <= draws; d++) {
+    uint64_t signs = d;
+    for (size_t i = 0; n > FEW && i < n; i++) /* each draw flips the one before it anew */
+      if (loop_random_next(&seed) >> 63) product[i] = -product[i];
+    beyond += signed_sum(product, n, n > FEW ? 0 : signs) >= observed;
   }
-  return (double)beyond / (DRAWS + 1);
+  return (double)beyond / (double)(draws + 1);
 }
 
 fg_status fg_scan_bumps_null_p(fg_context *ctx, const fg_loop_problem *problem,
@@ -119,7 +126,9 @@ fg_status fg_scan_bumps_null_p(fg_context *ctx, const fg_loop_problem *problem,
     series[n++] = problem->series[i];
   }
   if (at->roles & FG_LOOP_SENSITIVITY) {
-    *p_value = sign_p(value, residual, n, seed);
+    for (size_t i = 0; i < n; i++)
+      value[i] *= residual[i];
+    *p_value = sign_p(value, n, seed);
     goto exit;
   }
   FG_TRY_EXIT(open_trends(ctx, value, series, n, &bench));

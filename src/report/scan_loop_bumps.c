@@ -38,7 +38,7 @@ static void write_claim(fg_json *json, const fg_scan_bumps *bumps, size_t respon
   write_parameters(json, bumps, response, claim, true);
   fg_json_number(json, "amplitude", what->scale * claim->amplitude);
   fg_json_number(json, "u_amplitude", what->scale * claim->amplitude_u);
-  fg_json_number(json, "p_value", fg_scan_bumps_p(claim->p_value));
+  fg_json_number(json, "p_value", claim->p_value);
   fg_json_number(json, "retained_share", claim->retained_share);
   if (claim->verdict == FG_LOOP_TIED) write_aliases(json, claim);
   fg_json_object_end(json);
@@ -59,7 +59,7 @@ static void write_rejected(fg_json *json, size_t response, const fg_loop_rejecte
   fg_json_string(json, "response", what->name);
   fg_json_string(json, "unit", what->unit);
   fg_json_number(json, "would_explain", one->would_explain);
-  fg_json_number(json, "p_value", fg_scan_bumps_p(one->p_value));
+  fg_json_number(json, "p_value", one->p_value);
   fg_json_number(json, "smallest_amplitude", what->scale * one->smallest_detectable);
   fg_json_number(json, "retained_share", one->retained_share);
   fg_json_object_end(json);
@@ -115,7 +115,7 @@ bool fg_json_bump_curve(fg_json *json, const fg_scan_bumps *bumps) {
   }
   fg_json_array_end(json);
   fg_json_number(json, "rms", what->scale * curve->rms);
-  fg_json_number(json, "p_value", fg_scan_bumps_p(curve->p_value));
+  fg_json_number(json, "p_value", curve->p_value);
   fg_json_array(json, "nearest");
   const fg_loop_result *result = &bumps->level[r].result;
   for (size_t k = 0; k < result->rejects; k++)
