@@ -13,16 +13,17 @@ const fg_scan_bump_response fg_scan_bump_responses[FG_SCAN_BUMP_RESPONSES] = {
     {"bump_angle_deg", "deg", "constant arc length", 1},
 };
 
-enum { RADIUS, ANGLE };
+enum { RADIUS = FG_SCAN_BUMP_RADIUS, ANGLE = FG_SCAN_BUMP_ANGLE };
+
+/* Five bumps have 120 orders, nine 256 pairs of signs: below 0.005 beside their mirror images from
+ * six and nine bumps on. */
+enum { ORDERS = 6, SIGNS = 9 };
 
 /* A claim must be this many times what all bumps together may be off by. */
 static const double beyond_doubt = 3;
 static const double accept_p = 0.01; /* over both responses */
 
-static fg_status note(fg_context *ctx, fg_scan_bumps *bumps, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static fg_status note(fg_context *ctx, fg_scan_bumps *bumps, const char *format, ...) {
+fg_status fg_scan_bumps_note(fg_context *ctx, fg_scan_bumps *bumps, const char *format, ...) {
   char text[400];
   va_list arguments;
   va_start(arguments, format);
@@ -283,15 +284,17 @@ static fg_status judge_claim(fg_context *ctx, fg_scan_bumps *bumps, size_t respo
   if (is_exchange(&claim->candidate)) return FG_OK;
   if (!strcmp(id, "table.outlier")) {
     const fg_scan_bump *bump = &bumps->bump[level->problem.row[claim->candidate.row[0]]];
-    return note(ctx, bumps, "bumps: %s of bump %d of foil %zu stands out from the others",
-                what->name, bump->number, bump->part + 1);
+    return fg_scan_bumps_note(ctx, bumps,
+                              "bumps: %s of bump %d of foil %zu stands out from the others",
+                              what->name, bump->number, bump->part + 1);
   }
   if (!(claim->amplitude > least))
-    return note(ctx, bumps,
-                "bumps: %s of %s is %.3g %s, which is within what the edges leave in doubt "
-                "(%.3g %s): no claim",
-                id, what->name, what->scale * claim->amplitude, what->unit, what->scale * least,
-                what->unit);
+    return fg_scan_bumps_note(
+        ctx, bumps,
+        "bumps: %s of %s is %.3g %s, which is within what the edges leave in doubt "
+        "(%.3g %s): no claim",
+        id, what->name, what->scale * claim->amplitude, what->unit, what->scale * least,
+        what->unit);
   if (problem->few) {
     FG_TRY(fg_scan_bumps_null_p(ctx, problem, claim, seed, &p_value));
     p_value *= FG_SCAN_BUMP_RESPONSES;
@@ -320,6 +323,24 @@ static fg_status find_effects(fg_context *ctx, fg_scan_bump_level *level) {
   return FG_OK;
 }
 
+/* P-values over both responses; amplitudes that would have been claimed. */
+static void judge_rejected(fg_scan_bump_level *level) {
+  const fg_loop_problem *problem = &level->problem.problem;
+  size_t rows = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    rows += !problem->aside[i];
+  for (size_t k = 0; k < level->result.rejects; k++) {
+    fg_loop_rejected *one = &level->result.rejected[k];
+    size_t needed = strcmp(one->candidate.effect->id, "part.stretch") ? ORDERS : SIGNS;
+    one->p_value = over_responses(problem, one->p_value);
+    if (problem->few && rows < needed) one->smallest_detectable = NAN;
+    if (one->smallest_detectable < level->least) one->smallest_detectable = level->least;
+    if (isnan(one->smallest_detectable) && one->verdict == FG_LOOP_ABSENT)
+      one->verdict = FG_LOOP_INCONCLUSIVE;
+  }
+  level->result.curve.p_value = over_responses(problem, level->result.curve.p_value);
+}
+
 static fg_status judge_claims(fg_context *ctx, fg_scan_bumps *bumps, size_t response,
                               uint64_t seed) {
   fg_scan_bump_level *level = &bumps->level[response];
@@ -334,10 +355,7 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_bumps *bumps, size_t resp
       level->dropped[level->drops++] = result->claim[m];
   }
   result->claims = count;
-  for (size_t k = 0; k < result->rejects; k++)
-    result->rejected[k].p_value =
-        over_responses(&level->problem.problem, result->rejected[k].p_value);
-  result->curve.p_value = over_responses(&level->problem.problem, result->curve.p_value);
+  judge_rejected(level);
   if (result->has_curve && !(result->curve.rms > level->least)) result->has_curve = false;
   return find_effects(ctx, level);
 }
@@ -398,20 +416,19 @@ static void find_height_errors(const fg_design *design, fg_scan_bumps *bumps) {
   }
 }
 
-/* Five bumps have 120 orders, nine 256 pairs of signs: below 0.005 beside their mirror images from
- * six and nine bumps on. */
 static fg_status say_power(fg_context *ctx, fg_scan_bumps *bumps, size_t rows) {
-  enum { ORDERS = 6, SIGNS = 9 };
   if (!bumps->lip)
-    FG_TRY(note(ctx, bumps,
-                "bumps: without a lip their numbers have no order: decay from the lip and trends "
-                "over the number are not judged"));
+    FG_TRY(fg_scan_bumps_note(
+        ctx, bumps,
+        "bumps: without a lip their numbers have no order: decay from the lip and trends "
+        "over the number are not judged"));
   if (bumps->parts >= FG_SCAN_BUMP_FOILS || rows >= SIGNS) return FG_OK;
-  return note(ctx, bumps,
-              "bumps: with %zu of them %s cannot be told from chance, whatever its size; it takes "
-              "%d bumps%s, on one foil or several",
-              rows, rows < ORDERS ? "no effect over the bumps" : "an arc length that differs",
-              SIGNS, rows < ORDERS ? " (6 for a trend over their number)" : "");
+  return fg_scan_bumps_note(
+      ctx, bumps,
+      "bumps: %zu measured: %s can be told from chance, whatever its size; it takes %d%s, "
+      "on one foil or several",
+      rows, rows < ORDERS ? "no effect over them" : "no arc length unlike the design's", SIGNS,
+      rows < ORDERS ? " (6 for a trend over their number)" : "");
 }
 
 static fg_status run(fg_context *ctx, const fg_scan_bumps_request *request, fg_scan_bumps *bumps) {
@@ -454,72 +471,4 @@ void fg_scan_bumps_free(fg_scan_bumps *bumps) {
   free(bumps->note);
   free(bumps->bump);
   *bumps = (fg_scan_bumps){0};
-}
-
-bool fg_scan_bumps_claimed(const fg_scan_bumps *bumps) {
-  for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++)
-    if (bumps->level[r].result.claims) return true;
-  return false;
-}
-
-const fg_loop_curve *fg_scan_bumps_curve(const fg_scan_bumps *bumps, size_t *response) {
-  for (*response = 0; *response < FG_SCAN_BUMP_RESPONSES; (*response)++) {
-    const fg_loop_result *result = &bumps->level[*response].result;
-    if (result->has_curve) return &result->curve;
-  }
-  return NULL;
-}
-
-/* ---- parameters ---- */
-
-typedef struct parameters {
-  const char *name[2];
-  double value[2], u[2];
-  size_t count;
-} parameters;
-
-/* The basis is 1 at the lip and -1 far from it: c - (-c) above a base of mean - c. */
-static parameters decay_parameters(const fg_scan_bump_level *level, size_t response,
-                                   const fg_loop_claim *claim) {
-  double height = 2 * claim->coefficient[0], u = 2 * claim->coefficient_u[0];
-  double far = response == RADIUS ? level->base - claim->coefficient[0] : 1;
-  return (parameters){{response == RADIUS ? "amplitude_rel" : "amplitude_deg", "decay_bumps"},
-                      {height / far, claim->shape[0]},
-                      {u / fabs(far), claim->shape_u[0]},
-                      2};
-}
-
-static parameters drift_parameters(const fg_loop_coordinate *at, size_t response,
-                                   const fg_loop_claim *claim) {
-  double scale = fg_scan_bump_responses[response].scale * 2 / (at->high - at->low);
-  return (parameters){{response == RADIUS ? "slope_um_per_bump" : "slope_deg_per_bump"},
-                      {scale * claim->coefficient[0]},
-                      {scale * claim->coefficient_u[0]},
-                      1};
-}
-
-/* The basis is the angle's change by one unit of stretch over its largest size. */
-static parameters stretch_parameters(const fg_loop_coordinate *at, const fg_loop_claim *claim) {
-  double scale = fmax(fabs(at->low), fabs(at->high));
-  bool constant = !strcmp(at->name, "constant");
-  return (parameters){{constant ? "arc_length_rel" : "arc_length_rel_per_radius_rel"},
-                      {claim->coefficient[0] / scale},
-                      {claim->coefficient_u[0] / scale},
-                      1};
-}
-
-bool fg_scan_bumps_parameter(const fg_scan_bumps *bumps, size_t response,
-                             const fg_loop_claim *claim, size_t i, const char **name, double *value,
-                             double *u) {
-  const fg_scan_bump_level *level = &bumps->level[response];
-  const fg_loop_coordinate *at = &level->problem.problem.coordinate[claim->candidate.a];
-  const char *id = claim->candidate.effect->id;
-  parameters p = !strcmp(id, "part.lip_decay") ? decay_parameters(level, response, claim)
-                 : !strcmp(id, "part.stretch") ? stretch_parameters(at, claim)
-                                               : drift_parameters(at, response, claim);
-  if (i >= p.count) return false;
-  *name = p.name[i];
-  *value = p.value[i];
-  *u = p.u[i];
-  return true;
 }

@@ -16,7 +16,9 @@
 
 enum {
   FG_SCAN_BUMP_FOILS = 8,
-  FG_SCAN_BUMP_ROWS = 5, /* fewer bumps are not judged */
+  FG_SCAN_BUMP_ROWS = 5,   /* fewer bumps are not judged */
+  FG_SCAN_BUMP_RADIUS = 0, /* responses */
+  FG_SCAN_BUMP_ANGLE = 1,
   FG_SCAN_BUMP_RESPONSES = 2,
   FG_SCAN_BUMP_EFFECTS = 3,
 };
@@ -78,6 +80,10 @@ typedef struct fg_scan_bumps_request {
 fg_status fg_scan_bumps_run(fg_context *ctx, const fg_scan_bumps_request *request,
                             fg_scan_bumps *bumps);
 void fg_scan_bumps_free(fg_scan_bumps *bumps);
+
+/* Something the reader must know. */
+fg_status fg_scan_bumps_note(fg_context *ctx, fg_scan_bumps *bumps, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 bool fg_scan_bumps_claimed(const fg_scan_bumps *bumps);
 /* What no listed effect explains, and of which response; NULL: nothing. */

@@ -199,6 +199,22 @@ static void find_verdict(fg_scan_loop *loop) {
                                                           : FG_LOOP_CLEAN;
 }
 
+/* Where most effects of the size that matters could not have been seen, `absent` effects must not
+ * look like a clean scanner. */
+static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
+  static const double matters_um = 3;
+  size_t listed = 0, hidden = 0;
+  for (size_t e = 0; e < loop->subset.effect_count; e++) {
+    listed += !loop->subset.effects[e].free;
+    hidden += !loop->subset.effects[e].free && !(loop->subset.smallest_um[e] <= matters_um);
+  }
+  if (2 * hidden <= listed) return FG_OK;
+  return fg_scan_bumps_note(ctx, &loop->bumps,
+                            "points: %zu of %zu effects of %g um could not have been seen: too "
+                            "little of the foil is measured; scan more bumps, or several foils",
+                            hidden, listed, matters_um);
+}
+
 /* Points come first; only where they are clean the bumps decide. */
 static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   size_t response;
@@ -213,6 +229,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .seed = loop->options.seed,
   };
   FG_TRY(fg_scan_bumps_run(ctx, &request, &loop->bumps));
+  FG_TRY(say_reach(ctx, loop));
   if (loop->verdict != FG_LOOP_CLEAN) return FG_OK;
   bool listed = fg_scan_bumps_claimed(&loop->bumps);
   bool rest = fg_scan_bumps_curve(&loop->bumps, &response) != NULL;

@@ -1,6 +1,7 @@
 #include "report/scan_loop_bumps.h"
 
 #include <math.h>
+#include <string.h>
 
 static void write_aliases(fg_json *json, const fg_loop_claim *claim) {
   char name[2 * FG_LOOP_NAME];
@@ -70,6 +71,32 @@ static bool is_effect(const fg_scan_bumps *bumps, const fg_loop_effect *effect) 
   return effect >= bumps->effect && effect < bumps->effect + FG_SCAN_BUMP_EFFECTS;
 }
 
+static bool is_mentioned(const fg_scan_bump_level *level, const fg_loop_effect *effect) {
+  for (size_t m = 0; m < level->result.claims; m++)
+    if (level->result.claim[m].candidate.effect == effect) return true;
+  for (size_t k = 0; k < level->result.rejects; k++)
+    if (level->result.rejected[k].candidate.effect == effect) return true;
+  for (size_t m = 0; m < level->drops; m++)
+    if (level->dropped[m].candidate.effect == effect) return true;
+  return false;
+}
+
+/* Too few bumps, or no lip, to look at all: nothing is known of the effect, which is not `absent`.
+ */
+static void write_unknown(fg_json *json, const fg_scan_bumps *bumps, size_t response) {
+  const fg_scan_bump_level *level = &bumps->level[response];
+  for (const fg_loop_effect *e = bumps->effect; e->id; e++) {
+    bool of_angles = !strcmp(e->id, "part.stretch");
+    const fg_loop_rejected one = {.candidate = {.effect = e},
+                                  .verdict = FG_LOOP_INCONCLUSIVE,
+                                  .would_explain = NAN,
+                                  .p_value = 1,
+                                  .retained_share = NAN,
+                                  .smallest_detectable = NAN};
+    if (!is_mentioned(level, e) && (response || !of_angles)) write_rejected(json, response, &one);
+  }
+}
+
 /* An effect that was found is not rejected of the same response on its other coordinate. */
 void fg_json_bump_rejected(fg_json *json, const fg_scan_bumps *bumps) {
   for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++) {
@@ -87,16 +114,7 @@ void fg_json_bump_rejected(fg_json *json, const fg_scan_bumps *bumps) {
                                     .smallest_detectable = level->least};
       if (is_effect(bumps, claim->candidate.effect)) write_rejected(json, r, &one);
     }
-    /* Too few bumps to look at all: nothing of them is known, which is not `absent`. */
-    for (const fg_loop_effect *e = bumps->effect; !level->judged && e->id; e++) {
-      const fg_loop_rejected one = {.candidate = {.effect = e},
-                                    .verdict = FG_LOOP_INCONCLUSIVE,
-                                    .would_explain = NAN,
-                                    .p_value = 1,
-                                    .retained_share = NAN,
-                                    .smallest_detectable = NAN};
-      write_rejected(json, r, &one);
-    }
+    write_unknown(json, bumps, r);
   }
 }
 

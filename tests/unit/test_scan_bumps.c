@@ -1,0 +1,242 @@
+/* Level `bumps` of the loop on scans, on measured foils made by formula: what is there is found,
+ * what is not is not, and foils that are too small say so. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "loop/random.h"
+#include "loop/scan_bumps.h"
+
+enum { FOILS = 12, BUMPS = 9 };
+
+/* What the made foils hold. */
+typedef struct recipe {
+  size_t foils, bumps;
+  bool no_lip;
+  double scatter, decay, decay_bumps, stretch, stretch_scatter, edge_deg, u_deg;
+} recipe;
+
+static const recipe plain = {.foils = 1, .bumps = BUMPS, .scatter = 0.01, .u_deg = 0.001};
+
+typedef struct scans {
+  fg_measurement one;
+  fg_foil foil[FOILS];
+  fg_bump bump[FOILS][BUMPS];
+  fg_scan_bumps bumps;
+} scans;
+
+static void make(const recipe *r, uint64_t seed, scans *s) {
+  *s = (scans){.one = {.foils = s->foil, .foil_count = r->foils}};
+  fg_design_default(&s->one.design);
+  for (size_t f = 0; f < r->foils; f++) {
+    s->foil[f] = (fg_foil){.bumps = s->bump[f],
+                           .bump_count = r->bumps,
+                           .flags = r->no_lip ? FG_FOIL_NO_LIP : 0,
+                           .overall = {.radius_mm = 20.95}};
+    for (size_t b = 0; b < r->bumps; b++) {
+      fg_bump *p = &s->bump[f][b];
+      p->number = (int)b + 1;
+      p->radius_mm = 3.32 * (1.02 + r->scatter * loop_random_normal(&seed)) *
+                     (1 + r->decay * exp(-(double)b / (r->decay_bumps > 0 ? r->decay_bumps : 1)));
+      double arc = 1 + r->stretch + r->stretch_scatter * loop_random_normal(&seed);
+      p->bump_angle_deg = 63.15 * 3.32 / p->radius_mm * arc + r->edge_deg +
+                          0.3 * r->u_deg * loop_random_normal(&seed);
+      p->height_mm = 0.55;
+      p->u_radius_mm = 0.0001;
+      p->u_bump_angle_deg = r->u_deg;
+    }
+  }
+}
+
+static void run(const recipe *r, uint64_t seed, scans *s) {
+  static const bool none[1] = {false};
+  fg_context ctx = {0};
+  make(r, seed, s);
+  const fg_scan_bumps_request request = {
+      .before = &s->one, .after = &s->one, .hold_out = none, .scan_count = 1, .seed = seed};
+  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s->bumps), FG_OK);
+}
+
+/* The first claim of a response and its parameter. */
+static double parameter(const scans *s, size_t response, const char *id, size_t index, double *u) {
+  const fg_loop_result *result = &s->bumps.level[response].result;
+  const char *name;
+  double value;
+  assert_int_equal(result->claims, 1);
+  assert_string_equal(result->claim[0].candidate.effect->id, id);
+  assert_true(
+      fg_scan_bumps_parameter(&s->bumps, response, &result->claim[0], index, &name, &value, u));
+  return value;
+}
+
+static void a_decay_from_the_lip_is_found(void **state) {
+  recipe r = plain;
+  scans s;
+  double u;
+  (void)state;
+  r.decay = 0.12;
+  r.decay_bumps = 2;
+  r.scatter = 0.004;
+  run(&r, 3, &s);
+  double value = parameter(&s, 0, "part.lip_decay", 0, &u);
+  assert_true(fabs(value - 0.12) < 3 * u && u < 0.02);
+  value = parameter(&s, 0, "part.lip_decay", 1, &u);
+  assert_true(fabs(value - 2) < 3 * u && u < 1);
+  assert_true(s.bumps.level[0].error.rms[1] < 0.3 * s.bumps.level[0].error.rms[0]);
+  assert_int_equal(s.bumps.level[1].result.claims, 0);
+  fg_scan_bumps_free(&s.bumps);
+}
+
+static void a_stretch_is_found(void **state) {
+  recipe r = plain;
+  scans s;
+  double u;
+  (void)state;
+  r.stretch = -0.006;
+  r.stretch_scatter = 0.001;
+  run(&r, 5, &s);
+  double value = parameter(&s, 1, "part.stretch", 0, &u);
+  assert_true(fabs(value + 0.006) < 3 * u && u < 0.001);
+  assert_int_equal(s.bumps.level[0].result.claims, 0);
+  fg_scan_bumps_free(&s.bumps);
+}
+
+static void foils_are_the_units_of_a_lot(void **state) {
+  recipe r = plain;
+  scans s;
+  double u;
+  (void)state;
+  r.foils = FOILS;
+  r.decay = 0.03;
+  r.decay_bumps = 1.5;
+  run(&r, 7, &s);
+  double value = parameter(&s, 0, "part.lip_decay", 0, &u);
+  assert_true(fabs(value - 0.03) < 3 * u && u < 0.01);
+  fg_scan_bumps_free(&s.bumps);
+}
+
+/* A steady error of the edges, as all bumps share, is no stretch; nor is it silent. */
+static void what_the_edges_leave_in_doubt_is_no_claim(void **state) {
+  recipe r = plain;
+  scans s;
+  (void)state;
+  r.edge_deg = 0.0025;
+  run(&r, 11, &s);
+  assert_false(fg_scan_bumps_claimed(&s.bumps));
+  assert_int_equal(s.bumps.level[1].drops, 1);
+  assert_int_equal(s.bumps.notes, 1);
+  assert_non_null(strstr(s.bumps.note[0], "in doubt"));
+  assert_true(s.bumps.level[1].error.rms[0] == s.bumps.level[1].error.rms[1]);
+  fg_scan_bumps_free(&s.bumps);
+}
+
+static void small_foils_say_what_they_cannot_tell(void **state) {
+  (void)state;
+  for (size_t bumps = 0; bumps < BUMPS; bumps++) {
+    recipe r = plain;
+    scans s;
+    r.bumps = bumps;
+    r.decay = 0.3;
+    run(&r, 13, &s);
+    assert_int_equal(s.bumps.count, bumps);
+    assert_int_equal(s.bumps.notes >= 1, 1);
+    assert_non_null(strstr(s.bumps.note[0], bumps < 6 ? "no effect over them" : "no arc length"));
+    assert_int_equal(s.bumps.level[0].judged, bumps >= FG_SCAN_BUMP_ROWS);
+    if (bumps < 6) assert_false(fg_scan_bumps_claimed(&s.bumps));
+    fg_scan_bumps_free(&s.bumps);
+  }
+}
+
+static void without_a_lip_there_is_no_decay(void **state) {
+  recipe r = plain;
+  scans s;
+  (void)state;
+  r.no_lip = true;
+  r.decay = 0.12;
+  r.decay_bumps = 2;
+  r.scatter = 0.004;
+  run(&r, 3, &s);
+  assert_false(fg_scan_bumps_claimed(&s.bumps));
+  for (size_t k = 0; k < s.bumps.level[0].result.rejects; k++)
+    assert_int_not_equal(
+        strncmp(s.bumps.level[0].result.rejected[k].candidate.effect->id, "part.", 5), 0);
+  assert_non_null(strstr(s.bumps.note[0], "without a lip"));
+  fg_scan_bumps_free(&s.bumps);
+}
+
+static void bumps_that_were_not_fitted_are_left_out(void **state) {
+  static const bool none[1] = {false};
+  fg_context ctx = {0};
+  scans s;
+  (void)state;
+  make(&plain, 17, &s);
+  s.bump[0][2].flags = FG_BUMP_CRUSHED;
+  s.bump[0][4].radius_mm = NAN;
+  const fg_scan_bumps_request request = {
+      .before = &s.one, .after = &s.one, .hold_out = none, .scan_count = 1, .seed = 1};
+  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_int_equal(s.bumps.count, BUMPS - 2);
+  fg_scan_bumps_free(&s.bumps);
+}
+
+/* Two views of one foil are nine bumps, not eighteen. */
+static void views_of_one_foil_are_averaged(void **state) {
+  static const bool none[2] = {false, false};
+  fg_context ctx = {0};
+  scans s;
+  (void)state;
+  make(&plain, 19, &s);
+  fg_measurement twice[2] = {s.one, s.one};
+  fg_scan_bumps_request request = {.before = twice,
+                                   .after = twice,
+                                   .hold_out = none,
+                                   .scan_count = 2,
+                                   .same_foil = true,
+                                   .seed = 1};
+  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_int_equal(s.bumps.count, BUMPS);
+  assert_int_equal(s.bumps.parts, 1);
+  assert_true(fabs(s.bumps.bump[3].value[0] - s.bump[0][3].radius_mm) < 1e-12);
+  fg_scan_bumps_free(&s.bumps);
+  request.same_foil = false;
+  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_int_equal(s.bumps.count, 2 * BUMPS);
+  fg_scan_bumps_free(&s.bumps);
+}
+
+/* One in a hundred would be right; with 200 draws more than 7 is one in a thousand. */
+static void scatter_alone_is_clean(void **state) {
+  size_t claims = 0;
+  (void)state;
+  for (uint64_t seed = 1; seed <= 200; seed++) {
+    recipe r = plain;
+    scans s;
+    r.foils = 1 + seed % 3;
+    r.stretch_scatter = seed % 2 ? 0.002 : 0;
+    run(&r, 1000 * seed, &s);
+    claims += fg_scan_bumps_claimed(&s.bumps);
+    fg_scan_bumps_free(&s.bumps);
+  }
+  print_message("claims on 200 foils without any effect: %zu\n", claims);
+  assert_true(claims <= 7);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_decay_from_the_lip_is_found),
+      cmocka_unit_test(a_stretch_is_found),
+      cmocka_unit_test(foils_are_the_units_of_a_lot),
+      cmocka_unit_test(what_the_edges_leave_in_doubt_is_no_claim),
+      cmocka_unit_test(small_foils_say_what_they_cannot_tell),
+      cmocka_unit_test(without_a_lip_there_is_no_decay),
+      cmocka_unit_test(bumps_that_were_not_fitted_are_left_out),
+      cmocka_unit_test(views_of_one_foil_are_averaged),
+      cmocka_unit_test(scatter_alone_is_clean),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
