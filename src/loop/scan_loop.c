@@ -172,6 +172,7 @@ static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
       status = FG_OK;
       continue;
     }
+    if (status == FG_OK) loop->tie[loop->tie_count++] = set;
     if (status == FG_OK) status = correct_all(ctx, loop, &set, tried);
     if (status == FG_OK) widen_all(loop, tried);
     for (size_t i = 0; i < loop->scan_count; i++)
