@@ -33,14 +33,26 @@ static void add_doubt(fg_foil *foil, const fg_foil *moved) {
 #undef WIDEN
 }
 
+static size_t number_count(const fg_field *field) {
+  return field->row->columns + field->row->shapes;
+}
+
+/* Moves the k-th number by its uncertainty; false where it has none. */
+static bool move_number(fg_field *field, size_t k) {
+  size_t columns = field->row->columns;
+  double u = k < columns ? field->u_amplitude_mm[k] : field->u_shape[k - columns];
+  *(k < columns ? &field->amplitude_mm[k] : &field->shape[k - columns]) += u;
+  return u > 0;
+}
+
 static fg_status widen_by_model(fg_context *ctx, const fg_scan_model *model,
                                 const fg_measurement *m, unsigned threads,
                                 fg_measurement *corrected) {
   for (size_t f = 0; f < model->fields.count; f++)
-    for (size_t c = 0; c < model->fields.fields[f].row->columns; c++) {
+    for (size_t c = 0; c < number_count(&model->fields.fields[f]); c++) {
       fg_field_list moved = model->fields;
       fg_measurement other;
-      moved.fields[f].amplitude_mm[c] += moved.fields[f].u_amplitude_mm[c];
+      if (!move_number(&moved.fields[f], c)) continue;
       FG_TRY(fg_scan_correct(ctx, m, &moved, NULL, 0, NULL, threads, &other));
       for (size_t k = 0; k < corrected->foil_count; k++)
         add_doubt(&corrected->foils[k], &other.foils[k]);

@@ -43,6 +43,9 @@ static fg_status read_field(fg_context *ctx, const cJSON *item, fg_field_list *l
       !read_numbers(item, "u_amplitude_mm", f->u_amplitude_mm, row->columns) ||
       !read_numbers(item, "shape", f->shape, row->shapes))
     return fg_fail(ctx, FG_ERR_DATA, "the numbers of `%s` are not complete", row->id);
+  /* Not in every file; a shape that was not refined has none. */
+  if (!read_numbers(item, "u_shape", f->u_shape, row->shapes))
+    memset(f->u_shape, 0, sizeof f->u_shape);
   return FG_OK;
 }
 

@@ -12,6 +12,7 @@ static void write_fields(fg_json *json, const char *name, const fg_field_list *l
     fg_json_numbers(json, "amplitude_mm", f->amplitude_mm, f->row->columns);
     fg_json_numbers(json, "u_amplitude_mm", f->u_amplitude_mm, f->row->columns);
     fg_json_numbers(json, "shape", f->shape, f->row->shapes);
+    fg_json_numbers(json, "u_shape", f->u_shape, f->row->shapes);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
