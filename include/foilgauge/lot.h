@@ -3,6 +3,7 @@
  * A lot is a folder:
  *   recipe.json     the settings in force (fg_lot_settings; without `jobs`)
  *   manifest.csv    every scan of the lot in its order, with the columns that it came with
+ *   scanner_model.json   the scanner's model, where the lot is corrected by one
  *   results.jsonl   one line per measured scan, kept as it is made ("foilgauge/results/1")
  *   lot.json, foils.csv, bumps.csv, index.html, results.qif, results.dfq    the report
  *
@@ -11,7 +12,8 @@
  * of jobs or in any number of shards reads byte for byte the same.
  *
  * A record is valid while the SHA-256 of its scan and of what it was measured with (program
- * version, design without tolerances, resolution) stay the same; --resume measures the rest.
+ * version, design without tolerances, resolution, scanner's model) stay the same; --resume measures
+ * the rest.
  */
 #ifndef FOILGAUGE_LOT_H
 #define FOILGAUGE_LOT_H
@@ -32,9 +34,12 @@ extern "C" {
 
 /* Every option of a lot: the members of a recipe file, "schema": "foilgauge/recipe/1". */
 typedef struct fg_lot_settings {
-  char name[128];    /* of the lot, as the report shows it */
-  fg_design design;  /* "design": an object as in a design file, or the path of one */
-  double dpi;        /* 0: as the scans say */
+  char name[128];   /* of the lot, as the report shows it */
+  fg_design design; /* "design": an object as in a design file, or the path of one */
+  double dpi;       /* 0: as the scans say */
+  /* The scanner's model that corrects every scan, as "model" in a recipe: the path of its file; in
+   * the lot's folder it is scanner_model.json. "": none. */
+  char model[1024], model_sha256[65];
   unsigned jobs;     /* scans at a time; 0: as many as there are cores; never changes a result */
   double trim_pct;   /* cut off each tail before radius and angle errors are correlated */
   double confidence; /* of every interval */
@@ -56,7 +61,13 @@ void fg_lot_settings_default(fg_lot_settings *settings);
 /* FG_ERR_DATA with the member, its value and what would be right. */
 fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings);
 
-/* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. */
+/* Sets the model and its sum; the file must be one, and the scanner's of that name unless NULL. */
+fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
+                                     fg_lot_settings *settings);
+
+/* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. A
+ * model that is not the one that the recipe states the sum of is FG_ERR_DATA; parsing alone does
+ * not look for its file. */
 fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_settings *settings);
 fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *json,
                                 fg_lot_settings *settings);
@@ -98,6 +109,7 @@ typedef struct fg_lot_outcome {
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
   size_t exceeded; /* foils with a value outside its tolerance */
+  size_t beyond;   /* scans measured now that reach beyond the region of the scanner's model */
   size_t torn;     /* lines of results.jsonl that were not whole, and measured again */
 } fg_lot_outcome;
 

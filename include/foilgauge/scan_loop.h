@@ -16,13 +16,14 @@
 extern "C" {
 #endif
 
-enum { FG_SCAN_EFFECTS = FG_LOOP_CLAIMS + 2 };
+enum { FG_SCAN_EFFECTS = FG_LOOP_CLAIMS + 2, FG_SCANNER_NAME = 128 };
 
 typedef struct fg_scan_loop_options {
   double dpi;       /* 0: as the files say */
   unsigned threads; /* 0: all cores */
   bool same_foil;   /* foil k of every scan is one foil, turned or shifted in between */
   uint64_t seed;
+  const char *scanner; /* its name, for the model file; NULL: not said */
 } fg_scan_loop_options;
 
 /* One effect that is in the corrected model. Coefficients are linear amplitudes in um of its
@@ -61,14 +62,24 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
 /* "foilgauge/scan-model/1". */
 fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
 
-/* A model that was found, to correct other scans. */
+/* A model that was found, to correct other scans. FG_ERR_DATA for a file that is not one, with what
+ * is wrong in it. `path` of the second is for messages. */
 typedef struct fg_scan_model fg_scan_model;
 fg_status fg_scan_model_load(fg_context *ctx, const char *path, fg_scan_model **model);
+fg_status fg_scan_model_parse(fg_context *ctx, const char *path, const char *text,
+                              fg_scan_model **model);
 void fg_scan_model_free(fg_scan_model *model);
+const char *fg_scan_model_sha256(const fg_scan_model *model);
+/* Other explanations did as well when it was found. */
+bool fg_scan_model_is_tied(const fg_scan_model *model);
+/* FG_ERR_DATA unless the model is of the scanner of that name; NULL: any. */
+fg_status fg_scan_model_check_scanner(fg_context *ctx, const fg_scan_model *model, const char *path,
+                                      const char *scanner);
 /* Corrects the edges of every foil and measures it again, with the model's uncertainty in every
- * u_. FG_ERR_DATA when the model is of another resolution; `warning` (200 bytes, or NULL) gets
- * words when the scan reaches beyond the region the model was found in. Part effects are of the
- * foil they were found on and are not applied. */
+ * u_, and in a tie with how far the other explanations would have moved it. FG_ERR_DATA when the
+ * model is of another resolution, or a foil lies more than twice as far on the glass as what the
+ * model was found on; `warning` (200 bytes, or NULL) gets words when it lies outside at all. Part
+ * effects are of the foil they were found on and are not applied. */
 fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_measurement *m,
                               unsigned threads, char *warning);
 

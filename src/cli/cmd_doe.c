@@ -325,6 +325,10 @@ static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table)
   size_t length = name ? strlen(name) : 0;
   if (length < 5 || strcmp(name + length - 5, ".json")) return FG_OK;
   FG_TRY(fg_loop_model_load(ctx, name, &run->loop_model));
+  const char *response = fg_loop_model_response(run->loop_model);
+  if (run->arguments.options.response && strcmp(run->arguments.options.response, response) != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: a model of the response '%s', not of '%s'", name,
+                   response, run->arguments.options.response);
   FG_TRY(fg_loop_model_apply(ctx, run->loop_model, table));
   run->arguments.options.formula = fg_loop_model_formula(run->loop_model);
   return FG_OK;

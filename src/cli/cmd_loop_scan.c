@@ -18,6 +18,7 @@ enum {
   OPTION_HOLD_OUT,
   OPTION_MODEL_OUT,
   OPTION_HTML,
+  OPTION_SCANNER,
   OPTION_SEED,
   OPTION_THREADS
 };
@@ -43,6 +44,7 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "The scanner's model, for `measure --model`", 0},
     {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},
+    {"scanner", OPTION_SCANNER, "NAME", 0, "Its name, kept in the model", 0},
     {"seed", OPTION_SEED, "N", 0, "Of every random step (default 1)", 0},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: all cores)", 0},
     {0},
@@ -103,6 +105,11 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_HTML:
     a->page_path = text;
+    return 0;
+  case OPTION_SCANNER:
+    if (!*text || strlen(text) >= FG_SCANNER_NAME)
+      argp_error(state, "--scanner: a name of 1 to %d bytes", FG_SCANNER_NAME - 1);
+    a->options.scanner = text;
     return 0;
   case OPTION_SEED:
     a->options.seed = (uint64_t)parse_number(state, "seed", text);

@@ -16,13 +16,15 @@ enum {
   OPTION_DRY_RUN,
   OPTION_SHARD,
   OPTION_DPI,
+  OPTION_MODEL,
+  OPTION_SCANNER,
   OPTION_NAME,
   OPTION_GROUP,
   OPTION_INDEX
 };
 
 typedef struct lot_arguments {
-  const char *recipe, *design, *folder, *name, *group, *index;
+  const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index;
   double dpi;
   int jobs; /* -1: not given */
   bool print_recipe, resume, dry_run;
@@ -35,6 +37,9 @@ static const struct argp_option options[] = {
     {"output", 'o', "DIR", 0, "The lot's folder", 0},
     {"recipe", OPTION_RECIPE, "FILE", 0, "Settings; the options below overrule them", 0},
     {"design", 'd', "FILE", 0, "What the part should be, with tolerances", 0},
+    {"model", OPTION_MODEL, "FILE.json", 0,
+     "Correct every scan by what `foilgauge loop --model-out` found of this scanner", 0},
+    {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
     {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
@@ -87,6 +92,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_RECIPE:
     arguments->recipe = text;
+    break;
+  case OPTION_MODEL:
+    arguments->model = text;
+    break;
+  case OPTION_SCANNER:
+    arguments->scanner = text;
     break;
   case OPTION_NAME:
     arguments->name = text;
@@ -144,6 +155,11 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
     fg_design_default(&settings->design);
     FG_TRY(fg_design_load(ctx, arguments->design, &settings->design));
   }
+  const char *model = arguments->model ? arguments->model : settings->model;
+  if (arguments->scanner && !model[0])
+    return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
+  if (arguments->model || arguments->scanner)
+    FG_TRY(fg_lot_settings_take_model(ctx, model, arguments->scanner, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
   FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));
@@ -225,6 +241,10 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
   if (outcome.torn)
     fprintf(stderr, "foilgauge: %zu lines of results.jsonl were not whole; measured again\n",
             outcome.torn);
+  if (outcome.beyond)
+    fprintf(stderr,
+            "foilgauge: note: %zu scans reach beyond the region the scanner's model was found in\n",
+            outcome.beyond);
   if (arguments->dry_run)
     printf("%zu scans, %zu to measure, %zu kept\n", outcome.scans, outcome.to_measure,
            outcome.kept);

@@ -32,7 +32,7 @@ static report_writer *const writers[OUT_COUNT] = {
 };
 
 typedef struct measure_arguments {
-  const char *design_path, *model_path;
+  const char *design_path, *model_path, *scanner;
   const char *form;
   fg_measure_options options;
   char **scans; /* of argv */
@@ -65,6 +65,7 @@ enum {
   OPTION_MAX_PIXELS,
   OPTION_MAX_MEMORY,
   OPTION_MODEL,
+  OPTION_SCANNER,
 };
 
 static const struct argp_option options[] = {
@@ -72,6 +73,7 @@ static const struct argp_option options[] = {
     {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
     {"model", OPTION_MODEL, "FILE.json", 0,
      "Correct by what `foilgauge loop --model-out` found of this scanner", 0},
+    {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
     {"channel", OPTION_CHANNEL, "CHANNEL", 0,
      "Of a colour scan: red, green, blue, luminance, or auto: the one with the most contrast, "
@@ -127,6 +129,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_MODEL:
     arguments->model_path = text;
+    return 0;
+  case OPTION_SCANNER:
+    arguments->scanner = text;
     return 0;
   case OPTION_CSV:
     run->outputs.path[OUT_CSV] = text;
@@ -316,12 +321,26 @@ static void free_run(measure_run *run) {
   free(run->errors);
 }
 
+static fg_status load_model(fg_context *ctx, measure_run *run) {
+  const char *path = run->arguments.model_path;
+  if (!path && run->arguments.scanner)
+    return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
+  if (!path) return FG_OK;
+  FG_TRY(fg_scan_model_load(ctx, path, &run->model));
+  FG_TRY(fg_scan_model_check_scanner(ctx, run->model, path, run->arguments.scanner));
+  if (fg_scan_model_is_tied(run->model))
+    fprintf(stderr,
+            "foilgauge: note: %s: other explanations did as well when the model was found; every "
+            "u_ is wider by what they would have changed\n",
+            path);
+  return FG_OK;
+}
+
 static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   choose_standard_output(&run->outputs);
   FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
-  if (run->arguments.model_path)
-    FG_TRY(fg_scan_model_load(ctx, run->arguments.model_path, &run->model));
+  FG_TRY(load_model(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));
   FG_TRY(outcome_code(ctx, run, code)); /* first: it can fail, and files that are written stay */

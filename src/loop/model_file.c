@@ -211,6 +211,11 @@ static fg_status apply_claim(fg_context *ctx, const fg_loop_model *model, const 
   FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, &problem, &claim, values + 2 * table->rows));
   for (size_t i = 0; i < table->rows; i++)
     change[i] += values[2 * table->rows + i];
+  for (size_t i = 0; i < table->rows; i++)
+    if (!isfinite(change[i])) {
+      status = wrong(ctx, model, "the numbers of a claim are not complete");
+      goto exit;
+    }
 exit:
   free(values);
   return status;

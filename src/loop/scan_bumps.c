@@ -454,6 +454,7 @@ fg_status fg_scan_bumps_run(fg_context *ctx, const fg_scan_bumps_request *reques
   *bumps = (fg_scan_bumps){
       .height = {{NAN, NAN}, {NAN, NAN}},
       .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
+  if (request->before[0].design.form == FG_FORM_DISCS) return FG_OK; /* no bumps, nothing to say */
   choose_effects(bumps);
   fg_status status = collect(ctx, request, bumps);
   if (status == FG_OK) status = run(ctx, request, bumps);

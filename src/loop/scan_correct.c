@@ -60,11 +60,17 @@ fg_status fg_scan_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_de
                                const fg_field_list *fields, const fg_points *points, size_t view,
                                const double *shift_mm, unsigned threads, fg_foil *corrected) {
   memset(corrected, 0, sizeof *corrected);
+  memcpy(corrected->place_mm, foil->place_mm, sizeof corrected->place_mm);
+  corrected->number = foil->number;
+  if (foil->flags & FG_FOIL_NOT_MEASURED) { /* nothing to correct; why stays as it is */
+    corrected->flags = foil->flags;
+    memcpy(corrected->error, foil->error, sizeof corrected->error);
+    return FG_OK;
+  }
   FG_TRY(copy_strip(ctx, &foil->strip, &corrected->strip));
   if (fields && fields->count) move_edges(fields, &corrected->strip);
   if (shift_mm) take_shift(points, view, shift_mm, &corrected->strip);
   fg_status status = fg_foil_measure(ctx, design, threads, corrected);
-  corrected->number = foil->number;
   if (status != FG_OK) fg_foil_free(corrected);
   return status;
 }

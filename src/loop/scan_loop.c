@@ -10,11 +10,23 @@
 /* Rows fewer than this cannot carry a search for effects. */
 enum { ROWS_LEAST = 60 };
 
+/* A copy confirms nothing, and counts its noise twice. */
+static fg_status check_different(fg_context *ctx, const char *const *paths,
+                                 const fg_scan_loop *loop) {
+  for (size_t i = 1; i < loop->scan_count; i++)
+    for (size_t k = 0; k < i; k++)
+      if (!strcmp(loop->before[i].sha256, loop->before[k].sha256))
+        return fg_fail(ctx, FG_ERR_DATA, "%s and %s are the same scan: give each once", paths[k],
+                       paths[i]);
+  return FG_OK;
+}
+
 static fg_status measure_all(fg_context *ctx, const char *const *paths, const fg_design *design,
                              fg_scan_loop *loop) {
   fg_measure_options options = {.dpi = loop->options.dpi, .threads = loop->options.threads};
   for (size_t i = 0; i < loop->scan_count; i++)
     FG_TRY(fg_measure_scan(ctx, paths[i], design, &options, &loop->before[i]));
+  FG_TRY(check_different(ctx, paths, loop));
   const fg_measurement *first = &loop->before[0];
   for (size_t i = 1; i < loop->scan_count; i++)
     for (int axis = 0; axis < 2; axis++)
@@ -188,6 +200,7 @@ static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
       status = FG_OK;
       continue;
     }
+    if (status == FG_OK) loop->tie[loop->tie_count++] = set;
     if (status == FG_OK) status = correct_all(ctx, loop, &set, tried);
     if (status == FG_OK) widen_all(loop, tried);
     for (size_t i = 0; i < loop->scan_count; i++)
@@ -271,7 +284,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(correct_all(ctx, loop, &loop->set, loop->after));
   if (loop->tied) FG_TRY(find_ranges(ctx, loop));
   find_verdict(loop);
-  return loop->points.discs ? FG_OK : search_bumps(ctx, loop);
+  return search_bumps(ctx, loop);
 }
 
 fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,

@@ -20,6 +20,8 @@ struct fg_scan_loop {
   fg_scan_error error_before, error_after;
   double noise_floor_um;
   bool tied;
+  fg_scan_set tie[FG_SUBSET_CLASS]; /* the other members of the class, fitted */
+  size_t tie_count;
   fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
   fg_scan_bumps bumps;    /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;

@@ -30,6 +30,7 @@ fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, 
   bare.design = settings->design;
   bare.design.tolerance_count = 0;
   bare.dpi = settings->dpi;
+  strcpy(bare.model_sha256, settings->model_sha256);
   FG_TRY(fg_lot_settings_format(ctx, &bare, false, &text));
   fg_lot_sum_text(text, sum);
   free(text);
@@ -48,19 +49,27 @@ fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *nam
   return fg_output_commit(ctx, &output);
 }
 
+static fg_status remove_file(fg_context *ctx, const char *folder, const char *name) {
+  char *path;
+  FG_TRY(fg_lot_path(ctx, folder, name, &path));
+  bool gone = unlink(path) == 0 || errno == ENOENT;
+  fg_status status =
+      gone ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
+  free(path);
+  return status;
+}
+
+fg_status fg_lot_write_model(fg_context *ctx, const char *folder, const char *text) {
+  return text ? fg_lot_write_text(ctx, folder, FG_LOT_MODEL_FILE, text)
+              : remove_file(ctx, folder, FG_LOT_MODEL_FILE);
+}
+
 static const char *const report_files[] = {"lot.json",  "index.html",  "foils.csv",
                                            "bumps.csv", "results.qif", "results.dfq"};
 
 fg_status fg_lot_remove_report(fg_context *ctx, const char *folder) {
-  for (size_t i = 0; i < sizeof report_files / sizeof *report_files; i++) {
-    char *path;
-    FG_TRY(fg_lot_path(ctx, folder, report_files[i], &path));
-    bool gone = unlink(path) == 0 || errno == ENOENT;
-    fg_status status =
-        gone ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
-    free(path);
-    FG_TRY(status);
-  }
+  for (size_t i = 0; i < sizeof report_files / sizeof *report_files; i++)
+    FG_TRY(remove_file(ctx, folder, report_files[i]));
   return FG_OK;
 }
 

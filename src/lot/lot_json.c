@@ -322,6 +322,8 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   write_counts(&json, analysis);
   fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
   fg_json_string(&json, "manifest_sha256", lot->head.manifest_sha256);
+  fg_json_string(&json, "model_sha256",
+                 lot->settings.model_sha256[0] ? lot->settings.model_sha256 : NULL);
   fg_json_design(&json, "design", &lot->settings.design);
   fg_json_nominal(&json, "nominal", &lot->nominal);
   write_inputs(&json, lot);

@@ -447,16 +447,18 @@ static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 static void put_origin(FILE *out, const fg_lot_analysis *analysis) {
+  const char *model = analysis->lot->settings.model_sha256;
   fprintf(
       out,
       "<section>\n<h1>Where it comes from</h1>\n<dl class=\"facts\"><dt>Program</dt><dd>"
       "foilgauge %s</dd><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
-      "</dd></dl>\n<p class=\"note\">A value passes when value ± U lies inside its tolerance "
+      "</dd><dt>Scanner's model, SHA-256</dt><dd>%s</dd></dl>\n<p class=\"note\">A value passes "
+      "when value ± U lies inside its tolerance "
       "(U = 2 u, about 95 %%), fails when it lies outside, and cannot be told when a limit runs "
       "through it. All numbers: lot.json, foils.csv, bumps.csv; for quality systems "
       "results.qif and results.dfq.</p>\n</section>\n",
       analysis->lot->head.version, analysis->lot->head.recipe_sha256,
-      analysis->lot->head.manifest_sha256);
+      analysis->lot->head.manifest_sha256, model[0] ? model : "none: scans are taken as they are");
 }
 
 fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {

@@ -17,6 +17,7 @@ typedef struct merger {
   size_t count;
   const char *folder; /* of the result */
   char *recipe_text, *manifest_text;
+  char *model_text; /* NULL: none */
   fg_lot_settings settings;
   fg_manifest manifest;
   fg_manifest_index index;
@@ -57,6 +58,10 @@ static fg_status read_first(fg_context *ctx, merger *m) {
   FG_TRY(check_sum(ctx, folder, "manifest.csv", m->manifest_text, m->head.manifest_sha256));
   fg_lot_settings_default(&m->settings);
   FG_TRY(fg_lot_settings_parse(ctx, folder, m->recipe_text, &m->settings));
+  if (m->settings.model[0]) {
+    FG_TRY(read_text(ctx, folder, FG_LOT_MODEL_FILE, &m->model_text));
+    FG_TRY(check_sum(ctx, folder, FG_LOT_MODEL_FILE, m->model_text, m->settings.model_sha256));
+  }
   FG_TRY(fg_manifest_parse(ctx, folder, m->manifest_text, "", &m->manifest));
   return fg_manifest_index_build(ctx, &m->manifest, &m->index);
 }
@@ -77,9 +82,22 @@ static fg_status refuse(fg_context *ctx, const merger *m, const char *what) {
                  m->folders[0], m->folders[m->at], what);
 }
 
+/* For the words only: a recipe that cannot be read is just another recipe. */
+static bool has_other_model(const merger *m) {
+  fg_context ignored = {.message = ""};
+  fg_lot_settings other;
+  char *text = NULL;
+  fg_lot_settings_default(&other);
+  if (read_text(&ignored, m->folders[m->at], "recipe.json", &text) != FG_OK) return false;
+  fg_status status = fg_lot_settings_parse(&ignored, m->folders[m->at], text, &other);
+  free(text);
+  return status == FG_OK && strcmp(other.model_sha256, m->settings.model_sha256) != 0;
+}
+
 static fg_status check_head(fg_context *ctx, const merger *m, const fg_journal_head *head) {
   if (strcmp(head->version, m->head.version) != 0) return refuse(ctx, m, "the program's versions");
-  if (strcmp(head->recipe_sha256, m->head.recipe_sha256) != 0) return refuse(ctx, m, "the recipes");
+  if (strcmp(head->recipe_sha256, m->head.recipe_sha256) != 0)
+    return refuse(ctx, m, has_other_model(m) ? "the scanner's models" : "the recipes");
   if (strcmp(head->manifest_sha256, m->head.manifest_sha256) != 0)
     return refuse(ctx, m, "the manifests");
   if (strcmp(head->measured_with, m->head.measured_with) != 0)
@@ -177,6 +195,7 @@ static fg_status write_lot(fg_context *ctx, merger *m, fg_lot_outcome *outcome) 
   FG_TRY(fg_lot_remove_report(ctx, m->folder));
   FG_TRY(fg_lot_write_text(ctx, m->folder, "recipe.json", m->recipe_text));
   FG_TRY(fg_lot_write_text(ctx, m->folder, "manifest.csv", m->manifest_text));
+  FG_TRY(fg_lot_write_model(ctx, m->folder, m->model_text));
   FG_TRY(fg_lot_path(ctx, m->folder, "results.jsonl", &path));
   fg_status status = fg_journal_rewrite(ctx, path, &head, (const char *const *)m->paths, m->from,
                                         m->entries, m->manifest.items);
@@ -208,6 +227,7 @@ fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count
     free(m.paths[i]);
   free(m.paths);
   free(m.recipe_text);
+  free(m.model_text);
   free(m.manifest_text);
   free(m.shard_of);
   free(m.entries);

@@ -8,8 +8,10 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/text.h"
 #include "foilgauge/control.h"
 #include "foilgauge/lot.h"
+#include "foilgauge/scan_loop.h"
 #include "report/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -30,6 +32,8 @@ typedef struct member {
 
 static const member members[] = {
     TEXT("name", name),
+    TEXT("model", model),
+    TEXT("model_sha256", model_sha256),
     {"dpi", REAL, AT(dpi), 0, 0, 1e6, false},
     {"jobs", UNSIGNED, AT(jobs), 0, 0, 1024, true},
     {"trim_pct", REAL, AT(trim_pct), 0, 0, 49, false},
@@ -168,15 +172,18 @@ static fg_status read_member(fg_context *ctx, const member *row, const cJSON *va
   return FG_OK;
 }
 
+static void beside_recipe(const char *path, const char *name, char *file, size_t size) {
+  const char *slash = strrchr(path, '/');
+  bool beside = slash && name[0] != '/';
+  fg_text_clip(file, size, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path, name);
+}
+
 /* "design": an object, or the path of a file beside the recipe. */
 static fg_status read_design(fg_context *ctx, const char *path, const cJSON *value,
                              fg_design *design) {
   if (cJSON_IsString(value)) {
-    const char *slash = strrchr(path, '/');
     char file[4096];
-    bool beside = slash && value->valuestring[0] != '/';
-    snprintf(file, sizeof file, "%.*s%s", beside ? (int)(slash - path) + 1 : 0, path,
-             value->valuestring);
+    beside_recipe(path, value->valuestring, file, sizeof file);
     return fg_design_load(ctx, file, design);
   }
   if (!cJSON_IsObject(value))
@@ -232,11 +239,44 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
   return FG_OK;
 }
 
+fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
+                                     fg_lot_settings *settings) {
+  fg_scan_model *model;
+  char *whole = realpath(path, NULL); /* the settings may be printed, and read elsewhere */
+  const char *name = whole ? whole : path;
+  fg_status status = fg_scan_model_load(ctx, path, &model);
+  if (status == FG_OK && strlen(name) >= sizeof settings->model)
+    status = fg_fail(ctx, FG_ERR_USAGE, "%.200s ...: the path is too long; at most %zu bytes", name,
+                     sizeof settings->model - 1);
+  if (status == FG_OK) {
+    status = fg_scan_model_check_scanner(ctx, model, path, scanner);
+    strcpy(settings->model, name);
+    strcpy(settings->model_sha256, fg_scan_model_sha256(model));
+  }
+  if (model) fg_scan_model_free(model);
+  free(whole);
+  return status;
+}
+
+static fg_status find_model(fg_context *ctx, const char *path, fg_lot_settings *settings) {
+  char file[4096], stated[65];
+  strcpy(stated, settings->model_sha256);
+  beside_recipe(path, settings->model, file, sizeof file);
+  FG_TRY(fg_lot_settings_take_model(ctx, file, NULL, settings));
+  if (!stated[0] || !strcmp(stated, settings->model_sha256)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%.300s: not the model that %.300s was written with (model_sha256 differs)", file,
+                 path);
+}
+
 fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_settings *settings) {
   char *text;
   FG_TRY(fg_file_read_text(ctx, path, RECIPE_BYTES_MAX, &text));
-  fg_status status = fg_lot_settings_parse(ctx, path, text, settings);
+  fg_lot_settings copy = *settings;
+  fg_status status = fg_lot_settings_parse(ctx, path, text, &copy);
   free(text);
+  if (status == FG_OK && copy.model[0]) status = find_model(ctx, path, &copy);
+  if (status == FG_OK) *settings = copy;
   return status;
 }
 
@@ -260,6 +300,12 @@ static void write_member(fg_json *json, const member *row, const fg_lot_settings
   }
 }
 
+/* A lot that knows no model has a recipe that does not speak of one. */
+static bool is_silent(const member *row, const fg_lot_settings *settings) {
+  bool model = row->offset == AT(model) || row->offset == AT(model_sha256);
+  return model && !*(const char *)place_of(row, settings);
+}
+
 fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *settings, bool with_jobs,
                                  char **json) {
   size_t size;
@@ -271,7 +317,8 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   fg_json_object(&writer, NULL);
   fg_json_head(&writer, "foilgauge/recipe/1");
   for (size_t i = 0; i < MEMBERS; i++)
-    if (with_jobs || !members[i].jobs) write_member(&writer, &members[i], settings);
+    if (with_jobs || !(members[i].jobs || is_silent(&members[i], settings)))
+      write_member(&writer, &members[i], settings);
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);

@@ -6,6 +6,9 @@
 #include "lot/journal.h"
 #include "lot/manifest.h"
 
+/* The copy of the scanner's model in the lot's folder. */
+#define FG_LOT_MODEL_FILE "scanner_model.json"
+
 /* A lot in memory, in the manifest's order. */
 typedef struct fg_lot {
   fg_lot_settings settings;
@@ -37,5 +40,7 @@ fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, 
 /* A whole text under its name. */
 fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *name,
                             const char *text);
+/* The copy of the model; NULL takes one of an earlier run away. */
+fg_status fg_lot_write_model(fg_context *ctx, const char *folder, const char *text);
 
 #endif

@@ -8,11 +8,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/scan_loop.h"
 #include "lot/report.h"
 
 /* What is known of an item before it is measured. */
@@ -27,6 +29,8 @@ typedef struct lot_run {
   fg_manifest manifest;
   fg_manifest_index index;
   char *manifest_text, *recipe_text, *results_path;
+  char *model_text;     /* of the scanner's model; NULL: none */
+  fg_scan_model *model; /* the same, read */
   fg_journal_head head;
   item_state *items;
   size_t *todo, todo_count;
@@ -44,16 +48,31 @@ static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
                  shard.count);
 }
 
+/* The recipe that is kept names the copy in the lot's folder, so that it does not matter from where
+ * the model came. */
+static fg_status take_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
+  enum { MODEL_BYTES_MAX = 1 << 20 };
+  if (!kept->model[0]) return FG_OK;
+  FG_TRY(fg_file_read_text(ctx, kept->model, MODEL_BYTES_MAX, &run->model_text));
+  FG_TRY(fg_scan_model_parse(ctx, kept->model, run->model_text, &run->model));
+  if (strcmp(fg_scan_model_sha256(run->model), kept->model_sha256) != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "%.500s: the model has changed; run again", kept->model);
+  strcpy(kept->model, FG_LOT_MODEL_FILE);
+  return FG_OK;
+}
+
 static fg_status prepare(fg_context *ctx, lot_run *run) {
   const fg_lot_request *request = run->request;
+  fg_lot_settings kept = *request->settings;
   void *block;
   FG_TRY(check_shard(ctx, request->shard));
   FG_TRY(fg_lot_settings_check(ctx, request->settings));
+  FG_TRY(take_model(ctx, run, &kept));
   FG_TRY(fg_manifest_collect(ctx, request->paths, request->path_count, request->folder,
                              &run->manifest));
   FG_TRY(fg_manifest_index_build(ctx, &run->manifest, &run->index));
   FG_TRY(fg_manifest_format(ctx, &run->manifest, &run->manifest_text));
-  FG_TRY(fg_lot_settings_format(ctx, request->settings, false, &run->recipe_text));
+  FG_TRY(fg_lot_settings_format(ctx, &kept, false, &run->recipe_text));
   FG_TRY(fg_lot_path(ctx, request->folder, "results.jsonl", &run->results_path));
   run->head = (fg_journal_head){
       .version = FOILGAUGE_VERSION, .shard = request->shard, .items = run->manifest.items};
@@ -130,9 +149,10 @@ static double seconds_since(const struct timespec *start) {
 }
 
 /* One at a time; the first tenth of a second says nothing about the rest. */
-static void tell(lot_run *run, const char *scan, const char *error) {
+static void tell(lot_run *run, const char *scan, const char *error, bool beyond) {
   pthread_mutex_lock(&run->listening);
   fg_lot_outcome *outcome = run->outcome;
+  outcome->beyond += beyond;
   outcome->measured += error == NULL;
   outcome->failed += error != NULL;
   size_t done = outcome->measured + outcome->failed;
@@ -161,6 +181,16 @@ static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_recor
   return status;
 }
 
+/* By the scanner's model; a scan that it does not fit is not measured. */
+static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *measurement,
+                         bool *beyond) {
+  char warning[200];
+  fg_status status = fg_scan_model_apply(ctx, run->model, measurement, 1, warning);
+  if (status != FG_OK) fg_measurement_free(measurement);
+  *beyond = status == FG_OK && warning[0];
+  return status;
+}
+
 /* Whatever is wrong with a scan is its record; only a record that cannot be kept is an error. A
  * scan that could be read but not measured is the same tomorrow; one that could not be read, or
  * for which there was no memory, has no checksum and is tried again. */
@@ -172,14 +202,16 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   fg_measurement measurement;
   fg_record record = {.scan = (char *)(uintptr_t)scan, .error = inner.message};
   memcpy(record.measured_with, run->head.measured_with, sizeof record.measured_with);
+  bool beyond = false;
   fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
+  if (failure == FG_OK && run->model) failure = correct(&inner, run, &measurement, &beyond);
   if (failure == FG_OK)
     memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
   else if (failure == FG_ERR_MEMORY || fg_sha256_file(&unused, scan, record.sha256) != FG_OK)
     record.sha256[0] = '\0';
   fg_status status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
   if (failure == FG_OK) fg_measurement_free(&measurement);
-  if (status == FG_OK) tell(run, scan, failure == FG_OK ? NULL : inner.message);
+  if (status == FG_OK) tell(run, scan, failure == FG_OK ? NULL : inner.message, beyond);
   return status;
 }
 
@@ -215,6 +247,7 @@ static fg_status measure_missing(fg_context *ctx, lot_run *run) {
   if (run->todo_count) FG_TRY(fg_lot_remove_report(ctx, request->folder));
   FG_TRY(fg_lot_write_text(ctx, request->folder, "recipe.json", run->recipe_text));
   FG_TRY(fg_lot_write_text(ctx, request->folder, "manifest.csv", run->manifest_text));
+  FG_TRY(fg_lot_write_model(ctx, request->folder, run->model_text));
   FG_TRY(rewrite(ctx, run));
   if (!run->todo_count) return FG_OK;
   FG_TRY(fg_journal_open(ctx, run->results_path, &run->journal));
@@ -277,6 +310,8 @@ fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outc
   fg_manifest_free(&run.manifest);
   free(run.manifest_text);
   free(run.recipe_text);
+  free(run.model_text);
+  if (run.model) fg_scan_model_free(run.model);
   free(run.results_path);
   free(run.items);
   free(run.todo);

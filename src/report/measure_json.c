@@ -77,6 +77,8 @@ void fg_json_input(fg_json *json, const fg_report_scan *scan) {
     fg_json_string(json, "channel",
                    measurement->colour ? fg_channel_word(measurement->channel) : "gray");
     if (measurement->warning[0]) fg_json_string(json, "note", measurement->warning);
+    if (measurement->model_sha256[0])
+      fg_json_string(json, "model_sha256", measurement->model_sha256);
     fg_json_numbers(json, "dpi", measurement->dpi, 2);
     fg_json_numbers(json, "dpi_file", measurement->dpi_file, 2);
   }

@@ -1,0 +1,242 @@
+#!/bin/bash
+# The model of a scanner: what it was made for, lots corrected by it, and every wrong model refused with words.
+set -u
+program=$(realpath "$1")
+root=$PWD
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failed=0
+
+fail() {
+  echo "FAILED: $*"
+  failed=1
+}
+
+# expect CODE WORDS ARGUMENTS...: the exit code, and words on standard error or output.
+expect() {
+  local code=$1 words=$2
+  shift 2
+  "$program" "$@" >out.txt 2>err.txt </dev/null
+  local got=$?
+  [ $got -eq "$code" ] || fail "$*: exit $got, not $code ($(head -c 300 err.txt))"
+  [ -z "$words" ] || cat out.txt err.txt | grep -qE -e "$words" || fail "$*: does not say '$words' but: $(head -c 400 err.txt)"
+}
+
+# value FILE EXPRESSION: a number or word out of a report.
+value() {
+  python3 -c "import json,sys; r=json.load(open(sys.argv[1])); print(eval(sys.argv[2]))" "$1" "$2"
+}
+
+# near NAME VALUE EXPECTED TOLERANCE
+near() {
+  python3 -c "import sys; sys.exit(not abs(float(sys.argv[1]) - float(sys.argv[2])) <= float(sys.argv[3]))" \
+    "$2" "$3" "$4" || fail "$1 is $2, not $3 within $4"
+}
+
+# render NAME SEED ROTATION EFFECTS [DPI]: every scan shows the same piece of glass.
+render() {
+  cat >"$1.json" <<SPEC
+{"schema":"foilgauge/render/1","seed":$2,"width_px":1900,"height_px":1900,
+ "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
+           "rotate_deg":$3}],
+ "scanner":{"dpi":${5:-1200},"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
+ "effects":[$4]}
+SPEC
+  "$program" render "$1.json" -o "$1.png" || fail "render $1"
+}
+
+scale='{"id":"scan.scale_y","value":0.002}'
+render a 1 -75 "$scale"
+render b 2 15 "$scale"
+mkdir scans
+for i in 1 2 3; do render scans/s$i 1$i $((i * 100)) "$scale"; done
+rm scans/*.json
+expect 0 '' loop --same-foil a.png b.png --scanner 'left desk' --model-out left.json
+[ "$(value left.json "r['scanner'], r['tied'], r['level'], [f['id'] for f in r['fields']]")" = \
+  "('left desk', False, 'points', ['scan.scale_y'])" ] || fail "left.json is not what was asked for"
+[ "$(value left.json "r['inputs'][1]['sha256']")" = "$(sha256sum b.png | cut -c1-64)" ] || fail "left.json: inputs"
+
+# What it was made for.
+expect 0 '' measure scans/s1.png --model left.json --scanner 'left desk' -o s1.out
+near "R0 corrected" "$(value s1.out "r['foils'][0]['overall']['radius_mm']")" 20.95 0.001
+[ "$(value s1.out "r['inputs'][0]['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "model_sha256"
+[ "$(value s1.out "r['foils'][0]['place_mm'][2] > 10")" = True ] || fail "a corrected foil has lost its place"
+expect 65 "scanner 'left desk', not of 'right desk'" measure a.png --model left.json --scanner 'right desk'
+sed 's/"left desk"/null/' left.json >nameless.json
+expect 65 'does not say which scanner' measure a.png --model nameless.json --scanner 'left desk'
+expect 0 '' measure a.png --model nameless.json -o x.out
+expect 64 'give one' measure a.png --scanner 'left desk'
+expect 64 'name of 1 to' loop a.png --scanner ''
+render half 3 -75 "$scale" 600
+expect 65 '600 dpi and the model is of a scanner at 1200' measure half.png --model left.json -o never.out
+[ ! -e never.out ] || fail "a refused model leaves a report behind"
+
+# Its region: outside it is said, at twice that far it is refused.
+region() {
+  python3 - "$1" "$2" <<'P'
+import json, sys
+model = json.load(open("left.json"))
+model["region_mm"] = [0, 0, float(sys.argv[2]), float(sys.argv[2])]
+json.dump(model, open(sys.argv[1], "w"))
+P
+}
+region small.json 30 && region tiny.json 15
+expect 0 'reaches beyond the 30 x 30 mm' measure a.png --model small.json -o x.out
+expect 65 'times as far on the glass as the 15 x 15 mm' measure a.png --model tiny.json
+
+# A tie widens: the truth is inside although the explanation in use may be the wrong one.
+python3 - <<'P'
+import json
+model = json.load(open("left.json"))
+model["tied"], model["alternatives"] = True, [[]]
+json.dump(model, open("tied.json", "w"))
+P
+expect 0 'other explanations did as well' measure scans/s1.png --model tied.json -o tied.out
+python3 - <<'P' || fail "a tied model does not widen the uncertainty to what its alternative would change"
+import json
+read = lambda name: json.load(open(name))["foils"][0]
+tied, sure = read("tied.out"), read("s1.out")
+import subprocess
+move = 0.002 * 20.95 / 2  # the scale along one axis, on a circle seen over some 120 degrees: half and more
+assert tied["overall"]["radius_mm"] == sure["overall"]["radius_mm"]
+assert tied["overall"]["u_radius_mm"] > 0.3 * move > 10 * sure["overall"]["u_radius_mm"]
+assert all(t["u_height_mm"] > s["u_height_mm"] for t, s in zip(tied["bumps"], sure["bumps"]))
+P
+
+# Everything that is no model: measure and lot both refuse it, and say why.
+printf 'not a model' >text.json
+head -c 400 left.json >cut.json
+sed 's/"dpi": \[[^]]*\]/"dpi": [NaN, 1200]/' left.json >nan.json
+sed 's/scan\.scale_y/scan.wormhole/' left.json >unknown.json
+sed 's/"u_amplitude_mm": \[[^]]*\]/"u_amplitude_mm": [null]/' left.json >null.json
+sed 's/"dpi": \[[^]]*\]/"dpi": [0, 1200]/' left.json >zero.json
+sed 's/"region_mm": \[[^]]*\]/"region_mm": [0, 0, -1, 40]/' left.json >inside_out.json
+sed 's/"scanner": "left desk"/"scanner": 7/' left.json >number.json
+printf '{"schema":"foilgauge/design/1"}' >design.json
+printf '[]' >list.json
+python3 - <<'P'
+import json
+model = json.load(open("left.json"))
+model["fields"] *= 2
+json.dump(model, open("twice.json", "w"))
+del model["fields"]
+json.dump(model, open("empty.json", "w"))
+P
+while IFS='|' read -r file code words; do
+  expect "$code" "$words" measure a.png --model "$file" -o never.out
+  grep -q "$file" err.txt || fail "$file is not named"
+  expect "$code" "$words" lot scans --model "$file" -o never
+  [ ! -e never.out ] && [ ! -e never ] || fail "$file leaves something behind"
+done <<'TABLE'
+text.json|65|no JSON at byte
+cut.json|65|not all of one: no JSON at byte
+nan.json|65|no JSON at byte
+unknown.json|65|effect that is not known: scan.wormhole
+null.json|65|numbers of `scan.scale_y` are not complete
+zero.json|65|`dpi` must be
+inside_out.json|65|`region_mm` must be
+number.json|65|`scanner` must be
+design.json|65|not a model of a scanner
+list.json|65|not a model of a scanner
+twice.json|65|`scan.scale_y` twice
+empty.json|65|`fields` is missing
+missing.json|74|missing.json
+TABLE
+
+# A lot corrected by it: the same numbers as one by one, and the report says by what.
+expect 0 '' lot scans -o plain
+expect 0 '' lot scans --model left.json --scanner 'left desk' -o one
+[ "$(value one/lot.json "r['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "lot.json: model_sha256"
+[ "$(value plain/lot.json "r['model_sha256']")" = None ] || fail "lot.json without a model"
+grep -q "$(sha256sum left.json | cut -c1-64)" one/index.html || fail "the page does not name the model"
+cmp -s left.json one/scanner_model.json || fail "the lot does not keep its model"
+grep -q model plain/recipe.json && fail "a lot without a model has a recipe that speaks of one"
+python3 - one plain <<'P' || fail "the lot's radii"
+import csv, json, sys
+r0 = [[float(row["overall.radius_mm"]) for row in csv.DictReader(open(f"{folder}/foils.csv"))] for folder in sys.argv[1:]]
+measured = json.load(open("s1.out"))["foils"][0]["overall"]["radius_mm"]
+assert abs(r0[0][0] - measured) < 1e-8, (r0[0][0], measured)
+assert all(abs(v - 20.95) < 0.001 for v in r0[0]), r0[0]
+assert max(abs(v - 20.95) for v in r0[1]) > 0.02, r0[1]
+P
+
+# Kept while the model stays; another one, or none, is another measurement.
+sed 's/0\.036/0.035/' left.json >other.json
+cmp -s left.json other.json && sed 's/"version"/ "version"/' left.json >other.json
+expect 0 ' 0 to measure, 3 kept' lot scans --model left.json -o one --resume --dry-run
+expect 0 ' 3 to measure, 0 kept' lot scans --model other.json -o one --resume --dry-run
+expect 0 ' 3 to measure, 0 kept' lot scans -o one --resume --dry-run
+cp -r one again
+expect 0 '' lot scans -o again --resume
+diff -r again plain || fail "a lot resumed without its model is not the lot without it"
+expect 0 ' 0 to measure, 3 kept' lot scans --recipe one/recipe.json -o one --resume --dry-run
+cp -r one swapped && cp other.json swapped/scanner_model.json
+expect 65 'not the model that' lot scans --recipe swapped/recipe.json -o no
+expect 65 "not of 'right desk'" lot scans --recipe one/recipe.json --scanner 'right desk' -o no
+
+# Shards: wherever the model's file lies, the lot is the same; other models do not mix.
+mkdir elsewhere && cp left.json elsewhere/renamed.json
+mkdir part
+expect 0 '' lot scans --model left.json -o part/1 --shard 1/2
+expect 0 '' lot scans --model elsewhere/renamed.json -o part/2 --shard 2/2
+expect 0 '3 foils' merge part/1 part/2 -o merged
+diff -r one merged || fail "shards with a model are not the lot"
+expect 0 '' lot scans --model other.json -o foreign --shard 2/2
+expect 65 "scanner's models differ" merge part/1 foreign -o no
+expect 0 '' lot scans -o bare --shard 2/2
+expect 65 "scanner's models differ" merge part/1 bare -o no
+
+# A scan that the model does not fit is not measured; the others are.
+cp half.png scans/half.png
+expect 2 '600 dpi' lot scans --model left.json -o mixed
+[ "$(value mixed/lot.json "r['counts']['foils'], r['counts']['scans_not_measured']")" = "(3, 1)" ] || fail "mixed lot"
+
+# What the loop refuses.
+cp a.png copy.png
+render third 8 -70 ''
+sed -i 's/3.34,3.41/4.24,3.41/' third.json && "$program" render third.json -o third.png || fail "render another foil"
+while IFS='|' read -r code words arguments; do
+  # shellcheck disable=SC2086
+  expect "$code" "$words" loop $arguments
+done <<'TABLE'
+65|one resolution|a.png half.png
+65|one resolution|a.png --hold-out half.png
+64|given twice|a.png --hold-out a.png
+64|given twice|a.png a.png
+65|the same scan|a.png ./a.png
+65|the same scan|b.png a.png --hold-out copy.png
+64|give a scan|
+64|give a scan|--hold-out a.png
+65|not the same foil|--same-foil a.png third.png
+65|not JSON|a.png --design text.json
+65|text.json|text.json
+74|missing.png|missing.png
+74|nowhere|a.png -o /nowhere/x.json
+TABLE
+
+# Two bumps: done, and said what they cannot tell; the same on a foil without lip.
+for bumps in 1 2; do
+  cat >few.json <<SPEC
+{"schema":"foilgauge/render/1","seed":3,"foils":[{"design":{"bump_count":$bumps},"overall_radius_mm":20.95,
+ "radius_springback":{"mean":0.02,"sd":0.01}}],"scanner":{"dpi":2400,"blur_px":1.3,"noise":1.2}}
+SPEC
+  printf '{"schema":"foilgauge/design/1","bump_count":%d}' $bumps >few_design.json
+  "$program" render few.json -o few.png || fail "render $bumps bumps"
+  expect 0 '' loop few.png --design few_design.json -o few.out
+  [ "$(value few.out "r['verdict'], r['bumps']['count']")" = "('clean', $bumps)" ] || fail "$bumps bumps: verdict"
+  value few.out "r['notes'][0]" | grep -q "$bumps measured: no effect over them can be told" ||
+    fail "$bumps bumps: nothing is said of them"
+  [ "$(value few.out "{x['verdict'] for x in r['rejected'] if x['level'] == 'bumps'}")" = "{'inconclusive'}" ] ||
+    fail "$bumps bumps: effects are called absent"
+done
+
+for pair in scan_model:left scan_model:tied lot:one/lot measure:s1.out loop_scan:few.out; do
+  file=${pair#*:}
+  [ -e "$file" ] || file=$file.json
+  (cd "$root" && python3 -c 'import jsonschema' 2>/dev/null || exit 0
+  python3 tests/support/validate_schema.py reports/schema "${pair%%:*}.schema.json" "$work/$file") ||
+    fail "$file does not validate"
+done
+
+exit $failed
