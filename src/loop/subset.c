@@ -339,6 +339,7 @@ static void order_members(fg_subset_search *s, const yardstick *y) {
   for (size_t m = 0; m < out->member_count; m++)
     if (out->members[m].excess <= out->members[0].excess + WORSE + y->allowance)
       out->members[kept++] = out->members[m];
+  out->member_total -= out->member_count - kept;
   out->member_count = kept;
   for (size_t m = 0; m < kept; m++)
     width = fmin(width, out->members[m].width);
@@ -416,6 +417,12 @@ static void describe_effects(fg_subset_search *s, const yardstick *y) {
   }
 }
 
+static void describe_width(fg_subset_search *s, const yardstick *y) {
+  fg_subset_member first = try_set(s, y, s->out->members[0].mask);
+  s->out->width_rms_um = sqrt(fmax(first.width, 0) / (double)s->columns.rows);
+  s->out->width_smooth_um = sqrt(s->columns.width_part);
+}
+
 static yardstick make_yardstick(fg_subset_search *s) {
   fg_subset *out = s->out;
   const fg_field_frame *frame = &s->columns.points->frame;
@@ -448,6 +455,7 @@ static void try_sets(fg_subset_search *s) {
   if (!out->member_count && is_worth_fitting(s, &y, &best)) keep_member(out, &best);
   if (!out->member_count) try_free(s, &y, best);
   describe_effects(s, &y);
+  describe_width(s, &y);
 }
 
 static void add_known(fg_subset_search *s, const fg_scan_set *known) {

@@ -62,6 +62,9 @@ typedef struct fg_subset {
   bool right;                            /* the members leave no more than they should */
   double noise_um, integral;             /* of a row; of its correlation */
   double edge_error_um;                  /* of the edge model, allowed for */
+  double width_rms_um, width_smooth_um;  /* of half the strip's width, with the first member's
+                                            stretch out; of its part that follows place or
+                                            direction as no field of the scanner does */
   double p_value;                        /* that no effect is needed; 1 when members[0].mask is 0 */
   double share[FG_SUBSET_EFFECTS];       /* |M f|² / |f|² beside the geometry */
   double smallest_um[FG_SUBSET_EFFECTS]; /* amplitude that would have shown beside the winner */

@@ -1,11 +1,14 @@
 /* "foilgauge/loop/1", domain "scan". */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "loop/scan_loop.h"
 #include "report/measure_json.h"
 #include "report/scan_loop_bumps.h"
+
+enum { SHAPE_POINTS = 41 };
 
 static bool is_free(const char *id) {
   return !strncmp(id, "free.", 5);
@@ -141,13 +144,70 @@ static void write_claims(fg_json *json, const fg_scan_loop *loop) {
   fg_json_array_end(json);
 }
 
-static void write_unattributed(fg_json *json, const fg_scan_loop *loop) {
+/* d over the picture's width or height. */
+static void write_field_shape(fg_json *json, const fg_scan_loop *loop, const fg_scan_effect *curve,
+                              const fg_field_row *row) {
+  const char *direction = strrchr(curve->id, '.');
+  for (int i = 0; i < SHAPE_POINTS; i++) {
+    const fg_field_frame *f = &loop->points.frame;
+    double t = i / (SHAPE_POINTS - 1.0);
+    fg_point at = {f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
+                   f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])};
+    fg_field_list list = {.frame = *f, .count = 1};
+    list.fields[0] = as_field(curve, row);
+    fg_point d = fg_field_at(&list, at);
+    double pair[2] = {strstr(curve->id, "scan.x") ? at.x : at.y,
+                      1000 * (direction[2] == 'x' ? d.x : d.y)};
+    fg_json_numbers(json, NULL, pair, 2);
+  }
+}
+
+/* Where a row lies on the coordinate of a part's curve: mm, -1 to 1, degrees; NaN: nowhere. */
+static double place_of(const fg_points_row *row, const char *coordinate) {
+  if (!strcmp(coordinate, "foil.s")) return row->s_mm;
+  if (!strcmp(coordinate, "bump.phi")) return row->bump ? row->phi : NAN;
+  double deg = row->normal_rad * 180 / M_PI;
+  return deg < 0 ? deg + 360 : deg;
+}
+
+/* Means of the curve at the rows, which are where it is known; outwards from the foil. */
+static fg_status write_part_shape(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
+                                  const fg_scan_effect *curve, const char *coordinate) {
+  const fg_points *points = &loop->points;
+  double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
+  double count[SHAPE_POINTS] = {0}, *shift = NULL;
+  fg_scan_set alone = {.effects = {*curve}, .count = 1};
+  FG_TRY(fg_scan_shift(ctx, points, &alone, &shift));
+  for (size_t i = 0; i < points->row_count; i++) {
+    low = fmin(low, place_of(&points->rows[i], coordinate));
+    high = fmax(high, place_of(&points->rows[i], coordinate));
+  }
+  for (size_t i = 0; i < points->row_count; i++) {
+    const fg_points_row *row = &points->rows[i];
+    double place = place_of(row, coordinate);
+    if (!isfinite(place)) continue;
+    size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
+    bool turned = !strcmp(coordinate, "foil.s") &&
+                  row->normal.x * row->radial.x + row->normal.y * row->radial.y < 0;
+    sum[bin] += 1000 * (turned ? -shift[i] : shift[i]);
+    at[bin] += place;
+    count[bin]++;
+  }
+  free(shift);
+  for (int k = 0; k < SHAPE_POINTS; k++) {
+    double pair[2] = {at[k] / count[k], sum[k] / count[k]};
+    if (count[k] > 0) fg_json_numbers(json, NULL, pair, 2);
+  }
+  return FG_OK;
+}
+
+static fg_status write_unattributed(fg_context *ctx, fg_json *json, const fg_scan_loop *loop) {
   const fg_scan_effect *curve = NULL;
   for (size_t i = 0; i < loop->set.count; i++)
     if (is_free(loop->set.effects[i].id)) curve = &loop->set.effects[i];
   if (!curve) {
     if (!fg_json_bump_curve(json, &loop->bumps)) fg_json_string(json, "unattributed", NULL);
-    return;
+    return FG_OK;
   }
   char coordinate[48];
   coordinate_of(curve->id, coordinate, sizeof coordinate);
@@ -160,27 +220,21 @@ static void write_unattributed(fg_json *json, const fg_scan_loop *loop) {
                                              : "along the normal");
   const fg_field_row *row = fg_field_find(curve->id);
   fg_json_array(json, "shape");
-  for (int i = 0; row && i <= 40; i++) {
-    const fg_field_frame *f = &loop->points.frame;
-    double t = i / 40.0;
-    fg_point at = {f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
-                   f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])};
-    fg_field_list list = {.frame = *f, .count = 1};
-    list.fields[0] = as_field(curve, row);
-    fg_point d = fg_field_at(&list, at);
-    double pair[2] = {strstr(curve->id, "scan.x") ? at.x : at.y,
-                      1000 * (direction[2] == 'x' ? d.x : d.y)};
-    fg_json_numbers(json, NULL, pair, 2);
-  }
+  if (row)
+    write_field_shape(json, loop, curve, row);
+  else
+    FG_TRY(write_part_shape(ctx, json, loop, curve, coordinate));
   fg_json_array_end(json);
   fg_json_number(json, "rms", loop->error_before.rms);
   fg_json_number(json, "p_value", loop->subset.p_value);
   fg_json_array(json, "nearest");
   for (size_t e = 0; e < loop->subset.effect_count; e++)
-    if (!loop->subset.effects[e].free && loop->subset.alone[e] > 0.3)
-      fg_json_string(json, NULL, loop->subset.effects[e].id);
+    if (!loop->subset.effects[e].free && loop->subset.alone[e] > 0.3 &&
+        !strchr(loop->subset.effects[e].id, ':'))
+      fg_json_string(json, NULL, fg_effect_name(loop->subset.effects[e].id));
   fg_json_array_end(json);
   fg_json_object_end(json);
+  return FG_OK;
 }
 
 static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
@@ -206,9 +260,14 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
   return FG_OK;
 }
 
+/* Whether an effect is claimed, or a member of the class of what is. */
 static bool is_claimed(const fg_scan_loop *loop, const char *id) {
   for (size_t i = 0; i < loop->set.count; i++)
     if (fg_effect_same(loop->set.effects[i].id, id)) return true;
+  for (size_t m = 0; m < loop->subset.member_count; m++)
+    for (size_t e = 0; e < loop->subset.effect_count; e++)
+      if ((loop->subset.members[m].mask >> e & 1) && fg_effect_same(loop->subset.effects[e].id, id))
+        return true;
   return false;
 }
 
@@ -286,10 +345,14 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_bool(&json, "same_foil", loop->options.same_foil);
   fg_json_number(&json, "noise_floor", loop->noise_floor_um);
   fg_json_number(&json, "edge_model_error", loop->subset.edge_error_um);
+  fg_json_object(&json, "half_width");
+  fg_json_number(&json, "rms", loop->subset.width_rms_um);
+  fg_json_number(&json, "smooth", loop->subset.width_smooth_um);
+  fg_json_object_end(&json);
   fg_json_string(&json, "unit", "um");
   FG_TRY(write_side(ctx, &json, "before", loop, loop->before, &loop->error_before));
   write_claims(&json, loop);
-  write_unattributed(&json, loop);
+  FG_TRY(write_unattributed(ctx, &json, loop));
   FG_TRY(write_side(ctx, &json, "after", loop, loop->after, &loop->error_after));
   fg_json_object(&json, "error_ratio");
   fg_json_number(&json, "rms", loop->error_after.rms / loop->error_before.rms);

@@ -106,6 +106,8 @@ def draw_effect(rng, kind, half_mm, rows_mm, size=None):
         effect["amplitude_um"] = sign * size
     else:
         effect.update(amplitude_um=sign * size, half_width_mm=half_mm)
+        if rng.random() < 0.5:  # else about the middle of the picture
+            effect["centre_mm"] = float(rng.uniform(8, 30))
     return effect
 
 
