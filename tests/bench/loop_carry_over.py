@@ -60,12 +60,13 @@ def spec_of(rng, scanner, effects, **content):
 
 
 def draw_plate(rng):
-    """Twelve pins of 4 to 8 mm in three rows of four; the design tells their diameters."""
+    """Twelve pins of 4 to 8 mm in four columns, every second lower by half a step: a row step crosses
+    pins wherever it is. The design tells their diameters."""
     diameters = [float(d) for d in rng.permutation(np.round(np.linspace(4, 8, 12), 4))]
     discs = []
     for k, diameter in enumerate(diameters):
-        x, y = 6.5 + 11 * (k % 4), 9 + 14 * (k // 4)
-        centre = [float(x + rng.uniform(-0.5, 0.5)), float(y + rng.uniform(-1, 1))]
+        x, y = 6.5 + 11 * (k % 4), 6.5 + 13 * (k // 4) + 6.5 * (k % 2)
+        centre = [float(v + rng.uniform(-0.5, 0.5)) for v in (x, y)]
         discs.append({"centre_mm": centre, "radius_mm": diameter / 2})
     return discs, {"name": "pin gauges", "form": "discs", "diameters_mm": diameters}
 
