@@ -9,6 +9,8 @@
 
 /* Rows fewer than this cannot carry a search for effects. */
 enum { ROWS_LEAST = 60 };
+/* Residual over the noise that says that something is there. */
+#define MUCH 1.5
 
 /* A copy confirms nothing, and counts its noise twice. */
 static fg_status check_different(fg_context *ctx, const char *const *paths,
@@ -220,11 +222,18 @@ static bool has_free(const fg_scan_set *set, bool wanted) {
   return false;
 }
 
+/* A residual that all effects and curves together would take is not clean, even when no set of
+ * them was found that holds. */
+static bool leaves_much(const fg_scan_loop *loop) {
+  return !loop->points.discs && !loop->subset.right &&
+         loop->error_after.rms > MUCH * loop->noise_floor_um;
+}
+
 static void find_verdict(fg_scan_loop *loop) {
   bool listed = has_free(&loop->set, false), rest = has_free(&loop->set, true);
   loop->verdict = listed && (rest || !loop->subset.right) ? FG_LOOP_PARTLY
                   : listed                                ? FG_LOOP_EXPLAINED
-                  : rest                                  ? FG_LOOP_UNATTRIBUTED
+                  : rest || leaves_much(loop)             ? FG_LOOP_UNATTRIBUTED
                                                           : FG_LOOP_CLEAN;
 }
 

@@ -10,6 +10,8 @@
 
 enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_LOOP_COLUMNS + FG_LOOP_SHAPES) };
 #define STEP_END_UM 1e-5
+/* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each. */
+#define FREE_HOLD 4e-4
 
 void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
   memset(fields, 0, sizeof *fields);
@@ -121,6 +123,17 @@ static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
   return a < r->parameters && b < r->parameters ? row->weight * 1e-6 : 0;
 }
 
+/* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
+ * leave the same residual the smallest one is meant. */
+static void hold_free(refit *r, size_t k) {
+  const fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
+  size_t a = r->parameters + k;
+  if (strncmp(effect->id, "free.", 5) != 0 || r->list[k].shape) return;
+  double held = FREE_HOLD * effect->coefficient_um[r->list[k].index];
+  gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + FREE_HOLD);
+  gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
+}
+
 static fg_status solve(fg_context *ctx, refit *r) {
   size_t n = r->parameters + r->unknowns, rows = r->points->row_count;
   for (size_t a = 0; a < n; a++) {
@@ -138,6 +151,8 @@ static fg_status solve(fg_context *ctx, refit *r) {
       gsl_matrix_set(r->normal, b, a, sum);
     }
   }
+  for (size_t k = 0; k < r->unknowns; k++)
+    hold_free(r, k);
   for (size_t a = 0; a < n; a++) {
     double d = gsl_matrix_get(r->normal, a, a);
     gsl_matrix_set(r->normal, a, a, d * (1 + 1e-10) + 1e-12);
