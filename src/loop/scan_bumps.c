@@ -455,6 +455,11 @@ fg_status fg_scan_bumps_run(fg_context *ctx, const fg_scan_bumps_request *reques
       .height = {{NAN, NAN}, {NAN, NAN}},
       .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
   if (request->before[0].design.form == FG_FORM_DISCS) return FG_OK; /* no bumps, nothing to say */
+  if (request->bent)
+    return fg_scan_bumps_note(
+        ctx, bumps,
+        "the bumps deviate from circles: which circle is a bump's is a matter "
+        "of basis, and the bumps are not held against the springback model");
   choose_effects(bumps);
   fg_status status = collect(ctx, request, bumps);
   if (status == FG_OK) status = run(ctx, request, bumps);

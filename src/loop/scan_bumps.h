@@ -73,6 +73,7 @@ typedef struct fg_scan_bumps_request {
   const bool *hold_out;
   size_t scan_count;
   bool same_foil, open;
+  bool bent; /* the bumps are no circles: how they deviate from one has been found */
   uint64_t seed;
 } fg_scan_bumps_request;
 

@@ -253,6 +253,14 @@ static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
                             hidden, listed, matters_um);
 }
 
+static bool bends_bumps(const fg_scan_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    if (!strncmp(set->effects[e].id, "part.bump_", 10) ||
+        !strcmp(set->effects[e].id, "free.bump.phi"))
+      return true;
+  return false;
+}
+
 /* Points come first; only where they are clean the bumps decide. */
 static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   size_t response;
@@ -262,6 +270,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .hold_out = loop->hold_out,
       .scan_count = loop->scan_count,
       .same_foil = loop->options.same_foil,
+      .bent = bends_bumps(&loop->set),
       .open =
           loop->tied || loop->verdict == FG_LOOP_PARTLY || loop->verdict == FG_LOOP_UNATTRIBUTED,
       .seed = loop->options.seed,
