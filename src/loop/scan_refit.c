@@ -9,9 +9,10 @@
 #include "loop/scan_loop.h"
 
 enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_LOOP_COLUMNS + FG_LOOP_SHAPES) };
-#define STEP_END_UM 1e-5
+#define STEP_END_UM  1e-5
+#define STEP_MOST_UM 60.0
 /* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each. */
-#define FREE_HOLD 4e-4
+#define FREE_HOLD 4e-3
 
 void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
   memset(fields, 0, sizeof *fields);
@@ -175,6 +176,7 @@ static double move(refit *r) {
       effect->shape[r->list[k].index] += step;
       largest = fmax(largest, 100 * fabs(step) / most * STEP_END_UM);
     } else {
+      step = fmax(-STEP_MOST_UM, fmin(STEP_MOST_UM, step));
       effect->coefficient_um[r->list[k].index] += step;
       largest = fmax(largest, fabs(step));
     }

@@ -156,7 +156,10 @@ static bool is_there(const fg_scan_effect *effect) {
 /* What the fit has made nothing of is dropped: a second ripple that stood for the curvature of a
  * first one, a smooth effect beside one that has found its shape since. */
 static void drop_nothings(fg_scan_set *set) {
-  size_t kept = 0;
+  size_t kept = 0, there = 0;
+  for (size_t e = 0; e < set->count; e++)
+    there += is_there(&set->effects[e]);
+  if (!there) return; /* each could go, but not all: they stand for each other */
   for (size_t e = 0; e < set->count; e++)
     if (is_there(&set->effects[e])) set->effects[kept++] = set->effects[e];
   set->count = kept;
@@ -214,6 +217,8 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, set
     at->set = next;
     leave_steps_out(points, &at->set);
     FG_TRY(fit_set(ctx, points, &at->set, at->geometry, at->residual_um));
+    /* Given up: what was right to first order is not. */
+    if (next.count && !at->set.count) at->subset.right = false;
     FG_TRY(drop_outliers(ctx, points, at->residual_um));
     if (settled && round > 0) break;
     drop_nothings(&at->set);
