@@ -12,6 +12,7 @@
 #include "core/memory.h"
 #include "core/small_solve.h"
 #include "loop/scan_loop.h"
+#include "loop/subset_search.h"
 
 enum {
   COLUMNS_MOST = 96,
@@ -64,17 +65,10 @@ typedef struct search {
   fg_subset *out;
 } search;
 
-static double dot(size_t n, const double *a, const double *b) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 static void take_out(const search *s, size_t rank, double *v) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < rank; k++) {
-      double d = dot(s->rows, s->basis + k * s->rows, v);
+      double d = fg_subset_dot(s->rows, s->basis + k * s->rows, v);
       for (size_t i = 0; i < s->rows; i++)
         v[i] -= d * s->basis[k * s->rows + i];
     }
@@ -82,10 +76,10 @@ static void take_out(const search *s, size_t rank, double *v) {
 
 /* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
 static bool extend(search *s, size_t rank, const double *v, double least) {
-  double *to = s->basis + rank * s->rows, whole = dot(s->rows, v, v);
+  double *to = s->basis + rank * s->rows, whole = fg_subset_dot(s->rows, v, v);
   memcpy(to, v, s->rows * sizeof *to);
   take_out(s, rank, to);
-  double left = dot(s->rows, to, to);
+  double left = fg_subset_dot(s->rows, to, to);
   if (!(left > fmax(1e-12 * whole, least))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
@@ -116,9 +110,9 @@ static void add_effect(search *s, const fg_subset_effect *effect) {
   effect = &out->effects[e];
   double whole = 0, left = 0;
   for (size_t c = 0; c < effect->columns; c++) {
-    whole += dot(s->rows, to + c * s->rows, to + c * s->rows);
+    whole += fg_subset_dot(s->rows, to + c * s->rows, to + c * s->rows);
     take_out(s, s->geometry_rank, to + c * s->rows);
-    left += dot(s->rows, to + c * s->rows, to + c * s->rows);
+    left += fg_subset_dot(s->rows, to + c * s->rows, to + c * s->rows);
   }
   out->share[e] = whole > 0 ? left / whole : 0;
   s->column_count += effect->columns;
@@ -131,17 +125,19 @@ static double residual_sum(const search *s, unsigned mask, double *freedom, doub
   for (size_t e = 0; e < s->out->effect_count; e++)
     for (size_t c = 0; (mask >> e & 1) && c < s->out->effects[e].columns && n < FG_SMALL_MAX; c++) {
       const double *p = s->columns + (s->first_column[e] + c) * s->rows;
-      if (dot(s->rows, p, p) > VANISHED * (double)s->rows) index[n++] = s->first_column[e] + c;
+      if (fg_subset_dot(s->rows, p, p) > VANISHED * (double)s->rows)
+        index[n++] = s->first_column[e] + c;
     }
   fg_normal_clear(&system, n);
-  double sum = dot(s->rows, s->residual, s->residual), x[FG_SMALL_MAX];
+  double sum = fg_subset_dot(s->rows, s->residual, s->residual), x[FG_SMALL_MAX];
   double inverse[FG_SMALL_MAX][FG_SMALL_MAX], scale[FG_SMALL_MAX];
   for (size_t a = 0; a < n; a++) {
     const double *p = s->columns + index[a] * s->rows;
-    scale[a] = 1 / sqrt(fmax(dot(s->rows, p, p), 1e-30));
-    system.right[a] = scale[a] * dot(s->rows, p, s->residual);
+    scale[a] = 1 / sqrt(fmax(fg_subset_dot(s->rows, p, p), 1e-30));
+    system.right[a] = scale[a] * fg_subset_dot(s->rows, p, s->residual);
     for (size_t b = 0; b <= a; b++)
-      system.matrix[a][b] = scale[a] * scale[b] * dot(s->rows, p, s->columns + index[b] * s->rows);
+      system.matrix[a][b] =
+          scale[a] * scale[b] * fg_subset_dot(s->rows, p, s->columns + index[b] * s->rows);
   }
   *freedom = (double)n;
   if (n && fg_normal_solve(&system, 1e-12, x, inverse))
@@ -178,9 +174,9 @@ static size_t find_noise(search *s, double *left) {
   memcpy(left, s->residual, s->rows * sizeof *left);
   take_out(s, rank, left);
   double freedom = fmax((double)s->rows - (double)rank, 1);
-  s->full = dot(s->rows, left, left);
+  s->full = fg_subset_dot(s->rows, left, left);
   s->full_rank = rank - s->geometry_rank;
-  s->out->noise_um = sqrt(dot(s->rows, left, left) / freedom);
+  s->out->noise_um = sqrt(fg_subset_dot(s->rows, left, left) / freedom);
   s->out->integral = find_integral(s, left);
   return rank;
 }
@@ -196,9 +192,9 @@ static double shaped_gain(const search *s, size_t rank, const double *left, cons
   for (size_t a = 0; a < count; a++)
     take_out(s, rank, columns + a * s->rows);
   for (size_t a = 0; a < count; a++) {
-    system.right[a] = dot(s->rows, columns + a * s->rows, left);
+    system.right[a] = fg_subset_dot(s->rows, columns + a * s->rows, left);
     for (size_t b = 0; b <= a; b++)
-      system.matrix[a][b] = dot(s->rows, columns + a * s->rows, columns + b * s->rows);
+      system.matrix[a][b] = fg_subset_dot(s->rows, columns + a * s->rows, columns + b * s->rows);
     if (!(system.matrix[a][a] > 1e-3 * (double)s->rows / 64)) return 0;
   }
   if (!fg_normal_solve(&system, 1e-9, x, NULL)) return 0;
@@ -214,7 +210,7 @@ static double shaped_gain(const search *s, size_t rank, const double *left, cons
  * noise that it stands against must not hold it. */
 static double gain_over_rest(search *s, size_t rank, const double *left, const char *id,
                              double shape, double *columns) {
-  double amplitude, basis_left = dot(s->rows, left, left);
+  double amplitude, basis_left = fg_subset_dot(s->rows, left, left);
   double gain = shaped_gain(s, rank, left, id, shape, columns, &amplitude) * s->out->noise_um *
                 s->out->noise_um * s->out->integral;
   size_t count = gather(s, id, &shape, columns), added = 0;
@@ -266,17 +262,6 @@ static double find_shaped(search *s, size_t rank, const double *left,
   return best > SHAPED_CHI2 && size > SHAPED_LEAST_UM ? best : 0;
 }
 
-static double ripple_period(const fg_points *points, size_t i, size_t count) {
-  double span = points->frame.high_mm[1] - points->frame.low_mm[1];
-  double low = 1.5 / span, high = 2.5;
-  return 1 / (low + (high - low) * (double)i / (double)count);
-}
-
-static double step_place(const fg_points *points, size_t i, size_t count) {
-  double low = points->frame.low_mm[1], high = points->frame.high_mm[1];
-  return low + (high - low) * ((double)i + 1) / ((double)count + 1);
-}
-
 /* Ripples and steps stand alone even in one scan: they are sought beside all smooth effects. */
 static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
   static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
@@ -289,9 +274,10 @@ static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
     fg_subset_effect wave, jump; /* each can be read as several of the other: the better one */
     double waves = 0, jumps = 0;
     if (fg_points_shows(s->points, ripple.id))
-      waves = find_shaped(s, rank, left, &ripple, ripple_period, RIPPLE_STEPS, columns, &wave);
+      waves = find_shaped(s, rank, left, &ripple, fg_subset_ripple_period, RIPPLE_STEPS, columns,
+                          &wave);
     if (fg_points_shows(s->points, step.id))
-      jumps = find_shaped(s, rank, left, &step, step_place, STEP_STEPS, columns, &jump);
+      jumps = find_shaped(s, rank, left, &step, fg_subset_step_place, STEP_STEPS, columns, &jump);
     if (waves > 0 || jumps > 0) {
       add_effect(s, waves > jumps ? &wave : &jump);
       s->new_shapes++;
@@ -300,30 +286,6 @@ static fg_status find_shaped_effects(fg_context *ctx, search *s, double *left) {
   find_noise(s, left);
   free(columns);
   return FG_OK;
-}
-
-static size_t bits(unsigned mask) {
-  size_t n = 0;
-  for (; mask; mask &= mask - 1)
-    n++;
-  return n;
-}
-
-static void keep_member(fg_subset *out, fg_subset_member member) {
-  out->member_total++;
-  size_t at = out->member_count < FG_SUBSET_CLASS ? out->member_count++ : FG_SUBSET_CLASS;
-  if (at == FG_SUBSET_CLASS && member.excess >= out->members[FG_SUBSET_CLASS - 1].excess) return;
-  if (at == FG_SUBSET_CLASS) at--;
-  for (; at > 0 && out->members[at - 1].excess > member.excess; at--)
-    out->members[at] = out->members[at - 1];
-  out->members[at] = member;
-}
-
-static unsigned mask_of(const fg_subset *out, bool of_free) {
-  unsigned mask = 0;
-  for (size_t e = 0; e < out->effect_count; e++)
-    if (out->effects[e].free == of_free) mask |= 1u << e;
-  return mask;
 }
 
 /* What the search compares with: everything at once. */
@@ -354,13 +316,14 @@ static bool one_more_helps(const search *s, const yardstick *y, const fg_subset_
 
 /* Listed sets by size; the first size with one that is right ends the search. */
 static fg_subset_member try_listed(search *s, const yardstick *y, size_t most) {
-  unsigned listed = mask_of(s->out, false);
+  unsigned listed = fg_subset_mask_of(s->out, false);
   fg_subset_member best = {.excess = INFINITY};
   for (size_t size = 0; size <= most && !s->out->member_count; size++)
     for (unsigned mask = 0; mask <= listed; mask++) {
-      if ((mask & ~listed) || bits(mask) != size) continue;
+      if ((mask & ~listed) || fg_subset_bits(mask) != size) continue;
       fg_subset_member member = try_set(s, y, mask);
-      if (is_right(y, &member) && !one_more_helps(s, y, &member)) keep_member(s->out, member);
+      if (is_right(y, &member) && !one_more_helps(s, y, &member))
+        fg_subset_keep_member(s->out, &member);
       if (member.excess < best.excess - 12) best = member;
     }
   return best;
@@ -382,7 +345,7 @@ static void try_free(search *s, const yardstick *y, fg_subset_member best) {
       best = member;
     }
   out->right = is_right(y, &best);
-  keep_member(out, best);
+  fg_subset_keep_member(out, &best);
 }
 
 /* How many effects the points can tell apart. */
@@ -399,7 +362,7 @@ static void try_sets(search *s) {
   fg_subset_member best = try_listed(s, &y, effects_most(s->points));
   out->right = out->member_count > 0;
   /* A ripple or step that was found just now has not been fitted with the geometry yet. */
-  if (!out->member_count && s->new_shapes) keep_member(out, best);
+  if (!out->member_count && s->new_shapes) fg_subset_keep_member(out, &best);
   if (!out->member_count) try_free(s, &y, best);
   double used, none = residual_sum(s, 0, &used, NULL);
   out->p_value =
@@ -410,7 +373,8 @@ static void try_sets(search *s) {
     out->alone[e] = 1 - residual_sum(s, lone, &used, NULL) / none;
     if (out->effects[e].free) continue;
     /* Three and a half standard deviations beside the winner: found in most cases. */
-    residual_sum(s, (out->members[0].mask & mask_of(out, false) & ~lone) | lone, &used, &u);
+    residual_sum(s, (out->members[0].mask & fg_subset_mask_of(out, false) & ~lone) | lone, &used,
+                 &u);
     out->smallest_um[e] = 3.5 * sqrt(y.unit) * u;
   }
 }
@@ -436,7 +400,7 @@ static fg_status span_geometry(fg_context *ctx, search *s, const double *residua
   for (size_t a = 0; a < points->parameters; a++) {
     for (size_t i = 0; i < s->rows; i++)
       column[i] = weight_of(s, i) * jacobian[a * points->row_count + s->row[i]];
-    if (dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0))
+    if (fg_subset_dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0))
       s->geometry_rank++;
   }
   for (size_t i = 0; i < s->rows; i++)

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
-#include "loop/scan_loop.h"
+#include "loop/settle.h"
 
 /* Rows this far off are left out, if they are fewer than this share. */
 #define OUTLIER_SIGMAS 5.0
@@ -20,40 +20,6 @@ static void keep_numbers(const fg_scan_set *from, fg_scan_set *to) {
       if (!strcmp(to->effects[e].id, from->effects[k].id) &&
           to->effects[e].shape[0] == from->effects[k].shape[0])
         to->effects[e] = from->effects[k];
-}
-
-static bool same_effects(const fg_scan_set *a, const fg_scan_set *b) {
-  if (a->count != b->count) return false;
-  for (size_t e = 0; e < a->count; e++)
-    if (strcmp(a->effects[e].id, b->effects[e].id)) return false;
-  return true;
-}
-
-/* Residual and Jacobian at the set's geometry, with what the set does put back, linearly. */
-static fg_status put_back(fg_context *ctx, fg_points *points, const fg_scan_set *set,
-                          double *residual_um, double *jacobian) {
-  size_t rows = points->row_count;
-  fg_field_list fields;
-  double *shift = NULL, *columns = NULL;
-  fg_status status = FG_OK;
-  fg_scan_fields(points, set, &fields);
-  FG_TRY_EXIT(fg_scan_shift(ctx, points, set, &shift));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *columns, (void **)&columns));
-  fg_points_correction correction = {&fields, shift};
-  fg_points_residual(points, &correction, residual_um, jacobian);
-  for (size_t i = 0; i < rows; i++)
-    residual_um[i] *= 1000;
-  for (size_t e = 0; e < set->count; e++) {
-    const fg_scan_effect *effect = &set->effects[e];
-    size_t count = fg_points_effect_columns(points, effect->id, effect->shape, columns);
-    for (size_t c = 0; c < count; c++)
-      for (size_t i = 0; i < rows; i++)
-        residual_um[i] += effect->coefficient_um[c] * columns[c * rows + i];
-  }
-exit:
-  free(shift);
-  free(columns);
-  return status;
 }
 
 /* Residual in units of its row's noise, but for one factor. */
@@ -80,15 +46,6 @@ static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double 
   return FG_OK;
 }
 
-/* Rows across a step hold some of both sides. */
-static void leave_steps_out(fg_points *points, const fg_scan_set *set) {
-  for (size_t e = 0; e < set->count; e++)
-    for (size_t i = 0; i < points->row_count; i++)
-      if (!strcmp(set->effects[e].id, "scan.row_step") &&
-          fabs(points->rows[i].at.y - set->effects[e].shape[0]) < STEP_HALF_MM)
-        points->rows[i].weight = 0;
-}
-
 fg_status fg_disc_effects_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
                                  fg_subset *subset, double *residual_um) {
   enum { ROUNDS = 8 };
@@ -100,13 +57,13 @@ fg_status fg_disc_effects_settle(fg_context *ctx, fg_points *points, fg_scan_set
                             (void **)&jacobian));
   for (int round = 0; round < ROUNDS; round++) {
     fg_scan_set next;
-    FG_TRY_EXIT(put_back(ctx, points, set, residual_um, jacobian));
+    FG_TRY_EXIT(fg_settle_put_back(ctx, points, set, residual_um, jacobian));
     FG_TRY_EXIT(fg_disc_effects_find(ctx, points, residual_um, jacobian, set, subset));
     fg_subset_take(subset, 0, &next);
-    bool settled = same_effects(set, &next);
+    bool settled = fg_settle_same_effects(set, &next);
     keep_numbers(set, &next);
     *set = next;
-    leave_steps_out(points, set);
+    fg_settle_leave_steps_out(points, set, STEP_HALF_MM);
     FG_TRY_EXIT(fg_scan_refit(ctx, points, set, residual_um));
     FG_TRY_EXIT(drop_outliers(ctx, points, residual_um));
     if (settled && round > 0) break;

@@ -270,14 +270,14 @@ static bool is_right(const yardstick *y, const fg_subset_member *m) {
 
 /* ---- all sets ---- */
 
-static size_t bits(unsigned mask) {
+size_t fg_subset_bits(unsigned mask) {
   size_t n = 0;
   for (; mask; mask &= mask - 1)
     n++;
   return n;
 }
 
-static unsigned mask_of(const fg_subset *out, bool of_free) {
+unsigned fg_subset_mask_of(const fg_subset *out, bool of_free) {
   unsigned mask = 0;
   for (size_t e = 0; e < out->effect_count; e++)
     if (out->effects[e].free == of_free) mask |= 1u << e;
@@ -297,7 +297,7 @@ static bool has_twins(const fg_subset *out, unsigned mask) {
   return false;
 }
 
-static void keep_member(fg_subset *out, const fg_subset_member *member) {
+void fg_subset_keep_member(fg_subset *out, const fg_subset_member *member) {
   out->member_total++;
   size_t at = out->member_count < FG_SUBSET_CLASS ? out->member_count++ : FG_SUBSET_CLASS;
   if (at == FG_SUBSET_CLASS && member->excess >= out->members[FG_SUBSET_CLASS - 1].excess) return;
@@ -316,13 +316,13 @@ static double score_of(const fg_subset_search *s, const fg_subset_member *m) {
  * Schwarz's criterion of those that were tried. */
 static fg_subset_member try_listed(fg_subset_search *s, const yardstick *y, size_t most) {
   fg_subset *out = s->out;
-  unsigned listed = mask_of(out, false);
+  unsigned listed = fg_subset_mask_of(out, false);
   fg_subset_member best = {.excess = INFINITY};
   for (size_t size = 0; size <= most && !out->member_count; size++)
     for (unsigned mask = 0; mask <= listed; mask++) {
-      if ((mask & ~listed) || bits(mask) != size || has_twins(out, mask)) continue;
+      if ((mask & ~listed) || fg_subset_bits(mask) != size || has_twins(out, mask)) continue;
       fg_subset_member member = try_set(s, y, mask);
-      if (is_right(y, &member)) keep_member(out, &member);
+      if (is_right(y, &member)) fg_subset_keep_member(out, &member);
       if (isfinite(member.excess) &&
           (!isfinite(best.excess) || score_of(s, &member) < score_of(s, &best)))
         best = member;
@@ -360,11 +360,11 @@ static void order_members(fg_subset_search *s, const yardstick *y) {
  * columns; the best listed set stands when none does better. */
 static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member best) {
   fg_subset *out = s->out;
-  unsigned listed = mask_of(out, false);
+  unsigned listed = fg_subset_mask_of(out, false);
   double score = isfinite(best.excess) ? score_of(s, &best) : INFINITY;
   for (size_t size = 0; size <= 2; size++)
     for (unsigned mask = 0; mask <= listed; mask++) {
-      if ((mask & ~listed) || bits(mask) != size || has_twins(out, mask)) continue;
+      if ((mask & ~listed) || fg_subset_bits(mask) != size || has_twins(out, mask)) continue;
       for (size_t e = 0; e < out->effect_count; e++) {
         if (!out->effects[e].free) continue;
         fg_subset_member member = try_set(s, y, mask | 1u << e);
@@ -375,7 +375,7 @@ static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member b
       }
     }
   out->right = is_right(y, &best);
-  keep_member(out, &best);
+  fg_subset_keep_member(out, &best);
 }
 
 static bool scanned_again(const fg_points *points) {
@@ -388,7 +388,7 @@ static double smallest_amplitude(const fg_subset_search *s, const yardstick *y, 
   set_terms set;
   double u = INFINITY;
   size_t rank;
-  unsigned others = out->members[0].mask & mask_of(out, false) & ~(1u << e);
+  unsigned others = out->members[0].mask & fg_subset_mask_of(out, false) & ~(1u << e);
   list_terms(out, others, &set);
   const fg_subset_effect *effect = &out->effects[e];
   if (set.count < FG_SUBSET_TERMS) {
@@ -452,7 +452,7 @@ static void try_sets(fg_subset_search *s) {
   fg_subset_member best = try_listed(s, &y, scanned_again(s->columns.points) ? 3 : 2);
   out->right = out->member_count > 0;
   if (out->right) order_members(s, &y);
-  if (!out->member_count && is_worth_fitting(s, &y, &best)) keep_member(out, &best);
+  if (!out->member_count && is_worth_fitting(s, &y, &best)) fg_subset_keep_member(out, &best);
   if (!out->member_count) try_free(s, &y, best);
   describe_effects(s, &y);
   describe_width(s, &y);

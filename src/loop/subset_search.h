@@ -23,4 +23,14 @@ size_t fg_subset_noise(fg_subset_search *s, bool listed_only);
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
 fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s);
 
+/* Start i of `count`: a ripple's period, evenly in frequency; a step's place. */
+double fg_subset_ripple_period(const fg_points *points, size_t i, size_t count);
+double fg_subset_step_place(const fg_points *points, size_t i, size_t count);
+
+size_t fg_subset_bits(unsigned mask);
+/* Of all effects, those that are free curves, or those that are listed. */
+unsigned fg_subset_mask_of(const fg_subset *out, bool of_free);
+/* Puts a member into the class, the one that leaves least first. */
+void fg_subset_keep_member(fg_subset *out, const fg_subset_member *member);
+
 #endif

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
-#include "loop/scan_loop.h"
+#include "loop/settle.h"
 
 /* Rows this far off are left out, if they are fewer than this share. */
 #define OUTLIER_SIGMAS 5.0
@@ -45,16 +45,15 @@ static void keep_numbers(const fg_scan_set *from, fg_scan_set *to) {
         to->effects[e] = from->effects[k];
 }
 
-static bool same_effects(const fg_scan_set *a, const fg_scan_set *b) {
+bool fg_settle_same_effects(const fg_scan_set *a, const fg_scan_set *b) {
   if (a->count != b->count) return false;
   for (size_t e = 0; e < a->count; e++)
     if (strcmp(a->effects[e].id, b->effects[e].id)) return false;
   return true;
 }
 
-/* Residual and Jacobian at the set's geometry, with what the set does put back, linearly. */
-static fg_status put_back(fg_context *ctx, fg_points *points, const fg_scan_set *set,
-                          double *residual_um, double *jacobian) {
+fg_status fg_settle_put_back(fg_context *ctx, fg_points *points, const fg_scan_set *set,
+                             double *residual_um, double *jacobian) {
   size_t rows = points->row_count;
   fg_field_list fields;
   double *shift = NULL, *columns = NULL;
@@ -136,12 +135,11 @@ static fg_status drop_bad_ends(fg_context *ctx, fg_points *points, const double 
   return FG_OK;
 }
 
-/* Blocks of rows that lie across a step hold some of both sides. */
-static void leave_steps_out(fg_points *points, const fg_scan_set *set) {
+void fg_settle_leave_steps_out(fg_points *points, const fg_scan_set *set, double half_mm) {
   for (size_t e = 0; e < set->count; e++)
     for (size_t i = 0; i < points->row_count; i++)
       if (!strcmp(set->effects[e].id, "scan.row_step") &&
-          fabs(points->rows[i].at.y - set->effects[e].shape[0]) < STEP_HALF_MM)
+          fabs(points->rows[i].at.y - set->effects[e].shape[0]) < half_mm)
         points->rows[i].weight = 0;
 }
 
@@ -208,14 +206,15 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, set
   FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
   for (int round = 0; round < ROUNDS; round++) {
     fg_scan_set next;
-    FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
+    FG_TRY(fg_settle_put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_subset_find(ctx, points, at->residual_um, at->jacobian, &at->set, eager || round > 0,
                           &at->subset));
     fg_subset_take(&at->subset, 0, &next);
-    bool settled = same_effects(&at->set, &next) && (at->subset.right || round >= ROUNDS / 2);
+    bool settled =
+        fg_settle_same_effects(&at->set, &next) && (at->subset.right || round >= ROUNDS / 2);
     keep_numbers(&at->set, &next);
     at->set = next;
-    leave_steps_out(points, &at->set);
+    fg_settle_leave_steps_out(points, &at->set, STEP_HALF_MM);
     FG_TRY(fit_set(ctx, points, &at->set, at->geometry, at->residual_um));
     /* Given up: what was right to first order is not. */
     if (next.count && !at->set.count) at->subset.right = false;

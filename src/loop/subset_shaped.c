@@ -88,13 +88,13 @@ static hit find_place(const fg_subset_search *s, size_t rank, const shaped *kind
   return best;
 }
 
-static double ripple_period(const fg_points *points, size_t i, size_t count) {
+double fg_subset_ripple_period(const fg_points *points, size_t i, size_t count) {
   double span = points->frame.high_mm[1] - points->frame.low_mm[1];
   double low = 1.5 / span, high = 2.5;
   return 1 / (low + (high - low) * (double)i / (double)count);
 }
 
-static double step_place(const fg_points *points, size_t i, size_t count) {
+double fg_subset_step_place(const fg_points *points, size_t i, size_t count) {
   double low = points->frame.low_mm[1], high = points->frame.high_mm[1];
   return low + (high - low) * ((double)i + 1) / ((double)count + 1);
 }
@@ -103,7 +103,8 @@ static double step_place(const fg_points *points, size_t i, size_t count) {
 static bool add_best(fg_subset_search *s, bool listed_only, double *work) {
   static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
   static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
-  const shaped kinds[] = {{&ripple, ripple_period, RIPPLE_STEPS}, {&step, step_place, STEP_STEPS}};
+  const shaped kinds[] = {{&ripple, fg_subset_ripple_period, RIPPLE_STEPS},
+                          {&step, fg_subset_step_place, STEP_STEPS}};
   size_t rank = fg_subset_noise(s, false);
   double noise_um = s->out->noise_um, integral = s->out->integral;
   if (listed_only) rank = fg_subset_noise(s, true);
