@@ -16,7 +16,11 @@
 extern "C" {
 #endif
 
-enum { FG_SCAN_EFFECTS = FG_LOOP_CLAIMS + 2, FG_SCANNER_NAME = 128 };
+enum {
+  FG_SCAN_EFFECTS = FG_LOOP_CLAIMS + 2,
+  FG_SCAN_COLUMNS = 24, /* linear columns of an effect, at most */
+  FG_SCANNER_NAME = 128
+};
 
 typedef struct fg_scan_loop_options {
   double dpi;       /* 0: as the files say */
@@ -31,7 +35,7 @@ typedef struct fg_scan_loop_options {
 typedef struct fg_scan_effect {
   const char *id;
   size_t columns, shapes;
-  double coefficient_um[FG_LOOP_COLUMNS], u_coefficient_um[FG_LOOP_COLUMNS];
+  double coefficient_um[FG_SCAN_COLUMNS], u_coefficient_um[FG_SCAN_COLUMNS];
   double shape[FG_LOOP_SHAPES], u_shape[FG_LOOP_SHAPES];
 } fg_scan_effect;
 

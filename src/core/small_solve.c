@@ -4,8 +4,11 @@
 #include <string.h>
 
 void fg_normal_clear(fg_normal_equations *system, size_t unknowns) {
-  memset(system, 0, sizeof *system);
   system->unknowns = unknowns;
+  system->sum_squares = 0;
+  memset(system->right, 0, unknowns * sizeof *system->right);
+  for (size_t i = 0; i < unknowns; i++)
+    memset(system->matrix[i], 0, unknowns * sizeof *system->matrix[i]);
 }
 
 void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {

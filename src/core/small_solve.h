@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-enum { FG_SMALL_MAX = 16 };
+enum { FG_SMALL_MAX = 28 };
 
 /* Normal equations of a least-squares problem, filled row by row. */
 typedef struct fg_normal_equations {

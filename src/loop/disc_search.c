@@ -15,7 +15,7 @@
 #include "loop/subset_search.h"
 
 enum {
-  COLUMNS_MOST = 96,
+  COLUMNS_MOST = 192,
   RIPPLE_STEPS = 400,
   STEP_STEPS = 200,
   REFINE_STEPS = 24,
@@ -58,7 +58,7 @@ typedef struct search {
   double *residual; /* beside the geometry */
   double *columns;  /* COLUMNS_MOST × rows: effects beside the geometry */
   size_t column_count, first_column[FG_SUBSET_EFFECTS];
-  double *work; /* FG_LOOP_COLUMNS × all rows */
+  double *work; /* FG_SCAN_COLUMNS × all rows */
   double full;  /* residual sum beside everything, and the columns that took it */
   size_t full_rank;
   size_t new_shapes; /* ripples and steps that were found in this round */
@@ -214,7 +214,7 @@ static double gain_over_rest(search *s, size_t rank, const double *left, const c
   double gain = shaped_gain(s, rank, left, id, shape, columns, &amplitude) * s->out->noise_um *
                 s->out->noise_um * s->out->integral;
   size_t count = gather(s, id, &shape, columns), added = 0;
-  double *rest = s->work; /* has room: FG_LOOP_COLUMNS per row */
+  double *rest = s->work; /* has room: FG_SCAN_COLUMNS per row */
   for (size_t c = 0; c < count; c++)
     added += extend(s, rank + added, columns + c * s->rows, VANISHED * (double)s->rows);
   memcpy(rest, left, s->rows * sizeof *rest);
@@ -394,7 +394,7 @@ static fg_status span_geometry(fg_context *ctx, search *s, const double *residua
                             (void **)&s->basis));
   FG_TRY(fg_memory_allocate(ctx, s->rows, sizeof *s->residual, (void **)&s->residual));
   FG_TRY(fg_memory_allocate(ctx, COLUMNS_MOST, s->rows * sizeof *s->columns, (void **)&s->columns));
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, FG_LOOP_COLUMNS * sizeof *s->work,
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, FG_SCAN_COLUMNS * sizeof *s->work,
                             (void **)&s->work));
   double *column = s->residual; /* borrowed until the residual is put there */
   for (size_t a = 0; a < points->parameters; a++) {

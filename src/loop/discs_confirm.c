@@ -36,7 +36,7 @@ typedef struct confirmation {
   double *residual; /* rows: with the effect put back, beside each disc's circle */
   double *columns;  /* effect->columns × rows, likewise */
   fg_normal_equations *groups;
-  size_t group_count, columns_used, index[FG_LOOP_COLUMNS];
+  size_t group_count, columns_used, index[FG_SCAN_COLUMNS];
 } confirmation;
 
 static double weight_at(const fg_points *points, size_t i) {
@@ -229,12 +229,12 @@ static double judge_sides(confirmation *c) {
 static void widen_by_scatter(confirmation *c, fg_scan_effect *effect) {
   fg_normal_equations whole;
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], n = 0;
-  double variance[FG_LOOP_COLUMNS] = {0};
+  double variance[FG_SCAN_COLUMNS] = {0};
   if (!solve_whole(c, false, &whole, x, inverse)) return;
   if (effective_groups(c, x) < (double)c->columns_used + 1) return;
   for (size_t g = 0; g < c->group_count; g++) {
     const fg_normal_equations *own = &c->groups[g];
-    double score[FG_LOOP_COLUMNS];
+    double score[FG_SCAN_COLUMNS];
     for (size_t a = 0; a < c->columns_used; a++) {
       score[a] = own->right[a];
       for (size_t b = 0; b < c->columns_used; b++)
@@ -325,7 +325,7 @@ static fg_status confirm(fg_context *ctx, const fg_points *points, fg_scan_effec
   size_t rows = points->row_count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.residual, (void **)&c.residual));
   FG_TRY_EXIT(
-      fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *c.columns, (void **)&c.columns));
+      fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *c.columns, (void **)&c.columns));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, points->view_count, 2 * sizeof *c.groups, (void **)&c.groups));
   *confirmed = judge(&c, effect, residual_um);

@@ -65,17 +65,17 @@ static double bspline(double u) {
   return 2.0 / 3 - a * a + 0.5 * a * a * a;
 }
 
-/* All columns of a curve over the picture's width or height. */
-static void free_curve(double low, double high, double at, double *values) {
+void fg_field_splines(double low, double high, double at, double values[FG_FIELD_COLUMNS]) {
   double spacing = (high - low) / (FG_FIELD_COLUMNS - 1);
+  double place = (fmax(low, fmin(high, at)) - low) / spacing;
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
-    values[i] = 1.5 * bspline((at - low) / spacing - i);
+    values[i] = 1.5 * bspline(place - i);
 }
 
 static void free_xx(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  free_curve(frame->low_mm[0], frame->high_mm[0], at.x, values);
+  fg_field_splines(frame->first_mm[0], frame->last_mm[0], at.x, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){values[i], 0};
 }
@@ -83,7 +83,7 @@ static void free_xx(const fg_field_frame *frame, const double *shape, fg_point a
 static void free_yx(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  free_curve(frame->low_mm[0], frame->high_mm[0], at.x, values);
+  fg_field_splines(frame->first_mm[0], frame->last_mm[0], at.x, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){0, values[i]};
 }
@@ -91,7 +91,7 @@ static void free_yx(const fg_field_frame *frame, const double *shape, fg_point a
 static void free_xy(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  free_curve(frame->low_mm[1], frame->high_mm[1], at.y, values);
+  fg_field_splines(frame->first_mm[1], frame->last_mm[1], at.y, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){values[i], 0};
 }
@@ -99,7 +99,7 @@ static void free_xy(const fg_field_frame *frame, const double *shape, fg_point a
 static void free_yy(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  free_curve(frame->low_mm[1], frame->high_mm[1], at.y, values);
+  fg_field_splines(frame->first_mm[1], frame->last_mm[1], at.y, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){0, values[i]};
 }

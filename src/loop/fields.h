@@ -13,13 +13,15 @@
 #include "foilgauge/circle.h"
 #include "foilgauge/status.h"
 
-enum { FG_FIELD_COLUMNS = 12, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
+enum { FG_FIELD_COLUMNS = 24, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
 #define FG_FIELD_HALF_MM 18.0
 
 /* Where a scan's fields live. */
 typedef struct fg_field_frame {
   double centre_mm[2];          /* of the picture */
   double low_mm[2], high_mm[2]; /* of the picture */
+  double first_mm[2], last_mm[2]; /* of the edges that were measured: free curves have their knots
+                                     there, and stay constant beyond */
 } fg_field_frame;
 
 typedef struct fg_field_row {
@@ -52,6 +54,9 @@ bool fg_field_is_free(const fg_field_row *row);
 
 /* d at a nominal position. */
 fg_point fg_field_at(const fg_field_list *list, fg_point nominal);
+
+/* All columns of a curve over [low, high]: cubic B-splines, constant beyond. */
+void fg_field_splines(double low, double high, double at, double values[FG_FIELD_COLUMNS]);
 
 /* What the numbers of a field are called in a report: name and value of parameter i (amplitudes in
  * um, scale and shear as ratios); false when there are no more. */

@@ -9,6 +9,8 @@
 /* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
  * tenth and more. */
 #define SAME_SHARE 0.2
+/* Edges lie so far beside the middle of the strip, and are moved by effects. */
+#define EDGE_ROOM_MM 0.2
 
 void fg_points_free(fg_points *points) {
   if (!points) return;
@@ -220,8 +222,16 @@ void fg_points_find_frame(fg_points *points) {
     f->high_mm[0] = fmax(f->high_mm[0], (double)m->width_px * 25.4 / m->dpi[0]);
     f->high_mm[1] = fmax(f->high_mm[1], (double)m->height_px * 25.4 / m->dpi[1]);
   }
-  for (int axis = 0; axis < 2; axis++)
+  for (int axis = 0; axis < 2; axis++) {
     f->centre_mm[axis] = 0.5 * (f->low_mm[axis] + f->high_mm[axis]);
+    f->first_mm[axis] = f->high_mm[axis];
+    f->last_mm[axis] = f->low_mm[axis];
+    for (size_t i = 0; i < points->row_count; i++) {
+      double at = axis ? points->rows[i].at.y : points->rows[i].at.x;
+      f->first_mm[axis] = fmin(f->first_mm[axis], at - EDGE_ROOM_MM);
+      f->last_mm[axis] = fmax(f->last_mm[axis], at + EDGE_ROOM_MM);
+    }
+  }
 }
 
 /* Gives empty group numbers up, so that groups are 0 .. group_count - 1. */
@@ -276,6 +286,21 @@ static int compare_rows(const void *a, const void *b) {
   return (p->s_mm > q->s_mm) - (p->s_mm < q->s_mm);
 }
 
+/* Range of the rows' psi as the measured circles place them. */
+static fg_status find_range(fg_context *ctx, fg_points *points) {
+  double *residual = NULL;
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *residual, (void **)&residual));
+  fg_points_residual(points, NULL, residual, NULL);
+  free(residual);
+  points->psi_rad[0] = INFINITY;
+  points->psi_rad[1] = -INFINITY;
+  for (size_t i = 0; i < points->row_count; i++) {
+    points->psi_rad[0] = fmin(points->psi_rad[0], points->rows[i].psi);
+    points->psi_rad[1] = fmax(points->psi_rad[1], points->rows[i].psi);
+  }
+  return FG_OK;
+}
+
 fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
                           fg_points *points) {
   memset(points, 0, sizeof *points);
@@ -288,6 +313,7 @@ fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t c
       points->views[points->view_count++] = views[i];
   FG_TRY_EXIT(fill(ctx, points));
   if (points->row_count) qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
+  FG_TRY_EXIT(find_range(ctx, points));
 exit:
   if (status != FG_OK) fg_points_free(points);
   return status;

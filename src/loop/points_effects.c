@@ -91,29 +91,37 @@ static size_t bump_skew(const fg_points *points, const fg_points_row *row, doubl
 }
 
 static size_t free_phi(const fg_points *points, const fg_points_row *row, double *values) {
-  size_t count = legendre(row, 3, 1, 8, values);
+  size_t count = legendre(row, 3, 1, 16, values);
   count += stretch(points, row, 3, values + count);
   return count + stretch(points, row, 4, values + count);
 }
 
-/* Over the foil, along its normal: harmonics of its span. */
-static size_t free_s(const fg_points *points, const fg_points_row *row, double *values) {
-  double u = row->psi / points->parts[row->part].half_span_rad * M_PI;
-  for (int i = 0; i < 6; i++) {
-    values[2 * i] = cos((i + 1) * u) * along_normal(row);
-    values[2 * i + 1] = sin((i + 1) * u) * along_normal(row);
-  }
-  return 12;
+/* Over the foil. */
+static size_t free_s(const fg_points *points, const fg_points_row *row, double share,
+                     double *values) {
+  fg_field_splines(points->psi_rad[0], points->psi_rad[1], row->psi, values);
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    values[i] *= share;
+  return FG_FIELD_COLUMNS;
+}
+
+static size_t free_normal_s(const fg_points *points, const fg_points_row *row, double *values) {
+  return free_s(points, row, along_normal(row), values);
+}
+
+static size_t free_radial_s(const fg_points *points, const fg_points_row *row, double *values) {
+  return free_s(points, row, along_radius(row), values);
 }
 
 /* Over the direction of the edge in the scan: what the edge model does not know. */
 static size_t free_normal(const fg_points *points, const fg_points_row *row, double *values) {
   (void)points;
-  for (int i = 0; i < 6; i++) {
+  enum { HARMONICS = 12 };
+  for (int i = 0; i < HARMONICS; i++) {
     values[2 * i] = cos((i + 2) * row->normal_rad);
     values[2 * i + 1] = sin((i + 2) * row->normal_rad);
   }
-  return 12;
+  return 2 * HARMONICS;
 }
 
 typedef struct part_row {
@@ -125,8 +133,9 @@ static const part_row part_rows[] = {
     {"part.ovality", ovality},         {"part.ovality:radial", ovality_radial},
     {"part.spiral", spiral},           {"part.spiral:radial", spiral_radial},
     {"part.bump_crown", bump_crown},   {"part.bump_skew", bump_skew},
-    {"free.bump.phi", free_phi},       {"free.foil.s", free_s},
-    {"free.edge.normal", free_normal}, {NULL, NULL},
+    {"free.bump.phi", free_phi},       {"free.edge.normal", free_normal},
+    {"free.foil.s", free_normal_s},    {"free.foil.s:radial", free_radial_s},
+    {NULL, NULL},
 };
 
 static const part_row *find_part(const char *id) {
@@ -136,7 +145,7 @@ static const part_row *find_part(const char *id) {
 }
 
 static size_t part_columns(const fg_points *points, const part_row *part, double *columns) {
-  double values[FG_LOOP_COLUMNS];
+  double values[FG_FIELD_COLUMNS];
   size_t count = 0;
   for (size_t i = 0; i < points->row_count; i++) {
     count = part->basis(points, &points->rows[i], values);
@@ -216,7 +225,8 @@ const char *fg_effect_name(const char *id) {
 const char *fg_effect_form(const char *id) {
   const char *colon = strchr(id, ':');
   if (colon) return colon + 1;
-  bool has_other = !strcmp(id, "part.ovality") || !strcmp(id, "part.spiral");
+  bool has_other = !strcmp(id, "part.ovality") || !strcmp(id, "part.spiral") ||
+                   !strcmp(id, "free.foil.s");
   return has_other ? "normal" : NULL;
 }
 

@@ -58,13 +58,20 @@ static fg_status read_fields(fg_context *ctx, const cJSON *fields, fg_field_list
 
 static fg_status read_place(fg_context *ctx, const cJSON *root, fg_scan_model *model) {
   fg_field_frame *frame = &model->fields.frame;
-  double region[4];
+  double region[4], curve[4];
   if (!read_numbers(root, "dpi", model->dpi, 2) || !(model->dpi[0] > 0 && model->dpi[1] > 0))
     return fg_fail(ctx, FG_ERR_DATA, "`dpi` must be two numbers above 0");
   if (!read_numbers(root, "region_mm", region, 4) || !(region[2] > region[0]) ||
       !(region[3] > region[1]))
     return fg_fail(ctx, FG_ERR_DATA, "`region_mm` must be x, y of one corner and of the opposite");
+  memcpy(curve, region, sizeof curve); /* a file without free curves need not say */
+  if (cJSON_GetObjectItemCaseSensitive(root, "curve_mm") &&
+      (!read_numbers(root, "curve_mm", curve, 4) || !(curve[2] > curve[0]) ||
+       !(curve[3] > curve[1])))
+    return fg_fail(ctx, FG_ERR_DATA, "`curve_mm` must be x, y of one corner and of the opposite");
   for (int axis = 0; axis < 2; axis++) {
+    frame->first_mm[axis] = curve[axis];
+    frame->last_mm[axis] = curve[2 + axis];
     frame->low_mm[axis] = region[axis];
     frame->high_mm[axis] = region[2 + axis];
     frame->centre_mm[axis] = 0.5 * (region[axis] + region[2 + axis]);

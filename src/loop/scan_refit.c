@@ -8,7 +8,8 @@
 #include "core/numerics.h"
 #include "loop/scan_loop.h"
 
-enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_LOOP_COLUMNS + FG_LOOP_SHAPES) };
+enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_SCAN_COLUMNS + FG_LOOP_SHAPES) };
+_Static_assert((int)FG_SCAN_COLUMNS == (int)FG_FIELD_COLUMNS, "a field is an effect");
 #define STEP_END_UM  1e-5
 #define STEP_MOST_UM 60.0
 /* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each. */
@@ -41,7 +42,7 @@ fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_
   *shift_mm = NULL;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof **shift_mm, (void **)shift_mm));
   fg_status status =
-      fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *columns, (void **)&columns);
+      fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns);
   for (size_t e = 0; e < set->count && status == FG_OK; e++) {
     const fg_scan_effect *effect = &set->effects[e];
     if (fg_field_find(effect->id)) continue;
@@ -271,7 +272,7 @@ static fg_status allocate(fg_context *ctx, refit *r) {
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->residual));
   FG_TRY(fg_memory_allocate(ctx, rows * r->parameters, sizeof(double), (void **)&r->jacobian));
   FG_TRY(fg_memory_allocate(ctx, rows * (r->unknowns + 1), sizeof(double), (void **)&r->design));
-  FG_TRY(fg_memory_allocate(ctx, rows * FG_LOOP_COLUMNS, sizeof(double), (void **)&r->work));
+  FG_TRY(fg_memory_allocate(ctx, rows * FG_SCAN_COLUMNS, sizeof(double), (void **)&r->work));
   r->normal = gsl_matrix_alloc(n, n);
   r->right = gsl_vector_alloc(n);
   if (!r->normal || !r->right) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu unknowns", n);

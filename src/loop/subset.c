@@ -30,6 +30,8 @@
 #define TWIN_SHARE 0.05
 /* No coefficient is larger, um: columns that nearly cancel would explain anything. */
 #define LARGEST_UM 400.0
+/* A curve is known to this share of itself: no listed effect stands beside it for less. */
+#define CURVE_SHARE 0.03
 enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
 
 typedef struct listed_row {
@@ -69,6 +71,7 @@ static const listed_row smooth[] = {
     {{.id = "free.scan.y.dx", .free = true}, NULL, {0}},
     {{.id = "free.scan.y.dy", .free = true}, NULL, {0}},
     {{.id = "free.foil.s", .free = true}, NULL, {0}},
+    {{.id = "free.foil.s:radial", .free = true}, NULL, {0}},
     {{.id = "free.bump.phi", .free = true}, NULL, {0}},
     {{.id = "free.edge.normal", .free = true}, NULL, {0}},
 };
@@ -356,6 +359,13 @@ static void order_members(fg_subset_search *s, const yardstick *y) {
     }
 }
 
+/* The same for a set with a free curve, as far as a listed effect beside it goes. */
+static double free_score(const fg_subset_search *s, const yardstick *y, fg_subset_member m) {
+  if (!isfinite(m.excess)) return INFINITY;
+  m.excess = fmax(0, m.excess - CURVE_SHARE * CURVE_SHARE * y->none);
+  return score_of(s, &m);
+}
+
 /* A free curve, alone or beside up to two listed effects: the one that leaves least for its
  * columns; the best listed set stands when none does better. */
 static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member best) {
@@ -369,7 +379,9 @@ static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member b
         if (!out->effects[e].free) continue;
         fg_subset_member member = try_set(s, y, mask | 1u << e);
         /* Every further effect must be worth its while. */
-        if (!(score_of(s, &member) < score - 10)) continue;
+        double gained = size ? free_score(s, y, best) - free_score(s, y, member)
+                             : score - score_of(s, &member);
+        if (!(gained > 10)) continue;
         score = score_of(s, &member);
         best = member;
       }

@@ -39,7 +39,7 @@ typedef struct fg_subset_effect {
   fg_subset_form form;
   size_t columns, shapes;         /* of the effect as it is fitted in the end */
   size_t terms;                   /* in the search */
-  size_t column[FG_LOOP_COLUMNS]; /* of the search, one per term (cubic: three) */
+  size_t column[FG_SCAN_COLUMNS]; /* of the search, one per term (cubic: three) */
   double shape[FG_LOOP_SHAPES];
   bool free; /* a curve for what no listed effect explains */
 } fg_subset_effect;

@@ -4,7 +4,7 @@
 
 #include "loop/subset.h"
 
-enum { FG_SUBSET_COLUMNS = 128, FG_SUBSET_TERMS = 48 };
+enum { FG_SUBSET_COLUMNS = 256, FG_SUBSET_TERMS = 48 };
 
 typedef struct fg_subset_columns {
   const fg_points *points;
@@ -20,7 +20,7 @@ typedef struct fg_subset_columns {
   double *gram;      /* FG_SUBSET_COLUMNS²: products of the columns */
   double *right;     /* products with the residual */
   double square;     /* of the residual */
-  double *work;      /* FG_LOOP_COLUMNS × all rows */
+  double *work;      /* FG_SCAN_COLUMNS × all rows */
   double *left;      /* residual beside everything */
   double *width;     /* half the strip's width, um, without its mean over the part */
   bool has_width;    /* false for discs */

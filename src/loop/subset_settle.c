@@ -60,7 +60,7 @@ fg_status fg_settle_put_back(fg_context *ctx, fg_points *points, const fg_scan_s
   fg_status status = FG_OK;
   fg_scan_fields(points, set, &fields);
   FG_TRY_EXIT(fg_scan_shift(ctx, points, set, &shift));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *columns, (void **)&columns));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns));
   fg_points_correction correction = {&fields, shift};
   fg_points_residual(points, &correction, residual_um, jacobian);
   for (size_t i = 0; i < rows; i++)

@@ -45,14 +45,22 @@ static hit gain_at(const fg_subset_search *s, size_t rank, const char *id, doubl
   fg_normal_equations system;
   hit none = {0, 0, place}, found = none;
   fg_normal_clear(&system, count);
-  for (size_t a = 0; a < count; a++)
-    fg_subset_take_out(c, rank, work + a * c->rows);
   for (size_t a = 0; a < count; a++) {
+    /* What is left stands beside the basis already, and the basis takes its share of the products. */
     system.right[a] = fg_subset_dot(c->rows, work + a * c->rows, c->left);
     for (size_t b = 0; b <= a; b++)
       system.matrix[a][b] = fg_subset_dot(c->rows, work + a * c->rows, work + b * c->rows);
-    if (!(system.matrix[a][a] > 1e-3 * (double)c->rows / 64)) return none;
   }
+  for (size_t k = 0; k < rank; k++) {
+    double along[FG_SMALL_MAX];
+    for (size_t a = 0; a < count; a++) {
+      along[a] = fg_subset_dot(c->rows, work + a * c->rows, c->basis + k * c->rows);
+      for (size_t b = 0; b <= a; b++)
+        system.matrix[a][b] -= along[a] * along[b];
+    }
+  }
+  for (size_t a = 0; a < count; a++)
+    if (!(system.matrix[a][a] > 1e-3 * (double)c->rows / 64)) return none;
   if (!fg_normal_solve(&system, 1e-9, x, NULL)) return none;
   for (size_t a = 0; a < count; a++) {
     found.gain += x[a] * system.right[a];

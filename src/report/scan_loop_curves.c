@@ -131,7 +131,7 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_co
     high = fmax(high, x);
   }
   if (!(high > low)) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, rows, FG_LOOP_COLUMNS * sizeof *columns, (void **)&columns));
+  FG_TRY(fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns));
   for (size_t e = 0; e < loop->set.count; e++) {
     const fg_scan_effect *effect = &loop->set.effects[e];
     if (fg_field_find(effect->id) || place_of(effect->id) != coordinate) continue;

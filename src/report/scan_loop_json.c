@@ -8,7 +8,7 @@
 #include "report/measure_json.h"
 #include "report/scan_loop_bumps.h"
 
-enum { SHAPE_POINTS = 41 };
+enum { SHAPE_POINTS = 81 };
 
 static bool is_free(const char *id) {
   return !strncmp(id, "free.", 5);
@@ -16,7 +16,7 @@ static bool is_free(const char *id) {
 
 /* Coordinate of a free curve: what stands between "free." and the direction it moves. */
 static void coordinate_of(const char *id, char *out, size_t size) {
-  snprintf(out, size, "%s", id + 5);
+  snprintf(out, size, "%s", fg_effect_name(id) + 5);
   char *tail = strrchr(out, '.');
   if (tail && (!strcmp(tail, ".dx") || !strcmp(tail, ".dy"))) *tail = 0;
 }
@@ -162,15 +162,26 @@ static void write_field_shape(fg_json *json, const fg_scan_loop *loop, const fg_
   }
 }
 
-/* Where a row lies on the coordinate of a part's curve: mm, -1 to 1, degrees; NaN: nowhere. */
+/* From -1 at the lip's end of the foil to 1 at the free end; outwards from O. */
+static void write_foil_shape(fg_json *json, const fg_scan_loop *loop, const fg_scan_effect *curve) {
+  const double *psi = loop->points.psi_rad;
+  for (int i = 0; i < SHAPE_POINTS; i++) {
+    double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), pair[2] = {2 * t - 1, 0};
+    fg_field_splines(psi[0], psi[1], psi[0] + t * (psi[1] - psi[0]), values);
+    for (size_t c = 0; c < curve->columns; c++)
+      pair[1] += curve->coefficient_um[c] * values[c];
+    fg_json_numbers(json, NULL, pair, 2);
+  }
+}
+
+/* Where a row lies on the coordinate of a part's curve: -1 to 1, degrees; NaN: nowhere. */
 static double place_of(const fg_points_row *row, const char *coordinate) {
-  if (!strcmp(coordinate, "foil.s")) return row->s_mm;
   if (!strcmp(coordinate, "bump.phi")) return row->bump ? row->phi : NAN;
   double deg = row->normal_rad * 180 / M_PI;
   return deg < 0 ? deg + 360 : deg;
 }
 
-/* Means of the curve at the rows, which are where it is known; outwards from the foil. */
+/* Means of a deviation at the rows, which are where it is known; away from the arc's centre. */
 static fg_status write_part_shape(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
                                   const fg_scan_effect *curve, const char *coordinate) {
   const fg_points *points = &loop->points;
@@ -187,9 +198,7 @@ static fg_status write_part_shape(fg_context *ctx, fg_json *json, const fg_scan_
     double place = place_of(row, coordinate);
     if (!isfinite(place)) continue;
     size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
-    bool turned = !strcmp(coordinate, "foil.s") &&
-                  row->normal.x * row->radial.x + row->normal.y * row->radial.y < 0;
-    sum[bin] += 1000 * (turned ? -shift[i] : shift[i]);
+    sum[bin] += 1000 * shift[i];
     at[bin] += place;
     count[bin]++;
   }
@@ -217,11 +226,14 @@ static fg_status write_unattributed(fg_context *ctx, fg_json *json, const fg_sca
   fg_json_string(json, "moves",
                  !strcmp(direction, ".dx")   ? "x"
                  : !strcmp(direction, ".dy") ? "y"
-                                             : "along the normal");
+                 : strchr(direction, ':') ? "along the radius"
+                                          : "along the normal");
   const fg_field_row *row = fg_field_find(curve->id);
   fg_json_array(json, "shape");
   if (row)
     write_field_shape(json, loop, curve, row);
+  else if (!strcmp(coordinate, "foil.s"))
+    write_foil_shape(json, loop, curve);
   else
     FG_TRY(write_part_shape(ctx, json, loop, curve, coordinate));
   fg_json_array_end(json);

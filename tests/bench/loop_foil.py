@@ -107,7 +107,8 @@ class Midline:
         said = [(c["id"], c.get("form"), c["parameters"], c.get("shape")) for c in report["claims"]]
         curve = report["unattributed"]
         if curve and curve["coordinate"] in ("foil.s", "bump.phi"):
-            said.append((curve["coordinate"], None, {}, curve.get("shape")))
+            form = "radial" if curve.get("moves") == "along the radius" else None
+            said.append((curve["coordinate"], form, {}, curve.get("shape")))
         for name, form, p, shape in said:
             share = self.radial_share()
             share = share if form == "radial" else np.sign(share)
@@ -116,7 +117,8 @@ class Midline:
             elif name == "part.spiral":
                 total += p["amplitude_um"] * (self.psi / half) ** 3 * share
             elif name == "foil.s" and shape:
-                total += np.interp(self.psi / half, *np.array(shape).T) * share
+                middle, reach = 0.5 * (self.psi.max() + self.psi.min()), 0.5 * np.ptp(self.psi)
+                total += np.interp((self.psi - middle) / reach, *np.array(shape).T) * share
             elif name in ("bump.phi", "part.bump_crown", "part.bump_skew") and shape:
                 total += np.where(on, np.interp(u, *np.array(shape).T), 0)
             elif name == "part.bump_crown":
