@@ -18,8 +18,8 @@ enum { FG_FIELD_COLUMNS = 24, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
 
 /* Where a scan's fields live. */
 typedef struct fg_field_frame {
-  double centre_mm[2];          /* of the picture */
-  double low_mm[2], high_mm[2]; /* of the picture */
+  double centre_mm[2];            /* of the picture */
+  double low_mm[2], high_mm[2];   /* of the picture */
   double first_mm[2], last_mm[2]; /* of the edges that were measured: free curves have their knots
                                      there, and stay constant beyond */
 } fg_field_frame;

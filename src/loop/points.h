@@ -85,8 +85,8 @@ typedef struct fg_points {
   fg_points_row *rows; /* owned */
   size_t row_count, row_capacity;
   size_t group_count;
-  fg_field_frame frame;  /* the picture all fields live in */
-  double psi_rad[2];     /* range of the rows' psi */
+  fg_field_frame frame; /* the picture all fields live in */
+  double psi_rad[2];    /* range of the rows' psi */
   size_t parameters;    /* of the geometry */
   bool discs;           /* parts are discs: an overall circle each, and nothing else */
   size_t known_count;   /* parts whose radius is known */

@@ -26,6 +26,8 @@
 #define LOWEST_SHARE 0.6
 /* A set with a shape that is not fitted yet may leave this share of what there is. */
 #define FITTING_SHARE 0.1
+/* and this many times what a curve leaves */
+#define FITTING_TIMES 30.0
 /* Shapes nearer to each other than this are one. */
 #define TWIN_SHARE 0.05
 /* No coefficient is larger, um: columns that nearly cancel would explain anything. */
@@ -368,7 +370,7 @@ static double free_score(const fg_subset_search *s, const yardstick *y, fg_subse
 
 /* A free curve, alone or beside up to two listed effects: the one that leaves least for its
  * columns; the best listed set stands when none does better. */
-static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member best) {
+static fg_subset_member try_free(fg_subset_search *s, const yardstick *y, fg_subset_member best) {
   fg_subset *out = s->out;
   unsigned listed = fg_subset_mask_of(out, false);
   double score = isfinite(best.excess) ? score_of(s, &best) : INFINITY;
@@ -379,15 +381,14 @@ static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member b
         if (!out->effects[e].free) continue;
         fg_subset_member member = try_set(s, y, mask | 1u << e);
         /* Every further effect must be worth its while. */
-        double gained = size ? free_score(s, y, best) - free_score(s, y, member)
-                             : score - score_of(s, &member);
+        double gained =
+            size ? free_score(s, y, best) - free_score(s, y, member) : score - score_of(s, &member);
         if (!(gained > 10)) continue;
         score = score_of(s, &member);
         best = member;
       }
     }
-  out->right = is_right(y, &best);
-  fg_subset_keep_member(out, &best);
+  return best;
 }
 
 static bool scanned_again(const fg_points *points) {
@@ -450,12 +451,25 @@ static yardstick make_yardstick(fg_subset_search *s) {
   return y;
 }
 
+static bool was_tried(const fg_subset_search *s, const fg_subset_member *m) {
+  size_t count = 0;
+  for (size_t e = 0; s->tried && e < s->out->effect_count; e++) {
+    if (!(m->mask >> e & 1)) continue;
+    if (count == s->tried->count || strcmp(s->tried->effects[count].id, s->out->effects[e].id))
+      return false;
+    count++;
+  }
+  return s->tried && count > 0 && count == s->tried->count;
+}
+
 /* A ripple or step that was found just now has not been fitted with the geometry yet: a set that
- * holds one and takes most of what there is to take gets its chance before any curve. */
+ * holds one and takes most of what there is to take gets its chance before any curve that is not
+ * far better. */
 static bool is_worth_fitting(const fg_subset_search *s, const yardstick *y,
-                             const fg_subset_member *best) {
+                             const fg_subset_member *best, const fg_subset_member *curve) {
   size_t count = s->out->effect_count, first = count - s->new_shapes;
-  return best->mask >> first && best->excess < FITTING_SHARE * y->none;
+  return best->mask >> first && best->excess < FITTING_SHARE * y->none && !was_tried(s, best) &&
+         best->excess < FITTING_TIMES * (curve->excess + y->freedom);
 }
 
 static void try_sets(fg_subset_search *s) {
@@ -464,8 +478,12 @@ static void try_sets(fg_subset_search *s) {
   fg_subset_member best = try_listed(s, &y, scanned_again(s->columns.points) ? 3 : 2);
   out->right = out->member_count > 0;
   if (out->right) order_members(s, &y);
-  if (!out->member_count && is_worth_fitting(s, &y, &best)) fg_subset_keep_member(out, &best);
-  if (!out->member_count) try_free(s, &y, best);
+  if (!out->member_count) {
+    fg_subset_member curve = try_free(s, &y, best);
+    bool hope = is_worth_fitting(s, &y, &best, &curve);
+    out->right = !hope && is_right(&y, &curve);
+    fg_subset_keep_member(out, hope ? &best : &curve);
+  }
   describe_effects(s, &y);
   describe_width(s, &y);
 }
@@ -480,17 +498,16 @@ static void add_known(fg_subset_search *s, const fg_scan_set *known) {
   }
 }
 
-fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double *residual_um,
-                         const double *jacobian, const fg_scan_set *known, bool look,
+fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subset_request *request,
                          fg_subset *subset) {
   memset(subset, 0, sizeof *subset);
-  fg_subset_search s = {.out = subset};
+  fg_subset_search s = {.out = subset, .tried = request->tried};
   fg_status status = FG_OK;
-  FG_TRY(fg_subset_columns_open(ctx, points, residual_um, jacobian, &s.columns));
+  FG_TRY(fg_subset_columns_open(ctx, points, request->residual_um, request->jacobian, &s.columns));
   add_smooth(&s);
-  add_known(&s, known);
+  add_known(&s, request->known);
   FG_TRY_EXIT(fg_subset_width_doubt(ctx, &s.columns));
-  if (look)
+  if (request->look)
     FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));
   else
     fg_subset_noise(&s, false);

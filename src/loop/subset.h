@@ -71,11 +71,15 @@ typedef struct fg_subset {
   double alone[FG_SUBSET_EFFECTS];       /* share of the residual sum that it alone takes */
 } fg_subset;
 
-/* Searches the residuals (um) of points whose geometry is fitted; `jacobian` as from
- * fg_points_residual. Shaped effects of `known` (NULL: none) are in the search with their shapes;
- * others are looked for when `look` is set. */
-fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const double *residual_um,
-                         const double *jacobian, const fg_scan_set *known, bool look,
+/* What is searched. */
+typedef struct fg_subset_request {
+  const double *residual_um, *jacobian; /* geometry fitted; as from fg_points_residual */
+  const fg_scan_set *known; /* NULL: none; its shaped effects are in the search with their shapes */
+  const fg_scan_set *tried; /* NULL: none; this set was fitted and is not right */
+  bool look;                /* for further shaped effects */
+} fg_subset_request;
+
+fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subset_request *request,
                          fg_subset *subset);
 
 /* The same with the geometry and the effects fitted together in between, until the set stays: what

@@ -8,6 +8,7 @@ typedef struct fg_subset_search {
   fg_subset_columns columns;
   fg_subset *out;
   size_t free_column, free_end; /* columns of the free curves */
+  const fg_scan_set *tried;     /* was fitted and is not right, or NULL */
   double full;                  /* residual sum beside everything */
   size_t freedom;               /* columns that took it */
   size_t new_shapes;            /* ripples and steps that were found in this round */

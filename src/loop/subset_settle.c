@@ -15,6 +15,8 @@
 #define SANE_UM    2000.0
 /* Half the height of the rows that a step in the picture blurs. */
 #define STEP_HALF_MM 0.08
+/* A set that takes no more than this share off what is left has come to rest. */
+#define REST_SHARE   0.05
 #define THERE_SIGMAS 4.0
 #define END_SIGMAS   8.0
 enum { END_ROWS = 3 };
@@ -197,40 +199,46 @@ static fg_status fit_set(fg_context *ctx, fg_points *points, fg_scan_set *set, d
   return fg_scan_refit(ctx, points, set, residual_um);
 }
 
-/* Search and fit in turns from a start without effects. With `eager`, ripples and steps are looked
- * for at once: right for them, while a large smooth effect leaves traces in the first round that
- * look like them. */
-static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, settling *at) {
-  enum { ROUNDS = 8 };
-  memset(&at->set, 0, sizeof at->set);
-  FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
-  for (int round = 0; round < ROUNDS; round++) {
-    fg_scan_set next;
-    FG_TRY(fg_settle_put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
-    FG_TRY(fg_subset_find(ctx, points, at->residual_um, at->jacobian, &at->set, eager || round > 0,
-                          &at->subset));
-    fg_subset_take(&at->subset, 0, &next);
-    bool settled =
-        fg_settle_same_effects(&at->set, &next) && (at->subset.right || round >= ROUNDS / 2);
-    keep_numbers(&at->set, &next);
-    at->set = next;
-    fg_settle_leave_steps_out(points, &at->set, STEP_HALF_MM);
-    FG_TRY(fit_set(ctx, points, &at->set, at->geometry, at->residual_um));
-    /* Given up: what was right to first order is not. */
-    if (next.count && !at->set.count) at->subset.right = false;
-    FG_TRY(drop_outliers(ctx, points, at->residual_um));
-    if (settled && round > 0) break;
-    drop_nothings(&at->set);
-  }
-  return FG_OK;
-}
-
 static double residual_square(const fg_points *points, const double *residual_um) {
   double sum = 0;
   for (size_t i = 0; i < points->row_count; i++)
     if (!points->views[points->rows[i].view].aside)
       sum += points->rows[i].weight * residual_um[i] * residual_um[i];
   return sum;
+}
+
+/* Search and fit in turns from a start without effects. With `eager`, ripples and steps are looked
+ * for at once: right for them, while a large smooth effect leaves traces in the first round that
+ * look like them. */
+static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, settling *at) {
+  enum { ROUNDS = 8 };
+  fg_scan_set tried = {.count = 0};
+  double left = INFINITY;
+  memset(&at->set, 0, sizeof at->set);
+  FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
+  for (int round = 0; round < ROUNDS; round++) {
+    fg_scan_set next;
+    fg_subset_request request = {at->residual_um, at->jacobian, &at->set, &tried,
+                                 eager || round > 0};
+    FG_TRY(fg_settle_put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
+    FG_TRY(fg_subset_find(ctx, points, &request, &at->subset));
+    fg_subset_take(&at->subset, 0, &next);
+    bool same = fg_settle_same_effects(&at->set, &next);
+    keep_numbers(&at->set, &next);
+    at->set = next;
+    fg_settle_leave_steps_out(points, &at->set, STEP_HALF_MM);
+    FG_TRY(fit_set(ctx, points, &at->set, at->geometry, at->residual_um));
+    /* Given up: what was right to first order is not. */
+    if (next.count && !at->set.count) at->subset.right = false;
+    if (!at->subset.right) tried = next;
+    FG_TRY(drop_outliers(ctx, points, at->residual_um));
+    double before = left;
+    left = residual_square(points, at->residual_um);
+    bool rests = at->subset.right || left > (1 - REST_SHARE) * before;
+    if (same && rests && round > 0) break;
+    drop_nothings(&at->set);
+  }
+  return FG_OK;
 }
 
 /* The eager start, and where it does not come to rest at an explanation that is right, the other;

@@ -46,7 +46,8 @@ static hit gain_at(const fg_subset_search *s, size_t rank, const char *id, doubl
   hit none = {0, 0, place}, found = none;
   fg_normal_clear(&system, count);
   for (size_t a = 0; a < count; a++) {
-    /* What is left stands beside the basis already, and the basis takes its share of the products. */
+    /* What is left stands beside the basis already, and the basis takes its share of the products.
+     */
     system.right[a] = fg_subset_dot(c->rows, work + a * c->rows, c->left);
     for (size_t b = 0; b <= a; b++)
       system.matrix[a][b] = fg_subset_dot(c->rows, work + a * c->rows, work + b * c->rows);
