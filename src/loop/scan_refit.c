@@ -15,23 +15,25 @@ _Static_assert((int)FG_SCAN_COLUMNS == (int)FG_FIELD_COLUMNS, "a field is an eff
 /* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each. */
 #define FREE_HOLD 4e-3
 
+fg_field fg_scan_field(const fg_scan_effect *effect, const fg_field_row *row) {
+  fg_field field = {.row = row};
+  for (size_t c = 0; c < row->columns; c++) {
+    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
+    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
+  }
+  for (size_t s = 0; s < row->shapes; s++) {
+    field.shape[s] = effect->shape[s];
+    field.u_shape[s] = effect->u_shape[s];
+  }
+  return field;
+}
+
 void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
   memset(fields, 0, sizeof *fields);
   fields->frame = points->frame;
-  for (size_t e = 0; e < set->count; e++) {
-    const fg_scan_effect *effect = &set->effects[e];
-    const fg_field_row *row = fg_field_find(effect->id);
-    if (!row || fields->count == FG_FIELDS_MAX) continue;
-    fg_field *field = &fields->fields[fields->count++];
-    field->row = row;
-    for (size_t c = 0; c < row->columns; c++) {
-      field->amplitude_mm[c] = effect->coefficient_um[c] / 1000;
-      field->u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
-    }
-    for (size_t s = 0; s < row->shapes; s++) {
-      field->shape[s] = effect->shape[s];
-      field->u_shape[s] = effect->u_shape[s];
-    }
+  for (size_t e = 0; e < set->count && fields->count < FG_FIELDS_MAX; e++) {
+    const fg_field_row *row = fg_field_find(set->effects[e].id);
+    if (row) fields->fields[fields->count++] = fg_scan_field(&set->effects[e], row);
   }
 }
 

@@ -7,8 +7,7 @@
 #include "loop/scan_loop.h"
 #include "report/measure_json.h"
 #include "report/scan_loop_bumps.h"
-
-enum { SHAPE_POINTS = 81 };
+#include "report/scan_loop_shapes.h"
 
 static bool is_free(const char *id) {
   return !strncmp(id, "free.", 5);
@@ -40,25 +39,12 @@ static double amplitude_u(const fg_scan_effect *effect) {
   return sqrt(sum);
 }
 
-static fg_field as_field(const fg_scan_effect *effect, const fg_field_row *row) {
-  fg_field field = {.row = row};
-  for (size_t c = 0; c < row->columns; c++) {
-    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
-    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
-  }
-  for (size_t s = 0; s < row->shapes; s++) {
-    field.shape[s] = effect->shape[s];
-    field.u_shape[s] = effect->u_shape[s];
-  }
-  return field;
-}
-
 /* Parameters by their names; with `u`, their standard uncertainties. */
 static void write_parameters(fg_json *json, const fg_scan_effect *effect, bool u) {
   const fg_field_row *row = fg_field_find(effect->id);
   fg_json_object(json, u ? "uncertainty" : "parameters");
   if (row) {
-    fg_field field = as_field(effect, row);
+    fg_field field = fg_scan_field(effect, row);
     const char *name;
     double value, sd;
     for (size_t i = 0; fg_field_parameter(&field, i, &name, &value, &sd); i++)
@@ -119,7 +105,7 @@ static bool in_every_member(const fg_subset *subset, const char *id) {
   return true;
 }
 
-static void write_claims(fg_json *json, const fg_scan_loop *loop) {
+static fg_status write_claims(fg_context *ctx, fg_json *json, const fg_scan_loop *loop) {
   fg_json_array(json, "claims");
   for (size_t i = 0; i < loop->set.count; i++) {
     const fg_scan_effect *effect = &loop->set.effects[i];
@@ -137,76 +123,15 @@ static void write_claims(fg_json *json, const fg_scan_loop *loop) {
     fg_json_number(json, "p_value", loop->subset.p_value);
     fg_json_number(json, "retained_share",
                    e < loop->subset.effect_count ? loop->subset.share[e] : NAN);
+    if (!strncmp(effect->id, "part.bump_", 10)) {
+      fg_json_string(json, "basis", "deviation of every bump from its best-fit circle");
+      FG_TRY(fg_json_scan_shape(ctx, json, loop, effect));
+    }
     if (!sure) write_class(json, loop);
     fg_json_object_end(json);
   }
   fg_json_bump_claims(json, &loop->bumps);
   fg_json_array_end(json);
-}
-
-/* d over the picture's width or height. */
-static void write_field_shape(fg_json *json, const fg_scan_loop *loop, const fg_scan_effect *curve,
-                              const fg_field_row *row) {
-  const char *direction = strrchr(curve->id, '.');
-  for (int i = 0; i < SHAPE_POINTS; i++) {
-    const fg_field_frame *f = &loop->points.frame;
-    double t = i / (SHAPE_POINTS - 1.0);
-    fg_point at = {f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
-                   f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])};
-    fg_field_list list = {.frame = *f, .count = 1};
-    list.fields[0] = as_field(curve, row);
-    fg_point d = fg_field_at(&list, at);
-    double pair[2] = {strstr(curve->id, "scan.x") ? at.x : at.y,
-                      1000 * (direction[2] == 'x' ? d.x : d.y)};
-    fg_json_numbers(json, NULL, pair, 2);
-  }
-}
-
-/* From -1 at the lip's end of the foil to 1 at the free end; outwards from O. */
-static void write_foil_shape(fg_json *json, const fg_scan_loop *loop, const fg_scan_effect *curve) {
-  const double *psi = loop->points.psi_rad;
-  for (int i = 0; i < SHAPE_POINTS; i++) {
-    double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), pair[2] = {2 * t - 1, 0};
-    fg_field_splines(psi[0], psi[1], psi[0] + t * (psi[1] - psi[0]), values);
-    for (size_t c = 0; c < curve->columns; c++)
-      pair[1] += curve->coefficient_um[c] * values[c];
-    fg_json_numbers(json, NULL, pair, 2);
-  }
-}
-
-/* Where a row lies on the coordinate of a part's curve: -1 to 1, degrees; NaN: nowhere. */
-static double place_of(const fg_points_row *row, const char *coordinate) {
-  if (!strcmp(coordinate, "bump.phi")) return row->bump ? row->phi : NAN;
-  double deg = row->normal_rad * 180 / M_PI;
-  return deg < 0 ? deg + 360 : deg;
-}
-
-/* Means of a deviation at the rows, which are where it is known; away from the arc's centre. */
-static fg_status write_part_shape(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
-                                  const fg_scan_effect *curve, const char *coordinate) {
-  const fg_points *points = &loop->points;
-  double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
-  double count[SHAPE_POINTS] = {0}, *shift = NULL;
-  fg_scan_set alone = {.effects = {*curve}, .count = 1};
-  FG_TRY(fg_scan_shift(ctx, points, &alone, &shift));
-  for (size_t i = 0; i < points->row_count; i++) {
-    low = fmin(low, place_of(&points->rows[i], coordinate));
-    high = fmax(high, place_of(&points->rows[i], coordinate));
-  }
-  for (size_t i = 0; i < points->row_count; i++) {
-    const fg_points_row *row = &points->rows[i];
-    double place = place_of(row, coordinate);
-    if (!isfinite(place)) continue;
-    size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
-    sum[bin] += 1000 * shift[i];
-    at[bin] += place;
-    count[bin]++;
-  }
-  free(shift);
-  for (int k = 0; k < SHAPE_POINTS; k++) {
-    double pair[2] = {at[k] / count[k], sum[k] / count[k]};
-    if (count[k] > 0) fg_json_numbers(json, NULL, pair, 2);
-  }
   return FG_OK;
 }
 
@@ -226,17 +151,9 @@ static fg_status write_unattributed(fg_context *ctx, fg_json *json, const fg_sca
   fg_json_string(json, "moves",
                  !strcmp(direction, ".dx")   ? "x"
                  : !strcmp(direction, ".dy") ? "y"
-                 : strchr(direction, ':') ? "along the radius"
-                                          : "along the normal");
-  const fg_field_row *row = fg_field_find(curve->id);
-  fg_json_array(json, "shape");
-  if (row)
-    write_field_shape(json, loop, curve, row);
-  else if (!strcmp(coordinate, "foil.s"))
-    write_foil_shape(json, loop, curve);
-  else
-    FG_TRY(write_part_shape(ctx, json, loop, curve, coordinate));
-  fg_json_array_end(json);
+                 : strchr(direction, ':')    ? "along the radius"
+                                             : "along the normal");
+  FG_TRY(fg_json_scan_shape(ctx, json, loop, curve));
   fg_json_number(json, "rms", loop->error_before.rms);
   fg_json_number(json, "p_value", loop->subset.p_value);
   fg_json_array(json, "nearest");
@@ -363,7 +280,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_object_end(&json);
   fg_json_string(&json, "unit", "um");
   FG_TRY(write_side(ctx, &json, "before", loop, loop->before, &loop->error_before));
-  write_claims(&json, loop);
+  FG_TRY(write_claims(ctx, &json, loop));
   FG_TRY(write_unattributed(ctx, &json, loop));
   FG_TRY(write_side(ctx, &json, "after", loop, loop->after, &loop->error_after));
   fg_json_object(&json, "error_ratio");
@@ -398,7 +315,7 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
     fg_field field = {.row = row};
     const char *name;
     double value, u;
-    if (row) field = as_field(effect, row);
+    if (row) field = fg_scan_field(effect, row);
     for (size_t p = 0; row && fg_field_parameter(&field, p, &name, &value, &u); p++)
       fprintf(out, " %s %.6g +- %.2g", name, value, 2 * u);
     if (!row)

@@ -114,24 +114,11 @@ size_t fg_scan_class_unlisted(const fg_subset *subset) {
 
 /* ---- parameters ---- */
 
-static fg_field as_field(const fg_scan_effect *effect, const fg_field_row *row) {
-  fg_field field = {.row = row};
-  for (size_t c = 0; c < row->columns; c++) {
-    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
-    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
-  }
-  for (size_t s = 0; s < row->shapes; s++) {
-    field.shape[s] = effect->shape[s];
-    field.u_shape[s] = effect->u_shape[s];
-  }
-  return field;
-}
-
 fg_field_list fg_scan_page_fields(const fg_scan_loop *loop) {
   fg_field_list list = {.frame = loop->points.frame};
   for (size_t i = 0; i < loop->set.count && list.count < FG_FIELDS_MAX; i++) {
     const fg_field_row *row = fg_field_find(loop->set.effects[i].id);
-    if (row) list.fields[list.count++] = as_field(&loop->set.effects[i], row);
+    if (row) list.fields[list.count++] = fg_scan_field(&loop->set.effects[i], row);
   }
   return list;
 }
@@ -177,7 +164,7 @@ bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i,
   if (fg_scan_effect_is_free(effect)) return false;
   const fg_field_row *row = fg_field_find(effect->id);
   if (!row) return part_parameter(effect, i, parameter);
-  fg_field field = as_field(effect, row);
+  fg_field field = fg_scan_field(effect, row);
   *parameter = (fg_scan_parameter){"", "", 0, 0};
   if (!fg_field_parameter(&field, i, &parameter->name, &parameter->value, &parameter->u))
     return false;

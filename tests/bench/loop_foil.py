@@ -97,12 +97,13 @@ class Midline:
             return effect["amplitude_um"] * u * (1 - u * u) ** 2 * np.sqrt(5) * 25 / 16
         return natural_spline(effect["knots"], u) if effect["id"] == "free.bump.phi" else None
 
-    def claimed_shift_um(self, report):
+    def claimed_shift_um(self, report, sense):
         """The part's own deviation as a report describes it, along the normal: (sum, columns whose sign
         the report does not state). Effects move along the normal, or along the radius where the claim's
-        form says so; a shape runs over [-1, 1] of the foil, or of the bump."""
+        form says so; a shape runs over [-1, 1] of the foil, or of the bump. sense: -1 where the report
+        counts from the other end, as it may on a foil without a lip."""
         half = 0.5 * (self.axis[-1] - self.axis[0]) * (1 + 1 / self.count)
-        u, on = np.nan_to_num(self.u), self.bump >= 0
+        u, on, psi = sense * np.nan_to_num(self.u), self.bump >= 0, sense * self.psi
         total, unsigned = np.zeros(len(self.xy)), []
         said = [(c["id"], c.get("form"), c["parameters"], c.get("shape")) for c in report["claims"]]
         curve = report["unattributed"]
@@ -113,12 +114,12 @@ class Midline:
             share = self.radial_share()
             share = share if form == "radial" else np.sign(share)
             if name == "part.ovality":
-                total += p["amplitude_um"] * np.cos(2 * (self.psi - np.radians(p["phase_deg"]))) * share
+                total += p["amplitude_um"] * np.cos(2 * (psi - np.radians(p["phase_deg"]))) * share
             elif name == "part.spiral":
-                total += p["amplitude_um"] * (self.psi / half) ** 3 * share
+                total += p["amplitude_um"] * (psi / half) ** 3 * share
             elif name == "foil.s" and shape:
-                middle, reach = 0.5 * (self.psi.max() + self.psi.min()), 0.5 * np.ptp(self.psi)
-                total += np.interp((self.psi - middle) / reach, *np.array(shape).T) * share
+                middle, reach = 0.5 * (psi.max() + psi.min()), 0.5 * np.ptp(psi)
+                total += np.interp((psi - middle) / reach, *np.array(shape).T) * share
             elif name in ("bump.phi", "part.bump_crown", "part.bump_skew") and shape:
                 total += np.where(on, np.interp(u, *np.array(shape).T), 0)
             elif name == "part.bump_crown":
@@ -153,7 +154,8 @@ def profile_error_um(midline, centre_mm, shift_um, foil, report):
     offset = points - centre_mm
     turn = offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0]
     rigid = np.stack([normal[:, 0], normal[:, 1], turn], axis=1)
-    claimed, unsigned = midline.claimed_shift_um(report) if report else (0, [])
+    sense = 1 if own[0]["number"] <= own[midline.count - 1]["number"] else -1
+    claimed, unsigned = midline.claimed_shift_um(report, sense) if report else (0, [])
     best = np.inf
     for signs in range(2 ** len(unsigned)):
         rest = distance * 1000 - claimed
