@@ -116,7 +116,7 @@ static size_t free_radial_s(const fg_points *points, const fg_points_row *row, d
 /* Over the direction of the edge in the scan: what the edge model does not know. */
 static size_t free_normal(const fg_points *points, const fg_points_row *row, double *values) {
   (void)points;
-  enum { HARMONICS = 12 };
+  enum { HARMONICS = 8 };
   for (int i = 0; i < HARMONICS; i++) {
     values[2 * i] = cos((i + 2) * row->normal_rad);
     values[2 * i + 1] = sin((i + 2) * row->normal_rad);

@@ -12,8 +12,10 @@ enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_SCAN_COLUMNS + FG
 _Static_assert((int)FG_SCAN_COLUMNS == (int)FG_FIELD_COLUMNS, "a field is an effect");
 #define STEP_END_UM  1e-5
 #define STEP_MOST_UM 60.0
-/* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each. */
-#define FREE_HOLD 4e-3
+/* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each; harmonics of
+ * the edge's direction are told from the geometry less well. */
+#define FREE_HOLD   1e-3
+#define NORMAL_HOLD 4e-2
 
 fg_field fg_scan_field(const fg_scan_effect *effect, const fg_field_row *row) {
   fg_field field = {.row = row};
@@ -133,8 +135,9 @@ static void hold_free(refit *r, size_t k) {
   const fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
   size_t a = r->parameters + k;
   if (strncmp(effect->id, "free.", 5) != 0 || r->list[k].shape) return;
-  double held = FREE_HOLD * effect->coefficient_um[r->list[k].index];
-  gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + FREE_HOLD);
+  double hold = strcmp(effect->id, "free.edge.normal") ? FREE_HOLD : NORMAL_HOLD;
+  double held = hold * effect->coefficient_um[r->list[k].index];
+  gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + hold);
   gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
 }
 

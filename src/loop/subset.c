@@ -34,6 +34,8 @@
 #define LARGEST_UM 400.0
 /* A curve is known to this share of itself: no listed effect stands beside it for less. */
 #define CURVE_SHARE 0.03
+/* Columns of a curve (points_effects.c) that are smooth; those of bump.phi that are polynomials. */
+enum { PHI_SMOOTH = 8, PHI_ORDERS = 16, NORMAL_SMOOTH = 12 };
 enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
 
 typedef struct listed_row {
@@ -91,6 +93,20 @@ void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect) {
     to->column[c] = first + c;
 }
 
+/* Of the curves, what all effects at once have: half as many columns, and one form. */
+static void choose_parts(fg_subset_columns *c, const fg_subset_effect *effect) {
+  bool splines = fg_field_find(effect->id) || !strcmp(effect->id, "free.foil.s");
+  for (size_t k = 0; k < effect->columns; k++) {
+    bool rough = !strcmp(effect->id, "free.bump.phi") ? k >= PHI_SMOOTH && k < PHI_ORDERS
+                 : splines                            ? k % 2 > 0
+                                                      : k >= NORMAL_SMOOTH;
+    if (strchr(effect->id, ':')) rough = true;
+    c->part[effect->column[k]] = rough     ? FG_SUBSET_LEFT_OUT
+                                 : splines ? FG_SUBSET_WITH_NEXT
+                                           : FG_SUBSET_ITSELF;
+  }
+}
+
 /* The powers are shared by the polynomials that are made of them. */
 static void add_smooth(fg_subset_search *s) {
   const char *source = NULL;
@@ -104,6 +120,8 @@ static void add_smooth(fg_subset_search *s) {
     if (smooth[i].effect.free && !s->free_column) s->free_column = s->columns.count;
     if (!source) {
       fg_subset_add(s, &smooth[i].effect);
+      if (smooth[i].effect.free)
+        choose_parts(&s->columns, &s->out->effects[s->out->effect_count - 1]);
       continue;
     }
     size_t e = s->out->effect_count++;
@@ -381,8 +399,8 @@ static fg_subset_member try_free(fg_subset_search *s, const yardstick *y, fg_sub
         if (!out->effects[e].free) continue;
         fg_subset_member member = try_set(s, y, mask | 1u << e);
         /* Every further effect must be worth its while. */
-        double gained =
-            size ? free_score(s, y, best) - free_score(s, y, member) : score - score_of(s, &member);
+        double gained = score - score_of(s, &member);
+        if (size) gained = fmin(gained, free_score(s, y, best) - free_score(s, y, member));
         if (!(gained > 10)) continue;
         score = score_of(s, &member);
         best = member;

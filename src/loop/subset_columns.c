@@ -93,10 +93,16 @@ size_t fg_subset_columns_add(fg_subset_columns *s, const char *id, const double 
 
 size_t fg_subset_columns_span(fg_subset_columns *s, size_t skip, size_t end) {
   size_t rank = s->geometry_rank;
-  for (size_t c = 0; c < s->count; c++)
-    if ((c < skip || c >= end) &&
-        extend(s, rank, s->values + c * s->rows, VANISHED * (double)s->rows))
-      rank++;
+  for (size_t c = 0; c < s->count; c++) {
+    const double *v = s->values + c * s->rows;
+    if ((c >= skip && c < end) || s->part[c] == FG_SUBSET_LEFT_OUT) continue;
+    if (s->part[c] == FG_SUBSET_WITH_NEXT) {
+      for (size_t i = 0; i < s->rows; i++)
+        s->left[i] = v[i] + v[i + s->rows];
+      v = s->left;
+    }
+    if (extend(s, rank, v, VANISHED * (double)s->rows)) rank++;
+  }
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_subset_take_out(s, rank, s->left);
   return rank;

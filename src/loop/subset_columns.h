@@ -6,6 +6,14 @@
 
 enum { FG_SUBSET_COLUMNS = 256, FG_SUBSET_TERMS = 48 };
 
+/* How a column enters the basis of all effects at once. A curve is finer than noise along the edge
+ * may be told from: with all its columns it would take that for its own. */
+typedef enum fg_subset_part {
+  FG_SUBSET_ITSELF,
+  FG_SUBSET_WITH_NEXT, /* its sum with the next one: a spline of twice the width */
+  FG_SUBSET_LEFT_OUT,
+} fg_subset_part;
+
 typedef struct fg_subset_columns {
   const fg_points *points;
   size_t rows; /* that are not kept aside */
@@ -17,6 +25,7 @@ typedef struct fg_subset_columns {
   double *values;   /* FG_SUBSET_COLUMNS × rows: effects beside the geometry */
   double *strain;   /* the same columns in half the width */
   size_t count;
+  fg_subset_part part[FG_SUBSET_COLUMNS];
   double *gram;      /* FG_SUBSET_COLUMNS²: products of the columns */
   double *right;     /* products with the residual */
   double square;     /* of the residual */

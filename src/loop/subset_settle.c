@@ -212,7 +212,7 @@ static double residual_square(const fg_points *points, const double *residual_um
  * look like them. */
 static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, settling *at) {
   enum { ROUNDS = 8 };
-  fg_scan_set tried = {.count = 0};
+  fg_scan_set tried = {.count = 0}, last = {.count = 0};
   double left = INFINITY;
   memset(&at->set, 0, sizeof at->set);
   FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
@@ -223,7 +223,8 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, set
     FG_TRY(fg_settle_put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_subset_find(ctx, points, &request, &at->subset));
     fg_subset_take(&at->subset, 0, &next);
-    bool same = fg_settle_same_effects(&at->set, &next);
+    bool same = fg_settle_same_effects(&last, &next);
+    last = next;
     keep_numbers(&at->set, &next);
     at->set = next;
     fg_settle_leave_steps_out(points, &at->set, STEP_HALF_MM);
