@@ -130,11 +130,16 @@ typedef struct part_row {
 } part_row;
 
 static const part_row part_rows[] = {
-    {"part.ovality", ovality},         {"part.ovality:radial", ovality_radial},
-    {"part.spiral", spiral},           {"part.spiral:radial", spiral_radial},
-    {"part.bump_crown", bump_crown},   {"part.bump_skew", bump_skew},
-    {"free.bump.phi", free_phi},       {"free.edge.normal", free_normal},
-    {"free.foil.s", free_normal_s},    {"free.foil.s:radial", free_radial_s},
+    {"part.ovality", ovality},
+    {"part.ovality:radial", ovality_radial},
+    {"part.spiral", spiral},
+    {"part.spiral:radial", spiral_radial},
+    {"part.bump_crown", bump_crown},
+    {"part.bump_skew", bump_skew},
+    {"free.bump.phi", free_phi},
+    {"free.edge.normal", free_normal},
+    {"free.foil.s", free_normal_s},
+    {"free.foil.s:radial", free_radial_s},
     {NULL, NULL},
 };
 
@@ -225,8 +230,8 @@ const char *fg_effect_name(const char *id) {
 const char *fg_effect_form(const char *id) {
   const char *colon = strchr(id, ':');
   if (colon) return colon + 1;
-  bool has_other = !strcmp(id, "part.ovality") || !strcmp(id, "part.spiral") ||
-                   !strcmp(id, "free.foil.s");
+  bool has_other =
+      !strcmp(id, "part.ovality") || !strcmp(id, "part.spiral") || !strcmp(id, "free.foil.s");
   return has_other ? "normal" : NULL;
 }
 

@@ -187,6 +187,18 @@ static void put_ranges(fg_scan_loop *loop) {
     }
 }
 
+/* A step that may lie elsewhere: its place is known to the interval's uniform distribution. */
+static void widen_step_place(fg_scan_set *set, const fg_scan_set *other) {
+  for (size_t e = 0; e < set->count; e++)
+    for (size_t k = 0; k < other->count; k++) {
+      fg_scan_effect *step = &set->effects[e];
+      if (strcmp(step->id, "scan.row_step") != 0 || strcmp(other->effects[k].id, step->id) != 0)
+        continue;
+      double apart = fabs(other->effects[k].shape[0] - step->shape[0]);
+      step->u_shape[0] = fmax(step->u_shape[0], apart / sqrt(3));
+    }
+}
+
 /* What the dimensions are under every member of the class. */
 static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
   fg_status status = FG_OK;
@@ -211,7 +223,10 @@ static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
   free(tried);
   put_ranges(loop);
   /* The geometry in force is the winner's again. */
-  return status == FG_OK ? fg_scan_refit(ctx, &loop->points, &loop->set, NULL) : status;
+  if (status == FG_OK) status = fg_scan_refit(ctx, &loop->points, &loop->set, NULL);
+  for (size_t k = 0; k < loop->tie_count; k++)
+    widen_step_place(&loop->set, &loop->tie[k]);
+  return status;
 }
 
 /* ---- the loop ---- */

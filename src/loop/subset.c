@@ -524,6 +524,7 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subs
   FG_TRY(fg_subset_columns_open(ctx, points, request->residual_um, request->jacobian, &s.columns));
   add_smooth(&s);
   add_known(&s, request->known);
+  FG_TRY_EXIT(fg_subset_add_other_steps(ctx, &s, request->known));
   FG_TRY_EXIT(fg_subset_width_doubt(ctx, &s.columns));
   if (request->look)
     FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));

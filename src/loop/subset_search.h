@@ -24,6 +24,10 @@ size_t fg_subset_noise(fg_subset_search *s, bool listed_only);
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
 fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s);
 
+/* Steps at other places that the geometry turns into those that are known: a whole bump between the
+ * two places takes the difference. They are added as effects of their own. */
+fg_status fg_subset_add_other_steps(fg_context *ctx, fg_subset_search *s, const fg_scan_set *known);
+
 /* Start i of `count`: a ripple's period, evenly in frequency; a step's place. */
 double fg_subset_ripple_period(const fg_points *points, size_t i, size_t count);
 double fg_subset_step_place(const fg_points *points, size_t i, size_t count);

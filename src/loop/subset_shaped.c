@@ -13,6 +13,9 @@ enum { RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 24, REFINE_LEVELS = 
  * places stands for ln of their number more. */
 #define SHAPED_CHI2     45.0
 #define SHAPED_LEAST_UM 0.15
+/* A step elsewhere that leaves no more than this is as good; one so near is the same. */
+#define OTHER_STEP_CHI2 10.0
+#define OTHER_STEP_MM   0.3
 
 typedef struct shaped {
   const fg_subset_effect *effect;
@@ -135,6 +138,53 @@ static bool add_best(fg_subset_search *s, bool listed_only, double *work) {
   fg_subset_add(s, &found);
   s->new_shapes++;
   return true;
+}
+
+/* What a step at this place leaves beside the basis, its mean square being 1 per um. */
+static double rest_of_step(const fg_subset_columns *c, size_t rank, double y_mm, double *work) {
+  double shape[FG_LOOP_SHAPES] = {y_mm};
+  if (!has_both_sides(c, y_mm)) return INFINITY;
+  fg_subset_gather(c, "scan.row_step", shape, work);
+  double rest = fg_subset_dot(c->rows, work, work);
+  for (size_t k = 0; k < rank; k++) {
+    double along = fg_subset_dot(c->rows, work, c->basis + k * c->rows);
+    rest -= along * along;
+  }
+  return rest;
+}
+
+static void add_step_at(fg_subset_search *s, double y_mm) {
+  fg_subset_effect other = {.id = "scan.row_step", .columns = 1, .shapes = 1, .shape = {y_mm}};
+  if (isfinite(y_mm) && s->out->effect_count < FG_SUBSET_EFFECTS) fg_subset_add(s, &other);
+}
+
+fg_status fg_subset_add_other_steps(fg_context *ctx, fg_subset_search *s,
+                                    const fg_scan_set *known) {
+  double *work = NULL;
+  size_t steps = 0;
+  for (size_t e = 0; known && e < known->count; e++)
+    steps += !strcmp(known->effects[e].id, "scan.row_step");
+  if (!steps) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, sizeof *work, (void **)&work));
+  fg_subset_noise(s, false);
+  double unit = s->out->noise_um * s->out->noise_um * s->out->integral;
+  size_t rank = fg_subset_columns_span(&s->columns, 0, s->free_end); /* geometry, what is known */
+  for (size_t e = 0; e < known->count; e++) {
+    const fg_scan_effect *step = &known->effects[e];
+    if (strcmp(step->id, "scan.row_step") != 0) continue;
+    double above = NAN, below = NAN, square = step->coefficient_um[0] * step->coefficient_um[0];
+    for (size_t i = 0; i < 2 * STEP_STEPS; i++) {
+      double y = fg_subset_step_place(s->columns.points, i, 2 * STEP_STEPS);
+      if (fabs(y - step->shape[0]) < OTHER_STEP_MM) continue;
+      if (square * rest_of_step(&s->columns, rank, y, work) > OTHER_STEP_CHI2 * unit) continue;
+      if (y > step->shape[0]) above = y;
+      if (y < step->shape[0] && !(below < y)) below = y;
+    }
+    add_step_at(s, above);
+    add_step_at(s, below);
+  }
+  free(work);
+  return FG_OK;
 }
 
 /* Free curves can follow a long ripple: it is sought beside the listed effects too. What is found
