@@ -14,6 +14,25 @@ typedef struct fg_subset_search {
   size_t new_shapes;            /* ripples and steps that were found in this round */
 } fg_subset_search;
 
+/* What the search compares with: everything at once. */
+typedef struct fg_subset_yardstick {
+  double full, freedom, unit, allowance;
+  double none;    /* excess of no effect */
+  unsigned bends; /* crown and skew */
+  double reach;   /* of a polynomial's middle, in units of FG_FIELD_HALF_MM */
+} fg_subset_yardstick;
+
+fg_subset_yardstick fg_subset_yardstick_of(fg_subset_search *s);
+
+/* Fits a set; an excess of INFINITY says that it is no set of its own. */
+fg_subset_member fg_subset_try(const fg_subset_search *s, const fg_subset_yardstick *y,
+                               unsigned mask);
+bool fg_subset_is_right(const fg_subset_yardstick *y, const fg_subset_member *m);
+
+/* Fill what the report says of every effect, and of the width, beside the best member. */
+void fg_subset_describe_effects(fg_subset_search *s, const fg_subset_yardstick *y);
+void fg_subset_describe_width(fg_subset_search *s, const fg_subset_yardstick *y);
+
 /* Adds an effect whose columns are its own. */
 void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect);
 
