@@ -184,6 +184,14 @@ static fg_status parse_choice(const fg_place *place, const cJSON *object, const 
   return fg_member_fail(place, name, item, what);
 }
 
+static fg_status parse_direction(const fg_place *place, const cJSON *object, fg_effect *effect) {
+  int normal = 0;
+  if (effect->row->frame != FG_EFFECT_PART) return FG_OK;
+  FG_TRY(parse_choice(place, object, "along", (const char *const[]){"radius", "normal"}, &normal));
+  if (normal) effect->frame = FG_EFFECT_NORMAL;
+  return FG_OK;
+}
+
 static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_effect *effect) {
   static const fg_member scan[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
                                    {"knots", FG_MEMBER_OTHER, 0, 0, 0},
@@ -193,13 +201,18 @@ static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_effe
                                    {"knots", FG_MEMBER_OTHER, 0, 0, 0},
                                    {"edges", FG_MEMBER_OTHER, 0, 0, 0},
                                    {0}};
-  static const fg_member part[] = {
+  static const fg_member part[] = {{"id", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {"knots", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {"along", FG_MEMBER_OTHER, 0, 0, 0},
+                                   {0}};
+  static const fg_member bump[] = {
       {"id", FG_MEMBER_OTHER, 0, 0, 0}, {"knots", FG_MEMBER_OTHER, 0, 0, 0}, {0}};
   fg_effect_frame frame = effect->row->frame;
   FG_TRY(fg_members_read(place, object,
                          frame == FG_EFFECT_SCANNER ? scan
                          : frame == FG_EFFECT_EDGE  ? edge
-                                                    : part,
+                         : frame == FG_EFFECT_PART  ? part
+                                                    : bump,
                          effect));
   int apart = 0;
   effect->moves = effect->row->axis;
@@ -211,7 +224,7 @@ static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_effe
 }
 
 static fg_status parse_parameters(const fg_place *place, const cJSON *object, fg_effect *effect) {
-  fg_member table[FG_EFFECT_PARAMETERS_MAX + 2] = {{"id", FG_MEMBER_OTHER, 0, 0, 0}};
+  fg_member table[FG_EFFECT_PARAMETERS_MAX + 3] = {{"id", FG_MEMBER_OTHER, 0, 0, 0}};
   size_t used = 1;
   for (int i = 0; i < FG_EFFECT_PARAMETERS_MAX && effect->row->parameters[i].name; i++) {
     const fg_effect_parameter *parameter = &effect->row->parameters[i];
@@ -220,6 +233,8 @@ static fg_status parse_parameters(const fg_place *place, const cJSON *object, fg
                                 offsetof(fg_effect, p) + (size_t)i * sizeof effect->p[0],
                                 parameter->low, parameter->high};
   }
+  if (effect->row->frame == FG_EFFECT_PART)
+    table[used++] = (fg_member){"along", FG_MEMBER_OTHER, 0, 0, 0};
   FG_TRY(fg_members_read(place, object, table, effect));
   for (int i = 0; i < FG_EFFECT_PARAMETERS_MAX && effect->row->parameters[i].name; i++)
     if (isnan(effect->p[i]))
@@ -241,9 +256,10 @@ fg_status fg_effects_parse(const fg_place *place, const cJSON *array, fg_effect_
       row++;
     if (!row->id)
       return fg_member_fail(&inner, "id", id, "must be the name of an effect such as scan.scale_y");
-    list->effects[list->count] = (fg_effect){.row = row};
+    list->effects[list->count] = (fg_effect){.row = row, .frame = row->frame};
     FG_TRY(
         (row->curve ? parse_curve : parse_parameters)(&inner, item, &list->effects[list->count]));
+    FG_TRY(parse_direction(&inner, item, &list->effects[list->count]));
     list->count++;
   }
   return FG_OK;
@@ -258,7 +274,7 @@ void fg_effects_resolve(fg_effect_list *list, double width_mm, double height_mm)
 
 bool fg_effects_have(const fg_effect_list *list, fg_effect_frame frame) {
   for (size_t i = 0; i < list->count; i++)
-    if (list->effects[i].row->frame == frame) return true;
+    if (list->effects[i].frame == frame) return true;
   return false;
 }
 
@@ -273,11 +289,11 @@ void fg_effects_field(const fg_effect_list *list, double x_mm, double y_mm, doub
   d_mm[0] = d_mm[1] = 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
-    if (effect->row->frame == FG_EFFECT_SCANNER && effect->row->curve)
+    if (effect->frame == FG_EFFECT_SCANNER && effect->row->curve)
       d_mm[effect->moves] += effect_shape(effect, effect->row->axis ? y_mm : x_mm, 1);
-    else if (effect->row->frame == FG_EFFECT_SCANNER)
+    else if (effect->frame == FG_EFFECT_SCANNER)
       effect->row->field(effect->p, x_mm, y_mm, d_mm);
-    if (effect->row->frame == FG_EFFECT_STEP) effect->row->field(effect->p, x_mm, row_y_mm, d_mm);
+    if (effect->frame == FG_EFFECT_STEP) effect->row->field(effect->p, x_mm, row_y_mm, d_mm);
   }
 }
 
@@ -285,7 +301,7 @@ double fg_effects_next_step(const fg_effect_list *list, double low_mm, double hi
   double next = NAN;
   for (size_t i = 0; i < list->count; i++) {
     double at = list->effects[i].p[1];
-    if (list->effects[i].row->frame != FG_EFFECT_STEP || !(at >= low_mm && at < high_mm)) continue;
+    if (list->effects[i].frame != FG_EFFECT_STEP || !(at >= low_mm && at < high_mm)) continue;
     next = fmin(next, at); /* fmin prefers the number to NaN */
   }
   return next;
@@ -297,7 +313,7 @@ double fg_effects_shape(const fg_effect_list *list, fg_effect_frame frame, doubl
   double result = factor ? 1 : 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
-    if (effect->row->frame != frame) continue;
+    if (effect->frame != frame) continue;
     double value = effect_shape(effect, coordinate, extent);
     result = factor ? result * value : result + value;
   }
@@ -308,7 +324,7 @@ void fg_effects_bump_end(const fg_effect_list *list, double u, double *value_mm,
   *value_mm = *slope_mm = 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
-    if (effect->row->frame != FG_EFFECT_BUMP || !effect->row->curve) continue;
+    if (effect->frame != FG_EFFECT_BUMP || !effect->row->curve) continue;
     *value_mm += 1e-3 * fg_curve_value_um(&effect->curve, u);
     *slope_mm += 1e-3 * u * fg_curve_slope_um(&effect->curve, u);
   }
@@ -319,7 +335,7 @@ void fg_effects_edges(const fg_effect_list *list, double nx, double ny, double s
   shift_mm[0] = shift_mm[1] = 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
-    if (effect->row->frame != FG_EFFECT_EDGE) continue;
+    if (effect->frame != FG_EFFECT_EDGE) continue;
     double shift = effect_shape(effect, direction_deg, 1);
     shift_mm[0] += shift;
     shift_mm[1] += effect->apart ? -shift : shift;
@@ -332,8 +348,10 @@ double fg_effects_reach(const fg_effect_list *list) {
   double reach = 0;
   for (size_t i = 0; i < list->count; i++) {
     const fg_effect *effect = &list->effects[i];
-    fg_effect_frame frame = effect->row->frame;
-    if (frame != FG_EFFECT_PART && frame != FG_EFFECT_BUMP && frame != FG_EFFECT_EDGE) continue;
+    fg_effect_frame frame = effect->frame;
+    if (frame != FG_EFFECT_PART && frame != FG_EFFECT_NORMAL && frame != FG_EFFECT_BUMP &&
+        frame != FG_EFFECT_EDGE)
+      continue;
     double size = effect->row->curve ? fg_curve_largest_um(&effect->curve) : fabs(effect->p[0]);
     reach += 2e-3 * size;
   }

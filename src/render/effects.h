@@ -20,6 +20,7 @@ typedef enum fg_effect_frame {
                         in the picture and not blurred */
   FG_EFFECT_PART,    /* shape(p, psi_rad, ·): radial shift about O in mm, outwards positive; psi
                         is counted from the foil's middle, towards the free end */
+  FG_EFFECT_NORMAL,  /* the same along the midline's normal: a part effect whose `along` says so */
   FG_EFFECT_BUMP,    /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
                         where the arc meets its fillets */
   FG_EFFECT_EDGE,    /* curve over the direction of the strip's inner side in the scan, degrees */
@@ -45,6 +46,7 @@ typedef struct fg_effect_row {
 
 typedef struct fg_effect {
   const fg_effect_row *row;
+  fg_effect_frame frame; /* the row's, or FG_EFFECT_NORMAL */
   double p[FG_EFFECT_PARAMETERS_MAX];
   fg_curve curve;
   int moves;  /* FG_EFFECT_SCANNER with a curve: the axis of the displacement, 0 x, 1 y */

@@ -15,6 +15,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->has_field = fg_effects_have(&spec->effects, FG_EFFECT_SCANNER) ||
                        fg_effects_have(&spec->effects, FG_EFFECT_STEP);
   sampler->has_part = fg_effects_have(&spec->effects, FG_EFFECT_PART);
+  sampler->has_normal = fg_effects_have(&spec->effects, FG_EFFECT_NORMAL);
   sampler->has_bump = fg_effects_have(&spec->effects, FG_EFFECT_BUMP);
   sampler->has_edge = fg_effects_have(&spec->effects, FG_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
@@ -153,6 +154,13 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
     inner += shift;
     outer += shift;
   }
+  if (sampler->has_normal) {
+    double x = segment->x + at->dx - at->n * at->nx, y = segment->y + at->dy - at->n * at->ny;
+    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_NORMAL,
+                                    fg_foil_psi(frame, x, y), frame->half_span_rad);
+    inner -= shift;
+    outer -= shift;
+  }
   if (sampler->has_edge) {
     double shift[2];
     fg_effects_edges(&sampler->spec->effects, at->nx, at->ny, shift);
@@ -182,10 +190,8 @@ static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t co
   if (sampler->has_part) {
     /* The shape moves radially, so a place belongs to the part that is radially below it. */
     double dx = x - frame->x, dy = y - frame->y, distance = hypot(dx, dy);
-    double psi =
-        frame->mirror * remainder(atan2(dy, dx) - frame->axis_rad, 2 * 3.14159265358979323846);
-    double shift =
-        fg_effects_shape(&sampler->spec->effects, FG_EFFECT_PART, psi, frame->half_span_rad);
+    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_PART,
+                                    fg_foil_psi(frame, x, y), frame->half_span_rad);
     x -= shift * dx / distance;
     y -= shift * dy / distance;
   }

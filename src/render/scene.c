@@ -31,6 +31,11 @@ double fg_segment_bump_shift(const fg_effect_list *effects, const fg_segment *se
          (value * (1 + 2 * s) + slope * 2 / segment->bump_mm * s * segment->length_mm);
 }
 
+double fg_foil_psi(const fg_foil_frame *frame, double x_mm, double y_mm) {
+  double angle = atan2(y_mm - frame->y, x_mm - frame->x) - frame->axis_rad;
+  return frame->mirror * remainder(angle, 2 * pi);
+}
+
 /* From the foil's own frame (middle along x) to the true frame. */
 static fg_point turn(const fg_foil_frame *frame, double x, double y) {
   double c = cos(frame->axis_rad), s = sin(frame->axis_rad);
@@ -306,11 +311,13 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
   double shift[2];
   fg_effects_edges(&spec->effects, inner.x, inner.y, shift);
   double w = fg_segment_bump_shift(&spec->effects, segment, t) + 0.5 * (shift[0] + shift[1]);
+  w -= fg_effects_shape(&spec->effects, FG_EFFECT_NORMAL, fg_foil_psi(frame, p.x, p.y),
+                        frame->half_span_rad);
   p.x += w * inner.x;
   p.y += w * inner.y;
   double dx = p.x - frame->x, dy = p.y - frame->y;
-  double psi = frame->mirror * remainder(atan2(dy, dx) - frame->axis_rad, 2 * pi);
-  double radial = fg_effects_shape(&spec->effects, FG_EFFECT_PART, psi, frame->half_span_rad);
+  double radial = fg_effects_shape(&spec->effects, FG_EFFECT_PART, fg_foil_psi(frame, p.x, p.y),
+                                   frame->half_span_rad);
   double distance = hypot(dx, dy);
   point_px->x = (p.x + radial * dx / distance) / spec->pixel_mm[0];
   point_px->y = (p.y + radial * dy / distance) / spec->pixel_mm[1];

@@ -146,6 +146,9 @@ void fg_scene_free(fg_scene *scene);
 /* Point at distance t along a segment. */
 fg_point fg_segment_point(const fg_segment *segment, double t_mm);
 
+/* Direction of a place about O, from the foil's middle towards its free end. */
+double fg_foil_psi(const fg_foil_frame *frame, double x_mm, double y_mm);
+
 /* Shift of a bump's arc by its effects, towards the inner side, mm; on a fillet that joins it, what
  * fades the shift out. */
 double fg_segment_bump_shift(const fg_effect_list *effects, const fg_segment *segment, double t_mm);

@@ -32,28 +32,23 @@ static void write_foil(fg_json *json, const fg_scan_loop *loop, const fg_scan_ef
   }
 }
 
-/* Half the arc between the fillets, mean over the part's bumps: the fillet's circle (radius r)
- * touches the overall circle from inside and the bump's from outside, so in the triangle of the
- * three centres the sides are R0 - r, R + r and X. */
-static double fillet_to_fillet_rad(const fg_points *points, size_t view) {
-  const fg_points_part *part = &points->parts[points->views[view].part];
-  double r = points->views[view].measurement->design.fillet_radius_mm, sum = 0, n = 0;
-  for (size_t b = 0; b < part->bump_count; b++) {
-    double x = part->bumps[b].distance_mm, from_o = part->overall_radius_mm - r;
-    double from_c = part->bumps[b].radius_mm + r;
-    double angle = acos((x * x + from_c * from_c - from_o * from_o) / (2 * x * from_c));
-    if (!isfinite(angle)) continue;
-    sum += angle;
-    n++;
-  }
-  return n > 0 ? sum / n : part->half_arc_rad;
+/* Half the arc of a row's bump between its fillets: the fillet's circle (radius r) touches the
+ * overall circle from inside and the bump's from outside, so in the triangle of the three centres
+ * the sides are R0 - r, R + r and X. */
+static double fillet_to_fillet_rad(const fg_points *points, const fg_points_row *row) {
+  const fg_points_part *part = &points->parts[row->part];
+  const fg_points_bump *bump = &part->bumps[row->bump_index];
+  double r = points->views[row->view].measurement->design.fillet_radius_mm;
+  double x = bump->distance_mm, from_o = part->overall_radius_mm - r, from_c = bump->radius_mm + r;
+  double angle = acos((x * x + from_c * from_c - from_o * from_o) / (2 * x * from_c));
+  return isfinite(angle) ? angle : part->half_arc_rad;
 }
 
 /* Where a row lies on the coordinate; NaN: nowhere. */
 static double place_of(const fg_points *points, const fg_points_row *row, bool phi) {
   if (phi)
     return row->bump ? row->phi * points->parts[row->part].half_arc_rad /
-                           fillet_to_fillet_rad(points, row->view)
+                           fillet_to_fillet_rad(points, row)
                      : NAN;
   double deg = row->normal_rad * 180 / M_PI;
   return deg < 0 ? deg + 360 : deg;

@@ -100,8 +100,12 @@ def draw_effect(rng, kind, half_mm, rows_mm, size=None):
         low, high = rows_mm
         where = float(low + (high - low) * rng.uniform(0.25, 0.75))
         effect.update(amplitude_um=sign * size, y_mm=where)
-    elif kind == "part.ovality":
-        effect.update(amplitude_um=size, phase_deg=float(rng.uniform(-90, 90)))
+    elif kind in ("part.ovality", "part.spiral"):
+        oval = kind == "part.ovality"
+        effect["amplitude_um"] = size if oval else sign * size
+        if oval:
+            effect["phase_deg"] = float(rng.uniform(-90, 90))
+        effect["along"] = str(rng.choice(["radius", "normal"]))
     elif kind.startswith("part."):
         effect["amplitude_um"] = sign * size
     else:
@@ -169,6 +173,8 @@ def draw_curve(rng, coordinate, moves, low, high, size=None):
     effect = {"id": "free." + coordinate, "knots": [[float(a), float(v * scale)] for a, v in zip(at, value)]}
     if moves:
         effect["moves"] = moves
+    if coordinate == "foil.s":
+        effect["along"] = str(rng.choice(["radius", "normal"]))
     return effect
 
 

@@ -2,6 +2,9 @@
 
 import numpy as np
 
+# Of a bump's arc, where edges are measured; the rest runs into its fillets.
+ARC_SHARE = 0.85
+
 
 def natural_spline(knots, at, period=0.0):
     """What the renderer draws: a natural cubic spline, constant beyond; closed with a period."""
@@ -56,7 +59,7 @@ class Midline:
         pieces = []
         for i in range(self.count):
             n = max(5, int(2 * arc[i] * radius[i] / step_mm))
-            u = np.linspace(-0.97, 0.97, n)
+            u = np.linspace(-ARC_SHARE, ARC_SHARE, n)
             angle = axis[i] + np.pi - u * arc[i]
             normal = np.stack([np.cos(angle), np.sin(angle)], axis=1)
             centre = distance[i] * np.array([np.cos(axis[i]), np.sin(axis[i])])
@@ -78,13 +81,14 @@ class Midline:
         """What the spec's part effects move, along the normal."""
         shift = np.zeros(len(self.xy))
         for e in effects:
+            share = np.sign(self.radial_share()) if e.get("along") == "normal" else self.radial_share()
             if e["id"] == "part.ovality":
                 wave = np.cos(2 * (self.psi - np.radians(e.get("phase_deg", 0))))
-                shift += e["amplitude_um"] * wave * self.radial_share()
+                shift += e["amplitude_um"] * wave * share
             elif e["id"] == "part.spiral":
-                shift += e["amplitude_um"] * (self.psi / self.half_span) ** 3 * self.radial_share()
+                shift += e["amplitude_um"] * (self.psi / self.half_span) ** 3 * share
             elif e["id"] == "free.foil.s":
-                shift += natural_spline(e["knots"], self.psi / self.half_span) * self.radial_share()
+                shift += natural_spline(e["knots"], self.psi / self.half_span) * share
             elif self.on_bumps(e) is not None:
                 shift += np.where(self.bump >= 0, self.on_bumps(e), 0)
         return shift

@@ -160,7 +160,8 @@ def write_scans(folder, rows, tiers, seed):
     lines += [
         "", "All effects: the midline. Distance of the true midline, deviations of the part included, from the measured",
         "circles and what the report says deviates from them (rms over bumps and lands; place and direction left free). A",
-        "bump that is no circle has no one radius; this does not ask for one.", "",
+        "bump that is no circle has no one radius; this does not ask for one. Bumps count over the inner 85 % of their arcs,",
+        "where edges are measured.", "",
     ]  # fmt: skip
     lines += markdown(
         reduction_header(["profile"]),

@@ -274,8 +274,39 @@ static void part_effects_move_the_crown(void **state) {
   assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5}", "", 4), -5, 0.02);
   assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"phase_deg\":90}", "", 4),
                5, 0.02);
+  assert_close(
+      crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"along\":\"normal\"}", "", 4), -5,
+      0.02);
   /* Bump 1 turned upright: psi = -4 × pitch, u of the spiral is that over half the span. */
   assert_close(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":0}", "", 4), 0, 0.02);
+}
+
+/* Along the normal every place of the midline moves at right angles to it, on a flank too. */
+static void normal_ovality_moves_at_right_angles(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  const char *format =
+      "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":null,\"centre_mm\":[20,30]}],"
+      "\"effects\":[{\"id\":\"part.ovality\",\"amplitude_um\":%d,"
+      "\"along\":\"normal\"}]}";
+  char json[512];
+  fg_render_spec *specs[2];
+  for (int i = 0; i < 2; i++) {
+    snprintf(json, sizeof json, format, i ? 10 : 0);
+    assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &specs[i]), FG_OK);
+  }
+  for (double s = 2; s < 40; s += 0.37) {
+    fg_point at, on, moved;
+    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s, &at), FG_OK);
+    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s + 1e-4, &on), FG_OK);
+    assert_int_equal(fg_render_midline(&ctx, specs[1], 0, s, &moved), FG_OK);
+    double tx = on.x - at.x, ty = on.y - at.y, dx = moved.x - at.x, dy = moved.y - at.y;
+    double along = (dx * tx + dy * ty) / hypot(tx, ty);
+    assert_close(along * pixel * 1e3, 0, 0.01);
+    assert_true(hypot(dx, dy) * pixel * 1e3 < 10.01);
+  }
+  for (int i = 0; i < 2; i++)
+    fg_render_free(specs[i]);
 }
 
 static void spiral_lies_beside_the_plain_foil(void **state) {
@@ -363,6 +394,7 @@ int main(void) {
       cmocka_unit_test(fields_move_the_picture),
       cmocka_unit_test(lost_rows_are_sharp),
       cmocka_unit_test(part_effects_move_the_crown),
+      cmocka_unit_test(normal_ovality_moves_at_right_angles),
       cmocka_unit_test(spiral_lies_beside_the_plain_foil),
       cmocka_unit_test(lip_stands_on_the_land),
       cmocka_unit_test(lip_decay_widens_the_first_bumps),
