@@ -65,17 +65,23 @@ static double bspline(double u) {
   return 2.0 / 3 - a * a + 0.5 * a * a * a;
 }
 
-void fg_field_splines(double low, double high, double at, double values[FG_FIELD_COLUMNS]) {
-  double spacing = (high - low) / (FG_FIELD_COLUMNS - 1);
+void fg_field_splines(double low, double high, size_t knots, double at,
+                      double values[FG_FIELD_COLUMNS]) {
+  double spacing = (high - low) / (double)(knots - 1);
   double place = (fmax(low, fmin(high, at)) - low) / spacing;
-  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
-    values[i] = 1.5 * bspline(place - i);
+  for (size_t i = 0; i < FG_FIELD_COLUMNS; i++)
+    values[i] = i < knots ? 1.5 * bspline(place - (double)i) : 0;
+}
+
+static void free_curve(const fg_field_frame *frame, int axis, double at,
+                       double values[FG_FIELD_COLUMNS]) {
+  fg_field_splines(frame->first_mm[axis], frame->last_mm[axis], frame->knots, at, values);
 }
 
 static void free_xx(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  fg_field_splines(frame->first_mm[0], frame->last_mm[0], at.x, values);
+  free_curve(frame, 0, at.x, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){values[i], 0};
 }
@@ -83,7 +89,7 @@ static void free_xx(const fg_field_frame *frame, const double *shape, fg_point a
 static void free_yx(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  fg_field_splines(frame->first_mm[0], frame->last_mm[0], at.x, values);
+  free_curve(frame, 0, at.x, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){0, values[i]};
 }
@@ -91,7 +97,7 @@ static void free_yx(const fg_field_frame *frame, const double *shape, fg_point a
 static void free_xy(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  fg_field_splines(frame->first_mm[1], frame->last_mm[1], at.y, values);
+  free_curve(frame, 1, at.y, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){values[i], 0};
 }
@@ -99,7 +105,7 @@ static void free_xy(const fg_field_frame *frame, const double *shape, fg_point a
 static void free_yy(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
   (void)shape;
   double values[FG_FIELD_COLUMNS];
-  fg_field_splines(frame->first_mm[1], frame->last_mm[1], at.y, values);
+  free_curve(frame, 1, at.y, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     d[i] = (fg_point){0, values[i]};
 }

@@ -22,6 +22,7 @@ typedef struct fg_field_frame {
   double low_mm[2], high_mm[2];   /* of the picture */
   double first_mm[2], last_mm[2]; /* of the edges that were measured: free curves have their knots
                                      there, and stay constant beyond */
+  size_t knots;                   /* of free curves, at most FG_FIELD_COLUMNS */
 } fg_field_frame;
 
 typedef struct fg_field_row {
@@ -55,8 +56,9 @@ bool fg_field_is_free(const fg_field_row *row);
 /* d at a nominal position. */
 fg_point fg_field_at(const fg_field_list *list, fg_point nominal);
 
-/* All columns of a curve over [low, high]: cubic B-splines, constant beyond. */
-void fg_field_splines(double low, double high, double at, double values[FG_FIELD_COLUMNS]);
+/* All columns of a curve over [low, high]: cubic B-splines, constant beyond; 0 from `knots` on. */
+void fg_field_splines(double low, double high, size_t knots, double at,
+                      double values[FG_FIELD_COLUMNS]);
 
 /* What the numbers of a field are called in a report: name and value of parameter i (amplitudes in
  * um, scale and shear as ratios); false when there are no more. */

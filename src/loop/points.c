@@ -11,6 +11,8 @@
 #define SAME_SHARE 0.2
 /* Edges lie so far beside the middle of the strip, and are moved by effects. */
 #define EDGE_ROOM_MM 0.2
+/* Knots of free curves that the few places of discs can tell. */
+enum { DISC_KNOTS = 12 };
 
 void fg_points_free(fg_points *points) {
   if (!points) return;
@@ -215,6 +217,7 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
 
 void fg_points_find_frame(fg_points *points) {
   fg_field_frame *f = &points->frame;
+  f->knots = points->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
   for (int axis = 0; axis < 2; axis++)
     f->low_mm[axis] = 0;
   for (size_t v = 0; v < points->view_count; v++) {

@@ -99,7 +99,7 @@ static size_t free_phi(const fg_points *points, const fg_points_row *row, double
 /* Over the foil. */
 static size_t free_s(const fg_points *points, const fg_points_row *row, double share,
                      double *values) {
-  fg_field_splines(points->psi_rad[0], points->psi_rad[1], row->psi, values);
+  fg_field_splines(points->psi_rad[0], points->psi_rad[1], FG_FIELD_COLUMNS, row->psi, values);
   for (int i = 0; i < FG_FIELD_COLUMNS; i++)
     values[i] *= share;
   return FG_FIELD_COLUMNS;
@@ -115,11 +115,11 @@ static size_t free_radial_s(const fg_points *points, const fg_points_row *row, d
 
 /* Over the direction of the edge in the scan: what the edge model does not know. */
 static size_t free_normal(const fg_points *points, const fg_points_row *row, double *values) {
-  (void)points;
-  enum { HARMONICS = 8 };
+  enum { HARMONICS = 8, OF_DISCS = 6 }; /* a disc has a form of its own */
   for (int i = 0; i < HARMONICS; i++) {
-    values[2 * i] = cos((i + 2) * row->normal_rad);
-    values[2 * i + 1] = sin((i + 2) * row->normal_rad);
+    bool used = i < OF_DISCS || !points->discs;
+    values[2 * i] = used ? cos((i + 2) * row->normal_rad) : 0;
+    values[2 * i + 1] = used ? sin((i + 2) * row->normal_rad) : 0;
   }
   return 2 * HARMONICS;
 }

@@ -58,7 +58,7 @@ static fg_status read_fields(fg_context *ctx, const cJSON *fields, fg_field_list
 
 static fg_status read_place(fg_context *ctx, const cJSON *root, fg_scan_model *model) {
   fg_field_frame *frame = &model->fields.frame;
-  double region[4], curve[4];
+  double region[4], curve[4], knots = FG_FIELD_COLUMNS;
   if (!read_numbers(root, "dpi", model->dpi, 2) || !(model->dpi[0] > 0 && model->dpi[1] > 0))
     return fg_fail(ctx, FG_ERR_DATA, "`dpi` must be two numbers above 0");
   if (!read_numbers(root, "region_mm", region, 4) || !(region[2] > region[0]) ||
@@ -69,6 +69,11 @@ static fg_status read_place(fg_context *ctx, const cJSON *root, fg_scan_model *m
       (!read_numbers(root, "curve_mm", curve, 4) || !(curve[2] > curve[0]) ||
        !(curve[3] > curve[1])))
     return fg_fail(ctx, FG_ERR_DATA, "`curve_mm` must be x, y of one corner and of the opposite");
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, "curve_knots");
+  if (item) knots = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+  if (!(knots >= 4 && knots <= FG_FIELD_COLUMNS))
+    return fg_fail(ctx, FG_ERR_DATA, "`curve_knots` must be 4 to %d", FG_FIELD_COLUMNS);
+  frame->knots = (size_t)knots;
   for (int axis = 0; axis < 2; axis++) {
     frame->first_mm[axis] = curve[axis];
     frame->last_mm[axis] = curve[2 + axis];

@@ -48,6 +48,7 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
   fg_json_numbers(
       &json, "curve_mm",
       (double[]){frame->first_mm[0], frame->first_mm[1], frame->last_mm[0], frame->last_mm[1]}, 4);
+  fg_json_integer(&json, "curve_knots", (int64_t)frame->knots);
   write_inputs(&json, loop);
   fg_json_bool(&json, "tied", loop->tied);
   write_fields(&json, "fields", &fields);

@@ -25,7 +25,7 @@ static void write_foil(fg_json *json, const fg_scan_loop *loop, const fg_scan_ef
   const double *psi = loop->points.psi_rad;
   for (int i = 0; i < SHAPE_POINTS; i++) {
     double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), pair[2] = {2 * t - 1, 0};
-    fg_field_splines(psi[0], psi[1], psi[0] + t * (psi[1] - psi[0]), values);
+    fg_field_splines(psi[0], psi[1], FG_FIELD_COLUMNS, psi[0] + t * (psi[1] - psi[0]), values);
     for (size_t c = 0; c < effect->columns; c++)
       pair[1] += effect->coefficient_um[c] * values[c];
     fg_json_numbers(json, NULL, pair, 2);
