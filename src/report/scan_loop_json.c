@@ -39,6 +39,16 @@ static double amplitude_u(const fg_scan_effect *effect) {
   return sqrt(sum);
 }
 
+/* Of a cosine and a sine of twice the angle. */
+static double phase_deg(const fg_scan_effect *effect) {
+  return 0.5 * atan2(effect->coefficient_um[1], effect->coefficient_um[0]) * 180 / M_PI;
+}
+
+static double phase_u_deg(const fg_scan_effect *effect) {
+  const double *c = effect->coefficient_um, *u = effect->u_coefficient_um;
+  return 0.5 * hypot(c[1] * u[0], c[0] * u[1]) / (c[0] * c[0] + c[1] * c[1]) * 180 / M_PI;
+}
+
 /* Parameters by their names; with `u`, their standard uncertainties. */
 static void write_parameters(fg_json *json, const fg_scan_effect *effect, bool u) {
   const fg_field_row *row = fg_field_find(effect->id);
@@ -51,10 +61,8 @@ static void write_parameters(fg_json *json, const fg_scan_effect *effect, bool u
       fg_json_number(json, name, u ? sd : value);
   } else {
     fg_json_number(json, "amplitude_um", u ? amplitude_u(effect) : amplitude_of(effect));
-    if (fg_effect_same(effect->id, "part.ovality") && !u)
-      fg_json_number(json, "phase_deg",
-                     0.5 * atan2(effect->coefficient_um[1], effect->coefficient_um[0]) * 180 /
-                         M_PI);
+    if (fg_effect_same(effect->id, "part.ovality"))
+      fg_json_number(json, "phase_deg", u ? phase_u_deg(effect) : phase_deg(effect));
   }
   fg_json_object_end(json);
 }
