@@ -194,15 +194,44 @@ static double score_of(const fg_subset_search *s, const fg_subset_member *m) {
   return m->excess - log((double)s->columns.rows / s->out->integral) * m->freedom;
 }
 
+/* Ripples and steps, those in force and all. */
+typedef struct shaped_masks {
+  unsigned known, all;
+} shaped_masks;
+
+static shaped_masks find_shaped_masks(const fg_subset_search *s) {
+  shaped_masks masks = {0, 0};
+  size_t count = s->out->effect_count;
+  for (size_t e = 0; e < count; e++) {
+    const char *id = s->out->effects[e].id;
+    if (strcmp(id, "scan.carriage_ripple") != 0 && strcmp(id, "scan.row_step") != 0) continue;
+    masks.all |= 1u << e;
+    if (e + s->new_shapes < count) masks.known |= 1u << e;
+  }
+  return masks;
+}
+
+/* Few smooth effects, which can stand for each other; ripples and steps stand alone, and all that
+ * are there may be. */
+static bool is_small(unsigned mask, shaped_masks shaped, size_t most) {
+  unsigned held = mask & shaped.all;
+  return fg_subset_bits(mask & ~shaped.all) <= most &&
+         (fg_subset_bits(mask) <= most || held == shaped.known || held == shaped.all);
+}
+
 /* Listed sets by size; the first size with one that is right ends the search. Returns the best by
  * Schwarz's criterion of those that were tried. */
 static fg_subset_member try_listed(fg_subset_search *s, const fg_subset_yardstick *y, size_t most) {
   fg_subset *out = s->out;
   unsigned listed = fg_subset_mask_of(out, false);
+  shaped_masks shaped = find_shaped_masks(s);
   fg_subset_member best = {.excess = INFINITY};
-  for (size_t size = 0; size <= most && !out->member_count; size++)
-    for (unsigned mask = 0; mask <= listed; mask++) {
-      if ((mask & ~listed) || fg_subset_bits(mask) != size || has_twins(out, mask)) continue;
+  size_t largest = most + fg_subset_bits(shaped.all);
+  if (largest > FG_SCAN_EFFECTS) largest = FG_SCAN_EFFECTS;
+  for (size_t size = 0; size <= largest && !out->member_count; size++)
+    for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = (mask - listed) & listed) {
+      if (fg_subset_bits(mask) != size || !is_small(mask, shaped, most) || has_twins(out, mask))
+        continue;
       fg_subset_member member = fg_subset_try(s, y, mask);
       if (fg_subset_is_right(y, &member)) fg_subset_keep_member(out, &member);
       if (isfinite(member.excess) &&
@@ -254,8 +283,8 @@ static fg_subset_member try_free(fg_subset_search *s, const fg_subset_yardstick 
   unsigned listed = fg_subset_mask_of(out, false);
   double score = isfinite(best.excess) ? score_of(s, &best) : INFINITY;
   for (size_t size = 0; size <= 2; size++)
-    for (unsigned mask = 0; mask <= listed; mask++) {
-      if ((mask & ~listed) || fg_subset_bits(mask) != size || has_twins(out, mask)) continue;
+    for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = (mask - listed) & listed) {
+      if (fg_subset_bits(mask) != size || has_twins(out, mask)) continue;
       for (size_t e = 0; e < out->effect_count; e++) {
         if (!out->effects[e].free) continue;
         fg_subset_member member = fg_subset_try(s, y, mask | 1u << e);
