@@ -207,6 +207,11 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
 void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
                     fg_bump *bump);
 
+/* Adds in squares to every uncertainty of a derived bump what a covariance of (X, R, R0), mm², that
+ * is not in the circles' own does to it: what was corrected is not known exactly either. */
+void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
+                   double covariance[3][3], fg_bump *bump);
+
 #ifdef __cplusplus
 }
 #endif

@@ -154,16 +154,38 @@ static void fill(const geometry *g, const along *bump_along, const along *overal
   }
 }
 
-void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
-                    fg_bump *bump) {
-  double dx = bump->centre_mm.x - overall->centre_mm.x;
-  double dy = bump->centre_mm.y - overall->centre_mm.y;
-  geometry g = {.x = hypot(dx, dy),
+static geometry geometry_of(const fg_design *design, const fg_nominal *nominal,
+                            const fg_overall *overall, const fg_bump *bump) {
+  geometry g = {.x = hypot(bump->centre_mm.x - overall->centre_mm.x,
+                           bump->centre_mm.y - overall->centre_mm.y),
                 .r = bump->radius_mm,
                 .r0 = overall->radius_mm,
                 .design = design,
                 .nominal = nominal};
   fg_design_springback(design, nominal, g.r, &g.model);
+  return g;
+}
+
+void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
+                   double covariance[3][3], fg_bump *bump) {
+  geometry g = geometry_of(design, nominal, overall, bump);
+  for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
+    double gradient[BY_COUNT] = {0, 0, 0}, variance = 0;
+    double *u = (double *)((char *)bump + quantities[i].uncertainty_at);
+    quantities[i].value(&g, gradient);
+    for (int a = 0; a < BY_COUNT; a++)
+      for (int b = 0; b < BY_COUNT; b++)
+        variance += gradient[a] * covariance[a][b] * gradient[b];
+    if (isfinite(variance)) *u = hypot(*u, root(variance));
+  }
+  bump->u_radius_mm = hypot(bump->u_radius_mm, root(covariance[BY_R][BY_R]));
+}
+
+void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
+                    fg_bump *bump) {
+  double dx = bump->centre_mm.x - overall->centre_mm.x;
+  double dy = bump->centre_mm.y - overall->centre_mm.y;
+  geometry g = geometry_of(design, nominal, overall, bump);
   along bump_along = project(bump->covariance, dx / g.x, dy / g.x);
   fg_overall land = *overall; /* C has no implicit const for rows of a matrix */
   along overall_along = project(land.covariance, dx / g.x, dy / g.x);

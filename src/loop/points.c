@@ -50,8 +50,10 @@ static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part
     double direction = bump_direction(foil, bump);
     if (part->bump_count) direction = turn_to(direction, before);
     before = direction;
-    part->bumps[part->bump_count++] =
-        (fg_points_bump){bump->number, bump->centre_to_centre_mm, direction, bump->radius_mm};
+    part->bumps[part->bump_count++] = (fg_points_bump){.number = bump->number,
+                                                       .distance_mm = bump->centre_to_centre_mm,
+                                                       .direction_rad = direction,
+                                                       .radius_mm = bump->radius_mm};
   }
   if (!part->bump_count) return FG_OK;
   double first = part->bumps[0].direction_rad;

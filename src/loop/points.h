@@ -50,10 +50,12 @@ typedef struct fg_points_row {
 typedef struct fg_points_bump {
   int number;
   double distance_mm, direction_rad, radius_mm; /* X, beta, R */
+  double effects_mm2[3][3]; /* covariance of (X, R, R0) that the effects in force add to noise */
 } fg_points_bump;
 
 typedef struct fg_points_part {
   double overall_radius_mm;
+  double effects_mm2;    /* variance of it that the effects in force add */
   fg_points_bump *bumps; /* owned */
   size_t bump_count;
   double sense;          /* +1: numbers rise with the angle (clockwise as seen) */

@@ -102,6 +102,28 @@ static fg_scan_error summarise(fg_context *ctx, const fg_points *points, const d
   return e;
 }
 
+/* What was corrected is not known exactly: the uncertainties of the foils take what the fit of the
+ * set adds to its geometry's. */
+static void widen_by_effects(const fg_points *points, const fg_measurement *before,
+                             fg_measurement *after) {
+  for (size_t v = 0; v < points->view_count; v++) {
+    const fg_points_part *part = &points->parts[points->views[v].part];
+    if (points->views[v].measurement != before || points->views[v].disc) continue;
+    fg_foil *foil = &after->foils[points->views[v].foil - before->foils];
+    double share = foil->overall.u_springback_error_pct / foil->overall.u_radius_mm;
+    for (size_t b = 0; b < foil->bump_count; b++)
+      for (size_t k = 0; k < part->bump_count; k++) {
+        fg_points_bump bump = part->bumps[k];
+        if (bump.number == foil->bumps[b].number)
+          fg_bump_widen(&after->design, &after->nominal, &foil->overall, bump.effects_mm2,
+                        &foil->bumps[b]);
+      }
+    foil->overall.u_radius_mm = hypot(foil->overall.u_radius_mm, sqrt(part->effects_mm2));
+    foil->overall.u_springback_error_pct = share * foil->overall.u_radius_mm;
+  }
+}
+
+/* The set must be the one that the points were fitted with last. */
 static fg_status correct_all(fg_context *ctx, const fg_scan_loop *loop, const fg_scan_set *set,
                              fg_measurement *after) {
   fg_field_list fields;
@@ -111,6 +133,8 @@ static fg_status correct_all(fg_context *ctx, const fg_scan_loop *loop, const fg
   for (size_t i = 0; i < loop->scan_count && status == FG_OK; i++)
     status = fg_scan_correct(ctx, &loop->before[i], &fields, &loop->points, i, shift,
                              loop->options.threads, &after[i]);
+  for (size_t i = 0; i < loop->scan_count && status == FG_OK && set->count; i++)
+    widen_by_effects(&loop->points, &loop->before[i], &after[i]);
   free(shift);
   return status;
 }
@@ -314,6 +338,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
   loop->noise_floor_um = loop->subset.noise_um;
   loop->tied = loop->subset.member_count > 1;
+  FG_TRY(fg_scan_refit(ctx, &loop->points, &loop->set, NULL));
   FG_TRY(correct_all(ctx, loop, &loop->set, loop->after));
   if (loop->tied) FG_TRY(find_ranges(ctx, loop));
   find_verdict(loop);

@@ -129,19 +129,25 @@ static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
   return a < r->parameters && b < r->parameters ? row->weight * 1e-6 : 0;
 }
 
+static double hold_of(const fg_scan_effect *effect, bool shape) {
+  if (strncmp(effect->id, "free.", 5) != 0 || shape) return 0;
+  return strcmp(effect->id, "free.edge.normal") ? FREE_HOLD : NORMAL_HOLD;
+}
+
 /* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
  * leave the same residual the smallest one is meant. */
 static void hold_free(refit *r, size_t k) {
   const fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
   size_t a = r->parameters + k;
-  if (strncmp(effect->id, "free.", 5) != 0 || r->list[k].shape) return;
-  double hold = strcmp(effect->id, "free.edge.normal") ? FREE_HOLD : NORMAL_HOLD;
+  double hold = hold_of(effect, r->list[k].shape);
+  if (hold == 0) return;
   double held = hold * effect->coefficient_um[r->list[k].index];
   gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + hold);
   gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
 }
 
-static fg_status solve(fg_context *ctx, refit *r) {
+/* The normal equations of geometry and effects, with what holds free curves. */
+static void assemble(refit *r) {
   size_t n = r->parameters + r->unknowns, rows = r->points->row_count;
   for (size_t a = 0; a < n; a++) {
     const double *x = column_of(r, a);
@@ -164,6 +170,10 @@ static fg_status solve(fg_context *ctx, refit *r) {
     double d = gsl_matrix_get(r->normal, a, a);
     gsl_matrix_set(r->normal, a, a, d * (1 + 1e-10) + 1e-12);
   }
+}
+
+static fg_status solve(fg_context *ctx, refit *r) {
+  assemble(r);
   if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_svx(r->normal, r->right))
     return fg_fail(ctx, FG_ERR_NUMERIC, "geometry and effects cannot be told apart");
   return FG_OK;
@@ -227,17 +237,65 @@ static double step_place_u(const fg_points *points, double y_mm) {
   return isfinite(below - above) ? (below - above) / sqrt(12) : 0;
 }
 
-/* Standard uncertainties from the last normal equations, for correlated noise. */
-static void find_uncertainties(refit *r) {
-  size_t n = r->parameters + r->unknowns, rows = r->points->row_count;
-  double sum = 0, weight = 0;
-  for (size_t i = 0; i < rows; i++) {
+/* Variance of the rows, um² per unit of weight, for correlated noise. */
+static double row_variance(const refit *r) {
+  double sum = 0, rows = 0;
+  for (size_t i = 0; i < r->points->row_count; i++) {
     if (r->points->views[r->points->rows[i].view].aside) continue;
     sum += r->points->rows[i].weight * r->residual[i] * r->residual[i];
-    weight++;
+    rows++;
   }
-  double variance = sum / fmax(weight - (double)n, 1) * correlation_integral(r);
-  if (gsl_linalg_cholesky_invert(r->normal)) return;
+  double freedom = fmax(rows - (double)(r->parameters + r->unknowns), 1);
+  return sum / freedom * correlation_integral(r);
+}
+
+/* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the
+ * inverse of all normal equations N + H, H holding the free curves; `alone` that of the geometry.
+ * Noise: V (N + H)^-1 N (N + H)^-1. What H keeps out of a curve whose coefficients are of size t:
+ * (N + H)^-1 H t² H (N + H)^-1. */
+static double effects_covariance(const refit *r, double variance, const double *size,
+                                 const gsl_matrix *whole, const gsl_matrix *alone, size_t a,
+                                 size_t b) {
+  double sum = variance * (gsl_matrix_get(whole, a, b) - gsl_matrix_get(alone, a, b));
+  for (size_t k = 0; k < r->unknowns; k++) {
+    size_t c = r->parameters + k;
+    double hold = hold_of(&r->set->effects[r->list[k].effect], r->list[k].shape);
+    double t = hold * size[r->list[k].effect];
+    sum += gsl_matrix_get(whole, a, c) * gsl_matrix_get(whole, b, c) * (t * t - variance * hold);
+  }
+  return sum;
+}
+
+static void find_effects_covariance(refit *r, double variance, const gsl_matrix *alone) {
+  double size[FG_SCAN_EFFECTS] = {0};
+  for (size_t e = 0; e < r->set->count; e++) {
+    const fg_scan_effect *effect = &r->set->effects[e];
+    for (size_t c = 0; c < effect->columns; c++)
+      size[e] = fmax(size[e], fabs(effect->coefficient_um[c]));
+  }
+  for (size_t p = 0, at = 0; p < r->points->part_count; p++) {
+    fg_points_part *part = &r->points->parts[p];
+    part->effects_mm2 = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
+    for (size_t b = 0; b < part->bump_count; b++) {
+      size_t index[3] = {at + 1 + 3 * b, at + 3 + 3 * b, at}; /* X, R, R0 */
+      for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+          part->bumps[b].effects_mm2[i][k] =
+              effects_covariance(r, variance, size, r->normal, alone, index[i], index[k]);
+    }
+    at += 1 + 3 * part->bump_count;
+  }
+}
+
+/* Uncertainties of the effects, and of the geometry beside them; `alone` has room for the
+ * geometry's block of the normal equations. */
+static void find_uncertainties(refit *r, gsl_matrix *alone) {
+  double variance = row_variance(r);
+  assemble(r);
+  for (size_t a = 0; a < r->parameters; a++)
+    for (size_t b = 0; b < r->parameters; b++)
+      gsl_matrix_set(alone, a, b, gsl_matrix_get(r->normal, a, b));
+  if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_invert(r->normal)) return;
   for (size_t e = 0; e < r->set->count; e++)
     if (!strcmp(r->set->effects[e].id, "scan.row_step"))
       r->set->effects[e].u_shape[0] = step_place_u(r->points, r->set->effects[e].shape[0]);
@@ -249,6 +307,8 @@ static void find_uncertainties(refit *r) {
     else
       effect->u_coefficient_um[r->list[k].index] = u;
   }
+  if (gsl_linalg_cholesky_decomp1(alone) || gsl_linalg_cholesky_invert(alone)) return;
+  find_effects_covariance(r, variance, alone);
 }
 
 /* Residual in um and Jacobian with the set's present correction, geometry fitted to it. */
@@ -295,6 +355,7 @@ static void release(refit *r) {
 
 fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set, double *residual_um) {
   refit r = {.points = points, .set = set};
+  gsl_matrix *alone = NULL;
   fg_status status = FG_OK;
   fg_numerics_start();
   FG_TRY(fg_points_fit(ctx, points, NULL)); /* counts the parameters */
@@ -311,11 +372,13 @@ fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set, do
   if (r.unknowns) {
     FG_TRY_EXIT(evaluate(ctx, &r));
     effect_design(points, set, r.list, r.unknowns, r.work, r.design);
-    FG_TRY_EXIT(solve(ctx, &r));
-    find_uncertainties(&r);
+    alone = gsl_matrix_alloc(r.parameters, r.parameters);
+    if (alone) find_uncertainties(&r, alone);
+    if (!alone) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);
   }
   if (residual_um) memcpy(residual_um, r.residual, points->row_count * sizeof *residual_um);
 exit:
+  gsl_matrix_free(alone);
   release(&r);
   return status;
 }

@@ -20,6 +20,8 @@
 #define LARGEST_UM 400.0
 /* A curve is known to this share of itself: no listed effect stands beside it for less. */
 #define CURVE_SHARE 0.03
+/* Effects that one curve does not stand for. */
+enum { FEW = 2 };
 /* Columns of a curve (points_effects.c) that are smooth; those of bump.phi that are polynomials. */
 enum { PHI_SMOOTH = 8, PHI_ORDERS = 16, NORMAL_SMOOTH = 12 };
 
@@ -320,6 +322,9 @@ static bool was_tried(const fg_subset_search *s, const fg_subset_member *m) {
 static bool is_worth_fitting(const fg_subset_search *s, const fg_subset_yardstick *y,
                              const fg_subset_member *best, const fg_subset_member *curve) {
   size_t count = s->out->effect_count, first = count - s->new_shapes;
+  bool one_curve =
+      fg_subset_bits(curve->mask) == 1 && curve->excess < CURVE_SHARE * CURVE_SHARE * y->none;
+  if (one_curve && fg_subset_bits(best->mask) > FEW) return false;
   return best->mask >> first && best->excess < FITTING_SHARE * y->none && !was_tried(s, best) &&
          best->excess < FITTING_TIMES * (curve->excess + y->freedom);
 }
