@@ -10,10 +10,10 @@
 /* What 1 in 1000 gains by chance in one column: a quadratic must gain more than its slope. */
 #define GAIN_LEAST 10.8
 /* Error of the edge model that clean renders leave at most, um (reports/loop_scans.md). */
-#define EDGE_ERROR_UM 0.002
+#define EDGE_ERROR_UM 0.003
 /* The edges of a picture that is stretched are measured, and an effect's form is known, to this
  * share of what the effect does to the points. */
-#define EFFECT_ERROR 0.002
+#define EFFECT_ERROR 0.003
 /* The same of a crown or a skew, whose form is that of the lowest polynomials. */
 #define BEND_ERROR 0.005
 /* The middle of a polynomial lies within so many picture sizes of the picture's. */

@@ -129,9 +129,28 @@ def ranges(pairs):
     return count
 
 
+def within(pairs):
+    """How many values lie within U = 2 u of the truth: {R, h, R0: (held, all)}."""
+    count = {"R": [0, 0], "h": [0, 0], "R0": [0, 0]}
+
+    def look(name, value, u, truth):
+        count[name][1] += 1
+        count[name][0] += abs(value - truth) <= 2 * u
+
+    for midline, centre, foil in pairs or []:
+        for i, bump in pair_bumps(midline, centre, foil):
+            look("R", bump["radius_mm"], bump["u_radius_mm"], midline.radius[i])
+            look("h", bump["height_mm"], bump["u_height_mm"], midline.height[i])
+        overall = foil["overall"]
+        look("R0", overall["radius_mm"], overall["u_radius_mm"], midline.overall)
+    return count
+
+
 def judge_names(report, wanted):
     """named: the claims are what is there, and nothing else is. in_class: what is there is one of the
     explanations that the report says it cannot tell apart. Curves count as `unattributed`."""
+    if "scan.carriage_quadratic" in wanted:  # about another middle it is the scale
+        wanted = [w for w in wanted if w != "scan.scale_y"]
     claims = [c["id"] for c in report["claims"]]
     curve = report["unattributed"]
     said = sorted(claims + (["free." + curve["coordinate"]] if curve else []))
@@ -166,6 +185,9 @@ def judge(case, report, code, seconds):
     for quantity, (held, stated) in ranges(after).items():
         row[f"{quantity}_ranges"] = stated
         row[f"{quantity}_ranges_hold"] = held
+    for name, pairs in (("before", before), ("after", after)):
+        for quantity, (held, count) in within(pairs).items():
+            row[f"{quantity}_within_{name}"] = round(held / count, 4) if count else 0
     row["effects"] = json.dumps(case["effects"], separators=(",", ":"))
     return row
 

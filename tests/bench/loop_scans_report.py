@@ -107,6 +107,20 @@ def range_lines(rows):
     return markdown(header, result)
 
 
+def within_lines(rows):
+    result = []
+    for name in sorted({r["tier"] for r in rows}):
+        own = [r for r in rows if r["tier"] == name and (is_scanner(r) or not r["wanted"])]
+        if not own:
+            continue
+        cells = [name, len(own)]
+        for q in QUANTITIES:
+            mean = [100 * np.mean([number(r, f"{q}_within_{side}") for r in own]) for side in ("before", "after")]
+            cells.append(f"{mean[0]:.0f} → {mean[1]:.0f}")
+        result.append(cells)
+    return markdown(["what", "cases"] + [f"{q} within U, %" for q in QUANTITIES], result)
+
+
 def clean_lines(rows):
     clean = [r for r in rows if r["tier"] == "clean"]
     if not clean:
@@ -167,6 +181,11 @@ def write_scans(folder, rows, tiers, seed):
         reduction_header(["profile"]),
         [reduction_row(t, g, ["profile"], floor) for t, g in groups if g[0]["wanted"]],
     )
+    lines += [
+        "", "## Uncertainty", "",
+        "Clean inputs and effects of the scanner: how many values lie within U = 2 u of the truth, before and after.", "",
+        *within_lines(rows),
+    ]  # fmt: skip
     lines += ["", *clean_lines(rows), "## Ties", "", *range_lines(rows)]
     lines += ["", "## Every case that was not in its class", "", *missed_lines(rows)]
     with open(os.path.join(folder, "loop_scans.md"), "w", encoding="utf-8") as f:
