@@ -133,6 +133,11 @@ void fg_points_places(const fg_points_row *row, fg_point middle, fg_point at[FG_
 void fg_points_residual(fg_points *points, const fg_points_correction *correction, double *residual,
                         double *jacobian);
 
+/* Parameters that a row's residual depends on, ascending; returns how many. */
+enum { FG_POINTS_ROW_PARAMETERS = 7 };
+size_t fg_points_row_parameters(const fg_points *points, size_t row,
+                                size_t parameter[FG_POINTS_ROW_PARAMETERS]);
+
 /* Least squares of the geometry under a correction, Gauss-Newton to convergence. */
 fg_status fg_points_fit(fg_context *ctx, fg_points *points, const fg_points_correction *correction);
 

@@ -89,6 +89,19 @@ static fg_circle circle_of(const fg_points *points, const fg_points_row *row) {
                      pose->origin_mm.y + bump->distance_mm * sin(angle), bump->radius_mm};
 }
 
+size_t fg_points_row_parameters(const fg_points *points, size_t i,
+                                size_t parameter[FG_POINTS_ROW_PARAMETERS]) {
+  const fg_points_row *row = &points->rows[i];
+  size_t n = 0, at = first_of_part(points, row->part), view = first_of_view(points, row->view);
+  if (!row->bump) parameter[n++] = at;
+  for (size_t k = 0; row->bump && k < 3; k++)
+    parameter[n++] = at + 1 + 3 * row->bump_index + k;
+  parameter[n++] = view;
+  parameter[n++] = view + 1;
+  if (row->bump && !is_first_view(points, row->view)) parameter[n++] = view + 2;
+  return n;
+}
+
 /* Derivatives of |p - C| - R: -n by the centre, -1 by the radius. */
 static void fill_jacobian(const fg_points *points, size_t i, double *jacobian) {
   const fg_points_row *row = &points->rows[i];
@@ -170,17 +183,15 @@ static void move_geometry(fg_points *points, const gsl_vector *step) {
 static fg_status solve_step(fg_context *ctx, const fg_points *points, const double *residual,
                             const double *jacobian, gsl_matrix *normal, gsl_vector *step) {
   size_t n = points->parameters, rows = points->row_count;
-  for (size_t a = 0; a < n; a++) {
-    double right = 0;
-    for (size_t i = 0; i < rows; i++)
-      right += points->rows[i].weight * jacobian[a * rows + i] * residual[i];
-    gsl_vector_set(step, a, right);
-    for (size_t b = 0; b <= a; b++) {
-      double sum = 0;
-      for (size_t i = 0; i < rows; i++)
-        sum += points->rows[i].weight * jacobian[a * rows + i] * jacobian[b * rows + i];
-      gsl_matrix_set(normal, a, b, sum);
-      gsl_matrix_set(normal, b, a, sum);
+  gsl_matrix_set_zero(normal);
+  gsl_vector_set_zero(step);
+  for (size_t i = 0; i < rows; i++) {
+    size_t own[FG_POINTS_ROW_PARAMETERS], count = fg_points_row_parameters(points, i, own);
+    for (size_t a = 0; a < count; a++) {
+      double weighted = points->rows[i].weight * jacobian[own[a] * rows + i];
+      *gsl_vector_ptr(step, own[a]) += weighted * residual[i];
+      for (size_t b = 0; b < count; b++)
+        *gsl_matrix_ptr(normal, own[a], own[b]) += weighted * jacobian[own[b] * rows + i];
     }
   }
   for (size_t a = 0; a < n; a++)

@@ -31,7 +31,8 @@ struct fg_scan_loop {
  * NULL) gets what is left. */
 fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set, double *residual_um);
 
-/* An effect of the scanner as a field; the set's fields, and the shift of every row by part effects (mm; NULL: not wanted). */
+/* An effect of the scanner as a field; the set's fields, and the shift of every row by part effects
+ * (mm; NULL: not wanted). */
 fg_field fg_scan_field(const fg_scan_effect *effect, const fg_field_row *row);
 void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields);
 fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,

@@ -146,24 +146,31 @@ static void hold_free(refit *r, size_t k) {
   gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
 }
 
+/* A row knows few numbers of the geometry, and all of the effects. */
+static void add_row(refit *r, size_t i) {
+  size_t own[FG_POINTS_ROW_PARAMETERS + UNKNOWNS_MAX];
+  double value[FG_POINTS_ROW_PARAMETERS + UNKNOWNS_MAX];
+  size_t count = fg_points_row_parameters(r->points, i, own), geometry = count;
+  for (size_t k = 0; k < r->unknowns; k++)
+    own[count++] = r->parameters + k;
+  for (size_t a = 0; a < count; a++) /* geometry in mm */
+    value[a] = column_of(r, own[a])[i] * (a < geometry ? 1000 : 1);
+  for (size_t a = 0; a < count; a++) {
+    *gsl_vector_ptr(r->right, own[a]) +=
+        row_weight(r, i, own[a], own[a]) * value[a] * r->residual[i];
+    for (size_t b = 0; b < count; b++)
+      *gsl_matrix_ptr(r->normal, own[a], own[b]) +=
+          row_weight(r, i, own[a], own[b]) * value[a] * value[b];
+  }
+}
+
 /* The normal equations of geometry and effects, with what holds free curves. */
 static void assemble(refit *r) {
-  size_t n = r->parameters + r->unknowns, rows = r->points->row_count;
-  for (size_t a = 0; a < n; a++) {
-    const double *x = column_of(r, a);
-    double right = 0, unit = a < r->parameters ? 1000 : 1; /* geometry in mm */
-    for (size_t i = 0; i < rows; i++)
-      right += row_weight(r, i, a, a) * unit * x[i] * r->residual[i];
-    gsl_vector_set(r->right, a, right);
-    for (size_t b = 0; b <= a; b++) {
-      const double *y = column_of(r, b);
-      double sum = 0, other = b < r->parameters ? 1000 : 1;
-      for (size_t i = 0; i < rows; i++)
-        sum += row_weight(r, i, a, b) * unit * x[i] * other * y[i];
-      gsl_matrix_set(r->normal, a, b, sum);
-      gsl_matrix_set(r->normal, b, a, sum);
-    }
-  }
+  size_t n = r->parameters + r->unknowns;
+  gsl_matrix_set_zero(r->normal);
+  gsl_vector_set_zero(r->right);
+  for (size_t i = 0; i < r->points->row_count; i++)
+    add_row(r, i);
   for (size_t k = 0; k < r->unknowns; k++)
     hold_free(r, k);
   for (size_t a = 0; a < n; a++) {

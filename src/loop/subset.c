@@ -20,6 +20,8 @@
 #define LARGEST_UM 400.0
 /* A curve is known to this share of itself: no listed effect stands beside it for less. */
 #define CURVE_SHARE 0.03
+/* A curve with all its columns leaves less than this share of what a smoother one does. */
+#define FINER 0.9
 /* Effects that one curve does not stand for. */
 enum { FEW = 2 };
 /* Columns of a curve (points_effects.c) that are smooth; those of bump.phi that are polynomials. */
@@ -141,15 +143,43 @@ static double find_integral(const fg_subset_columns *s) {
   return integral;
 }
 
+static double noise_of(const fg_subset_columns *c, size_t rank) {
+  double freedom = fmax((double)c->rows - (double)rank, 1);
+  return sqrt(fg_subset_dot(c->rows, c->left, c->left) / freedom);
+}
+
+static void take_noise(fg_subset_search *s, size_t rank) {
+  s->full = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left);
+  s->freedom = rank - s->columns.geometry_rank;
+  s->out->noise_um = noise_of(&s->columns, rank);
+  s->out->integral = find_integral(&s->columns);
+}
+
 size_t fg_subset_noise(fg_subset_search *s, bool listed_only) {
   size_t end = listed_only ? s->free_end : s->free_column;
   size_t rank = fg_subset_columns_span(&s->columns, s->free_column, end);
-  double freedom = fmax((double)s->columns.rows - (double)rank, 1);
-  s->full = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left);
-  s->freedom = rank - s->columns.geometry_rank;
-  s->out->noise_um = sqrt(s->full / freedom);
-  s->out->integral = find_integral(&s->columns);
+  take_noise(s, rank);
   return rank;
+}
+
+/* A curve that is there is no noise: the one that leaves far less with all its columns has them. */
+static void refine_noise(fg_subset_search *s) {
+  const fg_subset_effect *best = NULL;
+  size_t rank = fg_subset_noise(s, false);
+  double least = FINER * s->out->noise_um;
+  for (size_t e = 0; e < s->out->effect_count; e++) {
+    const fg_subset_effect *curve = &s->out->effects[e];
+    if (!curve->free) continue;
+    size_t from = curve->column[0];
+    size_t more = fg_subset_columns_span_more(&s->columns, rank, from, from + curve->columns);
+    double noise = noise_of(&s->columns, more);
+    if (noise >= least) continue;
+    least = noise;
+    best = curve;
+  }
+  if (!best) return;
+  size_t from = best->column[0];
+  take_noise(s, fg_subset_columns_span_more(&s->columns, rank, from, from + best->columns));
 }
 
 /* ---- all sets ---- */
@@ -365,10 +395,8 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subs
   add_known(&s, request->known);
   FG_TRY_EXIT(fg_subset_add_other_steps(ctx, &s, request->known));
   FG_TRY_EXIT(fg_subset_width_doubt(ctx, &s.columns));
-  if (request->look)
-    FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));
-  else
-    fg_subset_noise(&s, false);
+  if (request->look) FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));
+  refine_noise(&s);
   try_sets(&s);
 exit:
   fg_subset_columns_close(&s.columns);

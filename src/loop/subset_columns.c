@@ -24,14 +24,30 @@ double fg_subset_dot(size_t n, const double *a, const double *b) {
   return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
+double fg_subset_along(const fg_subset_columns *s, size_t k, const double *v) {
+  size_t first = s->first[k];
+  return fg_subset_dot(s->last[k] - first, s->basis + k * s->rows + first, v + first);
+}
+
 void fg_subset_take_out(const fg_subset_columns *s, size_t rank, double *v) {
   for (int twice = 0; twice < 2; twice++)
     for (size_t k = 0; k < rank; k++) {
       const double *b = s->basis + k * s->rows;
-      double d = fg_subset_dot(s->rows, b, v);
-      for (size_t i = 0; i < s->rows; i++)
+      double d = fg_subset_along(s, k, v);
+      for (size_t i = s->first[k]; d != 0 && i < s->last[k]; i++)
         v[i] -= d * b[i];
     }
+}
+
+static void find_support(fg_subset_columns *s, size_t rank) {
+  const double *v = s->basis + rank * s->rows;
+  size_t first = 0, last = s->rows;
+  while (first < last && v[first] == 0)
+    first++;
+  while (last > first && v[last - 1] == 0)
+    last--;
+  s->first[rank] = first;
+  s->last[rank] = last;
 }
 
 /* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
@@ -43,6 +59,7 @@ static bool extend(fg_subset_columns *s, size_t rank, const double *v, double le
   if (!(left > fmax(1e-12 * whole, least))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
+  find_support(s, rank);
   return true;
 }
 
@@ -103,6 +120,14 @@ size_t fg_subset_columns_span(fg_subset_columns *s, size_t skip, size_t end) {
     }
     if (extend(s, rank, v, VANISHED * (double)s->rows)) rank++;
   }
+  memcpy(s->left, s->residual, s->rows * sizeof *s->left);
+  fg_subset_take_out(s, rank, s->left);
+  return rank;
+}
+
+size_t fg_subset_columns_span_more(fg_subset_columns *s, size_t rank, size_t from, size_t to) {
+  for (size_t c = from; c < to; c++)
+    if (extend(s, rank, s->values + c * s->rows, VANISHED * (double)s->rows)) rank++;
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_subset_take_out(s, rank, s->left);
   return rank;
@@ -235,6 +260,8 @@ fg_status fg_subset_width_doubt(fg_context *ctx, fg_subset_columns *s) {
   /* Three times what chance takes: below that nothing is known to be there. */
   if (before - after > 3 * chance) s->width_part = (before - after - chance) / n;
   memcpy(s->basis, kept, kept_size);
+  for (size_t k = 0; k < s->geometry_rank; k++)
+    find_support(s, k);
 exit:
   free(v);
   free(left);
@@ -255,6 +282,9 @@ static fg_status list_rows(fg_context *ctx, fg_subset_columns *s) {
 static fg_status allocate(fg_context *ctx, fg_subset_columns *s) {
   size_t vector = s->rows * sizeof(double), all = FG_SUBSET_COLUMNS;
   FG_TRY(fg_memory_allocate(ctx, s->points->parameters + all, vector, (void **)&s->basis));
+  size_t most = s->points->parameters + all;
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->first, (void **)&s->first));
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->last, (void **)&s->last));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->values));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->strain));
   FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->residual));
@@ -318,6 +348,8 @@ fg_status fg_subset_columns_open(fg_context *ctx, const fg_points *points,
 void fg_subset_columns_close(fg_subset_columns *s) {
   free(s->row);
   free(s->basis);
+  free(s->first);
+  free(s->last);
   free(s->values);
   free(s->strain);
   free(s->residual);

@@ -18,8 +18,10 @@ typedef struct fg_subset_columns {
   const fg_points *points;
   size_t rows; /* that are not kept aside */
   size_t *row;
-  double *basis; /* orthonormal: the geometry, then all effects; FG_SUBSET_COLUMNS beyond the
-                    geometry's parameters */
+  double *basis;        /* orthonormal: the geometry, then all effects; FG_SUBSET_COLUMNS beyond the
+                           geometry's parameters */
+  size_t *first, *last; /* per vector of the basis: the rows where it is not 0; a bump's numbers act
+                           on its own rows only */
   size_t geometry_rank;
   double *residual; /* beside the geometry, um */
   double *values;   /* FG_SUBSET_COLUMNS × rows: effects beside the geometry */
@@ -52,6 +54,8 @@ double fg_subset_dot(size_t n, const double *a, const double *b);
 /* Weighted columns of an effect at the rows in use, as they are; returns how many. */
 size_t fg_subset_gather(const fg_subset_columns *columns, const char *id, const double *shape,
                         double *out);
+/* Product with vector k of the basis. */
+double fg_subset_along(const fg_subset_columns *columns, size_t k, const double *v);
 /* Takes the first `rank` vectors of the basis out of v. */
 void fg_subset_take_out(const fg_subset_columns *columns, size_t rank, double *v);
 
@@ -62,6 +66,9 @@ size_t fg_subset_columns_add(fg_subset_columns *columns, const char *id, const d
 
 /* All columns but [skip, end) at once: fills `left`, returns the rank of the basis. */
 size_t fg_subset_columns_span(fg_subset_columns *columns, size_t skip, size_t end);
+
+/* The same with columns [from, to) as they are behind a basis of `rank`, which stays valid. */
+size_t fg_subset_columns_span_more(fg_subset_columns *columns, size_t rank, size_t from, size_t to);
 
 /* Least squares of the residual by terms. Terms that lie in what stands before them get 0 and do
  * not count. `x` (or NULL) gets the coefficients, `last_u` (or NULL) the standard deviation of the

@@ -58,7 +58,7 @@ static hit gain_at(const fg_subset_search *s, size_t rank, const char *id, doubl
   for (size_t k = 0; k < rank; k++) {
     double along[FG_SMALL_MAX];
     for (size_t a = 0; a < count; a++) {
-      along[a] = fg_subset_dot(c->rows, work + a * c->rows, c->basis + k * c->rows);
+      along[a] = fg_subset_along(c, k, work + a * c->rows);
       for (size_t b = 0; b <= a; b++)
         system.matrix[a][b] -= along[a] * along[b];
     }
@@ -147,7 +147,7 @@ static double rest_of_step(const fg_subset_columns *c, size_t rank, double y_mm,
   fg_subset_gather(c, "scan.row_step", shape, work);
   double rest = fg_subset_dot(c->rows, work, work);
   for (size_t k = 0; k < rank; k++) {
-    double along = fg_subset_dot(c->rows, work, c->basis + k * c->rows);
+    double along = fg_subset_along(c, k, work);
     rest -= along * along;
   }
   return rest;
@@ -195,7 +195,6 @@ fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s) {
   for (int pass = 0; pass < 2; pass++)
     for (int round = 0; round < 2; round++)
       if (!add_best(s, pass == 0, work)) break;
-  fg_subset_noise(s, false);
   free(work);
   return FG_OK;
 }
