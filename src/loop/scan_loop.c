@@ -316,6 +316,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   };
   FG_TRY(fg_scan_bumps_run(ctx, &request, &loop->bumps));
   if (!loop->points.discs) FG_TRY(say_reach(ctx, loop));
+  FG_TRY(fg_scan_scale_doubt(ctx, loop));
   if (loop->verdict != FG_LOOP_CLEAN) return FG_OK;
   bool listed = fg_scan_bumps_claimed(&loop->bumps);
   bool rest = fg_scan_bumps_curve(&loop->bumps, &response) != NULL;

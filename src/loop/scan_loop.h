@@ -20,6 +20,7 @@ struct fg_scan_loop {
   fg_scan_error error_before, error_after;
   double noise_floor_um;
   bool tied;
+  bool scale_tied; /* scan_scale.c */
   fg_scan_set tie[FG_SUBSET_CLASS]; /* the other members of the class, fitted */
   size_t tie_count;
   fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
@@ -37,6 +38,9 @@ fg_field fg_scan_field(const fg_scan_effect *effect, const fg_field_row *row);
 void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields);
 fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
                         double **shift_mm);
+
+/* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
+fg_status fg_scan_scale_doubt(fg_context *ctx, fg_scan_loop *loop);
 
 /* Copies a measured foil with corrected edges and measures it again: fields move the edges by
  * d(x, y); `shift` (one per row of `points`, for the rows of `view`) takes the part's own deviation

@@ -168,8 +168,9 @@ static void put_foil(FILE *out, const fg_scan_loop *loop, size_t scan, size_t f)
     fputs("</p>\n", out);
     return;
   }
-  put_overall(out, b, a, loop->set.count > 0, loop->tied);
-  put_bumps(out, b, a, loop->set.count > 0, loop->tied);
+  bool tied = loop->tied || loop->scale_tied;
+  put_overall(out, b, a, loop->set.count > 0, tied);
+  put_bumps(out, b, a, loop->set.count > 0, tied);
 }
 
 static void put_discs(FILE *out, const fg_scan_loop *loop, size_t scan) {
@@ -238,7 +239,7 @@ static void put_agreement(FILE *out, const fg_scan_loop *loop) {
 void fg_scan_page_dimensions(FILE *out, const fg_scan_loop *loop) {
   fputs("<section><h2 class=\"first\">Dimensions</h2>\n<p class=\"note\">± is U = 2u.", out);
   if (loop->set.count) fputs(" A change larger than U of the corrected value is marked.", out);
-  if (loop->tied)
+  if (loop->tied || loop->scale_tied)
     fputs(" Range: lowest and highest value, U included, over the explanations that the data "
           "cannot tell apart.",
           out);

@@ -260,6 +260,10 @@ static void write_advice(fg_json *json, const fg_scan_loop *loop) {
   else if (loop->tied)
     fg_json_string(json, NULL,
                    "scan another foil on the same scanner: what repeats is the scanner");
+  if (loop->scale_tied)
+    fg_json_string(json, NULL,
+                   "scan a gauge of known diameter on the same scanner (--form discs): it tells "
+                   "the scale, which no foil of unknown size can");
   fg_json_array_end(json);
 }
 
@@ -349,7 +353,7 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
     }
   for (size_t b = 0; b < loop->points.barred_count; b++)
     fprintf(out, "  not confirmed from disc to disc: %s\n", loop->points.barred[b].id);
-  if (loop->tied)
+  if (loop->tied || loop->scale_tied)
     fputs(
         "Several explanations do equally well: -o lists them, and the range of every dimension.\n",
         out);
