@@ -3,9 +3,10 @@
  * The smooth effects of scanner and part are nearly the same thing in one scan (they correlate at
  * 0.83 to 0.99), so a search that adds the best one first can take a wrong one and never come back.
  * There are few of them: all sets of up to two (three where a part was scanned more than once) are
- * fitted beside the geometry. Those of the smallest size that leave no more than all effects and
- * free curves together would, within what noise and the edge model's own error allow, are the alias
- * class. When there are none, a free curve, alone or beside up to two listed effects, stands in.
+ * fitted beside the geometry, with any ripples and steps, which stand alone. Those of the smallest
+ * size that leave no more than all effects and free curves together would, within what noise and
+ * the edge model's own error allow, are the alias class. When there are none, a free curve, alone or
+ * beside up to two listed effects, stands in.
  *
  * The width of the strip orders the class: a scanner's field stretches it as it stretches the foil,
  * a part's effect does not. It does not decide: an edge model that errs with the direction of the
