@@ -335,6 +335,27 @@ static bool scanned_again(const fg_points *points) {
   return points->view_count > points->part_count;
 }
 
+/* Two curves, alone or beside one listed effect: a carriage that runs unevenly also sways. One view
+ * could not tell them. */
+static fg_subset_member try_two_free(fg_subset_search *s, const fg_subset_yardstick *y,
+                                     fg_subset_member best) {
+  fg_subset *out = s->out;
+  unsigned listed = fg_subset_mask_of(out, false), free = fg_subset_mask_of(out, true);
+  if (s->columns.points->view_count < 2 || fg_subset_is_right(y, &best)) return best;
+  for (unsigned two = 0, first = 1; first || two; first = 0, two = (two - free) & free) {
+    if (fg_subset_bits(two) != 2 || has_twins(out, two)) continue;
+    for (size_t with = 0; with <= out->effect_count; with++) {
+      unsigned mask = two | (with < out->effect_count ? 1u << with & listed : 0);
+      if (with < out->effect_count && mask == two) continue;
+      fg_subset_member member = fg_subset_try(s, y, mask);
+      double gained = fmin(score_of(s, &best) - score_of(s, &member),
+                           free_score(s, y, best) - free_score(s, y, member));
+      if (gained > 10) best = member;
+    }
+  }
+  return best;
+}
+
 static bool was_tried(const fg_subset_search *s, const fg_subset_member *m) {
   size_t count = 0;
   for (size_t e = 0; s->tried && e < s->out->effect_count; e++) {
@@ -366,7 +387,7 @@ static void try_sets(fg_subset_search *s) {
   out->right = out->member_count > 0;
   if (out->right) order_members(s, &y);
   if (!out->member_count) {
-    fg_subset_member curve = try_free(s, &y, best);
+    fg_subset_member curve = try_two_free(s, &y, try_free(s, &y, best));
     bool hope = is_worth_fitting(s, &y, &best, &curve);
     out->right = !hope && fg_subset_is_right(&y, &curve);
     fg_subset_keep_member(out, hope ? &best : &curve);

@@ -4,7 +4,7 @@
 
 #include "loop/subset.h"
 
-enum { FG_SUBSET_COLUMNS = 256, FG_SUBSET_TERMS = 48 };
+enum { FG_SUBSET_COLUMNS = 256, FG_SUBSET_TERMS = 64 };
 
 /* How a column enters the basis of all effects at once. A curve is finer than noise along the edge
  * may be told from: with all its columns it would take that for its own. */

@@ -143,25 +143,43 @@ static fg_status write_claims(fg_context *ctx, fg_json *json, const fg_scan_loop
   return FG_OK;
 }
 
-static fg_status write_unattributed(fg_context *ctx, fg_json *json, const fg_scan_loop *loop) {
-  const fg_scan_effect *curve = NULL;
-  for (size_t i = 0; i < loop->set.count; i++)
-    if (is_free(loop->set.effects[i].id)) curve = &loop->set.effects[i];
-  if (!curve) {
-    if (!fg_json_bump_curve(json, &loop->bumps)) fg_json_string(json, "unattributed", NULL);
-    return FG_OK;
-  }
+static fg_status write_curve(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
+                             const fg_scan_effect *curve) {
   char coordinate[48];
   coordinate_of(curve->id, coordinate, sizeof coordinate);
-  fg_json_object(json, "unattributed");
-  fg_json_string(json, "coordinate", coordinate);
   const char *direction = strrchr(curve->id, '.');
+  fg_json_string(json, "coordinate", coordinate);
   fg_json_string(json, "moves",
                  !strcmp(direction, ".dx")   ? "x"
                  : !strcmp(direction, ".dy") ? "y"
                  : strchr(direction, ':')    ? "along the radius"
                                              : "along the normal");
-  FG_TRY(fg_json_scan_shape(ctx, json, loop, curve));
+  return fg_json_scan_shape(ctx, json, loop, curve);
+}
+
+/* The largest curve; others beside it. */
+static fg_status write_unattributed(fg_context *ctx, fg_json *json, const fg_scan_loop *loop) {
+  const fg_scan_effect *curve = NULL;
+  for (size_t i = 0; i < loop->set.count; i++) {
+    const fg_scan_effect *effect = &loop->set.effects[i];
+    if (!is_free(effect->id)) continue;
+    if (!curve || amplitude_of(effect) > amplitude_of(curve)) curve = effect;
+  }
+  if (!curve) {
+    if (!fg_json_bump_curve(json, &loop->bumps)) fg_json_string(json, "unattributed", NULL);
+    return FG_OK;
+  }
+  fg_json_object(json, "unattributed");
+  FG_TRY(write_curve(ctx, json, loop, curve));
+  fg_json_array(json, "others");
+  for (size_t i = 0; i < loop->set.count; i++) {
+    const fg_scan_effect *other = &loop->set.effects[i];
+    if (!is_free(other->id) || other == curve) continue;
+    fg_json_object(json, NULL);
+    FG_TRY(write_curve(ctx, json, loop, other));
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
   fg_json_number(json, "rms", loop->error_before.rms);
   fg_json_number(json, "p_value", loop->subset.p_value);
   fg_json_array(json, "nearest");

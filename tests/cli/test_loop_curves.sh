@@ -99,6 +99,15 @@ says lens.out "claims['part.stretch']['verdict'] == 'tied' and 'scan.optical_qua
 says lens.out "foil('after')['overall']['radius_range_mm'][0] <= 20.95 <= foil('after')['overall']['radius_range_mm'][1]"
 says lens.out "any('known diameter' in s for s in r['separating_measurement'])"
 
+# A carriage that runs unevenly and sways: two curves, from two scans.
+sway='{"id":"free.scan.y","moves":"x","knots":[[2,0],[8,9],[15,-8],[22,10],[30,-9],[38,0]]},
+{"id":"free.scan.y","moves":"y","knots":[[2,0],[6,-5],[12,6],[19,-7],[27,5],[33,-6],[38,0]]}'
+render sway_a 5 -75 "$sway" 20,22
+render sway_b 6 15 "$sway" 22,21
+"$program" loop --same-foil sway_a.png sway_b.png -o sway.out || fail "loop on two curves"
+says sway.out "not claims and curve['moves'] == 'x' and [(o['coordinate'], o['moves']) for o in curve['others']] == [('scan.y', 'y')]"
+says sway.out "e('after', 'R') < e('before', 'R') / 10"
+
 # A step in the fillet beside a bump may as well lie on the bump's other side.
 cat >step.json <<'SPEC'
 {"schema":"foilgauge/render/1","seed":18,"width_px":4000,"height_px":5400,
@@ -116,7 +125,7 @@ SPEC
 says step.out "list(claims) == ['scan.row_step'] and claims['scan.row_step']['verdict'] == 'found'"
 says step.out "abs(claims['scan.row_step']['parameters']['y_mm'] - 11.46) <= 2 * claims['scan.row_step']['uncertainty']['y_mm']"
 
-for report in across radius phi four lens step; do
+for report in across radius phi four lens sway step; do
   python3 - "$root/reports/schema/loop_scan.schema.json" $report.out <<'PYTHON' || fail "$report does not validate"
 import json, sys
 try:
