@@ -125,7 +125,7 @@ static void add_smooth(fg_subset_search *s) {
 }
 
 /* Integral of the correlation of what all effects leave. */
-static double find_integral(const fg_subset_columns *s) {
+double fg_subset_integral(const fg_subset_columns *s) {
   enum { LAGS = 16 };
   double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
   for (size_t i = 0; i < s->rows; i++)
@@ -152,7 +152,7 @@ static void take_noise(fg_subset_search *s, size_t rank) {
   s->full = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left);
   s->freedom = rank - s->columns.geometry_rank;
   s->out->noise_um = noise_of(&s->columns, rank);
-  s->out->integral = find_integral(&s->columns);
+  s->out->integral = fg_subset_integral(&s->columns);
 }
 
 size_t fg_subset_noise(fg_subset_search *s, bool listed_only) {

@@ -40,16 +40,36 @@ void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect);
  * that are listed; returns the rank of the basis that took them out. */
 size_t fg_subset_noise(fg_subset_search *s, bool listed_only);
 
+/* Integral of the correlation of what is left, along the edge. */
+double fg_subset_integral(const fg_subset_columns *columns);
+
+/* Effects with a shape that must be sought: a ripple's period, a step's place. */
+typedef struct fg_subset_shaped {
+  fg_subset_effect effect;
+  double (*start)(const fg_points *points, size_t i, size_t count); /* i of `count` */
+  size_t starts;
+} fg_subset_shaped;
+enum { FG_SUBSET_SHAPED = 2 };
+extern const fg_subset_shaped fg_subset_shaped_kinds[FG_SUBSET_SHAPED];
+/* Gain in chi² that makes one worth a place in the search: its best of some hundred places stands
+ * for ln of their number more; and its size, um. */
+#define FG_SUBSET_SHAPED_CHI2     45.0
+#define FG_SUBSET_SHAPED_LEAST_UM 0.15
+
+/* Where one takes most beside the first `rank` vectors of the basis, with `left` beside them: its
+ * gain in chi², its size in um. `work` has room for two columns. */
+typedef struct fg_subset_hit {
+  double gain, amplitude, at;
+} fg_subset_hit;
+fg_subset_hit fg_subset_find_place(const fg_subset_search *s, size_t rank,
+                                   const fg_subset_shaped *kind, double *work);
+
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
 fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s);
 
 /* Steps at other places that the geometry turns into those that are known: a whole bump between the
  * two places takes the difference. They are added as effects of their own. */
 fg_status fg_subset_add_other_steps(fg_context *ctx, fg_subset_search *s, const fg_scan_set *known);
-
-/* Start i of `count`: a ripple's period, evenly in frequency; a step's place. */
-double fg_subset_ripple_period(const fg_points *points, size_t i, size_t count);
-double fg_subset_step_place(const fg_points *points, size_t i, size_t count);
 
 size_t fg_subset_bits(unsigned mask);
 /* Of all effects, those that are free curves, or those that are listed. */

@@ -9,23 +9,26 @@
 
 enum { RIPPLE_STEPS = 400, STEP_STEPS = 200, REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
 
-/* Gain in chi² that makes a ripple or a step worth a place in the search: its best of some hundred
- * places stands for ln of their number more. */
-#define SHAPED_CHI2     45.0
-#define SHAPED_LEAST_UM 0.15
 /* A step elsewhere that leaves no more than this is as good; one so near is the same. */
 #define OTHER_STEP_CHI2 10.0
 #define OTHER_STEP_MM   0.3
 
-typedef struct shaped {
-  const fg_subset_effect *effect;
-  double (*start)(const fg_points *points, size_t i, size_t count);
-  size_t starts;
-} shaped;
+/* Evenly in frequency. */
+static double ripple_period(const fg_points *points, size_t i, size_t count) {
+  double span = points->frame.high_mm[1] - points->frame.low_mm[1];
+  double low = 1.5 / span, high = 2.5;
+  return 1 / (low + (high - low) * (double)i / (double)count);
+}
 
-typedef struct hit {
-  double gain, amplitude, at;
-} hit;
+static double step_place(const fg_points *points, size_t i, size_t count) {
+  double low = points->frame.low_mm[1], high = points->frame.high_mm[1];
+  return low + (high - low) * ((double)i + 1) / ((double)count + 1);
+}
+
+const fg_subset_shaped fg_subset_shaped_kinds[FG_SUBSET_SHAPED] = {
+    {{.id = "scan.carriage_ripple", .columns = 2, .shapes = 1}, ripple_period, RIPPLE_STEPS},
+    {{.id = "scan.row_step", .columns = 1, .shapes = 1}, step_place, STEP_STEPS},
+};
 
 /* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
 static bool has_both_sides(const fg_subset_columns *c, double y_mm) {
@@ -39,14 +42,15 @@ static bool has_both_sides(const fg_subset_columns *c, double y_mm) {
 }
 
 /* Gain beside everything else, in chi². */
-static hit gain_at(const fg_subset_search *s, size_t rank, const char *id, double place,
-                   double *work) {
+static fg_subset_hit gain_at(const fg_subset_search *s, size_t rank, const char *id, double place,
+                             double *work) {
   const fg_subset_columns *c = &s->columns;
-  if (!strcmp(id, "scan.row_step") && !has_both_sides(c, place)) return (hit){0, 0, place};
+  if (!strcmp(id, "scan.row_step") && !has_both_sides(c, place))
+    return (fg_subset_hit){0, 0, place};
   double shape[FG_LOOP_SHAPES] = {place}, x[FG_SMALL_MAX], square = 0;
   size_t count = fg_subset_gather(c, id, shape, work);
   fg_normal_equations system;
-  hit none = {0, 0, place}, found = none;
+  fg_subset_hit none = {0, 0, place}, found = none;
   fg_normal_clear(&system, count);
   for (size_t a = 0; a < count; a++) {
     /* What is left stands beside the basis already, and the basis takes its share of the products.
@@ -76,12 +80,14 @@ static hit gain_at(const fg_subset_search *s, size_t rank, const char *id, doubl
 }
 
 /* The best place over a grid of starts, then finer around it. */
-static hit find_place(const fg_subset_search *s, size_t rank, const shaped *kind, double *work) {
+fg_subset_hit fg_subset_find_place(const fg_subset_search *s, size_t rank,
+                                   const fg_subset_shaped *kind, double *work) {
   const fg_points *points = s->columns.points;
-  hit best = {0};
+  fg_subset_hit best = {0};
   size_t which = 0;
   for (size_t i = 0; i < kind->starts; i++) {
-    hit tried = gain_at(s, rank, kind->effect->id, kind->start(points, i, kind->starts), work);
+    fg_subset_hit tried =
+        gain_at(s, rank, kind->effect.id, kind->start(points, i, kind->starts), work);
     if (tried.gain <= best.gain) continue;
     best = tried;
     which = i;
@@ -91,7 +97,7 @@ static hit find_place(const fg_subset_search *s, size_t rank, const shaped *kind
   for (int level = 0; level < REFINE_LEVELS && best.gain > 0; level++) {
     double step = (high - low) / REFINE_STEPS;
     for (size_t i = 0; i <= REFINE_STEPS; i++) {
-      hit tried = gain_at(s, rank, kind->effect->id, low + step * (double)i, work);
+      fg_subset_hit tried = gain_at(s, rank, kind->effect.id, low + step * (double)i, work);
       if (tried.gain > best.gain) best = tried;
     }
     low = best.at - step;
@@ -100,40 +106,26 @@ static hit find_place(const fg_subset_search *s, size_t rank, const shaped *kind
   return best;
 }
 
-double fg_subset_ripple_period(const fg_points *points, size_t i, size_t count) {
-  double span = points->frame.high_mm[1] - points->frame.low_mm[1];
-  double low = 1.5 / span, high = 2.5;
-  return 1 / (low + (high - low) * (double)i / (double)count);
-}
-
-double fg_subset_step_place(const fg_points *points, size_t i, size_t count) {
-  double low = points->frame.low_mm[1], high = points->frame.high_mm[1];
-  return low + (high - low) * ((double)i + 1) / ((double)count + 1);
-}
-
 /* Adds what stands out most, once. */
 static bool add_best(fg_subset_search *s, bool listed_only, double *work) {
-  static const fg_subset_effect ripple = {.id = "scan.carriage_ripple", .columns = 2, .shapes = 1};
-  static const fg_subset_effect step = {.id = "scan.row_step", .columns = 1, .shapes = 1};
-  const shaped kinds[] = {{&ripple, fg_subset_ripple_period, RIPPLE_STEPS},
-                          {&step, fg_subset_step_place, STEP_STEPS}};
   size_t rank = fg_subset_noise(s, false);
   double noise_um = s->out->noise_um, integral = s->out->integral;
   if (listed_only) rank = fg_subset_noise(s, true);
   /* What the listed effects leave may be the very thing that is sought: it is no noise. */
   s->out->noise_um = noise_um;
   s->out->integral = integral;
-  hit best = {0};
-  const shaped *which = NULL;
-  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
-    hit found = find_place(s, rank, &kinds[k], work);
-    if (found.gain <= SHAPED_CHI2 || found.amplitude <= SHAPED_LEAST_UM) continue;
+  fg_subset_hit best = {0};
+  const fg_subset_shaped *which = NULL;
+  for (size_t k = 0; k < FG_SUBSET_SHAPED; k++) {
+    fg_subset_hit found = fg_subset_find_place(s, rank, &fg_subset_shaped_kinds[k], work);
+    if (found.gain <= FG_SUBSET_SHAPED_CHI2 || found.amplitude <= FG_SUBSET_SHAPED_LEAST_UM)
+      continue;
     if (which && found.gain <= best.gain) continue;
     best = found;
-    which = &kinds[k];
+    which = &fg_subset_shaped_kinds[k];
   }
   if (!which || s->out->effect_count >= FG_SUBSET_EFFECTS) return false;
-  fg_subset_effect found = *which->effect;
+  fg_subset_effect found = which->effect;
   found.shape[0] = best.at;
   fg_subset_add(s, &found);
   s->new_shapes++;
@@ -174,7 +166,7 @@ fg_status fg_subset_add_other_steps(fg_context *ctx, fg_subset_search *s,
     if (strcmp(step->id, "scan.row_step") != 0) continue;
     double above = NAN, below = NAN, square = step->coefficient_um[0] * step->coefficient_um[0];
     for (size_t i = 0; i < 2 * STEP_STEPS; i++) {
-      double y = fg_subset_step_place(s->columns.points, i, 2 * STEP_STEPS);
+      double y = step_place(s->columns.points, i, 2 * STEP_STEPS);
       if (fabs(y - step->shape[0]) < OTHER_STEP_MM) continue;
       if (square * rest_of_step(&s->columns, rank, y, work) > OTHER_STEP_CHI2 * unit) continue;
       if (y > step->shape[0]) above = y;
