@@ -323,3 +323,23 @@ exit:
   if (status != FG_OK) fg_points_free(points);
   return status;
 }
+
+double fg_points_integral(const fg_points *points, const size_t *row, size_t count,
+                          const double *value) {
+  enum { LAGS = 16 };
+  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
+  for (size_t i = 0; i < count; i++)
+    for (size_t lag = 0; lag < LAGS && i + lag < count; lag++) {
+      const fg_points_row *a = &points->rows[row ? row[i] : i];
+      const fg_points_row *b = &points->rows[row ? row[i + lag] : i + lag];
+      if (a->view != b->view || a->group != b->group) break;
+      products[lag] += value[i] * value[i + lag];
+      pairs[lag]++;
+    }
+  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
+    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
+    if (rho < 2 / sqrt(pairs[lag])) break;
+    integral += 2 * rho;
+  }
+  return integral;
+}

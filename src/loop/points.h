@@ -138,6 +138,11 @@ enum { FG_POINTS_ROW_PARAMETERS = 7 };
 size_t fg_points_row_parameters(const fg_points *points, size_t row,
                                 size_t parameter[FG_POINTS_ROW_PARAMETERS]);
 
+/* Integral of the correlation of values along the edge, at least 1: noise in n rows averages like
+ * that in n over it. `row` (NULL: all) are the rows that the values are of, ascending. */
+double fg_points_integral(const fg_points *points, const size_t *row, size_t count,
+                          const double *value);
+
 /* Least squares of the geometry under a correction, Gauss-Newton to convergence. */
 fg_status fg_points_fit(fg_context *ctx, fg_points *points, const fg_points_correction *correction);
 

@@ -207,25 +207,6 @@ static double move(refit *r) {
   return largest;
 }
 
-/* Integral of the residuals' correlation along each view's rows. */
-static double correlation_integral(const refit *r) {
-  enum { LAGS = 24 };
-  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
-  for (size_t i = 0; i < r->points->row_count; i++)
-    for (size_t lag = 0; lag < LAGS && i + lag < r->points->row_count; lag++) {
-      const fg_points_row *a = &r->points->rows[i], *b = &r->points->rows[i + lag];
-      if (a->view != b->view || a->group != b->group) break;
-      products[lag] += sqrt(a->weight * b->weight) * r->residual[i] * r->residual[i + lag];
-      pairs[lag]++;
-    }
-  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
-    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
-    if (rho < 2 / sqrt(pairs[lag])) break;
-    integral += 2 * rho;
-  }
-  return integral;
-}
-
 /* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
  * hardly count do not hold it. */
 static double step_place_u(const fg_points *points, double y_mm) {
@@ -248,12 +229,13 @@ static double step_place_u(const fg_points *points, double y_mm) {
 static double row_variance(const refit *r) {
   double sum = 0, rows = 0;
   for (size_t i = 0; i < r->points->row_count; i++) {
+    r->work[i] = sqrt(r->points->rows[i].weight) * r->residual[i];
     if (r->points->views[r->points->rows[i].view].aside) continue;
     sum += r->points->rows[i].weight * r->residual[i] * r->residual[i];
     rows++;
   }
   double freedom = fmax(rows - (double)(r->parameters + r->unknowns), 1);
-  return sum / freedom * correlation_integral(r);
+  return sum / freedom * fg_points_integral(r->points, NULL, r->points->row_count, r->work);
 }
 
 /* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the

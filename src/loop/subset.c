@@ -124,23 +124,8 @@ static void add_smooth(fg_subset_search *s) {
   s->free_end = s->columns.count;
 }
 
-/* Integral of the correlation of what all effects leave. */
 double fg_subset_integral(const fg_subset_columns *s) {
-  enum { LAGS = 16 };
-  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
-  for (size_t i = 0; i < s->rows; i++)
-    for (size_t lag = 0; lag < LAGS && i + lag < s->rows; lag++) {
-      const fg_points_row *a = &s->points->rows[s->row[i]], *b = &s->points->rows[s->row[i + lag]];
-      if (a->view != b->view || a->group != b->group) break;
-      products[lag] += s->left[i] * s->left[i + lag];
-      pairs[lag]++;
-    }
-  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
-    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
-    if (rho < 2 / sqrt(pairs[lag])) break;
-    integral += 2 * rho;
-  }
-  return integral;
+  return fg_points_integral(s->points, s->row, s->rows, s->left);
 }
 
 static double noise_of(const fg_subset_columns *c, size_t rank) {
