@@ -229,6 +229,17 @@ static void put_class(FILE *out, const fg_scan_loop *loop) {
         out);
 }
 
+static void put_scale(FILE *out, const fg_scan_loop *loop) {
+  if (!loop->scale_tied) return;
+  fputs("<section><h2 class=\"first\">A scale that the edges cannot see</h2>\n<p class=\"note\">A "
+        "distortion of the optics about another middle, beside a scale of the carriage, leaves the "
+        "same edges and another size of everything. That would explain the bumps' arc length as "
+        "well as the part does; the dimensions below carry their range over both.</p>\n"
+        "<p class=\"say\"><b>To tell them apart:</b> scan a gauge of known diameter on the same "
+        "scanner (<code>--form discs</code>, <code>diameters_mm</code>).</p></section>\n",
+        out);
+}
+
 /* ---- errors ---- */
 
 static void put_error(FILE *out, const char *name, double before, double after) {
@@ -271,6 +282,7 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   put_head(out, loop, sentence);
   free(sentence);
   put_class(out, loop);
+  put_scale(out, loop);
   FG_TRY(fg_scan_page_vectors(ctx, out, loop));
   FG_TRY(fg_scan_page_effects(ctx, out, loop));
   FG_TRY(fg_scan_page_residuals(ctx, out, loop));
