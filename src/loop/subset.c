@@ -231,9 +231,10 @@ static shaped_masks find_shaped_masks(const fg_subset_search *s) {
 /* Few smooth effects, which can stand for each other; ripples and steps stand alone, and all that
  * are there may be. */
 static bool is_small(unsigned mask, shaped_masks shaped, size_t most) {
-  unsigned held = mask & shaped.all;
+  unsigned held = mask & shaped.all, more = held & ~shaped.known;
+  bool one_more = (held & shaped.known) == shaped.known && fg_subset_bits(more) <= 1;
   return fg_subset_bits(mask & ~shaped.all) <= most &&
-         (fg_subset_bits(mask) <= most || held == shaped.known || held == shaped.all);
+         (fg_subset_bits(mask) <= most || one_more || held == shaped.all);
 }
 
 /* Listed sets by size; the first size with one that is right ends the search. Returns the best by
@@ -326,7 +327,7 @@ static fg_subset_member try_two_free(fg_subset_search *s, const fg_subset_yardst
                                      fg_subset_member best) {
   fg_subset *out = s->out;
   unsigned listed = fg_subset_mask_of(out, false), free = fg_subset_mask_of(out, true);
-  if (s->columns.points->view_count < 2 || fg_subset_is_right(y, &best)) return best;
+  if (!s->two_curves || fg_subset_is_right(y, &best)) return best;
   for (unsigned two = 0, first = 1; first || two; first = 0, two = (two - free) & free) {
     if (fg_subset_bits(two) != 2 || has_twins(out, two)) continue;
     for (size_t with = 0; with <= out->effect_count; with++) {
@@ -372,8 +373,9 @@ static void try_sets(fg_subset_search *s) {
   out->right = out->member_count > 0;
   if (out->right) order_members(s, &y);
   if (!out->member_count) {
-    fg_subset_member curve = try_two_free(s, &y, try_free(s, &y, best));
+    fg_subset_member curve = try_free(s, &y, best);
     bool hope = is_worth_fitting(s, &y, &best, &curve);
+    if (!hope) curve = try_two_free(s, &y, curve);
     out->right = !hope && fg_subset_is_right(&y, &curve);
     fg_subset_keep_member(out, hope ? &best : &curve);
   }
@@ -394,7 +396,7 @@ static void add_known(fg_subset_search *s, const fg_scan_set *known) {
 fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subset_request *request,
                          fg_subset *subset) {
   memset(subset, 0, sizeof *subset);
-  fg_subset_search s = {.out = subset, .tried = request->tried};
+  fg_subset_search s = {.out = subset, .tried = request->tried, .two_curves = request->two_curves};
   fg_status status = FG_OK;
   FG_TRY(fg_subset_columns_open(ctx, points, request->residual_um, request->jacobian, &s.columns));
   add_smooth(&s);

@@ -5,8 +5,8 @@
  * There are few of them: all sets of up to two (three where a part was scanned more than once) are
  * fitted beside the geometry, with any ripples and steps, which stand alone. Those of the smallest
  * size that leave no more than all effects and free curves together would, within what noise and
- * the edge model's own error allow, are the alias class. When there are none, a free curve, alone or
- * beside up to two listed effects, stands in.
+ * the edge model's own error allow, are the alias class. When there are none, a free curve, alone
+ * or beside up to two listed effects, stands in.
  *
  * The width of the strip orders the class: a scanner's field stretches it as it stretches the foil,
  * a part's effect does not. It does not decide: an edge model that errs with the direction of the
@@ -78,6 +78,7 @@ typedef struct fg_subset_request {
   const fg_scan_set *known; /* NULL: none; its shaped effects are in the search with their shapes */
   const fg_scan_set *tried; /* NULL: none; this set was fitted and is not right */
   bool look;                /* for further shaped effects */
+  bool two_curves;          /* where one is not enough and there are several views */
 } fg_subset_request;
 
 fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subset_request *request,

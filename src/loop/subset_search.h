@@ -8,6 +8,7 @@ typedef struct fg_subset_search {
   fg_subset_columns columns;
   fg_subset *out;
   size_t free_column, free_end; /* columns of the free curves */
+  bool two_curves;              /* may stand in */
   const fg_scan_set *tried;     /* was fitted and is not right, or NULL */
   double full;                  /* residual sum beside everything */
   size_t freedom;               /* columns that took it */

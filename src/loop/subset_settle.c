@@ -207,10 +207,15 @@ static double residual_square(const fg_points *points, const double *residual_um
   return sum;
 }
 
-/* Search and fit in turns from a start without effects. With `eager`, ripples and steps are looked
- * for at once: right for them, while a large smooth effect leaves traces in the first round that
- * look like them. */
-static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, settling *at) {
+/* How a search goes about it. With `eager`, ripples and steps are looked for at once: right for
+ * them, while a large smooth effect leaves traces in the first round that look like them. Two
+ * curves can be made of nearly anything, so they come last. */
+typedef struct manner {
+  bool eager, two_curves;
+} manner;
+
+/* Search and fit in turns from a start without effects. */
+static fg_status settle_from(fg_context *ctx, fg_points *points, manner how, settling *at) {
   enum { ROUNDS = 8 };
   fg_scan_set tried = {.count = 0}, last = {.count = 0};
   double left = INFINITY;
@@ -218,8 +223,8 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, set
   FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
   for (int round = 0; round < ROUNDS; round++) {
     fg_scan_set next;
-    fg_subset_request request = {at->residual_um, at->jacobian, &at->set, &tried,
-                                 eager || round > 0};
+    fg_subset_request request = {at->residual_um, at->jacobian,           &at->set,
+                                 &tried,          how.eager || round > 0, how.two_curves};
     FG_TRY(fg_settle_put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_subset_find(ctx, points, &request, &at->subset));
     fg_subset_take(&at->subset, 0, &next);
@@ -242,27 +247,33 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, bool eager, set
   return FG_OK;
 }
 
-/* The eager start, and where it does not come to rest at an explanation that is right, the other;
- * the better one stays. */
+/* The eager start, and where it does not come to rest at an explanation that is right, the other,
+ * and last two curves; the best one stays. */
 static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
-  FG_TRY(settle_from(ctx, points, true, at));
-  if (at->subset.right) return FG_OK;
-  double left = residual_square(points, at->residual_um), *geometry = NULL;
-  fg_scan_set set = at->set;
-  fg_subset subset = at->subset;
+  static const manner manners[] = {{true, false}, {false, false}, {true, true}};
   size_t numbers = fg_points_geometry_size(points);
+  double best = INFINITY, *geometry = NULL;
+  settling kept = *at;
   FG_TRY(
       fg_memory_allocate(ctx, numbers + points->row_count, sizeof *geometry, (void **)&geometry));
   double *residual_um = geometry + numbers;
-  fg_points_geometry_save(points, geometry);
-  memcpy(residual_um, at->residual_um, points->row_count * sizeof *residual_um);
-  fg_status status = settle_from(ctx, points, false, at);
-  if (status == FG_OK && !at->subset.right && residual_square(points, at->residual_um) > left) {
-    at->set = set;
-    at->subset = subset;
-    fg_points_geometry_load(points, geometry);
-    memcpy(at->residual_um, residual_um, points->row_count * sizeof *residual_um);
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < sizeof manners / sizeof manners[0]; i++) {
+    if (manners[i].two_curves && points->view_count < 2) continue;
+    FG_TRY_EXIT(settle_from(ctx, points, manners[i], at));
+    double left = residual_square(points, at->residual_um);
+    if (at->subset.right) goto exit;
+    if (left > (i ? 1 - REST_SHARE : 1) * best) continue;
+    best = left;
+    kept = *at;
+    fg_points_geometry_save(points, geometry);
+    memcpy(residual_um, at->residual_um, points->row_count * sizeof *residual_um);
   }
+  at->set = kept.set;
+  at->subset = kept.subset;
+  fg_points_geometry_load(points, geometry);
+  memcpy(at->residual_um, residual_um, points->row_count * sizeof *residual_um);
+exit:
   free(geometry);
   return status;
 }
