@@ -20,7 +20,7 @@ struct fg_scan_loop {
   fg_scan_error error_before, error_after;
   double noise_floor_um;
   bool tied;
-  bool scale_tied; /* scan_scale.c */
+  bool scale_tied;                  /* scan_scale.c */
   fg_scan_set tie[FG_SUBSET_CLASS]; /* the other members of the class, fitted */
   size_t tie_count;
   fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
