@@ -28,7 +28,7 @@ static const effect_words table[] = {
     {"free.scan.x.dy", "a shift in y that varies over x", "a smooth curve, freely fitted"},
     {"free.scan.y.dx", "a shift in x that varies over y", "a smooth curve, freely fitted"},
     {"free.scan.y.dy", "a shift in y that varies over y", "a smooth curve, freely fitted"},
-    {"free.foil.s", "a radial deviation along the foil", "a smooth curve, freely fitted"},
+    {"free.foil.s", "a deviation along the foil", "a smooth curve, freely fitted"},
     {"free.bump.phi", "a deviation of every bump from its circle", "a smooth curve, freely fitted"},
     {"free.edge.normal", "a shift that depends on the edge's direction",
      "a smooth curve, freely fitted"},
@@ -214,7 +214,10 @@ static fg_status say_parameters(fg_context *ctx, const fg_scan_effect *effect, c
 
 /* The effects that every explanation holds: listed ones, or free curves. */
 static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool free_curves,
-                             const char *before, char **text) {
+                             char **text) {
+  const char *before = !free_curves ? "Found: "
+                       : *text      ? "; no listed effect explains "
+                                    : "No listed effect explains ";
   bool first = true;
   for (size_t i = 0; i < loop->set.count; i++) {
     const fg_scan_effect *effect = &loop->set.effects[i];
@@ -223,7 +226,8 @@ static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool fre
         !fg_scan_effect_is_sure(&loop->subset, effect->id))
       continue;
     fg_scan_effect_words(effect->id, words, sizeof words);
-    FG_TRY(fg_text_append(ctx, text, "%s%s%s", *text ? "; " : "", first ? before : "", words));
+    const char *between = free_curves ? ", nor " : "; ";
+    FG_TRY(fg_text_append(ctx, text, "%s%s", first ? before : between, words));
     FG_TRY(say_parameters(ctx, effect, text));
     first = false;
   }
@@ -293,8 +297,8 @@ static fg_status say_edges(fg_context *ctx, const fg_scan_loop *loop, char **tex
 static fg_status say_points(fg_context *ctx, const fg_scan_loop *loop, char **text) {
   if (loop->verdict == FG_LOOP_CLEAN) return say_clean(ctx, loop, text);
   if (!loop->set.count) return say_edges(ctx, loop, text);
-  FG_TRY(say_effects(ctx, loop, false, "Found: ", text));
-  FG_TRY(say_effects(ctx, loop, true, "no listed effect explains ", text));
+  FG_TRY(say_effects(ctx, loop, false, text));
+  FG_TRY(say_effects(ctx, loop, true, text));
   if (loop->tied) FG_TRY(say_class(ctx, loop, text));
   FG_TRY(fg_text_append(ctx, text, ". "));
   FG_TRY(say_chance(ctx, loop->subset.p_value, text));
