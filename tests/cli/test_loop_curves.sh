@@ -1,30 +1,10 @@
 #!/bin/bash
 # The loop on scans beyond one listed effect: curves that no effect stands for, four effects at once, and
 # what the data cannot tell: on which side of a bump a step lies, and the scale beside a lens.
-set -u
-program=$(realpath "$1")
-root=$(pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
+. tests/support/loop.sh
 
-fail() {
-  echo "FAIL: $*"
-  failed=1
-}
-
-# render NAME SEED ROTATION EFFECTS
-render() {
-  cat >"$1.json" <<SPEC
-{"schema":"foilgauge/render/1","seed":$2,"width_px":8400,"height_px":8400,
- "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
-           "centre_mm":[$5],"rotate_deg":$3}],
- "scanner":{"dpi":4800,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
- "effects":[$4]}
-SPEC
-  "$program" render "$1.json" -o "$1.png" || fail "render $1"
-}
+# render NAME SEED ROTATION EFFECTS X,Y: the foil's centre in mm
+render() { render_foil "$1" "$2" "$3" "$4" 4800 '"width_px":8400,"height_px":8400,' "\"centre_mm\":[$5],"; }
 
 # says REPORT EXPRESSION: of a report r; e(side, name) is the rms error of R (um) or R0 on a side, within() the
 # share of the corrected radii that lie within U of the truth.
@@ -131,14 +111,5 @@ SPEC
 says step.out "list(claims) == ['scan.row_step'] and claims['scan.row_step']['verdict'] == 'found'"
 says step.out "abs(claims['scan.row_step']['parameters']['y_mm'] - 11.46) <= 2 * claims['scan.row_step']['uncertainty']['y_mm']"
 
-for report in $reports; do
-  python3 - "$root/reports/schema/loop_scan.schema.json" $report.out <<'PYTHON' || fail "$report does not validate"
-import json, sys
-try:
-    import jsonschema
-except ImportError:
-    sys.exit(0)
-jsonschema.validate(json.load(open(sys.argv[2])), json.load(open(sys.argv[1])))
-PYTHON
-done
+for report in $reports; do valid loop_scan.schema.json $report.out; done
 exit $failed

@@ -2,18 +2,7 @@
 # The loop on round gauges: a plate names what the scanner does and corrects foils that were scanned
 # on it, known diameters give the absolute scale, a single ring is a tie, pins that are not round are
 # not taken for the scanner.
-set -u
-program=$(realpath "$1")
-root=$(pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-
-fail() {
-  echo "FAIL: $*"
-  failed=1
-}
+. tests/support/loop.sh
 
 # Centres and radii of twelve pins over 32 x 20 mm.
 pins='[1.2,1.6,1],[5.0,2.2,1.5],[10.1,2.9,2],[16.2,3.2,2.5],[23.1,3.6,3],[29.8,2.9,2.25],[2.1,9.4,1.25],[7.2,10.1,2.75],[13.9,11.3,3],[20.8,12.0,2.5],[26.9,12.9,1.75],[6.2,16.9,1.5]'
@@ -36,17 +25,6 @@ spec.update(json.loads("{" + scanner + "}"))
 json.dump(spec, open(name + ".json", "w"))
 PYTHON
   "$program" render "$1.json" -o "$1.png" || fail "render $1"
-}
-
-# value FILE EXPRESSION: a number or word out of a report.
-value() {
-  python3 -c "import json,sys; r=json.load(open(sys.argv[1])); print(eval(sys.argv[2]))" "$1" "$2"
-}
-
-# near NAME VALUE EXPECTED TOLERANCE
-near() {
-  python3 -c "import sys; sys.exit(not abs(float(sys.argv[1]) - float(sys.argv[2])) <= float(sys.argv[3]))" \
-    "$2" "$3" "$4" || fail "$1 is $2, not $3 within $4"
 }
 
 # Largest error of a radius in um, against the pins in order of size.
@@ -133,16 +111,7 @@ plate oval 5 '' 3
 "$program" loop oval.png --form discs -o oval.out || fail "loop on oval pins"
 [ "$(value oval.out "len(r['claims'])")" = 0 ] || fail "oval pins are called $(value oval.out "[c['id'] for c in r['claims']]")"
 
-for report in clean all known ring oval; do
-  python3 - "$root/reports/schema/loop_scan.schema.json" $report.out <<'PYTHON' || fail "$report does not validate"
-import json, sys
-try:
-    import jsonschema
-except ImportError:
-    sys.exit(0)
-jsonschema.validate(json.load(open(sys.argv[2])), json.load(open(sys.argv[1])))
-PYTHON
-done
+for report in clean all known ring oval; do valid loop_scan.schema.json $report.out; done
 
 "$program" loop --same-foil all.png ring.png --form discs >out.txt 2>err.txt
 [ $? -eq 64 ] && grep -q "does not show how far it was turned" err.txt || fail "--same-foil on discs: $(cat err.txt)"

@@ -1,29 +1,10 @@
 #!/bin/bash
 # The page of the loop on scans (--html): it says what the report says, is whole and its own, makes
 # names of files harmless, and appears only when it could be written.
-set -u
-program=$(realpath "$1")
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-
-fail() {
-  echo "FAIL: $*"
-  failed=1
-}
+. tests/support/loop.sh
 
 # render NAME SEED ROTATION DPI EFFECTS
-render() {
-  cat >"$1.json" <<SPEC
-{"schema":"foilgauge/render/1","seed":$2,
- "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
-           "rotate_deg":$3}],
- "scanner":{"dpi":$4,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
- "effects":[$5]}
-SPEC
-  "$program" render "$1.json" -o "$1.png" || fail "render $1"
-}
+render() { render_foil "$1" "$2" "$3" "$5" "$4"; }
 
 render clean 1 -70 2400 ''
 render ripple 2 -60 4800 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'

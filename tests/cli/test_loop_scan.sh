@@ -1,41 +1,10 @@
 #!/bin/bash
 # The loop on scans: clean renders are clean, known effects are named and taken out, a model carries
 # over to another foil, and what does not fit together is refused.
-set -u
-program=$(realpath "$1")
-root=$(pwd)
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-
-fail() {
-  echo "FAIL: $*"
-  failed=1
-}
+. tests/support/loop.sh
 
 # render NAME SEED ROTATION EFFECTS
-render() {
-  cat >"$1.json" <<SPEC
-{"schema":"foilgauge/render/1","seed":$2,
- "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
-           "rotate_deg":$3}],
- "scanner":{"dpi":4800,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
- "effects":[$4]}
-SPEC
-  "$program" render "$1.json" -o "$1.png" --truth "$1.truth.json" || fail "render $1"
-}
-
-# value FILE EXPRESSION: a number or word out of a report.
-value() {
-  python3 -c "import json,sys; r=json.load(open(sys.argv[1])); print(eval(sys.argv[2]))" "$1" "$2"
-}
-
-# near NAME VALUE EXPECTED TOLERANCE
-near() {
-  python3 -c "import sys; sys.exit(abs(float(sys.argv[1]) - float(sys.argv[2])) > float(sys.argv[3]))" \
-    "$2" "$3" "$4" || fail "$1 is $2, not $3 within $4"
-}
+render() { render_foil "$@" 4800; }
 
 render clean 1 -70 ''
 "$program" loop clean.png -o clean.out || fail "loop on a clean scan"
@@ -63,16 +32,7 @@ render oval_b 6 15 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'
 "$program" loop --same-foil oval_a.png oval_b.png -o oval.out || fail "loop on an oval pair"
 [ "$(value oval.out "r['claims'][0]['id']")" = part.ovality ] || fail "the ovality is not named from a pair"
 
-for report in clean ripple pair oval; do
-  python3 - "$root/reports/schema/loop_scan.schema.json" $report.out <<'PYTHON' || fail "$report does not validate"
-import json, sys
-try:
-    import jsonschema
-except ImportError:
-    sys.exit(0)
-jsonschema.validate(json.load(open(sys.argv[2])), json.load(open(sys.argv[1])))
-PYTHON
-done
+for report in clean ripple pair oval; do valid loop_scan.schema.json $report.out; done
 
 # The scanner's model corrects another foil.
 render other 7 -120 '{"id":"scan.scale_y","value":0.001}'

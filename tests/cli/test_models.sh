@@ -1,17 +1,6 @@
 #!/bin/bash
 # The model of a scanner: what it was made for, lots corrected by it, and every wrong model refused with words.
-set -u
-program=$(realpath "$1")
-root=$PWD
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-failed=0
-
-fail() {
-  echo "FAILED: $*"
-  failed=1
-}
+. tests/support/loop.sh
 
 # expect CODE WORDS ARGUMENTS...: the exit code, and words on standard error or output.
 expect() {
@@ -23,28 +12,8 @@ expect() {
   [ -z "$words" ] || cat out.txt err.txt | grep -qE -e "$words" || fail "$*: does not say '$words' but: $(head -c 400 err.txt)"
 }
 
-# value FILE EXPRESSION: a number or word out of a report.
-value() {
-  python3 -c "import json,sys; r=json.load(open(sys.argv[1])); print(eval(sys.argv[2]))" "$1" "$2"
-}
-
-# near NAME VALUE EXPECTED TOLERANCE
-near() {
-  python3 -c "import sys; sys.exit(not abs(float(sys.argv[1]) - float(sys.argv[2])) <= float(sys.argv[3]))" \
-    "$2" "$3" "$4" || fail "$1 is $2, not $3 within $4"
-}
-
 # render NAME SEED ROTATION EFFECTS [DPI]: every scan shows the same piece of glass.
-render() {
-  cat >"$1.json" <<SPEC
-{"schema":"foilgauge/render/1","seed":$2,"width_px":1900,"height_px":1900,
- "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],
-           "rotate_deg":$3}],
- "scanner":{"dpi":${5:-1200},"background":30,"contrast":175,"blur_px":1.3,"noise":1.2},
- "effects":[$4]}
-SPEC
-  "$program" render "$1.json" -o "$1.png" || fail "render $1"
-}
+render() { render_foil "$1" "$2" "$3" "$4" "${5:-1200}" '"width_px":1900,"height_px":1900,'; }
 
 scale='{"id":"scan.scale_y","value":0.002}'
 render a 1 -75 "$scale"

@@ -281,6 +281,15 @@ static void part_effects_move_the_crown(void **state) {
   assert_close(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":0}", "", 4), 0, 0.02);
 }
 
+/* A spec whose effect has an amplitude of 0, and of 10 um. */
+static void parse_without_and_with(fg_context *ctx, const char *format, fg_render_spec *specs[2]) {
+  char json[512];
+  for (int i = 0; i < 2; i++) {
+    snprintf(json, sizeof json, format, i ? 10 : 0);
+    assert_int_equal(fg_render_parse(ctx, "spec.json", json, &specs[i]), FG_OK);
+  }
+}
+
 /* Along the normal every place of the midline moves at right angles to it, on a flank too. */
 static void normal_ovality_moves_at_right_angles(void **state) {
   (void)state;
@@ -289,12 +298,8 @@ static void normal_ovality_moves_at_right_angles(void **state) {
       "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":null,\"centre_mm\":[20,30]}],"
       "\"effects\":[{\"id\":\"part.ovality\",\"amplitude_um\":%d,"
       "\"along\":\"normal\"}]}";
-  char json[512];
   fg_render_spec *specs[2];
-  for (int i = 0; i < 2; i++) {
-    snprintf(json, sizeof json, format, i ? 10 : 0);
-    assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &specs[i]), FG_OK);
-  }
+  parse_without_and_with(&ctx, format, specs);
   for (double s = 2; s < 40; s += 0.37) {
     fg_point at, on, moved;
     assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s, &at), FG_OK);
@@ -316,12 +321,8 @@ static void spiral_lies_beside_the_plain_foil(void **state) {
                        "\"first_land_mm\":1,\"last_land_mm\":1,\"centre_mm\":[20,30]}],\"effects\":"
                        "[{\"id\":\"part.spiral\","
                        "\"amplitude_um\":%d}]}";
-  char json[512];
   fg_render_spec *specs[2];
-  for (int i = 0; i < 2; i++) {
-    snprintf(json, sizeof json, format, i ? 10 : 0);
-    assert_int_equal(fg_render_parse(&ctx, "spec.json", json, &specs[i]), FG_OK);
-  }
+  parse_without_and_with(&ctx, format, specs);
   fg_point a, b;
   assert_int_equal(fg_render_midline(&ctx, specs[0], 0, 0, &a), FG_OK);
   assert_int_equal(fg_render_midline(&ctx, specs[1], 0, 0, &b), FG_OK);
