@@ -19,12 +19,16 @@ printf 'measuring %s ... ' "$scan"
 code=0
 build/foilgauge measure "$scan" -o "$report/gen2_foil.json" --overlay "$report/gen2_foil.png" \
   --html "$report/gen2_foil.html" --csv "$report/gen2_foil.csv" || code=$?
-# Out of tolerance (1) is an answer about the foil; anything above is a failure to give one.
-if [ $code -gt 1 ]; then
+# Out of tolerance (1) and cannot tell (3) are answers about the foil; others are a failure to give one.
+case $code in
+0) echo "done, all measured, nothing out of tolerance" ;;
+1) echo "done, out of tolerance" ;;
+3) echo "done, cannot tell: a limit lies within the uncertainty of a value" ;;
+*)
   echo "failed (exit code $code)"
   exit $code
-fi
-[ $code -eq 0 ] && echo "done, within tolerance" || echo "done, out of tolerance"
+  ;;
+esac
 
 echo "the report is in $report/:"
 echo "  gen2_foil.html  the page to read: picture, table, residuals"

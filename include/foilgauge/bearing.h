@@ -28,14 +28,17 @@
  *   0 = f_VH V + f_HH H + f_HW W,
  * and delta = f_WV V + f_WH H + f_WW W. The top foil follows the crown sideways.
  *
+ * The arch is that of a classical bump. A sinusoidal foil's long fillets bend as well, which is not
+ * in it: what is said of such a foil is said with that reserve.
+ *
  * For small phi all of bending scales with (R phi)³: at constant arc length the vertical stiffness
  * hardly changes with springback, while f_HH ~ R³ phi⁵ makes the feet's sideways stiffness grow
  * with R².
  *
- * CLEARANCE. The local clearances (thesis eq 5.8) at the bumps around the bearing,
- * `pads` × `bumps_per_pad` of them equally spaced (thesis figures 5.13 and 6.3: 3 × 7, 17.14
- * degrees). A rotor shifted by (a, b) changes them by -(a cos + b sin), to first order (an error
- * below shift² / D).
+ * CLEARANCE. The local clearances (thesis eq 5.8) at the bumps around the bearing: `pads` foils
+ * equally spaced, `bumps_per_pad` of each at the pitch of its bumps (Gen II: 3 × 9, 13 1/3
+ * degrees; thesis figures 5.13 and 6.3: 3 × 7, 17.14 degrees). A rotor shifted by (a, b) changes
+ * them by -(a cos + b sin), to first order (an error below shift² / D).
  */
 #ifndef FOILGAUGE_BEARING_H
 #define FOILGAUGE_BEARING_H
@@ -87,9 +90,13 @@ typedef struct fg_bearing_layout {
   size_t pads;          /* foils in a bearing */
   size_t bumps_per_pad; /* of each foil, from first_bump on */
   size_t first_bump;    /* 1 is next to the lip */
+  double pitch_deg;     /* from bump to bump of a pad; 0: all bumps equally spaced around */
 } fg_bearing_layout;
 
 enum { FG_BEARING_BUMPS_MAX = 96 };
+
+/* From bump to bump of a pad. */
+double fg_bearing_pitch_deg(const fg_bearing_layout *layout);
 
 /* Direction of a place of the bearing, degrees: pad and bump count from 0. */
 double fg_bearing_angle_deg(const fg_bearing_layout *layout, size_t pad, size_t bump);

@@ -98,8 +98,11 @@ fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 /* The derived nominal values; checks the design first. All NaN for form discs. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
-/* Clearance over a bump of this height: eq 5.8, mm. */
+/* Clearance over a bump of this height: eq 5.8, mm, with the design's thickness. */
 double fg_design_clearance(const fg_design *design, double height_mm);
+
+/* The same over a strip of another thickness. */
+double fg_design_clearance_over(const fg_design *design, double height_mm, double thickness_mm);
 
 /* The declared springback model at a bump radius above 0. */
 void fg_design_springback(const fg_design *design, const fg_nominal *nominal, double radius_mm,

@@ -23,27 +23,43 @@ extern "C" {
 
 /* What is wrong with, or to be known of, one foil. JSON writes the words in `flags`. */
 typedef enum fg_foil_flag {
-  FG_FOIL_TOUCHES_BORDER = 1u << 0, /* "touches_border" */
-  FG_FOIL_TOUCHES_OTHER = 1u << 1,  /* "touches_other" */
-  FG_FOIL_NO_LIP = 1u << 2,         /* "no_lip": bumps are numbered clockwise as seen */
-  FG_FOIL_BUMP_COUNT = 1u << 3,     /* "bump_count": not the number the design states */
-  FG_FOIL_MISSING_BUMP = 1u << 4,   /* "missing_bump": a place at the pitch is empty */
-  FG_FOIL_FEW_LANDS = 1u << 5,      /* "few_lands": the overall circle rests on little */
-  FG_FOIL_CLIPPED = 1u << 6,        /* "clipped" */
-  FG_FOIL_SIDE_BAND = 1u << 7,      /* "side_band" */
-  FG_FOIL_GAP = 1u << 8,            /* "gap" */
-  FG_FOIL_ROUGH_EDGE = 1u << 9,     /* "rough_edge": residuals are correlated along the strip */
-  FG_FOIL_NOT_MEASURED = 1u << 10,  /* "not_measured": see `error` */
+  FG_FOIL_TOUCHES_BORDER = 1u << 0,     /* "touches_border" */
+  FG_FOIL_TOUCHES_OTHER = 1u << 1,      /* "touches_other" */
+  FG_FOIL_NO_LIP = 1u << 2,             /* "no_lip": bumps are numbered clockwise as seen */
+  FG_FOIL_BUMP_COUNT = 1u << 3,         /* "bump_count": not the number the design states */
+  FG_FOIL_MISSING_BUMP = 1u << 4,       /* "missing_bump": a place at the pitch is empty */
+  FG_FOIL_FEW_LANDS = 1u << 5,          /* "few_lands": the overall circle rests on little */
+  FG_FOIL_CLIPPED = 1u << 6,            /* "clipped" */
+  FG_FOIL_SIDE_BAND = 1u << 7,          /* "side_band" */
+  FG_FOIL_GAP = 1u << 8,                /* "gap" */
+  FG_FOIL_ROUGH_EDGE = 1u << 9,         /* "rough_edge": residuals are correlated along the strip */
+  FG_FOIL_NOT_MEASURED = 1u << 10,      /* "not_measured": see `error` */
+  FG_FOIL_COARSE_RESOLUTION = 1u << 11, /* "coarse_resolution": the edges blur into each other */
+  FG_FOIL_NOT_THIS_DESIGN = 1u << 12,   /* "not_this_design": see `error`; the values stand */
+  /* "resolution_contradicts_file": the resolution that was given is not the file's */
+  FG_FOIL_RESOLUTION_CONTRADICTS_FILE = 1u << 13,
+  FG_FOIL_UNEQUAL_RESOLUTION = 1u << 14, /* "unequal_resolution": of x and y */
+  /* "beyond_model_region": it reaches beyond where the scanner's model was found */
+  FG_FOIL_BEYOND_MODEL_REGION = 1u << 20,
 } fg_foil_flag;
 
 typedef enum fg_bump_flag {
-  FG_BUMP_CRUSHED = 1u << 0,     /* "crushed": far lower, wider or rounder than its neighbours */
-  FG_BUMP_NOT_FITTED = 1u << 1,  /* "not_fitted": values are NaN */
-  FG_BUMP_NO_CROSSING = 1u << 2, /* "no_crossing": the two circles do not meet: no angle */
-  FG_BUMP_POOR_FIT = 1u << 3,    /* "poor_fit": it is not a circle within the edge noise */
-  FG_BUMP_OUTLIERS = 1u << 4,    /* "outliers": burr or dust was down-weighted */
-  FG_BUMP_OUT_OF_TOLERANCE = 1u << 5, /* "out_of_tolerance" */
+  FG_BUMP_CRUSHED = 1u << 0,          /* "crushed": far lower, wider or rounder than a sound bump */
+  FG_BUMP_NOT_FITTED = 1u << 1,       /* "not_fitted": values are NaN */
+  FG_BUMP_NO_CROSSING = 1u << 2,      /* "no_crossing": the two circles do not meet: no angle */
+  FG_BUMP_POOR_FIT = 1u << 3,         /* "poor_fit": it is not a circle within the edge noise */
+  FG_BUMP_OUTLIERS = 1u << 4,         /* "outliers": burr or dust was down-weighted */
+  FG_BUMP_OUT_OF_TOLERANCE = 1u << 5, /* "out_of_tolerance": reports only, fg_bump_flags */
+  FG_BUMP_DISTURBED_EDGE = 1u << 6,   /* "disturbed_edge": dust or a burr hides part of its arc */
+  FG_BUMP_GAP = 1u << 7,              /* "gap": the strip is cut within its arc */
+  FG_BUMP_TOUCHES_OTHER = 1u << 8,    /* "touches_other": something lies on its arc or beside it */
+  FG_BUMP_BEYOND_MODEL_REGION = 1u << 20, /* "beyond_model_region": of discs, as of foils */
 } fg_bump_flag;
+
+/* A strip's thickness and its standard uncertainty. */
+typedef struct fg_thickness {
+  double mm, u_mm;
+} fg_thickness;
 
 typedef struct fg_bump {
   int number;                    /* 1 is next to the lip */
@@ -57,6 +73,8 @@ typedef struct fg_bump {
   double height_mm, u_height_mm;                           /* h */
   double clearance_mm, u_clearance_mm;                     /* C_local, eq 5.8 */
   double clearance_error, u_clearance_error;               /* eq 5.9, a ratio */
+  double height_fitted_mm, u_height_fitted_mm;             /* h in the sleeve, see below */
+  double clearance_fitted_mm, u_clearance_fitted_mm;       /* eq 5.8 with it */
   double radius_error_pct, u_radius_error_pct;             /* e_R */
   double bump_angle_error_pct, u_bump_angle_error_pct;     /* e_alpha */
   double height_model_mm, u_height_model_mm;               /* eq 5.6, 5.7 */
@@ -101,6 +119,15 @@ typedef struct fg_station_label {
   float residual_right_um;
 } fg_station_label;
 
+/* What a scanner's model did to one foil: corrected minus as scanned. u_ is what it added, in
+ * squares, to the u_ of that value. Of radius and height of the bumps the largest of all. NaN:
+ * nothing was corrected. */
+typedef struct fg_correction {
+  double overall_radius_mm, u_overall_radius_mm;
+  double radius_mm, u_radius_mm;
+  double height_mm, u_height_mm;
+} fg_correction;
+
 typedef enum fg_orientation {
   FG_CLOCKWISE, /* bump numbers rise clockwise as the scan is seen */
   FG_COUNTERCLOCKWISE,
@@ -110,7 +137,7 @@ typedef struct fg_foil {
   int number;         /* reading order in the scan, from 1 */
   double place_mm[4]; /* the box that holds it in the scan: x, y, width, height */
   unsigned flags;     /* fg_foil_flag */
-  char error[256];    /* why it was not measured; empty when it was */
+  char error[256];    /* why it was not measured as a foil of the design; empty when it was */
   fg_orientation orientation;
   double rotation_deg; /* direction of the foil's middle seen from O */
   double thickness_mm, u_thickness_mm;
@@ -122,7 +149,7 @@ typedef struct fg_foil {
   double noise_um;          /* sd of the midline residuals over all arcs */
   double correlation_mm;    /* integral length of their autocorrelation along the strip */
   double edge_model_um;     /* systematic part: what half-width variation says */
-  bool in_tolerance;        /* false when a tolerance of the design is exceeded */
+  fg_correction correction; /* by a scanner's model */
 } fg_foil;
 
 /* One station of the turn around a round feature; equal steps of direction. Lengths in mm. */
@@ -154,6 +181,8 @@ typedef struct fg_disc {
   double covariance[3][3];
   fg_point *edge;     /* owned; `points` long, mm, in order around the circle */
   float *residual_um; /* owned; radial, outwards positive */
+  /* As in fg_correction. */
+  double radius_correction_mm, u_radius_correction_mm;
   /* Lowest and highest radius over explanations that a loop could not tell apart; both 0: none. */
   double radius_range_mm[2];
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
@@ -165,7 +194,8 @@ typedef struct fg_disc {
 typedef struct fg_measurement {
   char scan[1024]; /* path as given */
   char sha256[65];
-  char model_sha256[65]; /* of the scanner's model that corrected it; "": none */
+  char model_sha256[65];             /* of the scanner's model that corrected it; "": none */
+  const struct fg_scan_model *model; /* the same (scan_loop.h); not owned; NULL: none */
   int64_t width_px, height_px;
   int bit_depth;
   double dpi[2];      /* used, x and y */
@@ -184,6 +214,18 @@ typedef struct fg_measurement {
   size_t specks; /* objects left alone: dust, scratches, other shapes */
 } fg_measurement;
 
+/* It was measured, and as a foil of its design: values may be judged and enter statistics. */
+bool fg_foil_is_measured(const fg_foil *foil);
+
+/* Flags a foil that could not be measured, with the reason; its values become NaN. */
+void fg_foil_give_up(fg_foil *foil, const char *why);
+
+/* The thickness in force: the measured one, the design's (u 0) where none was measured. */
+fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil);
+
+/* It differs from the design's by more than U: then both are said. */
+bool fg_thickness_differs(const fg_design *design, const fg_thickness *strip);
+
 void fg_foil_free(fg_foil *foil); /* what it owns; NULL is fine */
 void fg_disc_free(fg_disc *disc); /* likewise */
 void fg_measurement_free(fg_measurement *measurement);
@@ -191,24 +233,39 @@ void fg_measurement_free(fg_measurement *measurement);
 /* Recognises lip, lands, bumps and free end of a strip, fits every circle, derives every quantity.
  * Takes over foil->strip (filled by the caller); everything else of `foil` is set. What is wrong
  * with the foil or a bump is a flag, not an error; errors are FG_ERR_MEMORY only. A foil that is
- * the design's in shape but not in size is not measured: its scan's resolution must be wrong. The
- * result does not depend on `threads` (0: all cores). */
+ * the design's in shape but not in size is not measured: its scan's resolution must be wrong. What
+ * springback and damage cannot make of the design's foil keeps its values and is flagged
+ * FG_FOIL_NOT_THIS_DESIGN. The result does not depend on `threads` (0: all cores). */
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
                           fg_foil *foil);
+
+/* FREE AND FITTED. A scan shows the foil free: height_mm, clearance_mm (eq 5.8) and clearance_error
+ * are those of the free foil, on its own overall circle R0. In the bearing the lands are pressed
+ * against the sleeve. A bump keeps its radius R and the chord between its feet, l0 = R sin phi with
+ * phi = alpha / 2 (eq 5.2), but the circle under the chord is now the sleeve's, R_s:
+ *   h_fitted = R (1 - cos phi) + R_s - sqrt(R_s² - l0²)    (height_fitted_mm)
+ *   C_fitted = R_s - h_fitted - D/2 - t                    (clearance_fitted_mm)
+ * At R0 = R_s it is the free foil's height. Without a crossing there is no chord: NaN.
+ *
+ * The height of the springback model (height_model_mm) comes from R alone. With measured X, R and
+ * alpha eq 5.6 says nothing: alpha is defined by the crossing with the overall circle, so M is R0
+ * itself, whatever the bump. Only predicted X_m and alpha_m make it a statement about the part. */
 
 /* Quantities that follow from the circles (thesis eq 5.3 to 5.9 and the declared springback
  * model). Reads radius_mm, centre_mm and covariance of `bump`, and centre, radius and covariance of
  * `overall`, both of the design's datum line (see fg_datum); the two circles are taken as
  * independent. Fills u_radius_mm, u_centre_mm, position_deg and everything from
  * centre_to_centre_mm to u_bump_angle_model_deg, with uncertainties to first order in the whole
- * covariance. Thickness, rotor and sleeve are the design's, without uncertainty. Sets or clears
- * FG_BUMP_NO_CROSSING: the circles do not cross or only touch; then alpha, theta and e_alpha are
- * NaN and the others stand. A circle that was not fitted (NaN) makes what depends on it NaN. */
+ * covariance. `strip` is the thickness t of eq 5.8, independent of the circles; rotor and sleeve
+ * are the design's, without uncertainty, and so is C_D. Sets or clears FG_BUMP_NO_CROSSING: the
+ * circles do not cross or only touch; then alpha, theta and e_alpha are NaN and the others stand. A
+ * circle that was not fitted (NaN) makes what depends on it NaN. */
 void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
-                    fg_bump *bump);
+                    const fg_thickness *strip, fg_bump *bump);
 
 /* Adds in squares to every uncertainty of a derived bump what a covariance of (X, R, R0), mm², that
- * is not in the circles' own does to it: what was corrected is not known exactly either. */
+ * is not in the circles' own does to it: what was corrected is not known exactly either. Values
+ * stay, whatever the strip's thickness is. */
 void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
                    double covariance[3][3], fg_bump *bump);
 

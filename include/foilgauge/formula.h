@@ -99,9 +99,22 @@ typedef struct fg_model {
   fg_extended *matrix; /* columns × rows, column by column */
 } fg_model;
 
-/* Builds the matrix. FG_ERR_DATA: a column is missing, a word among numbers (with its row), a
- * factor with one level, the logarithm of a number that is not positive. FG_ERR_USAGE: no terms
- * at all. Free with fg_model_free. */
+/* The most that a model is computed with. Its time grows as rows × columns² and columns³ (with 106
+ * bits: 10 s for 500 columns, 10 minutes for 2,000), its memory as rows × columns × 32 bytes. An
+ * experiment's model has some ten columns; a factor with hundreds of levels is a name of the row.
+ */
+#define FG_MODEL_COLUMNS_MAX ((size_t)500)
+#define FG_MODEL_CELLS_MAX   ((size_t)1 << 26) /* 2 GiB */
+#define FG_MODEL_WORK_MAX    1e10              /* rows × columns²: minutes */
+
+/* FG_ERR_DATA where a model would be larger: says so, and that `widest`, a term, has the most of
+ * the columns. `source` names the table; NULL: "table". */
+fg_status fg_model_check_size(fg_context *ctx, const char *source, size_t rows, size_t columns,
+                              const char *widest, size_t widest_columns);
+
+/* Builds the matrix. FG_ERR_DATA: it is larger than the limits above, a column is missing, a word
+ * among numbers (with its row), a factor with one level, the logarithm of a number that is not
+ * positive. FG_ERR_USAGE: no terms at all. Free with fg_model_free. */
 fg_status fg_model_build(fg_context *ctx, const fg_table *table, const fg_formula *formula,
                          fg_model *model);
 /* One row of the matrix at a new setting. `setting` holds, for every variable of the formula, the

@@ -79,6 +79,12 @@ typedef struct fg_loop_coordinate {
   double low, high;     /* of all rows; a basis is scaled by them */
 } fg_loop_coordinate;
 
+struct fg_loop_problem;
+
+/* The declared model's columns at the rows of a grid of settings: parameters × rows. */
+typedef fg_status fg_loop_declared(fg_context *ctx, const void *model,
+                                   const struct fg_loop_problem *grid, double *columns);
+
 /* The rows of a series are consecutive and in order. The problem belongs to whoever built it; the
  * engine reads it only. */
 typedef struct fg_loop_problem {
@@ -99,7 +105,9 @@ typedef struct fg_loop_problem {
   double *response; /* rows, for exchanged runs: the measured response */
   fg_loop_coordinate *coordinate;
   size_t coordinates;
-  void *self; /* for the effects of a level */
+  void *self;                 /* for the effects of a level */
+  fg_loop_declared *declared; /* NULL: the declared model is known at the rows only */
+  const void *declared_model;
 } fg_loop_problem;
 
 struct fg_loop_effect;
@@ -127,8 +135,13 @@ typedef struct fg_loop_effect {
                    double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
   /* The shape is a place between rows: it cannot be refined by small steps. */
   bool stepwise;
-  bool from_zero; /* the amplitude is the largest size, not half the range */
+  bool from_zero;  /* the amplitude is the largest size, not half the range */
+  bool own_levels; /* each value that was measured has a level of its own: nothing is known between
+                    */
 } fg_loop_effect;
+
+/* How far a step of the search is, 0 to 1, and how many effects the steps before it found. */
+typedef void fg_loop_progress(void *user, size_t found, double share);
 
 typedef struct fg_loop_options {
   const fg_loop_effect *effects; /* a table that ends with id NULL */
@@ -136,6 +149,10 @@ typedef struct fg_loop_options {
   double accept_p;    /* 0: 0.01 */
   size_t simulations; /* 0: 999 */
   double matters;     /* amplitude that matters, in the response's unit; 0: one noise sd */
+  double minutes,
+      mebibytes; /* what the search may take by estimate, else FG_ERR_DATA; 0: no limit */
+  fg_loop_progress *progress; /* NULL: not told */
+  void *progress_user;
 } fg_loop_options;
 
 typedef enum fg_loop_verdict {
@@ -208,8 +225,8 @@ typedef struct fg_loop_noise {
 } fg_loop_noise;
 
 typedef struct fg_loop_advice {
-  char text[400];
-  double runs; /* needed for a power of 80 % */
+  char text[1200];
+  double runs; /* at either setting, needed for a power of 80 %; NaN: no number helps */
 } fg_loop_advice;
 
 typedef enum fg_loop_outcome {
@@ -259,7 +276,7 @@ double fg_loop_curve_at(const fg_loop_curve *curve, double value);
 
 /* ---- tables: levels `runs` and `bumps` ---- */
 
-/* The effects of tables, parts over bumps, and heat treatment (DESIGN section 5). */
+/* The effects of tables, parts over bumps, and heat treatment. */
 const fg_loop_effect *fg_loop_table_effects(void);
 
 typedef struct fg_loop_table_spec {
@@ -277,7 +294,8 @@ typedef struct fg_loop_table_spec {
 typedef struct fg_loop_table_problem {
   fg_loop_problem problem;
   size_t *row;
-  char *excluded; /* words: columns that were left out and why; NULL: none */
+  char *excluded;                /* words: columns that were left out and why; NULL: none */
+  struct fg_loop_formula *model; /* for problem.declared; NULL: arc_length, which has no columns */
 } fg_loop_table_problem;
 
 /* Cells that are missing, columns that are not there, a formula that cannot be built: FG_ERR_DATA

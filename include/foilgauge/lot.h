@@ -4,7 +4,8 @@
  *   recipe.json     the settings in force (fg_lot_settings; without `jobs`)
  *   manifest.csv    every scan of the lot in its order, with the columns that it came with
  *   scanner_model.json   the scanner's model, where the lot is corrected by one
- *   results.jsonl   one line per measured scan, kept as it is made ("foilgauge/results/1")
+ *   results.jsonl   one line per measured scan, kept as it is made, with a checksum
+ *                   of its own ("foilgauge/results/2")
  *   lot.json, foils.csv, bumps.csv, index.html, results.qif, results.dfq    the report
  *
  * The report is a function of the first three alone: it is computed from the recorded values, never
@@ -12,8 +13,8 @@
  * of jobs or in any number of shards reads byte for byte the same.
  *
  * A record is valid while the SHA-256 of its scan and of what it was measured with (program
- * version, design without tolerances, resolution, scanner's model) stay the same; --resume measures
- * the rest.
+ * version, design without tolerances, resolution, scanner's model) stay the same, and its line is
+ * what was written, to the byte; --resume measures the rest.
  */
 #ifndef FOILGAUGE_LOT_H
 #define FOILGAUGE_LOT_H
@@ -40,19 +41,22 @@ typedef struct fg_lot_settings {
   /* The scanner's model that corrects every scan, as "model" in a recipe: the path of its file; in
    * the lot's folder it is scanner_model.json. "": none. */
   char model[1024], model_sha256[65];
-  unsigned jobs;     /* scans at a time; 0: as many as there are cores; never changes a result */
-  double trim_pct;   /* cut off each tail before radius and angle errors are correlated */
-  double confidence; /* of every interval */
+  unsigned jobs; /* scans at a time; 0: as many as the process has cores; never changes a result */
+  double trim_pct;             /* cut off each tail before radius and angle errors are correlated */
+  double confidence;           /* of every interval */
   fg_bandwidth_rule bandwidth; /* "silverman", "scott", "sheather_jones" */
   size_t resamples;            /* drawn from the kernel density */
   uint64_t seed;
-  unsigned run_rules;        /* bits of control.h; in a recipe the rules' numbers: [1, 2, 3, 4] */
-  char group_column[64];     /* lots are compared by this column (die, coil ...); "": none */
-  char part_column[64];      /* repeated scans: the part, and ... */
-  char operator_column[64];  /* ... who or what measured it; both needed for a gauge study */
-  char bearing_column[64];   /* which bearing a foil goes into; without: three in a row make one */
-  char pad_column[64];       /* and which of its pads it is, from 1 */
-  fg_bearing_layout layout;  /* pads, bumps_per_pad, first_bump */
+  unsigned run_rules;       /* bits of control.h; in a recipe the rules' numbers: [1, 2, 3, 4] */
+  char group_column[64];    /* lots are compared by this column (die, coil ...); "": none */
+  char part_column[64];     /* repeated scans: the part, and ... */
+  char operator_column[64]; /* ... who or what measured it; both needed for a gauge study */
+  char bearing_column[64];  /* which bearing a foil goes into; without: three in a row make one */
+  char pad_column[64];      /* and which of its pads it is, from 1 */
+  /* pads, bumps_per_pad, first_bump, bump_pitch_deg. 0, in a recipe null: the design's bump count
+   * and pitch, and as many pads as fit around; pads and bumps_per_pad without a pitch are equally
+   * spaced. */
+  fg_bearing_layout layout;
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
 } fg_lot_settings;
 
@@ -94,23 +98,30 @@ typedef void fg_lot_listener(void *user, const fg_lot_progress *progress);
 typedef struct fg_lot_request {
   const fg_lot_settings *settings;
   const char *const *paths; /* folders, scans, lists (.txt: a path a line), manifests (.csv with a
-                               column `scan`); relative paths in a file count from its folder */
+                               column `scan`); relative paths in a file count from its folder.
+                                With `resume`, the folder's own manifest.csv, whose paths
+                                count from where they did */
   size_t path_count;
-  const char *folder; /* of the results */
-  bool resume;        /* keep valid records; without it a folder with results is FG_ERR_USAGE */
-  bool dry_run;       /* say what would be measured, and touch nothing */
+  const char *folder; /* of the results; none of its files may overwrite an input: FG_ERR_USAGE */
+  const char *recipe, *design; /* the files that the settings came from; NULL: none */
+  bool resume;  /* keep valid records; without it a folder with results is FG_ERR_USAGE */
+  bool dry_run; /* say what would be measured, and touch nothing */
   fg_lot_shard shard;
   fg_lot_listener *listener; /* may be NULL */
   void *user;
 } fg_lot_request;
 
 typedef struct fg_lot_outcome {
-  fg_verdict verdict;
+  fg_report_outcome judged; /* of all foils and scans; fg_outcome_exit_code */
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
-  size_t exceeded; /* foils with a value outside its tolerance */
-  size_t beyond;   /* scans measured now that reach beyond the region of the scanner's model */
-  size_t torn;     /* lines of results.jsonl that were not whole, and measured again */
+  size_t exceeded;   /* foils with a value that fails */
+  size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
+  size_t torn;       /* lines of results.jsonl that were damaged or not whole, and measured again */
+  size_t first_torn; /* the first of them, from 1 */
+  size_t doubles;    /* scans that were named once more, under whatever spelling, and count once */
+  char first_double[512]; /* the first of them, with the name under which it counts */
+  bool earlier;           /* results.jsonl was of an earlier version: all of it is measured again */
 } fg_lot_outcome;
 
 /* Measures what is missing and, for the whole of a lot, writes the report. A scan that cannot be

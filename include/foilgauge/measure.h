@@ -17,6 +17,8 @@ typedef struct fg_measure_options {
   unsigned threads;              /* 0: as many as there are cores */
   fg_channel channel;            /* of a colour scan */
   bool allow_lossy;              /* as in fg_scan_options */
+  bool only_file;                /* as in fg_scan_options */
+  bool sum_failed;               /* also find the SHA-256 of a file that cannot be measured */
   uint64_t pixel_cap;            /* refuse larger scans; 0: 4e9 */
   size_t memory_cap;             /* bytes that rows and tiles may take; 0: 2 GiB */
   fg_measure_progress *progress; /* NULL: none */
@@ -26,7 +28,9 @@ typedef struct fg_measure_options {
 /* Reads the scan once and measures every foil (or disc) in it. `path` may be "-" for standard
  * input. On success the caller frees with fg_measurement_free. FG_ERR_DATA when there is nothing
  * to measure, or when memory_cap is reached (a scan that is dirty all over); a foil that cannot be
- * measured is flagged FG_FOIL_NOT_MEASURED. */
+ * measured is flagged FG_FOIL_NOT_MEASURED. On failure the measurement is all zero, but with
+ * `sum_failed` its sha256 is that of what was read and the rest of the file; "" when it could not
+ * be read, changed meanwhile, or is no regular file. */
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement);
 

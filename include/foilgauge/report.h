@@ -23,7 +23,8 @@ extern "C" {
 
 /* What a row of the table belongs to. */
 typedef enum fg_report_owner {
-  FG_REPORT_FOIL, /* offsets into fg_foil; "overall." in the name is a JSON object */
+  FG_REPORT_FOIL, /* offsets into fg_foil; "overall.", "correction." are JSON objects; the second
+                     is there where a scanner's model corrected the foil */
   FG_REPORT_BUMP, /* offsets into fg_bump */
   FG_REPORT_DISC, /* offsets into fg_disc */
 } fg_report_owner;
@@ -70,38 +71,73 @@ typedef enum fg_verdict {
   FG_VERDICT_NONE,         /* "no_tolerance" */
 } fg_verdict;
 
-typedef struct fg_judgement {
-  const fg_tolerance *tolerance; /* of the design; not owned */
-  const fg_report_field *field;
-  int number; /* of the bump or disc; 0: the whole foil */
-  double value, u;
-  bool exceeded; /* the value itself lies outside a limit */
-  fg_verdict verdict;
-} fg_judgement;
-
+/* What a limit says to one value. */
 fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u);
 
 /* The word of a verdict as JSON has it. */
 const char *fg_verdict_word(fg_verdict verdict);
 
-/* Every tolerance of the design applied to a foil: one judgement per tolerance of the foil and one
- * per tolerance and bump; a bump that the design states and the foil lacks is "not_measured". The
- * caller frees *list with free(). */
-fg_status fg_foil_judgements(fg_context *ctx, const fg_design *design, const fg_foil *foil,
-                             fg_judgement **list, size_t *count);
-
-/* The same for one disc. */
-fg_status fg_disc_judgements(fg_context *ctx, const fg_design *design, const fg_disc *disc,
-                             fg_judgement **list, size_t *count);
-
 /* The worse of two: fail, then not measured, cannot tell, pass, no tolerance. */
 fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b);
 
-/* The worst of a list. */
-fg_verdict fg_judgements_verdict(const fg_judgement *list, size_t count);
+typedef struct fg_judgement {
+  const fg_tolerance *tolerance; /* of the design; not owned */
+  const fg_report_field *field;
+  int number; /* of the bump or disc; 0: the whole foil */
+  double value, u;
+  bool missing;  /* of a bump that is not there: no value, and a fail */
+  bool exceeded; /* the value fails */
+  fg_verdict verdict;
+} fg_judgement;
 
-/* Sets foil->in_tolerance and FG_BUMP_OUT_OF_TOLERANCE from the values alone. */
-void fg_foil_judge(const fg_design *design, fg_foil *foil);
+/* What a foil, a disc, a scan or a run comes to. */
+typedef struct fg_report_outcome {
+  fg_verdict verdict;  /* the worst of all */
+  size_t exceeded;     /* values that lie beyond a limit by more than U */
+  size_t undecided;    /* values with a limit within U */
+  size_t not_measured; /* scans, foils, bumps and toleranced quantities without a value */
+  size_t rejected;     /* foils with a defect that rejects them whatever their values are */
+} fg_report_outcome;
+
+/* `sum` starts with the verdict FG_VERDICT_NONE and zeros. */
+void fg_outcome_add(fg_report_outcome *sum, const fg_report_outcome *part);
+
+/* The program's exit code: 2 something was not measured, else 1 a fail, else 3 cannot tell, else
+ * 0. */
+int fg_outcome_exit_code(const fg_report_outcome *outcome);
+
+/* The decision about a foil or a disc. Every report, a lot and the exit code read this one and
+ * count nothing again.
+ *
+ * A foil passes when all of it was measured and every value passes. It fails when a value fails or
+ * a defect rejects it (fg_foil_defect). It is not measured when it could not be, when it is no foil
+ * of the design (fg_foil_is_measured), when a bump could not be fitted, or when the border of the
+ * scan may hide bumps that tolerances ask for. */
+typedef struct fg_decision {
+  fg_report_outcome outcome;
+  fg_judgement *judgements; /* per tolerance of the foil, and per tolerance and bump; owned */
+  size_t count;             /* 0 for a foil that was not measured */
+} fg_decision;
+
+fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil *foil,
+                         fg_decision *decision);
+fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc *disc,
+                         fg_decision *decision);
+void fg_decision_free(fg_decision *decision);
+
+/* True with `words` (may be NULL) for people: "bump 3 is missing (8 found, the design has 9)". A
+ * place at the pitch that is seen to be empty rejects a foil under every design. Another number of
+ * bumps than the design's does so under a design with tolerances, unless the border of the scan
+ * cuts the foil; under one without, which judges nothing, it is a flag alone. */
+bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, size_t size);
+
+/* The worst of a bump's values; "not_measured" when it was not fitted or its foil not measured. */
+fg_verdict fg_bump_verdict(const fg_design *design, const fg_foil *foil, const fg_bump *bump);
+
+/* The flags of a bump as reports write them: with FG_BUMP_OUT_OF_TOLERANCE when its verdict is
+ * fail. */
+unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bump *bump);
+unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc);
 
 /* FG_ERR_DATA when a tolerance names a quantity that is not reported for this form of part; the
  * message lists the names that there are. */
@@ -121,13 +157,9 @@ typedef struct fg_report {
   size_t scan_count;
 } fg_report;
 
-/* What all of it comes to. */
-typedef struct fg_report_outcome {
-  fg_verdict verdict;  /* the worst of all */
-  size_t exceeded;     /* values outside their tolerance */
-  size_t not_measured; /* scans, foils and toleranced quantities without a value */
-} fg_report_outcome;
-
+/* One scan, and all of them. */
+fg_status fg_report_judge_scan(fg_context *ctx, const fg_design *design, const fg_report_scan *scan,
+                               fg_report_outcome *outcome);
 fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_outcome *outcome);
 
 /* The writers check the stream's error indicator at their end: FG_ERR_IO. */

@@ -20,12 +20,17 @@
 extern "C" {
 #endif
 
+/* Called with the path of every scan before the first is measured; an error ends the call. */
+typedef fg_status fg_run_sheet_visit(fg_context *ctx, void *user, const char *scan);
+
 typedef struct fg_run_sheet_options {
   const char *column;   /* that names the scans */
   const char *quantity; /* any reported one: "overall.springback_error_pct", "height_mm" */
   const char *folder;   /* of relative paths; NULL: the current one */
   const fg_design *design;
   fg_measure_options measure;
+  fg_run_sheet_visit *visit; /* may be NULL */
+  void *user;                /* of visit */
 } fg_run_sheet_options;
 
 typedef struct fg_run_sheet {

@@ -42,7 +42,11 @@ typedef struct fg_scan_options {
   uint64_t pixel_cap;  /* refuse larger ones; 0: 4e9 */
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
-  bool allow_lossy; /* take a TIFF whose compression has moved edges (JPEG) */
+  bool allow_lossy;    /* take a TIFF whose compression has moved edges (JPEG) */
+  bool only_file;      /* refuse pipes and devices, which may never end */
+  bool unsummed;       /* the SHA-256 will not be asked for */
+  char *failed_sha256; /* 65 bytes or NULL: that of a regular file which could be read, but is no
+                          scan; else "" */
 } fg_scan_options;
 
 typedef struct fg_scan_info {
@@ -80,10 +84,17 @@ fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *
  * not). */
 bool fg_scan_is_file(const fg_scan *scan);
 
-/* SHA-256 of the whole file, as 64 hex digits. For a regular file it is computed from the same
- * open file (pread, safe to call from another thread while rows are read); for a pipe it is known
- * after the last row. */
+/* SHA-256 of the bytes that the rows came from, to the end of the file, as 64 hex digits. It is
+ * found as they are read, and known after the last row; called earlier on a regular file it reads
+ * what is left, and no more rows come (of a pipe: FG_ERR_USAGE). */
 fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]);
+
+/* A format that jumps about in its file (TIFF) is summed in a reading of its own, through the same
+ * open file: then fg_scan_sha256 may be called from another thread while rows are read. After both
+ * fg_scan_check_unchanged is FG_ERR_IO when the two have seen different bytes (so is the sum itself
+ * where it comes last). */
+bool fg_scan_sums_apart(const fg_scan *scan);
+fg_status fg_scan_check_unchanged(fg_context *ctx, fg_scan *scan);
 
 void fg_scan_close(fg_scan *scan); /* NULL is fine */
 

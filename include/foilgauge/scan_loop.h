@@ -16,28 +16,17 @@
 extern "C" {
 #endif
 
-enum {
-  FG_SCAN_EFFECTS = FG_LOOP_CLAIMS + 2,
-  FG_SCAN_COLUMNS = 24, /* linear columns of an effect, at most */
-  FG_SCANNER_NAME = 128
-};
+enum { FG_SCANNER_NAME = 128 };
 
 typedef struct fg_scan_loop_options {
   double dpi;       /* 0: as the files say */
   unsigned threads; /* 0: all cores */
   bool same_foil;   /* foil k of every scan is one foil, turned or shifted in between */
+  bool coarse;      /* a quick look: few starts, sets of one smooth effect, two rounds at most */
   uint64_t seed;
   const char *scanner; /* its name, for the model file; NULL: not said */
+  int64_t date; /* likewise, when its scans were made: seconds since 1970, UTC; 0: not said */
 } fg_scan_loop_options;
-
-/* One effect that is in the corrected model. Coefficients are linear amplitudes in um of its
- * columns (src/loop/fields.c, points_effects.c). */
-typedef struct fg_scan_effect {
-  const char *id;
-  size_t columns, shapes;
-  double coefficient_um[FG_SCAN_COLUMNS], u_coefficient_um[FG_SCAN_COLUMNS];
-  double shape[FG_LOOP_SHAPES], u_shape[FG_LOOP_SHAPES];
-} fg_scan_effect;
 
 /* Lowest and highest value of a dimension over the tied explanations. */
 typedef struct fg_scan_range {
@@ -52,11 +41,14 @@ typedef struct fg_scan_error {
 typedef struct fg_scan_loop fg_scan_loop; /* src/loop/scan_loop.h */
 
 /* `hold_out[i]`: scan i only confirms. At least one scan must not be kept aside. FG_ERR_DATA when
- * the scans do not fit together (resolution, foils under same_foil). */
+ * the scans do not fit together (resolution; under same_foil scans that are not of one foil),
+ * FG_ERR_NOT_MEASURED when no foil of the design could be measured. */
 fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
                            size_t count, const fg_design *design,
                            const fg_scan_loop_options *options, fg_scan_loop **loop);
 void fg_scan_loop_free(fg_scan_loop *loop);
+/* Foils that could not be measured, or are none of the design's: they took no part. */
+size_t fg_scan_loop_left_out(const fg_scan_loop *loop);
 
 /* "foilgauge/loop/1", domain "scan". */
 fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
@@ -83,7 +75,8 @@ fg_status fg_scan_model_check_scanner(fg_context *ctx, const fg_scan_model *mode
  * u_, and in a tie with how far the other explanations would have moved it. FG_ERR_DATA when the
  * model is of another resolution, or a foil lies more than twice as far on the glass as what the
  * model was found on; `warning` (200 bytes, or NULL) gets words when it lies outside at all. Part
- * effects are of the foil they were found on and are not applied. */
+ * effects are of the foil they were found on and are not applied. What it did is in `correction` of
+ * every foil; the model must outlive the measurement, whose reports speak of it. */
 fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_measurement *m,
                               unsigned threads, char *warning);
 

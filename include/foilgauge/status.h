@@ -13,12 +13,13 @@ extern "C" {
 
 typedef enum fg_status {
   FG_OK = 0,
-  FG_ERR_USAGE,       /* the call or the command line is wrong: exit 64 */
-  FG_ERR_DATA,        /* a file's content is wrong: exit 65 */
-  FG_ERR_IO,          /* a file cannot be read or written: exit 74 */
-  FG_ERR_MEMORY,      /* out of memory: exit 74 */
-  FG_ERR_NUMERIC,     /* a fit did not converge; usually a flag on one object: exit 65 */
-  FG_ERR_INTERRUPTED, /* stopped by a signal: exit 130 */
+  FG_ERR_USAGE,        /* the call or the command line is wrong: exit 64 */
+  FG_ERR_DATA,         /* a file's content is wrong: exit 65 */
+  FG_ERR_IO,           /* a file cannot be read or written: exit 74 */
+  FG_ERR_MEMORY,       /* out of memory: exit 74 */
+  FG_ERR_NUMERIC,      /* a fit did not converge; usually a flag on one object: exit 65 */
+  FG_ERR_INTERRUPTED,  /* stopped by a signal: exit 130 */
+  FG_ERR_NOT_MEASURED, /* nothing in the input could be measured: exit 2 */
 } fg_status;
 
 typedef struct fg_context {
@@ -31,7 +32,7 @@ typedef struct fg_context {
 fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The exit code that goes with a status (DESIGN section 3). */
+/* The exit code that goes with a status (README). */
 int fg_status_exit_code(fg_status status);
 
 /* Forwards an error to the caller. */

@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "foilgauge/status.h"
+
 #include "foilgauge/circle.h"
 
 #ifdef __cplusplus
@@ -25,6 +27,13 @@ typedef enum fg_strip_fact {
   FG_STRIP_GAP = 1u << 4,            /* the strip is interrupted or its edge is hidden somewhere */
 } fg_strip_fact;
 
+/* What is the matter with one station that is not usable. */
+typedef enum fg_station_fact {
+  FG_STATION_DISTURBED = 1u << 0, /* its pixels are not those of a strip */
+  FG_STATION_CUT = 1u << 1,       /* background shows all across the strip */
+  FG_STATION_TOUCHED = 1u << 2,   /* another part lies on the strip or beside it */
+} fg_station_fact;
+
 /* One cross-section. Left and right are as seen when walking along the strip with y down:
  * the normal is the tangent turned by +90 degrees (from x to y), and `right` lies on its side. */
 typedef struct fg_station {
@@ -34,7 +43,8 @@ typedef struct fg_station {
   fg_point normal; /* unit normal, in mm coordinates */
   float u_left_um; /* standard deviation of the edge along the normal, from pixel noise alone */
   float u_right_um;
-  float weight; /* 0: not usable (dust, burr, hidden edge); 1: good */
+  float weight;   /* 0: not usable (dust, burr, hidden edge); 1: good */
+  unsigned facts; /* fg_station_fact */
 } fg_station;
 
 typedef struct fg_strip {
@@ -42,16 +52,24 @@ typedef struct fg_strip {
   size_t count;
   double step_mm;      /* nominal distance of stations */
   double thickness_mm; /* median distance of the edges */
-  double u_thickness_mm;
+  double
+      u_thickness_mm; /* what it varies by along the strip; the tone curve's doubt is beside it: */
   double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */
   double contrast;   /* strip minus background, in units of the scan's full scale */
   double noise;      /* pixel noise sd, same unit */
   double gamma;      /* exponent of the tone curve found */
+  double u_gamma;    /* what its profiles leave in doubt */
+  double tone_um;    /* of thickness per unit of ln gamma: both edges lie where the light is half */
   unsigned facts;    /* fg_strip_fact */
   int64_t box_px[4]; /* x, y, width, height of what belongs to it in the scan */
 } fg_strip;
 
 void fg_strip_free(fg_strip *strip); /* frees the stations; NULL is fine */
+
+/* Sets thickness and its uncertainty from the stations, also after their edges were moved: the
+ * median distance of the edges, and the standard error of its mean over stretches of an eighth of
+ * the strip, for neighbouring stations err alike. NaN without usable stations. */
+fg_status fg_strip_measure_thickness(fg_context *ctx, fg_strip *strip);
 
 #ifdef __cplusplus
 }

@@ -50,6 +50,8 @@ typedef struct fg_table {
   fg_column *column;
   size_t *line; /* rows, or NULL: line of the text where the row ends */
   size_t column_capacity, line_capacity;
+  size_t *name_slot; /* hash of the columns' names: number + 1, 0 free; 0 of them: not made yet */
+  size_t name_slots;
 } fg_table;
 
 /* Reads CSV (RFC 4180; LF, CRLF or CR; UTF-8 with or without a byte order mark; comma, semicolon

@@ -14,7 +14,7 @@ program=${FOILGAUGE:-foilgauge}
 scans=$("$program" lot "$manifest" --recipe "$recipe" -o "$output" --dry-run | cut -d ' ' -f 1)
 tasks=$(((scans + each - 1) / each))
 array=$(sbatch --parsable --array="1-$tasks" "$here/lot.sbatch" "$manifest" "$recipe" "$output.shards")
-# Exit code 1 (out of tolerance) and 2 (a scan not measured) are answers, not failures of the job.
-merge="$program merge $(seq -f "'$output.shards/%.0f'" -s ' ' "$tasks") -o '$output' || [ \$? -le 2 ]"
+# Exit codes 1 (out of tolerance), 2 (a scan not measured) and 3 (cannot tell) are answers, not failures.
+merge="$program merge $(seq -f "'$output.shards/%.0f'" -s ' ' "$tasks") -o '$output' || [ \$? -le 3 ]"
 sbatch --parsable --dependency="afterok:$array" --job-name=foilgauge-merge --output="$output.merge.log" --wrap="$merge"
 echo "$scans scans in $tasks tasks; the report will be $output/index.html" >&2

@@ -12,9 +12,13 @@ typedef struct places {
   size_t count;
 } places;
 
+double fg_bearing_pitch_deg(const fg_bearing_layout *layout) {
+  if (layout->pitch_deg > 0) return layout->pitch_deg;
+  return 360 / (double)(layout->pads * layout->bumps_per_pad);
+}
+
 double fg_bearing_angle_deg(const fg_bearing_layout *layout, size_t pad, size_t bump) {
-  double whole = (double)(layout->pads * layout->bumps_per_pad);
-  return 360 * (double)(pad * layout->bumps_per_pad + bump) / whole;
+  return 360 * (double)pad / (double)layout->pads + (double)bump * fg_bearing_pitch_deg(layout);
 }
 
 /* Solves three equations by Cramer's rule; false when they say too little. */

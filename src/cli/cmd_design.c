@@ -2,7 +2,7 @@
 #include <stdbool.h>
 
 #include "cli/commands.h"
-#include "core/file.h"
+#include "cli/output_set.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"
 #include "report/measure_json.h"
@@ -10,7 +10,7 @@
 
 typedef struct design_arguments {
   const char *design_path; /* NULL: built in */
-  const char *output_path;
+  fg_output_set outputs;
   bool json, curve;
 } design_arguments;
 
@@ -40,7 +40,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   design_arguments *arguments = state->input;
   switch (key) {
   case 'o':
-    arguments->output_path = text;
+    arguments->outputs.path[0] = text;
     break;
   case OPTION_JSON:
     arguments->json = true;
@@ -135,38 +135,51 @@ static void write_curve(const fg_design *design, const fg_nominal *nominal, FILE
   }
 }
 
-static fg_status write_design(fg_context *ctx, const design_arguments *arguments,
-                              const fg_design *design, const fg_nominal *nominal) {
-  fg_output output;
-  FG_TRY(fg_output_open(ctx, arguments->output_path, &output));
-  if (arguments->curve)
-    write_curve(design, nominal, output.stream);
-  else if (arguments->json || arguments->output_path)
-    write_json(design, nominal, output.stream);
-  else
-    write_table(design, nominal, output.stream);
-  return fg_output_commit(ctx, &output);
-}
-
-static fg_status show_design(fg_context *ctx, const design_arguments *arguments) {
+typedef struct design_view {
+  const design_arguments *arguments;
   fg_design design;
   fg_nominal nominal;
-  fg_design_default(&design);
-  if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &design));
-  FG_TRY(fg_design_derive(ctx, &design, &nominal));
-  if (arguments->curve && design.form == FG_FORM_DISCS)
+} design_view;
+
+static fg_status write_view(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  const design_view *view = user;
+  (void)ctx;
+  (void)kind;
+  if (view->arguments->curve)
+    write_curve(&view->design, &view->nominal, out);
+  else if (view->arguments->json)
+    write_json(&view->design, &view->nominal, out);
+  else
+    write_table(&view->design, &view->nominal, out);
+  return FG_OK;
+}
+
+static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
+  design_view view = {.arguments = arguments};
+  const fg_input input = {arguments->design_path, "the design"};
+  if (arguments->outputs.path[0])
+    arguments->json = true;
+  else
+    arguments->outputs.path[0] = "-";
+  FG_TRY(fg_output_set_check(ctx, &arguments->outputs, &input, 1));
+  fg_design_default(&view.design);
+  if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &view.design));
+  FG_TRY(fg_design_derive(ctx, &view.design, &view.nominal));
+  if (arguments->curve && view.design.form == FG_FORM_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no bumps, so there is no curve",
                    arguments->design_path);
-  return write_design(ctx, arguments, &design, &nominal);
+  FG_TRY(fg_output_set_open(ctx, &arguments->outputs));
+  return fg_output_set_write(ctx, &arguments->outputs, write_view, &view);
 }
 
 int fg_cmd_design(int argc, char **argv) {
   static const struct argp parser = {options, parse_option, "[DESIGN]", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  design_arguments arguments = {0};
+  design_arguments arguments = {.outputs.count = 1};
   argv[0] = (char[]){"foilgauge design"};
   fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = show_design(&ctx, &arguments);
+  fg_output_set_close(&arguments.outputs);
   return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
 }

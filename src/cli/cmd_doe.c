@@ -269,6 +269,27 @@ static fg_status read_sheet(fg_context *ctx, doe_run *run) {
   return status;
 }
 
+/* --model may be a formula, or name what `foilgauge loop --model-out` wrote. */
+static bool is_model_file(const char *model) {
+  size_t length = model ? strlen(model) : 0;
+  return length >= 5 && !strcmp(model + length - 5, ".json");
+}
+
+static fg_status check_outputs(fg_context *ctx, doe_run *run) {
+  const doe_arguments *a = &run->arguments;
+  const fg_input inputs[] = {
+      {a->data, "the table of runs"},
+      {a->design_path, "the design"},
+      {is_model_file(a->options.formula) ? a->options.formula : NULL, "the loop's model"}};
+  return fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs);
+}
+
+/* fg_run_sheet_visit */
+static fg_status check_scan(fg_context *ctx, void *user, const char *scan) {
+  doe_run *run = user;
+  return fg_output_set_check(ctx, &run->outputs, &(fg_input){scan, "the scan"}, 1);
+}
+
 static fg_status measure_scans(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
   fg_design design;
@@ -282,7 +303,9 @@ static fg_status measure_scans(fg_context *ctx, doe_run *run) {
                                       .quantity = a->options.response,
                                       .folder = folder,
                                       .design = &design,
-                                      .measure = {a->dpi, a->threads}};
+                                      .measure = {a->dpi, a->threads},
+                                      .visit = check_scan,
+                                      .user = run};
   FG_TRY(fg_run_sheet_measure(ctx, &run->sheet, &sheet, &run->measured));
   for (size_t i = 0; i < run->measured.scans; i++)
     if (run->measured.scan[i].error)
@@ -307,23 +330,17 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
   return writers[kind](ctx, &report, out);
 }
 
-static fg_status check_outputs(fg_context *ctx, const doe_run *run) {
-  FG_TRY(fg_output_set_check(ctx, &run->outputs, run->arguments.data, "the table of runs"));
-  return fg_output_set_check(ctx, &run->outputs, run->arguments.design_path, "the design");
-}
-
 /* Results without -o go to standard output, unless the page is there already. */
 static void choose_standard_output(fg_output_set *set) {
-  if (set->path[OUT_JSON] || (set->path[OUT_HTML] && fg_is_standard(set->path[OUT_HTML]))) return;
+  if (set->path[OUT_JSON] || fg_output_set_has_standard(set)) return;
   set->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
 }
 
-/* --model may name what `foilgauge loop --model-out` wrote: its effects are taken out of the
- * response, and its formula is the one to analyse. */
+/* The effects of a model file are taken out of the response, and its formula is the one to analyse.
+ */
 static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
   const char *name = run->arguments.options.formula;
-  size_t length = name ? strlen(name) : 0;
-  if (length < 5 || strcmp(name + length - 5, ".json")) return FG_OK;
+  if (!is_model_file(name)) return FG_OK;
   FG_TRY(fg_loop_model_load(ctx, name, &run->loop_model));
   const char *response = fg_loop_model_response(run->loop_model);
   if (run->arguments.options.response && strcmp(run->arguments.options.response, response) != 0)

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/doe_plan.h"
+#include "core/csv.h"
 #include "core/file.h"
 #include "foilgauge/doe.h"
 #include "foilgauge/plan.h"
@@ -198,8 +199,10 @@ static fg_status write_sheet(fg_context *ctx, const plan_arguments *a, const fg_
   for (const char *line = text; *line; head = false) {
     size_t length = strcspn(line, "\n");
     fwrite(line, 1, length, out);
-    for (size_t k = 0; k < a->columns; k++)
-      fprintf(out, ",%s", head ? a->column[k] : "");
+    for (size_t k = 0; k < a->columns; k++) {
+      fputc(',', out);
+      if (head) fg_csv_put_text(out, a->column[k], NULL);
+    }
     fputc('\n', out);
     line += length + (line[length] == '\n');
   }
@@ -228,10 +231,7 @@ static fg_status tell(fg_context *ctx, const fg_plan *plan) {
 static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
   fg_output output;
   FG_TRY(fg_output_open(ctx, a->output_path, &output));
-  fg_status status = write_sheet(ctx, a, plan, output.stream);
-  if (status == FG_OK) status = fg_output_commit(ctx, &output);
-  fg_output_discard(&output);
-  FG_TRY(status);
+  FG_TRY(fg_output_end(ctx, &output, write_sheet(ctx, a, plan, output.stream)));
   return tell(ctx, plan);
 }
 

@@ -1,5 +1,6 @@
 #include <argp.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -7,15 +8,26 @@
 #include <cjson/cJSON.h>
 
 #include "cli/commands.h"
+#include "cli/loop_outputs.h"
+#include "cli/progress.h"
 #include "core/file.h"
 #include "core/sha256.h"
 #include "foilgauge/loop.h"
 
+typedef fg_status loop_writer(fg_context *ctx, const fg_loop_report *report, FILE *out);
+
+static loop_writer *const writers[FG_LOOP_OUTPUTS] = {
+    [FG_LOOP_HTML] = fg_loop_write_html,
+    [FG_LOOP_MODEL] = fg_loop_write_model,
+    [FG_LOOP_JSON] = fg_loop_write_json,
+    [FG_LOOP_TEXT] = fg_loop_write_text,
+};
+
 typedef struct loop_arguments {
   const char *table_path, *design_path, *declared_path;
-  const char *output_path, *model_path, *page_path;
+  fg_output_set outputs;
   fg_loop_table_spec spec;
-  double matters;
+  double matters, minutes, mebibytes;
   cJSON *declared; /* owns the strings that came from --declared */
 } loop_arguments;
 
@@ -32,7 +44,12 @@ enum {
   OPTION_MODEL_OUT,
   OPTION_HTML,
   OPTION_MATTERS,
+  OPTION_MINUTES,
+  OPTION_MEMORY,
 };
+
+/* What a search may take by estimate before it is refused. */
+static const double default_minutes = 10, default_mebibytes = 512;
 
 static const struct argp_option options[] = {
     {"table", OPTION_TABLE, "DATA.csv", 0, "The measured data", 0},
@@ -51,6 +68,9 @@ static const struct argp_option options[] = {
      "Whole groups kept aside: a share, 0, or COLUMN=VALUE", 0},
     {"matters", OPTION_MATTERS, "AMPLITUDE", 0,
      "An effect this small does not matter, in the response's unit (default: one noise sd)", 0},
+    {"minutes", OPTION_MINUTES, "N", 0,
+     "Refuse a table whose search may take longer by estimate (default 10)", 0},
+    {"memory", OPTION_MEMORY, "MIB", 0, "Refuse one that may take more memory (default 512)", 0},
     {"seed", OPTION_SEED, "N", 0, "Of every random step (default 1)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "Declared model and what was found, as JSON", 0},
@@ -92,9 +112,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       {OPTION_DESIGN, &arguments->design_path},
       {OPTION_DECLARED, &arguments->declared_path},
       {OPTION_HOLD_OUT, &arguments->spec.hold_out},
-      {OPTION_MODEL_OUT, &arguments->model_path},
-      {OPTION_HTML, &arguments->page_path},
-      {'o', &arguments->output_path},
+      {OPTION_MODEL_OUT, &arguments->outputs.path[FG_LOOP_MODEL]},
+      {OPTION_HTML, &arguments->outputs.path[FG_LOOP_HTML]},
+      {'o', &arguments->outputs.path[FG_LOOP_JSON]},
   };
   for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
     if (texts[i].key == key) {
@@ -104,6 +124,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   switch (key) {
   case OPTION_MATTERS:
     parse_number(state, "matters", text, &arguments->matters);
+    return 0;
+  case OPTION_MINUTES:
+    parse_number(state, "minutes", text, &arguments->minutes);
+    return 0;
+  case OPTION_MEMORY:
+    parse_number(state, "memory", text, &arguments->mebibytes);
     return 0;
   case OPTION_SEED:
     parse_seed(state, text, &arguments->spec.seed);
@@ -140,10 +166,19 @@ static fg_status take_design(fg_context *ctx, const loop_arguments *arguments, f
       {"thickness_mm", &design->thickness_mm},
       {"rotor_diameter_mm", &design->rotor_diameter_mm},
   };
-  const cJSON *object = cJSON_GetObjectItemCaseSensitive(arguments->declared, "design");
-  for (size_t i = 0; object && i < sizeof members / sizeof *members; i++) {
-    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, members[i].name);
-    if (!item) continue;
+  const size_t count = sizeof members / sizeof *members;
+  const cJSON *object = cJSON_GetObjectItemCaseSensitive(arguments->declared, "design"), *item;
+  if (object && !cJSON_IsObject(object))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: design must be an object", arguments->declared_path);
+  cJSON_ArrayForEach(item, object) {
+    size_t i = 0;
+    while (i < count && strcmp(members[i].name, item->string))
+      i++;
+    if (i == count)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: design.%s is not known here; what is known are bump_radius_mm, "
+                     "bump_angle_deg, overall_radius_mm, thickness_mm and rotor_diameter_mm",
+                     arguments->declared_path, item->string);
     if (!cJSON_IsNumber(item))
       return fg_fail(ctx, FG_ERR_DATA, "%s: design.%s must be a number", arguments->declared_path,
                      members[i].name);
@@ -174,38 +209,46 @@ static fg_status read_declared(fg_context *ctx, loop_arguments *arguments, fg_de
   return FG_OK;
 }
 
-typedef fg_status loop_writer(fg_context *ctx, const fg_loop_report *report, FILE *out);
-
-static fg_status write_file(fg_context *ctx, const char *path, const fg_loop_report *report,
-                            loop_writer *writer) {
-  fg_output output;
-  FG_TRY(fg_output_open(ctx, path, &output));
-  fg_status status = writer(ctx, report, output.stream);
-  if (status == FG_OK) status = fg_output_commit(ctx, &output);
-  fg_output_discard(&output);
-  return status;
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  return writers[kind](ctx, user, out);
 }
 
-static fg_status write_all(fg_context *ctx, const loop_arguments *arguments,
-                           const fg_loop_report *report) {
-  bool terminal = isatty(STDOUT_FILENO);
-  bool quiet = arguments->page_path || arguments->model_path;
-  if (arguments->page_path)
-    FG_TRY(write_file(ctx, arguments->page_path, report, fg_loop_write_html));
-  if (arguments->model_path)
-    FG_TRY(write_file(ctx, arguments->model_path, report, fg_loop_write_model));
-  if (arguments->output_path)
-    return write_file(ctx, arguments->output_path, report, fg_loop_write_json);
-  if (terminal) return write_file(ctx, "-", report, fg_loop_write_text);
-  return quiet ? FG_OK : write_file(ctx, "-", report, fg_loop_write_json);
+static fg_status check_outputs(fg_context *ctx, loop_arguments *arguments) {
+  const fg_input inputs[] = {{arguments->table_path, "the table"},
+                             {arguments->declared_path, "the declared model"},
+                             {arguments->design_path, "the design"}};
+  fg_loop_outputs_choose(&arguments->outputs);
+  return fg_output_set_check(ctx, &arguments->outputs, inputs, sizeof inputs / sizeof *inputs);
 }
 
 static fg_status read_table(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
   char *text = NULL;
   FG_TRY(fg_file_read_text(ctx, path, (size_t)1 << 30, &text));
   fg_status status = fg_table_parse(ctx, path, text, strlen(text), table);
-  if (status == FG_OK) status = fg_sha256_file(ctx, path, sha256);
+  fg_sha256_text(text, sha256);
   free(text);
+  return status;
+}
+
+static void show_progress(void *user, size_t found, double share) {
+  fg_progress *progress = user;
+  snprintf(progress->name, sizeof progress->name, "%zu found, next", found);
+  fg_progress_show(progress, (int64_t)(1000 * share), 1000);
+}
+
+static fg_status search(fg_context *ctx, const loop_arguments *arguments,
+                        const fg_loop_problem *problem, fg_loop_result *result) {
+  fg_progress progress;
+  const fg_loop_options how = {.effects = fg_loop_table_effects(),
+                               .seed = arguments->spec.seed,
+                               .matters = arguments->matters,
+                               .minutes = arguments->minutes,
+                               .mebibytes = arguments->mebibytes,
+                               .progress = show_progress,
+                               .progress_user = &progress};
+  fg_progress_begin(&progress, arguments->table_path);
+  fg_status status = fg_loop_run(ctx, problem, &how, result);
+  fg_progress_end(&progress);
   return status;
 }
 
@@ -217,18 +260,18 @@ static fg_status run_loop(fg_context *ctx, loop_arguments *arguments) {
   fg_loop_result result = {0};
   char sha256[65] = "";
   fg_design_default(&design);
+  FG_TRY_EXIT(check_outputs(ctx, arguments));
   FG_TRY_EXIT(read_declared(ctx, arguments, &design));
   arguments->spec.design = &design;
   FG_TRY_EXIT(read_table(ctx, arguments->table_path, &table, sha256));
+  FG_TRY_EXIT(fg_output_set_open(ctx, &arguments->outputs));
   FG_TRY_EXIT(fg_loop_table_problem_build(ctx, &table, &arguments->spec, &problem));
-  fg_loop_options loop_options = {.effects = fg_loop_table_effects(),
-                                  .seed = arguments->spec.seed,
-                                  .matters = arguments->matters};
-  FG_TRY_EXIT(fg_loop_run(ctx, &problem.problem, &loop_options, &result));
+  FG_TRY_EXIT(search(ctx, arguments, &problem.problem, &result));
   fg_loop_report report = {arguments->table_path, sha256, &arguments->spec, &problem, &result,
                            arguments->spec.seed};
-  FG_TRY_EXIT(write_all(ctx, arguments, &report));
+  FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_output, &report));
 exit:
+  fg_output_set_close(&arguments->outputs);
   fg_loop_result_free(&result);
   fg_loop_table_problem_free(&problem);
   fg_table_free(&table);
@@ -249,7 +292,10 @@ int fg_cmd_loop(int argc, char **argv) {
   if (!is_about_a_table(argc, argv)) return fg_cmd_loop_scan(argc, argv);
   static const struct argp parser = {options, parse_option, "", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  loop_arguments arguments = {.spec = {.seed = 1}};
+  loop_arguments arguments = {.spec = {.seed = 1},
+                              .outputs.count = FG_LOOP_OUTPUTS,
+                              .minutes = default_minutes,
+                              .mebibytes = default_mebibytes};
   argv[0] = (char[]){"foilgauge loop"};
   argp_parse(&parser, argc, argv, 0, NULL, &arguments);
   fg_status status = run_loop(&ctx, &arguments);

@@ -2,9 +2,11 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/loop_outputs.h"
 #include "core/file.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/scan_loop.h"
@@ -23,11 +25,21 @@ enum {
   OPTION_THREADS
 };
 
+typedef fg_status scan_writer(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
+
+static scan_writer *const writers[FG_LOOP_OUTPUTS] = {
+    [FG_LOOP_HTML] = fg_scan_loop_write_html,
+    [FG_LOOP_MODEL] = fg_scan_loop_write_model,
+    [FG_LOOP_JSON] = fg_scan_loop_write_json,
+    [FG_LOOP_TEXT] = fg_scan_loop_write_text,
+};
+
 typedef struct arguments {
   const char *paths[SCANS_MOST];
   bool hold_out[SCANS_MOST];
   size_t count, kept_aside;
-  const char *design_path, *form, *output_path, *model_path, *page_path;
+  const char *design_path, *form;
+  fg_output_set outputs;
   fg_scan_loop_options options;
 } arguments;
 
@@ -62,7 +74,8 @@ static const char doc[] =
     "plate "
     "of gauges tells the scanner's errors, known diameters_mm in the design its absolute scale.\n\n"
     "With --table DATA.csv the loop is closed on a table: `foilgauge loop --table X --help`.\n\n"
-    "Exit code: 0 done; 64 usage; 65 bad data; 74 input or output.";
+    "Exit code: 0 done; 2 a foil could not be measured and took no part; 64 usage; 65 bad data; 74 "
+    "input or output; 130 interrupted.";
 
 static void add_scan(struct argp_state *state, const char *path, bool aside) {
   arguments *a = state->input;
@@ -101,10 +114,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     add_scan(state, text, true);
     return 0;
   case OPTION_MODEL_OUT:
-    a->model_path = text;
+    a->outputs.path[FG_LOOP_MODEL] = text;
     return 0;
   case OPTION_HTML:
-    a->page_path = text;
+    a->outputs.path[FG_LOOP_HTML] = text;
     return 0;
   case OPTION_SCANNER:
     if (!*text || strlen(text) >= FG_SCANNER_NAME)
@@ -118,7 +131,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     a->options.threads = (unsigned)parse_number(state, "threads", text);
     return 0;
   case 'o':
-    a->output_path = text;
+    a->outputs.path[FG_LOOP_JSON] = text;
     return 0;
   case ARGP_KEY_ARG:
     add_scan(state, text, false);
@@ -131,38 +144,50 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   }
 }
 
-typedef fg_status scan_writer(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
-
-static fg_status write_file(fg_context *ctx, const char *path, const fg_scan_loop *loop,
-                            scan_writer *writer) {
-  fg_output output;
-  FG_TRY(fg_output_open(ctx, path, &output));
-  fg_status status = writer(ctx, loop, output.stream);
-  if (status == FG_OK) status = fg_output_commit(ctx, &output);
-  fg_output_discard(&output);
-  return status;
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  return writers[kind](ctx, user, out);
 }
 
-static fg_status write_all(fg_context *ctx, const arguments *a, const fg_scan_loop *loop) {
-  if (a->model_path) FG_TRY(write_file(ctx, a->model_path, loop, fg_scan_loop_write_model));
-  if (a->page_path) FG_TRY(write_file(ctx, a->page_path, loop, fg_scan_loop_write_html));
-  if (a->output_path) return write_file(ctx, a->output_path, loop, fg_scan_loop_write_json);
-  if (isatty(STDOUT_FILENO)) return write_file(ctx, "-", loop, fg_scan_loop_write_text);
-  return a->model_path || a->page_path ? FG_OK
-                                       : write_file(ctx, "-", loop, fg_scan_loop_write_json);
+static fg_status check_outputs(fg_context *ctx, arguments *a) {
+  const fg_input design = {a->design_path, "the design"};
+  fg_loop_outputs_choose(&a->outputs);
+  FG_TRY(fg_output_set_check(ctx, &a->outputs, &design, 1));
+  for (size_t i = 0; i < a->count; i++)
+    FG_TRY(fg_output_set_check(ctx, &a->outputs, &(fg_input){a->paths[i], "the scan"}, 1));
+  return FG_OK;
 }
 
-static fg_status run(fg_context *ctx, const arguments *a) {
+/* The model's age is its scans', not its file's: a loop that is run again writes the same bytes.
+ * SOURCE_DATE_EPOCH, where it is set, stands for it. */
+static int64_t find_date(const arguments *a) {
+  const char *epoch = getenv("SOURCE_DATE_EPOCH");
+  char *end;
+  int64_t newest = epoch ? strtoll(epoch, &end, 10) : 0;
+  if (epoch && *epoch && !*end && newest >= 0) return newest;
+  newest = 0;
+  for (size_t i = 0; i < a->count; i++) {
+    struct stat about;
+    if (stat(a->paths[i], &about) == 0 && S_ISREG(about.st_mode) && about.st_mtime > newest)
+      newest = about.st_mtime;
+  }
+  return newest;
+}
+
+static fg_status run(fg_context *ctx, arguments *a, int *code) {
   fg_design design;
   fg_scan_loop *loop = NULL;
+  FG_TRY(check_outputs(ctx, a));
   fg_design_default(&design);
   if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &design));
   FG_TRY(fg_cli_apply_form(ctx, a->form, &design));
   if (design.form == FG_FORM_DISCS && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--same-foil is for foils: a disc does not show how far it was turned");
+  FG_TRY(fg_output_set_open(ctx, &a->outputs));
+  a->options.date = find_date(a);
   FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
-  fg_status status = write_all(ctx, a, loop);
+  *code = fg_scan_loop_left_out(loop) ? 2 : 0;
+  fg_status status = fg_output_set_write(ctx, &a->outputs, write_output, loop);
   fg_scan_loop_free(loop);
   return status;
 }
@@ -170,10 +195,12 @@ static fg_status run(fg_context *ctx, const arguments *a) {
 int fg_cmd_loop_scan(int argc, char **argv) {
   static const struct argp parser = {options, parse_option, "SCAN...", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  arguments a = {.options = {.seed = 1}};
+  arguments a = {.options = {.seed = 1}, .outputs.count = FG_LOOP_OUTPUTS};
   argv[0] = (char[]){"foilgauge loop"};
   /* in order: reports list the scans as they are given, those kept aside between the others */
   argp_parse(&parser, argc, argv, ARGP_IN_ORDER, NULL, &a);
-  fg_status status = run(&ctx, &a);
-  return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
+  int code = 0;
+  fg_status status = run(&ctx, &a, &code);
+  fg_output_set_close(&a.outputs);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
-#include "cli/interrupt.h"
+#include "core/file.h"
 #include "foilgauge/lot.h"
 
 enum {
@@ -57,8 +57,10 @@ static const char doc[] =
     "deviations do to the bearing."
     "\vPATH is a folder of scans, a scan, a list (.txt, a path a line) or a manifest (.csv with a "
     "column `scan` and any others: foil, pad, bearing, die, coil ...).\n\n"
-    "Exit code: 0 done and within tolerance; 1 out of tolerance; 2 something could not be "
-    "measured; 64 usage; 65 bad data; 74 input or output.";
+    "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
+    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
+    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output. A "
+    "shard is not judged: 0 or 2.";
 
 static double parse_number(struct argp_state *state, const char *name, const char *text,
                            double lowest, double highest) {
@@ -182,12 +184,12 @@ static void format_duration(double seconds, char *text, size_t size) {
 static void show_progress(void *user, const fg_lot_progress *progress) {
   const bool *terminal = user;
   char left[32] = "?";
-  if (progress->error)
-    fprintf(stderr, "%sfoilgauge: %s\n", *terminal ? "\r\033[K" : "", progress->error);
+  if (progress->error && *terminal) dprintf(STDERR_FILENO, "\r\033[K");
+  if (progress->error) fprintf(stderr, "foilgauge: %s\n", progress->error);
   if (!*terminal) return;
   if (isfinite(progress->seconds_left)) format_duration(progress->seconds_left, left, sizeof left);
-  fprintf(stderr, "\r\033[K%zu of %zu scans (%.0f %%), %.1f a second, %s left%s", progress->done,
-          progress->total, 100 * (double)progress->done / (double)progress->total,
+  dprintf(STDERR_FILENO, "\r\033[K%zu of %zu scans (%.0f %%), %.1f a second, %s left%s",
+          progress->done, progress->total, 100 * (double)progress->done / (double)progress->total,
           (double)progress->done / fmax(progress->seconds, 1e-3), left,
           progress->done == progress->total ? "\n" : "");
 }
@@ -201,8 +203,7 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
     fprintf(stderr, "; not measured: %zu foils, %zu scans", by[FG_VERDICT_NOT_MEASURED],
             outcome->failed);
   fprintf(stderr, "\n%s/index.html\n", folder);
-  if (outcome->failed || by[FG_VERDICT_NOT_MEASURED]) return 2;
-  return outcome->exceeded ? 1 : 0;
+  return fg_outcome_exit_code(&outcome->judged);
 }
 
 static int say_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
@@ -214,10 +215,15 @@ static int say_shard(const lot_arguments *arguments, const fg_lot_outcome *outco
 
 static fg_status print_recipe(fg_context *ctx, const fg_lot_settings *settings) {
   char *text;
+  fg_output output;
   FG_TRY(fg_lot_settings_format(ctx, settings, true, &text));
-  fputs(text, stdout);
+  fg_status status = fg_output_open(ctx, "-", &output);
+  if (status == FG_OK) {
+    fputs(text, output.stream);
+    status = fg_output_commit(ctx, &output);
+  }
   free(text);
-  return fflush(stdout) == 0 ? FG_OK : fg_fail(ctx, FG_ERR_IO, "standard output: a write failed");
+  return status;
 }
 
 static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code) {
@@ -232,15 +238,25 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
                                   .paths = paths,
                                   .path_count = arguments->path_count,
                                   .folder = arguments->folder,
+                                  .recipe = arguments->recipe,
+                                  .design = arguments->design,
                                   .resume = arguments->resume,
                                   .dry_run = arguments->dry_run,
                                   .shard = arguments->shard,
                                   .listener = show_progress,
                                   .user = &terminal};
   FG_TRY(fg_lot_run(ctx, &request, &outcome));
+  if (outcome.doubles)
+    fprintf(stderr, "foilgauge: note: %zu scans are there twice and count once; the first is %s\n",
+            outcome.doubles, outcome.first_double);
   if (outcome.torn)
-    fprintf(stderr, "foilgauge: %zu lines of results.jsonl were not whole; measured again\n",
-            outcome.torn);
+    fprintf(stderr,
+            "foilgauge: note: %zu lines of results.jsonl were damaged or not whole, the first is "
+            "line %zu: what they said is measured again\n",
+            outcome.torn, outcome.first_torn);
+  if (outcome.earlier)
+    fprintf(stderr, "foilgauge: note: results.jsonl is of an earlier version, whose records carry "
+                    "no checksum: all scans are measured again\n");
   if (outcome.beyond)
     fprintf(stderr,
             "foilgauge: note: %zu scans reach beyond the region the scanner's model was found in\n",
@@ -261,9 +277,6 @@ int fg_cmd_lot(int argc, char **argv) {
   int code = 0;
   argv[0] = (char[]){"foilgauge lot"};
   argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_interrupt interrupt = {0};
-  fg_status status = fg_interrupt_start(&ctx, NULL, 0, &interrupt);
-  if (status == FG_OK) status = run(&ctx, &arguments, &code);
-  fg_interrupt_stop(&interrupt);
+  fg_status status = run(&ctx, &arguments, &code);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

@@ -98,8 +98,9 @@ static const char doc[] =
     "\vSCAN is a PNG, TIFF or PNM file, or - for standard input. Without -o the results go to "
     "standard "
     "output: as a table on a terminal, else as JSON.\n\n"
-    "Exit code: 0 done and within tolerance; 1 out of tolerance; 2 something could not be "
-    "measured; 64 usage; 65 bad data; 74 input or output.";
+    "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
+    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
+    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output.";
 
 static double parse_number(struct argp_state *state, const char *name, const char *text,
                            double lowest, double highest) {
@@ -189,13 +190,11 @@ static fg_status name_file(fg_context *ctx, const char *path, fg_status status) 
 
 /* Results without -o go to standard output, unless another output is there already. */
 static void choose_standard_output(fg_output_set *outputs) {
-  if (outputs->path[OUT_JSON]) return;
-  for (int kind = 0; kind < OUT_COUNT; kind++)
-    if (outputs->path[kind] && fg_is_standard(outputs->path[kind])) return;
+  if (outputs->path[OUT_JSON] || fg_output_set_has_standard(outputs)) return;
   outputs->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
 }
 
-static fg_status check_arguments(fg_context *ctx, const measure_run *run) {
+static fg_status check_arguments(fg_context *ctx, measure_run *run) {
   const measure_arguments *arguments = &run->arguments;
   size_t standard = 0;
   for (size_t i = 0; i < arguments->scan_count; i++)
@@ -204,9 +203,13 @@ static fg_status check_arguments(fg_context *ctx, const measure_run *run) {
   if (run->outputs.path[OUT_OVERLAY] && (arguments->scan_count > 1 || standard))
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--overlay shows one scan, read again from its file: give one file");
+  const fg_input others[] = {{arguments->design_path, "the design"},
+                             {arguments->model_path, "the scanner's model"}};
+  FG_TRY(fg_output_set_check(ctx, &run->outputs, others, sizeof others / sizeof *others));
   for (size_t i = 0; i < arguments->scan_count; i++)
-    FG_TRY(fg_output_set_check(ctx, &run->outputs, arguments->scans[i], "the scan"));
-  return fg_output_set_check(ctx, &run->outputs, arguments->design_path, "the design");
+    FG_TRY(
+        fg_output_set_check(ctx, &run->outputs, &(fg_input){arguments->scans[i], "the scan"}, 1));
+  return FG_OK;
 }
 
 static fg_status load_design(fg_context *ctx, measure_run *run) {
@@ -237,7 +240,7 @@ static fg_status allocate_scans(fg_context *ctx, measure_run *run) {
 static void tell_failures(const fg_measurement *measurement) {
   for (size_t i = 0; i < measurement->foil_count; i++) {
     const fg_foil *foil = &measurement->foils[i];
-    if (foil->flags & FG_FOIL_NOT_MEASURED)
+    if (!fg_foil_is_measured(foil))
       fprintf(stderr, "foilgauge: %s: foil %d could not be measured: %s\n", measurement->scan,
               foil->number, foil->error);
   }
@@ -273,8 +276,6 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
     scan->measurement = &run->measurements[index];
     if (run->measurements[index].warning[0])
       fprintf(stderr, "foilgauge: %s: note: %s\n", path, run->measurements[index].warning);
-    for (size_t i = 0; i < run->measurements[index].foil_count; i++)
-      fg_foil_judge(&run->design, &run->measurements[index].foils[i]);
     tell_failures(&run->measurements[index]);
     run->measured++;
     return FG_OK;
@@ -307,7 +308,7 @@ static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code
   const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge(ctx, &report, &outcome));
-  *code = outcome.not_measured ? 2 : outcome.exceeded ? 1 : 0;
+  *code = fg_outcome_exit_code(&outcome);
   return FG_OK;
 }
 

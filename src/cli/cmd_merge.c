@@ -1,7 +1,6 @@
 #include <argp.h>
 
 #include "cli/commands.h"
-#include "cli/interrupt.h"
 #include "foilgauge/lot.h"
 
 typedef struct merge_arguments {
@@ -18,7 +17,10 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Join the shards of a lot and report it as if it had been measured in one run."
     "\vEvery shard must be there, once, complete, and made with the same recipe, manifest and "
-    "version. The report is the same to the byte whatever the number of shards.";
+    "version. The report and the exit code are those of one run, whatever the number of shards.\n\n"
+    "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
+    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
+    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output.";
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   merge_arguments *arguments = state->input;
@@ -47,12 +49,8 @@ int fg_cmd_merge(int argc, char **argv) {
   fg_lot_outcome outcome;
   argv[0] = (char[]){"foilgauge merge"};
   argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_interrupt interrupt = {0};
-  fg_status status = fg_interrupt_start(&ctx, NULL, 0, &interrupt);
-  if (status == FG_OK)
-    status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
-                          arguments.folder, &outcome);
-  fg_interrupt_stop(&interrupt);
+  fg_status status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
+                                  arguments.folder, &outcome);
   return status == FG_OK ? fg_cli_lot_summary(&outcome, arguments.folder)
                          : fg_cli_fail(&ctx, status);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/output_set.h"
 #include "foilgauge/render.h"
 
 typedef struct render_arguments {
@@ -37,6 +38,18 @@ static error_t parse_option(int key, char *value, struct argp_state *state) {
   }
 }
 
+static fg_status render(fg_context *ctx, const render_arguments *arguments) {
+  fg_render_spec *spec = NULL;
+  fg_output_set outputs = {.path = {arguments->scan, arguments->truth}, .count = 2};
+  const fg_input input = {arguments->spec, "the spec"};
+  fg_status status = fg_output_set_check(ctx, &outputs, &input, 1);
+  if (status == FG_OK) status = fg_render_load(ctx, arguments->spec, &spec);
+  if (status == FG_OK) status = fg_render_scan(ctx, spec, arguments->scan, arguments->truth);
+  fg_render_free(spec);
+  fg_output_set_close(&outputs);
+  return status;
+}
+
 int fg_cmd_render(int argc, char **argv) {
   static const struct argp parser = {
       .options = options,
@@ -47,12 +60,9 @@ int fg_cmd_render(int argc, char **argv) {
              "gives the same bytes."};
   render_arguments arguments = {0};
   fg_context ctx = {0};
-  fg_render_spec *spec = NULL;
   argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
   fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
-  fg_status status = fg_render_load(&ctx, arguments.spec, &spec);
-  if (status == FG_OK) status = fg_render_scan(&ctx, spec, arguments.scan, arguments.truth);
-  fg_render_free(spec);
+  fg_status status = render(&ctx, &arguments);
   return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
 }

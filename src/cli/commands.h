@@ -5,7 +5,7 @@
 #include "foilgauge/lot.h"
 #include "foilgauge/status.h"
 
-/* argv[0] is the command's name. Returns the exit code (DESIGN: 0, 1, 2, 64, 65, 74, 130). */
+/* argv[0] is the command's name. Returns the exit code (0 to 3, 64, 65, 74, 130: README). */
 typedef int fg_command_run(int argc, char **argv);
 
 typedef struct fg_command {

@@ -4,6 +4,9 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/stack.h"
+#include "cli/standard.h"
 
 static const fg_command commands[] = {
     {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
@@ -37,6 +40,13 @@ static void print_help(FILE *out) {
 }
 
 int main(int argc, char **argv) {
+  fg_standard_start();
+  if (!fg_stack_reserve()) {
+    fputs("foilgauge: out of memory: the stack; raise the limit of address space (ulimit -v)\n",
+          stderr);
+    return fg_status_exit_code(FG_ERR_MEMORY);
+  }
+  fg_interrupt_start();
   /* Else every thread reserves 64 MiB of address space for itself, which counts where that is
    * limited. */
   mallopt(M_ARENA_MAX, 2);

@@ -8,25 +8,18 @@ bool fg_is_standard(const char *path) {
   return !strcmp(path, "-");
 }
 
-bool fg_same_file(const char *a, const char *b) {
-  struct stat stat_a, stat_b;
-  if (!strcmp(a, b)) return true;
-  if (stat(a, &stat_a) || stat(b, &stat_b)) return false;
-  return S_ISREG(stat_a.st_mode) && stat_a.st_dev == stat_b.st_dev &&
-         stat_a.st_ino == stat_b.st_ino;
+bool fg_output_set_has_standard(const fg_output_set *set) {
+  for (size_t kind = 0; kind < set->count; kind++)
+    if (set->path[kind] && fg_is_standard(set->path[kind])) return true;
+  return false;
 }
 
-fg_status fg_output_set_check(fg_context *ctx, const fg_output_set *set, const char *input,
-                              const char *words) {
-  for (size_t kind = 0; kind < set->count; kind++) {
-    const char *path = set->path[kind];
-    if (!path) continue;
-    for (size_t other = 0; other < kind; other++)
-      if (set->path[other] && fg_same_file(path, set->path[other]))
-        return fg_fail(ctx, FG_ERR_USAGE, "%s: two outputs cannot go to one file", path);
-    if (input && !fg_is_standard(path) && fg_same_file(path, input))
-      return fg_fail(ctx, FG_ERR_USAGE, "%s: the output would overwrite %s", path, words);
-  }
+fg_status fg_output_set_check(fg_context *ctx, fg_output_set *set, const fg_input *inputs,
+                              size_t count) {
+  if (!set->overwrite.places)
+    FG_TRY(fg_overwrite_begin(ctx, set->path, set->count, &set->overwrite));
+  for (size_t i = 0; i < count; i++)
+    FG_TRY(fg_overwrite_check(ctx, &set->overwrite, inputs[i].path, inputs[i].words));
   return FG_OK;
 }
 
@@ -36,17 +29,13 @@ fg_status fg_output_set_open(fg_context *ctx, fg_output_set *set) {
     FG_TRY(fg_output_open(ctx, set->path[kind], &set->output[kind]));
     set->open[kind] = true;
   }
-  return fg_interrupt_start(ctx, set->output, set->count, &set->interrupt);
+  return FG_OK;
 }
 
 static fg_status write_one(fg_context *ctx, fg_output_set *set, size_t kind,
                            fg_output_writer *writer, void *user) {
-  fg_status status = writer(ctx, user, kind, set->output[kind].stream);
-  if (status != FG_ERR_IO) return status;
-  fg_context inner = *ctx;
-  return fg_fail(ctx, status, "%.200s: %.800s",
-                 fg_is_standard(set->path[kind]) ? "standard output" : set->path[kind],
-                 inner.message);
+  fg_output *output = &set->output[kind];
+  return fg_output_flush(ctx, output, writer(ctx, user, kind, output->stream));
 }
 
 /* An output that fails after another has its final name: none may look finished. */
@@ -76,7 +65,7 @@ fg_status fg_output_set_write(fg_context *ctx, fg_output_set *set, fg_output_wri
 }
 
 void fg_output_set_close(fg_output_set *set) {
-  fg_interrupt_stop(&set->interrupt);
+  fg_overwrite_free(&set->overwrite);
   for (size_t kind = 0; kind < set->count; kind++)
     if (set->open[kind]) fg_output_discard(&set->output[kind]);
 }

@@ -1,12 +1,12 @@
-/* Several outputs of one command: all or none get their final names. */
+/* The outputs of one command: none takes the place of an input, and all or none get their names. */
 #ifndef FG_CLI_OUTPUT_SET_H
 #define FG_CLI_OUTPUT_SET_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "cli/interrupt.h"
 #include "core/file.h"
+#include "core/overwrite.h"
 
 enum { FG_OUTPUT_SET_MAX = 8 };
 
@@ -15,18 +15,23 @@ typedef struct fg_output_set {
   size_t count;
   fg_output output[FG_OUTPUT_SET_MAX];
   bool open[FG_OUTPUT_SET_MAX];
-  fg_interrupt interrupt;
+  fg_overwrite overwrite;
 } fg_output_set;
 
-/* Whether two paths are one regular file; a name that is not there yet is compared as text. */
-bool fg_same_file(const char *a, const char *b);
+/* Something that the command reads; a path of NULL is nothing. */
+typedef struct fg_input {
+  const char *path;
+  const char *words; /* what it is: "the scan" */
+} fg_input;
+
 bool fg_is_standard(const char *path);
+bool fg_output_set_has_standard(const fg_output_set *set); /* one of them is standard output */
 
-/* FG_ERR_USAGE when two outputs are one file, or one is the file `input` (named so in words). */
-fg_status fg_output_set_check(fg_context *ctx, const fg_output_set *set, const char *input,
-                              const char *words);
+/* FG_ERR_USAGE when two outputs are one file, or one is an input (core/overwrite.h). Once all
+ * outputs are known and before anything is done; again where more inputs become known. */
+fg_status fg_output_set_check(fg_context *ctx, fg_output_set *set, const fg_input *inputs,
+                              size_t count);
 
-/* Opens all; from here to fg_output_set_close a signal leaves nothing behind. */
 fg_status fg_output_set_open(fg_context *ctx, fg_output_set *set);
 
 /* Writes the output `kind` to its stream. */

@@ -4,12 +4,27 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "core/utf8.h"
+
 enum { BAR_WIDTH = 40 };
 /* A scan that is done at once shows no bar, and a bar is not drawn more often than it is seen. */
 #define SECONDS_BETWEEN 0.2
 
+/* As much of the name as there is place for, in whole characters. */
+static void clip_visible(const char *name, char *clipped, size_t size) {
+  char visible[4 * FG_PROGRESS_NAME];
+  size_t length, kept = 0;
+  fg_utf8_make_visible(name, strnlen(name, size), true, visible, &length);
+  visible[length] = '\0';
+  for (size_t next; kept < length && (next = fg_utf8_length(visible + kept)) + kept < size;)
+    kept += next;
+  memcpy(clipped, visible, kept);
+  clipped[kept] = '\0';
+}
+
 void fg_progress_begin(fg_progress *progress, const char *name) {
-  *progress = (fg_progress){.name = name, .wanted = isatty(STDERR_FILENO) == 1};
+  *progress = (fg_progress){.wanted = isatty(STDERR_FILENO) == 1};
+  clip_visible(name, progress->name, sizeof progress->name);
   clock_gettime(CLOCK_MONOTONIC, &progress->last);
 }
 
@@ -24,14 +39,13 @@ void fg_progress_show(void *user, int64_t done, int64_t all) {
   if (passed < SECONDS_BETWEEN) return;
   double share = (double)done / (double)all;
   int filled = (int)(share * BAR_WIDTH);
-  fprintf(stderr, "\r\033[K%.30s [%.*s%*s] %3.0f %%", progress->name, filled, bar,
+  dprintf(STDERR_FILENO, "\r\033[K%s [%.*s%*s] %3.0f %%", progress->name, filled, bar,
           BAR_WIDTH - filled, "", 100 * share);
-  fflush(stderr);
   progress->last = now;
   progress->shown = true;
 }
 
 void fg_progress_end(fg_progress *progress) {
-  if (progress->shown) fputs("\r\033[K", stderr);
+  if (progress->shown) dprintf(STDERR_FILENO, "\r\033[K");
   progress->shown = false;
 }

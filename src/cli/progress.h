@@ -6,9 +6,11 @@
 #include <stdint.h>
 #include <time.h>
 
+enum { FG_PROGRESS_NAME = 31 };
+
 typedef struct fg_progress {
-  const char *name; /* of the scan */
-  bool wanted;      /* standard error is a terminal */
+  char name[FG_PROGRESS_NAME]; /* of the scan, without what a terminal would obey */
+  bool wanted;                 /* standard error is a terminal */
   bool shown;
   struct timespec last;
 } fg_progress;

@@ -2,15 +2,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/memory.h"
+#include "core/temporary.h"
+#include "core/utf8.h"
 
 static const struct {
   int error;
@@ -29,12 +29,60 @@ static const struct {
     {ENAMETOOLONG, "choose a shorter name"},
 };
 
-static fg_status fail_to_write(fg_context *ctx, const char *path, int error) {
+fg_status fg_output_fail(fg_context *ctx, const char *path, int error) {
   const char *advice = "check the disk or choose another place";
   for (size_t i = 0; i < sizeof advices / sizeof advices[0]; i++)
     if (advices[i].error == error) advice = advices[i].advice;
-  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be written: %s; %s", path,
-                 error ? strerror(error) : "a write failed", advice);
+  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be written: %s; %s", path, strerror(error), advice);
+}
+
+/* What the stream writes to. A stream alone remembers only that a write has failed, not why. */
+typedef struct fg_sink {
+  int descriptor;
+  bool owned;              /* to be closed */
+  fg_temporary *temporary; /* owns the descriptor; NULL: written directly */
+  int error;               /* of the first write that failed */
+  bool dropped;            /* what is still buffered is not wanted any more */
+  bool terminal;           /* gets nothing that it would obey */
+  char held[4];            /* for a terminal: the beginning of a character */
+  size_t held_count;
+} fg_sink;
+
+static bool put_bytes(fg_sink *sink, const char *bytes, size_t size) {
+  size_t done = 0;
+  while (done < size && !sink->error) {
+    ssize_t put = write(sink->descriptor, bytes + done, size - done);
+    if (put > 0)
+      done += (size_t)put;
+    else if (put == 0 || errno != EINTR)
+      sink->error = put < 0 && errno ? errno : EIO;
+  }
+  return !sink->error;
+}
+
+/* `last`: nothing comes after it. */
+static bool put_visible(fg_sink *sink, const char *bytes, size_t size, bool last) {
+  enum { PIECE = 1024 };
+  char piece[PIECE], visible[4 * PIECE];
+  do {
+    size_t length, held = sink->held_count, more = size < PIECE - held ? size : PIECE - held;
+    memcpy(piece, sink->held, held);
+    if (more) memcpy(piece + held, bytes, more);
+    size_t taken = fg_utf8_make_visible(piece, held + more, last && more == size, visible, &length);
+    sink->held_count = held + more - taken;
+    memcpy(sink->held, piece + taken, sink->held_count);
+    if (!put_bytes(sink, visible, length)) return false;
+    bytes += more;
+    size -= more;
+  } while (size);
+  return true;
+}
+
+static ssize_t write_to_sink(void *cookie, const char *bytes, size_t size) {
+  fg_sink *sink = cookie;
+  if (sink->dropped) return (ssize_t)size;
+  bool put = sink->terminal ? put_visible(sink, bytes, size, false) : put_bytes(sink, bytes, size);
+  return put ? (ssize_t)size : 0;
 }
 
 /* Where the bytes end up: a rename onto a symbolic link would replace the link, not its file. */
@@ -45,81 +93,98 @@ static fg_status resolve_links(fg_context *ctx, const char *path, char **resolve
   return FG_OK;
 }
 
-/* A name in the folder of `path` that nobody else has, with the stream that writes to it. The name
- * does not grow with the final one, which may be as long as a name can be. */
-static fg_status open_temporary(fg_context *ctx, fg_output *output) {
-  const char *slash = strrchr(output->path, '/');
-  int folder_length = slash ? (int)(slash - output->path) + 1 : 0;
-  int descriptor = -1;
-  do {
-    uint64_t random = 0;
-    if (getrandom(&random, sizeof random, 0) < 0) random = (uint64_t)getpid();
-    free(output->temporary);
-    output->temporary = NULL;
-    if (asprintf(&output->temporary, "%.*s.foilgauge-%016" PRIx64 ".tmp", folder_length,
-                 output->path, random) < 0) {
-      output->temporary = NULL;
-      return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the path %s", output->path);
-    }
-    descriptor = open(output->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor < 0 && errno == EEXIST);
-  if (descriptor >= 0) output->stream = fdopen(descriptor, "wb");
-  if (output->stream) return FG_OK;
-
-  int error = errno;
-  if (descriptor >= 0) {
-    close(descriptor);
-    unlink(output->temporary);
-  }
-  free(output->temporary);
-  output->temporary = NULL;
-  return fail_to_write(ctx, output->path, error);
+/* Where the group cannot be kept, the new one may do what all may. */
+static void hand_down(int descriptor, const struct stat *old) {
+  struct stat fresh;
+  mode_t mode = old->st_mode & 0777;
+  bool other =
+      fstat(descriptor, &fresh) != 0 || fresh.st_uid != old->st_uid || fresh.st_gid != old->st_gid;
+  if (other && fchown(descriptor, old->st_uid, old->st_gid) != 0 &&
+      fchown(descriptor, (uid_t)-1, old->st_gid) != 0)
+    mode &= ~(mode_t)070 | ((mode & 07) << 3);
+  fchmod(descriptor, mode);
 }
 
-static fg_status open_directly(fg_context *ctx, fg_output *output) {
-  output->stream = fopen(output->path, "wbe");
-  return output->stream ? FG_OK : fail_to_write(ctx, output->path, errno);
+/* `old`: the file that is replaced, or NULL. Until it has its mode, nobody else sees the new one.
+ */
+static fg_status open_temporary(fg_context *ctx, fg_output *output, const struct stat *old) {
+  fg_sink *sink = output->sink;
+  int error = fg_temporary_create(output->path, old ? 0600 : 0666, &sink->temporary);
+  if (error) return fg_output_fail(ctx, output->path, error);
+  sink->descriptor = sink->temporary->descriptor;
+  if (old) hand_down(sink->descriptor, old);
+  return FG_OK;
+}
+
+/* The descriptor that a path stands for; -1: none. A new file under that path would pull it from
+ * beneath whoever else writes to the descriptor. */
+static int descriptor_of(const char *path) {
+  static const char *const folders[] = {"/dev/fd/", "/proc/self/fd/"};
+  if (!strcmp(path, "/dev/stdout")) return STDOUT_FILENO;
+  if (!strcmp(path, "/dev/stderr")) return STDERR_FILENO;
+  for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+    size_t length = strlen(folders[i]);
+    if (strncmp(path, folders[i], length) != 0) continue;
+    size_t digits = strspn(path + length, "0123456789");
+    if (digits > 0 && digits < 8 && !path[length + digits]) return atoi(path + length);
+  }
+  return -1;
+}
+
+static fg_status open_directly(fg_context *ctx, fg_output *output, const char *path) {
+  int named = descriptor_of(path);
+  fg_sink *sink = output->sink;
+  sink->descriptor = named < 0 ? open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC)
+                               : fcntl(named, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  sink->owned = sink->descriptor >= 0;
+  if (!sink->owned) return fg_output_fail(ctx, path, errno);
+  output->path = strdup(path);
+  return output->path ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the path %s", path);
 }
 
 static fg_status open_path(fg_context *ctx, const char *path, fg_output *output) {
   struct stat entry;
   bool exists = stat(path, &entry) == 0;
-  if (exists && S_ISDIR(entry.st_mode)) return fail_to_write(ctx, path, EISDIR);
-  bool special = !strncmp(path, "/dev/", 5) || (exists && !S_ISREG(entry.st_mode));
-  if (special) {
-    output->path = strdup(path);
-    if (!output->path) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the path %s", path);
-    return open_directly(ctx, output);
-  }
+  if (exists && S_ISDIR(entry.st_mode)) return fg_output_fail(ctx, path, EISDIR);
+  if (descriptor_of(path) >= 0 || (exists && !S_ISREG(entry.st_mode)))
+    return open_directly(ctx, output, path);
   /* A rename would replace even a file that its owner made read-only. */
-  if (exists && access(path, W_OK) != 0) return fail_to_write(ctx, path, errno);
+  if (exists && access(path, W_OK) != 0) return fg_output_fail(ctx, path, errno);
   FG_TRY(resolve_links(ctx, path, &output->path));
-  return open_temporary(ctx, output);
+  return open_temporary(ctx, output, exists ? &entry : NULL);
+}
+
+static fg_status open_stream(fg_context *ctx, fg_output *output) {
+  static const cookie_io_functions_t functions = {.write = write_to_sink};
+  output->sink->terminal = !output->sink->temporary && isatty(output->sink->descriptor);
+  output->stream = fopencookie(output->sink, "wb", functions);
+  return output->stream ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: an output");
 }
 
 fg_status fg_output_open(fg_context *ctx, const char *path, fg_output *output) {
+  void *block;
   *output = (fg_output){0};
-  if (!path || !strcmp(path, "-")) {
-    output->stream = stdout;
-    return FG_OK;
-  }
-  if (!*path)
+  if (path && !*path)
     return fg_fail(ctx, FG_ERR_USAGE, "the output has an empty name; give the name of a file");
-  fg_status status = open_path(ctx, path, output);
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *output->sink, &block));
+  output->sink = block;
+  output->sink->descriptor = STDOUT_FILENO;
+  fg_status status = path && strcmp(path, "-") != 0 ? open_path(ctx, path, output) : FG_OK;
+  if (status == FG_OK) status = open_stream(ctx, output);
   if (status != FG_OK) fg_output_discard(output);
   return status;
 }
 
-/* The first thing that went wrong, as an errno; 0 when all is on the disk. */
-static int flush_durably(fg_output *output) {
-  errno = 0;
-  bool broken = ferror(output->stream) != 0;
-  if (fflush(output->stream) != 0 || broken) return errno ? errno : EIO;
-  if (output->temporary && fsync(fileno(output->stream)) != 0) return errno;
-  if (output->stream == stdout) return 0;
-  int closed = fclose(output->stream);
-  output->stream = NULL;
-  return closed == 0 ? 0 : errno;
+static const char *name_of(const fg_output *output) {
+  return output->path ? output->path : "standard output";
+}
+
+fg_status fg_output_flush(fg_context *ctx, fg_output *output, fg_status status) {
+  if (status != FG_OK && status != FG_ERR_IO) return status;
+  bool broken = fflush(output->stream) != 0 || ferror(output->stream);
+  if (output->sink->held_count) put_visible(output->sink, "", 0, true);
+  if (output->sink->error) return fg_output_fail(ctx, name_of(output), output->sink->error);
+  return broken && status == FG_OK ? fg_output_fail(ctx, name_of(output), EIO) : status;
 }
 
 /* The rename itself is durable only when the folder is. Not every file system can sync a folder,
@@ -136,28 +201,45 @@ static void sync_folder(const char *path) {
   free(folder);
 }
 
-fg_status fg_output_commit(fg_context *ctx, fg_output *output) {
-  const char *name = output->path ? output->path : "standard output";
-  fg_status status = FG_OK;
-  int error = flush_durably(output);
-  if (!error && output->temporary && rename(output->temporary, output->path) != 0) error = errno;
-  if (error) {
-    status = fail_to_write(ctx, name, error);
-  } else if (output->temporary) {
-    sync_folder(output->path);
-    free(output->temporary);
-    output->temporary = NULL;
+static fg_status publish(fg_context *ctx, fg_output *output) {
+  fg_sink *sink = output->sink;
+  FG_TRY(fg_output_flush(ctx, output, FG_OK));
+  if (sink->owned) {
+    sink->owned = false;
+    return close(sink->descriptor) == 0 ? FG_OK : fg_output_fail(ctx, name_of(output), errno);
   }
+  if (!sink->temporary) return FG_OK;
+  int error = fsync(sink->descriptor) == 0 ? 0 : errno;
+  if (!error) error = fg_temporary_rename(sink->temporary, output->path);
+  if (error) return fg_output_fail(ctx, name_of(output), error);
+  sync_folder(output->path);
+  return FG_OK;
+}
+
+fg_status fg_output_commit(fg_context *ctx, fg_output *output) {
+  fg_status status = publish(ctx, output);
   fg_output_discard(output);
   return status;
 }
 
 void fg_output_discard(fg_output *output) {
-  if (output->stream && output->stream != stdout) fclose(output->stream);
-  if (output->temporary) unlink(output->temporary);
-  free(output->temporary);
+  fg_sink *sink = output->sink;
+  if (sink) sink->dropped = true;
+  if (output->stream) fclose(output->stream);
+  if (sink) {
+    if (sink->owned) close(sink->descriptor);
+    fg_temporary_close(sink->temporary);
+  }
+  free(sink);
   free(output->path);
   *output = (fg_output){0};
+}
+
+fg_status fg_output_end(fg_context *ctx, fg_output *output, fg_status status) {
+  status = fg_output_flush(ctx, output, status);
+  if (status == FG_OK) return fg_output_commit(ctx, output);
+  fg_output_discard(output);
+  return status;
 }
 
 static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, size_t cap,

@@ -7,13 +7,9 @@
 
 enum { THREADS_MAX = 64 };
 
-static void *run_anywhere(void *argument) {
+static void *run_where_allowed(void *argument) {
   fg_thread *thread = argument;
-  cpu_set_t all;
-  CPU_ZERO(&all);
-  for (size_t cpu = 0; cpu < CPU_SETSIZE; cpu++)
-    CPU_SET(cpu, &all);
-  pthread_setaffinity_np(pthread_self(), sizeof all, &all);
+  pthread_setaffinity_np(pthread_self(), sizeof thread->allowed, &thread->allowed);
   return thread->run(thread->argument);
 }
 
@@ -21,10 +17,11 @@ static void *run_anywhere(void *argument) {
 #define STACK_BYTES ((size_t)2 << 20)
 
 /* Keeps a thread off the caller's core at its start. False: no other core. */
-static bool avoid_this_core(pthread_attr_t *attributes) {
-  cpu_set_t set;
+static bool avoid_this_core(pthread_attr_t *attributes, cpu_set_t *allowed) {
   int here = sched_getcpu();
-  if (here < 0 || pthread_getaffinity_np(pthread_self(), sizeof set, &set) != 0) return false;
+  if (here < 0 || pthread_getaffinity_np(pthread_self(), sizeof *allowed, allowed) != 0)
+    return false;
+  cpu_set_t set = *allowed;
   CPU_CLR((size_t)here, &set);
   return CPU_COUNT(&set) > 0 && pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0;
 }
@@ -36,8 +33,8 @@ fg_status fg_thread_start(fg_thread *thread, void *(*run)(void *), void *argumen
   if (pthread_attr_init(&attributes) != 0) return FG_ERR_MEMORY;
   pthread_attr_setstacksize(&attributes, STACK_BYTES);
   int failed = 1;
-  if (avoid_this_core(&attributes))
-    failed = pthread_create(&thread->handle, &attributes, run_anywhere, thread);
+  if (avoid_this_core(&attributes, &thread->allowed))
+    failed = pthread_create(&thread->handle, &attributes, run_where_allowed, thread);
   pthread_attr_destroy(&attributes);
   if (!failed) return FG_OK;
   if (pthread_attr_init(&attributes) != 0) return FG_ERR_MEMORY;
@@ -45,6 +42,14 @@ fg_status fg_thread_start(fg_thread *thread, void *(*run)(void *), void *argumen
   failed = pthread_create(&thread->handle, &attributes, run, argument);
   pthread_attr_destroy(&attributes);
   return failed ? FG_ERR_MEMORY : FG_OK;
+}
+
+unsigned fg_core_count(void) {
+  cpu_set_t allowed;
+  if (pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed) == 0)
+    return (unsigned)CPU_COUNT(&allowed);
+  long cores = sysconf(_SC_NPROCESSORS_ONLN); /* more cores than the set has room for */
+  return cores > 0 ? (unsigned)cores : 1;
 }
 
 void fg_thread_join(fg_thread *thread) {
@@ -85,7 +90,7 @@ fg_status fg_parallel_run(fg_context *ctx, unsigned threads, size_t count, fg_pa
   pool p = {.task = task, .shared = shared, .count = count};
   worker workers[THREADS_MAX] = {0};
   fg_thread handles[THREADS_MAX];
-  if (threads == 0) threads = (unsigned)sysconf(_SC_NPROCESSORS_ONLN);
+  if (threads == 0) threads = fg_core_count();
   if (threads > THREADS_MAX) threads = THREADS_MAX;
   if (threads > count) threads = (unsigned)count;
   unsigned started = 0;

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "core/memory.h"
@@ -29,15 +30,14 @@ static ssize_t read_at(int descriptor, void *piece, off_t offset) {
   return got;
 }
 
-fg_status fg_sha256_descriptor(fg_context *ctx, int descriptor, off_t start, const char *name,
-                               char hex[65]) {
+static fg_status sum_descriptor(fg_context *ctx, int descriptor, const char *name, char hex[65]) {
   void *piece = NULL;
   FG_TRY(fg_memory_allocate(ctx, PIECE_BYTES, 1, &piece));
   struct sha256_ctx sum;
   sha256_init(&sum);
   fg_status status = FG_OK;
   ssize_t got;
-  for (off_t offset = start; (got = read_at(descriptor, piece, offset)) > 0; offset += got)
+  for (off_t offset = 0; (got = read_at(descriptor, piece, offset)) > 0; offset += got)
     sha256_update(&sum, (size_t)got, piece);
   if (got < 0)
     status = fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", name, strerror(errno));
@@ -48,10 +48,22 @@ fg_status fg_sha256_descriptor(fg_context *ctx, int descriptor, off_t start, con
 }
 
 fg_status fg_sha256_file(fg_context *ctx, const char *path, char hex[65]) {
-  int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+  struct stat entry;
+  int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
-  fg_status status = fg_sha256_descriptor(ctx, descriptor, 0, path, hex);
+  fg_status status = FG_OK;
+  if (fstat(descriptor, &entry) != 0 || !S_ISREG(entry.st_mode))
+    status = fg_fail(ctx, FG_ERR_IO, "%s: is no file", path);
+  else
+    status = sum_descriptor(ctx, descriptor, path, hex);
   close(descriptor);
   return status;
+}
+
+void fg_sha256_text(const char *text, char hex[65]) {
+  struct sha256_ctx sum;
+  sha256_init(&sum);
+  sha256_update(&sum, strlen(text), (const uint8_t *)text);
+  fg_sha256_finish(&sum, hex);
 }

@@ -15,14 +15,10 @@ extern "C" {
 /* Ends the sum; `sum` starts afresh. */
 void fg_sha256_finish(struct sha256_ctx *sum, char hex[65]);
 
-/* The sum of an open file from byte `start` to its end. It leaves the file's position alone
- * (pread), so another thread may read the same descriptor. `name` is for the error text.
- * FG_ERR_IO when it cannot be read, FG_ERR_MEMORY. */
-fg_status fg_sha256_descriptor(fg_context *ctx, int descriptor, off_t start, const char *name,
-                               char hex[65]);
-
-/* The sum of a file by its path. FG_ERR_IO, FG_ERR_MEMORY. */
+/* The sum of a regular file by its path. FG_ERR_IO, FG_ERR_MEMORY. */
 fg_status fg_sha256_file(fg_context *ctx, const char *path, char hex[65]);
+
+void fg_sha256_text(const char *text, char hex[65]);
 
 #ifdef __cplusplus
 }

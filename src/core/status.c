@@ -27,6 +27,8 @@ int fg_status_exit_code(fg_status status) {
     return 74;
   case FG_ERR_INTERRUPTED:
     return 130;
+  case FG_ERR_NOT_MEASURED:
+    return 2;
   }
   return 70;
 }

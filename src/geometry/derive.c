@@ -5,17 +5,18 @@
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 
-/* What every quantity is a function of: distance of the centres, the two radii, the design. */
-enum { BY_X, BY_R, BY_R0, BY_COUNT };
+/* What every quantity is a function of: distance of the centres, the two radii, the strip's
+ * thickness, the design. */
+enum { BY_X, BY_R, BY_R0, BY_CIRCLES, BY_T = BY_CIRCLES, BY_COUNT };
 
 typedef struct geometry {
-  double x, r, r0; /* mm */
+  double x, r, r0, thickness; /* mm */
   const fg_design *design;
   const fg_nominal *nominal;
   fg_springback model;
 } geometry;
 
-/* A row per quantity: its value, and its gradient by (X, R, R0) on top of the zeros given. */
+/* A row per quantity: its value, and its gradient by (X, R, R0, t) on top of the zeros given. */
 typedef double quantity_value(const geometry *g, double gradient[BY_COUNT]);
 
 static double centre_to_centre(const geometry *g, double gradient[BY_COUNT]) {
@@ -58,13 +59,35 @@ static double scaled(double gradient[BY_COUNT], double factor) {
 static double clearance(const geometry *g, double gradient[BY_COUNT]) {
   double h = height(g, gradient);
   scaled(gradient, -1);
-  return fg_design_clearance(g->design, h);
+  gradient[BY_T] = -1;
+  return fg_design_clearance_over(g->design, h, g->thickness);
 }
 
 static double clearance_error(const geometry *g, double gradient[BY_COUNT]) {
   double design = g->nominal->clearance_mm, local = clearance(g, gradient);
   scaled(gradient, -1 / design);
   return (design - local) / design;
+}
+
+/* h = R (1 - cos phi) + R_s - sqrt(R_s² - l0²), l0 = R sin phi: the bump's arc over its chord, and
+ * the sleeve's under it. dh/dR = 1 - cos phi + sin phi l0 / sqrt(...), dh/dphi = l0 + cos phi R l0
+ * / sqrt(...), and phi follows X, R and R0 as alpha / 2 does. */
+static double height_fitted(const geometry *g, double gradient[BY_COUNT]) {
+  double phi = bump_angle(g, gradient) * rad_per_deg / 2;
+  double sleeve = g->design->sleeve_radius_mm, chord = g->r * sin(phi);
+  double root = sqrt((sleeve - chord) * (sleeve + chord)), half_sine = sin(phi / 2);
+  double bump_arc = 2 * half_sine * half_sine;
+  for (int i = 0; i < BY_COUNT; i++)
+    gradient[i] *= rad_per_deg / 2 * (chord + cos(phi) * g->r * chord / root);
+  gradient[BY_R] += bump_arc + sin(phi) * chord / root;
+  return g->r * bump_arc + chord * chord / (sleeve + root);
+}
+
+static double clearance_fitted(const geometry *g, double gradient[BY_COUNT]) {
+  double h = height_fitted(g, gradient);
+  scaled(gradient, -1);
+  gradient[BY_T] = -1;
+  return fg_design_clearance_over(g->design, h, g->thickness);
 }
 
 static double radius_error(const geometry *g, double gradient[BY_COUNT]) {
@@ -102,6 +125,8 @@ static const quantity quantities[] = {
     QUANTITY(height, height_mm),
     QUANTITY(clearance, clearance_mm),
     QUANTITY(clearance_error, clearance_error),
+    QUANTITY(height_fitted, height_fitted_mm),
+    QUANTITY(clearance_fitted, clearance_fitted_mm),
     QUANTITY(radius_error, radius_error_pct),
     QUANTITY(bump_angle_error, bump_angle_error_pct),
     QUANTITY(height_model, height_model_mm),
@@ -141,13 +166,19 @@ static double root(double variance) {
   return variance < 0 ? 0 : sqrt(variance);
 }
 
+/* Only what depends on the thickness takes its uncertainty, which may not be known. */
+static double by_thickness(double slope, double u_mm) {
+  return slope == 0 ? 0 : slope * slope * u_mm * u_mm;
+}
+
 static void fill(const geometry *g, const along *bump_along, const along *overall_along,
-                 fg_bump *bump) {
+                 double u_thickness_mm, fg_bump *bump) {
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
-    double gradient[BY_COUNT] = {0, 0, 0};
+    double gradient[BY_COUNT] = {0};
     double value = quantities[i].value(g, gradient);
     double variance = share(bump_along, gradient[BY_X], gradient[BY_R]) +
-                      share(overall_along, -gradient[BY_X], gradient[BY_R0]);
+                      share(overall_along, -gradient[BY_X], gradient[BY_R0]) +
+                      by_thickness(gradient[BY_T], u_thickness_mm);
     bool defined = isfinite(value);
     *(double *)((char *)bump + quantities[i].at) = defined ? value : NAN;
     *(double *)((char *)bump + quantities[i].uncertainty_at) = defined ? sqrt(variance) : NAN;
@@ -160,6 +191,7 @@ static geometry geometry_of(const fg_design *design, const fg_nominal *nominal,
                            bump->centre_mm.y - overall->centre_mm.y),
                 .r = bump->radius_mm,
                 .r0 = overall->radius_mm,
+                .thickness = design->thickness_mm,
                 .design = design,
                 .nominal = nominal};
   fg_design_springback(design, nominal, g.r, &g.model);
@@ -170,26 +202,37 @@ void fg_bump_widen(const fg_design *design, const fg_nominal *nominal, const fg_
                    double covariance[3][3], fg_bump *bump) {
   geometry g = geometry_of(design, nominal, overall, bump);
   for (size_t i = 0; i < sizeof quantities / sizeof *quantities; i++) {
-    double gradient[BY_COUNT] = {0, 0, 0}, variance = 0;
+    double gradient[BY_COUNT] = {0}, variance = 0;
     double *u = (double *)((char *)bump + quantities[i].uncertainty_at);
     quantities[i].value(&g, gradient);
-    for (int a = 0; a < BY_COUNT; a++)
-      for (int b = 0; b < BY_COUNT; b++)
+    for (int a = 0; a < BY_CIRCLES; a++)
+      for (int b = 0; b < BY_CIRCLES; b++)
         variance += gradient[a] * covariance[a][b] * gradient[b];
     if (isfinite(variance)) *u = hypot(*u, root(variance));
   }
   bump->u_radius_mm = hypot(bump->u_radius_mm, root(covariance[BY_R][BY_R]));
 }
 
+fg_thickness fg_foil_thickness(const fg_design *design, const fg_foil *foil) {
+  if (!(foil->thickness_mm > 0) || !isfinite(foil->thickness_mm))
+    return (fg_thickness){design->thickness_mm, 0};
+  return (fg_thickness){foil->thickness_mm, foil->u_thickness_mm};
+}
+
+bool fg_thickness_differs(const fg_design *design, const fg_thickness *strip) {
+  return fabs(strip->mm - design->thickness_mm) > 2 * strip->u_mm;
+}
+
 void fg_bump_derive(const fg_design *design, const fg_nominal *nominal, const fg_overall *overall,
-                    fg_bump *bump) {
+                    const fg_thickness *strip, fg_bump *bump) {
   double dx = bump->centre_mm.x - overall->centre_mm.x;
   double dy = bump->centre_mm.y - overall->centre_mm.y;
   geometry g = geometry_of(design, nominal, overall, bump);
+  g.thickness = strip->mm;
   along bump_along = project(bump->covariance, dx / g.x, dy / g.x);
   fg_overall land = *overall; /* C has no implicit const for rows of a matrix */
   along overall_along = project(land.covariance, dx / g.x, dy / g.x);
-  fill(&g, &bump_along, &overall_along, bump);
+  fill(&g, &bump_along, &overall_along, strip->u_mm, bump);
   bump->u_radius_mm = root(bump->covariance[2][2]);
   for (int i = 0; i < 2; i++)
     bump->u_centre_mm[i] = root(bump->covariance[i][i]);

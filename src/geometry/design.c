@@ -170,9 +170,12 @@ fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal 
   return FG_OK;
 }
 
+double fg_design_clearance_over(const fg_design *design, double height_mm, double thickness_mm) {
+  return design->sleeve_radius_mm - height_mm - design->rotor_diameter_mm / 2 - thickness_mm;
+}
+
 double fg_design_clearance(const fg_design *design, double height_mm) {
-  return design->sleeve_radius_mm - height_mm - design->rotor_diameter_mm / 2 -
-         design->thickness_mm;
+  return fg_design_clearance_over(design, height_mm, design->thickness_mm);
 }
 
 /* M = sqrt(X_m² + R² - 2 X_m R cos phi), phi = alpha_m / 2, written as (X_m - R)² +

@@ -232,6 +232,7 @@ fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, doub
   FG_TRY_EXIT(fit_robust(ctx, &w));
   if ((double)(usable - w.used) > OUTLIERS_SHARE * (double)usable) disc->flags |= FG_BUMP_OUTLIERS;
   fill_circle(&w, level_doubt_mm, disc);
+  disc->radius_correction_mm = disc->u_radius_correction_mm = NAN;
   if (disc->rms_um > POOR_SHARE * 1000 * disc->radius_mm) disc->flags |= FG_BUMP_POOR_FIT;
   FG_TRY_EXIT(fill_points(ctx, &w, disc));
   FG_TRY_EXIT(fill_roundness(ctx, &w, disc));

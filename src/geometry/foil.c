@@ -11,8 +11,11 @@
 #include "core/select.h"
 #include "geometry/labels.h"
 #include "geometry/layout.h"
+#include "geometry/places.h"
+#include "geometry/recognise.h"
+#include "geometry/trouble.h"
 
-/* A bump is crushed when its height or radius is off the others' median by this factor. */
+/* A bump is crushed when its height or radius is off the sound ones' by this factor. */
 #define CRUSHED_HEIGHT 0.6
 #define CRUSHED_RADIUS 1.6
 /* A bump fits poorly when it scatters by this factor more than the median bump. */
@@ -23,14 +26,47 @@
 /* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
  * intensity model leaves on clean renders (reports/accuracy.md). */
 #define LINE_SHIFT_BLURS 0.001
+/* Relative error of gamma where halo, wall or a cut-off level shape the edges: all profiles say the
+ * same wrong value. */
+#define HIDDEN_TONE_DOUBT 0.23
+/* Where both edges blur into each other that place rests on the shape of the blur: the share grows
+ * with the cube of the blur below so many blurs of width (reports/accuracy_hard.md). */
+#define LINE_SHIFT_WIDTHS 3.0
+/* Below so many blurs of width, no plateau is left between the edges. */
+#define COARSE_WIDTHS 2.0
 /* Springback moves the overall radius by less than this factor, and the thickness by nothing. */
 #define SCALE_FACTOR 1.2
 /* Correlation over more stations than this is roughness of the edge. */
 #define ROUGH_STATIONS 3.0
 
-static void fail_foil(fg_foil *foil, const char *why) {
+bool fg_foil_is_measured(const fg_foil *foil) {
+  return !(foil->flags & (FG_FOIL_NOT_MEASURED | FG_FOIL_NOT_THIS_DESIGN));
+}
+
+static void forget(double *values, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    values[i] = NAN;
+}
+
+static void forget_overall(fg_overall *o) {
+  *o = (fg_overall){.centre_mm = {NAN, NAN},
+                    .u_centre_mm = {NAN, NAN},
+                    .radius_mm = NAN,
+                    .u_radius_mm = NAN,
+                    .springback_error_pct = NAN,
+                    .u_springback_error_pct = NAN,
+                    .rms_um = NAN};
+  forget(o->covariance[0], 9);
+}
+
+void fg_foil_give_up(fg_foil *foil, const char *why) {
   foil->flags |= FG_FOIL_NOT_MEASURED;
   snprintf(foil->error, sizeof foil->error, "%s", why);
+  foil->rotation_deg = NAN;
+  foil->thickness_mm = foil->u_thickness_mm = NAN;
+  foil->noise_um = foil->correlation_mm = foil->edge_model_um = NAN;
+  foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
+  forget_overall(&foil->overall);
 }
 
 /* Unit vectors of a bump: u from O to C, v across. */
@@ -104,11 +140,18 @@ static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half
       layout->overall.covariance[p][q] += (1 - 1 / ratio) * shift[p] * shift[q];
 }
 
+/* The strip's thickness in units of the edges' blur. */
+static double widths_in_blurs(const fg_foil *foil) {
+  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
+  return 1000 * foil->strip.thickness_mm / blur_um;
+}
+
 /* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
  * radius of every circle and the crowns, and nothing else. */
 static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
   double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
-  double shift_mm = LINE_SHIFT_BLURS * blur_um / 1000;
+  double overlap = fmax(1, LINE_SHIFT_WIDTHS / widths_in_blurs(foil));
+  double shift_mm = LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
   arc->covariance[2][2] += shift_mm * shift_mm;
 }
 
@@ -153,6 +196,15 @@ static fg_status find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil 
   return FG_OK;
 }
 
+/* The tone curve's share of the thickness' uncertainty. */
+static void add_tone_doubt(fg_foil *foil) {
+  const unsigned hidden = FG_FOIL_ROUGH_EDGE | FG_FOIL_SIDE_BAND | FG_FOIL_CLIPPED;
+  const fg_strip *strip = &foil->strip;
+  double doubt = strip->gamma > 0 ? strip->u_gamma / strip->gamma : 0;
+  if (foil->flags & hidden) doubt = hypot(doubt, HIDDEN_TONE_DOUBT);
+  foil->u_thickness_mm = hypot(strip->u_thickness_mm, doubt * strip->tone_um / 1000);
+}
+
 static void fill_overall(const fg_layout *layout, const fg_design *design, fg_foil *foil) {
   const fg_arc *arc = &layout->overall;
   fg_overall *o = &foil->overall;
@@ -169,10 +221,18 @@ static void fill_overall(const fg_layout *layout, const fg_design *design, fg_fo
   o->points = arc->points;
 }
 
-static double position_deg(const fg_foil *foil, const fg_arc *arc) {
-  return atan2(arc->circle.y - foil->overall.centre_mm.y,
-               arc->circle.x - foil->overall.centre_mm.x) *
-         180 / M_PI;
+/* Of a bump without a circle: the direction of the middle of its stretch of the strip. */
+static double stretch_position_deg(const fg_foil *foil, fg_range range) {
+  double x = 0, y = 0;
+  for (size_t k = range.first; k <= range.last; k++) {
+    const fg_station *s = &foil->strip.stations[k];
+    double dx = (s->left.x + s->right.x) / 2 - foil->overall.centre_mm.x;
+    double dy = (s->left.y + s->right.y) / 2 - foil->overall.centre_mm.y;
+    if (!isfinite(dx + dy)) continue;
+    x += dx;
+    y += dy;
+  }
+  return atan2(y, x) * 180 / M_PI;
 }
 
 static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design,
@@ -181,29 +241,24 @@ static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design
   const fg_station *stations = foil->strip.stations;
   bump->arc_start_mm = stations[arc->ranges[0].first].s_mm;
   bump->arc_end_mm = stations[arc->ranges[0].last].s_mm;
-  bump->position_deg = position_deg(foil, arc);
   bump->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
   bump->radius_mm = arc->circle.radius;
   memcpy(bump->covariance, arc->covariance, sizeof bump->covariance);
   if (!layout->fitted[i]) {
     bump->flags |= FG_BUMP_NOT_FITTED;
     bump->radius_mm = bump->centre_mm.x = bump->centre_mm.y = NAN;
-    for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++)
-        bump->covariance[p][q] = NAN;
+    forget(bump->covariance[0], 9);
   }
   for (int k = 0; k < 2; k++)
     bump->u_centre_mm[k] = sqrt(bump->covariance[k][k]);
   bump->u_radius_mm = sqrt(bump->covariance[2][2]);
-  bump->rms_um = 1000 * arc->rms_mm;
+  bump->rms_um = layout->fitted[i] ? 1000 * arc->rms_mm : NAN;
   bump->points = arc->points;
   if ((double)arc->outliers > OUTLIER_SHARE * (double)arc->points) bump->flags |= FG_BUMP_OUTLIERS;
-  fg_bump_derive(design, nominal, &foil->overall, bump);
-}
-
-static double turn_between(double from_deg, double to_deg) {
-  double d = to_deg - from_deg;
-  return d - 360 * round(d / 360);
+  bump->flags |= fg_trouble_flags(layout, i);
+  const fg_thickness strip = fg_foil_thickness(design, foil);
+  fg_bump_derive(design, nominal, &foil->overall, &strip, bump);
+  if (!layout->fitted[i]) bump->position_deg = stretch_position_deg(foil, arc->ranges[0]);
 }
 
 static double median_of(fg_context *ctx, const fg_foil *foil, double (*get)(const fg_bump *)) {
@@ -228,23 +283,34 @@ static double get_rms(const fg_bump *b) {
   return b->rms_um;
 }
 
-static void flag_bumps(fg_context *ctx, fg_foil *foil) {
+static bool is_beyond(double value, double reference, double factor) {
+  return value > factor * reference || value < reference / factor;
+}
+
+/* Bumps are held against their median, which is what the foil's springback made of the design; one
+ * that is itself far off the design is that of crushed bumps, and no reference. */
+static void flag_bumps(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
+                       fg_foil *foil) {
   double height = median_of(ctx, foil, get_height), radius = median_of(ctx, foil, get_radius);
+  if (height < CRUSHED_HEIGHT * nominal->height_mm ||
+      is_beyond(radius, design->bump_radius_mm, CRUSHED_RADIUS)) {
+    height = nominal->height_mm;
+    radius = design->bump_radius_mm;
+  }
   double rms = median_of(ctx, foil, get_rms);
   for (size_t i = 0; i < foil->bump_count; i++) {
     fg_bump *b = &foil->bumps[i];
-    if (b->height_mm < CRUSHED_HEIGHT * height || b->radius_mm > CRUSHED_RADIUS * radius ||
-        b->radius_mm < radius / CRUSHED_RADIUS)
+    if (b->height_mm < CRUSHED_HEIGHT * height || is_beyond(b->radius_mm, radius, CRUSHED_RADIUS))
       b->flags |= FG_BUMP_CRUSHED;
     if (b->rms_um > POOR_SCATTER * rms) b->flags |= FG_BUMP_POOR_FIT;
   }
 }
 
-/* Puts the bumps into order from the lip (without one: clockwise) and numbers them by their
- * places: a gap of two pitches leaves a number out. */
-static void number_bumps(const fg_layout *layout, const fg_design *design, fg_foil *foil) {
+/* Puts the bumps into order from the lip, without one: clockwise as seen. */
+static void order_bumps(const fg_layout *layout, fg_foil *foil) {
   size_t n = foil->bump_count;
-  double turn = n > 1 ? turn_between(foil->bumps[0].position_deg, foil->bumps[1].position_deg) : 0;
+  double turn =
+      n > 1 ? fg_places_turn(foil->bumps[0].position_deg, foil->bumps[1].position_deg) : 0;
   if (n == 1) turn = layout->turning.sense > 0 ? -1 : 1;
   bool reversed = layout->turning.lip_last && !layout->turning.lip_first;
   if (!layout->turning.lip_first && !layout->turning.lip_last) {
@@ -257,22 +323,13 @@ static void number_bumps(const fg_layout *layout, const fg_design *design, fg_fo
     foil->bumps[i] = foil->bumps[n - 1 - i];
     foil->bumps[n - 1 - i] = swap;
   }
-  double gaps[512];
-  size_t gap_count = n > 1 ? (n - 1 < 512 ? n - 1 : 512) : 0;
-  for (size_t i = 0; i < gap_count; i++)
-    gaps[i] = fabs(turn_between(foil->bumps[i].position_deg, foil->bumps[i + 1].position_deg));
-  double pitch = gap_count >= 3 ? fg_select(gaps, gap_count, gap_count / 2) : design->pitch_deg;
-  int number = 1;
-  for (size_t i = 0; i < n; i++) {
-    if (i > 0) {
-      double gap = fabs(turn_between(foil->bumps[i - 1].position_deg, foil->bumps[i].position_deg));
-      int places = (int)lround(gap / pitch);
-      if (places > 1) foil->flags |= FG_FOIL_MISSING_BUMP;
-      number += places > 1 ? places : 1;
-    }
-    foil->bumps[i].number = number;
-  }
-  if (design->bump_count && n != design->bump_count) foil->flags |= FG_FOIL_BUMP_COUNT;
+}
+
+/* Where a foil's line may have gone over to another's, which bump is whose cannot be trusted. */
+static void flag_mixed_bumps(fg_foil *foil) {
+  if (!(foil->flags & FG_FOIL_TOUCHES_OTHER) || !(foil->flags & FG_FOIL_BUMP_COUNT)) return;
+  for (size_t i = 0; i < foil->bump_count; i++)
+    foil->bumps[i].flags |= FG_BUMP_TOUCHES_OTHER;
 }
 
 static void find_rotation(fg_foil *foil) {
@@ -302,13 +359,17 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   size_t n = layout->turning.bump_count;
   FG_TRY(find_uncertainties(ctx, layout, foil));
+  add_tone_doubt(foil);
   fill_overall(layout, design, foil);
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *foil->bumps, (void **)&foil->bumps));
   foil->bump_count = n;
   for (size_t i = 0; i < n; i++)
     fill_bump(layout, i, design, &nominal, foil, &foil->bumps[i]);
-  number_bumps(layout, design, foil);
-  flag_bumps(ctx, foil);
+  order_bumps(layout, foil);
+  fg_places_number(layout, design, &nominal, foil);
+  flag_bumps(ctx, design, &nominal, foil);
+  fg_foil_recognise(design, foil);
+  flag_mixed_bumps(foil);
   find_rotation(foil);
   if (layout->land_count < 3) foil->flags |= FG_FOIL_FEW_LANDS;
   return fg_labels_fill(ctx, layout, design->datum, foil);
@@ -329,20 +390,21 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
   const char *error;
   foil->thickness_mm = foil->strip.thickness_mm;
   foil->u_thickness_mm = foil->strip.u_thickness_mm;
-  foil->in_tolerance = true;
+  foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   take_over_facts(foil);
+  if (widths_in_blurs(foil) < COARSE_WIDTHS) foil->flags |= FG_FOIL_COARSE_RESOLUTION;
   FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, &layout, &error));
   fg_status status = FG_OK;
   double factor;
   if (error) {
-    fail_foil(foil, error);
+    fg_foil_give_up(foil, error);
   } else if (is_off_scale(design, &layout, &foil->strip, &factor)) {
     char why[sizeof foil->error];
     snprintf(why, sizeof why,
              "thickness and overall radius are %.3g times the design's: the resolution of the scan "
              "(--dpi) or the design (--design) is wrong",
              factor);
-    fail_foil(foil, why);
+    fg_foil_give_up(foil, why);
   } else {
     status = fill_foil(ctx, design, &layout, foil);
   }

@@ -11,6 +11,7 @@
 #define PROMINENCE_RAD (12 * M_PI / 180) /* smaller turns back are not turning points */
 #define LIP_TURN_LEAST (45 * M_PI / 180)
 #define LIP_RADIUS     0.4 /* a lip's bend is tighter than this share of the bumps' radius */
+#define SHARP_RADIUS   0.5 /* and fillets are tighter than this share */
 enum { STRETCHES_MAX = 512, PAIRS_LEAST = 8 };
 
 /* The usable station at or next to i, in the direction of `step`; i itself where there is none. */
@@ -85,10 +86,6 @@ static double median_over(const fg_stretch *stretches, size_t count, double sign
   return n ? fg_select(values, n, (n - 1) / 2) : 0;
 }
 
-static double get_turn(const fg_stretch *s) {
-  return fabs(s->turn_rad);
-}
-
 /* The stretch's own tight part: a lip's straight leg and land belong to its stretch too, so the
  * radius of the bend is judged where 80 % of the turn happens. */
 static fg_stretch tight_part(const fg_strip *strip, const double *direction, const fg_stretch *s) {
@@ -109,27 +106,46 @@ static double get_radius(const fg_stretch *s) {
   return s->length_mm / fabs(s->turn_rad);
 }
 
-static double get_bend(const fg_stretch *s) {
-  return s->bend_radius_mm;
+static double get_tightest(const fg_stretch *s) {
+  return s->tightest_mm;
 }
 
-/* A bump and the gap beside it turn by one pitch round the overall circle, in the sense that bumps
- * do not have; the median holds when a bump is crushed. With few bumps the lip has too much of a
- * say, and bumps are what bends less tightly than fillets. */
+/* Radius where a turn of PROMINENCE_RAD takes the least length: a bump's own, and of a gap that of
+ * its fillets, however long the land between them is. */
+static double find_tightest(const fg_strip *strip, const double *direction, const fg_stretch *s) {
+  double least = s->length_mm;
+  double sign = s->turn_rad > 0 ? 1 : -1;
+  for (size_t a = s->first, b = s->first; a <= s->last; a++) {
+    while (b < s->last && sign * (direction[b] - direction[a]) < PROMINENCE_RAD)
+      b++;
+    if (sign * (direction[b] - direction[a]) < PROMINENCE_RAD) break;
+    least = fmin(least, strip->stations[b].s_mm - strip->stations[a].s_mm);
+  }
+  return least / PROMINENCE_RAD;
+}
+
+/* How much of a stretch's turn happens on radii below `limit_mm`. */
+static double sharp_turn(const fg_strip *strip, const double *direction, const fg_stretch *s,
+                         double limit_mm) {
+  double sum = 0;
+  for (size_t i = s->first; i < s->last; i++) {
+    double turn = fabs(direction[i + 1] - direction[i]);
+    if (turn * limit_mm > strip->stations[i + 1].s_mm - strip->stations[i].s_mm) sum += turn;
+  }
+  return sum;
+}
+
+/* A bump and the gap beside it turn by a pitch or more round the overall circle, in the sense that
+ * bumps do not have; the median holds when a bump is crushed. With few bumps the lip has too much
+ * of a say, and gaps are what has fillets. */
 static double find_sense(const fg_stretch *stretches, size_t count) {
   double sums[STRETCHES_MAX];
   size_t n = 0;
   for (size_t i = 1; i + 2 < count; i++)
     sums[n++] = stretches[i].turn_rad + stretches[i + 1].turn_rad;
   if (n >= PAIRS_LEAST) return fg_select(sums, n, n / 2) < 0 ? 1 : -1;
-  double up = median_over(stretches, count, 1, get_bend);
-  return up > median_over(stretches, count, -1, get_bend) ? 1 : -1;
-}
-
-/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them,
- * which then turns by a right angle more than the half of a gap that it is. */
-static bool is_lip_in_gap(const fg_stretch *s, double sense, double gap_rad) {
-  return -s->turn_rad * sense > 0.5 * gap_rad + LIP_TURN_LEAST;
+  double up = median_over(stretches, count, 1, get_tightest);
+  return up > median_over(stretches, count, -1, get_tightest) ? 1 : -1;
 }
 
 /* Where a stretch has turned by half a right angle from one of its ends: the middle of a lip's
@@ -142,13 +158,19 @@ static size_t bend_middle(const double *direction, const fg_stretch *s, bool fro
   return at;
 }
 
+static double get_sharp(const fg_stretch *s) {
+  return s->sharp_rad;
+}
+
+/* A lip that is bent towards the shaft turns as the gaps do and is one with the first of them,
+ * which then has a right angle more of sharp turn than the one fillet of its own. */
 static void find_lip_in_gaps(const double *direction, const fg_stretch *all, size_t count,
                              fg_turning *out) {
-  double gap_rad = median_over(all, count, -out->sense, get_turn);
   const fg_stretch *first = &all[0], *last = &all[count - 1];
   if (out->lip_first || out->lip_last || out->bump_count < 2) return;
-  out->lip_first = is_lip_in_gap(first, out->sense, gap_rad);
-  out->lip_last = is_lip_in_gap(last, out->sense, gap_rad);
+  double limit = 0.5 * median_over(all, count, -out->sense, get_sharp) + LIP_TURN_LEAST;
+  out->lip_first = first->turn_rad * out->sense < 0 && first->sharp_rad > limit;
+  out->lip_last = last->turn_rad * out->sense < 0 && last->sharp_rad > limit;
   if (out->lip_first) out->lip_end[0] = bend_middle(direction, first, false);
   if (out->lip_last) out->lip_end[1] = bend_middle(direction, last, true);
 }
@@ -198,8 +220,12 @@ fg_status fg_turning_find(fg_context *ctx, const fg_strip *strip, fg_turning *tu
   for (size_t i = 0; i < count; i++) {
     fg_stretch tight = tight_part(strip, direction, &stretches[i]);
     stretches[i].bend_radius_mm = get_radius(&tight);
+    stretches[i].tightest_mm = find_tightest(strip, direction, &stretches[i]);
   }
   turning->sense = find_sense(stretches, count);
+  double sharp = SHARP_RADIUS * median_over(stretches, count, turning->sense, get_tightest);
+  for (size_t i = 0; i < count; i++)
+    stretches[i].sharp_rad = sharp_turn(strip, direction, &stretches[i], sharp);
   pick_bumps(strip, direction, stretches, count, turning);
   if (count) find_lip_in_gaps(direction, stretches, count, turning);
 exit:

@@ -18,6 +18,8 @@ typedef struct fg_stretch {
   double turn_rad; /* signed */
   double length_mm;
   double bend_radius_mm; /* mean radius where 80 % of the turn happens */
+  double tightest_mm;    /* radius where it turns fastest */
+  double sharp_rad;      /* turn on radii far below a bump's */
 } fg_stretch;
 
 typedef struct fg_turning {

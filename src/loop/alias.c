@@ -37,10 +37,7 @@ static fg_status open_one(fg_context *ctx, const loop_frame *frame, loop_noise n
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
   FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->columns));
   FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->unit));
-  memcpy(bench->basis, frame->x, n * frame->columns * sizeof *bench->basis);
-  for (size_t k = 0; k < frame->columns; k++)
-    loop_whiten(frame, noise, bench->basis + k * n);
-  bench->rank = loop_orthonormal(n, NULL, 0, bench->basis, frame->columns, bench->basis, NULL);
+  bench->rank = loop_null_basis(frame, noise, bench->basis);
   memcpy(bench->y, frame->y, n * sizeof *bench->y);
   loop_whiten(frame, noise, bench->y);
   bench->rss = loop_project_out(n, bench->basis, bench->rank, bench->y);

@@ -67,10 +67,7 @@ static fg_status null_basis(fg_context *ctx, const loop_frame *frame, loop_noise
                             double **basis) {
   size_t n = frame->n;
   FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + 1) * sizeof **basis, (void **)basis));
-  memcpy(*basis, frame->x, n * frame->columns * sizeof **basis);
-  for (size_t k = 0; k < frame->columns; k++)
-    loop_whiten(frame, noise, *basis + k * n);
-  size_t rank = loop_orthonormal(n, NULL, 0, *basis, frame->columns, *basis, NULL);
+  size_t rank = loop_null_basis(frame, noise, *basis);
   memset(*basis + rank * n, 0, n * (frame->columns + 1 - rank) * sizeof **basis);
   return FG_OK;
 }
@@ -143,6 +140,12 @@ fg_status loop_bench_build(fg_context *ctx, const loop_frame *frame,
 exit:
   if (status != FG_OK) loop_bench_free(bench);
   return status;
+}
+
+void loop_bench_tell(const loop_bench *bench, size_t half, size_t done, size_t all) {
+  const loop_watch *watch = &bench->watch;
+  if (watch->show && all)
+    watch->show(watch->user, watch->found, 0.5 * (double)half + 0.5 * (double)done / (double)all);
 }
 
 void loop_bench_free(loop_bench *bench) {
@@ -289,6 +292,7 @@ fg_status loop_bench_prepare_flips(fg_context *ctx, loop_bench *bench, size_t no
   memset(bench->flip_scores, 0, frame->flips * width * sizeof *bench->flip_scores);
   add_scores(bench, null, frame->columns, 0, residual);
   for (size_t v = 0; v < bench->versions; v++) {
+    loop_bench_tell(bench, 0, v, bench->versions);
     FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[noise], null, work, work + each));
     add_scores(bench, work + each, bench->version[v].rank, bench->rank + bench->version[v].first,
                residual);

@@ -14,7 +14,8 @@ static fg_status shape_slope(fg_context *ctx, const loop_frame *frame,
                              const fg_loop_candidate *candidate, const double *shape, size_t d,
                              const double *beta, double *slope) {
   size_t count = loop_candidate_columns(frame->problem, candidate), n = frame->n;
-  double *columns = NULL, moved[FG_LOOP_SHAPES], step = 1e-4 * fabs(shape[d]) + 1e-12;
+  double *columns = NULL, moved[FG_LOOP_SHAPES];
+  double step = shape[d] != 0 ? 1e-4 * fabs(shape[d]) : 1e-12;
   FG_TRY(fg_memory_allocate(ctx, n, count * sizeof *columns, (void **)&columns));
   fg_status status = FG_OK;
   memset(slope, 0, n * sizeof *slope);

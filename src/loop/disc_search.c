@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "loop/points_effects.h"
 #include "loop/subset_search.h"
 
 /* A set is right when what it leaves beyond all effects is likelier than this. */
@@ -19,20 +18,6 @@
 #define ONE_MORE_CHI2 12.0
 /* Error of the edge model, um: effects below it are not told apart. */
 #define EDGE_ERROR_UM 0.01
-static const fg_subset_effect smooth[] = {
-    {.id = "scan.scale_y"},
-    {.id = "scan.scale"},
-    {.id = "scan.shear"},
-    {.id = "scan.optical_quadratic", .shapes = 1},
-    {.id = "scan.optical_cubic", .shapes = 1},
-    {.id = "scan.carriage_quadratic", .shapes = 1},
-    {.id = "part.ovality"},
-    {.id = "free.scan.x.dx", .free = true},
-    {.id = "free.scan.x.dy", .free = true},
-    {.id = "free.scan.y.dx", .free = true},
-    {.id = "free.scan.y.dy", .free = true},
-    {.id = "free.edge.normal", .free = true},
-};
 
 /* Residual sum with the effects of a mask fitted, the geometry being out, `last` (or NULL) behind
  * the others: `last_u` gets its standard deviation for noise of 1 um. */
@@ -57,7 +42,7 @@ static double residual_sum(const fg_subset_search *s, unsigned mask, const fg_su
 static double gain_over_rest(fg_subset_search *s, size_t rank, const fg_subset_effect *effect) {
   double before = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left), share;
   size_t first, kept = s->columns.count;
-  size_t count = fg_subset_columns_add(&s->columns, effect->id, effect->shape, &first, &share);
+  size_t count = fg_subset_columns_add(&s->columns, effect->kind, effect->shape, &first, &share);
   rank = fg_subset_columns_span_more(&s->columns, rank, first, first + count);
   double after = fg_subset_dot(s->columns.rows, s->columns.left, s->columns.left);
   double noise = after / fmax((double)s->columns.rows - (double)rank, 1);
@@ -74,13 +59,11 @@ static fg_status find_shaped_effects(fg_context *ctx, fg_subset_search *s) {
   double *work = NULL, most = 0;
   if (s->out->effect_count >= FG_SUBSET_EFFECTS) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
-  for (size_t k = 0; k < FG_SUBSET_SHAPED; k++) {
-    const fg_subset_shaped *kind = &fg_subset_shaped_kinds[k];
-    if (!fg_points_shows(s->columns.points, kind->effect.id)) continue;
+  for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
+    if (kind->sought != FG_EFFECT_PLACED || !fg_effect_shows(s->columns.points, kind)) continue;
     size_t rank = fg_subset_noise(s, false);
     fg_subset_hit hit = fg_subset_find_place(s, rank, kind, work);
-    fg_subset_effect found = kind->effect;
-    found.shape[0] = hit.at;
+    fg_subset_effect found = {.kind = kind, .shape = {hit.at}};
     if (!(hit.gain > 0) || hit.amplitude <= FG_SUBSET_SHAPED_LEAST_UM) continue;
     double gain = gain_over_rest(s, rank, &found);
     if (gain <= fmax(most, FG_SUBSET_SHAPED_CHI2)) continue;
@@ -116,7 +99,7 @@ static bool is_right(const yardstick *y, const fg_subset_member *m) {
 static bool one_more_helps(const fg_subset_search *s, const yardstick *y,
                            const fg_subset_member *m) {
   for (size_t e = 0; e < s->out->effect_count; e++) {
-    if (s->out->effects[e].free || (m->mask >> e & 1)) continue;
+    if (fg_effect_is_free(s->out->effects[e].kind) || (m->mask >> e & 1)) continue;
     if (m->excess - try_set(s, y, m->mask | 1u << e).excess > ONE_MORE_CHI2) return true;
   }
   return false;
@@ -144,8 +127,9 @@ static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member b
   double price = log((double)s->columns.rows / out->integral);
   double score = best.excess - price * best.freedom;
   for (size_t e = 0; e < out->effect_count; e++)
-    for (size_t with = 0; with <= out->effect_count && out->effects[e].free; with++) {
-      if (with < out->effect_count && out->effects[with].free) continue;
+    for (size_t with = 0; with <= out->effect_count && fg_effect_is_free(out->effects[e].kind);
+         with++) {
+      if (with < out->effect_count && fg_effect_is_free(out->effects[with].kind)) continue;
       unsigned mask = 1u << e | (with < out->effect_count ? 1u << with : 0);
       fg_subset_member member = try_set(s, y, mask);
       if (member.excess - price * member.freedom >= score - 10) continue;
@@ -158,7 +142,7 @@ static void try_free(fg_subset_search *s, const yardstick *y, fg_subset_member b
 
 /* How many effects the points can tell apart. */
 static size_t effects_most(const fg_points *points) {
-  return points->part_count > 2 ? 5 : 2;
+  return points->coarse ? 1 : points->part_count > 2 ? 5 : 2;
 }
 
 static void try_sets(fg_subset_search *s) {
@@ -179,7 +163,7 @@ static void try_sets(fg_subset_search *s) {
     double u = 0;
     unsigned lone = 1u << e;
     out->alone[e] = 1 - residual_sum(s, lone, NULL, &used, NULL) / none;
-    if (out->effects[e].free) continue;
+    if (fg_effect_is_free(out->effects[e].kind)) continue;
     /* Three and a half standard deviations beside the winner: found in most cases. */
     unsigned beside = out->members[0].mask & fg_subset_mask_of(out, false);
     residual_sum(s, beside | lone, &out->effects[e], &used, &u);
@@ -187,39 +171,36 @@ static void try_sets(fg_subset_search *s) {
   }
 }
 
-static const fg_scan_effect *find_known(const fg_scan_set *known, const char *id) {
+static const fg_scan_effect *find_known(const fg_scan_set *known, const fg_effect *kind) {
   for (size_t e = 0; known && e < known->count; e++)
-    if (!strcmp(known->effects[e].id, id)) return &known->effects[e];
+    if (known->effects[e].kind == kind) return &known->effects[e];
   return NULL;
 }
 
 /* The smooth ones; the middle of a polynomial is the picture's until a fit has found it. */
-static void add_smooth(fg_subset_search *s, const fg_scan_set *known) {
-  for (size_t e = 0; e < sizeof smooth / sizeof smooth[0]; e++) {
-    fg_subset_effect effect = smooth[e];
-    const fg_scan_effect *from = find_known(known, effect.id);
-    if (!fg_points_shows(s->columns.points, effect.id)) continue;
-    if (effect.shapes)
-      effect.shape[0] =
-          s->columns.points->frame.centre_mm[!strncmp(effect.id, "scan.carriage", 13)];
-    if (effect.shapes && from) effect.shape[0] = from->shape[0];
+static fg_status add_smooth(fg_context *ctx, fg_subset_search *s, const fg_scan_set *known) {
+  for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
+    fg_subset_effect effect = {.kind = kind};
+    const fg_scan_effect *from = find_known(known, kind);
+    if (kind->sought == FG_EFFECT_PLACED || !fg_effect_shows(s->columns.points, kind)) continue;
+    if (kind->start) {
+      FG_TRY(fg_subset_add_shaped(ctx, s, kind, known));
+      continue;
+    }
+    if (kind->shapes) effect.shape[0] = s->columns.points->frame.centre_mm[kind->axis];
+    if (kind->shapes && from) effect.shape[0] = from->shape[0];
     fg_subset_add(s, &effect);
   }
-}
-
-static bool is_listed_smooth(const char *id) {
-  for (size_t e = 0; e < sizeof smooth / sizeof smooth[0]; e++)
-    if (!strcmp(smooth[e].id, id)) return true;
-  return false;
+  return FG_OK;
 }
 
 /* Ripples and steps that are in force. */
 static void add_known(fg_subset_search *s, const fg_scan_set *known) {
   for (size_t e = 0; known && e < known->count; e++) {
     const fg_scan_effect *from = &known->effects[e];
-    fg_subset_effect effect = {.id = from->id, .shapes = from->shapes};
+    fg_subset_effect effect = {.kind = from->kind};
     memcpy(effect.shape, from->shape, sizeof effect.shape);
-    if (from->shapes && !is_listed_smooth(from->id) && s->out->effect_count < FG_SUBSET_EFFECTS)
+    if (from->kind->sought == FG_EFFECT_PLACED && s->out->effect_count < FG_SUBSET_EFFECTS)
       fg_subset_add(s, &effect);
   }
 }
@@ -231,10 +212,11 @@ fg_status fg_disc_effects_find(fg_context *ctx, const fg_points *points, const d
   fg_subset_search s = {.out = subset};
   fg_status status = FG_OK;
   FG_TRY(fg_subset_columns_open(ctx, points, residual_um, jacobian, &s.columns));
-  add_smooth(&s, known);
+  FG_TRY_EXIT(add_smooth(ctx, &s, known));
   add_known(&s, known);
   FG_TRY_EXIT(find_shaped_effects(ctx, &s));
   fg_subset_noise(&s, false);
+  FG_TRY_EXIT(fg_subset_check_rows(ctx, &s));
   try_sets(&s);
 exit:
   fg_subset_columns_close(&s.columns);

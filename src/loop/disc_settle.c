@@ -17,7 +17,7 @@
 static void keep_numbers(const fg_scan_set *from, fg_scan_set *to) {
   for (size_t e = 0; e < to->count; e++)
     for (size_t k = 0; k < from->count; k++)
-      if (!strcmp(to->effects[e].id, from->effects[k].id) &&
+      if (to->effects[e].kind == from->effects[k].kind &&
           to->effects[e].shape[0] == from->effects[k].shape[0])
         to->effects[e] = from->effects[k];
 }
@@ -49,13 +49,16 @@ static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double 
 fg_status fg_disc_effects_settle(fg_context *ctx, fg_points *points, fg_scan_set *set,
                                  fg_subset *subset, double *residual_um) {
   enum { ROUNDS = 8 };
-  double *jacobian = NULL;
+  double *jacobian = NULL, *geometry = NULL;
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
-  FG_TRY(fg_scan_refit(ctx, points, set, NULL));
+  FG_TRY(fg_scan_refit(ctx, points, set, residual_um));
+  double none = fg_settle_square(points, residual_um);
   FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *jacobian,
                             (void **)&jacobian));
-  for (int round = 0; round < ROUNDS; round++) {
+  FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *geometry,
+                                 (void **)&geometry));
+  for (int round = 0; round < (points->coarse ? 2 : ROUNDS); round++) {
     fg_scan_set next;
     FG_TRY_EXIT(fg_settle_put_back(ctx, points, set, residual_um, jacobian));
     FG_TRY_EXIT(fg_disc_effects_find(ctx, points, residual_um, jacobian, set, subset));
@@ -64,11 +67,13 @@ fg_status fg_disc_effects_settle(fg_context *ctx, fg_points *points, fg_scan_set
     keep_numbers(set, &next);
     *set = next;
     fg_settle_leave_steps_out(points, set, STEP_HALF_MM);
-    FG_TRY_EXIT(fg_scan_refit(ctx, points, set, residual_um));
+    FG_TRY_EXIT(fg_settle_fit(ctx, points, set, none, geometry, residual_um));
+    if (next.count && !set->count) subset->right = false; /* given up */
     FG_TRY_EXIT(drop_outliers(ctx, points, residual_um));
     if (settled && round > 0) break;
   }
 exit:
   free(jacobian);
+  free(geometry);
   return status;
 }

@@ -14,6 +14,7 @@
 
 #include "core/memory.h"
 #include "core/small_solve.h"
+#include "effect/columns.h"
 #include "loop/scan_loop.h"
 
 #define CONFIRM_P 0.005
@@ -272,7 +273,7 @@ static void widen_by_level(const confirmation *c, fg_scan_effect *effect) {
 static void prepare(confirmation *c, const double *residual_um, size_t harmonics) {
   const fg_scan_effect *effect = c->effect;
   size_t rows = c->points->row_count;
-  fg_points_effect_columns(c->points, effect->id, effect->shape, c->columns);
+  fg_effect_columns(c->points, effect->kind, effect->shape, c->columns);
   memcpy(c->residual, residual_um, rows * sizeof *c->residual);
   c->columns_used = 0;
   for (size_t k = 0; k < effect->columns; k++) {
@@ -299,7 +300,7 @@ static double amplitude_errors(const fg_scan_effect *effect) {
 }
 
 static double judge(confirmation *c, fg_scan_effect *effect, const double *residual_um) {
-  bool free_curve = !strncmp(effect->id, "free.", 5), shaped = effect->shapes > 0;
+  bool free_curve = fg_effect_is_free(effect->kind), shaped = effect->shapes > 0;
   prepare(c, residual_um, 1);
   double confirmed = judge_discs(c,
                                  free_curve ? 0
@@ -307,7 +308,7 @@ static double judge(confirmation *c, fg_scan_effect *effect, const double *resid
                                             : CONFIRM_P,
                                  free_curve ? FREE_ERRORS : LISTED_ERRORS);
   widen_by_scatter(c, effect);
-  if (!strcmp(effect->id, "scan.scale")) widen_by_level(c, effect);
+  if (effect->kind->scales) widen_by_level(c, effect);
   if (shaped && !(confirmed > 0)) {
     prepare(c, residual_um, FORM_HARMONICS);
     confirmed = judge_sides(c);
@@ -336,13 +337,14 @@ exit:
   return status;
 }
 
-static void bar(fg_points *points, const fg_subset *subset, const char *id) {
+static void bar(fg_points *points, const fg_subset *subset, const fg_effect *kind) {
   for (size_t i = 0; i < points->barred_count; i++)
-    if (!strcmp(points->barred[i].id, id)) return;
+    if (points->barred[i].effect == kind) return;
   fg_points_barred *entry = &points->barred[points->barred_count++];
-  *entry = (fg_points_barred){.id = id, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
+  *entry =
+      (fg_points_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
   for (size_t e = 0; e < subset->effect_count; e++) {
-    if (strcmp(subset->effects[e].id, id) != 0) continue;
+    if (subset->effects[e].kind != kind) continue;
     entry->would_explain = subset->alone[e];
     entry->share = subset->share[e];
     return;
@@ -365,17 +367,18 @@ static fg_status bar_unconfirmed(fg_context *ctx, fg_points *points, fg_scan_set
   *barred = failing > 0 && room >= most;
   for (size_t e = 0, n = 0; *barred && e < set->count && n < most; e++) {
     if (confirmed[e] > least && most == 1) continue;
-    bar(points, subset, set->effects[e].id);
+    bar(points, subset, set->effects[e].kind);
     n++;
   }
   return FG_OK;
 }
 
-static size_t find(const fg_subset *subset, const char *id) {
-  size_t e = 0;
-  while (e < subset->effect_count && strcmp(subset->effects[e].id, id))
-    e++;
-  return e;
+/* Those that stand for each other in a ring. */
+static unsigned ring_mask(const fg_subset *subset, fg_effect_ring ring) {
+  unsigned mask = 0;
+  for (size_t e = 0; e < subset->effect_count; e++)
+    if (subset->effects[e].kind->ring == ring) mask |= 1u << e;
+  return mask;
 }
 
 static void add_member(fg_subset *subset, unsigned mask, const fg_subset_member *like) {
@@ -389,10 +392,9 @@ static void add_member(fg_subset *subset, unsigned mask, const fg_subset_member 
 
 /* In one circle an oval and a scale with a shear are one and the same. */
 static void add_ring_alias(fg_subset *subset) {
-  size_t y = find(subset, "scan.scale_y"), s = find(subset, "scan.shear");
-  size_t o = find(subset, "part.ovality"), members = subset->member_count;
-  if (y == subset->effect_count || s == subset->effect_count || o == subset->effect_count) return;
-  unsigned scanner = 1u << y | 1u << s, oval = 1u << o;
+  size_t members = subset->member_count;
+  unsigned scanner = ring_mask(subset, FG_EFFECT_RING_OF_SCANNER);
+  unsigned oval = ring_mask(subset, FG_EFFECT_RING_OF_PART);
   for (size_t m = 0; m < members; m++) {
     const fg_subset_member member = subset->members[m];
     if (member.mask & oval)

@@ -72,6 +72,9 @@ double loop_project_out(size_t n, const double *basis, size_t rank, double *v);
 size_t loop_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,
                         size_t count, double *out, double *lengths);
 
+/* Orthonormal whitened columns of the null: room for frame->columns × n; returns their number. */
+size_t loop_null_basis(const loop_frame *frame, loop_noise noise, double *basis);
+
 typedef struct loop_fit {
   size_t columns, rank;
   double *beta;    /* columns; 0 where aliased */
@@ -88,6 +91,13 @@ typedef struct loop_version {
   double share, length;                 /* |MWf|²/|Wf|² and mean |MWf|², at the null's noise */
 } loop_version;
 
+/* Who wants to know how far a step is. */
+typedef struct loop_watch {
+  fg_loop_progress *show; /* NULL: nobody */
+  void *user;
+  size_t found;
+} loop_watch;
+
 typedef struct loop_bench {
   const loop_frame *frame;
   const fg_loop_candidate *candidate;
@@ -102,6 +112,7 @@ typedef struct loop_bench {
   double *flip_scores;       /* flips × (rank + columns), at the flips' noise */
   double flip_rss;           /* |r|² there */
   double *scratch;           /* for one scoring */
+  loop_watch watch;
 } loop_bench;
 
 typedef struct loop_score {
@@ -113,6 +124,8 @@ typedef struct loop_score {
 fg_status loop_bench_build(fg_context *ctx, const loop_frame *frame,
                            const fg_loop_candidate *candidate, size_t candidates,
                            loop_bench *bench);
+/* `done` of `all` in one half of the step. */
+void loop_bench_tell(const loop_bench *bench, size_t half, size_t done, size_t all);
 void loop_bench_free(loop_bench *bench);
 /* Scores `y` (not whitened). `null` is the best noise without any candidate. */
 void loop_bench_score(const loop_bench *bench, const double *y, loop_score *score, size_t *null);

@@ -4,8 +4,9 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/spread.h"
 #include "core/text.h"
+#include "loop/grid.h"
 #include "loop/random.h"
 #include "loop/run.h"
 
@@ -28,11 +29,11 @@ static fg_status measure(fg_context *ctx, const loop_run *run, const double *res
       held_squares += residual[i] * residual[i];
     }
   }
-  qsort(size, count, sizeof *size, by_size);
+  fg_spread spread = fg_spread_of(size, count);
   error->rms = sqrt(squares / (double)count);
-  error->robust_sd = 1.4826 * (size[(count - 1) / 2] + size[count / 2]) / 2;
-  error->p95 = size[(count - 1) * 95 / 100];
-  error->maximum = size[count - 1];
+  error->robust_sd = spread.robust_sd;
+  error->p95 = spread.p95;
+  error->maximum = spread.maximum;
   error->held_out_rms = held ? sqrt(held_squares / (double)held) : NAN;
   free(size);
   return FG_OK;
@@ -115,42 +116,48 @@ static int confirm(const loop_run *run) {
   return groups >= 5 && sum < -2 * se ? -2 : 0;
 }
 
+/* The mean of the curve over the rows, its rms about it, and the rows that it moves most. */
+static fg_status describe_curve(fg_context *ctx, const fg_loop_problem *problem,
+                                const fg_loop_claim *fit, double *mean, fg_loop_curve *curve) {
+  double *effect = NULL, squares = 0;
+  FG_TRY(fg_memory_allocate(ctx, problem->rows, sizeof *effect, (void **)&effect));
+  fg_status status = fg_loop_claim_evaluate(ctx, problem, fit, effect);
+  *mean = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    *mean += effect[i] / (double)problem->rows;
+  for (size_t i = 0; i < problem->rows; i++)
+    squares += (effect[i] - *mean) * (effect[i] - *mean);
+  curve->rms = sqrt(squares / (double)problem->rows);
+  curve->nearest_count = 0;
+  for (size_t k = 0; k < 5 && k < problem->rows; k++) {
+    size_t best = problem->rows;
+    for (size_t i = 0; i < problem->rows; i++)
+      if (isfinite(effect[i]) &&
+          (best == problem->rows || fabs(effect[i] - *mean) > fabs(effect[best] - *mean)))
+        best = i;
+    if (best == problem->rows) break;
+    curve->nearest[curve->nearest_count++] = best;
+    effect[best] = NAN;
+  }
+  free(effect);
+  return status;
+}
+
 /* The curve alone, drawn over its coordinate's range, its mean over the rows taken out. */
 static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim *fit) {
   enum { POINTS = 61 };
   const fg_loop_problem *problem = run->problem;
   const fg_loop_coordinate *at = &problem->coordinate[run->curve_at];
   fg_loop_curve *curve = &run->result->curve;
-  double value[POINTS], *effect = NULL, mean = 0, squares = 0;
-  fg_loop_coordinate *coordinate = NULL;
-  fg_loop_problem grid = *problem;
+  double *value = NULL, effect[POINTS], mean = 0;
+  fg_loop_problem grid = {0};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows + POINTS, sizeof *effect, (void **)&effect));
-  FG_TRY_EXIT(
-      fg_memory_allocate(ctx, problem->coordinates, sizeof *coordinate, (void **)&coordinate));
   FG_TRY_EXIT(fg_memory_allocate(ctx, POINTS, sizeof *curve->shape, (void **)&curve->shape));
-  FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, problem, fit, effect));
-  for (size_t i = 0; i < problem->rows; i++)
-    mean += effect[i] / (double)problem->rows;
-  for (size_t i = 0; i < problem->rows; i++)
-    squares += (effect[i] - mean) * (effect[i] - mean);
-  curve->rms = sqrt(squares / (double)problem->rows);
-  curve->nearest_count = 0;
-  for (size_t k = 0; k < 5 && k < problem->rows; k++) { /* the rows it moves most */
-    size_t best = problem->rows;
-    for (size_t i = 0; i < problem->rows; i++)
-      if (isfinite(effect[i]) &&
-          (best == problem->rows || fabs(effect[i] - mean) > fabs(effect[best] - mean)))
-        best = i;
-    curve->nearest[curve->nearest_count++] = best;
-    effect[best] = NAN;
-  }
-  memcpy(coordinate, problem->coordinate, problem->coordinates * sizeof *coordinate);
+  FG_TRY_EXIT(describe_curve(ctx, problem, fit, &mean, curve));
+  FG_TRY_EXIT(loop_grid_open(ctx, problem, POINTS, &grid));
+  FG_TRY_EXIT(loop_grid_axis(ctx, &grid, run->curve_at, &value));
   for (size_t i = 0; i < POINTS; i++)
     value[i] = at->low + (at->high - at->low) * (double)i / (POINTS - 1);
-  coordinate[run->curve_at].value = value;
-  grid.coordinate = coordinate;
-  grid.rows = POINTS;
   FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, &grid, fit, effect));
   for (size_t i = 0; i < POINTS; i++) {
     curve->shape[i][0] = value[i];
@@ -163,8 +170,7 @@ static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim 
   fg_text_clip(curve->name, sizeof curve->name, "%s", at->name);
   run->result->has_curve = true;
 exit:
-  free(effect);
-  free(coordinate);
+  loop_grid_close(&grid);
   return status;
 }
 

@@ -1,4 +1,5 @@
 /* Frames: the rows that are used, with the columns of the null. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -105,6 +106,15 @@ void loop_frame_free(loop_frame *frame) {
   *frame = (loop_frame){0};
 }
 
+/* A form that overflows at some row is no candidate: columns of zeros explain nothing. */
+static void refuse_overflow(double *columns, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(columns[i])) {
+      memset(columns, 0, count * sizeof *columns);
+      return;
+    }
+}
+
 fg_status loop_gather(fg_context *ctx, const loop_frame *frame, const fg_loop_candidate *candidate,
                       const double *shape, double *columns) {
   const fg_loop_problem *problem = frame->problem;
@@ -112,6 +122,7 @@ fg_status loop_gather(fg_context *ctx, const loop_frame *frame, const fg_loop_ca
   double *all = NULL;
   FG_TRY(fg_memory_allocate(ctx, problem->rows, count * sizeof *all, (void **)&all));
   candidate->effect->basis(problem, candidate, shape, all);
+  refuse_overflow(all, problem->rows * count);
   for (size_t k = 0; k < count; k++)
     for (size_t i = 0; i < frame->n; i++)
       columns[k * frame->n + i] = all[k * problem->rows + frame->row[i]];

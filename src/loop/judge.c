@@ -68,6 +68,7 @@ static fg_status flip_all(fg_context *ctx, const loop_bench *bench, size_t draws
   FG_TRY_EXIT(fg_memory_allocate(ctx, flips, sizeof *sign, (void **)&sign));
   for (size_t b = 0; b < count; b++) {
     double maximum[2];
+    loop_bench_tell(bench, 1, b, count);
     draw_signs(flips, draws, b, &seed, sign);
     loop_bench_flip(bench, sign, z);
     take_maximum(bench, z, NULL, NULL, maximum);
@@ -144,6 +145,7 @@ static void simulate(const loop_bench *bench, loop_noise noise, size_t draws, ui
                      double *y, loop_score *score, double *z) {
   const loop_frame *frame = bench->frame;
   for (size_t b = 0; b < draws; b++) {
+    loop_bench_tell(bench, 1, b, draws);
     for (size_t i = 0; i < frame->n; i++)
       y[i] = loop_random_normal(&seed);
     loop_colour(frame, noise, y);

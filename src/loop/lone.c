@@ -80,10 +80,7 @@ static fg_status fill(fg_context *ctx, const loop_frame *frame, loop_noise noise
   double *null = NULL, *work = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, (frame->columns + 1) * sizeof *null, (void **)&null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, n * sizeof *work, (void **)&work));
-  memcpy(null, frame->x, n * frame->columns * sizeof *null);
-  for (size_t k = 0; k < frame->columns; k++)
-    loop_whiten(frame, noise, null + k * n);
-  size_t rank = loop_orthonormal(n, NULL, 0, null, frame->columns, null, NULL);
+  size_t rank = loop_null_basis(frame, noise, null);
   for (size_t i = 0; i < n; i++) {
     double *v = work + i * n;
     v[i] = 1;

@@ -1,4 +1,4 @@
-/* The loop from end to end (DESIGN section 6). */
+/* The loop on tables from end to end. */
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "loop/effort.h"
 #include "loop/run.h"
 
 const char *fg_loop_verdict_word(fg_loop_verdict verdict) {
@@ -52,22 +53,44 @@ static fg_status add_candidates(fg_context *ctx, loop_run *run, const fg_loop_ef
   return FG_OK;
 }
 
-static fg_status open_run(fg_context *ctx, const fg_loop_problem *problem,
-                          const fg_loop_options *options, fg_loop_result *result, loop_run *run) {
+static fg_status open_run(fg_context *ctx, const loop_units *units, const fg_loop_options *options,
+                          fg_loop_result *result, loop_run *run) {
+  const fg_loop_problem *problem = &units->problem;
   size_t capacity = 0, rows = problem->rows;
-  *run = (loop_run){.problem = problem, .options = *options, .result = result};
+  *run = (loop_run){.problem = problem, .units = units, .options = *options, .result = result};
+  run->options.matters = ldexp(options->matters, -units->response);
   if (!(run->options.accept_p > 0)) run->options.accept_p = 0.01;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *run->train, (void **)&run->train));
   for (size_t i = 0; i < rows; i++)
     run->train[i] = !problem->aside || !problem->aside[i];
   FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
   if (!problem->few) FG_TRY(add_candidates(ctx, run, loop_curve_effects(), &capacity));
+  loop_effort effort;
+  loop_effort_estimate(problem, run->candidate, run->candidates, &effort);
+  FG_TRY(loop_effort_check(ctx, &effort, options->minutes, options->mebibytes));
   size_t size = sizeof *result->before_fit;
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->before_fit));
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->after_fit));
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->effect_fit));
   FG_TRY(fg_memory_allocate(ctx, problem->parameters, size, (void **)&result->parameter));
   return fg_memory_allocate(ctx, problem->parameters, size, (void **)&result->parameter_u);
+}
+
+/* Declared columns that the others span, as far as the digits tell. */
+static fg_status note_aliased(fg_context *ctx, loop_run *run, const loop_fit *fit) {
+  const fg_loop_problem *problem = run->problem;
+  char *names = NULL;
+  fg_status status = FG_OK;
+  for (size_t k = 0; status == FG_OK && k < problem->parameters; k++)
+    if (problem->parameter_name && !(fit->inverse[k * fit->columns + k] > 0))
+      status = fg_text_append(ctx, &names, "%s%s", names ? ", " : "", problem->parameter_name[k]);
+  if (status == FG_OK && names)
+    status = loop_note(ctx, run->result,
+                       "These terms of the declared model cannot be told from its others, as far "
+                       "as the digits of the table tell, and are left out: %s.",
+                       names);
+  free(names);
+  return status;
 }
 
 /* Enough rows, and a residual that is more than rounding? */
@@ -82,6 +105,7 @@ static fg_status check(fg_context *ctx, loop_run *run, bool *worth) {
                      "%zu rows for %zu parameters of the declared model leave %zu to judge it by; "
                      "the loop needs 3 at least: measure more rows, or declare fewer terms",
                      frame.n, fit.rank, frame.n - fit.rank);
+  if (status == FG_OK) status = note_aliased(ctx, run, &fit);
   for (size_t i = 0; i < frame.n; i++) {
     double value = run->problem->response ? run->problem->response[frame.row[i]] : frame.y[i];
     size += value * value;
@@ -134,17 +158,21 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result) {
   fg_status status = FG_OK;
   loop_run run = {0};
+  loop_units units = {0};
   bool worth = false;
   memset(result, 0, sizeof *result);
   result->smallest_p = NAN;
-  FG_TRY_EXIT(open_run(ctx, problem, options, result, &run));
+  FG_TRY_EXIT(loop_units_open(ctx, problem, &units));
+  FG_TRY_EXIT(open_run(ctx, &units, options, result, &run));
   FG_TRY_EXIT(check(ctx, &run, &worth));
   if (worth) FG_TRY_EXIT(search(ctx, &run));
   FG_TRY_EXIT(loop_finish(ctx, &run));
   if (worth) FG_TRY_EXIT(loop_list_rejected(ctx, &run));
   if (worth) FG_TRY_EXIT(loop_advise(ctx, &run));
   if (worth) FG_TRY_EXIT(note_correlation(ctx, &run));
+  loop_units_restore(&units, result);
 exit:
+  loop_units_close(&units);
   free(run.train);
   free(run.candidate);
   if (status != FG_OK) fg_loop_result_free(result);

@@ -12,7 +12,7 @@
 /* Edges lie so far beside the middle of the strip, and are moved by effects. */
 #define EDGE_ROOM_MM 0.2
 /* Knots of free curves that the few places of discs can tell. */
-enum { DISC_KNOTS = 12 };
+enum { DISC_KNOTS = 12, COARSE_KNOTS = 6 };
 
 void fg_points_free(fg_points *points) {
   if (!points) return;
@@ -197,6 +197,15 @@ static bool same_run(const fg_station_label *a, const fg_station_label *b) {
   return a->kind == b->kind && a->number == b->number;
 }
 
+/* Lands are numbered over all bumps of a foil, also those that no circle fitted. */
+static size_t land_numbers(const fg_foil *foil) {
+  int most = 0;
+  for (size_t k = 0; k < foil->strip.count; k++)
+    if (foil->labels[k].kind == FG_ARC_LAND && foil->labels[k].number > most)
+      most = foil->labels[k].number;
+  return (size_t)most + 1;
+}
+
 /* Groups are what was drawn independently: every bump (over all views of its part) and land. */
 static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t first_group) {
   const fg_foil *foil = points->views[v].foil;
@@ -219,7 +228,7 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
 
 void fg_points_find_frame(fg_points *points) {
   fg_field_frame *f = &points->frame;
-  f->knots = points->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
+  f->knots = points->coarse ? COARSE_KNOTS : points->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
   for (int axis = 0; axis < 2; axis++)
     f->low_mm[axis] = 0;
   for (size_t v = 0; v < points->view_count; v++) {
@@ -257,9 +266,6 @@ static fg_status pack_groups(fg_context *ctx, fg_points *points, size_t most) {
 
 static fg_status fill(fg_context *ctx, fg_points *points) {
   size_t first_group = 0;
-  for (size_t v = 0; v < points->view_count; v++)
-    if (points->views[v].part + 1 > points->part_count)
-      points->part_count = points->views[v].part + 1;
   FG_TRY(
       fg_memory_allocate(ctx, points->part_count, sizeof *points->parts, (void **)&points->parts));
   for (size_t p = 0; p < points->part_count; p++) {
@@ -275,12 +281,32 @@ static fg_status fill(fg_context *ctx, fg_points *points) {
         FG_TRY(start_pose(ctx, part, foil, &points->poses[v]));
       }
       FG_TRY(add_view(ctx, points, v, first_group));
-      groups = 2 * part->bump_count + 4 > groups ? 2 * part->bump_count + 4 : groups;
+      size_t own = part->bump_count + land_numbers(foil);
+      groups = own > groups ? own : groups;
     }
     first_group += groups;
   }
   fg_points_find_frame(points);
-  return pack_groups(ctx, points, first_group + 1);
+  return pack_groups(ctx, points, first_group);
+}
+
+/* Views that are left out may take a part with them: it has no geometry. Parts are numbered anew,
+ * 0 .. part_count - 1 in the order of their first views. */
+static fg_status take_views(fg_context *ctx, const fg_points_view *views, size_t count,
+                            fg_points *points) {
+  size_t *given = NULL; /* the caller's number of each new part */
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *given, (void **)&given));
+  for (size_t i = 0; i < count; i++) {
+    size_t part = 0;
+    if (views[i].foil->flags & FG_FOIL_NOT_MEASURED) continue;
+    while (part < points->part_count && given[part] != views[i].part)
+      part++;
+    if (part == points->part_count) given[points->part_count++] = views[i].part;
+    points->views[points->view_count] = views[i];
+    points->views[points->view_count++].part = part;
+  }
+  free(given);
+  return FG_OK;
 }
 
 /* Groups together, and within them views and places in order: what the engine expects. */
@@ -309,13 +335,14 @@ static fg_status find_range(fg_context *ctx, fg_points *points) {
 fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
                           fg_points *points) {
   memset(points, 0, sizeof *points);
+  for (size_t i = 1; i < count; i++)
+    if (!views[i].disc != !views[0].disc)
+      return fg_fail(ctx, FG_ERR_DATA, "foils and discs in one loop: give scans of one kind");
   if (count && views[0].disc) return fg_points_build_discs(ctx, views, count, points);
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
-  for (size_t i = 0; i < count; i++)
-    if (!(views[i].foil->flags & FG_FOIL_NOT_MEASURED))
-      points->views[points->view_count++] = views[i];
+  FG_TRY_EXIT(take_views(ctx, views, count, points));
   FG_TRY_EXIT(fill(ctx, points));
   if (points->row_count) qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
   FG_TRY_EXIT(find_range(ctx, points));

@@ -11,8 +11,8 @@
 #ifndef FG_LOOP_POINTS_H
 #define FG_LOOP_POINTS_H
 
+#include "field/field.h"
 #include "foilgauge/foil.h"
-#include "loop/fields.h"
 
 enum { FG_POINTS_BLOCK = 4, FG_POINTS_BARRED = 24 };
 
@@ -73,8 +73,9 @@ typedef struct fg_points_pose {
 } fg_points_pose;
 
 /* An effect that was found and that not all parts confirm. */
+struct fg_effect;
 typedef struct fg_points_barred {
-  const char *id;
+  const struct fg_effect *effect;
   double would_explain, share, smallest_um; /* as in fg_subset */
 } fg_points_barred;
 
@@ -90,6 +91,7 @@ typedef struct fg_points {
   fg_field_frame frame; /* the picture all fields live in */
   double psi_rad[2];    /* range of the rows' psi */
   size_t parameters;    /* of the geometry */
+  bool coarse;          /* searches are a quick look */
   bool discs;           /* parts are discs: an overall circle each, and nothing else */
   size_t known_count;   /* parts whose radius is known */
   fg_points_barred barred[FG_POINTS_BARRED]; /* effects that a search leaves out */
@@ -111,10 +113,6 @@ fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, si
 fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row);
 /* The frame of the fields, from the pictures. */
 void fg_points_find_frame(fg_points *points);
-
-/* Whether an effect can be sought in these points: not every one leaves a trace in a disc, nor is
- * every trace another one than the disc's own form. */
-bool fg_points_shows(const fg_points *points, const char *id);
 
 /* Corrections in force: fields of the scanner, and shifts of the midline in the part's frame
  * (`shift_mm`, one per row along the row's normal; NULL: none). */

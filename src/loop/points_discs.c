@@ -16,33 +16,10 @@
 
 /* So many rows carry any search; the blocks grow with the edges. */
 enum { ROWS_MOST = 2000, BLOCK_LEAST = 2, ROWS_LEAST = 32, NEIGHBOUR_LAG = 3 };
-/* Fewer clean discs than this have a curve over the picture follow the form of each of them; the
- * same for a curve over the direction of the edge, which all of them share. */
-enum { CURVE_DISCS = 8, NORMAL_DISCS = 3 };
 /* A known diameter is a disc's when it is so near. */
 #define DIAMETER_SHARE 0.03
 /* No edge is taken for better than this. */
 #define NOISE_LEAST_UM 0.02
-
-static size_t clean_count(const fg_points *points) {
-  size_t count = 0;
-  for (size_t v = 0; v < points->view_count; v++)
-    count += !(points->views[v].disc->flags & FG_BUMP_POOR_FIT);
-  return count;
-}
-
-bool fg_points_shows(const fg_points *points, const char *id) {
-  static const char *const of_foils[] = {"part.spiral",   "part.bump_crown", "part.bump_skew",
-                                         "free.bump.phi", "free.foil.s",     NULL};
-  for (size_t i = 0; i < points->barred_count; i++)
-    if (!strcmp(points->barred[i].id, id)) return false;
-  for (size_t i = 0; of_foils[i]; i++)
-    if (!strcmp(of_foils[i], id)) return false;
-  if (!strcmp(id, "part.ovality")) return points->part_count == 1;
-  if (!strncmp(id, "free.scan.", 10) && clean_count(points) < CURVE_DISCS) return false;
-  if (!strncmp(id, "free.", 5) && clean_count(points) < NORMAL_DISCS) return false;
-  return strcmp(id, "scan.scale") != 0 || points->known_count > 0;
-}
 
 /* ---- known diameters ---- */
 

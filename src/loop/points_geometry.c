@@ -201,10 +201,17 @@ static fg_status solve_step(fg_context *ctx, const fg_points *points, const doub
   return FG_OK;
 }
 
+static double weighted_square(const fg_points *points, const double *residual) {
+  double sum = 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    sum += points->rows[i].weight * residual[i] * residual[i];
+  return sum;
+}
+
 fg_status fg_points_fit(fg_context *ctx, fg_points *points,
                         const fg_points_correction *correction) {
   fg_status status = FG_OK;
-  double *residual = NULL, *jacobian = NULL;
+  double *residual = NULL, *jacobian = NULL, *start = NULL, square = INFINITY;
   gsl_matrix *normal = NULL;
   gsl_vector *step = NULL;
   fg_numerics_start();
@@ -212,6 +219,9 @@ fg_status fg_points_fit(fg_context *ctx, fg_points *points,
   size_t n = points->parameters, rows = points->row_count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows * n, sizeof *jacobian, (void **)&jacobian));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *start, (void **)&start));
+  fg_points_geometry_save(points, start);
   normal = gsl_matrix_alloc(n, n);
   step = gsl_vector_alloc(n);
   if (!normal || !step) {
@@ -220,12 +230,19 @@ fg_status fg_points_fit(fg_context *ctx, fg_points *points,
   }
   for (int round = 0; round < FIT_ROUNDS; round++) {
     fg_points_residual(points, correction, residual, jacobian);
+    if (round == 0) square = weighted_square(points, residual);
     FG_TRY_EXIT(solve_step(ctx, points, residual, jacobian, normal, step));
     move_geometry(points, step);
     if (gsl_vector_max(step) < 1e-9 && gsl_vector_min(step) > -1e-9) break;
   }
   fg_points_residual(points, correction, residual, NULL);
+  if (!(weighted_square(points, residual) <=
+        square * (1 + 1e-9))) { /* rows too few to lead anywhere */
+    fg_points_geometry_load(points, start);
+    fg_points_residual(points, correction, residual, NULL);
+  }
 exit:
+  free(start);
   free(residual);
   free(jacobian);
   gsl_matrix_free(normal);

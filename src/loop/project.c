@@ -6,8 +6,10 @@
 #include "core/memory.h"
 #include "loop/engine.h"
 
-/* A column of which less than this share of its squared length is left lies in the span. */
-static const double same_span = 1e-9;
+/* A column of which less than this share of its squared length is left lies in the span: of what
+ * the declared model has only what is there twice, since with an origin far away (a temperature
+ * of 10^6) its columns are nearly parallel; of effects also what is too much alike to matter. */
+static const double same_span = 1e-9, declared_span = 1e-24;
 
 static double dot(size_t n, const double *a, const double *b) {
   double sum[4] = {0};
@@ -48,9 +50,25 @@ size_t loop_orthonormal(size_t n, const double *basis, size_t rank, const double
   return added;
 }
 
+size_t loop_null_basis(const loop_frame *frame, loop_noise noise, double *basis) {
+  size_t n = frame->n, rank = 0;
+  memcpy(basis, frame->x, n * frame->columns * sizeof *basis);
+  for (size_t k = 0; k < frame->columns; k++) {
+    double *v = basis + rank * n;
+    memmove(v, basis + k * n, n * sizeof *v);
+    loop_whiten(frame, noise, v);
+    double whole = dot(n, v, v), left = loop_project_out(n, basis, rank, v);
+    if (!(left > (k < frame->problem->parameters ? declared_span : same_span) * whole)) continue;
+    for (size_t i = 0; i < n; i++)
+      v[i] /= sqrt(left);
+    rank++;
+  }
+  return rank;
+}
+
 /* X = Q R column by column; coefficients and (X'X)^-1 from R. */
 typedef struct triangle {
-  size_t columns, rank;
+  size_t columns, declared, rank;
   size_t *kept;  /* columns of X */
   double *basis; /* rank × n */
   double *r;     /* columns × columns, r[i * columns + j]: row i of kept column j */
@@ -69,7 +87,7 @@ static void decompose(size_t n, const double *x, triangle *t) {
           v[m] -= along * t->basis[i * n + m];
       }
     double left = dot(n, v, v);
-    if (!(left > same_span * whole)) {
+    if (!(left > (k < t->declared ? declared_span : same_span) * whole)) {
       for (size_t i = 0; i < t->rank; i++)
         r[i * t->columns + t->rank] = 0;
       continue;
@@ -114,7 +132,7 @@ fg_status loop_least_squares(fg_context *ctx, const loop_frame *frame, loop_nois
                              loop_fit *fit) {
   fg_status status = FG_OK;
   size_t n = frame->n, columns = frame->columns;
-  triangle t = {.columns = columns};
+  triangle t = {.columns = columns, .declared = frame->problem->parameters};
   double *x = NULL, *y = NULL, *small = NULL;
   FG_TRY_EXIT(fit_allocate(ctx, columns, fit));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, columns * sizeof *x + 1, (void **)&x));

@@ -5,9 +5,11 @@
 #include "loop/alias.h"
 #include "loop/fit.h"
 #include "loop/judge.h"
+#include "loop/units.h"
 
 typedef struct loop_run {
-  const fg_loop_problem *problem;
+  const fg_loop_problem *problem; /* in the engine's units */
+  const loop_units *units;
   fg_loop_options options;
   fg_loop_result *result;
   bool *train;

@@ -86,6 +86,11 @@ void fg_scan_bumps_free(fg_scan_bumps *bumps);
 fg_status fg_scan_bumps_note(fg_context *ctx, fg_scan_bumps *bumps, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Every effect that is not claimed, of each response, with what is said of it: for JSON, page and
+ * text alike. None without bumps. */
+typedef void fg_scan_bumps_visitor(size_t response, const fg_loop_rejected *one, void *user);
+void fg_scan_bumps_rejected(const fg_scan_bumps *bumps, fg_scan_bumps_visitor *visit, void *user);
+
 bool fg_scan_bumps_claimed(const fg_scan_bumps *bumps);
 /* What no listed effect explains, and of which response; NULL: nothing. */
 const fg_loop_curve *fg_scan_bumps_curve(const fg_scan_bumps *bumps, size_t *response);

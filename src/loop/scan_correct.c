@@ -63,14 +63,15 @@ fg_status fg_scan_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_de
   memcpy(corrected->place_mm, foil->place_mm, sizeof corrected->place_mm);
   corrected->number = foil->number;
   if (foil->flags & FG_FOIL_NOT_MEASURED) { /* nothing to correct; why stays as it is */
+    fg_foil_give_up(corrected, foil->error);
     corrected->flags = foil->flags;
-    memcpy(corrected->error, foil->error, sizeof corrected->error);
     return FG_OK;
   }
   FG_TRY(copy_strip(ctx, &foil->strip, &corrected->strip));
   if (fields && fields->count) move_edges(fields, &corrected->strip);
   if (shift_mm) take_shift(points, view, shift_mm, &corrected->strip);
-  fg_status status = fg_foil_measure(ctx, design, threads, corrected);
+  fg_status status = fg_strip_measure_thickness(ctx, &corrected->strip);
+  if (status == FG_OK) status = fg_foil_measure(ctx, design, threads, corrected);
   if (status != FG_OK) fg_foil_free(corrected);
   return status;
 }

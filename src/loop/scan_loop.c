@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/spread.h"
 
 /* Rows fewer than this cannot carry a search for effects. */
 enum { ROWS_LEAST = 60 };
@@ -67,10 +67,15 @@ static fg_status build_points(fg_context *ctx, fg_scan_loop *loop) {
   }
   fg_status status = fg_points_build(ctx, views, n, &loop->points);
   free(views);
-  if (status == FG_OK && loop->points.row_count < ROWS_LEAST)
-    status = fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects",
-                     loop->points.row_count);
-  return status;
+  if (status != FG_OK) return status;
+  loop->points.coarse = loop->options.coarse;
+  if (loop->options.coarse) fg_points_find_frame(&loop->points);
+  size_t rows = 0;
+  for (size_t i = 0; i < loop->points.row_count; i++)
+    rows += !loop->points.views[loop->points.rows[i].view].aside;
+  if (rows < ROWS_LEAST)
+    return fg_fail(ctx, FG_ERR_DATA, "%zu edge rows are too few to look for effects", rows);
+  return FG_OK;
 }
 
 static fg_scan_error summarise(fg_context *ctx, const fg_points *points, const double *residual) {
@@ -91,12 +96,11 @@ static fg_scan_error summarise(fg_context *ctx, const fg_points *points, const d
     n += weight;
     absolute[count++] = fabs(residual[i]);
   }
-  if (n > 0) {
-    e.rms = sqrt(sum / n);
-    e.robust_sd = 1.4826 * fg_select(absolute, count, count / 2);
-    e.p95 = fg_select(absolute, count, count * 95 / 100);
-    e.maximum = fg_select(absolute, count, count - 1);
-  }
+  fg_spread spread = fg_spread_of(absolute, count);
+  if (n > 0) e.rms = sqrt(sum / n);
+  e.robust_sd = spread.robust_sd;
+  e.p95 = spread.p95;
+  e.maximum = spread.maximum;
   if (held_n > 0) e.held_out_rms = sqrt(held / held_n);
   free(absolute);
   return e;
@@ -216,8 +220,7 @@ static void widen_step_place(fg_scan_set *set, const fg_scan_set *other) {
   for (size_t e = 0; e < set->count; e++)
     for (size_t k = 0; k < other->count; k++) {
       fg_scan_effect *step = &set->effects[e];
-      if (strcmp(step->id, "scan.row_step") != 0 || strcmp(other->effects[k].id, step->id) != 0)
-        continue;
+      if (!step->kind->jumps || other->effects[k].kind != step->kind) continue;
       double apart = fabs(other->effects[k].shape[0] - step->shape[0]);
       step->u_shape[0] = fmax(step->u_shape[0], apart / sqrt(3));
     }
@@ -257,7 +260,7 @@ static fg_status find_ranges(fg_context *ctx, fg_scan_loop *loop) {
 
 static bool has_free(const fg_scan_set *set, bool wanted) {
   for (size_t e = 0; e < set->count; e++)
-    if ((strncmp(set->effects[e].id, "free.", 5) == 0) == wanted) return true;
+    if (fg_effect_is_free(set->effects[e].kind) == wanted) return true;
   return false;
 }
 
@@ -279,24 +282,22 @@ static void find_verdict(fg_scan_loop *loop) {
 /* Where most effects of the size that matters could not have been seen, `absent` effects must not
  * look like a clean scanner. */
 static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
-  static const double matters_um = 3;
   size_t listed = 0, hidden = 0;
   for (size_t e = 0; e < loop->subset.effect_count; e++) {
-    listed += !loop->subset.effects[e].free;
-    hidden += !loop->subset.effects[e].free && !(loop->subset.smallest_um[e] <= matters_um);
+    bool is_listed = !fg_effect_is_free(loop->subset.effects[e].kind);
+    listed += is_listed;
+    hidden += is_listed && !(loop->subset.smallest_um[e] <= FG_SCAN_MATTERS_UM);
   }
   if (2 * hidden <= listed) return FG_OK;
   return fg_scan_bumps_note(ctx, &loop->bumps,
                             "points: %zu of %zu effects of %g um could not have been seen: too "
                             "little of the foil is measured; scan more bumps, or several foils",
-                            hidden, listed, matters_um);
+                            hidden, listed, FG_SCAN_MATTERS_UM);
 }
 
 static bool bends_bumps(const fg_scan_set *set) {
   for (size_t e = 0; e < set->count; e++)
-    if (!strncmp(set->effects[e].id, "part.bump_", 10) ||
-        !strcmp(set->effects[e].id, "free.bump.phi"))
-      return true;
+    if (set->effects[e].kind->bends) return true;
   return false;
 }
 
@@ -316,6 +317,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   };
   FG_TRY(fg_scan_bumps_run(ctx, &request, &loop->bumps));
   if (!loop->points.discs) FG_TRY(say_reach(ctx, loop));
+  FG_TRY(fg_scan_say_left_out(ctx, loop));
   FG_TRY(fg_scan_scale_doubt(ctx, loop));
   if (loop->verdict != FG_LOOP_CLEAN) return FG_OK;
   bool listed = fg_scan_bumps_claimed(&loop->bumps);
@@ -335,6 +337,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
                                    loop->residual_after));
   else
     FG_TRY(fg_subset_settle(ctx, &loop->points, &loop->set, &loop->subset, loop->residual_after));
+  FG_TRY(fg_scan_check_one_foil(ctx, loop));
   loop->error_before = summarise(ctx, &loop->points, loop->residual_before);
   loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
   loop->noise_floor_um = loop->subset.noise_um;
@@ -343,15 +346,15 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(correct_all(ctx, loop, &loop->set, loop->after));
   if (loop->tied) FG_TRY(find_ranges(ctx, loop));
   find_verdict(loop);
-  return search_bumps(ctx, loop);
+  FG_TRY(search_bumps(ctx, loop));
+  fg_scan_decide(loop, &loop->decided);
+  return FG_OK;
 }
 
-fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
-                           size_t count, const fg_design *design,
-                           const fg_scan_loop_options *options, fg_scan_loop **result) {
+static fg_status create(fg_context *ctx, const bool *hold_out, size_t count,
+                        const fg_scan_loop_options *options, fg_scan_loop **out) {
   fg_scan_loop *loop = NULL;
   fg_status status = FG_OK;
-  *result = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *loop, (void **)&loop));
   loop->options = *options;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->before, (void **)&loop->before));
@@ -359,14 +362,50 @@ fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *loop->hold_out, (void **)&loop->hold_out));
   memcpy(loop->hold_out, hold_out, count * sizeof *hold_out);
   loop->scan_count = count;
-  FG_TRY_EXIT(measure_all(ctx, paths, design, loop));
-  if (options->same_foil) FG_TRY_EXIT(check_same_foils(ctx, loop));
+  *out = loop;
+exit:
+  if (status != FG_OK) fg_scan_loop_free(loop);
+  return status;
+}
+
+/* From measured scans to the result; frees the loop when it fails. */
+static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **result) {
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_scan_leave_out(ctx, loop));
+  if (loop->options.same_foil) FG_TRY_EXIT(check_same_foils(ctx, loop));
   FG_TRY_EXIT(build_points(ctx, loop));
   FG_TRY_EXIT(search(ctx, loop));
   *result = loop;
 exit:
   if (status != FG_OK) fg_scan_loop_free(loop);
   return status;
+}
+
+fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
+                           size_t count, const fg_design *design,
+                           const fg_scan_loop_options *options, fg_scan_loop **result) {
+  fg_scan_loop *loop;
+  *result = NULL;
+  FG_TRY(create(ctx, hold_out, count, options, &loop));
+  fg_status status = measure_all(ctx, paths, design, loop);
+  if (status == FG_OK) return close_loop(ctx, loop, result);
+  fg_scan_loop_free(loop);
+  return status;
+}
+
+fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurements,
+                                    const bool *hold_out, size_t count,
+                                    const fg_scan_loop_options *options, fg_scan_loop **result) {
+  fg_scan_loop *loop;
+  *result = NULL;
+  FG_TRY(create(ctx, hold_out, count, options, &loop));
+  memcpy(loop->before, measurements, count * sizeof *measurements);
+  memset(measurements, 0, count * sizeof *measurements);
+  return close_loop(ctx, loop, result);
+}
+
+size_t fg_scan_loop_left_out(const fg_scan_loop *loop) {
+  return loop->left_out;
 }
 
 void fg_scan_loop_free(fg_scan_loop *loop) {

@@ -4,8 +4,8 @@
 
 #include "foilgauge/scan_loop.h"
 #include "loop/points.h"
-#include "loop/points_effects.h"
 #include "loop/scan_bumps.h"
+#include "loop/scan_decide.h"
 #include "loop/subset.h"
 
 struct fg_scan_loop {
@@ -13,6 +13,7 @@ struct fg_scan_loop {
   fg_measurement *before, *after; /* one per scan */
   bool *hold_out;
   size_t scan_count;
+  size_t left_out;                          /* foils that were not measured, or are none */
   fg_points points;                         /* all views; geometry of the final model */
   fg_subset subset;                         /* what was tried, and the class of what explains */
   fg_scan_set set;                          /* the winner, fitted */
@@ -26,18 +27,26 @@ struct fg_scan_loop {
   fg_scan_range **ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
   fg_scan_bumps bumps;    /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;
+  fg_scan_decisions decided; /* what every report says of the effects */
 };
 
 /* Joint fit of geometry and effects, from the effects' present numbers. `residual_um` (rows, or
  * NULL) gets what is left. */
 fg_status fg_scan_refit(fg_context *ctx, fg_points *points, fg_scan_set *set, double *residual_um);
 
-/* An effect of the scanner as a field; the set's fields, and the shift of every row by part effects
- * (mm; NULL: not wanted). */
-fg_field fg_scan_field(const fg_scan_effect *effect, const fg_field_row *row);
-void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields);
-fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
-                        double **shift_mm);
+/* fg_scan_loop_run on scans of one resolution that are measured already; takes them over. */
+fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurements,
+                                    const bool *hold_out, size_t count,
+                                    const fg_scan_loop_options *options, fg_scan_loop **result);
+
+/* Turns foils that are none of the design's into foils that were not measured, and counts them.
+ * FG_ERR_NOT_MEASURED when no foil is left. */
+fg_status fg_scan_leave_out(fg_context *ctx, fg_scan_loop *loop);
+/* A note for each. */
+fg_status fg_scan_say_left_out(fg_context *ctx, fg_scan_loop *loop);
+
+/* Under same_foil, once the points are settled: FG_ERR_DATA when the scans show different foils. */
+fg_status fg_scan_check_one_foil(fg_context *ctx, const fg_scan_loop *loop);
 
 /* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
 fg_status fg_scan_scale_doubt(fg_context *ctx, fg_scan_loop *loop);

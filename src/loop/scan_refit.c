@@ -6,62 +6,12 @@
 
 #include "core/memory.h"
 #include "core/numerics.h"
+#include "effect/columns.h"
 #include "loop/scan_loop.h"
 
-enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_SCAN_COLUMNS + FG_LOOP_SHAPES) };
-_Static_assert((int)FG_SCAN_COLUMNS == (int)FG_FIELD_COLUMNS, "a field is an effect");
+enum { REFIT_ROUNDS = 12, UNKNOWNS_MAX = FG_SCAN_EFFECTS * (FG_SCAN_COLUMNS + FG_FIELD_SHAPES) };
 #define STEP_END_UM  1e-5
 #define STEP_MOST_UM 60.0
-/* Weight of a free curve's coefficients beside rows that weigh FG_POINTS_BLOCK each; harmonics of
- * the edge's direction are told from the geometry less well. */
-#define FREE_HOLD   1e-3
-#define NORMAL_HOLD 4e-2
-
-fg_field fg_scan_field(const fg_scan_effect *effect, const fg_field_row *row) {
-  fg_field field = {.row = row};
-  for (size_t c = 0; c < row->columns; c++) {
-    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
-    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
-  }
-  for (size_t s = 0; s < row->shapes; s++) {
-    field.shape[s] = effect->shape[s];
-    field.u_shape[s] = effect->u_shape[s];
-  }
-  return field;
-}
-
-void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
-  memset(fields, 0, sizeof *fields);
-  fields->frame = points->frame;
-  for (size_t e = 0; e < set->count && fields->count < FG_FIELDS_MAX; e++) {
-    const fg_field_row *row = fg_field_find(set->effects[e].id);
-    if (row) fields->fields[fields->count++] = fg_scan_field(&set->effects[e], row);
-  }
-}
-
-fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
-                        double **shift_mm) {
-  size_t rows = points->row_count;
-  double *columns = NULL;
-  *shift_mm = NULL;
-  FG_TRY(fg_memory_allocate(ctx, rows, sizeof **shift_mm, (void **)shift_mm));
-  fg_status status =
-      fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns);
-  for (size_t e = 0; e < set->count && status == FG_OK; e++) {
-    const fg_scan_effect *effect = &set->effects[e];
-    if (fg_field_find(effect->id)) continue;
-    size_t count = fg_points_effect_columns(points, effect->id, effect->shape, columns);
-    for (size_t c = 0; c < count; c++)
-      for (size_t i = 0; i < rows; i++)
-        (*shift_mm)[i] += effect->coefficient_um[c] / 1000 * columns[c * rows + i];
-  }
-  free(columns);
-  if (status != FG_OK) {
-    free(*shift_mm);
-    *shift_mm = NULL;
-  }
-  return status;
-}
 
 /* One unknown of the effects: a coefficient, or a shape by its numerical derivative. */
 typedef struct unknown {
@@ -75,8 +25,7 @@ static size_t list_unknowns(const fg_scan_set *set, unknown *list) {
     const fg_scan_effect *effect = &set->effects[e];
     for (size_t c = 0; c < effect->columns; c++)
       list[n++] = (unknown){e, c, false};
-    bool jumps = !strcmp(effect->id, "scan.row_step");
-    for (size_t s = 0; s < effect->shapes && !jumps; s++)
+    for (size_t s = 0; s < effect->shapes && !effect->kind->jumps; s++)
       list[n++] = (unknown){e, s, true};
   }
   return n;
@@ -88,9 +37,9 @@ static void effect_design(const fg_points *points, const fg_scan_set *set, const
   size_t rows = points->row_count;
   for (size_t k = 0; k < count; k++) {
     const fg_scan_effect *effect = &set->effects[list[k].effect];
-    double *to = design + k * rows, shape[FG_LOOP_SHAPES];
+    double *to = design + k * rows, shape[FG_FIELD_SHAPES];
     if (!list[k].shape) {
-      fg_points_effect_columns(points, effect->id, effect->shape, work);
+      fg_effect_columns(points, effect->kind, effect->shape, work);
       memcpy(to, work + list[k].index * rows, rows * sizeof *to);
       continue;
     }
@@ -99,7 +48,7 @@ static void effect_design(const fg_points *points, const fg_scan_set *set, const
     for (int side = -1; side <= 1; side += 2) {
       memcpy(shape, effect->shape, sizeof shape);
       shape[list[k].index] += side * step;
-      fg_points_effect_columns(points, effect->id, shape, work);
+      fg_effect_columns(points, effect->kind, shape, work);
       for (size_t c = 0; c < effect->columns; c++)
         for (size_t i = 0; i < rows; i++)
           to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
@@ -130,8 +79,7 @@ static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
 }
 
 static double hold_of(const fg_scan_effect *effect, bool shape) {
-  if (strncmp(effect->id, "free.", 5) != 0 || shape) return 0;
-  return strcmp(effect->id, "free.edge.normal") ? FREE_HOLD : NORMAL_HOLD;
+  return shape ? 0 : effect->kind->hold;
 }
 
 /* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
@@ -209,18 +157,20 @@ static double move(refit *r) {
 
 /* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
  * hardly count do not hold it. */
-static double step_place_u(const fg_points *points, double y_mm) {
+static double place_u(const fg_points *points, const fg_scan_effect *step) {
   double above = -INFINITY, below = INFINITY, most = 0;
+  bool over_y = step->kind->axis == 1;
   for (size_t i = 0; i < points->row_count; i++)
     most = fmax(most, points->rows[i].weight);
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
+    double at = over_y ? row->ideal.y : row->ideal.x;
     bool rough = row->weight > 0 && row->weight < 0.1 * most; /* 0: left out for the step itself */
-    if (rough || fabs(row->normal.y) < 0.3) continue;
-    if (row->ideal.y <= y_mm)
-      above = fmax(above, row->ideal.y);
+    if (rough || fabs(over_y ? row->normal.y : row->normal.x) < 0.3) continue;
+    if (at <= step->shape[0])
+      above = fmax(above, at);
     else
-      below = fmin(below, row->ideal.y);
+      below = fmin(below, at);
   }
   return isfinite(below - above) ? (below - above) / sqrt(12) : 0;
 }
@@ -286,8 +236,8 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
       gsl_matrix_set(alone, a, b, gsl_matrix_get(r->normal, a, b));
   if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_invert(r->normal)) return;
   for (size_t e = 0; e < r->set->count; e++)
-    if (!strcmp(r->set->effects[e].id, "scan.row_step"))
-      r->set->effects[e].u_shape[0] = step_place_u(r->points, r->set->effects[e].shape[0]);
+    if (r->set->effects[e].kind->jumps)
+      r->set->effects[e].u_shape[0] = place_u(r->points, &r->set->effects[e]);
   for (size_t k = 0; k < r->unknowns; k++) {
     fg_scan_effect *effect = &r->set->effects[r->list[k].effect];
     double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));

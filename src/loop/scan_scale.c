@@ -12,9 +12,10 @@
 #include "foilgauge/report.h"
 #include "loop/scan_loop.h"
 
-static const fg_scan_effect *find_optical(const fg_scan_set *set) {
+static const fg_effect *find_optical(const fg_scan_set *set) {
   for (size_t e = 0; e < set->count; e++)
-    if (!strncmp(set->effects[e].id, "scan.optical_", 13)) return &set->effects[e];
+    if (set->effects[e].kind->polynomial && set->effects[e].kind->axis == 0)
+      return set->effects[e].kind;
   return NULL;
 }
 
@@ -56,18 +57,18 @@ static void widen_foil(fg_foil *foil, double scale) {
  * beside a cubic, for a quadratic. */
 static void name_alias(const fg_scan_set *set, fg_loop_claim *claim) {
   fg_loop_alias *alias = &claim->alias[0];
-  const char *last = "scan.scale_y";
+  const fg_effect *scale = fg_effect_find_polynomial(FG_EFFECT_LINEAR, 1), *last = scale;
   size_t used = 0;
   *alias = (fg_loop_alias){.sum = true, .correlation = 1};
   for (size_t e = 0; e < set->count && used < sizeof alias->name; e++) {
-    const char *name = fg_effect_name(set->effects[e].id);
-    if (!strcmp(name, "scan.scale_y"))
-      last = "scan.optical_quadratic";
+    const fg_effect *kind = set->effects[e].kind;
+    if (kind == scale)
+      last = fg_effect_find_polynomial(FG_EFFECT_QUADRATIC, 0);
     else
-      used += (size_t)snprintf(alias->name + used, sizeof alias->name - used, "%s + ", name);
+      used += (size_t)snprintf(alias->name + used, sizeof alias->name - used, "%s + ", kind->id);
   }
   if (used < sizeof alias->name)
-    snprintf(alias->name + used, sizeof alias->name - used, "%s", last);
+    snprintf(alias->name + used, sizeof alias->name - used, "%s", last->id);
   claim->aliases = 1;
   claim->aliases_unlisted = 0;
   claim->verdict = FG_LOOP_TIED;
@@ -75,7 +76,7 @@ static void name_alias(const fg_scan_set *set, fg_loop_claim *claim) {
 
 fg_status fg_scan_scale_doubt(fg_context *ctx, fg_scan_loop *loop) {
   double rel = 0;
-  const fg_scan_effect *optical = find_optical(&loop->set);
+  const fg_effect *optical = find_optical(&loop->set);
   fg_loop_claim *stretch = find_stretch(&loop->bumps, &rel);
   if (!optical || !stretch) return FG_OK;
   loop->scale_tied = true;
@@ -88,6 +89,5 @@ fg_status fg_scan_scale_doubt(fg_context *ctx, fg_scan_loop *loop) {
                             "leaves the same edges and makes every length %.0f ppm %s; the arc "
                             "lengths of the bumps speak for it or for part.stretch: the ranges "
                             "hold both",
-                            fg_effect_name(optical->id), fabs(1e6 * rel),
-                            rel > 0 ? "smaller" : "larger");
+                            optical->id, fabs(1e6 * rel), rel > 0 ? "smaller" : "larger");
 }

@@ -10,6 +10,15 @@ bool fg_settle_same_effects(const fg_scan_set *a, const fg_scan_set *b);
 fg_status fg_settle_put_back(fg_context *ctx, fg_points *points, const fg_scan_set *set,
                              double *residual_um, double *jacobian);
 
+/* Weighted sum of squares over the rows that are not kept aside. */
+double fg_settle_square(const fg_points *points, const double *residual_um);
+
+/* Fits a set from the geometry that stands. One that runs away, or leaves more than `none` (what no
+ * effect at all leaves), is given up: then the set is empty. `geometry` has room for its numbers.
+ */
+fg_status fg_settle_fit(fg_context *ctx, fg_points *points, fg_scan_set *set, double none,
+                        double *geometry, double *residual_um);
+
 /* Rows that lie across a step hold some of both sides: those nearer to it lose their weight. */
 void fg_settle_leave_steps_out(fg_points *points, const fg_scan_set *set, double half_mm);
 

@@ -35,6 +35,8 @@ fg_status loop_step_open(fg_context *ctx, loop_run *run, const loop_set *set, bo
   if (!draws) draws = step->frame.n <= LOOP_SMALL_ROWS ? DRAWS_SMALL : DRAWS;
   if (!judged) draws = 20;
   FG_TRY_EXIT(loop_bench_build(ctx, &step->frame, run->candidate, run->candidates, &step->bench));
+  step->bench.watch =
+      (loop_watch){run->options.progress, run->options.progress_user, run->result->claims};
   FG_TRY_EXIT(loop_judge(ctx, &step->bench, draws, run->options.seed, &step->judgement));
   loop_noise noise = step->bench.noise[step->judgement.null_noise];
   if (judged)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "loop/points_effects.h"
+#include "effect/columns.h"
 #include "loop/subset_search.h"
 
 /* Sets this much worse than the best of their size are worse as far as data can show. */
@@ -14,60 +14,18 @@
 #define FITTING_SHARE 0.1
 /* and this many times what a curve leaves */
 #define FITTING_TIMES 30.0
-/* Shapes nearer to each other than this are one. */
-#define TWIN_SHARE 0.05
 /* No coefficient is larger, um: columns that nearly cancel would explain anything. */
 #define LARGEST_UM 400.0
 /* A curve is known to this share of itself: no listed effect stands beside it for less. */
 #define CURVE_SHARE 0.03
 /* A curve with all its columns leaves less than this share of what a smoother one does. */
 #define FINER 0.9
+/* No row is better known, um: exact data are not of a scanner. */
+#define NOISE_LEAST_UM 1e-4
+/* Rows beyond the numbers that are fitted to them: fewer tell no noise. */
+enum { FREEDOM_LEAST = 12 };
 /* Effects that one curve does not stand for. */
 enum { FEW = 2 };
-/* Columns of a curve (points_effects.c) that are smooth; those of bump.phi that are polynomials. */
-enum { PHI_SMOOTH = 8, PHI_ORDERS = 16, NORMAL_SMOOTH = 12 };
-
-typedef struct listed_row {
-  fg_subset_effect effect;
-  const char *source; /* of its columns; NULL: its own */
-  size_t pick[3];     /* which of them */
-} listed_row;
-
-static const listed_row smooth[] = {
-    {{.id = "scan.scale_y", .columns = 1, .terms = 1}, FG_POWERS_Y, {0}},
-    {{.id = "scan.shear", .columns = 1}, NULL, {0}},
-    {{.id = "scan.optical_quadratic",
-      .form = FG_SUBSET_QUADRATIC,
-      .columns = 1,
-      .shapes = 1,
-      .terms = 2},
-     FG_POWERS_X,
-     {1, 0}},
-    {{.id = "scan.optical_cubic", .form = FG_SUBSET_CUBIC, .columns = 1, .shapes = 1, .terms = 1},
-     FG_POWERS_X,
-     {2, 1, 0}},
-    {{.id = "scan.carriage_quadratic",
-      .form = FG_SUBSET_QUADRATIC,
-      .columns = 1,
-      .shapes = 1,
-      .terms = 2},
-     FG_POWERS_Y,
-     {1, 0}},
-    {{.id = "part.ovality"}, NULL, {0}},
-    {{.id = "part.ovality:radial"}, NULL, {0}},
-    {{.id = "part.spiral"}, NULL, {0}},
-    {{.id = "part.spiral:radial"}, NULL, {0}},
-    {{.id = "part.bump_crown"}, NULL, {0}},
-    {{.id = "part.bump_skew"}, NULL, {0}},
-    {{.id = "free.scan.x.dx", .free = true}, NULL, {0}},
-    {{.id = "free.scan.x.dy", .free = true}, NULL, {0}},
-    {{.id = "free.scan.y.dx", .free = true}, NULL, {0}},
-    {{.id = "free.scan.y.dy", .free = true}, NULL, {0}},
-    {{.id = "free.foil.s", .free = true}, NULL, {0}},
-    {{.id = "free.foil.s:radial", .free = true}, NULL, {0}},
-    {{.id = "free.bump.phi", .free = true}, NULL, {0}},
-    {{.id = "free.edge.normal", .free = true}, NULL, {0}},
-};
 
 /* ---- effects and their columns ---- */
 
@@ -76,52 +34,65 @@ void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect) {
   size_t e = out->effect_count++, first;
   fg_subset_effect *to = &out->effects[e];
   *to = *effect;
+  to->shapes = effect->kind->shapes;
   to->columns = to->terms =
-      fg_subset_columns_add(&s->columns, effect->id, effect->shape, &first, &out->share[e]);
+      fg_subset_columns_add(&s->columns, effect->kind, effect->shape, &first, &out->share[e]);
   for (size_t c = 0; c < to->columns; c++)
     to->column[c] = first + c;
 }
 
 /* Of the curves, what all effects at once have: half as many columns, and one form. */
 static void choose_parts(fg_subset_columns *c, const fg_subset_effect *effect) {
-  bool splines = fg_field_find(effect->id) || !strcmp(effect->id, "free.foil.s");
+  const fg_effect *kind = effect->kind;
   for (size_t k = 0; k < effect->columns; k++) {
-    bool rough = !strcmp(effect->id, "free.bump.phi") ? k >= PHI_SMOOTH && k < PHI_ORDERS
-                 : splines                            ? k % 2 > 0
-                                                      : k >= NORMAL_SMOOTH;
-    if (strchr(effect->id, ':')) rough = true;
+    bool splines = kind->coarse == FG_EFFECT_SPLINES;
+    bool rough = kind->coarse == FG_EFFECT_LEFT_OUT || (splines && k % 2 > 0) ||
+                 (kind->coarse == FG_EFFECT_SMOOTHER && k >= kind->rough[0] && k < kind->rough[1]);
     c->part[effect->column[k]] = rough     ? FG_SUBSET_LEFT_OUT
                                  : splines ? FG_SUBSET_WITH_NEXT
                                            : FG_SUBSET_ITSELF;
   }
 }
 
+/* A polynomial of the scanner, made of the powers of its axis from column `first` on: its own is
+ * the highest, and those below give its middle. */
+static void add_polynomial(fg_subset_search *s, const fg_effect *kind, size_t first) {
+  size_t e = s->out->effect_count++, degree = kind->polynomial - FG_EFFECT_LINEAR;
+  fg_subset_effect *to = &s->out->effects[e];
+  *to = (fg_subset_effect){.kind = kind,
+                           .polynomial = kind->polynomial,
+                           .columns = kind->columns,
+                           .shapes = kind->shapes,
+                           .terms = kind->polynomial == FG_EFFECT_QUADRATIC ? 2 : 1};
+  for (size_t k = 0; k <= degree; k++)
+    to->column[k] = first + degree - k;
+  size_t lead = to->column[0];
+  s->out->share[e] = s->columns.gram[lead * FG_SUBSET_COLUMNS + lead] / (double)s->columns.rows;
+}
+
 /* The powers are shared by the polynomials that are made of them. */
-static void add_smooth(fg_subset_search *s) {
-  const char *source = NULL;
+static fg_status add_smooth(fg_context *ctx, fg_subset_search *s, const fg_scan_set *known) {
   size_t first[2] = {0, 0};
-  double share[2] = {0, 0}, none[FG_LOOP_SHAPES] = {0};
+  double share[2] = {0, 0}, none[FG_FIELD_SHAPES] = {0};
   for (int axis = 0; axis < 2; axis++)
-    fg_subset_columns_add(&s->columns, axis ? FG_POWERS_Y : FG_POWERS_X, none, &first[axis],
-                          &share[axis]);
-  for (size_t i = 0; i < sizeof smooth / sizeof smooth[0]; i++) {
-    source = smooth[i].source;
-    if (smooth[i].effect.free && !s->free_column) s->free_column = s->columns.count;
-    if (!source) {
-      fg_subset_add(s, &smooth[i].effect);
-      if (smooth[i].effect.free)
-        choose_parts(&s->columns, &s->out->effects[s->out->effect_count - 1]);
+    fg_subset_columns_add(&s->columns, &fg_effect_powers[axis], none, &first[axis], &share[axis]);
+  for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
+    if (kind->sought == FG_EFFECT_PLACED || !fg_effect_shows(s->columns.points, kind)) continue;
+    if (fg_effect_is_free(kind) && !s->free_column) s->free_column = s->columns.count;
+    if (kind->polynomial) {
+      add_polynomial(s, kind, first[kind->axis]);
       continue;
     }
-    size_t e = s->out->effect_count++;
-    int axis = !strcmp(source, FG_POWERS_Y);
-    s->out->effects[e] = smooth[i].effect;
-    for (int k = 0; k < 3; k++)
-      s->out->effects[e].column[k] = first[axis] + smooth[i].pick[k];
-    size_t lead = first[axis] + smooth[i].pick[0];
-    s->out->share[e] = s->columns.gram[lead * FG_SUBSET_COLUMNS + lead] / (double)s->columns.rows;
+    if (kind->start) {
+      FG_TRY(fg_subset_add_shaped(ctx, s, kind, known));
+      continue;
+    }
+    fg_subset_add(s, &(fg_subset_effect){.kind = kind});
+    if (fg_effect_is_free(kind))
+      choose_parts(&s->columns, &s->out->effects[s->out->effect_count - 1]);
   }
   s->free_end = s->columns.count;
+  return FG_OK;
 }
 
 double fg_subset_integral(const fg_subset_columns *s) {
@@ -130,7 +101,16 @@ double fg_subset_integral(const fg_subset_columns *s) {
 
 static double noise_of(const fg_subset_columns *c, size_t rank) {
   double freedom = fmax((double)c->rows - (double)rank, 1);
-  return sqrt(fg_subset_dot(c->rows, c->left, c->left) / freedom);
+  return fmax(sqrt(fg_subset_dot(c->rows, c->left, c->left) / freedom), NOISE_LEAST_UM);
+}
+
+fg_status fg_subset_check_rows(fg_context *ctx, const fg_subset_search *s) {
+  size_t numbers = s->columns.geometry_rank + s->freedom;
+  if (s->columns.rows >= numbers + FREEDOM_LEAST) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%zu edge rows are too few to look for effects: %zu numbers would be fitted to "
+                 "them; scan more bumps, or at a higher resolution",
+                 s->columns.rows, numbers);
 }
 
 static void take_noise(fg_subset_search *s, size_t rank) {
@@ -154,7 +134,7 @@ static void refine_noise(fg_subset_search *s) {
   double least = FINER * s->out->noise_um;
   for (size_t e = 0; e < s->out->effect_count; e++) {
     const fg_subset_effect *curve = &s->out->effects[e];
-    if (!curve->free) continue;
+    if (!fg_effect_is_free(curve->kind)) continue;
     size_t from = curve->column[0];
     size_t more = fg_subset_columns_span_more(&s->columns, rank, from, from + curve->columns);
     double noise = noise_of(&s->columns, more);
@@ -179,14 +159,15 @@ size_t fg_subset_bits(unsigned mask) {
 unsigned fg_subset_mask_of(const fg_subset *out, bool of_free) {
   unsigned mask = 0;
   for (size_t e = 0; e < out->effect_count; e++)
-    if (out->effects[e].free == of_free) mask |= 1u << e;
+    if (fg_effect_is_free(out->effects[e].kind) == of_free) mask |= 1u << e;
   return mask;
 }
 
 /* Two forms of one effect, and two ripples of one period or two steps at one place, are no set. */
 static bool are_twins(const fg_subset_effect *a, const fg_subset_effect *b) {
-  if (!fg_effect_same(a->id, b->id)) return false;
-  return strchr(b->id, ':') || fabs(a->shape[0] / b->shape[0] - 1) < TWIN_SHARE;
+  if (!fg_effect_same(a->kind, b->kind)) return false;
+  if (b->kind->sought == FG_EFFECT_SMOOTH) return true;
+  return b->kind->second || fabs(a->shape[0] / b->shape[0] - 1) < FG_SUBSET_TWIN_SHARE;
 }
 
 static bool has_twins(const fg_subset *out, unsigned mask) {
@@ -220,8 +201,7 @@ static shaped_masks find_shaped_masks(const fg_subset_search *s) {
   shaped_masks masks = {0, 0};
   size_t count = s->out->effect_count;
   for (size_t e = 0; e < count; e++) {
-    const char *id = s->out->effects[e].id;
-    if (strcmp(id, "scan.carriage_ripple") != 0 && strcmp(id, "scan.row_step") != 0) continue;
+    if (s->out->effects[e].kind->sought != FG_EFFECT_PLACED) continue;
     masks.all |= 1u << e;
     if (e + s->new_shapes < count) masks.known |= 1u << e;
   }
@@ -293,6 +273,15 @@ static double free_score(const fg_subset_search *s, const fg_subset_yardstick *y
   return score_of(s, &m);
 }
 
+static bool scanned_again(const fg_points *points) {
+  return points->view_count > points->part_count;
+}
+
+/* Smooth effects in a set, at most. */
+static size_t effects_most(const fg_points *points) {
+  return points->coarse ? 1 : scanned_again(points) ? 3 : 2;
+}
+
 /* A free curve, alone or beside up to two listed effects: the one that leaves least for its
  * columns; the best listed set stands when none does better. */
 static fg_subset_member try_free(fg_subset_search *s, const fg_subset_yardstick *y,
@@ -300,11 +289,11 @@ static fg_subset_member try_free(fg_subset_search *s, const fg_subset_yardstick 
   fg_subset *out = s->out;
   unsigned listed = fg_subset_mask_of(out, false);
   double score = isfinite(best.excess) ? score_of(s, &best) : INFINITY;
-  for (size_t size = 0; size <= 2; size++)
+  for (size_t size = 0; size <= (s->columns.points->coarse ? 0 : 2); size++)
     for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = (mask - listed) & listed) {
       if (fg_subset_bits(mask) != size || has_twins(out, mask)) continue;
       for (size_t e = 0; e < out->effect_count; e++) {
-        if (!out->effects[e].free) continue;
+        if (!fg_effect_is_free(out->effects[e].kind)) continue;
         fg_subset_member member = fg_subset_try(s, y, mask | 1u << e);
         /* Every further effect must be worth its while. */
         double gained = score - score_of(s, &member);
@@ -315,10 +304,6 @@ static fg_subset_member try_free(fg_subset_search *s, const fg_subset_yardstick 
       }
     }
   return best;
-}
-
-static bool scanned_again(const fg_points *points) {
-  return points->view_count > points->part_count;
 }
 
 /* Two curves, alone or beside one listed effect: a carriage that runs unevenly also sways. One view
@@ -346,30 +331,29 @@ static bool was_tried(const fg_subset_search *s, const fg_subset_member *m) {
   size_t count = 0;
   for (size_t e = 0; s->tried && e < s->out->effect_count; e++) {
     if (!(m->mask >> e & 1)) continue;
-    if (count == s->tried->count || strcmp(s->tried->effects[count].id, s->out->effects[e].id))
+    if (count == s->tried->count || s->tried->effects[count].kind != s->out->effects[e].kind)
       return false;
     count++;
   }
   return s->tried && count > 0 && count == s->tried->count;
 }
 
-/* A ripple or step that was found just now has not been fitted with the geometry yet: a set that
- * holds one and takes most of what there is to take gets its chance before any curve that is not
- * far better. */
+/* A shape that was found just now has not been fitted with the geometry yet: a set that holds one
+ * and takes most of what there is to take gets its chance before any curve that is not far better.
+ */
 static bool is_worth_fitting(const fg_subset_search *s, const fg_subset_yardstick *y,
                              const fg_subset_member *best, const fg_subset_member *curve) {
-  size_t count = s->out->effect_count, first = count - s->new_shapes;
   bool one_curve =
       fg_subset_bits(curve->mask) == 1 && curve->excess < CURVE_SHARE * CURVE_SHARE * y->none;
   if (one_curve && fg_subset_bits(best->mask) > FEW) return false;
-  return best->mask >> first && best->excess < FITTING_SHARE * y->none && !was_tried(s, best) &&
-         best->excess < FITTING_TIMES * (curve->excess + y->freedom);
+  return (best->mask & s->unfitted) && best->excess < FITTING_SHARE * y->none &&
+         !was_tried(s, best) && best->excess < FITTING_TIMES * (curve->excess + y->freedom);
 }
 
 static void try_sets(fg_subset_search *s) {
   fg_subset *out = s->out;
   fg_subset_yardstick y = fg_subset_yardstick_of(s);
-  fg_subset_member best = try_listed(s, &y, scanned_again(s->columns.points) ? 3 : 2);
+  fg_subset_member best = try_listed(s, &y, effects_most(s->columns.points));
   out->right = out->member_count > 0;
   if (out->right) order_members(s, &y);
   if (!out->member_count) {
@@ -386,10 +370,10 @@ static void try_sets(fg_subset_search *s) {
 static void add_known(fg_subset_search *s, const fg_scan_set *known) {
   for (size_t e = 0; known && e < known->count; e++) {
     const fg_scan_effect *from = &known->effects[e];
-    bool kept = !strcmp(from->id, "scan.carriage_ripple") || !strcmp(from->id, "scan.row_step");
-    fg_subset_effect effect = {.id = from->id, .columns = from->columns, .shapes = from->shapes};
+    fg_subset_effect effect = {.kind = from->kind};
     memcpy(effect.shape, from->shape, sizeof effect.shape);
-    if (kept && s->out->effect_count < FG_SUBSET_EFFECTS) fg_subset_add(s, &effect);
+    if (from->kind->sought == FG_EFFECT_PLACED && s->out->effect_count < FG_SUBSET_EFFECTS)
+      fg_subset_add(s, &effect);
   }
 }
 
@@ -399,12 +383,13 @@ fg_status fg_subset_find(fg_context *ctx, const fg_points *points, const fg_subs
   fg_subset_search s = {.out = subset, .tried = request->tried, .two_curves = request->two_curves};
   fg_status status = FG_OK;
   FG_TRY(fg_subset_columns_open(ctx, points, request->residual_um, request->jacobian, &s.columns));
-  add_smooth(&s);
+  FG_TRY_EXIT(add_smooth(ctx, &s, request->known));
   add_known(&s, request->known);
   FG_TRY_EXIT(fg_subset_add_other_steps(ctx, &s, request->known));
   FG_TRY_EXIT(fg_subset_width_doubt(ctx, &s.columns));
   if (request->look) FG_TRY_EXIT(fg_subset_find_shaped(ctx, &s));
   refine_noise(&s);
+  FG_TRY_EXIT(fg_subset_check_rows(ctx, &s));
   try_sets(&s);
 exit:
   fg_subset_columns_close(&s.columns);

@@ -15,34 +15,21 @@
 #ifndef FG_LOOP_SUBSET_H
 #define FG_LOOP_SUBSET_H
 
+#include "effect/set.h"
 #include "foilgauge/scan_loop.h"
 #include "loop/points.h"
 
-/* Effects in force. */
-typedef struct fg_scan_set {
-  fg_scan_effect effects[FG_SCAN_EFFECTS];
-  size_t count;
-} fg_scan_set;
-
 enum { FG_SUBSET_EFFECTS = 26, FG_SUBSET_CLASS = 8 };
-
-/* How an effect's columns make it. */
-typedef enum fg_subset_form {
-  FG_SUBSET_PLAIN,     /* every column with its own coefficient */
-  FG_SUBSET_QUADRATIC, /* a ((x - c) / w)²: u² and u, which give a and c */
-  FG_SUBSET_CUBIC,     /* a ((x - c) / w)³: u³, u² and u in the proportion that c gives */
-} fg_subset_form;
 
 /* An effect as it enters the search: its shape is known by now, but for the middle c of a
  * polynomial, which is found with every set anew. */
 typedef struct fg_subset_effect {
-  const char *id;
-  fg_subset_form form;
-  size_t columns, shapes;         /* of the effect as it is fitted in the end */
-  size_t terms;                   /* in the search */
-  size_t column[FG_SCAN_COLUMNS]; /* of the search, one per term (cubic: three) */
-  double shape[FG_LOOP_SHAPES];
-  bool free; /* a curve for what no listed effect explains */
+  const fg_effect *kind;
+  fg_effect_polynomial polynomial; /* that its terms make; else every column has its coefficient */
+  size_t columns, shapes;          /* of the effect as it is fitted in the end */
+  size_t terms;                    /* in the search */
+  size_t column[FG_SCAN_COLUMNS];  /* of the search, one per term (cubic: three) */
+  double shape[FG_FIELD_SHAPES];
 } fg_subset_effect;
 
 /* One set of effects (bits of `effects`) and what it leaves. */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "loop/points_effects.h"
+#include "effect/columns.h"
 
 /* A column whose mean square is less than this beside the geometry is nothing. */
 #define VANISHED 1e-8
@@ -53,6 +53,7 @@ static void find_support(fg_subset_columns *s, size_t rank) {
 /* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
 static bool extend(fg_subset_columns *s, size_t rank, const double *v, double least) {
   double *to = s->basis + rank * s->rows, whole = fg_subset_dot(s->rows, v, v);
+  if (!(whole > least)) return false;
   memcpy(to, v, s->rows * sizeof *to);
   fg_subset_take_out(s, rank, to);
   double left = fg_subset_dot(s->rows, to, to);
@@ -74,9 +75,9 @@ static size_t weigh(const fg_subset_columns *s, size_t count, double *out) {
   return count;
 }
 
-size_t fg_subset_gather(const fg_subset_columns *s, const char *id, const double *shape,
+size_t fg_subset_gather(const fg_subset_columns *s, const fg_effect *effect, const double *shape,
                         double *out) {
-  return weigh(s, fg_points_effect_columns(s->points, id, shape, s->work), out);
+  return weigh(s, fg_effect_columns(s->points, effect, shape, s->work), out);
 }
 
 static void fill_products(fg_subset_columns *s, size_t from) {
@@ -89,20 +90,22 @@ static void fill_products(fg_subset_columns *s, size_t from) {
   }
 }
 
-size_t fg_subset_columns_add(fg_subset_columns *s, const char *id, const double *shape,
+size_t fg_subset_columns_add(fg_subset_columns *s, const fg_effect *effect, const double *shape,
                              size_t *first, double *share) {
   double *to = s->values + s->count * s->rows, *strain = s->strain + s->count * s->rows;
   double whole = 0, left = 0;
   *first = s->count;
-  size_t count = fg_subset_gather(s, id, shape, to);
+  size_t count = fg_subset_gather(s, effect, shape, to);
   for (size_t c = 0; c < count; c++, to += s->rows) {
-    whole += fg_subset_dot(s->rows, to, to);
+    double square = fg_subset_dot(s->rows, to, to);
+    if (square == 0) continue; /* a knot that is not used */
+    whole += square;
     fg_subset_take_out(s, s->geometry_rank, to);
     left += fg_subset_dot(s->rows, to, to);
   }
   *share = whole > 0 ? left / whole : 0;
   memset(strain, 0, count * s->rows * sizeof *strain);
-  weigh(s, fg_points_width_columns(s->points, id, shape, s->work), strain);
+  weigh(s, fg_effect_width_columns(s->points, effect, shape, s->work), strain);
   s->count += count;
   fill_products(s, *first);
   return count;

@@ -52,8 +52,8 @@ void fg_subset_columns_close(fg_subset_columns *columns);
 double fg_subset_dot(size_t n, const double *a, const double *b);
 
 /* Weighted columns of an effect at the rows in use, as they are; returns how many. */
-size_t fg_subset_gather(const fg_subset_columns *columns, const char *id, const double *shape,
-                        double *out);
+size_t fg_subset_gather(const fg_subset_columns *columns, const fg_effect *effect,
+                        const double *shape, double *out);
 /* Product with vector k of the basis. */
 double fg_subset_along(const fg_subset_columns *columns, size_t k, const double *v);
 /* Takes the first `rank` vectors of the basis out of v. */
@@ -61,8 +61,8 @@ void fg_subset_take_out(const fg_subset_columns *columns, size_t rank, double *v
 
 /* Adds an effect's columns; `first` is where they stand, `share` what the geometry leaves of
  * their square. Returns how many. */
-size_t fg_subset_columns_add(fg_subset_columns *columns, const char *id, const double *shape,
-                             size_t *first, double *share);
+size_t fg_subset_columns_add(fg_subset_columns *columns, const fg_effect *effect,
+                             const double *shape, size_t *first, double *share);
 
 /* All columns but [skip, end) at once: fills `left`, returns the rank of the basis. */
 size_t fg_subset_columns_span(fg_subset_columns *columns, size_t skip, size_t end);

@@ -13,6 +13,7 @@ typedef struct fg_subset_search {
   double full;                  /* residual sum beside everything */
   size_t freedom;               /* columns that took it */
   size_t new_shapes;            /* ripples and steps that were found in this round */
+  unsigned unfitted;            /* effects with a shape that was found in this round */
 } fg_subset_search;
 
 /* What the search compares with: everything at once. */
@@ -41,17 +42,12 @@ void fg_subset_add(fg_subset_search *s, const fg_subset_effect *effect);
  * that are listed; returns the rank of the basis that took them out. */
 size_t fg_subset_noise(fg_subset_search *s, bool listed_only);
 
+/* FG_ERR_DATA when the last noise rests on too few rows. */
+fg_status fg_subset_check_rows(fg_context *ctx, const fg_subset_search *s);
+
 /* Integral of the correlation of what is left, along the edge. */
 double fg_subset_integral(const fg_subset_columns *columns);
 
-/* Effects with a shape that must be sought: a ripple's period, a step's place. */
-typedef struct fg_subset_shaped {
-  fg_subset_effect effect;
-  double (*start)(const fg_points *points, size_t i, size_t count); /* i of `count` */
-  size_t starts;
-} fg_subset_shaped;
-enum { FG_SUBSET_SHAPED = 2 };
-extern const fg_subset_shaped fg_subset_shaped_kinds[FG_SUBSET_SHAPED];
 /* Gain in chi² that makes one worth a place in the search: its best of some hundred places stands
  * for ln of their number more; and its size, um. */
 #define FG_SUBSET_SHAPED_CHI2     45.0
@@ -62,8 +58,18 @@ extern const fg_subset_shaped fg_subset_shaped_kinds[FG_SUBSET_SHAPED];
 typedef struct fg_subset_hit {
   double gain, amplitude, at;
 } fg_subset_hit;
-fg_subset_hit fg_subset_find_place(const fg_subset_search *s, size_t rank,
-                                   const fg_subset_shaped *kind, double *work);
+fg_subset_hit fg_subset_find_place(const fg_subset_search *s, size_t rank, const fg_effect *kind,
+                                   double *work);
+
+/* Shapes nearer to each other than this are one. */
+#define FG_SUBSET_TWIN_SHARE 0.05
+
+/* Adds a smooth effect with a shape: with the one it has in the known set (NULL: none), and with
+ * the one that takes most beside the geometry alone, which a fit beside wrong effects may have
+ * missed.
+ */
+fg_status fg_subset_add_shaped(fg_context *ctx, fg_subset_search *s, const fg_effect *kind,
+                               const fg_scan_set *known);
 
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
 fg_status fg_subset_find_shaped(fg_context *ctx, fg_subset_search *s);

@@ -39,7 +39,7 @@ static void list_terms(const fg_subset *out, unsigned mask, set_terms *set) {
     const fg_subset_effect *effect = &out->effects[e];
     set->first[e] = set->count;
     if (!(mask >> e & 1)) continue;
-    if (effect->form == FG_SUBSET_CUBIC) {
+    if (effect->polynomial == FG_EFFECT_CUBIC) {
       put_cubic(effect, 0, &set->term[set->count++]);
       set->cubic = e;
       continue;
@@ -55,7 +55,7 @@ static double find_middle(const fg_subset_search *s, const fg_subset_yardstick *
   const fg_subset_effect *effect = &s->out->effects[set->cubic];
   double low = -y->reach, high = y->reach, best = INFINITY, at = 0;
   for (int level = 0; level < MIDDLE_LEVELS; level++) {
-    int steps = level ? MIDDLE_FINER : MIDDLE_STEPS;
+    int steps = level || s->columns.points->coarse ? MIDDLE_FINER : MIDDLE_STEPS;
     for (int i = 0; i <= steps; i++) {
       size_t rank;
       double t = low + (high - low) * i / steps;
@@ -74,8 +74,7 @@ static double find_middle(const fg_subset_search *s, const fg_subset_yardstick *
 }
 
 static double middle_of(const fg_subset_search *s, const fg_subset_effect *effect, double t) {
-  int axis = !strncmp(effect->id, "scan.carriage", 13);
-  return s->columns.points->frame.centre_mm[axis] + FG_FIELD_HALF_MM * t;
+  return s->columns.points->frame.centre_mm[effect->kind->axis] + FG_FIELD_HALF_MM * t;
 }
 
 /* A quadratic whose middle is far off is a scale; one that gains nothing over it is one. */
@@ -107,11 +106,11 @@ static bool has_form(const fg_subset_search *s, const fg_subset_yardstick *y, co
                      size_t e, const double *x, double sum, fg_subset_member *member) {
   const fg_subset_effect *effect = &s->out->effects[e];
   double t = 0;
-  if (effect->form == FG_SUBSET_QUADRATIC) {
+  if (effect->polynomial == FG_EFFECT_QUADRATIC) {
     if (!is_quadratic(s, y, set, e, x, sum, &t)) return false;
     member->middle_mm[e] = middle_of(s, effect, t);
   }
-  if (!strncmp(effect->id, "part.bump_", 10)) return is_led(&s->columns, effect, x + set->first[e]);
+  if (effect->kind->numbers == FG_EFFECT_LED) return is_led(&s->columns, effect, x + set->first[e]);
   return true;
 }
 
@@ -153,7 +152,7 @@ fg_subset_yardstick fg_subset_yardstick_of(fg_subset_search *s) {
                                    (out->noise_um * out->noise_um * out->integral),
                            .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
   for (size_t e = 0; e < out->effect_count; e++)
-    if (!strncmp(out->effects[e].id, "part.bump_", 10)) y.bends |= 1u << e;
+    if (out->effects[e].kind->numbers == FG_EFFECT_LED) y.bends |= 1u << e;
   out->edge_error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + s->columns.width_part);
   y.allowance = (double)s->columns.rows * out->edge_error_um * out->edge_error_um / y.unit;
   return y;
@@ -193,7 +192,7 @@ void fg_subset_describe_effects(fg_subset_search *s, const fg_subset_yardstick *
     if (set.cubic < FG_SUBSET_EFFECTS) find_middle(s, y, &set);
     double sum = fg_subset_solve(&s->columns, set.term, set.count, NULL, NULL, &rank);
     out->alone[e] = none > 0 ? 1 - sum / none : 0;
-    if (!out->effects[e].free) out->smallest_um[e] = smallest_amplitude(s, y, e);
+    if (!fg_effect_is_free(out->effects[e].kind)) out->smallest_um[e] = smallest_amplitude(s, y, e);
   }
 }
 

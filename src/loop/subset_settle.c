@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "effect/columns.h"
 #include "loop/settle.h"
 
 /* Rows this far off are left out, if they are fewer than this share. */
@@ -27,30 +28,30 @@ void fg_subset_take(const fg_subset *subset, size_t member, fg_scan_set *set) {
     if (!(subset->members[member].mask >> e & 1) || set->count == FG_SCAN_EFFECTS) continue;
     const fg_subset_effect *from = &subset->effects[e];
     fg_scan_effect *to = &set->effects[set->count++];
-    *to = (fg_scan_effect){.id = from->id, .columns = from->columns, .shapes = from->shapes};
+    *to = (fg_scan_effect){.kind = from->kind, .columns = from->columns, .shapes = from->shapes};
     memcpy(to->shape, from->shape, sizeof to->shape);
-    if (from->form != FG_SUBSET_PLAIN) to->shape[0] = subset->members[member].middle_mm[e];
+    if (from->polynomial > FG_EFFECT_LINEAR) to->shape[0] = subset->members[member].middle_mm[e];
   }
 }
 
 /* Its shape is the middle, which every search finds anew; the fit's is the better one. */
-static bool is_polynomial(const fg_scan_effect *effect) {
-  return effect->columns == 1 && effect->shapes == 1 && strcmp(effect->id, "scan.row_step") != 0;
+static bool has_middle(const fg_scan_effect *effect) {
+  return effect->kind->polynomial > FG_EFFECT_LINEAR;
 }
 
 /* Numbers of the effects that both sets hold. */
 static void keep_numbers(const fg_scan_set *from, fg_scan_set *to) {
   for (size_t e = 0; e < to->count; e++)
     for (size_t k = 0; k < from->count; k++)
-      if (!strcmp(to->effects[e].id, from->effects[k].id) &&
-          (to->effects[e].shape[0] == from->effects[k].shape[0] || is_polynomial(&to->effects[e])))
+      if (to->effects[e].kind == from->effects[k].kind &&
+          (to->effects[e].shape[0] == from->effects[k].shape[0] || has_middle(&to->effects[e])))
         to->effects[e] = from->effects[k];
 }
 
 bool fg_settle_same_effects(const fg_scan_set *a, const fg_scan_set *b) {
   if (a->count != b->count) return false;
   for (size_t e = 0; e < a->count; e++)
-    if (strcmp(a->effects[e].id, b->effects[e].id)) return false;
+    if (a->effects[e].kind != b->effects[e].kind) return false;
   return true;
 }
 
@@ -69,7 +70,7 @@ fg_status fg_settle_put_back(fg_context *ctx, fg_points *points, const fg_scan_s
     residual_um[i] *= 1000;
   for (size_t e = 0; e < set->count; e++) {
     const fg_scan_effect *effect = &set->effects[e];
-    size_t count = fg_points_effect_columns(points, effect->id, effect->shape, columns);
+    size_t count = fg_effect_columns(points, effect->kind, effect->shape, columns);
     for (size_t c = 0; c < count; c++)
       for (size_t i = 0; i < rows; i++)
         residual_um[i] += effect->coefficient_um[c] * columns[c * rows + i];
@@ -140,8 +141,9 @@ static fg_status drop_bad_ends(fg_context *ctx, fg_points *points, const double 
 void fg_settle_leave_steps_out(fg_points *points, const fg_scan_set *set, double half_mm) {
   for (size_t e = 0; e < set->count; e++)
     for (size_t i = 0; i < points->row_count; i++)
-      if (!strcmp(set->effects[e].id, "scan.row_step") &&
-          fabs(points->rows[i].at.y - set->effects[e].shape[0]) < half_mm)
+      if (set->effects[e].kind->jumps &&
+          fabs((set->effects[e].kind->axis ? points->rows[i].at.y : points->rows[i].at.x) -
+               set->effects[e].shape[0]) < half_mm)
         points->rows[i].weight = 0;
 }
 
@@ -172,6 +174,14 @@ typedef struct settling {
   double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
 } settling;
 
+double fg_settle_square(const fg_points *points, const double *residual_um) {
+  double sum = 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    if (!points->views[points->rows[i].view].aside)
+      sum += points->rows[i].weight * residual_um[i] * residual_um[i];
+  return sum;
+}
+
 /* An effect that bends the geometry so far is none. */
 static bool is_sane(const fg_points *points, const double *geometry, const fg_scan_set *set) {
   size_t at = 0;
@@ -186,25 +196,18 @@ static bool is_sane(const fg_points *points, const double *geometry, const fg_sc
   return true;
 }
 
-/* Fits a set from the geometry that stands; one that runs away is given up for none. */
-static fg_status fit_set(fg_context *ctx, fg_points *points, fg_scan_set *set, double *geometry,
-                         double *residual_um) {
+fg_status fg_settle_fit(fg_context *ctx, fg_points *points, fg_scan_set *set, double none,
+                        double *geometry, double *residual_um) {
   fg_points_geometry_save(points, geometry);
   fg_status status = fg_scan_refit(ctx, points, set, residual_um);
   if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
-  if (status == FG_OK && is_sane(points, geometry, set)) return FG_OK;
+  if (status == FG_OK && is_sane(points, geometry, set) &&
+      fg_settle_square(points, residual_um) <= none)
+    return FG_OK;
   fg_points_geometry_load(points, geometry);
   memset(set, 0, sizeof *set);
   ctx->message[0] = 0;
   return fg_scan_refit(ctx, points, set, residual_um);
-}
-
-static double residual_square(const fg_points *points, const double *residual_um) {
-  double sum = 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    if (!points->views[points->rows[i].view].aside)
-      sum += points->rows[i].weight * residual_um[i] * residual_um[i];
-  return sum;
 }
 
 /* How a search goes about it. With `eager`, ripples and steps are looked for at once: right for
@@ -220,8 +223,9 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, manner how, set
   fg_scan_set tried = {.count = 0}, last = {.count = 0};
   double left = INFINITY;
   memset(&at->set, 0, sizeof at->set);
-  FG_TRY(fg_scan_refit(ctx, points, &at->set, NULL));
-  for (int round = 0; round < ROUNDS; round++) {
+  FG_TRY(fg_scan_refit(ctx, points, &at->set, at->residual_um));
+  double none = fg_settle_square(points, at->residual_um);
+  for (int round = 0; round < (points->coarse ? 2 : ROUNDS); round++) {
     fg_scan_set next;
     fg_subset_request request = {at->residual_um, at->jacobian,           &at->set,
                                  &tried,          how.eager || round > 0, how.two_curves};
@@ -233,13 +237,13 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, manner how, set
     keep_numbers(&at->set, &next);
     at->set = next;
     fg_settle_leave_steps_out(points, &at->set, STEP_HALF_MM);
-    FG_TRY(fit_set(ctx, points, &at->set, at->geometry, at->residual_um));
+    FG_TRY(fg_settle_fit(ctx, points, &at->set, none, at->geometry, at->residual_um));
     /* Given up: what was right to first order is not. */
     if (next.count && !at->set.count) at->subset.right = false;
     if (!at->subset.right) tried = next;
     FG_TRY(drop_outliers(ctx, points, at->residual_um));
     double before = left;
-    left = residual_square(points, at->residual_um);
+    left = fg_settle_square(points, at->residual_um);
     bool rests = at->subset.right || left > (1 - REST_SHARE) * before;
     if (same && rests && round > 0) break;
     drop_nothings(&at->set);
@@ -259,11 +263,12 @@ static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
   double *residual_um = geometry + numbers;
   fg_status status = FG_OK;
   for (size_t i = 0; i < sizeof manners / sizeof manners[0]; i++) {
+    if (i > 0 && points->coarse) break;
     if (manners[i].two_curves && points->view_count < 2) continue;
     FG_TRY_EXIT(settle_from(ctx, points, manners[i], at));
-    double left = residual_square(points, at->residual_um);
+    double left = fg_settle_square(points, at->residual_um);
     if (at->subset.right) goto exit;
-    if (left > (i ? 1 - REST_SHARE : 1) * best) continue;
+    if (i && !(left <= (1 - REST_SHARE) * best)) continue;
     best = left;
     kept = *at;
     fg_points_geometry_save(points, geometry);

@@ -16,6 +16,8 @@ static const char *const results[] = {"bump_radius_mm",
                                       "height_mm",
                                       "clearance_mm",
                                       "clearance_error",
+                                      "height_fitted_mm",
+                                      "clearance_fitted_mm",
                                       "radius_error_pct",
                                       "bump_angle_error_pct",
                                       "springback_error_pct",
@@ -117,6 +119,14 @@ static fg_status fill_words(fg_context *ctx, const table_build *build, const fg_
   return FG_OK;
 }
 
+/* Beyond these, sums and differences of a column's values are no numbers any more. */
+static bool is_in_range(const fg_table *table, const fg_column *column) {
+  double largest = 0;
+  for (size_t i = 0; column->number && i < table->rows; i++)
+    largest = fmax(largest, fabs(column->number[i].value));
+  return largest == 0 || (largest >= TABLE_SMALLEST && largest <= TABLE_LARGEST);
+}
+
 static fg_status add_column(fg_context *ctx, const table_build *build, const fg_column *column) {
   fg_loop_problem *problem = &build->out->problem;
   const fg_loop_table_spec *spec = build->spec;
@@ -129,6 +139,9 @@ static fg_status add_column(fg_context *ctx, const table_build *build, const fg_
   if (column->missing_count) return leave_out(ctx, build, column->name, "cells are missing");
   if (words && column->number_count)
     return leave_out(ctx, build, column->name, "words among numbers");
+  if (!words && !is_in_range(build->table, column))
+    return leave_out(ctx, build, column->name,
+                     "numbers too large or too small to compute with; give it in another unit");
   if (spec->group && !strcmp(column->name, spec->group)) roles = FG_LOOP_ORDER;
   if (build->order && !strcmp(column->name, build->order))
     roles = spec->group ? FG_LOOP_BUMP : FG_LOOP_ORDER;

@@ -32,6 +32,82 @@ static fg_status copy_model(fg_context *ctx, const table_build *build, const fg_
   return FG_OK;
 }
 
+/* What the declared formula needs to be evaluated at a setting. */
+struct fg_loop_formula {
+  fg_model model;                    /* without its matrix */
+  double mean[FG_FORMULA_VARIABLES]; /* of the variables that are no coordinates */
+};
+
+void table_free_formula(struct fg_loop_formula *formula) {
+  if (!formula) return;
+  fg_model_free(&formula->model);
+  free(formula);
+}
+
+/* The level whose name is nearest to a number; the first where names are words. */
+static double nearest_level(const fg_levels *levels, double value) {
+  size_t nearest = 0;
+  double least = INFINITY;
+  for (size_t k = 0; k < levels->count; k++) {
+    char *end;
+    double apart = fabs(strtod(levels->name[k], &end) - value);
+    if (*end || !(apart < least)) continue;
+    least = apart;
+    nearest = k;
+  }
+  return (double)nearest;
+}
+
+static double setting_of(const struct fg_loop_formula *formula, const fg_loop_problem *grid,
+                         size_t variable, size_t row) {
+  const fg_levels *levels = &formula->model.levels[variable];
+  const char *column = formula->model.formula.variable[variable].column;
+  const fg_loop_coordinate *at = table_coordinate(grid, column);
+  if (!at) return formula->mean[variable];
+  if (levels->count && !at->levels) return nearest_level(levels, at->value[row]);
+  return at->value[row];
+}
+
+static fg_status declared_at(fg_context *ctx, const void *model, const fg_loop_problem *grid,
+                             double *columns) {
+  const struct fg_loop_formula *formula = model;
+  size_t count = formula->model.columns;
+  double setting[FG_FORMULA_VARIABLES] = {0}, *row = NULL;
+  fg_status status = fg_memory_allocate(ctx, count, sizeof *row, (void **)&row);
+  for (size_t i = 0; status == FG_OK && i < grid->rows; i++) {
+    for (size_t v = 0; v < formula->model.formula.variables; v++)
+      setting[v] = setting_of(formula, grid, v, i);
+    status = fg_model_row(ctx, &formula->model, setting, row);
+    for (size_t k = 0; k < count; k++)
+      columns[k * grid->rows + i] = row[k];
+  }
+  free(row);
+  return status;
+}
+
+/* The problem keeps the model, without its matrix. */
+static fg_status keep_model(fg_context *ctx, const table_build *build, fg_model *model) {
+  fg_loop_problem *problem = &build->out->problem;
+  struct fg_loop_formula *formula = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *formula, (void **)&formula));
+  free(model->matrix);
+  model->matrix = NULL;
+  formula->model = *model;
+  *model = (fg_model){0};
+  build->out->model = formula;
+  problem->declared = declared_at;
+  problem->declared_model = formula;
+  for (size_t v = 0; v < formula->model.formula.variables; v++) {
+    fg_context ignored = {0};
+    const fg_extended *number = NULL;
+    const char *column = formula->model.formula.variable[v].column;
+    if (fg_table_numbers(&ignored, build->table, column, &number) != FG_OK) continue;
+    for (size_t i = 0; i < problem->rows; i++)
+      formula->mean[v] += number[i].value / (double)problem->rows;
+  }
+  return FG_OK;
+}
+
 fg_status table_fill_model(fg_context *ctx, const table_build *build) {
   fg_status status = FG_OK;
   fg_formula formula = {0};
@@ -45,6 +121,7 @@ fg_status table_fill_model(fg_context *ctx, const table_build *build) {
       goto exit;
     }
   FG_TRY_EXIT(copy_model(ctx, build, &model));
+  FG_TRY_EXIT(keep_model(ctx, build, &model));
 exit:
   fg_model_free(&model);
   fg_formula_free(&formula);

@@ -104,7 +104,15 @@ static fg_status fill_response(fg_context *ctx, const table_build *build) {
   FG_TRY(fg_table_numbers(ctx, build->table, build->spec->response, &response));
   for (size_t i = 0; i < problem->rows; i++)
     problem->response[i] = problem->residual[i] = response[build->out->row[i]].value;
-  return FG_OK;
+  double largest = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    largest = fmax(largest, fabs(problem->response[i]));
+  if (largest == 0 || (largest >= TABLE_SMALLEST && largest <= TABLE_LARGEST)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: the numbers of '%s' reach %g: too %s to compute with; give the response in "
+                 "another unit",
+                 build->table->source, build->spec->response, largest,
+                 largest > 1 ? "large" : "small");
 }
 
 static fg_status build_all(fg_context *ctx, table_build *build) {
@@ -156,6 +164,7 @@ void fg_loop_table_problem_free(fg_loop_table_problem *out) {
   free(problem->aside);
   free(problem->residual);
   free(problem->response);
+  table_free_formula(out->model);
   free(out->row);
   free(out->excluded);
   *out = (fg_loop_table_problem){0};
@@ -167,23 +176,34 @@ static size_t default_count(const fg_loop_problem *problem) {
   return groups < 40 ? groups / 8 + (groups % 8 >= 4) : groups / 5;
 }
 
+/* Aside goes every row of a group that is chosen. */
+static void put_aside(fg_loop_problem *problem, const bool *chosen) {
+  for (size_t i = 0; i < problem->rows; i++)
+    problem->aside[i] = chosen[problem->group[i]];
+}
+
 static fg_status keep_share(fg_context *ctx, const table_build *build, size_t count) {
   fg_loop_problem *problem = &build->out->problem;
   uint64_t seed = build->spec->seed ^ 0x9e3779b97f4a7c15u;
   size_t *order = NULL, groups = problem->groups;
-  FG_TRY(fg_memory_allocate(ctx, groups, sizeof *order, (void **)&order));
+  bool *chosen = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, groups, sizeof *order, (void **)&order));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, groups, sizeof *chosen, (void **)&chosen));
   for (size_t i = 0; i < groups; i++)
     order[i] = i;
   for (size_t i = 0; i < count; i++) {
     size_t k = i + (size_t)(loop_random_uniform(&seed) * (double)(groups - i));
-    size_t chosen = order[k];
+    size_t drawn = order[k];
     order[k] = order[i];
-    order[i] = chosen;
-    for (size_t r = 0; r < problem->rows; r++)
-      if (problem->group[r] == chosen) problem->aside[r] = true;
+    order[i] = drawn;
+    chosen[drawn] = true;
   }
+  put_aside(problem, chosen);
+exit:
   free(order);
-  return FG_OK;
+  free(chosen);
+  return status;
 }
 
 /* Whole groups that hold a row with the value. */
@@ -192,8 +212,10 @@ static fg_status keep_value(fg_context *ctx, const table_build *build, const cha
   char name[256];
   const char *equals = strchr(text, '='), *value = equals + 1;
   const fg_column *column;
+  bool *chosen = NULL;
   fg_text_clip(name, sizeof name, "%.*s", (int)(equals - text), text);
   FG_TRY(fg_table_find(ctx, build->table, name, &column));
+  FG_TRY(fg_memory_allocate(ctx, problem->groups, sizeof *chosen, (void **)&chosen));
   char *end;
   double number = strtod(value, &end);
   size_t found = 0;
@@ -204,9 +226,10 @@ static fg_status keep_value(fg_context *ctx, const table_build *build, const cha
                      : !*end && *value && column->number[row].value == number;
     if (!same) continue;
     found++;
-    for (size_t r = 0; r < problem->rows; r++)
-      if (problem->group[r] == problem->group[i]) problem->aside[r] = true;
+    chosen[problem->group[i]] = true;
   }
+  put_aside(problem, chosen);
+  free(chosen);
   if (found) return FG_OK;
   return fg_fail(ctx, FG_ERR_USAGE, "--hold-out %s: no row has that value", text);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "report/scan_model_words.h"
 
 static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_lot *lot = analysis->lot;
@@ -29,7 +30,7 @@ static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
 static double severity_of(const fg_judgement *judgement) {
   double lower = judgement->tolerance->lower, upper = judgement->tolerance->upper;
   double value = judgement->value;
-  if (!isfinite(value)) return judgement->verdict == FG_VERDICT_NOT_MEASURED ? INFINITY : 0;
+  if (isnan(value)) return INFINITY;
   if (isfinite(lower) && isfinite(upper) && upper > lower)
     return fabs(value - (lower + upper) / 2) / ((upper - lower) / 2);
   double limit = isfinite(upper) ? upper : lower,
@@ -37,26 +38,27 @@ static double severity_of(const fg_judgement *judgement) {
   return 1 + past / (fabs(limit) > 0 ? fabs(limit) : 1);
 }
 
-static fg_status judge_foil(fg_context *ctx, const fg_lot *lot, fg_lot_foil *foil) {
-  fg_judgement *list;
-  size_t count;
-  if (foil->foil->flags & FG_FOIL_NOT_MEASURED) {
-    foil->verdict = FG_VERDICT_NOT_MEASURED;
-    foil->severity = INFINITY;
-    return FG_OK;
-  }
-  FG_TRY(fg_foil_judgements(ctx, &lot->settings.design, foil->foil, &list, &count));
-  foil->verdict = fg_judgements_verdict(list, count);
-  for (size_t i = 0; i < count; i++) {
-    double severity = severity_of(&list[i]);
-    foil->exceeded = foil->exceeded || list[i].exceeded;
+static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
+  for (size_t i = 0; i < decision->count; i++) {
+    const fg_judgement *judgement = &decision->judgements[i];
+    double severity = severity_of(judgement);
     if (i && !(severity > foil->severity)) continue;
     foil->severity = severity;
-    foil->worst_number = list[i].number;
-    foil->worst_field = list[i].field;
-    foil->worst_value = list[i].value;
+    foil->worst_number = judgement->number;
+    foil->worst_field = judgement->field;
+    foil->worst_value = judgement->value;
   }
-  free(list);
+}
+
+static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_foil *foil) {
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, &analysis->lot->settings.design, foil->foil, &decision));
+  fg_outcome_add(&analysis->outcome, &decision.outcome);
+  foil->verdict = decision.outcome.verdict;
+  foil->exceeded = decision.outcome.exceeded > 0;
+  find_worst_value(&decision, foil);
+  if (decision.outcome.rejected || !fg_foil_is_measured(foil->foil)) foil->severity = INFINITY;
+  fg_decision_free(&decision);
   return FG_OK;
 }
 
@@ -92,17 +94,30 @@ static void find_worst(fg_lot_analysis *analysis) {
 }
 
 static fg_status judge_all(fg_context *ctx, fg_lot_analysis *analysis) {
-  analysis->verdict = FG_VERDICT_NONE;
+  analysis->outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
   for (size_t i = 0; i < analysis->foil_count; i++) {
     fg_lot_foil *foil = &analysis->foils[i];
-    FG_TRY(judge_foil(ctx, analysis->lot, foil));
+    FG_TRY(judge_foil(ctx, analysis, foil));
     analysis->by_verdict[foil->verdict]++;
     analysis->exceeded += foil->exceeded;
-    analysis->verdict = i ? fg_verdict_worse(analysis->verdict, foil->verdict) : foil->verdict;
   }
-  if (analysis->failed_scans)
-    analysis->verdict = fg_verdict_worse(analysis->verdict, FG_VERDICT_NOT_MEASURED);
+  fg_report_outcome failed = {.verdict = FG_VERDICT_NOT_MEASURED,
+                              .not_measured = analysis->failed_scans};
+  if (analysis->failed_scans) fg_outcome_add(&analysis->outcome, &failed);
   return FG_OK;
+}
+
+bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump) {
+  return fg_foil_is_measured(foil) && !(bump->flags & FG_BUMP_CRUSHED);
+}
+
+static void count_bumps(fg_lot_analysis *analysis) {
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
+      if (!fg_foil_is_measured(analysis->foils[i].foil)) break;
+      analysis->bumps++;
+      analysis->crushed += (analysis->foils[i].foil->bumps[k].flags & FG_BUMP_CRUSHED) != 0;
+    }
 }
 
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name) {
@@ -136,10 +151,13 @@ fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
 
 static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY(list_foils(ctx, analysis));
+  count_bumps(analysis);
   FG_TRY(judge_all(ctx, analysis));
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
+  FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
   if (!analysis->lot->settings.design.tolerance_count) rank_by_spread(analysis);
   find_worst(analysis);
+  fg_lot_analyse_thickness(analysis);
   FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
   FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
   FG_TRY(fg_lot_analyse_groups(ctx, analysis));
@@ -171,4 +189,12 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis) {
   free(analysis->gauges);
   free(analysis->foils);
   *analysis = (fg_lot_analysis){0};
+}
+
+fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis) {
+  fg_correction most = {NAN, NAN, NAN, NAN, NAN, NAN};
+  for (size_t i = 0; analysis->lot->model && i < analysis->foil_count; i++)
+    if (fg_foil_is_measured(analysis->foils[i].foil))
+      fg_correction_largest(&most, &analysis->foils[i].foil->correction);
+  return most;
 }

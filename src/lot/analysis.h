@@ -12,10 +12,10 @@
 typedef struct fg_lot_foil {
   size_t item;         /* of the manifest */
   const fg_foil *foil; /* of its record */
-  fg_verdict verdict;
-  bool exceeded;    /* a value itself lies outside its tolerance */
-  double severity;  /* the farthest value: 1 at its limit; without tolerances in sd of the lot */
-  int worst_number; /* its bump; 0: the whole foil */
+  fg_verdict verdict;  /* fg_foil_decide's */
+  bool exceeded;       /* a value fails */
+  double severity;     /* the farthest value: 1 at its limit; without tolerances in sd of the lot */
+  int worst_number;    /* its bump; 0: the whole foil */
   const fg_report_field *worst_field;
   double worst_value;
 } fg_lot_foil;
@@ -48,14 +48,16 @@ typedef struct fg_lot_quantity {
   fg_capability capability;
 } fg_lot_quantity;
 
-/* Radius and angle errors (thesis figure 5.8), trimmed. At constant arc length R alpha stays, so
- * ln(alpha / alpha_D) = -ln(R / R_D): the slope of the logarithms is -1 exactly. */
+/* Radius and angle errors (thesis figure 5.8), trimmed by the radius. At constant arc length R
+ * alpha stays, so ln(alpha / alpha_D) = -ln(R / R_D): the slope of the logarithms is -1 exactly.
+ * Its interval takes the bumps as they come, in foils (stats/cluster_line.h). */
 typedef struct fg_lot_correlation {
-  size_t count, trimmed;
+  size_t count, trimmed, foils; /* foils: that the bumps of the lines come from */
   double r;
   double slope, intercept;                       /* of the errors in percent, least squares */
   double log_slope, log_low, log_high;           /* of the logarithms, with its interval */
-  double arc_length_mean_pct, arc_length_sd_pct; /* 100 (R alpha / R_D alpha_D - 1) */
+  double log_freedom;                            /* of that interval; NaN: the foils are too few */
+  double arc_length_mean_pct, arc_length_sd_pct; /* 100 (R alpha / R_D alpha_D - 1), all bumps */
 } fg_lot_correlation;
 
 typedef struct fg_lot_spread {
@@ -63,12 +65,22 @@ typedef struct fg_lot_spread {
   double mean, mode, sd, relative_sd_pct, least, most;
 } fg_lot_spread;
 
+/* The strips' thickness. Its doubt is the scanner's tone curve for the most part, the same in every
+ * scan: a mean of many foils is no better known than one. */
+typedef struct fg_lot_thickness {
+  size_t foils; /* that have one */
+  fg_thickness mean;
+  bool differs; /* from the design's, by more than U */
+} fg_lot_thickness;
+
 /* Stiffness of the bumps over that of the design's. */
 typedef struct fg_lot_stiffness {
   fg_arch_stiffness design_free, design_welded;
   fg_arch_sensitivity sensitivity;
-  double *normalised; /* by bump of the lot in order of the quantity radius_mm; NaN; owned */
+  double *normalised; /* by bump of the lot, foil after foil, thickness as measured; NaN; owned */
   fg_lot_spread measured;
+  fg_lot_spread at_design_thickness; /* the same bumps, all strips as thick as the design */
+  double u_by_thickness;   /* of measured.mean: the thickness' uncertainty, which all foils share */
   fg_lot_spread resampled; /* radius drawn from its density, arc length from its own */
   fg_lot_spread foot;      /* sideways stiffness of the feet over the design's, measured */
 } fg_lot_stiffness;
@@ -77,6 +89,7 @@ typedef struct fg_lot_bearing {
   const char *name; /* of the column; NULL: assumed, three foils in a row */
   size_t number;
   const fg_lot_foil *pad[FG_BEARING_BUMPS_MAX]; /* layout.pads; NULL: missing */
+  /* Of the foils fitted into the sleeve; NaN: no value, or a crushed bump's. */
   double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
   size_t places;
   bool known;
@@ -102,17 +115,22 @@ typedef struct fg_lot_analysis {
   const fg_lot *lot;
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
-  size_t by_verdict[FG_VERDICT_NONE + 1], exceeded;
-  fg_verdict verdict;
+  size_t bumps, crushed; /* of measured foils; crushed ones are in no statistics */
+  size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
+  fg_report_outcome outcome;                        /* of all foils and scans */
   const fg_lot_foil *worst[3];
   fg_lot_quantity *quantities;
   size_t quantity_count;
   bool has_correlation, has_stiffness;
   fg_lot_correlation correlation;
+  fg_lot_thickness thickness;
   fg_lot_stiffness stiffness;
+  fg_bearing_layout layout; /* in force: the recipe's, what it leaves open the design's */
+  char layout_note[400];    /* what of it contradicts the design; "": nothing */
   fg_lot_bearing *bearings;
   size_t bearing_count, bearing_capacity;
-  fg_lot_spread clearance_pct; /* of the local clearance relative to the design's, in percent */
+  /* Of the local clearance relative to the design's, in percent: foils free, and fitted. */
+  fg_lot_spread clearance_pct, clearance_fitted_pct;
   fg_lot_difference *differences;
   size_t difference_count, difference_capacity;
   fg_lot_gauge *gauges;
@@ -122,12 +140,31 @@ typedef struct fg_lot_analysis {
 fg_status fg_lot_analyse(fg_context *ctx, const fg_lot *lot, fg_lot_analysis *analysis);
 void fg_lot_analysis_free(fg_lot_analysis *analysis);
 
+/* A crushed bump says what became of it, not what the process makes: it is counted, and left out of
+ * the statistics, stiffness and clearances. It is judged as every other. So is a bump of what is no
+ * foil of the design. */
+bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
+
+/* The arch of a bump: radii of design and measurement are those of the datum line, an arch bends
+ * about its midline. */
+fg_arch fg_lot_arch(const fg_design *design, double thickness_mm, double radius_mm,
+                    double angle_deg);
+
+/* What the arch model leaves out of this lot's form; NULL: nothing. */
+const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);
+
 /* NULL when the lot has none of it. */
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name);
 
+/* What the scanner's model did to the foils, the largest of each; NaN: there is none. */
+fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis);
+
 /* Parts of the analysis, each in its own file. */
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);
+fg_status fg_lot_analyse_correlation(fg_context *ctx, fg_lot_analysis *analysis);
+void fg_lot_analyse_thickness(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis);
+void fg_lot_find_layout(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "lot/analysis.h"
 
-enum { GROUPS_MAX = 12, WORDS_MAX = 4096 };
+enum { WORDS_MAX = 4096 };
 
 /* Distinct cells of a column, in order of appearance. */
 typedef struct words {
@@ -107,9 +107,9 @@ fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis) {
   words *groups = block;
   list_words(analysis, column, groups);
   fg_status status = FG_OK;
-  if (groups->count > GROUPS_MAX)
+  if (groups->count > FG_LOT_GROUPS_MAX)
     status = fg_fail(ctx, FG_ERR_DATA, "group_column '%s' has %zu groups; at most %d are compared",
-                     lot->settings.group_column, groups->count, GROUPS_MAX);
+                     lot->settings.group_column, groups->count, FG_LOT_GROUPS_MAX);
   else
     status = compare_pairs(ctx, analysis, groups, column);
   free(groups);
@@ -163,7 +163,8 @@ static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size
 static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int bump) {
   if (!bump) return fg_report_value(quantity->field, foil);
   for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number == bump) return fg_report_value(quantity->field, &foil->bumps[i]);
+    if (foil->bumps[i].number == bump && fg_lot_bump_counts(foil, &foil->bumps[i]))
+      return fg_report_value(quantity->field, &foil->bumps[i]);
   return NAN;
 }
 

@@ -1,4 +1,4 @@
-/* Statistics of each quantity, and of radius against angle. */
+/* Statistics of each quantity. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +16,8 @@ static const struct {
     {FG_REPORT_BUMP, "bump_angle_deg"},
     {FG_REPORT_BUMP, "height_mm"},
     {FG_REPORT_BUMP, "clearance_mm"},
+    {FG_REPORT_BUMP, "height_fitted_mm"},
+    {FG_REPORT_BUMP, "clearance_fitted_mm"},
     {FG_REPORT_BUMP, "radius_error_pct"},
     {FG_REPORT_BUMP, "bump_angle_error_pct"},
     {FG_REPORT_BUMP, "clearance_error"},
@@ -75,11 +77,12 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
   quantity->size = block;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
-    if (foil->flags & FG_FOIL_NOT_MEASURED) continue;
+    if (!fg_foil_is_measured(foil)) continue;
     if (quantity->owner == FG_REPORT_FOIL)
       take_value(quantity, i, fg_report_value(quantity->field, foil));
     for (size_t k = 0; quantity->owner == FG_REPORT_BUMP && k < foil->bump_count; k++)
-      take_value(quantity, i, fg_report_value(quantity->field, &foil->bumps[k]));
+      if (fg_lot_bump_counts(foil, &foil->bumps[k]))
+        take_value(quantity, i, fg_report_value(quantity->field, &foil->bumps[k]));
   }
   return FG_OK;
 }
@@ -117,7 +120,8 @@ static size_t highest_number(const fg_lot_analysis *analysis) {
   int highest = 0;
   for (size_t i = 0; i < analysis->foil_count; i++)
     for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++)
-      if (analysis->foils[i].foil->bumps[k].number > highest)
+      if (fg_foil_is_measured(analysis->foils[i].foil) &&
+          analysis->foils[i].foil->bumps[k].number > highest)
         highest = analysis->foils[i].foil->bumps[k].number;
   return (size_t)highest;
 }
@@ -141,7 +145,7 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
     for (size_t k = 0; k < foil->bump_count; k++)
-      if (foil->bumps[k].number >= 1)
+      if (foil->bumps[k].number >= 1 && fg_lot_bump_counts(foil, &foil->bumps[k]))
         add_to_place(&quantity->place[foil->bumps[k].number - 1],
                      fg_report_value(quantity->field, &foil->bumps[k]));
   }
@@ -224,119 +228,6 @@ static fg_status judge_capability(fg_context *ctx, const fg_lot_settings *settin
   return fg_capability_compute(ctx, &input, &quantity->capability);
 }
 
-typedef struct pairs {
-  double *radius_pct, *angle_pct; /* errors */
-  size_t count;
-} pairs;
-
-static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis, pairs *p) {
-  size_t most = 0;
-  void *block;
-  for (size_t i = 0; i < analysis->foil_count; i++)
-    most += analysis->foils[i].foil->bump_count;
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof(double), &block));
-  p->radius_pct = block;
-  FG_TRY(fg_memory_allocate(ctx, most, sizeof(double), &block));
-  p->angle_pct = block;
-  for (size_t i = 0; i < analysis->foil_count; i++)
-    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
-      const fg_bump *bump = &analysis->foils[i].foil->bumps[k];
-      if (!isfinite(bump->radius_error_pct) || !isfinite(bump->bump_angle_error_pct)) continue;
-      p->radius_pct[p->count] = bump->radius_error_pct;
-      p->angle_pct[p->count++] = bump->bump_angle_error_pct;
-    }
-  return FG_OK;
-}
-
-/* The value that `share` of the values lie below. */
-static fg_status tail_of(fg_context *ctx, const double *values, size_t count, double share,
-                         double limits[2]) {
-  void *block;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
-  double *sorted = block;
-  memcpy(sorted, values, count * sizeof *values);
-  qsort(sorted, count, sizeof *sorted, compare_doubles);
-  limits[0] = fg_sample_quantile(sorted, count, share);
-  limits[1] = fg_sample_quantile(sorted, count, 1 - share);
-  free(sorted);
-  return FG_OK;
-}
-
-static bool inside(double value, const double limits[2]) {
-  return value >= limits[0] && value <= limits[1];
-}
-
-static fg_status trim(fg_context *ctx, double trim_pct, pairs *p) {
-  double radius[2], angle[2];
-  size_t kept = 0;
-  FG_TRY(tail_of(ctx, p->radius_pct, p->count, trim_pct / 100, radius));
-  FG_TRY(tail_of(ctx, p->angle_pct, p->count, trim_pct / 100, angle));
-  for (size_t i = 0; i < p->count; i++) {
-    if (!inside(p->radius_pct[i], radius) || !inside(p->angle_pct[i], angle)) continue;
-    p->radius_pct[kept] = p->radius_pct[i];
-    p->angle_pct[kept++] = p->angle_pct[i];
-  }
-  p->count = kept;
-  return FG_OK;
-}
-
-typedef struct line {
-  double slope, intercept, r, slope_error;
-} line;
-
-static line fit_line(const double *x, const double *y, size_t count) {
-  double mx = 0, my = 0, sxx = 0, sxy = 0, syy = 0, n = (double)count;
-  for (size_t i = 0; i < count; i++) {
-    mx += x[i] / n;
-    my += y[i] / n;
-  }
-  for (size_t i = 0; i < count; i++) {
-    sxx += (x[i] - mx) * (x[i] - mx);
-    sxy += (x[i] - mx) * (y[i] - my);
-    syy += (y[i] - my) * (y[i] - my);
-  }
-  line l = {.slope = sxy / sxx, .r = sxy / sqrt(sxx * syy)};
-  l.intercept = my - l.slope * mx;
-  l.slope_error = sqrt(fmax(0, syy - l.slope * sxy) / (n - 2) / sxx);
-  return l;
-}
-
-static void fit_errors(const fg_lot_settings *settings, pairs *p, fg_lot_correlation *result) {
-  line errors = fit_line(p->radius_pct, p->angle_pct, p->count);
-  fg_lot_place arc = {0};
-  result->trimmed = result->count - p->count;
-  result->r = errors.r;
-  result->slope = errors.slope;
-  result->intercept = errors.intercept;
-  for (size_t i = 0; i < p->count; i++) {
-    double radius = 1 + p->radius_pct[i] / 100, angle = 1 + p->angle_pct[i] / 100;
-    add_to_place(&arc, 100 * (radius * angle - 1));
-    p->radius_pct[i] = log(radius);
-    p->angle_pct[i] = log(angle);
-  }
-  line logs = fit_line(p->radius_pct, p->angle_pct, p->count);
-  double reach = logs.slope_error *
-                 fg_distribution_t_quantile((1 + settings->confidence) / 2, (double)p->count - 2);
-  result->log_slope = logs.slope;
-  result->log_low = logs.slope - reach;
-  result->log_high = logs.slope + reach;
-  result->arc_length_mean_pct = arc.mean;
-  result->arc_length_sd_pct = sqrt(arc.sd / (double)(arc.count - 1));
-}
-
-static fg_status correlate(fg_context *ctx, fg_lot_analysis *analysis) {
-  const fg_lot_settings *settings = &analysis->lot->settings;
-  pairs p = {0};
-  fg_status status = collect_pairs(ctx, analysis, &p);
-  analysis->correlation.count = p.count;
-  if (status == FG_OK && p.count >= 5) status = trim(ctx, settings->trim_pct, &p);
-  analysis->has_correlation = status == FG_OK && p.count >= 5;
-  if (analysis->has_correlation) fit_errors(settings, &p, &analysis->correlation);
-  free(p.radius_pct);
-  free(p.angle_pct);
-  return status;
-}
-
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY(list_quantities(ctx, analysis));
   for (size_t i = 0; i < analysis->quantity_count; i++) {
@@ -347,5 +238,5 @@ fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) 
     FG_TRY(chart(ctx, analysis, quantity));
     FG_TRY(judge_capability(ctx, &analysis->lot->settings, quantity));
   }
-  return correlate(ctx, analysis);
+  return FG_OK;
 }

@@ -50,7 +50,7 @@ double fg_characteristic_value(const fg_characteristic *characteristic, const fg
   for (size_t i = 0; characteristic->bump && i < foil->bump_count; i++)
     if (foil->bumps[i].number == characteristic->bump) object = &foil->bumps[i];
   *u = NAN;
-  if (!object || (foil->flags & FG_FOIL_NOT_MEASURED)) return NAN;
+  if (!object || !fg_foil_is_measured(foil)) return NAN;
   *u = fg_report_uncertainty(field, object);
   return fg_report_value(field, object);
 }

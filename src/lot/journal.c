@@ -13,8 +13,12 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "lot/seal.h"
 
-enum { SYNC_RECORDS = 64, COPY_BYTES = 1 << 16 };
+#define SCHEMA          "foilgauge/results/2"
+#define SCHEMA_UNSEALED "foilgauge/results/1" /* without checksums */
+
+enum { SYNC_RECORDS = 64, COPY_BYTES = 1 << 16, LINE_BYTES_MAX = 1 << 26 };
 
 static fg_status fail_errno(fg_context *ctx, const char *path, const char *what) {
   const char *advice = errno == ENOSPC || errno == EDQUOT || errno == EFBIG
@@ -23,12 +27,12 @@ static fg_status fail_errno(fg_context *ctx, const char *path, const char *what)
   return fg_fail(ctx, FG_ERR_IO, "%s: cannot be %s: %s%s", path, what, strerror(errno), advice);
 }
 
-static void write_head(FILE *out, const fg_journal_head *head) {
+static void write_head_members(FILE *out, const fg_journal_head *head) {
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_line(&json);
   fg_json_object(&json, NULL);
-  fg_json_string(&json, "schema", "foilgauge/results/1");
+  fg_json_string(&json, "schema", SCHEMA);
   fg_json_string(&json, "version", head->version);
   fg_json_array(&json, "shard");
   fg_json_integer(&json, NULL, (int64_t)head->shard.index);
@@ -43,6 +47,22 @@ static void write_head(FILE *out, const fg_journal_head *head) {
   fg_json_end(&json);
 }
 
+static fg_status write_head(fg_context *ctx, FILE *out, const fg_journal_head *head) {
+  char *line = NULL;
+  size_t length;
+  FILE *memory = open_memstream(&line, &length);
+  if (memory) write_head_members(memory, head);
+  bool broken = !memory || ferror(memory) != 0;
+  if ((memory && fclose(memory) != 0) || broken) {
+    free(line);
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the head of a journal");
+  }
+  FG_TRY(fg_seal_line(ctx, &line, &length));
+  fwrite(line, 1, length, out);
+  free(line);
+  return FG_OK;
+}
+
 static bool read_text(const cJSON *root, const char *name, char *text, size_t size) {
   const cJSON *value = cJSON_GetObjectItemCaseSensitive(root, name);
   if (!cJSON_IsString(value) || strlen(value->valuestring) >= size) return false;
@@ -54,9 +74,6 @@ static bool read_head_members(const cJSON *root, fg_journal_head *head) {
   const cJSON *shard = cJSON_GetObjectItemCaseSensitive(root, "shard");
   const cJSON *items = cJSON_GetObjectItemCaseSensitive(root, "items");
   const cJSON *index = cJSON_GetArrayItem(shard, 0), *count = cJSON_GetArrayItem(shard, 1);
-  char schema[32];
-  if (!read_text(root, "schema", schema, sizeof schema) || strcmp(schema, "foilgauge/results/1"))
-    return false;
   if (!cJSON_IsNumber(index) || !cJSON_IsNumber(count) || !cJSON_IsNumber(items)) return false;
   if (!(index->valuedouble >= 1 && index->valuedouble <= count->valuedouble &&
         count->valuedouble <= 1e9 && items->valuedouble >= 0 && items->valuedouble < 1e12))
@@ -69,16 +86,35 @@ static bool read_head_members(const cJSON *root, fg_journal_head *head) {
          read_text(root, "measured_with", head->measured_with, 65);
 }
 
-static fg_status parse_head(fg_context *ctx, const char *path, const char *line,
-                            fg_journal_head *head) {
+static bool has_schema(const cJSON *root, const char *expected) {
+  const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
+  return cJSON_IsString(schema) && !strcmp(schema->valuestring, expected);
+}
+
+typedef enum head_state { HEAD_GOOD, HEAD_EARLIER, HEAD_DAMAGED } head_state;
+
+static head_state parse_head(const char *line, fg_journal_head *head) {
   *head = (fg_journal_head){0};
+  head_state state = HEAD_DAMAGED;
   cJSON *root = cJSON_Parse(line);
-  bool good = root && read_head_members(root, head);
+  if (has_schema(root, SCHEMA_UNSEALED) && !cJSON_HasObjectItem(root, "checksum"))
+    state = HEAD_EARLIER;
+  else if (fg_seal_holds(line, strlen(line)) && has_schema(root, SCHEMA) &&
+           read_head_members(root, head))
+    state = HEAD_GOOD;
   cJSON_Delete(root);
-  if (good) return FG_OK;
+  return state;
+}
+
+static fg_status fail_head(fg_context *ctx, const char *path, head_state state) {
+  if (state == HEAD_EARLIER)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: is of an earlier version, whose records carry no checksum; measure its "
+                   "scans again with --resume",
+                   path);
   return fg_fail(ctx, FG_ERR_DATA,
-                 "%s: not the results of a lot (its first line is not whole); remove it, or choose "
-                 "another folder",
+                 "%s: line 1 is damaged, or it is not the results of a lot; `foilgauge lot "
+                 "--resume` keeps what is whole, if anything is; else choose another folder",
                  path);
 }
 
@@ -88,35 +124,63 @@ typedef struct reader {
   char *line;
   size_t capacity;
   off_t offset;
-  bool head_only;
+  size_t number;  /* of the line, from 1 */
+  size_t records; /* that were whole */
+  fg_journal_damage *damage;
 } reader;
 
-/* The next line, NULL at the end; *whole says whether it has its newline and holds no NUL. */
-static char *next_line(reader *r, fg_journal_entry *entry, bool *whole) {
-  ssize_t length = getline(&r->line, &r->capacity, r->in);
-  if (length <= 0) return NULL;
-  *entry = (fg_journal_entry){r->offset, (size_t)length};
-  *whole = r->line[length - 1] == '\n' && !memchr(r->line, 0, (size_t)length);
-  r->offset += length;
-  return r->line;
+/* One line into r->line, with its newline; false at the end. Of a line that no record can be the
+ * rest is passed over, so that a damaged file takes no more memory than a whole one. */
+static fg_status read_line(fg_context *ctx, reader *r, size_t *length, bool *there) {
+  int byte;
+  *length = 0;
+  while ((byte = getc_unlocked(r->in)) != EOF) {
+    r->offset++;
+    if (*length < LINE_BYTES_MAX) {
+      FG_TRY(fg_memory_reserve(ctx, *length + 2, 1, &r->capacity, (void **)&r->line));
+      r->line[(*length)++] = (char)byte;
+    }
+    if (byte == '\n') break;
+  }
+  *there = *length > 0;
+  if (*there) r->line[*length] = '\0';
+  return FG_OK;
 }
 
-static fg_status read_records(fg_context *ctx, reader *r, size_t *torn, fg_journal_visit *visit,
-                              void *user) {
+/* The next line, NULL at the end; "" when it has no newline or holds a NUL. */
+static fg_status next_line(fg_context *ctx, reader *r, fg_journal_entry *entry, const char **line) {
+  bool there;
+  off_t start = r->offset;
+  size_t length;
+  FG_TRY(read_line(ctx, r, &length, &there));
+  *line = NULL;
+  if (!there) return FG_OK;
+  *entry = (fg_journal_entry){start, length};
+  r->number++;
+  bool whole = r->line[length - 1] == '\n' && !memchr(r->line, 0, length);
+  *line = whole ? r->line : "";
+  return FG_OK;
+}
+
+static void note_damage(reader *r) {
+  if (r->damage->lines++ == 0) r->damage->first = r->number;
+}
+
+static fg_status read_records(fg_context *ctx, reader *r, fg_journal_visit *visit, void *user) {
   fg_journal_entry entry;
-  bool whole;
-  while (next_line(r, &entry, &whole)) {
+  const char *line;
+  for (;;) {
+    FG_TRY(next_line(ctx, r, &entry, &line));
+    if (!line) break;
     fg_record record;
     fg_context inner;
-    fg_status status = FG_ERR_DATA;
-    if (whole)
-      status = r->head_only ? fg_record_parse_head(&inner, r->line, &record)
-                            : fg_record_parse(&inner, r->line, &record);
+    fg_status status = fg_record_parse(&inner, line, &record);
     if (status == FG_ERR_DATA) {
-      ++*torn;
+      note_damage(r);
       continue;
     }
     if (status != FG_OK) return fg_fail(ctx, status, "%s", inner.message);
+    r->records++;
     status = visit(ctx, user, &record, entry);
     fg_record_free(&record);
     FG_TRY(status);
@@ -125,30 +189,58 @@ static fg_status read_records(fg_context *ctx, reader *r, size_t *torn, fg_journ
   return FG_OK;
 }
 
-static fg_status read_file(fg_context *ctx, reader *r, fg_journal_head *head, size_t *torn,
-                           fg_journal_visit *visit, void *user) {
+static fg_status open_reader(fg_context *ctx, reader *r, fg_journal_head *head, head_state *state) {
   fg_journal_entry entry;
-  bool whole = false;
   r->in = fopen(r->path, "rbe");
   if (!r->in) return fail_errno(ctx, r->path, "opened");
-  const char *line = next_line(r, &entry, &whole);
-  fg_status status = parse_head(ctx, r->path, line && whole ? line : "", head);
-  if (status == FG_OK && visit) status = read_records(ctx, r, torn, visit, user);
-  fclose(r->in);
+  const char *line;
+  FG_TRY(next_line(ctx, r, &entry, &line));
+  *state = parse_head(line ? line : "", head);
+  return FG_OK;
+}
+
+static fg_status close_reader(reader *r, fg_status status) {
+  if (r->in) fclose(r->in);
   free(r->line);
   return status;
 }
 
-fg_status fg_journal_read(fg_context *ctx, const char *path, bool head_only, fg_journal_head *head,
-                          size_t *torn, fg_journal_visit *visit, void *user) {
-  reader r = {.path = path, .head_only = head_only};
-  *torn = 0;
-  return read_file(ctx, &r, head, torn, visit, user);
+static fg_status read_strictly(fg_context *ctx, reader *r, fg_journal_head *head,
+                               fg_journal_visit *visit, void *user) {
+  head_state state;
+  FG_TRY(open_reader(ctx, r, head, &state));
+  if (state != HEAD_GOOD) return fail_head(ctx, r->path, state);
+  return visit ? read_records(ctx, r, visit, user) : FG_OK;
+}
+
+fg_status fg_journal_read(fg_context *ctx, const char *path, fg_journal_head *head,
+                          fg_journal_damage *damage, fg_journal_visit *visit, void *user) {
+  reader r = {.path = path, .damage = damage};
+  *damage = (fg_journal_damage){0};
+  return close_reader(&r, read_strictly(ctx, &r, head, visit, user));
 }
 
 fg_status fg_journal_read_head(fg_context *ctx, const char *path, fg_journal_head *head) {
   reader r = {.path = path};
-  return read_file(ctx, &r, head, NULL, NULL, NULL);
+  return close_reader(&r, read_strictly(ctx, &r, head, NULL, NULL));
+}
+
+static fg_status salvage(fg_context *ctx, reader *r, fg_journal_visit *visit, void *user) {
+  fg_journal_head head;
+  head_state state;
+  FG_TRY(open_reader(ctx, r, &head, &state));
+  r->damage->earlier = state == HEAD_EARLIER;
+  if (state == HEAD_EARLIER) return FG_OK;
+  if (state == HEAD_DAMAGED) note_damage(r);
+  FG_TRY(read_records(ctx, r, visit, user));
+  return state == HEAD_DAMAGED && !r->records ? fail_head(ctx, r->path, state) : FG_OK;
+}
+
+fg_status fg_journal_salvage(fg_context *ctx, const char *path, fg_journal_damage *damage,
+                             fg_journal_visit *visit, void *user) {
+  reader r = {.path = path, .damage = damage};
+  *damage = (fg_journal_damage){0};
+  return close_reader(&r, salvage(ctx, &r, visit, user));
 }
 
 static fg_status copy_entry(fg_context *ctx, const char *path, int from, fg_journal_entry entry,
@@ -192,11 +284,9 @@ fg_status fg_journal_rewrite(fg_context *ctx, const char *to, const fg_journal_h
                              const fg_journal_entry *entries, size_t count) {
   fg_output output;
   FG_TRY(fg_output_open(ctx, to, &output));
-  write_head(output.stream, head);
-  fg_status status = copy_entries(ctx, from, from_of, entries, count, output.stream);
-  if (status == FG_OK) return fg_output_commit(ctx, &output);
-  fg_output_discard(&output);
-  return status;
+  fg_status status = write_head(ctx, output.stream, head);
+  if (status == FG_OK) status = copy_entries(ctx, from, from_of, entries, count, output.stream);
+  return fg_output_end(ctx, &output, status);
 }
 
 fg_status fg_journal_open(fg_context *ctx, const char *path, fg_journal *journal) {

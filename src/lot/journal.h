@@ -1,8 +1,9 @@
 /* results.jsonl: records as they are made, and the lock of the folder they lie in.
  *
- * A record is one write of one line. What a crash leaves is at worst a last line that is not whole;
- * it is dropped when the file is read, and what it was about is measured again. A write that fails
- * (disk full) is cut off again, so that every line before it stays whole. */
+ * A record is one write of one line, with its own checksum. What a crash leaves is at worst a last
+ * line that is not whole; it is dropped when the file is read, as is any line that is not what was
+ * written, and what it was about is measured again. A write that fails (disk full) is cut off
+ * again, so that every line before it stays whole. */
 #ifndef FG_LOT_JOURNAL_H
 #define FG_LOT_JOURNAL_H
 
@@ -28,15 +29,27 @@ typedef struct fg_journal_entry {
   size_t length; /* with its newline; 0: no record */
 } fg_journal_entry;
 
-/* Called for every whole record (`head_only`: without foils); what it takes over it sets to zero.
- */
+/* What of a journal could not be taken. */
+typedef struct fg_journal_damage {
+  size_t lines; /* not whole, or not what was written */
+  size_t first; /* the first of them, from 1 */
+  bool earlier; /* by an earlier version, without checksums: none of it was taken */
+} fg_journal_damage;
+
+/* Called for every whole record; what it takes over it sets to zero. */
 typedef fg_status fg_journal_visit(fg_context *ctx, void *user, fg_record *record,
                                    fg_journal_entry entry);
 
-/* Reads the file; lines that are not whole are counted in *torn and left out. FG_ERR_DATA when the
- * first line is not that of a journal. */
-fg_status fg_journal_read(fg_context *ctx, const char *path, bool head_only, fg_journal_head *head,
-                          size_t *torn, fg_journal_visit *visit, void *user);
+/* Reads the file; what is damaged is noted and left out. FG_ERR_DATA when the first line is not
+ * that of a journal of this version. */
+fg_status fg_journal_read(fg_context *ctx, const char *path, fg_journal_head *head,
+                          fg_journal_damage *damage, fg_journal_visit *visit, void *user);
+
+/* Takes what can be taken, for a caller who measures the rest again: a damaged first line counts as
+ * any other, and a journal of an earlier version is only noted. FG_ERR_DATA when there is neither a
+ * first line nor a record: then it is no journal, and nobody's to overwrite. */
+fg_status fg_journal_salvage(fg_context *ctx, const char *path, fg_journal_damage *damage,
+                             fg_journal_visit *visit, void *user);
 
 /* Only the first line. */
 fg_status fg_journal_read_head(fg_context *ctx, const char *path, fg_journal_head *head);

@@ -16,25 +16,26 @@ fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, cha
 }
 
 void fg_lot_sum_text(const char *text, char sum[65]) {
-  struct sha256_ctx state;
-  sha256_init(&state);
-  sha256_update(&state, strlen(text), (const uint8_t *)text);
-  fg_sha256_finish(&state, sum);
+  fg_sha256_text(text, sum);
 }
 
-/* Tolerances judge a measurement and statistics follow it: neither makes it another one. */
+/* Tolerances judge a measurement and statistics follow it: neither makes it another one. Other
+ * quantities do: their values stand in another order. */
 fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, char sum[65]) {
   fg_lot_settings bare;
-  char *text;
+  char *text, *names;
   fg_lot_settings_default(&bare);
   bare.design = settings->design;
   bare.design.tolerance_count = 0;
   bare.dpi = settings->dpi;
   strcpy(bare.model_sha256, settings->model_sha256);
-  FG_TRY(fg_lot_settings_format(ctx, &bare, false, &text));
-  fg_lot_sum_text(text, sum);
+  FG_TRY(fg_record_format_names(ctx, &names));
+  fg_status status = fg_lot_settings_format(ctx, &bare, false, &text);
+  if (status == FG_OK) status = fg_text_append(ctx, &text, "%s", names);
+  if (status == FG_OK) fg_lot_sum_text(text, sum);
   free(text);
-  return FG_OK;
+  free(names);
+  return status;
 }
 
 fg_status fg_lot_write_text(fg_context *ctx, const char *folder, const char *name,
@@ -91,22 +92,34 @@ static fg_status take_record(fg_context *ctx, void *user, fg_record *record,
   return FG_OK;
 }
 
+/* By the name that it has in every folder: a report must not depend on where it came from. */
+static fg_status load_model(fg_context *ctx, const char *folder, fg_lot *lot) {
+  char *path, *text = NULL;
+  FG_TRY(fg_lot_path(ctx, folder, FG_LOT_MODEL_FILE, &path));
+  fg_status status = fg_file_read_text(ctx, path, FG_LOT_MODEL_BYTES_MAX, &text);
+  if (status == FG_OK) status = fg_scan_model_parse(ctx, FG_LOT_MODEL_FILE, text, &lot->model);
+  free(path);
+  free(text);
+  return status;
+}
+
 fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
   loader l = {.lot = lot};
   char *path = NULL;
   void *block;
-  size_t torn;
+  fg_journal_damage damage;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_design_derive(ctx, &lot->settings.design, &lot->nominal));
   FG_TRY_EXIT(fg_memory_allocate(ctx, lot->manifest.items, sizeof *lot->records, &block));
   lot->records = block;
   FG_TRY_EXIT(fg_manifest_index_build(ctx, &lot->manifest, &l.index));
   FG_TRY_EXIT(fg_lot_path(ctx, folder, "results.jsonl", &path));
-  FG_TRY_EXIT(fg_journal_read(ctx, path, false, &lot->head, &torn, take_record, &l));
+  FG_TRY_EXIT(fg_journal_read(ctx, path, &lot->head, &damage, take_record, &l));
   for (size_t i = 0; i < lot->manifest.items; i++)
     if (!lot->records[i].scan)
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
                           fg_manifest_scan(&lot->manifest, i)));
+  if (lot->settings.model[0]) FG_TRY_EXIT(load_model(ctx, folder, lot));
 exit:
   free(path);
   fg_manifest_index_free(&l.index);
@@ -118,5 +131,6 @@ void fg_lot_free(fg_lot *lot) {
     fg_record_free(&lot->records[i]);
   free(lot->records);
   fg_manifest_free(&lot->manifest);
+  if (lot->model) fg_scan_model_free(lot->model);
   *lot = (fg_lot){0};
 }

@@ -2,21 +2,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/csv.h"
 #include "lot/writers.h"
 #include "report/json_writer.h"
 #include "report/words.h"
 
 static void put_text(FILE *out, const char *text) {
-  if (!strpbrk(text, ",\"\r\n")) {
-    fputs(text, out);
-    return;
-  }
-  fputc('"', out);
-  for (; *text; text++) {
-    if (*text == '"') fputc('"', out);
-    fputc(*text, out);
-  }
-  fputc('"', out);
+  fg_csv_put_text(out, text, fg_utf8_put);
 }
 
 static void put_number(FILE *out, double value) {
@@ -105,17 +97,20 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
 
 fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_manifest *manifest = &analysis->lot->manifest;
+  const fg_design *design = &analysis->lot->settings.design;
   const double *stiffness = analysis->stiffness.normalised;
   size_t at = 0;
-  put_heading(out, manifest, ",foil_number,bump,flags,normalised_stiffness", FG_REPORT_BUMP);
+  put_heading(out, manifest, ",foil_number,bump,flags,normalised_stiffness,verdict",
+              FG_REPORT_BUMP);
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
     for (size_t k = 0; k < foil->foil->bump_count; k++) {
       const fg_bump *bump = &foil->foil->bumps[k];
       put_columns(out, manifest, foil->item);
       fprintf(out, ",%d,%d", foil->foil->number, bump->number);
-      put_flags(out, fg_bump_flag_words(), bump->flags);
+      put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump));
       put_number(out, stiffness[at++]);
+      fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
       put_values(out, FG_REPORT_BUMP, bump);
     }
   }

@@ -11,8 +11,13 @@
 
 /* A control character would start another field. */
 static void put_text(FILE *out, const char *text) {
-  for (; *text; text++)
-    fputc((unsigned char)*text < 0x20 || *text == 0x7F ? ' ' : *text, out);
+  while (*text)
+    if ((unsigned char)*text < 0x20 || *text == 0x7F) {
+      fputc(' ', out);
+      text++;
+    } else {
+      text += fg_utf8_put(out, text);
+    }
 }
 
 static void put_number(FILE *out, const char *field, size_t number, double value) {

@@ -5,6 +5,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/overwrite.h"
 #include "core/text.h"
 #include "foilgauge/lot.h"
 #include "lot/report.h"
@@ -78,9 +79,26 @@ static fg_status add_lot(fg_context *ctx, FILE *out, const char *page, const cha
   return status;
 }
 
+/* The page must not take the place of what it is made from, nor of what it links to. */
+static fg_status check_page(fg_context *ctx, const char *const *folders, size_t count,
+                            const char *page) {
+  fg_overwrite overwrite = {0};
+  fg_status status = fg_overwrite_begin(ctx, &page, 1, &overwrite);
+  for (size_t i = 0; i < 2 * count && status == FG_OK; i++) {
+    char *path;
+    status = fg_lot_path(ctx, folders[i / 2], i % 2 ? "lot.json" : "index.html", &path);
+    if (status != FG_OK) break;
+    status = fg_overwrite_check(ctx, &overwrite, path, "a report of a lot");
+    free(path);
+  }
+  fg_overwrite_free(&overwrite);
+  return status;
+}
+
 fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count,
                        const char *page) {
   fg_output output;
+  FG_TRY(check_page(ctx, folders, count, page));
   FG_TRY(fg_output_open(ctx, page, &output));
   fg_html_begin(output.stream, "Lots");
   fputs("<section>\n<h1>Lots</h1>\n<div class=\"scroll\"><table><thead><tr><th>lot</th><th>verdict"
@@ -92,7 +110,5 @@ fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count
     status = add_lot(ctx, output.stream, page, folders[i]);
   fputs("</tbody></table></div>\n</section>\n", output.stream);
   fg_html_end(output.stream);
-  if (status == FG_OK) return fg_output_commit(ctx, &output);
-  fg_output_discard(&output);
-  return status;
+  return fg_output_end(ctx, &output, status);
 }

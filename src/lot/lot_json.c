@@ -3,6 +3,7 @@
 
 #include "lot/writers.h"
 #include "report/measure_json.h"
+#include "report/scan_model_words.h"
 #include "report/words.h"
 
 static void write_inputs(fg_json *json, const fg_lot *lot) {
@@ -25,10 +26,13 @@ static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_integer(json, "scans", (int64_t)analysis->lot->manifest.items);
   fg_json_integer(json, "scans_not_measured", (int64_t)analysis->failed_scans);
   fg_json_integer(json, "foils", (int64_t)analysis->foil_count);
+  fg_json_integer(json, "bumps", (int64_t)analysis->bumps);
+  fg_json_integer(json, "bumps_crushed", (int64_t)analysis->crushed);
   for (int verdict = FG_VERDICT_PASS; verdict <= FG_VERDICT_NONE; verdict++)
     fg_json_integer(json, fg_verdict_word((fg_verdict)verdict),
                     (int64_t)analysis->by_verdict[verdict]);
   fg_json_integer(json, "exceeded", (int64_t)analysis->exceeded);
+  fg_json_integer(json, "rejected", (int64_t)analysis->outcome.rejected);
   fg_json_object_end(json);
 }
 
@@ -41,13 +45,17 @@ static void write_flags(fg_json *json, unsigned flags) {
 
 static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   const fg_manifest *manifest = &analysis->lot->manifest;
+  char defect[200];
   fg_json_object(json, NULL);
   fg_json_line(json);
   fg_json_integer(json, "input", (int64_t)foil->item);
   fg_json_string(json, "label", fg_manifest_label(manifest, foil->item));
   fg_json_integer(json, "number", foil->foil->number);
   write_flags(json, foil->foil->flags);
-  fg_json_string(json, "verdict", fg_verdict_word(foil->verdict));
+  fg_json_verdict(json, foil->verdict);
+  bool rejected =
+      fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect);
+  fg_json_string(json, "defect", rejected ? defect : NULL);
   fg_json_bool(json, "exceeded", foil->exceeded);
   fg_json_number(json, "severity", foil->severity);
   fg_json_string(json, "worst_quantity", foil->worst_field ? foil->worst_field->name : NULL);
@@ -162,12 +170,14 @@ static void write_correlation(fg_json *json, const fg_lot_correlation *correlati
   fg_json_object(json, "correlation");
   fg_json_integer(json, "count", (int64_t)correlation->count);
   fg_json_integer(json, "trimmed", (int64_t)correlation->trimmed);
+  fg_json_integer(json, "foils", (int64_t)correlation->foils);
   fg_json_number(json, "r", correlation->r);
   fg_json_number(json, "slope", correlation->slope);
   fg_json_number(json, "intercept_pct", correlation->intercept);
   fg_json_number(json, "log_slope", correlation->log_slope);
   fg_json_number(json, "log_slope_low", correlation->log_low);
   fg_json_number(json, "log_slope_high", correlation->log_high);
+  fg_json_number(json, "log_slope_freedom", correlation->log_freedom);
   fg_json_number(json, "arc_length_mean_pct", correlation->arc_length_mean_pct);
   fg_json_number(json, "arc_length_sd_pct", correlation->arc_length_sd_pct);
   fg_json_object_end(json);
@@ -199,9 +209,22 @@ static void write_arch(fg_json *json, const char *name, const fg_arch_stiffness 
   fg_json_line_end(json);
 }
 
+static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
+  const fg_lot_thickness *thickness = &analysis->thickness;
+  fg_json_object(json, "thickness");
+  fg_json_integer(json, "foils", (int64_t)thickness->foils);
+  fg_json_number(json, "mean_mm", thickness->mean.mm);
+  fg_json_number(json, "u_mean_mm", thickness->mean.u_mm);
+  fg_json_number(json, "design_mm", analysis->lot->settings.design.thickness_mm);
+  fg_json_bool(json, "differs", thickness->differs);
+  fg_json_object_end(json);
+}
+
 static void write_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_lot_stiffness *stiffness = &analysis->stiffness;
   fg_json_object(json, "stiffness");
+  fg_json_string(json, "model", "classical");
+  fg_json_string(json, "note", fg_lot_stiffness_note(analysis));
   write_arch(json, "design_free", &stiffness->design_free);
   write_arch(json, "design_welded", &stiffness->design_welded);
   fg_json_object(json, "sensitivity");
@@ -214,6 +237,8 @@ static void write_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_line_end(json);
   if (analysis->has_stiffness) {
     write_spread(json, "normalised", &stiffness->measured);
+    fg_json_number(json, "u_normalised_by_thickness", stiffness->u_by_thickness);
+    write_spread(json, "normalised_at_design_thickness", &stiffness->at_design_thickness);
     write_spread(json, "normalised_resampled", &stiffness->resampled);
     write_spread(json, "normalised_foot", &stiffness->foot);
   }
@@ -224,7 +249,7 @@ static void write_pads(fg_json *json, const fg_lot_analysis *analysis,
                        const fg_lot_bearing *bearing) {
   fg_json_array(json, "pads");
   fg_json_line(json);
-  for (size_t pad = 0; pad < analysis->lot->settings.layout.pads; pad++)
+  for (size_t pad = 0; pad < analysis->layout.pads; pad++)
     fg_json_string(json, NULL,
                    bearing->pad[pad]
                        ? fg_manifest_label(&analysis->lot->manifest, bearing->pad[pad]->item)
@@ -298,10 +323,22 @@ static void write_gauge(fg_json *json, const fg_lot_gauge *gauge) {
   fg_json_line_end(json);
 }
 
+static void write_layout(fg_json *json, const fg_lot_analysis *analysis) {
+  const fg_bearing_layout *layout = &analysis->layout;
+  fg_json_object(json, "bearing_layout");
+  fg_json_integer(json, "pads", (int64_t)layout->pads);
+  fg_json_integer(json, "bumps_per_pad", (int64_t)layout->bumps_per_pad);
+  fg_json_integer(json, "first_bump", (int64_t)layout->first_bump);
+  fg_json_number(json, "bump_pitch_deg", fg_bearing_pitch_deg(layout));
+  fg_json_string(json, "note", analysis->layout_note[0] ? analysis->layout_note : NULL);
+  fg_json_object_end(json);
+}
+
 static void write_bearings(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   bool assumed =
       fg_manifest_column(manifest, analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
+  write_layout(json, analysis);
   fg_json_bool(json, "bearings_assumed", assumed);
   fg_json_array(json, "bearings");
   for (size_t i = 0; i < analysis->bearing_count; i++)
@@ -309,6 +346,8 @@ static void write_bearings(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_array_end(json);
   if (analysis->clearance_pct.count)
     write_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);
+  if (analysis->clearance_fitted_pct.count)
+    write_spread(json, "clearance_fitted_relative_to_design_pct", &analysis->clearance_fitted_pct);
 }
 
 fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
@@ -318,12 +357,15 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/lot/1");
   fg_json_string(&json, "name", lot->settings.name);
-  fg_json_string(&json, "verdict", fg_verdict_word(analysis->verdict));
+  fg_json_verdict(&json, analysis->outcome.verdict);
   write_counts(&json, analysis);
   fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
   fg_json_string(&json, "manifest_sha256", lot->head.manifest_sha256);
   fg_json_string(&json, "model_sha256",
                  lot->settings.model_sha256[0] ? lot->settings.model_sha256 : NULL);
+  fg_json_scan_model(&json, "model", lot->model);
+  fg_correction most = fg_lot_correction_largest(analysis);
+  fg_json_correction(&json, &most);
   fg_json_design(&json, "design", &lot->settings.design);
   fg_json_nominal(&json, "nominal", &lot->nominal);
   write_inputs(&json, lot);
@@ -333,6 +375,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
     write_quantity(&json, &analysis->quantities[i]);
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
+  write_thickness(&json, analysis);
   write_stiffness(&json, analysis);
   write_bearings(&json, analysis);
   fg_json_array(&json, "comparisons");

@@ -3,17 +3,12 @@
 #include <string.h>
 
 #include "lot/lot_plots.h"
+#include "lot/page_parts.h"
 #include "lot/writers.h"
 #include "report/html_parts.h"
+#include "report/scan_model_words.h"
 
 enum { FOIL_ROWS_MAX = 300, POLAR_MAX = 4, BEARING_ROWS_MAX = 200 };
-
-static void put_number(FILE *out, double value, int digits) {
-  if (isfinite(value))
-    fprintf(out, "%s%.*g", value < 0 ? "−" : "", digits, fabs(value));
-  else
-    fputs("–", out);
-}
 
 static void put_tile(FILE *out, const char *title, size_t count) {
   fprintf(out, "<div><dt>%s</dt><dd>%zu</dd></div>\n", title, count);
@@ -23,11 +18,10 @@ static void put_tiles(FILE *out, const fg_lot_analysis *analysis) {
   const size_t *by = analysis->by_verdict;
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, "Foils", analysis->foil_count);
-  if (analysis->lot->settings.design.tolerance_count) {
-    put_tile(out, "Pass", by[FG_VERDICT_PASS]);
-    put_tile(out, "Fail", by[FG_VERDICT_FAIL]);
-    put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
-  }
+  bool judged = analysis->lot->settings.design.tolerance_count > 0;
+  if (judged) put_tile(out, "Pass", by[FG_VERDICT_PASS]);
+  if (judged || by[FG_VERDICT_FAIL]) put_tile(out, "Fail", by[FG_VERDICT_FAIL]);
+  if (judged) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
   put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED] + analysis->failed_scans);
   fputs("</dl>\n", out);
 }
@@ -38,6 +32,22 @@ static void put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_f
     fprintf(out, ", foil %d", foil->foil->number);
 }
 
+/* What stands against a foil most: what it is, or its farthest value. */
+static void put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  char defect[200];
+  if (foil->foil->error[0]) {
+    fg_html_text(out, foil->foil->error);
+  } else if (fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect)) {
+    fputs(defect, out);
+  } else if (foil->worst_field) {
+    fputs(foil->worst_field->words, out);
+    if (foil->worst_number) fprintf(out, " of bump %d", foil->worst_number);
+    fputs(": ", out);
+    put_number(out, foil->worst_value, 5);
+    fprintf(out, " %s", foil->worst_field->unit);
+  }
+}
+
 static void put_worst(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->worst[0]) return;
   fputs("<h2>The worst three</h2>\n<ol class=\"worst\">\n", out);
@@ -45,17 +55,8 @@ static void put_worst(FILE *out, const fg_lot_analysis *analysis) {
     const fg_lot_foil *foil = analysis->worst[i];
     fputs("<li><b>", out);
     put_label(out, analysis, foil);
-    fputs("</b>", out);
-    if (foil->verdict == FG_VERDICT_NOT_MEASURED && foil->foil->error[0]) {
-      fputs(": ", out);
-      fg_html_text(out, foil->foil->error);
-    } else if (foil->worst_field) {
-      fprintf(out, ": %s", foil->worst_field->words);
-      if (foil->worst_number) fprintf(out, " of bump %d", foil->worst_number);
-      fputs(": ", out);
-      put_number(out, foil->worst_value, 5);
-      fprintf(out, " %s", foil->worst_field->unit);
-    }
+    fputs("</b>: ", out);
+    put_reason(out, analysis, foil);
     fputs("</li>\n", out);
   }
   fputs("</ol>\n", out);
@@ -69,16 +70,37 @@ static const fg_lot_quantity *leading_quantity(const fg_lot_analysis *analysis) 
   return fg_lot_find_quantity(analysis, "height_mm");
 }
 
-static void put_first_screen(FILE *out, const fg_lot_analysis *analysis) {
+/* By what, what it did at most, and how many foils it was not made for. */
+static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
+  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
+  const fg_correction most = fg_lot_correction_largest(analysis);
+  size_t beyond = 0;
+  fg_correction_moved(&most, moved, sizeof moved);
+  fg_correction_added(&most, added, sizeof added);
+  FG_TRY(fg_html_corrected(ctx, out, analysis->lot->model, moved, added));
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    beyond += (analysis->foils[i].foil->flags & FG_FOIL_BEYOND_MODEL_REGION) != 0;
+  if (beyond)
+    fprintf(
+        out,
+        "<ul class=\"flags\"><li>%zu of %zu foils reach beyond the region that the scanner&#39;s "
+        "model was found in: there the correction is not known to hold (flag "
+        "beyond_model_region in foils.csv).</li></ul>\n",
+        beyond, analysis->foil_count);
+  return FG_OK;
+}
+
+static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *leading = leading_quantity(analysis);
   fputs("<section>\n<header><h1>", out);
   fg_html_text(out, analysis->lot->settings.name);
   fputs("</h1>", out);
-  fg_html_verdict(out, analysis->verdict);
+  fg_html_outcome(out, &analysis->outcome);
   fprintf(out, "<p>%zu foils of %zu scans, design ", analysis->foil_count,
           analysis->lot->manifest.items);
   fg_html_text(out, analysis->lot->settings.design.name);
   fputs("</p></header>\n", out);
+  FG_TRY(put_corrected(ctx, out, analysis));
   put_tiles(out, analysis);
   put_worst(out, analysis);
   if (leading) {
@@ -90,6 +112,7 @@ static void put_first_screen(FILE *out, const fg_lot_analysis *analysis) {
             leading->field->words, leading->tolerance ? "; red: tolerance" : "");
   }
   fputs("</section>\n", out);
+  return FG_OK;
 }
 
 static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
@@ -131,6 +154,11 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
                                  : "not stable");
   }
   fputs("</tbody></table></div>\n", out);
+  if (analysis->crushed)
+    fprintf(out,
+            "<p class=\"note\">%zu of %zu bumps are crushed: they are in no statistics, stiffness "
+            "or clearance of this page.</p>\n",
+            analysis->crushed, analysis->bumps);
 }
 
 static void put_ratio(FILE *out, const fg_ratio *ratio) {
@@ -228,52 +256,18 @@ static void put_springback(FILE *out, const fg_lot_analysis *analysis) {
     fg_lot_plot_correlation(out, analysis);
     fprintf(out,
             "<figcaption>Dashed: constant arc length. Orange: least squares over %zu bumps (%zu "
-            "trimmed), slope %.3f, r %.3f. In logarithms, where a constant arc length is a slope "
-            "of −1 exactly: %.4f (%.4f … %.4f). Arc length against the design: %+.3f %%, s %.3f "
-            "%%.</figcaption></figure>\n",
-            line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope,
-            line->log_low, line->log_high, line->arc_length_mean_pct, line->arc_length_sd_pct);
+            "trimmed by their radius), slope %.3f, r %.3f. In logarithms, where a constant arc "
+            "length is a slope of −1 exactly: %.4f",
+            line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope);
+    if (isfinite(line->log_freedom))
+      fprintf(out, " (%.4f … %.4f; bumps of %zu foils, %.1f degrees of freedom)", line->log_low,
+              line->log_high, line->foils, line->log_freedom);
+    fprintf(out,
+            ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
+            "</figcaption></figure>\n",
+            line->count, line->arc_length_mean_pct, line->arc_length_sd_pct);
   }
   fputs("</section>\n", out);
-}
-
-static void put_spread_row(FILE *out, const char *title, const fg_lot_spread *spread) {
-  fprintf(out, "<tr><td>%s</td><td>%zu</td>", title, spread->count);
-  const double values[] = {spread->mean, spread->mode, spread->relative_sd_pct, spread->least,
-                           spread->most};
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
-    fputs("<td>", out);
-    put_number(out, values[i], 4);
-    fputs("</td>", out);
-  }
-  fputs("</tr>\n", out);
-}
-
-static void put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
-  const fg_lot_stiffness *stiffness = &analysis->stiffness;
-  if (!analysis->has_stiffness) return;
-  fputs("<section>\n<h1>Stiffness of the bumps</h1>\n<div class=\"scroll\"><table><thead><tr><th>"
-        "over the design's</th><th>n</th><th>mean</th><th>mode</th><th>rel. s, %</th><th>min</th>"
-        "<th>max</th></tr></thead>\n<tbody>\n",
-        out);
-  put_spread_row(out, "measured bumps", &stiffness->measured);
-  put_spread_row(out, "drawn from their densities", &stiffness->resampled);
-  put_spread_row(out, "sideways, at the feet", &stiffness->foot);
-  fputs("</tbody></table></div>\n<figure>", out);
-  fg_lot_plot_map(out, analysis);
-  fprintf(out,
-          "<figcaption>Stiffness over the design's: orange stiffer, blue softer; dashed: as "
-          "designed. A percent of radius alone is worth %+.2f %%, of angle alone %+.2f %%, of "
-          "radius at constant arc length %+.2f %%.</figcaption></figure>\n",
-          stiffness->sensitivity.radius, stiffness->sensitivity.angle,
-          stiffness->sensitivity.radius_at_arc_length);
-  fprintf(out,
-          "<p class=\"note\">Arch model: E %.4g GPa, Poisson's ratio %.3g, friction %.3g. Design, "
-          "per mm of width: free bump %.4g N/mm², welded %.4g N/mm²%s.</p>\n</section>\n",
-          analysis->lot->settings.material.youngs_modulus_gpa,
-          analysis->lot->settings.material.poisson_ratio, analysis->lot->settings.material.friction,
-          stiffness->design_free.stiffness_n_mm2, stiffness->design_welded.stiffness_n_mm2,
-          stiffness->design_free.stuck ? "; friction holds the feet" : "");
 }
 
 static void put_bearing_name(FILE *out, const fg_lot_bearing *bearing) {
@@ -289,7 +283,7 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
   fputs("<tr><td>", out);
   put_bearing_name(out, bearing);
   fputs("</td><td class=\"words\">", out);
-  for (size_t pad = 0; pad < analysis->lot->settings.layout.pads; pad++) {
+  for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
     if (pad) fputs(", ", out);
     if (bearing->pad[pad])
       put_label(out, analysis, bearing->pad[pad]);
@@ -320,27 +314,45 @@ static void put_bearing_table(FILE *out, const fg_lot_analysis *analysis) {
             BEARING_ROWS_MAX, analysis->bearing_count);
 }
 
+static void put_mean_and_sd(FILE *out, const fg_lot_spread *spread) {
+  fputs("mean ", out);
+  put_number(out, spread->mean, 4);
+  fputs(" %, s ", out);
+  put_number(out, spread->sd, 4);
+  fputs(" %", out);
+}
+
 static void put_bearings(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
-  const fg_lot_quantity *clearance = fg_lot_find_quantity(analysis, "clearance_mm");
+  const fg_lot_quantity *clearance = fg_lot_find_quantity(analysis, "clearance_fitted_mm");
   double nominal = analysis->lot->nominal.clearance_mm;
   fputs("<section>\n<h1>Clearance of the bearings</h1>\n<figure>", out);
-  fg_lot_plot_density(out, clearance, 100 / nominal, -100, "local clearance against design, %");
-  fputs("<figcaption>100 (C<sub>local</sub> − C<sub>D</sub>) / C<sub>D</sub> of every bump: mean ",
+  fg_lot_plot_density(out, clearance, 100 / nominal, -100,
+                      "local clearance against design, foil fitted, %");
+  fputs("<figcaption>100 (C − C<sub>D</sub>) / C<sub>D</sub> of every bump, its foil fitted into "
+        "the sleeve: ",
         out);
-  put_number(out, analysis->clearance_pct.mean, 4);
-  fputs(" %, s ", out);
-  put_number(out, analysis->clearance_pct.sd, 4);
-  fputs(" %.</figcaption></figure>\n", out);
+  put_mean_and_sd(out, &analysis->clearance_fitted_pct);
+  fputs(". The foils free, as scanned: ", out);
+  put_mean_and_sd(out, &analysis->clearance_pct);
+  fputs(".</figcaption></figure>\n", out);
+  if (analysis->thickness.differs) {
+    double more = analysis->thickness.mean.mm - settings->design.thickness_mm;
+    fputs("<p class=\"note\">Clearances are over the strips as they are: they measure ", out);
+    fg_lot_put_thickness(out, analysis);
+    fprintf(out, "; with the design's thickness clearances would be %.3g µm %s.</p>\n",
+            1000 * fabs(more), more > 0 ? "larger" : "smaller");
+  }
   if (analysis->bearing_count) {
     bool assumed =
         fg_manifest_column(&analysis->lot->manifest, settings->bearing_column) == FG_NO_COLUMN;
     fprintf(out,
-            "<p class=\"note\">%zu pads of %zu bumps, %.2f° apart, from bump %zu of each foil%s."
-            "</p>\n<div class=\"pair\">\n",
-            settings->layout.pads, settings->layout.bumps_per_pad,
-            fg_bearing_angle_deg(&settings->layout, 0, 1), settings->layout.first_bump,
-            assumed ? ". The manifest assigns no bearing: foils in a row are taken together" : "");
+            "<p class=\"note\">%zu pads of %zu bumps, %.2f° apart, from bump %zu of each foil; "
+            "clearances of the foils fitted into the sleeve%s.%s%s</p>\n<div class=\"pair\">\n",
+            analysis->layout.pads, analysis->layout.bumps_per_pad,
+            fg_bearing_pitch_deg(&analysis->layout), analysis->layout.first_bump,
+            assumed ? ". The manifest assigns no bearing: foils in a row are taken together" : "",
+            analysis->layout_note[0] ? " " : "", analysis->layout_note);
     for (size_t i = 0; i < analysis->bearing_count && i < POLAR_MAX; i++) {
       fputs("<figure>", out);
       fg_lot_plot_polar(out, analysis, &analysis->bearings[i]);
@@ -413,13 +425,7 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   fprintf(out, "%zu</td><td>", foil->foil->bump_count);
   put_number(out, foil->foil->overall.radius_mm, 6);
   fputs("</td><td class=\"words\">", out);
-  if (foil->worst_field) {
-    fprintf(out, "%s", foil->worst_field->words);
-    if (foil->worst_number) fprintf(out, ", bump %d", foil->worst_number);
-    fputs(": ", out);
-    put_number(out, foil->worst_value, 5);
-    fprintf(out, " %s", foil->worst_field->unit);
-  }
+  put_reason(out, analysis, foil);
   fputs("</td></tr>\n", out);
 }
 
@@ -427,7 +433,8 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
 static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
   fputs("<section>\n<h1>Foils</h1>\n<div class=\"scroll\"><table><thead><tr><th>foil</th><th>"
-        "verdict</th><th>bumps</th><th>R0<br>mm</th><th>farthest value</th></tr></thead>\n"
+        "verdict</th><th>bumps</th><th>R0<br>mm</th><th>farthest value, or why "
+        "not</th></tr></thead>\n"
         "<tbody>\n",
         out);
   for (int pass = 0; pass < 2; pass++)
@@ -446,24 +453,29 @@ static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
-static void put_origin(FILE *out, const fg_lot_analysis *analysis) {
-  const char *model = analysis->lot->settings.model_sha256;
-  fprintf(
-      out,
-      "<section>\n<h1>Where it comes from</h1>\n<dl class=\"facts\"><dt>Program</dt><dd>"
-      "foilgauge %s</dd><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
-      "</dd><dt>Scanner's model, SHA-256</dt><dd>%s</dd></dl>\n<p class=\"note\">A value passes "
-      "when value ± U lies inside its tolerance "
-      "(U = 2 u, about 95 %%), fails when it lies outside, and cannot be told when a limit runs "
-      "through it. All numbers: lot.json, foils.csv, bumps.csv; for quality systems "
-      "results.qif and results.dfq.</p>\n</section>\n",
-      analysis->lot->head.version, analysis->lot->head.recipe_sha256,
-      analysis->lot->head.manifest_sha256, model[0] ? model : "none: scans are taken as they are");
+static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
+  char scale[FG_SCALE_WORDS];
+  fg_scale_words(analysis->lot->model, scale, sizeof scale);
+  fprintf(out,
+          "<section>\n<h1>Where it comes from</h1>\n<dl class=\"facts\"><dt>Program</dt><dd>"
+          "foilgauge %s</dd><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
+          "</dd>",
+          analysis->lot->head.version, analysis->lot->head.recipe_sha256,
+          analysis->lot->head.manifest_sha256);
+  FG_TRY(fg_html_model_facts(ctx, out, analysis->lot->model));
+  fputs("</dl>\n<p class=\"note\">", out);
+  fg_html_text(out, scale);
+  fputs(" A value passes when value ± U lies inside its tolerance "
+        "(U = 2 u, about 95 %), fails when it lies outside, and cannot be told when a limit runs "
+        "through it. All numbers: lot.json, foils.csv, bumps.csv; for quality systems "
+        "results.qif and results.dfq.</p>\n</section>\n",
+        out);
+  return FG_OK;
 }
 
 fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   fg_html_begin(out, analysis->lot->settings.name);
-  put_first_screen(out, analysis);
+  FG_TRY(put_first_screen(ctx, out, analysis));
   put_failed_scans(out, analysis);
   fputs("<section>\n", out);
   put_quantity_rows(out, analysis);
@@ -471,12 +483,12 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   put_charts(out, analysis);
   fputs("</section>\n", out);
   put_springback(out, analysis);
-  put_stiffness(out, analysis);
+  fg_lot_put_stiffness(out, analysis);
   put_bearings(out, analysis);
   put_comparisons(out, analysis);
   put_gauge(out, analysis);
   put_foils(out, analysis);
-  put_origin(out, analysis);
+  FG_TRY(put_origin(ctx, out, analysis));
   fg_html_end(out);
   return fg_report_finish(ctx, out, "the lot's page");
 }

@@ -137,8 +137,11 @@ static void each_bump(const fg_plot *at, const fg_lot_analysis *analysis, bump_v
     total += analysis->foils[i].foil->bump_count;
   size_t every = total / DOTS_MAX + 1;
   for (size_t i = 0; i < analysis->foil_count; i++)
-    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++)
-      if (seen++ % every == 0) visit(at, &analysis->foils[i].foil->bumps[k]);
+    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
+      const fg_foil *foil = analysis->foils[i].foil;
+      if (seen++ % every == 0 && fg_lot_bump_counts(foil, &foil->bumps[k]))
+        visit(at, &foil->bumps[k]);
+    }
 }
 
 static void put_bump(const fg_plot *at, const fg_bump *bump) {
@@ -242,9 +245,10 @@ static double map_value(const fg_lot_settings *settings, double design, double r
                         double angle_pct) {
   fg_arch_stiffness stiffness;
   fg_context unused;
-  const fg_arch arch = {settings->design.bump_radius_mm * (1 + radius_pct / 100),
-                        settings->design.bump_angle_deg * (1 + angle_pct / 100),
-                        settings->design.thickness_mm};
+  const fg_design *of = &settings->design;
+  const fg_arch arch =
+      fg_lot_arch(of, of->thickness_mm, of->bump_radius_mm * (1 + radius_pct / 100),
+                  of->bump_angle_deg * (1 + angle_pct / 100));
   if (fg_arch_free(&unused, &arch, &settings->material, &stiffness) != FG_OK) return NAN;
   return stiffness.stiffness_n_mm2 / design;
 }
@@ -335,7 +339,8 @@ static void put_ring(const polar *p, double clearance_mm, const char *style, con
 }
 
 static void put_pads(const polar *p, const fg_bearing_layout *layout) {
-  double gap = 180 / (double)(layout->pads * layout->bumps_per_pad);
+  double gap = 180 / (double)layout->pads -
+               fg_bearing_pitch_deg(layout) * (double)(layout->bumps_per_pad - 1) / 2;
   for (size_t pad = 0; pad < layout->pads; pad++) {
     double inner[2], outer[2], angle = fg_bearing_angle_deg(layout, pad, 0) - gap;
     polar_point(p, angle, -p->zero_px / p->px_per_mm + 60 / p->px_per_mm, inner);
@@ -372,9 +377,9 @@ void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
   const polar p = {out, 140, (POLAR_MIDDLE - 24 - 140) / fmax(reach, fabs(design))};
   fprintf(out,
           "<svg class=\"plot polar\" viewBox=\"0 0 %d %d\" role=\"img\" aria-label=\"Local "
-          "clearance around the bearing\">\n",
+          "clearance around the bearing, foils fitted\">\n",
           POLAR_SIZE, POLAR_SIZE);
-  put_pads(&p, &analysis->lot->settings.layout);
+  put_pads(&p, &analysis->layout);
   put_ring(&p, 0, "limit", "0");
   char words[48];
   snprintf(words, sizeof words, "design %.0f µm", 1000 * design);

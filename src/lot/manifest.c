@@ -12,11 +12,13 @@
 
 #include <csv.h>
 
+#include "core/csv.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "scan/format.h"
 
-enum { TEXT_BYTES_MAX = 1 << 30, DEPTH_MAX = 32 };
+enum { TEXT_BYTES_MAX = 1 << 30, DEPTH_MAX = 32, COLUMNS_MAX = 1000 };
 
 static fg_status copy_text(fg_context *ctx, const char *text, size_t length, char **copy) {
   *copy = strndup(text, length);
@@ -65,14 +67,6 @@ static fg_status add_scan(fg_context *ctx, fg_manifest *manifest, const char *fo
 /* Folders: every picture below, in the order of the names' bytes, so that a lot reads alike in
  * every locale. */
 
-static bool is_picture(const char *name) {
-  static const char *const endings[] = {".png", ".tif", ".tiff", ".pgm", ".pnm"};
-  const char *dot = strrchr(name, '.');
-  for (size_t i = 0; dot && i < sizeof endings / sizeof *endings; i++)
-    if (!strcasecmp(dot, endings[i])) return true;
-  return false;
-}
-
 static int keep_visible(const struct dirent *entry) {
   return entry->d_name[0] != '.';
 }
@@ -90,7 +84,7 @@ static bool same_place(const char *a, const char *b) {
 typedef struct search {
   fg_context *ctx;
   fg_manifest *manifest;
-  const char *leave_out;
+  const char *leave_out, *own;
 } search;
 
 static fg_status add_folder(const search *s, const char *folder, int depth);
@@ -103,7 +97,7 @@ static fg_status add_entry(const search *s, const char *folder, const char *name
   bool there = stat(path, &info) == 0;
   if (there && S_ISDIR(info.st_mode) && !(s->leave_out && same_place(path, s->leave_out)))
     status = add_folder(s, path, depth + 1);
-  else if (is_picture(name) && !(there && S_ISDIR(info.st_mode)))
+  else if (fg_format_has_name(name) && !(there && S_ISDIR(info.st_mode)))
     status = add_scan(s->ctx, s->manifest, "", path);
   free(path);
   return status;
@@ -153,6 +147,12 @@ static fg_status take_name(csv_reader *r, const char *text, size_t length) {
 }
 
 static fg_status take_cell(csv_reader *r, const char *text, size_t length) {
+  fg_csv_take_apostrophe(&text, &length);
+  if (!r->named && r->columns == COLUMNS_MAX)
+    return fg_fail(r->ctx, FG_ERR_DATA,
+                   "%s: more than %d columns, which every line of the reports would repeat; keep "
+                   "those that say which foil it is",
+                   r->source, COLUMNS_MAX);
   if (!r->named) return take_name(r, text, length);
   if (r->cell >= r->columns && length)
     return fg_fail(r->ctx, FG_ERR_DATA, "%s: row %zu has more cells than the heading (%zu)",
@@ -264,12 +264,12 @@ static fg_status parse_list(fg_context *ctx, const char *text, const char *folde
   return FG_OK;
 }
 
-static fg_status add_text_file(fg_context *ctx, const char *path, bool list,
+static fg_status add_text_file(fg_context *ctx, const char *path, bool list, bool own,
                                fg_manifest *manifest) {
   char *text, *folder = NULL;
   const char *slash = strrchr(path, '/');
   FG_TRY(fg_file_read_text(ctx, path, TEXT_BYTES_MAX, &text));
-  fg_status status = copy_text(ctx, path, slash ? (size_t)(slash - path) : 0, &folder);
+  fg_status status = copy_text(ctx, path, slash && !own ? (size_t)(slash - path) : 0, &folder);
   if (status == FG_OK)
     status = list ? parse_list(ctx, text, folder, manifest)
                   : fg_manifest_parse(ctx, path, text, folder, manifest);
@@ -295,31 +295,91 @@ static fg_status add_path(const search *s, const char *path) {
     free(folder);
     return status;
   }
-  if (ends_with(path, ".csv")) return add_text_file(s->ctx, path, false, s->manifest);
-  if (ends_with(path, ".txt")) return add_text_file(s->ctx, path, true, s->manifest);
+  if (ends_with(path, ".csv"))
+    return add_text_file(s->ctx, path, false, s->own == path, s->manifest);
+  if (ends_with(path, ".txt")) return add_text_file(s->ctx, path, true, false, s->manifest);
   return add_scan(s->ctx, s->manifest, "", path);
 }
 
-static fg_status check_scans(fg_context *ctx, fg_manifest *manifest) {
-  fg_manifest_index index;
-  if (manifest->items == 0)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "no scan: the folders hold no .png, .tif or .pgm file, the lists no line");
-  FG_TRY(fg_manifest_index_build(ctx, manifest, &index));
-  fg_status status = FG_OK;
-  for (size_t i = 0; i < manifest->items && status == FG_OK; i++) {
-    size_t first = fg_manifest_index_find(&index, manifest, fg_manifest_scan(manifest, i));
-    if (first != i)
-      status = fg_fail(ctx, FG_ERR_DATA, "%s: the scan is there twice (items %zu and %zu)",
-                       fg_manifest_scan(manifest, i), first + 1, i + 1);
+/* The scans under one spelling each: without links, "." and "..". One that is not there keeps its
+ * own. */
+static fg_status resolve_scans(fg_context *ctx, const fg_manifest *manifest, fg_manifest *real) {
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, manifest->items, sizeof *real->cell, &block));
+  *real = (fg_manifest){.cell = block, .columns = 1};
+  while (real->items < manifest->items) {
+    const char *scan = fg_manifest_scan(manifest, real->items);
+    char *path = realpath(scan, NULL);
+    if (!path) FG_TRY(copy_text(ctx, scan, strlen(scan), &path));
+    real->cell[real->items++] = path;
   }
+  return FG_OK;
+}
+
+/* The columns of both must say the same; else which of them holds? */
+static fg_status check_double(fg_context *ctx, const fg_manifest *manifest, size_t first,
+                              size_t second) {
+  for (size_t i = 1; i < manifest->columns; i++)
+    if (strcmp(fg_manifest_cell(manifest, first, i), fg_manifest_cell(manifest, second, i)) != 0)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: the scan is there twice, with another %s (items %zu and %zu, the first "
+                     "as %s)",
+                     fg_manifest_scan(manifest, second), manifest->name[i], first + 1, second + 1,
+                     fg_manifest_scan(manifest, first));
+  return FG_OK;
+}
+
+static void leave_out(fg_manifest *manifest, size_t first, size_t second) {
+  if (manifest->doubles++ == 0)
+    fg_text_clip(manifest->first_double, sizeof manifest->first_double, "%s (%s)",
+                 fg_manifest_scan(manifest, second), fg_manifest_scan(manifest, first));
+  for (size_t i = 0; i < manifest->columns; i++) {
+    free(manifest->cell[second * manifest->columns + i]);
+    manifest->cell[second * manifest->columns + i] = NULL;
+  }
+}
+
+static fg_status leave_out_doubles(fg_context *ctx, fg_manifest *manifest, const fg_manifest *real,
+                                   const fg_manifest_index *index) {
+  size_t kept = 0, columns = manifest->columns;
+  for (size_t i = 0; i < real->items; i++) {
+    size_t first = fg_manifest_index_find(index, real, real->cell[i]);
+    if (first != i) FG_TRY(check_double(ctx, manifest, first, i));
+  }
+  for (size_t i = 0; i < real->items; i++) {
+    size_t first = fg_manifest_index_find(index, real, real->cell[i]);
+    if (first != i) leave_out(manifest, first, i);
+  }
+  for (size_t i = 0; i < real->items; i++) {
+    if (!manifest->cell[i * columns]) continue;
+    memmove(manifest->cell + kept++ * columns, manifest->cell + i * columns,
+            columns * sizeof *manifest->cell);
+  }
+  manifest->items = kept;
+  return FG_OK;
+}
+
+static fg_status check_scans(fg_context *ctx, fg_manifest *manifest) {
+  fg_manifest real = {0};
+  fg_manifest_index index = {0};
+  char endings[100];
+  fg_format_list_endings(endings, sizeof endings);
+  if (manifest->items == 0)
+    return fg_fail(ctx, FG_ERR_DATA, "no scan: the folders hold no file (%s), the lists no line",
+                   endings);
+  fg_status status = resolve_scans(ctx, manifest, &real);
+  if (status == FG_OK) status = fg_manifest_index_build(ctx, &real, &index);
+  if (status == FG_OK) status = leave_out_doubles(ctx, manifest, &real, &index);
+  for (size_t i = 0; i < real.items; i++)
+    free(real.cell[i]);
+  free(real.cell);
   fg_manifest_index_free(&index);
   return status;
 }
 
 fg_status fg_manifest_collect(fg_context *ctx, const char *const *paths, size_t count,
-                              const char *leave_out, fg_manifest *manifest) {
-  const search s = {ctx, manifest, leave_out};
+                              const char *leave_out, const char *own, fg_manifest *manifest) {
+  const search s = {ctx, manifest, leave_out, own};
   *manifest = (fg_manifest){0};
   fg_status status = start(ctx, manifest);
   for (size_t i = 0; i < count && status == FG_OK; i++)
@@ -329,19 +389,6 @@ fg_status fg_manifest_collect(fg_context *ctx, const char *const *paths, size_t 
   return status;
 }
 
-static void put_cell(FILE *out, const char *text) {
-  if (!strpbrk(text, ",\"\r\n;\t")) {
-    fputs(text, out);
-    return;
-  }
-  fputc('"', out);
-  for (; *text; text++) {
-    if (*text == '"') fputc('"', out);
-    fputc(*text, out);
-  }
-  fputc('"', out);
-}
-
 fg_status fg_manifest_format(fg_context *ctx, const fg_manifest *manifest, char **text) {
   size_t size;
   *text = NULL;
@@ -349,7 +396,7 @@ fg_status fg_manifest_format(fg_context *ctx, const fg_manifest *manifest, char 
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a manifest");
   for (size_t row = 0; row <= manifest->items; row++)
     for (size_t i = 0; i < manifest->columns; i++) {
-      put_cell(out, row ? fg_manifest_cell(manifest, row - 1, i) : manifest->name[i]);
+      fg_csv_put_text(out, row ? fg_manifest_cell(manifest, row - 1, i) : manifest->name[i], NULL);
       fputc(i + 1 < manifest->columns ? ',' : '\n', out);
     }
   bool broken = ferror(out) != 0;

@@ -13,14 +13,18 @@ typedef struct fg_manifest {
   size_t columns;
   char **cell; /* items × columns, row by row; "" where a row has none */
   size_t items;
+  size_t doubles;                      /* scans that were named once more, and left out */
+  char first_double[512];              /* the first of them, and under which other name it counts */
   size_t name_capacity, cell_capacity; /* private */
 } fg_manifest;
 
-/* Folders (every PNG, TIFF and PGM file below them, in order of their names' bytes), scans, lists
- * and manifests; see fg_lot_request. FG_ERR_DATA for a scan that is there twice or for no scan at
- * all. `leave_out` is a folder that is not searched (the results'). */
+/* Folders (every file below them that is called as a scan is, in order of their names' bytes),
+ * scans, lists and manifests; see fg_lot_request. A scan that is there twice, under whatever
+ * spelling of its path, counts once; FG_ERR_DATA when its columns differ, or for no scan at all.
+ * `leave_out` is a folder that is not searched (the results'). `own` is the one of the paths that
+ * an earlier run has written, whose scans count from where they did then; NULL: none. */
 fg_status fg_manifest_collect(fg_context *ctx, const char *const *paths, size_t count,
-                              const char *leave_out, fg_manifest *manifest);
+                              const char *leave_out, const char *own, fg_manifest *manifest);
 
 /* From the text of a manifest; relative scans count from `folder` ("": they stay as they are). */
 fg_status fg_manifest_parse(fg_context *ctx, const char *source, const char *text,

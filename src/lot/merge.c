@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "lot/guard.h"
 #include "lot/report.h"
 
 enum { TEXT_BYTES_MAX = 1 << 30 };
@@ -126,7 +127,7 @@ static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
 
 static fg_status take_shard(fg_context *ctx, merger *m) {
   fg_journal_head head;
-  size_t torn;
+  fg_journal_damage damage;
   FG_TRY(fg_journal_read_head(ctx, m->paths[m->at], &head));
   FG_TRY(check_head(ctx, m, &head));
   size_t *folder = &m->shard_of[head.shard.index - 1];
@@ -134,10 +135,12 @@ static fg_status take_shard(fg_context *ctx, merger *m) {
     return fg_fail(ctx, FG_ERR_DATA, "shard %zu/%zu is there twice: %s and %s", head.shard.index,
                    head.shard.count, m->folders[*folder - 1], m->folders[m->at]);
   *folder = m->at + 1;
-  FG_TRY(fg_journal_read(ctx, m->paths[m->at], true, &head, &torn, take_entry, m));
-  if (!torn) return FG_OK;
-  return fg_fail(ctx, FG_ERR_DATA, "%s: %zu lines are not whole; measure the shard with --resume",
-                 m->paths[m->at], torn);
+  FG_TRY(fg_journal_read(ctx, m->paths[m->at], &head, &damage, take_entry, m));
+  if (!damage.lines) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: line %zu is damaged or not whole (one of %zu); measure the shard with "
+                 "--resume, which keeps the others",
+                 m->paths[m->at], damage.first, damage.lines);
 }
 
 static fg_status check_complete(fg_context *ctx, const merger *m) {
@@ -179,6 +182,7 @@ static fg_status gather(fg_context *ctx, merger *m) {
 
 static fg_status check_target(fg_context *ctx, const merger *m) {
   struct stat target, source;
+  FG_TRY(fg_lot_check_shards(ctx, m->folder, m->folders, m->count));
   if (mkdir(m->folder, 0777) != 0 && errno != EEXIST)
     return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", m->folder, strerror(errno));
   for (size_t i = 0; i < m->count; i++)
@@ -220,7 +224,7 @@ static fg_status merge(fg_context *ctx, merger *m, fg_lot_outcome *outcome) {
 fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
                        const char *folder, fg_lot_outcome *outcome) {
   merger m = {.folders = folders, .count = count, .folder = folder, .lock = -1};
-  *outcome = (fg_lot_outcome){.verdict = FG_VERDICT_NONE};
+  *outcome = (fg_lot_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
   fg_status status = merge(ctx, &m, outcome);
   if (m.lock >= 0) close(m.lock);
   for (size_t i = 0; m.paths && i < count; i++)

@@ -24,35 +24,37 @@ typedef struct member {
   size_t offset, size; /* size: of a text */
   double lowest, highest;
   bool jobs; /* says how the work is done, not what comes out */
+  bool open; /* null, kept as 0: what the design says */
 } member;
 
 #define AT(place) offsetof(fg_lot_settings, place)
 #define TEXT(name, place)                                                                          \
-  { name, WORDS, AT(place), sizeof(((fg_lot_settings *)0)->place), 0, 0, false }
+  { name, WORDS, AT(place), sizeof(((fg_lot_settings *)0)->place), 0, 0, false, false }
 
 static const member members[] = {
     TEXT("name", name),
     TEXT("model", model),
     TEXT("model_sha256", model_sha256),
-    {"dpi", REAL, AT(dpi), 0, 0, 1e6, false},
-    {"jobs", UNSIGNED, AT(jobs), 0, 0, 1024, true},
-    {"trim_pct", REAL, AT(trim_pct), 0, 0, 49, false},
-    {"confidence", REAL, AT(confidence), 0, 0.5, 0.9999, false},
-    {"bandwidth", RULE, AT(bandwidth), 0, 0, 0, false},
-    {"resamples", COUNT, AT(resamples), 0, 0, 1e7, false},
-    {"seed", SEED, AT(seed), 0, 0, 9007199254740992.0, false},
-    {"run_rules", RUN_RULES, AT(run_rules), 0, 1, FG_RUN_RULES, false},
+    {"dpi", REAL, AT(dpi), 0, 0, 1e6, false, false},
+    {"jobs", UNSIGNED, AT(jobs), 0, 0, 1024, true, false},
+    {"trim_pct", REAL, AT(trim_pct), 0, 0, 49, false, false},
+    {"confidence", REAL, AT(confidence), 0, 0.5, 0.9999, false, false},
+    {"bandwidth", RULE, AT(bandwidth), 0, 0, 0, false, false},
+    {"resamples", COUNT, AT(resamples), 0, 0, 1e7, false, false},
+    {"seed", SEED, AT(seed), 0, 0, 9007199254740992.0, false, false},
+    {"run_rules", RUN_RULES, AT(run_rules), 0, 1, FG_RUN_RULES, false, false},
     TEXT("group_column", group_column),
     TEXT("part_column", part_column),
     TEXT("operator_column", operator_column),
     TEXT("bearing_column", bearing_column),
     TEXT("pad_column", pad_column),
-    {"pads", COUNT, AT(layout.pads), 0, 1, FG_BEARING_BUMPS_MAX, false},
-    {"bumps_per_pad", COUNT, AT(layout.bumps_per_pad), 0, 1, FG_BEARING_BUMPS_MAX, false},
-    {"first_bump", COUNT, AT(layout.first_bump), 0, 1, 1000, false},
-    {"youngs_modulus_gpa", REAL, AT(material.youngs_modulus_gpa), 0, 1e-3, 1e4, false},
-    {"poisson_ratio", REAL, AT(material.poisson_ratio), 0, 0, 0.499, false},
-    {"friction", REAL, AT(material.friction), 0, 0, 10, false},
+    {"pads", COUNT, AT(layout.pads), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
+    {"bumps_per_pad", COUNT, AT(layout.bumps_per_pad), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
+    {"first_bump", COUNT, AT(layout.first_bump), 0, 1, 1000, false, false},
+    {"bump_pitch_deg", REAL, AT(layout.pitch_deg), 0, 0.1, 360, false, true},
+    {"youngs_modulus_gpa", REAL, AT(material.youngs_modulus_gpa), 0, 1e-3, 1e4, false, false},
+    {"poisson_ratio", REAL, AT(material.poisson_ratio), 0, 0, 0.499, false, false},
+    {"friction", REAL, AT(material.friction), 0, 0, 10, false, false},
 };
 
 enum { MEMBERS = sizeof members / sizeof members[0] };
@@ -73,7 +75,7 @@ void fg_lot_settings_default(fg_lot_settings *settings) {
       .operator_column = "operator",
       .bearing_column = "bearing",
       .pad_column = "pad",
-      .layout = {.pads = 3, .bumps_per_pad = 7, .first_bump = 1},
+      .layout = {.first_bump = 1},
       .material = {.youngs_modulus_gpa = 200, .poisson_ratio = 0.3, .friction = 0.1},
   };
   fg_design_default(&settings->design);
@@ -99,6 +101,10 @@ static double number_of(const member *row, const fg_lot_settings *settings) {
   }
 }
 
+static bool is_open(const member *row, double value) {
+  return row->open && value == 0;
+}
+
 static fg_status check_number(fg_context *ctx, const member *row, double value) {
   bool whole = row->kind == REAL || value == floor(value);
   if (value >= row->lowest && value <= row->highest && whole) return FG_OK;
@@ -106,13 +112,24 @@ static fg_status check_number(fg_context *ctx, const member *row, double value) 
                  value, row->kind == REAL ? "" : "whole ", row->lowest, row->highest);
 }
 
+static fg_status check_layout(fg_context *ctx, const fg_bearing_layout *layout) {
+  size_t bumps = layout->pads * layout->bumps_per_pad;
+  if (bumps > FG_BEARING_BUMPS_MAX)
+    return fg_fail(ctx, FG_ERR_DATA, "pads %zu × bumps_per_pad %zu: a bearing has at most %d bumps",
+                   layout->pads, layout->bumps_per_pad, FG_BEARING_BUMPS_MAX);
+  if ((double)bumps * layout->pitch_deg > 360 * (1 + 1e-6))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "bump_pitch_deg is %g: pads %zu × bumps_per_pad %zu at this pitch exceed 360 "
+                   "degrees",
+                   layout->pitch_deg, layout->pads, layout->bumps_per_pad);
+  return FG_OK;
+}
+
 fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings) {
   for (size_t i = 0; i < MEMBERS; i++)
-    if (members[i].kind <= UNSIGNED)
+    if (members[i].kind <= UNSIGNED && !is_open(&members[i], number_of(&members[i], settings)))
       FG_TRY(check_number(ctx, &members[i], number_of(&members[i], settings)));
-  if (settings->layout.pads * settings->layout.bumps_per_pad > FG_BEARING_BUMPS_MAX)
-    return fg_fail(ctx, FG_ERR_DATA, "pads %zu × bumps_per_pad %zu: a bearing has at most %d bumps",
-                   settings->layout.pads, settings->layout.bumps_per_pad, FG_BEARING_BUMPS_MAX);
+  FG_TRY(check_layout(ctx, &settings->layout));
   if (settings->design.form == FG_FORM_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
   FG_TRY(fg_design_check(ctx, &settings->design));
@@ -166,6 +183,10 @@ static fg_status read_member(fg_context *ctx, const member *row, const cJSON *va
   if (row->kind == WORDS) return read_words(ctx, row, value, place);
   if (row->kind == RULE) return read_bandwidth(ctx, value, place);
   if (row->kind == RUN_RULES) return read_run_rules(ctx, row, value, place);
+  if (row->open && cJSON_IsNull(value)) {
+    store_number(row, place, 0);
+    return FG_OK;
+  }
   if (!cJSON_IsNumber(value)) return fg_fail(ctx, FG_ERR_DATA, "%s must be a number", row->name);
   FG_TRY(check_number(ctx, row, value->valuedouble));
   store_number(row, place, value->valuedouble);
@@ -293,8 +314,9 @@ static void write_member(fg_json *json, const member *row, const fg_lot_settings
       if (*(const unsigned *)place & (1u << (rule - 1))) fg_json_integer(json, NULL, rule);
     fg_json_array_end(json);
     fg_json_line_end(json);
-  } else if (row->kind == REAL) {
-    fg_json_number(json, row->name, number_of(row, settings));
+  } else if (row->kind == REAL || is_open(row, number_of(row, settings))) {
+    double value = number_of(row, settings);
+    fg_json_number(json, row->name, is_open(row, value) ? NAN : value);
   } else {
     fg_json_integer(json, row->name, (int64_t)number_of(row, settings));
   }

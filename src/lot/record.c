@@ -8,9 +8,12 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "lot/seal.h"
 #include "report/words.h"
 
-enum { PLACES_MAX = 4 };
+/* NUMBER_MAX: of a foil or bump. No scan holds so many, and what is counted by number stays small.
+ */
+enum { PLACES_MAX = 4, NUMBER_MAX = 10000 };
 
 /* Where the values of a field lie in its object, in the order of a record. */
 static size_t places_of(const fg_report_field *field, size_t offset[PLACES_MAX]) {
@@ -37,7 +40,7 @@ static double load_place(const fg_report_field *field, const void *object, size_
 
 static void store_place(const fg_report_field *field, void *object, size_t offset, double value) {
   char *place = (char *)object + offset;
-  size_t whole = value >= 0 ? (size_t)value : 0;
+  size_t whole = value >= 0 && value < 9007199254740992.0 ? (size_t)value : 0;
   if (field->kind == FG_FIELD_COUNT)
     memcpy(place, &whole, sizeof whole);
   else
@@ -63,14 +66,16 @@ static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flag
   fg_json_array_end(json);
 }
 
+/* Of a part that is no foil of the design a lot keeps what the whole is, not the bumps. */
 static void write_foil(fg_json *json, const fg_foil *foil) {
+  size_t bumps = fg_foil_is_measured(foil) ? foil->bump_count : 0;
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
   write_flags(json, fg_foil_flag_words(), foil->flags);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   write_values(json, FG_REPORT_FOIL, foil);
   fg_json_array(json, "bumps");
-  for (size_t i = 0; i < foil->bump_count; i++) {
+  for (size_t i = 0; i < bumps; i++) {
     fg_json_object(json, NULL);
     fg_json_integer(json, "number", foil->bumps[i].number);
     write_flags(json, fg_bump_flag_words(), foil->bumps[i].flags);
@@ -81,16 +86,31 @@ static void write_foil(fg_json *json, const fg_foil *foil) {
   fg_json_object_end(json);
 }
 
-fg_status fg_record_format(fg_context *ctx, const fg_record *record,
-                           const fg_measurement *measurement, char **line, size_t *length) {
+/* JSON holds UTF-8 only, a name of a file any bytes: one that is not UTF-8 is also written as hex
+ * digits, so that it comes back as it was. *hex is NULL where there is no need. */
+static fg_status format_bytes(fg_context *ctx, const char *text, char **hex) {
+  static const char digits[] = "0123456789abcdef";
+  size_t length = strlen(text);
+  void *block;
+  *hex = NULL;
+  if (fg_utf8_is_valid(text)) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, length + 1, 2, &block));
+  *hex = block;
+  for (size_t i = 0; i < length; i++) {
+    (*hex)[2 * i] = digits[(unsigned char)text[i] >> 4];
+    (*hex)[2 * i + 1] = digits[(unsigned char)text[i] & 15];
+  }
+  return FG_OK;
+}
+
+static void write_record(FILE *out, const fg_record *record, const char *scan_bytes,
+                         const fg_measurement *measurement) {
   fg_json json;
-  *line = NULL;
-  FILE *out = open_memstream(line, length);
-  if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
   fg_json_begin(&json, out);
   fg_json_line(&json);
   fg_json_object(&json, NULL);
   fg_json_string(&json, "scan", record->scan);
+  if (scan_bytes) fg_json_string(&json, "scan_bytes", scan_bytes);
   fg_json_string(&json, "sha256", record->sha256[0] ? record->sha256 : NULL);
   fg_json_string(&json, "measured_with", record->measured_with);
   fg_json_string(&json, "error", measurement ? NULL : record->error);
@@ -100,8 +120,19 @@ fg_status fg_record_format(fg_context *ctx, const fg_record *record,
   fg_json_array_end(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);
+}
+
+fg_status fg_record_format(fg_context *ctx, const fg_record *record,
+                           const fg_measurement *measurement, char **line, size_t *length) {
+  char *scan_bytes;
+  *line = NULL;
+  FG_TRY(format_bytes(ctx, record->scan, &scan_bytes));
+  FILE *out = open_memstream(line, length);
+  if (out) write_record(out, record, scan_bytes, measurement);
+  free(scan_bytes);
+  if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
   bool broken = ferror(out) != 0;
-  if (fclose(out) == 0 && !broken) return FG_OK;
+  if (fclose(out) == 0 && !broken) return fg_seal_line(ctx, line, length);
   free(*line);
   *line = NULL;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
@@ -140,6 +171,8 @@ static fg_status read_values(fg_context *ctx, const cJSON *object, fg_report_own
     size_t places = places_of(&fields[i], offset);
     for (size_t k = 0; k < places; k++) {
       if (!value) return fail_record(ctx, "values are missing");
+      if (cJSON_IsNumber(value) && !isfinite(value->valuedouble))
+        return fail_record(ctx, "a value that is no number");
       store_place(&fields[i], target, offset[k], cJSON_IsNumber(value) ? value->valuedouble : NAN);
       value = value->next;
     }
@@ -149,8 +182,10 @@ static fg_status read_values(fg_context *ctx, const cJSON *object, fg_report_own
 
 static fg_status read_number(fg_context *ctx, const cJSON *object, int *number) {
   const cJSON *value = member(object, "number");
-  if (!cJSON_IsNumber(value)) return fail_record(ctx, "no number");
-  *number = value->valueint;
+  double read = cJSON_IsNumber(value) ? value->valuedouble : NAN;
+  if (!(read >= 0 && read <= NUMBER_MAX && read == floor(read)))
+    return fail_record(ctx, "no number that a foil or bump can have");
+  *number = (int)read;
   return FG_OK;
 }
 
@@ -187,8 +222,31 @@ static fg_status copy_words(fg_context *ctx, const cJSON *value, char **copy) {
   return *copy ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a record");
 }
 
+static int digit_of(char hex) {
+  const char *digits = "0123456789abcdef", *at = hex ? strchr(digits, hex) : NULL;
+  return at ? (int)(at - digits) : -1;
+}
+
+/* The name's bytes, where it could not be written as a text. */
+static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
+  if (!value) return FG_OK;
+  size_t length = cJSON_IsString(value) ? strlen(value->valuestring) : 0;
+  if (length == 0 || length % 2) return fail_record(ctx, "scan_bytes that are none");
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, length / 2 + 1, 1, &block));
+  free(*text);
+  *text = block;
+  for (size_t i = 0; i < length / 2; i++) {
+    int high = digit_of(value->valuestring[2 * i]), low = digit_of(value->valuestring[2 * i + 1]);
+    if (high < 0 || low < 0 || high + low == 0) return fail_record(ctx, "scan_bytes that are none");
+    (*text)[i] = (char)(high << 4 | low);
+  }
+  return FG_OK;
+}
+
 static fg_status read_head(fg_context *ctx, const cJSON *root, fg_record *record) {
   FG_TRY(copy_words(ctx, member(root, "scan"), &record->scan));
+  FG_TRY(read_bytes(ctx, member(root, "scan_bytes"), &record->scan));
   FG_TRY(read_sum(ctx, member(root, "sha256"), record->sha256));
   FG_TRY(read_sum(ctx, member(root, "measured_with"), record->measured_with));
   FG_TRY(copy_words(ctx, member(root, "error"), &record->error));
@@ -207,23 +265,16 @@ static fg_status read_foils(fg_context *ctx, const cJSON *root, fg_record *recor
   return FG_OK;
 }
 
-static fg_status parse(fg_context *ctx, const char *line, bool all, fg_record *record) {
+fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record) {
   *record = (fg_record){0};
+  if (!fg_seal_holds(line, strlen(line))) return fail_record(ctx, "its checksum does not hold");
   cJSON *root = cJSON_Parse(line);
   if (!root) return fail_record(ctx, "not JSON");
   fg_status status = read_head(ctx, root, record);
-  if (status == FG_OK && all) status = read_foils(ctx, root, record);
+  if (status == FG_OK) status = read_foils(ctx, root, record);
   cJSON_Delete(root);
   if (status != FG_OK) fg_record_free(record);
   return status;
-}
-
-fg_status fg_record_parse_head(fg_context *ctx, const char *line, fg_record *record) {
-  return parse(ctx, line, false, record);
-}
-
-fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record) {
-  return parse(ctx, line, true, record);
 }
 
 void fg_record_free(fg_record *record) {
@@ -255,4 +306,23 @@ static void write_names(fg_json *json, const char *name, fg_report_owner owner) 
 void fg_record_write_names(fg_json *json) {
   write_names(json, "foil_values", FG_REPORT_FOIL);
   write_names(json, "bump_values", FG_REPORT_BUMP);
+}
+
+fg_status fg_record_format_names(fg_context *ctx, char **text) {
+  size_t size;
+  fg_json json;
+  *text = NULL;
+  FILE *out = open_memstream(text, &size);
+  if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the names of a record");
+  fg_json_begin(&json, out);
+  fg_json_line(&json);
+  fg_json_object(&json, NULL);
+  fg_record_write_names(&json);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  bool broken = ferror(out) != 0;
+  if (fclose(out) == 0 && !broken) return FG_OK;
+  free(*text);
+  *text = NULL;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the names of a record");
 }

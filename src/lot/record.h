@@ -1,9 +1,11 @@
 /* One measured scan as a line of results.jsonl: compact, and exact to the ten digits of a report.
  *
  * {"scan", "sha256", "measured_with", "error", "foils": [{"number", "flags", "error", "values",
- *  "bumps": [{"number", "flags", "values"}]}]}
- * `values` are those of the table of fields (report.h) in its order; the first line of the file
- * names them. A quantity with an uncertainty takes two places, a pair four. */
+ *  "bumps": [{"number", "flags", "values"}]}], "checksum"}
+ * `scan_bytes` follows `scan` where a file name is not UTF-8: its bytes as hex digits. The checksum
+ * is of the line itself (lot/seal.h). `values` are those of the table of fields (report.h) in its
+ * order; the first line of the file names them. A quantity with an uncertainty takes two places, a
+ * pair four. */
 #ifndef FG_LOT_RECORD_H
 #define FG_LOT_RECORD_H
 
@@ -15,7 +17,7 @@
 typedef struct fg_record {
   char *scan;
   char sha256[65];        /* "": the scan could not be read, so the record is never kept */
-  char measured_with[65]; /* SHA-256 of version, design without tolerances, resolution */
+  char measured_with[65]; /* SHA-256 of version, design without tolerances, resolution, fields */
   char *error;            /* NULL: it was measured */
   fg_foil *foils;         /* without strips and labels; owned, with their bumps */
   size_t foil_count;
@@ -25,14 +27,14 @@ typedef struct fg_record {
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,
                            const fg_measurement *measurement, char **line, size_t *length);
 
-/* Only scan, sums and error; FG_ERR_DATA when the line is no record. */
-fg_status fg_record_parse_head(fg_context *ctx, const char *line, fg_record *record);
-
-/* All of it. */
+/* FG_ERR_DATA when the line is no record, or not the one that was written. */
 fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record);
 void fg_record_free(fg_record *record);
 
 /* Names of the places of `values`, as members of the first line. */
 void fg_record_write_names(fg_json *json);
+
+/* The same as a text; the caller frees it. */
+fg_status fg_record_format_names(fg_context *ctx, char **text);
 
 #endif

@@ -21,16 +21,11 @@ static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
   fg_status status = fg_output_open(ctx, path, &output);
   free(path);
   FG_TRY(status);
-  fg_context inner;
-  status = files[i].write(&inner, analysis, output.stream);
-  /* A stream that has failed says why when it is committed. */
-  if (status == FG_OK || status == FG_ERR_IO) return fg_output_commit(ctx, &output);
-  fg_output_discard(&output);
-  return fg_fail(ctx, status, "%s", inner.message);
+  return fg_output_end(ctx, &output, files[i].write(ctx, analysis, output.stream));
 }
 
 static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {
-  outcome->verdict = analysis->verdict;
+  outcome->judged = analysis->outcome;
   outcome->scans = analysis->lot->manifest.items;
   outcome->failed = analysis->failed_scans;
   outcome->foils = analysis->foil_count;

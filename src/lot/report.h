@@ -3,11 +3,13 @@
 #define FG_LOT_REPORT_H
 
 #include "foilgauge/lot.h"
+#include "foilgauge/scan_loop.h"
 #include "lot/journal.h"
 #include "lot/manifest.h"
 
 /* The copy of the scanner's model in the lot's folder. */
 #define FG_LOT_MODEL_FILE "scanner_model.json"
+enum { FG_LOT_MODEL_BYTES_MAX = 1 << 20 };
 
 /* A lot in memory, in the manifest's order. */
 typedef struct fg_lot {
@@ -15,11 +17,12 @@ typedef struct fg_lot {
   fg_nominal nominal;
   fg_manifest manifest;
   fg_journal_head head;
-  fg_record *records; /* manifest.items */
+  fg_record *records;   /* manifest.items */
+  fg_scan_model *model; /* of the scanner, that corrected every scan; NULL: none */
 } fg_lot;
 
-/* Reads folder/results.jsonl; settings and manifest are there already (and belong to the lot from
- * then on). */
+/* Reads folder/results.jsonl and the copy of the scanner's model; settings and manifest are there
+ * already (and belong to the lot from then on). */
 fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot);
 void fg_lot_free(fg_lot *lot);
 
@@ -29,6 +32,14 @@ fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot 
 
 /* Removes the report of an earlier run: it must not stand beside other results. */
 fg_status fg_lot_remove_report(fg_context *ctx, const char *folder);
+
+/* More groups than these are not compared. */
+enum { FG_LOT_GROUPS_MAX = 12 };
+
+/* The columns that the settings name are there (those that nobody has named may be missing), and
+ * there are not too many groups: FG_ERR_DATA, before anything is measured. */
+fg_status fg_lot_check_columns(fg_context *ctx, const fg_lot_settings *settings,
+                               const fg_manifest *manifest);
 
 /* folder/name; the caller frees. */
 fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, char **path);

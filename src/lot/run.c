@@ -15,6 +15,7 @@
 #include "core/text.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
+#include "lot/guard.h"
 #include "lot/report.h"
 
 /* What is known of an item before it is measured. */
@@ -51,14 +52,20 @@ static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
 /* The recipe that is kept names the copy in the lot's folder, so that it does not matter from where
  * the model came. */
 static fg_status take_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
-  enum { MODEL_BYTES_MAX = 1 << 20 };
   if (!kept->model[0]) return FG_OK;
-  FG_TRY(fg_file_read_text(ctx, kept->model, MODEL_BYTES_MAX, &run->model_text));
+  FG_TRY(fg_file_read_text(ctx, kept->model, FG_LOT_MODEL_BYTES_MAX, &run->model_text));
   FG_TRY(fg_scan_model_parse(ctx, kept->model, run->model_text, &run->model));
   if (strcmp(fg_scan_model_sha256(run->model), kept->model_sha256) != 0)
     return fg_fail(ctx, FG_ERR_DATA, "%.500s: the model has changed; run again", kept->model);
   strcpy(kept->model, FG_LOT_MODEL_FILE);
   return FG_OK;
+}
+
+/* The lot's own manifest among the paths; NULL: it is not there. */
+static const char *find_own_manifest(const fg_lot_request *request) {
+  for (size_t i = 0; i < request->path_count; i++)
+    if (fg_lot_is_own_copy(request, request->paths[i], "manifest.csv")) return request->paths[i];
+  return NULL;
 }
 
 static fg_status prepare(fg_context *ctx, lot_run *run) {
@@ -69,7 +76,11 @@ static fg_status prepare(fg_context *ctx, lot_run *run) {
   FG_TRY(fg_lot_settings_check(ctx, request->settings));
   FG_TRY(take_model(ctx, run, &kept));
   FG_TRY(fg_manifest_collect(ctx, request->paths, request->path_count, request->folder,
-                             &run->manifest));
+                             find_own_manifest(request), &run->manifest));
+  FG_TRY(fg_lot_check_inputs(ctx, request, &run->manifest));
+  FG_TRY(fg_lot_check_columns(ctx, request->settings, &run->manifest));
+  run->outcome->doubles = run->manifest.doubles;
+  strcpy(run->outcome->first_double, run->manifest.first_double);
   FG_TRY(fg_manifest_index_build(ctx, &run->manifest, &run->index));
   FG_TRY(fg_manifest_format(ctx, &run->manifest, &run->manifest_text));
   FG_TRY(fg_lot_settings_format(ctx, &kept, false, &run->recipe_text));
@@ -114,15 +125,17 @@ static fg_status check_scan(fg_context *ctx, void *shared, size_t i) {
 }
 
 static fg_status read_earlier(fg_context *ctx, lot_run *run) {
-  fg_journal_head head;
+  fg_journal_damage damage;
   if (access(run->results_path, F_OK) != 0) return FG_OK;
   if (!run->request->resume)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: the folder holds results; --resume goes on with them, or choose another "
                    "folder",
                    run->request->folder);
-  FG_TRY(
-      fg_journal_read(ctx, run->results_path, true, &head, &run->outcome->torn, take_entry, run));
+  FG_TRY(fg_journal_salvage(ctx, run->results_path, &damage, take_entry, run));
+  run->outcome->torn = damage.lines;
+  run->outcome->first_torn = damage.first;
+  run->outcome->earlier = damage.earlier;
   return fg_parallel_run(ctx, run->request->settings->jobs, run->manifest.items, check_scan, run);
 }
 
@@ -196,19 +209,18 @@ static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *me
  * for which there was no memory, has no checksum and is tried again. */
 static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   const fg_lot_settings *settings = run->request->settings;
-  const fg_measure_options options = {.dpi = settings->dpi, .threads = 1};
+  const fg_measure_options options = {
+      .dpi = settings->dpi, .threads = 1, .only_file = true, .sum_failed = true};
   const char *scan = fg_manifest_scan(&run->manifest, item);
-  fg_context inner = {.message = ""}, unused;
+  fg_context inner = {.message = ""};
   fg_measurement measurement;
   fg_record record = {.scan = (char *)(uintptr_t)scan, .error = inner.message};
   memcpy(record.measured_with, run->head.measured_with, sizeof record.measured_with);
   bool beyond = false;
   fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
+  memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
   if (failure == FG_OK && run->model) failure = correct(&inner, run, &measurement, &beyond);
-  if (failure == FG_OK)
-    memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
-  else if (failure == FG_ERR_MEMORY || fg_sha256_file(&unused, scan, record.sha256) != FG_OK)
-    record.sha256[0] = '\0';
+  if (failure == FG_ERR_MEMORY || failure == FG_ERR_IO) record.sha256[0] = '\0';
   fg_status status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
   if (failure == FG_OK) fg_measurement_free(&measurement);
   if (status == FG_OK) tell(run, scan, failure == FG_OK ? NULL : inner.message, beyond);
@@ -271,13 +283,15 @@ static fg_status take_any(fg_context *ctx, void *user, fg_record *record, fg_jou
 
 static fg_status put_in_order(fg_context *ctx, lot_run *run) {
   fg_journal_head head;
-  size_t torn;
-  FG_TRY(fg_journal_read(ctx, run->results_path, true, &head, &torn, take_any, run));
+  fg_journal_damage damage;
+  FG_TRY(fg_journal_read(ctx, run->results_path, &head, &damage, take_any, run));
   return rewrite(ctx, run);
 }
 
 static fg_status report(fg_context *ctx, lot_run *run) {
-  fg_lot lot = {.settings = *run->request->settings, .manifest = run->manifest};
+  fg_lot lot = {.manifest = run->manifest};
+  fg_lot_settings_default(&lot.settings); /* as a merge reads them: a recipe has ten digits */
+  FG_TRY(fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings));
   run->manifest = (fg_manifest){0};
   fg_status status = fg_lot_load(ctx, run->request->folder, &lot);
   if (status == FG_OK) status = fg_lot_write_report(ctx, run->request->folder, &lot, run->outcome);
@@ -301,7 +315,7 @@ static fg_status work(fg_context *ctx, lot_run *run) {
 
 fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outcome *outcome) {
   lot_run run = {.request = request, .outcome = outcome, .lock = -1};
-  *outcome = (fg_lot_outcome){.verdict = FG_VERDICT_NONE};
+  *outcome = (fg_lot_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
   pthread_mutex_init(&run.listening, NULL);
   fg_status status = work(ctx, &run);
   pthread_mutex_destroy(&run.listening);

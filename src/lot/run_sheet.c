@@ -131,42 +131,37 @@ static fg_status scan_path(fg_context *ctx, const measuring *m, const char *name
                        (int)length, name);
 }
 
-static fg_status add_scan(fg_context *ctx, measuring *m, size_t run, const char *name,
-                          size_t length, mean *scans) {
+/* Takes over `path`. */
+static fg_status add_scan(fg_context *ctx, measuring *m, size_t run, char *path) {
   fg_run_sheet *out = m->out;
-  char *path = NULL;
-  FG_TRY(fg_memory_reserve(ctx, out->scans + 1, sizeof *out->scan, &m->scan_capacity,
-                           (void **)&out->scan));
-  fg_experiment_scan *scan = &out->scan[out->scans];
-  *scan = (fg_experiment_scan){.run = run, .value = NAN, .u = NAN};
-  FG_TRY(scan_path(ctx, m, name, length, &path));
-  scan->path = path;
-  out->scans++;
-  FG_TRY(measure_scan(ctx, m, scan));
-  out->failed += scan->error != NULL;
-  add(scans, scan->value, scan->u);
-  return FG_OK;
+  fg_status status = fg_memory_reserve(ctx, out->scans + 1, sizeof *out->scan, &m->scan_capacity,
+                                       (void **)&out->scan);
+  if (status != FG_OK) {
+    free(path);
+    return status;
+  }
+  out->scan[out->scans++] = (fg_experiment_scan){.run = run, .path = path, .value = NAN, .u = NAN};
+  return m->options->visit ? m->options->visit(ctx, m->options->user, path) : FG_OK;
 }
 
-static fg_status measure_run(fg_context *ctx, measuring *m, size_t run, const char *cell,
-                             mean *scans) {
+static fg_status list_run(fg_context *ctx, measuring *m, size_t run, const char *cell) {
   for (const char *at = cell; *at;) {
     at += strspn(at, "; \t");
     size_t length = strcspn(at, ";");
     size_t end = length;
     while (end > 0 && (at[end - 1] == ' ' || at[end - 1] == '\t'))
       end--;
-    if (end) FG_TRY(add_scan(ctx, m, run, at, end, scans));
+    char *path = NULL;
+    if (end) FG_TRY(scan_path(ctx, m, at, end, &path));
+    if (end) FG_TRY(add_scan(ctx, m, run, path));
     at += length;
   }
   return FG_OK;
 }
 
-static fg_status measure_runs(fg_context *ctx, const fg_table *sheet, const fg_column *column,
-                              measuring *m) {
-  size_t kept = 0;
+static fg_status list_scans(fg_context *ctx, const fg_table *sheet, const fg_column *column,
+                            measuring *m) {
   for (size_t i = 0; i < sheet->rows; i++) {
-    mean scans = {0};
     size_t word = column->word ? column->word[i] : FG_TABLE_NOT_A_WORD;
     if (word == FG_TABLE_NOT_A_WORD)
       return fg_fail(ctx, FG_ERR_DATA,
@@ -176,13 +171,28 @@ static fg_status measure_runs(fg_context *ctx, const fg_table *sheet, const fg_c
     if (word == FG_TABLE_MISSING)
       m->out->empty++;
     else
-      FG_TRY(measure_run(ctx, m, i + 1, column->words[word], &scans));
+      FG_TRY(list_run(ctx, m, i + 1, column->words[word]));
+  }
+  return FG_OK;
+}
+
+static fg_status measure_runs(fg_context *ctx, measuring *m) {
+  fg_run_sheet *out = m->out;
+  size_t kept = 0;
+  for (size_t i = 0; i < out->scans;) {
+    mean scans = {0};
+    size_t run = out->scan[i].run;
+    for (; i < out->scans && out->scan[i].run == run; i++) {
+      FG_TRY(measure_scan(ctx, m, &out->scan[i]));
+      out->failed += out->scan[i].error != NULL;
+      add(&scans, out->scan[i].value, out->scan[i].u);
+    }
     if (!scans.count) continue;
     m->value[kept] = scans.sum / (double)scans.count;
     m->u[kept] = sqrt(scans.squares) / (double)scans.count;
-    m->out->row[kept++] = i;
+    out->row[kept++] = run - 1;
   }
-  m->out->table.rows = kept;
+  out->table.rows = kept;
   return FG_OK;
 }
 
@@ -218,7 +228,8 @@ static fg_status fill_table(fg_context *ctx, const fg_table *sheet, measuring *m
 
 static fg_status measure_sheet(fg_context *ctx, const fg_table *sheet, const fg_column *column,
                                measuring *m) {
-  FG_TRY(measure_runs(ctx, sheet, column, m));
+  FG_TRY(list_scans(ctx, sheet, column, m));
+  FG_TRY(measure_runs(ctx, m));
   FG_TRY(check_any(ctx, sheet, m));
   return fill_table(ctx, sheet, m);
 }

@@ -9,6 +9,12 @@
 #include "measure/reader.h"
 #include "measure/session.h"
 
+/* A resolution that was given contradicts the file's from this share of it; x and y differ from
+ * this ratio's logarithm: less is a scanner's own scale, as it was calibrated. */
+#define CONTRADICTION 0.005
+#define UNEQUAL       0.05
+/* A strip narrower than so many pixels is not sure to be found. */
+#define STRIP_LEAST_PX   2.0
 #define MEMORY_CAP_BYTES ((size_t)2 << 30)
 
 static size_t memory_cap(const fg_measure_options *options) {
@@ -32,6 +38,22 @@ static fg_status visit_strip(fg_context *ctx, fg_tiles *tiles, void *data) {
   return FG_OK;
 }
 
+/* Nothing was found: the strip may be too thin for this resolution, if that is the right one. */
+static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
+  double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
+  if (width_px >= STRIP_LEAST_PX)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: no foil in the picture (%zu specks or other objects); is the scan empty, "
+                   "or the resolution of %g dpi wrong?",
+                   m->scan, m->specks, m->dpi[0]);
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: no foil in the picture (%zu specks or other objects): at %g dpi a strip of "
+                 "%g mm is %.1f pixels wide; is the resolution of %g dpi wrong? if not, scan at "
+                 "%.0f dpi or more, where it is %g",
+                 m->scan, m->specks, dpi, m->design.thickness_mm, width_px, dpi,
+                 100 * ceil(STRIP_LEAST_PX * 0.254 / m->design.thickness_mm), STRIP_LEAST_PX);
+}
+
 static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_options *options,
                                fg_measurement *m) {
   fg_budget budget = {.name = m->scan, .limit = memory_cap(options)};
@@ -42,11 +64,7 @@ static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_
   FG_TRY_EXIT(fg_session_create(ctx, m, options->threads, &v.session));
   FG_TRY_EXIT(fg_reader_run(ctx, scan, visit_strip, &v, &budget, &tiles, m->sha256));
   FG_TRY_EXIT(fg_session_finish(ctx, v.session));
-  if (m->foil_count == 0)
-    status = fg_fail(ctx, FG_ERR_DATA,
-                     "%s: no foil in the picture (%zu specks or other objects); is the scan empty, "
-                     "or the resolution of %g dpi wrong?",
-                     m->scan, m->specks, m->dpi[0]);
+  if (m->foil_count == 0) status = fail_empty(ctx, m);
 exit:
   fg_session_free(v.session);
   fg_tiles_free(&tiles);
@@ -78,7 +96,9 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
                                         .pixel_cap = options->pixel_cap,
                                         .memory_cap = memory_cap(options),
                                         .channel = options->channel,
-                                        .allow_lossy = options->allow_lossy};
+                                        .allow_lossy = options->allow_lossy,
+                                        .only_file = options->only_file,
+                                        .failed_sha256 = options->sum_failed ? m->sha256 : NULL};
   FG_TRY(fg_scan_open(ctx, path, &scan_options, scan));
   const fg_scan_info *info = fg_scan_get_info(*scan);
   snprintf(m->scan, sizeof m->scan, "%s", path);
@@ -96,6 +116,39 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   return FG_OK;
 }
 
+/* Leaves nothing but the sum of what was read, where it is wanted. */
+static void clear_failed(const fg_measure_options *options, fg_scan *scan, fg_measurement *m) {
+  char sum[65] = "";
+  if (!options->sum_failed) {
+    fg_measurement_free(m);
+    return;
+  }
+  bool known = m->sha256[0] ||
+               (scan && fg_scan_is_file(scan) && fg_scan_sha256(NULL, scan, m->sha256) == FG_OK);
+  if (known && (!scan || fg_scan_check_unchanged(NULL, scan) == FG_OK))
+    memcpy(sum, m->sha256, sizeof sum);
+  fg_measurement_free(m);
+  memcpy(m->sha256, sum, sizeof sum);
+}
+
+/* What is odd about the resolution: a note of the scan, and a flag of its foils. */
+static unsigned check_resolution(fg_measurement *m) {
+  unsigned flags = 0;
+  for (int axis = 0; axis < 2; axis++)
+    if (fabs(m->dpi[axis] / m->dpi_file[axis] - 1) > CONTRADICTION)
+      flags |= FG_FOIL_RESOLUTION_CONTRADICTS_FILE;
+  if (fabs(log(m->dpi[0] / m->dpi[1])) > UNEQUAL) flags |= FG_FOIL_UNEQUAL_RESOLUTION;
+  if (m->warning[0]) return flags;
+  if (flags & FG_FOIL_RESOLUTION_CONTRADICTS_FILE)
+    snprintf(m->warning, sizeof m->warning,
+             "measured at %.6g dpi as was given, but the file says %.6g × %.6g", m->dpi[0],
+             m->dpi_file[0], m->dpi_file[1]);
+  else if (flags)
+    snprintf(m->warning, sizeof m->warning, "the resolutions along x and y differ: %.6g × %.6g dpi",
+             m->dpi[0], m->dpi[1]);
+  return flags;
+}
+
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement) {
   static const fg_measure_options defaults = {0};
@@ -103,15 +156,18 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   fg_status status = FG_OK;
   memset(measurement, 0, sizeof *measurement);
   measurement->design = *design;
-  FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   if (!options) options = &defaults;
+  FG_TRY_EXIT(fg_design_derive(ctx, design, &measurement->nominal));
   FG_TRY_EXIT(open_scan(ctx, path, options, &scan, measurement));
   if (design->form == FG_FORM_DISCS)
     FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
   else
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
+  unsigned flags = check_resolution(measurement);
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    measurement->foils[i].flags |= flags;
 exit:
+  if (status != FG_OK) clear_failed(options, scan, measurement);
   fg_scan_close(scan);
-  if (status != FG_OK) fg_measurement_free(measurement);
   return status;
 }

@@ -94,7 +94,8 @@ static fg_status run_ring(fg_context *ctx, ring *r) {
   return status;
 }
 
-/* The file's digest, computed beside the decoding (of a pipe: after it). */
+/* The file's digest: of a format that jumps about computed beside the decoding, else known after
+ * it. */
 typedef struct digest {
   fg_scan *scan;
   fg_context context;
@@ -105,13 +106,14 @@ typedef struct digest {
 static void *run_digest(void *argument) {
   digest *d = argument;
   d->status = fg_scan_sha256(&d->context, d->scan, d->hex);
+  if (d->status != FG_OK) d->hex[0] = '\0';
   return NULL;
 }
 
 static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
   digest d = {.scan = r->scan, .hex = sha256};
   fg_thread digester;
-  bool beside = fg_scan_is_file(r->scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
+  bool beside = fg_scan_sums_apart(r->scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
   fg_status status = run_ring(ctx, r);
   if (beside)
     fg_thread_join(&digester);
@@ -119,7 +121,10 @@ static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
     run_digest(&d);
   if (status == FG_OK && d.status != FG_OK)
     status = fg_fail(ctx, d.status, "%s", d.context.message);
-  return status;
+  fg_status unchanged =
+      fg_scan_check_unchanged(ctx, r->scan); /* else whatever failed is no wonder */
+  if (unchanged != FG_OK) sha256[0] = '\0';
+  return unchanged != FG_OK ? unchanged : status;
 }
 
 fg_status fg_reader_run(fg_context *ctx, fg_scan *scan, fg_reader_visit *visit, void *data,

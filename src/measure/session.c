@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -79,8 +78,7 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
   fg_status status = fg_edges_measure(ctx, &j->view, seg, trace, m->dpi, s->threads, &foil.strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, &m->design, s->threads, &foil);
   if (status == FG_ERR_NUMERIC) {
-    foil.flags |= FG_FOIL_NOT_MEASURED;
-    snprintf(foil.error, sizeof foil.error, "%.255s", ctx->message);
+    fg_foil_give_up(&foil, ctx->message);
     fg_place_from_trace(trace, &foil);
     status = FG_OK;
   }
@@ -96,18 +94,42 @@ static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
   return add_foil(ctx, s, &foil);
 }
 
+/* Traces of an island's objects that are measured already. */
+typedef struct traced {
+  fg_trace_list *lists; /* one per object */
+  size_t count;
+} traced;
+
+/* A gap parts a strip into two objects, and each one's trace runs over it along the whole strip. */
+static bool is_traced(const traced *done, const fg_trace *trace) {
+  for (size_t i = 0; i < done->count; i++)
+    for (size_t k = 0; k < done->lists[i].count; k++)
+      if (fg_trace_is_same(&done->lists[i].traces[k], trace)) return true;
+  return false;
+}
+
+static fg_status measure_object(fg_context *ctx, fg_session *s, const job *j,
+                                const fg_segmentation *seg, size_t i, traced *done) {
+  fg_trace_list *list = &done->lists[i];
+  FG_TRY(fg_trace_object(ctx, &j->view, seg, &seg->objects[i], expected_width_px(s->measurement),
+                         list));
+  if (!list->count) count_specks(s, 1);
+  for (size_t k = 0; k < list->count; k++)
+    if (!is_traced(done, &list->traces[k])) FG_TRY(measure_trace(ctx, s, j, seg, &list->traces[k]));
+  done->count++;
+  return FG_OK;
+}
+
 static fg_status measure_objects(fg_context *ctx, fg_session *s, const job *j,
                                  const fg_segmentation *seg) {
-  fg_trace_list list = {0};
+  traced done = {0};
   fg_status status = FG_OK;
-  for (size_t i = 0; i < seg->object_count && status == FG_OK; i++) {
-    status = fg_trace_object(ctx, &j->view, seg, &seg->objects[i],
-                             expected_width_px(s->measurement), &list);
-    if (status == FG_OK && !list.count) count_specks(s, 1);
-    for (size_t k = 0; k < list.count && status == FG_OK; k++)
-      status = measure_trace(ctx, s, j, seg, &list.traces[k]);
-    fg_trace_list_free(&list);
-  }
+  FG_TRY(fg_memory_allocate(ctx, seg->object_count, sizeof *done.lists, (void **)&done.lists));
+  for (size_t i = 0; i < seg->object_count && status == FG_OK; i++)
+    status = measure_object(ctx, s, j, seg, i, &done);
+  for (size_t i = 0; i < seg->object_count; i++)
+    fg_trace_list_free(&done.lists[i]);
+  free(done.lists);
   return status;
 }
 
@@ -184,7 +206,7 @@ fg_status fg_session_create(fg_context *ctx, fg_measurement *measurement, unsign
   fg_session *s = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *s, (void **)&s));
   s->measurement = measurement;
-  s->threads = threads ? threads : (unsigned)sysconf(_SC_NPROCESSORS_ONLN);
+  s->threads = threads ? threads : fg_core_count();
   pthread_mutex_init(&s->lock, NULL);
   pthread_cond_init(&s->changed, NULL);
   *session = s;

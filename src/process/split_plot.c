@@ -158,6 +158,8 @@ fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg
                         "two, and one with more than one run",
                         plot, plots.count, table->rows));
   FG_TRY_EXIT(fg_model_build(ctx, table, formula, &model));
+  FG_TRY_EXIT(fg_model_check_size(ctx, table->source, table->rows, model.columns + plots.count,
+                                  plot, plots.count));
   FG_TRY_EXIT(mark_whole_terms(ctx, &s, result));
   FG_TRY_EXIT(join(ctx, &s));
   FG_TRY_EXIT(fg_regression_fit(ctx, &s.joint, y, NULL, &reg));

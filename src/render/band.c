@@ -15,7 +15,7 @@ static size_t thing_count(const fg_sampler *sampler) {
 static fg_point nominal_px(const fg_sampler *sampler, double x, double y) {
   double px = x, py = y, d[2];
   for (int i = 0; sampler->has_field && i < 3; i++) {
-    fg_effects_field(&sampler->spec->effects, px, py, py, d);
+    fg_render_effects_field(&sampler->spec->effects, px, py, (double[]){px, py}, d);
     px = x - d[0];
     py = y - d[1];
   }
@@ -27,7 +27,7 @@ static double reach_px(const fg_sampler *sampler, double half_width_mm, double r
   double pixel = fmin(sampler->pixel_mm[0], sampler->pixel_mm[1]);
   double field = 0;
   for (size_t i = 0; i < sampler->spec->effects.count; i++)
-    if (sampler->spec->effects.effects[i].row->frame == FG_EFFECT_STEP)
+    if (sampler->spec->effects.effects[i].row->frame == FG_RENDER_EFFECT_STEP)
       field += 1e-3 * fabs(sampler->spec->effects.effects[i].p[0]);
   return (half_width_mm + reach_mm + field) / pixel + 3;
 }

@@ -19,8 +19,8 @@ typedef struct png_out {
 
 static void on_error(png_structp png, png_const_charp words) {
   png_out *out = png_get_error_ptr(png);
-  fg_fail(out->ctx, FG_ERR_IO, "%s: cannot write: %s", out->file.path ? out->file.path : "-",
-          words);
+  fg_fail(out->ctx, FG_ERR_IO, "%s: cannot be written: %s",
+          out->file.path ? out->file.path : "standard output", words);
   longjmp(out->failed, 1);
 }
 
@@ -78,9 +78,9 @@ static fg_status write_png(fg_context *ctx, const fg_render_spec *spec, png_out 
 static fg_status write_truth(fg_context *ctx, const fg_render_spec *spec, fg_output *out) {
   char *json = NULL;
   FG_TRY(fg_render_truth_json(ctx, spec, &json));
-  bool written = fputs(json, out->stream) >= 0 && fputc('\n', out->stream) != EOF;
+  fprintf(out->stream, "%s\n", json);
   free(json);
-  return written ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: cannot write", out->path ? out->path : "-");
+  return FG_OK;
 }
 
 fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char *scan_path,
@@ -90,8 +90,8 @@ fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char
   fg_status status = FG_OK;
   FG_TRY(fg_output_open(ctx, scan_path, &scan.file));
   FG_TRY_EXIT(truth_path ? fg_output_open(ctx, truth_path, &truth) : FG_OK);
-  FG_TRY_EXIT(write_png(ctx, spec, &scan));
-  FG_TRY_EXIT(truth_path ? write_truth(ctx, spec, &truth) : FG_OK);
+  FG_TRY_EXIT(fg_output_flush(ctx, &scan.file, write_png(ctx, spec, &scan)));
+  if (truth_path) FG_TRY_EXIT(fg_output_flush(ctx, &truth, write_truth(ctx, spec, &truth)));
   FG_TRY_EXIT(fg_output_commit(ctx, &scan.file));
   FG_TRY_EXIT(truth_path ? fg_output_commit(ctx, &truth) : FG_OK);
 exit:

@@ -195,14 +195,14 @@ static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps,
     if (!plans[i].present) continue;
     fg_render_bump bump = {.index = i + 1, .radius_mm = request->radius_mm[i]};
     if (isnan(bump.radius_mm))
-      bump.radius_mm =
-          design->bump_radius_mm * (1 + request->springback_mean + scatter) *
-          fg_effects_shape(&o->spec->effects, FG_EFFECT_TABLE, i + 1, design->bump_count);
+      bump.radius_mm = design->bump_radius_mm * (1 + request->springback_mean + scatter) *
+                       fg_render_effects_shape(&o->spec->effects, FG_RENDER_EFFECT_TABLE, i + 1,
+                                               design->bump_count);
     bump.bump_angle_deg = request->bump_angle_deg[i];
     if (isnan(bump.bump_angle_deg))
       bump.bump_angle_deg = design->bump_angle_deg * design->bump_radius_mm / bump.radius_mm *
-                            fg_effects_shape(&o->spec->effects, FG_EFFECT_STRETCH,
-                                             bump.radius_mm - design->bump_radius_mm, 1);
+                            fg_render_effects_shape(&o->spec->effects, FG_RENDER_EFFECT_STRETCH,
+                                                    bump.radius_mm - design->bump_radius_mm, 1);
     derive_bump(request, &bump);
     FG_TRY(plan_bump(o, &bump, &plans[i]));
     bump.centre_px = (fg_point){bump.centre_to_centre_mm * cos(plans[i].axis_rad),

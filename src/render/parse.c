@@ -396,7 +396,7 @@ static fg_status read_spec(const fg_place *place, const cJSON *root, fg_render_s
   spec->seed = (uint64_t)seed;
   fg_place scanner = fg_place_inside(place, "scanner");
   FG_TRY(read_scanner(&scanner, get(root, "scanner"), &spec->scanner));
-  FG_TRY(fg_effects_parse(place, get(root, "effects"), &spec->effects));
+  FG_TRY(fg_render_effects_parse(place, get(root, "effects"), &spec->effects));
   FG_TRY(read_discs(place, get(root, "discs"), spec));
   return read_foils(place, get(root, "foils"), spec);
 }

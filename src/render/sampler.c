@@ -7,17 +7,17 @@ static const double wall_reach = 6; /* decay lengths */
 
 void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   const fg_scanner *scanner = &spec->scanner;
-  *sampler = (fg_sampler){.spec = spec, .row_y_mm = NAN};
+  *sampler = (fg_sampler){.spec = spec, .side_mm = {NAN, NAN}};
   double pixel = fmin(spec->pixel_mm[0], spec->pixel_mm[1]);
   for (int axis = 0; axis < 2; axis++)
     sampler->pixel_mm[axis] = spec->pixel_mm[axis];
   sampler->sd_mm = 0.3 * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
-  sampler->has_field = fg_effects_have(&spec->effects, FG_EFFECT_SCANNER) ||
-                       fg_effects_have(&spec->effects, FG_EFFECT_STEP);
-  sampler->has_part = fg_effects_have(&spec->effects, FG_EFFECT_PART);
-  sampler->has_normal = fg_effects_have(&spec->effects, FG_EFFECT_NORMAL);
-  sampler->has_bump = fg_effects_have(&spec->effects, FG_EFFECT_BUMP);
-  sampler->has_edge = fg_effects_have(&spec->effects, FG_EFFECT_EDGE);
+  sampler->has_field = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_SCANNER) ||
+                       fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_STEP);
+  sampler->has_part = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_PART);
+  sampler->has_normal = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_NORMAL);
+  sampler->has_bump = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_BUMP);
+  sampler->has_edge = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
   double direction = scanner->wall_direction_deg * 3.14159265358979323846 / 180;
   sampler->wall_x = cos(direction);
@@ -26,7 +26,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->wall_gap_mm = scanner->wall_gap_px * pixel;
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
-  reach += fg_effects_reach(&spec->effects);
+  reach += fg_render_effects_reach(&spec->effects);
   sampler->edge_reach_mm = reach;
   sampler->reach_mm =
       reach +
@@ -156,14 +156,14 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
   }
   if (sampler->has_normal) {
     double x = segment->x + at->dx - at->n * at->nx, y = segment->y + at->dy - at->n * at->ny;
-    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_NORMAL,
-                                    fg_foil_psi(frame, x, y), frame->half_span_rad);
+    double shift = fg_render_effects_shape(&sampler->spec->effects, FG_RENDER_EFFECT_NORMAL,
+                                           fg_foil_psi(frame, x, y), frame->half_span_rad);
     inner -= shift;
     outer -= shift;
   }
   if (sampler->has_edge) {
     double shift[2];
-    fg_effects_edges(&sampler->spec->effects, at->nx, at->ny, shift);
+    fg_render_effects_edges(&sampler->spec->effects, at->nx, at->ny, shift);
     inner += shift[0];
     outer += shift[1];
   }
@@ -190,8 +190,8 @@ static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t co
   if (sampler->has_part) {
     /* The shape moves radially, so a place belongs to the part that is radially below it. */
     double dx = x - frame->x, dy = y - frame->y, distance = hypot(dx, dy);
-    double shift = fg_effects_shape(&sampler->spec->effects, FG_EFFECT_PART,
-                                    fg_foil_psi(frame, x, y), frame->half_span_rad);
+    double shift = fg_render_effects_shape(&sampler->spec->effects, FG_RENDER_EFFECT_PART,
+                                           fg_foil_psi(frame, x, y), frame->half_span_rad);
     x -= shift * dx / distance;
     y -= shift * dy / distance;
   }
@@ -223,7 +223,7 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   if (!shape->adds && r > 0 && sampler->has_edge) {
     /* A hole's edge looks inwards: its normal, and what moves it, turn round. */
     double out = shape->value > 0.5 ? 1 : -1, shift[2];
-    fg_effects_edges(&sampler->spec->effects, out * dx / r, out * dy / r, shift);
+    fg_render_effects_edges(&sampler->spec->effects, out * dx / r, out * dy / r, shift);
     edge -= out * shift[0];
   }
   if (!shape->adds && r > 0) {
@@ -240,8 +240,9 @@ double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, do
   double x = x_mm, y = y_mm;
   if (sampler->has_field) {
     double d[2];
-    double row_y = isnan(sampler->row_y_mm) ? y : sampler->row_y_mm;
-    fg_effects_field(&sampler->spec->effects, x, y, row_y, d);
+    const double side[2] = {isnan(sampler->side_mm[0]) ? x : sampler->side_mm[0],
+                            isnan(sampler->side_mm[1]) ? y : sampler->side_mm[1]};
+    fg_render_effects_field(&sampler->spec->effects, x, y, side, d);
     x += d[0];
     y += d[1];
   }

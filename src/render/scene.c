@@ -17,13 +17,14 @@ fg_point fg_segment_point(const fg_segment *segment, double t_mm) {
                     segment->y + segment->radius * sin(angle)};
 }
 
-double fg_segment_bump_shift(const fg_effect_list *effects, const fg_segment *segment,
+double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segment *segment,
                              double t_mm) {
   if (segment->bump)
-    return fg_effects_shape(effects, FG_EFFECT_BUMP, 2 * t_mm / segment->length_mm - 1, 1);
+    return fg_render_effects_shape(effects, FG_RENDER_EFFECT_BUMP,
+                                   2 * t_mm / segment->length_mm - 1, 1);
   if (!segment->joins) return 0;
   double value, slope;
-  fg_effects_bump_end(effects, segment->joins, &value, &slope);
+  fg_render_effects_bump_end(effects, segment->joins, &value, &slope);
   double from = segment->joins > 0 ? t_mm : segment->length_mm - t_mm;
   double s = fmin(1, fmax(0, from / segment->length_mm));
   /* Hermite's cubic from (value, slope) to (0, 0); du = 2 / bump_mm. */
@@ -261,8 +262,8 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   scatter_litter(spec, &scanner->dust, FG_STREAM_DUST);
   scatter_litter(spec, &scanner->specks, FG_STREAM_SPECKS);
   scatter_litter(spec, &scanner->scratches, FG_STREAM_SCRATCHES);
-  fg_effects_resolve(&spec->effects, spec->width_px * spec->pixel_mm[0],
-                     spec->height_px * spec->pixel_mm[1]);
+  fg_render_effects_resolve(&spec->effects, spec->width_px * spec->pixel_mm[0],
+                            spec->height_px * spec->pixel_mm[1]);
   spec->truth = (fg_render_truth){.width_px = (int64_t)spec->width_px,
                                   .height_px = (int64_t)spec->height_px,
                                   .bits = scanner->bits,
@@ -309,15 +310,15 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
   fg_point p = fg_segment_point(segment, t);
   fg_point inner = inner_side(segment, p);
   double shift[2];
-  fg_effects_edges(&spec->effects, inner.x, inner.y, shift);
+  fg_render_effects_edges(&spec->effects, inner.x, inner.y, shift);
   double w = fg_segment_bump_shift(&spec->effects, segment, t) + 0.5 * (shift[0] + shift[1]);
-  w -= fg_effects_shape(&spec->effects, FG_EFFECT_NORMAL, fg_foil_psi(frame, p.x, p.y),
-                        frame->half_span_rad);
+  w -= fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_NORMAL,
+                               fg_foil_psi(frame, p.x, p.y), frame->half_span_rad);
   p.x += w * inner.x;
   p.y += w * inner.y;
   double dx = p.x - frame->x, dy = p.y - frame->y;
-  double radial = fg_effects_shape(&spec->effects, FG_EFFECT_PART, fg_foil_psi(frame, p.x, p.y),
-                                   frame->half_span_rad);
+  double radial = fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_PART,
+                                          fg_foil_psi(frame, p.x, p.y), frame->half_span_rad);
   double distance = hypot(dx, dy);
   point_px->x = (p.x + radial * dx / distance) / spec->pixel_mm[0];
   point_px->y = (p.y + radial * dy / distance) / spec->pixel_mm[1];

@@ -116,7 +116,7 @@ typedef struct fg_scene {
 
 struct fg_render_spec {
   fg_scanner scanner;
-  fg_effect_list effects;
+  fg_render_effect_list effects;
   uint64_t seed;
   double width_px, height_px, margin_px; /* NaN: fitted */
   fg_foil_request *requests;
@@ -151,7 +151,8 @@ double fg_foil_psi(const fg_foil_frame *frame, double x_mm, double y_mm);
 
 /* Shift of a bump's arc by its effects, towards the inner side, mm; on a fillet that joins it, what
  * fades the shift out. */
-double fg_segment_bump_shift(const fg_effect_list *effects, const fg_segment *segment, double t_mm);
+double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segment *segment,
+                             double t_mm);
 
 /* Appends the segments of one foil in its own frame (O at the origin, the middle along x, bump
  * numbers along rising angle), and fills its bumps (places in mm, same frame) and frame. */

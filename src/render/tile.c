@@ -227,34 +227,50 @@ static void draw_plain(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t
   if (tiler->halo_px) add_halo(tiler, band, x0, y0, out, stride);
 }
 
-/* Rows between two jumps see the whole neighbourhood from their own side of the jumps: the tile is
- * drawn once for every such run of rows. */
+/* First pixel behind `from` that lies beyond the next jump along an axis, within the tile. */
+static int64_t run_end(const fg_tiler *tiler, int axis, int64_t origin, int64_t from) {
+  double pixel = tiler->sampler->pixel_mm[axis], at = (double)(origin + from) * pixel;
+  double jump = fg_render_effects_next_step(&tiler->sampler->spec->effects, axis, at, INFINITY);
+  int64_t end = from + 1;
+  while (end < FG_TILE_PX && !((double)(origin + end) * pixel > jump))
+    end++;
+  return end;
+}
+
+/* Pixels between two jumps see the whole neighbourhood from their own side of the jumps: the tile
+ * is drawn once for every such run of rows and columns. */
 static void draw_with_jumps(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t y0,
                             float *out, int64_t stride) {
-  double pixel = tiler->sampler->pixel_mm[1];
-  int64_t y = 0;
-  while (y < FG_TILE_PX) {
-    double row_y = (double)(y0 + y) * pixel;
-    double jump = fg_effects_next_step(&tiler->sampler->spec->effects, row_y, INFINITY);
-    tiler->sampler->row_y_mm = row_y;
-    draw_plain(tiler, band, x0, y0, tiler->jump, FG_TILE_PX);
-    do {
-      memcpy(out + y * stride, tiler->jump + y * FG_TILE_PX, FG_TILE_PX * sizeof *out);
-      y++;
-    } while (y < FG_TILE_PX && !((double)(y0 + y) * pixel > jump));
+  fg_sampler *sampler = tiler->sampler;
+  for (int64_t top = 0, bottom; top < FG_TILE_PX; top = bottom) {
+    bottom = run_end(tiler, 1, y0, top);
+    sampler->side_mm[1] = (double)(y0 + top) * sampler->pixel_mm[1];
+    for (int64_t left = 0, right; left < FG_TILE_PX; left = right) {
+      right = run_end(tiler, 0, x0, left);
+      sampler->side_mm[0] = (double)(x0 + left) * sampler->pixel_mm[0];
+      draw_plain(tiler, band, x0, y0, tiler->jump, FG_TILE_PX);
+      for (int64_t y = top; y < bottom; y++)
+        memcpy(out + y * stride + left, tiler->jump + y * FG_TILE_PX + left,
+               (size_t)(right - left) * sizeof *out);
+    }
   }
-  tiler->sampler->row_y_mm = NAN;
+  sampler->side_mm[0] = sampler->side_mm[1] = NAN;
+}
+
+/* Whether a jump lies where the tile's pixels can see it. */
+static bool has_jump(const fg_tiler *tiler, int axis, int64_t origin_px) {
+  int64_t reach = fg_tiler_reach_px(tiler);
+  double pixel = tiler->sampler->pixel_mm[axis];
+  return !isnan(fg_render_effects_next_step(&tiler->sampler->spec->effects, axis,
+                                            (double)(origin_px - reach) * pixel,
+                                            (double)(origin_px + FG_TILE_PX + reach) * pixel));
 }
 
 bool fg_tiler_draw(fg_tiler *tiler, const fg_band *band, int64_t x0_px, int64_t y0_px, float *out,
                    int64_t stride) {
   int64_t reach = fg_tiler_reach_px(tiler);
   if (!anything_within(band, x0_px, y0_px, reach)) return false;
-  double pixel = tiler->sampler->pixel_mm[1];
-  double jump =
-      fg_effects_next_step(&tiler->sampler->spec->effects, (double)(y0_px - reach) * pixel,
-                           (double)(y0_px + FG_TILE_PX + reach) * pixel);
-  if (isnan(jump))
+  if (!has_jump(tiler, 0, x0_px) && !has_jump(tiler, 1, y0_px))
     draw_plain(tiler, band, x0_px, y0_px, out, stride);
   else
     draw_with_jumps(tiler, band, x0_px, y0_px, out, stride);

@@ -84,10 +84,10 @@ static void put_scan(cJSON *root, const fg_render_spec *spec) {
   put(scan, "seed", (double)spec->seed);
 }
 
-static void put_curve(cJSON *entry, const fg_effect *effect) {
-  if (effect->row->frame == FG_EFFECT_SCANNER)
+static void put_curve(cJSON *entry, const fg_render_effect *effect) {
+  if (effect->row->frame == FG_RENDER_EFFECT_SCANNER)
     cJSON_AddStringToObject(entry, "moves", effect->moves ? "y" : "x");
-  if (effect->row->frame == FG_EFFECT_EDGE)
+  if (effect->row->frame == FG_RENDER_EFFECT_EDGE)
     cJSON_AddStringToObject(entry, "edges", effect->apart ? "apart" : "together");
   cJSON *knots = cJSON_AddArrayToObject(entry, "knots");
   for (size_t i = 0; i < effect->curve.count; i++) {
@@ -96,13 +96,13 @@ static void put_curve(cJSON *entry, const fg_effect *effect) {
   }
 }
 
-static void put_effects(cJSON *root, const fg_effect_list *list) {
+static void put_effects(cJSON *root, const fg_render_effect_list *list) {
   cJSON *effects = cJSON_AddArrayToObject(root, "effects");
   for (size_t i = 0; i < list->count; i++) {
-    const fg_effect *effect = &list->effects[i];
+    const fg_render_effect *effect = &list->effects[i];
     cJSON *entry = cJSON_CreateObject();
     cJSON_AddStringToObject(entry, "id", effect->row->id);
-    for (int k = 0; k < FG_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
+    for (int k = 0; k < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
       put(entry, effect->row->parameters[k].name, effect->p[k]);
     if (effect->row->curve) put_curve(entry, effect);
     cJSON_AddItemToArray(effects, entry);

@@ -42,6 +42,13 @@ static const fg_report_field foil_fields[] = {
          "correlation length of the residuals along the strip"),
     BARE(fg_foil, "edge_model_um", edge_model_um, "µm", "edge model", 3,
          "systematic part of the edges' uncertainty"),
+    NUMBER(fg_foil, "correction.overall_radius_mm", correction.overall_radius_mm,
+           correction.u_overall_radius_mm, "mm", "ΔR0", 4,
+           "what the scanner's model moved the overall radius by"),
+    NUMBER(fg_foil, "correction.radius_mm", correction.radius_mm, correction.u_radius_mm, "mm",
+           "ΔR", 4, "what the scanner's model moved a bump radius by, at most"),
+    NUMBER(fg_foil, "correction.height_mm", correction.height_mm, correction.u_height_mm, "mm",
+           "Δh", 4, "what the scanner's model moved a bump height by, at most"),
 };
 
 static const fg_report_field bump_fields[] = {
@@ -52,11 +59,15 @@ static const fg_report_field bump_fields[] = {
     NUMBER(fg_bump, "bump_angle_deg", bump_angle_deg, u_bump_angle_deg, "°", "α", 2, "bump angle"),
     NUMBER(fg_bump, "intersection_angle_deg", intersection_angle_deg, u_intersection_angle_deg, "°",
            "θ", 2, "intersection angle"),
-    NUMBER(fg_bump, "height_mm", height_mm, u_height_mm, "mm", "h", 4, "bump height"),
+    NUMBER(fg_bump, "height_mm", height_mm, u_height_mm, "mm", "h", 4, "bump height, foil free"),
     NUMBER(fg_bump, "clearance_mm", clearance_mm, u_clearance_mm, "mm", "C_loc", 4,
-           "local clearance"),
+           "local clearance, foil free"),
     NUMBER(fg_bump, "clearance_error", clearance_error, u_clearance_error, "", "e_C", 3,
-           "clearance error, a ratio"),
+           "clearance error, a ratio, foil free"),
+    NUMBER(fg_bump, "height_fitted_mm", height_fitted_mm, u_height_fitted_mm, "mm", "h_fit", 4,
+           "bump height, foil fitted into the sleeve"),
+    NUMBER(fg_bump, "clearance_fitted_mm", clearance_fitted_mm, u_clearance_fitted_mm, "mm",
+           "C_fit", 4, "local clearance, foil fitted into the sleeve"),
     NUMBER(fg_bump, "radius_error_pct", radius_error_pct, u_radius_error_pct, "%", "e_R", 2,
            "springback error of the bump radius"),
     NUMBER(fg_bump, "bump_angle_error_pct", bump_angle_error_pct, u_bump_angle_error_pct, "%",
@@ -83,6 +94,8 @@ static const fg_report_field disc_fields[] = {
     BARE(fg_disc, "coverage_deg", coverage_deg, "°", "coverage", 0,
          "how much of the circumference was usable"),
     BARE(fg_disc, "blur_um", blur_um, "µm", "blur", 1, "blur of the edge, standard deviation"),
+    NUMBER(fg_disc, "radius_correction_mm", radius_correction_mm, u_radius_correction_mm, "mm",
+           "Δr", 4, "what the scanner's model moved the radius by"),
     COUNT(fg_disc, "points", points, "points in the fit"),
 };
 

@@ -3,7 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/text.h"
+#include "foilgauge/scan_loop.h"
 #include "report/html_parts.h"
+#include "report/scan_model_words.h"
 
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
   double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
@@ -35,6 +38,13 @@ static const char *verdict_title(fg_verdict verdict) {
 void fg_html_verdict(FILE *out, fg_verdict verdict) {
   fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
           verdict_title(verdict));
+}
+
+void fg_html_outcome(FILE *out, const fg_report_outcome *outcome) {
+  if (outcome->rejected && !outcome->exceeded)
+    fputs("<span class=\"verdict fail\">Rejected</span>\n", out);
+  else
+    fg_html_verdict(out, outcome->verdict);
 }
 
 static const char *base_name(const char *path) {
@@ -83,7 +93,8 @@ static void put_tiles(FILE *out, const fg_foil *foil) {
   put_tile(out, FG_REPORT_FOIL, "overall.springback_error_pct", "Overall springback", foil);
   put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
   put_mean_tile(out, foil, "height_mm", "Bump height, mean");
-  put_mean_tile(out, foil, "clearance_mm", "Clearance, mean");
+  put_mean_tile(out, foil, "clearance_mm", "Clearance, free, mean");
+  put_mean_tile(out, foil, "clearance_fitted_mm", "Clearance, fitted, mean");
   put_tile(out, FG_REPORT_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
@@ -97,8 +108,9 @@ static void put_flags(FILE *out, const fg_foil *foil) {
 }
 
 static const char *const bump_columns[] = {
-    "radius_mm",    "bump_angle_deg",   "intersection_angle_deg", "height_mm",
-    "clearance_mm", "radius_error_pct", "bump_angle_error_pct",   "rms_um"};
+    "radius_mm",        "bump_angle_deg",       "intersection_angle_deg",
+    "height_mm",        "clearance_mm",         "clearance_fitted_mm",
+    "radius_error_pct", "bump_angle_error_pct", "rms_um"};
 static const char *const disc_columns[] = {"diameter_mm", "radius_mm", "roundness_um", "rms_um",
                                            "coverage_deg"};
 static const char *const foil_rows[] = {"overall.radius_mm", "overall.springback_error_pct",
@@ -120,11 +132,12 @@ static void put_limits(FILE *out, const fg_tolerance *tolerance) {
     fprintf(out, "≤ %.6g", tolerance->upper);
 }
 
+/* `judged`: the values are those of a part of the design. */
 static void put_cell(FILE *out, const fg_design *design, const fg_report_field *field,
-                     const void *object) {
+                     const void *object, bool judged) {
   const fg_tolerance *tolerance = find_tolerance(design, field->name);
   fg_verdict verdict = FG_VERDICT_NONE;
-  if (tolerance)
+  if (tolerance && judged)
     verdict = fg_judge_value(tolerance, fg_report_value(field, object),
                              fg_report_uncertainty(field, object));
   fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
@@ -165,6 +178,7 @@ typedef struct table_rows {
   const char *title;
   const char *objects;
   size_t count, size;
+  const fg_foil *foil; /* of the bumps; NULL for discs */
 } table_rows;
 
 static void put_table_head(FILE *out, const fg_design *design, const table_rows *rows,
@@ -194,13 +208,13 @@ static void put_table(FILE *out, const fg_design *design, const table_rows *rows
   put_table_head(out, design, rows, columns, count);
   for (size_t i = 0; i < rows->count; i++) {
     const void *object = rows->objects + i * rows->size;
-    bool is_bump = rows->owner == FG_REPORT_BUMP;
     const fg_bump *bump = object;
     const fg_disc *disc = object;
-    fprintf(out, "<tr><td>%d</td>", is_bump ? bump->number : disc->number);
+    fprintf(out, "<tr><td>%d</td>", rows->foil ? bump->number : disc->number);
     for (size_t k = 0; k < count; k++)
-      put_cell(out, design, columns[k], object);
-    put_flag_cell(out, is_bump ? bump->flags : disc->flags);
+      put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
+    put_flag_cell(out, rows->foil ? fg_bump_flags(design, rows->foil, bump)
+                                  : fg_disc_flags(design, disc));
   }
   fputs("</tbody></table></div>\n", out);
 }
@@ -214,7 +228,7 @@ static void put_foil_table(FILE *out, const fg_design *design, const fg_foil *fo
         out);
   for (size_t i = 0; i < count; i++) {
     fprintf(out, "<tr><td>%s</td>", rows[i]->words);
-    put_cell(out, design, rows[i], foil);
+    put_cell(out, design, rows[i], foil, fg_foil_is_measured(foil));
     fprintf(out, "<td>%s</td><td>", rows[i]->unit);
     put_limits(out, find_tolerance(design, rows[i]->name));
     fputs("</td></tr>\n", out);
@@ -222,7 +236,8 @@ static void put_foil_table(FILE *out, const fg_design *design, const fg_foil *fo
   fputs("</tbody></table></div>\n", out);
 }
 
-static void put_facts(FILE *out, const fg_design *design, const fg_measurement *measurement) {
+static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
+                           const fg_measurement *measurement) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
   fg_html_text(out, measurement->scan);
   fprintf(out, "</dd>\n<dt>Pixels</dt><dd>%lld × %lld, %d bit</dd>\n",
@@ -236,18 +251,35 @@ static void put_facts(FILE *out, const fg_design *design, const fg_measurement *
   fg_html_text(out, measurement->sha256);
   fputs("</dd>\n<dt>Design</dt><dd>", out);
   fg_html_text(out, design->name);
-  fprintf(out, " (%s)</dd>\n<dt>Program</dt><dd>foilgauge " FOILGAUGE_VERSION "</dd>\n</dl>\n",
-          fg_form_word(design->form));
+  fprintf(out, " (%s)</dd>\n", fg_form_word(design->form));
+  FG_TRY(fg_html_model_facts(ctx, out, measurement->model));
+  fputs("<dt>Program</dt><dd>foilgauge " FOILGAUGE_VERSION "</dd>\n</dl>\n", out);
+  return FG_OK;
 }
 
-static void put_uncertainty(FILE *out) {
+static void put_uncertainty(FILE *out, const fg_scan_model *model) {
+  char scale[FG_SCALE_WORDS];
+  fg_scale_words(model, scale, sizeof scale);
   fputs("<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
         "factor k = 2, about 95 %). u comes from the residuals with their correlation along the "
-        "edge and from what the two edges say against each other. The scanner&#39;s own error of "
-        "scale is not in it. A value passes when value ± U lies inside its tolerance, fails when "
+        "edge and from what the two edges say against each other. ",
+        out);
+  fg_html_text(out, scale);
+  fputs(" A value passes when value ± U lies inside its tolerance, fails when "
         "it lies outside, and cannot be told when a limit runs through it. s is the standard "
         "deviation over the n bumps.</p>\n",
         out);
+}
+
+static void put_free_and_fitted(FILE *out) {
+  fputs(
+      "<h2>Free and fitted</h2>\n<p class=\"note\">The scan shows the foil free: h, C_loc and its "
+      "error are those of the foil on its own circle R0. In the bearing it is pressed against the "
+      "sleeve; C_fit (and h_fit in the JSON) is what a bump of the same radius and chord has "
+      "there. The springback model predicts a height from R alone (h_m): eq 5.6 with measured X, R "
+      "and α would give R0 back, whatever the bump, since α is defined by the crossing with R0."
+      "</p>\n",
+      out);
 }
 
 static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
@@ -261,11 +293,14 @@ static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *m
 }
 
 static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const table_rows rows = {FG_REPORT_BUMP, "bump", (const char *)foil->bumps, foil->bump_count,
-                           sizeof *foil->bumps};
+  const table_rows rows = {FG_REPORT_BUMP,      "bump", (const char *)foil->bumps, foil->bump_count,
+                           sizeof *foil->bumps, foil};
   fputs("<h2>Bumps</h2>\n", out);
   put_table(out, design, &rows, bump_columns, sizeof bump_columns / sizeof *bump_columns);
   put_foil_table(out, design, foil);
+  char thickness[200];
+  fg_thickness_words(design, foil, thickness, sizeof thickness);
+  if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
   fputs("<h2>Springback error per bump</h2>\n<figure>", out);
   fg_html_springback(out, foil);
   fputs("</figure>\n<h2>Residual along the foil</h2>\n<figure>", out);
@@ -276,12 +311,19 @@ static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *
           foil->noise_um, foil->correlation_mm);
 }
 
-/* "Out of tolerance: h of bump 1, 8; e_R of bump 1." Judgements of one tolerance are neighbours. */
-static void put_reasons(FILE *out, const fg_judgement *list, size_t count, fg_verdict verdict) {
+/* "Out of tolerance (3 values): bump height 1, 8; bump angle 1." Judgements of one tolerance are
+ * neighbours. Bumps that are missing are the defect's to tell. */
+static void put_reasons(FILE *out, const fg_decision *decision, fg_verdict verdict) {
+  const fg_judgement *list = decision->judgements;
   const fg_tolerance *last = NULL;
-  for (size_t i = 0; i < count; i++) {
-    if (list[i].verdict != verdict) continue;
-    if (!last) fprintf(out, "<p class=\"reasons\"><b>%s:</b> ", verdict_title(verdict));
+  size_t values = 0;
+  for (size_t i = 0; i < decision->count; i++)
+    values += list[i].verdict == verdict && !list[i].missing;
+  for (size_t i = 0; i < decision->count; i++) {
+    if (list[i].verdict != verdict || list[i].missing) continue;
+    if (!last)
+      fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", verdict_title(verdict), values,
+              values == 1 ? "value" : "values");
     if (list[i].tolerance != last) {
       fprintf(out, "%s%s", last ? "; " : "", list[i].field->words);
       if (list[i].number) fprintf(out, " %d", list[i].number);
@@ -293,64 +335,96 @@ static void put_reasons(FILE *out, const fg_judgement *list, size_t count, fg_ve
   if (last) fputs(".</p>\n", out);
 }
 
+static void put_defect(FILE *out, const fg_design *design, const fg_foil *foil) {
+  char words[200];
+  if (fg_foil_defect(design, foil, words, sizeof words))
+    fprintf(out, "<p class=\"reasons\"><b>Rejected:</b> %s.</p>\n", words);
+}
+
 static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
                             const fg_measurement *measurement, const fg_foil *foil) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
-  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  fg_judgement *list;
-  size_t count;
-  FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
-  fg_verdict verdict = fg_judgements_verdict(list, count);
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
   fprintf(out, "<header><h1>Foil %d</h1>", foil->number);
-  fg_html_verdict(out, measured ? verdict : FG_VERDICT_NOT_MEASURED);
+  if (foil->flags & FG_FOIL_NOT_THIS_DESIGN)
+    fputs("<span class=\"verdict not_measured\">Not a foil of this design</span>\n", out);
+  else
+    fg_html_outcome(out, &decision.outcome);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
-  if (measured)
+  if (!(foil->flags & FG_FOIL_NOT_MEASURED))
     fprintf(out, " · %zu bumps, %s", foil->bump_count, fg_orientation_word(foil->orientation));
   fputs("</p></header>\n", out);
-  for (size_t i = 0; measured && i < sizeof told / sizeof *told; i++)
-    put_reasons(out, list, count, told[i]);
-  free(list);
+  put_defect(out, design, foil);
+  for (size_t i = 0; i < sizeof told / sizeof *told; i++)
+    put_reasons(out, &decision, told[i]);
+  fg_decision_free(&decision);
   return FG_OK;
 }
 
 static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
                           const fg_measurement *measurement, const fg_foil *foil) {
+  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
   fputs("<section>\n", out);
   FG_TRY(put_judged(ctx, out, design, measurement, foil));
-  if (measured) put_tiles(out, foil);
-  if (!measured) {
-    fputs("<p>", out);
+  fg_correction_moved(&foil->correction, moved, sizeof moved);
+  fg_correction_added(&foil->correction, added, sizeof added);
+  if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
+  if (foil->error[0]) {
+    fputs("<p class=\"reasons\">", out);
     fg_html_text(out, foil->error);
     fputs("</p>\n", out);
   }
+  if (measured) put_tiles(out, foil);
   FG_TRY(put_picture(ctx, out, measurement, foil));
   put_flags(out, foil);
   if (measured) put_foil_details(out, design, foil);
-  if (measured) put_uncertainty(out);
-  put_facts(out, design, measurement);
+  if (measured) put_free_and_fitted(out);
+  if (measured) put_uncertainty(out, measurement->model);
+  FG_TRY(put_facts(ctx, out, design, measurement));
   fputs("</section>\n", out);
   return FG_OK;
+}
+
+static fg_status put_discs_corrected(fg_context *ctx, FILE *out,
+                                     const fg_measurement *measurement) {
+  char moved[FG_CORRECTION_WORDS] = "", added[FG_CORRECTION_WORDS] = "";
+  double most = 0, u = 0;
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    const fg_disc *disc = &measurement->discs[i];
+    if (fabs(disc->radius_correction_mm) > fabs(most)) most = disc->radius_correction_mm;
+    u = fmax(u, disc->u_radius_correction_mm);
+  }
+  if (measurement->disc_count) {
+    fg_text_clip(moved, sizeof moved, "radii by up to %+.3g µm", 1000 * most);
+    fg_text_clip(added, sizeof added, "up to %.2g µm to their u", 1000 * u);
+  }
+  return fg_html_corrected(ctx, out, measurement->model, moved, added);
 }
 
 static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
                            const fg_report_scan *scan) {
   const fg_measurement *measurement = scan->measurement;
-  const table_rows rows = {FG_REPORT_DISC, "disc", (const char *)measurement->discs,
-                           measurement->disc_count, sizeof *measurement->discs};
-  const fg_report one = {report->design, report->nominal, scan, 1};
+  const table_rows rows = {FG_REPORT_DISC,
+                           "disc",
+                           (const char *)measurement->discs,
+                           measurement->disc_count,
+                           sizeof *measurement->discs,
+                           NULL};
   fg_report_outcome outcome;
-  FG_TRY(fg_report_judge(ctx, &one, &outcome));
+  FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
   fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
   fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
   fputs("</p></header>\n", out);
+  FG_TRY(put_discs_corrected(ctx, out, measurement));
   FG_TRY(put_picture(ctx, out, measurement, NULL));
   put_table(out, report->design, &rows, disc_columns, sizeof disc_columns / sizeof *disc_columns);
-  put_uncertainty(out);
-  put_facts(out, report->design, measurement);
+  put_uncertainty(out, measurement->model);
+  FG_TRY(put_facts(ctx, out, report->design, measurement));
   fputs("</section>\n", out);
   return FG_OK;
 }

@@ -6,6 +6,7 @@
 
 /* A page from its doctype to its <main>, and from there to its end. */
 void fg_html_begin(FILE *out, const char *title);
+void fg_html_head(FILE *out, const char *title); /* up to the style: for a page with its own */
 void fg_html_end(FILE *out);
 
 /* Text with <, >, &, quotes and stray bytes made harmless. */
@@ -13,6 +14,8 @@ void fg_html_text(FILE *out, const char *text);
 
 /* The verdict as a coloured pill. */
 void fg_html_verdict(FILE *out, fg_verdict verdict);
+/* The same of an outcome: "Rejected" when it is a defect and no value that fails. */
+void fg_html_outcome(FILE *out, const fg_report_outcome *outcome);
 
 /* "3.39288 ± 0.00042", or "–" when it is not known. */
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object);

@@ -1,6 +1,7 @@
 #include "report/json_writer.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 void fg_json_begin(fg_json *json, FILE *out) {
@@ -11,32 +12,10 @@ void fg_json_end(fg_json *json) {
   fputc('\n', json->out);
 }
 
-/* The Unicode standard's table 3-7: the first byte decides the range of the second. */
-size_t fg_utf8_length(const char *text) {
-  static const struct {
-    unsigned char first_low, first_high, second_low, second_high;
-    size_t length;
-  } forms[] = {
-      {0xC2, 0xDF, 0x80, 0xBF, 2}, {0xE0, 0xE0, 0xA0, 0xBF, 3}, {0xE1, 0xEC, 0x80, 0xBF, 3},
-      {0xED, 0xED, 0x80, 0x9F, 3}, {0xEE, 0xEF, 0x80, 0xBF, 3}, {0xF0, 0xF0, 0x90, 0xBF, 4},
-      {0xF1, 0xF3, 0x80, 0xBF, 4}, {0xF4, 0xF4, 0x80, 0x8F, 4},
-  };
-  const unsigned char *at = (const unsigned char *)text;
-  if (at[0] < 0x80) return 1;
-  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
-    if (at[0] < forms[i].first_low || at[0] > forms[i].first_high) continue;
-    if (at[1] < forms[i].second_low || at[1] > forms[i].second_high) return 0;
-    for (size_t k = 2; k < forms[i].length; k++)
-      if (at[k] < 0x80 || at[k] > 0xBF) return 0;
-    return forms[i].length;
-  }
-  return 0;
-}
-
 static void put_character(FILE *out, const char *text, size_t length) {
   unsigned char first = (unsigned char)*text;
   if (length == 0)
-    fputs("\xEF\xBF\xBD", out);
+    fprintf(out, "\\\\x%02X", first);
   else if (length > 1)
     fwrite(text, 1, length, out);
   else if (first == '"' || first == '\\')
@@ -106,19 +85,41 @@ void fg_json_line_end(fg_json *json) {
   json->line_depth--;
 }
 
+static void put_digits(char text[32], int digits, double value) {
+  snprintf(text, 32, "%.*g", digits, value + 0.0); /* + 0.0: never "-0" */
+}
+
+/* A host program's locale may write a comma. */
+static void put_point(char text[32]) {
+  char *comma = strchr(text, ',');
+  if (comma) *comma = '.';
+}
+
 void fg_json_format(char text[32], double value) {
   if (!isfinite(value)) {
     strcpy(text, "null");
     return;
   }
-  snprintf(text, 32, "%.10g", value + 0.0); /* + 0.0: never "-0" */
-  char *comma = strchr(text, ',');          /* a host program's locale */
-  if (comma) *comma = '.';
+  put_digits(text, 10, value);
+  put_point(text);
+}
+
+/* The fewest digits that are the same number when read. */
+static void format_exactly(char text[32], double value) {
+  enum { ENOUGH = 17 };
+  int digits = 10;
+  do
+    put_digits(text, digits, value);
+  while (digits++ < ENOUGH && strtod(text, NULL) != value);
+  put_point(text);
 }
 
 void fg_json_number(fg_json *json, const char *name, double value) {
   char text[32];
-  fg_json_format(text, value);
+  if (json->exact && isfinite(value))
+    format_exactly(text, value);
+  else
+    fg_json_format(text, value);
   put_place(json, name);
   fputs(text, json->out);
 }

@@ -1,9 +1,9 @@
 /* A small streaming JSON writer: what is written is never held.
  *
  * `name` is the member's name inside an object and NULL inside an array. Deterministic: ten
- * significant digits, always a decimal point; NaN and infinities are null. Strings become valid
- * UTF-8 (a stray byte becomes U+FFFD). Errors stay in the stream: the caller checks ferror at the
- * end.
+ * significant digits (`exact`: as many as it takes to read the same number again), always a decimal
+ * point; NaN and infinities are null. Strings become valid UTF-8 (a stray byte is written out:
+ * \xE4). Errors stay in the stream: the caller checks ferror at the end.
  */
 #ifndef FG_REPORT_JSON_WRITER_H
 #define FG_REPORT_JSON_WRITER_H
@@ -13,11 +13,14 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "core/utf8.h"
+
 typedef struct fg_json {
   FILE *out;
   int depth;
   int line_depth;   /* > 0: members stay on one line */
   bool has_members; /* of the innermost open object or array */
+  bool exact;       /* numbers of what follows lose no digit */
 } fg_json;
 
 void fg_json_begin(fg_json *json, FILE *out);
@@ -42,9 +45,5 @@ void fg_json_numbers(fg_json *json, const char *name, const double *values, size
 
 /* The digits of a number as JSON writes them, or "null". */
 void fg_json_format(char text[32], double value);
-
-/* The length of the UTF-8 sequence at `text` (up to its NUL); 0 when it is not one: overlong, a
- * surrogate, above U+10FFFF, a stray byte. */
-size_t fg_utf8_length(const char *text);
 
 #endif

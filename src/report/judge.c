@@ -1,5 +1,7 @@
-/* Tolerances: the design names quantities, the table of fields says where they lie. */
+/* Verdicts: the design names quantities, the table of fields says where they lie. What a foil, a
+ * scan or a run comes to is decided here and nowhere else. */
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,10 +24,6 @@ const char *fg_verdict_word(fg_verdict verdict) {
   return "";
 }
 
-static bool is_exceeded(const fg_tolerance *tolerance, double value) {
-  return value < tolerance->lower || value > tolerance->upper;
-}
-
 fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u) {
   if (isnan(value)) return FG_VERDICT_NOT_MEASURED;
   double expanded = isnan(u) ? 0 : FG_COVERAGE_FACTOR * u;
@@ -36,18 +34,58 @@ fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u)
   return FG_VERDICT_UNDECIDED;
 }
 
-/* `object` NULL: the design states it and the part lacks it. */
+fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b) {
+  static const int severity[] = {
+      [FG_VERDICT_NONE] = 0,         [FG_VERDICT_PASS] = 1, [FG_VERDICT_UNDECIDED] = 2,
+      [FG_VERDICT_NOT_MEASURED] = 3, [FG_VERDICT_FAIL] = 4,
+  };
+  return severity[a] >= severity[b] ? a : b;
+}
+
+void fg_outcome_add(fg_report_outcome *sum, const fg_report_outcome *part) {
+  sum->verdict = fg_verdict_worse(sum->verdict, part->verdict);
+  sum->exceeded += part->exceeded;
+  sum->undecided += part->undecided;
+  sum->not_measured += part->not_measured;
+  sum->rejected += part->rejected;
+}
+
+int fg_outcome_exit_code(const fg_report_outcome *outcome) {
+  if (outcome->not_measured) return 2;
+  if (outcome->verdict == FG_VERDICT_FAIL) return 1;
+  return outcome->undecided ? 3 : 0;
+}
+
+static void add_unmeasured(fg_report_outcome *outcome) {
+  fg_outcome_add(outcome,
+                 &(fg_report_outcome){.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1});
+}
+
 static fg_judgement judge(const fg_tolerance *tolerance, const fg_report_field *field,
                           const void *object, int number) {
-  double value = object ? fg_report_value(field, object) : NAN;
-  double u = object ? fg_report_uncertainty(field, object) : NAN;
+  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+  fg_verdict verdict = fg_judge_value(tolerance, value, u);
   return (fg_judgement){.tolerance = tolerance,
                         .field = field,
                         .number = number,
                         .value = value,
                         .u = u,
-                        .exceeded = is_exceeded(tolerance, value),
-                        .verdict = fg_judge_value(tolerance, value, u)};
+                        .exceeded = verdict == FG_VERDICT_FAIL,
+                        .verdict = verdict};
+}
+
+/* Of a bump that the design states and the foil lacks. Behind the last bump that was found nothing
+ * but the design says that there should be one: where the scan's border may hide it, it is not
+ * measured. */
+static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_report_field *field,
+                                  int number, bool hidden) {
+  return (fg_judgement){.tolerance = tolerance,
+                        .field = field,
+                        .number = number,
+                        .value = NAN,
+                        .u = NAN,
+                        .missing = !hidden,
+                        .verdict = hidden ? FG_VERDICT_NOT_MEASURED : FG_VERDICT_FAIL};
 }
 
 /* A place at the pitch that is empty makes numbers jump: look for the number, not the index. */
@@ -57,128 +95,218 @@ static const fg_bump *find_bump(const fg_foil *foil, int number) {
   return NULL;
 }
 
-static int last_bump_number(const fg_design *design, const fg_foil *foil) {
-  int last = (int)design->bump_count;
+static int last_found(const fg_foil *foil) {
+  int last = 0;
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number > last) last = foil->bumps[i].number;
   return last;
 }
 
-fg_status fg_foil_judgements(fg_context *ctx, const fg_design *design, const fg_foil *foil,
-                             fg_judgement **list, size_t *count) {
-  int last = last_bump_number(design, foil);
+static int last_bump_number(const fg_design *design, const fg_foil *foil) {
+  int last = last_found(foil), stated = (int)design->bump_count;
+  return last > stated ? last : stated;
+}
+
+static bool lacks_bumps(const fg_design *design, const fg_foil *foil) {
+  return design->tolerance_count && foil->bump_count < design->bump_count;
+}
+
+static bool may_be_hidden(const fg_foil *foil) {
+  return foil->flags & FG_FOIL_TOUCHES_BORDER;
+}
+
+/* Text after text, as far as there is room. */
+__attribute__((format(printf, 3, 4))) static void add_words(char *words, size_t size,
+                                                            const char *format, ...) {
+  size_t used = strlen(words);
+  va_list list;
+  va_start(list, format);
+  vsnprintf(words + used, size - used, format, list);
+  va_end(list);
+}
+
+static int count_missing(const fg_foil *foil, int last) {
+  int missing = 0;
+  for (int number = 1; number <= last; number++)
+    missing += find_bump(foil, number) == NULL;
+  return missing;
+}
+
+/* "bumps 3, 7 are missing (7 found, the design has 9)" */
+static void name_missing(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
+  enum { NAMED_MAX = 12 };
+  int last = last_found(foil), missing = count_missing(foil, last);
+  if (!missing || !may_be_hidden(foil)) {
+    last = last_bump_number(design, foil);
+    missing = count_missing(foil, last);
+  }
+  add_words(words, size, missing == 1 ? "bump" : "bumps");
+  for (int number = 1, named = 0; number <= last && named < NAMED_MAX; number++)
+    if (!find_bump(foil, number)) add_words(words, size, "%s %d", named++ ? "," : "", number);
+  if (missing > NAMED_MAX) add_words(words, size, " and others");
+  add_words(words, size, missing == 1 ? " is missing (%zu found" : " are missing (%zu found",
+            foil->bump_count);
+  if (design->bump_count) add_words(words, size, ", the design has %zu", design->bump_count);
+  add_words(words, size, ")");
+}
+
+bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
+  char unused[1];
+  if (!words) {
+    words = unused;
+    size = sizeof unused;
+  }
+  words[0] = '\0';
+  if (!fg_foil_is_measured(foil)) return false;
+  if (foil->flags & FG_FOIL_MISSING_BUMP || (lacks_bumps(design, foil) && !may_be_hidden(foil))) {
+    name_missing(design, foil, words, size);
+    return true;
+  }
+  if (!design->tolerance_count || !design->bump_count || foil->bump_count <= design->bump_count)
+    return false;
+  add_words(words, size, "%zu bumps where the design has %zu", foil->bump_count,
+            design->bump_count);
+  return true;
+}
+
+static fg_status allocate(fg_context *ctx, size_t count, size_t each, fg_decision *decision) {
   void *block;
-  *list = NULL;
-  *count = 0;
-  FG_TRY(
-      fg_memory_allocate(ctx, design->tolerance_count, ((size_t)last + 1) * sizeof **list, &block));
-  *list = block;
+  *decision = (fg_decision){.outcome = {.verdict = FG_VERDICT_NONE}};
+  FG_TRY(fg_memory_allocate(ctx, count, each * sizeof *decision->judgements, &block));
+  decision->judgements = block;
+  return FG_OK;
+}
+
+static void take(fg_decision *decision, fg_judgement judgement) {
+  fg_report_outcome *outcome = &decision->outcome;
+  decision->judgements[decision->count++] = judgement;
+  outcome->verdict = fg_verdict_worse(outcome->verdict, judgement.verdict);
+  outcome->exceeded += judgement.exceeded;
+  outcome->undecided += judgement.verdict == FG_VERDICT_UNDECIDED;
+  outcome->not_measured += judgement.verdict == FG_VERDICT_NOT_MEASURED;
+}
+
+static void judge_bumps(const fg_tolerance *tolerance, const fg_report_field *field, int last,
+                        const fg_foil *foil, fg_decision *decision) {
+  int found = last_found(foil);
+  for (int number = 1; number <= last; number++) {
+    const fg_bump *bump = find_bump(foil, number);
+    bool hidden = number > found && may_be_hidden(foil);
+    take(decision, bump ? judge(tolerance, field, bump, number)
+                        : judge_nothing(tolerance, field, number, hidden));
+  }
+}
+
+static bool is_whole(const fg_design *design, const fg_foil *foil) {
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].flags & FG_BUMP_NOT_FITTED) return false;
+  return !(lacks_bumps(design, foil) && may_be_hidden(foil));
+}
+
+/* What no single value says. */
+static void judge_whole(const fg_design *design, const fg_foil *foil, fg_report_outcome *outcome) {
+  if (fg_foil_defect(design, foil, NULL, 0)) {
+    outcome->verdict = FG_VERDICT_FAIL;
+    outcome->rejected = 1;
+  }
+  if (!outcome->not_measured && !is_whole(design, foil)) add_unmeasured(outcome);
+}
+
+fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil *foil,
+                         fg_decision *decision) {
+  int last = last_bump_number(design, foil);
+  FG_TRY(allocate(ctx, design->tolerance_count, (size_t)last + 1, decision));
+  if (!fg_foil_is_measured(foil)) {
+    add_unmeasured(&decision->outcome);
+    return FG_OK;
+  }
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_report_field *field = fg_report_find(FG_REPORT_FOIL, tolerance->quantity);
-    if (field) (*list)[(*count)++] = judge(tolerance, field, foil, 0);
+    if (field) take(decision, judge(tolerance, field, foil, 0));
     field = fg_report_find(FG_REPORT_BUMP, tolerance->quantity);
-    for (int number = 1; field && number <= last; number++)
-      (*list)[(*count)++] = judge(tolerance, field, find_bump(foil, number), number);
+    if (field) judge_bumps(tolerance, field, last, foil, decision);
   }
+  judge_whole(design, foil, &decision->outcome);
   return FG_OK;
 }
 
-fg_status fg_disc_judgements(fg_context *ctx, const fg_design *design, const fg_disc *disc,
-                             fg_judgement **list, size_t *count) {
-  void *block;
-  *list = NULL;
-  *count = 0;
-  FG_TRY(fg_memory_allocate(ctx, design->tolerance_count, sizeof **list, &block));
-  *list = block;
+fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc *disc,
+                         fg_decision *decision) {
+  FG_TRY(allocate(ctx, design->tolerance_count, 1, decision));
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_report_field *field = fg_report_find(FG_REPORT_DISC, tolerance->quantity);
-    if (field) (*list)[(*count)++] = judge(tolerance, field, disc, disc->number);
+    if (field) take(decision, judge(tolerance, field, disc, disc->number));
   }
   return FG_OK;
 }
 
-fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b) {
-  static const int severity[] = {
-      [FG_VERDICT_NONE] = 0,         [FG_VERDICT_PASS] = 1, [FG_VERDICT_UNDECIDED] = 2,
-      [FG_VERDICT_NOT_MEASURED] = 3, [FG_VERDICT_FAIL] = 4,
-  };
-  return severity[a] >= severity[b] ? a : b;
+void fg_decision_free(fg_decision *decision) {
+  free(decision->judgements);
+  *decision = (fg_decision){.outcome = {.verdict = FG_VERDICT_NONE}};
 }
 
-fg_verdict fg_judgements_verdict(const fg_judgement *list, size_t count) {
+static fg_verdict object_verdict(const fg_design *design, fg_report_owner owner,
+                                 const void *object) {
   fg_verdict verdict = FG_VERDICT_NONE;
-  for (size_t i = 0; i < count; i++)
-    verdict = fg_verdict_worse(verdict, list[i].verdict);
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
+    if (field)
+      verdict = fg_verdict_worse(verdict, judge(&design->tolerances[i], field, object, 0).verdict);
+  }
   return verdict;
 }
 
-static bool object_exceeds(const fg_design *design, fg_report_owner owner, const void *object) {
-  for (size_t i = 0; i < design->tolerance_count; i++) {
-    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
-    if (field && is_exceeded(&design->tolerances[i], fg_report_value(field, object))) return true;
+fg_verdict fg_bump_verdict(const fg_design *design, const fg_foil *foil, const fg_bump *bump) {
+  if (!fg_foil_is_measured(foil)) return FG_VERDICT_NOT_MEASURED;
+  fg_verdict verdict = object_verdict(design, FG_REPORT_BUMP, bump);
+  if (bump->flags & FG_BUMP_NOT_FITTED)
+    verdict = fg_verdict_worse(verdict, FG_VERDICT_NOT_MEASURED);
+  return verdict;
+}
+
+static unsigned reported(unsigned flags, fg_verdict verdict) {
+  flags &= ~(unsigned)FG_BUMP_OUT_OF_TOLERANCE;
+  return verdict == FG_VERDICT_FAIL ? flags | FG_BUMP_OUT_OF_TOLERANCE : flags;
+}
+
+unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bump *bump) {
+  return reported(bump->flags, fg_bump_verdict(design, foil, bump));
+}
+
+unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc) {
+  return reported(disc->flags, object_verdict(design, FG_REPORT_DISC, disc));
+}
+
+static void add_decision(fg_report_outcome *outcome, fg_decision *decision) {
+  fg_outcome_add(outcome, &decision->outcome);
+  fg_decision_free(decision);
+}
+
+fg_status fg_report_judge_scan(fg_context *ctx, const fg_design *design, const fg_report_scan *scan,
+                               fg_report_outcome *outcome) {
+  const fg_measurement *measurement = scan->measurement;
+  fg_decision decision;
+  *outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
+  if (!measurement) add_unmeasured(outcome);
+  for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
+    FG_TRY(fg_foil_decide(ctx, design, &measurement->foils[k], &decision));
+    add_decision(outcome, &decision);
   }
-  return false;
-}
-
-void fg_foil_judge(const fg_design *design, fg_foil *foil) {
-  foil->in_tolerance = !object_exceeds(design, FG_REPORT_FOIL, foil);
-  for (size_t i = 0; i < foil->bump_count; i++) {
-    fg_bump *bump = &foil->bumps[i];
-    bump->flags &= ~(unsigned)FG_BUMP_OUT_OF_TOLERANCE;
-    if (!object_exceeds(design, FG_REPORT_BUMP, bump)) continue;
-    bump->flags |= FG_BUMP_OUT_OF_TOLERANCE;
-    foil->in_tolerance = false;
+  for (size_t k = 0; measurement && k < measurement->disc_count; k++) {
+    FG_TRY(fg_disc_decide(ctx, design, &measurement->discs[k], &decision));
+    add_decision(outcome, &decision);
   }
-}
-
-static void summarise(const fg_judgement *list, size_t count, fg_report_outcome *outcome) {
-  outcome->verdict = fg_verdict_worse(outcome->verdict, fg_judgements_verdict(list, count));
-  for (size_t i = 0; i < count; i++) {
-    if (list[i].exceeded) outcome->exceeded++;
-    if (list[i].verdict == FG_VERDICT_NOT_MEASURED) outcome->not_measured++;
-  }
-}
-
-static void add_unmeasured(fg_report_outcome *outcome) {
-  outcome->verdict = fg_verdict_worse(outcome->verdict, FG_VERDICT_NOT_MEASURED);
-  outcome->not_measured++;
-}
-
-static fg_status add_foil(fg_context *ctx, const fg_design *design, const fg_foil *foil,
-                          fg_report_outcome *outcome) {
-  fg_judgement *list;
-  size_t count;
-  if (foil->flags & FG_FOIL_NOT_MEASURED) {
-    add_unmeasured(outcome);
-    return FG_OK;
-  }
-  FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
-  summarise(list, count, outcome);
-  free(list);
-  return FG_OK;
-}
-
-static fg_status add_disc(fg_context *ctx, const fg_design *design, const fg_disc *disc,
-                          fg_report_outcome *outcome) {
-  fg_judgement *list;
-  size_t count;
-  FG_TRY(fg_disc_judgements(ctx, design, disc, &list, &count));
-  summarise(list, count, outcome);
-  free(list);
   return FG_OK;
 }
 
 fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_outcome *outcome) {
   *outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
   for (size_t i = 0; i < report->scan_count; i++) {
-    const fg_measurement *measurement = report->scans[i].measurement;
-    if (!measurement) add_unmeasured(outcome);
-    for (size_t k = 0; measurement && k < measurement->foil_count; k++)
-      FG_TRY(add_foil(ctx, report->design, &measurement->foils[k], outcome));
-    for (size_t k = 0; measurement && k < measurement->disc_count; k++)
-      FG_TRY(add_disc(ctx, report->design, &measurement->discs[k], outcome));
+    fg_report_outcome scan;
+    FG_TRY(fg_report_judge_scan(ctx, report->design, &report->scans[i], &scan));
+    fg_outcome_add(outcome, &scan);
   }
   return FG_OK;
 }

@@ -59,14 +59,24 @@ static double nice_step(double range) {
                              : step;
 }
 
+/* Multiples of a step in a range; a step that vanishes beside its ends (10^17 and a range of 100)
+ * would never get from one to the other. */
+static size_t tick_count(double low, double high, double step) {
+  double count = floor(high / step) - ceil(low / step) + 1;
+  return count >= 1 && count <= 40 ? (size_t)count : 0;
+}
+
 static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, const char *title) {
   double step = nice_step(at->y_high - at->y_low);
-  for (double y = ceil(at->y_low / step) * step; y <= at->y_high; y += step)
+  size_t ticks = tick_count(at->y_low, at->y_high, step);
+  for (size_t i = 0; i < ticks; i++) {
+    double y = (ceil(at->y_low / step) + (double)i) * step;
     fprintf(at->out,
             "<path class=\"%s\" d=\"M%d %.1fH%d\"/><text class=\"y\" x=\"%d\" y=\"%.1f\">%.4g"
             "</text>\n",
             fabs(y) < step / 1e6 ? "zero" : "grid", LEFT, at_y(at, y), RIGHT, LEFT - 6,
             at_y(at, y) + 4, fabs(y) < step / 1e6 ? 0 : y);
+  }
   if (coordinate->levels) {
     for (size_t k = 0; k < coordinate->levels; k++) {
       fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">", at_x(at, (double)k), BOTTOM + 18);
@@ -75,9 +85,12 @@ static void put_axes(const loop_plot *at, const fg_loop_coordinate *coordinate, 
     }
   } else {
     step = nice_step(at->x_high - at->x_low);
-    for (double x = ceil(at->x_low / step) * step; x <= at->x_high; x += step)
+    ticks = tick_count(at->x_low, at->x_high, step);
+    for (size_t i = 0; i < ticks; i++) {
+      double x = (ceil(at->x_low / step) + (double)i) * step;
       fprintf(at->out, "<text class=\"x\" x=\"%.1f\" y=\"%d\">%.4g</text>\n", at_x(at, x),
               BOTTOM + 18, x);
+    }
   }
   fprintf(at->out, "<text class=\"t\" x=\"%d\" y=\"%d\">", (LEFT + RIGHT) / 2, HEIGHT - 8);
   fg_html_text(at->out, coordinate->name);
@@ -126,11 +139,14 @@ static fg_status put_effect(fg_context *ctx, const loop_plot *at, const fg_loop_
   }
   qsort(points, problem->rows, sizeof *points, by_x);
   if (!coordinate->levels) fputs("<path class=\"effect\" d=\"", at->out);
+  double drawn = -INFINITY, finest = problem->rows > POINTS_MOST ? 0.2 : 0;
   for (size_t i = 0, next; i < problem->rows; i = next) {
     double sum = 0;
     for (next = i; next < problem->rows && points[next].x == points[i].x; next++)
       sum += points[next].y;
     double x = at_x(at, points[i].x), y = at_y(at, sum / (double)(next - i) - mean);
+    if (x - drawn < finest && next < problem->rows) continue;
+    drawn = x;
     if (coordinate->levels)
       fprintf(at->out, "<path class=\"effect\" d=\"M%.1f %.1fh60\"/>\n", x - 30, y);
     else
@@ -220,10 +236,21 @@ exit:
   return status;
 }
 
+/* A number, or a dash where there is none. */
+static void put_number(FILE *out, const char *format, double value) {
+  if (isfinite(value))
+    fprintf(out, format, value);
+  else
+    fputs("–", out);
+}
+
 static void put_error(FILE *out, const char *name, double before, double after) {
   if (!isfinite(before)) return;
-  fprintf(out, "<tr><td>%s</td><td>%.4g</td><td>%.4g</td><td>%.3f</td></tr>\n", name, before, after,
-          after / before);
+  fprintf(out, "<tr><td>%s</td><td>%.4g</td><td>", name, before);
+  put_number(out, "%.4g", after);
+  fputs("</td><td>", out);
+  put_number(out, "%.3f", after / before);
+  fputs("</td></tr>\n", out);
 }
 
 static void put_errors(FILE *out, const fg_loop_result *result) {
@@ -237,7 +264,8 @@ static void put_errors(FILE *out, const fg_loop_result *result) {
   put_error(out, "maximum", before->maximum, after->maximum);
   put_error(out, "kept aside, rms", before->held_out_rms, after->held_out_rms);
   put_error(out, "cross-validated, rms", before->cross_validated_rms, after->cross_validated_rms);
-  fprintf(out, "</table></div><p class=\"soft\">Noise floor %.4g", result->noise_floor);
+  fputs("</table></div><p class=\"soft\">Noise floor ", out);
+  put_number(out, "%.4g", result->noise_floor);
   if (result->noise.rho > 0) fprintf(out, ", correlation along the order %.2f", result->noise.rho);
   if (result->noise.lambda > 0)
     fprintf(out, ", variance between groups %.2g times that within", result->noise.lambda);
@@ -248,9 +276,10 @@ static void put_errors(FILE *out, const fg_loop_result *result) {
 static void put_claim_row(FILE *out, const fg_loop_claim *claim) {
   fputs("<tr><td><b>", out);
   fg_html_text(out, claim->name);
-  fprintf(out, "</b></td><td class=\"w\">%s</td><td>%.3g ± %.2g</td><td>%.2g</td><td class=\"w\">",
-          fg_loop_verdict_word(claim->verdict), claim->amplitude, 2 * claim->amplitude_u,
-          claim->p_value);
+  fprintf(out, "</b></td><td class=\"w\">%s</td><td>", fg_loop_verdict_word(claim->verdict));
+  put_number(out, "%.3g ± ", claim->amplitude);
+  put_number(out, "%.2g", 2 * claim->amplitude_u);
+  fprintf(out, "</td><td>%.2g</td><td class=\"w\">", claim->p_value);
   for (size_t k = 0; k < claim->aliases; k++) {
     fputs(k ? "; " : "or ", out);
     fg_html_text(out, claim->alias[k].name);
@@ -270,10 +299,7 @@ static void put_candidates(FILE *out, const fg_loop_result *result) {
     fputs("<tr><td>", out);
     fg_html_text(out, one->name);
     fprintf(out, "</td><td class=\"w\">%s</td><td>", fg_loop_verdict_word(one->verdict));
-    if (isfinite(one->smallest_detectable))
-      fprintf(out, "≥ %.3g", one->smallest_detectable);
-    else
-      fputs("–", out);
+    put_number(out, "≥ %.3g", one->smallest_detectable);
     fprintf(out, "</td><td>%.2g</td><td></td></tr>\n", one->p_value);
   }
   fputs("</table></div></section>\n", out);
@@ -303,11 +329,8 @@ static void put_advice(FILE *out, const fg_loop_report *report) {
 
 static void put_head(FILE *out, const fg_loop_report *report, const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
-  fprintf(out,
-          "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
-          "name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>Closing the "
-          "loop</title><style>%s</style></head><body><main><section><h1>",
-          style);
+  fg_html_head(out, "Closing the loop");
+  fprintf(out, "<style>%s</style></head><body><main><section><h1>", style);
   fg_html_text(out, report->spec->response);
   fputs("</h1><p class=\"soft\">", out);
   fg_html_text(out, report->path);

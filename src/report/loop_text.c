@@ -7,6 +7,20 @@
 #include "foilgauge/loop.h"
 #include "report/words.h"
 
+/* A number for a sentence or a cell; one that is none is a dash. */
+typedef struct number_text {
+  char text[32];
+} number_text;
+
+static number_text number(const char *format, double value) {
+  number_text out;
+  if (isfinite(value))
+    snprintf(out.text, sizeof out.text, format, value);
+  else
+    snprintf(out.text, sizeof out.text, "-");
+  return out;
+}
+
 static void row_words(const fg_loop_report *report, const fg_loop_claim *claim, char *text,
                       size_t size) {
   size_t first = report->problem->row[claim->candidate.row[0]] + 1;
@@ -34,8 +48,9 @@ static fg_status say_claim(fg_context *ctx, const fg_loop_report *report, size_t
   const fg_loop_claim *claim = &report->result->claim[i];
   char words[400];
   claim_words(report, claim, words, sizeof words);
-  FG_TRY(fg_text_append(ctx, text, "%s%s (amplitude %.3g ± %.2g, p = %.2g)", i ? "; and " : "",
-                        words, claim->amplitude, 2 * claim->amplitude_u, claim->p_value));
+  FG_TRY(fg_text_append(ctx, text, "%s%s (amplitude %s ± %s, p = %.2g)", i ? "; and " : "", words,
+                        number("%.3g", claim->amplitude).text,
+                        number("%.2g", 2 * claim->amplitude_u).text, claim->p_value));
   if (!claim->aliases) return FG_OK;
   FG_TRY(fg_text_append(ctx, text, ", which the data cannot tell from %s", claim->alias[0].name));
   size_t more = claim->aliases + claim->aliases_unlisted - 1;
@@ -49,8 +64,9 @@ static fg_status say_errors(fg_context *ctx, const fg_loop_result *result, char 
   if (isfinite(result->ratio_held_out))
     return fg_text_append(ctx, text, "; on data kept aside from %.3g to %.3g.",
                           result->before.held_out_rms, result->after.held_out_rms);
-  return fg_text_append(ctx, text, "; each group predicted from the others, from %.3g to %.3g.",
-                        result->before.cross_validated_rms, result->after.cross_validated_rms);
+  return fg_text_append(ctx, text, "; each group predicted from the others, from %s to %s.",
+                        number("%.3g", result->before.cross_validated_rms).text,
+                        number("%.3g", result->after.cross_validated_rms).text);
 }
 
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text) {
@@ -84,9 +100,9 @@ static void write_errors(const fg_loop_result *result, FILE *out) {
   fprintf(out, "\n%-24s %12s %12s %8s\n", "error", "before", "after", "ratio");
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (isfinite(before[i]))
-      fprintf(out, "%-24s %12.5g %12.5g %8.3f\n", names[i], before[i], after[i],
-              after[i] / before[i]);
-  fprintf(out, "%-24s %12s %12.5g\n", "noise floor", "", result->noise_floor);
+      fprintf(out, "%-24s %12.5g %12s %8s\n", names[i], before[i], number("%.5g", after[i]).text,
+              number("%.3f", after[i] / before[i]).text);
+  fprintf(out, "%-24s %12s %12s\n", "noise floor", "", number("%.5g", result->noise_floor).text);
 }
 
 static int by_p(const void *a, const void *b) {
@@ -105,8 +121,8 @@ static void write_rejected(const fg_loop_result *result, FILE *out) {
   qsort(list, result->rejects, sizeof *list, by_p);
   fprintf(out, "\n%-52s %-20s %7s %9s\n", "not claimed", "verdict", "p", "would show");
   for (size_t i = 0; i < result->rejects && i < SHOWN; i++)
-    fprintf(out, "%-52s %-20s %7.2g %9.3g\n", list[i]->name, fg_loop_verdict_word(list[i]->verdict),
-            list[i]->p_value, list[i]->smallest_detectable);
+    fprintf(out, "%-52s %-20s %7.2g %9s\n", list[i]->name, fg_loop_verdict_word(list[i]->verdict),
+            list[i]->p_value, number("%.3g", list[i]->smallest_detectable).text);
   if (result->rejects > SHOWN) fprintf(out, "and %zu more\n", result->rejects - SHOWN);
   free(list);
 }
@@ -121,8 +137,9 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
     const fg_loop_claim *claim = &result->claim[i];
     fprintf(out, "\n%s: %s\n", claim->name, fg_loop_verdict_word(claim->verdict));
     for (size_t k = 0; k < claim->aliases; k++)
-      fprintf(out, "  or %s (correlation %.3f, loss %.1f %%)\n", claim->alias[k].name,
-              claim->alias[k].correlation, 100 * claim->alias[k].loss);
+      fprintf(out, "  or %s (correlation %s, loss %s %%)\n", claim->alias[k].name,
+              number("%.3f", claim->alias[k].correlation).text,
+              number("%.1f", 100 * claim->alias[k].loss).text);
   }
   for (size_t i = 0; i < result->advices; i++)
     fprintf(out, "\n%s\n", result->advice[i].text);

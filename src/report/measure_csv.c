@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/csv.h"
 #include "report/json_writer.h"
 #include "report/words.h"
 
@@ -11,19 +12,6 @@ static void put_number(FILE *out, double value) {
   if (!isfinite(value)) return;
   fg_json_format(text, value);
   fputs(text, out);
-}
-
-static void put_text(FILE *out, const char *text) {
-  if (!strpbrk(text, ",\"\r\n")) {
-    fputs(text, out);
-    return;
-  }
-  fputc('"', out);
-  for (; *text; text++) {
-    if (*text == '"') fputc('"', out);
-    fputc(*text, out);
-  }
-  fputc('"', out);
 }
 
 /* "centre_mm" becomes "centre_x_mm": the unit stays last. */
@@ -68,20 +56,65 @@ static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
   }
 }
 
-/* `foil` is the bump's; NULL for a disc. */
-static void put_object(FILE *out, const char *scan, const fg_foil *foil, fg_report_owner owner,
-                       int number, unsigned flags, const void *object) {
+static void put_values(FILE *out, fg_report_owner owner, const void *object) {
   size_t count;
   const fg_report_field *fields = fg_report_fields(owner, &count);
-  put_text(out, scan);
-  if (owner == FG_REPORT_BUMP) fprintf(out, ",%d", foil->number);
-  fprintf(out, ",%d", number);
-  put_flags(out, fg_bump_flag_words(), flags);
   for (size_t i = 0; i < count; i++)
     put_field(out, &fields[i], object);
+}
+
+/* What all lines of a scan share. */
+typedef struct scan_lines {
+  const char *path;
+  const fg_design *design;
+  const fg_measurement *measurement;
+} scan_lines;
+
+/* `foil` NULL: of a disc. */
+static void put_end(FILE *out, const scan_lines *scan, fg_verdict verdict, const fg_foil *foil) {
+  fprintf(out, ",%s,%s", fg_verdict_word(verdict), scan->measurement->model_sha256);
   for (int i = 0; foil && i < 4; i++)
     put_number(out, foil->place_mm[i]);
-  fputs("\n", out);
+  fputc('\n', out);
+}
+
+static void put_bump(FILE *out, const scan_lines *scan, const fg_foil *foil, const fg_bump *bump) {
+  fg_csv_put_text(out, scan->path, NULL);
+  fprintf(out, ",%d,%d", foil->number, bump->number);
+  put_flags(out, fg_bump_flag_words(), fg_bump_flags(scan->design, foil, bump));
+  put_values(out, FG_REPORT_BUMP, bump);
+  put_end(out, scan, fg_bump_verdict(scan->design, foil, bump), foil);
+}
+
+static size_t count_places(fg_report_owner owner) {
+  size_t count, places = 0;
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  for (size_t i = 0; i < count; i++)
+    places += (fields[i].kind == FG_FIELD_PAIR ? 2u : 1u) *
+              (fields[i].u_offset == FG_NO_UNCERTAINTY ? 1u : 2u);
+  return places;
+}
+
+/* A foil without bumps is not left out: a line whose values are empty. */
+static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil) {
+  fg_csv_put_text(out, scan->path, NULL);
+  fprintf(out, ",%d,", foil->number);
+  put_flags(out, fg_foil_flag_words(), foil->flags);
+  for (size_t i = count_places(FG_REPORT_BUMP); i-- > 0;)
+    fputc(',', out);
+  put_end(out, scan, FG_VERDICT_NOT_MEASURED, foil);
+}
+
+static fg_status put_disc(fg_context *ctx, FILE *out, const scan_lines *scan, const fg_disc *disc) {
+  fg_decision decision;
+  FG_TRY(fg_disc_decide(ctx, scan->design, disc, &decision));
+  fg_csv_put_text(out, scan->path, NULL);
+  fprintf(out, ",%d", disc->number);
+  put_flags(out, fg_bump_flag_words(), fg_disc_flags(scan->design, disc));
+  put_values(out, FG_REPORT_DISC, disc);
+  put_end(out, scan, decision.outcome.verdict, NULL);
+  fg_decision_free(&decision);
+  return FG_OK;
 }
 
 static void put_heading(FILE *out, fg_report_owner owner) {
@@ -90,8 +123,9 @@ static void put_heading(FILE *out, fg_report_owner owner) {
   fputs(owner == FG_REPORT_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
   for (size_t i = 0; i < count; i++)
     put_field_names(out, &fields[i]);
+  fputs(",verdict,model_sha256", out);
   if (owner == FG_REPORT_BUMP) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
-  fputs("\n", out);
+  fputc('\n', out);
 }
 
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
@@ -99,16 +133,15 @@ fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *ou
   put_heading(out, discs ? FG_REPORT_DISC : FG_REPORT_BUMP);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
-    const char *scan = report->scans[i].path;
+    const scan_lines scan = {report->scans[i].path, report->design, measurement};
     for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
       const fg_foil *foil = &measurement->foils[k];
+      if (!foil->bump_count) put_bare_foil(out, &scan, foil);
       for (size_t b = 0; b < foil->bump_count; b++)
-        put_object(out, scan, foil, FG_REPORT_BUMP, foil->bumps[b].number, foil->bumps[b].flags,
-                   &foil->bumps[b]);
+        put_bump(out, &scan, foil, &foil->bumps[b]);
     }
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
-      put_object(out, scan, NULL, FG_REPORT_DISC, measurement->discs[k].number,
-                 measurement->discs[k].flags, &measurement->discs[k]);
+      FG_TRY(put_disc(ctx, out, &scan, &measurement->discs[k]));
   }
   return fg_report_finish(ctx, out, "the CSV file");
 }

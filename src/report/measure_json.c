@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "report/scan_model_words.h"
 #include "report/words.h"
 
 void fg_json_head(fg_json *json, const char *schema) {
@@ -144,10 +145,12 @@ static void write_range(fg_json *json, const char *name, const double range[2]) 
   if (range[0] != 0 || range[1] != 0) fg_json_numbers(json, name, range, 2);
 }
 
-static void write_bump(fg_json *json, const fg_bump *bump) {
+static void write_bump(fg_json *json, const fg_design *design, const fg_foil *foil,
+                       const fg_bump *bump) {
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", bump->number);
-  write_flags(json, fg_bump_flag_words(), bump->flags);
+  write_flags(json, fg_bump_flag_words(), fg_bump_flags(design, foil, bump));
+  fg_json_string(json, "verdict", fg_verdict_word(fg_bump_verdict(design, foil, bump)));
   write_fields(json, FG_REPORT_BUMP, "", bump);
   write_covariance(json, bump->covariance);
   write_range(json, "radius_range_mm", bump->radius_range_mm);
@@ -165,29 +168,53 @@ static void write_judgement(fg_json *json, const fg_judgement *judgement, const 
   fg_json_number(json, "min", judgement->tolerance->lower);
   fg_json_number(json, "max", judgement->tolerance->upper);
   fg_json_bool(json, "exceeded", judgement->exceeded);
+  if (judgement->missing) fg_json_bool(json, "missing", true);
   fg_json_string(json, "verdict", fg_verdict_word(judgement->verdict));
   fg_json_object_end(json);
   fg_json_line_end(json);
 }
 
-static void write_judgements(fg_json *json, const fg_judgement *list, size_t count,
-                             const char *owner) {
-  fg_json_string(json, "verdict", fg_verdict_word(fg_judgements_verdict(list, count)));
+/* Whoever reads `in_tolerance` as a boolean never takes for good what was not seen to pass. */
+void fg_json_verdict(fg_json *json, fg_verdict verdict) {
+  if (verdict == FG_VERDICT_NONE)
+    fg_json_string(json, "in_tolerance", NULL);
+  else
+    fg_json_bool(json, "in_tolerance", verdict == FG_VERDICT_PASS);
+  fg_json_string(json, "verdict", fg_verdict_word(verdict));
+}
+
+void fg_json_counts(fg_json *json, const fg_report_outcome *outcome) {
+  fg_json_object(json, "counts");
+  fg_json_line(json);
+  fg_json_integer(json, "exceeded", (int64_t)outcome->exceeded);
+  fg_json_integer(json, "cannot_tell", (int64_t)outcome->undecided);
+  fg_json_integer(json, "not_measured", (int64_t)outcome->not_measured);
+  fg_json_integer(json, "rejected", (int64_t)outcome->rejected);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_judgements(fg_json *json, const fg_decision *decision, const char *owner) {
   fg_json_array(json, "judgements");
-  for (size_t i = 0; i < count; i++)
-    write_judgement(json, &list[i], owner);
+  for (size_t i = 0; i < decision->count; i++)
+    write_judgement(json, &decision->judgements[i], owner);
   fg_json_array_end(json);
 }
 
 static void write_strip(fg_json *json, const fg_strip *strip) {
+  const struct {
+    const char *name;
+    double value;
+  } values[] = {{"step_mm", strip->step_mm},
+                {"blur_left_um", strip->blur_left_um},
+                {"blur_right_um", strip->blur_right_um},
+                {"contrast", strip->contrast},
+                {"noise", strip->noise},
+                {"gamma", strip->gamma}};
   fg_json_object(json, "strip");
   fg_json_integer(json, "stations", (int64_t)strip->count);
-  fg_json_number(json, "step_mm", strip->step_mm);
-  fg_json_number(json, "blur_left_um", strip->blur_left_um);
-  fg_json_number(json, "blur_right_um", strip->blur_right_um);
-  fg_json_number(json, "contrast", strip->contrast);
-  fg_json_number(json, "noise", strip->noise);
-  fg_json_number(json, "gamma", strip->gamma);
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+    fg_json_number(json, values[i].name, strip->count ? values[i].value : NAN);
   double box[4];
   for (int i = 0; i < 4; i++)
     box[i] = (double)strip->box_px[i];
@@ -195,65 +222,62 @@ static void write_strip(fg_json *json, const fg_strip *strip) {
   fg_json_object_end(json);
 }
 
-static void write_foil_values(fg_json *json, const fg_foil *foil) {
-  fg_json_string(json, "orientation", fg_orientation_word(foil->orientation));
+static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  fg_json_string(json, "orientation", measured ? fg_orientation_word(foil->orientation) : NULL);
   write_fields(json, FG_REPORT_FOIL, "", foil);
+  const fg_thickness strip = fg_foil_thickness(design, foil);
+  fg_json_number(json, "thickness_design_mm", design->thickness_mm);
+  fg_json_bool(json, "thickness_differs", fg_thickness_differs(design, &strip));
   fg_json_object(json, "overall");
   write_fields(json, FG_REPORT_FOIL, "overall.", foil);
   write_covariance(json, foil->overall.covariance);
   write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
+  fg_json_correction(json, &foil->correction);
   write_strip(json, &foil->strip);
   fg_json_array(json, "bumps");
   for (size_t i = 0; i < foil->bump_count; i++)
-    write_bump(json, &foil->bumps[i]);
+    write_bump(json, design, foil, &foil->bumps[i]);
   fg_json_array_end(json);
-}
-
-static bool any_exceeded(const fg_judgement *list, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (list[i].exceeded) return true;
-  return false;
 }
 
 fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
                        const fg_foil *foil) {
-  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  fg_judgement *list;
-  size_t count;
-  FG_TRY(fg_foil_judgements(ctx, design, foil, &list, &count));
+  fg_decision decision;
+  char defect[200];
+  FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
+  bool rejected = fg_foil_defect(design, foil, defect, sizeof defect);
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
   write_flags(json, fg_foil_flag_words(), foil->flags);
   fg_json_numbers(json, "place_mm", foil->place_mm, 4);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
-  fg_json_bool(json, "in_tolerance", measured && !any_exceeded(list, count));
-  if (measured)
-    write_judgements(json, list, count, "bump");
-  else
-    fg_json_string(json, "verdict", fg_verdict_word(FG_VERDICT_NOT_MEASURED));
-  write_foil_values(json, foil);
+  fg_json_verdict(json, decision.outcome.verdict);
+  fg_json_string(json, "defect", rejected ? defect : NULL);
+  if (fg_foil_is_measured(foil)) write_judgements(json, &decision, "bump");
+  write_foil_values(json, design, foil);
   fg_json_object_end(json);
-  free(list);
+  fg_decision_free(&decision);
   return FG_OK;
 }
 
 fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
                        const fg_disc *disc) {
-  fg_judgement *list;
-  size_t count;
-  FG_TRY(fg_disc_judgements(ctx, design, disc, &list, &count));
+  fg_decision decision;
+  FG_TRY(fg_disc_decide(ctx, design, disc, &decision));
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", disc->number);
-  write_flags(json, fg_bump_flag_words(), disc->flags);
+  write_flags(json, fg_bump_flag_words(), fg_disc_flags(design, disc));
   fg_json_bool(json, "hole", disc->hole);
   fg_json_bool(json, "bright", disc->bright);
-  write_judgements(json, list, count, "disc");
+  fg_json_verdict(json, decision.outcome.verdict);
+  write_judgements(json, &decision, "disc");
   write_fields(json, FG_REPORT_DISC, "", disc);
   write_covariance(json, disc->covariance);
   write_range(json, "radius_range_mm", disc->radius_range_mm);
   fg_json_object_end(json);
-  free(list);
+  fg_decision_free(&decision);
   return FG_OK;
 }
 
@@ -278,9 +302,12 @@ static fg_status write_scans(fg_context *ctx, fg_json *json, const fg_report *re
   fg_json_array(json, "scans");
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_report_scan *scan = &report->scans[i];
+    fg_report_outcome outcome;
+    FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
     fg_json_object(json, NULL);
     fg_json_string(json, "path", scan->path);
     fg_json_string(json, "error", scan->measurement ? NULL : scan->error);
+    fg_json_verdict(json, outcome.verdict);
     if (scan->measurement) FG_TRY(write_scan(ctx, json, report, scan->measurement));
     fg_json_object_end(json);
   }
@@ -295,11 +322,13 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/measure/1");
-  fg_json_string(&json, "verdict", fg_verdict_word(outcome.verdict));
+  fg_json_verdict(&json, outcome.verdict);
+  fg_json_counts(&json, &outcome);
   fg_json_array(&json, "inputs");
   for (size_t i = 0; i < report->scan_count; i++)
     fg_json_input(&json, &report->scans[i]);
   fg_json_array_end(&json);
+  fg_json_scan_model(&json, "model", fg_report_model(report));
   fg_json_design(&json, "design", report->design);
   if (report->design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", report->nominal);
   if (report->scan_count == 1 && report->scans[0].measurement)

@@ -12,6 +12,12 @@ void fg_json_head(fg_json *json, const char *schema);
 void fg_json_design(fg_json *json, const char *name, const fg_design *design);
 void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal);
 
+/* "in_tolerance": true only for a pass; null where nothing is judged. And "verdict". */
+void fg_json_verdict(fg_json *json, fg_verdict verdict);
+
+/* "counts". */
+void fg_json_counts(fg_json *json, const fg_report_outcome *outcome);
+
 /* One member of `inputs`. */
 void fg_json_input(fg_json *json, const fg_report_scan *scan);
 

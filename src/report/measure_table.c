@@ -2,11 +2,13 @@
 #include <math.h>
 #include <string.h>
 
+#include "report/scan_model_words.h"
 #include "report/words.h"
 
 /* The columns of the bump table and of the disc table: names of rows in the table of fields. */
-static const char *const bump_columns[] = {"radius_mm", "bump_angle_deg", "intersection_angle_deg",
-                                           "height_mm", "clearance_mm",   "radius_error_pct"};
+static const char *const bump_columns[] = {"radius_mm",           "bump_angle_deg",
+                                           "height_mm",           "clearance_mm",
+                                           "clearance_fitted_mm", "radius_error_pct"};
 static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um", "coverage_deg"};
 
 enum { COLUMNS_MAX = 8, DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
@@ -122,7 +124,7 @@ static size_t make_columns(const char *const *names, size_t count, const row_set
   return used;
 }
 
-static void put_bumps(FILE *out, const fg_foil *foil) {
+static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   const row_set rows = {FG_REPORT_BUMP, (const char *)foil->bumps, foil->bump_count,
                         sizeof *foil->bumps};
   column columns[COLUMNS_MAX];
@@ -133,10 +135,11 @@ static void put_bumps(FILE *out, const fg_foil *foil) {
   fputs("    ", out);
   put_cells(out, columns, count, true);
   for (size_t i = 0; i < foil->bump_count; i++)
-    put_row(out, columns, count, foil->bumps[i].number, foil->bumps[i].flags, &foil->bumps[i]);
+    put_row(out, columns, count, foil->bumps[i].number,
+            fg_bump_flags(design, foil, &foil->bumps[i]), &foil->bumps[i]);
 }
 
-static void put_discs(FILE *out, const fg_measurement *measurement) {
+static void put_discs(FILE *out, const fg_design *design, const fg_measurement *measurement) {
   const row_set rows = {FG_REPORT_DISC, (const char *)measurement->discs, measurement->disc_count,
                         sizeof *measurement->discs};
   column columns[COLUMNS_MAX];
@@ -147,8 +150,8 @@ static void put_discs(FILE *out, const fg_measurement *measurement) {
   fputs("    ", out);
   put_cells(out, columns, count, true);
   for (size_t i = 0; i < measurement->disc_count; i++)
-    put_row(out, columns, count, measurement->discs[i].number, measurement->discs[i].flags,
-            &measurement->discs[i]);
+    put_row(out, columns, count, measurement->discs[i].number,
+            fg_disc_flags(design, &measurement->discs[i]), &measurement->discs[i]);
 }
 
 /* "overall radius 20.9500 ± 0.0012 mm" */
@@ -167,12 +170,28 @@ static void put_foil_flags(FILE *out, unsigned flags) {
     if (flags & words->flag) fprintf(out, "  %s: %s\n", words->name, words->plain);
 }
 
+static void put_correction(FILE *out, const fg_correction *correction) {
+  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
+  fg_correction_moved(correction, moved, sizeof moved);
+  fg_correction_added(correction, added, sizeof added);
+  if (moved[0]) fprintf(out, "  the model moved %s\n  and added %s\n", moved, added);
+}
+
 static void put_place(FILE *out, const fg_foil *foil) {
   fprintf(out, "  place on the bed x %.1f, y %.1f mm (%.1f × %.1f mm)\n", foil->place_mm[0],
           foil->place_mm[1], foil->place_mm[2], foil->place_mm[3]);
 }
 
-static void put_foil(FILE *out, const fg_foil *foil) {
+/* In two lines of less than 100 columns. */
+static void put_thickness_words(FILE *out, const fg_design *design, const fg_foil *foil) {
+  char words[200];
+  fg_thickness_words(design, foil, words, sizeof words);
+  char *rest = strstr(words, ", and ");
+  if (rest) fprintf(out, "    %.*s,\n    %s\n", (int)(rest - words), words, rest + 2);
+}
+
+static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
+  char defect[200];
   if (foil->flags & FG_FOIL_NOT_MEASURED) {
     fprintf(out, "\nfoil %d: not measured: %s\n", foil->number, foil->error);
     put_place(out, foil);
@@ -181,20 +200,25 @@ static void put_foil(FILE *out, const fg_foil *foil) {
   }
   fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
           fg_orientation_word(foil->orientation));
+  if (foil->flags & FG_FOIL_NOT_THIS_DESIGN) fprintf(out, "  NOT MEASURED: %s\n", foil->error);
+  if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
   put_quantity(out, foil, "overall.radius_mm");
   put_quantity(out, foil, "overall.springback_error_pct");
   put_quantity(out, foil, "thickness_mm");
+  put_thickness_words(out, design, foil);
   put_quantity(out, foil, "noise_um");
+  put_correction(out, &foil->correction);
   put_foil_flags(out, foil->flags);
-  put_bumps(out, foil);
+  put_bumps(out, design, foil);
 }
 
-static void put_scan(FILE *out, const fg_report_scan *scan) {
+static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
+                          const fg_report_scan *scan) {
   const fg_measurement *measurement = scan->measurement;
   if (!measurement) {
     fprintf(out, "%s: not measured: %s\n", scan->path, scan->error);
-    return;
+    return FG_OK;
   }
   fprintf(out, "%s: %lld × %lld px, %d bit, %.6g", scan->path, (long long)measurement->width_px,
           (long long)measurement->height_px, measurement->bit_depth, measurement->dpi[0]);
@@ -202,31 +226,28 @@ static void put_scan(FILE *out, const fg_report_scan *scan) {
   fputs(" dpi", out);
   if (measurement->colour) fprintf(out, ", channel %s", fg_channel_word(measurement->channel));
   fputc('\n', out);
+  FG_TRY(fg_text_scan_model(ctx, out, measurement->model));
   for (size_t i = 0; i < measurement->foil_count; i++)
-    put_foil(out, &measurement->foils[i]);
-  if (measurement->disc_count) put_discs(out, measurement);
+    put_foil(out, design, &measurement->foils[i]);
+  if (measurement->disc_count) put_discs(out, design, measurement);
+  return FG_OK;
 }
 
+/* A line per thing that keeps the whole from passing: the worst first. */
 static void put_outcome(FILE *out, const fg_report_outcome *outcome) {
-  switch (outcome->verdict) {
-  case FG_VERDICT_PASS:
-    fputs("Within every tolerance, uncertainty included.\n", out);
-    break;
-  case FG_VERDICT_FAIL:
+  if (outcome->exceeded)
     fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit.\n", outcome->exceeded);
-    break;
-  case FG_VERDICT_UNDECIDED:
-    fputs("CANNOT TELL: a limit lies within ± of a value", out);
-    if (outcome->exceeded) fprintf(out, "; %zu value(s) beyond a limit", outcome->exceeded);
-    fputs(".\n", out);
-    break;
-  case FG_VERDICT_NOT_MEASURED:
+  if (outcome->rejected)
+    fprintf(out, "REJECTED: %zu foil(s) with bumps missing or too many.\n", outcome->rejected);
+  if (outcome->not_measured)
     fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
-    break;
-  case FG_VERDICT_NONE:
-    fputs("The design states no tolerances.\n", out);
-    break;
-  }
+  if (outcome->undecided)
+    fprintf(out, "CANNOT TELL: a limit lies within ± of %zu value(s)%s.\n", outcome->undecided,
+            outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit" : "");
+  if (outcome->verdict == FG_VERDICT_PASS)
+    fputs("Within every tolerance, uncertainty included.\n", out);
+  if (outcome->verdict == FG_VERDICT_NONE)
+    fputs("The design states no tolerances: nothing is judged.\n", out);
 }
 
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out) {
@@ -234,10 +255,14 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   FG_TRY(fg_report_judge(ctx, report, &outcome));
   for (size_t i = 0; i < report->scan_count; i++) {
     if (i) fputc('\n', out);
-    put_scan(out, &report->scans[i]);
+    FG_TRY(put_scan(ctx, out, report->design, &report->scans[i]));
   }
   fputc('\n', out);
   put_outcome(out, &outcome);
-  fputs("± is U = 2 u (k = 2, about 95 %). The scanner's own scale error is not in it.\n", out);
+  char scale[FG_SCALE_WORDS];
+  fg_scale_words(fg_report_model(report), scale, sizeof scale);
+  if (report->design->form != FG_FORM_DISCS)
+    fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
+  fprintf(out, "± is U = 2 u (k = 2, about 95 %%). %s\n", scale);
   return fg_report_finish(ctx, out, "the table");
 }

@@ -71,13 +71,14 @@ static fg_status put_row(fg_context *ctx, legend *at, fg_report_owner owner,
   return FG_OK;
 }
 
-static fg_status put_foil(fg_context *ctx, legend *at, const fg_foil *foil, bool all) {
+static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
+                          bool all) {
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
   value_text(fg_report_find(FG_REPORT_FOIL, "overall.radius_mm"), foil, radius, sizeof radius);
   value_text(fg_report_find(FG_REPORT_FOIL, "overall.springback_error_pct"), foil, error,
              sizeof error);
   value_text(fg_report_find(FG_REPORT_FOIL, "thickness_mm"), foil, thickness, sizeof thickness);
-  if (foil->flags & FG_FOIL_NOT_MEASURED)
+  if (!fg_foil_is_measured(foil))
     snprintf(text, sizeof text, "Foil %d: not measured: %.180s", foil->number, foil->error);
   else
     snprintf(text, sizeof text, "Foil %d: R0 %s mm, springback %s %%, t %s mm", foil->number,
@@ -89,7 +90,7 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_foil *foil, bool
   FG_TRY(put_heading(ctx, at, FG_REPORT_BUMP, bump_columns, columns));
   for (size_t i = 0; i < foil->bump_count; i++)
     FG_TRY(put_row(ctx, at, FG_REPORT_BUMP, bump_columns, columns, foil->bumps[i].number,
-                   foil->bumps[i].flags != 0, &foil->bumps[i]));
+                   fg_bump_flags(design, foil, &foil->bumps[i]) != 0, &foil->bumps[i]));
   return FG_OK;
 }
 
@@ -98,7 +99,8 @@ static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *me
   FG_TRY(put_heading(ctx, at, FG_REPORT_DISC, disc_columns, columns));
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(put_row(ctx, at, FG_REPORT_DISC, disc_columns, columns, measurement->discs[i].number,
-                   measurement->discs[i].flags != 0, &measurement->discs[i]));
+                   fg_disc_flags(&measurement->design, &measurement->discs[i]) != 0,
+                   &measurement->discs[i]));
   return FG_OK;
 }
 
@@ -115,7 +117,8 @@ static size_t legend_lines(const fg_measurement *measurement) {
 
 static fg_status draw_legend(fg_context *ctx, legend *at, const fg_measurement *measurement) {
   for (size_t i = 0; i < measurement->foil_count; i++)
-    FG_TRY(put_foil(ctx, at, &measurement->foils[i], legend_has_bumps(measurement)));
+    FG_TRY(put_foil(ctx, at, &measurement->design, &measurement->foils[i],
+                    legend_has_bumps(measurement)));
   if (measurement->disc_count) FG_TRY(put_discs(ctx, at, measurement));
   return put_text(ctx, at, 0, 0xa8b4c0,
                   "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: beyond. "

@@ -41,6 +41,8 @@ static const char style[] =
     "td.fail{background:#fdeaea;color:var(--bad);font-weight:600}"
     "td.cannot_tell{background:#fff4df;color:var(--open);font-weight:600}"
     "td.pass{background:#edf7f1}tr.limits td{color:var(--soft);font-size:12.5px}\n"
+    ".corrected{margin:0 0 14px;padding:9px 14px;border-left:4px solid var(--blue);background:"
+    "#eaf2fc;border-radius:0 8px 8px 0;overflow-wrap:anywhere}\n"
     ".reasons{margin:-6px 0 10px;color:var(--soft)}.reasons b{color:var(--ink)}\n"
     "ul.flags{margin:14px 0 0;padding:10px 14px 10px 32px;background:#fff8e8;border-radius:8px}\n"
     ".plot{display:block;width:100%;height:auto;font-size:14px}.plot text{fill:var(--ink)}"
@@ -144,23 +146,33 @@ void fg_html_text(FILE *out, const char *text) {
     case '\'':
       fputs("&#39;", out);
       break;
-    default:
-      if (length == 0 || (unsigned char)*text < 0x20)
-        fputs("\xEF\xBF\xBD", out);
-      else
-        fwrite(text, 1, length, out);
+    default: {
+      char visible[16];
+      size_t count;
+      fg_utf8_make_visible(text, length ? length : 1, true, visible, &count);
+      fwrite(visible, 1, count, out);
+    }
     }
     text += length ? length : 1;
   }
 }
 
-void fg_html_begin(FILE *out, const char *title) {
+/* A page is one file: it fetches nothing, runs nothing, and sends nothing, whatever a name in it
+ * says. Styles are inline, pictures are data. */
+void fg_html_head(FILE *out, const char *title) {
   fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+        "style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'\">\n"
         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
   fg_html_text(out, title);
-  fprintf(out, " – foilgauge</title>\n<style>\n%s%s%s%s</style>\n</head>\n<body>\n<main>\n", style,
-          plot_style, lot_style, loop_style);
+  fputs(" – foilgauge</title>\n", out);
+}
+
+void fg_html_begin(FILE *out, const char *title) {
+  fg_html_head(out, title);
+  fprintf(out, "<style>\n%s%s%s%s</style>\n</head>\n<body>\n<main>\n", style, plot_style, lot_style,
+          loop_style);
 }
 
 void fg_html_end(FILE *out) {

@@ -132,7 +132,8 @@ fg_status fg_picture_load(fg_context *ctx, const fg_measurement *measurement,
   const fg_scan_options options = {.dpi = measurement->dpi[0],
                                    .pixel_cap = UINT64_MAX,
                                    .channel = measurement->channel,
-                                   .allow_lossy = true};
+                                   .allow_lossy = true,
+                                   .unsummed = true};
   reducer work = {.box = box_px};
   fg_status status = FG_OK;
   *picture = (fg_picture){0};

@@ -181,7 +181,8 @@ static void put_claim(FILE *out, const fg_scan_bumps *bumps, size_t r, const fg_
   fprintf(out, "%s</td><td>%.2g</td></tr>\n", claim->aliases ? "</i>" : "", claim->p_value);
 }
 
-static void put_rejected(FILE *out, size_t r, const fg_loop_rejected *one) {
+static void put_rejected(size_t r, const fg_loop_rejected *one, void *user) {
+  FILE *out = user;
   const fg_scan_bump_response *what = &fg_scan_bump_responses[r];
   fputs("<tr>", out);
   put_name(out, one->candidate.effect, r);
@@ -203,13 +204,7 @@ static void put_candidates(FILE *out, const fg_scan_bumps *bumps) {
   for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++)
     for (size_t m = 0; m < bumps->level[r].result.claims; m++)
       put_claim(out, bumps, r, &bumps->level[r].result.claim[m]);
-  for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++)
-    for (size_t k = 0; k < bumps->level[r].result.rejects; k++) {
-      const fg_loop_rejected *one = &bumps->level[r].result.rejected[k];
-      const fg_loop_effect *effect = one->candidate.effect;
-      if (effect >= bumps->effect && effect < bumps->effect + FG_SCAN_BUMP_EFFECTS)
-        put_rejected(out, r, one);
-    }
+  fg_scan_bumps_rejected(bumps, put_rejected, out);
   fputs("</table></div>\n", out);
 }
 
@@ -242,7 +237,7 @@ void fg_scan_page_bumps(FILE *out, const fg_scan_bumps *bumps) {
   bool judged = false;
   for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++)
     judged |= bumps->level[r].judged;
-  if (!judged && !bumps->notes) return;
+  if (!bumps->count && !bumps->notes) return;
   fputs("<section><h2 class=\"first\">The bumps against the declared springback</h2>\n", out);
   if (judged) {
     fputs("<p class=\"note\">The bumps as corrected. Dots: bumps, rings: kept aside. Orange: what "
@@ -252,9 +247,9 @@ void fg_scan_page_bumps(FILE *out, const fg_scan_bumps *bumps) {
     for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++)
       put_response(out, bumps, r);
     fputs("</div>\n", out);
-    put_candidates(out, bumps);
-    put_errors(out, bumps);
   }
+  if (bumps->count) put_candidates(out, bumps);
+  if (judged) put_errors(out, bumps);
   for (size_t i = 0; i < bumps->notes; i++) {
     fputs("<p class=\"note\">", out);
     fg_html_text(out, bumps->note[i]);

@@ -51,8 +51,9 @@ void fg_json_bump_claims(fg_json *json, const fg_scan_bumps *bumps) {
       write_claim(json, bumps, r, &bumps->level[r].result.claim[m]);
 }
 
-static void write_rejected(fg_json *json, size_t response, const fg_loop_rejected *one) {
+static void write_rejected(size_t response, const fg_loop_rejected *one, void *user) {
   const fg_scan_bump_response *what = &fg_scan_bump_responses[response];
+  fg_json *json = user;
   fg_json_object(json, NULL);
   fg_json_string(json, "id", one->candidate.effect->id);
   fg_json_string(json, "level", "bumps");
@@ -66,56 +67,8 @@ static void write_rejected(fg_json *json, size_t response, const fg_loop_rejecte
   fg_json_object_end(json);
 }
 
-/* Of those looked for; the engine's lone rows are notes. */
-static bool is_effect(const fg_scan_bumps *bumps, const fg_loop_effect *effect) {
-  return effect >= bumps->effect && effect < bumps->effect + FG_SCAN_BUMP_EFFECTS;
-}
-
-static bool is_mentioned(const fg_scan_bump_level *level, const fg_loop_effect *effect) {
-  for (size_t m = 0; m < level->result.claims; m++)
-    if (level->result.claim[m].candidate.effect == effect) return true;
-  for (size_t k = 0; k < level->result.rejects; k++)
-    if (level->result.rejected[k].candidate.effect == effect) return true;
-  for (size_t m = 0; m < level->drops; m++)
-    if (level->dropped[m].candidate.effect == effect) return true;
-  return false;
-}
-
-/* Too few bumps, or no lip, to look at all: nothing is known of the effect, which is not `absent`.
- */
-static void write_unknown(fg_json *json, const fg_scan_bumps *bumps, size_t response) {
-  const fg_scan_bump_level *level = &bumps->level[response];
-  for (const fg_loop_effect *e = bumps->effect; e->id; e++) {
-    bool of_angles = !strcmp(e->id, "part.stretch");
-    const fg_loop_rejected one = {.candidate = {.effect = e},
-                                  .verdict = FG_LOOP_INCONCLUSIVE,
-                                  .would_explain = NAN,
-                                  .p_value = 1,
-                                  .retained_share = NAN,
-                                  .smallest_detectable = NAN};
-    if (!is_mentioned(level, e) && (response || !of_angles)) write_rejected(json, response, &one);
-  }
-}
-
-/* An effect that was found is not rejected of the same response on its other coordinate. */
 void fg_json_bump_rejected(fg_json *json, const fg_scan_bumps *bumps) {
-  for (size_t r = 0; r < FG_SCAN_BUMP_RESPONSES; r++) {
-    const fg_scan_bump_level *level = &bumps->level[r];
-    for (size_t k = 0; k < level->result.rejects; k++)
-      if (is_effect(bumps, level->result.rejected[k].candidate.effect))
-        write_rejected(json, r, &level->result.rejected[k]);
-    for (size_t m = 0; m < level->drops; m++) {
-      const fg_loop_claim *claim = &level->dropped[m];
-      const fg_loop_rejected one = {.candidate = claim->candidate,
-                                    .verdict = FG_LOOP_INCONCLUSIVE,
-                                    .would_explain = NAN,
-                                    .p_value = claim->p_value,
-                                    .retained_share = claim->retained_share,
-                                    .smallest_detectable = level->least};
-      if (is_effect(bumps, claim->candidate.effect)) write_rejected(json, r, &one);
-    }
-    write_unknown(json, bumps, r);
-  }
+  fg_scan_bumps_rejected(bumps, write_rejected, json);
 }
 
 bool fg_json_bump_curve(fg_json *json, const fg_scan_bumps *bumps) {
@@ -213,4 +166,19 @@ void fg_text_bumps(const fg_scan_bumps *bumps, FILE *out) {
             fg_scan_bump_responses[response].name);
   for (size_t i = 0; i < bumps->notes; i++)
     fprintf(out, "  %s\n", bumps->note[i]);
+}
+
+static void text_rejected(size_t response, const fg_loop_rejected *one, void *user) {
+  const fg_scan_bump_response *what = &fg_scan_bump_responses[response];
+  FILE *out = user;
+  fprintf(out, "  %s: %s of %s over the bumps", fg_loop_verdict_word(one->verdict),
+          one->candidate.effect->id, what->name);
+  if (isfinite(one->smallest_detectable))
+    fprintf(out, ", would have shown from %.3g %s", what->scale * one->smallest_detectable,
+            what->unit);
+  fputc('\n', out);
+}
+
+void fg_text_bumps_rejected(const fg_scan_bumps *bumps, FILE *out) {
+  fg_scan_bumps_rejected(bumps, text_rejected, out);
 }

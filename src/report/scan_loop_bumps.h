@@ -14,5 +14,7 @@ bool fg_json_bump_curve(fg_json *json, const fg_scan_bumps *bumps);
 void fg_json_bumps(fg_json *json, const fg_scan_bumps *bumps);
 
 void fg_text_bumps(const fg_scan_bumps *bumps, FILE *out);
+/* What is not claimed. */
+void fg_text_bumps_rejected(const fg_scan_bumps *bumps, FILE *out);
 
 #endif

@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "effect/columns.h"
 #include "loop/engine.h"
-#include "loop/points_effects.h"
 #include "report/plot.h"
 #include "report/plot_marks.h"
 #include "report/scan_loop_parts.h"
@@ -19,7 +19,7 @@ typedef struct curve {
   double x[SAMPLES], d[SAMPLES], u[SAMPLES];
 } curve;
 
-const char *fg_scan_coordinate_title(fg_scan_coordinate coordinate) {
+const char *fg_scan_coordinate_title(fg_effect_coordinate coordinate) {
   static const char *const titles[] = {
       "scan.x: across the glass, mm", "scan.y: the carriage's way, mm",
       "foil.s: along the foil, mm", "bump.phi: place in the bump's arc, −1 to 1",
@@ -28,10 +28,10 @@ const char *fg_scan_coordinate_title(fg_scan_coordinate coordinate) {
 }
 
 static fg_point field_at(const fg_field *field, const fg_field_frame *frame,
-                         fg_scan_coordinate along, double t) {
+                         fg_effect_coordinate along, double t) {
   fg_field_list one = {.frame = *frame, .fields = {*field}, .count = 1};
   fg_point at = {frame->centre_mm[0], frame->centre_mm[1]};
-  if (along == FG_SCAN_X)
+  if (along == FG_EFFECT_X)
     at.x = frame->low_mm[0] + t * (frame->high_mm[0] - frame->low_mm[0]);
   else
     at.y = frame->low_mm[1] + t * (frame->high_mm[1] - frame->low_mm[1]);
@@ -39,27 +39,22 @@ static fg_point field_at(const fg_field *field, const fg_field_frame *frame,
 }
 
 /* Every field of the table runs over one axis of the scan: the one along which it changes. */
-static fg_scan_coordinate axis_of(const fg_field *field, const fg_field_frame *frame) {
+static fg_effect_coordinate axis_of(const fg_field *field, const fg_field_frame *frame) {
   double change[2] = {0, 0};
   for (int axis = 0; axis < 2; axis++)
     for (int i = 0; i < SAMPLES; i++) {
-      fg_point a = field_at(field, frame, (fg_scan_coordinate)axis, 0);
-      fg_point b = field_at(field, frame, (fg_scan_coordinate)axis, (double)i / (SAMPLES - 1));
+      fg_point a = field_at(field, frame, (fg_effect_coordinate)axis, 0);
+      fg_point b = field_at(field, frame, (fg_effect_coordinate)axis, (double)i / (SAMPLES - 1));
       change[axis] = fmax(change[axis], hypot(b.x - a.x, b.y - a.y));
     }
-  return change[0] > change[1] ? FG_SCAN_X : FG_SCAN_Y;
+  return change[0] > change[1] ? FG_EFFECT_X : FG_EFFECT_Y;
 }
 
-static fg_scan_coordinate place_of(const char *id) {
-  if (strstr(id, "bump")) return FG_SCAN_PHI;
-  return strstr(id, "normal") ? FG_SCAN_NORMAL : FG_SCAN_FOIL;
-}
-
-static void put_u(const fg_field *field, const fg_field_frame *frame, fg_scan_coordinate along,
+static void put_u(const fg_field *field, const fg_field_frame *frame, fg_effect_coordinate along,
                   int direction, curve *line) {
   for (int i = 0; i < SAMPLES; i++) {
     double square = 0;
-    for (size_t c = 0; c < field->row->columns; c++) {
+    for (size_t c = 0; c < field->columns; c++) {
       fg_field one = *field;
       memset(one.amplitude_mm, 0, sizeof one.amplitude_mm);
       one.amplitude_mm[c] = field->u_amplitude_mm[c];
@@ -72,11 +67,11 @@ static void put_u(const fg_field *field, const fg_field_frame *frame, fg_scan_co
 
 /* Sum over the fields on one axis and direction; returns how many they are. The columns of a free
  * curve hang together, so its uncertainty is not theirs one by one. */
-static size_t sum_fields(const fg_field_list *list, fg_scan_coordinate along, int direction,
+static size_t sum_fields(const fg_field_list *list, fg_effect_coordinate along, int direction,
                          curve *line) {
   const fg_field_frame *frame = &list->frame;
   size_t count = 0;
-  int axis = along == FG_SCAN_X ? 0 : 1;
+  int axis = along == FG_EFFECT_X ? 0 : 1;
   for (int i = 0; i < SAMPLES; i++) {
     double t = (double)i / (SAMPLES - 1);
     line->x[i] = frame->low_mm[axis] + t * (frame->high_mm[axis] - frame->low_mm[axis]);
@@ -94,32 +89,34 @@ static size_t sum_fields(const fg_field_list *list, fg_scan_coordinate along, in
       size = fmax(size, fabs(value));
     }
     if (!(size > 0)) continue;
-    if (!count++ && !fg_field_is_free(field->row)) put_u(field, frame, along, direction, line);
+    if (!count++ && !fg_effect_is_free(fg_effect_find(field->id)))
+      put_u(field, frame, along, direction, line);
   }
   for (int i = 0; i < SAMPLES && count > 1; i++)
     line->u[i] = NAN;
   return count;
 }
 
-static bool row_place(const fg_points_row *row, fg_scan_coordinate coordinate, double *x) {
+static bool row_place(const fg_points_row *row, fg_effect_coordinate coordinate, double *x) {
   double degrees = 180 / M_PI;
-  *x = coordinate == FG_SCAN_PHI      ? row->phi
-       : coordinate == FG_SCAN_NORMAL ? row->normal_rad * degrees
-                                      : row->psi * degrees;
-  return coordinate != FG_SCAN_PHI || row->bump;
+  *x = coordinate == FG_EFFECT_PHI      ? row->phi
+       : coordinate == FG_EFFECT_NORMAL ? row->normal_rad * degrees
+                                        : row->psi * degrees;
+  return coordinate != FG_EFFECT_PHI || row->bump;
 }
 
 /* Rows look along the normal of their own arc, which on a bump points to the shaft; over the foil
  * the deviation is told outwards, in the direction that the effect's form moves it. */
-static double share_of(const fg_points_row *row, fg_scan_coordinate coordinate, const char *form) {
+static double share_of(const fg_points_row *row, fg_effect_coordinate coordinate,
+                       const char *form) {
   double along = row->radial.x * row->normal.x + row->radial.y * row->normal.y;
-  if (coordinate != FG_SCAN_FOIL) return 1;
+  if (coordinate != FG_EFFECT_FOIL) return 1;
   return form && !strcmp(form, "radial") ? along : along < 0 ? -1 : 1;
 }
 
 /* Sum of the part's effects on one coordinate, from their columns at the rows, in bins. */
-static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_coordinate coordinate,
-                           curve *line, size_t *count) {
+static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop,
+                           fg_effect_coordinate coordinate, curve *line, size_t *count) {
   const fg_points *points = &loop->points;
   size_t rows = points->row_count;
   double *columns = NULL, n[SAMPLES] = {0}, low = INFINITY, high = -INFINITY, x;
@@ -134,12 +131,12 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_co
   FG_TRY(fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns));
   for (size_t e = 0; e < loop->set.count; e++) {
     const fg_scan_effect *effect = &loop->set.effects[e];
-    if (fg_field_find(effect->id) || place_of(effect->id) != coordinate) continue;
-    size_t filled = fg_points_effect_columns(points, effect->id, effect->shape, columns);
+    if (effect->kind->glass || effect->kind->coordinate != coordinate) continue;
+    size_t filled = fg_effect_columns(points, effect->kind, effect->shape, columns);
     *count += filled > 0;
     for (size_t i = 0; i < rows; i++) {
       if (!row_place(&points->rows[i], coordinate, &x)) continue;
-      double share = share_of(&points->rows[i], coordinate, fg_effect_form(effect->id));
+      double share = share_of(&points->rows[i], coordinate, effect->kind->form);
       size_t bin = (size_t)fmin(SAMPLES - 1, (x - low) / (high - low) * SAMPLES);
       for (size_t c = 0; c < filled; c++)
         line->d[bin] += effect->coefficient_um[c] * columns[c * rows + i] / share;
@@ -157,7 +154,7 @@ static fg_status sum_parts(fg_context *ctx, const fg_scan_loop *loop, fg_scan_co
 
 /* A free curve says nothing of what circles take over: the bump's own, or the overall circle with
  * its centre. */
-static void take_circles(fg_scan_coordinate coordinate, curve *line) {
+static void take_circles(fg_effect_coordinate coordinate, curve *line) {
   double columns[3 * SAMPLES], basis[3 * SAMPLES], d[SAMPLES];
   size_t n = 0, at[SAMPLES];
   for (size_t i = 0; i < SAMPLES; i++)
@@ -165,8 +162,8 @@ static void take_circles(fg_scan_coordinate coordinate, curve *line) {
   for (size_t k = 0; k < n; k++) {
     double x = line->x[at[k]], angle = x * M_PI / 180;
     columns[k] = 1;
-    columns[n + k] = coordinate == FG_SCAN_PHI ? x : cos(angle);
-    columns[2 * n + k] = coordinate == FG_SCAN_PHI ? x * x : sin(angle);
+    columns[n + k] = coordinate == FG_EFFECT_PHI ? x : cos(angle);
+    columns[2 * n + k] = coordinate == FG_EFFECT_PHI ? x * x : sin(angle);
     d[k] = line->d[at[k]];
   }
   size_t rank = loop_orthonormal(n, NULL, 0, columns, 3, basis, NULL);
@@ -218,7 +215,7 @@ static void put_band(const fg_plot *at, const curve *line) {
   fputs("Z\"/>\n", at->out);
 }
 
-static void put_curve(FILE *out, const fg_scan_loop *loop, fg_scan_coordinate coordinate,
+static void put_curve(FILE *out, const fg_scan_loop *loop, fg_effect_coordinate coordinate,
                       const char *moves, const char *caption, curve *line) {
   double low = 0, high = 0, widest = 0;
   bridge(line);
@@ -236,11 +233,11 @@ static void put_curve(FILE *out, const fg_scan_loop *loop, fg_scan_coordinate co
   snprintf(title, sizeof title, "%s, µm", moves);
   fputs("<figure>", out);
   fg_plot_begin(&at, HEIGHT, title);
-  if (coordinate <= FG_SCAN_Y) put_reach(&at, &loop->points, coordinate == FG_SCAN_Y);
+  if (coordinate <= FG_EFFECT_Y) put_reach(&at, &loop->points, coordinate == FG_EFFECT_Y);
   fg_plot_y_axis(&at, title);
   fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, coordinate == FG_SCAN_FOIL ? "angle from the foil's middle about O, °"
-                                                  : fg_scan_coordinate_title(coordinate));
+  fg_plot_x_title(&at, coordinate == FG_EFFECT_FOIL ? "angle from the foil's middle about O, °"
+                                                    : fg_scan_coordinate_title(coordinate));
   put_band(&at, line);
   fg_plot_line(&at, line->x, line->d, SAMPLES, "effect");
   fg_plot_end(&at);
@@ -253,8 +250,8 @@ static void put_curve(FILE *out, const fg_scan_loop *loop, fg_scan_coordinate co
   fputs(".</figcaption></figure>\n", out);
 }
 
-static const char *along(const char *id) {
-  return !strcmp(fg_effect_form(id), "radial") ? "radius" : "normal";
+static const char *along(const fg_effect *kind) {
+  return !strcmp(kind->form, "radial") ? "radius" : "normal";
 }
 
 static void put_parameters(FILE *out, const fg_scan_loop *loop) {
@@ -265,20 +262,19 @@ static void put_parameters(FILE *out, const fg_scan_loop *loop) {
     const fg_scan_effect *effect = &loop->set.effects[e];
     char words[120];
     fg_scan_parameter p;
-    fg_scan_effect_words(effect->id, words, sizeof words);
     fputs("<tr><td class=\"words\">", out);
-    fg_html_text(out, words);
+    fg_html_text(out, effect->kind->words);
     fputs("<i>", out);
-    fg_html_text(out, fg_effect_name(effect->id));
-    if (fg_effect_form(effect->id)) fprintf(out, ", along the %s", along(effect->id));
+    fg_html_text(out, effect->kind->id);
+    if (effect->kind->form) fprintf(out, ", along the %s", along(effect->kind));
     fprintf(out, "</i></td><td class=\"words\">%s</td><td class=\"words\">",
-            fg_scan_effect_equation(effect->id));
+            effect->kind->equation);
     for (size_t i = 0; fg_scan_effect_parameter(effect, i, &p); i++) {
       fg_scan_value_words(p.value, p.u, words, sizeof words);
       fprintf(out, "%s<span class=\"nobreak\">%s = %s %s</span>", i ? "<br>" : "", p.name, words,
               p.unit);
     }
-    if (fg_scan_effect_is_free(effect)) fputs("the curve itself", out);
+    if (fg_effect_is_free(effect->kind)) fputs("the curve itself", out);
     fputs("</td></tr>\n", out);
   }
   fputs(
@@ -287,18 +283,18 @@ static void put_parameters(FILE *out, const fg_scan_loop *loop) {
       out);
 }
 
-static bool has_free(const fg_scan_loop *loop, fg_scan_coordinate coordinate) {
+static bool has_free(const fg_scan_loop *loop, fg_effect_coordinate coordinate) {
   for (size_t e = 0; e < loop->set.count; e++) {
     const fg_scan_effect *effect = &loop->set.effects[e];
-    if (fg_scan_effect_is_free(effect) && !fg_field_find(effect->id) &&
-        place_of(effect->id) == coordinate)
+    if (fg_effect_is_free(effect->kind) && !effect->kind->glass &&
+        effect->kind->coordinate == coordinate)
       return true;
   }
   return false;
 }
 
 static fg_status put_part(fg_context *ctx, FILE *out, const fg_scan_loop *loop,
-                          fg_scan_coordinate coordinate) {
+                          fg_effect_coordinate coordinate) {
   static const char *const captions[2][3] = {
       {"Deviation of the foil, outwards from O positive",
        "Deviation of every bump from its circle, away from its centre positive",
@@ -311,14 +307,15 @@ static fg_status put_part(fg_context *ctx, FILE *out, const fg_scan_loop *loop,
   FG_TRY(sum_parts(ctx, loop, coordinate, &line, &count));
   if (!count) return FG_OK;
   bool free_curve = has_free(loop, coordinate);
-  if (free_curve && coordinate != FG_SCAN_NORMAL) take_circles(coordinate, &line);
-  put_curve(out, loop, coordinate, "deviation", captions[free_curve][coordinate - FG_SCAN_FOIL],
+  if (free_curve && coordinate != FG_EFFECT_NORMAL) take_circles(coordinate, &line);
+  put_curve(out, loop, coordinate, "deviation", captions[free_curve][coordinate - FG_EFFECT_FOIL],
             &line);
   return FG_OK;
 }
 
 fg_status fg_scan_page_effects(fg_context *ctx, FILE *out, const fg_scan_loop *loop) {
-  fg_field_list fields = fg_scan_page_fields(loop);
+  fg_field_list fields;
+  fg_scan_fields(&loop->points, &loop->set, &fields);
   curve line;
   if (!loop->set.count) return FG_OK;
   fputs("<section><h2 class=\"first\">What was found, drawn</h2>\n", out);
@@ -327,14 +324,14 @@ fg_status fg_scan_page_effects(fg_context *ctx, FILE *out, const fg_scan_loop *l
   if (fields.count) fg_scan_page_grid(out, loop);
   for (int axis = 0; axis < 2; axis++)
     for (int direction = 0; direction < 2; direction++)
-      if (sum_fields(&fields, (fg_scan_coordinate)axis, direction, &line))
-        put_curve(out, loop, (fg_scan_coordinate)axis,
+      if (sum_fields(&fields, (fg_effect_coordinate)axis, direction, &line))
+        put_curve(out, loop, (fg_effect_coordinate)axis,
                   direction ? "displacement in y" : "displacement in x",
                   "What must be added to the picture's coordinate. White: where edges lie that "
                   "were measured",
                   &line);
-  for (int c = FG_SCAN_FOIL; c <= FG_SCAN_NORMAL; c++)
-    FG_TRY(put_part(ctx, out, loop, (fg_scan_coordinate)c));
+  for (int c = FG_EFFECT_FOIL; c <= FG_EFFECT_NORMAL; c++)
+    FG_TRY(put_part(ctx, out, loop, (fg_effect_coordinate)c));
   fputs("</div></section>\n", out);
   return FG_OK;
 }

@@ -78,7 +78,7 @@ static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_
                     {b->radius_mm, b->u_radius_mm},
                     {a->radius_mm, a->u_radius_mm},
                     a->radius_range_mm};
-  q[1] = (quantity){"height h",
+  q[1] = (quantity){"height h, free",
                     "mm",
                     "µm",
                     1000,
@@ -92,7 +92,7 @@ static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_
                     {b->bump_angle_deg, b->u_bump_angle_deg},
                     {a->bump_angle_deg, a->u_bump_angle_deg},
                     NULL};
-  q[3] = (quantity){"clearance",
+  q[3] = (quantity){"clearance, free",
                     "mm",
                     "µm",
                     1000,

@@ -31,7 +31,7 @@ static double largest(const fg_field_list *fields) {
 static double reach(const fg_scan_loop *loop, double cell) {
   double most = 0.6 * cell;
   for (size_t e = 0; e < loop->set.count; e++)
-    if (!strcmp(loop->set.effects[e].id, "scan.carriage_ripple"))
+    if (loop->set.effects[e].kind->numbers == FG_EFFECT_WAVE)
       most = fmin(most, 0.13 * loop->set.effects[e].shape[0]);
   return most;
 }
@@ -40,7 +40,7 @@ static double reach(const fg_scan_loop *loop, double cell) {
 static int lines_along(const fg_scan_loop *loop, int axis, double range, double cell) {
   double lines = range / cell;
   for (size_t e = 0; axis == 1 && e < loop->set.count; e++)
-    if (!strcmp(loop->set.effects[e].id, "scan.carriage_ripple"))
+    if (loop->set.effects[e].kind->numbers == FG_EFFECT_WAVE)
       lines = fmax(lines, 6 * range / loop->set.effects[e].shape[0]);
   return (int)fmin(LINES_MOST, fmax(4, ceil(lines)));
 }
@@ -84,7 +84,8 @@ static void put_foils(const deformation *d, const fg_points *points) {
 }
 
 void fg_scan_page_grid(FILE *out, const fg_scan_loop *loop) {
-  fg_field_list fields = fg_scan_page_fields(loop);
+  fg_field_list fields;
+  fg_scan_fields(&loop->points, &loop->set, &fields);
   const fg_field_frame *f = &fields.frame;
   double width = f->high_mm[0] - f->low_mm[0], height = f->high_mm[1] - f->low_mm[1];
   double size = largest(&fields), cell = fmax(width, height) / 14;

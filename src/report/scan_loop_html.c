@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "loop/points_effects.h"
 #include "report/scan_loop_parts.h"
 
 static void put_tile(FILE *out, const char *name, const char *value, const char *small) {
@@ -65,8 +64,7 @@ static void put_inputs(FILE *out, const fg_scan_loop *loop) {
 }
 
 static bool is_tied(const fg_scan_loop *loop) {
-  size_t members[FG_SUBSET_CLASS];
-  return loop->tied && fg_scan_class(&loop->subset, members) > 1;
+  return loop->decided.member_count > 1;
 }
 
 /* What was found must hold on scans that had no say in finding it. */
@@ -94,29 +92,20 @@ static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) 
 
 /* ---- candidates ---- */
 
-static bool is_claimed(const fg_scan_loop *loop, const char *id) {
-  for (size_t i = 0; i < loop->set.count; i++)
-    if (fg_effect_same(loop->set.effects[i].id, id)) return true;
-  return false;
-}
-
-static void put_name(FILE *out, const char *id) {
-  char words[120];
-  fg_scan_effect_words(id, words, sizeof words);
+static void put_name(FILE *out, const fg_effect *kind) {
   fputs("<td class=\"words\">", out);
-  fg_html_text(out, words);
+  fg_html_text(out, kind->words);
   fputs("<i>", out);
-  fg_html_text(out, fg_effect_name(id));
+  fg_html_text(out, kind->id);
   fputs("</i></td>", out);
 }
 
-static void put_claim(FILE *out, const fg_scan_loop *loop, const fg_scan_effect *effect) {
-  bool sure = fg_scan_effect_is_sure(&loop->subset, effect->id);
-  bool free_curve = fg_scan_effect_is_free(effect);
+static void put_claim(FILE *out, const fg_scan_effect *effect, bool sure) {
+  bool free_curve = fg_effect_is_free(effect->kind);
   fg_scan_parameter p;
   char words[64];
   fputs("<tr class=\"on\">", out);
-  put_name(out, effect->id);
+  put_name(out, effect->kind);
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
           sure ? free_curve ? "open" : "found" : "tied",
           free_curve ? "unattributed"
@@ -133,42 +122,37 @@ static void put_claim(FILE *out, const fg_scan_loop *loop, const fg_scan_effect 
 
 /* The two last columns: what it alone would take of the residual, and how much of it the geometry
  * does not take over. */
-static void put_shares(FILE *out, const fg_subset *subset, const char *id) {
+static void put_shares(FILE *out, double alone, double share) {
+  fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * alone, share < 0.1 ? 2 : 0,
+          100 * share);
+}
+
+static void put_shares_of(FILE *out, const fg_subset *subset, const fg_effect *kind) {
   for (size_t e = 0; e < subset->effect_count; e++)
-    if (!strcmp(subset->effects[e].id, id)) {
-      fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * subset->alone[e],
-              subset->share[e] < 0.1 ? 2 : 0, 100 * subset->share[e]);
+    if (subset->effects[e].kind == kind) {
+      put_shares(out, subset->alone[e], subset->share[e]);
       return;
     }
   fputs("<td>–</td><td>–</td></tr>\n", out);
 }
 
-/* What the data could not have shown at 3 um is inconclusive, or absorbed by the geometry: the same
- * rule as the JSON's. */
-static const char *rejected_word(const fg_subset *subset, size_t e) {
-  static const double matters_um = 3, absorbed_share = 1e-4;
-  if (subset->smallest_um[e] <= matters_um) return "absent";
-  return subset->share[e] < absorbed_share ? "absorbed by geometry" : "inconclusive";
-}
-
-static void put_rejected(FILE *out, const fg_scan_loop *loop, size_t e) {
-  const fg_subset *subset = &loop->subset;
-  bool tied = fg_scan_class_holds(subset, subset->effects[e].id);
-  const char *word = tied ? "tied" : rejected_word(subset, e);
+static void put_candidate(FILE *out, const fg_scan_candidate *candidate) {
+  fg_loop_verdict verdict = candidate->verdict;
   char words[32];
   fputs("<tr>", out);
-  put_name(out, subset->effects[e].id);
-  fg_scan_length_words(subset->smallest_um[e], words, sizeof words);
+  put_name(out, candidate->kind);
+  fg_scan_length_words(candidate->smallest_um, words, sizeof words);
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
-          tied                      ? "tied"
-          : !strcmp(word, "absent") ? "absent"
-                                    : "open",
-          word);
-  if (tied)
-    fputs("could be it: see above</td>", out);
+          verdict == FG_LOOP_TIED     ? "tied"
+          : verdict == FG_LOOP_ABSENT ? "absent"
+                                      : "open",
+          fg_loop_verdict_word(verdict));
+  if (verdict == FG_LOOP_TIED)
+    fputs("could be it: see above", out);
   else
-    fprintf(out, "%s%s</td>", isfinite(subset->smallest_um[e]) ? "would have shown from " : "",
-            words);
+    fprintf(out, "%s%s", isfinite(candidate->smallest_um) ? "would have shown from " : "", words);
+  fputs(candidate->barred ? "<br>seen, and not confirmed from disc to disc</td>" : "</td>", out);
+  put_shares(out, candidate->would_explain, candidate->share);
 }
 
 static void put_candidates(FILE *out, const fg_scan_loop *loop) {
@@ -178,26 +162,22 @@ static void put_candidates(FILE *out, const fg_scan_loop *loop) {
         "</tr>\n",
         out);
   for (size_t i = 0; i < loop->set.count; i++) {
-    put_claim(out, loop, &loop->set.effects[i]);
-    put_shares(out, &loop->subset, loop->set.effects[i].id);
+    put_claim(out, &loop->set.effects[i], loop->decided.sure[i]);
+    put_shares_of(out, &loop->subset, loop->set.effects[i].kind);
   }
-  for (size_t e = 0; e < loop->subset.effect_count; e++) {
-    const fg_subset_effect *effect = &loop->subset.effects[e];
-    /* Of two forms of one effect the first speaks for both. */
-    if (effect->free || is_claimed(loop, effect->id) || strchr(effect->id, ':')) continue;
-    put_rejected(out, loop, e);
-    put_shares(out, &loop->subset, effect->id);
-  }
-  fputs("</table></div>\n<p class=\"note\">Absent: 3 µm of it would have shown. Inconclusive: the "
-        "data could not have shown that much. Absorbed by geometry: circles that move and change "
-        "their radius look the same. Sizes of smooth effects are what they do 18 mm from the "
-        "middle.</p></section>\n",
-        out);
+  for (size_t i = 0; i < loop->decided.candidates; i++)
+    put_candidate(out, &loop->decided.candidate[i]);
+  fprintf(out,
+          "</table></div>\n<p class=\"note\">Absent: %g µm of it would have shown. Inconclusive: "
+          "the data could not have shown that much. Absorbed by geometry: circles that move and "
+          "change their radius look the same. Sizes of smooth effects are what they do 18 mm from "
+          "the middle.</p></section>\n",
+          FG_SCAN_MATTERS_UM);
 }
 
 static void put_class(FILE *out, const fg_scan_loop *loop) {
   const fg_subset *subset = &loop->subset;
-  size_t members[FG_SUBSET_CLASS], count = fg_scan_class(subset, members);
+  const fg_scan_decisions *decided = &loop->decided;
   char words[FG_SCAN_CLASS_WORDS];
   if (!is_tied(loop)) return;
   fputs("<section><h2 class=\"first\">What the data cannot tell apart</h2>\n", out);
@@ -208,25 +188,31 @@ static void put_class(FILE *out, const fg_scan_loop *loop) {
     fputs("):</p>\n", out);
   }
   fputs("<ol class=\"words\">\n", out);
-  for (size_t m = 0; m < count; m++) {
-    fg_scan_member_words(subset, members[m], false, words, sizeof words);
+  for (size_t m = 0; m < decided->member_count; m++) {
+    fg_scan_member_words(subset, decided->members[m], false, words, sizeof words);
     fputs("<li>", out);
     fg_html_text(out, words);
+    fg_scan_member_name(subset, decided->members[m], words, sizeof words);
+    fprintf(out, " <code>%s</code>", words);
     fputs(m ? "</li>\n" : " <b>(the likeliest: drawn and applied here)</b></li>\n", out);
   }
   fputs("</ol>\n", out);
-  if (fg_scan_class_unlisted(subset))
-    fprintf(out, "<p class=\"note\">And %zu more.</p>\n", fg_scan_class_unlisted(subset));
+  if (decided->unlisted) fprintf(out, "<p class=\"note\">And %zu more.</p>\n", decided->unlisted);
   fputs("<p class=\"note\">Each explains the residual as well as the noise and the edge model "
-        "allow to say. The dimensions below carry their range over all of them.</p>\n"
-        "<p class=\"say\"><b>To tell them apart:</b> ",
+        "allow to say. The dimensions below carry their range over all of them.</p>\n",
         out);
-  fputs(loop->options.same_foil
-            ? "scan another foil on the same scanner: what repeats is the scanner.</p></section>\n"
-            : "scan the same foil again, turned by about 90°, and run the loop on both scans with "
-              "<code>--same-foil</code>: what stays with the glass is the scanner, what turns is "
-              "the part.</p></section>\n",
-        out);
+  fputs("</section>\n", out);
+}
+
+static void put_advice(FILE *out, const fg_scan_loop *loop) {
+  if (!loop->decided.advices) return;
+  fputs("<section><h2 class=\"first\">To tell them apart</h2>\n<ul class=\"words\">\n", out);
+  for (size_t i = 0; i < loop->decided.advices; i++) {
+    fputs("<li>", out);
+    fg_html_text(out, loop->decided.advice[i]);
+    fputs(".</li>\n", out);
+  }
+  fputs("</ul></section>\n", out);
 }
 
 static void put_scale(FILE *out, const fg_scan_loop *loop) {
@@ -234,9 +220,8 @@ static void put_scale(FILE *out, const fg_scan_loop *loop) {
   fputs("<section><h2 class=\"first\">A scale that the edges cannot see</h2>\n<p class=\"note\">A "
         "distortion of the optics about another middle, beside a scale of the carriage, leaves the "
         "same edges and another size of everything. That would explain the bumps' arc length as "
-        "well as the part does; the dimensions below carry their range over both.</p>\n"
-        "<p class=\"say\"><b>To tell them apart:</b> scan a gauge of known diameter on the same "
-        "scanner (<code>--form discs</code>, <code>diameters_mm</code>).</p></section>\n",
+        "well as the part does; the dimensions below carry their range over both.</p>"
+        "</section>\n",
         out);
 }
 
@@ -283,6 +268,7 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   free(sentence);
   put_class(out, loop);
   put_scale(out, loop);
+  put_advice(out, loop);
   FG_TRY(fg_scan_page_vectors(ctx, out, loop));
   FG_TRY(fg_scan_page_effects(ctx, out, loop));
   FG_TRY(fg_scan_page_residuals(ctx, out, loop));

@@ -7,23 +7,8 @@
 
 /* ---- words (scan_loop_words.c) ---- */
 
-/* An effect for people: what it is, and its equation (empty: none is known). */
-void fg_scan_effect_words(const char *id, char *words, size_t size);
-const char *fg_scan_effect_equation(const char *id);
-
-bool fg_scan_effect_is_free(const fg_scan_effect *effect);
-
-/* Whether every explanation that the data allow holds the effect, in whatever form. */
-bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id);
-
-/* Members of the alias class that differ in more than an effect's form; returns how many. */
-size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]);
-
-/* Members beyond those that the class has room for. */
-size_t fg_scan_class_unlisted(const fg_subset *subset);
-
-/* Whether a member of the class holds the effect, in whatever form. */
-bool fg_scan_class_holds(const fg_subset *subset, const char *id);
+/* The effects of a member of the class as a sum of ids. */
+void fg_scan_member_name(const fg_subset *subset, size_t member, char *name, size_t size);
 
 /* What a member shares with all others (`common`), or what it has of its own: "a together with b".
  */
@@ -52,20 +37,8 @@ fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_loop *loop, char 
 
 /* ---- what an effect does (scan_loop_curves.c) ---- */
 
-/* Where an effect lives. */
-typedef enum fg_scan_coordinate {
-  FG_SCAN_X,
-  FG_SCAN_Y,
-  FG_SCAN_FOIL,   /* psi, degrees from the foil's middle */
-  FG_SCAN_PHI,    /* in the bump's arc, -1 to 1 */
-  FG_SCAN_NORMAL, /* direction of the edge's normal, degrees */
-  FG_SCAN_COORDINATES
-} fg_scan_coordinate;
-
 /* The axis's name with its unit. */
-const char *fg_scan_coordinate_title(fg_scan_coordinate coordinate);
-
-fg_field_list fg_scan_page_fields(const fg_scan_loop *loop);
+const char *fg_scan_coordinate_title(fg_effect_coordinate coordinate);
 
 /* The deformation of the picture, curves over the coordinates, parameters. */
 fg_status fg_scan_page_effects(fg_context *ctx, FILE *out, const fg_scan_loop *loop);

@@ -12,7 +12,7 @@ enum { WIDTH = 520, HEIGHT = 264, POINTS_MOST = 1300, BINS = 150, ROWS_IN_BIN = 
 /* A plot's data: rows over one coordinate. */
 typedef struct series {
   const fg_scan_loop *loop;
-  fg_scan_coordinate coordinate;
+  fg_effect_coordinate coordinate;
   const double *residual_um;
   double light; /* rows up to this weight are drawn pale and are not in the mean */
 } series;
@@ -23,18 +23,18 @@ const char *fg_scan_colour(const fg_scan_loop *loop, size_t scan) {
   return names[scan < COLOURS ? scan : COLOURS];
 }
 
-static bool coordinate_of(const fg_points_row *row, fg_scan_coordinate coordinate, double *x) {
+static bool coordinate_of(const fg_points_row *row, fg_effect_coordinate coordinate, double *x) {
   switch (coordinate) {
-  case FG_SCAN_X:
+  case FG_EFFECT_X:
     *x = row->at.x;
     return true;
-  case FG_SCAN_Y:
+  case FG_EFFECT_Y:
     *x = row->at.y;
     return true;
-  case FG_SCAN_FOIL:
+  case FG_EFFECT_FOIL:
     *x = row->s_mm;
     return true;
-  case FG_SCAN_PHI:
+  case FG_EFFECT_PHI:
     *x = row->phi;
     return row->bump != 0;
   default:
@@ -136,8 +136,8 @@ static bool find_range(const series *s, double range[2]) {
 /* Pairs of before and after; without a correction one plot each. */
 static void put_all(FILE *out, const fg_scan_loop *loop, const double limit_um[2]) {
   fputs("<div class=\"two\">\n", out);
-  for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
-    series s = {loop, (fg_scan_coordinate)c, loop->residual_before, fg_scan_light(&loop->points)};
+  for (int c = 0; c < FG_EFFECT_COORDINATES; c++) {
+    series s = {loop, (fg_effect_coordinate)c, loop->residual_before, fg_scan_light(&loop->points)};
     double range[2];
     if (!find_range(&s, range)) continue;
     put_plot(out, &s, range, limit_um[0], loop->set.count ? "Before" : "As measured");
@@ -158,8 +158,8 @@ static void put_enlarged(FILE *out, const fg_scan_loop *loop, const double limit
           "<details open><summary>What is left, enlarged %.3g times: is it noise?</summary><div "
           "class=\"two\">\n",
           limit_um[0] / limit_um[1]);
-  for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
-    series s = {loop, (fg_scan_coordinate)c, loop->residual_after, fg_scan_light(&loop->points)};
+  for (int c = 0; c < FG_EFFECT_COORDINATES; c++) {
+    series s = {loop, (fg_effect_coordinate)c, loop->residual_after, fg_scan_light(&loop->points)};
     double range[2];
     if (find_range(&s, range)) put_plot(out, &s, range, limit_um[1], caption);
   }

@@ -6,17 +6,16 @@
 
 enum { SHAPE_POINTS = 81 };
 
-static void write_field(fg_json *json, const fg_scan_loop *loop, const fg_scan_effect *effect,
-                        const fg_field_row *row) {
+static void write_field(fg_json *json, const fg_scan_loop *loop, const fg_scan_effect *effect) {
   const fg_field_frame *f = &loop->points.frame;
-  int along = strstr(effect->id, "scan.x") ? 0 : 1;
-  const char *direction = strrchr(effect->id, '.');
-  fg_field_list list = {.frame = *f, .fields = {fg_scan_field(effect, row)}, .count = 1};
+  int along = effect->kind->coordinate == FG_EFFECT_X ? 0 : 1;
+  bool moves_x = effect->kind->moves && !strcmp(effect->kind->moves, "x");
+  fg_field_list list = {.frame = *f, .fields = {fg_scan_field(effect)}, .count = 1};
   for (int i = 0; i < SHAPE_POINTS; i++) {
     double t = i / (SHAPE_POINTS - 1.0);
     double at = f->first_mm[along] + t * (f->last_mm[along] - f->first_mm[along]);
     fg_point d = fg_field_at(&list, (fg_point){at, at});
-    double pair[2] = {at, 1000 * (direction[2] == 'x' ? d.x : d.y)};
+    double pair[2] = {at, 1000 * (moves_x ? d.x : d.y)};
     fg_json_numbers(json, NULL, pair, 2);
   }
 }
@@ -58,7 +57,7 @@ static double place_of(const fg_points *points, const fg_points_row *row, bool p
 static fg_status write_part(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
                             const fg_scan_effect *effect) {
   const fg_points *points = &loop->points;
-  bool phi = strstr(effect->id, "bump") != NULL;
+  bool phi = effect->kind->coordinate == FG_EFFECT_PHI;
   double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
   double count[SHAPE_POINTS] = {0}, *shift = NULL;
   fg_scan_set alone = {.effects = {*effect}, .count = 1};
@@ -85,12 +84,11 @@ static fg_status write_part(fg_context *ctx, fg_json *json, const fg_scan_loop *
 
 fg_status fg_json_scan_shape(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
                              const fg_scan_effect *effect) {
-  const fg_field_row *row = fg_field_find(effect->id);
   fg_status status = FG_OK;
   fg_json_array(json, "shape");
-  if (row)
-    write_field(json, loop, effect, row);
-  else if (fg_effect_same(effect->id, "free.foil.s"))
+  if (effect->kind->glass)
+    write_field(json, loop, effect);
+  else if (effect->kind->coordinate == FG_EFFECT_FOIL)
     write_foil(json, loop, effect);
   else
     status = write_part(ctx, json, loop, effect);

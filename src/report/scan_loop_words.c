@@ -3,76 +3,16 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "loop/points_effects.h"
 #include "report/scan_loop_parts.h"
 
-typedef struct effect_words {
-  const char *id, *words, *equation;
-} effect_words;
-
-static const effect_words table[] = {
-    {"scan.scale_y", "a wrong scale along the carriage's way", "d_y = q y"},
-    {"scan.shear", "a shear of the picture", "d_x = q y"},
-    {"scan.carriage_ripple", "a ripple of the carriage", "d_y = a sin(2π y/p + φ)"},
-    {"scan.row_step", "a step of the carriage (rows lost or doubled)", "d_y = a where y > y0"},
-    {"scan.optical_quadratic", "a quadratic distortion of the optics", "d_x = a ((x − c)/18 mm)²"},
-    {"scan.optical_cubic", "a cubic distortion of the optics", "d_x = a ((x − c)/18 mm)³"},
-    {"scan.carriage_quadratic", "a carriage that becomes faster or slower",
-     "d_y = a ((y − c)/18 mm)²"},
-    {"part.ovality", "an oval foil", "a cos 2(ψ − ψ0)"},
-    {"part.spiral", "a spiral foil", "a (ψ/ψ_end)³"},
-    {"part.bump_crown", "bumps flatter or sharper at the crown than a circle",
-     "even in the place in the arc, led by a P4"},
-    {"part.bump_skew", "bumps that lean to one side", "odd in the place in the arc, led by a P3"},
-    {"free.scan.x.dx", "a shift in x that varies over x", "a smooth curve, freely fitted"},
-    {"free.scan.x.dy", "a shift in y that varies over x", "a smooth curve, freely fitted"},
-    {"free.scan.y.dx", "a shift in x that varies over y", "a smooth curve, freely fitted"},
-    {"free.scan.y.dy", "a shift in y that varies over y", "a smooth curve, freely fitted"},
-    {"free.foil.s", "a deviation along the foil", "a smooth curve, freely fitted"},
-    {"free.bump.phi", "a deviation of every bump from its circle", "a smooth curve, freely fitted"},
-    {"free.edge.normal", "a shift that depends on the edge's direction",
-     "a smooth curve, freely fitted"},
-    {NULL, NULL, NULL},
-};
-
-static const effect_words *find(const char *id) {
-  const effect_words *row = table;
-  while (row->id && !fg_effect_same(row->id, id))
-    row++;
-  return row->id ? row : NULL;
-}
-
-void fg_scan_effect_words(const char *id, char *words, size_t size) {
-  const effect_words *row = find(id);
-  fg_text_clip(words, size, "%s", row ? row->words : fg_effect_name(id));
-}
-
-const char *fg_scan_effect_equation(const char *id) {
-  const effect_words *row = find(id);
-  return row ? row->equation : "";
-}
-
-bool fg_scan_effect_is_free(const fg_scan_effect *effect) {
-  return !strncmp(effect->id, "free.", 5);
-}
-
-static bool holds(const fg_subset *subset, size_t member, const char *id) {
-  for (size_t e = 0; e < subset->effect_count; e++)
-    if ((subset->members[member].mask >> e & 1) && fg_effect_same(subset->effects[e].id, id))
-      return true;
-  return false;
-}
-
-bool fg_scan_effect_is_sure(const fg_subset *subset, const char *id) {
-  for (size_t m = 0; m < subset->member_count; m++)
-    if (!holds(subset, m, id)) return false;
-  return true;
-}
-
-bool fg_scan_class_holds(const fg_subset *subset, const char *id) {
-  for (size_t m = 0; m < subset->member_count; m++)
-    if (holds(subset, m, id)) return true;
-  return false;
+void fg_scan_member_name(const fg_subset *subset, size_t member, char *name, size_t size) {
+  size_t used = 0;
+  name[0] = 0;
+  for (size_t e = 0; e < subset->effect_count && used + 1 < size; e++) {
+    if (!(subset->members[member].mask >> e & 1)) continue;
+    fg_text_clip(name + used, size - used, "%s%s", used ? " + " : "", subset->effects[e].kind->id);
+    used = strlen(name);
+  }
 }
 
 void fg_scan_member_words(const fg_subset *subset, size_t member, bool common, char *words,
@@ -80,57 +20,23 @@ void fg_scan_member_words(const fg_subset *subset, size_t member, bool common, c
   size_t used = 0;
   fg_text_clip(words, size, "%s", common ? "" : "nothing more");
   for (size_t e = 0; e < subset->effect_count && used + 1 < size; e++) {
-    const char *id = subset->effects[e].id;
-    char one[120];
-    if (!(subset->members[member].mask >> e & 1) || fg_scan_effect_is_sure(subset, id) != common)
+    const fg_effect *kind = subset->effects[e].kind;
+    if (!(subset->members[member].mask >> e & 1) || fg_scan_effect_is_sure(subset, kind) != common)
       continue;
-    fg_scan_effect_words(id, one, sizeof one);
-    fg_text_clip(words + used, size - used, "%s%s", used ? " together with " : "", one);
+    fg_text_clip(words + used, size - used, "%s%s", used ? " together with " : "", kind->words);
     used = strlen(words);
   }
 }
 
-/* Two forms of one effect are one explanation. */
-size_t fg_scan_class(const fg_subset *subset, size_t members[FG_SUBSET_CLASS]) {
-  size_t count = 0;
-  char words[FG_SCAN_CLASS_WORDS], before[FG_SCAN_CLASS_WORDS];
-  for (size_t m = 0; m < subset->member_count; m++) {
-    bool known = false;
-    fg_scan_member_words(subset, m, false, words, sizeof words);
-    for (size_t k = 0; k < count && !known; k++) {
-      fg_scan_member_words(subset, members[k], false, before, sizeof before);
-      known = !strcmp(words, before);
-    }
-    if (!known) members[count++] = m;
-  }
-  return count;
-}
-
-size_t fg_scan_class_unlisted(const fg_subset *subset) {
-  bool full = subset->member_count == FG_SUBSET_CLASS;
-  return full && subset->member_total > FG_SUBSET_CLASS ? subset->member_total - FG_SUBSET_CLASS
-                                                        : 0;
-}
-
 /* ---- parameters ---- */
 
-fg_field_list fg_scan_page_fields(const fg_scan_loop *loop) {
-  fg_field_list list = {.frame = loop->points.frame};
-  for (size_t i = 0; i < loop->set.count && list.count < FG_FIELDS_MAX; i++) {
-    const fg_field_row *row = fg_field_find(loop->set.effects[i].id);
-    if (row) list.fields[list.count++] = fg_scan_field(&loop->set.effects[i], row);
-  }
-  return list;
-}
-
-/* Names of fg_field_parameter with their units for people; a ratio is told in ppm. */
-static void put_unit(fg_scan_parameter *p) {
+/* Names of fg_scan_effect_number with their units for people; a ratio is told in ppm. */
+static void put_unit(const fg_effect *kind, fg_scan_parameter *p) {
   static const struct {
     const char *name, *people, *unit;
     double factor;
-  } units[] = {{"value", "q", "ppm", 1e6},  {"amplitude_um", "a", "µm", 1},
-               {"period_mm", "p", "mm", 1}, {"phase_deg", "φ", "°", 1},
-               {"y_mm", "y0", "mm", 1},     {"centre_mm", "c", "mm", 1}};
+  } units[] = {
+      {"value", "q", "ppm", 1e6}, {"amplitude_um", "a", "µm", 1}, {"phase_deg", "φ", "°", 1}};
   for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
     if (strcmp(p->name, units[i].name) != 0) continue;
     p->name = units[i].people;
@@ -139,36 +45,17 @@ static void put_unit(fg_scan_parameter *p) {
     p->u *= units[i].factor;
     return;
   }
+  for (size_t s = 0; s < kind->shapes; s++)
+    if (p->name == kind->shape_name[s])
+      *p = (fg_scan_parameter){kind->shape_symbol[s], "mm", p->value, p->u};
 }
 
-/* Size of a part effect: its only coefficient, the one that leads, or a cosine's and a sine's. */
-static bool part_parameter(const fg_scan_effect *effect, size_t i, fg_scan_parameter *p) {
-  const double *c = effect->coefficient_um, *u = effect->u_coefficient_um;
-  double degrees = 180 / M_PI, square = c[0] * c[0] + c[1] * c[1], a = sqrt(square);
-  if (!fg_effect_same(effect->id, "part.ovality")) {
-    *p = (fg_scan_parameter){"a", "µm", c[0], u[0]};
-    return i == 0;
-  }
-  if (i == 0)
-    *p = (fg_scan_parameter){"a", "µm", a,
-                             a > 0 ? hypot(c[0] * u[0], c[1] * u[1]) / a : hypot(u[0], u[1])};
-  else
-    *p =
-        (fg_scan_parameter){"ψ0", "°", 0.5 * atan2(c[1], c[0]) * degrees,
-                            a > 0 ? 0.5 * hypot(c[1] * u[0], c[0] * u[1]) / square * degrees : NAN};
-  return i < 2;
-}
-
-bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i,
-                              fg_scan_parameter *parameter) {
-  if (fg_scan_effect_is_free(effect)) return false;
-  const fg_field_row *row = fg_field_find(effect->id);
-  if (!row) return part_parameter(effect, i, parameter);
-  fg_field field = fg_scan_field(effect, row);
-  *parameter = (fg_scan_parameter){"", "", 0, 0};
-  if (!fg_field_parameter(&field, i, &parameter->name, &parameter->value, &parameter->u))
-    return false;
-  put_unit(parameter);
+bool fg_scan_effect_parameter(const fg_scan_effect *effect, size_t i, fg_scan_parameter *p) {
+  *p = (fg_scan_parameter){"", "", 0, 0};
+  if (!fg_scan_effect_number(effect, i, &p->name, &p->value, &p->u)) return false;
+  put_unit(effect->kind, p);
+  if (effect->kind->numbers == FG_EFFECT_LED) p->value = effect->coefficient_um[0]; /* which way */
+  if (effect->kind->numbers == FG_EFFECT_OVAL && i == 1) p->name = "ψ0";
   return true;
 }
 
@@ -221,13 +108,9 @@ static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool fre
   bool first = true;
   for (size_t i = 0; i < loop->set.count; i++) {
     const fg_scan_effect *effect = &loop->set.effects[i];
-    char words[120];
-    if (fg_scan_effect_is_free(effect) != free_curves ||
-        !fg_scan_effect_is_sure(&loop->subset, effect->id))
-      continue;
-    fg_scan_effect_words(effect->id, words, sizeof words);
+    if (fg_effect_is_free(effect->kind) != free_curves || !loop->decided.sure[i]) continue;
     const char *between = free_curves ? ", nor " : "; ";
-    FG_TRY(fg_text_append(ctx, text, "%s%s", first ? before : between, words));
+    FG_TRY(fg_text_append(ctx, text, "%s%s", first ? before : between, effect->kind->words));
     FG_TRY(say_parameters(ctx, effect, text));
     first = false;
   }
@@ -238,8 +121,8 @@ static fg_status say_effects(fg_context *ctx, const fg_scan_loop *loop, bool fre
 static fg_status say_class(fg_context *ctx, const fg_scan_loop *loop, char **text) {
   enum { NAMED = 3 };
   const fg_subset *subset = &loop->subset;
-  size_t members[FG_SUBSET_CLASS], count = fg_scan_class(subset, members);
-  size_t total = count + fg_scan_class_unlisted(subset);
+  const fg_scan_decisions *decided = &loop->decided;
+  size_t count = decided->member_count, total = count + decided->unlisted;
   size_t named = total <= NAMED ? count : NAMED - 1;
   if (count < 2) return FG_OK;
   FG_TRY(fg_text_append(ctx, text, "%s",
@@ -247,7 +130,7 @@ static fg_status say_class(fg_context *ctx, const fg_scan_loop *loop, char **tex
                               : "Found, but the data cannot tell which it is: "));
   for (size_t m = 0; m < named; m++) {
     char words[FG_SCAN_CLASS_WORDS];
-    fg_scan_member_words(subset, members[m], false, words, sizeof words);
+    fg_scan_member_words(subset, decided->members[m], false, words, sizeof words);
     FG_TRY(fg_text_append(ctx, text, "%s%s", m == 0 ? "" : m + 1 == total ? " or " : ", ", words));
   }
   if (total == named + 1) FG_TRY(fg_text_append(ctx, text, " or one other explanation"));

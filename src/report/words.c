@@ -1,7 +1,10 @@
 #include "report/words.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
+
+#include "core/text.h"
 
 static const fg_flag_words foil_flags[] = {
     {FG_FOIL_TOUCHES_BORDER, "touches_border",
@@ -20,17 +23,36 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_GAP, "gap", "The strip is interrupted, or its edge is hidden, somewhere."},
     {FG_FOIL_ROUGH_EDGE, "rough_edge",
      "The residuals are correlated along the strip; the uncertainties take that into account."},
+    {FG_FOIL_COARSE_RESOLUTION, "coarse_resolution",
+     "The strip is so few pixels wide that its edges blur into each other: values may be off by "
+     "more than their uncertainty. Scan at a higher resolution."},
+    {FG_FOIL_RESOLUTION_CONTRADICTS_FILE, "resolution_contradicts_file",
+     "The resolution that was given is not the one that the file states: if the file is right, "
+     "every length is wrong by their ratio."},
+    {FG_FOIL_UNEQUAL_RESOLUTION, "unequal_resolution",
+     "The resolutions along x and y differ: radii may be off by more than their uncertainty. Scan "
+     "with equal ones."},
     {FG_FOIL_NOT_MEASURED, "not_measured", "The foil could not be measured."},
+    {FG_FOIL_NOT_THIS_DESIGN, "not_this_design",
+     "It cannot be a foil of this design: its values stand, and are not judged."},
+    {FG_FOIL_BEYOND_MODEL_REGION, "beyond_model_region",
+     "It reaches beyond the region that the scanner's model was found in: there the correction is "
+     "not known to hold."},
     {0, NULL, NULL},
 };
 
 static const fg_flag_words bump_flags[] = {
-    {FG_BUMP_CRUSHED, "crushed", "far lower, wider or rounder than its neighbours"},
+    {FG_BUMP_CRUSHED, "crushed", "far lower, wider or rounder than a sound bump"},
     {FG_BUMP_NOT_FITTED, "not_fitted", "no circle could be fitted"},
     {FG_BUMP_NO_CROSSING, "no_crossing", "its circle does not meet the overall circle: no angle"},
     {FG_BUMP_POOR_FIT, "poor_fit", "it is not a circle within the noise of the edges"},
     {FG_BUMP_OUTLIERS, "outliers", "burr or dust was given less weight"},
+    {FG_BUMP_DISTURBED_EDGE, "disturbed_edge", "dust or a burr hides part of its arc"},
+    {FG_BUMP_GAP, "gap", "the strip is cut within its arc"},
+    {FG_BUMP_TOUCHES_OTHER, "touches_other", "another part touches its arc or the land beside it"},
     {FG_BUMP_OUT_OF_TOLERANCE, "out_of_tolerance", "a tolerance is exceeded"},
+    {FG_BUMP_BEYOND_MODEL_REGION, "beyond_model_region",
+     "it lies beyond the region that the scanner's model was found in"},
     {0, NULL, NULL},
 };
 
@@ -80,6 +102,17 @@ const char *fg_datum_word(fg_datum datum) {
     return "outer";
   }
   return "";
+}
+
+void fg_thickness_words(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
+  const fg_thickness strip = fg_foil_thickness(design, foil);
+  double more_um = 1000 * (strip.mm - design->thickness_mm);
+  words[0] = 0;
+  if (!fg_thickness_differs(design, &strip)) return;
+  fg_text_clip(words, size,
+               "the design says %.6g mm: clearances are over the strip as measured, and would be "
+               "%.3g µm %s with the design's thickness",
+               design->thickness_mm, fabs(more_um), more_um > 0 ? "larger" : "smaller");
 }
 
 const char *fg_orientation_word(fg_orientation orientation) {

@@ -16,6 +16,10 @@ const fg_flag_words *fg_bump_flag_words(void);
 
 const char *fg_form_word(fg_form form);
 const char *fg_datum_word(fg_datum datum);
+/* Where the strip is not as thick as the design says: what that does to the clearances; "" where it
+ * is, within U. */
+void fg_thickness_words(const fg_design *design, const fg_foil *foil, char *words, size_t size);
+
 const char *fg_orientation_word(fg_orientation orientation);
 const char *fg_arc_kind_word(fg_arc_kind kind);
 const char *fg_channel_word(fg_channel channel);

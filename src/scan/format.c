@@ -2,6 +2,9 @@
 
 #include <stdbool.h>
 #include <string.h>
+#include <strings.h>
+
+#include "core/text.h"
 
 static const fg_format *const readable[] = {&fg_format_png, &fg_format_tiff, &fg_format_pnm};
 
@@ -43,6 +46,24 @@ const fg_format *fg_format_find(const uint8_t *head, size_t length) {
   for (size_t i = 0; i < sizeof readable / sizeof readable[0] && length > 0; i++)
     if (readable[i]->matches(head, length)) return readable[i];
   return NULL;
+}
+
+bool fg_format_has_name(const char *name) {
+  const char *dot = strrchr(name, '.');
+  for (size_t i = 0; dot && i < sizeof readable / sizeof readable[0]; i++)
+    for (const char *const *ending = readable[i]->endings; *ending; ending++)
+      if (!strcasecmp(dot, *ending)) return true;
+  return false;
+}
+
+void fg_format_list_endings(char *text, size_t size) {
+  size_t used = 0;
+  text[0] = '\0';
+  for (size_t i = 0; i < sizeof readable / sizeof readable[0]; i++)
+    for (const char *const *ending = readable[i]->endings; *ending; ending++) {
+      fg_text_clip(text + used, size - used, "%s%s", used ? ", " : "", *ending);
+      used = strlen(text);
+    }
 }
 
 const char *fg_format_problem(const uint8_t *head, size_t length) {

@@ -10,6 +10,7 @@
  * error only close is left. `reader` is the format's own. */
 typedef struct fg_format {
   const char *name;
+  const char *const *endings; /* of its files' names, ".png"; NULL ends them */
   /* Whether a file begins as this format does; one that is shorter than that counts as cut off. */
   bool (*matches)(const uint8_t *head, size_t length);
   bool needs_file; /* it jumps about in the file: a pipe must be stored first */
@@ -31,6 +32,12 @@ extern const fg_format fg_format_png, fg_format_tiff, fg_format_pnm;
 
 /* The format whose files begin like `head`, the first `length` bytes; NULL when it is none. */
 const fg_format *fg_format_find(const uint8_t *head, size_t length);
+
+/* Whether a file's name ends as those of a format do. */
+bool fg_format_has_name(const char *name);
+
+/* All endings, for people: ".png, .tif, ...". */
+void fg_format_list_endings(char *text, size_t size);
 
 /* Why fg_format_find found none: what the file is and what to do, in words that follow its name. */
 const char *fg_format_problem(const uint8_t *head, size_t length);

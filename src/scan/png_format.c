@@ -116,7 +116,10 @@ static void close_png(void *r) {
   free(reader);
 }
 
+static const char *const endings[] = {".png", NULL};
+
 const fg_format fg_format_png = {.name = "PNG",
+                                 .endings = endings,
                                  .matches = matches,
                                  .has_colour = has_colour,
                                  .open = open_png,

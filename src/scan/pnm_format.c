@@ -180,7 +180,10 @@ static void close_pnm(void *r) {
   free(reader);
 }
 
+static const char *const endings[] = {".pnm", ".pgm", ".ppm", ".pbm", NULL};
+
 const fg_format fg_format_pnm = {.name = "PNM",
+                                 .endings = endings,
                                  .matches = matches,
                                  .has_colour = has_colour,
                                  .open = open_pnm,

@@ -133,12 +133,21 @@ static fg_status prepare_rows(fg_context *ctx, const fg_scan_options *options, f
 static fg_status open_scan(fg_context *ctx, const char *path, const fg_scan_options *options,
                            fg_scan *scan) {
   if (options->dpi != 0) FG_TRY(fg_scan_check_dpi(ctx, options->dpi));
-  FG_TRY(fg_source_open(ctx, path, &scan->source));
+  FG_TRY(fg_source_open(ctx, path, options->only_file, &scan->source));
+  scan->source.unsummed = options->unsummed;
   FG_TRY(find_format(ctx, options, scan));
   FG_TRY(open_format(ctx, options, scan));
   fill_info(scan);
   FG_TRY(fg_resolution_find(ctx, scan->source.name, &scan->header, options->dpi, &scan->info));
   return prepare_rows(ctx, options, scan);
+}
+
+/* Of a file that was opened but is no scan. */
+static void sum_failed(const fg_scan_options *options, fg_scan *scan) {
+  char *hex = options->failed_sha256;
+  if (!hex) return;
+  hex[0] = '\0';
+  if (scan->source.regular && fg_source_sha256(NULL, &scan->source, hex) != FG_OK) hex[0] = '\0';
 }
 
 fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options *options,
@@ -148,13 +157,14 @@ fg_status fg_scan_open(fg_context *ctx, const char *path, const fg_scan_options 
   *scan = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *opened, (void **)&opened));
   opened->source.descriptor = -1;
-  fg_status status = open_scan(ctx, path, options ? options : &defaults, opened);
-  if (status != FG_OK) {
-    fg_scan_close(opened);
-    return status;
-  }
-  *scan = opened;
-  return FG_OK;
+  if (!options) options = &defaults;
+  fg_status status = open_scan(ctx, path, options, opened);
+  if (status == FG_OK)
+    *scan = opened;
+  else
+    sum_failed(options, opened);
+  if (status != FG_OK) fg_scan_close(opened);
+  return status;
 }
 
 const fg_scan_info *fg_scan_get_info(const fg_scan *scan) {
@@ -163,10 +173,7 @@ const fg_scan_info *fg_scan_get_info(const fg_scan *scan) {
 
 static fg_status finish(fg_context *ctx, fg_scan *scan) {
   FG_TRY(scan->format->finish(ctx, scan->reader));
-  fg_source_drain(&scan->source);
-  if (scan->source.error)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read behind the image: %s", scan->source.name,
-                   strerror(scan->source.error));
+  FG_TRY(fg_source_drain(ctx, &scan->source));
   scan->ended = true;
   return FG_OK;
 }
@@ -223,16 +230,23 @@ bool fg_scan_is_file(const fg_scan *scan) {
   return scan->source.regular;
 }
 
+bool fg_scan_sums_apart(const fg_scan *scan) {
+  return scan->format->needs_file;
+}
+
+fg_status fg_scan_check_unchanged(fg_context *ctx, fg_scan *scan) {
+  return fg_source_check_unchanged(ctx, &scan->source);
+}
+
 fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]) {
-  const fg_source *source = &scan->source;
-  if (source->regular)
-    return fg_sha256_descriptor(ctx, source->descriptor, source->start, source->name, hex);
-  if (!scan->ended)
+  fg_source *source = &scan->source;
+  if (source->unsummed)
+    return fg_fail(ctx, FG_ERR_USAGE, "%s: was opened without its SHA-256", source->name);
+  if (!source->regular && !scan->ended)
     return fg_fail(ctx, FG_ERR_USAGE, "%s: its SHA-256 is known after the last row only",
                    source->name);
-  struct sha256_ctx sum = source->sum;
-  fg_sha256_finish(&sum, hex);
-  return FG_OK;
+  if (!source->jumps && !scan->ended) scan->broken = true;
+  return fg_source_sha256(ctx, source, hex);
 }
 
 void fg_scan_close(fg_scan *scan) {

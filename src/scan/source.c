@@ -9,7 +9,12 @@
 
 #include "core/memory.h"
 
-enum { BUFFER_BYTES = 1 << 16 };
+/* PAST_BYTES: what a pipe may hold behind its image. */
+#define PAST_BYTES ((uint64_t)1 << 30)
+/* What is stored of one at most: the largest scan that is read, of four channels. */
+#define STORE_BYTES ((uint64_t)32 << 30)
+enum { BUFFER_BYTES = FG_LEDGER_BLOCK_BYTES };
+#define NO_BLOCK UINT64_MAX
 
 static fg_status examine(fg_context *ctx, fg_source *source) {
   struct stat entry;
@@ -27,23 +32,30 @@ static fg_status examine(fg_context *ctx, fg_source *source) {
   return FG_OK;
 }
 
-fg_status fg_source_open(fg_context *ctx, const char *path, fg_source *source) {
+fg_status fg_source_open(fg_context *ctx, const char *path, bool only_file, fg_source *source) {
   *source = (fg_source){.descriptor = -1};
-  sha256_init(&source->sum);
+  fg_sha256_stream_begin(&source->sum);
   bool standard = !strcmp(path, "-");
   source->name = strdup(standard ? "standard input" : path);
   if (!source->name) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the path %s", path);
-  source->descriptor = standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+  source->descriptor =
+      standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | (only_file ? O_NONBLOCK : 0));
   source->owned = !standard;
   if (source->descriptor < 0)
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s; %s", path, strerror(errno),
                    errno == EACCES ? "ask for permission to read it" : "check the name");
   FG_TRY(examine(ctx, source));
+  if (only_file && !source->regular)
+    return fg_fail(ctx, FG_ERR_IO, "%s: is a pipe or a device, not a file; give a scan's file",
+                   source->name);
   return fg_memory_allocate(ctx, BUFFER_BYTES, 1, (void **)&source->buffer);
 }
 
 void fg_source_close(fg_source *source) {
+  char unused[65];
+  if (source->name) fg_sha256_stream_finish(&source->sum, unused);
   if (source->owned && source->descriptor >= 0) close(source->descriptor);
+  fg_ledger_close(&source->ledger);
   free(source->buffer);
   free(source->name);
   *source = (fg_source){.descriptor = -1};
@@ -58,7 +70,7 @@ static size_t receive(fg_source *source, void *out, size_t wanted) {
   if (got < 0) source->error = errno;
   if (got == 0) source->ended = true;
   if (got <= 0) return 0;
-  if (!source->regular) sha256_update(&source->sum, (size_t)got, out);
+  if (!source->unsummed && !source->stored) fg_sha256_stream_feed(&source->sum, out, (size_t)got);
   return (size_t)got;
 }
 
@@ -119,7 +131,12 @@ static fg_status open_store(fg_context *ctx, const fg_source *source, int *store
 
 static fg_status copy_to_store(fg_context *ctx, fg_source *source, int store) {
   size_t held = source->end;
+  uint64_t stored = 0;
   do {
+    stored += held;
+    if (stored > STORE_BYTES)
+      return fg_fail(ctx, FG_ERR_DATA, "%s: goes on for more than %d GiB; is it a scan?",
+                     source->name, (int)(STORE_BYTES >> 30));
     for (size_t done = 0; done < held;) {
       ssize_t wrote = write(store, source->buffer + done, held - done);
       if (wrote < 0 && errno == EINTR) continue;
@@ -147,14 +164,66 @@ fg_status fg_source_store(fg_context *ctx, fg_source *source) {
   }
   if (source->owned) close(source->descriptor);
   off_t size = lseek(store, 0, SEEK_CUR);
+  fg_sha256_stream_finish(&source->sum, source->sha256);
   source->descriptor = store;
-  source->owned = source->regular = true;
+  source->owned = source->regular = source->stored = true;
   source->start = 0;
   source->size = size > 0 ? (uint64_t)size : 0;
   return fg_source_rewind(ctx, source);
 }
 
+fg_status fg_source_jump(fg_context *ctx, fg_source *source) {
+  source->jumps = true;
+  source->held = NO_BLOCK;
+  if (source->stored || source->unsummed || source->ledger.mark) return FG_OK;
+  return fg_ledger_open(ctx, source->size, &source->ledger);
+}
+
+/* One block of the file, or what it has of it. */
+static ssize_t read_block(const fg_source *source, uint64_t block, uint8_t *out) {
+  size_t done = 0;
+  while (done < FG_LEDGER_BLOCK_BYTES) {
+    uint64_t offset = block * FG_LEDGER_BLOCK_BYTES + done;
+    uint64_t left = offset < source->size ? source->size - offset : 0;
+    size_t wanted = FG_LEDGER_BLOCK_BYTES - done;
+    if (left < wanted) wanted = (size_t)left;
+    if (wanted == 0) break;
+    ssize_t got = pread(source->descriptor, out + done, wanted, source->start + (off_t)offset);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return -1;
+    if (got == 0) break;
+    done += (size_t)got;
+  }
+  return (ssize_t)done;
+}
+
+static bool hold_block(fg_source *source, uint64_t block) {
+  if (source->held == block) return true;
+  ssize_t got = read_block(source, block, source->buffer);
+  source->held = got < 0 ? NO_BLOCK : block;
+  source->end = got < 0 ? 0 : (size_t)got;
+  if (got < 0) source->error = errno;
+  if (got >= 0) fg_ledger_note(&source->ledger, block, source->buffer, source->end);
+  return got >= 0;
+}
+
+ssize_t fg_source_read_at(fg_source *source, void *out, size_t wanted, uint64_t offset) {
+  size_t done = 0;
+  while (done < wanted) {
+    if (!hold_block(source, (offset + done) / FG_LEDGER_BLOCK_BYTES)) return -1;
+    size_t from = (size_t)((offset + done) % FG_LEDGER_BLOCK_BYTES);
+    size_t taken = from < source->end ? source->end - from : 0;
+    if (taken == 0) break;
+    if (taken > wanted - done) taken = wanted - done;
+    memcpy((uint8_t *)out + done, source->buffer + from, taken);
+    done += taken;
+  }
+  return (ssize_t)done;
+}
+
 fg_status fg_source_rewind(fg_context *ctx, fg_source *source) {
+  char unused[65];
+  if (!source->stored) fg_sha256_stream_finish(&source->sum, unused);
   if (lseek(source->descriptor, source->start, SEEK_SET) < 0)
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read again: %s", source->name, strerror(errno));
   source->begin = source->end = 0;
@@ -164,9 +233,52 @@ fg_status fg_source_rewind(fg_context *ctx, fg_source *source) {
   return FG_OK;
 }
 
-void fg_source_drain(fg_source *source) {
-  if (source->regular) return;
+fg_status fg_source_drain(fg_context *ctx, fg_source *source) {
+  uint64_t past = 0;
+  size_t got;
+  if (source->jumps || (source->regular && (source->stored || source->unsummed))) return FG_OK;
   source->begin = source->end = 0;
-  while (receive(source, source->buffer, BUFFER_BYTES) > 0)
-    continue;
+  while ((got = receive(source, source->buffer, BUFFER_BYTES)) > 0)
+    if ((past += got) > PAST_BYTES && !source->regular)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: goes on for more than %d MiB behind its image; give one image",
+                     source->name, (int)(PAST_BYTES >> 20));
+  if (!source->error) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read behind the image: %s", source->name,
+                 strerror(source->error));
+}
+
+/* The reading of its own: block by block beside the other's. */
+static fg_status sum_blocks(fg_context *ctx, fg_source *source, char hex[65]) {
+  struct sha256_ctx sum;
+  void *block;
+  ssize_t got = 0;
+  FG_TRY(fg_memory_allocate(ctx, FG_LEDGER_BLOCK_BYTES, 1, &block));
+  sha256_init(&sum);
+  for (uint64_t i = 0; (got = read_block(source, i, block)) > 0; i++) {
+    fg_ledger_note(&source->ledger, i, block, (size_t)got);
+    sha256_update(&sum, (size_t)got, block);
+  }
+  int error = errno;
+  free(block);
+  if (got < 0)
+    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", source->name, strerror(error));
+  fg_sha256_finish(&sum, hex);
+  return FG_OK;
+}
+
+fg_status fg_source_check_unchanged(fg_context *ctx, fg_source *source) {
+  if (!source->ledger.mark || !atomic_load(&source->ledger.changed)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s: changed while it was read; measure it again", source->name);
+}
+
+fg_status fg_source_sha256(fg_context *ctx, fg_source *source, char hex[65]) {
+  if (source->jumps && !source->stored) FG_TRY(sum_blocks(ctx, source, source->sha256));
+  FG_TRY(fg_source_check_unchanged(ctx, source));
+  if (!source->sha256[0]) {
+    FG_TRY(fg_source_drain(ctx, source));
+    fg_sha256_stream_finish(&source->sum, source->sha256);
+  }
+  memcpy(hex, source->sha256, 65);
+  return FG_OK;
 }

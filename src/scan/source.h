@@ -1,4 +1,6 @@
-/* The bytes of a scan: a file or a pipe, read once from front to back through one buffer. */
+/* The bytes of a scan: a file or a pipe, read once from front to back through one buffer, and
+ * summed as they come by. A format that jumps about (fg_source_read_at) is summed in a reading of
+ * its own, and a ledger says when the two saw different bytes. */
 #ifndef FG_SCAN_SOURCE_H
 #define FG_SCAN_SOURCE_H
 
@@ -7,27 +9,34 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include <nettle/sha2.h>
-
+#include "core/sha256_stream.h"
 #include "foilgauge/status.h"
+#include "scan/ledger.h"
 
 typedef struct fg_source {
   char *name;      /* for error texts */
   int descriptor;  /* -1: none */
   bool owned;      /* close it */
-  bool regular;    /* a regular file: has a size, can be hashed by pread */
+  bool regular;    /* a regular file: has a size, can be read anywhere */
+  bool stored;     /* a pipe in a file that nobody else knows */
+  bool unsummed;   /* nobody will ask for the sum */
+  bool jumps;      /* read by fg_source_read_at */
   off_t start;     /* of a regular file: where the scan begins */
   uint64_t size;   /* of a regular file, from `start` */
   uint64_t offset; /* bytes handed out so far */
   bool ended;      /* the end of the file was seen */
   int error;       /* errno of a failed read */
   uint8_t *buffer;
-  size_t begin, end;     /* what of the buffer is filled and not yet handed out */
-  struct sha256_ctx sum; /* of a pipe, over all bytes received */
+  size_t begin, end;    /* what of the buffer is filled and not yet handed out */
+  fg_sha256_stream sum; /* over all bytes received */
+  char sha256[65];      /* "": not known yet */
+  fg_ledger ledger;
+  uint64_t held; /* jumping: the block in the buffer, of which `end` bytes are there */
 } fg_source;
 
-/* "-" is standard input. FG_ERR_IO: missing, a folder, no permission. */
-fg_status fg_source_open(fg_context *ctx, const char *path, fg_source *source);
+/* "-" is standard input. FG_ERR_IO: missing, a folder, no permission; with `only_file`: a pipe or a
+ * device, which could keep the caller waiting for ever. The source stays where it is. */
+fg_status fg_source_open(fg_context *ctx, const char *path, bool only_file, fg_source *source);
 void fg_source_close(fg_source *source);
 
 /* At most `wanted` (≤ 4096) bytes from where it stands, without consuming them; fewer at the end
@@ -41,10 +50,25 @@ size_t fg_source_read(fg_source *source, void *out, size_t wanted);
  * regular file; nothing may have been handed out. A regular file stays. */
 fg_status fg_source_store(fg_context *ctx, fg_source *source);
 
+/* From here on the file is read by fg_source_read_at only. FG_ERR_MEMORY. */
+fg_status fg_source_jump(fg_context *ctx, fg_source *source);
+
+/* At most `wanted` bytes from `offset` of a regular file; 0 at its end; -1: source->error. */
+ssize_t fg_source_read_at(fg_source *source, void *out, size_t wanted, uint64_t offset);
+
 /* Back to the first byte of a regular file. */
 fg_status fg_source_rewind(fg_context *ctx, fg_source *source);
 
-/* Receives and hashes what is left of a pipe; a regular file is left alone. */
-void fg_source_drain(fg_source *source);
+/* Receives what is left; nothing is left of a file that is read by jumps. FG_ERR_IO, FG_ERR_DATA: a
+ * pipe that goes on and on. */
+fg_status fg_source_drain(fg_context *ctx, fg_source *source);
+
+/* SHA-256 of the bytes that were read, with what is left. Where the file is read by jumps it is
+ * found in a reading of its own, which another thread may do meanwhile; FG_ERR_IO when the two have
+ * seen different bytes so far. */
+fg_status fg_source_sha256(fg_context *ctx, fg_source *source, char hex[65]);
+
+/* FG_ERR_IO when two readings of one block have seen different bytes. */
+fg_status fg_source_check_unchanged(fg_context *ctx, fg_source *source);
 
 #endif

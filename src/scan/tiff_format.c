@@ -1,11 +1,9 @@
 /* TIFF and BigTIFF as one of the formats: what the tags say. */
 #include <ctype.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/memory.h"
 #include "scan/format.h"
@@ -51,11 +49,7 @@ static bool has_colour(const uint8_t *head, size_t length) {
 
 static tmsize_t on_read(thandle_t handle, void *out, tmsize_t wanted) {
   fg_tiff *r = handle;
-  ssize_t got;
-  do
-    got = pread(r->source->descriptor, out, (size_t)wanted, r->source->start + (off_t)r->position);
-  while (got < 0 && errno == EINTR);
-  if (got < 0) r->source->error = errno;
+  ssize_t got = fg_source_read_at(r->source, out, (size_t)wanted, r->position);
   if (got > 0) r->position += (uint64_t)got;
   return got;
 }
@@ -255,6 +249,7 @@ static void note_oddities(const fg_tiff *r, fg_scan_header *header) {
 static fg_status read_tags(fg_context *ctx, fg_tiff *r, const fg_scan_options *options,
                            fg_scan_header *header) {
   double ratio = 0;
+  FG_TRY(fg_source_jump(ctx, r->source));
   FG_TRY(open_tiff(ctx, r));
   FG_TRY(check_compression(ctx, r, options, &ratio));
   FG_TRY(check_samples(ctx, r));
@@ -304,7 +299,10 @@ static void close_format(void *reader) {
   free(r);
 }
 
+static const char *const endings[] = {".tif", ".tiff", NULL};
+
 const fg_format fg_format_tiff = {.name = "TIFF",
+                                  .endings = endings,
                                   .matches = matches,
                                   .needs_file = true,
                                   .has_colour = has_colour,

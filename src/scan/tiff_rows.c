@@ -1,11 +1,9 @@
 /* Rows of a TIFF. Uncompressed strips are read directly, by their offsets: a row at a time, however
  * long the strip is, and whatever its byte count says (in files beyond 4 GiB the 32-bit count has
  * wrapped round). Compressed strips go through TIFFReadScanline, tiles through a row of tiles. */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "core/memory.h"
 #include "scan/tiff_reader.h"
@@ -20,18 +18,11 @@ static size_t plane_row_bytes(const fg_tiff *r) {
 
 static fg_status read_at(fg_context *ctx, const fg_tiff *r, uint64_t offset, uint8_t *out,
                          size_t wanted) {
-  while (wanted > 0) {
-    ssize_t got = pread(r->source->descriptor, out, wanted, r->source->start + (off_t)offset);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0)
-      return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s; check the disk or copy it again",
-                     r->source->name, strerror(errno));
-    if (got == 0) return fg_tiff_fail(ctx, r, "it is cut off");
-    out += got;
-    offset += (uint64_t)got;
-    wanted -= (size_t)got;
-  }
-  return FG_OK;
+  ssize_t got = fg_source_read_at(r->source, out, wanted, offset);
+  if (got < 0)
+    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s; check the disk or copy it again",
+                   r->source->name, strerror(r->source->error));
+  return (size_t)got == wanted ? FG_OK : fg_tiff_fail(ctx, r, "it is cut off");
 }
 
 static uint64_t row_offset(const fg_tiff *r, uint64_t plane, uint64_t row) {

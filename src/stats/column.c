@@ -10,18 +10,73 @@
 #include "core/memory.h"
 #include "core/text.h"
 
-fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column) {
+/* FNV-1a. */
+static size_t hash_word(const char *word) {
+  uint64_t hash = 1469598103934665603u;
+  for (; *word; word++)
+    hash = (hash ^ (unsigned char)*word) * 1099511628211u;
+  return (size_t)hash;
+}
+
+/* Where the name is, or the free place where it belongs. */
+static size_t *find_name(const fg_table *table, const char *name) {
+  size_t mask = table->name_slots - 1;
+  for (size_t i = hash_word(name) & mask;; i = (i + 1) & mask) {
+    size_t *slot = &table->name_slot[i];
+    if (!*slot || strcmp(table->column[*slot - 1].name, name) == 0) return slot;
+  }
+}
+
+/* A table of 100,000 columns takes no longer per column than one of ten. */
+static fg_status grow_names(fg_context *ctx, fg_table *table) {
+  if ((table->columns + 1) * 2 < table->name_slots) return FG_OK;
+  size_t count = 16;
+  void *slots = NULL;
+  while (count <= (table->columns + 1) * 2)
+    count *= 2;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *table->name_slot, &slots));
+  free(table->name_slot);
+  table->name_slot = slots;
+  table->name_slots = count;
   for (size_t i = 0; i < table->columns; i++)
-    if (strcmp(table->column[i].name, name) == 0)
-      return fg_fail(ctx, FG_ERR_USAGE, "the table has a column '%s' already", name);
+    *find_name(table, table->column[i].name) = i + 1;
+  return FG_OK;
+}
+
+size_t fg_column_find(const fg_table *table, const char *name) {
+  size_t slot = table->name_slots ? *find_name(table, name) : 0;
+  return slot ? slot - 1 : table->columns;
+}
+
+fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column) {
+  FG_TRY(grow_names(ctx, table));
+  if (fg_column_find(table, name) < table->columns)
+    return fg_fail(ctx, FG_ERR_USAGE, "the table has a column '%s' already", name);
   FG_TRY(fg_memory_reserve(ctx, table->columns + 1, sizeof *table->column, &table->column_capacity,
                            (void **)&table->column));
   fg_column *added = &table->column[table->columns];
   memset(added, 0, sizeof *added);
   FG_TRY(fg_text_print(ctx, &added->name, "%s", name));
-  table->columns++;
+  *find_name(table, added->name) = ++table->columns;
   *column = added;
   return FG_OK;
+}
+
+void fg_column_free(fg_column *column) {
+  for (size_t i = 0; i < column->word_count; i++)
+    free(column->words[i]);
+  free(column->words);
+  free(column->slot);
+  free(column->word);
+  free(column->number);
+  free(column->name);
+}
+
+void fg_column_drop_last(fg_table *table) {
+  fg_column_free(&table->column[--table->columns]);
+  free(table->name_slot); /* made again with the next column */
+  table->name_slot = NULL;
+  table->name_slots = 0;
 }
 
 static fg_status push_cell(fg_context *ctx, fg_column *column, size_t row, fg_extended number,
@@ -53,14 +108,6 @@ fg_status fg_column_push_missing(fg_context *ctx, fg_column *column, size_t row)
   FG_TRY(push_cell(ctx, column, row, fg_extended_of(0.0), FG_TABLE_MISSING));
   column->missing_count++;
   return FG_OK;
-}
-
-/* FNV-1a. */
-static size_t hash_word(const char *word) {
-  uint64_t hash = 1469598103934665603u;
-  for (; *word; word++)
-    hash = (hash ^ (unsigned char)*word) * 1099511628211u;
-  return (size_t)hash;
 }
 
 /* The slot where the word is, or the free one where it belongs. */

@@ -7,6 +7,13 @@
 /* Appends a column without rows; the name is copied. FG_ERR_USAGE when the name is taken. */
 fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column);
 
+/* The number of the column of that name; table->columns when there is none. */
+size_t fg_column_find(const fg_table *table, const char *name);
+
+/* Takes the last column away. */
+void fg_column_drop_last(fg_table *table);
+void fg_column_free(fg_column *column); /* what it owns */
+
 /* One more cell in the column, which holds `row` cells so far. */
 fg_status fg_column_push_number(fg_context *ctx, fg_column *column, size_t row, fg_extended number);
 fg_status fg_column_push_missing(fg_context *ctx, fg_column *column, size_t row);

@@ -1,4 +1,5 @@
 /* From formula and table to the model matrix. */
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,6 +92,56 @@ static bool has_margin(const fg_model *model, size_t term, size_t variable) {
     if (contained) return true;
   }
   return false;
+}
+
+fg_status fg_model_check_size(fg_context *ctx, const char *source, size_t rows, size_t columns,
+                              const char *widest, size_t widest_columns) {
+  const char *table = source ? source : "table";
+  double cells = (double)rows * (double)columns, work = cells * (double)columns;
+  if (columns > FG_MODEL_COLUMNS_MAX && widest_columns > 1)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: the model has %zu columns, %zu of them for the levels of %.200s; %zu are "
+                   "the most, as the time grows with their cube. Does that column name the rows? "
+                   "Leave it out, or join its levels to fewer",
+                   table, columns, widest_columns, widest, FG_MODEL_COLUMNS_MAX);
+  if (columns > FG_MODEL_COLUMNS_MAX)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: the model has %zu columns; %zu are the most, as the time grows with their "
+                   "cube. Leave out terms of high order",
+                   table, columns, FG_MODEL_COLUMNS_MAX);
+  if (cells > (double)FG_MODEL_CELLS_MAX || work > FG_MODEL_WORK_MAX)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: %zu rows of %zu model columns are too many to compute with in reasonable "
+                   "time and memory (rows × columns at most %zu, rows × columns² at most %g); use "
+                   "fewer rows, or a model with fewer terms or levels",
+                   table, rows, columns, FG_MODEL_CELLS_MAX, FG_MODEL_WORK_MAX);
+  return FG_OK;
+}
+
+/* How many columns a term will have; what is beyond all limits stays there. */
+static size_t count_term_columns(const fg_model *model, size_t term) {
+  const fg_formula *f = &model->formula;
+  size_t count = 1;
+  for (size_t v = 0; v < f->variables; v++) {
+    if (!f->term[term].power[v] || !is_factor(model, v)) continue;
+    size_t levels = model->levels[v].count - (has_margin(model, term, v) ? 1 : 0);
+    count = levels && count > SIZE_MAX / 4 / levels ? SIZE_MAX / 4 : count * levels;
+  }
+  return count;
+}
+
+/* Before any of it is built. */
+static fg_status check_columns(fg_context *ctx, const fg_table *table, const fg_model *model) {
+  size_t columns = model->formula.constant ? 1 : 0, widest = 0, most = 0;
+  for (size_t i = 0; i < model->formula.terms; i++) {
+    size_t count = count_term_columns(model, i);
+    columns = columns > SIZE_MAX - count ? SIZE_MAX : columns + count;
+    if (count <= most) continue;
+    most = count;
+    widest = i;
+  }
+  return fg_model_check_size(ctx, table->source, table->rows, columns,
+                             most ? model->term_name[widest] : "the constant", most);
 }
 
 static fg_status name_column(fg_context *ctx, const fg_model *model, fg_model_column *column) {
@@ -203,6 +254,22 @@ static void fill_column(const fg_model *model, fg_extended *const *values, size_
   }
 }
 
+/* A product that is 0, or has lost digits, although none of its numbers is 0. */
+static bool underflows(const fg_model *model, fg_extended *const *values, size_t index,
+                       size_t row) {
+  const fg_model_column *column = &model->column[index];
+  double product = model->matrix[index * model->rows + row].value;
+  if (isnormal(product)) return false;
+  for (size_t k = 0; k < column->parts; k++) {
+    const fg_part *part = &column->part[k];
+    bool number = part->level == FG_PART_NUMBER;
+    if (number ? values[part->variable][row].value == 0
+               : model->levels[part->variable].index[row] != part->level)
+      return false;
+  }
+  return true;
+}
+
 static fg_status fill_matrix(fg_context *ctx, const fg_table *table, fg_model *model) {
   fg_status status = FG_OK;
   fg_extended *values[FG_FORMULA_VARIABLES] = {NULL};
@@ -221,6 +288,11 @@ static fg_status fill_matrix(fg_context *ctx, const fg_table *table, fg_model *m
       if (!isfinite(model->matrix[i * model->rows + k].value))
         FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA,
                             "%s: row %zu: the term %s overflows; code the factors",
+                            table->source ? table->source : "table", k + 1, model->column[i].name));
+      else if (underflows(model, values, i, k))
+        FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA,
+                            "%s: row %zu: the term %s is too small to compute with; give its "
+                            "columns in other units",
                             table->source ? table->source : "table", k + 1, model->column[i].name));
   }
 exit:
@@ -243,12 +315,13 @@ fg_status fg_model_build(fg_context *ctx, const fg_table *table, const fg_formul
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_USAGE, "the model has no terms, not even the constant"));
   FG_TRY_EXIT(fg_memory_allocate(ctx, model->formula.terms, sizeof *model->term_name,
                                  (void **)&model->term_name));
-  if (model->formula.constant) FG_TRY_EXIT(add_column(ctx, model, FG_MODEL_CONSTANT, NULL, 0));
-  for (size_t i = 0; i < model->formula.terms; i++) {
+  for (size_t i = 0; i < model->formula.terms; i++)
     FG_TRY_EXIT(
         fg_formula_term_name(ctx, &model->formula, &model->formula.term[i], &model->term_name[i]));
+  FG_TRY_EXIT(check_columns(ctx, table, model));
+  if (model->formula.constant) FG_TRY_EXIT(add_column(ctx, model, FG_MODEL_CONSTANT, NULL, 0));
+  for (size_t i = 0; i < model->formula.terms; i++)
     FG_TRY_EXIT(add_term_columns(ctx, model, i));
-  }
   FG_TRY_EXIT(fill_matrix(ctx, table, model));
 exit:
   if (status != FG_OK) fg_model_free(model);

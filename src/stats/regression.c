@@ -78,6 +78,20 @@ static fg_status note_limits(fg_context *ctx, fg_regression *reg) {
   return FG_OK;
 }
 
+/* Sums of squares, and the rounding of their 106 bits, must be numbers. */
+static fg_status check_size(fg_context *ctx, const char *what, const char *name,
+                            const fg_extended *number, size_t count) {
+  static const double smallest = 1e-130, greatest = 1e150;
+  double largest = 0;
+  for (size_t i = 0; i < count; i++)
+    largest = fmax(largest, fabs(number[i].value));
+  if (largest == 0 || (largest >= smallest && largest <= greatest)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s%s: its numbers reach %g, and their squares are too %s to compute with; give "
+                 "it in another unit",
+                 what, name, largest, largest > 1 ? "large" : "small");
+}
+
 static fg_status check_input(fg_context *ctx, const fg_model *model, const fg_extended *response,
                              const double *weights) {
   if (!model->rows) return fg_fail(ctx, FG_ERR_DATA, "no runs to fit");
@@ -88,7 +102,10 @@ static fg_status check_input(fg_context *ctx, const fg_model *model, const fg_ex
     if (weights && !(weights[i] > 0 && isfinite(weights[i])))
       return fg_fail(ctx, FG_ERR_USAGE, "row %zu: the weight is not positive", i + 1);
   }
-  return FG_OK;
+  for (size_t k = 0; k < model->columns; k++)
+    FG_TRY(check_size(ctx, "the model's column ", model->column[k].name,
+                      model->matrix + k * model->rows, model->rows));
+  return check_size(ctx, "the response", "", response, model->rows);
 }
 
 static fg_status solve(fg_context *ctx, fg_fit *fit, double tolerance) {

@@ -9,22 +9,13 @@
 #include "core/text.h"
 #include "stats/column.h"
 
-static void free_column(fg_column *column) {
-  for (size_t i = 0; i < column->word_count; i++)
-    free(column->words[i]);
-  free(column->words);
-  free(column->slot);
-  free(column->word);
-  free(column->number);
-  free(column->name);
-}
-
 void fg_table_free(fg_table *table) {
   if (!table) return;
   for (size_t i = 0; i < table->columns; i++)
-    free_column(&table->column[i]);
+    fg_column_free(&table->column[i]);
   free(table->column);
   free(table->line);
+  free(table->name_slot);
   free(table->source);
   *table = (fg_table){0};
 }
@@ -41,7 +32,7 @@ static fg_status open_checked(fg_context *ctx, fg_table *table, const char *name
 
 /* A column that could not be filled leaves the table as it was. */
 static fg_status drop_last(fg_table *table, fg_status status) {
-  if (status != FG_OK) free_column(&table->column[--table->columns]);
+  if (status != FG_OK) fg_column_drop_last(table);
   return status;
 }
 
@@ -75,18 +66,27 @@ fg_status fg_table_add_words(fg_context *ctx, fg_table *table, const char *name,
   return drop_last(table, status);
 }
 
+/* As many as a message has place for. */
+static fg_status list_columns(fg_context *ctx, const fg_table *table, char **known) {
+  enum { SHOWN = 40 };
+  for (size_t i = 0; i < table->columns && i < SHOWN; i++)
+    FG_TRY(fg_text_append(ctx, known, "%s%s", i ? ", " : "", table->column[i].name));
+  if (table->columns <= SHOWN) return FG_OK;
+  return fg_text_append(ctx, known, " ... (%zu)", table->columns);
+}
+
 fg_status fg_table_find(fg_context *ctx, const fg_table *table, const char *name,
                         const fg_column **column) {
   char *known = NULL;
-  for (size_t i = 0; i < table->columns; i++) {
-    if (strcmp(table->column[i].name, name) != 0) continue;
-    *column = &table->column[i];
+  size_t found = fg_column_find(table, name);
+  if (found < table->columns) {
+    *column = &table->column[found];
     return FG_OK;
   }
-  for (size_t i = 0; i < table->columns; i++)
-    FG_TRY(fg_text_append(ctx, &known, "%s%s", i ? ", " : "", table->column[i].name));
-  fg_status status = fg_fail(ctx, FG_ERR_DATA, "%s: there is no column '%s'; the columns are %s",
-                             table->source ? table->source : "table", name, known ? known : "none");
+  fg_status status = list_columns(ctx, table, &known);
+  if (status == FG_OK)
+    status = fg_fail(ctx, FG_ERR_DATA, "%s: there is no column '%s'; the columns are %s",
+                     table->source ? table->source : "table", name, known ? known : "none");
   free(known);
   return status;
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/csv.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/table.h"
@@ -35,11 +36,10 @@ static fg_status add_name(csv_reader *r, const char *text, size_t length) {
     return fg_fail(r->ctx, FG_ERR_DATA, "%s: column %zu has no name in the header; name it",
                    r->source, r->table->columns + 1);
   fg_text_clip(name, sizeof name, "%.*s", (int)length, text);
-  for (size_t i = 0; i < r->table->columns; i++)
-    if (strcmp(r->table->column[i].name, name) == 0)
-      return fg_fail(r->ctx, FG_ERR_DATA,
-                     "%s: columns %zu and %zu are both called '%s'; rename one", r->source, i + 1,
-                     r->table->columns + 1, name);
+  size_t other = fg_column_find(r->table, name);
+  if (other < r->table->columns)
+    return fg_fail(r->ctx, FG_ERR_DATA, "%s: columns %zu and %zu are both called '%s'; rename one",
+                   r->source, other + 1, r->table->columns + 1, name);
   return fg_column_open(r->ctx, r->table, name, &column);
 }
 
@@ -84,7 +84,9 @@ static fg_status end_row(csv_reader *r) {
 static void on_cell(void *text, size_t length, void *reader) {
   csv_reader *r = reader;
   if (r->status != FG_OK) return;
-  r->status = r->header ? hold_cell(r, text, length) : add_name(r, text ? text : "", length);
+  const char *cell = text ? text : "";
+  fg_csv_take_apostrophe(&cell, &length);
+  r->status = r->header ? hold_cell(r, cell, length) : add_name(r, cell, length);
 }
 
 static void on_row(int terminator, void *reader) {
@@ -184,13 +186,14 @@ static fg_status write_bytes(fg_context *ctx, writer *w, const char *bytes, size
 }
 
 static fg_status write_word(fg_context *ctx, writer *w, const char *word) {
-  if (!strpbrk(word, ",;\t\"\r\n")) return write_bytes(ctx, w, word, strlen(word));
-  FG_TRY(write_bytes(ctx, w, "\"", 1));
+  bool quoted = fg_csv_needs_quotes(word);
+  if (quoted) FG_TRY(write_bytes(ctx, w, "\"", 1));
+  if (fg_csv_needs_apostrophe(word)) FG_TRY(write_bytes(ctx, w, "'", 1));
   for (; *word; word++) {
     if (*word == '"') FG_TRY(write_bytes(ctx, w, "\"", 1));
     FG_TRY(write_bytes(ctx, w, word, 1));
   }
-  return write_bytes(ctx, w, "\"", 1);
+  return quoted ? write_bytes(ctx, w, "\"", 1) : FG_OK;
 }
 
 /* The fewest digits that read back as the same double. */

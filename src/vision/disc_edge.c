@@ -246,12 +246,6 @@ exit:
   return status;
 }
 
-/* Count at the edge, where the light is the mean of both sides', for sides of given counts. */
-static double count_at_edge(double gamma, const double counts[2]) {
-  double light = 0.5 * (fg_edge_light(gamma, counts[0]) + fg_edge_light(gamma, counts[1]));
-  return 255 * pow(light / 255, 1 / gamma);
-}
-
 /* A doubt of the levels or the tone curve moves the count that is taken for the edge; over the
  * profile's slope there, contrast / (s sqrt(2 pi)), that is a shift. */
 static double level_doubt(const fg_disc_work *work, const fg_tone *tone, const fg_disc_edge *edge) {
@@ -262,8 +256,8 @@ static double level_doubt(const fg_disc_work *work, const fg_tone *tone, const f
     counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / tone->gamma);
   if (work->white[0] || work->white[1]) white = WHITE_DOUBT * 0.5 * per_contrast;
   if (tone->doubt > 0)
-    change = (count_at_edge(tone->gamma + tone->doubt, counts) -
-              count_at_edge(tone->gamma - tone->doubt, counts)) /
+    change = (fg_edge_count_between(tone->gamma + tone->doubt, counts) -
+              fg_edge_count_between(tone->gamma - tone->doubt, counts)) /
              2 / fabs(counts[1] - counts[0]) * per_contrast;
   return hypot(white, change);
 }

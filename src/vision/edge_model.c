@@ -37,6 +37,11 @@ double fg_edge_light(double gamma, double count) {
   return 255 * pow(fmax(count, 0) / 255, gamma);
 }
 
+double fg_edge_count_between(double gamma, const double counts[2]) {
+  double light = 0.5 * (fg_edge_light(gamma, counts[0]) + fg_edge_light(gamma, counts[1]));
+  return 255 * pow(light / 255, 1 / gamma);
+}
+
 /* One blurred step T(d) and its derivatives by d, b (level), g (slope), s (blur). */
 typedef struct step {
   double value, by_distance, by_level, by_slope, by_blur;

@@ -81,6 +81,9 @@ static inline void fg_edge_tone(const fg_edge_tables *tables, float u, float *va
 /* Light for a count: the inverse of G. */
 double fg_edge_light(double gamma, double count);
 
+/* Count at an edge, where the light is the mean of both sides', for sides of given counts. */
+double fg_edge_count_between(double gamma, const double counts[2]);
+
 /* A mean profile across the strip. */
 typedef struct fg_profile_bin {
   double across_px, value, count;

@@ -8,11 +8,18 @@
 #include "core/parallel.h"
 #include "core/select.h"
 
-#define STEP_PX        2.0  /* distance of stations */
-#define SMOOTH_PX      30.0 /* half window of the reference line */
-#define BAND_BLURS     4.0  /* the band reaches so many blurs beyond the strip's edges */
-#define BAND_MARGIN_PX 4.0  /* and so much background */
-#define BAND_MOST_PX   18.0
+/* Distance of stations, and half window of the reference line. Both are lengths of the foil, whose
+ * fillets are 0.2 mm long: a line that is smoothed over more cuts the corner and bends the scale
+ * across. They are held to what so many pixels can tell. */
+#define STEP_MM         0.022
+#define STEP_LEAST_PX   1.0
+#define STEP_MOST_PX    2.0
+#define SMOOTH_MM       0.32
+#define SMOOTH_LEAST_PX 8.0
+#define SMOOTH_MOST_PX  30.0
+#define BAND_BLURS      4.0 /* the band reaches so many blurs beyond the strip's edges */
+#define BAND_MARGIN_PX  4.0 /* and so much background */
+#define BAND_MOST_PX    18.0
 enum {
   MIDDLE_STATIONS = 4, /* the middle is smoothed over so many stations to either side */
   SOLVE_ROUNDS = 2,
@@ -127,34 +134,23 @@ static void fill_stations(const fg_edge_work *work, const double dpi[2], fg_stri
                         .normal = {nx / kx / norm, ny / ky / norm},
                         .u_left_um = e->weight > 0 ? (float)(e->u_px[0] * scale) : NAN,
                         .u_right_um = e->weight > 0 ? (float)(e->u_px[1] * scale) : NAN,
-                        .weight = e->weight};
+                        .weight = e->weight,
+                        .facts = e->facts};
   }
 }
 
 static fg_status summarise(fg_context *ctx, const fg_edge_work *work, const double dpi[2],
                            fg_strip *strip) {
   double um = 25400 / sqrt(dpi[0] * dpi[1]);
-  double *thickness = NULL;
-  size_t n = 0;
-  FG_TRY(fg_memory_allocate(ctx, strip->count, sizeof *thickness, (void **)&thickness));
-  for (size_t i = 0; i < strip->count; i++) {
-    const fg_station *s = &strip->stations[i];
-    if (s->weight > 0)
-      thickness[n++] = sqrt((s->right.x - s->left.x) * (s->right.x - s->left.x) +
-                            (s->right.y - s->left.y) * (s->right.y - s->left.y));
-  }
-  double upper = n ? fg_select(thickness, n, n * 3 / 4) : NAN;
-  double lower = n ? fg_select(thickness, n, n / 4) : NAN;
-  strip->thickness_mm = n ? fg_select(thickness, n, n / 2) : NAN;
-  double spread = 0.7413 * (upper - lower);
-  strip->u_thickness_mm = n ? 1.2533 * spread / sqrt((double)n) : NAN;
-  free(thickness);
+  FG_TRY(fg_strip_measure_thickness(ctx, strip));
   strip->step_mm = work->reference->step_px * um / 1000;
   strip->blur_left_um = work->blur_px[0] * um;
   strip->blur_right_um = work->blur_px[1] * um;
   strip->contrast = work->contrast / 255;
   strip->noise = work->noise / 255;
   strip->gamma = work->gamma;
+  strip->u_gamma = work->u_gamma;
+  strip->tone_um = work->tone_px * um;
   if (work->clipped) strip->facts |= FG_STRIP_CLIPPED;
   if (work->side_band) strip->facts |= FG_STRIP_SIDE_BAND;
   return FG_OK;
@@ -195,13 +191,35 @@ static void free_work(fg_edge_work *work) {
   free(work->tables);
 }
 
-static fg_status run(fg_context *ctx, fg_edge_work *work) {
+/* What lies on the strip has bent the shape of a whole segment, too. */
+static fg_status solve_again(fg_context *ctx, fg_edge_work *work, size_t *disturbed) {
+  FG_TRY(fg_edges_repeat_shape(ctx, work));
+  FG_TRY(fg_edges_solve(ctx, work, SOLVE_ROUNDS));
+  return fg_edges_drop_disturbed(ctx, work, disturbed);
+}
+
+static fg_status run(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
+  size_t disturbed;
   FG_TRY(collect_pixels(ctx, work));
   FG_TRY(fg_edges_find_shape(ctx, work));
   FG_TRY(fg_edges_solve(ctx, work, SOLVE_ROUNDS));
+  FG_TRY(fg_edges_drop_disturbed(ctx, work, &disturbed));
+  if (disturbed) FG_TRY(solve_again(ctx, work, &disturbed));
+  if (disturbed) FG_TRY(fg_edges_name_trouble(ctx, work, facts));
   mark_ends(work);
   scale_uncertainties(work);
   return FG_OK;
+}
+
+static double length_px(double mm, const double dpi[2], double least_px, double most_px) {
+  return fmin(fmax(mm * sqrt(dpi[0] * dpi[1]) / 25.4, least_px), most_px);
+}
+
+static fg_status build_reference(fg_context *ctx, const fg_trace *trace, const double dpi[2],
+                                 fg_reference *reference) {
+  double smooth_px = length_px(SMOOTH_MM, dpi, SMOOTH_LEAST_PX, SMOOTH_MOST_PX);
+  double step_px = length_px(STEP_MM, dpi, STEP_LEAST_PX, STEP_MOST_PX);
+  return fg_reference_build(ctx, trace->points, trace->count, smooth_px, step_px, reference);
 }
 
 fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
@@ -218,13 +236,13 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
                        .noise = 1,
                        .contrast = trace->contrast};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_reference_build(ctx, trace->points, trace->count, SMOOTH_PX, STEP_PX, &reference));
+  FG_TRY_EXIT(build_reference(ctx, trace, dpi, &reference));
   FG_TRY_EXIT(allocate_work(ctx, &work));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, reference.count, sizeof *strip->stations, (void **)&strip->stations));
-  FG_TRY_EXIT(run(ctx, &work));
-  strip->count = reference.count;
   strip->facts = trace->facts;
+  FG_TRY_EXIT(run(ctx, &work, &strip->facts));
+  strip->count = reference.count;
   fill_stations(&work, dpi, strip);
   find_box(&reference, strip);
   FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));

@@ -39,7 +39,11 @@ typedef struct fg_edge_station {
   int32_t used, seen;
   float u_px[2];
   float weight;
+  unsigned facts; /* fg_station_fact */
 } fg_edge_station;
+
+/* Pixels up to so many blurs beyond an edge tell where the edge is. */
+#define FG_REACH_BLURS 4.0
 
 /* Stations are worked on in chunks, each with its own pixels; a chunk is a unit of parallel work,
  * its size is fixed, so sums do not depend on the number of threads. A segment is the stretch of
@@ -69,14 +73,18 @@ typedef struct fg_edge_work {
   fg_segment_profile *segments;
   fg_profile_bin *bins; /* segment_count × bin_count */
   size_t segment_count, bin_count;
+  size_t good_segments; /* whose profile could be fitted */
   fg_edge_tables *tables;
   double width_px; /* of the strip */
   double reach_px; /* of the band beyond the strip's edges */
   double noise;    /* sd of a pixel, counts */
   double contrast; /* |P - b|, counts */
   bool clipped, side_band;
-  double thickness_px, blur_px[2], gamma;
-  int round; /* of Gauss-Newton */
+  double thickness_px, blur_px[2];
+  double gamma, u_gamma;
+  double tone_px; /* of thickness per unit of ln gamma, the counts of all levels kept */
+  int round;      /* of Gauss-Newton */
+  bool again; /* stations are known: foreign pixels beside the strip are left out of the shape */
 } fg_edge_work;
 
 /* Stations [*first, *last] of a chunk. */
@@ -86,8 +94,19 @@ void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_
  * edges_smooth.c */
 fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work);
 
-/* The smoothed shape of every station from the segments' fits. */
-fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good);
+/* The smoothed shape of every station from the segments' fits; with `local` as much of each
+ * segment's own as is more than chance. */
+fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local);
+
+/* Stations where something lies on or beside the strip are marked and lose their weight. Returns
+ * how many have lost it in *found. edges_disturbed.c */
+fg_status fg_edges_drop_disturbed(fg_context *ctx, fg_edge_work *work, size_t *found);
+
+/* What it is that disturbs: facts of the stations, and of the strip in *facts. edges_trouble.c */
+fg_status fg_edges_name_trouble(fg_context *ctx, fg_edge_work *work, unsigned *facts);
+
+/* The shape again, from what is left of the segments. edges_shape.c */
+fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work);
 
 /* Step 3: `rounds` of Gauss-Newton on all stations. edges_solve.c */
 fg_status fg_edges_solve(fg_context *ctx, fg_edge_work *work, int rounds);

@@ -8,6 +8,9 @@
 #include "core/parallel.h"
 
 #define BIN_PX 0.25
+/* A pixel of the background is dust when it is so many noise sd plus a share of contrast off. */
+#define FOREIGN_SIGMAS 4.0
+#define FOREIGN_SHARE  0.01
 enum {
   GAMMA_SEGMENTS = 8, /* profiles that are asked for the tone curve */
 };
@@ -30,6 +33,19 @@ static fg_status allocate_segments(fg_context *ctx, fg_edge_work *work) {
   return FG_OK;
 }
 
+/* Whether a pixel belongs to a disturbed station, or lies beyond what the edges' fit looks at and
+ * is not the background there. */
+static bool is_foreign(const fg_edge_work *work, const fg_band_pixel *p) {
+  const fg_edge_station *s = &work->stations[p->station];
+  if (s->facts & FG_STATION_DISTURBED) return true;
+  float left = s->edge_px[0] - p->across_px, right = p->across_px - s->edge_px[1];
+  int side = right > left;
+  float d = side ? right : left, model, rate;
+  if (d < (float)FG_REACH_BLURS * s->blur_px[side]) return false;
+  fg_edge_tone(work->tables, s->plateau + s->step[side] + s->slope[side] * d, &model, &rate);
+  return fabs(p->value - model) > FOREIGN_SIGMAS * work->noise + FOREIGN_SHARE * work->contrast;
+}
+
 /* Mean profiles of the segments of one chunk, across from the stations' middles. */
 static void stack_chunk(const fg_edge_work *work, size_t chunk) {
   double half = work->width_px / 2 + work->reach_px;
@@ -41,6 +57,7 @@ static void stack_chunk(const fg_edge_work *work, size_t chunk) {
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];
+    if (work->again && is_foreign(work, p)) continue;
     double across = p->across_px - work->stations[p->station].middle_px;
     double at = (across + half) * (1 / BIN_PX);
     if (at < 0 || at >= (double)work->bin_count) continue;
@@ -163,6 +180,10 @@ static bool find_clipping(const fg_edge_work *work) {
   return counts.total && piles_up(work, &counts, true) != piles_up(work, &counts, false);
 }
 
+/* Beside a halo, a wall or a level that is cut off gamma cannot be told: it is taken for 1, which
+ * may be wrong by this. */
+#define GAMMA_DOUBT 0.4
+
 /* gamma from a few profiles; 1 when it does not differ from 1 by more than its uncertainty. The
  * middle of the sorted values stands for all: a profile that holds a fillet or dust is no vote. */
 static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
@@ -179,26 +200,57 @@ static fg_status find_gamma(fg_context *ctx, fg_edge_work *work) {
     u += task.fits[i].u_gamma;
   }
   work->gamma = 1;
+  work->u_gamma = GAMMA_DOUBT;
   /* A level that is cut off looks like a tone curve. */
   work->clipped = find_clipping(work);
   if (count >= 3 && !work->clipped) {
     double gamma = values[count / 2], spread = values[count * 3 / 4] - values[count / 4];
     double doubt = fmax(u / count, spread) / sqrt(count);
     if (fabs(gamma - 1) > fmax(3 * doubt, 0.02)) work->gamma = fmin(fmax(gamma, 0.33), 3.5);
+    work->u_gamma = hypot(doubt, gamma - work->gamma);
   }
   if (work->gamma != 1) fg_edge_tables_init(work->tables, work->gamma);
   return FG_OK;
 }
 
-fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work) {
+/* The edges tell the middle better than the threshold did. */
+static void move_middles(fg_edge_work *work) {
+  enum { REACH = 4 };
+  size_t count = work->reference->count;
+  for (size_t i = 0; i < count; i++) {
+    double sum = 0, good = 0;
+    for (size_t k = i > REACH ? i - REACH : 0; k <= i + REACH && k < count; k++) {
+      const fg_edge_station *s = &work->stations[k];
+      if (!(s->weight > 0)) continue;
+      sum += 0.5 * (s->edge_px[0] + s->edge_px[1]);
+      good++;
+    }
+    if (good > 0) work->stations[i].middle_px = (float)(sum / good);
+  }
+}
+
+static fg_status fit_segments(fg_context *ctx, fg_edge_work *work) {
   size_t good = 0;
-  FG_TRY(allocate_segments(ctx, work));
-  FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
-  FG_TRY(find_gamma(ctx, work));
   FG_TRY(fg_parallel_run(ctx, work->threads, work->segment_count, fit_task, work));
   for (size_t i = 0; i < work->segment_count; i++)
     good += work->segments[i].fit.good != 0;
   if (good < 3 || good * 3 < work->segment_count)
     return fg_fail(ctx, FG_ERR_NUMERIC, "no pair of edges along the strip");
-  return fg_edges_smooth_shape(ctx, work, good);
+  work->good_segments = good;
+  return fg_edges_smooth_shape(ctx, work, true);
+}
+
+fg_status fg_edges_repeat_shape(fg_context *ctx, fg_edge_work *work) {
+  move_middles(work);
+  FG_TRY(fg_edges_smooth_shape(ctx, work, false));
+  work->again = true;
+  FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
+  return fit_segments(ctx, work);
+}
+
+fg_status fg_edges_find_shape(fg_context *ctx, fg_edge_work *work) {
+  FG_TRY(allocate_segments(ctx, work));
+  FG_TRY(fg_parallel_run(ctx, work->threads, work->chunk_count, stack_task, work));
+  FG_TRY(find_gamma(ctx, work));
+  return fit_segments(ctx, work);
 }

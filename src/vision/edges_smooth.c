@@ -155,12 +155,43 @@ static double get_extreme(const fg_profile_fit *fit) {
   return fmax(fit->shape.plateau, fmax(fit->shape.level[0], fit->shape.level[1]));
 }
 
+static double get_plateau(const fg_profile_fit *fit) {
+  return fit->shape.plateau;
+}
+static double get_level_left(const fg_profile_fit *fit) {
+  return fit->shape.level[0];
+}
+static double get_level_right(const fg_profile_fit *fit) {
+  return fit->shape.level[1];
+}
+
+/* Another gamma puts both edges at another count, over the profile's slope there, contrast /
+ * (s sqrt(2 pi)): the strip becomes wider or narrower on both sides. */
+static double tone_shift(const fg_edge_work *work, double plateau, const double level[2]) {
+  static const double step = 0.01;
+  double shift = 0;
+  for (int side = 0; side < 2; side++) {
+    const double lights[2] = {plateau, level[side]};
+    double counts[2];
+    for (int i = 0; i < 2; i++)
+      counts[i] = 255 * pow(fmax(lights[i], 1) / 255, 1 / work->gamma);
+    double change = fg_edge_count_between(work->gamma * exp(step), counts) -
+                    fg_edge_count_between(work->gamma * exp(-step), counts);
+    shift +=
+        fabs(change / (2 * step) / (counts[1] - counts[0])) * work->blur_px[side] * sqrt(2 * M_PI);
+  }
+  return isfinite(shift) ? shift : 0;
+}
+
 static void summarise(fg_edge_work *work, double *scratch) {
   double left = median_of(work, scratch, get_left), right = median_of(work, scratch, get_right);
   work->thickness_px = right - left;
   work->contrast = median_of(work, scratch, get_step);
   work->blur_px[0] = median_of(work, scratch, get_blur_left);
   work->blur_px[1] = median_of(work, scratch, get_blur_right);
+  const double level[2] = {median_of(work, scratch, get_level_left),
+                           median_of(work, scratch, get_level_right)};
+  work->tone_px = tone_shift(work, median_of(work, scratch, get_plateau), level);
   work->side_band = median_of(work, scratch, get_band) > 0.08 * work->contrast;
   work->clipped |= median_of(work, scratch, get_extreme) > 253.5;
   for (size_t k = 0; k < work->reference->count; k++) {
@@ -174,8 +205,8 @@ static void summarise(fg_edge_work *work, double *scratch) {
   }
 }
 
-fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good) {
-  size_t count = work->segment_count;
+fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, bool local) {
+  size_t count = work->segment_count, good = work->good_segments;
   course c = {.work = work, .unknowns = good >= 20 ? BASIS_MAX : good >= 8 ? 3 : 1};
   double *memory = NULL;
   FG_TRY(fg_memory_allocate(ctx, count, (BASIS_MAX + 3) * sizeof *memory, (void **)&memory));
@@ -195,6 +226,7 @@ fg_status fg_edges_smooth_shape(fg_context *ctx, fg_edge_work *work, size_t good
       sd[s] = work->segments[s].fit.sd[i];
     }
     find_course(&c);
+    if (!local) c.real = 0;
     spread_course(&c, i);
   }
   summarise(work, c.scratch);

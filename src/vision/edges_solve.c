@@ -9,8 +9,6 @@
 /* A pixel this far off the model is dust or a burr: so many noise sd plus a share of contrast. */
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
-/* Pixels up to so many blurs beyond an edge tell where the edge is. */
-#define REACH_BLURS 4.0
 
 /* Adds one pixel to its station. */
 static inline void add_pixel(const fg_edge_tables *tables, fg_edge_station *s, float across,
@@ -18,7 +16,7 @@ static inline void add_pixel(const fg_edge_tables *tables, fg_edge_station *s, f
   float d1 = s->edge_px[0] - across, d2 = across - s->edge_px[1];
   float i1 = 1.0f / s->blur_px[0], i2 = 1.0f / s->blur_px[1];
   float t1 = d1 * i1, t2 = d2 * i2;
-  if (t1 > (float)REACH_BLURS || t2 > (float)REACH_BLURS) return;
+  if (t1 > (float)FG_REACH_BLURS || t2 > (float)FG_REACH_BLURS) return;
   float p1, c1, p2, c2;
   fg_edge_normal(tables, t1, &p1, &c1);
   fg_edge_normal(tables, t2, &p2, &c2);

@@ -318,8 +318,7 @@ static void free_trace(fg_trace *trace) {
   memset(trace, 0, sizeof *trace);
 }
 
-/* Whether the shorter of two traces lies on the longer. */
-static bool same_strip(const fg_trace *a, const fg_trace *b) {
+bool fg_trace_is_same(const fg_trace *a, const fg_trace *b) {
   const fg_trace *brief = a->count < b->count ? a : b, *full = brief == a ? b : a;
   double limit = 0.25 * full->width_px * full->width_px;
   size_t on = 0;
@@ -339,7 +338,7 @@ static void keep_or_drop(fg_trace *trace, fg_trace_list *list) {
   double length = 0;
   for (size_t k = 0; k < list->count; k++) {
     fg_trace *other = &list->traces[k];
-    if (!same_strip(trace, other)) continue;
+    if (!fg_trace_is_same(trace, other)) continue;
     if (trace->count > other->count) {
       fg_trace swap = *other;
       *other = *trace;

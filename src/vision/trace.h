@@ -8,6 +8,8 @@
 #ifndef FG_VISION_TRACE_H
 #define FG_VISION_TRACE_H
 
+#include <stdbool.h>
+
 #include "foilgauge/circle.h"
 #include "vision/segment.h"
 
@@ -34,6 +36,9 @@ typedef struct fg_trace_list {
 fg_status fg_trace_object(fg_context *ctx, const fg_tiles *tiles,
                           const fg_segmentation *segmentation, const fg_object *object,
                           double width_px, fg_trace_list *list);
+
+/* Whether the shorter of two traces lies on the longer: they are one strip. */
+bool fg_trace_is_same(const fg_trace *a, const fg_trace *b);
 
 void fg_trace_list_free(fg_trace_list *list);
 

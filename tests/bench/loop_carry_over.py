@@ -94,7 +94,7 @@ def find_model(program, folder, name, specs, design, options):
     model, report = os.path.join(own, "model.json"), os.path.join(own, "loop.json")
     command = [program, "loop", *paths, "--design", write_design(own, design), *options]
     done = subprocess.run([*command, "-o", report, "--model-out", model], capture_output=True, text=True)
-    if done.returncode not in (0, 1, 2) or not os.path.exists(report):
+    if done.returncode not in (0, 1, 2, 3) or not os.path.exists(report):
         return None, "failed: " + (done.stderr.strip().split("\n")[-1] or str(done.returncode))[-80:]
     with open(report, encoding="utf-8") as f:
         answer = json.load(f)
@@ -109,7 +109,7 @@ def measure(program, folder, case, path, model):
     out = os.path.join(folder, "measure.json")
     command = [program, "measure", path, "--design", write_design(folder, case["design"]), "-o", out]
     done = subprocess.run(command + (["--model", model] if model else []), stderr=subprocess.DEVNULL)
-    if done.returncode not in (0, 1, 2):
+    if done.returncode not in (0, 1, 2, 3):
         return dict.fromkeys(QUANTITIES, NOT_MEASURED_UM), float("nan")
     with open(out, encoding="utf-8") as f:
         pairs = pair_foils(case, json.load(f)["foils"])

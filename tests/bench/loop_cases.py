@@ -8,7 +8,8 @@ from loop_foil import Midline, natural_spline
 
 SCANNER_EFFECTS = [
     "scan.scale_y", "scan.shear", "scan.carriage_ripple", "scan.row_step", "scan.optical_quadratic",
-    "scan.optical_cubic", "scan.carriage_quadratic",
+    "scan.optical_cubic", "scan.carriage_quadratic", "scan.column_step",
+    "scan.carriage_start",
 ]  # fmt: skip
 PART_EFFECTS = ["part.ovality", "part.spiral", "part.bump_crown", "part.bump_skew"]
 # Coordinate of a free-form curve, and the direction that it moves the picture in.
@@ -85,11 +86,15 @@ def half_size_mm(foils):
     return float(max(np.ptp(Midline(f, f["design"], 0.5).xy[:, 1]) / 2 for f in foils))
 
 
-def draw_effect(rng, kind, half_mm, rows_mm, size=None):
-    """One effect, of 3 to 30 um at the foil's ends unless its size is given; rows_mm: the range of y
-    that every foil of the case crosses."""
+def draw_place(rng, low, high):
+    return float(low + (high - low) * rng.uniform(0.25, 0.75))
+
+
+def draw_effect(rng, kind, half_mm, ranges_mm, size=None):
+    """One effect, of 3 to 30 um at the foil's ends unless its size is given; ranges_mm: of x and of y,
+    what every foil of the case crosses."""
     sign = float(rng.choice([-1, 1]))
-    size = size or log_uniform(rng, 3, 40 if kind == "scan.row_step" else 30)
+    size = size or log_uniform(rng, 3, 40 if kind.endswith("_step") else 30)
     effect = {"id": kind}
     if kind in ("scan.scale_y", "scan.shear"):
         effect["value"] = sign * size / (1000 * half_mm)
@@ -97,9 +102,12 @@ def draw_effect(rng, kind, half_mm, rows_mm, size=None):
         period, phase = log_uniform(rng, 0.8, 6), float(rng.uniform(-180, 180))
         effect.update(amplitude_um=size, period_mm=period, phase_deg=phase)
     elif kind == "scan.row_step":
-        low, high = rows_mm
-        where = float(low + (high - low) * rng.uniform(0.25, 0.75))
-        effect.update(amplitude_um=sign * size, y_mm=where)
+        effect.update(amplitude_um=sign * size, y_mm=draw_place(rng, *ranges_mm[1]))
+    elif kind == "scan.carriage_start":  # its size is told where the foil begins
+        length, y = log_uniform(rng, 2, 12), ranges_mm[1][0]
+        effect.update(amplitude_um=sign * size * math.exp(y / length), length_mm=length)
+    elif kind == "scan.column_step":
+        effect.update(amplitude_um=sign * size, x_mm=draw_place(rng, *ranges_mm[0]))
     elif kind in ("part.ovality", "part.spiral"):
         oval = kind == "part.ovality"
         effect["amplitude_um"] = size if oval else sign * size
@@ -207,13 +215,13 @@ def place(rng, scans):
     return size
 
 
-def common_rows_mm(scans):
-    """Range of y that every scan's first foil crosses."""
+def common_mm(scans, axis):
+    """Range of x or y that every scan's first foil crosses."""
     lows, highs = [], []
     for foils in scans:
-        y = extent_mm(foils)[0][1]
-        lows.append(foils[0]["centre_mm"][1] + y[0])
-        highs.append(foils[0]["centre_mm"][1] + y[1])
+        low, high = extent_mm(foils)[0][axis]
+        lows.append(foils[0]["centre_mm"][axis] + low)
+        highs.append(foils[0]["centre_mm"][axis] + high)
     return max(lows), min(highs)
 
 
@@ -242,11 +250,11 @@ def draw_case(rng, layout, index, kinds, size=None):
     scanner = draw_scanner(rng, index)
     mm = place(rng, scans)
     foils = [f for s in scans for f in s]
-    half, rows = half_size_mm(foils), common_rows_mm(scans)
+    half, ranges = half_size_mm(foils), [common_mm(scans, axis) for axis in (0, 1)]
     effects = []
     for kind in kinds:
         if isinstance(kind, str):
-            effects.append(draw_effect(rng, kind, half, rows, size))
+            effects.append(draw_effect(rng, kind, half, ranges, size))
             continue
         coordinate, moves = kind
         low, high = (-1.0, 1.0)

@@ -43,7 +43,8 @@ for ((kib = 0; kib < size; kib++)); do
   code=0
   (ulimit -f "$kib" && exec "$program" measure "$work/scan.png" -o "$work/out/report.json" \
     --csv "$work/out/bumps.csv" 2>&1 >/dev/null) | cat >"$work/said" || code=$?
-  [ $code -eq 74 ] || fail "disk full at $kib KiB: exit code $code"
+  [ $code -eq 74 ] && grep -q 'cannot be written: File too large' "$work/said" ||
+    fail "disk full at $kib KiB: exit code $code: $(cat "$work/said")"
   check $code "disk full at $kib KiB"
 done
 code=0
@@ -56,6 +57,26 @@ if ldd "$program" | grep -q libasan || [ ! -e "$shim" ]; then
   echo "allocations: not in this build"
   exit 0
 fi
+# Address space that runs out: wherever it does, an error with words, and no signal.
+mkdir "$work/scans"
+for seed in 1 2 3; do
+  sed "s/: 3,/: $seed,/; s/{\"rotate/{\"design\": {\"bump_count\": 3}, \"rotate/" "$work/spec.json" >"$work/small.json"
+  "$program" render "$work/small.json" -o "$work/scans/$seed.png"
+done
+least=16000
+until (ulimit -v $least && exec "$program" version) >/dev/null 2>&1; do least=$((least + 500)); done
+for ((kib = least - 2000; kib < least + 16000; kib += 300)); do
+  code=0
+  rm -rf "$work/lot"
+  (ulimit -v $kib && exec "$program" lot "$work/scans" -o "$work/lot") >/dev/null 2>"$work/said" || code=$?
+  case $code in
+    0) continue ;;
+    2 | 65 | 74 | 127) [ -s "$work/said" ] || fail "lot in $kib KiB: exit code $code without words" ;;
+    *) fail "lot in $kib KiB: exit code $code: $(cat "$work/said")" ;;
+  esac
+done
+echo "address space: $kib KiB and less"
+
 # run_failing N [ON]: the Nth allocation fails; with ON all after it too.
 run_failing() {
   code=0

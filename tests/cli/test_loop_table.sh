@@ -74,6 +74,39 @@ expect 0 '"model": "1 + T"' --table t.csv --declared declared.json -o -
 echo '{"response": 3}' >declared.json
 expect 65 "response must be a text" --table t.csv --declared declared.json
 
+echo '{"design": 5}' >declared.json
+expect 65 "design must be an object" --table t.csv "${model[@]}" --declared declared.json
+echo '{"design": {"bump_radius": 3}}' >declared.json
+expect 65 "design.bump_radius" --table t.csv "${model[@]}" --declared declared.json
+expect 74 "none.json" --table t.csv "${model[@]}" --declared none.json
+
+# What would take too long is refused before it starts, with the limit and the way out.
+awk 'BEGIN { print "x,y"; for (i = 0; i < 250000; i++) print i % 97 "," i % 89 }' >long.csv
+expect 65 "512 MiB. Leave out columns" --table long.csv --response y --model 1 -o never.json
+expect 65 "the limit is 0.001 minutes" --table t.csv "${model[@]}" --minutes 0.001 -o never.json
+expect 64 "above 0" --table t.csv "${model[@]}" --minutes 0
+[ -e never.json ] && fail "a refused search leaves an output file"
+
+# A bar where standard error is a terminal, and only there.
+if [ -z "${FOILGAUGE_TEST_BRIEF:-}" ] && command -v script >/dev/null; then
+  awk 'BEGIN { srand(5); print "run,T,a,b,c,y"
+    for (i = 1; i <= 400; i++) { T = rand(); print i "," T "," rand() "," rand() "," rand() "," T + rand() + rand() } }' >slow.csv
+  script -qec "'$program' loop --table slow.csv --response y --model '1 + T' -o bar.json" typed >/dev/null
+  grep -q "0 found, next \[" typed || fail "no bar on a terminal"
+fi
+expect 0 '"verdict"' --table t.csv "${model[@]}" -o -
+[ -s err ] && fail "a bar where there is no terminal"
+
+# Units: numbers far from 1 give the same verdict; squares that are no numbers are refused.
+for power in -300 300; do
+  awk -F, -v OFS=, -v power=$power 'NR > 1 { $6 = $6 "e" power } { print }' t.csv >far.csv
+  expect 0 '"name": "table.linear(copy)"' --table far.csv "${model[@]}" --html far.html -o -
+  grep -qE "nan|inf[^a-z]" out far.html && fail "1e$power: numbers that are none"
+  "$program" doe far.csv --response y --model "1 + T" >out 2>err
+  [ $? = 65 ] || fail "doe takes responses of 1e$power"
+  grep -q "give it in another unit" err || fail "doe does not say what to do with 1e$power"
+done
+
 /usr/bin/env python3 "$root/tests/support/validate_schema.py" "$root/reports/schema" \
   loop.schema.json a.json b.json c.json
 code=$?

@@ -96,6 +96,8 @@ render dust '"width_px":1500,"height_px":1200,"foils":[],"discs":[{"centre_mm":[
 check 65 'no foil in the picture \([1-9][0-9]* specks' "$folder/dust.png"
 render coin '"width_px":1500,"height_px":1200,"foils":[],"discs":[{"centre_mm":[4,3],"radius_mm":2}]'
 check 65 'no foil in the picture \([1-9]' "$folder/coin.png"
+render coarse "\"foils\":[$foil],\"scanner\":{\"dpi\":150}"
+check 65 'at 150 dpi a strip of 0.1 mm is 0.6 pixels wide; is .* wrong\? if not, scan at 600 dpi or more' "$folder/coarse.png"
 
 # A foil that is cut, or touches another: measured as far as it goes, and flagged.
 render cut "\"width_px\":4300,\"height_px\":1200,
@@ -118,9 +120,10 @@ done
 { head -c 33 "$good"; tail -c +55 "$good"; } >"$folder/unknown.png" # without its pHYs chunk
 check 65 'unknown.png: .*resolution.*--dpi' "$folder/unknown.png"
 check 0 '' "$folder/unknown.png" --dpi 4800
-for dpi in 100 300 1200 2400 9600 19200; do
+for dpi in 100 1200 2400 9600 19200; do
   check 65 "resolution of $dpi dpi wrong" "$good" --dpi "$dpi"
 done
+check 2 'no foil of the design .or the resolution is wrong.: an overall radius' "$good" --dpi 300
 check 2 'good.png: foil 1 could not be measured: .*resolution.*--dpi' "$good" --dpi 3600
 has '"not_measured"' 3600
 

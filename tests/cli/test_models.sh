@@ -31,6 +31,42 @@ expect 0 '' measure scans/s1.png --model left.json --scanner 'left desk' -o s1.o
 near "R0 corrected" "$(value s1.out "r['foils'][0]['overall']['radius_mm']")" 20.95 0.001
 [ "$(value s1.out "r['inputs'][0]['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "model_sha256"
 [ "$(value s1.out "r['foils'][0]['place_mm'][2] > 10")" = True ] || fail "a corrected foil has lost its place"
+# What is corrected says so, by what, and what that did: on the page, in the JSON, in the table, in the CSV.
+expect 0 '' measure scans/s1.png --model left.json --html s1.html --csv s1.csv -o s1.out
+expect 0 '' measure scans/s1.png --html plain.html --csv plain.csv -o plain.out
+script -qec "$program measure scans/s1.png --model left.json" s1.txt >/dev/null </dev/null
+script -qec "$program measure scans/s1.png" plain.txt >/dev/null </dev/null
+day=$(value left.json "r['date'][:10]") sum=$(sha256sum left.json | cut -c1-64)
+[ "$day" = "$(date -u -r b.png +%F)" ] || fail "left.json: the date is not its newest scan's but $day"
+for file in s1.html s1.txt; do
+  for words in 'left.json' 'left desk' "$day" "$sum" 'a wrong scale along the carriage' \
+    '\(199[0-9.]*\|200[0-9.]*\) ± [0-9.]* ppm' 'moved R0 by [-+][0-9.]* µm, R by up to' 'h by up to' 'to u of R0' \
+    'without a known diameter' 'x 0 to 40.2'; do
+    grep -q "$words" $file || fail "$file does not say '$words'"
+  done
+  grep -q 'own error of scale is not in it' $file && fail "$file says what a model has made untrue"
+done
+grep -qi 'corrected by' plain.html plain.txt && fail "what is not corrected says that it is"
+grep -q 'own error of scale is not in it' plain.html || fail "plain.html does not speak of the scale"
+grep -q 'own error of scale is not in it' plain.txt || fail "plain.txt does not speak of the scale"
+[ "$(value plain.out "r['model'], 'correction' in r['foils'][0]")" = '(None, False)' ] || fail "plain.out names a model"
+[ "$(python3 -c "import csv; print(next(csv.DictReader(open(\"s1.csv\")))[\"model_sha256\"])")" = "$sum" ] || fail "s1.csv does not name the model"
+[ "$(python3 -c "import csv; print(next(csv.DictReader(open(\"plain.csv\")))[\"model_sha256\"])")" = "" ] || fail "plain.csv names a model"
+python3 - "$sum" <<'P' || fail "s1.out: the model and what it did"
+import json, sys
+r, plain = json.load(open("s1.out")), json.load(open("plain.out"))["foils"][0]
+m, foil = r["model"], r["foils"][0]
+assert m["path"] == "left.json" and m["sha256"] == sys.argv[1] and m["scanner"] == "left desk" and m["scans"] == 2
+assert m["known_diameters"] == 0 and not m["tied"] and m["region_mm"][2] > 40
+assert [e["id"] for e in m["effects"]] == ["scan.scale_y"] and abs(m["effects"][0]["parameters"]["value"] - 0.002) < 1e-4
+c, digits = foil["correction"], 2e-8  # ten digits of 20.95
+assert abs(c["overall_radius_mm"] - (foil["overall"]["radius_mm"] - plain["overall"]["radius_mm"])) < digits
+for name in "radius_mm", "height_mm":
+    moves = [a[name] - b[name] for a, b in zip(foil["bumps"], plain["bumps"])]
+    assert abs(c[name] - max(moves, key=abs)) < digits, (name, c[name], moves)
+    assert 0 < c["u_" + name] < 1e-4
+P
+
 expect 65 "scanner 'left desk', not of 'right desk'" measure a.png --model left.json --scanner 'right desk'
 sed 's/"left desk"/null/' left.json >nameless.json
 expect 65 'does not say which scanner' measure a.png --model nameless.json --scanner 'left desk'
@@ -52,6 +88,9 @@ P
 }
 region small.json 30 && region tiny.json 15
 expect 0 'reaches beyond the 30 x 30 mm' measure a.png --model small.json -o x.out
+[ "$(value x.out "r['foils'][0]['flags']")" = "['beyond_model_region']" ] || fail "a foil beyond the region has no flag"
+expect 0 'reaches beyond' measure a.png --model small.json --html x.html
+grep -q 'reaches beyond the region' x.html || fail "the page does not say that the foil reaches beyond the region"
 expect 65 'times as far on the glass as the 15 x 15 mm' measure a.png --model tiny.json
 
 # A tie widens: the truth is inside although the explanation in use may be the wrong one.
@@ -62,6 +101,14 @@ model["tied"], model["alternatives"] = True, [[]]
 json.dump(model, open("tied.json", "w"))
 P
 expect 0 'other explanations did as well' measure scans/s1.png --model tied.json -o tied.out
+python3 - <<'P'
+import json
+model = json.load(open("left.json"))
+for field in model["fields"]:
+    field["u_amplitude_mm"] = [30 * u for u in field["u_amplitude_mm"]]
+json.dump(model, open("vague.json", "w"))
+P
+expect 0 '' measure scans/s1.png --model vague.json -o vague.out
 python3 - <<'P' || fail "a tied model does not widen the uncertainty to what its alternative would change"
 import json
 read = lambda name: json.load(open(name))["foils"][0]
@@ -70,7 +117,12 @@ import subprocess
 move = 0.002 * 20.95 / 2  # the scale along one axis, on a circle seen over some 120 degrees: half and more
 assert tied["overall"]["radius_mm"] == sure["overall"]["radius_mm"]
 assert tied["overall"]["u_radius_mm"] > 0.3 * move > 10 * sure["overall"]["u_radius_mm"]
-assert all(t["u_height_mm"] > s["u_height_mm"] for t, s in zip(tied["bumps"], sure["bumps"]))
+for other in tied, read("vague.out"):  # every quantity with an uncertainty is widened
+    pairs = list(zip(other["bumps"], sure["bumps"]))
+    for name in pairs[0][0]:  # of a clearance beside the thickness' far larger u, not to be seen for every bump
+        if name.startswith("u_") and name != "u_centre_mm":
+            assert all(wide[name] >= narrow[name] for wide, narrow in pairs), name
+            assert any(wide[name] > narrow[name] for wide, narrow in pairs), name
 P
 
 # Everything that is no model: measure and lot both refuse it, and say why.
@@ -79,6 +131,9 @@ head -c 400 left.json >cut.json
 sed 's/"dpi": \[[^]]*\]/"dpi": [NaN, 1200]/' left.json >nan.json
 sed 's/scan\.scale_y/scan.wormhole/' left.json >unknown.json
 sed 's/"u_amplitude_mm": \[[^]]*\]/"u_amplitude_mm": [null]/' left.json >null.json
+sed 's/"u_amplitude_mm": \[[^]]*\]/"u_amplitude_mm": [-0.001]/' left.json >negative.json
+sed 's/"u_amplitude_mm": \[[^]]*\]/"u_amplitude_mm": [1e200]/' left.json >huge.json
+sed 's/"amplitude_mm": \[[^]]*\]/"amplitude_mm": [5]/' left.json >far.json
 sed 's/"dpi": \[[^]]*\]/"dpi": [0, 1200]/' left.json >zero.json
 sed 's/"region_mm": \[[^]]*\]/"region_mm": [0, 0, -1, 40]/' left.json >inside_out.json
 sed 's/"scanner": "left desk"/"scanner": 7/' left.json >number.json
@@ -87,8 +142,8 @@ printf '[]' >list.json
 python3 - <<'P'
 import json
 model = json.load(open("left.json"))
-model["fields"] *= 2
-json.dump(model, open("twice.json", "w"))
+model["fields"] *= 9
+json.dump(model, open("many.json", "w"))
 del model["fields"]
 json.dump(model, open("empty.json", "w"))
 P
@@ -102,13 +157,16 @@ text.json|65|no JSON at byte
 cut.json|65|not all of one: no JSON at byte
 nan.json|65|no JSON at byte
 unknown.json|65|effect that is not known: scan.wormhole
-null.json|65|numbers of `scan.scale_y` are not complete
-zero.json|65|`dpi` must be
+null.json|65|`fields.0..u_amplitude_mm.0.` is null; 0 to 1 mm is allowed .scan.scale_y
+negative.json|65|`fields.0..u_amplitude_mm.0.` is -0.001; 0 to 1 mm is allowed .scan.scale_y
+huge.json|65|`fields.0..u_amplitude_mm.0.` is 1e.200; 0 to 1 mm is allowed .scan.scale_y
+far.json|65|`fields.0..amplitude_mm.0.` is 5; -1 to 1 mm is allowed .scan.scale_y
+zero.json|65|`dpi.0.` is 0; 1 to 1e.06 dpi is allowed
 inside_out.json|65|`region_mm` must be
 number.json|65|`scanner` must be
 design.json|65|not a model of a scanner
 list.json|65|not a model of a scanner
-twice.json|65|`scan.scale_y` twice
+many.json|65|`fields` holds 9 effects; at most 8 are allowed
 empty.json|65|`fields` is missing
 missing.json|74|missing.json
 TABLE
@@ -118,7 +176,16 @@ expect 0 '' lot scans -o plain
 expect 0 '' lot scans --model left.json --scanner 'left desk' -o one
 [ "$(value one/lot.json "r['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "lot.json: model_sha256"
 [ "$(value plain/lot.json "r['model_sha256']")" = None ] || fail "lot.json without a model"
-grep -q "$(sha256sum left.json | cut -c1-64)" one/index.html || fail "the page does not name the model"
+for words in "$sum" 'left desk' "$day" 'Corrected by' 'a wrong scale along' 'It moved R0 by [-+]' 'without a known diameter'; do
+  grep -q "$words" one/index.html || fail "the lot's page does not say '$words'"
+done
+grep -q 'Corrected by' plain/index.html && fail "a lot that is not corrected says that it is"
+[ "$(value one/lot.json "r['model']['scanner'], r['model']['path'], r['correction']['u_height_mm'] > 0")" = \
+  "('left desk', 'scanner_model.json', True)" ] || fail "lot.json: the model"
+[ "$(value plain/lot.json "r['model'], 'correction' in r")" = "(None, False)" ] || fail "lot.json without a model: model"
+expect 0 '' lot scans --model small.json -o beyond
+grep -q '3 of 3 foils reach beyond' beyond/index.html || fail "the lot's page does not say that foils reach beyond the region"
+[ "$(value beyond/lot.json "all('beyond_model_region' in f['flags'] for f in r['foils'])")" = True ] || fail "lot.json: no flag"
 cmp -s left.json one/scanner_model.json || fail "the lot does not keep its model"
 grep -q model plain/recipe.json && fail "a lot without a model has a recipe that speaks of one"
 python3 - one plain <<'P' || fail "the lot's radii"
@@ -184,7 +251,7 @@ done <<'TABLE'
 74|nowhere|a.png -o /nowhere/x.json
 TABLE
 
-# Two bumps: done, and said what they cannot tell; the same on a foil without lip.
+# Two bumps: done, and said what they cannot tell; of one bump hardly more rows are left than numbers would be fitted.
 for bumps in 1 2; do
   cat >few.json <<SPEC
 {"schema":"foilgauge/render/1","seed":3,"foils":[{"design":{"bump_count":$bumps},"overall_radius_mm":20.95,
@@ -192,6 +259,7 @@ for bumps in 1 2; do
 SPEC
   printf '{"schema":"foilgauge/design/1","bump_count":%d}' $bumps >few_design.json
   "$program" render few.json -o few.png || fail "render $bumps bumps"
+  [ $bumps -eq 1 ] && expect 65 'edge rows are too few' loop few.png --design few_design.json -o few.out && continue
   expect 0 '' loop few.png --design few_design.json -o few.out
   [ "$(value few.out "r['verdict'], r['bumps']['count']")" = "('clean', $bumps)" ] || fail "$bumps bumps: verdict"
   value few.out "r['notes'][0]" | grep -q "$bumps measured: no effect over them can be told" ||

@@ -23,6 +23,8 @@ typedef struct rendered {
   void *strip; /* rows of the strip that is not full yet */
   size_t row_bytes;
   fg_session *session; /* NULL: tiles are kept, nothing is measured */
+  int64_t blank[2];    /* rows from the first to before the second are lost: all background */
+  int background;      /* of 8 bit */
 } rendered;
 
 typedef struct measured {
@@ -36,6 +38,8 @@ static inline fg_status rendered_row(fg_context *ctx, void *user, int64_t row, c
   rendered *r = user;
   size_t at = (size_t)(row % FG_TILE_PX) * r->row_bytes;
   memcpy((char *)r->strip + at, pixels, r->row_bytes);
+  if (row >= r->blank[0] && row < r->blank[1])
+    memset((char *)r->strip + at, r->background, r->row_bytes);
   if (row % FG_TILE_PX != FG_TILE_PX - 1 && row != r->truth->height_px - 1) return FG_OK;
   FG_TRY(fg_tiles_add_strip(ctx, &r->tiles, r->strip, (int64_t)r->row_bytes));
   return r->session ? fg_session_advance(ctx, &r->tiles, r->session) : FG_OK;
@@ -83,8 +87,8 @@ static inline void measure_rows(measured *m) {
 }
 
 /* Free with measured_free. NULL design: the Gen II foil. */
-static inline measured measure_render(const char *json, const fg_design *design) {
-  measured m = {.picture = render_open(json)};
+static inline measured measure_picture(rendered picture, const fg_design *design) {
+  measured m = {.picture = picture};
   if (design)
     m.result.design = *design;
   else
@@ -94,6 +98,10 @@ static inline measured measure_render(const char *json, const fg_design *design)
     m.result.dpi[i] = m.picture.truth->dpi[i];
   measure_rows(&m);
   return m;
+}
+
+static inline measured measure_render(const char *json, const fg_design *design) {
+  return measure_picture(render_open(json), design);
 }
 
 static inline void measured_free(measured *m) {

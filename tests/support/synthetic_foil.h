@@ -85,6 +85,8 @@ static inline fg_bump synthetic_bump(const fg_design *design, const fg_nominal *
       .u_height_mm = 0.00002,
       .u_clearance_mm = 0.00002,
       .u_clearance_error = 0.0003,
+      .u_height_fitted_mm = 0.00003,
+      .u_clearance_fitted_mm = 0.00003,
       .radius_error_pct = 100 * (radius - 3.32) / 3.32,
       .u_radius_error_pct = 0.0063,
       .bump_angle_error_pct = 100 * (synthetic_deg(angle) - 63.15) / 63.15,
@@ -98,6 +100,10 @@ static inline fg_bump synthetic_bump(const fg_design *design, const fg_nominal *
       .position_deg = synthetic_deg(psi),
       .covariance = {{4e-8, 0, 0}, {0, 4e-8, -3.9e-8}, {0, -3.9e-8, 4.4e-8}}};
   bump.clearance_mm = 20.73 - bump.height_mm - 20 - 0.1;
+  double chord = radius * sin(angle / 2), sleeve = design->sleeve_radius_mm;
+  bump.height_fitted_mm =
+      radius * (1 - cos(angle / 2)) + sleeve - sqrt(sleeve * sleeve - chord * chord);
+  bump.clearance_fitted_mm = sleeve - bump.height_fitted_mm - 20 - 0.1;
   bump.clearance_error = (nominal->clearance_mm - bump.clearance_mm) / nominal->clearance_mm;
   return bump;
 }
@@ -164,7 +170,6 @@ static inline fg_foil synthetic_foil(const fg_design *design, const fg_nominal *
                   .noise_um = 0.13,
                   .correlation_mm = 0.011,
                   .edge_model_um = 0.05,
-                  .in_tolerance = true,
                   .bump_count = SYNTHETIC_BUMPS};
   foil.overall = (fg_overall){.centre_mm = {22.0, 24.0},
                               .u_centre_mm = {0.0004, 0.0006},

@@ -263,7 +263,7 @@ static void nonsense_is_refused(void **state) {
 static void offset_bearing_is_round(void **state) {
   (void)state;
   fg_context ctx;
-  fg_bearing_layout layout = {3, 7, 1};
+  fg_bearing_layout layout = {3, 7, 1, 0};
   double angle[21], clearance[21];
   for (size_t i = 0; i < 21; i++) {
     angle[i] = fg_bearing_angle_deg(&layout, i / 7, i % 7);
@@ -285,7 +285,7 @@ static void offset_bearing_is_round(void **state) {
 static void lobes_are_circularity(void **state) {
   (void)state;
   fg_context ctx;
-  fg_bearing_layout layout = {3, 6, 1};
+  fg_bearing_layout layout = {3, 6, 1, 0};
   double angle[18], clearance[18];
   for (size_t i = 0; i < 18; i++) {
     angle[i] = fg_bearing_angle_deg(&layout, i / 6, i % 6);

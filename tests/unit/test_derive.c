@@ -15,6 +15,7 @@ typedef struct derive_case {
   fg_design design;
   fg_nominal nominal;
   fg_overall overall;
+  fg_thickness strip;
   fg_bump bump;
 } derive_case;
 
@@ -23,6 +24,7 @@ static derive_case make_case(double radius, double x, double overall_radius) {
   derive_case c = {0};
   fg_design_default(&c.design);
   assert_int_equal(fg_design_derive(NULL, &c.design, &c.nominal), FG_OK);
+  c.strip.mm = c.design.thickness_mm;
   c.overall.centre_mm = (fg_point){30, 20};
   c.overall.radius_mm = overall_radius;
   c.bump.centre_mm = (fg_point){30 + x * cos(0.7), 20 + x * sin(0.7)};
@@ -31,7 +33,7 @@ static derive_case make_case(double radius, double x, double overall_radius) {
 }
 
 static void derive(derive_case *c) {
-  fg_bump_derive(&c->design, &c->nominal, &c->overall, &c->bump);
+  fg_bump_derive(&c->design, &c->nominal, &c->overall, &c->strip, &c->bump);
 }
 
 static void assert_near(double value, double expected, double tolerance) {
@@ -95,19 +97,21 @@ static void disturb(fg_point *centre, double *radius, double direction_rad, doub
   *radius += by_radius;
 }
 
-enum { TRIALS = 40000, QUANTITIES = 10 };
+enum { TRIALS = 40000, QUANTITIES = 12 };
 
 static void quantities_of(const fg_bump *b, double value[QUANTITIES], double u[QUANTITIES]) {
   double values[QUANTITIES] = {b->centre_to_centre_mm,    b->bump_angle_deg,
                                b->intersection_angle_deg, b->height_mm,
                                b->clearance_mm,           b->clearance_error,
                                b->radius_error_pct,       b->bump_angle_error_pct,
-                               b->height_model_mm,        b->bump_angle_model_deg};
+                               b->height_model_mm,        b->bump_angle_model_deg,
+                               b->height_fitted_mm,       b->clearance_fitted_mm};
   double us[QUANTITIES] = {b->u_centre_to_centre_mm,    b->u_bump_angle_deg,
                            b->u_intersection_angle_deg, b->u_height_mm,
                            b->u_clearance_mm,           b->u_clearance_error,
                            b->u_radius_error_pct,       b->u_bump_angle_error_pct,
-                           b->u_height_model_mm,        b->u_bump_angle_model_deg};
+                           b->u_height_model_mm,        b->u_bump_angle_model_deg,
+                           b->u_height_fitted_mm,       b->u_clearance_fitted_mm};
   for (int i = 0; i < QUANTITIES; i++) {
     value[i] = values[i];
     u[i] = us[i];
@@ -153,6 +157,99 @@ static void height_keeps_the_crown_s_uncertainty(void **state) {
   assert_near(c.bump.u_radius_mm, 4e-3, 1e-15);
 }
 
+/* A bump of the design's radius and angle on a foil that has opened: pressed into the sleeve the
+ * circle under its chord is the sleeve's, and the crown stands where the design has it. Free it
+ * stands lower by what the flatter circle lacks under the chord. */
+static void a_foil_that_has_opened_stands_higher_in_the_sleeve(void **state) {
+  (void)state;
+  const double half = 63.15 / 2 * 3.14159265358979323846 / 180, chord = 3.32 * sin(half);
+  const struct { double overall_mm, lift_um; } rows[] = {{20.73, 0}, {20.98, 0.87}, {23.56, 8.79}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    double r0 = rows[i].overall_mm;
+    derive_case c = make_case(3.32, 3.32 * cos(half) + sqrt(r0 * r0 - chord * chord), r0);
+    derive(&c);
+    assert_near(c.bump.height_fitted_mm, c.nominal.height_mm, 1e-12);
+    assert_near(c.bump.clearance_fitted_mm, c.nominal.clearance_mm, 1e-12);
+    assert_near(1000 * (c.bump.height_fitted_mm - c.bump.height_mm), rows[i].lift_um, 0.01);
+  }
+}
+
+/* Whatever X, R and R0 are: eq 5.6 with the angle that they define is R0, so a height from it and
+ * measured values would say nothing about the part. */
+static void eq_5_6_of_measured_values_is_the_overall_radius(void **state) {
+  (void)state;
+  uint64_t seed = 5;
+  for (int i = 0; i < 100; i++) {
+    derive_case c = make_case(3.3 + 0.1 * random_uniform(&seed), 23.7 + 0.3 * random_uniform(&seed),
+                              20.7 + 0.5 * random_uniform(&seed));
+    derive(&c);
+    double x = c.bump.centre_to_centre_mm, r = c.bump.radius_mm;
+    double phi = c.bump.bump_angle_deg * 3.14159265358979323846 / 360;
+    assert_near(sqrt(x * x + r * r - 2 * x * r * cos(phi)), c.overall.radius_mm, 1e-11);
+  }
+}
+
+static double fitted_at(double radius, double x, double overall) {
+  derive_case c = make_case(radius, x, overall);
+  derive(&c);
+  return c.bump.height_fitted_mm;
+}
+
+/* u_height_fitted_mm is |gradient| u along each of X, R and R0 alone: central differences. */
+static void the_fitted_height_s_gradient_is_a_difference_quotient(void **state) {
+  (void)state;
+  const double radius = 3.41, x = 23.83, overall = 21.3, step = 1e-5, u = 1e-3;
+  const double slope[3] = {
+      (fitted_at(radius, x + step, overall) - fitted_at(radius, x - step, overall)) / (2 * step),
+      (fitted_at(radius + step, x, overall) - fitted_at(radius - step, x, overall)) / (2 * step),
+      (fitted_at(radius, x, overall + step) - fitted_at(radius, x, overall - step)) / (2 * step)};
+  for (int i = 0; i < 3; i++) {
+    derive_case c = make_case(radius, x, overall);
+    derive(&c);
+    double covariance[3][3] = {{0}};
+    covariance[i][i] = u * u;
+    fg_bump_widen(&c.design, &c.nominal, &c.overall, covariance, &c.bump);
+    assert_near(c.bump.u_height_fitted_mm, fabs(slope[i]) * u, 1e-7 * u);
+    assert_near(c.bump.u_clearance_fitted_mm, fabs(slope[i]) * u, 1e-7 * u);
+  }
+}
+
+/* A strip of 0.105 mm where the design says 0.1: eq 5.8 holds with the strip's own thickness, and
+ * its uncertainty is in both clearances, in their error, and in nothing else. */
+static void clearance_is_over_the_strip_as_it_is(void **state) {
+  (void)state;
+  derive_case thin = make_case(3.32, 23.48547331077125, 20.73);
+  derive_case thick = thin;
+  derive(&thin);
+  thick.strip = (fg_thickness){0.105, 0.0003};
+  derive(&thick);
+  assert_near(1000 * thin.bump.clearance_mm, 65.473, 0.001);
+  assert_near(1000 * thick.bump.clearance_mm, 60.473, 0.001);
+  assert_near(thick.bump.clearance_fitted_mm, thin.bump.clearance_fitted_mm - 0.005, 1e-12);
+  assert_near(thick.bump.clearance_error, 0.005 / thin.nominal.clearance_mm, 1e-11);
+  assert_near(thick.bump.u_clearance_mm, 0.0003, 1e-12);
+  assert_near(thick.bump.u_clearance_fitted_mm, 0.0003, 1e-12);
+  assert_near(thick.bump.u_clearance_error, 0.0003 / thin.nominal.clearance_mm, 1e-12);
+  assert_near(thick.bump.u_height_mm, 0, 0);
+  assert_near(thick.bump.height_fitted_mm, thin.bump.height_fitted_mm, 0);
+}
+
+static void a_thickness_that_was_not_measured_is_the_design_s(void **state) {
+  (void)state;
+  fg_design design;
+  fg_design_default(&design);
+  fg_foil foil = {.thickness_mm = NAN, .u_thickness_mm = NAN};
+  fg_thickness strip = fg_foil_thickness(&design, &foil);
+  assert_near(strip.mm, 0.1, 0);
+  assert_near(strip.u_mm, 0, 0);
+  assert_false(fg_thickness_differs(&design, &strip));
+  foil = (fg_foil){.thickness_mm = 0.105, .u_thickness_mm = 0.0024};
+  strip = fg_foil_thickness(&design, &foil);
+  assert_true(fg_thickness_differs(&design, &strip));
+  strip.u_mm = 0.0026;
+  assert_false(fg_thickness_differs(&design, &strip));
+}
+
 /* One foil by its midline, inner and outer edge: same X, h and clearance. Towards the shaft the
  * overall circle shrinks and the bump's, whose centre lies outside, grows. */
 static void height_does_not_depend_on_the_datum(void **state) {
@@ -177,6 +274,7 @@ static void circles_that_do_not_cross_have_no_angle(void **state) {
     assert_true(c.bump.flags & FG_BUMP_NO_CROSSING);
     assert_true(isnan(c.bump.bump_angle_deg) && isnan(c.bump.u_bump_angle_deg));
     assert_true(isnan(c.bump.intersection_angle_deg) && isnan(c.bump.bump_angle_error_pct));
+    assert_true(isnan(c.bump.height_fitted_mm) && isnan(c.bump.u_clearance_fitted_mm));
     assert_near(c.bump.height_mm, 20.95 - (distances[i] - 3.39), 1e-13);
     assert_true(isfinite(c.bump.bump_angle_model_deg) && isfinite(c.bump.height_model_mm));
   }
@@ -209,6 +307,11 @@ int main(void) {
       cmocka_unit_test(errors_have_the_signs_of_the_thesis),
       cmocka_unit_test(uncertainties_are_those_of_draws),
       cmocka_unit_test(height_keeps_the_crown_s_uncertainty),
+      cmocka_unit_test(a_foil_that_has_opened_stands_higher_in_the_sleeve),
+      cmocka_unit_test(eq_5_6_of_measured_values_is_the_overall_radius),
+      cmocka_unit_test(the_fitted_height_s_gradient_is_a_difference_quotient),
+      cmocka_unit_test(clearance_is_over_the_strip_as_it_is),
+      cmocka_unit_test(a_thickness_that_was_not_measured_is_the_design_s),
       cmocka_unit_test(height_does_not_depend_on_the_datum),
       cmocka_unit_test(circles_that_do_not_cross_have_no_angle),
       cmocka_unit_test(what_was_not_fitted_stays_unknown),

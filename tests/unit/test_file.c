@@ -12,12 +12,14 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 
 #include "core/file.h"
 #include "core/sha256.h"
+#include "core/temporary.h"
 
 typedef struct folder {
   char path[200], file[256];
@@ -102,6 +104,121 @@ static void mode_follows_the_umask(void **state) {
   struct stat entry;
   assert_int_equal(stat(where->file, &entry), 0);
   assert_int_equal(entry.st_mode & 0777, 0640);
+}
+
+/* What may be read by few is not opened to all by being written again. */
+static void a_replaced_file_keeps_its_mode(void **state) {
+  folder *where = *state;
+  struct stat entry;
+  mode_t old = umask(022);
+  write_file(where->file, "old");
+  assert_int_equal(chmod(where->file, 0600), 0);
+  write_file(where->file, "new");
+  assert_int_equal(stat(where->file, &entry), 0);
+  assert_int_equal(entry.st_mode & 0777, 0600);
+  assert_int_equal(chmod(where->file, 0666), 0);
+  write_file(where->file, "newer");
+  umask(old);
+  assert_int_equal(stat(where->file, &entry), 0);
+  assert_int_equal(entry.st_mode & 0777, 0666);
+}
+
+static void a_replaced_file_keeps_its_owner(void **state) {
+  folder *where = *state;
+  struct stat entry;
+  if (geteuid() != 0) skip();
+  write_file(where->file, "old");
+  assert_int_equal(chown(where->file, 65534, 65533), 0);
+  assert_int_equal(chmod(where->file, 0640), 0);
+  write_file(where->file, "new");
+  assert_int_equal(stat(where->file, &entry), 0);
+  assert_int_equal(entry.st_uid, 65534);
+  assert_int_equal(entry.st_gid, 65533);
+  assert_int_equal(entry.st_mode & 0777, 0640);
+}
+
+/* /dev/shm is a folder of files like any other. */
+static void shared_memory_is_written_like_a_file(void **state) {
+  (void)state;
+  char path[] = "/dev/shm/foilgauge-test-XXXXXX";
+  fg_output output;
+  int descriptor = mkstemp(path);
+  if (descriptor < 0) skip();
+  close(descriptor);
+  write_file(path, "old");
+  assert_int_equal(fg_output_open(NULL, path, &output), FG_OK);
+  fputs("new", output.stream);
+  fflush(output.stream);
+  assert_content(path, "old");
+  fg_output_discard(&output);
+  assert_content(path, "old");
+  unlink(path);
+}
+
+/* A redirected descriptor is not a file to be replaced: others write to it as well. */
+static void a_named_descriptor_is_written_in_place(void **state) {
+  folder *where = *state;
+  char name[40];
+  int descriptor = open(where->file, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  assert_int_equal(write(descriptor, "before ", 7), 7);
+  snprintf(name, sizeof name, "/dev/fd/%d", descriptor);
+  write_file(name, "within");
+  assert_int_equal(write(descriptor, " after", 6), 6);
+  close(descriptor);
+  assert_content(where->file, "before within after");
+  fg_context ctx = {0};
+  fg_output output;
+  assert_int_equal(fg_output_open(&ctx, name, &output), FG_ERR_IO);
+  assert_non_null(strstr(ctx.message, name));
+}
+
+/* What a killed run has left goes with the next one; what is at work stays. */
+static void leftovers_are_removed_and_others_kept(void **state) {
+  folder *where = *state;
+  fg_output one, other;
+  assert_int_equal(fg_output_open(NULL, where->file, &one), FG_OK);
+  assert_int_equal(fg_output_open(NULL, where->file, &other), FG_OK);
+  assert_int_equal(count_entries(where), 2);
+  fputs("one", one.stream);
+  fputs("other", other.stream);
+  assert_int_equal(fg_output_commit(NULL, &one), FG_OK);
+  assert_content(where->file, "one");
+  assert_int_equal(fg_output_commit(NULL, &other), FG_OK);
+  assert_content(where->file, "other");
+  assert_int_equal(count_entries(where), 1);
+
+  pid_t child = fork();
+  if (child == 0) {
+    fg_output abandoned;
+    _exit(fg_output_open(NULL, where->file, &abandoned) == FG_OK ? 0 : 1);
+  }
+  int code = -1;
+  assert_int_equal(waitpid(child, &code, 0), child);
+  assert_int_equal(code, 0);
+  assert_int_equal(count_entries(where), 2);
+  write_file(where->file, "next");
+  assert_int_equal(count_entries(where), 1);
+}
+
+/* What ends the process removes all that is on its way, and nothing appears after that. */
+static void all_temporaries_go_at_once(void **state) {
+  folder *where = *state;
+  char second[300];
+  snprintf(second, sizeof second, "%s/second", where->path);
+  write_file(second, "old");
+  pid_t child = fork();
+  if (child == 0) {
+    fg_output a, b;
+    if (fg_output_open(NULL, where->file, &a) != FG_OK) _exit(1);
+    if (fg_output_open(NULL, second, &b) != FG_OK) _exit(2);
+    fg_temporaries_remove();
+    _exit(0);
+  }
+  int code = -1;
+  assert_int_equal(waitpid(child, &code, 0), child);
+  assert_int_equal(code, 0);
+  assert_int_equal(count_entries(where), 1);
+  assert_content(second, "old");
 }
 
 static void symbolic_link_stays_a_link(void **state) {
@@ -201,6 +318,7 @@ static void passing_shortage_is_an_error(void **state) {
   signal(SIGXFSZ, handler);
   assert_int_equal(fg_output_commit(&ctx, &output), FG_ERR_IO);
   assert_non_null(strstr(ctx.message, where->file));
+  assert_non_null(strstr(ctx.message, "too large"));
   assert_int_equal(count_entries(where), 0);
 }
 
@@ -244,15 +362,27 @@ static void read_only_file_is_respected(void **state) {
 }
 
 static void standard_output_stays_open(void **state) {
-  (void)state;
+  folder *where = *state;
   fg_output output;
-  assert_int_equal(fg_output_open(NULL, "-", &output), FG_OK);
-  assert_ptr_equal(output.stream, stdout);
-  assert_int_equal(fg_output_commit(NULL, &output), FG_OK);
-  assert_int_equal(fg_output_open(NULL, NULL, &output), FG_OK);
-  assert_ptr_equal(output.stream, stdout);
+  fflush(stdout);
+  int kept = dup(STDOUT_FILENO);
+  int descriptor = open(where->file, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  assert_int_equal(dup2(descriptor, STDOUT_FILENO), STDOUT_FILENO);
+  fg_status first = fg_output_open(NULL, "-", &output);
+  fputs("one", output.stream);
+  fg_status committed = fg_output_commit(NULL, &output);
+  fg_status second = fg_output_open(NULL, NULL, &output);
+  fputs("never", output.stream);
   fg_output_discard(&output);
-  assert_int_equal(fflush(stdout), 0);
+  ssize_t put = write(STDOUT_FILENO, " two", 4);
+  dup2(kept, STDOUT_FILENO);
+  close(kept);
+  close(descriptor);
+  assert_int_equal(first, FG_OK);
+  assert_int_equal(committed, FG_OK);
+  assert_int_equal(second, FG_OK);
+  assert_int_equal(put, 4);
+  assert_content(where->file, "one two");
 }
 
 static void text_is_read_whole(void **state) {
@@ -304,6 +434,12 @@ int main(void) {
       WITH_FOLDER(file_appears_only_when_whole),
       WITH_FOLDER(discard_leaves_nothing),
       WITH_FOLDER(mode_follows_the_umask),
+      WITH_FOLDER(a_replaced_file_keeps_its_mode),
+      WITH_FOLDER(a_replaced_file_keeps_its_owner),
+      cmocka_unit_test(shared_memory_is_written_like_a_file),
+      WITH_FOLDER(a_named_descriptor_is_written_in_place),
+      WITH_FOLDER(leftovers_are_removed_and_others_kept),
+      WITH_FOLDER(all_temporaries_go_at_once),
       WITH_FOLDER(symbolic_link_stays_a_link),
       WITH_FOLDER(bare_name_goes_to_the_current_folder),
       WITH_FOLDER(names_may_be_as_long_as_names_can_be),
@@ -312,7 +448,7 @@ int main(void) {
       WITH_FOLDER(passing_shortage_is_an_error),
       WITH_FOLDER(unwritable_places_are_named),
       WITH_FOLDER(read_only_file_is_respected),
-      cmocka_unit_test(standard_output_stays_open),
+      WITH_FOLDER(standard_output_stays_open),
       WITH_FOLDER(text_is_read_whole),
       WITH_FOLDER(what_is_no_text_is_refused),
       WITH_FOLDER(sha256_is_the_standards),

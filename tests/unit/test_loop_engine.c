@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/loop.h"
+#include "support/brief.h"
 #include "support/near.h"
 #include "support/random.h"
 
@@ -74,7 +75,7 @@ static void load_runs(fixture *f, const runs_data *data) {
 
 static void clean_runs_are_clean(void **state) {
   (void)state;
-  for (uint64_t seed = 1; seed <= 12; seed++) {
+  for (uint64_t seed = 1; seed <= 12; seed += test_step(4)) {
     fixture f;
     runs_data data;
     make_runs(seed, &data);
@@ -236,7 +237,7 @@ static void the_lip_decay_of_a_lot_is_found(void **state) {
 /* Foils differ by chance: 126 bumps are no 126 witnesses of a column that is constant in a foil. */
 static void foils_that_differ_by_chance_are_no_effect(void **state) {
   (void)state;
-  for (uint64_t seed = 91; seed <= 96; seed++) {
+  for (uint64_t seed = 91; seed <= 96; seed += test_step(3)) {
     fixture f;
     make_lot(&f, seed, 0, 0.05, 0);
     run(&f);

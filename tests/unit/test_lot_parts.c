@@ -18,6 +18,7 @@
 #include "lot/journal.h"
 #include "lot/manifest.h"
 #include "lot/record.h"
+#include "lot/seal.h"
 
 static void manifest_reads_back_what_it_writes(void **state) {
   (void)state;
@@ -169,6 +170,87 @@ static void record_keeps_every_field(void **state) {
   synthetic_free(&measurement);
 }
 
+/* A line of one foil with every bump, as it stands in a journal. */
+static char *line_of(const char *scan, size_t *length) {
+  fg_context ctx;
+  fg_design design = synthetic_design();
+  fg_measurement measurement = synthetic_measurement(&design);
+  fg_record record = {.scan = (char *)(uintptr_t)scan};
+  char *line;
+  memset(record.sha256, 'a', 64);
+  memset(record.measured_with, 'b', 64);
+  assert_int_equal(fg_record_format(&ctx, &record, &measurement, &line, length), FG_OK);
+  synthetic_free(&measurement);
+  return line;
+}
+
+static void record_notices_every_changed_byte(void **state) {
+  (void)state;
+  static const unsigned char changes[] = {0x01, 0x02, 0x10, 0x20, 0x80};
+  fg_context ctx;
+  fg_record record;
+  size_t length;
+  char *line = line_of("a.png", &length);
+  for (size_t i = 0; i < length; i++)
+    for (size_t k = 0; k < sizeof changes; k++) {
+      line[i] = (char)(line[i] ^ changes[k]);
+      if (fg_record_parse(&ctx, line, &record) != FG_ERR_DATA)
+        fail_msg("byte %zu of %zu changed by %02x is accepted", i, length, changes[k]);
+      line[i] = (char)(line[i] ^ changes[k]);
+    }
+  assert_int_equal(fg_record_parse(&ctx, line, &record), FG_OK);
+  fg_record_free(&record);
+  free(line);
+}
+
+/* The verdict on a line with `other` instead of `part`, sealed as if it had been written so. */
+static fg_status parse_with(const char *part, const char *other) {
+  fg_context ctx;
+  fg_record record;
+  size_t length;
+  char *line = line_of("a.png", &length), *text, *at = strstr(line, part);
+  assert_non_null(at);
+  *strstr(line, ", \"checksum\"") = '\0';
+  assert_true(asprintf(&text, "%.*s%s%s}", (int)(at - line), line, other, at + strlen(part)) > 0);
+  length = strlen(text);
+  assert_int_equal(fg_seal_line(&ctx, &text, &length), FG_OK);
+  fg_status status = fg_record_parse(&ctx, text, &record);
+  if (status == FG_OK) fg_record_free(&record);
+  free(text);
+  free(line);
+  return status;
+}
+
+static void record_refuses_absurd_numbers(void **state) {
+  (void)state;
+  static const char *const numbers[] = {"100000000", "1e8", "1e300", "-1", "2.5", "\"1\"", "null"};
+  assert_int_equal(parse_with("\"number\": 2", "\"number\": 2"), FG_OK);
+  for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+    char other[64];
+    snprintf(other, sizeof other, "\"number\": %s", numbers[i]);
+    assert_int_equal(parse_with("\"number\": 2", other), FG_ERR_DATA);
+    assert_int_equal(parse_with("\"number\": 1", other), FG_ERR_DATA);
+  }
+  assert_int_equal(parse_with("\"values\": [", "\"values\": [1e999, "), FG_ERR_DATA);
+}
+
+static void record_keeps_a_name_of_any_bytes(void **state) {
+  (void)state;
+  static const char *const names[] = {"a\xE4.png", "a\xF6.png", "a\\xE4.png", "a\xEF\xBF\xBD.png",
+                                      "\xFF\x01\n\"\\\xC3"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    fg_context ctx;
+    fg_record record;
+    size_t length;
+    char *line = line_of(names[i], &length);
+    assert_true(fg_utf8_is_valid(line));
+    assert_int_equal(fg_record_parse(&ctx, line, &record), FG_OK);
+    assert_string_equal(record.scan, names[i]);
+    fg_record_free(&record);
+    free(line);
+  }
+}
+
 typedef struct seen {
   char scans[8][16];
   size_t count;
@@ -221,10 +303,11 @@ static void journal_drops_what_is_torn(void **state) {
   assert_int_equal(stat(path, &whole), 0);
   for (off_t cut = 1; cut < 60; cut += 7) {
     seen s = {0};
-    size_t torn;
+    fg_journal_damage damage;
     assert_int_equal(truncate(path, whole.st_size - cut), 0);
-    assert_int_equal(fg_journal_read(&ctx, path, true, &read, &torn, note, &s), FG_OK);
-    assert_int_equal(torn, 1);
+    assert_int_equal(fg_journal_read(&ctx, path, &read, &damage, note, &s), FG_OK);
+    assert_int_equal(damage.lines, 1);
+    assert_int_equal(damage.first, 3);
     assert_int_equal(s.count, 1);
     assert_string_equal(s.scans[0], "one");
     assert_int_equal(read.shard.index, 2);
@@ -232,6 +315,110 @@ static void journal_drops_what_is_torn(void **state) {
   }
   assert_int_equal(truncate(path, 20), 0);
   assert_int_equal(fg_journal_read_head(&ctx, path, &read), FG_ERR_DATA);
+  unlink(path);
+  rmdir(folder);
+}
+
+static void change_byte(const char *path, off_t at) {
+  char byte;
+  int file = open(path, O_RDWR);
+  assert_true(file >= 0);
+  assert_int_equal(pread(file, &byte, 1, at), 1);
+  byte ^= 1;
+  assert_int_equal(pwrite(file, &byte, 1, at), 1);
+  close(file);
+}
+
+/* Two records: whatever byte of the file changes, one line is noted and the rest is kept. */
+static void journal_salvages_what_is_whole(void **state) {
+  (void)state;
+  fg_context ctx;
+  char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/results.jsonl", folder);
+  fg_journal_head head = head_of(1, 1);
+  const char *from[] = {path};
+  fg_journal_entry none = {0};
+  assert_int_equal(fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1), FG_OK);
+  struct stat info;
+  assert_int_equal(stat(path, &info), 0);
+  off_t first = info.st_size;
+  fg_journal journal;
+  assert_int_equal(fg_journal_open(&ctx, path, &journal), FG_OK);
+  append(&journal, "one");
+  append(&journal, "two");
+  assert_int_equal(fg_journal_close(&ctx, &journal), FG_OK);
+  assert_int_equal(stat(path, &info), 0);
+  off_t second = first + (info.st_size - first) / 2;
+  for (off_t at = 0; at < info.st_size; at++) {
+    seen s = {0};
+    fg_journal_damage damage;
+    bool joined = at + 1 == first || at + 1 == second; /* no newline: two lines are one */
+    change_byte(path, at);
+    assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_OK);
+    assert_int_equal(damage.lines, 1);
+    assert_int_equal(damage.first, at < first ? 1 : at < second ? 2 : 3);
+    assert_int_equal(s.count, (at < first ? 2 : 1) - (joined ? 1 : 0));
+    change_byte(path, at);
+  }
+  unlink(path);
+  rmdir(folder);
+}
+
+static void write_text(const char *path, const char *text) {
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fputs(text, out);
+  fclose(out);
+}
+
+/* As after a loss of power: a hole where records were. */
+static void journal_takes_no_memory_for_a_hole(void **state) {
+  (void)state;
+  fg_context ctx;
+  char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/results.jsonl", folder);
+  fg_journal_head head = head_of(1, 1);
+  const char *from[] = {path};
+  fg_journal_entry none = {0};
+  assert_int_equal(fg_journal_rewrite(&ctx, path, &head, from, NULL, &none, 1), FG_OK);
+  struct stat info;
+  assert_int_equal(stat(path, &info), 0);
+  assert_int_equal(truncate(path, info.st_size + (100 << 20)), 0);
+  fg_journal journal;
+  assert_int_equal(fg_journal_open(&ctx, path, &journal), FG_OK);
+  append(&journal, "\n");
+  append(&journal, "two");
+  assert_int_equal(fg_journal_close(&ctx, &journal), FG_OK);
+  seen s = {0};
+  fg_journal_damage damage;
+  assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_OK);
+  assert_int_equal(damage.lines, 1);
+  assert_int_equal(s.count, 1);
+  assert_string_equal(s.scans[0], "two");
+  unlink(path);
+  rmdir(folder);
+}
+
+static void journal_knows_earlier_ones_and_other_files(void **state) {
+  (void)state;
+  fg_context ctx = {""};
+  char folder[] = "/tmp/foilgauge-test-XXXXXX", path[64];
+  seen s = {0};
+  fg_journal_damage damage;
+  fg_journal_head head;
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/results.jsonl", folder);
+  write_text(path, "{\"schema\": \"foilgauge/results/1\"}\n{\"scan\": \"a.png\"}\n");
+  assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_OK);
+  assert_true(damage.earlier);
+  assert_int_equal(fg_journal_read(&ctx, path, &head, &damage, note, &s), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "earlier version"));
+  write_text(path, "somebody's own text\nof two lines\n");
+  assert_int_equal(fg_journal_salvage(&ctx, path, &damage, note, &s), FG_ERR_DATA);
+  assert_non_null(strstr(ctx.message, "another folder"));
+  assert_int_equal(s.count, 0);
   unlink(path);
   rmdir(folder);
 }
@@ -260,7 +447,13 @@ int main(void) {
       cmocka_unit_test(recipe_reads_back_what_it_writes),
       cmocka_unit_test(bad_recipes_say_why),
       cmocka_unit_test(record_keeps_every_field),
+      cmocka_unit_test(record_notices_every_changed_byte),
+      cmocka_unit_test(record_refuses_absurd_numbers),
+      cmocka_unit_test(record_keeps_a_name_of_any_bytes),
       cmocka_unit_test(journal_drops_what_is_torn),
+      cmocka_unit_test(journal_salvages_what_is_whole),
+      cmocka_unit_test(journal_takes_no_memory_for_a_hole),
+      cmocka_unit_test(journal_knows_earlier_ones_and_other_files),
       cmocka_unit_test(folder_has_one_owner),
   };
   return cmocka_run_group_tests_name("parts of a lot", tests, NULL, NULL);

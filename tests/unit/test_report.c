@@ -83,7 +83,11 @@ static void same_number(const cJSON *json, double value) {
 static void same_field(const cJSON *object, const fg_report_field *field, const void *values) {
   char u_name[64];
   const char *dot = strchr(field->name, '.'), *name = dot ? dot + 1 : field->name;
-  if (dot) object = member(object, "overall");
+  if (dot) {
+    char group[64];
+    snprintf(group, sizeof group, "%.*s", (int)(dot - field->name), field->name);
+    object = member(object, group);
+  }
   snprintf(u_name, sizeof u_name, "u_%s", name);
   if (field->kind == FG_FIELD_PAIR) {
     double value[2], u[2];
@@ -128,6 +132,8 @@ static void json_has_the_agreed_names(void **state) {
                                            "height_mm",
                                            "clearance_mm",
                                            "clearance_error",
+                                           "height_fitted_mm",
+                                           "clearance_fitted_mm",
                                            "intersection_angle_deg",
                                            "height_model_mm",
                                            "radius_error_pct",
@@ -180,8 +186,8 @@ static void every_flag_has_its_words(void **state) {
     foil |= words->flag;
   for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++)
     bump |= words->flag;
-  assert_int_equal(foil, 2 * FG_FOIL_NOT_MEASURED - 1);
-  assert_int_equal(bump, 2 * FG_BUMP_OUT_OF_TOLERANCE - 1);
+  assert_int_equal(foil, FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_UNEQUAL_RESOLUTION - 1));
+  assert_int_equal(bump, FG_BUMP_BEYOND_MODEL_REGION | (2 * FG_BUMP_TOUCHES_OTHER - 1));
 }
 
 static void any_path_gives_valid_json(void **state) {
@@ -190,8 +196,7 @@ static void any_path_gives_valid_json(void **state) {
   cJSON *json = json_of(&all->report);
   const cJSON *path = member(cJSON_GetArrayItem(member(json, "inputs"), 0), "path");
   assert_string_equal(path->valuestring,
-                      "tab\there \xC3\xA4 bad\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD"
-                      "\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD \"q\\\x7F");
+                      "tab\there \xC3\xA4 bad\\xFF\\xC0\\xAF\\xED\\xA0\\x80 \"q\\\x7F");
   cJSON_Delete(json);
 }
 
@@ -246,46 +251,151 @@ static void verdict_considers_the_uncertainty(void **state) {
   }
 }
 
+static fg_report_outcome outcome_of(const fixture *all) {
+  fg_context ctx = {0};
+  fg_report_outcome outcome;
+  assert_int_equal(fg_report_judge(&ctx, &all->report, &outcome), FG_OK);
+  return outcome;
+}
+
 static void a_bump_beyond_its_limit_is_flagged(void **state) {
   fixture *all = *state;
-  fg_context ctx = {0};
-  fg_foil *foil = &all->measurement.foils[0];
-  fg_report_outcome outcome;
-  synthetic_tolerance(&all->design, "radius_error_pct", -INFINITY, 2.0); /* bump 1 has 2.195 */
+  const fg_foil *foil = &all->measurement.foils[0];
+  synthetic_tolerance(&all->design, "radius_error_pct", -INFINITY, 2.0); /* bump 1: 2.195 */
   synthetic_tolerance(&all->design, "overall.radius_mm", 20.9, 21.0);
-  fg_foil_judge(&all->design, foil);
-  assert_false(foil->in_tolerance);
-  assert_int_equal(foil->bumps[0].flags, FG_BUMP_OUT_OF_TOLERANCE);
-  assert_int_equal(foil->bumps[1].flags, 0);
-  assert_int_equal(fg_report_judge(&ctx, &all->report, &outcome), FG_OK);
+  assert_int_equal(fg_bump_flags(&all->design, foil, &foil->bumps[0]), FG_BUMP_OUT_OF_TOLERANCE);
+  assert_int_equal(fg_bump_flags(&all->design, foil, &foil->bumps[1]), 0);
+  fg_report_outcome outcome = outcome_of(all);
   assert_int_equal(outcome.exceeded, 1);
   assert_int_equal(outcome.not_measured, 0);
   assert_int_equal(outcome.verdict, FG_VERDICT_FAIL);
+  assert_int_equal(fg_outcome_exit_code(&outcome), 1);
 
   all->design.tolerances[0].upper = 2.5;
-  fg_foil_judge(&all->design, foil);
-  assert_true(foil->in_tolerance);
-  assert_int_equal(foil->bumps[0].flags, 0);
+  assert_int_equal(outcome_of(all).verdict, FG_VERDICT_PASS);
+  assert_int_equal(fg_bump_flags(&all->design, foil, &foil->bumps[0]), 0);
   all->design.tolerances[1].lower = 20.96;
-  fg_foil_judge(&all->design, foil);
-  assert_false(foil->in_tolerance);
+  assert_int_equal(outcome_of(all).verdict, FG_VERDICT_FAIL);
 }
 
-static void a_bump_that_lacks_is_not_passed(void **state) {
+/* Beyond its limit, but within U: neither exceeded nor passed, wherever it is told. */
+static void a_value_within_its_uncertainty_is_not_exceeded(void **state) {
+  fixture *all = *state;
+  const fg_foil *foil = &all->measurement.foils[0];
+  synthetic_tolerance(&all->design, "radius_error_pct", -INFINITY, 2.19); /* 2.195 ± 0.013 */
+  fg_report_outcome outcome = outcome_of(all);
+  assert_int_equal(outcome.exceeded, 0);
+  assert_int_equal(outcome.undecided, 1);
+  assert_int_equal(fg_outcome_exit_code(&outcome), 3);
+  assert_int_equal(fg_bump_flags(&all->design, foil, &foil->bumps[0]), 0);
+  cJSON *json = json_of(&all->report);
+  assert_true(cJSON_IsFalse(member(first_foil(json), "in_tolerance")));
+  const cJSON *first = cJSON_GetArrayItem(member(first_foil(json), "judgements"), 0);
+  assert_true(cJSON_IsFalse(member(first, "exceeded")));
+  assert_string_equal(member(first, "verdict")->valuestring, "cannot_tell");
+  cJSON_Delete(json);
+  char *table = text_of(fg_report_write_table, &all->report);
+  assert_non_null(strstr(table, "CANNOT TELL: a limit lies within ± of 1 value(s)"));
+  assert_null(strstr(table, "out_of_tolerance"));
+  free(table);
+}
+
+static void lose_bump(fg_foil *foil, size_t index) {
+  foil->bump_count--;
+  memmove(&foil->bumps[index], &foil->bumps[index + 1],
+          (foil->bump_count - index) * sizeof *foil->bumps);
+}
+
+static void a_missing_bump_rejects_the_foil(void **state) {
   fixture *all = *state;
   fg_context ctx = {0};
   fg_foil *foil = &all->measurement.foils[0];
-  fg_judgement *list;
-  size_t count;
+  fg_decision decision;
+  char words[200];
   synthetic_tolerance(&all->design, "height_mm", 0.5, 0.6);
-  memmove(&foil->bumps[3], &foil->bumps[4], 5 * sizeof *foil->bumps); /* number 4 is gone */
-  foil->bump_count = 8;
-  assert_int_equal(fg_foil_judgements(&ctx, &all->design, foil, &list, &count), FG_OK);
-  assert_int_equal(count, 9);
-  for (size_t i = 0; i < count; i++)
-    assert_int_equal(list[i].verdict, i == 3 ? FG_VERDICT_NOT_MEASURED : FG_VERDICT_PASS);
-  assert_int_equal(fg_judgements_verdict(list, count), FG_VERDICT_NOT_MEASURED);
-  free(list);
+  lose_bump(foil, 3); /* number 4 */
+  assert_int_equal(fg_foil_decide(&ctx, &all->design, foil, &decision), FG_OK);
+  assert_int_equal(decision.count, 9);
+  for (size_t i = 0; i < decision.count; i++) {
+    assert_int_equal(decision.judgements[i].verdict, i == 3 ? FG_VERDICT_FAIL : FG_VERDICT_PASS);
+    assert_int_equal(decision.judgements[i].missing, i == 3);
+  }
+  assert_int_equal(decision.outcome.verdict, FG_VERDICT_FAIL);
+  assert_int_equal(decision.outcome.rejected, 1);
+  assert_int_equal(decision.outcome.exceeded, 0);
+  assert_int_equal(fg_outcome_exit_code(&decision.outcome), 1);
+  fg_decision_free(&decision);
+  assert_true(fg_foil_defect(&all->design, foil, words, sizeof words));
+  assert_string_equal(words, "bump 4 is missing (8 found, the design has 9)");
+}
+
+/* Without tolerances nothing is judged but what is seen to be missing. */
+static void other_counts_without_tolerances_are_a_flag(void **state) {
+  fixture *all = *state;
+  fg_foil *foil = &all->measurement.foils[0];
+  lose_bump(foil, 8);
+  foil->flags = FG_FOIL_BUMP_COUNT;
+  assert_int_equal(outcome_of(all).verdict, FG_VERDICT_NONE);
+  lose_bump(foil, 4);
+  foil->flags |= FG_FOIL_MISSING_BUMP;
+  assert_int_equal(outcome_of(all).verdict, FG_VERDICT_FAIL);
+}
+
+/* A border may hide bumps behind the last one that was found. */
+static void what_the_border_hides_is_not_measured(void **state) {
+  fixture *all = *state;
+  fg_foil *foil = &all->measurement.foils[0];
+  lose_bump(foil, 8);
+  foil->flags = FG_FOIL_BUMP_COUNT | FG_FOIL_TOUCHES_BORDER;
+  synthetic_tolerance(&all->design, "thickness_mm", 0.09, 0.11);
+  fg_report_outcome outcome = outcome_of(all);
+  assert_int_equal(outcome.verdict, FG_VERDICT_NOT_MEASURED);
+  assert_int_equal(fg_outcome_exit_code(&outcome), 2);
+  synthetic_tolerance(&all->design, "height_mm", 0.5, 0.6);
+  assert_int_equal(outcome_of(all).not_measured, 1);
+  assert_int_equal(outcome_of(all).rejected, 0);
+}
+
+/* What was not measured is null, and never within tolerance. */
+static void a_foil_that_was_given_up_has_no_values(void **state) {
+  fixture *all = *state;
+  fg_foil *foil = &all->measurement.foils[0];
+  synthetic_tolerance(&all->design, "thickness_mm", 0.09, 0.11);
+  foil->bump_count = 0;
+  fg_foil_give_up(foil, "no arc was found");
+  assert_false(fg_foil_is_measured(foil));
+  cJSON *json = json_of(&all->report);
+  const cJSON *overall = member(first_foil(json), "overall");
+  assert_true(cJSON_IsFalse(member(first_foil(json), "in_tolerance")));
+  assert_true(cJSON_IsNull(member(overall, "radius_mm")));
+  assert_true(cJSON_IsNull(member(overall, "u_radius_mm")));
+  assert_true(cJSON_IsNull(member(overall, "rms_um")));
+  assert_true(cJSON_IsNull(member(first_foil(json), "thickness_mm")));
+  assert_true(cJSON_IsNull(member(first_foil(json), "orientation")));
+  cJSON_Delete(json);
+  char *csv = text_of(fg_report_write_csv, &all->report);
+  assert_non_null(strstr(csv, "\",1,,not_measured,,,,"));
+  free(csv);
+}
+
+/* Its values stand and are not judged. */
+static void a_part_of_another_design_passes_nothing(void **state) {
+  fixture *all = *state;
+  fg_foil *foil = &all->measurement.foils[0];
+  synthetic_tolerance(&all->design, "height_mm", 0.5, 0.6);
+  foil->flags = FG_FOIL_NOT_THIS_DESIGN;
+  snprintf(foil->error, sizeof foil->error, "47 bumps where the design has 9");
+  fg_report_outcome outcome = outcome_of(all);
+  assert_int_equal(outcome.verdict, FG_VERDICT_NOT_MEASURED);
+  assert_int_equal(fg_bump_verdict(&all->design, foil, foil->bumps), FG_VERDICT_NOT_MEASURED);
+  cJSON *json = json_of(&all->report);
+  same_fields(first_foil(json), FG_REPORT_FOIL, foil);
+  assert_true(cJSON_IsFalse(member(first_foil(json), "in_tolerance")));
+  assert_null(cJSON_GetObjectItem(first_foil(json), "judgements"));
+  cJSON_Delete(json);
+  char *table = text_of(fg_report_write_table, &all->report);
+  assert_non_null(strstr(table, "NOT MEASURED: 47 bumps where the design has 9"));
+  free(table);
 }
 
 static void an_unknown_tolerance_is_refused(void **state) {
@@ -342,6 +452,7 @@ static void table_says_what_plus_minus_is(void **state) {
   char *text = text_of(fg_report_write_table, &all->report);
   assert_non_null(strstr(text, "overall radius 20.9500 ± 0.0010 mm"));
   assert_non_null(strstr(text, "3.39288 0.00042"));
+  assert_non_null(strstr(text, "C_fit: pressed into the sleeve"));
   assert_non_null(strstr(text, "± is U = 2 u"));
   free(text);
 }
@@ -384,7 +495,12 @@ int main(void) {
       TEST(numbers_are_plain),
       TEST(verdict_considers_the_uncertainty),
       TEST(a_bump_beyond_its_limit_is_flagged),
-      TEST(a_bump_that_lacks_is_not_passed),
+      TEST(a_value_within_its_uncertainty_is_not_exceeded),
+      TEST(a_missing_bump_rejects_the_foil),
+      TEST(other_counts_without_tolerances_are_a_flag),
+      TEST(what_the_border_hides_is_not_measured),
+      TEST(a_foil_that_was_given_up_has_no_values),
+      TEST(a_part_of_another_design_passes_nothing),
       TEST(an_unknown_tolerance_is_refused),
       TEST(csv_has_a_line_per_bump),
       TEST(points_hold_both_edges_and_the_midline),

@@ -164,8 +164,7 @@ static void a_page_says_the_verdict_and_why(void **state) {
   assert_non_null(strstr(page, "<td class=\"fail\">2.195 <i>± 0.013</i></td>"));
   free(page);
 
-  foil->flags = FG_FOIL_NOT_MEASURED;
-  snprintf(foil->error, sizeof foil->error, "no arc was found");
+  fg_foil_give_up(foil, "no arc was found");
   foil->bump_count = 0;
   foil->strip.count = 0;
   page = page_of(&report);

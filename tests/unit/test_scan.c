@@ -252,56 +252,12 @@ static void zero_dpi_from_a_user_is_wrong(void **state) {
   assert_int_equal(fg_scan_check_dpi(&ctx, 4800), FG_OK);
 }
 
-typedef struct hashing {
-  fg_scan *scan;
-  char hex[65];
-  fg_status status;
-} hashing;
-
-static void *hash_repeatedly(void *argument) {
-  hashing *job = argument;
-  for (int i = 0; i < 20; i++) {
-    job->status = fg_scan_sha256(NULL, job->scan, job->hex);
-    if (job->status != FG_OK) break;
-  }
-  return NULL;
-}
-
 /* The sum of the same bytes by nettle's plain call. */
 static void known_sum(const bytes *file, char hex[65]) {
   struct sha256_ctx sum;
   sha256_init(&sum);
   sha256_update(&sum, file->size, file->data);
   fg_sha256_finish(&sum, hex);
-}
-
-static void hash_runs_beside_reading(void **state) {
-  (void)state;
-  picture p = plain;
-  p.width = 1500;
-  p.height = 400;
-  uint16_t *samples = make_samples(&p, 5);
-  bytes file = write_png(&p, samples);
-  char *path = save_bytes(file.data, file.size);
-  uint8_t *rows = malloc((size_t)p.width * p.height);
-  hashing job = {0};
-  assert_int_equal(fg_scan_open(NULL, path, NULL, &job.scan), FG_OK);
-  pthread_t thread;
-  assert_int_equal(pthread_create(&thread, NULL, hash_repeatedly, &job), 0);
-  for (int64_t y = 0; y < 400; y++)
-    assert_int_equal(fg_scan_read_rows(NULL, job.scan, 1, rows + y * 1500, 1500), FG_OK);
-  pthread_join(thread, NULL);
-  check_rows(&p, samples, rows, 1500);
-  char hex[65];
-  known_sum(&file, hex);
-  assert_int_equal(job.status, FG_OK);
-  assert_string_equal(job.hex, hex);
-  fg_scan_close(job.scan);
-  unlink(path);
-  free(path);
-  free(rows);
-  free(file.data);
-  free(samples);
 }
 
 typedef struct sending {
@@ -370,7 +326,6 @@ int main(void) {
       cmocka_unit_test(equal_colours_keep_their_value),
       cmocka_unit_test(resolution_comes_from_file_or_caller),
       cmocka_unit_test(zero_dpi_from_a_user_is_wrong),
-      cmocka_unit_test(hash_runs_beside_reading),
       cmocka_unit_test(pipe_is_read_hashed_and_drained),
   };
   return cmocka_run_group_tests_name("scan", tests, NULL, NULL);

@@ -1,0 +1,58 @@
+#include "cli/standard.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "core/file.h"
+#include "core/utf8.h"
+
+/* What would be lost is an error: /dev/null is opened the wrong way round for input and output. */
+static void open_closed(void) {
+  static const int modes[] = {O_WRONLY, O_RDONLY, O_WRONLY};
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
+    if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", modes[descriptor]) != descriptor)
+      _exit(fg_status_exit_code(FG_ERR_IO));
+}
+
+static void flush_output(void) {
+  fg_context ctx;
+  errno = 0;
+  if (fflush(stdout) == 0 && !ferror(stdout)) return;
+  fg_status status = fg_output_fail(&ctx, "standard output", errno ? errno : EIO);
+  fprintf(stderr, "foilgauge: %s\n", ctx.message);
+  _exit(fg_status_exit_code(status));
+}
+
+/* Whatever is said may hold names and texts from files, and no control character of those reaches a
+ * terminal or a log. */
+static ssize_t say(void *unused, const char *bytes, size_t size) {
+  enum { PIECE = 1024 };
+  char visible[4 * PIECE];
+  (void)unused;
+  for (size_t at = 0; at < size;) {
+    size_t length, piece = size - at < PIECE ? size - at : PIECE;
+    at += fg_utf8_make_visible(bytes + at, piece, at + piece == size, visible, &length);
+    if (write(STDERR_FILENO, visible, length) < 0) return 0;
+  }
+  return (ssize_t)size;
+}
+
+static void filter_errors(void) {
+  static const cookie_io_functions_t functions = {.write = say};
+  FILE *stream = fopencookie(NULL, "w", functions);
+  if (!stream) return;
+  setvbuf(stream, NULL, _IONBF, 0);
+  stderr = stream;
+}
+
+void fg_standard_start(void) {
+  /* Help texts are written at once, so that a write that fails is the one whose errno is there. */
+  static char buffer[1 << 16];
+  open_closed();
+  if (!isatty(STDOUT_FILENO)) setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
+  atexit(flush_output);
+  filter_errors();
+}

@@ -1,0 +1,46 @@
+#include "core/csv.h"
+
+#include <string.h>
+
+#include "core/extended.h"
+
+static bool begins_formula(const char *text, size_t length) {
+  size_t at = 0;
+  while (at < length && text[at] == '\'')
+    at++;
+  return at < length && memchr("=+-@\t\r", text[at], 6) != NULL;
+}
+
+bool fg_csv_needs_apostrophe(const char *text) {
+  fg_extended number;
+  size_t length = strlen(text);
+  return begins_formula(text, length) && !fg_extended_parse(text, length, &number);
+}
+
+/* Spaces at the ends would be dropped by a reader. */
+bool fg_csv_needs_quotes(const char *text) {
+  size_t length = strlen(text);
+  return strpbrk(text, ",;\t\"\r\n") || (length && (text[0] == ' ' || text[length - 1] == ' '));
+}
+
+static size_t put_byte(FILE *out, const char *text) {
+  fputc(*text, out);
+  return 1;
+}
+
+void fg_csv_put_text(FILE *out, const char *text, fg_csv_character *put) {
+  bool quoted = fg_csv_needs_quotes(text);
+  if (quoted) fputc('"', out);
+  if (fg_csv_needs_apostrophe(text)) fputc('\'', out);
+  while (*text) {
+    if (*text == '"') fputc('"', out);
+    text += put ? put(out, text) : put_byte(out, text);
+  }
+  if (quoted) fputc('"', out);
+}
+
+void fg_csv_take_apostrophe(const char **text, size_t *length) {
+  if (!*length || **text != '\'' || !begins_formula(*text, *length)) return;
+  ++*text;
+  --*length;
+}

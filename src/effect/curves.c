@@ -1,0 +1,142 @@
+/* Free curves, for what no listed effect explains: one row each. */
+#include <math.h>
+
+#include "effect/midline.h"
+#include "effect/table.h"
+
+/* Weight of a curve's coefficients; harmonics of the edge's direction are told from the geometry
+ * less well (tuned on reports/loop_scans.md, tier curves). */
+#define FREE_HOLD   1e-3
+#define NORMAL_HOLD 4e-2
+/* Fewer clean discs than this have a curve over the picture follow the form of each of them; the
+ * same for a curve over the direction of the edge, which all of them share. */
+enum { CURVE_DISCS = 8, NORMAL_DISCS = 3 };
+
+#define A_CURVE                                                                                    \
+  .sought = FG_EFFECT_CURVE, .numbers = FG_EFFECT_SHAPE, .equation = "a smooth curve, freely fitted"
+/* A curve over one axis of the glass. */
+#define OVER_GLASS(name, said, over, to, function)                                                 \
+  {                                                                                                \
+    .id = name, .words = said, A_CURVE, .coordinate = over, .moves = to,                           \
+    .on_discs = FG_EFFECT_ON_CLEAN_DISCS, .discs_least = CURVE_DISCS, .columns = FG_FIELD_COLUMNS, \
+    .glass = function, .coarse = FG_EFFECT_SPLINES, .hold = FREE_HOLD                              \
+  }
+
+static void free_curve(const fg_field_frame *frame, int axis, double at,
+                       double values[FG_FIELD_COLUMNS]) {
+  fg_field_splines(frame->first_mm[axis], frame->last_mm[axis], frame->knots, at, values);
+}
+
+static void x_over_x(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
+  (void)shape;
+  double values[FG_FIELD_COLUMNS];
+  free_curve(frame, 0, at.x, values);
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){values[i], 0};
+}
+
+static void y_over_x(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
+  (void)shape;
+  double values[FG_FIELD_COLUMNS];
+  free_curve(frame, 0, at.x, values);
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){0, values[i]};
+}
+
+static void x_over_y(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
+  (void)shape;
+  double values[FG_FIELD_COLUMNS];
+  free_curve(frame, 1, at.y, values);
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){values[i], 0};
+}
+
+static void y_over_y(const fg_field_frame *frame, const double *shape, fg_point at, fg_point *d) {
+  (void)shape;
+  double values[FG_FIELD_COLUMNS];
+  free_curve(frame, 1, at.y, values);
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    d[i] = (fg_point){0, values[i]};
+}
+
+static size_t phi(const fg_points *points, const fg_points_row *row, double *values) {
+  size_t count = fg_midline_legendre(row, 3, 1, 16, values);
+  count += fg_midline_stretch(points, row, 3, values + count);
+  return count + fg_midline_stretch(points, row, 4, values + count);
+}
+
+/* Over the foil. */
+static size_t free_s(const fg_points *points, const fg_points_row *row, double share,
+                     double *values) {
+  fg_field_splines(points->psi_rad[0], points->psi_rad[1], points->frame.knots, row->psi, values);
+  for (int i = 0; i < FG_FIELD_COLUMNS; i++)
+    values[i] *= share;
+  return FG_FIELD_COLUMNS;
+}
+
+static size_t foil(const fg_points *points, const fg_points_row *row, double *values) {
+  return free_s(points, row, fg_midline_along_normal(row), values);
+}
+
+static size_t foil_radial(const fg_points *points, const fg_points_row *row, double *values) {
+  return free_s(points, row, fg_midline_along_radius(row), values);
+}
+
+/* Over the direction of the edge in the scan: what the edge model does not know. */
+static size_t normal(const fg_points *points, const fg_points_row *row, double *values) {
+  enum { HARMONICS = 8, OF_DISCS = 6 }; /* a disc has a form of its own */
+  for (int i = 0; i < HARMONICS; i++) {
+    bool used = i < OF_DISCS || !points->discs;
+    values[2 * i] = used ? cos((i + 2) * row->normal_rad) : 0;
+    values[2 * i + 1] = used ? sin((i + 2) * row->normal_rad) : 0;
+  }
+  return 2 * HARMONICS;
+}
+
+const fg_effect fg_effects_curves[] = {
+    OVER_GLASS("free.scan.x.dx", "a shift in x that varies over x", FG_EFFECT_X, "x", x_over_x),
+    OVER_GLASS("free.scan.x.dy", "a shift in y that varies over x", FG_EFFECT_X, "y", y_over_x),
+    OVER_GLASS("free.scan.y.dx", "a shift in x that varies over y", FG_EFFECT_Y, "x", x_over_y),
+    OVER_GLASS("free.scan.y.dy", "a shift in y that varies over y", FG_EFFECT_Y, "y", y_over_y),
+    {.id = "free.foil.s",
+     .form = "normal",
+     .words = "a deviation along the foil",
+     A_CURVE,
+     .coordinate = FG_EFFECT_FOIL,
+     .moves = "along the normal",
+     .midline = foil,
+     .coarse = FG_EFFECT_SPLINES,
+     .hold = FREE_HOLD},
+    {.id = "free.foil.s",
+     .form = "radial",
+     .second = true,
+     .words = "a deviation along the foil",
+     A_CURVE,
+     .coordinate = FG_EFFECT_FOIL,
+     .moves = "along the radius",
+     .midline = foil_radial,
+     .coarse = FG_EFFECT_LEFT_OUT,
+     .hold = FREE_HOLD},
+    {.id = "free.bump.phi",
+     .words = "a deviation of every bump from its circle",
+     A_CURVE,
+     .coordinate = FG_EFFECT_PHI,
+     .moves = "along the normal",
+     .midline = phi,
+     .coarse = FG_EFFECT_SMOOTHER,
+     .rough = {8, 16}, /* of sixteen polynomials */
+     .hold = FREE_HOLD,
+     .bends = true},
+    {.id = "free.edge.normal",
+     .words = "a shift that depends on the edge's direction",
+     A_CURVE,
+     .coordinate = FG_EFFECT_NORMAL,
+     .moves = "along the normal",
+     .on_discs = FG_EFFECT_ON_CLEAN_DISCS,
+     .discs_least = NORMAL_DISCS,
+     .midline = normal,
+     .coarse = FG_EFFECT_SMOOTHER,
+     .rough = {12, FG_FIELD_COLUMNS},
+     .hold = NORMAL_HOLD},
+    {.id = NULL},
+};

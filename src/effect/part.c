@@ -1,0 +1,99 @@
+/* What is wrong with a part, one row an effect: how it moves the midline stands before the rows. */
+#include <math.h>
+
+#include "effect/midline.h"
+#include "effect/table.h"
+
+/* a cos 2(psi - psi0): a cosine and a sine. */
+static size_t cosines(const fg_points_row *row, double share, double *values) {
+  values[0] = cos(2 * row->psi) * share;
+  values[1] = sin(2 * row->psi) * share;
+  return 2;
+}
+
+static size_t ovality(const fg_points *points, const fg_points_row *row, double *values) {
+  (void)points;
+  return cosines(row, fg_midline_along_normal(row), values);
+}
+
+static size_t ovality_radial(const fg_points *points, const fg_points_row *row, double *values) {
+  (void)points;
+  return cosines(row, fg_midline_along_radius(row), values);
+}
+
+static double cubic_of_psi(const fg_points *points, const fg_points_row *row) {
+  double u = row->psi / points->parts[row->part].half_span_rad;
+  return u * u * u;
+}
+
+static size_t spiral(const fg_points *points, const fg_points_row *row, double *values) {
+  values[0] = cubic_of_psi(points, row) * fg_midline_along_normal(row);
+  return 1;
+}
+
+static size_t spiral_radial(const fg_points *points, const fg_points_row *row, double *values) {
+  values[0] = cubic_of_psi(points, row) * fg_midline_along_radius(row);
+  return 1;
+}
+
+/* A deviation takes the arc's centre with it, and so the zero of the angle: an even one shows as
+ * its slope too, of which P3 is what a circle leaves, and an odd one as P4. */
+static size_t crown(const fg_points *points, const fg_points_row *row, double *values) {
+  size_t count = fg_midline_legendre(row, 4, 2, 4, values);
+  count += fg_midline_stretch(points, row, 4, values + count);
+  return count + fg_midline_legendre(row, 3, 1, 1, values + count);
+}
+
+static size_t skew(const fg_points *points, const fg_points_row *row, double *values) {
+  size_t count = fg_midline_legendre(row, 3, 2, 4, values);
+  count += fg_midline_stretch(points, row, 3, values + count);
+  return count + fg_midline_legendre(row, 4, 1, 1, values + count);
+}
+
+const fg_effect fg_effects_part[] = {
+    {.id = "part.ovality",
+     .form = "normal",
+     .words = "an oval foil",
+     .equation = "a cos 2(ψ − ψ0)",
+     .coordinate = FG_EFFECT_FOIL,
+     .numbers = FG_EFFECT_OVAL,
+     .on_discs = FG_EFFECT_ON_ONE_DISC,
+     .midline = ovality,
+     .ring = FG_EFFECT_RING_OF_PART},
+    {.id = "part.ovality",
+     .form = "radial",
+     .second = true,
+     .words = "an oval foil",
+     .equation = "a cos 2(ψ − ψ0)",
+     .coordinate = FG_EFFECT_FOIL,
+     .numbers = FG_EFFECT_OVAL,
+     .midline = ovality_radial},
+    {.id = "part.spiral",
+     .form = "normal",
+     .words = "a spiral foil",
+     .equation = "a (ψ/ψ_end)³",
+     .coordinate = FG_EFFECT_FOIL,
+     .midline = spiral},
+    {.id = "part.spiral",
+     .form = "radial",
+     .second = true,
+     .words = "a spiral foil",
+     .equation = "a (ψ/ψ_end)³",
+     .coordinate = FG_EFFECT_FOIL,
+     .midline = spiral_radial},
+    {.id = "part.bump_crown",
+     .words = "bumps flatter or sharper at the crown than a circle",
+     .equation = "even in the place in the arc, led by a P4",
+     .coordinate = FG_EFFECT_PHI,
+     .numbers = FG_EFFECT_LED,
+     .midline = crown,
+     .bends = true},
+    {.id = "part.bump_skew",
+     .words = "bumps that lean to one side",
+     .equation = "odd in the place in the arc, led by a P3",
+     .coordinate = FG_EFFECT_PHI,
+     .numbers = FG_EFFECT_LED,
+     .midline = skew,
+     .bends = true},
+    {.id = NULL},
+};

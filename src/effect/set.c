@@ -1,0 +1,52 @@
+#include "effect/set.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "effect/columns.h"
+
+fg_field fg_scan_field(const fg_scan_effect *effect) {
+  fg_field field = fg_effect_field(effect->kind);
+  for (size_t c = 0; c < field.columns; c++) {
+    field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
+    field.u_amplitude_mm[c] = effect->u_coefficient_um[c] / 1000;
+  }
+  for (size_t s = 0; s < field.shapes; s++) {
+    field.shape[s] = effect->shape[s];
+    field.u_shape[s] = effect->u_shape[s];
+  }
+  return field;
+}
+
+void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
+  memset(fields, 0, sizeof *fields);
+  fields->frame = points->frame;
+  for (size_t e = 0; e < set->count && fields->count < FG_FIELDS_MAX; e++)
+    if (set->effects[e].kind->glass)
+      fields->fields[fields->count++] = fg_scan_field(&set->effects[e]);
+}
+
+fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
+                        double **shift_mm) {
+  size_t rows = points->row_count;
+  double *columns = NULL;
+  *shift_mm = NULL;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof **shift_mm, (void **)shift_mm));
+  fg_status status =
+      fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns);
+  for (size_t e = 0; e < set->count && status == FG_OK; e++) {
+    const fg_scan_effect *effect = &set->effects[e];
+    if (effect->kind->glass) continue;
+    size_t count = fg_effect_columns(points, effect->kind, effect->shape, columns);
+    for (size_t c = 0; c < count; c++)
+      for (size_t i = 0; i < rows; i++)
+        (*shift_mm)[i] += effect->coefficient_um[c] / 1000 * columns[c * rows + i];
+  }
+  free(columns);
+  if (status != FG_OK) {
+    free(*shift_mm);
+    *shift_mm = NULL;
+  }
+  return status;
+}

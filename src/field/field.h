@@ -1,0 +1,51 @@
+/* What a scanner does to a place on the glass: true position = nominal position + d(x, y), in mm of
+ * the scan. d is a sum of columns, each with a linear amplitude in mm; shapes enter non-linearly.
+ * Amplitudes are what a field does at FG_FIELD_HALF_MM from the middle of the scan, so that they
+ * compare.
+ */
+#ifndef FG_FIELD_FIELD_H
+#define FG_FIELD_FIELD_H
+
+#include <stddef.h>
+
+#include "foilgauge/circle.h"
+
+enum { FG_FIELD_COLUMNS = 24, FG_FIELD_SHAPES = 2, FG_FIELDS_MAX = 8 };
+#define FG_FIELD_HALF_MM 18.0
+
+/* Where a scan's fields live. */
+typedef struct fg_field_frame {
+  double centre_mm[2];            /* of the picture */
+  double low_mm[2], high_mm[2];   /* of the picture */
+  double first_mm[2], last_mm[2]; /* of the edges that were measured: free curves have their knots
+                                     there, and stay constant beyond */
+  size_t knots;                   /* of free curves, at most FG_FIELD_COLUMNS */
+} fg_field_frame;
+
+/* d of every column for unit amplitude. */
+typedef void fg_field_basis(const fg_field_frame *frame, const double *shape, fg_point at,
+                            fg_point d[FG_FIELD_COLUMNS]);
+
+/* One field with numbers. */
+typedef struct fg_field {
+  const char *id;
+  fg_field_basis *basis;
+  size_t columns, shapes;
+  double amplitude_mm[FG_FIELD_COLUMNS], u_amplitude_mm[FG_FIELD_COLUMNS];
+  double shape[FG_FIELD_SHAPES], u_shape[FG_FIELD_SHAPES];
+} fg_field;
+
+typedef struct fg_field_list {
+  fg_field_frame frame;
+  fg_field fields[FG_FIELDS_MAX];
+  size_t count;
+} fg_field_list;
+
+/* d at a nominal position. */
+fg_point fg_field_at(const fg_field_list *list, fg_point nominal);
+
+/* All columns of a curve over [low, high]: cubic B-splines, constant beyond; 0 from `knots` on. */
+void fg_field_splines(double low, double high, size_t knots, double at,
+                      double values[FG_FIELD_COLUMNS]);
+
+#endif

@@ -1,0 +1,66 @@
+#include "geometry/recognise.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* A part is not the design's foil beyond these, chosen so that no foil of the design is, whatever
+ * springback, damage and scanner have done to it. */
+#define OTHER_OVERALL 2.0 /* overall radius over the design's, or the inverse */
+/* Chord of the bump that is nearest to the design's, likewise. Springback of 40 % in the radius and
+ * crushing move it by 5 % (the arc length stays), the radius itself by a factor of three. */
+#define OTHER_CHORD 2.0
+/* Bumps over the design's count. Fewer are bumps that are missing, a few more are lands or what
+ * touches the foil, taken for bumps. */
+#define OTHER_COUNT 2.0
+#define FEW_BUMPS   4
+/* u of the overall radius, relative: what its lands lie on is no circle. Foils have below 0.1 %. */
+#define OTHER_U 0.1
+
+/* The logarithm of how many times a value is its design's; 0 when it is not known. */
+static double times_off(double value, double design) {
+  return value > 0 ? fabs(log(value / design)) : 0;
+}
+
+static double chord_mm(double radius_mm, double angle_deg) {
+  return 2 * radius_mm * sin(angle_deg / 2 * M_PI / 180);
+}
+
+/* The chord that is nearest to the design's: NaN when no bump has one. */
+static double nearest_chord(double design_mm, const fg_foil *foil, size_t *fitted) {
+  double nearest = NAN;
+  *fitted = 0;
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    double chord = chord_mm(foil->bumps[i].radius_mm, foil->bumps[i].bump_angle_deg);
+    *fitted += isfinite(foil->bumps[i].radius_mm) != 0;
+    if (!isfinite(chord)) continue;
+    if (isnan(nearest) || times_off(chord, design_mm) < times_off(nearest, design_mm))
+      nearest = chord;
+  }
+  return nearest;
+}
+
+void fg_foil_recognise(const fg_design *design, fg_foil *foil) {
+  const fg_overall *o = &foil->overall;
+  size_t fitted, stated = design->bump_count, bumps = foil->bump_count;
+  double design_mm = chord_mm(design->bump_radius_mm, design->bump_angle_deg);
+  double bump_mm = nearest_chord(design_mm, foil, &fitted);
+  char why[sizeof foil->error - 64] = "";
+  if (times_off(o->radius_mm, design->overall_radius_mm) > log(OTHER_OVERALL))
+    snprintf(why, sizeof why, "an overall radius of %.4g mm, where the design has %.4g mm",
+             o->radius_mm, design->overall_radius_mm);
+  else if (o->u_radius_mm > OTHER_U * o->radius_mm)
+    snprintf(why, sizeof why, "an overall radius of %.4g mm that is uncertain by %.2g mm",
+             o->radius_mm, o->u_radius_mm);
+  else if (2 * fitted < bumps)
+    snprintf(why, sizeof why, "%zu of %zu bumps have no circle", bumps - fitted, bumps);
+  else if (times_off(bump_mm, design_mm) > log(OTHER_CHORD))
+    snprintf(why, sizeof why,
+             "no bump is as wide as the design's (%.3g mm), the nearest has %.3g mm", design_mm,
+             bump_mm);
+  else if (stated && (double)bumps > OTHER_COUNT * (double)stated && bumps > stated + FEW_BUMPS)
+    snprintf(why, sizeof why, "%zu bumps, where the design has %zu", bumps, stated);
+  if (!why[0]) return;
+  foil->flags |= FG_FOIL_NOT_THIS_DESIGN;
+  snprintf(foil->error, sizeof foil->error,
+           "no foil of the design (or the resolution is wrong): %s", why);
+}

@@ -1,0 +1,11 @@
+/* Whether what was measured is a foil of its design at all. */
+#ifndef FG_GEOMETRY_RECOGNISE_H
+#define FG_GEOMETRY_RECOGNISE_H
+
+#include "foilgauge/foil.h"
+
+/* Flags a part that cannot be a foil of the design, whatever springback and damage have done, with
+ * the reason in `error`. */
+void fg_foil_recognise(const fg_design *design, fg_foil *foil);
+
+#endif

@@ -1,0 +1,135 @@
+/* What disturbs the strip: a cut through it, or something that lies on it or beside it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "vision/edges.h"
+
+/* Inside is so many blurs from the edges (or the middle third), beside so many and a pixel. */
+#define INSIDE_BLURS 1.5
+#define BESIDE_BLURS 2.0
+/* A cut of one row shows so much background in each third of the width, of its area. */
+#define CUT_SHARE 0.6
+/* Something beside the strip covers so much of the band over a length of one strip's width. */
+#define TOUCH_SHARE 0.3
+enum { THIRDS = 3 };
+
+/* Pixels of one station by where they lie. */
+typedef struct tally {
+  float blank[THIRDS]; /* of the background's level, within the strip */
+  float foreign[2];    /* of the strip's level, beside it */
+} tally;
+
+typedef struct trouble {
+  const fg_edge_work *work;
+  double *middle_px;
+  tally *tallies;
+  double half_px, inside_px, beside_px;
+} trouble;
+
+static bool is_disturbed(const fg_edge_work *work, size_t i) {
+  return work->stations[i].facts & FG_STATION_DISTURBED;
+}
+
+/* Where the strip must be: between the good stations on either side of a disturbed run. */
+static void find_middles(trouble *t) {
+  const fg_edge_work *work = t->work;
+  size_t count = work->reference->count, good = count;
+  double sum = 0, n = 0;
+  for (size_t i = 0; i < count; i++) {
+    const fg_edge_station *s = &work->stations[i];
+    if (!(s->weight > 0)) continue;
+    t->middle_px[i] = 0.5 * (s->edge_px[0] + s->edge_px[1]);
+    for (size_t k = good == count ? 0 : good + 1; k < i; k++) {
+      double from = good == count ? t->middle_px[i] : t->middle_px[good];
+      double share = good == count ? 0 : (double)(k - good) / (double)(i - good);
+      t->middle_px[k] = from + share * (t->middle_px[i] - from);
+    }
+    sum += s->edge_px[1] - s->edge_px[0];
+    n++;
+    good = i;
+  }
+  for (size_t k = good + 1; good < count && k < count; k++)
+    t->middle_px[k] = t->middle_px[good];
+  double blur = fmax(work->blur_px[0], work->blur_px[1]);
+  t->half_px = n > 0 ? 0.5 * sum / n : 0.5 * work->width_px;
+  t->inside_px = fmax(t->half_px - INSIDE_BLURS * blur, t->half_px / 3);
+  t->beside_px = t->half_px + BESIDE_BLURS * blur + 1;
+}
+
+/* 0 at the strip's level, 1 at the background's. */
+static double depth_of(const fg_edge_work *work, const fg_edge_station *s, int side, float value) {
+  float strip, background, rate;
+  fg_edge_tone(work->tables, s->plateau, &strip, &rate);
+  fg_edge_tone(work->tables, s->plateau + s->step[side], &background, &rate);
+  return (value - strip) / (background - strip);
+}
+
+static void tally_pixels(trouble *t) {
+  const fg_edge_work *work = t->work;
+  for (size_t c = 0; c < work->chunk_count; c++)
+    for (size_t i = 0; i < work->bands[c].count; i++) {
+      const fg_band_pixel *p = &work->bands[c].pixels[i];
+      size_t k = (size_t)p->station;
+      if (!is_disturbed(work, k)) continue;
+      double across = p->across_px - t->middle_px[k];
+      bool blank = depth_of(work, &work->stations[k], across > 0, p->value) > 0.5;
+      if (fabs(across) < t->inside_px && blank)
+        t->tallies[k].blank[(int)(THIRDS * (0.5 + 0.4999 * across / t->inside_px))]++;
+      else if (fabs(across) > t->beside_px && !blank)
+        t->tallies[k].foreign[across > 0]++;
+    }
+}
+
+/* Facts of one run of disturbed stations. */
+static unsigned name_run(const trouble *t, size_t first, size_t last) {
+  const fg_edge_work *work = t->work;
+  double blank[THIRDS] = {0}, foreign[2] = {0};
+  for (size_t i = first; i <= last; i++) {
+    for (int k = 0; k < THIRDS; k++)
+      blank[k] += t->tallies[i].blank[k];
+    for (int k = 0; k < 2; k++)
+      foreign[k] += t->tallies[i].foreign[k];
+  }
+  double row = CUT_SHARE * 2 * t->inside_px / THIRDS;
+  double band = work->width_px / 2 + work->reach_px - t->beside_px;
+  double touch = TOUCH_SHARE * 2 * t->half_px * band;
+  bool cut = blank[0] >= row && blank[1] >= row && blank[2] >= row;
+  bool touched = foreign[0] > touch || foreign[1] > touch;
+  return (cut ? FG_STATION_CUT : 0) | (touched ? FG_STATION_TOUCHED : 0);
+}
+
+/* Only within the strip's ends: beyond them there is background. */
+static void name_runs(const trouble *t, unsigned *facts) {
+  const fg_edge_work *work = t->work;
+  size_t count = work->reference->count;
+  for (size_t first = 0; first < count; first++) {
+    size_t last = first;
+    if (!is_disturbed(work, first)) continue;
+    while (last + 1 < count && is_disturbed(work, last + 1))
+      last++;
+    unsigned what = first > 0 && last + 1 < count ? name_run(t, first, last) : 0;
+    /* Dust of the strip's own brightness is no other part. */
+    if (!(*facts & FG_STRIP_TOUCHES_OTHER)) what &= ~(unsigned)FG_STATION_TOUCHED;
+    if (what & FG_STATION_CUT) *facts |= FG_STRIP_GAP;
+    for (size_t i = first; i <= last; i++)
+      work->stations[i].facts |= what;
+    first = last;
+  }
+}
+
+fg_status fg_edges_name_trouble(fg_context *ctx, fg_edge_work *work, unsigned *facts) {
+  trouble t = {.work = work};
+  size_t count = work->reference->count;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *t.middle_px, (void **)&t.middle_px));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *t.tallies, (void **)&t.tallies));
+  find_middles(&t);
+  tally_pixels(&t);
+  name_runs(&t, facts);
+exit:
+  free(t.middle_px);
+  free(t.tallies);
+  return status;
+}

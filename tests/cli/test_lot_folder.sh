@@ -1,0 +1,154 @@
+#!/bin/bash
+# What lies in a lot's folder, and among its scans: records that were changed, names of any bytes.
+set -u
+program=$(realpath "$1")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# expect CODE WORDS COMMAND...: the exit code, and words on standard error or output.
+expect() {
+  local code=$1 words=$2
+  shift 2
+  "$@" >stdout 2>stderr
+  local got=$?
+  [ "$got" = "$code" ] || fail "exit $got, not $code: $* ($(head -c 300 stderr))"
+  [ -z "$words" ] || cat stdout stderr | grep -qaE -e "$words" || fail "no '$words' in: $(cat stdout stderr)"
+}
+
+same() {
+  diff -r "$1" "$2" >difference 2>&1 || fail "$1 and $2 differ: $(head -n 3 difference)"
+}
+
+mkdir scans
+for i in 1 2 3; do
+  printf '{"schema":"foilgauge/render/1","seed":%d,"foils":[{"design":{"bump_count":3},"overall_radius_mm":20.9,
+"radius_springback":{"mean":0.05,"sd":0.05},"rotate_deg":-90}],"scanner":{"dpi":1200,"blur_px":1.0,"noise":1}}' "$i" >spec.json
+  "$program" render spec.json -o "scans/foil$i.png" || fail "render $i"
+done
+cat >recipe.json <<'R'
+{"schema": "foilgauge/recipe/1", "resamples": 500, "design": {"schema": "foilgauge/design/1", "bump_count": 3}}
+R
+lot() {
+  timeout 60 "$program" lot "$@" --recipe recipe.json
+}
+expect 0 '3 foils of 3 scans' lot scans -o one
+
+# damage NAME SED: a copy of the lot with its results edited.
+damage() {
+  rm -rf "$1" merged
+  cp -r one "$1"
+  sed -i "$2" "$1/results.jsonl"
+  cmp -s "one/results.jsonl" "$1/results.jsonl" && fail "$1: nothing was changed"
+}
+
+# A digit, a member's name, a number of any size: measured again with a note, and merged by nobody.
+for change in '2s/"values": \[-*/&5/' '2s/"values"/"valuez"/' '2s/"number": 2/"number": 100000000/' \
+  '2s/"sha256": "./"sha256": "x/' '2s/$/ /' '2s/^.*$/[]/' '2s/"checksum"/"checksun"/'; do
+  damage bad "$change"
+  expect 65 'results.jsonl: line 2 is damaged.*--resume' "$program" merge bad -o merged
+  [ -e merged/lot.json ] && fail "$change: merged"
+  expect 0 '3 scans, 1 to measure, 2 kept' lot scans -o bad --resume --dry-run
+  expect 0 'line 2: .* measured again' lot scans -o bad --resume
+  same one bad
+done
+damage bad '1s/0/1/'
+expect 65 'line 1 is damaged' "$program" merge bad -o merged
+expect 0 '3 scans, 0 to measure, 3 kept' lot scans -o bad --resume --dry-run
+expect 0 'line 1' lot scans -o bad --resume
+same one bad
+
+# A journal of a version without checksums is measured again; somebody's own file stays.
+damage bad 's/results\/2/results\/1/; s/, "checksum": "[0-9a-f]*"}/}/'
+expect 65 'earlier version' "$program" merge bad -o merged
+expect 0 'earlier version.*all scans are measured again' lot scans -o bad --resume
+same one bad
+mkdir mine
+echo 'my own notes' >mine/results.jsonl
+expect 65 'another folder' lot scans -o mine --resume
+[ "$(cat mine/results.jsonl)" = 'my own notes' ] || fail "a file of the user's was overwritten"
+
+# Names that are not UTF-8: told apart, kept, resumed, merged, readable in every report.
+mkdir latin
+cp scans/foil1.png latin/$'K\xe4fig.png'
+cp scans/foil2.png latin/$'K\xf6fig.png'
+cp scans/foil3.png latin/'K\xE4fig.png'
+expect 0 '3 foils of 3 scans' lot latin -o names
+expect 0 '3 scans, 0 to measure, 3 kept' lot latin -o names --resume --dry-run
+expect 0 '3 foils of 3 scans' lot latin -o names --resume
+for i in 1 2; do expect 0 '' lot latin -o "names$i" --shard "$i/2"; done
+expect 0 '3 foils of 3 scans' "$program" merge names1 names2 -o names3
+same names names3
+for name in results.jsonl lot.json index.html foils.csv bumps.csv results.dfq results.qif; do
+  iconv -f UTF-8 -t UTF-8 "names/$name" >text || fail "$name is not UTF-8"
+  grep -qF 'K\\xF6fig.png' text || grep -qF 'K\xF6fig.png' text || fail "$name does not show the name"
+done
+
+# A scan that was cut off is measured when it is whole.
+mkdir growing
+cp scans/foil1.png growing/
+head -c 3000 scans/foil2.png >growing/foil2.png
+expect 2 'foil2.png' lot growing -o grown
+expect 0 '2 scans, 0 to measure, 2 kept' lot growing -o grown --resume --dry-run
+cp scans/foil2.png growing/foil2.png
+expect 0 '2 scans, 1 to measure, 1 kept' lot growing -o grown --resume --dry-run
+expect 0 '2 foils of 2 scans' lot growing -o grown --resume
+
+# Pipes and devices are no scans of a lot: said, and never waited for.
+mkdir odd
+cp scans/foil1.png odd/
+mkfifo odd/fifo.png
+ln -s /dev/zero odd/zero.png
+ln -s ../scans/foil2.png odd/link.png
+expect 2 '2 foils of 4 scans' lot odd -o odd.lot
+for name in fifo zero; do
+  grep -q "odd/$name.png: is a pipe or a device, not a file" stderr || fail "$name.png: $(cat stderr)"
+done
+expect 2 '2 kept|2 foils of 4 scans' lot odd -o odd.lot --resume
+rm growing/foil2.png
+mkfifo growing/foil2.png
+expect 2 'foil2.png: is a pipe' lot growing -o grown --resume
+expect 65 'is not a scan' timeout 60 "$program" measure /dev/zero
+mkfifo pipe
+cat scans/foil1.png >pipe &
+expect 0 '' timeout 60 "$program" measure pipe -o piped.json
+wait
+
+# A scan counts once however its path is spelled; its columns must then agree.
+mkdir links
+ln -s ../scans/foil1.png links/again.png
+expect 0 '5 scans are there twice.*scans/foil1.png' \
+  lot scans ./scans/foil1.png "$PWD/scans" links --dry-run -o spelled
+grep -q '^3 scans, 3 to measure' stdout || fail "spellings: $(cat stdout)"
+printf 'scan,die\nscans/foil1.png,A\nscans/../scans/foil1.png,A\n' >same.csv
+expect 0 '1 scans are there twice' lot same.csv --dry-run -o spelled
+printf 'scan,die\nscans/foil1.png,A\nscans/../scans/foil1.png,B\n' >other.csv
+expect 65 'twice, with another die .items 1 and 2' lot other.csv --dry-run -o spelled
+
+# All that can be read is found.
+mkdir formats
+for ending in png tif TIFF pnm pgm ppm pbm txt jpg; do : >"formats/a.$ending"; done
+expect 0 '^7 scans, 7 to measure' lot formats --dry-run -o found
+mkdir empty
+expect 65 'no scan: the folders hold no file .*\.pbm' lot empty --dry-run -o found
+
+# A column that is not there, or too many groups: before anything is measured.
+printf 'scan,die\nscans/foil1.png,A\nscans/foil2.png,B\n' >lot.csv
+expect 65 "no column 'diee'; it has: scan, die" lot lot.csv --group diee -o early
+[ -e early ] && fail "a wrong column made a folder"
+sed 's/"resamples"/"pad_column": "pads", "resamples"/' recipe.json >pads.json
+expect 65 "pad_column: .* no column 'pads'" timeout 60 "$program" lot lot.csv --recipe pads.json -o early
+{
+  echo scan,die
+  for i in $(seq 13); do echo "$i.png,$i"; done
+} >many.csv
+expect 65 'more than 12 groups' lot many.csv --group die -o early
+expect 0 '2 foils of 2 scans' lot lot.csv --group die -o early
+
+[ $failures = 0 ]

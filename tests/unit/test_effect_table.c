@@ -1,0 +1,159 @@
+/* The table of effects: a row that the search, the reports' words, the renderer or the loop's
+ * benchmark does not know fails here. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "../support/brief.h"
+#include "../support/random.h"
+#include "../support/synthetic_foil.h"
+#include "effect/columns.h"
+#include "foilgauge/render.h"
+#include "loop/subset.h"
+
+#define AMPLITUDE_UM 20.0
+#define NOISE_UM     0.03
+
+/* A foil's rows, with the geometry's derivatives. */
+typedef struct fixture {
+  fg_measurement m;
+  fg_points points;
+  double *residual_um, *jacobian, *columns;
+} fixture;
+
+static void open_fixture(fixture *f) {
+  fg_context ctx = {0};
+  f->m = (fg_measurement){.design = synthetic_design(), .dpi = {4800, 4800}, .foil_count = 1};
+  f->m.nominal = synthetic_nominal(&f->m.design);
+  f->m.width_px = f->m.height_px = 9000;
+  f->m.foils = calloc(1, sizeof *f->m.foils);
+  f->m.foils[0] = synthetic_foil(&f->m.design, &f->m.nominal);
+  fg_points_view view = {.foil = &f->m.foils[0], .measurement = &f->m};
+  assert_int_equal(fg_points_build(&ctx, &view, 1, &f->points), FG_OK);
+  assert_int_equal(fg_points_fit(&ctx, &f->points, NULL), FG_OK);
+  size_t rows = f->points.row_count;
+  f->residual_um = calloc(rows, sizeof(double));
+  f->jacobian = calloc(rows * f->points.parameters, sizeof(double));
+  f->columns = calloc(rows * FG_FIELD_COLUMNS, sizeof(double));
+  fg_points_residual(&f->points, NULL, f->residual_um, f->jacobian);
+}
+
+static void close_fixture(fixture *f) {
+  free(f->residual_um);
+  free(f->jacobian);
+  free(f->columns);
+  fg_points_free(&f->points);
+  synthetic_free(&f->m);
+}
+
+/* Its leading column at the rows, and noise. */
+static void put_effect(fixture *f, const fg_effect *effect) {
+  const fg_field_frame *frame = &f->points.frame;
+  int axis = effect->axis;
+  double shape[FG_FIELD_SHAPES] = {frame->centre_mm[axis]};
+  uint64_t seed = 7;
+  if (effect->start) shape[0] = effect->start(frame, effect->starts * 2 / 3, effect->starts);
+  if (effect->jumps) shape[0] = 0.4 * frame->first_mm[axis] + 0.6 * frame->last_mm[axis];
+  assert_true(fg_effect_columns(&f->points, effect, shape, f->columns) > 0);
+  for (size_t i = 0; i < f->points.row_count; i++)
+    f->residual_um[i] = AMPLITUDE_UM * f->columns[i] + NOISE_UM * random_gaussian(&seed);
+}
+
+static bool in_class(const fg_subset *subset, const fg_effect *effect) {
+  for (size_t m = 0; m < subset->member_count; m++)
+    for (size_t e = 0; e < subset->effect_count; e++)
+      if ((subset->members[m].mask >> e & 1) && fg_effect_same(subset->effects[e].kind, effect))
+        return true;
+  return false;
+}
+
+static bool is_candidate(const fg_subset *subset, const fg_effect *effect) {
+  for (size_t e = 0; e < subset->effect_count; e++)
+    if (subset->effects[e].kind == effect) return true;
+  return false;
+}
+
+/* Listed effects are found; curves need only be there, which any search shows. */
+static void the_search_knows_every_row(void **state) {
+  (void)state;
+  fixture f;
+  size_t count = 0;
+  open_fixture(&f);
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
+    fg_context ctx = {0};
+    fg_subset subset;
+    if (effect->off_foils || fg_effect_is_free(effect) || count++ % test_step(4)) continue;
+    put_effect(&f, effect);
+    const fg_subset_request request = {
+        .residual_um = f.residual_um, .jacobian = f.jacobian, .look = true};
+    assert_int_equal(fg_subset_find(&ctx, &f.points, &request, &subset), FG_OK);
+    if (!subset.right || !in_class(&subset, effect))
+      fail_msg("the search does not find %s", effect->id);
+    for (const fg_effect *curve = fg_effect_first(); curve; curve = fg_effect_next(curve))
+      if (fg_effect_is_free(curve) && !is_candidate(&subset, curve))
+        fail_msg("the search does not know %s", curve->id);
+  }
+  close_fixture(&f);
+}
+
+static void every_row_says_what_it_is(void **state) {
+  (void)state;
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
+    if (!effect->words || !effect->equation) fail_msg("%s has no words", effect->id);
+    if (!effect->glass == !effect->midline) fail_msg("%s moves nothing, or two things", effect->id);
+    if (effect->glass && !effect->columns) fail_msg("%s has no columns", effect->id);
+    if (fg_effect_is_free(effect) && !effect->moves) fail_msg("%s: what does it move?", effect->id);
+    if (effect->shapes && !effect->start == !effect->polynomial)
+      fail_msg("%s: where is its shape sought?", effect->id);
+    for (size_t s = 0; s < effect->shapes; s++)
+      if (!effect->shape_name[s] || !effect->shape_symbol[s])
+        fail_msg("shape %zu of %s has no name", s, effect->id);
+    assert_true(effect->second || fg_effect_find(effect->id) == effect);
+  }
+}
+
+/* The renderer's curves are named without what they move, and parameters are asked for in words
+ * other than those for a name that is not known. */
+static void the_renderer_knows_every_row(void **state) {
+  (void)state;
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
+    fg_context ctx = {0};
+    fg_render_spec *spec = NULL;
+    char text[200];
+    int length = (int)strlen(effect->id) - (strstr(effect->id, ".d") ? 3 : 0);
+    if (effect->scales) continue; /* of the absolute size: two resolutions render it */
+    snprintf(text, sizeof text,
+             "{\"schema\":\"foilgauge/render/1\",\"foils\":[{}],\"effects\":[{\"id\":\"%.*s\"}]}",
+             length, effect->id);
+    if (fg_render_parse(&ctx, "spec", text, &spec) == FG_OK) fg_render_free(spec);
+    if (strstr(ctx.message, "name of an effect")) fail_msg("not rendered: %s", effect->id);
+  }
+}
+
+static void the_benchmark_draws_every_row(void **state) {
+  (void)state;
+  static char text[1 << 16];
+  FILE *file = fopen("tests/bench/loop_cases.py", "r");
+  assert_non_null(file);
+  text[fread(text, 1, sizeof text - 1, file)] = 0;
+  fclose(file);
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect))
+    if (!fg_effect_is_free(effect) && !effect->off_foils && !strstr(text, effect->id))
+      fail_msg("not in the benchmark: %s", effect->id);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_row_says_what_it_is),
+      cmocka_unit_test(the_search_knows_every_row),
+      cmocka_unit_test(the_renderer_knows_every_row),
+      cmocka_unit_test(the_benchmark_draws_every_row),
+  };
+  return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
+}

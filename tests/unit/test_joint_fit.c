@@ -1,0 +1,166 @@
+/* Geometry and effects fitted together, against a dense least squares of the same rows. */
+#include <gsl/gsl_multifit.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "../support/near.h"
+#include "../support/random.h"
+#include "../support/synthetic_foil.h"
+#include "effect/columns.h"
+#include "loop/scan_loop.h"
+
+#define NOISE_UM 0.03
+
+static const double shear_um = 14, period_mm = 3.1, sine_um = 4, cosine_um = -3;
+
+static fg_points open_points(fg_measurement *m) {
+  fg_context ctx = {0};
+  fg_points points;
+  *m = (fg_measurement){.design = synthetic_design(), .dpi = {4800, 4800}, .foil_count = 1};
+  m->nominal = synthetic_nominal(&m->design);
+  m->width_px = m->height_px = 9000;
+  m->foils = calloc(1, sizeof *m->foils);
+  m->foils[0] = synthetic_foil(&m->design, &m->nominal);
+  fg_points_view view = {.foil = &m->foils[0], .measurement = m};
+  assert_int_equal(fg_points_build(&ctx, &view, 1, &points), FG_OK);
+  assert_int_equal(fg_points_fit(&ctx, &points, NULL), FG_OK);
+  return points;
+}
+
+static void add_effect(fg_scan_set *set, const char *id, double shape) {
+  const fg_effect *kind = fg_effect_find(id);
+  assert_non_null(kind);
+  set->effects[set->count++] = (fg_scan_effect){
+      .kind = kind, .columns = kind->columns, .shapes = kind->shapes, .shape = {shape}};
+}
+
+/* Puts every row where a scanner with these effects, and noise, would have seen its circle. */
+static void disturb(fg_points *points, const fg_field_list *fields) {
+  uint64_t seed = 3;
+  for (size_t i = 0; i < points->row_count; i++) {
+    fg_points_row *row = &points->rows[i];
+    fg_point seen = row->ideal;
+    for (int k = 0; k < 5; k++) { /* true = seen + d(seen) */
+      fg_point at[FG_POINTS_PLACES], d = {0, 0};
+      fg_points_places(row, seen, at);
+      for (int p = 0; p < FG_POINTS_PLACES; p++) {
+        fg_point one = fg_field_at(fields, at[p]);
+        d.x += one.x / FG_POINTS_PLACES;
+        d.y += one.y / FG_POINTS_PLACES;
+      }
+      seen = (fg_point){row->ideal.x - d.x, row->ideal.y - d.y};
+    }
+    double noise = 1e-3 * NOISE_UM * random_gaussian(&seed);
+    row->at = (fg_point){seen.x + noise * row->normal.x, seen.y + noise * row->normal.y};
+  }
+}
+
+/* Step that is left to go, and covariance for noise of 1, from all columns at once. */
+static void solve_densely(fg_points *points, const fg_scan_set *set, gsl_vector *step,
+                          gsl_matrix *covariance, double *square) {
+  fg_context ctx = {0};
+  size_t rows = points->row_count, geometry = points->parameters, at = geometry;
+  double *residual = calloc(rows, sizeof(double)), *shift = NULL;
+  double *jacobian = calloc(rows * geometry, sizeof(double));
+  double *columns = calloc(rows * FG_FIELD_COLUMNS, sizeof(double));
+  gsl_matrix *design = gsl_matrix_alloc(rows, step->size);
+  gsl_vector *y = gsl_vector_alloc(rows), *weight = gsl_vector_alloc(rows);
+  fg_field_list fields;
+  fg_scan_fields(points, set, &fields);
+  assert_int_equal(fg_scan_shift(&ctx, points, set, &shift), FG_OK);
+  fg_points_residual(points, &(fg_points_correction){&fields, shift}, residual, jacobian);
+  for (size_t i = 0; i < rows; i++) {
+    gsl_vector_set(y, i, 1000 * residual[i]);
+    gsl_vector_set(weight, i, points->rows[i].weight);
+    for (size_t k = 0; k < geometry; k++)
+      gsl_matrix_set(design, i, k, 1000 * jacobian[k * rows + i]);
+  }
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_scan_effect *effect = &set->effects[e];
+    fg_effect_columns(points, effect->kind, effect->shape, columns);
+    for (size_t c = 0; c < effect->columns; c++, at++)
+      for (size_t i = 0; i < rows; i++)
+        gsl_matrix_set(design, i, at, columns[c * rows + i]);
+    for (size_t s = 0; s < effect->shapes; s++, at++) {
+      double h = 1e-6 * effect->shape[s];
+      for (int side = -1; side <= 1; side += 2) {
+        double shape[FG_FIELD_SHAPES] = {effect->shape[0] + side * h};
+        fg_effect_columns(points, effect->kind, shape, columns);
+        for (size_t i = 0; i < rows; i++) {
+          double sum = side < 0 ? 0 : gsl_matrix_get(design, i, at);
+          for (size_t c = 0; c < effect->columns; c++)
+            sum += side * effect->coefficient_um[c] * columns[c * rows + i] / (2 * h);
+          gsl_matrix_set(design, i, at, sum);
+        }
+      }
+    }
+  }
+  gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(rows, step->size);
+  assert_int_equal(gsl_multifit_wlinear(design, weight, y, step, covariance, square, work), 0);
+  gsl_multifit_linear_free(work);
+  gsl_matrix_free(design);
+  gsl_vector_free(y);
+  gsl_vector_free(weight);
+  free(residual);
+  free(jacobian);
+  free(columns);
+  free(shift);
+}
+
+static void it_ends_where_dense_least_squares_does(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  fg_measurement m;
+  fg_points points = open_points(&m);
+  fg_scan_set truth = {0}, set = {0};
+  fg_field_list fields;
+  add_effect(&truth, "scan.shear", 0);
+  add_effect(&truth, "scan.carriage_ripple", period_mm);
+  truth.effects[0].coefficient_um[0] = shear_um;
+  truth.effects[1].coefficient_um[0] = sine_um;
+  truth.effects[1].coefficient_um[1] = cosine_um;
+  fg_scan_fields(&points, &truth, &fields);
+  disturb(&points, &fields);
+  add_effect(&set, "scan.shear", 0);
+  add_effect(&set, "scan.carriage_ripple", 1.003 * period_mm);
+  assert_int_equal(fg_scan_refit(&ctx, &points, &set, NULL), FG_OK);
+  const fg_scan_effect *shear = &set.effects[0], *ripple = &set.effects[1];
+  assert_near(shear->coefficient_um[0], shear_um, 4 * shear->u_coefficient_um[0]);
+  assert_near(ripple->coefficient_um[0], sine_um, 4 * ripple->u_coefficient_um[0]);
+  assert_near(ripple->coefficient_um[1], cosine_um, 4 * ripple->u_coefficient_um[1]);
+  assert_near(ripple->shape[0], period_mm, 4 * ripple->u_shape[0]);
+
+  size_t unknowns = points.parameters + 4;
+  gsl_vector *step = gsl_vector_alloc(unknowns);
+  gsl_matrix *covariance = gsl_matrix_alloc(unknowns, unknowns);
+  double square;
+  solve_densely(&points, &set, step, covariance, &square);
+  for (size_t k = 0; k < 4; k++) /* um; the period in mm */
+    assert_near(gsl_vector_get(step, points.parameters + k), 0, 2e-4);
+  /* White noise: the correlation's integral is 1, or what chance makes of it. */
+  double variance = square / (double)(points.row_count - unknowns);
+  const double u[4] = {shear->u_coefficient_um[0], ripple->u_coefficient_um[0],
+                       ripple->u_coefficient_um[1], ripple->u_shape[0]};
+  double ratio = 0;
+  for (size_t k = 0; k < 4; k++) {
+    size_t at = points.parameters + k;
+    double dense = sqrt(variance * gsl_matrix_get(covariance, at, at));
+    if (k == 0) ratio = u[0] / dense;
+    assert_near(u[k] / dense, ratio, 1e-3);
+  }
+  assert_true(ratio > 0.999 && ratio < 1.3);
+  gsl_vector_free(step);
+  gsl_matrix_free(covariance);
+  fg_points_free(&points);
+  synthetic_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(it_ends_where_dense_least_squares_does)};
+  return cmocka_run_group_tests_name("joint fit", tests, NULL, NULL);
+}

@@ -1,0 +1,114 @@
+/* Edge rows of measured foils as the loop holds them against one geometry: their groups and parts,
+ * for foils that are not as a design has them. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "../support/synthetic_foil.h"
+#include "loop/points.h"
+
+enum { LANDS = SYNTHETIC_BUMPS + 1 };
+
+static fg_measurement measured(size_t foils) {
+  fg_measurement m = {.design = synthetic_design(), .dpi = {4800, 4800}};
+  m.nominal = synthetic_nominal(&m.design);
+  m.width_px = m.height_px = 9000;
+  m.foils = calloc(foils, sizeof *m.foils);
+  m.foil_count = foils;
+  for (size_t f = 0; f < foils; f++)
+    m.foils[f] = synthetic_foil(&m.design, &m.nominal);
+  return m;
+}
+
+/* No circle fits these bumps; their stations belong to no arc, the lands keep their numbers. */
+static void lose_bumps(fg_foil *foil, int from) {
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number >= from) {
+      foil->bumps[i].flags |= FG_BUMP_NOT_FITTED;
+      foil->bumps[i].radius_mm = NAN;
+    }
+  for (size_t k = 0; k < foil->strip.count; k++)
+    if (foil->labels[k].kind == FG_ARC_BUMP && foil->labels[k].number >= from)
+      foil->labels[k] = (fg_station_label){.kind = FG_ARC_FILLET};
+}
+
+static fg_points build(const fg_measurement *m, bool same) {
+  fg_context ctx = {0};
+  fg_points points;
+  fg_points_view *views = calloc(m->foil_count, sizeof *views);
+  for (size_t f = 0; f < m->foil_count; f++)
+    views[f] =
+        (fg_points_view){.foil = &m->foils[f], .measurement = m, .part = same ? 0 : f, .scan = f};
+  assert_int_equal(fg_points_build(&ctx, views, m->foil_count, &points), FG_OK);
+  free(views);
+  return points;
+}
+
+/* Groups are numbered without a gap, and every one has rows of one part and one arc alone. */
+static void check_groups(const fg_points *points) {
+  size_t seen = 0;
+  for (size_t i = 0; i < points->row_count; i++) {
+    const fg_points_row *row = &points->rows[i];
+    assert_true(row->group == seen || row->group + 1 == seen);
+    seen = row->group + 1;
+    assert_true(row->part < points->part_count);
+    for (size_t k = i; k-- > 0 && points->rows[k].group == row->group;)
+      assert_true(points->rows[k].part == row->part && points->rows[k].bump == row->bump);
+  }
+  assert_int_equal(seen, points->group_count);
+}
+
+static void a_foil_may_have_more_lands_than_bumps(void **state) {
+  (void)state;
+  for (int fitted = 1; fitted <= SYNTHETIC_BUMPS; fitted++) {
+    fg_measurement m = measured(1);
+    lose_bumps(&m.foils[0], fitted + 1);
+    fg_points points = build(&m, false);
+    check_groups(&points);
+    assert_int_equal(points.parts[0].bump_count, fitted);
+    assert_int_equal(points.group_count, fitted + LANDS);
+    fg_points_free(&points);
+    synthetic_free(&m);
+  }
+}
+
+static void views_of_one_part_share_its_groups(void **state) {
+  (void)state;
+  fg_measurement m = measured(2);
+  fg_points points = build(&m, true);
+  check_groups(&points);
+  assert_int_equal(points.part_count, 1);
+  assert_int_equal(points.group_count, SYNTHETIC_BUMPS + LANDS);
+  fg_points_free(&points);
+  synthetic_free(&m);
+}
+
+/* A foil that was not measured has no geometry, and bars nothing for the others. */
+static void a_foil_that_was_not_measured_is_no_part(void **state) {
+  (void)state;
+  fg_measurement m = measured(3);
+  m.foils[1].flags |= FG_FOIL_NOT_MEASURED;
+  fg_points points = build(&m, false);
+  check_groups(&points);
+  assert_int_equal(points.part_count, 2);
+  assert_int_equal(points.view_count, 2);
+  assert_int_equal(points.views[1].part, 1);
+  assert_ptr_equal(points.views[1].foil, &m.foils[2]);
+  for (size_t p = 0; p < points.part_count; p++)
+    assert_true(points.parts[p].overall_radius_mm > 0);
+  fg_points_free(&points);
+  synthetic_free(&m);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_foil_may_have_more_lands_than_bumps),
+      cmocka_unit_test(views_of_one_part_share_its_groups),
+      cmocka_unit_test(a_foil_that_was_not_measured_is_no_part),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
