@@ -17,10 +17,26 @@ static void open_closed(void) {
       _exit(fg_status_exit_code(FG_ERR_IO));
 }
 
-static void flush_output(void) {
+/* A library's own ending can wait for ever: OpenBLAS, where address space was too small for its
+ * threads. Nothing of ours is left to be done then. A leak is looked for after this, so that a
+ * program with sanitizers ends the long way. */
+static void leave(int code) {
+#ifndef __SANITIZE_ADDRESS__
+  fflush(NULL);
+  _exit(code);
+#else
+  (void)code;
+#endif
+}
+
+static void flush_output(int code, void *unused) {
   fg_context ctx;
+  (void)unused;
   errno = 0;
-  if (fflush(stdout) == 0 && !ferror(stdout)) return;
+  if (fflush(stdout) == 0 && !ferror(stdout)) {
+    leave(code);
+    return;
+  }
   fg_status status = fg_output_fail(&ctx, "standard output", errno ? errno : EIO);
   fprintf(stderr, "foilgauge: %s\n", ctx.message);
   _exit(fg_status_exit_code(status));
@@ -53,6 +69,6 @@ void fg_standard_start(void) {
   static char buffer[1 << 16];
   open_closed();
   if (!isatty(STDOUT_FILENO)) setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
-  atexit(flush_output);
+  on_exit(flush_output, NULL);
   filter_errors();
 }

@@ -63,12 +63,16 @@ for seed in 1 2 3; do
   sed "s/: 3,/: $seed,/; s/{\"rotate/{\"design\": {\"bump_count\": 3}, \"rotate/" "$work/spec.json" >"$work/small.json"
   "$program" render "$work/small.json" -o "$work/scans/$seed.png"
 done
-least=16000
-until (ulimit -v $least && exec "$program" version) >/dev/null 2>&1; do least=$((least + 500)); done
+limited() { (ulimit -v "$1" && shift && exec timeout 20 "$@"); }
+below=16000 least=1000000
+while ((least - below > 500)); do
+  kib=$(((below + least) / 2))
+  limited $kib "$program" version >/dev/null 2>&1 && least=$kib || below=$kib
+done
 for ((kib = least - 2000; kib < least + 16000; kib += 300)); do
   code=0
   rm -rf "$work/lot"
-  (ulimit -v $kib && exec "$program" lot "$work/scans" -o "$work/lot") >/dev/null 2>"$work/said" || code=$?
+  limited $kib "$program" lot "$work/scans" -o "$work/lot" >/dev/null 2>"$work/said" || code=$?
   case $code in
     0) continue ;;
     2 | 65 | 74 | 127) [ -s "$work/said" ] || fail "lot in $kib KiB: exit code $code without words" ;;
