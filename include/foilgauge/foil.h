@@ -194,8 +194,8 @@ typedef struct fg_disc {
 typedef struct fg_measurement {
   char scan[1024]; /* path as given */
   char sha256[65];
-  char model_sha256[65];             /* of the scanner's model that corrected it; "": none */
-  const struct fg_scan_model *model; /* the same (scan_loop.h); not owned; NULL: none */
+  char model_sha256[65];                /* of the scanner's model that corrected it; "": none */
+  const struct fg_scanner_model *model; /* the same (scan_loop.h); not owned; NULL: none */
   int64_t width_px, height_px;
   int bit_depth;
   double dpi[2];      /* used, x and y */

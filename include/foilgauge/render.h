@@ -43,7 +43,7 @@
  *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
  *         edges that face the direction, decaying over the length, times the cosine to it
  *       jpeg {quality}
- *   effects[] {id, parameters}: src/render/effects.c holds the table. Free-form curves have
+ *   effects[] {id, parameters}: src/render/spec_effects.c holds the table. Free-form curves have
  *     knots [[coordinate, um], ...]: 2 to 64, ascending; natural cubic spline, constant beyond:
  *     free.scan.x, free.scan.y: mm; moves "x" or "y" [the coordinate's]; at most 100 um per mm
  *     free.foil.s: radial, over psi / half span; free.bump.phi: away from C, over u; beyond u = -1

@@ -1,8 +1,8 @@
 /* Closing the loop on scans: what the scanner or the foil does that the declared geometry lacks.
  *
  * The scans are measured, the edge points of all arcs and lands are held against one geometry, and
- * the engine of loop.h looks for effects of scanner and part in what is left. What is found is
- * fitted together with the geometry, non-linearly, and the edges are corrected and measured again.
+ * every small set of effects of scanner and part is tried on what is left. What is found is fitted
+ * together with the geometry, non-linearly, and the edges are corrected and measured again.
  */
 #ifndef FOILGAUGE_SCAN_LOOP_H
 #define FOILGAUGE_SCAN_LOOP_H
@@ -29,16 +29,16 @@ typedef struct fg_scan_loop_options {
 } fg_scan_loop_options;
 
 /* Lowest and highest value of a dimension over the tied explanations. */
-typedef struct fg_scan_range {
+typedef struct fg_scan_loop_range {
   double radius_mm[2], height_mm[2];
-} fg_scan_range;
+} fg_scan_loop_range;
 
 /* Errors of the points, um. */
-typedef struct fg_scan_error {
+typedef struct fg_scan_loop_error {
   double rms, robust_sd, p95, maximum, held_out_rms; /* NaN without scans kept aside */
-} fg_scan_error;
+} fg_scan_loop_error;
 
-typedef struct fg_scan_loop fg_scan_loop; /* src/loop/scan_loop.h */
+typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */
 
 /* `hold_out[i]`: scan i only confirms. At least one scan must not be kept aside. FG_ERR_DATA when
  * the scans do not fit together (resolution; under same_foil scans that are not of one foil),
@@ -60,25 +60,25 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
 
 /* A model that was found, to correct other scans. FG_ERR_DATA for a file that is not one, with what
  * is wrong in it. `path` of the second is for messages. */
-typedef struct fg_scan_model fg_scan_model;
-fg_status fg_scan_model_load(fg_context *ctx, const char *path, fg_scan_model **model);
-fg_status fg_scan_model_parse(fg_context *ctx, const char *path, const char *text,
-                              fg_scan_model **model);
-void fg_scan_model_free(fg_scan_model *model);
-const char *fg_scan_model_sha256(const fg_scan_model *model);
+typedef struct fg_scanner_model fg_scanner_model;
+fg_status fg_scanner_model_load(fg_context *ctx, const char *path, fg_scanner_model **model);
+fg_status fg_scanner_model_parse(fg_context *ctx, const char *path, const char *text,
+                                 fg_scanner_model **model);
+void fg_scanner_model_free(fg_scanner_model *model);
+const char *fg_scanner_model_sha256(const fg_scanner_model *model);
 /* Other explanations did as well when it was found. */
-bool fg_scan_model_is_tied(const fg_scan_model *model);
+bool fg_scanner_model_is_tied(const fg_scanner_model *model);
 /* FG_ERR_DATA unless the model is of the scanner of that name; NULL: any. */
-fg_status fg_scan_model_check_scanner(fg_context *ctx, const fg_scan_model *model, const char *path,
-                                      const char *scanner);
+fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,
+                                         const char *path, const char *scanner);
 /* Corrects the edges of every foil and measures it again, with the model's uncertainty in every
  * u_, and in a tie with how far the other explanations would have moved it. FG_ERR_DATA when the
  * model is of another resolution, or a foil lies more than twice as far on the glass as what the
  * model was found on; `warning` (200 bytes, or NULL) gets words when it lies outside at all. Part
  * effects are of the foil they were found on and are not applied. What it did is in `correction` of
  * every foil; the model must outlive the measurement, whose reports speak of it. */
-fg_status fg_scan_model_apply(fg_context *ctx, const fg_scan_model *model, fg_measurement *m,
-                              unsigned threads, char *warning);
+fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
+                                 unsigned threads, char *warning);
 
 #ifdef __cplusplus
 }

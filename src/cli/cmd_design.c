@@ -5,7 +5,7 @@
 #include "cli/output_set.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"
-#include "report/measure_json.h"
+#include "report/measure/measure_json.h"
 #include "report/words.h"
 
 typedef struct design_arguments {

@@ -40,7 +40,7 @@ typedef struct measure_arguments {
 } measure_arguments;
 
 typedef struct measure_run {
-  fg_scan_model *model; /* NULL: none */
+  fg_scanner_model *model; /* NULL: none */
   measure_arguments arguments;
   fg_design design;
   fg_nominal nominal;
@@ -250,7 +250,7 @@ static void tell_failures(const fg_measurement *measurement) {
 static fg_status apply_model(fg_context *ctx, const measure_run *run, fg_measurement *m) {
   char warning[200];
   if (!run->model) return FG_OK;
-  FG_TRY(fg_scan_model_apply(ctx, run->model, m, run->arguments.options.threads, warning));
+  FG_TRY(fg_scanner_model_apply(ctx, run->model, m, run->arguments.options.threads, warning));
   if (warning[0]) fprintf(stderr, "foilgauge: note: %s\n", warning);
   return FG_OK;
 }
@@ -313,7 +313,7 @@ static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code
 }
 
 static void free_run(measure_run *run) {
-  fg_scan_model_free(run->model);
+  fg_scanner_model_free(run->model);
   fg_output_set_close(&run->outputs);
   for (size_t i = 0; run->scans && i < run->arguments.scan_count; i++)
     if (run->scans[i].measurement) fg_measurement_free(&run->measurements[i]);
@@ -327,9 +327,9 @@ static fg_status load_model(fg_context *ctx, measure_run *run) {
   if (!path && run->arguments.scanner)
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
   if (!path) return FG_OK;
-  FG_TRY(fg_scan_model_load(ctx, path, &run->model));
-  FG_TRY(fg_scan_model_check_scanner(ctx, run->model, path, run->arguments.scanner));
-  if (fg_scan_model_is_tied(run->model))
+  FG_TRY(fg_scanner_model_load(ctx, path, &run->model));
+  FG_TRY(fg_scanner_model_check_scanner(ctx, run->model, path, run->arguments.scanner));
+  if (fg_scanner_model_is_tied(run->model))
     fprintf(stderr,
             "foilgauge: note: %s: other explanations did as well when the model was found; every "
             "u_ is wider by what they would have changed\n",

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "effect/midline.h"
-#include "effect/table.h"
+#include "effect/rows_of_effects.h"
 
 /* Weight of a curve's coefficients; harmonics of the edge's direction are told from the geometry
  * less well (tuned on reports/loop_scans.md, tier curves). */

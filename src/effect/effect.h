@@ -11,7 +11,7 @@
 #include <stdbool.h>
 
 #include "field/field.h"
-#include "loop/points.h"
+#include "rows/points.h"
 
 /* How the search comes to it. */
 typedef enum fg_effect_sought {

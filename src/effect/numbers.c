@@ -8,19 +8,19 @@ typedef struct number {
   double value, u;
 } number;
 
-static size_t leading(const fg_scan_effect *effect) {
+static size_t leading(const fg_effect_found *effect) {
   return effect->kind->numbers == FG_EFFECT_LED ? 1 : effect->columns;
 }
 
-double fg_scan_effect_amplitude(const fg_scan_effect *effect) {
+double fg_effect_found_amplitude(const fg_effect_found *effect) {
   double square = 0;
   for (size_t c = 0; c < leading(effect); c++)
     square += effect->coefficient_um[c] * effect->coefficient_um[c];
   return effect->columns == 1 ? effect->coefficient_um[0] : sqrt(square);
 }
 
-double fg_scan_effect_u(const fg_scan_effect *effect) {
-  double a = fabs(fg_scan_effect_amplitude(effect)), sum = 0;
+double fg_effect_found_u(const fg_effect_found *effect) {
+  double a = fabs(fg_effect_found_amplitude(effect)), sum = 0;
   if (effect->columns == 1) return effect->u_coefficient_um[0];
   for (size_t c = 0; c < leading(effect) && a > 0; c++) {
     double part = effect->coefficient_um[c] / a * effect->u_coefficient_um[c];
@@ -30,7 +30,7 @@ double fg_scan_effect_u(const fg_scan_effect *effect) {
 }
 
 /* Sine and cosine columns as amplitude and phase. */
-static number wave_number(const fg_scan_effect *effect, size_t i) {
+static number wave_number(const fg_effect_found *effect, size_t i) {
   double s = effect->coefficient_um[0], c = effect->coefficient_um[1], a = hypot(s, c);
   double us = effect->u_coefficient_um[0], uc = effect->u_coefficient_um[1];
   if (i == 0) return (number){"amplitude_um", a, a > 0 ? hypot(s * us, c * uc) / a : hypot(us, uc)};
@@ -41,14 +41,14 @@ static number wave_number(const fg_scan_effect *effect, size_t i) {
 }
 
 /* Of a cosine and a sine of twice the angle. */
-static number oval_phase(const fg_scan_effect *effect) {
+static number oval_phase(const fg_effect_found *effect) {
   const double *c = effect->coefficient_um, *u = effect->u_coefficient_um;
   double square = c[0] * c[0] + c[1] * c[1];
   return (number){"phase_deg", 0.5 * atan2(c[1], c[0]) * 180 / M_PI,
                   0.5 * hypot(c[1] * u[0], c[0] * u[1]) / square * 180 / M_PI};
 }
 
-static number number_of(const fg_scan_effect *effect, size_t i) {
+static number number_of(const fg_effect_found *effect, size_t i) {
   const fg_effect *kind = effect->kind;
   switch (kind->numbers) {
   case FG_EFFECT_SHAPE:
@@ -66,15 +66,15 @@ static number number_of(const fg_scan_effect *effect, size_t i) {
   case FG_EFFECT_AMPLITUDE:
   case FG_EFFECT_LED:
     if (i == 0)
-      return (number){"amplitude_um", fg_scan_effect_amplitude(effect), fg_scan_effect_u(effect)};
+      return (number){"amplitude_um", fg_effect_found_amplitude(effect), fg_effect_found_u(effect)};
     break;
   }
   if (i > kind->shapes) return (number){0};
   return (number){kind->shape_name[i - 1], effect->shape[i - 1], effect->u_shape[i - 1]};
 }
 
-bool fg_scan_effect_number(const fg_scan_effect *effect, size_t i, const char **name, double *value,
-                           double *u) {
+bool fg_effect_found_number(const fg_effect_found *effect, size_t i, const char **name,
+                            double *value, double *u) {
   number n = number_of(effect, i);
   *name = n.name;
   *value = n.value;

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "effect/midline.h"
-#include "effect/table.h"
+#include "effect/rows_of_effects.h"
 
 /* a cos 2(psi - psi0): a cosine and a sine. */
 static size_t cosines(const fg_points_row *row, double share, double *values) {

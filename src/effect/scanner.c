@@ -1,7 +1,7 @@
 /* What a scanner does, one row an effect: its basis on the glass stands before the rows. */
 #include <math.h>
 
-#include "effect/table.h"
+#include "effect/rows_of_effects.h"
 
 /* Starts of the search for a shape: a ripple's periods lie closer than a step's places. */
 enum { PERIOD_STARTS = 400, PLACE_STARTS = 200, LENGTH_STARTS = 60 };

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "effect/columns.h"
 
-fg_field fg_scan_field(const fg_scan_effect *effect) {
+fg_field fg_effect_found_field(const fg_effect_found *effect) {
   fg_field field = fg_effect_field(effect->kind);
   for (size_t c = 0; c < field.columns; c++) {
     field.amplitude_mm[c] = effect->coefficient_um[c] / 1000;
@@ -19,24 +19,25 @@ fg_field fg_scan_field(const fg_scan_effect *effect) {
   return field;
 }
 
-void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields) {
+void fg_effect_set_fields(const fg_points *points, const fg_effect_set *set,
+                          fg_field_list *fields) {
   memset(fields, 0, sizeof *fields);
   fields->frame = points->frame;
   for (size_t e = 0; e < set->count && fields->count < FG_FIELDS_MAX; e++)
     if (set->effects[e].kind->glass)
-      fields->fields[fields->count++] = fg_scan_field(&set->effects[e]);
+      fields->fields[fields->count++] = fg_effect_found_field(&set->effects[e]);
 }
 
-fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
-                        double **shift_mm) {
+fg_status fg_effect_set_shift(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
+                              double **shift_mm) {
   size_t rows = points->row_count;
   double *columns = NULL;
   *shift_mm = NULL;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof **shift_mm, (void **)shift_mm));
   fg_status status =
-      fg_memory_allocate(ctx, rows, FG_SCAN_COLUMNS * sizeof *columns, (void **)&columns);
+      fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *columns, (void **)&columns);
   for (size_t e = 0; e < set->count && status == FG_OK; e++) {
-    const fg_scan_effect *effect = &set->effects[e];
+    const fg_effect_found *effect = &set->effects[e];
     if (effect->kind->glass) continue;
     size_t count = fg_effect_columns(points, effect->kind, effect->shape, columns);
     for (size_t c = 0; c < count; c++)

@@ -4,37 +4,37 @@
 
 #include "effect/effect.h"
 
-enum { FG_SCAN_EFFECTS = 7, FG_SCAN_COLUMNS = FG_FIELD_COLUMNS };
+enum { FG_EFFECT_SET_MAX = 7, FG_EFFECT_COLUMNS_MAX = FG_FIELD_COLUMNS };
 
 /* One effect that is in the corrected model. Coefficients are linear amplitudes in um of its
  * columns. */
-typedef struct fg_scan_effect {
+typedef struct fg_effect_found {
   const fg_effect *kind;
   size_t columns, shapes;
-  double coefficient_um[FG_SCAN_COLUMNS], u_coefficient_um[FG_SCAN_COLUMNS];
+  double coefficient_um[FG_EFFECT_COLUMNS_MAX], u_coefficient_um[FG_EFFECT_COLUMNS_MAX];
   double shape[FG_FIELD_SHAPES], u_shape[FG_FIELD_SHAPES];
-} fg_scan_effect;
+} fg_effect_found;
 
 /* Effects in force. */
-typedef struct fg_scan_set {
-  fg_scan_effect effects[FG_SCAN_EFFECTS];
+typedef struct fg_effect_set {
+  fg_effect_found effects[FG_EFFECT_SET_MAX];
   size_t count;
-} fg_scan_set;
+} fg_effect_set;
 
 /* An effect of the scanner as a field; the set's fields, and the shift of every row by part effects
  * (mm). */
-fg_field fg_scan_field(const fg_scan_effect *effect);
-void fg_scan_fields(const fg_points *points, const fg_scan_set *set, fg_field_list *fields);
-fg_status fg_scan_shift(fg_context *ctx, const fg_points *points, const fg_scan_set *set,
-                        double **shift_mm);
+fg_field fg_effect_found_field(const fg_effect_found *effect);
+void fg_effect_set_fields(const fg_points *points, const fg_effect_set *set, fg_field_list *fields);
+fg_status fg_effect_set_shift(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
+                              double **shift_mm);
 
 /* Size, um: of its sine and cosine, of what leads it, of all columns; its standard uncertainty. */
-double fg_scan_effect_amplitude(const fg_scan_effect *effect);
-double fg_scan_effect_u(const fg_scan_effect *effect);
+double fg_effect_found_amplitude(const fg_effect_found *effect);
+double fg_effect_found_u(const fg_effect_found *effect);
 
 /* What its numbers are called in a report: name and value of parameter i (amplitudes in um, scale
  * and shear as ratios); false when there are no more. A curve has none. */
-bool fg_scan_effect_number(const fg_scan_effect *effect, size_t i, const char **name, double *value,
-                           double *u);
+bool fg_effect_found_number(const fg_effect_found *effect, size_t i, const char **name,
+                            double *value, double *u);
 
 #endif

@@ -1,4 +1,4 @@
-#include "effect/table.h"
+#include "effect/rows_of_effects.h"
 
 #include <string.h>
 

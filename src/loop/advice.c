@@ -21,20 +21,20 @@ typedef struct whole_model {
 } whole_model;
 
 /* The set with a candidate in the place of its member m. */
-static fg_status fit_whole(fg_context *ctx, const loop_run *run, size_t m,
+static fg_status fit_whole(fg_context *ctx, const fg_engine_run *run, size_t m,
                            const fg_loop_candidate *candidate, const double *shape,
                            whole_model *whole) {
   const fg_loop_problem *problem = run->problem;
-  loop_set set = run->set;
+  fg_engine_set set = run->set;
   *whole = (whole_model){.members = set.count};
   set.candidate[m] = *candidate;
   memcpy(set.shape[m], shape, sizeof set.shape[m]);
-  FG_TRY(loop_refine(ctx, problem, run->train, run->noise, &set));
+  FG_TRY(fg_engine_refine(ctx, problem, run->train, run->noise, &set));
   FG_TRY(fg_memory_allocate(ctx, problem->parameters + 1, 2 * sizeof *whole->parameter,
                             (void **)&whole->parameter));
   whole->parameter_u = whole->parameter + problem->parameters;
-  return loop_fit_claims(ctx, problem, NULL, &set, run->noise, whole->member, whole->parameter,
-                         whole->parameter_u);
+  return fg_engine_fit_claims(ctx, problem, NULL, &set, run->noise, whole->member, whole->parameter,
+                              whole->parameter_u);
 }
 
 /* The coordinates of both, each in as many steps as there are values to set: every level of words,
@@ -85,30 +85,30 @@ static fg_status hold(fg_context *ctx, const setting_axes *axes, size_t coordina
   double *value = NULL;
   for (size_t k = 0; k < axes->count; k++)
     if (axes->coordinate[k] == coordinate) return FG_OK;
-  FG_TRY(loop_grid_axis(ctx, grid, coordinate, &value));
+  FG_TRY(fg_engine_grid_axis(ctx, grid, coordinate, &value));
   for (size_t i = 0; i < grid->rows; i++)
     value[i] = at->levels ? 0 : (at->low + at->high) / 2;
   return FG_OK;
 }
 
 /* Every combination of the axes' steps. */
-static fg_status open_settings(fg_context *ctx, const loop_run *run, const setting_axes *axes,
+static fg_status open_settings(fg_context *ctx, const fg_engine_run *run, const setting_axes *axes,
                                fg_loop_problem *grid) {
   const fg_loop_problem *problem = run->problem;
   size_t rows = 1;
   double *value = NULL;
   for (size_t k = 0; k < axes->count; k++)
     rows *= axes->steps[k];
-  FG_TRY(loop_grid_open(ctx, problem, rows, grid));
+  FG_TRY(fg_engine_grid_open(ctx, problem, rows, grid));
   for (size_t k = 0; k < axes->count; k++) {
-    FG_TRY(loop_grid_axis(ctx, grid, axes->coordinate[k], &value));
+    FG_TRY(fg_engine_grid_axis(ctx, grid, axes->coordinate[k], &value));
     for (size_t i = 0; i < rows; i++)
       value[i] = axis_value(axes, k, i);
   }
   for (size_t c = 0; c < problem->coordinates; c++)
     if (problem->coordinate[c].roles & FG_LOOP_DECLARED) FG_TRY(hold(ctx, axes, c, grid));
   for (size_t m = 0; m < run->set.count; m++) {
-    if (loop_is_lone(&run->set.candidate[m])) continue;
+    if (fg_engine_is_lone(&run->set.candidate[m])) continue;
     FG_TRY(hold(ctx, axes, run->set.candidate[m].a, grid));
     FG_TRY(hold(ctx, axes, run->set.candidate[m].b, grid));
   }
@@ -116,7 +116,7 @@ static fg_status open_settings(fg_context *ctx, const loop_run *run, const setti
 }
 
 /* value += sign × what the whole model says at the rows of a grid. Lone rows are of the table. */
-static fg_status predict(fg_context *ctx, const loop_run *run, const whole_model *whole,
+static fg_status predict(fg_context *ctx, const fg_engine_run *run, const whole_model *whole,
                          const fg_loop_problem *grid, double sign, double *value) {
   size_t rows = grid->rows, parameters = run->problem->parameters;
   const int *column = run->units->column;
@@ -130,7 +130,7 @@ static fg_status predict(fg_context *ctx, const loop_run *run, const whole_model
         value[i] += sign * whole->parameter[k] * ldexp(work[k * rows + i], -column[k]);
   }
   for (size_t m = 0; m < whole->members; m++) {
-    if (loop_is_lone(&whole->member[m].candidate)) continue;
+    if (fg_engine_is_lone(&whole->member[m].candidate)) continue;
     FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, grid, &whole->member[m], work));
     for (size_t i = 0; i < rows; i++)
       value[i] += sign * work[i];
@@ -141,7 +141,7 @@ exit:
 }
 
 /* The settings where winner less rival is largest and smallest, and how far these are apart. */
-static fg_status best_settings(fg_context *ctx, const loop_run *run, const setting_axes *axes,
+static fg_status best_settings(fg_context *ctx, const fg_engine_run *run, const setting_axes *axes,
                                const whole_model *winner, const whole_model *rival, size_t best[2],
                                double *apart) {
   fg_loop_problem grid = {0};
@@ -159,7 +159,7 @@ static fg_status best_settings(fg_context *ctx, const loop_run *run, const setti
   *apart = highest > lowest ? highest - lowest : 0;
 exit:
   free(difference);
-  loop_grid_close(&grid);
+  fg_engine_grid_close(&grid);
   return status;
 }
 
@@ -194,8 +194,9 @@ static void say_sum(const fg_loop_claim *claim, fg_loop_advice *advice) {
 }
 
 /* n rows at either setting: their means differ by `apart` with a variance of 2 sd² / n. */
-static void say_settings(const loop_run *run, const fg_loop_claim *claim, const setting_axes *axes,
-                         const size_t best[2], double apart, fg_loop_advice *advice) {
+static void say_settings(const fg_engine_run *run, const fg_loop_claim *claim,
+                         const setting_axes *axes, const size_t best[2], double apart,
+                         fg_loop_advice *advice) {
   double needed = apart > 0 ? ceil(2 * pow((surplus + power_80) * run->sd / apart, 2)) : INFINITY;
   char first[400], second[400];
   advice->runs = needed < 1e6 ? fmax(needed, 2) : NAN;
@@ -214,7 +215,7 @@ static void say_settings(const loop_run *run, const fg_loop_claim *claim, const 
                claim->name, claim->alias[0].name, ldexp(apart, run->units->response));
 }
 
-static fg_status advise_settings(fg_context *ctx, const loop_run *run, size_t m,
+static fg_status advise_settings(fg_context *ctx, const fg_engine_run *run, size_t m,
                                  const fg_loop_candidate *rival, fg_loop_advice *advice) {
   const fg_loop_problem *problem = run->problem;
   const fg_loop_candidate *winner = &run->set.candidate[m];
@@ -235,11 +236,12 @@ exit:
   return status;
 }
 
-static fg_status advise_one(fg_context *ctx, const loop_run *run, size_t m,
+static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
                             fg_loop_advice *advice) {
   const fg_loop_claim *claim = &run->result->claim[m];
   const fg_loop_alias *nearest = &claim->alias[0];
-  if (loop_is_lone(&claim->candidate) || (!nearest->sum && loop_is_lone(&nearest->candidate)))
+  if (fg_engine_is_lone(&claim->candidate) ||
+      (!nearest->sum && fg_engine_is_lone(&nearest->candidate)))
     say_repeats(claim, advice);
   else if (nearest->sum)
     say_sum(claim, advice);
@@ -248,7 +250,7 @@ static fg_status advise_one(fg_context *ctx, const loop_run *run, size_t m,
   return FG_OK;
 }
 
-fg_status loop_advise(fg_context *ctx, loop_run *run) {
+fg_status fg_engine_advise(fg_context *ctx, fg_engine_run *run) {
   fg_loop_result *result = run->result;
   /* Points are not had by repeating rows: their advice is another scan. */
   if (!strcmp(run->problem->level, "points")) return FG_OK;

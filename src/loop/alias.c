@@ -18,8 +18,8 @@ enum { PAIR_POOL = 10 };
 
 /* Whitened residual and columns of a frame at one noise; `basis` has room for more columns. */
 typedef struct alias_bench {
-  const loop_frame *frame;
-  loop_noise noise;
+  const fg_engine_frame *frame;
+  fg_engine_noise noise;
   size_t n, rank;
   double *basis, *y, *columns, *unit;
   double rss, freedom;
@@ -28,7 +28,7 @@ typedef struct alias_bench {
 
 enum { ROOM = 3 * FG_LOOP_COLUMNS };
 
-static fg_status open_one(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+static fg_status open_one(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                           alias_bench *bench) {
   size_t n = frame->n;
   *bench = (alias_bench){.frame = frame, .noise = noise, .n = n};
@@ -37,16 +37,16 @@ static fg_status open_one(fg_context *ctx, const loop_frame *frame, loop_noise n
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
   FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->columns));
   FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->unit));
-  bench->rank = loop_null_basis(frame, noise, bench->basis);
+  bench->rank = fg_engine_null_basis(frame, noise, bench->basis);
   memcpy(bench->y, frame->y, n * sizeof *bench->y);
-  loop_whiten(frame, noise, bench->y);
-  bench->rss = loop_project_out(n, bench->basis, bench->rank, bench->y);
+  fg_engine_whiten(frame, noise, bench->y);
+  bench->rss = fg_engine_project_out(n, bench->basis, bench->rank, bench->y);
   bench->freedom = (double)n - (double)bench->rank;
   return FG_OK;
 }
 
-static fg_status open_bench(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
-                            alias_bench bench[2]) {
+static fg_status open_bench(fg_context *ctx, const fg_engine_frame *frame,
+                            const fg_engine_noise noise[2], alias_bench bench[2]) {
   bench[1] = (alias_bench){0};
   FG_TRY(open_one(ctx, frame, noise[0], &bench[0]));
   return open_one(ctx, frame, noise[1], &bench[1]);
@@ -62,7 +62,7 @@ static void close_bench(alias_bench bench[2]) {
 }
 
 /* Constant in every group that shares a level: judged between groups, with their freedom. */
-static bool between_groups(const loop_frame *frame, const double *columns, size_t count) {
+static bool between_groups(const fg_engine_frame *frame, const double *columns, size_t count) {
   for (size_t k = 0; k < count; k++)
     for (size_t i = 1; i < frame->n; i++)
       if (frame->group[i] == frame->group[i - 1] &&
@@ -72,16 +72,16 @@ static bool between_groups(const loop_frame *frame, const double *columns, size_
 }
 
 /* Adds the candidate's columns behind those already there; returns how many are new. */
-static fg_status extend(fg_context *ctx, alias_bench *bench, const loop_stand *stand, size_t rank,
-                        size_t *added) {
+static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_stand *stand,
+                        size_t rank, size_t *added) {
   const fg_loop_problem *problem = bench->frame->problem;
-  size_t count = loop_candidate_columns(problem, &stand->candidate);
-  FG_TRY(loop_gather(ctx, bench->frame, &stand->candidate, stand->shape, bench->columns));
+  size_t count = fg_engine_candidate_columns(problem, &stand->candidate);
+  FG_TRY(fg_engine_gather(ctx, bench->frame, &stand->candidate, stand->shape, bench->columns));
   bench->between = between_groups(bench->frame, bench->columns, count);
   for (size_t k = 0; k < count; k++)
-    loop_whiten(bench->frame, bench->noise, bench->columns + k * bench->n);
-  *added = loop_orthonormal(bench->n, bench->basis, rank, bench->columns, count,
-                            bench->basis + rank * bench->n, NULL);
+    fg_engine_whiten(bench->frame, bench->noise, bench->columns + k * bench->n);
+  *added = fg_engine_orthonormal(bench->n, bench->basis, rank, bench->columns, count,
+                                 bench->basis + rank * bench->n, NULL);
   return FG_OK;
 }
 
@@ -123,8 +123,8 @@ typedef struct alias_test {
   double correlation;
 } alias_test;
 
-static fg_status compare_one(fg_context *ctx, alias_bench *bench, const loop_stand *winner,
-                             const loop_stand *rival, const loop_stand *second,
+static fg_status compare_one(fg_context *ctx, alias_bench *bench, const fg_engine_stand *winner,
+                             const fg_engine_stand *rival, const fg_engine_stand *second,
                              const double *winner_fit, alias_test *test) {
   size_t more = 0;
   double shapes = (double)rival->candidate.effect->shapes;
@@ -152,8 +152,8 @@ static fg_status compare_one(fg_context *ctx, alias_bench *bench, const loop_sta
 }
 
 /* The winner beside one rival, or a sum of two. */
-static fg_status compare(fg_context *ctx, alias_bench bench[2], const loop_stand *winner,
-                         const loop_stand *rival, const loop_stand *second,
+static fg_status compare(fg_context *ctx, alias_bench bench[2], const fg_engine_stand *winner,
+                         const fg_engine_stand *rival, const fg_engine_stand *second,
                          const double *winner_fit, alias_test *test) {
   alias_test other;
   FG_TRY(compare_one(ctx, &bench[0], winner, rival, second, winner_fit, test));
@@ -162,8 +162,9 @@ static fg_status compare(fg_context *ctx, alias_bench bench[2], const loop_stand
   return FG_OK;
 }
 
-fg_status loop_beside(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
-                      const loop_stand *base, const loop_stand *other, double *p_value) {
+fg_status fg_engine_beside(fg_context *ctx, const fg_engine_frame *frame,
+                           const fg_engine_noise noise[2], const fg_engine_stand *base,
+                           const fg_engine_stand *other, double *p_value) {
   alias_bench bench[2] = {0};
   alias_test test = {0};
   fg_status status = open_bench(ctx, frame, noise, bench);
@@ -173,8 +174,9 @@ fg_status loop_beside(fg_context *ctx, const loop_frame *frame, const loop_noise
   return status;
 }
 
-fg_status loop_simplify(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
-                        const loop_stand *stand, size_t count, size_t winner, size_t *simplest) {
+fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_frame *frame,
+                             const fg_engine_noise noise[2], const fg_engine_stand *stand,
+                             size_t count, size_t winner, size_t *simplest) {
   alias_bench bench[2] = {0};
   size_t rank = 0, inside;
   double best = -INFINITY;
@@ -185,7 +187,7 @@ fg_status loop_simplify(fg_context *ctx, const loop_frame *frame, const loop_noi
   size_t whole = rank + stand[winner].candidate.effect->shapes;
   for (size_t c = 0; c < count; c++) {
     alias_test test;
-    if (c == winner || loop_is_curve(&stand[c].candidate)) continue;
+    if (c == winner || fg_engine_is_curve(&stand[c].candidate)) continue;
     FG_TRY_EXIT(extend(ctx, bench, &stand[winner], bench->rank, &rank));
     FG_TRY_EXIT(extend(ctx, bench, &stand[c], bench->rank + rank, &inside));
     if (inside > 0) continue;
@@ -201,8 +203,8 @@ exit:
   return status;
 }
 
-static void add_alias(const fg_loop_problem *problem, const loop_stand *rival,
-                      const loop_stand *second, const alias_test *test, double winner_gain,
+static void add_alias(const fg_loop_problem *problem, const fg_engine_stand *rival,
+                      const fg_engine_stand *second, const alias_test *test, double winner_gain,
                       fg_loop_claim *claim) {
   char name[FG_LOOP_NAME], other[FG_LOOP_NAME];
   if (claim->aliases == FG_LOOP_ALIASES) {
@@ -211,10 +213,10 @@ static void add_alias(const fg_loop_problem *problem, const loop_stand *rival,
   }
   fg_loop_alias *alias = &claim->alias[claim->aliases++];
   *alias = (fg_loop_alias){.candidate = rival->candidate, .sum = second != NULL};
-  loop_candidate_name(problem, &rival->candidate, name);
+  fg_engine_candidate_name(problem, &rival->candidate, name);
   if (second) {
     alias->second = second->candidate;
-    loop_candidate_name(problem, &second->candidate, other);
+    fg_engine_candidate_name(problem, &second->candidate, other);
     fg_text_clip(alias->name, sizeof alias->name, "%s + %s", name, other);
   } else {
     fg_text_clip(alias->name, sizeof alias->name, "%s", name);
@@ -224,13 +226,14 @@ static void add_alias(const fg_loop_problem *problem, const loop_stand *rival,
 }
 
 static int by_gain(const void *a, const void *b) {
-  const loop_stand *x = *(const loop_stand *const *)a, *y = *(const loop_stand *const *)b;
+  const fg_engine_stand *x = *(const fg_engine_stand *const *)a,
+                        *y = *(const fg_engine_stand *const *)b;
   if (x->z != y->z) return x->z < y->z ? 1 : -1;
   return (x > y) - (x < y);
 }
 
-static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const loop_stand **pool,
-                            size_t pooled, const loop_stand *winner, const double *winner_fit,
+static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const fg_engine_stand **pool,
+                            size_t pooled, const fg_engine_stand *winner, const double *winner_fit,
                             double gain, size_t winner_rank, fg_loop_claim *claim) {
   for (size_t i = 0; i < pooled && i < PAIR_POOL; i++)
     for (size_t k = 0; k < i; k++) {
@@ -243,11 +246,11 @@ static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const loop_stan
   return FG_OK;
 }
 
-fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, const loop_noise noise[2],
-                           const loop_stand *stand, size_t count, const loop_stand *winner,
-                           fg_loop_claim *claim) {
+fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_frame *frame,
+                                const fg_engine_noise noise[2], const fg_engine_stand *stand,
+                                size_t count, const fg_engine_stand *winner, fg_loop_claim *claim) {
   alias_bench bench[2] = {0};
-  const loop_stand **pool = NULL;
+  const fg_engine_stand **pool = NULL;
   double *winner_fit = NULL;
   size_t rank = 0, pooled = 0, listed = 0;
   fg_status status = FG_OK;
@@ -258,8 +261,8 @@ fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, const loop_
   double gain = explained(bench, bench->rank, rank);
   fitted(bench, bench->rank, rank, winner_fit);
   for (size_t c = 0; c < count; c++)
-    if (isfinite(stand[c].z) && !loop_is_curve(&stand[c].candidate) &&
-        !loop_same_candidate(&stand[c].candidate, &winner->candidate))
+    if (isfinite(stand[c].z) && !fg_engine_is_curve(&stand[c].candidate) &&
+        !fg_engine_same_candidate(&stand[c].candidate, &winner->candidate))
       pool[listed++] = &stand[c];
   qsort(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
@@ -268,7 +271,7 @@ fg_status loop_alias_class(fg_context *ctx, const loop_frame *frame, const loop_
     bool contains = test.more == 0 && test.rank > rank;
     if (!contains && test.p_value >= shows)
       add_alias(frame->problem, pool[c], NULL, &test, gain, claim);
-    else if (!contains && !loop_is_lone(&pool[c]->candidate) && test.rank <= 2)
+    else if (!contains && !fg_engine_is_lone(&pool[c]->candidate) && test.rank <= 2)
       pool[pooled++] = pool[c];
   }
   FG_TRY_EXIT(find_pairs(ctx, bench, pool, pooled, winner, winner_fit, gain, rank, claim));

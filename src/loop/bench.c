@@ -12,7 +12,7 @@ static size_t candidate_versions(const fg_loop_problem *problem, const fg_loop_c
   return candidate->effect->starts ? candidate->effect->starts(problem, candidate, starts) : 1;
 }
 
-static fg_status list_versions(fg_context *ctx, loop_bench *bench) {
+static fg_status list_versions(fg_context *ctx, fg_engine_bench *bench) {
   const fg_loop_problem *problem = bench->frame->problem;
   double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES];
   size_t count = 0;
@@ -22,9 +22,9 @@ static fg_status list_versions(fg_context *ctx, loop_bench *bench) {
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *bench->shape, (void **)&bench->shape));
   for (size_t c = 0; c < bench->candidates; c++) {
     size_t here = candidate_versions(problem, &bench->candidate[c], starts);
-    size_t columns = loop_candidate_columns(problem, &bench->candidate[c]);
+    size_t columns = fg_engine_candidate_columns(problem, &bench->candidate[c]);
     for (size_t s = 0; s < here; s++) {
-      bench->version[bench->versions] = (loop_version){.candidate = c, .start = s};
+      bench->version[bench->versions] = (fg_engine_version){.candidate = c, .start = s};
       bench->version[bench->versions].first = bench->columns;
       memcpy(bench->shape[bench->versions++], starts[s], sizeof starts[s]);
       bench->columns += columns;
@@ -35,24 +35,24 @@ static fg_status list_versions(fg_context *ctx, loop_bench *bench) {
 
 /* Weights of the noise models by residual likelihood: with S the residual sum and f the freedom,
  * f log S - 2 log|W| + log|X'W'WX|, so that S exp(rest / f) compares. */
-static fg_status weigh_noises(fg_context *ctx, loop_bench *bench) {
-  const loop_frame *frame = bench->frame;
-  double terms[LOOP_NOISES], best = INFINITY, sums[LOOP_NOISES];
-  bench->noises = loop_noise_grid(frame, bench->noise);
+static fg_status weigh_noises(fg_context *ctx, fg_engine_bench *bench) {
+  const fg_engine_frame *frame = bench->frame;
+  double terms[FG_ENGINE_NOISES], best = INFINITY, sums[FG_ENGINE_NOISES];
+  bench->noises = fg_engine_noise_grid(frame, bench->noise);
   for (size_t j = 0; j < bench->noises; j++) {
-    loop_fit fit;
-    FG_TRY(loop_least_squares(ctx, frame, bench->noise[j], &fit));
-    terms[j] = loop_log_det(frame, bench->noise[j]) + fit.log_det;
+    fg_engine_fit fit;
+    FG_TRY(fg_engine_least_squares(ctx, frame, bench->noise[j], &fit));
+    terms[j] = fg_engine_log_det(frame, bench->noise[j]) + fit.log_det;
     sums[j] = fit.rss;
     bench->freedom = frame->n > fit.rank ? frame->n - fit.rank : 0;
-    loop_fit_free(&fit);
+    fg_engine_fit_free(&fit);
   }
   double freedom = bench->freedom ? (double)bench->freedom : 1;
   for (size_t j = 0; j < bench->noises; j++)
     best = fmin(best, terms[j]);
   for (size_t j = 0; j < bench->noises; j++)
     bench->weight[j] = exp((terms[j] - best) / freedom);
-  if (frame->n <= LOOP_SMALL_ROWS) return FG_OK;
+  if (frame->n <= FG_ENGINE_SMALL_ROWS) return FG_OK;
   size_t chosen = 0;
   for (size_t j = 1; j < bench->noises; j++)
     if (sums[j] * bench->weight[j] < sums[chosen] * bench->weight[chosen]) chosen = j;
@@ -63,30 +63,31 @@ static fg_status weigh_noises(fg_context *ctx, loop_bench *bench) {
 }
 
 /* Orthonormal columns of the null, whitened; those that are aliased stay zero. */
-static fg_status null_basis(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+static fg_status null_basis(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                             double **basis) {
   size_t n = frame->n;
   FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + 1) * sizeof **basis, (void **)basis));
-  size_t rank = loop_null_basis(frame, noise, *basis);
+  size_t rank = fg_engine_null_basis(frame, noise, *basis);
   memset(*basis + rank * n, 0, n * (frame->columns + 1 - rank) * sizeof **basis);
   return FG_OK;
 }
 
 /* The version's columns, whitened, orthonormal beside the null: at most FG_LOOP_COLUMNS × n. */
-static fg_status version_basis(fg_context *ctx, loop_bench *bench, size_t v, loop_noise noise,
-                               const double *null, double *columns, double *unit) {
-  const loop_frame *frame = bench->frame;
-  loop_version *version = &bench->version[v];
+static fg_status version_basis(fg_context *ctx, fg_engine_bench *bench, size_t v,
+                               fg_engine_noise noise, const double *null, double *columns,
+                               double *unit) {
+  const fg_engine_frame *frame = bench->frame;
+  fg_engine_version *version = &bench->version[v];
   const fg_loop_candidate *candidate = &bench->candidate[version->candidate];
-  size_t n = frame->n, count = loop_candidate_columns(frame->problem, candidate);
+  size_t n = frame->n, count = fg_engine_candidate_columns(frame->problem, candidate);
   double lengths[FG_LOOP_COLUMNS], whole = 0;
-  FG_TRY(loop_gather(ctx, frame, candidate, bench->shape[v], columns));
+  FG_TRY(fg_engine_gather(ctx, frame, candidate, bench->shape[v], columns));
   for (size_t k = 0; k < count; k++) {
-    loop_whiten(frame, noise, columns + k * n);
+    fg_engine_whiten(frame, noise, columns + k * n);
     for (size_t i = 0; i < n; i++)
       whole += columns[k * n + i] * columns[k * n + i];
   }
-  version->rank = loop_orthonormal(n, null, frame->columns, columns, count, unit, lengths);
+  version->rank = fg_engine_orthonormal(n, null, frame->columns, columns, count, unit, lengths);
   version->length = 0;
   for (size_t k = 0; k < count; k++)
     version->length += lengths[k] / (double)count;
@@ -101,8 +102,8 @@ static void put_rows(size_t n, size_t width, size_t first, const double *columns
       rows[i * width + first + k] = columns[k * n + i];
 }
 
-static fg_status fill_noise(fg_context *ctx, loop_bench *bench, size_t j) {
-  const loop_frame *frame = bench->frame;
+static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
+  const fg_engine_frame *frame = bench->frame;
   size_t n = frame->n, width = frame->columns + bench->columns;
   fg_status status = FG_OK;
   double *null = NULL, *work = NULL;
@@ -122,11 +123,11 @@ exit:
   return status;
 }
 
-fg_status loop_bench_build(fg_context *ctx, const loop_frame *frame,
-                           const fg_loop_candidate *candidate, size_t candidates,
-                           loop_bench *bench) {
+fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_frame *frame,
+                                const fg_loop_candidate *candidate, size_t candidates,
+                                fg_engine_bench *bench) {
   fg_status status = FG_OK;
-  *bench = (loop_bench){.frame = frame, .candidate = candidate, .candidates = candidates};
+  *bench = (fg_engine_bench){.frame = frame, .candidate = candidate, .candidates = candidates};
   bench->rank = frame->columns;
   FG_TRY_EXIT(list_versions(ctx, bench));
   FG_TRY_EXIT(weigh_noises(ctx, bench));
@@ -135,48 +136,48 @@ fg_status loop_bench_build(fg_context *ctx, const loop_frame *frame,
                                  sizeof *bench->scratch, (void **)&bench->scratch));
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame->flips + 1, width * sizeof *bench->flip_scores + 1,
                                  (void **)&bench->flip_scores));
-  for (size_t j = bench->noises; frame->n <= LOOP_SMALL_ROWS && j-- > 0;)
+  for (size_t j = bench->noises; frame->n <= FG_ENGINE_SMALL_ROWS && j-- > 0;)
     FG_TRY_EXIT(fill_noise(ctx, bench, j));
 exit:
-  if (status != FG_OK) loop_bench_free(bench);
+  if (status != FG_OK) fg_engine_bench_free(bench);
   return status;
 }
 
-void loop_bench_tell(const loop_bench *bench, size_t half, size_t done, size_t all) {
-  const loop_watch *watch = &bench->watch;
+void fg_engine_bench_tell(const fg_engine_bench *bench, size_t half, size_t done, size_t all) {
+  const fg_engine_watch *watch = &bench->watch;
   if (watch->show && all)
     watch->show(watch->user, watch->found, 0.5 * (double)half + 0.5 * (double)done / (double)all);
 }
 
-void loop_bench_free(loop_bench *bench) {
-  for (size_t j = 0; j < LOOP_NOISES; j++)
+void fg_engine_bench_free(fg_engine_bench *bench) {
+  for (size_t j = 0; j < FG_ENGINE_NOISES; j++)
     free(bench->rows[j]);
   free(bench->version);
   free(bench->shape);
   free(bench->flip_scores);
   free(bench->scratch);
-  *bench = (loop_bench){0};
+  *bench = (fg_engine_bench){0};
 }
 
-double loop_version_freedom(const loop_bench *bench, const loop_version *version) {
+double fg_engine_version_freedom(const fg_engine_bench *bench, const fg_engine_version *version) {
   const fg_loop_effect *effect = bench->candidate[version->candidate].effect;
   return (double)version->rank + (double)effect->shapes;
 }
 
 /* Wilson and Hilferty's normal deviate of an F ratio: close enough to compare candidates of
  * different freedom, and monotone, so p-values from simulation stay exact. */
-double loop_deviate(double ratio, double k, double freedom) {
+double fg_engine_deviate(double ratio, double k, double freedom) {
   double nu = freedom - k, f = (1 / ratio - 1) * nu / k;
   double root = cbrt(f), a = 2 / (9 * nu), b = 2 / (9 * k);
   return ((1 - a) * root - (1 - b)) / sqrt(a * root * root + b);
 }
 
-double loop_deviate_to_f(double z, double k, double nu) {
+double fg_engine_deviate_to_f(double z, double k, double nu) {
   double low = 0, high = 1e9;
   for (int i = 0; i < 100; i++) {
     double f = sqrt((low + 1e-6) * high);
     double ratio = 1 / (1 + f * k / nu);
-    if (loop_deviate(ratio, k, nu + k) < z)
+    if (fg_engine_deviate(ratio, k, nu + k) < z)
       low = f;
     else
       high = f;
@@ -202,12 +203,13 @@ static double sum_of_squares(const double *v, size_t count) {
 }
 
 /* Takes in the residual sums at one noise model: the smallest weighted ones win. */
-static void collect(const loop_bench *bench, size_t j, double rss, const double *sums,
-                    loop_score *score) {
+static void collect(const fg_engine_bench *bench, size_t j, double rss, const double *sums,
+                    fg_engine_score *score) {
   for (size_t v = 0; v < bench->versions; v++) {
-    const loop_version *version = &bench->version[v];
-    loop_score *best = &score[version->candidate];
-    if (version->rank == 0 || loop_version_freedom(bench, version) + 2 > (double)bench->freedom)
+    const fg_engine_version *version = &bench->version[v];
+    fg_engine_score *best = &score[version->candidate];
+    if (version->rank == 0 ||
+        fg_engine_version_freedom(bench, version) + 2 > (double)bench->freedom)
       continue;
     double left = rss - sum_of_squares(sums + version->first, version->rank);
     double weighted = fmax(left, 1e-12 * rss) * bench->weight[j];
@@ -219,30 +221,31 @@ static void collect(const loop_bench *bench, size_t j, double rss, const double 
   }
 }
 
-static void finish_scores(const loop_bench *bench, double null, loop_score *score) {
+static void finish_scores(const fg_engine_bench *bench, double null, fg_engine_score *score) {
   for (size_t c = 0; c < bench->candidates; c++) {
     if (!isfinite(score[c].ratio)) {
       score[c].z = NAN;
       continue;
     }
-    double k = loop_version_freedom(bench, &bench->version[score[c].version]);
+    double k = fg_engine_version_freedom(bench, &bench->version[score[c].version]);
     score[c].ratio = fmin(score[c].ratio / null, 1);
-    score[c].z = loop_deviate(score[c].ratio, k, (double)bench->freedom);
+    score[c].z = fg_engine_deviate(score[c].ratio, k, (double)bench->freedom);
   }
 }
 
-static void clear_scores(const loop_bench *bench, loop_score *score) {
+static void clear_scores(const fg_engine_bench *bench, fg_engine_score *score) {
   for (size_t c = 0; c < bench->candidates; c++)
-    score[c] = (loop_score){.ratio = INFINITY, .z = NAN};
+    score[c] = (fg_engine_score){.ratio = INFINITY, .z = NAN};
 }
 
-void loop_bench_score(const loop_bench *bench, const double *y, loop_score *score, size_t *null) {
+void fg_engine_bench_score(const fg_engine_bench *bench, const double *y, fg_engine_score *score,
+                           size_t *null) {
   size_t n = bench->frame->n, width = bench->rank + bench->columns;
   double *sums = bench->scratch, *white = bench->scratch + width, lowest = INFINITY;
   clear_scores(bench, score);
   for (size_t j = 0; j < bench->noises; j++) {
     memcpy(white, y, n * sizeof *white);
-    loop_whiten(bench->frame, bench->noise[j], white);
+    fg_engine_whiten(bench->frame, bench->noise[j], white);
     products(n, width, bench->rows[j], white, sums);
     double rss = sum_of_squares(white, n) - sum_of_squares(sums, bench->rank);
     if (rss * bench->weight[j] < lowest) {
@@ -255,9 +258,9 @@ void loop_bench_score(const loop_bench *bench, const double *y, loop_score *scor
 }
 
 /* Adds u × residual to the sums of each flip group. */
-static void add_scores(const loop_bench *bench, const double *unit, size_t count, size_t first,
+static void add_scores(const fg_engine_bench *bench, const double *unit, size_t count, size_t first,
                        const double *residual) {
-  const loop_frame *frame = bench->frame;
+  const fg_engine_frame *frame = bench->frame;
   size_t width = bench->rank + bench->columns;
   for (size_t k = 0; k < count; k++)
     for (size_t i = 0; i < frame->n; i++)
@@ -265,7 +268,7 @@ static void add_scores(const loop_bench *bench, const double *unit, size_t count
           unit[k * frame->n + i] * residual[i];
 }
 
-static void total_scores(const loop_bench *bench, loop_score *score) {
+static void total_scores(const fg_engine_bench *bench, fg_engine_score *score) {
   size_t width = bench->rank + bench->columns;
   double *sums = bench->scratch;
   memset(sums, 0, width * sizeof *sums);
@@ -277,9 +280,9 @@ static void total_scores(const loop_bench *bench, loop_score *score) {
   finish_scores(bench, bench->flip_rss * bench->weight[0], score);
 }
 
-fg_status loop_bench_prepare_flips(fg_context *ctx, loop_bench *bench, size_t noise,
-                                   loop_score *score) {
-  const loop_frame *frame = bench->frame;
+fg_status fg_engine_bench_prepare_flips(fg_context *ctx, fg_engine_bench *bench, size_t noise,
+                                        fg_engine_score *score) {
+  const fg_engine_frame *frame = bench->frame;
   size_t n = frame->n, width = bench->rank + bench->columns, each = n * FG_LOOP_COLUMNS;
   fg_status status = FG_OK;
   double *null = NULL, *work = NULL, *residual = NULL;
@@ -287,12 +290,12 @@ fg_status loop_bench_prepare_flips(fg_context *ctx, loop_bench *bench, size_t no
   FG_TRY_EXIT(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
   memcpy(residual, frame->y, n * sizeof *residual);
-  loop_whiten(frame, bench->noise[noise], residual);
-  bench->flip_rss = loop_project_out(n, null, frame->columns, residual);
+  fg_engine_whiten(frame, bench->noise[noise], residual);
+  bench->flip_rss = fg_engine_project_out(n, null, frame->columns, residual);
   memset(bench->flip_scores, 0, frame->flips * width * sizeof *bench->flip_scores);
   add_scores(bench, null, frame->columns, 0, residual);
   for (size_t v = 0; v < bench->versions; v++) {
-    loop_bench_tell(bench, 0, v, bench->versions);
+    fg_engine_bench_tell(bench, 0, v, bench->versions);
     FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[noise], null, work, work + each));
     add_scores(bench, work + each, bench->version[v].rank, bench->rank + bench->version[v].first,
                residual);
@@ -306,7 +309,7 @@ exit:
 }
 
 /* A flipped residual is projected again: |D r|² less what falls into the null's span. */
-void loop_bench_flip(const loop_bench *bench, const signed char *sign, double *z) {
+void fg_engine_bench_flip(const fg_engine_bench *bench, const signed char *sign, double *z) {
   size_t width = bench->rank + bench->columns;
   double *sums = bench->scratch;
   memset(sums, 0, width * sizeof *sums);
@@ -317,11 +320,11 @@ void loop_bench_flip(const loop_bench *bench, const signed char *sign, double *z
   for (size_t c = 0; c < bench->candidates; c++)
     z[c] = -INFINITY;
   for (size_t v = 0; v < bench->versions; v++) {
-    const loop_version *version = &bench->version[v];
-    double k = loop_version_freedom(bench, version);
+    const fg_engine_version *version = &bench->version[v];
+    double k = fg_engine_version_freedom(bench, version);
     if (version->rank == 0 || k + 2 > (double)bench->freedom) continue;
     double left = rss - sum_of_squares(sums + bench->rank + version->first, version->rank);
-    double one = loop_deviate(fmax(left / rss, 1e-12), k, (double)bench->freedom);
+    double one = fg_engine_deviate(fmax(left / rss, 1e-12), k, (double)bench->freedom);
     z[version->candidate] = fmax(z[version->candidate], one);
   }
 }

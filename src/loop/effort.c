@@ -12,14 +12,14 @@ static double count_columns(const fg_loop_problem *problem, const fg_loop_candid
   for (size_t c = 0; c < candidates; c++) {
     const fg_loop_effect *effect = candidate[c].effect;
     size_t versions = effect->starts ? effect->starts(problem, &candidate[c], starts) : 1;
-    columns += (double)versions * (double)loop_candidate_columns(problem, &candidate[c]);
+    columns += (double)versions * (double)fg_engine_candidate_columns(problem, &candidate[c]);
   }
   return columns;
 }
 
 /* Small frames: every candidate is scored in every draw at every noise model. */
 static void estimate_small(const fg_loop_problem *problem, double rows, double columns,
-                           loop_effort *effort) {
+                           fg_engine_effort *effort) {
   double noises = problem->group_level ? LEVEL_NOISES : problem->correlated ? NOISES : 1;
   effort->seconds = STEPS * DRAWS * noises * rows * columns * per_product;
   effort->bytes = 8 * (noises * rows * columns + DRAWS * (double)effort->candidates);
@@ -28,23 +28,23 @@ static void estimate_small(const fg_loop_problem *problem, double rows, double c
 /* Large ones: it is projected beside the null, and its scores are flipped by groups. The null is
  * fitted at every noise model, and again wherever the shapes of what was found are refined. */
 static void estimate_large(const fg_loop_problem *problem, double rows, double columns,
-                           loop_effort *effort) {
+                           fg_engine_effort *effort) {
   double null = (double)problem->parameters + 2 * FG_LOOP_CLAIMS;
   double projected = rows * columns * (60 + 4 * null);
   double fitted = FITS * rows * null * null * 4;
-  double flipped = (double)FLIP_DRAWS * LOOP_FLIP_GROUPS * columns;
+  double flipped = (double)FLIP_DRAWS * FG_ENGINE_FLIP_GROUPS * columns;
   effort->seconds = STEPS * ((projected + fitted) * per_projected + flipped * per_product);
-  effort->bytes = 8 * LOOP_FLIP_GROUPS * columns;
+  effort->bytes = 8 * FG_ENGINE_FLIP_GROUPS * columns;
 }
 
-void loop_effort_estimate(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                          size_t candidates, loop_effort *effort) {
+void fg_engine_effort_estimate(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                               size_t candidates, fg_engine_effort *effort) {
   double columns = count_columns(problem, candidate, candidates), all = (double)problem->rows;
   size_t rows = 0;
   for (size_t i = 0; i < problem->rows; i++)
     rows += !problem->aside || !problem->aside[i];
-  *effort = (loop_effort){.rows = problem->rows, .candidates = candidates};
-  if (rows <= LOOP_SMALL_ROWS)
+  *effort = (fg_engine_effort){.rows = problem->rows, .candidates = candidates};
+  if (rows <= FG_ENGINE_SMALL_ROWS)
     estimate_small(problem, (double)rows, columns, effort);
   else
     estimate_large(problem, (double)rows, columns, effort);
@@ -52,8 +52,8 @@ void loop_effort_estimate(const fg_loop_problem *problem, const fg_loop_candidat
       all * (per_row + per_cell * (double)(problem->coordinates + problem->parameters));
 }
 
-fg_status loop_effort_check(fg_context *ctx, const loop_effort *effort, double minutes,
-                            double mebibytes) {
+fg_status fg_engine_effort_check(fg_context *ctx, const fg_engine_effort *effort, double minutes,
+                                 double mebibytes) {
   double needed = effort->seconds / 60, memory = effort->bytes / (1 << 20);
   if (!(minutes > 0 && needed > minutes) && !(mebibytes > 0 && memory > mebibytes)) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,

@@ -4,15 +4,15 @@
 
 #include "loop/engine.h"
 
-typedef struct loop_effort {
+typedef struct fg_engine_effort {
   size_t rows, candidates;
   double seconds, bytes; /* of one core; at the worst: five effects are found */
-} loop_effort;
+} fg_engine_effort;
 
-void loop_effort_estimate(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                          size_t candidates, loop_effort *effort);
+void fg_engine_effort_estimate(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                               size_t candidates, fg_engine_effort *effort);
 /* FG_ERR_DATA with the limit, the reason and the way out; a limit of 0 is none. */
-fg_status loop_effort_check(fg_context *ctx, const loop_effort *effort, double minutes,
-                            double mebibytes);
+fg_status fg_engine_effort_check(fg_context *ctx, const fg_engine_effort *effort, double minutes,
+                                 double mebibytes);
 
 #endif

@@ -6,8 +6,8 @@
 #include "core/memory.h"
 #include "core/spread.h"
 #include "core/text.h"
+#include "loop/engine_random.h"
 #include "loop/grid.h"
-#include "loop/random.h"
 #include "loop/run.h"
 
 static int by_size(const void *a, const void *b) {
@@ -15,7 +15,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static fg_status measure(fg_context *ctx, const loop_run *run, const double *residual,
+static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
                          fg_loop_error *error) {
   size_t count = 0, rows = run->problem->rows, held = 0;
   double *size = NULL, squares = 0, held_squares = 0;
@@ -39,12 +39,12 @@ static fg_status measure(fg_context *ctx, const loop_run *run, const double *res
   return FG_OK;
 }
 
-static fg_status cross_validated(fg_context *ctx, const loop_run *run, const loop_set *set,
-                                 loop_noise noise, double *rms) {
+static fg_status cross_validated(fg_context *ctx, const fg_engine_run *run,
+                                 const fg_engine_set *set, fg_engine_noise noise, double *rms) {
   double *residual = NULL, squares = 0;
   size_t count = 0;
   FG_TRY(fg_memory_allocate(ctx, run->problem->rows, sizeof *residual, (void **)&residual));
-  fg_status status = loop_cross_validate(ctx, run->problem, run->train, set, noise, residual);
+  fg_status status = fg_engine_cross_validate(ctx, run->problem, run->train, set, noise, residual);
   for (size_t i = 0; i < run->problem->rows; i++)
     count += run->train[i];
   for (size_t i = 0; i < count; i++)
@@ -56,7 +56,7 @@ static fg_status cross_validated(fg_context *ctx, const loop_run *run, const loo
 
 /* 95 % interval of after / before: groups drawn with replacement, kept-aside ones where there are
  * enough of them, else all that took part. */
-static fg_status bootstrap(fg_context *ctx, loop_run *run, double interval[2]) {
+static fg_status bootstrap(fg_context *ctx, fg_engine_run *run, double interval[2]) {
   enum { DRAWS = 999, ENOUGH = 8 };
   const fg_loop_problem *problem = run->problem;
   const fg_loop_result *result = run->result;
@@ -77,7 +77,7 @@ static fg_status bootstrap(fg_context *ctx, loop_run *run, double interval[2]) {
   for (size_t b = 0; b < DRAWS; b++) {
     double before = 0, after = 0;
     for (size_t i = 0; i < count; i++) {
-      size_t g = group[(size_t)(loop_random_uniform(&seed) * (double)count)];
+      size_t g = group[(size_t)(fg_engine_random_uniform(&seed) * (double)count)];
       before += sum[2 * g];
       after += sum[2 * g + 1];
     }
@@ -94,7 +94,7 @@ exit:
 
 /* +1: the kept-aside error falls by more than one standard error of the change; 0: neither way;
  * -1 where nothing is kept aside; -2: it rises by more than two: contradicted. */
-static int confirm(const loop_run *run) {
+static int confirm(const fg_engine_run *run) {
   const fg_loop_problem *problem = run->problem;
   const double *before = run->result->before_fit, *after = run->result->after_fit;
   double sum = 0, squares = 0, group_sum = 0;
@@ -144,7 +144,7 @@ static fg_status describe_curve(fg_context *ctx, const fg_loop_problem *problem,
 }
 
 /* The curve alone, drawn over its coordinate's range, its mean over the rows taken out. */
-static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim *fit) {
+static fg_status draw_curve(fg_context *ctx, fg_engine_run *run, const fg_loop_claim *fit) {
   enum { POINTS = 61 };
   const fg_loop_problem *problem = run->problem;
   const fg_loop_coordinate *at = &problem->coordinate[run->curve_at];
@@ -154,8 +154,8 @@ static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim 
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, POINTS, sizeof *curve->shape, (void **)&curve->shape));
   FG_TRY_EXIT(describe_curve(ctx, problem, fit, &mean, curve));
-  FG_TRY_EXIT(loop_grid_open(ctx, problem, POINTS, &grid));
-  FG_TRY_EXIT(loop_grid_axis(ctx, &grid, run->curve_at, &value));
+  FG_TRY_EXIT(fg_engine_grid_open(ctx, problem, POINTS, &grid));
+  FG_TRY_EXIT(fg_engine_grid_axis(ctx, &grid, run->curve_at, &value));
   for (size_t i = 0; i < POINTS; i++)
     value[i] = at->low + (at->high - at->low) * (double)i / (POINTS - 1);
   FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, &grid, fit, effect));
@@ -170,18 +170,18 @@ static fg_status draw_curve(fg_context *ctx, loop_run *run, const fg_loop_claim 
   fg_text_clip(curve->name, sizeof curve->name, "%s", at->name);
   run->result->has_curve = true;
 exit:
-  loop_grid_close(&grid);
+  fg_engine_grid_close(&grid);
   return status;
 }
 
-static fg_status errors(fg_context *ctx, loop_run *run, loop_noise *noise) {
+static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *noise) {
   fg_loop_result *result = run->result;
-  loop_set none = {0};
-  loop_noise first = {0, 0}; /* as its owner would fit it */
-  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &none, false, &first, result->before_fit, NULL,
-                      NULL));
-  FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
-                      result->effect_fit, &result->noise.sd));
+  fg_engine_set none = {0};
+  fg_engine_noise first = {0, 0}; /* as its owner would fit it */
+  FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &none, false, &first, result->before_fit,
+                           NULL, NULL));
+  FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
+                           result->effect_fit, &result->noise.sd));
   if (run->set.count == 0) /* nothing found: the same fit, before and after */
     memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
   result->noise.rho = noise->rho;
@@ -202,11 +202,11 @@ static fg_status errors(fg_context *ctx, loop_run *run, loop_noise *noise) {
 }
 
 /* Parameters are of all rows: what is kept aside has done its work. */
-static fg_status parameters(fg_context *ctx, loop_run *run, loop_noise noise) {
+static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise noise) {
   fg_loop_result *result = run->result;
   fg_loop_claim fit[FG_LOOP_CLAIMS + 1] = {0};
-  FG_TRY(loop_fit_claims(ctx, run->problem, NULL, &run->set, noise, fit, result->parameter,
-                         result->parameter_u));
+  FG_TRY(fg_engine_fit_claims(ctx, run->problem, NULL, &run->set, noise, fit, result->parameter,
+                              result->parameter_u));
   for (size_t m = 0; m < result->claims; m++) {
     fg_loop_claim *claim = &result->claim[m];
     claim->columns = fit[m].columns;
@@ -221,15 +221,15 @@ static fg_status parameters(fg_context *ctx, loop_run *run, loop_noise noise) {
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
 }
 
-fg_status loop_finish(fg_context *ctx, loop_run *run) {
+fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
   fg_loop_result *result = run->result;
-  loop_noise noise = {0};
+  fg_engine_noise noise = {0};
   FG_TRY(errors(ctx, run, &noise));
   int confirmed = confirm(run);
   if (confirmed == -2 && run->set.count) {
-    FG_TRY(loop_note(ctx, result,
-                     "What was found made the kept-aside rows worse by more than two standard "
-                     "errors; it is withdrawn."));
+    FG_TRY(fg_engine_note(ctx, result,
+                          "What was found made the kept-aside rows worse by more than two standard "
+                          "errors; it is withdrawn."));
     result->claims = 0;
     run->has_curve = false;
     run->set.count = 0;

@@ -6,21 +6,22 @@
 
 #include "core/memory.h"
 
-static fg_status criterion(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+static fg_status criterion(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                            double *value) {
-  loop_fit fit;
-  FG_TRY(loop_least_squares(ctx, frame, noise, &fit));
+  fg_engine_fit fit;
+  FG_TRY(fg_engine_least_squares(ctx, frame, noise, &fit));
   double freedom = (double)frame->n - (double)fit.rank;
-  *value = freedom * log(fit.rss) + loop_log_det(frame, noise) + fit.log_det;
-  loop_fit_free(&fit);
+  *value = freedom * log(fit.rss) + fg_engine_log_det(frame, noise) + fit.log_det;
+  fg_engine_fit_free(&fit);
   return FG_OK;
 }
 
 /* Between the points of the grid: steps that shrink, in rho and in the logarithm of lambda. */
-static fg_status polish(fg_context *ctx, const loop_frame *frame, double best, loop_noise *noise) {
+static fg_status polish(fg_context *ctx, const fg_engine_frame *frame, double best,
+                        fg_engine_noise *noise) {
   double rho_step = 0.1, lambda_step = 0.4;
   for (int round = 0; round < 4; round++) {
-    const loop_noise tries[] = {
+    const fg_engine_noise tries[] = {
         {fmin(noise->rho + rho_step, 0.98), noise->lambda},
         {fmax(noise->rho - rho_step, 0), noise->lambda},
         {noise->rho, noise->lambda * exp(lambda_step)},
@@ -40,10 +41,11 @@ static fg_status polish(fg_context *ctx, const loop_frame *frame, double best, l
   return FG_OK;
 }
 
-fg_status loop_choose_noise(fg_context *ctx, const loop_frame *frame, loop_noise *noise) {
-  loop_noise grid[LOOP_NOISES];
+fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_frame *frame,
+                                 fg_engine_noise *noise) {
+  fg_engine_noise grid[FG_ENGINE_NOISES];
   double best = INFINITY, value;
-  size_t count = loop_noise_grid(frame, grid);
+  size_t count = fg_engine_noise_grid(frame, grid);
   *noise = grid[0];
   for (size_t j = 0; j < count; j++) {
     FG_TRY(criterion(ctx, frame, grid[j], &value));
@@ -51,20 +53,20 @@ fg_status loop_choose_noise(fg_context *ctx, const loop_frame *frame, loop_noise
     best = value;
     *noise = grid[j];
   }
-  return frame->n <= LOOP_SMALL_ROWS ? polish(ctx, frame, best, noise) : FG_OK;
+  return frame->n <= FG_ENGINE_SMALL_ROWS ? polish(ctx, frame, best, noise) : FG_OK;
 }
 
 static fg_status residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                              loop_noise noise, const loop_set *set, double *rss) {
-  loop_frame frame;
-  loop_fit fit;
-  FG_TRY(loop_frame_build(ctx, problem, keep, set, &frame));
-  fg_status status = loop_least_squares(ctx, &frame, noise, &fit);
+                              fg_engine_noise noise, const fg_engine_set *set, double *rss) {
+  fg_engine_frame frame;
+  fg_engine_fit fit;
+  FG_TRY(fg_engine_frame_build(ctx, problem, keep, set, &frame));
+  fg_status status = fg_engine_least_squares(ctx, &frame, noise, &fit);
   if (status == FG_OK) {
     *rss = fit.rss;
-    loop_fit_free(&fit);
+    fg_engine_fit_free(&fit);
   }
-  loop_frame_free(&frame);
+  fg_engine_frame_free(&frame);
   return status;
 }
 
@@ -83,7 +85,8 @@ static void neighbours(const fg_loop_problem *problem, const fg_loop_candidate *
 
 /* Golden section in the logarithm; kept only where it is better than the start. */
 static fg_status refine_one(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                            loop_noise noise, loop_set *set, size_t member, size_t dimension) {
+                            fg_engine_noise noise, fg_engine_set *set, size_t member,
+                            size_t dimension) {
   static const double golden = 0.61803398874989485;
   double *shape = &set->shape[member][dimension], start = *shape, at_start, low, high;
   double value[2], at[2];
@@ -117,8 +120,8 @@ static fg_status refine_one(fg_context *ctx, const fg_loop_problem *problem, con
   return FG_OK;
 }
 
-fg_status loop_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                      loop_noise noise, loop_set *set) {
+fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                           fg_engine_noise noise, fg_engine_set *set) {
   for (int round = 0; round < 2; round++)
     for (size_t m = 0; m < set->count; m++) {
       const fg_loop_effect *effect = set->candidate[m].effect;
@@ -128,32 +131,33 @@ fg_status loop_refine(fg_context *ctx, const fg_loop_problem *problem, const boo
   return FG_OK;
 }
 
-static void subtract_fit(const loop_frame *frame, const loop_fit *fit, double *residual) {
+static void subtract_fit(const fg_engine_frame *frame, const fg_engine_fit *fit, double *residual) {
   memcpy(residual, frame->y, frame->n * sizeof *residual);
   for (size_t k = 0; k < frame->columns; k++)
     for (size_t i = 0; i < frame->n; i++)
       residual[i] -= fit->beta[k] * frame->x[k * frame->n + i];
 }
 
-static fg_status fit_fold(fg_context *ctx, const loop_frame *whole, const bool *keep,
-                          const loop_set *set, loop_noise noise, double *residual) {
-  loop_frame frame;
-  loop_fit fit = {0};
-  FG_TRY(loop_frame_build(ctx, whole->problem, keep, set, &frame));
-  fg_status status = loop_least_squares(ctx, &frame, noise, &fit);
+static fg_status fit_fold(fg_context *ctx, const fg_engine_frame *whole, const bool *keep,
+                          const fg_engine_set *set, fg_engine_noise noise, double *residual) {
+  fg_engine_frame frame;
+  fg_engine_fit fit = {0};
+  FG_TRY(fg_engine_frame_build(ctx, whole->problem, keep, set, &frame));
+  fg_status status = fg_engine_least_squares(ctx, &frame, noise, &fit);
   if (status == FG_OK) subtract_fit(whole, &fit, residual);
-  loop_fit_free(&fit);
-  loop_frame_free(&frame);
+  fg_engine_fit_free(&fit);
+  fg_engine_frame_free(&frame);
   return status;
 }
 
-fg_status loop_cross_validate(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                              const loop_set *set, loop_noise noise, double *residual) {
+fg_status fg_engine_cross_validate(fg_context *ctx, const fg_loop_problem *problem,
+                                   const bool *keep, const fg_engine_set *set,
+                                   fg_engine_noise noise, double *residual) {
   fg_status status = FG_OK;
-  loop_frame frame;
+  fg_engine_frame frame;
   bool *fold_keep = NULL;
   double *all = NULL;
-  FG_TRY(loop_frame_build(ctx, problem, keep, set, &frame));
+  FG_TRY(fg_engine_frame_build(ctx, problem, keep, set, &frame));
   size_t folds = frame.groups <= 30 ? frame.groups : 10;
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows, sizeof *fold_keep, (void **)&fold_keep));
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame.n, sizeof *all, (void **)&all));
@@ -167,23 +171,24 @@ fg_status loop_cross_validate(fg_context *ctx, const fg_loop_problem *problem, c
 exit:
   free(fold_keep);
   free(all);
-  loop_frame_free(&frame);
+  fg_engine_frame_free(&frame);
   return status;
 }
 
-fg_status loop_cross_validated_gain(fg_context *ctx, const fg_loop_problem *problem,
-                                    const bool *keep, const loop_set *before, const loop_set *after,
-                                    loop_noise noise, double *gain, double *standard_error) {
+fg_status fg_engine_cross_validated_gain(fg_context *ctx, const fg_loop_problem *problem,
+                                         const bool *keep, const fg_engine_set *before,
+                                         const fg_engine_set *after, fg_engine_noise noise,
+                                         double *gain, double *standard_error) {
   fg_status status = FG_OK;
-  loop_frame frame;
+  fg_engine_frame frame;
   double *residual = NULL, *sum = NULL, squares = 0;
-  FG_TRY(loop_frame_build(ctx, problem, keep, before, &frame));
+  FG_TRY(fg_engine_frame_build(ctx, problem, keep, before, &frame));
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame.n, 2 * sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame.groups, sizeof *sum, (void **)&sum));
-  FG_TRY_EXIT(loop_cross_validate(ctx, problem, keep, before, noise, residual));
-  FG_TRY_EXIT(loop_cross_validate(ctx, problem, keep, after, noise, residual + frame.n));
-  loop_whiten(&frame, noise, residual);
-  loop_whiten(&frame, noise, residual + frame.n);
+  FG_TRY_EXIT(fg_engine_cross_validate(ctx, problem, keep, before, noise, residual));
+  FG_TRY_EXIT(fg_engine_cross_validate(ctx, problem, keep, after, noise, residual + frame.n));
+  fg_engine_whiten(&frame, noise, residual);
+  fg_engine_whiten(&frame, noise, residual + frame.n);
   *gain = 0;
   for (size_t i = 0; i < frame.n; i++)
     sum[frame.group[i]] +=
@@ -197,11 +202,11 @@ fg_status loop_cross_validated_gain(fg_context *ctx, const fg_loop_problem *prob
 exit:
   free(residual);
   free(sum);
-  loop_frame_free(&frame);
+  fg_engine_frame_free(&frame);
   return status;
 }
 
-static void add_effects(const loop_frame *frame, const loop_fit *fit, double *effect) {
+static void add_effects(const fg_engine_frame *frame, const fg_engine_fit *fit, double *effect) {
   size_t parameters = frame->problem->parameters;
   memset(effect, 0, frame->n * sizeof *effect);
   for (size_t k = parameters; k < frame->columns; k++)
@@ -211,23 +216,23 @@ static void add_effects(const loop_frame *frame, const loop_fit *fit, double *ef
     effect[i] += frame->problem->residual[i] - frame->y[i]; /* exchanged runs */
 }
 
-fg_status loop_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                       const loop_set *set, bool choose, loop_noise *noise, double *residual,
-                       double *effect, double *sd) {
+fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                            const fg_engine_set *set, bool choose, fg_engine_noise *noise,
+                            double *residual, double *effect, double *sd) {
   fg_status status = FG_OK;
-  loop_frame frame = {0}, all = {0};
-  loop_fit fit = {0};
-  FG_TRY_EXIT(loop_frame_build(ctx, problem, keep, set, &frame));
-  FG_TRY_EXIT(loop_frame_build(ctx, problem, NULL, set, &all));
-  if (choose) FG_TRY_EXIT(loop_choose_noise(ctx, &frame, noise));
-  FG_TRY_EXIT(loop_least_squares(ctx, &frame, *noise, &fit));
+  fg_engine_frame frame = {0}, all = {0};
+  fg_engine_fit fit = {0};
+  FG_TRY_EXIT(fg_engine_frame_build(ctx, problem, keep, set, &frame));
+  FG_TRY_EXIT(fg_engine_frame_build(ctx, problem, NULL, set, &all));
+  if (choose) FG_TRY_EXIT(fg_engine_choose_noise(ctx, &frame, noise));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &frame, *noise, &fit));
   if (residual) subtract_fit(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);
   double freedom = frame.n > fit.rank ? (double)(frame.n - fit.rank) : NAN;
   if (sd) *sd = sqrt(fit.rss / freedom * (1 + noise->lambda));
 exit:
-  loop_fit_free(&fit);
-  loop_frame_free(&frame);
-  loop_frame_free(&all);
+  fg_engine_fit_free(&fit);
+  fg_engine_frame_free(&frame);
+  fg_engine_frame_free(&all);
   return status;
 }

@@ -5,34 +5,37 @@
 #include "loop/engine.h"
 
 /* The noise model with the largest residual likelihood. */
-fg_status loop_choose_noise(fg_context *ctx, const loop_frame *frame, loop_noise *noise);
+fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_frame *frame,
+                                 fg_engine_noise *noise);
 
 /* Moves the shapes of the set to the least residual sum, one after the other, each between its
  * neighbours in the effect's start values. */
-fg_status loop_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                      loop_noise noise, loop_set *set);
+fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                           fg_engine_noise noise, fg_engine_set *set);
 
 /* Residuals of the rows kept, each predicted without its own fold of groups; n numbers. */
-fg_status loop_cross_validate(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                              const loop_set *set, loop_noise noise, double *residual);
+fg_status fg_engine_cross_validate(fg_context *ctx, const fg_loop_problem *problem,
+                                   const bool *keep, const fg_engine_set *set,
+                                   fg_engine_noise noise, double *residual);
 
 /* Gain in whitened squared error of `after` over `before`, summed, and its standard error from the
  * groups. */
-fg_status loop_cross_validated_gain(fg_context *ctx, const fg_loop_problem *problem,
-                                    const bool *keep, const loop_set *before, const loop_set *after,
-                                    loop_noise noise, double *gain, double *standard_error);
+fg_status fg_engine_cross_validated_gain(fg_context *ctx, const fg_loop_problem *problem,
+                                         const bool *keep, const fg_engine_set *before,
+                                         const fg_engine_set *after, fg_engine_noise noise,
+                                         double *gain, double *standard_error);
 
 /* Fitted on the rows kept, predicted at all: residual of every row of the problem, and the part
  * that the set contributes (either may be NULL). `sd` is of one row. The noise is the caller's, or
  * chosen by the data. */
-fg_status loop_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                       const loop_set *set, bool choose, loop_noise *noise, double *residual,
-                       double *effect, double *sd);
+fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                            const fg_engine_set *set, bool choose, fg_engine_noise *noise,
+                            double *residual, double *effect, double *sd);
 
 /* Coefficients, amplitudes and uncertainties of the set's claims (one each, in order; the curve at
  * `curve` is left out) and of the declared parameters. */
-fg_status loop_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                          const loop_set *set, loop_noise noise, fg_loop_claim *claim,
-                          double *parameter, double *parameter_u);
+fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                               const fg_engine_set *set, fg_engine_noise noise,
+                               fg_loop_claim *claim, double *parameter, double *parameter_u);
 
 #endif

@@ -6,15 +6,15 @@
 #include "core/memory.h"
 #include "loop/engine.h"
 
-static size_t set_columns(const fg_loop_problem *problem, const loop_set *set) {
+static size_t set_columns(const fg_loop_problem *problem, const fg_engine_set *set) {
   size_t count = 0;
   for (size_t i = 0; set && i < set->count; i++)
-    if (!loop_is_exchange(&set->candidate[i]))
-      count += loop_candidate_columns(problem, &set->candidate[i]);
+    if (!fg_engine_is_exchange(&set->candidate[i]))
+      count += fg_engine_candidate_columns(problem, &set->candidate[i]);
   return count;
 }
 
-static fg_status allocate(fg_context *ctx, loop_frame *frame, const loop_set *set) {
+static fg_status allocate(fg_context *ctx, fg_engine_frame *frame, const fg_engine_set *set) {
   const fg_loop_problem *problem = frame->problem;
   frame->columns = problem->parameters + set_columns(problem, set);
   size_t n = frame->n;
@@ -28,7 +28,7 @@ static fg_status allocate(fg_context *ctx, loop_frame *frame, const loop_set *se
 }
 
 /* Groups and series get new numbers in order of appearance. */
-static fg_status number_rows(fg_context *ctx, loop_frame *frame) {
+static fg_status number_rows(fg_context *ctx, fg_engine_frame *frame) {
   const fg_loop_problem *problem = frame->problem;
   size_t *number = NULL;
   FG_TRY(fg_memory_allocate(ctx, problem->groups, sizeof *number, (void **)&number));
@@ -44,14 +44,14 @@ static fg_status number_rows(fg_context *ctx, loop_frame *frame) {
   }
   frame->start[frame->blocks] = frame->n;
   frame->level_start[frame->levels] = frame->n;
-  frame->flips = frame->groups < LOOP_FLIP_GROUPS ? frame->groups : LOOP_FLIP_GROUPS;
+  frame->flips = frame->groups < FG_ENGINE_FLIP_GROUPS ? frame->groups : FG_ENGINE_FLIP_GROUPS;
   for (size_t i = 0; i < frame->n; i++)
     frame->flip[i] = frame->group[i] * frame->flips / frame->groups;
   free(number);
   return FG_OK;
 }
 
-static void put_back(loop_frame *frame, const fg_loop_candidate *exchange) {
+static void put_back(fg_engine_frame *frame, const fg_loop_candidate *exchange) {
   const double *response = frame->problem->response;
   double change = response[exchange->row[1]] - response[exchange->row[0]];
   for (size_t i = 0; i < frame->n; i++) {
@@ -60,7 +60,7 @@ static void put_back(loop_frame *frame, const fg_loop_candidate *exchange) {
   }
 }
 
-static fg_status fill_columns(fg_context *ctx, loop_frame *frame, const loop_set *set) {
+static fg_status fill_columns(fg_context *ctx, fg_engine_frame *frame, const fg_engine_set *set) {
   const fg_loop_problem *problem = frame->problem;
   double *next = frame->x;
   for (size_t k = 0; k < problem->parameters; k++)
@@ -69,20 +69,20 @@ static fg_status fill_columns(fg_context *ctx, loop_frame *frame, const loop_set
   for (size_t i = 0; i < frame->n; i++)
     frame->y[i] = problem->residual[frame->row[i]];
   for (size_t c = 0; set && c < set->count; c++) {
-    if (loop_is_exchange(&set->candidate[c])) {
+    if (fg_engine_is_exchange(&set->candidate[c])) {
       put_back(frame, &set->candidate[c]);
       continue;
     }
-    FG_TRY(loop_gather(ctx, frame, &set->candidate[c], set->shape[c], next));
-    next += frame->n * loop_candidate_columns(problem, &set->candidate[c]);
+    FG_TRY(fg_engine_gather(ctx, frame, &set->candidate[c], set->shape[c], next));
+    next += frame->n * fg_engine_candidate_columns(problem, &set->candidate[c]);
   }
   return FG_OK;
 }
 
-fg_status loop_frame_build(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                           const loop_set *set, loop_frame *frame) {
+fg_status fg_engine_frame_build(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
+                                const fg_engine_set *set, fg_engine_frame *frame) {
   fg_status status = FG_OK;
-  *frame = (loop_frame){.problem = problem};
+  *frame = (fg_engine_frame){.problem = problem};
   for (size_t i = 0; i < problem->rows; i++)
     frame->n += !keep || keep[i];
   FG_TRY_EXIT(allocate(ctx, frame, set));
@@ -91,11 +91,11 @@ fg_status loop_frame_build(fg_context *ctx, const fg_loop_problem *problem, cons
   FG_TRY_EXIT(number_rows(ctx, frame));
   FG_TRY_EXIT(fill_columns(ctx, frame, set));
 exit:
-  if (status != FG_OK) loop_frame_free(frame);
+  if (status != FG_OK) fg_engine_frame_free(frame);
   return status;
 }
 
-void loop_frame_free(loop_frame *frame) {
+void fg_engine_frame_free(fg_engine_frame *frame) {
   free(frame->row);
   free(frame->group);
   free(frame->flip);
@@ -103,7 +103,7 @@ void loop_frame_free(loop_frame *frame) {
   free(frame->level_start);
   free(frame->y);
   free(frame->x);
-  *frame = (loop_frame){0};
+  *frame = (fg_engine_frame){0};
 }
 
 /* A form that overflows at some row is no candidate: columns of zeros explain nothing. */
@@ -115,10 +115,11 @@ static void refuse_overflow(double *columns, size_t count) {
     }
 }
 
-fg_status loop_gather(fg_context *ctx, const loop_frame *frame, const fg_loop_candidate *candidate,
-                      const double *shape, double *columns) {
+fg_status fg_engine_gather(fg_context *ctx, const fg_engine_frame *frame,
+                           const fg_loop_candidate *candidate, const double *shape,
+                           double *columns) {
   const fg_loop_problem *problem = frame->problem;
-  size_t count = loop_candidate_columns(problem, candidate);
+  size_t count = fg_engine_candidate_columns(problem, candidate);
   double *all = NULL;
   FG_TRY(fg_memory_allocate(ctx, problem->rows, count * sizeof *all, (void **)&all));
   candidate->effect->basis(problem, candidate, shape, all);

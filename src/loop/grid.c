@@ -11,8 +11,8 @@ static double *zeros(const fg_loop_problem *grid) {
   return grid->coordinate[grid->coordinates].value;
 }
 
-fg_status loop_grid_open(fg_context *ctx, const fg_loop_problem *problem, size_t rows,
-                         fg_loop_problem *grid) {
+fg_status fg_engine_grid_open(fg_context *ctx, const fg_loop_problem *problem, size_t rows,
+                              fg_loop_problem *grid) {
   size_t count = problem->coordinates;
   double *shared = NULL;
   *grid = (fg_loop_problem){.level = problem->level,
@@ -34,8 +34,8 @@ fg_status loop_grid_open(fg_context *ctx, const fg_loop_problem *problem, size_t
   return FG_OK;
 }
 
-fg_status loop_grid_axis(fg_context *ctx, fg_loop_problem *grid, size_t coordinate,
-                         double **value) {
+fg_status fg_engine_grid_axis(fg_context *ctx, fg_loop_problem *grid, size_t coordinate,
+                              double **value) {
   fg_loop_coordinate *at = &grid->coordinate[coordinate];
   if (at->value == zeros(grid)) {
     double *own = NULL;
@@ -46,7 +46,7 @@ fg_status loop_grid_axis(fg_context *ctx, fg_loop_problem *grid, size_t coordina
   return FG_OK;
 }
 
-void loop_grid_close(fg_loop_problem *grid) {
+void fg_engine_grid_close(fg_loop_problem *grid) {
   if (!grid->coordinate) return;
   double *shared = zeros(grid);
   for (size_t i = 0; i < grid->coordinates; i++)

@@ -7,11 +7,12 @@
 
 #include "foilgauge/loop.h"
 
-/* All coordinates are 0 until loop_grid_axis. Free with loop_grid_close. */
-fg_status loop_grid_open(fg_context *ctx, const fg_loop_problem *problem, size_t rows,
-                         fg_loop_problem *grid);
+/* All coordinates are 0 until fg_engine_grid_axis. Free with fg_engine_grid_close. */
+fg_status fg_engine_grid_open(fg_context *ctx, const fg_loop_problem *problem, size_t rows,
+                              fg_loop_problem *grid);
 /* Gives a coordinate values of its own; *value has room for the grid's rows. */
-fg_status loop_grid_axis(fg_context *ctx, fg_loop_problem *grid, size_t coordinate, double **value);
-void loop_grid_close(fg_loop_problem *grid);
+fg_status fg_engine_grid_axis(fg_context *ctx, fg_loop_problem *grid, size_t coordinate,
+                              double **value);
+void fg_engine_grid_close(fg_loop_problem *grid);
 
 #endif

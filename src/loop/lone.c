@@ -10,8 +10,8 @@
 #include <gsl/gsl_cdf.h>
 
 #include "core/memory.h"
-#include "loop/judge.h"
-#include "loop/random.h"
+#include "loop/engine_random.h"
+#include "loop/permute.h"
 
 typedef struct lone_bench {
   size_t n;
@@ -73,19 +73,19 @@ static void best_exchange(const lone_bench *bench, const double *response, const
     }
 }
 
-static fg_status fill(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+static fg_status fill(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                       lone_bench *bench) {
   size_t n = frame->n;
   fg_status status = FG_OK;
   double *null = NULL, *work = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, (frame->columns + 1) * sizeof *null, (void **)&null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, n * sizeof *work, (void **)&work));
-  size_t rank = loop_null_basis(frame, noise, null);
+  size_t rank = fg_engine_null_basis(frame, noise, null);
   for (size_t i = 0; i < n; i++) {
     double *v = work + i * n;
     v[i] = 1;
-    loop_whiten(frame, noise, v);
-    loop_project_out(n, null, rank, v);
+    fg_engine_whiten(frame, noise, v);
+    fg_engine_project_out(n, null, rank, v);
   }
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) {
@@ -102,10 +102,10 @@ exit:
 }
 
 /* The response that the null expects: what was measured less the residual. */
-static fg_status fill_mean(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+static fg_status fill_mean(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                            lone_bench *bench) {
-  loop_fit fit;
-  FG_TRY(loop_least_squares(ctx, frame, noise, &fit));
+  fg_engine_fit fit;
+  FG_TRY(fg_engine_least_squares(ctx, frame, noise, &fit));
   for (size_t i = 0; i < frame->n; i++) {
     double residual = frame->y[i];
     for (size_t k = 0; k < frame->columns; k++)
@@ -114,7 +114,7 @@ static fg_status fill_mean(fg_context *ctx, const loop_frame *frame, loop_noise 
     bench->mean[i] =
         frame->y[i] - frame->problem->residual[row] + frame->problem->response[row] - residual;
   }
-  loop_fit_free(&fit);
+  fg_engine_fit_free(&fit);
   return FG_OK;
 }
 
@@ -129,13 +129,13 @@ static int by_size(const void *a, const void *b) {
 }
 
 /* One draw: heavy noise of the fitted size about the fitted response. */
-static void draw(const loop_frame *frame, loop_noise noise, const lone_bench *bench, double sd,
-                 uint64_t *seed, double *work, lone_best *best) {
+static void draw(const fg_engine_frame *frame, fg_engine_noise noise, const lone_bench *bench,
+                 double sd, uint64_t *seed, double *work, lone_best *best) {
   size_t n = bench->n;
   double *y = work, *ay = work + n, *response = work + 2 * n;
   for (size_t i = 0; i < n; i++)
-    y[i] = sd * loop_random_heavy(seed);
-  loop_colour(frame, noise, y);
+    y[i] = sd * fg_engine_random_heavy(seed);
+  fg_engine_colour(frame, noise, y);
   for (size_t i = 0; i < n; i++)
     response[i] = bench->mean[i] + y[i];
   double rss = apply(bench, y, ay);
@@ -144,19 +144,19 @@ static void draw(const loop_frame *frame, loop_noise noise, const lone_bench *be
 }
 
 static void take_p(const lone_null *null, size_t kind, double ratio, double freedom,
-                   loop_lone *lone) {
+                   fg_engine_lone *lone) {
   size_t below = 0;
   while (below < null->draws && null->ratio[kind][below] <= ratio + 1e-12)
     below++;
   lone->ratio = ratio;
-  lone->p_value = fmin(1, LOOP_FAMILIES * (1 + (double)below) / (1 + (double)null->draws));
-  double edge = null->ratio[kind][(size_t)((double)null->draws * 0.01 / LOOP_FAMILIES)];
+  lone->p_value = fmin(1, FG_ENGINE_FAMILIES * (1 + (double)below) / (1 + (double)null->draws));
+  double edge = null->ratio[kind][(size_t)((double)null->draws * 0.01 / FG_ENGINE_FAMILIES)];
   lone->f_critical = (1 / edge - 1) * (freedom - 1);
 }
 
-static fg_status judge_small(fg_context *ctx, const loop_frame *frame, loop_noise noise,
+static fg_status judge_small(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                              const lone_bench *bench, size_t draws, uint64_t seed,
-                             loop_lone lone[2]) {
+                             fg_engine_lone lone[2]) {
   size_t n = frame->n;
   fg_status status = FG_OK;
   double *work = NULL;
@@ -197,12 +197,12 @@ exit:
 
 /* Many rows: the residual over its sd against the tail of the heavy law, times the rows. Leverage
  * is small there. */
-static fg_status judge_large(fg_context *ctx, const loop_frame *frame, loop_noise noise,
-                             loop_lone lone[2]) {
-  loop_fit fit;
+static fg_status judge_large(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
+                             fg_engine_lone lone[2]) {
+  fg_engine_fit fit;
   size_t worst = 0;
   double largest = 0, sum = 0;
-  FG_TRY(loop_least_squares(ctx, frame, noise, &fit));
+  FG_TRY(fg_engine_least_squares(ctx, frame, noise, &fit));
   for (size_t i = 0; i < frame->n; i++) {
     double residual = frame->y[i];
     for (size_t k = 0; k < frame->columns; k++)
@@ -213,27 +213,28 @@ static fg_status judge_large(fg_context *ctx, const loop_frame *frame, loop_nois
       worst = i;
     }
   }
-  loop_fit_free(&fit);
+  fg_engine_fit_free(&fit);
   double n = (double)frame->n, rest = sqrt((sum - largest * largest) / n);
   lone[0].known = true;
   lone[0].ratio = 1 - largest * largest / sum;
   lone[0].length = 1;
-  lone[0].p_value = fmin(1, LOOP_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
-  lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(0.01 / LOOP_FAMILIES / 2 / n, 4), 2) / 2;
+  lone[0].p_value =
+      fmin(1, FG_ENGINE_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
+  lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(0.01 / FG_ENGINE_FAMILIES / 2 / n, 4), 2) / 2;
   lone[0].candidate.row[0] = frame->row[worst];
   return FG_OK;
 }
 
-fg_status loop_judge_lone(fg_context *ctx, const loop_frame *frame, loop_noise noise, size_t draws,
-                          uint64_t seed, loop_lone lone[2]) {
-  const fg_loop_effect *effects = loop_lone_effects();
+fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
+                               size_t draws, uint64_t seed, fg_engine_lone lone[2]) {
+  const fg_loop_effect *effects = fg_engine_lone_effects();
   lone_bench bench = {.n = frame->n};
   fg_status status = FG_OK;
   memset(lone, 0, 2 * sizeof *lone);
   for (size_t k = 0; k < 2; k++)
     lone[k].candidate.effect = &effects[k];
   if (!frame->problem->exchangeable || frame->n < frame->columns + 4) return FG_OK;
-  if (frame->n > LOOP_SMALL_ROWS) return judge_large(ctx, frame, noise, lone);
+  if (frame->n > FG_ENGINE_SMALL_ROWS) return judge_large(ctx, frame, noise, lone);
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame->n, frame->n * sizeof *bench.a, (void **)&bench.a));
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame->n, sizeof *bench.a, (void **)&bench.diagonal));
   FG_TRY_EXIT(fg_memory_allocate(ctx, frame->n, sizeof *bench.a, (void **)&bench.mean));

@@ -21,7 +21,7 @@ const char *fg_loop_outcome_word(fg_loop_outcome outcome) {
   return words[outcome];
 }
 
-fg_status loop_note(fg_context *ctx, fg_loop_result *result, const char *format, ...) {
+fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...) {
   char text[600];
   va_list arguments;
   va_start(arguments, format);
@@ -35,7 +35,7 @@ fg_status loop_note(fg_context *ctx, fg_loop_result *result, const char *format,
   return FG_OK;
 }
 
-static fg_status add_candidates(fg_context *ctx, loop_run *run, const fg_loop_effect *effects,
+static fg_status add_candidates(fg_context *ctx, fg_engine_run *run, const fg_loop_effect *effects,
                                 size_t *capacity) {
   const fg_loop_problem *problem = run->problem;
   for (const fg_loop_effect *effect = effects; effect->id; effect++)
@@ -44,7 +44,7 @@ static fg_status add_candidates(fg_context *ctx, loop_run *run, const fg_loop_ef
            b++) {
         if (!effect->accepts(problem, a, b)) continue;
         fg_loop_candidate candidate = {.effect = effect, .a = a, .b = b};
-        size_t columns = loop_candidate_columns(problem, &candidate);
+        size_t columns = fg_engine_candidate_columns(problem, &candidate);
         if (columns == 0 || columns > FG_LOOP_COLUMNS) continue;
         FG_TRY(fg_memory_reserve(ctx, run->candidates + 1, sizeof *run->candidate, capacity,
                                  (void **)&run->candidate));
@@ -53,21 +53,22 @@ static fg_status add_candidates(fg_context *ctx, loop_run *run, const fg_loop_ef
   return FG_OK;
 }
 
-static fg_status open_run(fg_context *ctx, const loop_units *units, const fg_loop_options *options,
-                          fg_loop_result *result, loop_run *run) {
+static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
+                          const fg_loop_options *options, fg_loop_result *result,
+                          fg_engine_run *run) {
   const fg_loop_problem *problem = &units->problem;
   size_t capacity = 0, rows = problem->rows;
-  *run = (loop_run){.problem = problem, .units = units, .options = *options, .result = result};
+  *run = (fg_engine_run){.problem = problem, .units = units, .options = *options, .result = result};
   run->options.matters = ldexp(options->matters, -units->response);
   if (!(run->options.accept_p > 0)) run->options.accept_p = 0.01;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *run->train, (void **)&run->train));
   for (size_t i = 0; i < rows; i++)
     run->train[i] = !problem->aside || !problem->aside[i];
   FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
-  if (!problem->few) FG_TRY(add_candidates(ctx, run, loop_curve_effects(), &capacity));
-  loop_effort effort;
-  loop_effort_estimate(problem, run->candidate, run->candidates, &effort);
-  FG_TRY(loop_effort_check(ctx, &effort, options->minutes, options->mebibytes));
+  if (!problem->few) FG_TRY(add_candidates(ctx, run, fg_engine_curve_effects(), &capacity));
+  fg_engine_effort effort;
+  fg_engine_effort_estimate(problem, run->candidate, run->candidates, &effort);
+  FG_TRY(fg_engine_effort_check(ctx, &effort, options->minutes, options->mebibytes));
   size_t size = sizeof *result->before_fit;
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->before_fit));
   FG_TRY(fg_memory_allocate(ctx, rows, size, (void **)&result->after_fit));
@@ -77,7 +78,7 @@ static fg_status open_run(fg_context *ctx, const loop_units *units, const fg_loo
 }
 
 /* Declared columns that the others span, as far as the digits tell. */
-static fg_status note_aliased(fg_context *ctx, loop_run *run, const loop_fit *fit) {
+static fg_status note_aliased(fg_context *ctx, fg_engine_run *run, const fg_engine_fit *fit) {
   const fg_loop_problem *problem = run->problem;
   char *names = NULL;
   fg_status status = FG_OK;
@@ -85,7 +86,8 @@ static fg_status note_aliased(fg_context *ctx, loop_run *run, const loop_fit *fi
     if (problem->parameter_name && !(fit->inverse[k * fit->columns + k] > 0))
       status = fg_text_append(ctx, &names, "%s%s", names ? ", " : "", problem->parameter_name[k]);
   if (status == FG_OK && names)
-    status = loop_note(ctx, run->result,
+    status =
+        fg_engine_note(ctx, run->result,
                        "These terms of the declared model cannot be told from its others, as far "
                        "as the digits of the table tell, and are left out: %s.",
                        names);
@@ -94,12 +96,12 @@ static fg_status note_aliased(fg_context *ctx, loop_run *run, const loop_fit *fi
 }
 
 /* Enough rows, and a residual that is more than rounding? */
-static fg_status check(fg_context *ctx, loop_run *run, bool *worth) {
-  loop_frame frame;
-  loop_fit fit = {0};
+static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
+  fg_engine_frame frame;
+  fg_engine_fit fit = {0};
   double size = 0;
-  FG_TRY(loop_frame_build(ctx, run->problem, run->train, NULL, &frame));
-  fg_status status = loop_least_squares(ctx, &frame, (loop_noise){0}, &fit);
+  FG_TRY(fg_engine_frame_build(ctx, run->problem, run->train, NULL, &frame));
+  fg_status status = fg_engine_least_squares(ctx, &frame, (fg_engine_noise){0}, &fit);
   if (status == FG_OK && frame.n < fit.rank + 3)
     status = fg_fail(ctx, FG_ERR_DATA,
                      "%zu rows for %zu parameters of the declared model leave %zu to judge it by; "
@@ -112,33 +114,35 @@ static fg_status check(fg_context *ctx, loop_run *run, bool *worth) {
   }
   *worth = status == FG_OK && fit.rss > 1e-20 * size;
   if (status == FG_OK && !*worth)
-    status = loop_note(ctx, run->result,
+    status =
+        fg_engine_note(ctx, run->result,
                        "The declared model fits every row to the last digit: no residual is left "
                        "to look into.");
   if (status == FG_OK && frame.groups < 8 && !run->problem->few)
-    status = loop_note(ctx, run->result,
+    status =
+        fg_engine_note(ctx, run->result,
                        "%zu groups take part: flipping their signs can give no p-value below "
                        "%.3g, so nothing can be claimed at p < 0.01. Measure 8 groups or more.",
                        frame.groups, ldexp(1, 1 - (int)frame.groups));
-  loop_fit_free(&fit);
-  loop_frame_free(&frame);
+  fg_engine_fit_free(&fit);
+  fg_engine_frame_free(&frame);
   return status;
 }
 
-static fg_status search(fg_context *ctx, loop_run *run) {
+static fg_status search(fg_context *ctx, fg_engine_run *run) {
   bool accepted = true, last = false;
   while (!last && run->result->claims < FG_LOOP_CLAIMS) {
-    FG_TRY(loop_accept_one(ctx, run, &accepted, &last));
-    FG_TRY(loop_fit_set(ctx, run->problem, run->train, &run->set, true, &run->noise, NULL, NULL,
-                        &run->sd));
-    FG_TRY(loop_refine(ctx, run->problem, run->train, run->noise, &run->set));
+    FG_TRY(fg_engine_accept_one(ctx, run, &accepted, &last));
+    FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &run->set, true, &run->noise, NULL,
+                             NULL, &run->sd));
+    FG_TRY(fg_engine_refine(ctx, run->problem, run->train, run->noise, &run->set));
   }
-  return loop_swap(ctx, run);
+  return fg_engine_swap(ctx, run);
 }
 
 /* Nothing claimed over an order along which the residual is correlated: say what that leaves open.
  */
-static fg_status note_correlation(fg_context *ctx, const loop_run *run) {
+static fg_status note_correlation(fg_context *ctx, const fg_engine_run *run) {
   enum { SHARE_PCT = 50 };
   fg_loop_result *result = run->result;
   const fg_loop_rejected *nearest = NULL;
@@ -146,7 +150,7 @@ static fg_status note_correlation(fg_context *ctx, const loop_run *run) {
   for (size_t i = 0; i < result->rejects; i++)
     if (!nearest || result->rejected[i].p_value < nearest->p_value) nearest = &result->rejected[i];
   if (!nearest) return FG_OK;
-  return loop_note(
+  return fg_engine_note(
       ctx, result,
       "The residual is not white: neighbours correlate at %.2f along the order. In %zu "
       "rows a slow change and correlated noise look alike; the nearest effect is %s "
@@ -157,22 +161,22 @@ static fg_status note_correlation(fg_context *ctx, const loop_run *run) {
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result) {
   fg_status status = FG_OK;
-  loop_run run = {0};
-  loop_units units = {0};
+  fg_engine_run run = {0};
+  fg_engine_units units = {0};
   bool worth = false;
   memset(result, 0, sizeof *result);
   result->smallest_p = NAN;
-  FG_TRY_EXIT(loop_units_open(ctx, problem, &units));
+  FG_TRY_EXIT(fg_engine_units_open(ctx, problem, &units));
   FG_TRY_EXIT(open_run(ctx, &units, options, result, &run));
   FG_TRY_EXIT(check(ctx, &run, &worth));
   if (worth) FG_TRY_EXIT(search(ctx, &run));
-  FG_TRY_EXIT(loop_finish(ctx, &run));
-  if (worth) FG_TRY_EXIT(loop_list_rejected(ctx, &run));
-  if (worth) FG_TRY_EXIT(loop_advise(ctx, &run));
+  FG_TRY_EXIT(fg_engine_finish(ctx, &run));
+  if (worth) FG_TRY_EXIT(fg_engine_list_rejected(ctx, &run));
+  if (worth) FG_TRY_EXIT(fg_engine_advise(ctx, &run));
   if (worth) FG_TRY_EXIT(note_correlation(ctx, &run));
-  loop_units_restore(&units, result);
+  fg_engine_units_restore(&units, result);
 exit:
-  loop_units_close(&units);
+  fg_engine_units_close(&units);
   free(run.train);
   free(run.candidate);
   if (status != FG_OK) fg_loop_result_free(result);

@@ -25,7 +25,8 @@ static void scale_level(double *v, size_t count, double rho, double factor) {
     v[i] += factor * along / size * level_weight(rho, i);
 }
 
-static void scale_levels(const loop_frame *frame, loop_noise noise, double *y, bool inverse) {
+static void scale_levels(const fg_engine_frame *frame, fg_engine_noise noise, double *y,
+                         bool inverse) {
   for (size_t b = 0; b < frame->levels; b++) {
     size_t from = frame->level_start[b], count = frame->level_start[b + 1] - from;
     double root = sqrt(1 + noise.lambda * level_size(noise.rho, count));
@@ -33,7 +34,7 @@ static void scale_levels(const loop_frame *frame, loop_noise noise, double *y, b
   }
 }
 
-void loop_whiten(const loop_frame *frame, loop_noise noise, double *y) {
+void fg_engine_whiten(const fg_engine_frame *frame, fg_engine_noise noise, double *y) {
   double root = sqrt(1 - noise.rho * noise.rho);
   if (noise.rho > 0)
     for (size_t b = 0; b < frame->blocks; b++)
@@ -42,7 +43,7 @@ void loop_whiten(const loop_frame *frame, loop_noise noise, double *y) {
   if (noise.lambda > 0) scale_levels(frame, noise, y, false);
 }
 
-void loop_colour(const loop_frame *frame, loop_noise noise, double *y) {
+void fg_engine_colour(const fg_engine_frame *frame, fg_engine_noise noise, double *y) {
   double root = sqrt(1 - noise.rho * noise.rho);
   if (noise.lambda > 0) scale_levels(frame, noise, y, true);
   if (noise.rho > 0)
@@ -51,7 +52,7 @@ void loop_colour(const loop_frame *frame, loop_noise noise, double *y) {
         y[i] = noise.rho * y[i - 1] + root * y[i];
 }
 
-double loop_log_det(const loop_frame *frame, loop_noise noise) {
+double fg_engine_log_det(const fg_engine_frame *frame, fg_engine_noise noise) {
   double sum = 0;
   for (size_t b = 0; noise.rho > 0 && b < frame->blocks; b++)
     sum += (double)(frame->start[b + 1] - frame->start[b] - 1) * log1p(-noise.rho * noise.rho);
@@ -63,7 +64,7 @@ double loop_log_det(const loop_frame *frame, loop_noise noise) {
 }
 
 /* Finer where rows are many: then the estimate is sharp. */
-size_t loop_noise_grid(const loop_frame *frame, loop_noise grid[LOOP_NOISES]) {
+size_t fg_engine_noise_grid(const fg_engine_frame *frame, fg_engine_noise grid[FG_ENGINE_NOISES]) {
   static const double small_rho[] = {0, 0.25, 0.5, 0.7, 0.85}, lot_rho[] = {0, 0.3, 0.6, 0.85};
   static const double large_rho[] = {0,   0.05, 0.1,  0.15, 0.2,  0.3,  0.4,  0.5,   0.6,
                                      0.7, 0.8,  0.85, 0.9,  0.93, 0.95, 0.97, 0.985, 0.995};
@@ -73,13 +74,13 @@ size_t loop_noise_grid(const loop_frame *frame, loop_noise grid[LOOP_NOISES]) {
   if (frame->levels) {
     rho = lot_rho;
     rhos = 4;
-  } else if (frame->n > LOOP_SMALL_ROWS) {
+  } else if (frame->n > FG_ENGINE_SMALL_ROWS) {
     rho = large_rho;
     rhos = sizeof large_rho / sizeof *large_rho;
   }
   if (!frame->problem->correlated) rhos = 1;
   for (size_t i = 0; i < rhos; i++)
     for (size_t j = 0; j < lambdas; j++)
-      grid[count++] = (loop_noise){rho[i], lambda[j]};
+      grid[count++] = (fg_engine_noise){rho[i], lambda[j]};
   return count;
 }

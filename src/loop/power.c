@@ -5,24 +5,24 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "loop/judge.h"
-#include "loop/random.h"
+#include "loop/engine_random.h"
+#include "loop/permute.h"
 
 enum { DRAWS = 60, HALVINGS = 14 };
 static const double wanted = 0.8;
 
 /* Products with the bench's columns at every noise: of each draw of noise, and of the effect. */
 typedef struct power_bench {
-  const loop_bench *bench;
+  const fg_engine_bench *bench;
   size_t width;
-  double *noise[LOOP_NOISES];  /* DRAWS × (width + 1), |We|² last */
-  double *effect[LOOP_NOISES]; /* width + 1, |Wf|² last */
-  double *cross[LOOP_NOISES];  /* DRAWS: (We)'(Wf) */
-  double *draws;               /* DRAWS × n, not whitened */
+  double *noise[FG_ENGINE_NOISES];  /* DRAWS × (width + 1), |We|² last */
+  double *effect[FG_ENGINE_NOISES]; /* width + 1, |Wf|² last */
+  double *cross[FG_ENGINE_NOISES];  /* DRAWS: (We)'(Wf) */
+  double *draws;                    /* DRAWS × n, not whitened */
   double *white, *f;
 } power_bench;
 
-static fg_status open_power(fg_context *ctx, const loop_bench *bench, power_bench *power) {
+static fg_status open_power(fg_context *ctx, const fg_engine_bench *bench, power_bench *power) {
   size_t n = bench->frame->n;
   *power = (power_bench){.bench = bench, .width = bench->rank + bench->columns};
   size_t row = (power->width + 1) * sizeof(double);
@@ -38,7 +38,7 @@ static fg_status open_power(fg_context *ctx, const loop_bench *bench, power_benc
 }
 
 static void close_power(power_bench *power) {
-  for (size_t j = 0; j < LOOP_NOISES; j++) {
+  for (size_t j = 0; j < FG_ENGINE_NOISES; j++) {
     free(power->noise[j]);
     free(power->effect[j]);
     free(power->cross[j]);
@@ -49,7 +49,7 @@ static void close_power(power_bench *power) {
 }
 
 static void products(const power_bench *power, size_t j, const double *white, double *sums) {
-  const loop_bench *bench = power->bench;
+  const fg_engine_bench *bench = power->bench;
   memset(sums, 0, (power->width + 1) * sizeof *sums);
   for (size_t i = 0; i < bench->frame->n; i++) {
     const double *row = bench->rows[j] + i * power->width;
@@ -59,17 +59,17 @@ static void products(const power_bench *power, size_t j, const double *white, do
   }
 }
 
-static void draw_noise(power_bench *power, loop_noise noise, uint64_t seed) {
-  const loop_bench *bench = power->bench;
+static void draw_noise(power_bench *power, fg_engine_noise noise, uint64_t seed) {
+  const fg_engine_bench *bench = power->bench;
   size_t n = bench->frame->n;
   for (size_t b = 0; b < DRAWS; b++) {
     double *y = power->draws + b * n;
     for (size_t i = 0; i < n; i++)
-      y[i] = loop_random_normal(&seed);
-    loop_colour(bench->frame, noise, y);
+      y[i] = fg_engine_random_normal(&seed);
+    fg_engine_colour(bench->frame, noise, y);
     for (size_t j = 0; j < bench->noises; j++) {
       memcpy(power->white, y, n * sizeof *y);
-      loop_whiten(bench->frame, bench->noise[j], power->white);
+      fg_engine_whiten(bench->frame, bench->noise[j], power->white);
       products(power, j, power->white, power->noise[j] + b * (power->width + 1));
     }
   }
@@ -78,14 +78,14 @@ static void draw_noise(power_bench *power, loop_noise noise, uint64_t seed) {
 /* The columns of the middle version, the k-th k times: neither the clearest pattern of many nor the
  * one that the declared model absorbs. Half range 1. */
 static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version) {
-  const loop_bench *bench = power->bench;
-  const loop_frame *frame = bench->frame;
+  const fg_engine_bench *bench = power->bench;
+  const fg_engine_frame *frame = bench->frame;
   size_t n = frame->n;
   double low = INFINITY, high = -INFINITY, *f = power->f, *other = power->white + n;
-  FG_TRY(loop_gather(ctx, frame, &bench->candidate[bench->version[version].candidate],
-                     bench->shape[version], f));
+  FG_TRY(fg_engine_gather(ctx, frame, &bench->candidate[bench->version[version].candidate],
+                          bench->shape[version], f));
   const fg_loop_candidate *candidate = &bench->candidate[bench->version[version].candidate];
-  size_t count = loop_candidate_columns(frame->problem, candidate);
+  size_t count = fg_engine_candidate_columns(frame->problem, candidate);
   for (size_t i = 0; i < n; i++) {
     for (size_t k = 1; k < count; k++)
       f[i] += (double)(k + 1) * f[k * n + i];
@@ -97,11 +97,11 @@ static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version)
     f[i] /= scale > 0 ? scale : 1;
   for (size_t j = 0; j < bench->noises; j++) {
     memcpy(power->white, f, n * sizeof *f);
-    loop_whiten(frame, bench->noise[j], power->white);
+    fg_engine_whiten(frame, bench->noise[j], power->white);
     products(power, j, power->white, power->effect[j]);
     for (size_t b = 0; b < DRAWS; b++) {
       memcpy(other, power->draws + b * n, n * sizeof *other);
-      loop_whiten(frame, bench->noise[j], other);
+      fg_engine_whiten(frame, bench->noise[j], other);
       power->cross[j][b] = 0;
       for (size_t i = 0; i < n; i++)
         power->cross[j][b] += other[i] * power->white[i];
@@ -114,13 +114,13 @@ static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version)
  * version. */
 static void residual_sums(const power_bench *power, size_t c, size_t b, size_t j, double a,
                           double *null, double *with) {
-  const loop_bench *bench = power->bench;
+  const fg_engine_bench *bench = power->bench;
   const double *e = power->noise[j] + b * (power->width + 1), *f = power->effect[j];
   double rss = e[power->width] + 2 * a * power->cross[j][b] + a * a * f[power->width], gain = 0;
   for (size_t k = 0; k < bench->rank; k++)
     rss -= (e[k] + a * f[k]) * (e[k] + a * f[k]);
   for (size_t v = 0; v < bench->versions; v++) {
-    const loop_version *version = &bench->version[v];
+    const fg_engine_version *version = &bench->version[v];
     double sum = 0;
     if (version->candidate != c) continue;
     for (size_t k = bench->rank + version->first; k < bench->rank + version->first + version->rank;
@@ -133,7 +133,7 @@ static void residual_sums(const power_bench *power, size_t c, size_t b, size_t j
 }
 
 static double share_found(const power_bench *power, size_t c, double k, double critical, double a) {
-  const loop_bench *bench = power->bench;
+  const fg_engine_bench *bench = power->bench;
   size_t found = 0;
   for (size_t b = 0; b < DRAWS; b++) {
     double null = INFINITY, with = INFINITY;
@@ -143,14 +143,14 @@ static double share_found(const power_bench *power, size_t c, double k, double c
       null = fmin(null, one_null);
       with = fmin(with, one_with);
     }
-    found += loop_deviate(with / null, k, (double)bench->freedom) >= critical;
+    found += fg_engine_deviate(with / null, k, (double)bench->freedom) >= critical;
   }
   return (double)found / DRAWS;
 }
 
 static fg_status one_amplitude(fg_context *ctx, power_bench *power, size_t c, double critical,
                                double *amplitude) {
-  const loop_bench *bench = power->bench;
+  const fg_engine_bench *bench = power->bench;
   size_t first = bench->versions, count = 0;
   for (size_t v = 0; v < bench->versions; v++)
     if (bench->version[v].candidate == c) {
@@ -159,7 +159,7 @@ static fg_status one_amplitude(fg_context *ctx, power_bench *power, size_t c, do
   size_t middle = first + count / 2;
   *amplitude = NAN;
   if (count == 0) return FG_OK;
-  double k = loop_version_freedom(bench, &bench->version[middle]);
+  double k = fg_engine_version_freedom(bench, &bench->version[middle]);
   if (bench->version[middle].rank == 0 || k + 2 > (double)bench->freedom) return FG_OK;
   FG_TRY(set_effect(ctx, power, middle));
   double low = 1e-3, high = 1e3;
@@ -175,9 +175,9 @@ static fg_status one_amplitude(fg_context *ctx, power_bench *power, size_t c, do
   return FG_OK;
 }
 
-fg_status loop_smallest_amplitudes(fg_context *ctx, const loop_bench *bench,
-                                   const loop_judgement *judgement, uint64_t seed,
-                                   double *amplitude) {
+fg_status fg_engine_smallest_amplitudes(fg_context *ctx, const fg_engine_bench *bench,
+                                        const fg_engine_judgement *judgement, uint64_t seed,
+                                        double *amplitude) {
   power_bench power;
   fg_status status = FG_OK;
   FG_TRY_EXIT(open_power(ctx, bench, &power));

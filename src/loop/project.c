@@ -22,7 +22,7 @@ static double dot(size_t n, const double *a, const double *b) {
   return sum[0] + sum[1] + sum[2] + sum[3];
 }
 
-double loop_project_out(size_t n, const double *basis, size_t rank, double *v) {
+double fg_engine_project_out(size_t n, const double *basis, size_t rank, double *v) {
   for (int pass = 0; pass < 2; pass++)
     for (size_t k = 0; k < rank; k++) {
       double along = dot(n, basis + k * n, v);
@@ -32,16 +32,16 @@ double loop_project_out(size_t n, const double *basis, size_t rank, double *v) {
   return dot(n, v, v);
 }
 
-size_t loop_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,
-                        size_t count, double *out, double *lengths) {
+size_t fg_engine_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,
+                             size_t count, double *out, double *lengths) {
   size_t added = 0;
   for (size_t k = 0; k < count; k++) {
     double *v = out + added * n;
     memmove(v, columns + k * n, n * sizeof *v);
     double whole = dot(n, v, v);
-    double left = loop_project_out(n, basis, rank, v);
+    double left = fg_engine_project_out(n, basis, rank, v);
     if (lengths) lengths[k] = left;
-    left = loop_project_out(n, out, added, v);
+    left = fg_engine_project_out(n, out, added, v);
     if (!(left > same_span * whole)) continue;
     for (size_t i = 0; i < n; i++)
       v[i] /= sqrt(left);
@@ -50,14 +50,14 @@ size_t loop_orthonormal(size_t n, const double *basis, size_t rank, const double
   return added;
 }
 
-size_t loop_null_basis(const loop_frame *frame, loop_noise noise, double *basis) {
+size_t fg_engine_null_basis(const fg_engine_frame *frame, fg_engine_noise noise, double *basis) {
   size_t n = frame->n, rank = 0;
   memcpy(basis, frame->x, n * frame->columns * sizeof *basis);
   for (size_t k = 0; k < frame->columns; k++) {
     double *v = basis + rank * n;
     memmove(v, basis + k * n, n * sizeof *v);
-    loop_whiten(frame, noise, v);
-    double whole = dot(n, v, v), left = loop_project_out(n, basis, rank, v);
+    fg_engine_whiten(frame, noise, v);
+    double whole = dot(n, v, v), left = fg_engine_project_out(n, basis, rank, v);
     if (!(left > (k < frame->problem->parameters ? declared_span : same_span) * whole)) continue;
     for (size_t i = 0; i < n; i++)
       v[i] /= sqrt(left);
@@ -110,7 +110,7 @@ static void invert_column(const triangle *t, size_t j, double *u) {
   }
 }
 
-static void solve(const triangle *t, const double *along, double *u, loop_fit *fit) {
+static void solve(const triangle *t, const double *along, double *u, fg_engine_fit *fit) {
   for (size_t j = 0; j < t->rank; j++) {
     invert_column(t, j, u);
     fit->log_det += 2 * log(t->r[j * t->columns + j]);
@@ -122,14 +122,14 @@ static void solve(const triangle *t, const double *along, double *u, loop_fit *f
   }
 }
 
-static fg_status fit_allocate(fg_context *ctx, size_t columns, loop_fit *fit) {
-  *fit = (loop_fit){.columns = columns};
+static fg_status fit_allocate(fg_context *ctx, size_t columns, fg_engine_fit *fit) {
+  *fit = (fg_engine_fit){.columns = columns};
   FG_TRY(fg_memory_allocate(ctx, columns, sizeof *fit->beta, (void **)&fit->beta));
   return fg_memory_allocate(ctx, columns, columns * sizeof *fit->beta, (void **)&fit->inverse);
 }
 
-fg_status loop_least_squares(fg_context *ctx, const loop_frame *frame, loop_noise noise,
-                             loop_fit *fit) {
+fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_frame *frame,
+                                  fg_engine_noise noise, fg_engine_fit *fit) {
   fg_status status = FG_OK;
   size_t n = frame->n, columns = frame->columns;
   triangle t = {.columns = columns, .declared = frame->problem->parameters};
@@ -144,14 +144,14 @@ fg_status loop_least_squares(fg_context *ctx, const loop_frame *frame, loop_nois
   memcpy(x, frame->x, n * columns * sizeof *x);
   memcpy(y, frame->y, n * sizeof *y);
   for (size_t k = 0; k < columns; k++)
-    loop_whiten(frame, noise, x + k * n);
-  loop_whiten(frame, noise, y);
+    fg_engine_whiten(frame, noise, x + k * n);
+  fg_engine_whiten(frame, noise, y);
   decompose(n, x, &t);
   for (size_t k = 0; k < t.rank; k++)
     small[k] = dot(n, t.basis + k * n, y);
   solve(&t, small, small + columns, fit);
   fit->rank = t.rank;
-  fit->rss = loop_project_out(n, t.basis, t.rank, y);
+  fit->rss = fg_engine_project_out(n, t.basis, t.rank, y);
 exit:
   free(x);
   free(t.basis);
@@ -159,12 +159,12 @@ exit:
   free(t.kept);
   free(y);
   free(small);
-  if (status != FG_OK) loop_fit_free(fit);
+  if (status != FG_OK) fg_engine_fit_free(fit);
   return status;
 }
 
-void loop_fit_free(loop_fit *fit) {
+void fg_engine_fit_free(fg_engine_fit *fit) {
   free(fit->beta);
   free(fit->inverse);
-  *fit = (loop_fit){0};
+  *fit = (fg_engine_fit){0};
 }

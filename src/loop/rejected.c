@@ -15,23 +15,23 @@ static double detectable(double f_critical, double k, double sd_white, double le
   return (sqrt(k * f_critical) + power_80) * sd_white / sqrt(length);
 }
 
-static bool is_claimed(const loop_run *run, const fg_loop_candidate *candidate) {
+static bool is_claimed(const fg_engine_run *run, const fg_loop_candidate *candidate) {
   for (size_t m = 0; m < run->result->claims; m++)
-    if (loop_same_candidate(&run->result->claim[m].candidate, candidate)) return true;
+    if (fg_engine_same_candidate(&run->result->claim[m].candidate, candidate)) return true;
   return false;
 }
 
-static bool is_alias(const loop_run *run, const fg_loop_candidate *candidate) {
+static bool is_alias(const fg_engine_run *run, const fg_loop_candidate *candidate) {
   for (size_t m = 0; m < run->result->claims; m++) {
     const fg_loop_claim *claim = &run->result->claim[m];
     for (size_t k = 0; k < claim->aliases; k++)
-      if (!claim->alias[k].sum && loop_same_candidate(&claim->alias[k].candidate, candidate))
+      if (!claim->alias[k].sum && fg_engine_same_candidate(&claim->alias[k].candidate, candidate))
         return true;
   }
   return false;
 }
 
-static fg_loop_verdict judge_rejected(const loop_run *run, const fg_loop_rejected *one) {
+static fg_loop_verdict judge_rejected(const fg_engine_run *run, const fg_loop_rejected *one) {
   double matters = run->options.matters > 0 ? run->options.matters : run->sd;
   if (is_alias(run, &one->candidate)) return FG_LOOP_EXPLAINED_BY_OTHERS;
   if (one->retained_share < 1e-8) return FG_LOOP_ABSORBED;
@@ -40,14 +40,14 @@ static fg_loop_verdict judge_rejected(const loop_run *run, const fg_loop_rejecte
   return FG_LOOP_INCONCLUSIVE;
 }
 
-static void describe(const loop_run *run, const loop_step *step, size_t c, double sd_white,
-                     const double *amplitude, fg_loop_rejected *one) {
-  const loop_judgement *judgement = &step->judgement;
-  const loop_version *version = &step->bench.version[judgement->score[c].version];
+static void describe(const fg_engine_run *run, const fg_engine_step *step, size_t c,
+                     double sd_white, const double *amplitude, fg_loop_rejected *one) {
+  const fg_engine_judgement *judgement = &step->judgement;
+  const fg_engine_version *version = &step->bench.version[judgement->score[c].version];
   *one = (fg_loop_rejected){.candidate = run->candidate[c], .smallest_detectable = NAN};
-  loop_candidate_name(run->problem, &one->candidate, one->name);
+  fg_engine_candidate_name(run->problem, &one->candidate, one->name);
   if (isfinite(judgement->score[c].z)) {
-    double k = loop_version_freedom(&step->bench, version);
+    double k = fg_engine_version_freedom(&step->bench, version);
     one->would_explain = 1 - judgement->score[c].ratio;
     one->p_value = fmax(judgement->p_flip[c],
                         isfinite(judgement->p_simulated[c]) ? judgement->p_simulated[c] : 0);
@@ -67,38 +67,38 @@ static void describe(const loop_run *run, const loop_step *step, size_t c, doubl
   one->verdict = judge_rejected(run, one);
 }
 
-static void describe_lone(const loop_run *run, const loop_lone *lone, double sd_white,
+static void describe_lone(const fg_engine_run *run, const fg_engine_lone *lone, double sd_white,
                           fg_loop_rejected *one) {
   *one = (fg_loop_rejected){.candidate = lone->candidate, .retained_share = fmin(lone->length, 1)};
-  loop_candidate_name(run->problem, &one->candidate, one->name);
+  fg_engine_candidate_name(run->problem, &one->candidate, one->name);
   one->would_explain = 1 - fmin(lone->ratio, 1);
   one->p_value = lone->p_value;
   one->smallest_detectable = detectable(lone->f_critical, 1, sd_white, lone->length);
-  if (loop_is_exchange(&lone->candidate)) one->smallest_detectable /= sqrt(2.0);
+  if (fg_engine_is_exchange(&lone->candidate)) one->smallest_detectable /= sqrt(2.0);
   one->verdict = judge_rejected(run, one);
 }
 
-fg_status loop_list_rejected(fg_context *ctx, loop_run *run) {
+fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   fg_loop_result *result = run->result;
-  loop_step step;
-  FG_TRY(loop_step_open(ctx, run, &run->set, true, &step));
+  fg_engine_step step;
+  FG_TRY(fg_engine_step_open(ctx, run, &run->set, true, &step));
   fg_status status = fg_memory_allocate(ctx, run->candidates + 2, sizeof *result->rejected,
                                         (void **)&result->rejected);
   double sd_white = sqrt(step.bench.flip_rss / (double)step.bench.freedom), *amplitude = NULL;
-  if (status == FG_OK && step.frame.n <= LOOP_SMALL_ROWS) {
+  if (status == FG_OK && step.frame.n <= FG_ENGINE_SMALL_ROWS) {
     status = fg_memory_allocate(ctx, run->candidates, sizeof *amplitude, (void **)&amplitude);
     if (status == FG_OK)
-      status = loop_smallest_amplitudes(ctx, &step.bench, &step.judgement, run->options.seed + 2,
-                                        amplitude);
+      status = fg_engine_smallest_amplitudes(ctx, &step.bench, &step.judgement,
+                                             run->options.seed + 2, amplitude);
   }
   result->smallest_p = step.judgement.smallest_p;
   for (size_t c = 0; status == FG_OK && c < run->candidates; c++)
-    if (!loop_is_curve(&run->candidate[c]) && !is_claimed(run, &run->candidate[c]))
+    if (!fg_engine_is_curve(&run->candidate[c]) && !is_claimed(run, &run->candidate[c]))
       describe(run, &step, c, sd_white, amplitude, &result->rejected[result->rejects++]);
   for (size_t k = 0; status == FG_OK && k < 2; k++)
     if (step.lone[k].known)
       describe_lone(run, &step.lone[k], sd_white, &result->rejected[result->rejects++]);
   free(amplitude);
-  loop_step_close(&step);
+  fg_engine_step_close(&step);
   return status;
 }

@@ -4,46 +4,46 @@
 
 #include "loop/alias.h"
 #include "loop/fit.h"
-#include "loop/judge.h"
+#include "loop/permute.h"
 #include "loop/units.h"
 
-typedef struct loop_run {
+typedef struct fg_engine_run {
   const fg_loop_problem *problem; /* in the engine's units */
-  const loop_units *units;
+  const fg_engine_units *units;
   fg_loop_options options;
   fg_loop_result *result;
   bool *train;
   fg_loop_candidate *candidate; /* listed effects first, then curves */
   size_t candidates;
-  loop_set set; /* claims in the order of result->claim; the curve, if any, last */
+  fg_engine_set set; /* claims in the order of result->claim; the curve, if any, last */
   bool has_curve;
   double curve_p;
   size_t curve_at; /* coordinate */
-  loop_noise noise;
+  fg_engine_noise noise;
   double sd; /* of the null at this step, whitened rows */
-} loop_run;
+} fg_engine_run;
 
 /* The state of one step: frame, bench, scores of the null with everything accepted. */
-typedef struct loop_step {
-  loop_frame frame;
-  loop_bench bench;
-  loop_judgement judgement;
-  loop_lone lone[2];
-  loop_stand *stand; /* candidates and the two lone ones */
+typedef struct fg_engine_step {
+  fg_engine_frame frame;
+  fg_engine_bench bench;
+  fg_engine_judgement judgement;
+  fg_engine_lone lone[2];
+  fg_engine_stand *stand; /* candidates and the two lone ones */
   size_t stands;
-} loop_step;
+} fg_engine_step;
 
-fg_status loop_step_open(fg_context *ctx, loop_run *run, const loop_set *set, bool judged,
-                         loop_step *step);
-void loop_step_close(loop_step *step);
+fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engine_set *set,
+                              bool judged, fg_engine_step *step);
+void fg_engine_step_close(fg_engine_step *step);
 
 /* Tries to accept one effect; *accepted says whether there was one. */
-fg_status loop_accept_one(fg_context *ctx, loop_run *run, bool *accepted, bool *last);
-fg_status loop_swap(fg_context *ctx, loop_run *run);
-fg_status loop_list_rejected(fg_context *ctx, loop_run *run);
-fg_status loop_advise(fg_context *ctx, loop_run *run);
-fg_status loop_finish(fg_context *ctx, loop_run *run);
-fg_status loop_note(fg_context *ctx, fg_loop_result *result, const char *format, ...)
+fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accepted, bool *last);
+fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run);
+fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run);
+fg_status fg_engine_advise(fg_context *ctx, fg_engine_run *run);
+fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run);
+fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -34,14 +34,15 @@ static bool is_result(const char *name) {
   return false;
 }
 
-fg_loop_coordinate *table_coordinate(const fg_loop_problem *problem, const char *name) {
+fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name) {
   for (size_t i = 0; i < problem->coordinates; i++)
     if (!strcmp(problem->coordinate[i].name, name)) return &problem->coordinate[i];
   return NULL;
 }
 
-fg_status table_add_coordinate(fg_context *ctx, const table_build *build, const char *name,
-                               unsigned roles, fg_loop_coordinate **added) {
+fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_state *build,
+                                       const char *name, unsigned roles,
+                                       fg_loop_coordinate **added) {
   fg_loop_problem *problem = &build->out->problem;
   size_t capacity = problem->coordinates;
   FG_TRY(fg_memory_reserve(ctx, problem->coordinates + 1, sizeof *problem->coordinate, &capacity,
@@ -60,7 +61,7 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-void table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at) {
+void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at) {
   double *sorted = malloc((problem->rows + 1) * sizeof *sorted);
   if (!sorted) return;
   memcpy(sorted, at->value, problem->rows * sizeof *sorted);
@@ -98,14 +99,14 @@ static void give_roles(fg_loop_coordinate *at) {
     at->roles |= FG_LOOP_DURATION;
 }
 
-static fg_status leave_out(fg_context *ctx, const table_build *build, const char *name,
+static fg_status leave_out(fg_context *ctx, const fg_loop_table_state *build, const char *name,
                            const char *why) {
   char **text = &build->out->excluded;
   return fg_text_append(ctx, text, "%s%s: %s", *text ? "; " : "", name, why);
 }
 
-static fg_status fill_words(fg_context *ctx, const table_build *build, const fg_column *column,
-                            fg_loop_coordinate *at) {
+static fg_status fill_words(fg_context *ctx, const fg_loop_table_state *build,
+                            const fg_column *column, fg_loop_coordinate *at) {
   const size_t *row = build->out->row;
   fg_levels levels = {0};
   FG_TRY(fg_table_levels(ctx, build->table, column->name, true, &levels));
@@ -124,10 +125,11 @@ static bool is_in_range(const fg_table *table, const fg_column *column) {
   double largest = 0;
   for (size_t i = 0; column->number && i < table->rows; i++)
     largest = fmax(largest, fabs(column->number[i].value));
-  return largest == 0 || (largest >= TABLE_SMALLEST && largest <= TABLE_LARGEST);
+  return largest == 0 || (largest >= FG_LOOP_TABLE_SMALLEST && largest <= FG_LOOP_TABLE_LARGEST);
 }
 
-static fg_status add_column(fg_context *ctx, const table_build *build, const fg_column *column) {
+static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
+                            const fg_column *column) {
   fg_loop_problem *problem = &build->out->problem;
   const fg_loop_table_spec *spec = build->spec;
   fg_loop_coordinate *at;
@@ -147,13 +149,13 @@ static fg_status add_column(fg_context *ctx, const table_build *build, const fg_
     roles = spec->group ? FG_LOOP_BUMP : FG_LOOP_ORDER;
   if (words && column->word_count > FG_LOOP_COLUMNS && !roles)
     return leave_out(ctx, build, column->name, "more levels than an effect may have");
-  FG_TRY(table_add_coordinate(ctx, build, column->name, roles, &at));
+  FG_TRY(fg_loop_table_add_coordinate(ctx, build, column->name, roles, &at));
   for (size_t i = 0; i < problem->rows && !words; i++)
     at->value[i] = column->number[build->out->row[i]].value;
   for (size_t i = 0; i < problem->rows && words && roles; i++)
     at->value[i] = (double)problem->group[i] + 1; /* foils by name: in order of appearance */
   if (words && !roles) FG_TRY(fill_words(ctx, build, column, at));
-  table_finish_coordinate(problem, at);
+  fg_loop_table_finish_coordinate(problem, at);
   give_roles(at);
   if (at->distinct >= 2) return FG_OK;
   FG_TRY(leave_out(ctx, build, column->name, "the same in every row"));
@@ -165,15 +167,15 @@ static fg_status add_column(fg_context *ctx, const table_build *build, const fg_
   return FG_OK;
 }
 
-fg_status table_fill_coordinates(fg_context *ctx, const table_build *build) {
+fg_status fg_loop_table_fill_coordinates(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   for (size_t c = 0; c < build->table->columns; c++)
     FG_TRY(add_column(ctx, build, &build->table->column[c]));
   if (build->order || build->spec->group) return FG_OK;
   fg_loop_coordinate *at;
-  FG_TRY(table_add_coordinate(ctx, build, "row", FG_LOOP_ORDER, &at));
+  FG_TRY(fg_loop_table_add_coordinate(ctx, build, "row", FG_LOOP_ORDER, &at));
   for (size_t i = 0; i < problem->rows; i++)
     at->value[i] = (double)build->out->row[i] + 1;
-  table_finish_coordinate(problem, at);
+  fg_loop_table_finish_coordinate(problem, at);
   return FG_OK;
 }

@@ -10,7 +10,7 @@ static const fg_loop_coordinate *first(problem_t *problem, candidate_t *candidat
   return &problem->coordinate[candidate->a];
 }
 
-bool loop_is_number(const fg_loop_coordinate *at) {
+bool fg_engine_is_number(const fg_loop_coordinate *at) {
   return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 2;
 }
 
@@ -36,7 +36,7 @@ static size_t two_columns(problem_t *problem, candidate_t *candidate) {
 static bool accepts_linear(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  return loop_is_number(at) && !is_sequence(at);
+  return fg_engine_is_number(at) && !is_sequence(at);
 }
 
 static void linear_basis(problem_t *problem, candidate_t *candidate, const double *shape,
@@ -65,9 +65,9 @@ static bool accepts_interaction(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
   if (a >= b || is_sequence(x) || is_sequence(y)) return false;
   if (x->levels && y->levels) return false;
-  if (x->levels) return loop_is_number(y) && x->levels <= 4;
-  if (y->levels) return loop_is_number(x) && y->levels <= 4;
-  return loop_is_number(x) && loop_is_number(y);
+  if (x->levels) return fg_engine_is_number(y) && x->levels <= 4;
+  if (y->levels) return fg_engine_is_number(x) && y->levels <= 4;
+  return fg_engine_is_number(x) && fg_engine_is_number(y);
 }
 
 static size_t interaction_columns(problem_t *problem, candidate_t *candidate) {
@@ -97,7 +97,7 @@ static bool accepts_factor(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
   if (at->levels) return at->levels >= 2 && at->levels <= FG_LOOP_COLUMNS;
-  return loop_is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
+  return fg_engine_is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
          problem->rows >= 4 * at->distinct;
 }
 
@@ -121,7 +121,7 @@ static void factor_basis(problem_t *problem, candidate_t *candidate, const doubl
 static bool accepts_threshold(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  return loop_is_number(at) && at->distinct >= 4;
+  return fg_engine_is_number(at) && at->distinct >= 4;
 }
 
 /* Fewer rows than these on one side are rows, not a level. */
@@ -165,7 +165,7 @@ static size_t threshold_starts(problem_t *problem, candidate_t *candidate,
 static bool accepts_drift(problem_t *problem, size_t a, size_t b) {
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
-  return loop_is_number(at) && is_sequence(at) && at->distinct >= 4;
+  return fg_engine_is_number(at) && is_sequence(at) && at->distinct >= 4;
 }
 
 static bool accepts_transient(problem_t *problem, size_t a, size_t b) {
@@ -390,10 +390,10 @@ static const fg_loop_effect effects[] = {
      false,
      1,
      {"activation_energy_kj_per_mol"},
-     loop_accepts_temperature,
+     fg_engine_accepts_temperature,
      one_column,
-     loop_arrhenius_basis,
-     loop_arrhenius_starts,
+     fg_engine_arrhenius_basis,
+     fg_engine_arrhenius_starts,
      false,
      false,
      false},
@@ -404,9 +404,9 @@ static const fg_loop_effect effects[] = {
      true,
      0,
      {0},
-     loop_accepts_both,
+     fg_engine_accepts_both,
      one_column,
-     loop_larson_miller_basis,
+     fg_engine_larson_miller_basis,
      NULL,
      false,
      false,
@@ -418,9 +418,9 @@ static const fg_loop_effect effects[] = {
      false,
      0,
      {0},
-     loop_accepts_duration,
+     fg_engine_accepts_duration,
      one_column,
-     loop_log_time_basis,
+     fg_engine_log_time_basis,
      NULL,
      false,
      false,
@@ -432,10 +432,10 @@ static const fg_loop_effect effects[] = {
      false,
      2,
      {"time_constant", "exponent"},
-     loop_accepts_duration,
+     fg_engine_accepts_duration,
      one_column,
-     loop_jmak_basis,
-     loop_jmak_starts,
+     fg_engine_jmak_basis,
+     fg_engine_jmak_starts,
      false,
      false,
      false},

@@ -8,11 +8,12 @@
 #include "foilgauge/formula.h"
 #include "loop/table_parts.h"
 
-bool table_is_arc_length(const fg_loop_table_spec *spec) {
+bool fg_loop_table_is_arc_length(const fg_loop_table_spec *spec) {
   return !strcmp(spec->model, "arc_length");
 }
 
-static fg_status copy_model(fg_context *ctx, const table_build *build, const fg_model *model) {
+static fg_status copy_model(fg_context *ctx, const fg_loop_table_state *build,
+                            const fg_model *model) {
   fg_loop_problem *problem = &build->out->problem;
   problem->parameters = model->columns;
   FG_TRY(fg_memory_allocate(ctx, model->columns, problem->rows * sizeof *problem->jacobian,
@@ -26,7 +27,7 @@ static fg_status copy_model(fg_context *ctx, const table_build *build, const fg_
           model->matrix[k * model->rows + build->out->row[i]].value;
   }
   for (size_t v = 0; v < model->formula.variables; v++) {
-    fg_loop_coordinate *at = table_coordinate(problem, model->formula.variable[v].column);
+    fg_loop_coordinate *at = fg_loop_table_coordinate(problem, model->formula.variable[v].column);
     if (at) at->roles |= FG_LOOP_DECLARED;
   }
   return FG_OK;
@@ -38,7 +39,7 @@ struct fg_loop_formula {
   double mean[FG_FORMULA_VARIABLES]; /* of the variables that are no coordinates */
 };
 
-void table_free_formula(struct fg_loop_formula *formula) {
+void fg_loop_table_free_formula(struct fg_loop_formula *formula) {
   if (!formula) return;
   fg_model_free(&formula->model);
   free(formula);
@@ -62,7 +63,7 @@ static double setting_of(const struct fg_loop_formula *formula, const fg_loop_pr
                          size_t variable, size_t row) {
   const fg_levels *levels = &formula->model.levels[variable];
   const char *column = formula->model.formula.variable[variable].column;
-  const fg_loop_coordinate *at = table_coordinate(grid, column);
+  const fg_loop_coordinate *at = fg_loop_table_coordinate(grid, column);
   if (!at) return formula->mean[variable];
   if (levels->count && !at->levels) return nearest_level(levels, at->value[row]);
   return at->value[row];
@@ -86,7 +87,7 @@ static fg_status declared_at(fg_context *ctx, const void *model, const fg_loop_p
 }
 
 /* The problem keeps the model, without its matrix. */
-static fg_status keep_model(fg_context *ctx, const table_build *build, fg_model *model) {
+static fg_status keep_model(fg_context *ctx, const fg_loop_table_state *build, fg_model *model) {
   fg_loop_problem *problem = &build->out->problem;
   struct fg_loop_formula *formula = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *formula, (void **)&formula));
@@ -108,7 +109,7 @@ static fg_status keep_model(fg_context *ctx, const table_build *build, fg_model 
   return FG_OK;
 }
 
-fg_status table_fill_model(fg_context *ctx, const table_build *build) {
+fg_status fg_loop_table_fill_model(fg_context *ctx, const fg_loop_table_state *build) {
   fg_status status = FG_OK;
   fg_formula formula = {0};
   fg_model model = {0};
@@ -194,7 +195,7 @@ static fg_status radius_column(fg_context *ctx, const fg_table *table, const fg_
                  table->source);
 }
 
-fg_status table_fill_arc_length(fg_context *ctx, const table_build *build) {
+fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const fg_design *design = build->spec->design;
   const fg_extended *radius;
@@ -204,9 +205,9 @@ fg_status table_fill_arc_length(fg_context *ctx, const table_build *build) {
   FG_TRY(find_value(ctx, build->spec->response, &value));
   FG_TRY(radius_column(ctx, build->table, &radius));
   FG_TRY(fg_design_derive(ctx, design, &nominal));
-  FG_TRY(table_add_coordinate(ctx, build, "constant", FG_LOOP_SENSITIVITY, &constant));
-  FG_TRY(table_add_coordinate(ctx, build, "with the radius", FG_LOOP_SENSITIVITY, &slope));
-  constant = table_coordinate(problem, "constant");
+  FG_TRY(fg_loop_table_add_coordinate(ctx, build, "constant", FG_LOOP_SENSITIVITY, &constant));
+  FG_TRY(fg_loop_table_add_coordinate(ctx, build, "with the radius", FG_LOOP_SENSITIVITY, &slope));
+  constant = fg_loop_table_coordinate(problem, "constant");
   for (size_t i = 0; i < problem->rows; i++) {
     size_t row = build->out->row[i];
     double r = radius[row].value, small = 1e-4;
@@ -219,7 +220,7 @@ fg_status table_fill_arc_length(fg_context *ctx, const table_build *build) {
         (2 * small);
     slope->value[i] = constant->value[i] * (r / design->bump_radius_mm - 1);
   }
-  table_finish_coordinate(problem, constant);
-  table_finish_coordinate(problem, slope);
+  fg_loop_table_finish_coordinate(problem, constant);
+  fg_loop_table_finish_coordinate(problem, slope);
   return FG_OK;
 }

@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
-#include "loop/random.h"
+#include "loop/engine_random.h"
 #include "loop/table_parts.h"
 
 static const char *const order_names[] = {"run", "order", "run_order", "experiment", "sequence"};
@@ -21,7 +21,7 @@ static const char *first_column(const fg_table *table, const char *const *names,
   return NULL;
 }
 
-static fg_status choose_order(fg_context *ctx, table_build *build) {
+static fg_status choose_order(fg_context *ctx, fg_loop_table_state *build) {
   const fg_extended *ignored;
   build->order = build->spec->order;
   if (build->order) return fg_table_numbers(ctx, build->table, build->order, &ignored);
@@ -43,7 +43,7 @@ static int by_key(const void *a, const void *b) {
 }
 
 /* Groups are numbered in order of appearance; numbers as names in their own order. */
-static fg_status group_keys(fg_context *ctx, const table_build *build, row_key *key) {
+static fg_status group_keys(fg_context *ctx, const fg_loop_table_state *build, row_key *key) {
   size_t rows = build->table->rows;
   fg_levels levels = {0};
   const fg_column *column;
@@ -62,7 +62,7 @@ static fg_status group_keys(fg_context *ctx, const table_build *build, row_key *
   return status;
 }
 
-static fg_status sort_rows(fg_context *ctx, const table_build *build) {
+static fg_status sort_rows(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_table_problem *out = build->out;
   size_t rows = build->table->rows;
   const fg_extended *order = NULL;
@@ -98,7 +98,7 @@ static fg_status allocate(fg_context *ctx, size_t rows, fg_loop_table_problem *o
   return fg_memory_allocate(ctx, rows, sizeof *problem->response, (void **)&problem->response);
 }
 
-static fg_status fill_response(fg_context *ctx, const table_build *build) {
+static fg_status fill_response(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const fg_extended *response;
   FG_TRY(fg_table_numbers(ctx, build->table, build->spec->response, &response));
@@ -107,7 +107,8 @@ static fg_status fill_response(fg_context *ctx, const table_build *build) {
   double largest = 0;
   for (size_t i = 0; i < problem->rows; i++)
     largest = fmax(largest, fabs(problem->response[i]));
-  if (largest == 0 || (largest >= TABLE_SMALLEST && largest <= TABLE_LARGEST)) return FG_OK;
+  if (largest == 0 || (largest >= FG_LOOP_TABLE_SMALLEST && largest <= FG_LOOP_TABLE_LARGEST))
+    return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: the numbers of '%s' reach %g: too %s to compute with; give the response in "
                  "another unit",
@@ -115,7 +116,7 @@ static fg_status fill_response(fg_context *ctx, const table_build *build) {
                  largest > 1 ? "large" : "small");
 }
 
-static fg_status build_all(fg_context *ctx, table_build *build) {
+static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   size_t rows = build->table->rows;
   if (rows == 0) return fg_fail(ctx, FG_ERR_DATA, "%s: no rows", build->table->source);
@@ -123,23 +124,23 @@ static fg_status build_all(fg_context *ctx, table_build *build) {
   FG_TRY(allocate(ctx, rows, build->out));
   FG_TRY(sort_rows(ctx, build));
   FG_TRY(fill_response(ctx, build));
-  FG_TRY(table_fill_coordinates(ctx, build));
-  if (table_is_arc_length(build->spec))
-    FG_TRY(table_fill_arc_length(ctx, build));
+  FG_TRY(fg_loop_table_fill_coordinates(ctx, build));
+  if (fg_loop_table_is_arc_length(build->spec))
+    FG_TRY(fg_loop_table_fill_arc_length(ctx, build));
   else
-    FG_TRY(table_fill_model(ctx, build));
+    FG_TRY(fg_loop_table_fill_model(ctx, build));
   bool grouped = build->spec->group != NULL;
   problem->level = grouped ? "bumps" : "runs";
   problem->group_level = grouped && rows >= 2 * problem->groups;
   problem->correlated = grouped ? rows >= 4 * problem->groups : rows >= 8;
   problem->exchangeable = true;
-  return table_hold_out(ctx, build);
+  return fg_loop_table_hold_out(ctx, build);
 }
 
 fg_status fg_loop_table_problem_build(fg_context *ctx, const fg_table *table,
                                       const fg_loop_table_spec *spec,
                                       fg_loop_table_problem *problem) {
-  table_build build = {table, spec, problem, NULL};
+  fg_loop_table_state build = {table, spec, problem, NULL};
   *problem = (fg_loop_table_problem){0};
   fg_status status = build_all(ctx, &build);
   if (status != FG_OK) fg_loop_table_problem_free(problem);
@@ -164,7 +165,7 @@ void fg_loop_table_problem_free(fg_loop_table_problem *out) {
   free(problem->aside);
   free(problem->residual);
   free(problem->response);
-  table_free_formula(out->model);
+  fg_loop_table_free_formula(out->model);
   free(out->row);
   free(out->excluded);
   *out = (fg_loop_table_problem){0};
@@ -182,7 +183,7 @@ static void put_aside(fg_loop_problem *problem, const bool *chosen) {
     problem->aside[i] = chosen[problem->group[i]];
 }
 
-static fg_status keep_share(fg_context *ctx, const table_build *build, size_t count) {
+static fg_status keep_share(fg_context *ctx, const fg_loop_table_state *build, size_t count) {
   fg_loop_problem *problem = &build->out->problem;
   uint64_t seed = build->spec->seed ^ 0x9e3779b97f4a7c15u;
   size_t *order = NULL, groups = problem->groups;
@@ -193,7 +194,7 @@ static fg_status keep_share(fg_context *ctx, const table_build *build, size_t co
   for (size_t i = 0; i < groups; i++)
     order[i] = i;
   for (size_t i = 0; i < count; i++) {
-    size_t k = i + (size_t)(loop_random_uniform(&seed) * (double)(groups - i));
+    size_t k = i + (size_t)(fg_engine_random_uniform(&seed) * (double)(groups - i));
     size_t drawn = order[k];
     order[k] = order[i];
     order[i] = drawn;
@@ -207,7 +208,7 @@ exit:
 }
 
 /* Whole groups that hold a row with the value. */
-static fg_status keep_value(fg_context *ctx, const table_build *build, const char *text) {
+static fg_status keep_value(fg_context *ctx, const fg_loop_table_state *build, const char *text) {
   fg_loop_problem *problem = &build->out->problem;
   char name[256];
   const char *equals = strchr(text, '='), *value = equals + 1;
@@ -234,7 +235,7 @@ static fg_status keep_value(fg_context *ctx, const table_build *build, const cha
   return fg_fail(ctx, FG_ERR_USAGE, "--hold-out %s: no row has that value", text);
 }
 
-fg_status table_hold_out(fg_context *ctx, const table_build *build) {
+fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const char *text = build->spec->hold_out;
   if (!text) return keep_share(ctx, build, default_count(problem));

@@ -25,7 +25,7 @@ static fg_status scaled_copy(fg_context *ctx, const double *from, size_t count, 
 }
 
 static fg_status scale_response(fg_context *ctx, const fg_loop_problem *problem,
-                                loop_units *units) {
+                                fg_engine_units *units) {
   double largest = 0;
   const double *response = problem->response;
   if (!largest_exponent(problem->residual, problem->rows, &largest, &units->response) ||
@@ -37,7 +37,8 @@ static fg_status scale_response(fg_context *ctx, const fg_loop_problem *problem,
   return scaled_copy(ctx, response, problem->rows, units->response, &units->problem.response);
 }
 
-static fg_status scale_columns(fg_context *ctx, const fg_loop_problem *problem, loop_units *units) {
+static fg_status scale_columns(fg_context *ctx, const fg_loop_problem *problem,
+                               fg_engine_units *units) {
   size_t rows = problem->rows, count = problem->parameters;
   double *jacobian = NULL;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *units->column, (void **)&units->column));
@@ -55,21 +56,22 @@ static fg_status scale_columns(fg_context *ctx, const fg_loop_problem *problem, 
   return FG_OK;
 }
 
-fg_status loop_units_open(fg_context *ctx, const fg_loop_problem *problem, loop_units *units) {
-  *units = (loop_units){.problem = *problem};
+fg_status fg_engine_units_open(fg_context *ctx, const fg_loop_problem *problem,
+                               fg_engine_units *units) {
+  *units = (fg_engine_units){.problem = *problem};
   units->problem.residual = units->problem.response = units->problem.jacobian = NULL;
   fg_status status = scale_response(ctx, problem, units);
   if (status == FG_OK) status = scale_columns(ctx, problem, units);
-  if (status != FG_OK) loop_units_close(units);
+  if (status != FG_OK) fg_engine_units_close(units);
   return status;
 }
 
-void loop_units_close(loop_units *units) {
+void fg_engine_units_close(fg_engine_units *units) {
   free(units->problem.residual);
   free(units->problem.response);
   free(units->problem.jacobian);
   free(units->column);
-  *units = (loop_units){0};
+  *units = (fg_engine_units){0};
 }
 
 static void restore(double *value, size_t count, int exponent) {
@@ -103,7 +105,7 @@ static void restore_claim(fg_loop_claim *claim, int exponent) {
   restore_square(&claim->cv_gain_se, exponent);
 }
 
-void loop_units_restore(const loop_units *units, fg_loop_result *result) {
+void fg_engine_units_restore(const fg_engine_units *units, fg_loop_result *result) {
   size_t rows = units->problem.rows;
   int exponent = units->response;
   restore(&result->noise.sd, 1, exponent);

@@ -6,16 +6,18 @@
 
 #include "foilgauge/loop.h"
 
-typedef struct loop_units {
+typedef struct fg_engine_units {
   fg_loop_problem problem; /* in the engine's units; the rest is the caller's */
   int response;            /* one engine's unit is 2^response of the caller's */
   int *column;             /* parameters: the same of the declared columns */
-} loop_units;
+} fg_engine_units;
 
-/* FG_ERR_DATA: a response or a declared column that is not finite. Free with loop_units_close. */
-fg_status loop_units_open(fg_context *ctx, const fg_loop_problem *problem, loop_units *units);
+/* FG_ERR_DATA: a response or a declared column that is not finite. Free with fg_engine_units_close.
+ */
+fg_status fg_engine_units_open(fg_context *ctx, const fg_loop_problem *problem,
+                               fg_engine_units *units);
 /* Every number of a result back in the caller's units. */
-void loop_units_restore(const loop_units *units, fg_loop_result *result);
-void loop_units_close(loop_units *units);
+void fg_engine_units_restore(const fg_engine_units *units, fg_loop_result *result);
+void fg_engine_units_close(fg_engine_units *units);
 
 #endif

@@ -6,7 +6,7 @@
 #include "foilgauge/comparison.h"
 #include "foilgauge/control.h"
 #include "foilgauge/density.h"
-#include "lot/report.h"
+#include "lot/lot_report.h"
 
 /* One foil of the lot. */
 typedef struct fg_lot_foil {

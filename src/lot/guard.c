@@ -5,7 +5,7 @@
 
 #include "core/file.h"
 #include "lot/journal.h"
-#include "lot/report.h"
+#include "lot/lot_report.h"
 
 static const char *const lot_files[FG_LOT_FILES] = {
     "manifest.csv", "recipe.json", FG_LOT_MODEL_FILE, "results.jsonl", "lot.json",

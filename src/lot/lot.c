@@ -9,7 +9,7 @@
 #include "core/memory.h"
 #include "core/sha256.h"
 #include "core/text.h"
-#include "lot/report.h"
+#include "lot/lot_report.h"
 
 fg_status fg_lot_path(fg_context *ctx, const char *folder, const char *name, char **path) {
   return fg_text_print(ctx, path, "%s/%s", folder, name);
@@ -97,7 +97,7 @@ static fg_status load_model(fg_context *ctx, const char *folder, fg_lot *lot) {
   char *path, *text = NULL;
   FG_TRY(fg_lot_path(ctx, folder, FG_LOT_MODEL_FILE, &path));
   fg_status status = fg_file_read_text(ctx, path, FG_LOT_MODEL_BYTES_MAX, &text);
-  if (status == FG_OK) status = fg_scan_model_parse(ctx, FG_LOT_MODEL_FILE, text, &lot->model);
+  if (status == FG_OK) status = fg_scanner_model_parse(ctx, FG_LOT_MODEL_FILE, text, &lot->model);
   free(path);
   free(text);
   return status;
@@ -131,6 +131,6 @@ void fg_lot_free(fg_lot *lot) {
     fg_record_free(&lot->records[i]);
   free(lot->records);
   fg_manifest_free(&lot->manifest);
-  if (lot->model) fg_scan_model_free(lot->model);
+  if (lot->model) fg_scanner_model_free(lot->model);
   *lot = (fg_lot){0};
 }

@@ -8,8 +8,8 @@
 #include "core/overwrite.h"
 #include "core/text.h"
 #include "foilgauge/lot.h"
-#include "lot/report.h"
-#include "report/html_parts.h"
+#include "lot/lot_report.h"
+#include "report/measure/measure_page_parts.h"
 
 enum { LOT_BYTES_MAX = 1 << 30 };
 

@@ -2,8 +2,8 @@
 #include <math.h>
 
 #include "lot/writers.h"
-#include "report/measure_json.h"
-#include "report/scan_model_words.h"
+#include "report/measure/measure_json.h"
+#include "report/scan_loop/scan_model_words.h"
 #include "report/words.h"
 
 static void write_inputs(fg_json *json, const fg_lot *lot) {

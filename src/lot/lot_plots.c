@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "report/html_parts.h"
+#include "report/measure/measure_page_parts.h"
 #include "report/plot_marks.h"
 
 /* More dots than these cannot be told apart, and a page must open on a phone. */

@@ -5,8 +5,8 @@
 
 #include "lot/characteristics.h"
 #include "lot/writers.h"
-#include "report/html_parts.h"
 #include "report/json_writer.h"
+#include "report/measure/measure_page_parts.h"
 #include "report/words.h"
 
 typedef struct qif {

@@ -9,7 +9,7 @@
 #include "core/file.h"
 #include "core/memory.h"
 #include "lot/guard.h"
-#include "lot/report.h"
+#include "lot/lot_report.h"
 
 enum { TEXT_BYTES_MAX = 1 << 30 };
 

@@ -12,7 +12,7 @@
 #include "foilgauge/control.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/scan_loop.h"
-#include "report/measure_json.h"
+#include "report/measure/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
 
@@ -262,19 +262,19 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
 
 fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
                                      fg_lot_settings *settings) {
-  fg_scan_model *model;
+  fg_scanner_model *model;
   char *whole = realpath(path, NULL); /* the settings may be printed, and read elsewhere */
   const char *name = whole ? whole : path;
-  fg_status status = fg_scan_model_load(ctx, path, &model);
+  fg_status status = fg_scanner_model_load(ctx, path, &model);
   if (status == FG_OK && strlen(name) >= sizeof settings->model)
     status = fg_fail(ctx, FG_ERR_USAGE, "%.200s ...: the path is too long; at most %zu bytes", name,
                      sizeof settings->model - 1);
   if (status == FG_OK) {
-    status = fg_scan_model_check_scanner(ctx, model, path, scanner);
+    status = fg_scanner_model_check_scanner(ctx, model, path, scanner);
     strcpy(settings->model, name);
-    strcpy(settings->model_sha256, fg_scan_model_sha256(model));
+    strcpy(settings->model_sha256, fg_scanner_model_sha256(model));
   }
-  if (model) fg_scan_model_free(model);
+  if (model) fg_scanner_model_free(model);
   free(whole);
   return status;
 }

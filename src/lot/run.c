@@ -16,7 +16,7 @@
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
 #include "lot/guard.h"
-#include "lot/report.h"
+#include "lot/lot_report.h"
 
 /* What is known of an item before it is measured. */
 typedef struct item_state {
@@ -30,8 +30,8 @@ typedef struct lot_run {
   fg_manifest manifest;
   fg_manifest_index index;
   char *manifest_text, *recipe_text, *results_path;
-  char *model_text;     /* of the scanner's model; NULL: none */
-  fg_scan_model *model; /* the same, read */
+  char *model_text;        /* of the scanner's model; NULL: none */
+  fg_scanner_model *model; /* the same, read */
   fg_journal_head head;
   item_state *items;
   size_t *todo, todo_count;
@@ -54,8 +54,8 @@ static fg_status check_shard(fg_context *ctx, fg_lot_shard shard) {
 static fg_status take_model(fg_context *ctx, lot_run *run, fg_lot_settings *kept) {
   if (!kept->model[0]) return FG_OK;
   FG_TRY(fg_file_read_text(ctx, kept->model, FG_LOT_MODEL_BYTES_MAX, &run->model_text));
-  FG_TRY(fg_scan_model_parse(ctx, kept->model, run->model_text, &run->model));
-  if (strcmp(fg_scan_model_sha256(run->model), kept->model_sha256) != 0)
+  FG_TRY(fg_scanner_model_parse(ctx, kept->model, run->model_text, &run->model));
+  if (strcmp(fg_scanner_model_sha256(run->model), kept->model_sha256) != 0)
     return fg_fail(ctx, FG_ERR_DATA, "%.500s: the model has changed; run again", kept->model);
   strcpy(kept->model, FG_LOT_MODEL_FILE);
   return FG_OK;
@@ -198,7 +198,7 @@ static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_recor
 static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *measurement,
                          bool *beyond) {
   char warning[200];
-  fg_status status = fg_scan_model_apply(ctx, run->model, measurement, 1, warning);
+  fg_status status = fg_scanner_model_apply(ctx, run->model, measurement, 1, warning);
   if (status != FG_OK) fg_measurement_free(measurement);
   *beyond = status == FG_OK && warning[0];
   return status;
@@ -325,7 +325,7 @@ fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outc
   free(run.manifest_text);
   free(run.recipe_text);
   free(run.model_text);
-  if (run.model) fg_scan_model_free(run.model);
+  if (run.model) fg_scanner_model_free(run.model);
   free(run.results_path);
   free(run.items);
   free(run.todo);

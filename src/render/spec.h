@@ -7,7 +7,7 @@
 #include <stdint.h>
 
 #include "foilgauge/render.h"
-#include "render/effects.h"
+#include "render/spec_effects.h"
 
 enum { FG_RENDER_BUMPS_MAX = 64, FG_RENDER_FOILS_MAX = 4096 };
 

@@ -1,6 +1,6 @@
 /* What every page has: its style, its head and its end, and text made harmless. */
-#include "report/html_parts.h"
 #include "report/json_writer.h"
+#include "report/measure/measure_page_parts.h"
 
 static const char style[] =
     ":root{--ink:#16202a;--soft:#5b6875;--line:#dfe4e9;--ground:#f4f6f8;--good:#12804a;"

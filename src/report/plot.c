@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "report/html_parts.h"
+#include "report/measure/measure_page_parts.h"
 
 enum { TICKS_WANTED = 5 };
 

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "report/html_parts.h"
+#include "report/measure/measure_page_parts.h"
 
 void fg_plot_dot(const fg_plot *at, double x, double y, double radius, const char *style) {
   fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.3g\"/>\n", style,

@@ -10,7 +10,7 @@ static unsigned value_at(const fg_scan_header *header, const void *samples, size
   size_t at = x * (size_t)header->channels + (size_t)channel;
   if (header->has_palette) {
     uint8_t index = ((const uint8_t *)samples)[x * (size_t)header->channels];
-    const fg_scan_colour *c = &header->palette[index];
+    const fg_scan_loop_colour *c = &header->palette[index];
     return channel == 0 ? c->red : channel == 1 ? c->green : c->blue;
   }
   if (header->bit_depth == 16) return ((const uint16_t *)samples)[at] >> 8;

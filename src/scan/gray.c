@@ -73,7 +73,7 @@ static void mix_colours_16(const fg_gray *gray, const void *samples, size_t widt
 static void fill_palette(const fg_scan_header *header, fg_channel channel, fg_gray *gray) {
   gray->table_size = header->palette_size < 256 ? header->palette_size : 256;
   for (size_t i = 0; i < gray->table_size; i++) {
-    const fg_scan_colour *c = &header->palette[i];
+    const fg_scan_loop_colour *c = &header->palette[i];
     uint32_t values[] = {[FG_CHANNEL_LUMINANCE] = luminance(c->red, c->green, c->blue),
                          [FG_CHANNEL_RED] = c->red,
                          [FG_CHANNEL_GREEN] = c->green,

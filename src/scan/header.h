@@ -6,9 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-typedef struct fg_scan_colour {
+typedef struct fg_scan_loop_colour {
   uint8_t red, green, blue;
-} fg_scan_colour;
+} fg_scan_loop_colour;
 
 /* A row of samples holds `channels` per pixel: one to a byte (up to 8 bits), one to a uint16_t in
  * host order (16 bits). */
@@ -21,7 +21,7 @@ typedef struct fg_scan_header {
   unsigned white;   /* a sample's largest value where that is not 2^bit_depth - 1; else 0 */
   bool has_palette; /* samples are indices into `palette` */
   size_t palette_size;
-  fg_scan_colour palette[256];
+  fg_scan_loop_colour palette[256];
   double dpi[2];         /* as the file says, x and y; NaN when it says none */
   const char *no_dpi;    /* then: why, in words; NULL: the format has no resolution */
   char dpi_source[64];   /* which field says it, for error texts */

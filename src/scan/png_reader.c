@@ -154,7 +154,7 @@ static void copy_palette(fg_png *reader) {
   if (!header->has_palette || !png_get_PLTE(reader->png, reader->info, &colours, &count)) return;
   header->palette_size = (size_t)count;
   for (int i = 0; i < count && i < 256; i++)
-    header->palette[i] = (fg_scan_colour){colours[i].red, colours[i].green, colours[i].blue};
+    header->palette[i] = (fg_scan_loop_colour){colours[i].red, colours[i].green, colours[i].blue};
 }
 
 static fg_status create(fg_context *ctx, fg_png *reader) {

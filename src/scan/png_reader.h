@@ -22,7 +22,7 @@ typedef struct fg_png_header {
   uint32_t per_metre[2]; /* x, y; as in pHYs, whatever its unit */
   bool has_palette;      /* samples are indices into `palette` */
   size_t palette_size;
-  fg_scan_colour palette[256];
+  fg_scan_loop_colour palette[256];
 } fg_png_header;
 
 typedef struct fg_png fg_png;

@@ -180,8 +180,8 @@ static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *heade
   header->has_palette = true;
   header->palette_size = (size_t)1 << r->bits;
   for (size_t i = 0; i < header->palette_size; i++)
-    header->palette[i] =
-        (fg_scan_colour){(uint8_t)(red[i] >> 8), (uint8_t)(green[i] >> 8), (uint8_t)(blue[i] >> 8)};
+    header->palette[i] = (fg_scan_loop_colour){(uint8_t)(red[i] >> 8), (uint8_t)(green[i] >> 8),
+                                               (uint8_t)(blue[i] >> 8)};
   return FG_OK;
 }
 

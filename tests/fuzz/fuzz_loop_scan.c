@@ -5,23 +5,23 @@
 #include "../support/odd_scan.h"
 #include "foilgauge/scan_loop.h"
 #include "fuzz.h"
-#include "loop/scan_loop.h"
+#include "scan_loop/state.h"
 
 /* What was written must be read again; its text is good until the next call. */
 static void check_model(const fg_scan_loop *loop) {
   fg_context ctx = {0};
   char *text = NULL;
   size_t size = 0;
-  fg_scan_model *model = NULL;
+  fg_scanner_model *model = NULL;
   FILE *out = open_memstream(&text, &size);
   if (!out) return;
   fg_status status = fg_scan_loop_write_model(&ctx, loop, out);
   fclose(out);
-  if (status == FG_OK && fg_scan_model_parse(&ctx, "model", text, &model) != FG_OK) {
+  if (status == FG_OK && fg_scanner_model_parse(&ctx, "model", text, &model) != FG_OK) {
     fprintf(stderr, "%s\n%s\n", ctx.message, text);
     abort();
   }
-  fg_scan_model_free(model);
+  fg_scanner_model_free(model);
   free(text);
 }
 

@@ -14,8 +14,8 @@
 #include "../support/random.h"
 #include "../support/synthetic_foil.h"
 #include "effect/columns.h"
+#include "explain/explain.h"
 #include "foilgauge/render.h"
-#include "loop/subset.h"
 
 #define AMPLITUDE_UM 20.0
 #define NOISE_UM     0.03
@@ -65,17 +65,18 @@ static void put_effect(fixture *f, const fg_effect *effect) {
     f->residual_um[i] = AMPLITUDE_UM * f->columns[i] + NOISE_UM * random_gaussian(&seed);
 }
 
-static bool in_class(const fg_subset *subset, const fg_effect *effect) {
-  for (size_t m = 0; m < subset->member_count; m++)
-    for (size_t e = 0; e < subset->effect_count; e++)
-      if ((subset->members[m].mask >> e & 1) && fg_effect_same(subset->effects[e].kind, effect))
+static bool in_class(const fg_explanations *explanations, const fg_effect *effect) {
+  for (size_t m = 0; m < explanations->count; m++)
+    for (size_t e = 0; e < explanations->candidate_count; e++)
+      if ((explanations->each[m].mask >> e & 1) &&
+          fg_effect_same(explanations->candidates[e].kind, effect))
         return true;
   return false;
 }
 
-static bool is_candidate(const fg_subset *subset, const fg_effect *effect) {
-  for (size_t e = 0; e < subset->effect_count; e++)
-    if (subset->effects[e].kind == effect) return true;
+static bool is_candidate(const fg_explanations *explanations, const fg_effect *effect) {
+  for (size_t e = 0; e < explanations->candidate_count; e++)
+    if (explanations->candidates[e].kind == effect) return true;
   return false;
 }
 
@@ -87,16 +88,16 @@ static void the_search_knows_every_row(void **state) {
   open_fixture(&f);
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     fg_context ctx = {0};
-    fg_subset subset;
+    fg_explanations explanations;
     if (effect->off_foils || fg_effect_is_free(effect) || count++ % test_step(4)) continue;
     put_effect(&f, effect);
-    const fg_subset_request request = {
+    const fg_explain_request request = {
         .residual_um = f.residual_um, .jacobian = f.jacobian, .look = true};
-    assert_int_equal(fg_subset_find(&ctx, &f.points, &request, &subset), FG_OK);
-    if (!subset.right || !in_class(&subset, effect))
+    assert_int_equal(fg_explain_find(&ctx, &f.points, &request, &explanations), FG_OK);
+    if (!explanations.right || !in_class(&explanations, effect))
       fail_msg("the search does not find %s", effect->id);
     for (const fg_effect *curve = fg_effect_first(); curve; curve = fg_effect_next(curve))
-      if (fg_effect_is_free(curve) && !is_candidate(&subset, curve))
+      if (fg_effect_is_free(curve) && !is_candidate(&explanations, curve))
         fail_msg("the search does not know %s", curve->id);
   }
   close_fixture(&f);

@@ -12,7 +12,7 @@
 #include "../support/random.h"
 #include "../support/synthetic_foil.h"
 #include "effect/columns.h"
-#include "loop/scan_loop.h"
+#include "scan_loop/state.h"
 
 #define NOISE_UM 0.03
 
@@ -32,10 +32,10 @@ static fg_points open_points(fg_measurement *m) {
   return points;
 }
 
-static void add_effect(fg_scan_set *set, const char *id, double shape) {
+static void add_effect(fg_effect_set *set, const char *id, double shape) {
   const fg_effect *kind = fg_effect_find(id);
   assert_non_null(kind);
-  set->effects[set->count++] = (fg_scan_effect){
+  set->effects[set->count++] = (fg_effect_found){
       .kind = kind, .columns = kind->columns, .shapes = kind->shapes, .shape = {shape}};
 }
 
@@ -61,7 +61,7 @@ static void disturb(fg_points *points, const fg_field_list *fields) {
 }
 
 /* Step that is left to go, and covariance for noise of 1, from all columns at once. */
-static void solve_densely(fg_points *points, const fg_scan_set *set, gsl_vector *step,
+static void solve_densely(fg_points *points, const fg_effect_set *set, gsl_vector *step,
                           gsl_matrix *covariance, double *square) {
   fg_context ctx = {0};
   size_t rows = points->row_count, geometry = points->parameters, at = geometry;
@@ -71,8 +71,8 @@ static void solve_densely(fg_points *points, const fg_scan_set *set, gsl_vector 
   gsl_matrix *design = gsl_matrix_alloc(rows, step->size);
   gsl_vector *y = gsl_vector_alloc(rows), *weight = gsl_vector_alloc(rows);
   fg_field_list fields;
-  fg_scan_fields(points, set, &fields);
-  assert_int_equal(fg_scan_shift(&ctx, points, set, &shift), FG_OK);
+  fg_effect_set_fields(points, set, &fields);
+  assert_int_equal(fg_effect_set_shift(&ctx, points, set, &shift), FG_OK);
   fg_points_residual(points, &(fg_points_correction){&fields, shift}, residual, jacobian);
   for (size_t i = 0; i < rows; i++) {
     gsl_vector_set(y, i, 1000 * residual[i]);
@@ -81,7 +81,7 @@ static void solve_densely(fg_points *points, const fg_scan_set *set, gsl_vector 
       gsl_matrix_set(design, i, k, 1000 * jacobian[k * rows + i]);
   }
   for (size_t e = 0; e < set->count; e++) {
-    const fg_scan_effect *effect = &set->effects[e];
+    const fg_effect_found *effect = &set->effects[e];
     fg_effect_columns(points, effect->kind, effect->shape, columns);
     for (size_t c = 0; c < effect->columns; c++, at++)
       for (size_t i = 0; i < rows; i++)
@@ -117,19 +117,19 @@ static void it_ends_where_dense_least_squares_does(void **state) {
   fg_context ctx = {0};
   fg_measurement m;
   fg_points points = open_points(&m);
-  fg_scan_set truth = {0}, set = {0};
+  fg_effect_set truth = {0}, set = {0};
   fg_field_list fields;
   add_effect(&truth, "scan.shear", 0);
   add_effect(&truth, "scan.carriage_ripple", period_mm);
   truth.effects[0].coefficient_um[0] = shear_um;
   truth.effects[1].coefficient_um[0] = sine_um;
   truth.effects[1].coefficient_um[1] = cosine_um;
-  fg_scan_fields(&points, &truth, &fields);
+  fg_effect_set_fields(&points, &truth, &fields);
   disturb(&points, &fields);
   add_effect(&set, "scan.shear", 0);
   add_effect(&set, "scan.carriage_ripple", 1.003 * period_mm);
-  assert_int_equal(fg_scan_refit(&ctx, &points, &set, NULL), FG_OK);
-  const fg_scan_effect *shear = &set.effects[0], *ripple = &set.effects[1];
+  assert_int_equal(fg_joint_fit(&ctx, &points, &set, NULL), FG_OK);
+  const fg_effect_found *shear = &set.effects[0], *ripple = &set.effects[1];
   assert_near(shear->coefficient_um[0], shear_um, 4 * shear->u_coefficient_um[0]);
   assert_near(ripple->coefficient_um[0], sine_um, 4 * ripple->u_coefficient_um[0]);
   assert_near(ripple->coefficient_um[1], cosine_um, 4 * ripple->u_coefficient_um[1]);

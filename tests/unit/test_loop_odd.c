@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "loop/scan_loop.h"
+#include "scan_loop/state.h"
 #include "support/brief.h"
 #include "support/odd_scan.h"
 
@@ -93,7 +93,7 @@ static void check_reports(const fg_scan_loop *loop, const char *what) {
 /* A model is refused in words, or can be read again. */
 static void check_model(const fg_scan_loop *loop, const char *what) {
   fg_context ctx = {0};
-  fg_scan_model *model = NULL;
+  fg_scanner_model *model = NULL;
   char *text = NULL;
   size_t size;
   FILE *out = open_memstream(&text, &size);
@@ -101,9 +101,9 @@ static void check_model(const fg_scan_loop *loop, const char *what) {
   fg_status status = fg_scan_loop_write_model(&ctx, loop, out);
   fclose(out);
   if (status != FG_OK && !ctx.message[0]) fail_msg("%s: no words for a model refused", what);
-  if (status == FG_OK && fg_scan_model_parse(&ctx, "model", text, &model) != FG_OK)
+  if (status == FG_OK && fg_scanner_model_parse(&ctx, "model", text, &model) != FG_OK)
     fail_msg("%s: %s", what, ctx.message);
-  fg_scan_model_free(model);
+  fg_scanner_model_free(model);
   free(text);
 }
 
@@ -171,7 +171,7 @@ static void a_plain_foil_is_clean(void **state) {
   odd_input in = one_foil(9);
   assert_int_equal(close_loop(&in, false, &ctx, &loop), FG_OK);
   assert_int_equal(loop->set.count, 0);
-  assert_true(loop->subset.right);
+  assert_true(loop->explanations.right);
   check_reports(loop, "a plain foil");
   fg_scan_loop_free(loop);
 }

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "loop/scan_loop.h"
+#include "scan_loop/state.h"
 #include "support/brief.h"
 #include "support/odd_scan.h"
 

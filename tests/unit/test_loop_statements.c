@@ -14,7 +14,7 @@
 
 #include "core/spread.h"
 #include "foilgauge/render.h"
-#include "loop/scan_loop.h"
+#include "scan_loop/state.h"
 
 #define SCANNER                                                                                    \
   "\"scanner\":{\"dpi\":1200,\"background\":30,\"contrast\":175,\"blur_px\":1.3,\"noise\":1.2},"
@@ -63,7 +63,7 @@ static void assert_consistent(fg_scan_loop *loop, const char *what) {
                                   fg_scan_loop_write_text};
   char folder[] = "/tmp/foilgauge_statements_XXXXXX", path[3][64], command[400];
   assert_non_null(mkdtemp(folder));
-  fg_scan_decide(loop, &loop->decided);
+  fg_scan_loop_decide(loop, &loop->decided);
   for (int i = 0; i < 3; i++) {
     snprintf(path[i], sizeof path[i], "%s/%s", folder, names[i]);
     write_file(loop, writers[i], path[i]);
@@ -95,11 +95,11 @@ static void a_foil_says_one_thing(void **state) {
   loop->options.same_foil = true;
   assert_consistent(loop, "a tie on several scans of a foil");
   assert_non_null(strstr(advice_of(loop, 0), "another foil"));
-  loop->subset.member_count = 1;
+  loop->explanations.count = 1;
   loop->scale_tied = loop->tied = false;
   assert_consistent(loop, "no tie");
   assert_int_equal(loop->decided.advices, 0);
-  assert_int_equal(fg_scan_bumps_note(NULL, &loop->bumps, "a <note> & more"), FG_OK);
+  assert_int_equal(fg_scan_loop_bumps_note(NULL, &loop->bumps, "a <note> & more"), FG_OK);
   loop->error_before.held_out_rms = 1.5;
   loop->error_after.held_out_rms = 0.2;
   assert_consistent(loop, "a note, and a scan kept aside");
@@ -127,7 +127,7 @@ static void a_ring_says_one_thing(void **state) {
       .effect = fg_effect_find("scan.row_step"), .would_explain = 0.3, .share = 0.8};
   barred->smallest_um = NAN;
   assert_consistent(loop, "an effect that is not confirmed");
-  const fg_scan_candidate *last = &loop->decided.candidate[loop->decided.candidates - 1];
+  const fg_scan_loop_unclaimed *last = &loop->decided.candidate[loop->decided.candidates - 1];
   assert_true(last->barred);
   assert_int_equal(last->verdict, FG_LOOP_INCONCLUSIVE);
   fg_scan_loop_free(loop);

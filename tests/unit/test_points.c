@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "../support/synthetic_foil.h"
-#include "loop/points.h"
+#include "rows/points.h"
 
 enum { LANDS = SYNTHETIC_BUMPS + 1 };
 

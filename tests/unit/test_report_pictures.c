@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "report/canvas.h"
-#include "report/html_parts.h"
+#include "report/measure/measure_page_parts.h"
 #include "support/synthetic_foil.h"
 
 enum { WIDTH = 1100, HEIGHT = 620 };

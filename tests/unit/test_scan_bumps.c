@@ -9,8 +9,8 @@
 
 #include <cmocka.h>
 
-#include "loop/random.h"
-#include "loop/scan_bumps.h"
+#include "loop/engine_random.h"
+#include "scan_loop/bumps.h"
 
 enum { FOILS = 12, BUMPS = 9 };
 
@@ -27,7 +27,7 @@ typedef struct scans {
   fg_measurement one;
   fg_foil foil[FOILS];
   fg_bump bump[FOILS][BUMPS];
-  fg_scan_bumps bumps;
+  fg_scan_loop_bumps bumps;
 } scans;
 
 static void make(const recipe *r, uint64_t seed, scans *s) {
@@ -41,11 +41,11 @@ static void make(const recipe *r, uint64_t seed, scans *s) {
     for (size_t b = 0; b < r->bumps; b++) {
       fg_bump *p = &s->bump[f][b];
       p->number = (int)b + 1;
-      p->radius_mm = 3.32 * (1.02 + r->scatter * loop_random_normal(&seed)) *
+      p->radius_mm = 3.32 * (1.02 + r->scatter * fg_engine_random_normal(&seed)) *
                      (1 + r->decay * exp(-(double)b / (r->decay_bumps > 0 ? r->decay_bumps : 1)));
-      double arc = 1 + r->stretch + r->stretch_scatter * loop_random_normal(&seed);
+      double arc = 1 + r->stretch + r->stretch_scatter * fg_engine_random_normal(&seed);
       p->bump_angle_deg = 63.15 * 3.32 / p->radius_mm * arc + r->edge_deg +
-                          0.3 * r->u_deg * loop_random_normal(&seed);
+                          0.3 * r->u_deg * fg_engine_random_normal(&seed);
       p->height_mm = 0.55;
       p->u_radius_mm = 0.0001;
       p->u_bump_angle_deg = r->u_deg;
@@ -57,9 +57,9 @@ static void run(const recipe *r, uint64_t seed, scans *s) {
   static const bool none[1] = {false};
   fg_context ctx = {0};
   make(r, seed, s);
-  const fg_scan_bumps_request request = {
+  const fg_scan_loop_bumps_request request = {
       .before = &s->one, .after = &s->one, .hold_out = none, .scan_count = 1, .seed = seed};
-  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s->bumps), FG_OK);
+  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s->bumps), FG_OK);
 }
 
 /* The first claim of a response and its parameter. */
@@ -69,8 +69,8 @@ static double parameter(const scans *s, size_t response, const char *id, size_t 
   double value;
   assert_int_equal(result->claims, 1);
   assert_string_equal(result->claim[0].candidate.effect->id, id);
-  assert_true(
-      fg_scan_bumps_parameter(&s->bumps, response, &result->claim[0], index, &name, &value, u));
+  assert_true(fg_scan_loop_bumps_parameter(&s->bumps, response, &result->claim[0], index, &name,
+                                           &value, u));
   return value;
 }
 
@@ -89,7 +89,7 @@ static void a_decay_from_the_lip_is_found(void **state) {
   assert_true(fabs(value - 2) < 3 * u && u < 1);
   assert_true(s.bumps.level[0].error.rms[1] < 0.3 * s.bumps.level[0].error.rms[0]);
   assert_int_equal(s.bumps.level[1].result.claims, 0);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 static void a_stretch_is_found(void **state) {
@@ -103,7 +103,7 @@ static void a_stretch_is_found(void **state) {
   double value = parameter(&s, 1, "part.stretch", 0, &u);
   assert_true(fabs(value + 0.006) < 3 * u && u < 0.001);
   assert_int_equal(s.bumps.level[0].result.claims, 0);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 static void foils_are_the_units_of_a_lot(void **state) {
@@ -117,7 +117,7 @@ static void foils_are_the_units_of_a_lot(void **state) {
   run(&r, 7, &s);
   double value = parameter(&s, 0, "part.lip_decay", 0, &u);
   assert_true(fabs(value - 0.03) < 3 * u && u < 0.01);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 /* A steady error of the edges, as all bumps share, is no stretch; nor is it silent. */
@@ -127,12 +127,12 @@ static void what_the_edges_leave_in_doubt_is_no_claim(void **state) {
   (void)state;
   r.edge_deg = 0.0025;
   run(&r, 11, &s);
-  assert_false(fg_scan_bumps_claimed(&s.bumps));
+  assert_false(fg_scan_loop_bumps_claimed(&s.bumps));
   assert_int_equal(s.bumps.level[1].drops, 1);
   assert_int_equal(s.bumps.notes, 1);
   assert_non_null(strstr(s.bumps.note[0], "in doubt"));
   assert_true(s.bumps.level[1].error.rms[0] == s.bumps.level[1].error.rms[1]);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 static void small_foils_say_what_they_cannot_tell(void **state) {
@@ -146,9 +146,9 @@ static void small_foils_say_what_they_cannot_tell(void **state) {
     assert_int_equal(s.bumps.count, bumps);
     assert_int_equal(s.bumps.notes >= 1, 1);
     assert_non_null(strstr(s.bumps.note[0], bumps < 6 ? "no effect over them" : "no arc length"));
-    assert_int_equal(s.bumps.level[0].judged, bumps >= FG_SCAN_BUMP_ROWS);
-    if (bumps < 6) assert_false(fg_scan_bumps_claimed(&s.bumps));
-    fg_scan_bumps_free(&s.bumps);
+    assert_int_equal(s.bumps.level[0].judged, bumps >= FG_SCAN_LOOP_BUMP_ROWS);
+    if (bumps < 6) assert_false(fg_scan_loop_bumps_claimed(&s.bumps));
+    fg_scan_loop_bumps_free(&s.bumps);
   }
 }
 
@@ -161,12 +161,12 @@ static void without_a_lip_there_is_no_decay(void **state) {
   r.decay_bumps = 2;
   r.scatter = 0.004;
   run(&r, 3, &s);
-  assert_false(fg_scan_bumps_claimed(&s.bumps));
+  assert_false(fg_scan_loop_bumps_claimed(&s.bumps));
   for (size_t k = 0; k < s.bumps.level[0].result.rejects; k++)
     assert_int_not_equal(
         strncmp(s.bumps.level[0].result.rejected[k].candidate.effect->id, "part.", 5), 0);
   assert_non_null(strstr(s.bumps.note[0], "without a lip"));
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 static void bumps_that_were_not_fitted_are_left_out(void **state) {
@@ -177,11 +177,11 @@ static void bumps_that_were_not_fitted_are_left_out(void **state) {
   make(&plain, 17, &s);
   s.bump[0][2].flags = FG_BUMP_CRUSHED;
   s.bump[0][4].radius_mm = NAN;
-  const fg_scan_bumps_request request = {
+  const fg_scan_loop_bumps_request request = {
       .before = &s.one, .after = &s.one, .hold_out = none, .scan_count = 1, .seed = 1};
-  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s.bumps), FG_OK);
   assert_int_equal(s.bumps.count, BUMPS - 2);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 /* Two views of one foil are nine bumps, not eighteen. */
@@ -192,21 +192,21 @@ static void views_of_one_foil_are_averaged(void **state) {
   (void)state;
   make(&plain, 19, &s);
   fg_measurement twice[2] = {s.one, s.one};
-  fg_scan_bumps_request request = {.before = twice,
-                                   .after = twice,
-                                   .hold_out = none,
-                                   .scan_count = 2,
-                                   .same_foil = true,
-                                   .seed = 1};
-  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  fg_scan_loop_bumps_request request = {.before = twice,
+                                        .after = twice,
+                                        .hold_out = none,
+                                        .scan_count = 2,
+                                        .same_foil = true,
+                                        .seed = 1};
+  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s.bumps), FG_OK);
   assert_int_equal(s.bumps.count, BUMPS);
   assert_int_equal(s.bumps.parts, 1);
   assert_true(fabs(s.bumps.bump[3].value[0] - s.bump[0][3].radius_mm) < 1e-12);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
   request.same_foil = false;
-  assert_int_equal(fg_scan_bumps_run(&ctx, &request, &s.bumps), FG_OK);
+  assert_int_equal(fg_scan_loop_bumps_run(&ctx, &request, &s.bumps), FG_OK);
   assert_int_equal(s.bumps.count, 2 * BUMPS);
-  fg_scan_bumps_free(&s.bumps);
+  fg_scan_loop_bumps_free(&s.bumps);
 }
 
 /* One in a hundred would be right; with 200 draws more than 7 is one in a thousand. */
@@ -219,8 +219,8 @@ static void scatter_alone_is_clean(void **state) {
     r.foils = 1 + seed % 3;
     r.stretch_scatter = seed % 2 ? 0.002 : 0;
     run(&r, 1000 * seed, &s);
-    claims += fg_scan_bumps_claimed(&s.bumps);
-    fg_scan_bumps_free(&s.bumps);
+    claims += fg_scan_loop_bumps_claimed(&s.bumps);
+    fg_scan_loop_bumps_free(&s.bumps);
   }
   print_message("claims on 200 foils without any effect: %zu\n", claims);
   assert_true(claims <= 7);

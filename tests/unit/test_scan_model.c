@@ -10,18 +10,18 @@
 
 #include <cmocka.h>
 
-#include "loop/scan_loop.h"
-#include "loop/scan_model.h"
+#include "scan_loop/scanner_model.h"
+#include "scan_loop/state.h"
 #include "support/near.h"
 
 enum { GRID = 41 };
 
-static void add_effect(fg_scan_set *set, const char *id, double shape, double first_um,
+static void add_effect(fg_effect_set *set, const char *id, double shape, double first_um,
                        double second_um) {
   const fg_effect *kind = fg_effect_find(id);
-  fg_scan_effect *effect = &set->effects[set->count++];
+  fg_effect_found *effect = &set->effects[set->count++];
   assert_non_null(kind);
-  *effect = (fg_scan_effect){.kind = kind, .columns = kind->columns, .shapes = kind->shapes};
+  *effect = (fg_effect_found){.kind = kind, .columns = kind->columns, .shapes = kind->shapes};
   effect->coefficient_um[0] = first_um;
   effect->u_coefficient_um[0] = fabs(first_um) / 300;
   if (kind->columns > 1) {
@@ -50,7 +50,7 @@ static fg_scan_loop *make_loop(void) {
                                         .first_mm = {2.1 / 3, 1.7 / 3},
                                         .last_mm = {39 + 1.0 / 3, 38 + 2.0 / 3},
                                         .knots = FG_FIELD_COLUMNS};
-  fg_scan_set *set = &loop->set, *other = &loop->tie[0];
+  fg_effect_set *set = &loop->set, *other = &loop->tie[0];
   add_effect(set, "scan.scale_y", 0, 36.0 / 7, 0);
   add_effect(set, "scan.carriage_ripple", 3.1 / 3, 10.0 / 3, -5.0 / 7);
   add_effect(set, "scan.carriage_ripple", 7.7 / 3, 4.0 / 3, 8.0 / 7);
@@ -104,20 +104,21 @@ static void assert_same_fields(const fg_field_list *read, const fg_field_list *w
 
 static void what_is_written_is_read_as_it_was(void **state) {
   fg_context ctx = {0};
-  fg_scan_model *model = NULL;
+  fg_scanner_model *model = NULL;
   fg_field_list written;
   fg_scan_loop *loop = make_loop();
   char *text = write_text(loop);
   (void)state;
-  if (fg_scan_model_parse(&ctx, "written.json", text, &model) != FG_OK) fail_msg("%s", ctx.message);
-  fg_scan_fields(&loop->points, &loop->set, &written);
+  if (fg_scanner_model_parse(&ctx, "written.json", text, &model) != FG_OK)
+    fail_msg("%s", ctx.message);
+  fg_effect_set_fields(&loop->points, &loop->set, &written);
   assert_same_fields(&model->fields, &written);
-  assert_true(fg_scan_model_is_tied(model));
+  assert_true(fg_scanner_model_is_tied(model));
   assert_int_equal(model->others, 1);
-  fg_scan_fields(&loop->points, &loop->tie[0], &written);
+  fg_effect_set_fields(&loop->points, &loop->tie[0], &written);
   assert_same_fields(&model->other[0], &written);
   assert_string_equal(model->scanner, "left desk");
-  fg_scan_model_free(model);
+  fg_scanner_model_free(model);
   free(text);
   free_loop(loop);
 }
@@ -197,8 +198,8 @@ static void what_no_scanner_can_be_is_refused(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
     fg_context ctx = {0};
-    fg_scan_model *model = NULL;
-    fg_status status = fg_scan_model_parse(&ctx, "bad.json", table[i].json, &model);
+    fg_scanner_model *model = NULL;
+    fg_status status = fg_scanner_model_parse(&ctx, "bad.json", table[i].json, &model);
     if (status != FG_ERR_DATA) fail_msg("row %zu is taken: %s", i, table[i].json);
     assert_null(model);
     const char *wanted[] = {"bad.json: ", table[i].member, table[i].value, table[i].allowed};
@@ -219,10 +220,10 @@ static void what_a_scanner_can_be_is_taken(void **state) {
   (void)state;
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
     fg_context ctx = {0};
-    fg_scan_model *model = NULL;
-    if (fg_scan_model_parse(&ctx, "good.json", table[i], &model) != FG_OK)
+    fg_scanner_model *model = NULL;
+    if (fg_scanner_model_parse(&ctx, "good.json", table[i], &model) != FG_OK)
       fail_msg("row %zu: %s", i, ctx.message);
-    fg_scan_model_free(model);
+    fg_scanner_model_free(model);
   }
 }
 

@@ -1,9 +1,0 @@
-/* The rows of the table, by what they are of; each ends with id NULL. */
-#ifndef FG_EFFECT_TABLE_H
-#define FG_EFFECT_TABLE_H
-
-#include "effect/effect.h"
-
-extern const fg_effect fg_effects_scanner[], fg_effects_part[], fg_effects_curves[];
-
-#endif

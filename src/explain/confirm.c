@@ -1,0 +1,443 @@
+/* What a search found on discs, confirmed from disc to disc.
+ *
+ * A disc's own form looks like an effect of the scanner as long as one disc is looked at, and it is
+ * no noise that averages out along the edge. So an effect must predict discs that it was not fitted
+ * to: its gain in grouped cross-validation, the groups being discs, and a test of its amplitude
+ * against what differs from disc to disc. A step or a ripple was sought over many places and may
+ * lie in one disc alone: it is confirmed as well when it stands beside a smooth form of every disc,
+ * and each side of the discs predicts the other.
+ */
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "effect/columns.h"
+#include "scan_loop/state.h"
+
+#define CONFIRM_P 0.005
+/* The same where the best of so many places was taken. */
+#define CONFIRM_SHAPED_P 1e-4
+/* Standard errors that the gain of a free curve has to exceed; of a listed effect. */
+#define FREE_ERRORS   3.0
+#define LISTED_ERRORS 1.0
+/* Amplitude in its standard uncertainties, at the least. */
+#define AMPLITUDE_ERRORS 3.5
+/* Groups that share the information, at the least. */
+#define GROUPS_LEAST 1.5
+/* Beside a form of so many undulations, this gain in chi² is no chance of the best place. */
+enum { FORM_HARMONICS = 5 };
+#define SHAPED_CHI2 45.0
+
+typedef struct confirmation {
+  const fg_points *points;
+  const fg_effect_found *effect;
+  double *residual; /* rows: with the effect put back, beside each disc's circle */
+  double *columns;  /* effect->columns × rows, likewise */
+  fg_normal_equations *groups;
+  size_t group_count, columns_used, index[FG_EFFECT_COLUMNS_MAX];
+} confirmation;
+
+static double weight_at(const fg_points *points, size_t i) {
+  const fg_points_row *row = &points->rows[i];
+  return points->views[row->view].aside ? 0 : row->weight / FG_POINTS_BLOCK;
+}
+
+/* Harmonics 1 to `harmonics` at a row, then 1 unless the radius is known; returns how many. */
+static size_t form_basis(const fg_points *points, size_t i, size_t harmonics, double *basis) {
+  const fg_points_row *row = &points->rows[i];
+  size_t n = 0;
+  for (size_t k = 1; k <= harmonics; k++) {
+    basis[n++] = cos((double)k * row->normal_rad);
+    basis[n++] = sin((double)k * row->normal_rad);
+  }
+  if (!points->parts[row->part].radius_known) basis[n++] = 1;
+  return n;
+}
+
+/* Takes a disc's circle, or its form up to a harmonic, out of values at its rows [first, last). */
+static void take_form_out(const fg_points *points, size_t first, size_t last, size_t harmonics,
+                          double *values) {
+  fg_normal_equations system;
+  double x[FG_SMALL_MAX] = {0}, basis[FG_SMALL_MAX];
+  size_t unknowns = form_basis(points, first, harmonics, basis);
+  fg_normal_clear(&system, unknowns);
+  for (size_t i = first; i < last; i++) {
+    form_basis(points, i, harmonics, basis);
+    fg_normal_add(&system, basis, values[i], weight_at(points, i));
+  }
+  if (!fg_normal_solve(&system, 1e-12, x, NULL)) return;
+  for (size_t i = first; i < last; i++) {
+    form_basis(points, i, harmonics, basis);
+    for (size_t k = 0; k < unknowns; k++)
+      values[i] -= x[k] * basis[k];
+  }
+}
+
+static void take_forms_out(const fg_points *points, size_t harmonics, double *values) {
+  for (size_t first = 0; first < points->row_count;) {
+    size_t last = first;
+    while (last < points->row_count && points->rows[last].view == points->rows[first].view)
+      last++;
+    take_form_out(points, first, last, harmonics, values);
+    first = last;
+  }
+}
+
+/* Normal equations of the effect in each group. */
+static void fill_groups(confirmation *c, bool sides) {
+  size_t rows = c->points->row_count;
+  double row[FG_SMALL_MAX];
+  for (size_t g = 0; g < c->group_count; g++)
+    fg_normal_clear(&c->groups[g], c->columns_used);
+  for (size_t i = 0; i < rows; i++) {
+    const fg_points_row *at = &c->points->rows[i];
+    size_t g = sides ? 2 * at->view + (at->normal.x > 0) : at->view;
+    for (size_t k = 0; k < c->columns_used; k++)
+      row[k] = c->columns[c->index[k] * rows + i];
+    fg_normal_add(&c->groups[g], row, c->residual[i], weight_at(c->points, i));
+  }
+}
+
+static void add_system(fg_normal_equations *to, const fg_normal_equations *from, double sign) {
+  for (size_t a = 0; a < to->unknowns; a++) {
+    to->right[a] += sign * from->right[a];
+    for (size_t b = 0; b <= a; b++)
+      to->matrix[a][b] += sign * from->matrix[a][b];
+  }
+}
+
+static double quadratic(const fg_normal_equations *s, const double *x) {
+  double sum = 0;
+  for (size_t a = 0; a < s->unknowns; a++)
+    for (size_t b = 0; b <= a; b++)
+      sum += (a == b ? 1 : 2) * x[a] * s->matrix[a][b] * x[b];
+  return sum;
+}
+
+static double linear(const fg_normal_equations *s, const double *x) {
+  double sum = 0;
+  for (size_t a = 0; a < s->unknowns; a++)
+    sum += x[a] * s->right[a];
+  return sum;
+}
+
+/* Number of groups that the information would be spread over evenly. */
+static double effective_groups(const confirmation *c, const double *x) {
+  double sum = 0, squares = 0;
+  for (size_t g = 0; g < c->group_count; g++) {
+    double part = quadratic(&c->groups[g], x);
+    sum += part;
+    squares += part * part;
+  }
+  return squares > 0 ? sum * sum / squares : 0;
+}
+
+/* Gain in grouped cross-validation, in its own standard errors. */
+static double validated_gain(const confirmation *c, const fg_normal_equations *whole) {
+  double sum = 0, squares = 0, n = 0;
+  for (size_t g = 0; g < c->group_count; g++) {
+    fg_normal_equations others = *whole;
+    double x[FG_SMALL_MAX];
+    if (!(c->groups[g].matrix[0][0] > 0)) continue;
+    add_system(&others, &c->groups[g], -1);
+    if (!fg_normal_solve(&others, 1e-9, x, NULL)) return -INFINITY;
+    double gain = 2 * linear(&c->groups[g], x) - quadratic(&c->groups[g], x);
+    sum += gain;
+    squares += gain * gain;
+    n++;
+  }
+  double variance = n > 1 ? (squares - sum * sum / n) * n / (n - 1) : 0;
+  return variance > 0 ? sum / sqrt(variance) : -INFINITY;
+}
+
+/* Student's t of the amplitude along x, against its scatter from group to group. */
+static double scatter_p(const confirmation *c, const double *x, double groups) {
+  double amount = 0, scatter = 0, n = 0;
+  for (size_t g = 0; g < c->group_count; g++) {
+    double have = linear(&c->groups[g], x), expect = quadratic(&c->groups[g], x);
+    if (!(expect > 0)) continue;
+    amount += expect;
+    scatter += (have - expect) * (have - expect);
+    n++;
+  }
+  double t = amount / sqrt(fmax(scatter * n / fmax(n - 1, 1), 1e-300));
+  return gsl_cdf_tdist_Q(t, fmax(groups - (double)c->columns_used, 0.5));
+}
+
+/* Whole normal equations and their solution; false when there is nothing to solve. */
+static bool solve_whole(confirmation *c, bool sides, fg_normal_equations *whole, double *x,
+                        double inverse[FG_SMALL_MAX][FG_SMALL_MAX]) {
+  c->group_count = (sides ? 2 : 1) * c->points->view_count;
+  fill_groups(c, sides);
+  fg_normal_clear(whole, c->columns_used);
+  for (size_t g = 0; g < c->group_count; g++)
+    add_system(whole, &c->groups[g], 1);
+  return c->columns_used && fg_normal_solve(whole, 1e-9, x, inverse);
+}
+
+/* How well the effect is confirmed from disc to disc: above 0 it is. */
+static double judge_discs(confirmation *c, double needed_p, double needed_errors) {
+  fg_normal_equations whole;
+  double x[FG_SMALL_MAX];
+  if (!solve_whole(c, false, &whole, x, NULL)) return -INFINITY;
+  double groups = effective_groups(c, x);
+  if (groups < GROUPS_LEAST) return -INFINITY;
+  if (needed_p > 0 && scatter_p(c, x, groups) > needed_p) return -INFINITY;
+  return validated_gain(c, &whole) - needed_errors;
+}
+
+/* Integral of the correlation of what the effect leaves, and its variance per unit of weight. */
+static double rest_variance(const confirmation *c, const double *x) {
+  enum { LAGS = 24 };
+  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1, rest[LAGS] = {0};
+  size_t rows = c->points->row_count;
+  for (size_t i = 0; i < rows; i++) {
+    bool first = i == 0 || c->points->rows[i - 1].view != c->points->rows[i].view;
+    for (size_t lag = LAGS - 1; lag > 0; lag--)
+      rest[lag] = first ? NAN : rest[lag - 1];
+    rest[0] = c->residual[i];
+    for (size_t k = 0; k < c->columns_used; k++)
+      rest[0] -= x[k] * c->columns[c->index[k] * rows + i];
+    rest[0] *= sqrt(weight_at(c->points, i));
+    for (size_t lag = 0; lag < LAGS && isfinite(rest[lag]) && rest[0] != 0; lag++) {
+      products[lag] += rest[0] * rest[lag];
+      pairs[lag]++;
+    }
+  }
+  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
+    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
+    if (rho < 2 / sqrt(pairs[lag])) break;
+    integral += 2 * rho;
+  }
+  return pairs[0] > 0 ? products[0] / pairs[0] * integral : INFINITY;
+}
+
+/* The same for a step or a ripple beside the form of every disc, from side to side. */
+static double judge_sides(confirmation *c) {
+  fg_normal_equations whole;
+  double x[FG_SMALL_MAX];
+  if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
+  if (effective_groups(c, x) < GROUPS_LEAST) return -INFINITY;
+  if (quadratic(&whole, x) < SHAPED_CHI2 * rest_variance(c, x)) return -INFINITY;
+  return validated_gain(c, &whole) - LISTED_ERRORS;
+}
+
+/* Standard uncertainties of the coefficients from what differs from disc to disc (a sandwich of the
+ * groups' scores), where there are discs enough to tell. */
+static void widen_by_scatter(confirmation *c, fg_effect_found *effect) {
+  fg_normal_equations whole;
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], n = 0;
+  double variance[FG_EFFECT_COLUMNS_MAX] = {0};
+  if (!solve_whole(c, false, &whole, x, inverse)) return;
+  if (effective_groups(c, x) < (double)c->columns_used + 1) return;
+  for (size_t g = 0; g < c->group_count; g++) {
+    const fg_normal_equations *own = &c->groups[g];
+    double score[FG_EFFECT_COLUMNS_MAX];
+    for (size_t a = 0; a < c->columns_used; a++) {
+      score[a] = own->right[a];
+      for (size_t b = 0; b < c->columns_used; b++)
+        score[a] -= own->matrix[a > b ? a : b][a > b ? b : a] * x[b];
+    }
+    for (size_t a = 0; a < c->columns_used; a++) {
+      double moved = 0;
+      for (size_t b = 0; b < c->columns_used; b++)
+        moved += inverse[a][b] * score[b];
+      variance[a] += moved * moved;
+    }
+    n += own->matrix[0][0] > 0;
+  }
+  for (size_t a = 0; a < c->columns_used && n > 1; a++) {
+    double *u = &effect->u_coefficient_um[c->index[a]];
+    *u = fmax(*u, sqrt(variance[a] * n / (n - 1)));
+  }
+}
+
+/* All edges may lie a little too far out or in together, by what their level is doubted: a scale
+ * follows that as far as the discs are alike. */
+static void widen_by_level(const confirmation *c, fg_effect_found *effect) {
+  double along = 0, square = 0, doubt = 0;
+  for (size_t i = 0; i < c->points->row_count; i++) {
+    const fg_points_row *row = &c->points->rows[i];
+    if (!c->points->parts[row->part].radius_known) continue;
+    along += weight_at(c->points, i) * c->columns[i];
+    square += weight_at(c->points, i) * c->columns[i] * c->columns[i];
+    doubt = fmax(doubt, 1000 * c->points->views[row->view].disc->level_doubt_mm);
+  }
+  if (square > 0)
+    effect->u_coefficient_um[0] = hypot(effect->u_coefficient_um[0], doubt * along / square);
+}
+
+static void prepare(confirmation *c, const double *residual_um, size_t harmonics) {
+  const fg_effect_found *effect = c->effect;
+  size_t rows = c->points->row_count;
+  fg_effect_columns(c->points, effect->kind, effect->shape, c->columns);
+  memcpy(c->residual, residual_um, rows * sizeof *c->residual);
+  c->columns_used = 0;
+  for (size_t k = 0; k < effect->columns; k++) {
+    double *column = c->columns + k * rows, square = 0;
+    for (size_t i = 0; i < rows; i++)
+      c->residual[i] += effect->coefficient_um[k] * column[i];
+    take_forms_out(c->points, harmonics, column);
+    for (size_t i = 0; i < rows; i++)
+      square += weight_at(c->points, i) * column[i] * column[i];
+    if (square > 1e-6) c->index[c->columns_used++] = k;
+  }
+  take_forms_out(c->points, harmonics, c->residual);
+}
+
+/* Amplitude in its standard uncertainties. */
+static double amplitude_errors(const fg_effect_found *effect) {
+  double square = 0, noise = 0;
+  for (size_t k = 0; k < effect->columns; k++) {
+    double a = effect->coefficient_um[k], u = effect->u_coefficient_um[k];
+    square += a * a;
+    noise += a * a * u * u;
+  }
+  return noise > 0 ? square / sqrt(noise) : INFINITY;
+}
+
+static double judge(confirmation *c, fg_effect_found *effect, const double *residual_um) {
+  bool free_curve = fg_effect_is_free(effect->kind), shaped = effect->shapes > 0;
+  prepare(c, residual_um, 1);
+  double confirmed = judge_discs(c,
+                                 free_curve ? 0
+                                 : shaped   ? CONFIRM_SHAPED_P
+                                            : CONFIRM_P,
+                                 free_curve ? FREE_ERRORS : LISTED_ERRORS);
+  widen_by_scatter(c, effect);
+  if (effect->kind->scales) widen_by_level(c, effect);
+  if (shaped && !(confirmed > 0)) {
+    prepare(c, residual_um, FORM_HARMONICS);
+    confirmed = judge_sides(c);
+  }
+  if (!free_curve && amplitude_errors(effect) < AMPLITUDE_ERRORS) return -INFINITY;
+  return confirmed;
+}
+
+/* Says in `confirmed` (above 0: it is) how well discs confirm the effect, and gives its numbers the
+ * uncertainty that discs show. */
+static fg_status confirm(fg_context *ctx, const fg_points *points, fg_effect_found *effect,
+                         const double *residual_um, double *confirmed) {
+  confirmation c = {.points = points, .effect = effect};
+  fg_status status = FG_OK;
+  size_t rows = points->row_count;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.residual, (void **)&c.residual));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, FG_EFFECT_COLUMNS_MAX * sizeof *c.columns,
+                                 (void **)&c.columns));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, points->view_count, 2 * sizeof *c.groups, (void **)&c.groups));
+  *confirmed = judge(&c, effect, residual_um);
+exit:
+  free(c.residual);
+  free(c.columns);
+  free(c.groups);
+  return status;
+}
+
+static void bar(fg_points *points, const fg_explanations *explanations, const fg_effect *kind) {
+  for (size_t i = 0; i < points->barred_count; i++)
+    if (points->barred[i].effect == kind) return;
+  fg_points_barred *entry = &points->barred[points->barred_count++];
+  *entry =
+      (fg_points_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
+  for (size_t e = 0; e < explanations->candidate_count; e++) {
+    if (explanations->candidates[e].kind != kind) continue;
+    entry->would_explain = explanations->alone[e];
+    entry->share = explanations->share[e];
+    return;
+  }
+}
+
+/* Bars what discs do not confirm: all of it when nothing is confirmed, else the one that is
+ * confirmed least, since it may have spoilt the others. */
+static fg_status bar_unconfirmed(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                                 const fg_explanations *explanations, const double *residual_um,
+                                 bool *barred) {
+  double confirmed[FG_EFFECT_SET_MAX], least = 0;
+  size_t failing = 0;
+  for (size_t e = 0; e < set->count; e++) {
+    FG_TRY(confirm(ctx, points, &set->effects[e], residual_um, &confirmed[e]));
+    failing += !(confirmed[e] > 0);
+    least = fmin(least, confirmed[e]);
+  }
+  size_t room = FG_POINTS_BARRED - points->barred_count;
+  size_t most = failing == set->count ? failing : 1;
+  *barred = failing > 0 && room >= most;
+  for (size_t e = 0, n = 0; *barred && e < set->count && n < most; e++) {
+    if (confirmed[e] > least && most == 1) continue;
+    bar(points, explanations, set->effects[e].kind);
+    n++;
+  }
+  return FG_OK;
+}
+
+/* Those that stand for each other in a ring. */
+static unsigned ring_mask(const fg_explanations *explanations, fg_effect_ring ring) {
+  unsigned mask = 0;
+  for (size_t e = 0; e < explanations->candidate_count; e++)
+    if (explanations->candidates[e].kind->ring == ring) mask |= 1u << e;
+  return mask;
+}
+
+static void add_member(fg_explanations *explanations, unsigned mask, const fg_explanation *like) {
+  for (size_t m = 0; m < explanations->count; m++)
+    if (explanations->each[m].mask == mask) return;
+  if (explanations->count == FG_EXPLANATIONS_MAX) return;
+  explanations->each[explanations->count] = *like;
+  explanations->each[explanations->count++].mask = mask;
+  explanations->total++;
+}
+
+/* In one circle an oval and a scale with a shear are one and the same. */
+static void add_ring_alias(fg_explanations *explanations) {
+  size_t known = explanations->count;
+  unsigned scanner = ring_mask(explanations, FG_EFFECT_RING_OF_SCANNER);
+  unsigned oval = ring_mask(explanations, FG_EFFECT_RING_OF_PART);
+  for (size_t m = 0; m < known; m++) {
+    const fg_explanation explanation = explanations->each[m];
+    if (explanation.mask & oval)
+      add_member(explanations, (explanation.mask & ~oval) | scanner, &explanation);
+    else if (explanation.mask & scanner)
+      add_member(explanations, (explanation.mask & ~scanner) | oval, &explanation);
+  }
+}
+
+/* Where every search starts: a set that is out now may have called rows outliers, or bent the
+ * geometry out of reach. */
+static void start_again(fg_points *points, const double *weights) {
+  for (size_t i = 0; i < points->row_count; i++)
+    points->rows[i].weight = weights[i];
+  for (size_t v = 0; v < points->view_count; v++) {
+    const fg_disc *disc = points->views[v].disc;
+    fg_points_part *part = &points->parts[points->views[v].part];
+    points->poses[v].origin_mm = disc->centre_mm;
+    if (!part->radius_known) part->overall_radius_mm = disc->radius_mm;
+  }
+}
+
+fg_status fg_explain_discs_confirm(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                                   fg_explanations *explanations, double *residual_um) {
+  double *weights = NULL;
+  bool barred = true;
+  fg_status status = FG_OK;
+  if (points->part_count == 1) {
+    FG_TRY(fg_explain_discs_settle(ctx, points, set, explanations, residual_um));
+    add_ring_alias(explanations);
+    return FG_OK;
+  }
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *weights, (void **)&weights));
+  for (size_t i = 0; i < points->row_count; i++)
+    weights[i] = points->rows[i].weight;
+  while (barred) {
+    start_again(points, weights);
+    FG_TRY_EXIT(fg_explain_discs_settle(ctx, points, set, explanations, residual_um));
+    FG_TRY_EXIT(bar_unconfirmed(ctx, points, set, explanations, residual_um, &barred));
+  }
+  if (points->barred_count) explanations->right = false;
+exit:
+  free(weights);
+  return status;
+}

@@ -1,0 +1,94 @@
+/* Which effects, of all that could, explain the points: sets of them are tried.
+ *
+ * The smooth effects of scanner and part are nearly the same thing in one scan (they correlate at
+ * 0.83 to 0.99), so a search that adds the best one first can take a wrong one and never come back.
+ * There are few of them: all sets of up to two (three where a part was scanned more than once) are
+ * fitted beside the geometry, with any ripples and steps, which stand alone. Those of the smallest
+ * size that leave no more than all effects and free curves together would, within what noise and
+ * the edge model's own error allow, are explanations, tied when there are several. When there are
+ * none, a free curve, alone or beside up to two listed effects, stands in.
+ *
+ * The width of the strip orders them: a scanner's field stretches it as it stretches the foil,
+ * a part's effect does not. It does not decide: an edge model that errs with the direction of the
+ * edge would look the same.
+ */
+#ifndef FG_EXPLAIN_EXPLAIN_H
+#define FG_EXPLAIN_EXPLAIN_H
+
+#include "effect/set.h"
+#include "foilgauge/scan_loop.h"
+#include "rows/points.h"
+
+enum { FG_CANDIDATES_MAX = 26, FG_EXPLANATIONS_MAX = 8 };
+
+/* An effect as it enters the search: its shape is known by now, but for the middle c of a
+ * polynomial, which is found with every set anew. */
+typedef struct fg_candidate {
+  const fg_effect *kind;
+  fg_effect_polynomial polynomial; /* that its terms make; else every column has its coefficient */
+  size_t columns, shapes;          /* of the effect as it is fitted in the end */
+  size_t terms;                    /* in the search */
+  size_t column[FG_EFFECT_COLUMNS_MAX]; /* of the search, one per term (cubic: three) */
+  double shape[FG_FIELD_SHAPES];
+} fg_candidate;
+
+/* One set of effects (bits of `effects`) and what it leaves. */
+typedef struct fg_explanation {
+  unsigned mask;
+  double excess; /* residual sum beyond that of all effects, in units of the noise; chi² of
+                    `freedom` when the set is right */
+  double freedom;
+  double width; /* of the same kind: what the strip's width says against it */
+  double middle_mm[FG_CANDIDATES_MAX]; /* of the polynomials in it */
+} fg_explanation;
+
+typedef struct fg_explanations {
+  fg_candidate candidates[FG_CANDIDATES_MAX];
+  size_t candidate_count;
+  fg_explanation each[FG_EXPLANATIONS_MAX]; /* they are tied; the likeliest first */
+  size_t count, total;
+  bool right;                           /* the explanations leave no more than they should */
+  double noise_um, integral;            /* of a row; of its correlation */
+  double edge_error_um;                 /* of the edge model, allowed for */
+  double width_rms_um, width_smooth_um; /* of half the strip's width, with the first explanation's
+                                           stretch out; of its part that follows place or
+                                           direction as no field of the scanner does */
+  double p_value;                  /* that no effect is needed; 1 when explanations[0].mask is 0 */
+  double share[FG_CANDIDATES_MAX]; /* |M f|² / |f|² beside the geometry */
+  double smallest_um[FG_CANDIDATES_MAX]; /* amplitude that would have shown beside the winner */
+  double alone[FG_CANDIDATES_MAX];       /* share of the residual sum that it alone takes */
+} fg_explanations;
+
+/* What is searched. */
+typedef struct fg_explain_request {
+  const double *residual_um, *jacobian; /* geometry fitted; as from fg_points_residual */
+  const fg_effect_set
+      *known; /* NULL: none; its shaped effects are in the search with their shapes */
+  const fg_effect_set *tried; /* NULL: none; this set was fitted and is not right */
+  bool look;                  /* for further shaped effects */
+  bool two_curves;            /* where one is not enough and there are several views */
+} fg_explain_request;
+
+fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
+                          const fg_explain_request *request, fg_explanations *explanations);
+
+/* The same with the geometry and the effects fitted together in between, until the set stays: what
+ * is linear at the wrong geometry leaves traces that look like further effects. `set` gets the
+ * winner, fitted; `residual_um` (rows) what it leaves. */
+fg_status fg_explain_settle(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                            fg_explanations *explanations, double *residual_um);
+
+/* The same for discs (disc_search.c, disc_settle.c, discs_confirm.c); what they do not confirm from
+ * one to the next is barred. */
+fg_status fg_explain_discs_find(fg_context *ctx, const fg_points *points, const double *residual_um,
+                                const double *jacobian, const fg_effect_set *known,
+                                fg_explanations *explanations);
+fg_status fg_explain_discs_settle(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                                  fg_explanations *explanations, double *residual_um);
+fg_status fg_explain_discs_confirm(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                                   fg_explanations *explanations, double *residual_um);
+
+/* One explanation as a set without numbers. */
+void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set);
+
+#endif

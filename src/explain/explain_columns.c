@@ -1,0 +1,367 @@
+#include "explain/explain_columns.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "effect/columns.h"
+
+/* A column whose mean square is less than this beside the geometry is nothing. */
+#define VANISHED 1e-8
+/* A term of which less than this share stands beside the terms before it is one of them. */
+#define DEPENDENT 1e-6
+
+double fg_explain_dot(size_t n, const double *a, const double *b) {
+  enum { LANES = 8 }; /* sums that do not wait for each other */
+  double sum[LANES] = {0};
+  size_t i = 0;
+  for (; i + LANES <= n; i += LANES)
+    for (size_t k = 0; k < LANES; k++)
+      sum[k] += a[i + k] * b[i + k];
+  for (; i < n; i++)
+    sum[0] += a[i] * b[i];
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+double fg_explain_along(const fg_explain_columns *s, size_t k, const double *v) {
+  size_t first = s->first[k];
+  return fg_explain_dot(s->last[k] - first, s->basis + k * s->rows + first, v + first);
+}
+
+void fg_explain_take_out(const fg_explain_columns *s, size_t rank, double *v) {
+  for (int twice = 0; twice < 2; twice++)
+    for (size_t k = 0; k < rank; k++) {
+      const double *b = s->basis + k * s->rows;
+      double d = fg_explain_along(s, k, v);
+      for (size_t i = s->first[k]; d != 0 && i < s->last[k]; i++)
+        v[i] -= d * b[i];
+    }
+}
+
+static void find_support(fg_explain_columns *s, size_t rank) {
+  const double *v = s->basis + rank * s->rows;
+  size_t first = 0, last = s->rows;
+  while (first < last && v[first] == 0)
+    first++;
+  while (last > first && v[last - 1] == 0)
+    last--;
+  s->first[rank] = first;
+  s->last[rank] = last;
+}
+
+/* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
+static bool extend(fg_explain_columns *s, size_t rank, const double *v, double least) {
+  double *to = s->basis + rank * s->rows, whole = fg_explain_dot(s->rows, v, v);
+  if (!(whole > least)) return false;
+  memcpy(to, v, s->rows * sizeof *to);
+  fg_explain_take_out(s, rank, to);
+  double left = fg_explain_dot(s->rows, to, to);
+  if (!(left > fmax(1e-12 * whole, least))) return false;
+  for (size_t i = 0; i < s->rows; i++)
+    to[i] /= sqrt(left);
+  find_support(s, rank);
+  return true;
+}
+
+static double weight_of(const fg_explain_columns *s, size_t i) {
+  return sqrt(s->points->rows[s->row[i]].weight / FG_POINTS_BLOCK);
+}
+
+static size_t weigh(const fg_explain_columns *s, size_t count, double *out) {
+  for (size_t c = 0; c < count; c++)
+    for (size_t i = 0; i < s->rows; i++)
+      out[c * s->rows + i] = weight_of(s, i) * s->work[c * s->points->row_count + s->row[i]];
+  return count;
+}
+
+size_t fg_explain_gather(const fg_explain_columns *s, const fg_effect *effect, const double *shape,
+                         double *out) {
+  return weigh(s, fg_effect_columns(s->points, effect, shape, s->work), out);
+}
+
+static void fill_products(fg_explain_columns *s, size_t from) {
+  for (size_t a = from; a < s->count; a++) {
+    const double *p = s->values + a * s->rows;
+    s->right[a] = fg_explain_dot(s->rows, p, s->residual);
+    for (size_t b = 0; b <= a; b++)
+      s->gram[a * FG_EXPLAIN_COLUMNS + b] = s->gram[b * FG_EXPLAIN_COLUMNS + a] =
+          fg_explain_dot(s->rows, p, s->values + b * s->rows);
+  }
+}
+
+size_t fg_explain_columns_add(fg_explain_columns *s, const fg_effect *effect, const double *shape,
+                              size_t *first, double *share) {
+  double *to = s->values + s->count * s->rows, *strain = s->strain + s->count * s->rows;
+  double whole = 0, left = 0;
+  *first = s->count;
+  size_t count = fg_explain_gather(s, effect, shape, to);
+  for (size_t c = 0; c < count; c++, to += s->rows) {
+    double square = fg_explain_dot(s->rows, to, to);
+    if (square == 0) continue; /* a knot that is not used */
+    whole += square;
+    fg_explain_take_out(s, s->geometry_rank, to);
+    left += fg_explain_dot(s->rows, to, to);
+  }
+  *share = whole > 0 ? left / whole : 0;
+  memset(strain, 0, count * s->rows * sizeof *strain);
+  weigh(s, fg_effect_width_columns(s->points, effect, shape, s->work), strain);
+  s->count += count;
+  fill_products(s, *first);
+  return count;
+}
+
+size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
+  size_t rank = s->geometry_rank;
+  for (size_t c = 0; c < s->count; c++) {
+    const double *v = s->values + c * s->rows;
+    if ((c >= skip && c < end) || s->part[c] == FG_EXPLAIN_LEFT_OUT) continue;
+    if (s->part[c] == FG_EXPLAIN_WITH_NEXT) {
+      for (size_t i = 0; i < s->rows; i++)
+        s->left[i] = v[i] + v[i + s->rows];
+      v = s->left;
+    }
+    if (extend(s, rank, v, VANISHED * (double)s->rows)) rank++;
+  }
+  memcpy(s->left, s->residual, s->rows * sizeof *s->left);
+  fg_explain_take_out(s, rank, s->left);
+  return rank;
+}
+
+size_t fg_explain_columns_span_more(fg_explain_columns *s, size_t rank, size_t from, size_t to) {
+  for (size_t c = from; c < to; c++)
+    if (extend(s, rank, s->values + c * s->rows, VANISHED * (double)s->rows)) rank++;
+  memcpy(s->left, s->residual, s->rows * sizeof *s->left);
+  fg_explain_take_out(s, rank, s->left);
+  return rank;
+}
+
+/* ---- least squares of a set ---- */
+
+static double term_product(const fg_explain_columns *s, const fg_explain_term *a,
+                           const fg_explain_term *b) {
+  double sum = 0;
+  for (size_t i = 0; i < a->count; i++)
+    for (size_t k = 0; k < b->count; k++)
+      sum +=
+          a->weight[i] * b->weight[k] * s->gram[a->column[i] * FG_EXPLAIN_COLUMNS + b->column[k]];
+  return sum;
+}
+
+static double term_right(const fg_explain_columns *s, const fg_explain_term *a) {
+  double sum = 0;
+  for (size_t i = 0; i < a->count; i++)
+    sum += a->weight[i] * s->right[a->column[i]];
+  return sum;
+}
+
+/* Cholesky, row by row; a term that adds nothing is left out. */
+double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
+                        double *x, double *last_u, size_t *rank) {
+  double lower[FG_EXPLAIN_TERMS][FG_EXPLAIN_TERMS], forward[FG_EXPLAIN_TERMS], sum = s->square;
+  size_t used[FG_EXPLAIN_TERMS], n = 0;
+  for (size_t a = 0; a < count; a++) {
+    double whole = term_product(s, &terms[a], &terms[a]), pivot = whole;
+    double right = term_right(s, &terms[a]);
+    for (size_t k = 0; k < n; k++) {
+      double value = term_product(s, &terms[a], &terms[used[k]]);
+      for (size_t j = 0; j < k; j++)
+        value -= lower[n][j] * lower[k][j];
+      lower[n][k] = value / lower[k][k];
+      pivot -= lower[n][k] * lower[n][k];
+      right -= lower[n][k] * forward[k];
+    }
+    if (x) x[a] = 0;
+    if (!(pivot > fmax(DEPENDENT * whole, VANISHED * (double)s->rows))) continue;
+    lower[n][n] = sqrt(pivot);
+    forward[n] = right / lower[n][n];
+    sum -= forward[n] * forward[n];
+    if (last_u) *last_u = 1 / lower[n][n];
+    used[n++] = a;
+  }
+  for (size_t k = n; x && k-- > 0;) {
+    double value = forward[k];
+    for (size_t j = k + 1; j < n; j++)
+      value -= lower[j][k] * x[used[j]];
+    x[used[k]] = value / lower[k][k];
+  }
+  *rank = n;
+  return fmax(sum, 0);
+}
+
+/* ---- widths ---- */
+
+double fg_explain_width_sum(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
+                            const double *x) {
+  double sum = 0, mean = 0, weight = 0;
+  for (size_t pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < s->rows; i++) {
+      double value = s->width[i], w = weight_of(s, i);
+      for (size_t t = 0; t < count; t++)
+        for (size_t k = 0; k < terms[t].count; k++)
+          value -= x[t] * terms[t].weight[k] * s->strain[terms[t].column[k] * s->rows + i];
+      if (pass == 0) {
+        mean += w * value;
+        weight += w * w;
+      } else {
+        sum += (value - w * mean / weight) * (value - w * mean / weight);
+      }
+    }
+  return sum;
+}
+
+/* Directions and places that an error of the edge model may follow: threshold, flare, shading and
+ * one-sided blur move the edges apart. */
+static size_t nuisance(const fg_explain_columns *s, double *out) {
+  enum { COUNT = 9 };
+  const fg_field_frame *f = &s->points->frame;
+  for (size_t i = 0; i < s->rows; i++) {
+    const fg_points_row *row = &s->points->rows[s->row[i]];
+    double x = (row->at.x - f->centre_mm[0]) / FG_FIELD_HALF_MM;
+    double y = (row->at.y - f->centre_mm[1]) / FG_FIELD_HALF_MM, w = weight_of(s, i);
+    double all[COUNT] = {x, y, x * x, x * y, y * y};
+    for (int k = 0; k < 2; k++) {
+      all[5 + 2 * k] = cos((2 + 2 * k) * row->normal_rad);
+      all[6 + 2 * k] = sin((2 + 2 * k) * row->normal_rad);
+    }
+    for (int c = 0; c < COUNT; c++)
+      out[(size_t)c * s->rows + i] = w * all[c];
+  }
+  return COUNT;
+}
+
+/* Orthonormal vectors of what is given, behind those that are there; returns the new rank. The
+ * basis is borrowed: the caller spans it again. */
+static size_t span_more(fg_explain_columns *s, size_t rank, const double *v, size_t count) {
+  for (size_t c = 0; c < count; c++)
+    if (extend(s, rank, v + c * s->rows, 0)) rank++;
+  return rank;
+}
+
+/* What of the widths is smooth over place and direction beyond any stretch by the scanner's fields
+ * is the edge model's error; the edges' common error is taken to be no larger. */
+fg_status fg_explain_width_doubt(fg_context *ctx, fg_explain_columns *s) {
+  double *v = NULL, *left = NULL, *kept = NULL;
+  fg_status status = FG_OK;
+  s->width_part = 0;
+  if (!s->has_width) return FG_OK;
+  size_t kept_size = s->geometry_rank * s->rows * sizeof *kept;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, FG_EFFECT_COLUMNS_MAX, s->rows * sizeof *v, (void **)&v));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, s->rows, sizeof *left, (void **)&left));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, kept_size, (void **)&kept));
+  memcpy(kept, s->basis, kept_size);
+  for (size_t i = 0; i < s->rows; i++)
+    v[i] = weight_of(s, i);
+  size_t rank = span_more(s, 0, v, 1);
+  rank = span_more(s, rank, s->strain, s->count);
+  memcpy(left, s->width, s->rows * sizeof *left);
+  fg_explain_take_out(s, rank, left);
+  double before = fg_explain_dot(s->rows, left, left);
+  size_t more = span_more(s, rank, v, nuisance(s, v));
+  fg_explain_take_out(s, more, left);
+  double after = fg_explain_dot(s->rows, left, left), n = (double)s->rows;
+  double chance = (double)(more - rank) * after / fmax(n - (double)more, 1);
+  /* Three times what chance takes: below that nothing is known to be there. */
+  if (before - after > 3 * chance) s->width_part = (before - after - chance) / n;
+  memcpy(s->basis, kept, kept_size);
+  for (size_t k = 0; k < s->geometry_rank; k++)
+    find_support(s, k);
+exit:
+  free(v);
+  free(left);
+  free(kept);
+  return status;
+}
+
+/* ---- setting up ---- */
+
+static fg_status list_rows(fg_context *ctx, fg_explain_columns *s) {
+  const fg_points *points = s->points;
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *s->row, (void **)&s->row));
+  for (size_t i = 0; i < points->row_count; i++)
+    if (!points->views[points->rows[i].view].aside) s->row[s->rows++] = i;
+  return FG_OK;
+}
+
+static fg_status allocate(fg_context *ctx, fg_explain_columns *s) {
+  size_t vector = s->rows * sizeof(double), all = FG_EXPLAIN_COLUMNS;
+  FG_TRY(fg_memory_allocate(ctx, s->points->parameters + all, vector, (void **)&s->basis));
+  size_t most = s->points->parameters + all;
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->first, (void **)&s->first));
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->last, (void **)&s->last));
+  FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->values));
+  FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->strain));
+  FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->residual));
+  FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->left));
+  FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->width));
+  FG_TRY(fg_memory_allocate(ctx, all * all, sizeof *s->gram, (void **)&s->gram));
+  FG_TRY(fg_memory_allocate(ctx, all, sizeof *s->right, (void **)&s->right));
+  return fg_memory_allocate(ctx, s->points->row_count, FG_EFFECT_COLUMNS_MAX * sizeof *s->work,
+                            (void **)&s->work);
+}
+
+/* Mean width of every part out: its thickness is a parameter of the geometry. */
+static void fill_width(fg_explain_columns *s) {
+  for (size_t p = 0; p < s->points->part_count; p++) {
+    double sum = 0, weight = 0;
+    for (size_t i = 0; i < s->rows; i++) {
+      const fg_points_row *row = &s->points->rows[s->row[i]];
+      if (row->part != p) continue;
+      sum += row->weight * row->half_width_mm;
+      weight += row->weight;
+    }
+    for (size_t i = 0; i < s->rows; i++) {
+      const fg_points_row *row = &s->points->rows[s->row[i]];
+      if (row->part != p || !(weight > 0)) continue;
+      s->width[i] = 1000 * weight_of(s, i) * (row->half_width_mm - sum / weight);
+      s->has_width = s->has_width || row->half_width_mm > 0;
+    }
+  }
+}
+
+static void span_geometry(fg_explain_columns *s, const double *residual_um,
+                          const double *jacobian) {
+  double *column = s->left; /* borrowed */
+  for (size_t a = 0; a < s->points->parameters; a++) {
+    for (size_t i = 0; i < s->rows; i++)
+      column[i] = weight_of(s, i) * jacobian[a * s->points->row_count + s->row[i]];
+    if (fg_explain_dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0))
+      s->geometry_rank++;
+  }
+  for (size_t i = 0; i < s->rows; i++)
+    s->residual[i] = weight_of(s, i) * residual_um[s->row[i]];
+  fg_explain_take_out(s, s->geometry_rank, s->residual);
+  s->square = fg_explain_dot(s->rows, s->residual, s->residual);
+}
+
+fg_status fg_explain_columns_open(fg_context *ctx, const fg_points *points,
+                                  const double *residual_um, const double *jacobian,
+                                  fg_explain_columns *s) {
+  memset(s, 0, sizeof *s);
+  s->points = points;
+  fg_status status = list_rows(ctx, s);
+  if (status == FG_OK) status = allocate(ctx, s);
+  if (status != FG_OK) {
+    fg_explain_columns_close(s);
+    return status;
+  }
+  span_geometry(s, residual_um, jacobian);
+  fill_width(s);
+  return FG_OK;
+}
+
+void fg_explain_columns_close(fg_explain_columns *s) {
+  free(s->row);
+  free(s->basis);
+  free(s->first);
+  free(s->last);
+  free(s->values);
+  free(s->strain);
+  free(s->residual);
+  free(s->left);
+  free(s->width);
+  free(s->gram);
+  free(s->right);
+  free(s->work);
+  memset(s, 0, sizeof *s);
+}

@@ -1,0 +1,327 @@
+/* Geometry and effects fitted together, through the geometry. */
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/numerics.h"
+#include "effect/columns.h"
+#include "scan_loop/state.h"
+
+enum {
+  REFIT_ROUNDS = 12,
+  UNKNOWNS_MAX = FG_EFFECT_SET_MAX * (FG_EFFECT_COLUMNS_MAX + FG_FIELD_SHAPES)
+};
+#define STEP_END_UM  1e-5
+#define STEP_MOST_UM 60.0
+
+/* One unknown of the effects: a coefficient, or a shape by its numerical derivative. */
+typedef struct unknown {
+  size_t effect, index;
+  bool shape;
+} unknown;
+
+static size_t list_unknowns(const fg_effect_set *set, unknown *list) {
+  size_t n = 0;
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_effect_found *effect = &set->effects[e];
+    for (size_t c = 0; c < effect->columns; c++)
+      list[n++] = (unknown){e, c, false};
+    for (size_t s = 0; s < effect->shapes && !effect->kind->jumps; s++)
+      list[n++] = (unknown){e, s, true};
+  }
+  return n;
+}
+
+/* Columns of the effects' unknowns, um of residual per um or per unit of shape. */
+static void effect_design(const fg_points *points, const fg_effect_set *set, const unknown *list,
+                          size_t count, double *work, double *design) {
+  size_t rows = points->row_count;
+  for (size_t k = 0; k < count; k++) {
+    const fg_effect_found *effect = &set->effects[list[k].effect];
+    double *to = design + k * rows, shape[FG_FIELD_SHAPES];
+    if (!list[k].shape) {
+      fg_effect_columns(points, effect->kind, effect->shape, work);
+      memcpy(to, work + list[k].index * rows, rows * sizeof *to);
+      continue;
+    }
+    memset(to, 0, rows * sizeof *to);
+    double step = 1e-5 * fmax(fabs(effect->shape[list[k].index]), 1e-3);
+    for (int side = -1; side <= 1; side += 2) {
+      memcpy(shape, effect->shape, sizeof shape);
+      shape[list[k].index] += side * step;
+      fg_effect_columns(points, effect->kind, shape, work);
+      for (size_t c = 0; c < effect->columns; c++)
+        for (size_t i = 0; i < rows; i++)
+          to[i] += side * effect->coefficient_um[c] * work[c * rows + i] / (2 * step);
+    }
+  }
+}
+
+typedef struct refit {
+  fg_points *points;
+  fg_effect_set *set;
+  unknown list[UNKNOWNS_MAX];
+  size_t unknowns, parameters;
+  double *residual, *jacobian, *design, *work; /* per row */
+  gsl_matrix *normal;
+  gsl_vector *right;
+} refit;
+
+static const double *column_of(const refit *r, size_t k) {
+  size_t rows = r->points->row_count;
+  return k < r->parameters ? r->jacobian + k * rows : r->design + (k - r->parameters) * rows;
+}
+
+/* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
+static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
+  const fg_points_row *row = &r->points->rows[i];
+  if (!r->points->views[row->view].aside) return row->weight;
+  return a < r->parameters && b < r->parameters ? row->weight * 1e-6 : 0;
+}
+
+static double hold_of(const fg_effect_found *effect, bool shape) {
+  return shape ? 0 : effect->kind->hold;
+}
+
+/* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
+ * leave the same residual the smallest one is meant. */
+static void hold_free(refit *r, size_t k) {
+  const fg_effect_found *effect = &r->set->effects[r->list[k].effect];
+  size_t a = r->parameters + k;
+  double hold = hold_of(effect, r->list[k].shape);
+  if (hold == 0) return;
+  double held = hold * effect->coefficient_um[r->list[k].index];
+  gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + hold);
+  gsl_vector_set(r->right, a, gsl_vector_get(r->right, a) - held);
+}
+
+/* A row knows few numbers of the geometry, and all of the effects. */
+static void add_row(refit *r, size_t i) {
+  size_t own[FG_POINTS_ROW_PARAMETERS + UNKNOWNS_MAX];
+  double value[FG_POINTS_ROW_PARAMETERS + UNKNOWNS_MAX];
+  size_t count = fg_points_row_parameters(r->points, i, own), geometry = count;
+  for (size_t k = 0; k < r->unknowns; k++)
+    own[count++] = r->parameters + k;
+  for (size_t a = 0; a < count; a++) /* geometry in mm */
+    value[a] = column_of(r, own[a])[i] * (a < geometry ? 1000 : 1);
+  for (size_t a = 0; a < count; a++) {
+    *gsl_vector_ptr(r->right, own[a]) +=
+        row_weight(r, i, own[a], own[a]) * value[a] * r->residual[i];
+    for (size_t b = 0; b < count; b++)
+      *gsl_matrix_ptr(r->normal, own[a], own[b]) +=
+          row_weight(r, i, own[a], own[b]) * value[a] * value[b];
+  }
+}
+
+/* The normal equations of geometry and effects, with what holds free curves. */
+static void assemble(refit *r) {
+  size_t n = r->parameters + r->unknowns;
+  gsl_matrix_set_zero(r->normal);
+  gsl_vector_set_zero(r->right);
+  for (size_t i = 0; i < r->points->row_count; i++)
+    add_row(r, i);
+  for (size_t k = 0; k < r->unknowns; k++)
+    hold_free(r, k);
+  for (size_t a = 0; a < n; a++) {
+    double d = gsl_matrix_get(r->normal, a, a);
+    gsl_matrix_set(r->normal, a, a, d * (1 + 1e-10) + 1e-12);
+  }
+}
+
+static fg_status solve(fg_context *ctx, refit *r) {
+  assemble(r);
+  if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_svx(r->normal, r->right))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "geometry and effects cannot be told apart");
+  return FG_OK;
+}
+
+/* Moves coefficients and shapes; returns the largest move in um of residual. */
+static double move(refit *r) {
+  double largest = 0;
+  for (size_t k = 0; k < r->unknowns; k++) {
+    fg_effect_found *effect = &r->set->effects[r->list[k].effect];
+    double step = gsl_vector_get(r->right, r->parameters + k);
+    if (r->list[k].shape) {
+      /* A period moves by its share; the middle of a lens, which may lie at 0, by its size. */
+      double most = 0.02 * fabs(effect->shape[r->list[k].index]) + (effect->columns == 1 ? 0.5 : 0);
+      step = fmax(-most, fmin(most, step));
+      effect->shape[r->list[k].index] += step;
+      largest = fmax(largest, 100 * fabs(step) / most * STEP_END_UM);
+    } else {
+      step = fmax(-STEP_MOST_UM, fmin(STEP_MOST_UM, step));
+      effect->coefficient_um[r->list[k].index] += step;
+      largest = fmax(largest, fabs(step));
+    }
+  }
+  return largest;
+}
+
+/* Between the rows next to it a step may lie anywhere: the sd of a uniform distribution. Rows that
+ * hardly count do not hold it. */
+static double place_u(const fg_points *points, const fg_effect_found *step) {
+  double above = -INFINITY, below = INFINITY, most = 0;
+  bool over_y = step->kind->axis == 1;
+  for (size_t i = 0; i < points->row_count; i++)
+    most = fmax(most, points->rows[i].weight);
+  for (size_t i = 0; i < points->row_count; i++) {
+    const fg_points_row *row = &points->rows[i];
+    double at = over_y ? row->ideal.y : row->ideal.x;
+    bool rough = row->weight > 0 && row->weight < 0.1 * most; /* 0: left out for the step itself */
+    if (rough || fabs(over_y ? row->normal.y : row->normal.x) < 0.3) continue;
+    if (at <= step->shape[0])
+      above = fmax(above, at);
+    else
+      below = fmin(below, at);
+  }
+  return isfinite(below - above) ? (below - above) / sqrt(12) : 0;
+}
+
+/* Variance of the rows, um² per unit of weight, for correlated noise. */
+static double row_variance(const refit *r) {
+  double sum = 0, rows = 0;
+  for (size_t i = 0; i < r->points->row_count; i++) {
+    r->work[i] = sqrt(r->points->rows[i].weight) * r->residual[i];
+    if (r->points->views[r->points->rows[i].view].aside) continue;
+    sum += r->points->rows[i].weight * r->residual[i] * r->residual[i];
+    rows++;
+  }
+  double freedom = fmax(rows - (double)(r->parameters + r->unknowns), 1);
+  return sum / freedom * fg_points_integral(r->points, NULL, r->points->row_count, r->work);
+}
+
+/* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the
+ * inverse of all normal equations N + H, H holding the free curves; `alone` that of the geometry.
+ * Noise: V (N + H)^-1 N (N + H)^-1. What H keeps out of a curve whose coefficients are of size t:
+ * (N + H)^-1 H t² H (N + H)^-1. */
+static double effects_covariance(const refit *r, double variance, const double *size,
+                                 const gsl_matrix *whole, const gsl_matrix *alone, size_t a,
+                                 size_t b) {
+  double sum = variance * (gsl_matrix_get(whole, a, b) - gsl_matrix_get(alone, a, b));
+  for (size_t k = 0; k < r->unknowns; k++) {
+    size_t c = r->parameters + k;
+    double hold = hold_of(&r->set->effects[r->list[k].effect], r->list[k].shape);
+    double t = hold * size[r->list[k].effect];
+    sum += gsl_matrix_get(whole, a, c) * gsl_matrix_get(whole, b, c) * (t * t - variance * hold);
+  }
+  return sum;
+}
+
+static void find_effects_covariance(refit *r, double variance, const gsl_matrix *alone) {
+  double size[FG_EFFECT_SET_MAX] = {0};
+  for (size_t e = 0; e < r->set->count; e++) {
+    const fg_effect_found *effect = &r->set->effects[e];
+    for (size_t c = 0; c < effect->columns; c++)
+      size[e] = fmax(size[e], fabs(effect->coefficient_um[c]));
+  }
+  for (size_t p = 0, at = 0; p < r->points->part_count; p++) {
+    fg_points_part *part = &r->points->parts[p];
+    part->effects_mm2 = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
+    for (size_t b = 0; b < part->bump_count; b++) {
+      size_t index[3] = {at + 1 + 3 * b, at + 3 + 3 * b, at}; /* X, R, R0 */
+      for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+          part->bumps[b].effects_mm2[i][k] =
+              effects_covariance(r, variance, size, r->normal, alone, index[i], index[k]);
+    }
+    at += 1 + 3 * part->bump_count;
+  }
+}
+
+/* Uncertainties of the effects, and of the geometry beside them; `alone` has room for the
+ * geometry's block of the normal equations. */
+static void find_uncertainties(refit *r, gsl_matrix *alone) {
+  double variance = row_variance(r);
+  assemble(r);
+  for (size_t a = 0; a < r->parameters; a++)
+    for (size_t b = 0; b < r->parameters; b++)
+      gsl_matrix_set(alone, a, b, gsl_matrix_get(r->normal, a, b));
+  if (gsl_linalg_cholesky_decomp1(r->normal) || gsl_linalg_cholesky_invert(r->normal)) return;
+  for (size_t e = 0; e < r->set->count; e++)
+    if (r->set->effects[e].kind->jumps)
+      r->set->effects[e].u_shape[0] = place_u(r->points, &r->set->effects[e]);
+  for (size_t k = 0; k < r->unknowns; k++) {
+    fg_effect_found *effect = &r->set->effects[r->list[k].effect];
+    double u = sqrt(variance * gsl_matrix_get(r->normal, r->parameters + k, r->parameters + k));
+    if (r->list[k].shape)
+      effect->u_shape[r->list[k].index] = u;
+    else
+      effect->u_coefficient_um[r->list[k].index] = u;
+  }
+  if (gsl_linalg_cholesky_decomp1(alone) || gsl_linalg_cholesky_invert(alone)) return;
+  find_effects_covariance(r, variance, alone);
+}
+
+/* Residual in um and Jacobian with the set's present correction, geometry fitted to it. */
+static fg_status evaluate(fg_context *ctx, refit *r) {
+  fg_field_list fields;
+  double *shift = NULL;
+  fg_effect_set_fields(r->points, r->set, &fields);
+  fg_status status = FG_OK;
+  for (int twice = 0; twice < 2 && status == FG_OK; twice++) {
+    /* Directions in the part's frame come from the geometry, and the geometry from the shift. */
+    free(shift);
+    shift = NULL;
+    status = fg_effect_set_shift(ctx, r->points, r->set, &shift);
+    fg_points_correction correction = {&fields, shift};
+    if (status == FG_OK) status = fg_points_fit(ctx, r->points, &correction);
+    if (status == FG_OK) fg_points_residual(r->points, &correction, r->residual, r->jacobian);
+  }
+  for (size_t i = 0; i < r->points->row_count; i++)
+    r->residual[i] *= 1000;
+  free(shift);
+  return status;
+}
+
+static fg_status allocate(fg_context *ctx, refit *r) {
+  size_t rows = r->points->row_count, n = r->parameters + r->unknowns;
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->residual));
+  FG_TRY(fg_memory_allocate(ctx, rows * r->parameters, sizeof(double), (void **)&r->jacobian));
+  FG_TRY(fg_memory_allocate(ctx, rows * (r->unknowns + 1), sizeof(double), (void **)&r->design));
+  FG_TRY(fg_memory_allocate(ctx, rows * FG_EFFECT_COLUMNS_MAX, sizeof(double), (void **)&r->work));
+  r->normal = gsl_matrix_alloc(n, n);
+  r->right = gsl_vector_alloc(n);
+  if (!r->normal || !r->right) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu unknowns", n);
+  return FG_OK;
+}
+
+static void release(refit *r) {
+  free(r->residual);
+  free(r->jacobian);
+  free(r->design);
+  free(r->work);
+  gsl_matrix_free(r->normal);
+  gsl_vector_free(r->right);
+}
+
+fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                       double *residual_um) {
+  refit r = {.points = points, .set = set};
+  gsl_matrix *alone = NULL;
+  fg_status status = FG_OK;
+  fg_numerics_start();
+  FG_TRY(fg_points_fit(ctx, points, NULL)); /* counts the parameters */
+  r.parameters = points->parameters;
+  r.unknowns = list_unknowns(set, r.list);
+  FG_TRY_EXIT(allocate(ctx, &r));
+  for (int round = 0; round < REFIT_ROUNDS; round++) {
+    FG_TRY_EXIT(evaluate(ctx, &r));
+    if (!r.unknowns) break;
+    effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    FG_TRY_EXIT(solve(ctx, &r));
+    if (move(&r) < STEP_END_UM) break;
+  }
+  if (r.unknowns) {
+    FG_TRY_EXIT(evaluate(ctx, &r));
+    effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    alone = gsl_matrix_alloc(r.parameters, r.parameters);
+    if (alone) find_uncertainties(&r, alone);
+    if (!alone) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);
+  }
+  if (residual_um) memcpy(residual_um, r.residual, points->row_count * sizeof *residual_um);
+exit:
+  gsl_matrix_free(alone);
+  release(&r);
+  return status;
+}

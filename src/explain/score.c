@@ -1,0 +1,209 @@
+/* One set of effects: its least squares, and whether it is right. */
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <string.h>
+
+#include "explain/search.h"
+
+/* A set is right when what it leaves beyond all effects is likelier than this. */
+#define ACCEPT_P 0.001
+/* What 1 in 1000 gains by chance in one column: a quadratic must gain more than its slope. */
+#define GAIN_LEAST 10.8
+/* Error of the edge model that clean renders leave at most, um (reports/loop_scans.md). */
+#define EDGE_ERROR_UM 0.003
+/* The edges of a picture that is stretched are measured, and an effect's form is known, to this
+ * share of what the effect does to the points. */
+#define EFFECT_ERROR 0.003
+/* The same of a crown or a skew, whose form is that of the lowest polynomials. */
+#define BEND_ERROR 0.005
+/* The middle of a polynomial lies within so many picture sizes of the picture's. */
+#define MIDDLE_REACH 1.5
+/* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
+ * neither a crown nor a skew but a curve. */
+#define LOWEST_SHARE 0.6
+enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
+
+typedef struct set_terms {
+  fg_explain_term term[FG_EXPLAIN_TERMS];
+  size_t count, first[FG_CANDIDATES_MAX], cubic; /* cubic: that effect, or FG_CANDIDATES_MAX */
+} set_terms;
+
+static void put_cubic(const fg_candidate *e, double t, fg_explain_term *term) {
+  *term = (fg_explain_term){3, {e->column[0], e->column[1], e->column[2]}, {1, -3 * t, 3 * t * t}};
+}
+
+static void list_terms(const fg_explanations *out, unsigned mask, set_terms *set) {
+  set->count = 0;
+  set->cubic = FG_CANDIDATES_MAX;
+  for (size_t e = 0; e < out->candidate_count; e++) {
+    const fg_candidate *effect = &out->candidates[e];
+    set->first[e] = set->count;
+    if (!(mask >> e & 1)) continue;
+    if (effect->polynomial == FG_EFFECT_CUBIC) {
+      put_cubic(effect, 0, &set->term[set->count++]);
+      set->cubic = e;
+      continue;
+    }
+    for (size_t c = 0; c < effect->terms && set->count < FG_EXPLAIN_TERMS; c++)
+      set->term[set->count++] = (fg_explain_term){1, {effect->column[c]}, {1}};
+  }
+}
+
+/* The middle of a cubic: the best of a grid, then finer. */
+static double find_middle(const fg_explain_search *s, const fg_explain_yardstick *y,
+                          set_terms *set) {
+  fg_explain_term *term = &set->term[set->first[set->cubic]];
+  const fg_candidate *effect = &s->out->candidates[set->cubic];
+  double low = -y->reach, high = y->reach, best = INFINITY, at = 0;
+  for (int level = 0; level < MIDDLE_LEVELS; level++) {
+    int steps = level || s->columns.points->coarse ? MIDDLE_FINER : MIDDLE_STEPS;
+    for (int i = 0; i <= steps; i++) {
+      size_t rank;
+      double t = low + (high - low) * i / steps;
+      put_cubic(effect, t, term);
+      double sum = fg_explain_solve(&s->columns, set->term, set->count, NULL, NULL, &rank);
+      if (sum >= best) continue;
+      best = sum;
+      at = t;
+    }
+    double step = (high - low) / steps;
+    low = at - step;
+    high = at + step;
+  }
+  put_cubic(effect, at, term);
+  return at;
+}
+
+static double middle_of(const fg_explain_search *s, const fg_candidate *effect, double t) {
+  return s->columns.points->frame.centre_mm[effect->kind->axis] + FG_FIELD_HALF_MM * t;
+}
+
+/* A quadratic whose middle is far off is a scale; one that gains nothing over it is one. */
+static bool is_quadratic(const fg_explain_search *s, const fg_explain_yardstick *y,
+                         const set_terms *set, size_t e, const double *x, double sum, double *t) {
+  const double *own = x + set->first[e];
+  *t = own[0] != 0 ? -0.5 * own[1] / own[0] : INFINITY;
+  if (!(fabs(*t) <= y->reach)) return false;
+  set_terms without = *set;
+  size_t at = set->first[e], rank;
+  memmove(&without.term[at], &without.term[at + 1], (set->count - at - 1) * sizeof without.term[0]);
+  without.count--;
+  double alone = fg_explain_solve(&s->columns, without.term, without.count, NULL, NULL, &rank);
+  return alone - sum > GAIN_LEAST * y->unit;
+}
+
+/* Crown and skew are led by their lowest polynomial. */
+static bool is_led(const fg_explain_columns *c, const fg_candidate *effect, const double *own) {
+  double lead = 0, rest = 0;
+  for (size_t k = 0; k < effect->terms; k++) {
+    size_t column = effect->column[k];
+    double square = own[k] * own[k] * c->gram[column * FG_EXPLAIN_COLUMNS + column];
+    *(k ? &rest : &lead) += square;
+  }
+  return lead > 0 && lead >= LOWEST_SHARE * (lead + rest);
+}
+
+static bool has_form(const fg_explain_search *s, const fg_explain_yardstick *y,
+                     const set_terms *set, size_t e, const double *x, double sum,
+                     fg_explanation *explanation) {
+  const fg_candidate *effect = &s->out->candidates[e];
+  double t = 0;
+  if (effect->polynomial == FG_EFFECT_QUADRATIC) {
+    if (!is_quadratic(s, y, set, e, x, sum, &t)) return false;
+    explanation->middle_mm[e] = middle_of(s, effect, t);
+  }
+  if (effect->kind->numbers == FG_EFFECT_LED) return is_led(&s->columns, effect, x + set->first[e]);
+  return true;
+}
+
+/* Fits a set; an excess of INFINITY says that it is no set of its own. */
+fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
+                              unsigned mask) {
+  const fg_explanations *out = s->out;
+  fg_explanation explanation = {.mask = mask};
+  set_terms set;
+  double x[FG_EXPLAIN_TERMS];
+  size_t rank;
+  list_terms(out, mask, &set);
+  if (set.cubic < FG_CANDIDATES_MAX)
+    explanation.middle_mm[set.cubic] =
+        middle_of(s, &out->candidates[set.cubic], find_middle(s, y, &set));
+  double sum = fg_explain_solve(&s->columns, set.term, set.count, x, NULL, &rank);
+  explanation.excess = fmax(0, sum - y->full) / y->unit;
+  explanation.freedom = y->freedom - (double)rank - (set.cubic < FG_CANDIDATES_MAX);
+  for (size_t e = 0; e < out->candidate_count; e++)
+    if ((mask >> e & 1) && !has_form(s, y, &set, e, x, sum, &explanation))
+      explanation.excess = INFINITY;
+  if (s->columns.has_width)
+    explanation.width = fg_explain_width_sum(&s->columns, set.term, set.count, x);
+  return explanation;
+}
+
+bool fg_explain_is_right(const fg_explain_yardstick *y, const fg_explanation *m) {
+  double chance = m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0;
+  double taken = fmax(0, y->none - m->excess);
+  double error = m->mask & y->bends ? BEND_ERROR : EFFECT_ERROR;
+  return m->excess <= chance + y->allowance + error * error * taken;
+}
+
+fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s) {
+  fg_explanations *out = s->out;
+  const fg_field_frame *frame = &s->columns.points->frame;
+  double extent = fmax(frame->high_mm[0] - frame->low_mm[0], frame->high_mm[1] - frame->low_mm[1]);
+  fg_explain_yardstick y = {.full = s->full,
+                            .freedom = (double)s->freedom,
+                            .unit = out->noise_um * out->noise_um * out->integral,
+                            .none = (s->columns.square - s->full) /
+                                    (out->noise_um * out->noise_um * out->integral),
+                            .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
+  for (size_t e = 0; e < out->candidate_count; e++)
+    if (out->candidates[e].kind->numbers == FG_EFFECT_LED) y.bends |= 1u << e;
+  out->edge_error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + s->columns.width_part);
+  y.allowance = (double)s->columns.rows * out->edge_error_um * out->edge_error_um / y.unit;
+  return y;
+}
+
+/* ---- what the report says of each ---- */
+
+/* Three and a half standard deviations beside the winner: found in most cases. */
+static double smallest_amplitude(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                 size_t e) {
+  const fg_explanations *out = s->out;
+  set_terms set;
+  double u = INFINITY;
+  size_t rank;
+  unsigned others = out->each[0].mask & fg_explain_mask_of(out, false) & ~(1u << e);
+  list_terms(out, others, &set);
+  const fg_candidate *effect = &out->candidates[e];
+  if (set.count < FG_EXPLAIN_TERMS) {
+    set.term[set.count++] = (fg_explain_term){1, {effect->column[0]}, {1}};
+    size_t before;
+    fg_explain_solve(&s->columns, set.term, set.count - 1, NULL, NULL, &before);
+    fg_explain_solve(&s->columns, set.term, set.count, NULL, &u, &rank);
+    if (rank == before) u = INFINITY;
+  }
+  return 3.5 * sqrt(y->unit) * u;
+}
+
+void fg_explain_describe_effects(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanations *out = s->out;
+  double none = s->columns.square;
+  out->p_value = gsl_cdf_chisq_Q(
+      fmax(0, none - y->full) / y->unit / (1 + y->allowance / y->freedom), y->freedom);
+  for (size_t e = 0; e < out->candidate_count; e++) {
+    set_terms set;
+    size_t rank;
+    list_terms(out, 1u << e, &set);
+    if (set.cubic < FG_CANDIDATES_MAX) find_middle(s, y, &set);
+    double sum = fg_explain_solve(&s->columns, set.term, set.count, NULL, NULL, &rank);
+    out->alone[e] = none > 0 ? 1 - sum / none : 0;
+    if (!fg_effect_is_free(out->candidates[e].kind))
+      out->smallest_um[e] = smallest_amplitude(s, y, e);
+  }
+}
+
+void fg_explain_describe_width(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanation first = fg_explain_try(s, y, s->out->each[0].mask);
+  s->out->width_rms_um = sqrt(fmax(first.width, 0) / (double)s->columns.rows);
+  s->out->width_smooth_um = sqrt(s->columns.width_part);
+}

@@ -1,0 +1,214 @@
+/* Effects that belong to the engine itself: lone rows, and the curves of what nothing explains. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "loop/engine.h"
+
+static const double two_pi = 6.28318530717958647692;
+
+static size_t one_column(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 1;
+}
+
+static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                       const double *shape, double *columns) {
+  (void)shape;
+  memset(columns, 0, problem->rows * sizeof *columns);
+  columns[candidate->row[0]] = 1;
+  if (fg_engine_is_exchange(candidate)) columns[candidate->row[1]] = -1;
+}
+
+static const fg_loop_effect lone_effects[] = {
+    {.id = "table.outlier",
+     .level = "runs",
+     .frame = "row",
+     .words = "one wrong response",
+     .columns = one_column,
+     .basis = lone_basis},
+    {.id = "table.exchanged_runs",
+     .level = "runs",
+     .frame = "row",
+     .words = "two responses that changed places",
+     .columns = one_column,
+     .basis = lone_basis},
+};
+
+const fg_loop_effect *fg_engine_lone_effects(void) {
+  return lone_effects;
+}
+
+bool fg_engine_is_lone(const fg_loop_candidate *candidate) {
+  return candidate->effect == &lone_effects[0] || candidate->effect == &lone_effects[1];
+}
+
+bool fg_engine_is_exchange(const fg_loop_candidate *candidate) {
+  return candidate->effect == &lone_effects[1];
+}
+
+/* Curves: natural cubic splines with a few or more knots, and waves. */
+
+static bool smooth(const fg_loop_problem *problem, size_t a, size_t b) {
+  (void)b;
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 8;
+}
+
+static bool smooth_many(const fg_loop_problem *problem, size_t a, size_t b) {
+  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 20;
+}
+
+static size_t few_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 4;
+}
+
+static size_t many_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 7;
+}
+
+static double cubed(double x) {
+  return x > 0 ? x * x * x : 0;
+}
+
+static bool smooth_most(const fg_loop_problem *problem, size_t a, size_t b) {
+  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 36;
+}
+
+static size_t most_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 11;
+}
+
+/* Knots at quantiles, so that every piece rests on rows; evenly where quantiles coincide. */
+static void place_knots(const fg_loop_coordinate *at, size_t knots, double *knot) {
+  double width = at->high > at->low ? at->high - at->low : 1;
+  bool distinct = true;
+  for (size_t k = 0; k < knots; k++) {
+    double place = (double)k / (double)(knots - 1) * FG_LOOP_COLUMNS;
+    size_t below = (size_t)fmin(place, FG_LOOP_COLUMNS - 1);
+    double share = place - (double)below;
+    knot[k] =
+        ((1 - share) * at->quantile[below] + share * at->quantile[below + 1] - at->low) / width;
+    if (k > 0 && knot[k] - knot[k - 1] < 0.25 / (double)knots) distinct = false;
+  }
+  for (size_t k = 0; !distinct && k < knots; k++)
+    knot[k] = (double)k / (double)(knots - 1);
+}
+
+/* Truncated powers of a natural spline (Hastie, Tibshirani and Friedman 2009, eq 5.4); the constant
+ * is left to the model. */
+static void spline_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                         const double *shape, double *columns) {
+  const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
+  size_t count = candidate->effect->columns(problem, candidate), last = count;
+  double knot[FG_LOOP_COLUMNS + 1], width = at->high > at->low ? at->high - at->low : 1;
+  (void)shape;
+  place_knots(at, count + 1, knot);
+  for (size_t i = 0; i < problem->rows; i++) {
+    double x = fmin(fmax((at->value[i] - at->low) / width, 0), 1);
+    double end = cubed(x - knot[last]);
+    double tail = (cubed(x - knot[last - 1]) - end) / (knot[last] - knot[last - 1]);
+    columns[i] = x;
+    for (size_t k = 0; k + 1 < last; k++)
+      columns[(k + 1) * problem->rows + i] =
+          (cubed(x - knot[k]) - end) / (knot[last] - knot[k]) - tail;
+  }
+}
+
+static size_t two_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 2;
+}
+
+static void wave_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                       const double *shape, double *columns) {
+  const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
+  for (size_t i = 0; i < problem->rows; i++) {
+    double phase = two_pi * (at->value[i] - at->low) / shape[0];
+    columns[i] = sin(phase);
+    columns[problem->rows + i] = cos(phase);
+  }
+}
+
+static size_t wave_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                          double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
+  double range = at->high - at->low, most = fmin(10, (double)at->distinct / 3);
+  size_t count = 0;
+  for (double cycles = 1.5; cycles <= most && count < FG_LOOP_STARTS; cycles += 0.5)
+    starts[count++][0] = range / cycles;
+  return count;
+}
+
+static const fg_loop_effect curve_effects[] = {
+    {.id = "unattributed.smooth",
+     .level = "any",
+     .frame = "coordinate",
+     .words = "a smooth curve over",
+     .accepts = smooth,
+     .columns = few_columns,
+     .basis = spline_basis},
+    {.id = "unattributed.curve",
+     .level = "any",
+     .frame = "coordinate",
+     .words = "a curve over",
+     .accepts = smooth_many,
+     .columns = many_columns,
+     .basis = spline_basis},
+    {.id = "unattributed.winding",
+     .level = "any",
+     .frame = "coordinate",
+     .words = "a winding curve over",
+     .accepts = smooth_most,
+     .columns = most_columns,
+     .basis = spline_basis},
+    {.id = "unattributed.wave",
+     .level = "any",
+     .frame = "coordinate",
+     .words = "a wave over",
+     .shapes = 1,
+     .shape_name = {"period"},
+     .accepts = smooth,
+     .columns = two_columns,
+     .basis = wave_basis,
+     .starts = wave_starts},
+    {0},
+};
+
+const fg_loop_effect *fg_engine_curve_effects(void) {
+  return curve_effects;
+}
+
+bool fg_engine_is_curve(const fg_loop_candidate *candidate) {
+  return candidate->effect >= curve_effects &&
+         candidate->effect < curve_effects + sizeof curve_effects / sizeof *curve_effects;
+}
+
+size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
+                                   const fg_loop_candidate *candidate) {
+  return candidate->effect->columns(problem, candidate);
+}
+
+bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b) {
+  return a->effect == b->effect && a->a == b->a && a->b == b->b && a->row[0] == b->row[0] &&
+         a->row[1] == b->row[1];
+}
+
+void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                              char name[FG_LOOP_NAME]) {
+  const char *id = candidate->effect->id;
+  if (fg_engine_is_exchange(candidate))
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
+                 candidate->row[1] + 1);
+  else if (fg_engine_is_lone(candidate))
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu)", id, candidate->row[0] + 1);
+  else if (candidate->effect->pair)
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,
+                 problem->coordinate[candidate->b].name);
+  else
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%s)", id, problem->coordinate[candidate->a].name);
+}

@@ -1,0 +1,98 @@
+/* Effects: what makes the picture or the part differ from the declared model. One row each.
+ *
+ * A scanner effect is a field: true position = nominal position + d(x, y), in mm. A part effect
+ * moves the midline in the foil's frame, or changes the table of bumps.
+ */
+#ifndef FG_RENDER_SPEC_EFFECTS_H
+#define FG_RENDER_SPEC_EFFECTS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "render/curve.h"
+#include "render/members.h"
+
+enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 4, FG_RENDER_EFFECTS_MAX = 16 };
+
+typedef enum fg_render_effect_frame {
+  FG_RENDER_EFFECT_SCANNER, /* field(p, x_mm, y_mm, d) adds to d */
+  FG_RENDER_EFFECT_STEP,    /* the same, but a jump at p[1] of the row's axis: it comes after the
+                               optics, so it is sharp in the picture and not blurred */
+  FG_RENDER_EFFECT_PART, /* shape(p, psi_rad, ·): radial shift about O in mm, outwards positive; psi
+                     is counted from the foil's middle, towards the free end */
+  FG_RENDER_EFFECT_NORMAL, /* the same along the midline's normal: a part effect whose `along` says
+                              so */
+  FG_RENDER_EFFECT_BUMP,  /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
+                      where the arc meets its fillets */
+  FG_RENDER_EFFECT_EDGE,  /* curve over the direction of the strip's inner side in the scan, degrees
+                           */
+  FG_RENDER_EFFECT_TABLE, /* shape(p, index, count): factor on the bump's radius; index from 1 */
+  FG_RENDER_EFFECT_STRETCH, /* shape(p, R - R_D in mm, ·): factor on the bump's arc length R alpha
+                             */
+} fg_render_effect_frame;
+
+typedef struct fg_render_effect_parameter {
+  const char *name;
+  double fallback; /* NaN: must be given; +inf: the middle of the picture, mm */
+  double low, high;
+} fg_render_effect_parameter;
+
+typedef struct fg_render_effect_row {
+  const char *id;
+  fg_render_effect_frame frame;
+  fg_render_effect_parameter parameters[FG_RENDER_EFFECT_PARAMETERS_MAX];
+  void (*field)(const double *p, double x_mm, double y_mm, double d_mm[2]);
+  double (*shape)(const double *p, double coordinate, double extent);
+  int axis; /* 0 x, 1 y: of whose middle a fallback of +inf is, or what a curve runs over */
+  const fg_curve_axis *curve; /* NULL: none. With one, it takes the place of field or shape */
+} fg_render_effect_row;
+
+typedef struct fg_render_effect {
+  const fg_render_effect_row *row;
+  fg_render_effect_frame frame; /* the row's, or FG_RENDER_EFFECT_NORMAL */
+  double p[FG_RENDER_EFFECT_PARAMETERS_MAX];
+  fg_curve curve;
+  int moves;  /* FG_RENDER_EFFECT_SCANNER with a curve: the axis of the displacement, 0 x, 1 y */
+  bool apart; /* FG_RENDER_EFFECT_EDGE: the edges move away from each other, not together */
+} fg_render_effect;
+
+typedef struct fg_render_effect_list {
+  fg_render_effect effects[FG_RENDER_EFFECTS_MAX];
+  size_t count;
+} fg_render_effect_list;
+
+fg_status fg_render_effects_parse(const fg_place *place, const cJSON *array,
+                                  fg_render_effect_list *list);
+
+/* Fills in parameters that refer to the picture's middle. */
+void fg_render_effects_resolve(fg_render_effect_list *list, double width_mm, double height_mm);
+
+bool fg_render_effects_have(const fg_render_effect_list *list, fg_render_effect_frame frame);
+
+/* d(x, y) of all scanner effects. `side_mm` is x, y of the picture's pixel that is being made: it
+ * says on which side of a jump we are. */
+void fg_render_effects_field(const fg_render_effect_list *list, double x_mm, double y_mm,
+                             const double side_mm[2], double d_mm[2]);
+
+/* The first jump along an axis at or above low_mm and below high_mm; NaN without. */
+double fg_render_effects_next_step(const fg_render_effect_list *list, int axis, double low_mm,
+                                   double high_mm);
+
+/* Sum (factors: product) of the shapes of one frame. */
+double fg_render_effects_shape(const fg_render_effect_list *list, fg_render_effect_frame frame,
+                               double coordinate, double extent);
+
+/* A bump's curves need not end at 0: the fillets take over with their value and slope (per u,
+ * outwards) at the end u = -1 or 1, and fade them out. */
+void fg_render_effects_bump_end(const fg_render_effect_list *list, double u, double *value_mm,
+                                double *slope_mm);
+
+/* Shift of the two edges of a strip whose inner side lies in the direction (nx, ny) of the scan, to
+ * that side, mm: [0] the inner edge, [1] the outer. */
+void fg_render_effects_edges(const fg_render_effect_list *list, double nx, double ny,
+                             double shift_mm[2]);
+
+/* The farthest that a part, bump or edge effect moves anything, mm. */
+double fg_render_effects_reach(const fg_render_effect_list *list);
+
+#endif

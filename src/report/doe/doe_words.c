@@ -1,0 +1,256 @@
+#include "report/doe/doe_words.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+
+const char *fg_surface_kind_word(fg_surface_kind kind) {
+  switch (kind) {
+  case FG_SURFACE_MINIMUM:
+    return "minimum";
+  case FG_SURFACE_MAXIMUM:
+    return "maximum";
+  case FG_SURFACE_SADDLE:
+    return "saddle";
+  case FG_SURFACE_RIDGE:
+    return "ridge";
+  case FG_SURFACE_PLANE:
+    return "plane";
+  }
+  return "";
+}
+
+const char *fg_goal_word(fg_goal goal) {
+  return goal == FG_GOAL_LOWEST ? "lowest" : goal == FG_GOAL_HIGHEST ? "highest" : "target";
+}
+
+double fg_effect_p_value(const fg_experiment *e, size_t column) {
+  double p_value = e->effect[column].p_value;
+  return e->regression.residual_freedom ? p_value : e->effect[column].lenth_p_value;
+}
+
+bool fg_effect_of_interest(const fg_experiment *e, size_t column) {
+  const fg_coefficient *c = &e->regression.coefficient[column];
+  return c->term != FG_MODEL_CONSTANT && !c->aliased && !e->effect[column].block;
+}
+
+const fg_factor *fg_surface_factor(const fg_experiment *e, size_t k) {
+  for (size_t f = 0; f < e->factors; f++)
+    if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
+  return NULL;
+}
+
+void fg_p_value_text(char text[16], double p_value) {
+  if (!isfinite(p_value))
+    strcpy(text, "–");
+  else if (p_value < 0.0001)
+    strcpy(text, "< 0.0001");
+  else
+    snprintf(text, 16, "%.4f", p_value);
+}
+
+fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *e, char **words) {
+  if (!e->magnitude) return fg_text_print(ctx, words, "%s as it is", e->response);
+  return fg_text_print(ctx, words, "the magnitude of %s%s", e->response,
+                       e->sign_chosen ? " (as in the thesis; --sign as-is keeps the sign)" : "");
+}
+
+static fg_status say(fg_context *ctx, fg_sentences *s, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static fg_status say(fg_context *ctx, fg_sentences *s, const char *format, ...) {
+  char text[2048];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  FG_TRY(fg_memory_reserve(ctx, s->count + 1, sizeof *s->text, &s->capacity, (void **)&s->text));
+  s->text[s->count] = NULL;
+  FG_TRY(fg_text_print(ctx, &s->text[s->count], "%s", text));
+  s->count++;
+  return FG_OK;
+}
+
+void fg_sentences_free(fg_sentences *s) {
+  for (size_t i = 0; i < s->count; i++)
+    free(s->text[i]);
+  free(s->text);
+  *s = (fg_sentences){0};
+}
+
+/* The numeric factor whose first power alone the column is, or NULL. */
+static const fg_factor *main_factor(const fg_experiment *e, size_t column) {
+  const fg_model_column *c = &e->model.column[column];
+  if (c->parts != 1 || c->part[0].level != FG_PART_NUMBER || c->part[0].power != 1) return NULL;
+  for (size_t f = 0; f < e->factors; f++)
+    if (e->factor[f].variable == c->part[0].variable && e->factor[f].coded) return &e->factor[f];
+  return NULL;
+}
+
+static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, fg_sentences *s) {
+  const fg_coefficient *c = &e->regression.coefficient[j];
+  const fg_effect *effect = &e->effect[j];
+  const fg_factor *factor = main_factor(e, j);
+  char p_value[16], interval[80] = "";
+  double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
+  fg_p_value_text(p_value, fg_effect_p_value(e, j));
+  const char *equals = *p_value == '<' ? "" : "= ";
+  if (isfinite(effect->low))
+    snprintf(interval, sizeof interval, ", %g %% interval %.3g to %.3g", 100 * e->confidence,
+             change < 0 ? -high : low, change < 0 ? -low : high);
+  if (factor)
+    return say(ctx, s, "%s matters: from %.6g to %.6g it %s the response by %.3g%s (p %s%s).",
+               factor->name, fg_factor_real(factor, -1), fg_factor_real(factor, 1),
+               change < 0 ? "lowers" : "raises", fabs(change), interval, equals, p_value);
+  return say(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate, equals,
+             p_value);
+}
+
+static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  size_t found = 0, judged = 0;
+  char rest[600] = "";
+  for (size_t j = 0; j < e->regression.columns; j++) {
+    if (!fg_effect_of_interest(e, j) || !isfinite(fg_effect_p_value(e, j))) continue;
+    judged++;
+    if (fg_effect_p_value(e, j) < 1 - e->confidence) {
+      found++;
+      FG_TRY(say_effect(ctx, e, j, s));
+    } else {
+      size_t used = strlen(rest);
+      fg_text_clip(rest + used, sizeof rest - used, "%s%s", used ? ", " : "",
+                   e->regression.coefficient[j].name);
+    }
+  }
+  if (!judged)
+    return say(ctx, s,
+               "No effect can be judged: there is no error to compare it with. Repeat runs "
+               "or leave terms out.");
+  if (!found)
+    return say(ctx, s, "No effect can be told from the scatter at %g %%: %s.", 100 * e->confidence,
+               rest);
+  if (*rest)
+    return say(ctx, s, "Not told from the scatter at %g %%: %s.", 100 * e->confidence, rest);
+  return FG_OK;
+}
+
+static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  const fg_regression *r = &e->regression;
+  if (!r->residual_freedom) return FG_OK;
+  FG_TRY(
+      say(ctx, s,
+          "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
+          "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
+          "deviation of %.3g (%zu degrees of freedom).",
+          100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
+          r->residual_freedom));
+  if (e->has_split_plot)
+    FG_TRY(say(ctx, s,
+               "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
+               "them by %.3g.",
+               sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_ms)));
+  if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)
+    FG_TRY(say(ctx, s,
+               r->lack_p_value < 1 - e->confidence
+                   ? "The model does not fit: beside the scatter of repeated runs the lack "
+                     "of fit is significant (p = %.4f). Add terms or transform."
+                   : "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
+               r->lack_p_value));
+  if (e->has_box_cox && (e->box_cox.low > 1 || e->box_cox.high < 1))
+    FG_TRY(say(ctx, s,
+               "A power of the response would suit the model better: lambda %.2g (%.2g to %.2g); "
+               "0 is the logarithm.",
+               e->box_cox.lambda, e->box_cox.low, e->box_cox.high));
+  return FG_OK;
+}
+
+static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  if (!e->has_curvature || !isfinite(e->curvature.p_value)) return FG_OK;
+  if (e->curvature.p_value < 1 - e->confidence)
+    return say(ctx, s,
+               "The centre runs lie off the plane of the corners (p = %.4f): the response is "
+               "curved; axial runs would tell in which factor.",
+               e->curvature.p_value);
+  return say(ctx, s, "The centre runs show no curvature (p = %.4f).", e->curvature.p_value);
+}
+
+static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  double sd = e->regression.residual_sd;
+  if (!e->u || e->weight || !e->regression.residual_freedom || !(sd > 0)) return FG_OK;
+  return say(ctx, s,
+             "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "
+             "rest is the process.",
+             e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
+}
+
+static void setting_text(const fg_experiment *e, const double *x, char *text, size_t size) {
+  text[0] = '\0';
+  for (size_t k = 0; k < e->surface.factors; k++) {
+    const fg_factor *factor = fg_surface_factor(e, k);
+    size_t used = strlen(text);
+    fg_text_clip(text + used, size - used, "%s%s %.5g", k ? ", " : "", factor->name,
+                 fg_factor_real(factor, x[k]));
+  }
+  for (size_t v = 0; v < e->model.formula.variables; v++) {
+    const fg_levels *levels = &e->model.levels[v];
+    size_t used = strlen(text);
+    if (levels->count && v != e->block_variable)
+      fg_text_clip(text + used, size - used, ", %s %s", e->model.formula.variable[v].name,
+                   levels->name[(size_t)e->best_setting[v]]);
+  }
+}
+
+static fg_status say_stationary(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  char setting[700];
+  setting_text(e, e->surface.stationary, setting, sizeof setting);
+  return say(ctx, s, "The surface is stationary at %s: a %s of %.4g, %s the region.", setting,
+             fg_surface_kind_word(e->surface.kind), e->surface.stationary_value,
+             e->stationary_inside ? "inside" : "outside");
+}
+
+static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  char setting[700];
+  const fg_prediction *p = &e->optimum.prediction;
+  if (!e->has_optimum) return FG_OK;
+  if (e->surface.has_stationary) FG_TRY(say_stationary(ctx, e, s));
+  setting_text(e, e->optimum.x, setting, sizeof setting);
+  if (isfinite(p->low))
+    FG_TRY(say(ctx, s,
+               "Best setting in the region of the data%s (%s): %s. Expected response %.4g (%g %% "
+               "interval %.3g to %.3g); one confirmation run should fall between %.3g and %.3g.",
+               e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting,
+               p->mean, 100 * e->confidence, p->low, p->high, p->run_low, p->run_high));
+  else
+    FG_TRY(say(ctx, s, "Best setting in the region of the data%s (%s): %s. Expected response %.4g.",
+               e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting,
+               p->mean));
+  if (e->magnitude && isfinite(p->run_low) && p->run_low < 0)
+    FG_TRY(
+        say(ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
+  if (e->optimum.on_border)
+    FG_TRY(say(ctx, s,
+               "It lies on the border of the region: the best may lie beyond, where there "
+               "are no runs."));
+  if (e->regression.model_p_value > 1 - e->confidence)
+    return say(ctx, s,
+               "Beware: the model as a whole is not told from the mean (p = %.3f), so the best "
+               "setting is a suggestion to test, not a finding.",
+               e->regression.model_p_value);
+  return FG_OK;
+}
+
+fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  *s = (fg_sentences){0};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(say_effects(ctx, e, s));
+  FG_TRY_EXIT(say_quality(ctx, e, s));
+  FG_TRY_EXIT(say_curvature(ctx, e, s));
+  FG_TRY_EXIT(say_measurement(ctx, e, s));
+  FG_TRY_EXIT(say_optimum(ctx, e, s));
+exit:
+  if (status != FG_OK) fg_sentences_free(s);
+  return status;
+}

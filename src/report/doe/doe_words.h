@@ -1,0 +1,36 @@
+/* What an experiment says, in plain words; the same on the terminal, the page and in JSON. */
+#ifndef FG_REPORT_DOE_DOE_WORDS_H
+#define FG_REPORT_DOE_DOE_WORDS_H
+
+#include "foilgauge/experiment.h"
+
+typedef struct fg_sentences {
+  char **text;
+  size_t count, capacity;
+} fg_sentences;
+
+/* Free with fg_sentences_free. */
+fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment *experiment,
+                                    fg_sentences *sentences);
+void fg_sentences_free(fg_sentences *sentences);
+
+/* How the response is modelled: "the magnitude of ...". The caller frees it. */
+fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *experiment,
+                                       char **words);
+
+const char *fg_surface_kind_word(fg_surface_kind kind);
+const char *fg_goal_word(fg_goal goal);
+
+/* The p value to judge a column by: its own, or Lenth's where there is no error; NaN: neither. */
+double fg_effect_p_value(const fg_experiment *experiment, size_t column);
+
+/* A column of the model that is neither constant, nor block, nor aliased. */
+bool fg_effect_of_interest(const fg_experiment *experiment, size_t column);
+
+/* The factor of the surface's axis k. */
+const fg_factor *fg_surface_factor(const fg_experiment *experiment, size_t k);
+
+/* "0.0037", "< 0.0001", "–". */
+void fg_p_value_text(char text[16], double p_value);
+
+#endif

@@ -1,0 +1,341 @@
+#include "report/measure/measure_json.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/scan_loop/scan_model_words.h"
+#include "report/words.h"
+
+void fg_json_head(fg_json *json, const char *schema) {
+  fg_json_string(json, "schema", schema);
+  fg_json_string(json, "version", FOILGAUGE_VERSION);
+}
+
+static void write_limit(fg_json *json, const char *name, double limit) {
+  if (isfinite(limit)) fg_json_number(json, name, limit);
+}
+
+static void write_tolerances(fg_json *json, const fg_design *design) {
+  fg_json_object(json, "tolerances");
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_tolerance *tolerance = &design->tolerances[i];
+    fg_json_object(json, tolerance->quantity);
+    fg_json_line(json);
+    write_limit(json, "min", tolerance->lower);
+    write_limit(json, "max", tolerance->upper);
+    fg_json_object_end(json);
+    fg_json_line_end(json);
+  }
+  fg_json_object_end(json);
+}
+
+void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
+  fg_json_object(json, name);
+  fg_json_string(json, "schema", "foilgauge/design/1");
+  fg_json_string(json, "name", design->name);
+  fg_json_string(json, "form", fg_form_word(design->form));
+  if (design->form == FG_FORM_DISCS) {
+    fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
+  } else {
+    fg_json_string(json, "datum", fg_datum_word(design->datum));
+    fg_json_integer(json, "bump_count", (int64_t)design->bump_count);
+    fg_json_number(json, "bump_radius_mm", design->bump_radius_mm);
+    fg_json_number(json, "bump_angle_deg", design->bump_angle_deg);
+    fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+    fg_json_number(json, "sleeve_radius_mm", design->sleeve_radius_mm);
+    fg_json_number(json, "pitch_deg", design->pitch_deg);
+    fg_json_number(json, "fillet_radius_mm", design->fillet_radius_mm);
+    fg_json_number(json, "thickness_mm", design->thickness_mm);
+    fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
+  }
+  write_tolerances(json, design);
+  fg_json_object_end(json);
+}
+
+void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal) {
+  fg_json_object(json, name);
+  fg_json_number(json, "centre_to_centre_mm", nominal->centre_to_centre_mm);
+  fg_json_number(json, "half_chord_mm", nominal->half_chord_mm);
+  fg_json_number(json, "arc_length_mm", nominal->arc_length_mm);
+  fg_json_number(json, "intersection_angle_deg", nominal->intersection_angle_deg);
+  fg_json_number(json, "height_mm", nominal->height_mm);
+  fg_json_number(json, "die_height_mm", nominal->die_height_mm);
+  fg_json_number(json, "clearance_mm", nominal->clearance_mm);
+  fg_json_object_end(json);
+}
+
+void fg_json_input(fg_json *json, const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  fg_json_object(json, NULL);
+  fg_json_string(json, "path", scan->path);
+  fg_json_string(json, "sha256", measurement ? measurement->sha256 : NULL);
+  if (measurement) {
+    fg_json_integer(json, "width_px", measurement->width_px);
+    fg_json_integer(json, "height_px", measurement->height_px);
+    fg_json_integer(json, "bit_depth", measurement->bit_depth);
+    if (measurement->format[0]) fg_json_string(json, "format", measurement->format);
+    fg_json_string(json, "channel",
+                   measurement->colour ? fg_channel_word(measurement->channel) : "gray");
+    if (measurement->warning[0]) fg_json_string(json, "note", measurement->warning);
+    if (measurement->model_sha256[0])
+      fg_json_string(json, "model_sha256", measurement->model_sha256);
+    fg_json_numbers(json, "dpi", measurement->dpi, 2);
+    fg_json_numbers(json, "dpi_file", measurement->dpi_file, 2);
+  }
+  fg_json_object_end(json);
+}
+
+static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags) {
+  fg_json_array(json, "flags");
+  fg_json_line(json);
+  for (; words->name; words++)
+    if (flags & words->flag) fg_json_string(json, NULL, words->name);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
+/* `prefix` is cut off: the members of `overall` stand in an object of their own. */
+static void write_field(fg_json *json, const fg_report_field *field, const void *object,
+                        size_t prefix) {
+  const char *name = field->name + prefix;
+  char u_name[64];
+  snprintf(u_name, sizeof u_name, "u_%s", name);
+  double value[2], u[2];
+  switch (field->kind) {
+  case FG_FIELD_PAIR:
+    fg_report_pair(field, object, value, u);
+    fg_json_numbers(json, name, value, 2);
+    fg_json_numbers(json, u_name, u, 2);
+    break;
+  case FG_FIELD_NUMBER:
+    fg_json_number(json, name, fg_report_value(field, object));
+    if (field->u_offset != FG_NO_UNCERTAINTY)
+      fg_json_number(json, u_name, fg_report_uncertainty(field, object));
+    break;
+  case FG_FIELD_COUNT:
+    fg_json_integer(json, name, (int64_t)fg_report_value(field, object));
+    break;
+  }
+}
+
+/* The rows whose names start with `group` ("overall.") or, when it is empty, have no dot. */
+static void write_fields(fg_json *json, fg_report_owner owner, const char *group,
+                         const void *object) {
+  size_t count, prefix = strlen(group);
+  const fg_report_field *fields = fg_report_fields(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    bool belongs =
+        prefix ? !strncmp(fields[i].name, group, prefix) : strchr(fields[i].name, '.') == NULL;
+    if (belongs) write_field(json, &fields[i], object, prefix);
+  }
+}
+
+static void write_covariance(fg_json *json, const double covariance[3][3]) {
+  fg_json_array(json, "covariance_mm2");
+  fg_json_line(json);
+  for (int i = 0; i < 3; i++)
+    fg_json_numbers(json, NULL, covariance[i], 3);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
+/* Only where a loop left a tie. */
+static void write_range(fg_json *json, const char *name, const double range[2]) {
+  if (range[0] != 0 || range[1] != 0) fg_json_numbers(json, name, range, 2);
+}
+
+static void write_bump(fg_json *json, const fg_design *design, const fg_foil *foil,
+                       const fg_bump *bump) {
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", bump->number);
+  write_flags(json, fg_bump_flag_words(), fg_bump_flags(design, foil, bump));
+  fg_json_string(json, "verdict", fg_verdict_word(fg_bump_verdict(design, foil, bump)));
+  write_fields(json, FG_REPORT_BUMP, "", bump);
+  write_covariance(json, bump->covariance);
+  write_range(json, "radius_range_mm", bump->radius_range_mm);
+  write_range(json, "height_range_mm", bump->height_range_mm);
+  fg_json_object_end(json);
+}
+
+static void write_judgement(fg_json *json, const fg_judgement *judgement, const char *owner) {
+  fg_json_object(json, NULL);
+  fg_json_line(json);
+  fg_json_string(json, "quantity", judgement->tolerance->quantity);
+  if (judgement->number) fg_json_integer(json, owner, judgement->number);
+  fg_json_number(json, "value", judgement->value);
+  fg_json_number(json, "u", judgement->u);
+  fg_json_number(json, "min", judgement->tolerance->lower);
+  fg_json_number(json, "max", judgement->tolerance->upper);
+  fg_json_bool(json, "exceeded", judgement->exceeded);
+  if (judgement->missing) fg_json_bool(json, "missing", true);
+  fg_json_string(json, "verdict", fg_verdict_word(judgement->verdict));
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+/* Whoever reads `in_tolerance` as a boolean never takes for good what was not seen to pass. */
+void fg_json_verdict(fg_json *json, fg_verdict verdict) {
+  if (verdict == FG_VERDICT_NONE)
+    fg_json_string(json, "in_tolerance", NULL);
+  else
+    fg_json_bool(json, "in_tolerance", verdict == FG_VERDICT_PASS);
+  fg_json_string(json, "verdict", fg_verdict_word(verdict));
+}
+
+void fg_json_counts(fg_json *json, const fg_report_outcome *outcome) {
+  fg_json_object(json, "counts");
+  fg_json_line(json);
+  fg_json_integer(json, "exceeded", (int64_t)outcome->exceeded);
+  fg_json_integer(json, "cannot_tell", (int64_t)outcome->undecided);
+  fg_json_integer(json, "not_measured", (int64_t)outcome->not_measured);
+  fg_json_integer(json, "rejected", (int64_t)outcome->rejected);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_judgements(fg_json *json, const fg_decision *decision, const char *owner) {
+  fg_json_array(json, "judgements");
+  for (size_t i = 0; i < decision->count; i++)
+    write_judgement(json, &decision->judgements[i], owner);
+  fg_json_array_end(json);
+}
+
+static void write_strip(fg_json *json, const fg_strip *strip) {
+  const struct {
+    const char *name;
+    double value;
+  } values[] = {{"step_mm", strip->step_mm},
+                {"blur_left_um", strip->blur_left_um},
+                {"blur_right_um", strip->blur_right_um},
+                {"contrast", strip->contrast},
+                {"noise", strip->noise},
+                {"gamma", strip->gamma}};
+  fg_json_object(json, "strip");
+  fg_json_integer(json, "stations", (int64_t)strip->count);
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+    fg_json_number(json, values[i].name, strip->count ? values[i].value : NAN);
+  double box[4];
+  for (int i = 0; i < 4; i++)
+    box[i] = (double)strip->box_px[i];
+  fg_json_numbers(json, "box_px", box, 4);
+  fg_json_object_end(json);
+}
+
+static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  fg_json_string(json, "orientation", measured ? fg_orientation_word(foil->orientation) : NULL);
+  write_fields(json, FG_REPORT_FOIL, "", foil);
+  const fg_thickness strip = fg_foil_thickness(design, foil);
+  fg_json_number(json, "thickness_design_mm", design->thickness_mm);
+  fg_json_bool(json, "thickness_differs", fg_thickness_differs(design, &strip));
+  fg_json_object(json, "overall");
+  write_fields(json, FG_REPORT_FOIL, "overall.", foil);
+  write_covariance(json, foil->overall.covariance);
+  write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
+  fg_json_object_end(json);
+  fg_json_correction(json, &foil->correction);
+  write_strip(json, &foil->strip);
+  fg_json_array(json, "bumps");
+  for (size_t i = 0; i < foil->bump_count; i++)
+    write_bump(json, design, foil, &foil->bumps[i]);
+  fg_json_array_end(json);
+}
+
+fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
+                       const fg_foil *foil) {
+  fg_decision decision;
+  char defect[200];
+  FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
+  bool rejected = fg_foil_defect(design, foil, defect, sizeof defect);
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", foil->number);
+  write_flags(json, fg_foil_flag_words(), foil->flags);
+  fg_json_numbers(json, "place_mm", foil->place_mm, 4);
+  fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
+  fg_json_verdict(json, decision.outcome.verdict);
+  fg_json_string(json, "defect", rejected ? defect : NULL);
+  if (fg_foil_is_measured(foil)) write_judgements(json, &decision, "bump");
+  write_foil_values(json, design, foil);
+  fg_json_object_end(json);
+  fg_decision_free(&decision);
+  return FG_OK;
+}
+
+fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
+                       const fg_disc *disc) {
+  fg_decision decision;
+  FG_TRY(fg_disc_decide(ctx, design, disc, &decision));
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", disc->number);
+  write_flags(json, fg_bump_flag_words(), fg_disc_flags(design, disc));
+  fg_json_bool(json, "hole", disc->hole);
+  fg_json_bool(json, "bright", disc->bright);
+  fg_json_verdict(json, decision.outcome.verdict);
+  write_judgements(json, &decision, "disc");
+  write_fields(json, FG_REPORT_DISC, "", disc);
+  write_covariance(json, disc->covariance);
+  write_range(json, "radius_range_mm", disc->radius_range_mm);
+  fg_json_object_end(json);
+  fg_decision_free(&decision);
+  return FG_OK;
+}
+
+/* The members that one scan gives: of the report itself, or of one of `scans`. */
+static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *report,
+                            const fg_measurement *measurement) {
+  fg_json_bool(json, "light_on_dark", measurement->light_on_dark);
+  fg_json_integer(json, "specks", (int64_t)measurement->specks);
+  fg_json_array(json, "foils");
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));
+  fg_json_array_end(json);
+  if (report->design->form != FG_FORM_DISCS) return FG_OK;
+  fg_json_array(json, "discs");
+  for (size_t i = 0; i < measurement->disc_count; i++)
+    FG_TRY(fg_json_disc(ctx, json, report->design, &measurement->discs[i]));
+  fg_json_array_end(json);
+  return FG_OK;
+}
+
+static fg_status write_scans(fg_context *ctx, fg_json *json, const fg_report *report) {
+  fg_json_array(json, "scans");
+  for (size_t i = 0; i < report->scan_count; i++) {
+    const fg_report_scan *scan = &report->scans[i];
+    fg_report_outcome outcome;
+    FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
+    fg_json_object(json, NULL);
+    fg_json_string(json, "path", scan->path);
+    fg_json_string(json, "error", scan->measurement ? NULL : scan->error);
+    fg_json_verdict(json, outcome.verdict);
+    if (scan->measurement) FG_TRY(write_scan(ctx, json, report, scan->measurement));
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+  return FG_OK;
+}
+
+fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *out) {
+  fg_report_outcome outcome;
+  fg_json json;
+  FG_TRY(fg_report_judge(ctx, report, &outcome));
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/measure/1");
+  fg_json_verdict(&json, outcome.verdict);
+  fg_json_counts(&json, &outcome);
+  fg_json_array(&json, "inputs");
+  for (size_t i = 0; i < report->scan_count; i++)
+    fg_json_input(&json, &report->scans[i]);
+  fg_json_array_end(&json);
+  fg_json_scan_model(&json, "model", fg_report_model(report));
+  fg_json_design(&json, "design", report->design);
+  if (report->design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", report->nominal);
+  if (report->scan_count == 1 && report->scans[0].measurement)
+    FG_TRY(write_scan(ctx, &json, report, report->scans[0].measurement));
+  else
+    FG_TRY(write_scans(ctx, &json, report));
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  return fg_report_finish(ctx, out, "the JSON report");
+}

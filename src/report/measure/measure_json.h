@@ -1,0 +1,30 @@
+/* Parts of the measure report as JSON, for reports that embed them. */
+#ifndef FG_REPORT_MEASURE_MEASURE_JSON_H
+#define FG_REPORT_MEASURE_MEASURE_JSON_H
+
+#include "foilgauge/report.h"
+#include "report/json_writer.h"
+
+/* "schema" and "version", the first members of every report. */
+void fg_json_head(fg_json *json, const char *schema);
+
+/* Members as a design file has them; loads again with fg_design_parse. */
+void fg_json_design(fg_json *json, const char *name, const fg_design *design);
+void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal);
+
+/* "in_tolerance": true only for a pass; null where nothing is judged. And "verdict". */
+void fg_json_verdict(fg_json *json, fg_verdict verdict);
+
+/* "counts". */
+void fg_json_counts(fg_json *json, const fg_report_outcome *outcome);
+
+/* One member of `inputs`. */
+void fg_json_input(fg_json *json, const fg_report_scan *scan);
+
+/* One member of `foils`, of `discs`. */
+fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
+                       const fg_foil *foil);
+fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
+                       const fg_disc *disc);
+
+#endif

@@ -1,0 +1,457 @@
+/* The page: for every foil its verdict, key numbers and picture first, then tables and plots. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "foilgauge/scan_loop.h"
+#include "report/measure/measure_page_parts.h"
+#include "report/scan_loop/scan_model_words.h"
+
+void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
+  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+  int decimals = field->kind == FG_FIELD_COUNT ? 0 : fg_report_decimals(field, u);
+  if (!isfinite(value)) {
+    fputs("–", out);
+    return;
+  }
+  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
+  if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
+}
+
+static const char *verdict_title(fg_verdict verdict) {
+  switch (verdict) {
+  case FG_VERDICT_PASS:
+    return "Within tolerance";
+  case FG_VERDICT_FAIL:
+    return "Out of tolerance";
+  case FG_VERDICT_UNDECIDED:
+    return "Cannot tell";
+  case FG_VERDICT_NOT_MEASURED:
+    return "Not measured";
+  case FG_VERDICT_NONE:
+    return "No tolerances stated";
+  }
+  return "";
+}
+
+void fg_html_verdict(FILE *out, fg_verdict verdict) {
+  fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
+          verdict_title(verdict));
+}
+
+void fg_html_outcome(FILE *out, const fg_report_outcome *outcome) {
+  if (outcome->rejected && !outcome->exceeded)
+    fputs("<span class=\"verdict fail\">Rejected</span>\n", out);
+  else
+    fg_html_verdict(out, outcome->verdict);
+}
+
+static const char *base_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash && slash[1] ? slash + 1 : path;
+}
+
+static void put_tile(FILE *out, fg_report_owner owner, const char *name, const char *title,
+                     const void *object) {
+  const fg_report_field *field = fg_report_find(owner, name);
+  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+  int decimals = fg_report_decimals(field, u);
+  fprintf(out, "<div><dt>%s</dt><dd>", title);
+  if (isfinite(value))
+    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), field->unit);
+  else
+    fputs("–", out);
+  if (isfinite(u)) fprintf(out, "<small>± %.*f</small>", decimals, FG_COVERAGE_FACTOR * u);
+  fputs("</dd></div>\n", out);
+}
+
+/* Mean over the bumps, with their spread as a standard deviation: it says more than one bump. */
+static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, const char *title) {
+  const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, name);
+  double sum = 0, squares = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    double value = fg_report_value(field, &foil->bumps[i]);
+    if (!isfinite(value)) continue;
+    count++;
+    double step = value - sum;
+    sum += step / (double)count; /* the running mean */
+    squares += step * (value - sum);
+  }
+  if (count == 0) return;
+  fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, field->decimals, sum, field->unit);
+  if (count > 1)
+    fprintf(out, "<small>s = %.*f, n = %zu</small>", field->decimals,
+            sqrt(squares / (double)(count - 1)), count);
+  fputs("</dd></div>\n", out);
+}
+
+static void put_tiles(FILE *out, const fg_foil *foil) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, FG_REPORT_FOIL, "overall.radius_mm", "Overall radius", foil);
+  put_tile(out, FG_REPORT_FOIL, "overall.springback_error_pct", "Overall springback", foil);
+  put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
+  put_mean_tile(out, foil, "height_mm", "Bump height, mean");
+  put_mean_tile(out, foil, "clearance_mm", "Clearance, free, mean");
+  put_mean_tile(out, foil, "clearance_fitted_mm", "Clearance, fitted, mean");
+  put_tile(out, FG_REPORT_FOIL, "thickness_mm", "Thickness", foil);
+  fputs("</dl>\n", out);
+}
+
+static void put_flags(FILE *out, const fg_foil *foil) {
+  if (!foil->flags) return;
+  fputs("<ul class=\"flags\">\n", out);
+  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
+    if (foil->flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
+  fputs("</ul>\n", out);
+}
+
+static const char *const bump_columns[] = {
+    "radius_mm",        "bump_angle_deg",       "intersection_angle_deg",
+    "height_mm",        "clearance_mm",         "clearance_fitted_mm",
+    "radius_error_pct", "bump_angle_error_pct", "rms_um"};
+static const char *const disc_columns[] = {"diameter_mm", "radius_mm", "roundness_um", "rms_um",
+                                           "coverage_deg"};
+static const char *const foil_rows[] = {"overall.radius_mm", "overall.springback_error_pct",
+                                        "thickness_mm"};
+
+static const fg_tolerance *find_tolerance(const fg_design *design, const char *quantity) {
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (!strcmp(design->tolerances[i].quantity, quantity)) return &design->tolerances[i];
+  return NULL;
+}
+
+static void put_limits(FILE *out, const fg_tolerance *tolerance) {
+  if (!tolerance) return;
+  if (isfinite(tolerance->lower) && isfinite(tolerance->upper))
+    fprintf(out, "%.6g … %.6g", tolerance->lower, tolerance->upper);
+  else if (isfinite(tolerance->lower))
+    fprintf(out, "≥ %.6g", tolerance->lower);
+  else
+    fprintf(out, "≤ %.6g", tolerance->upper);
+}
+
+/* `judged`: the values are those of a part of the design. */
+static void put_cell(FILE *out, const fg_design *design, const fg_report_field *field,
+                     const void *object, bool judged) {
+  const fg_tolerance *tolerance = find_tolerance(design, field->name);
+  fg_verdict verdict = FG_VERDICT_NONE;
+  if (tolerance && judged)
+    verdict = fg_judge_value(tolerance, fg_report_value(field, object),
+                             fg_report_uncertainty(field, object));
+  fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
+  fg_html_value(out, field, object);
+  fputs("</td>", out);
+}
+
+static void put_flag_cell(FILE *out, unsigned flags) {
+  const char *separator = "";
+  fputs("<td class=\"words\">", out);
+  for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++) {
+    if (!(flags & words->flag)) continue;
+    fprintf(out, "%s%s", separator, words->plain);
+    separator = "; ";
+  }
+  fputs("</td></tr>\n", out);
+}
+
+/* Columns that the table always has, then those with a tolerance that it has not. */
+static size_t choose_columns(const fg_design *design, fg_report_owner owner,
+                             const char *const *names, size_t count,
+                             const fg_report_field **columns) {
+  size_t used = 0;
+  for (size_t i = 0; i < count; i++)
+    columns[used++] = fg_report_find(owner, names[i]);
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
+    bool there = field == NULL;
+    for (size_t k = 0; k < used; k++)
+      there = there || columns[k] == field;
+    if (!there) columns[used++] = field;
+  }
+  return used;
+}
+
+typedef struct table_rows {
+  fg_report_owner owner;
+  const char *title;
+  const char *objects;
+  size_t count, size;
+  const fg_foil *foil; /* of the bumps; NULL for discs */
+} table_rows;
+
+static void put_table_head(FILE *out, const fg_design *design, const table_rows *rows,
+                           const fg_report_field *const *columns, size_t count) {
+  bool limits = false;
+  fprintf(out, "<div class=\"scroll\"><table>\n<thead><tr><th>%s</th>", rows->title);
+  for (size_t i = 0; i < count; i++) {
+    fprintf(out, "<th title=\"%s\">%s<br>%s</th>", columns[i]->words, columns[i]->symbol,
+            columns[i]->unit);
+    limits = limits || find_tolerance(design, columns[i]->name);
+  }
+  fputs("<th></th></tr></thead>\n<tbody>\n", out);
+  if (!limits) return;
+  fputs("<tr class=\"limits\"><td>tolerance</td>", out);
+  for (size_t i = 0; i < count; i++) {
+    fputs("<td>", out);
+    put_limits(out, find_tolerance(design, columns[i]->name));
+    fputs("</td>", out);
+  }
+  fputs("<td></td></tr>\n", out);
+}
+
+static void put_table(FILE *out, const fg_design *design, const table_rows *rows,
+                      const char *const *names, size_t name_count) {
+  const fg_report_field *columns[16 + FG_TOLERANCES_MAX];
+  size_t count = choose_columns(design, rows->owner, names, name_count, columns);
+  put_table_head(out, design, rows, columns, count);
+  for (size_t i = 0; i < rows->count; i++) {
+    const void *object = rows->objects + i * rows->size;
+    const fg_bump *bump = object;
+    const fg_disc *disc = object;
+    fprintf(out, "<tr><td>%d</td>", rows->foil ? bump->number : disc->number);
+    for (size_t k = 0; k < count; k++)
+      put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
+    put_flag_cell(out, rows->foil ? fg_bump_flags(design, rows->foil, bump)
+                                  : fg_disc_flags(design, disc));
+  }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_foil_table(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_report_field *rows[16 + FG_TOLERANCES_MAX];
+  size_t count =
+      choose_columns(design, FG_REPORT_FOIL, foil_rows, sizeof foil_rows / sizeof *foil_rows, rows);
+  fputs("<h2>The whole foil</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th>"
+        "<th>value</th><th>unit</th><th>tolerance</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < count; i++) {
+    fprintf(out, "<tr><td>%s</td>", rows[i]->words);
+    put_cell(out, design, rows[i], foil, fg_foil_is_measured(foil));
+    fprintf(out, "<td>%s</td><td>", rows[i]->unit);
+    put_limits(out, find_tolerance(design, rows[i]->name));
+    fputs("</td></tr>\n", out);
+  }
+  fputs("</tbody></table></div>\n", out);
+}
+
+static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
+                           const fg_measurement *measurement) {
+  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
+  fg_html_text(out, measurement->scan);
+  fprintf(out, "</dd>\n<dt>Pixels</dt><dd>%lld × %lld, %d bit</dd>\n",
+          (long long)measurement->width_px, (long long)measurement->height_px,
+          measurement->bit_depth);
+  fprintf(out, "<dt>Resolution</dt><dd>%.8g × %.8g dpi", measurement->dpi[0], measurement->dpi[1]);
+  if (isfinite(measurement->dpi_file[0]))
+    fprintf(out, " (the file says %.8g × %.8g)", measurement->dpi_file[0],
+            measurement->dpi_file[1]);
+  fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
+  fg_html_text(out, measurement->sha256);
+  fputs("</dd>\n<dt>Design</dt><dd>", out);
+  fg_html_text(out, design->name);
+  fprintf(out, " (%s)</dd>\n", fg_form_word(design->form));
+  FG_TRY(fg_html_model_facts(ctx, out, measurement->model));
+  fputs("<dt>Program</dt><dd>foilgauge " FOILGAUGE_VERSION "</dd>\n</dl>\n", out);
+  return FG_OK;
+}
+
+static void put_uncertainty(FILE *out, const fg_scanner_model *model) {
+  char scale[FG_SCALE_WORDS];
+  fg_scale_words(model, scale, sizeof scale);
+  fputs("<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
+        "factor k = 2, about 95 %). u comes from the residuals with their correlation along the "
+        "edge and from what the two edges say against each other. ",
+        out);
+  fg_html_text(out, scale);
+  fputs(" A value passes when value ± U lies inside its tolerance, fails when "
+        "it lies outside, and cannot be told when a limit runs through it. s is the standard "
+        "deviation over the n bumps.</p>\n",
+        out);
+}
+
+static void put_free_and_fitted(FILE *out) {
+  fputs(
+      "<h2>Free and fitted</h2>\n<p class=\"note\">The scan shows the foil free: h, C_loc and its "
+      "error are those of the foil on its own circle R0. In the bearing it is pressed against the "
+      "sleeve; C_fit (and h_fit in the JSON) is what a bump of the same radius and chord has "
+      "there. The springback model predicts a height from R alone (h_m): eq 5.6 with measured X, R "
+      "and α would give R0 back, whatever the bump, since α is defined by the crossing with R0."
+      "</p>\n",
+      out);
+}
+
+static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
+                             const fg_foil *foil) {
+  fputs("<figure>", out);
+  FG_TRY(fg_html_picture(ctx, out, measurement, foil));
+  fputs("<figcaption>Orange: bump circles, solid where the fit used them. Blue, dashed: overall "
+        "circle. Magenta: residuals, magnified as the scale says.</figcaption></figure>\n",
+        out);
+  return FG_OK;
+}
+
+static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const table_rows rows = {FG_REPORT_BUMP,      "bump", (const char *)foil->bumps, foil->bump_count,
+                           sizeof *foil->bumps, foil};
+  fputs("<h2>Bumps</h2>\n", out);
+  put_table(out, design, &rows, bump_columns, sizeof bump_columns / sizeof *bump_columns);
+  put_foil_table(out, design, foil);
+  char thickness[200];
+  fg_thickness_words(design, foil, thickness, sizeof thickness);
+  if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
+  fputs("<h2>Springback error per bump</h2>\n<figure>", out);
+  fg_html_springback(out, foil);
+  fputs("</figure>\n<h2>Residual along the foil</h2>\n<figure>", out);
+  fg_html_residuals(out, foil);
+  fprintf(out,
+          "<figcaption>The midline against its fitted circles: lands in blue, bumps in orange. "
+          "Standard deviation %.3g µm, correlation length %.3g mm.</figcaption></figure>\n",
+          foil->noise_um, foil->correlation_mm);
+}
+
+/* "Out of tolerance (3 values): bump height 1, 8; bump angle 1." Judgements of one tolerance are
+ * neighbours. Bumps that are missing are the defect's to tell. */
+static void put_reasons(FILE *out, const fg_decision *decision, fg_verdict verdict) {
+  const fg_judgement *list = decision->judgements;
+  const fg_tolerance *last = NULL;
+  size_t values = 0;
+  for (size_t i = 0; i < decision->count; i++)
+    values += list[i].verdict == verdict && !list[i].missing;
+  for (size_t i = 0; i < decision->count; i++) {
+    if (list[i].verdict != verdict || list[i].missing) continue;
+    if (!last)
+      fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", verdict_title(verdict), values,
+              values == 1 ? "value" : "values");
+    if (list[i].tolerance != last) {
+      fprintf(out, "%s%s", last ? "; " : "", list[i].field->words);
+      if (list[i].number) fprintf(out, " %d", list[i].number);
+    } else {
+      fprintf(out, ", %d", list[i].number);
+    }
+    last = list[i].tolerance;
+  }
+  if (last) fputs(".</p>\n", out);
+}
+
+static void put_defect(FILE *out, const fg_design *design, const fg_foil *foil) {
+  char words[200];
+  if (fg_foil_defect(design, foil, words, sizeof words))
+    fprintf(out, "<p class=\"reasons\"><b>Rejected:</b> %s.</p>\n", words);
+}
+
+static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
+                            const fg_measurement *measurement, const fg_foil *foil) {
+  static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
+  fprintf(out, "<header><h1>Foil %d</h1>", foil->number);
+  if (foil->flags & FG_FOIL_NOT_THIS_DESIGN)
+    fputs("<span class=\"verdict not_measured\">Not a foil of this design</span>\n", out);
+  else
+    fg_html_outcome(out, &decision.outcome);
+  fputs("<p>", out);
+  fg_html_text(out, base_name(measurement->scan));
+  if (!(foil->flags & FG_FOIL_NOT_MEASURED))
+    fprintf(out, " · %zu bumps, %s", foil->bump_count, fg_orientation_word(foil->orientation));
+  fputs("</p></header>\n", out);
+  put_defect(out, design, foil);
+  for (size_t i = 0; i < sizeof told / sizeof *told; i++)
+    put_reasons(out, &decision, told[i]);
+  fg_decision_free(&decision);
+  return FG_OK;
+}
+
+static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
+                          const fg_measurement *measurement, const fg_foil *foil) {
+  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  fputs("<section>\n", out);
+  FG_TRY(put_judged(ctx, out, design, measurement, foil));
+  fg_correction_moved(&foil->correction, moved, sizeof moved);
+  fg_correction_added(&foil->correction, added, sizeof added);
+  if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
+  if (foil->error[0]) {
+    fputs("<p class=\"reasons\">", out);
+    fg_html_text(out, foil->error);
+    fputs("</p>\n", out);
+  }
+  if (measured) put_tiles(out, foil);
+  FG_TRY(put_picture(ctx, out, measurement, foil));
+  put_flags(out, foil);
+  if (measured) put_foil_details(out, design, foil);
+  if (measured) put_free_and_fitted(out);
+  if (measured) put_uncertainty(out, measurement->model);
+  FG_TRY(put_facts(ctx, out, design, measurement));
+  fputs("</section>\n", out);
+  return FG_OK;
+}
+
+static fg_status put_discs_corrected(fg_context *ctx, FILE *out,
+                                     const fg_measurement *measurement) {
+  char moved[FG_CORRECTION_WORDS] = "", added[FG_CORRECTION_WORDS] = "";
+  double most = 0, u = 0;
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    const fg_disc *disc = &measurement->discs[i];
+    if (fabs(disc->radius_correction_mm) > fabs(most)) most = disc->radius_correction_mm;
+    u = fmax(u, disc->u_radius_correction_mm);
+  }
+  if (measurement->disc_count) {
+    fg_text_clip(moved, sizeof moved, "radii by up to %+.3g µm", 1000 * most);
+    fg_text_clip(added, sizeof added, "up to %.2g µm to their u", 1000 * u);
+  }
+  return fg_html_corrected(ctx, out, measurement->model, moved, added);
+}
+
+static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
+                           const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  const table_rows rows = {FG_REPORT_DISC,
+                           "disc",
+                           (const char *)measurement->discs,
+                           measurement->disc_count,
+                           sizeof *measurement->discs,
+                           NULL};
+  fg_report_outcome outcome;
+  FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
+  fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
+  fg_html_verdict(out, outcome.verdict);
+  fputs("<p>", out);
+  fg_html_text(out, base_name(measurement->scan));
+  fputs("</p></header>\n", out);
+  FG_TRY(put_discs_corrected(ctx, out, measurement));
+  FG_TRY(put_picture(ctx, out, measurement, NULL));
+  put_table(out, report->design, &rows, disc_columns, sizeof disc_columns / sizeof *disc_columns);
+  put_uncertainty(out, measurement->model);
+  FG_TRY(put_facts(ctx, out, report->design, measurement));
+  fputs("</section>\n", out);
+  return FG_OK;
+}
+
+static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
+                          const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  if (!measurement) {
+    fputs("<section>\n<header><h1>", out);
+    fg_html_text(out, base_name(scan->path));
+    fputs("</h1>", out);
+    fg_html_verdict(out, FG_VERDICT_NOT_MEASURED);
+    fputs("</header>\n<p>", out);
+    fg_html_text(out, scan->error);
+    fputs("</p>\n</section>\n", out);
+    return FG_OK;
+  }
+  if (report->design->form == FG_FORM_DISCS) return put_discs(ctx, out, report, scan);
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    FG_TRY(put_foil(ctx, out, report->design, measurement, &measurement->foils[i]));
+  return FG_OK;
+}
+
+fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
+  fg_html_begin(out, base_name(report->scans[0].path));
+  for (size_t i = 0; i < report->scan_count; i++)
+    FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
+  fg_html_end(out);
+  return fg_report_finish(ctx, out, "the page");
+}

@@ -1,0 +1,34 @@
+/* Parts of a page: text, the picture of a foil, plots. Without scripts, all in one file. */
+#ifndef FG_REPORT_MEASURE_MEASURE_PAGE_PARTS_H
+#define FG_REPORT_MEASURE_MEASURE_PAGE_PARTS_H
+
+#include "report/words.h"
+
+/* A page from its doctype to its <main>, and from there to its end. */
+void fg_html_begin(FILE *out, const char *title);
+void fg_html_head(FILE *out, const char *title); /* up to the style: for a page with its own */
+void fg_html_end(FILE *out);
+
+/* Text with <, >, &, quotes and stray bytes made harmless. */
+void fg_html_text(FILE *out, const char *text);
+
+/* The verdict as a coloured pill. */
+void fg_html_verdict(FILE *out, fg_verdict verdict);
+/* The same of an outcome: "Rejected" when it is a defect and no value that fails. */
+void fg_html_outcome(FILE *out, const fg_report_outcome *outcome);
+
+/* "3.39288 ± 0.00042", or "–" when it is not known. */
+void fg_html_value(FILE *out, const fg_report_field *field, const void *object);
+
+/* The foil (NULL: the whole scan) cut out of its scan, with circles and residuals over it. Where
+ * the scan cannot be read again (standard input) the drawing stands alone. */
+fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
+                          const fg_foil *foil);
+
+/* Residual of the midline along the foil, bumps marked. */
+void fg_html_residuals(FILE *out, const fg_foil *foil);
+
+/* Radius and angle error of every bump with error bars (as the thesis's figure 5.17). */
+void fg_html_springback(FILE *out, const fg_foil *foil);
+
+#endif

@@ -1,0 +1,105 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/drawing.h"
+#include "report/measure/measure_page_parts.h"
+
+enum { WIDTH_MAX = 1600, FOILS_MAX = 6 };
+static const double pixels_max = 4e6;
+/* What the page's style leaves to a picture, in its own pixels: one unit of the drawing is one. */
+#define SHOWN_WIDTH  1038.0
+#define SHOWN_HEIGHT 600.0
+static const double margin_mm = 3.5; /* room for residuals and numbers */
+
+static void put_base64(FILE *out, const uint8_t *bytes, size_t size) {
+  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (size_t i = 0; i < size; i += 3) {
+    size_t left = size - i;
+    uint32_t three = (uint32_t)bytes[i] << 16 | (left > 1 ? (uint32_t)bytes[i + 1] << 8 : 0) |
+                     (left > 2 ? bytes[i + 2] : 0);
+    fputc(digits[three >> 18], out);
+    fputc(digits[three >> 12 & 63], out);
+    fputc(left > 1 ? digits[three >> 6 & 63] : '=', out);
+    fputc(left > 2 ? digits[three & 63] : '=', out);
+  }
+}
+
+/* The foil's box with a margin, inside the scan; the whole scan without a foil or a box. */
+static void choose_box(const fg_measurement *measurement, const fg_foil *foil, int64_t box[4]) {
+  const int64_t size[2] = {measurement->width_px, measurement->height_px};
+  for (int i = 0; i < 2; i++) {
+    bool known = foil && foil->strip.box_px[2] > 0 && foil->strip.box_px[3] > 0;
+    int64_t margin = (int64_t)(margin_mm * measurement->dpi[i] / 25.4);
+    int64_t from = known ? foil->strip.box_px[i] - margin : 0;
+    int64_t to = known ? foil->strip.box_px[i] + foil->strip.box_px[i + 2] + margin : size[i];
+    box[i] = from > 0 ? from : 0;
+    box[i + 2] = (to < size[i] ? to : size[i]) - box[i];
+    if (box[i + 2] <= 0) {
+      box[i] = 0;
+      box[i + 2] = size[i];
+    }
+  }
+}
+
+/* Without pixels: only where the drawing would lie. */
+static void empty_picture(const int64_t box[4], fg_picture *picture) {
+  double reduction = fmin(1, WIDTH_MAX / (double)box[2]);
+  *picture = (fg_picture){.width = (int32_t)fmax(1, (double)box[2] * reduction),
+                          .height = (int32_t)fmax(1, (double)box[3] * reduction),
+                          .reduction = {reduction, reduction},
+                          .origin_px = {box[0], box[1]}};
+}
+
+static fg_status put_image(fg_context *ctx, FILE *out, const fg_picture *picture) {
+  uint8_t *png;
+  size_t size;
+  FG_TRY(fg_png_encode(ctx, picture->gray, picture->width, picture->height, 1, &png, &size));
+  fprintf(out, "<image width=\"%d\" height=\"%d\" href=\"data:image/png;base64,", picture->width,
+          picture->height);
+  put_base64(out, png, size);
+  fputs("\"/>\n", out);
+  free(png);
+  return FG_OK;
+}
+
+/* The measurement with this one foil, so that others do not reach into the picture. */
+static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *picture,
+                             const fg_measurement *measurement, const fg_foil *foil) {
+  fg_measurement shown = *measurement;
+  fg_foil one;
+  if (foil) {
+    one = *foil;
+    shown.foils = &one;
+    shown.foil_count = 1;
+  }
+  fg_canvas canvas = fg_canvas_over(picture, measurement);
+  canvas.svg = out;
+  canvas.unit_px = fmax(picture->width / SHOWN_WIDTH, picture->height / SHOWN_HEIGHT);
+  fputs("<g fill=\"none\" stroke-linejoin=\"round\" class=\"drawing\">\n", out);
+  FG_TRY(fg_draw_measurement(ctx, &canvas, &shown));
+  fputs("</g>\n", out);
+  return FG_OK;
+}
+
+fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
+                          const fg_foil *foil) {
+  int64_t box[4];
+  fg_picture picture;
+  choose_box(measurement, foil, box);
+  bool readable = strcmp(measurement->scan, "-") != 0 && measurement->foil_count <= FOILS_MAX;
+  if (readable)
+    FG_TRY(fg_picture_load(ctx, measurement, box, WIDTH_MAX, pixels_max, &picture));
+  else
+    empty_picture(box, &picture);
+  fprintf(out,
+          "<svg class=\"picture\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
+          "aria-label=\"The scan with fitted circles and residuals\">\n",
+          picture.width, picture.height, picture.width, picture.height);
+  fg_status status = readable ? put_image(ctx, out, &picture) : FG_OK;
+  if (!readable) fputs("<rect width=\"100%\" height=\"100%\" fill=\"#20262c\"/>\n", out);
+  if (status == FG_OK) status = put_drawing(ctx, out, &picture, measurement, foil);
+  fputs("</svg>\n", out);
+  fg_picture_free(&picture);
+  return status;
+}

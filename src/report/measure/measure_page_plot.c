@@ -1,0 +1,155 @@
+/* Plots as inline SVG. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "report/plot.h"
+
+static bool has_residual(const fg_station_label *label) {
+  return isfinite(label->residual_um) && (label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND);
+}
+
+static int compare_doubles(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Nearly all residuals fit: one grain of dust must not flatten the rest. What is larger is drawn at
+ * the limit. */
+static double residual_limit(const fg_foil *foil) {
+  double *sizes = calloc(foil->strip.count, sizeof *sizes), limit = 1;
+  size_t count = 0;
+  for (size_t i = 0; sizes && i < foil->strip.count; i++)
+    if (has_residual(&foil->labels[i]) && foil->labels[i].fitted)
+      sizes[count++] = fabs((double)foil->labels[i].residual_um);
+  if (count) {
+    qsort(sizes, count, sizeof *sizes, compare_doubles);
+    limit = 1.4 * sizes[(count - 1) * 199 / 200];
+  }
+  free(sizes);
+  return limit > 0 ? limit : 1;
+}
+
+static void put_bump_bands(const fg_plot *at, const fg_foil *foil) {
+  char number[16];
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    const fg_bump *bump = &foil->bumps[i];
+    if (!(bump->arc_end_mm > bump->arc_start_mm)) continue;
+    double from = fg_plot_x(at, bump->arc_start_mm), to = fg_plot_x(at, bump->arc_end_mm);
+    snprintf(number, sizeof number, "%d", bump->number);
+    fprintf(at->out,
+            "<rect class=\"band\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>"
+            "<text class=\"x bump\" x=\"%.1f\" y=\"%.1f\">%s</text>\n",
+            from, at->top, to - from, at->bottom - at->top, (from + to) / 2, at->top - 6, number);
+  }
+}
+
+/* Stations are many more than pixels: a stroke from the lowest to the highest of each column. */
+static void put_residual_strokes(const fg_plot *at, const fg_foil *foil, fg_arc_kind kind,
+                                 const char *style) {
+  double column = -1, low = 0, high = 0;
+  fprintf(at->out, "<path class=\"%s\" d=\"", style);
+  for (size_t i = 0; i < foil->strip.count; i++) {
+    if (!has_residual(&foil->labels[i]) || foil->labels[i].kind != kind) continue;
+    double value = foil->labels[i].residual_um;
+    double x = floor(fg_plot_x(at, foil->strip.stations[i].s_mm)) + 0.5;
+    value = fmin(at->y_high, fmax(at->y_low, value));
+    if (x != column && column >= 0)
+      fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
+              fg_plot_y(at, high) - 0.7);
+    if (x != column) low = high = value;
+    column = x;
+    low = fmin(low, value);
+    high = fmax(high, value);
+  }
+  if (column >= 0)
+    fprintf(at->out, "M%.1f %.1fV%.1f", column, fg_plot_y(at, low) + 0.7,
+            fg_plot_y(at, high) - 0.7);
+  fputs("\"/>\n", at->out);
+}
+
+void fg_html_residuals(FILE *out, const fg_foil *foil) {
+  if (!foil->labels || foil->strip.count < 2) return;
+  double limit = residual_limit(foil);
+  fg_plot at = {out, 1000, 70, 985, 26, 240, 0, 1, -limit, limit};
+  at.x_low = foil->strip.stations[0].s_mm;
+  at.x_high = foil->strip.stations[foil->strip.count - 1].s_mm;
+  if (!(at.x_high > at.x_low)) return;
+  fg_plot_begin(&at, 290, "Residual of the midline along the foil");
+  put_bump_bands(&at, foil);
+  fg_plot_y_axis(&at, "residual, µm");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "along the foil, mm");
+  put_residual_strokes(&at, foil, FG_ARC_LAND, "land");
+  put_residual_strokes(&at, foil, FG_ARC_BUMP, "arc");
+  fputs("</svg>\n", out);
+}
+
+typedef struct series {
+  const char *quantity, *style, *words;
+  double shift; /* sideways, so that two error bars do not hide each other */
+} series;
+
+static const series both_series[] = {
+    {"radius_error_pct", "s1", "bump radius", -7},
+    {"bump_angle_error_pct", "s2", "bump angle", 7},
+};
+
+static void springback_range(const fg_foil *foil, double range[2]) {
+  range[0] = range[1] = 0;
+  for (size_t k = 0; k < 2; k++) {
+    const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, both_series[k].quantity);
+    for (size_t i = 0; i < foil->bump_count; i++) {
+      double value = fg_report_value(field, &foil->bumps[i]);
+      double u = fg_report_uncertainty(field, &foil->bumps[i]);
+      if (!isfinite(value)) continue;
+      double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
+      range[0] = fmin(range[0], value - expanded);
+      range[1] = fmax(range[1], value + expanded);
+    }
+  }
+  double margin = fmax(0.05, 0.08 * (range[1] - range[0]));
+  range[0] -= margin;
+  range[1] += margin;
+}
+
+static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) {
+  const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, one->quantity);
+  double value = fg_report_value(field, bump), u = fg_report_uncertainty(field, bump);
+  if (!isfinite(value)) return;
+  double x = fg_plot_x(at, bump->number) + one->shift, y = fg_plot_y(at, value);
+  double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
+  fprintf(at->out,
+          "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
+          "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"5\"/>\n",
+          one->style, x, fg_plot_y(at, value - expanded), fg_plot_y(at, value + expanded), x - 5,
+          fg_plot_y(at, value - expanded), x - 5, fg_plot_y(at, value + expanded), one->style, x,
+          y);
+}
+
+void fg_html_springback(FILE *out, const fg_foil *foil) {
+  double range[2];
+  int last = 1;
+  if (foil->bump_count == 0) return;
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number > last) last = foil->bumps[i].number;
+  springback_range(foil, range);
+  fg_plot at = {out, 1000, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
+  fg_plot_begin(&at, 310, "Springback error of every bump");
+  fg_plot_y_axis(&at, "springback error, %");
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    char number[16];
+    snprintf(number, sizeof number, "%d", foil->bumps[i].number);
+    fg_plot_x_label(&at, fg_plot_x(&at, foil->bumps[i].number), number);
+  }
+  fg_plot_x_title(&at, "bump, 1 is next to the lip");
+  for (size_t k = 0; k < 2; k++) {
+    for (size_t i = 0; i < foil->bump_count; i++)
+      put_mark(&at, &both_series[k], &foil->bumps[i]);
+    fprintf(
+        out,
+        "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s</text>\n",
+        both_series[k].style, 80 + 230.0 * (double)k, 92 + 230.0 * (double)k, both_series[k].words);
+  }
+  fputs("</svg>\n", out);
+}

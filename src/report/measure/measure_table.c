@@ -1,0 +1,268 @@
+/* The terminal's table: one block per foil, a row per bump, ± beside each value. */
+#include <math.h>
+#include <string.h>
+
+#include "report/scan_loop/scan_model_words.h"
+#include "report/words.h"
+
+/* The columns of the bump table and of the disc table: names of rows in the table of fields. */
+static const char *const bump_columns[] = {"radius_mm",           "bump_angle_deg",
+                                           "height_mm",           "clearance_mm",
+                                           "clearance_fitted_mm", "radius_error_pct"};
+static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um", "coverage_deg"};
+
+enum { COLUMNS_MAX = 8, DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
+
+typedef struct column {
+  const fg_report_field *field;
+  int decimals;
+  int width;   /* of the value */
+  int u_width; /* of ±; 0 without */
+} column;
+
+typedef struct row_set {
+  fg_report_owner owner;
+  const char *objects; /* an array */
+  size_t count, size;
+} row_set;
+
+/* So many decimals that U = k u shows two digits; one, where two would be nanometres and less. */
+int fg_report_decimals(const fg_report_field *field, double u) {
+  double expanded = FG_COVERAGE_FACTOR * u;
+  if (!(expanded > 0)) return field->decimals;
+  int decimals = 1 - (int)floor(log10(expanded));
+  if (decimals > DECIMALS_FINE) decimals = (int)fmax(DECIMALS_FINE, decimals - 1);
+  if (decimals < field->decimals) return field->decimals;
+  return decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
+}
+
+static int text_width(const char *text) {
+  int width = 0;
+  for (; *text; text++)
+    if (((unsigned char)*text & 0xC0) != 0x80) width++; /* not a UTF-8 continuation byte */
+  return width;
+}
+
+static int number_width(double value, int decimals) {
+  return isfinite(value) ? snprintf(NULL, 0, "%.*f", decimals, value) : 1;
+}
+
+/* U of a value that is known. */
+static double expanded_of(const fg_report_field *field, const void *object) {
+  if (!isfinite(fg_report_value(field, object))) return NAN;
+  return FG_COVERAGE_FACTOR * fg_report_uncertainty(field, object);
+}
+
+static void measure_column(column *target, const row_set *rows) {
+  const fg_report_field *field = target->field;
+  double largest_u = 0;
+  for (size_t i = 0; i < rows->count; i++) {
+    double u = fg_report_uncertainty(field, rows->objects + i * rows->size);
+    if (u > largest_u) largest_u = u;
+  }
+  target->decimals = field->kind == FG_FIELD_COUNT ? 0 : fg_report_decimals(field, largest_u);
+  target->width = text_width(field->symbol);
+  if (text_width(field->unit) > target->width) target->width = text_width(field->unit);
+  target->u_width = field->u_offset == FG_NO_UNCERTAINTY ? 0 : 1;
+  for (size_t i = 0; i < rows->count; i++) {
+    const void *object = rows->objects + i * rows->size;
+    int width = number_width(fg_report_value(field, object), target->decimals);
+    if (width > target->width) target->width = width;
+    width = number_width(expanded_of(field, object), target->decimals);
+    if (target->u_width && width > target->u_width) target->u_width = width;
+  }
+}
+
+static void put_padded(FILE *out, const char *text, int width) {
+  fprintf(out, "%*s%s", width > text_width(text) ? width - text_width(text) : 0, "", text);
+}
+
+static void put_number(FILE *out, double value, int decimals, int width) {
+  char text[64] = "-";
+  if (isfinite(value)) snprintf(text, sizeof text, "%.*f", decimals, value);
+  put_padded(out, text, width);
+}
+
+static void put_cells(FILE *out, const column *columns, size_t count, bool units) {
+  for (size_t i = 0; i < count; i++) {
+    fputs("  ", out);
+    put_padded(out, units ? columns[i].field->unit : columns[i].field->symbol, columns[i].width);
+    if (!columns[i].u_width) continue;
+    fputc(' ', out);
+    put_padded(out, units ? "" : "±", columns[i].u_width);
+  }
+  fputc('\n', out);
+}
+
+static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
+  for (; words->name; words++)
+    if (flags & words->flag) fprintf(out, "  %s", words->name);
+}
+
+static void put_row(FILE *out, const column *columns, size_t count, int number, unsigned flags,
+                    const void *object) {
+  fprintf(out, "%4d", number);
+  for (size_t i = 0; i < count; i++) {
+    const column *at = &columns[i];
+    fputs("  ", out);
+    put_number(out, fg_report_value(at->field, object), at->decimals, at->width);
+    if (!at->u_width) continue;
+    fputc(' ', out);
+    put_number(out, expanded_of(at->field, object), at->decimals, at->u_width);
+  }
+  put_flags(out, fg_bump_flag_words(), flags);
+  fputc('\n', out);
+}
+
+static size_t make_columns(const char *const *names, size_t count, const row_set *rows,
+                           column *columns) {
+  size_t used = 0;
+  for (size_t i = 0; i < count && used < COLUMNS_MAX; i++) {
+    columns[used].field = fg_report_find(rows->owner, names[i]);
+    if (columns[used].field) measure_column(&columns[used++], rows);
+  }
+  return used;
+}
+
+static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const row_set rows = {FG_REPORT_BUMP, (const char *)foil->bumps, foil->bump_count,
+                        sizeof *foil->bumps};
+  column columns[COLUMNS_MAX];
+  size_t count =
+      make_columns(bump_columns, sizeof bump_columns / sizeof *bump_columns, &rows, columns);
+  fputs("bump", out);
+  put_cells(out, columns, count, false);
+  fputs("    ", out);
+  put_cells(out, columns, count, true);
+  for (size_t i = 0; i < foil->bump_count; i++)
+    put_row(out, columns, count, foil->bumps[i].number,
+            fg_bump_flags(design, foil, &foil->bumps[i]), &foil->bumps[i]);
+}
+
+static void put_discs(FILE *out, const fg_design *design, const fg_measurement *measurement) {
+  const row_set rows = {FG_REPORT_DISC, (const char *)measurement->discs, measurement->disc_count,
+                        sizeof *measurement->discs};
+  column columns[COLUMNS_MAX];
+  size_t count =
+      make_columns(disc_columns, sizeof disc_columns / sizeof *disc_columns, &rows, columns);
+  fputs("disc", out);
+  put_cells(out, columns, count, false);
+  fputs("    ", out);
+  put_cells(out, columns, count, true);
+  for (size_t i = 0; i < measurement->disc_count; i++)
+    put_row(out, columns, count, measurement->discs[i].number,
+            fg_disc_flags(design, &measurement->discs[i]), &measurement->discs[i]);
+}
+
+/* "overall radius 20.9500 ± 0.0012 mm" */
+static void put_quantity(FILE *out, const fg_foil *foil, const char *name) {
+  const fg_report_field *field = fg_report_find(FG_REPORT_FOIL, name);
+  double value = fg_report_value(field, foil), u = fg_report_uncertainty(field, foil);
+  int decimals = fg_report_decimals(field, u);
+  fprintf(out, "  %s ", field->words);
+  put_number(out, value, decimals, 0);
+  if (isfinite(u)) fprintf(out, " ± %.*f", decimals, FG_COVERAGE_FACTOR * u);
+  fprintf(out, " %s\n", field->unit);
+}
+
+static void put_foil_flags(FILE *out, unsigned flags) {
+  for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
+    if (flags & words->flag) fprintf(out, "  %s: %s\n", words->name, words->plain);
+}
+
+static void put_correction(FILE *out, const fg_correction *correction) {
+  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
+  fg_correction_moved(correction, moved, sizeof moved);
+  fg_correction_added(correction, added, sizeof added);
+  if (moved[0]) fprintf(out, "  the model moved %s\n  and added %s\n", moved, added);
+}
+
+static void put_place(FILE *out, const fg_foil *foil) {
+  fprintf(out, "  place on the bed x %.1f, y %.1f mm (%.1f × %.1f mm)\n", foil->place_mm[0],
+          foil->place_mm[1], foil->place_mm[2], foil->place_mm[3]);
+}
+
+/* In two lines of less than 100 columns. */
+static void put_thickness_words(FILE *out, const fg_design *design, const fg_foil *foil) {
+  char words[200];
+  fg_thickness_words(design, foil, words, sizeof words);
+  char *rest = strstr(words, ", and ");
+  if (rest) fprintf(out, "    %.*s,\n    %s\n", (int)(rest - words), words, rest + 2);
+}
+
+static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
+  char defect[200];
+  if (foil->flags & FG_FOIL_NOT_MEASURED) {
+    fprintf(out, "\nfoil %d: not measured: %s\n", foil->number, foil->error);
+    put_place(out, foil);
+    put_foil_flags(out, foil->flags & ~(unsigned)FG_FOIL_NOT_MEASURED);
+    return;
+  }
+  fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
+          fg_orientation_word(foil->orientation));
+  if (foil->flags & FG_FOIL_NOT_THIS_DESIGN) fprintf(out, "  NOT MEASURED: %s\n", foil->error);
+  if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
+  put_place(out, foil);
+  put_quantity(out, foil, "overall.radius_mm");
+  put_quantity(out, foil, "overall.springback_error_pct");
+  put_quantity(out, foil, "thickness_mm");
+  put_thickness_words(out, design, foil);
+  put_quantity(out, foil, "noise_um");
+  put_correction(out, &foil->correction);
+  put_foil_flags(out, foil->flags);
+  put_bumps(out, design, foil);
+}
+
+static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
+                          const fg_report_scan *scan) {
+  const fg_measurement *measurement = scan->measurement;
+  if (!measurement) {
+    fprintf(out, "%s: not measured: %s\n", scan->path, scan->error);
+    return FG_OK;
+  }
+  fprintf(out, "%s: %lld × %lld px, %d bit, %.6g", scan->path, (long long)measurement->width_px,
+          (long long)measurement->height_px, measurement->bit_depth, measurement->dpi[0]);
+  if (measurement->dpi[0] != measurement->dpi[1]) fprintf(out, " × %.6g", measurement->dpi[1]);
+  fputs(" dpi", out);
+  if (measurement->colour) fprintf(out, ", channel %s", fg_channel_word(measurement->channel));
+  fputc('\n', out);
+  FG_TRY(fg_text_scan_model(ctx, out, measurement->model));
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    put_foil(out, design, &measurement->foils[i]);
+  if (measurement->disc_count) put_discs(out, design, measurement);
+  return FG_OK;
+}
+
+/* A line per thing that keeps the whole from passing: the worst first. */
+static void put_outcome(FILE *out, const fg_report_outcome *outcome) {
+  if (outcome->exceeded)
+    fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit.\n", outcome->exceeded);
+  if (outcome->rejected)
+    fprintf(out, "REJECTED: %zu foil(s) with bumps missing or too many.\n", outcome->rejected);
+  if (outcome->not_measured)
+    fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
+  if (outcome->undecided)
+    fprintf(out, "CANNOT TELL: a limit lies within ± of %zu value(s)%s.\n", outcome->undecided,
+            outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit" : "");
+  if (outcome->verdict == FG_VERDICT_PASS)
+    fputs("Within every tolerance, uncertainty included.\n", out);
+  if (outcome->verdict == FG_VERDICT_NONE)
+    fputs("The design states no tolerances: nothing is judged.\n", out);
+}
+
+fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out) {
+  fg_report_outcome outcome;
+  FG_TRY(fg_report_judge(ctx, report, &outcome));
+  for (size_t i = 0; i < report->scan_count; i++) {
+    if (i) fputc('\n', out);
+    FG_TRY(put_scan(ctx, out, report->design, &report->scans[i]));
+  }
+  fputc('\n', out);
+  put_outcome(out, &outcome);
+  char scale[FG_SCALE_WORDS];
+  fg_scale_words(fg_report_model(report), scale, sizeof scale);
+  if (report->design->form != FG_FORM_DISCS)
+    fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
+  fprintf(out, "± is U = 2 u (k = 2, about 95 %%). %s\n", scale);
+  return fg_report_finish(ctx, out, "the table");
+}

@@ -1,0 +1,254 @@
+/* The dimensions before and after, with their uncertainties. */
+#include <math.h>
+#include <string.h>
+
+#include "report/scan_loop/scan_loop_parts.h"
+
+typedef struct value {
+  double value, u;
+} value;
+
+/* A reported quantity of one owner, before and after. `to_fine` makes the change readable. */
+typedef struct quantity {
+  const char *title, *unit, *fine;
+  double to_fine;
+  value before, after;
+  const double *range; /* over tied explanations; NULL or both 0: none */
+} quantity;
+
+/* As many decimals as U has with two digits, at most six. */
+static int decimals_for(double u) {
+  double expanded = FG_COVERAGE_FACTOR * u;
+  if (!(expanded > 0) || !isfinite(expanded)) return 5;
+  return (int)fmin(6, fmax(0, 1 - floor(log10(expanded))));
+}
+
+static void put_value(FILE *out, value v) {
+  if (!isfinite(v.value)) {
+    fputs("<td>–</td>", out);
+    return;
+  }
+  int decimals = decimals_for(v.u);
+  fprintf(out, "<td>%.*f", decimals, v.value);
+  if (isfinite(v.u)) fprintf(out, "<i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * v.u);
+  fputs("</td>", out);
+}
+
+static void put_change(FILE *out, const quantity *q) {
+  double change = q->after.value - q->before.value;
+  if (!isfinite(change)) {
+    fputs("<td>–</td>", out);
+    return;
+  }
+  double expanded = FG_COVERAGE_FACTOR * q->after.u;
+  bool large = fabs(change) > expanded;
+  int decimals = isfinite(expanded) && expanded > 0 ? decimals_for(q->after.u * q->to_fine) : 2;
+  double step = pow(10, decimals), rounded = round(change * q->to_fine * step) / step;
+  fprintf(out, "<td class=\"%s\">%+.*f</td>", large ? "moved-on" : "", decimals,
+          rounded == 0 ? 0.0 : rounded);
+}
+
+static bool has_range(const quantity *q) {
+  return q->range && q->range[1] > 0;
+}
+
+static void put_range(FILE *out, const quantity *q) {
+  if (!q->range) return;
+  if (has_range(q))
+    fprintf(out, "<td>%.5f<i>to %.5f</i></td>", q->range[0], q->range[1]);
+  else
+    fputs("<td>–</td>", out);
+}
+
+static void put_quantity(FILE *out, const quantity *q, bool corrected, bool tied) {
+  put_value(out, q->before);
+  if (!corrected) return;
+  put_value(out, q->after);
+  put_change(out, q);
+  if (tied) put_range(out, q);
+}
+
+enum { BUMP_QUANTITIES = 4 };
+
+static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_QUANTITIES]) {
+  q[0] = (quantity){"R",
+                    "mm",
+                    "µm",
+                    1000,
+                    {b->radius_mm, b->u_radius_mm},
+                    {a->radius_mm, a->u_radius_mm},
+                    a->radius_range_mm};
+  q[1] = (quantity){"height h, free",
+                    "mm",
+                    "µm",
+                    1000,
+                    {b->height_mm, b->u_height_mm},
+                    {a->height_mm, a->u_height_mm},
+                    a->height_range_mm};
+  q[2] = (quantity){"angle α",
+                    "°",
+                    "°",
+                    1,
+                    {b->bump_angle_deg, b->u_bump_angle_deg},
+                    {a->bump_angle_deg, a->u_bump_angle_deg},
+                    NULL};
+  q[3] = (quantity){"clearance, free",
+                    "mm",
+                    "µm",
+                    1000,
+                    {b->clearance_mm, b->u_clearance_mm},
+                    {a->clearance_mm, a->u_clearance_mm},
+                    NULL};
+}
+
+static void put_heads(FILE *out, const quantity *q, size_t count, const char *first, bool corrected,
+                      bool tied) {
+  fprintf(out, "<div class=\"scroll\"><table class=\"dimensions%s\"><tr><th rowspan=\"2\">%s</th>",
+          count < 3 ? " narrow" : "", first);
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, "<th class=\"group\" colspan=\"%d\">%s, %s</th>",
+            !corrected           ? 1
+            : tied && q[i].range ? 4
+                                 : 3,
+            q[i].title, q[i].unit);
+  fputs("</tr><tr>", out);
+  for (size_t i = 0; i < count; i++) {
+    fputs(corrected ? "<th>before</th><th>after</th>" : "<th>measured</th>", out);
+    if (corrected) fprintf(out, "<th>change, %s</th>", q[i].fine);
+    if (corrected && tied && q[i].range) fputs("<th>range</th>", out);
+  }
+  fputs("</tr>\n", out);
+}
+
+static const fg_bump *find_bump(const fg_foil *foil, int number) {
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number == number) return &foil->bumps[i];
+  return NULL;
+}
+
+static void put_bumps(FILE *out, const fg_foil *b, const fg_foil *a, bool corrected, bool tied) {
+  quantity q[BUMP_QUANTITIES];
+  bool opened = false;
+  for (size_t i = 0; i < b->bump_count; i++) {
+    const fg_bump *after = find_bump(a, b->bumps[i].number);
+    if (!after) continue;
+    bump_quantities(&b->bumps[i], after, q);
+    if (!opened) put_heads(out, q, BUMP_QUANTITIES, "bump", corrected, tied);
+    opened = true;
+    fprintf(out, "<tr><td>%d</td>", b->bumps[i].number);
+    for (size_t k = 0; k < BUMP_QUANTITIES; k++)
+      put_quantity(out, &q[k], corrected, tied);
+    fputs("</tr>\n", out);
+  }
+  if (opened) fputs("</table></div>\n", out);
+}
+
+static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corrected, bool tied) {
+  quantity q = {"R0",
+                "mm",
+                "µm",
+                1000,
+                {b->overall.radius_mm, b->overall.u_radius_mm},
+                {a->overall.radius_mm, a->overall.u_radius_mm},
+                a->overall.radius_range_mm};
+  put_heads(out, &q, 1, "circle", corrected, tied);
+  fputs("<tr><td>overall</td>", out);
+  put_quantity(out, &q, corrected, tied);
+  fputs("</tr></table></div>\n", out);
+}
+
+static void put_foil(FILE *out, const fg_scan_loop *loop, size_t scan, size_t f) {
+  const fg_foil *b = &loop->before[scan].foils[f], *a = &loop->after[scan].foils[f];
+  fputs("<h3>", out);
+  fg_html_text(out, loop->before[scan].scan);
+  fprintf(out, ", foil %d</h3>\n", b->number);
+  if ((b->flags | a->flags) & FG_FOIL_NOT_MEASURED) {
+    fputs("<p class=\"note\">Not measured: ", out);
+    fg_html_text(out, b->flags & FG_FOIL_NOT_MEASURED ? b->error : a->error);
+    fputs("</p>\n", out);
+    return;
+  }
+  bool tied = loop->tied || loop->scale_tied;
+  put_overall(out, b, a, loop->set.count > 0, tied);
+  put_bumps(out, b, a, loop->set.count > 0, tied);
+}
+
+static void put_discs(FILE *out, const fg_scan_loop *loop, size_t scan) {
+  const fg_measurement *b = &loop->before[scan], *a = &loop->after[scan];
+  bool corrected = loop->set.count > 0;
+  size_t count = b->disc_count < a->disc_count ? b->disc_count : a->disc_count;
+  for (size_t i = 0; i < count; i++) {
+    const fg_disc *x = &b->discs[i], *y = &a->discs[i];
+    quantity q[2] = {{"diameter",
+                      "mm",
+                      "µm",
+                      1000,
+                      {x->diameter_mm, x->u_diameter_mm},
+                      {y->diameter_mm, y->u_diameter_mm},
+                      NULL},
+                     {"roundness",
+                      "µm",
+                      "µm",
+                      1,
+                      {x->roundness_um, x->u_roundness_um},
+                      {y->roundness_um, y->u_roundness_um},
+                      NULL}};
+    if (i == 0) {
+      fputs("<h3>", out);
+      fg_html_text(out, b->scan);
+      fputs(", discs</h3>\n", out);
+      put_heads(out, q, 2, "disc", corrected, false);
+    }
+    fprintf(out, "<tr><td>%d</td>", x->number);
+    for (int k = 0; k < 2; k++)
+      put_quantity(out, &q[k], corrected, false);
+    fputs("</tr>\n", out);
+  }
+  if (count) fputs("</table></div>\n", out);
+}
+
+/* Scans of one foil must give one radius for each bump: how far they are from that needs no truth.
+ * The root mean square over the bumps of the difference to the first scan, um. */
+static double disagreement(const fg_scan_loop *loop, const fg_measurement *m) {
+  double sum = 0, n = 0;
+  for (size_t s = 1; s < loop->scan_count; s++)
+    for (size_t f = 0; f < m[s].foil_count && f < m[0].foil_count; f++)
+      for (size_t i = 0; i < m[s].foils[f].bump_count; i++) {
+        const fg_bump *one = &m[s].foils[f].bumps[i];
+        const fg_bump *other = find_bump(&m[0].foils[f], one->number);
+        if (!other || !isfinite(one->radius_mm) || !isfinite(other->radius_mm)) continue;
+        sum += pow(1000 * (one->radius_mm - other->radius_mm), 2);
+        n++;
+      }
+  return sqrt(sum / n);
+}
+
+static void put_agreement(FILE *out, const fg_scan_loop *loop) {
+  char before[32], after[32];
+  if (!loop->options.same_foil || loop->scan_count < 2) return;
+  double b = disagreement(loop, loop->before), a = disagreement(loop, loop->after);
+  if (!isfinite(a) || !isfinite(b)) return;
+  fg_scan_loop_length_words(b, before, sizeof before);
+  fg_scan_loop_length_words(a, after, sizeof after);
+  fprintf(out, "<p class=\"say\">The radius of one bump differs between the scans by %s rms",
+          before);
+  if (loop->set.count) fprintf(out, " before, and by %s after", after);
+  fputs(".</p>\n", out);
+}
+
+void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_loop *loop) {
+  fputs("<section><h2 class=\"first\">Dimensions</h2>\n<p class=\"note\">± is U = 2u.", out);
+  if (loop->set.count) fputs(" A change larger than U of the corrected value is marked.", out);
+  if (loop->tied || loop->scale_tied)
+    fputs(" Range: lowest and highest value, U included, over the explanations that the data "
+          "cannot tell apart.",
+          out);
+  fputs("</p>\n", out);
+  put_agreement(out, loop);
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    for (size_t f = 0; f < loop->before[i].foil_count && f < loop->after[i].foil_count; f++)
+      put_foil(out, loop, i, f);
+    put_discs(out, loop, i);
+  }
+  fputs("</section>\n", out);
+}

@@ -1,0 +1,97 @@
+#include "report/scan_loop/scan_loop_shapes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHAPE_POINTS = 81 };
+
+static void write_field(fg_json *json, const fg_scan_loop *loop, const fg_effect_found *effect) {
+  const fg_field_frame *f = &loop->points.frame;
+  int along = effect->kind->coordinate == FG_EFFECT_X ? 0 : 1;
+  bool moves_x = effect->kind->moves && !strcmp(effect->kind->moves, "x");
+  fg_field_list list = {.frame = *f, .fields = {fg_effect_found_field(effect)}, .count = 1};
+  for (int i = 0; i < SHAPE_POINTS; i++) {
+    double t = i / (SHAPE_POINTS - 1.0);
+    double at = f->first_mm[along] + t * (f->last_mm[along] - f->first_mm[along]);
+    fg_point d = fg_field_at(&list, (fg_point){at, at});
+    double pair[2] = {at, 1000 * (moves_x ? d.x : d.y)};
+    fg_json_numbers(json, NULL, pair, 2);
+  }
+}
+
+static void write_foil(fg_json *json, const fg_scan_loop *loop, const fg_effect_found *effect) {
+  const double *psi = loop->points.psi_rad;
+  for (int i = 0; i < SHAPE_POINTS; i++) {
+    double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), pair[2] = {2 * t - 1, 0};
+    fg_field_splines(psi[0], psi[1], FG_FIELD_COLUMNS, psi[0] + t * (psi[1] - psi[0]), values);
+    for (size_t c = 0; c < effect->columns; c++)
+      pair[1] += effect->coefficient_um[c] * values[c];
+    fg_json_numbers(json, NULL, pair, 2);
+  }
+}
+
+/* Half the arc of a row's bump between its fillets: the fillet's circle (radius r) touches the
+ * overall circle from inside and the bump's from outside, so in the triangle of the three centres
+ * the sides are R0 - r, R + r and X. */
+static double fillet_to_fillet_rad(const fg_points *points, const fg_points_row *row) {
+  const fg_points_part *part = &points->parts[row->part];
+  const fg_points_bump *bump = &part->bumps[row->bump_index];
+  double r = points->views[row->view].measurement->design.fillet_radius_mm;
+  double x = bump->distance_mm, from_o = part->overall_radius_mm - r, from_c = bump->radius_mm + r;
+  double angle = acos((x * x + from_c * from_c - from_o * from_o) / (2 * x * from_c));
+  return isfinite(angle) ? angle : part->half_arc_rad;
+}
+
+/* Where a row lies on the coordinate; NaN: nowhere. */
+static double place_of(const fg_points *points, const fg_points_row *row, bool phi) {
+  if (phi)
+    return row->bump ? row->phi * points->parts[row->part].half_arc_rad /
+                           fillet_to_fillet_rad(points, row)
+                     : NAN;
+  double deg = row->normal_rad * 180 / M_PI;
+  return deg < 0 ? deg + 360 : deg;
+}
+
+/* Means of a deviation at the rows, which are where it is known. */
+static fg_status write_part(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
+                            const fg_effect_found *effect) {
+  const fg_points *points = &loop->points;
+  bool phi = effect->kind->coordinate == FG_EFFECT_PHI;
+  double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
+  double count[SHAPE_POINTS] = {0}, *shift = NULL;
+  fg_effect_set alone = {.effects = {*effect}, .count = 1};
+  FG_TRY(fg_effect_set_shift(ctx, points, &alone, &shift));
+  for (size_t i = 0; i < points->row_count; i++) {
+    low = fmin(low, place_of(points, &points->rows[i], phi));
+    high = fmax(high, place_of(points, &points->rows[i], phi));
+  }
+  for (size_t i = 0; i < points->row_count; i++) {
+    double place = place_of(points, &points->rows[i], phi);
+    if (!isfinite(place)) continue;
+    size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
+    sum[bin] += 1000 * shift[i];
+    at[bin] += place;
+    count[bin]++;
+  }
+  free(shift);
+  for (int k = 0; k < SHAPE_POINTS; k++) {
+    double pair[2] = {at[k] / count[k], sum[k] / count[k]};
+    if (count[k] > 0) fg_json_numbers(json, NULL, pair, 2);
+  }
+  return FG_OK;
+}
+
+fg_status fg_json_scan_shape(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
+                             const fg_effect_found *effect) {
+  fg_status status = FG_OK;
+  fg_json_array(json, "shape");
+  if (effect->kind->glass)
+    write_field(json, loop, effect);
+  else if (effect->kind->coordinate == FG_EFFECT_FOIL)
+    write_foil(json, loop, effect);
+  else
+    status = write_part(ctx, json, loop, effect);
+  fg_json_array_end(json);
+  return status;
+}

@@ -1,0 +1,224 @@
+/* Round holes and discs as parts: each is an overall circle, and nothing else.
+ *
+ * What tells the scanner from the discs is that the scanner does the same to all of them. A disc's
+ * own form (an oval pin, the wall of a hole that shows at one side) does not repeat, so part
+ * effects are not sought on a plate; in a single ring an oval is the same thing as a scale and a
+ * shear. How rough each edge is differs by tens of times between features of one picture: every
+ * disc's rows carry their own noise.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "rows/points.h"
+
+/* So many rows carry any search; the blocks grow with the edges. */
+enum { ROWS_MOST = 2000, BLOCK_LEAST = 2, ROWS_LEAST = 32, NEIGHBOUR_LAG = 3 };
+/* A known diameter is a disc's when it is so near. */
+#define DIAMETER_SHARE 0.03
+/* No edge is taken for better than this. */
+#define NOISE_LEAST_UM 0.02
+
+/* ---- known diameters ---- */
+
+typedef struct sized {
+  double diameter_mm;
+  size_t index;
+} sized;
+
+static int compare_sized(const void *a, const void *b) {
+  const sized *p = a, *q = b;
+  if (p->diameter_mm != q->diameter_mm)
+    return (p->diameter_mm > q->diameter_mm) - (p->diameter_mm < q->diameter_mm);
+  return (p->index > q->index) - (p->index < q->index);
+}
+
+static void know_radius(fg_points *points, size_t view, double diameter_mm) {
+  fg_points_part *part = &points->parts[points->views[view].part];
+  if (fabs(diameter_mm / (2 * part->overall_radius_mm) - 1) > DIAMETER_SHARE) return;
+  part->overall_radius_mm = 0.5 * diameter_mm;
+  part->radius_known = true;
+  points->known_count++;
+}
+
+/* Each disc and each diameter is used once. As many diameters as discs go by rank, which a wrong
+ * scale cannot confuse; else the nearest pairs go first. */
+static void match(fg_points *points, const sized *discs, size_t count, const sized *known,
+                  size_t known_count, bool *taken) {
+  for (size_t i = 0; i < count && count == known_count; i++)
+    know_radius(points, discs[i].index, known[i].diameter_mm);
+  if (count == known_count) return;
+  for (size_t round = 0; round < (count < known_count ? count : known_count); round++) {
+    size_t best_disc = count, best_known = known_count;
+    double best = INFINITY;
+    for (size_t i = 0; i < count; i++)
+      for (size_t k = 0; k < known_count && !taken[i]; k++) {
+        double off = fabs(log(discs[i].diameter_mm / known[k].diameter_mm));
+        if (taken[count + k] || off >= best) continue;
+        best = off;
+        best_disc = i;
+        best_known = k;
+      }
+    taken[best_disc] = taken[count + best_known] = true;
+    know_radius(points, discs[best_disc].index, known[best_known].diameter_mm);
+  }
+}
+
+/* Known diameters of the views [first, last), which are of one scan. */
+static fg_status match_scan(fg_context *ctx, fg_points *points, size_t first, size_t last) {
+  const fg_design *design = &points->views[first].measurement->design;
+  size_t count = last - first, known_count = design->diameter_count;
+  sized *discs = NULL;
+  bool *taken = NULL;
+  fg_status status = FG_OK;
+  if (!known_count) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count + known_count, sizeof *discs, (void **)&discs));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count + known_count, sizeof *taken, (void **)&taken));
+  for (size_t i = 0; i < count; i++)
+    discs[i] = (sized){points->views[first + i].disc->diameter_mm, first + i};
+  for (size_t k = 0; k < known_count; k++)
+    discs[count + k] = (sized){design->diameters_mm[k], k};
+  qsort(discs, count, sizeof *discs, compare_sized);
+  qsort(discs + count, known_count, sizeof *discs, compare_sized);
+  match(points, discs, count, discs + count, known_count, taken);
+exit:
+  free(discs);
+  free(taken);
+  return status;
+}
+
+static fg_status match_diameters(fg_context *ctx, fg_points *points) {
+  for (size_t first = 0; first < points->view_count;) {
+    size_t last = first;
+    while (last < points->view_count && points->views[last].scan == points->views[first].scan)
+      last++;
+    FG_TRY(match_scan(ctx, points, first, last));
+    first = last;
+  }
+  return FG_OK;
+}
+
+/* ---- rows ---- */
+
+/* Mean of a block's usable stations, taken in polar coordinates: a mean of points lies inside the
+ * circle by the sagitta. */
+static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_points_row *row) {
+  double n = 0, radius = 0, turn = 0, first = 0;
+  for (size_t k = from; k < to && k < disc->station_count; k++) {
+    const fg_disc_point *p = &disc->stations[k];
+    if (!p->used) continue;
+    double dx = p->at.x - disc->centre_mm.x, dy = p->at.y - disc->centre_mm.y;
+    double angle = atan2(dy, dx);
+    if (n == 0) first = angle;
+    turn += remainder(angle - first, 2 * M_PI);
+    radius += hypot(dx, dy);
+    n++;
+  }
+  if (n < 0.75 * (double)(to - from)) return false;
+  double angle = first + turn / n;
+  *row = (fg_points_row){.weight = n};
+  row->at = (fg_point){disc->centre_mm.x + radius / n * cos(angle),
+                       disc->centre_mm.y + radius / n * sin(angle)};
+  row->phi = remainder(angle, 2 * M_PI) / M_PI;
+  row->spread_mm =
+      (double)(to - from) * 2 * M_PI * disc->radius_mm / (double)disc->station_count / sqrt(12);
+  row->s_mm = (row->phi + 1) * M_PI * disc->radius_mm;
+  return true;
+}
+
+/* Robust sd of the rows against their neighbours at the lag: the noise of the edge, whatever form
+ * the disc has, and whatever jumps and waves a scanner puts into it. */
+static double noise_beside_form(const fg_disc *disc, const fg_points_row *rows, size_t count,
+                                double *work) {
+  for (size_t i = 0; i < count; i++) {
+    size_t before = (i + count - NEIGHBOUR_LAG) % count, after = (i + NEIGHBOUR_LAG) % count;
+    double sum = 0;
+    static const double share[3] = {1, -0.5, -0.5};
+    const size_t at[3] = {i, before, after};
+    for (int k = 0; k < 3; k++)
+      sum += share[k] *
+             hypot(rows[at[k]].at.x - disc->centre_mm.x, rows[at[k]].at.y - disc->centre_mm.y);
+    work[i] = fabs(1000 * sum) / sqrt(1.5);
+  }
+  return 1.4826 * fg_select(work, count, count / 2);
+}
+
+/* An edge that is no circle is no gauge: all that it leaves counts as its noise. */
+static double noise_of(const fg_disc *disc, const fg_points_row *rows, size_t count, double *work) {
+  if ((disc->flags & FG_BUMP_POOR_FIT) || count < ROWS_LEAST) return disc->rms_um;
+  return fmax(noise_beside_form(disc, rows, count, work), NOISE_LEAST_UM);
+}
+
+static fg_status add_disc(fg_context *ctx, fg_points *points, size_t v, size_t block) {
+  const fg_disc *disc = points->views[v].disc;
+  for (size_t k = 0; k < disc->station_count; k += block) {
+    fg_points_row row;
+    if (!average_block(disc, k, k + block, &row)) continue;
+    row.view = v;
+    row.part = points->views[v].part;
+    row.group = v;
+    FG_TRY(fg_points_add_row(ctx, points, &row));
+  }
+  return FG_OK;
+}
+
+static int compare_places(const void *a, const void *b) {
+  const fg_points_row *p = a, *q = b;
+  return (p->s_mm > q->s_mm) - (p->s_mm < q->s_mm);
+}
+
+/* Weights in units of the cleanest disc's row. */
+static fg_status weigh(fg_context *ctx, fg_points *points, size_t block) {
+  double *noise = NULL, *work = NULL, least = INFINITY;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, points->view_count, sizeof *noise, (void **)&noise));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *work, (void **)&work));
+  for (size_t first = 0; first < points->row_count;) {
+    size_t last = first, v = points->rows[first].view;
+    while (last < points->row_count && points->rows[last].view == v)
+      last++;
+    qsort(points->rows + first, last - first, sizeof *points->rows, compare_places);
+    noise[v] = noise_of(points->views[v].disc, points->rows + first, last - first, work);
+    least = fmin(least, noise[v]);
+    first = last;
+  }
+  for (size_t i = 0; i < points->row_count; i++) {
+    double ratio = least / noise[points->rows[i].view];
+    points->rows[i].weight *= FG_POINTS_BLOCK / (double)block * ratio * ratio;
+  }
+exit:
+  free(noise);
+  free(work);
+  return status;
+}
+
+fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, size_t count,
+                                fg_points *points) {
+  fg_status status = FG_OK;
+  size_t stations = 0;
+  points->discs = true;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->parts, (void **)&points->parts));
+  for (size_t v = 0; v < count; v++) {
+    points->views[v] = views[v];
+    points->views[v].part = v;
+    points->poses[v] = (fg_points_pose){views[v].disc->centre_mm, 0};
+    points->parts[v] = (fg_points_part){
+        .overall_radius_mm = views[v].disc->radius_mm, .sense = 1, .half_span_rad = M_PI};
+    stations += views[v].disc->station_count;
+  }
+  points->view_count = points->part_count = points->group_count = count;
+  size_t block = (stations + ROWS_MOST - 1) / ROWS_MOST;
+  if (block < BLOCK_LEAST) block = BLOCK_LEAST;
+  FG_TRY_EXIT(match_diameters(ctx, points));
+  for (size_t v = 0; v < count; v++)
+    FG_TRY_EXIT(add_disc(ctx, points, v, block));
+  FG_TRY_EXIT(weigh(ctx, points, block));
+  fg_points_find_frame(points);
+exit:
+  if (status != FG_OK) fg_points_free(points);
+  return status;
+}

@@ -1,0 +1,372 @@
+#include "rows/points.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
+ * tenth and more. */
+#define SAME_SHARE 0.2
+/* Edges lie so far beside the middle of the strip, and are moved by effects. */
+#define EDGE_ROOM_MM 0.2
+/* Knots of free curves that the few places of discs can tell. */
+enum { DISC_KNOTS = 12, COARSE_KNOTS = 6 };
+
+void fg_points_free(fg_points *points) {
+  if (!points) return;
+  for (size_t i = 0; points->parts && i < points->part_count; i++)
+    free(points->parts[i].bumps);
+  free(points->views);
+  free(points->poses);
+  free(points->parts);
+  free(points->rows);
+  memset(points, 0, sizeof *points);
+}
+
+static double turn_to(double angle, double near) {
+  return angle - 2 * M_PI * round((angle - near) / (2 * M_PI));
+}
+
+static double bump_direction(const fg_foil *foil, const fg_bump *bump) {
+  return atan2(bump->centre_mm.y - foil->overall.centre_mm.y,
+               bump->centre_mm.x - foil->overall.centre_mm.x);
+}
+
+static bool is_usable(const fg_bump *bump) {
+  return !(bump->flags & FG_BUMP_NOT_FITTED) && isfinite(bump->radius_mm);
+}
+
+/* The part as its first view shows it. */
+static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part *part) {
+  FG_TRY(fg_memory_allocate(ctx, foil->bump_count, sizeof *part->bumps, (void **)&part->bumps));
+  part->overall_radius_mm = foil->overall.radius_mm;
+  part->sense = foil->orientation == FG_CLOCKWISE ? 1 : -1;
+  double before = 0;
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    const fg_bump *bump = &foil->bumps[i];
+    if (!is_usable(bump)) continue;
+    double direction = bump_direction(foil, bump);
+    if (part->bump_count) direction = turn_to(direction, before);
+    before = direction;
+    part->bumps[part->bump_count++] = (fg_points_bump){.number = bump->number,
+                                                       .distance_mm = bump->centre_to_centre_mm,
+                                                       .direction_rad = direction,
+                                                       .radius_mm = bump->radius_mm};
+  }
+  if (!part->bump_count) return FG_OK;
+  double first = part->bumps[0].direction_rad;
+  double last = part->bumps[part->bump_count - 1].direction_rad;
+  part->middle_rad = 0.5 * (first + last);
+  part->half_span_rad = fmax(0.5 * fabs(last - first), 0.1) * (1 + 1.0 / (double)part->bump_count);
+  return FG_OK;
+}
+
+static const fg_bump *find_bump(const fg_foil *foil, int number) {
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number == number && is_usable(&foil->bumps[i])) return &foil->bumps[i];
+  return NULL;
+}
+
+/* Pose of a further view: the mean turn of its bumps. */
+static fg_status start_pose(fg_context *ctx, const fg_points_part *part, const fg_foil *foil,
+                            fg_points_pose *pose) {
+  double c = 0, s = 0, sense = foil->orientation == FG_CLOCKWISE ? 1 : -1;
+  size_t matched = 0;
+  for (size_t i = 0; i < part->bump_count; i++) {
+    const fg_bump *bump = find_bump(foil, part->bumps[i].number);
+    if (!bump) continue;
+    double turn = bump_direction(foil, bump) - part->bumps[i].direction_rad;
+    c += cos(turn);
+    s += sin(turn);
+    matched++;
+    if (fabs(bump->radius_mm / part->bumps[i].radius_mm - 1) > SAME_SHARE)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "bump %d is %.3f mm in one scan and %.3f mm in another: not the same foil",
+                     bump->number, part->bumps[i].radius_mm, bump->radius_mm);
+  }
+  if (sense != part->sense)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "the foil lies mirrored in one of the scans: not the same "
+                   "side on the glass, or not the same foil");
+  if (matched < part->bump_count || matched != foil->bump_count)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "the scans do not show the same bumps (%zu and %zu): not the same foil",
+                   part->bump_count, foil->bump_count);
+  pose->origin_mm = foil->overall.centre_mm;
+  pose->turn_rad = atan2(s, c);
+  return FG_OK;
+}
+
+static size_t index_of_bump(const fg_points_part *part, int number) {
+  for (size_t i = 0; i < part->bump_count; i++)
+    if (part->bumps[i].number == number) return i;
+  return part->bump_count;
+}
+
+/* The datum line of a station. */
+static fg_point datum_at(const fg_foil *foil, fg_datum datum, const fg_station *s) {
+  fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
+  if (datum == FG_DATUM_MID) return middle;
+  double left = hypot(s->left.x - foil->overall.centre_mm.x, s->left.y - foil->overall.centre_mm.y);
+  double right =
+      hypot(s->right.x - foil->overall.centre_mm.x, s->right.y - foil->overall.centre_mm.y);
+  bool inner_is_left = left < right;
+  return (datum == FG_DATUM_INNER) == inner_is_left ? s->left : s->right;
+}
+
+/* Mean over the fitted stations of [from, to). */
+static bool average_block(const fg_points_view *view, size_t from, size_t to, fg_points_row *row) {
+  const fg_foil *foil = view->foil;
+  double n = 0;
+  *row = (fg_points_row){0};
+  for (size_t k = from; k < to; k++) {
+    if (!foil->labels[k].fitted) continue;
+    const fg_station *s = &foil->strip.stations[k];
+    fg_point p = datum_at(foil, view->measurement->design.datum, s);
+    row->at.x += p.x;
+    row->at.y += p.y;
+    row->half_width_mm += 0.5 * hypot(s->right.x - s->left.x, s->right.y - s->left.y);
+    row->s_mm += s->s_mm;
+    n++;
+  }
+  if (n < 0.75 * (double)(to - from)) return false;
+  row->at.x /= n;
+  row->at.y /= n;
+  row->half_width_mm /= n;
+  row->s_mm /= n;
+  row->weight = n;
+  double step = foil->strip.step_mm, length = step * (double)(to - from);
+  double blur = 5e-4 * (foil->strip.blur_left_um + foil->strip.blur_right_um);
+  row->spread_mm = sqrt(length * length / 12 + blur * blur);
+  return true;
+}
+
+fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row) {
+  FG_TRY(fg_memory_reserve(ctx, points->row_count + 1, sizeof *points->rows, &points->row_capacity,
+                           (void **)&points->rows));
+  points->rows[points->row_count++] = *row;
+  return FG_OK;
+}
+
+static void count_arc(fg_points_part *part, int number, double length_mm) {
+  double radius = part->bumps[index_of_bump(part, number)].radius_mm, n = (double)++part->arcs;
+  part->half_arc_rad += (0.5 * length_mm / radius - part->half_arc_rad) / n;
+  part->mean_radius_mm += (radius - part->mean_radius_mm) / n;
+}
+
+/* The mean of points on an arc lies inside it by the sagitta's mean, (2h)²/24R with h half the
+ * block; a shift of some nanometres, put back by the caller's geometry being fitted to the same
+ * means. Rows of one run of labels [first, last]. */
+static fg_status add_run(fg_context *ctx, fg_points *points, size_t v, size_t first, size_t last,
+                         size_t group) {
+  const fg_points_view *view = &points->views[v];
+  const fg_foil *foil = view->foil;
+  const fg_station_label *label = &foil->labels[first];
+  double length = foil->strip.stations[last].s_mm;
+  bool reversed = foil->bump_count > 1 &&
+                  foil->bumps[0].arc_start_mm > foil->bumps[foil->bump_count - 1].arc_start_mm;
+  double whole = foil->strip.stations[foil->strip.count - 1].s_mm;
+  double start = foil->strip.stations[first].s_mm;
+  fg_points_part *part = &points->parts[view->part];
+  if (label->kind == FG_ARC_BUMP) count_arc(part, label->number, length - start);
+  for (size_t k = first; k + FG_POINTS_BLOCK <= last + 1; k += FG_POINTS_BLOCK) {
+    fg_points_row row;
+    if (!average_block(view, k, k + FG_POINTS_BLOCK, &row)) continue;
+    row.view = v;
+    row.part = view->part;
+    row.group = group;
+    row.bump = label->kind == FG_ARC_BUMP ? label->number : 0;
+    row.bump_index = index_of_bump(part, row.bump);
+    row.phi = 2 * (row.s_mm - start) / (length - start) - 1;
+    if (reversed) {
+      row.phi = -row.phi;
+      row.s_mm = whole - row.s_mm;
+    }
+    FG_TRY(fg_points_add_row(ctx, points, &row));
+  }
+  return FG_OK;
+}
+
+static bool is_arc(const fg_station_label *label) {
+  return label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND;
+}
+
+static bool same_run(const fg_station_label *a, const fg_station_label *b) {
+  return a->kind == b->kind && a->number == b->number;
+}
+
+/* Lands are numbered over all bumps of a foil, also those that no circle fitted. */
+static size_t land_numbers(const fg_foil *foil) {
+  int most = 0;
+  for (size_t k = 0; k < foil->strip.count; k++)
+    if (foil->labels[k].kind == FG_ARC_LAND && foil->labels[k].number > most)
+      most = foil->labels[k].number;
+  return (size_t)most + 1;
+}
+
+/* Groups are what was drawn independently: every bump (over all views of its part) and land. */
+static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t first_group) {
+  const fg_foil *foil = points->views[v].foil;
+  const fg_points_part *part = &points->parts[points->views[v].part];
+  for (size_t k = 0; k < foil->strip.count;) {
+    const fg_station_label *label = &foil->labels[k];
+    size_t last = k;
+    while (last + 1 < foil->strip.count && same_run(&foil->labels[last + 1], label))
+      last++;
+    size_t group = label->kind == FG_ARC_BUMP
+                       ? first_group + index_of_bump(part, label->number)
+                       : first_group + part->bump_count + (size_t)label->number;
+    bool known =
+        label->kind != FG_ARC_BUMP || index_of_bump(part, label->number) < part->bump_count;
+    if (is_arc(label) && known) FG_TRY(add_run(ctx, points, v, k, last, group));
+    k = last + 1;
+  }
+  return FG_OK;
+}
+
+void fg_points_find_frame(fg_points *points) {
+  fg_field_frame *f = &points->frame;
+  f->knots = points->coarse ? COARSE_KNOTS : points->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
+  for (int axis = 0; axis < 2; axis++)
+    f->low_mm[axis] = 0;
+  for (size_t v = 0; v < points->view_count; v++) {
+    const fg_measurement *m = points->views[v].measurement;
+    f->high_mm[0] = fmax(f->high_mm[0], (double)m->width_px * 25.4 / m->dpi[0]);
+    f->high_mm[1] = fmax(f->high_mm[1], (double)m->height_px * 25.4 / m->dpi[1]);
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    f->centre_mm[axis] = 0.5 * (f->low_mm[axis] + f->high_mm[axis]);
+    f->first_mm[axis] = f->high_mm[axis];
+    f->last_mm[axis] = f->low_mm[axis];
+    for (size_t i = 0; i < points->row_count; i++) {
+      double at = axis ? points->rows[i].at.y : points->rows[i].at.x;
+      f->first_mm[axis] = fmin(f->first_mm[axis], at - EDGE_ROOM_MM);
+      f->last_mm[axis] = fmax(f->last_mm[axis], at + EDGE_ROOM_MM);
+    }
+  }
+}
+
+/* Gives empty group numbers up, so that groups are 0 .. group_count - 1. */
+static fg_status pack_groups(fg_context *ctx, fg_points *points, size_t most) {
+  size_t *packed = NULL;
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *packed, (void **)&packed));
+  for (size_t i = 0; i < points->row_count; i++)
+    packed[points->rows[i].group] = 1;
+  size_t next = 0;
+  for (size_t g = 0; g < most; g++)
+    packed[g] = packed[g] ? next++ : 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    points->rows[i].group = packed[points->rows[i].group];
+  points->group_count = next;
+  free(packed);
+  return FG_OK;
+}
+
+static fg_status fill(fg_context *ctx, fg_points *points) {
+  size_t first_group = 0;
+  FG_TRY(
+      fg_memory_allocate(ctx, points->part_count, sizeof *points->parts, (void **)&points->parts));
+  for (size_t p = 0; p < points->part_count; p++) {
+    size_t groups = 0;
+    for (size_t v = 0; v < points->view_count; v++) {
+      const fg_foil *foil = points->views[v].foil;
+      if (points->views[v].part != p) continue;
+      fg_points_part *part = &points->parts[p];
+      if (!part->bumps) {
+        FG_TRY(start_part(ctx, foil, part));
+        points->poses[v] = (fg_points_pose){foil->overall.centre_mm, 0};
+      } else {
+        FG_TRY(start_pose(ctx, part, foil, &points->poses[v]));
+      }
+      FG_TRY(add_view(ctx, points, v, first_group));
+      size_t own = part->bump_count + land_numbers(foil);
+      groups = own > groups ? own : groups;
+    }
+    first_group += groups;
+  }
+  fg_points_find_frame(points);
+  return pack_groups(ctx, points, first_group);
+}
+
+/* Views that are left out may take a part with them: it has no geometry. Parts are numbered anew,
+ * 0 .. part_count - 1 in the order of their first views. */
+static fg_status take_views(fg_context *ctx, const fg_points_view *views, size_t count,
+                            fg_points *points) {
+  size_t *given = NULL; /* the caller's number of each new part */
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *given, (void **)&given));
+  for (size_t i = 0; i < count; i++) {
+    size_t part = 0;
+    if (views[i].foil->flags & FG_FOIL_NOT_MEASURED) continue;
+    while (part < points->part_count && given[part] != views[i].part)
+      part++;
+    if (part == points->part_count) given[points->part_count++] = views[i].part;
+    points->views[points->view_count] = views[i];
+    points->views[points->view_count++].part = part;
+  }
+  free(given);
+  return FG_OK;
+}
+
+/* Groups together, and within them views and places in order: what the engine expects. */
+static int compare_rows(const void *a, const void *b) {
+  const fg_points_row *p = a, *q = b;
+  if (p->group != q->group) return (p->group > q->group) - (p->group < q->group);
+  if (p->view != q->view) return (p->view > q->view) - (p->view < q->view);
+  return (p->s_mm > q->s_mm) - (p->s_mm < q->s_mm);
+}
+
+/* Range of the rows' psi as the measured circles place them. */
+static fg_status find_range(fg_context *ctx, fg_points *points) {
+  double *residual = NULL;
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *residual, (void **)&residual));
+  fg_points_residual(points, NULL, residual, NULL);
+  free(residual);
+  points->psi_rad[0] = INFINITY;
+  points->psi_rad[1] = -INFINITY;
+  for (size_t i = 0; i < points->row_count; i++) {
+    points->psi_rad[0] = fmin(points->psi_rad[0], points->rows[i].psi);
+    points->psi_rad[1] = fmax(points->psi_rad[1], points->rows[i].psi);
+  }
+  return FG_OK;
+}
+
+fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
+                          fg_points *points) {
+  memset(points, 0, sizeof *points);
+  for (size_t i = 1; i < count; i++)
+    if (!views[i].disc != !views[0].disc)
+      return fg_fail(ctx, FG_ERR_DATA, "foils and discs in one loop: give scans of one kind");
+  if (count && views[0].disc) return fg_points_build_discs(ctx, views, count, points);
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
+  FG_TRY_EXIT(take_views(ctx, views, count, points));
+  FG_TRY_EXIT(fill(ctx, points));
+  if (points->row_count) qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
+  FG_TRY_EXIT(find_range(ctx, points));
+exit:
+  if (status != FG_OK) fg_points_free(points);
+  return status;
+}
+
+double fg_points_integral(const fg_points *points, const size_t *row, size_t count,
+                          const double *value) {
+  enum { LAGS = 16 };
+  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
+  for (size_t i = 0; i < count; i++)
+    for (size_t lag = 0; lag < LAGS && i + lag < count; lag++) {
+      const fg_points_row *a = &points->rows[row ? row[i] : i];
+      const fg_points_row *b = &points->rows[row ? row[i + lag] : i + lag];
+      if (a->view != b->view || a->group != b->group) break;
+      products[lag] += value[i] * value[i + lag];
+      pairs[lag]++;
+    }
+  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
+    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
+    if (rho < 2 / sqrt(pairs[lag])) break;
+    integral += 2 * rho;
+  }
+  return integral;
+}

@@ -1,0 +1,484 @@
+#include "scan_loop/bumps.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+
+const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_RESPONSES] = {
+    {"bump_radius_mm", "um", "uniform springback", 1000},
+    {"bump_angle_deg", "deg", "constant arc length", 1},
+};
+
+enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
+
+/* Five bumps have 120 orders, nine 256 pairs of signs: below 0.005 beside their mirror images from
+ * six and nine bumps on. */
+enum { ORDERS = 6, SIGNS = 9 };
+
+/* A claim must be this many times what all bumps together may be off by. */
+static const double beyond_doubt = 3;
+static const double accept_p = 0.01; /* over both responses */
+
+fg_status fg_scan_loop_bumps_note(fg_context *ctx, fg_scan_loop_bumps *bumps, const char *format,
+                                  ...) {
+  char text[400];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  FG_TRY(fg_memory_reserve(ctx, bumps->notes + 1, sizeof *bumps->note, &bumps->note_capacity,
+                           (void **)&bumps->note));
+  bumps->note[bumps->notes] = NULL;
+  FG_TRY(fg_text_print(ctx, &bumps->note[bumps->notes], "%s", text));
+  bumps->notes++;
+  return FG_OK;
+}
+
+/* ---- the bumps ---- */
+
+static bool is_usable(const fg_bump *bump) {
+  const unsigned wrong = FG_BUMP_CRUSHED | FG_BUMP_NOT_FITTED | FG_BUMP_NO_CROSSING;
+  return !(bump->flags & wrong) && isfinite(bump->radius_mm) && isfinite(bump->bump_angle_deg) &&
+         isfinite(bump->height_mm);
+}
+
+static const fg_bump *find_number(const fg_foil *foil, int number) {
+  for (size_t b = 0; b < foil->bump_count; b++)
+    if (foil->bumps[b].number == number) return &foil->bumps[b];
+  return NULL;
+}
+
+static fg_scan_loop_bump *find_row(fg_scan_loop_bumps *bumps, size_t part, int number) {
+  for (size_t i = 0; i < bumps->count; i++)
+    if (bumps->bump[i].part == part && bumps->bump[i].number == number) return &bumps->bump[i];
+  return NULL;
+}
+
+/* How far one view's value may be off together with all others. */
+static double doubt_of(double u, double before, double after, bool open) {
+  double moved = isfinite(before) ? after - before : 0;
+  return open ? hypot(u, moved) : u;
+}
+
+/* Adds a view to a bump's sums; `views` counts them. */
+static void add_view(fg_scan_loop_bump *row, const fg_foil *foil, const fg_bump *bump,
+                     const fg_bump *before, bool open) {
+  double was[2] = {before ? before->radius_mm : NAN, before ? before->bump_angle_deg : NAN};
+  row->overall_mm += foil->overall.radius_mm;
+  row->height_mm += bump->height_mm;
+  row->value[RADIUS] += bump->radius_mm;
+  row->value[ANGLE] += bump->bump_angle_deg;
+  row->doubt[RADIUS] += doubt_of(bump->u_radius_mm, was[RADIUS], bump->radius_mm, open);
+  row->doubt[ANGLE] += doubt_of(bump->u_bump_angle_deg, was[ANGLE], bump->bump_angle_deg, open);
+}
+
+static void divide(fg_scan_loop_bump *row, double views) {
+  row->overall_mm /= views;
+  row->height_mm /= views;
+  for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++) {
+    row->value[r] /= views;
+    row->doubt[r] /= views;
+  }
+}
+
+static int by_place(const void *a, const void *b) {
+  const fg_scan_loop_bump *x = a, *y = b;
+  if (x->part != y->part) return x->part < y->part ? -1 : 1;
+  return (x->number > y->number) - (x->number < y->number);
+}
+
+static void add_foil(const fg_scan_loop_bumps_request *request, size_t scan, size_t foil,
+                     size_t part, fg_scan_loop_bumps *bumps, double *views) {
+  const fg_foil *after = &request->after[scan].foils[foil];
+  const fg_foil *before = &request->before[scan].foils[foil];
+  if (after->flags & FG_FOIL_NOT_MEASURED) return;
+  if (after->flags & FG_FOIL_NO_LIP) bumps->lip = false;
+  for (size_t b = 0; b < after->bump_count; b++) {
+    const fg_bump *bump = &after->bumps[b];
+    if (!is_usable(bump)) continue;
+    fg_scan_loop_bump *row = find_row(bumps, part, bump->number);
+    if (!row) {
+      row = &bumps->bump[bumps->count++];
+      *row = (fg_scan_loop_bump){
+          .part = part, .number = bump->number, .aside = request->hold_out[scan]};
+    }
+    add_view(row, after, bump, find_number(before, bump->number), request->open);
+    views[row - bumps->bump]++;
+  }
+}
+
+/* One row per bump of a part. A part's scans that were kept aside show nothing new of it. */
+static fg_status collect(fg_context *ctx, const fg_scan_loop_bumps_request *request,
+                         fg_scan_loop_bumps *bumps) {
+  size_t total = 0, part = 0;
+  double *views = NULL;
+  for (size_t s = 0; s < request->scan_count; s++)
+    for (size_t f = 0; f < request->after[s].foil_count; f++)
+      total += request->after[s].foils[f].bump_count;
+  FG_TRY(fg_memory_allocate(ctx, total, sizeof *bumps->bump, (void **)&bumps->bump));
+  FG_TRY(fg_memory_allocate(ctx, total, sizeof *views, (void **)&views));
+  bumps->lip = request->before[0].design.form == FG_FORM_CLASSICAL;
+  for (size_t s = 0; s < request->scan_count; s++) {
+    if (request->same_foil && request->hold_out[s]) continue;
+    for (size_t f = 0; f < request->after[s].foil_count; f++)
+      add_foil(request, s, f, request->same_foil ? f : part++, bumps, views);
+  }
+  for (size_t i = 0; i < bumps->count; i++)
+    divide(&bumps->bump[i], views[i]);
+  free(views);
+  qsort(bumps->bump, bumps->count, sizeof *bumps->bump, by_place);
+  for (size_t i = 0; i < bumps->count; i++)
+    bumps->parts += !i || bumps->bump[i].part != bumps->bump[i - 1].part;
+  return FG_OK;
+}
+
+/* ---- the problem ---- */
+
+static fg_status build_table(fg_context *ctx, const fg_scan_loop_bumps *bumps, fg_table *table) {
+  fg_status status = FG_OK;
+  double *column = NULL;
+  size_t n = bumps->count;
+  *table = (fg_table){0};
+  FG_TRY(fg_memory_allocate(ctx, n, 4 * sizeof *column, (void **)&column));
+  for (size_t i = 0; i < n; i++) {
+    column[i] = (double)bumps->bump[i].part + 1;
+    column[n + i] = bumps->bump[i].number;
+    column[2 * n + i] = bumps->bump[i].value[RADIUS];
+    column[3 * n + i] = bumps->bump[i].value[ANGLE];
+  }
+  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "foil", column, n));
+  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "bump", column + n, n));
+  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "bump_radius_mm", column + 2 * n, n));
+  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "bump_angle_deg", column + 3 * n, n));
+exit:
+  free(column);
+  return status;
+}
+
+static void drop_coordinate(fg_loop_problem *problem, const char *name) {
+  for (size_t c = 0; c < problem->coordinates; c++) {
+    if (strcmp(problem->coordinate[c].name, name) != 0) continue;
+    free(problem->coordinate[c].value); /* numbers: no level names */
+    problem->coordinates--;
+    memmove(&problem->coordinate[c], &problem->coordinate[c + 1],
+            (problem->coordinates - c) * sizeof *problem->coordinate);
+    return;
+  }
+}
+
+static fg_status build_problem(fg_context *ctx, const fg_scan_loop_bumps *bumps,
+                               const fg_table *table, const fg_design *design, size_t response,
+                               fg_loop_table_problem *out) {
+  bool few = bumps->parts < FG_SCAN_LOOP_BUMP_FOILS;
+  const fg_loop_table_spec spec = {
+      .response = fg_scan_loop_bump_responses[response].name,
+      .model = response == ANGLE         ? "arc_length"
+               : few && bumps->parts > 1 ? "1 + factor(foil)"
+                                         : "1",
+      .group = "foil",
+      .hold_out = "0",
+      .design = design,
+  };
+  FG_TRY(fg_loop_table_problem_build(ctx, table, &spec, out));
+  fg_loop_problem *problem = &out->problem;
+  for (size_t i = 0; i < problem->rows; i++)
+    problem->aside[i] = bumps->bump[out->row[i]].aside;
+  drop_coordinate(problem, "foil");
+  if (!bumps->lip) drop_coordinate(problem, "bump");
+  if (!few) return FG_OK;
+  problem->few = true;
+  for (size_t i = 0; i < problem->rows; i++)
+    problem->group[i] = i;
+  problem->groups = problem->rows;
+  problem->group_level = problem->correlated = false;
+  return FG_OK;
+}
+
+/* ---- judging ---- */
+
+static bool over_bumps(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return at->roles & FG_LOOP_BUMP && at->distinct >= 4;
+}
+
+static void choose_effects(fg_scan_loop_bumps *bumps) {
+  static const char *const wanted[] = {"part.lip_decay", "part.stretch", "table.order_drift"};
+  size_t count = 0;
+  for (size_t k = 0; k < FG_SCAN_LOOP_BUMP_EFFECTS; k++)
+    for (const fg_loop_effect *e = fg_loop_table_effects(); e->id; e++) {
+      if (strcmp(e->id, wanted[k]) != 0) continue;
+      bumps->effect[count] = *e;
+      if (strcmp(e->id, "part.stretch") != 0) bumps->effect[count].accepts = over_bumps;
+      count++;
+    }
+}
+
+static double part_mean(const fg_scan_loop_bump_level *level, const fg_scan_loop_bumps *bumps,
+                        size_t part, bool with_effects) {
+  double sum = 0, n = 0;
+  const fg_loop_problem *problem = &level->problem.problem;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (bumps->bump[level->problem.row[i]].part != part) continue;
+    sum += problem->residual[i] - (with_effects ? level->result.effect_fit[i] : 0);
+    n++;
+  }
+  return sum / n;
+}
+
+/* About the foil's own mean where the model has one, as the radius has. */
+static void find_errors(fg_scan_loop_bump_level *level, const fg_scan_loop_bumps *bumps,
+                        bool own_mean) {
+  const fg_loop_problem *problem = &level->problem.problem;
+  double sum[2][2] = {{0}}, n[2] = {0}, base = 0;
+  for (size_t i = 0; i < problem->rows; i++) {
+    const fg_scan_loop_bump *bump = &bumps->bump[level->problem.row[i]];
+    for (int after = 0; after < 2; after++) {
+      double value = problem->residual[i] - (after ? level->result.effect_fit[i] : 0);
+      if (own_mean) value -= part_mean(level, bumps, bump->part, after);
+      sum[bump->aside][after] += value * value;
+    }
+    n[bump->aside]++;
+    if (!bump->aside) base += problem->response[i] - level->result.effect_fit[i];
+  }
+  for (int after = 0; after < 2; after++) {
+    level->error.rms[after] = sqrt(sum[0][after] / n[0]);
+    level->error.held_out_rms[after] = n[1] > 0 ? sqrt(sum[1][after] / n[1]) : NAN;
+  }
+  level->base = base / n[0];
+}
+
+/* Of few bumps the engine knows no curves, but counts them: that pays for the second response. */
+static double over_responses(const fg_loop_problem *problem, double p_value) {
+  return fmin(1, (problem->few ? 1 : FG_SCAN_LOOP_BUMP_RESPONSES) * p_value);
+}
+
+static bool is_exchange(const fg_loop_candidate *candidate) {
+  return candidate->effect && !strcmp(candidate->effect->id, "table.exchanged_runs");
+}
+
+/* Bumps do not change places. */
+static void strip_aliases(fg_loop_claim *claim) {
+  size_t kept = 0;
+  for (size_t i = 0; i < claim->aliases; i++)
+    if (!is_exchange(&claim->alias[i].candidate) &&
+        !(claim->alias[i].sum && is_exchange(&claim->alias[i].second)))
+      claim->alias[kept++] = claim->alias[i];
+  claim->aliases = kept;
+  if (!kept) claim->verdict = FG_LOOP_FOUND;
+}
+
+/* An outlier is said, not claimed; what is no larger than what the edges leave in doubt is no
+ * claim, however steady it is. */
+static fg_status judge_claim(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
+                             uint64_t seed, fg_loop_claim *claim, bool *kept) {
+  const fg_scan_loop_bump_level *level = &bumps->level[response];
+  const fg_loop_problem *problem = &level->problem.problem;
+  const fg_scan_loop_bump_response *what = &fg_scan_loop_bump_responses[response];
+  double least = level->least, p_value;
+  claim->p_value = over_responses(problem, claim->p_value);
+  const char *id = claim->candidate.effect->id;
+  *kept = false;
+  strip_aliases(claim);
+  if (is_exchange(&claim->candidate)) return FG_OK;
+  if (!strcmp(id, "table.outlier")) {
+    const fg_scan_loop_bump *bump = &bumps->bump[level->problem.row[claim->candidate.row[0]]];
+    return fg_scan_loop_bumps_note(ctx, bumps,
+                                   "bumps: %s of bump %d of foil %zu stands out from the others",
+                                   what->name, bump->number, bump->part + 1);
+  }
+  if (!(claim->amplitude > least))
+    return fg_scan_loop_bumps_note(
+        ctx, bumps,
+        "bumps: %s of %s is %.3g %s, which is within what the edges leave in doubt "
+        "(%.3g %s): no claim",
+        id, what->name, what->scale * claim->amplitude, what->unit, what->scale * least,
+        what->unit);
+  if (problem->few) {
+    FG_TRY(fg_scan_loop_bumps_null_p(ctx, problem, claim, seed, &p_value));
+    p_value *= FG_SCAN_LOOP_BUMP_RESPONSES;
+    claim->p_value = fmin(1, fmax(claim->p_value, p_value));
+  }
+  *kept = claim->p_value < accept_p;
+  return FG_OK;
+}
+
+/* The effects of the claims that stay, and of the curve. */
+static fg_status find_effects(fg_context *ctx, fg_scan_loop_bump_level *level) {
+  const fg_loop_problem *problem = &level->problem.problem;
+  fg_loop_result *result = &level->result;
+  double *one = NULL;
+  FG_TRY(fg_memory_allocate(ctx, problem->rows, sizeof *one, (void **)&one));
+  memset(result->effect_fit, 0, problem->rows * sizeof *one);
+  for (size_t m = 0; m < result->claims; m++) {
+    FG_TRY(fg_loop_claim_evaluate(ctx, problem, &result->claim[m], one));
+    for (size_t i = 0; i < problem->rows; i++)
+      result->effect_fit[i] += one[i];
+  }
+  for (size_t i = 0; result->has_curve && i < problem->rows; i++)
+    result->effect_fit[i] +=
+        fg_loop_curve_at(&result->curve, problem->coordinate[result->curve.coordinate].value[i]);
+  free(one);
+  return FG_OK;
+}
+
+/* P-values over both responses; amplitudes that would have been claimed. */
+static void judge_rejected(fg_scan_loop_bump_level *level) {
+  const fg_loop_problem *problem = &level->problem.problem;
+  size_t rows = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    rows += !problem->aside[i];
+  for (size_t k = 0; k < level->result.rejects; k++) {
+    fg_loop_rejected *one = &level->result.rejected[k];
+    size_t needed = strcmp(one->candidate.effect->id, "part.stretch") ? ORDERS : SIGNS;
+    one->p_value = over_responses(problem, one->p_value);
+    if (problem->few && rows < needed) one->smallest_detectable = NAN;
+    if (one->smallest_detectable < level->least) one->smallest_detectable = level->least;
+    if (isnan(one->smallest_detectable) && one->verdict == FG_LOOP_ABSENT)
+      one->verdict = FG_LOOP_INCONCLUSIVE;
+  }
+  level->result.curve.p_value = over_responses(problem, level->result.curve.p_value);
+}
+
+static fg_status judge_claims(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t response,
+                              uint64_t seed) {
+  fg_scan_loop_bump_level *level = &bumps->level[response];
+  fg_loop_result *result = &level->result;
+  size_t count = 0;
+  for (size_t m = 0; m < result->claims; m++) {
+    bool kept;
+    FG_TRY(judge_claim(ctx, bumps, response, seed, &result->claim[m], &kept));
+    if (kept)
+      result->claim[count++] = result->claim[m];
+    else
+      level->dropped[level->drops++] = result->claim[m];
+  }
+  result->claims = count;
+  judge_rejected(level);
+  if (result->has_curve && !(result->curve.rms > level->least)) result->has_curve = false;
+  return find_effects(ctx, level);
+}
+
+static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, size_t response,
+                       const fg_table *table, fg_scan_loop_bumps *bumps) {
+  fg_scan_loop_bump_level *level = &bumps->level[response];
+  double sum = 0, n = 0;
+  FG_TRY(build_problem(ctx, bumps, table, design, response, &level->problem));
+  const fg_loop_problem *problem = &level->problem.problem;
+  const fg_loop_options options = {
+      .effects = bumps->effect,
+      .seed = seed,
+      .accept_p = problem->few ? accept_p : accept_p / FG_SCAN_LOOP_BUMP_RESPONSES};
+  fg_status status = fg_loop_run(ctx, problem, &options, &level->result);
+  if (status != FG_OK) {
+    fg_loop_table_problem_free(&level->problem);
+    return status;
+  }
+  level->judged = true;
+  for (size_t i = 0; i < bumps->count; i++)
+    if (!bumps->bump[i].aside) {
+      sum += bumps->bump[i].doubt[response];
+      n++;
+    }
+  level->least = beyond_doubt * sum / n;
+  FG_TRY(judge_claims(ctx, bumps, response, seed));
+  find_errors(level, bumps, response == RADIUS);
+  return FG_OK;
+}
+
+/* h from the two circles: X = R cos(alpha/2) + sqrt(R0² - R² sin²(alpha/2)), h = R0 - X + R. */
+static double height_of(double overall_mm, double radius_mm, double angle_deg) {
+  double half = angle_deg * M_PI / 360, s = radius_mm * sin(half);
+  return overall_mm - radius_mm * cos(half) - sqrt(overall_mm * overall_mm - s * s) + radius_mm;
+}
+
+/* Predicted from the declared model alone, and with what was found. */
+static void find_height_errors(const fg_design *design, fg_scan_loop_bumps *bumps) {
+  const fg_scan_loop_bump_level *radius = &bumps->level[RADIUS], *angle = &bumps->level[ANGLE];
+  double sum[2][2] = {{0}}, n[2] = {0};
+  for (size_t i = 0; i < bumps->count; i++) {
+    /* Both problems hold the same rows in the same order. */
+    const fg_scan_loop_bump *bump = &bumps->bump[radius->problem.row[i]];
+    for (int after = 0; after < 2; after++) {
+      double effect_mm = after ? radius->result.effect_fit[i] : 0;
+      double effect_deg = after ? angle->result.effect_fit[i] : 0;
+      double r = part_mean(radius, bumps, bump->part, after) + effect_mm;
+      double alpha = design->bump_angle_deg * design->bump_radius_mm / r + effect_deg;
+      double error = bump->height_mm - height_of(bump->overall_mm, r, alpha);
+      sum[bump->aside][after] += error * error;
+    }
+    n[bump->aside]++;
+  }
+  for (int after = 0; after < 2; after++) {
+    bumps->height.rms[after] = sqrt(sum[0][after] / n[0]);
+    bumps->height.held_out_rms[after] = n[1] > 0 ? sqrt(sum[1][after] / n[1]) : NAN;
+  }
+}
+
+static fg_status say_power(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t rows) {
+  if (!bumps->lip)
+    FG_TRY(fg_scan_loop_bumps_note(
+        ctx, bumps,
+        "bumps: without a lip their numbers have no order: decay from the lip and trends "
+        "over the number are not judged"));
+  if (bumps->parts >= FG_SCAN_LOOP_BUMP_FOILS || rows >= SIGNS) return FG_OK;
+  return fg_scan_loop_bumps_note(
+      ctx, bumps,
+      "bumps: %zu measured: %s can be told from chance, whatever its size; it takes %d%s, "
+      "on one foil or several",
+      rows, rows < ORDERS ? "no effect over them" : "no arc length unlike the design's", SIGNS,
+      rows < ORDERS ? " (6 for a trend over their number)" : "");
+}
+
+static fg_status run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
+                     fg_scan_loop_bumps *bumps) {
+  const fg_design *design = &request->before[0].design;
+  fg_status status = FG_OK;
+  fg_table table = {0};
+  size_t rows = 0;
+  for (size_t i = 0; i < bumps->count; i++)
+    rows += !bumps->bump[i].aside;
+  FG_TRY(say_power(ctx, bumps, rows));
+  if (rows < FG_SCAN_LOOP_BUMP_ROWS + bumps->parts - 1) return FG_OK;
+  FG_TRY_EXIT(build_table(ctx, bumps, &table));
+  for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
+    FG_TRY_EXIT(judge(ctx, design, request->seed, r, &table, bumps));
+  find_height_errors(design, bumps);
+exit:
+  fg_table_free(&table);
+  return status;
+}
+
+fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
+                                 fg_scan_loop_bumps *bumps) {
+  *bumps = (fg_scan_loop_bumps){
+      .height = {{NAN, NAN}, {NAN, NAN}},
+      .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
+  if (request->before[0].design.form == FG_FORM_DISCS) return FG_OK; /* no bumps, nothing to say */
+  if (request->bent)
+    return fg_scan_loop_bumps_note(
+        ctx, bumps,
+        "the bumps deviate from circles: which circle is a bump's is a matter "
+        "of basis, and the bumps are not held against the springback model");
+  choose_effects(bumps);
+  fg_status status = collect(ctx, request, bumps);
+  if (status == FG_OK) status = run(ctx, request, bumps);
+  if (status != FG_OK) fg_scan_loop_bumps_free(bumps);
+  return status;
+}
+
+void fg_scan_loop_bumps_free(fg_scan_loop_bumps *bumps) {
+  for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++) {
+    fg_loop_result_free(&bumps->level[r].result);
+    fg_loop_table_problem_free(&bumps->level[r].problem);
+  }
+  for (size_t i = 0; i < bumps->notes; i++)
+    free(bumps->note[i]);
+  free(bumps->note);
+  free(bumps->bump);
+  *bumps = (fg_scan_loop_bumps){0};
+}

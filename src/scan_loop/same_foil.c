@@ -1,0 +1,134 @@
+/* Whether scans that are said to show one foil do.
+ *
+ * Effects of a scanner or a part follow few numbers, or smooth curves; another foil differs bump by
+ * bump, in a radius, a distance and a direction each. So scans of two foils leave under one
+ * geometry what no set of effects takes, while a geometry for each scan leaves noise alone. Scans
+ * of one foil with an effect that is not in the table are no such case: what one geometry cannot
+ * follow there, geometries of their own cannot either.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "scan_loop/state.h"
+
+/* By so much Schwarz's criterion must prefer geometries of their own: on one foil it never did by
+ * more than 40, on two by hundreds (reports/loop_same_foil.md). */
+#define PREFERENCE_LEAST 60.0
+/* Exact data leave no less. */
+#define NOTHING_UM2 1e-8
+/* With a geometry for each scan many effects look like each other; so few explain by themselves. */
+enum { EFFECTS_MOST = 1 };
+
+/* Every scan a part of its own, and what a search leaves then. */
+typedef struct apart {
+  fg_points points;
+  fg_effect_set set;
+  fg_explanations explanations;
+  double *residual_um;
+} apart;
+
+static double mean_square(const fg_points *points, const double *residual_um) {
+  double sum = 0, weight = 0;
+  for (size_t i = 0; i < points->row_count; i++) {
+    if (points->views[points->rows[i].view].aside) continue;
+    sum += points->rows[i].weight * residual_um[i] * residual_um[i];
+    weight += points->rows[i].weight;
+  }
+  return weight > 0 ? sum / weight : 0;
+}
+
+static size_t rows_that_count(const fg_points *points) {
+  size_t rows = 0;
+  for (size_t i = 0; i < points->row_count; i++)
+    rows += points->rows[i].weight > 0 && !points->views[points->rows[i].view].aside;
+  return rows;
+}
+
+static bool has_curve(const fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    if (fg_effect_is_free(set->effects[e].kind)) return true;
+  return false;
+}
+
+static fg_status set_apart(fg_context *ctx, const fg_points *together, apart *a) {
+  fg_points_view *views = NULL;
+  size_t count = 0;
+  FG_TRY(fg_memory_allocate(ctx, together->view_count, sizeof *views, (void **)&views));
+  for (size_t v = 0; v < together->view_count; v++) {
+    if (together->views[v].aside) continue;
+    views[count] = together->views[v];
+    views[count].part = count;
+    count++;
+  }
+  fg_status status = fg_points_build(ctx, views, count, &a->points);
+  free(views);
+  if (status != FG_OK) return status;
+  a->points.coarse = true; /* only few effects count here, and curves not at all */
+  a->points.frame = together->frame;
+  FG_TRY(fg_memory_allocate(ctx, a->points.row_count, sizeof *a->residual_um,
+                            (void **)&a->residual_um));
+  return fg_explain_settle(ctx, &a->points, &a->set, &a->explanations, a->residual_um);
+}
+
+static size_t numbers_of(const fg_points *points, const fg_effect_set *set) {
+  size_t numbers = points->parameters;
+  for (size_t e = 0; e < set->count; e++)
+    numbers += set->effects[e].columns + set->effects[e].shapes;
+  return numbers;
+}
+
+/* By how much Schwarz's criterion prefers them. */
+static double preference(const fg_scan_loop *loop, const apart *a) {
+  double together = fmax(mean_square(&loop->points, loop->residual_after), NOTHING_UM2);
+  double alone = fmax(mean_square(&a->points, a->residual_um), NOTHING_UM2);
+  double rows = (double)rows_that_count(&a->points) / a->explanations.integral;
+  double more =
+      (double)numbers_of(&a->points, &a->set) - (double)numbers_of(&loop->points, &loop->set);
+  return rows * log(together / alone) - more * log(rows);
+}
+
+/* The bump that differs most between two views of a part, as it was measured. */
+static fg_status say_two_foils(fg_context *ctx, const fg_scan_loop *loop, const apart *a) {
+  const fg_points *points = &loop->points;
+  const fg_bump *one = NULL, *other = NULL;
+  for (size_t v = 0; v < points->view_count; v++)
+    for (size_t w = 0; w < v; w++) {
+      if (points->views[v].part != points->views[w].part) continue;
+      const fg_foil *f = points->views[v].foil, *g = points->views[w].foil;
+      for (size_t i = 0; i < f->bump_count; i++)
+        for (size_t k = 0; k < g->bump_count; k++) {
+          if (f->bumps[i].number != g->bumps[k].number) continue;
+          double apart_mm = fabs(f->bumps[i].radius_mm - g->bumps[k].radius_mm);
+          if (one && !(apart_mm > fabs(one->radius_mm - other->radius_mm))) continue;
+          one = &g->bumps[k];
+          other = &f->bumps[i];
+        }
+    }
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "--same-foil: the scans are not of one foil: a geometry for each leaves %.3f um, "
+                 "one for all of them %.3f um whatever the scanner does; bump %d is %.4f mm in one "
+                 "scan and %.4f mm in another; without --same-foil the scans are searched as foils "
+                 "of one scanner",
+                 sqrt(mean_square(&a->points, a->residual_um)),
+                 sqrt(mean_square(points, loop->residual_after)), one ? one->number : 0,
+                 one ? one->radius_mm : NAN, one ? other->radius_mm : NAN);
+}
+
+fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop) {
+  apart a = {0};
+  size_t views = 0;
+  for (size_t v = 0; v < loop->points.view_count; v++)
+    views += !loop->points.views[v].aside;
+  if (!loop->options.same_foil || views <= loop->points.part_count) return FG_OK;
+  if (loop->explanations.right && !has_curve(&loop->set)) return FG_OK;
+  fg_status status = set_apart(ctx, &loop->points, &a);
+  bool told = status == FG_OK;
+  if (status != FG_ERR_MEMORY) status = FG_OK; /* rows too few for a geometry each tell nothing */
+  if (told && a.explanations.right && !has_curve(&a.set) && a.set.count <= EFFECTS_MOST &&
+      preference(loop, &a) > PREFERENCE_LEAST)
+    status = say_two_foils(ctx, loop, &a);
+  fg_points_free(&a.points);
+  free(a.residual_um);
+  return status;
+}

@@ -1,0 +1,149 @@
+/* Correcting scans by a scanner's model. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scan_loop/scanner_model.h"
+#include "scan_loop/state.h"
+
+/* How far a box reaches over the model's region; 1: to its border. */
+static double reach_of(const fg_field_frame *frame, const double low[2], const double high[2]) {
+  double reach = 0;
+  for (int axis = 0; axis < 2; axis++) {
+    double length = frame->high_mm[axis] - frame->low_mm[axis];
+    reach = fmax(reach, (high[axis] - frame->low_mm[axis]) / length);
+    reach = fmax(reach, (frame->high_mm[axis] - low[axis]) / length);
+  }
+  return reach;
+}
+
+static double foil_reach(const fg_field_frame *frame, const fg_foil *foil) {
+  const double *place = foil->place_mm;
+  return reach_of(frame, place, (double[]){place[0] + place[2], place[1] + place[3]});
+}
+
+static double disc_reach(const fg_field_frame *frame, const fg_disc *disc) {
+  fg_point c = disc->centre_mm;
+  double r = disc->radius_mm;
+  return reach_of(frame, (double[]){c.x - r, c.y - r}, (double[]){c.x + r, c.y + r});
+}
+
+/* Of the part that lies farthest; of a scan without any, its picture. */
+static double find_reach(const fg_field_frame *frame, const fg_measurement *m) {
+  double reach = 0;
+  for (size_t f = 0; f < m->foil_count; f++)
+    reach = fmax(reach, foil_reach(frame, &m->foils[f]));
+  for (size_t d = 0; d < m->disc_count; d++)
+    reach = fmax(reach, disc_reach(frame, &m->discs[d]));
+  if (m->foil_count || m->disc_count) return reach;
+  double size[2] = {(double)m->width_px * 25.4 / m->dpi[0],
+                    (double)m->height_px * 25.4 / m->dpi[1]};
+  return reach_of(frame, frame->low_mm, size);
+}
+
+/* A curve that was found over one length says little beyond it, and nothing at twice that. */
+static const double reach_warned = 1.1, reach_refused = 2;
+
+static fg_status check_place(fg_context *ctx, const fg_scanner_model *model,
+                             const fg_measurement *m, char *warning) {
+  const fg_field_frame *frame = &model->fields.frame;
+  double width = frame->high_mm[0] - frame->low_mm[0],
+         height = frame->high_mm[1] - frame->low_mm[1];
+  for (int axis = 0; axis < 2; axis++)
+    if (fabs(m->dpi[axis] / model->dpi[axis] - 1) > 1e-4)
+      return fg_fail(
+          ctx, FG_ERR_DATA,
+          "%s: the scan has %g dpi and the model is of a scanner at %g dpi; find a model "
+          "at this resolution",
+          m->scan, m->dpi[axis], model->dpi[axis]);
+  double reach = find_reach(frame, m);
+  if (reach > reach_refused)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: a foil lies %.1f times as far on the glass as the %.0f x %.0f mm that the "
+                   "model was found in; find a model on scans that reach as far",
+                   m->scan, reach, width, height);
+  if (warning && reach > reach_warned)
+    snprintf(warning, 200,
+             "%.80s: the scan reaches beyond the %.0f x %.0f mm the model was found in", m->scan,
+             width, height);
+  return FG_OK;
+}
+
+static void flag_reach(const fg_field_frame *frame, fg_measurement *m) {
+  for (size_t f = 0; f < m->foil_count; f++)
+    if (foil_reach(frame, &m->foils[f]) > reach_warned)
+      m->foils[f].flags |= FG_FOIL_BEYOND_MODEL_REGION;
+  for (size_t d = 0; d < m->disc_count; d++)
+    if (disc_reach(frame, &m->discs[d]) > reach_warned)
+      m->discs[d].flags |= FG_BUMP_BEYOND_MODEL_REGION;
+}
+
+/* The larger in size. */
+static void take_larger(double *most, double move) {
+  if (isfinite(move) && !(fabs(move) <= fabs(*most))) *most = move;
+}
+
+/* What the model adds to an uncertainty u makes sqrt(u² + added²) of it. */
+static double added(double u, double own) {
+  return sqrt(fmax(0, u * u - own * own));
+}
+
+/* `own`: as measured again, before the model's doubt. */
+static void sum_up_foil(const fg_foil *before, const fg_foil *own, fg_foil *foil) {
+  fg_correction *c = &foil->correction;
+  *c = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
+  if (foil->flags & FG_FOIL_NOT_MEASURED) return;
+  c->overall_radius_mm = foil->overall.radius_mm - before->overall.radius_mm;
+  c->u_overall_radius_mm = added(foil->overall.u_radius_mm, own->overall.u_radius_mm);
+  if (before->bump_count != foil->bump_count) return;
+  for (size_t b = 0; b < foil->bump_count; b++) {
+    const fg_bump *from = &before->bumps[b], *bare = &own->bumps[b], *to = &foil->bumps[b];
+    take_larger(&c->radius_mm, to->radius_mm - from->radius_mm);
+    take_larger(&c->height_mm, to->height_mm - from->height_mm);
+    take_larger(&c->u_radius_mm, added(to->u_radius_mm, bare->u_radius_mm));
+    take_larger(&c->u_height_mm, added(to->u_height_mm, bare->u_height_mm));
+  }
+}
+
+static void sum_up(const fg_measurement *before, const fg_measurement *own, fg_measurement *m) {
+  for (size_t f = 0; f < m->foil_count; f++)
+    sum_up_foil(&before->foils[f], &own->foils[f], &m->foils[f]);
+  for (size_t d = 0; d < m->disc_count; d++) {
+    fg_disc *disc = &m->discs[d];
+    disc->radius_correction_mm = disc->radius_mm - before->discs[d].radius_mm;
+    disc->u_radius_correction_mm = added(disc->u_radius_mm, own->discs[d].u_radius_mm);
+  }
+}
+
+static void replace(fg_measurement *m, fg_measurement *corrected) {
+  for (size_t f = 0; f < m->foil_count; f++)
+    fg_foil_free(&m->foils[f]);
+  for (size_t d = 0; d < m->disc_count; d++)
+    fg_disc_free(&m->discs[d]);
+  free(m->foils);
+  free(m->discs);
+  *m = *corrected;
+}
+
+fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
+                                 unsigned threads, char *warning) {
+  if (warning) warning[0] = 0;
+  FG_TRY(check_place(ctx, model, m, warning));
+  fg_measurement corrected = {0}, own = {0};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, NULL, 0, NULL, threads, &corrected));
+  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, NULL, 0, NULL, threads, &own));
+  FG_TRY_EXIT(fg_scanner_model_widen(ctx, model, m, threads, &corrected));
+  FG_TRY_EXIT(fg_scanner_model_widen_tie(ctx, model, m, threads, &corrected));
+  flag_reach(&model->fields.frame, &corrected);
+  sum_up(m, &own, &corrected);
+  replace(m, &corrected);
+  memcpy(m->model_sha256, model->sha256, sizeof m->model_sha256);
+  m->model = model;
+exit:
+  if (status != FG_OK) fg_measurement_free(&corrected);
+  fg_measurement_free(&own);
+  return status;
+}

@@ -1,0 +1,237 @@
+/* Reading the model file of a scanner: "foilgauge/scan-model/1" (reports/schema). */
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/memory.h"
+#include "core/sha256.h"
+#include "core/text.h"
+#include "scan_loop/scanner_model.h"
+
+enum { MODEL_BYTES_MAX = 1 << 20 };
+_Static_assert((int)FG_EFFECT_SET_MAX <= (int)FG_FIELDS_MAX, "what is written can be read");
+
+/* Exactly `wanted` numbers of an array member; NaN for null. What they may be is checked later. */
+static fg_status read_numbers(fg_context *ctx, const cJSON *object, const char *before,
+                              const char *name, double *out, size_t wanted) {
+  const cJSON *array = cJSON_GetObjectItemCaseSensitive(object, name);
+  size_t count = cJSON_IsArray(array) ? (size_t)cJSON_GetArraySize(array) : 0;
+  if (!cJSON_IsArray(array) || count != wanted)
+    return fg_fail(ctx, FG_ERR_DATA, "`%s%s` holds %zu number%s; an array of %zu is allowed",
+                   before, name, count, count == 1 ? "" : "s", wanted);
+  for (size_t i = 0; i < wanted; i++) {
+    const cJSON *item = cJSON_GetArrayItem(array, (int)i);
+    out[i] = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+    if (cJSON_IsNumber(item) || cJSON_IsNull(item)) continue;
+    return fg_fail(ctx, FG_ERR_DATA, "`%s%s[%zu]` is %s; only a number is allowed", before, name, i,
+                   cJSON_IsString(item) ? "text" : "no number");
+  }
+  return FG_OK;
+}
+
+static fg_status read_field(fg_context *ctx, const char *member, const cJSON *item,
+                            fg_field_list *list) {
+  char before[64];
+  const cJSON *id = cJSON_GetObjectItemCaseSensitive(item, "id");
+  const fg_effect *kind = cJSON_IsString(id) ? fg_effect_find(id->valuestring) : NULL;
+  if (!kind || !kind->glass)
+    return fg_fail(ctx, FG_ERR_DATA, "`%s` holds an effect that is not known: %.80s", member,
+                   cJSON_IsString(id) ? id->valuestring : "one without id");
+  fg_text_clip(before, sizeof before, "%s[%zu].", member, list->count);
+  fg_field *f = &list->fields[list->count++];
+  *f = fg_effect_field(kind);
+  FG_TRY(read_numbers(ctx, item, before, "amplitude_mm", f->amplitude_mm, f->columns));
+  FG_TRY(read_numbers(ctx, item, before, "u_amplitude_mm", f->u_amplitude_mm, f->columns));
+  FG_TRY(read_numbers(ctx, item, before, "shape", f->shape, f->shapes));
+  /* Not in every file; a shape that was not refined has none. */
+  if (cJSON_GetObjectItemCaseSensitive(item, "u_shape"))
+    FG_TRY(read_numbers(ctx, item, before, "u_shape", f->u_shape, f->shapes));
+  for (size_t s = 0; s < f->shapes; s++)
+    if (isnan(f->u_shape[s])) f->u_shape[s] = 0;
+  return FG_OK;
+}
+
+/* An effect may stand there more than once: two ripples, two steps. */
+static fg_status read_fields(fg_context *ctx, const char *member, const cJSON *fields,
+                             fg_field_list *list) {
+  const cJSON *item;
+  if (!fields) return fg_fail(ctx, FG_ERR_DATA, "`%s` is missing", member);
+  if (!cJSON_IsArray(fields))
+    return fg_fail(ctx, FG_ERR_DATA, "`%s` is no array of effects; an array is allowed", member);
+  if (cJSON_GetArraySize(fields) > FG_FIELDS_MAX)
+    return fg_fail(ctx, FG_ERR_DATA, "`%s` holds %d effects; at most %d are allowed", member,
+                   cJSON_GetArraySize(fields), FG_FIELDS_MAX);
+  cJSON_ArrayForEach(item, fields) FG_TRY(read_field(ctx, member, item, list));
+  return fg_scanner_model_check_fields(ctx, member, list);
+}
+
+static fg_status read_knots(fg_context *ctx, const cJSON *root, size_t *knots) {
+  enum { LEAST = 4 };
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(root, "curve_knots");
+  double value = !item ? FG_FIELD_COLUMNS : cJSON_IsNumber(item) ? item->valuedouble : NAN;
+  if (!(value >= LEAST && value <= FG_FIELD_COLUMNS && value == floor(value)))
+    return fg_fail(ctx, FG_ERR_DATA, "`curve_knots` is %g; a whole number, %d to %d, is allowed",
+                   value, LEAST, FG_FIELD_COLUMNS);
+  *knots = (size_t)value;
+  return FG_OK;
+}
+
+static fg_status read_place(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  fg_field_frame *frame = &model->fields.frame;
+  double region[4], curve[4];
+  FG_TRY(read_numbers(ctx, root, "", "dpi", model->dpi, 2));
+  FG_TRY(read_numbers(ctx, root, "", "region_mm", region, 4));
+  memcpy(curve, region, sizeof curve); /* a file without free curves need not say */
+  if (cJSON_GetObjectItemCaseSensitive(root, "curve_mm"))
+    FG_TRY(read_numbers(ctx, root, "", "curve_mm", curve, 4));
+  FG_TRY(read_knots(ctx, root, &frame->knots));
+  for (int axis = 0; axis < 2; axis++) {
+    frame->first_mm[axis] = curve[axis];
+    frame->last_mm[axis] = curve[2 + axis];
+    frame->low_mm[axis] = region[axis];
+    frame->high_mm[axis] = region[2 + axis];
+    frame->centre_mm[axis] = 0.5 * (region[axis] + region[2 + axis]);
+  }
+  return fg_scanner_model_check_place(ctx, model->dpi, frame);
+}
+
+static fg_status read_scanner(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *name = cJSON_GetObjectItemCaseSensitive(root, "scanner");
+  if (!name || cJSON_IsNull(name)) return FG_OK;
+  if (!cJSON_IsString(name) || strlen(name->valuestring) >= sizeof model->scanner)
+    return fg_fail(ctx, FG_ERR_DATA, "`scanner` must be a name of at most %d bytes",
+                   FG_SCANNER_NAME - 1);
+  strcpy(model->scanner, name->valuestring);
+  return FG_OK;
+}
+
+/* "2026-03-14", or with the time behind it. */
+static fg_status read_date(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *date = cJSON_GetObjectItemCaseSensitive(root, "date");
+  int year, month, day, used = 0;
+  if (!date || cJSON_IsNull(date)) return FG_OK;
+  if (!cJSON_IsString(date) || strlen(date->valuestring) >= sizeof model->date ||
+      sscanf(date->valuestring, "%4d-%2d-%2d%n", &year, &month, &day, &used) != 3 || used != 10 ||
+      strspn(date->valuestring, "0123456789-:TZ") != strlen(date->valuestring))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "`date` is no date; one as 2026-03-14T09:26:53Z, or null, is allowed");
+  strcpy(model->date, date->valuestring);
+  return FG_OK;
+}
+
+static fg_status read_origin(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  enum { KNOWN_MOST = 1000000 };
+  const cJSON *inputs = cJSON_GetObjectItemCaseSensitive(root, "inputs");
+  const cJSON *known = cJSON_GetObjectItemCaseSensitive(root, "known_diameters");
+  double count = !known ? 0 : cJSON_IsNumber(known) ? known->valuedouble : NAN;
+  if (!(count >= 0 && count <= KNOWN_MOST && count == floor(count)))
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "`known_diameters` is %g; how many gauges had one, 0 to %d, is allowed", count,
+                   KNOWN_MOST);
+  model->known_diameters = (size_t)count;
+  model->scans = cJSON_IsArray(inputs) ? (size_t)cJSON_GetArraySize(inputs) : 0;
+  return read_date(ctx, root, model);
+}
+
+static fg_status read_others(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *others = cJSON_GetObjectItemCaseSensitive(root, "alternatives"), *item;
+  const cJSON *tied = cJSON_GetObjectItemCaseSensitive(root, "tied");
+  if (tied && !cJSON_IsBool(tied))
+    return fg_fail(ctx, FG_ERR_DATA, "`tied` is neither; true or false is allowed");
+  model->tied = cJSON_IsTrue(tied);
+  if (others && !cJSON_IsArray(others))
+    return fg_fail(ctx, FG_ERR_DATA, "`alternatives` is no array; an array is allowed");
+  if (cJSON_GetArraySize(others) > FG_EXPLANATIONS_MAX)
+    return fg_fail(ctx, FG_ERR_DATA, "`alternatives` holds %d explanations; at most %d are allowed",
+                   cJSON_GetArraySize(others), FG_EXPLANATIONS_MAX);
+  cJSON_ArrayForEach(item, others) {
+    char member[32];
+    fg_text_clip(member, sizeof member, "alternatives[%zu]", model->others);
+    fg_field_list *other = &model->other[model->others++];
+    other->frame = model->fields.frame;
+    FG_TRY(read_fields(ctx, member, item, other));
+  }
+  return FG_OK;
+}
+
+static fg_status read_model(fg_context *ctx, const cJSON *root, fg_scanner_model *model) {
+  const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
+  if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/scan-model/1") != 0)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "not a model of a scanner (\"schema\": \"foilgauge/scan-model/1\"); "
+                   "`foilgauge loop SCAN --model-out F` writes one");
+  FG_TRY(read_scanner(ctx, root, model));
+  FG_TRY(read_origin(ctx, root, model));
+  FG_TRY(read_place(ctx, root, model));
+  FG_TRY(
+      read_fields(ctx, "fields", cJSON_GetObjectItemCaseSensitive(root, "fields"), &model->fields));
+  return read_others(ctx, root, model);
+}
+
+static void sum_text(const char *text, char sum[65]) {
+  struct sha256_ctx state;
+  sha256_init(&state);
+  sha256_update(&state, strlen(text), (const uint8_t *)text);
+  fg_sha256_finish(&state, sum);
+}
+
+fg_status fg_scanner_model_parse(fg_context *ctx, const char *path, const char *text,
+                                 fg_scanner_model **model) {
+  fg_context inner = {.message = ""};
+  fg_scanner_model *made = NULL;
+  const char *end = NULL;
+  *model = NULL;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
+  sum_text(text, made->sha256);
+  fg_text_clip(made->path, sizeof made->path, "%s", path);
+  cJSON *root = cJSON_ParseWithOpts(text, &end, true);
+  fg_status status = root ? read_model(&inner, root, made)
+                          : fg_fail(&inner, FG_ERR_DATA,
+                                    "not a model of a scanner, or not all of one: no JSON at "
+                                    "byte %td",
+                                    end ? end - text : 0);
+  cJSON_Delete(root);
+  if (status == FG_OK) {
+    *model = made;
+    return FG_OK;
+  }
+  free(made);
+  return fg_fail(ctx, status, "%.200s: %.700s", path, inner.message);
+}
+
+fg_status fg_scanner_model_load(fg_context *ctx, const char *path, fg_scanner_model **model) {
+  char *text = NULL;
+  *model = NULL;
+  FG_TRY(fg_file_read_text(ctx, path, MODEL_BYTES_MAX, &text));
+  fg_status status = fg_scanner_model_parse(ctx, path, text, model);
+  free(text);
+  return status;
+}
+
+void fg_scanner_model_free(fg_scanner_model *model) {
+  free(model);
+}
+
+const char *fg_scanner_model_sha256(const fg_scanner_model *model) {
+  return model->sha256;
+}
+
+bool fg_scanner_model_is_tied(const fg_scanner_model *model) {
+  return model->tied;
+}
+
+fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,
+                                         const char *path, const char *scanner) {
+  if (!scanner || !strcmp(model->scanner, scanner)) return FG_OK;
+  if (!model->scanner[0])
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: the model does not say which scanner it is of; make it with `foilgauge "
+                   "loop --scanner '%s' --model-out`",
+                   path, scanner);
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: a model of the scanner '%s', not of '%s'; every scanner needs its own", path,
+                 model->scanner, scanner);
+}

@@ -1,0 +1,68 @@
+/* What the parts of the loop on scans share. */
+#ifndef FG_SCAN_LOOP_STATE_H
+#define FG_SCAN_LOOP_STATE_H
+
+#include "explain/explain.h"
+#include "foilgauge/scan_loop.h"
+#include "rows/points.h"
+#include "scan_loop/bumps.h"
+#include "scan_loop/verdict.h"
+
+struct fg_scan_loop {
+  fg_scan_loop_options options;
+  fg_measurement *before, *after; /* one per scan */
+  bool *hold_out;
+  size_t scan_count;
+  size_t left_out;                          /* foils that were not measured, or are none */
+  fg_points points;                         /* all views; geometry of the final model */
+  fg_explanations explanations;             /* what was tried, and which sets explain */
+  fg_effect_set set;                        /* the winner, fitted */
+  double *residual_before, *residual_after; /* um, per row of points */
+  fg_scan_loop_error error_before, error_after;
+  double noise_floor_um;
+  bool tied;
+  bool scale_tied;                        /* scan_scale.c */
+  fg_effect_set tie[FG_EXPLANATIONS_MAX]; /* the other explanations, fitted */
+  size_t tie_count;
+  fg_scan_loop_range *
+      *ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
+  fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
+  fg_loop_outcome verdict;
+  fg_scan_loop_decisions decided; /* what every report says of the effects */
+};
+
+/* Joint fit of geometry and effects, from the effects' present numbers. `residual_um` (rows, or
+ * NULL) gets what is left. */
+fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um);
+
+/* fg_scan_loop_run on scans of one resolution that are measured already; takes them over. */
+fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurements,
+                                    const bool *hold_out, size_t count,
+                                    const fg_scan_loop_options *options, fg_scan_loop **result);
+
+/* Turns foils that are none of the design's into foils that were not measured, and counts them.
+ * FG_ERR_NOT_MEASURED when no foil is left. */
+fg_status fg_scan_loop_leave_out(fg_context *ctx, fg_scan_loop *loop);
+/* A note for each. */
+fg_status fg_scan_loop_say_left_out(fg_context *ctx, fg_scan_loop *loop);
+
+/* Under same_foil, once the points are settled: FG_ERR_DATA when the scans show different foils. */
+fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop);
+
+/* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
+fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop);
+
+/* Copies a measured foil with corrected edges and measures it again: fields move the edges by
+ * d(x, y); `shift` (one per row of `points`, for the rows of `view`) takes the part's own deviation
+ * out. Either may be NULL. */
+fg_status fg_scan_loop_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
+                                    const fg_field_list *fields, const fg_points *points,
+                                    size_t view, const double *shift_mm, unsigned threads,
+                                    fg_foil *corrected);
+
+/* A measurement with every foil corrected. `first_view` is the view of its first measured foil. */
+fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
+                               const fg_field_list *fields, const fg_points *points, size_t scan,
+                               const double *shift_mm, unsigned threads, fg_measurement *corrected);
+
+#endif
