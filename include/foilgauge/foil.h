@@ -200,7 +200,7 @@ typedef struct fg_measurement {
   int bit_depth;
   double dpi[2];      /* used, x and y */
   double dpi_file[2]; /* as the file says, before it was snapped; NaN without */
-  char format[8];     /* "PNG", "TIFF", "PNM" */
+  char format[8];     /* as in fg_scan_info */
   bool colour;        /* the scan holds colours */
   fg_channel channel; /* what of them was measured */
   char warning[256];  /* what is odd about the file; empty when nothing is */

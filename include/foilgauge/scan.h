@@ -12,6 +12,7 @@
 #define FOILGAUGE_SCAN_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "foilgauge/status.h"
@@ -55,12 +56,15 @@ typedef struct fg_scan_info {
   int bytes_per_pixel;   /* of the rows: 1 or 2 (host byte order, uint16_t) */
   double dpi[2];         /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
   double dpi_file[2];    /* what the file says, before snapping; NaN when it says none */
-  const char *format;    /* "PNG", "TIFF", "PNM" */
+  const char *format;    /* its name, one of fg_scan_format_names */
   bool colour;           /* the file holds colours */
   fg_channel channel;    /* what of them is taken; never FG_CHANNEL_AUTO */
   uint64_t memory_bytes; /* that the reader holds beyond a row */
   char warning[256];     /* what is odd about the file; empty when nothing is */
 } fg_scan_info;
+
+/* The formats that are read, for people: "PNG, TIFF or PNM" with `before_last` " or ". */
+void fg_scan_format_names(const char *before_last, char *text, size_t size);
 
 /* For a caller that takes a resolution from its user: FG_ERR_USAGE, with words, unless `dpi` is
  * finite, positive and from FG_SCAN_DPI_MIN to FG_SCAN_DPI_MAX. Zero is wrong here. */

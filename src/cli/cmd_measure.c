@@ -95,12 +95,20 @@ static const struct argp_option options[] = {
 
 static const char doc[] =
     "Measure every foil in a scan: radii, angles, heights, clearances, each with its uncertainty."
-    "\vSCAN is a PNG, TIFF or PNM file, or - for standard input. Without -o the results go to "
-    "standard "
-    "output: as a table on a terminal, else as JSON.\n\n"
+    "\v file, or - for standard input. Without -o the results go to standard output: as a table on "
+    "a terminal, else as JSON.\n\n"
     "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
     "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
     "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output.";
+
+/* Names the formats before what follows the options. */
+static char *name_formats(int key, const char *text, void *input) {
+  char names[100], *whole;
+  (void)input;
+  if (key != ARGP_KEY_HELP_POST_DOC) return (char *)text;
+  fg_scan_format_names(" or ", names, sizeof names);
+  return asprintf(&whole, "SCAN is a %s%s", names, text) < 0 ? (char *)text : whole;
+}
 
 static double parse_number(struct argp_state *state, const char *name, const char *text,
                            double lowest, double highest) {
@@ -349,7 +357,8 @@ static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
 }
 
 int fg_cmd_measure(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "SCAN...", doc, NULL, NULL, NULL};
+  static const struct argp parser = {options, parse_option, "SCAN...", doc,
+                                     NULL,    name_formats, NULL};
   fg_context ctx = {0};
   measure_run run = {.outputs.count = OUT_COUNT};
   int code = 0;

@@ -8,13 +8,15 @@
 
 static const fg_format *const readable[] = {&fg_format_png, &fg_format_tiff, &fg_format_pnm};
 
+enum { READABLE = sizeof readable / sizeof readable[0] };
+
 #define CONVERT "convert it to PNG or TIFF without loss, or scan to PNG"
 
 static const struct {
   const char *magic;
   size_t offset, length;
   const char *problem;
-} formats[] = {
+} others[] = {
     {"\xff\xd8\xff", 0, 3,
      "is a JPEG, which is not read: its compression moves edges; scan again, to PNG or TIFF"},
     {"GIF8", 0, 4, "is a GIF, which is not read; " CONVERT},
@@ -42,36 +44,59 @@ static bool is_text(const uint8_t *head, size_t length) {
   return true;
 }
 
+const fg_format *const *fg_formats(size_t *count) {
+  *count = READABLE;
+  return readable;
+}
+
 const fg_format *fg_format_find(const uint8_t *head, size_t length) {
-  for (size_t i = 0; i < sizeof readable / sizeof readable[0] && length > 0; i++)
+  for (size_t i = 0; i < READABLE && length > 0; i++)
     if (readable[i]->matches(head, length)) return readable[i];
   return NULL;
 }
 
 bool fg_format_has_name(const char *name) {
   const char *dot = strrchr(name, '.');
-  for (size_t i = 0; dot && i < sizeof readable / sizeof readable[0]; i++)
+  for (size_t i = 0; dot && i < READABLE; i++)
     for (const char *const *ending = readable[i]->endings; *ending; ending++)
       if (!strcasecmp(dot, *ending)) return true;
   return false;
 }
 
-void fg_format_list_endings(char *text, size_t size) {
-  size_t used = 0;
-  text[0] = '\0';
-  for (size_t i = 0; i < sizeof readable / sizeof readable[0]; i++)
-    for (const char *const *ending = readable[i]->endings; *ending; ending++) {
-      fg_text_clip(text + used, size - used, "%s%s", used ? ", " : "", *ending);
-      used = strlen(text);
-    }
+static void append(char *text, size_t size, const char *separator, const char *word) {
+  size_t used = strlen(text);
+  fg_text_clip(text + used, size - used, "%s%s", used ? separator : "", word);
 }
 
-const char *fg_format_problem(const uint8_t *head, size_t length) {
+void fg_format_list_endings(char *text, size_t size) {
+  text[0] = '\0';
+  for (size_t i = 0; i < READABLE; i++)
+    for (const char *const *ending = readable[i]->endings; *ending; ending++)
+      append(text, size, ", ", *ending);
+}
+
+void fg_scan_format_names(const char *before_last, char *text, size_t size) {
+  text[0] = '\0';
+  for (size_t i = 0; i < READABLE; i++)
+    append(text, size, i + 1 < READABLE ? ", " : before_last, readable[i]->name);
+}
+
+static const char *known_problem(const uint8_t *head, size_t length) {
   if (length == 0) return "is empty; scan or copy it again";
-  for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++)
-    if (length >= formats[i].offset + formats[i].length &&
-        !memcmp(head + formats[i].offset, formats[i].magic, formats[i].length))
-      return formats[i].problem;
-  if (is_text(head, length)) return "is a text, not a scan; check the name";
-  return "is not a scan that can be read (PNG, TIFF, PNM); scan to PNG, or check the name";
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+    if (length >= others[i].offset + others[i].length &&
+        !memcmp(head + others[i].offset, others[i].magic, others[i].length))
+      return others[i].problem;
+  return is_text(head, length) ? "is a text, not a scan; check the name" : NULL;
+}
+
+void fg_format_problem(const uint8_t *head, size_t length, char *text, size_t size) {
+  const char *known = known_problem(head, length);
+  char names[100];
+  fg_scan_format_names(", ", names, sizeof names);
+  if (known)
+    fg_text_clip(text, size, "%s", known);
+  else
+    fg_text_clip(text, size, "is not a scan that can be read (%s); scan to PNG, or check the name",
+                 names);
 }

@@ -30,6 +30,9 @@ typedef struct fg_format {
 
 extern const fg_format fg_format_png, fg_format_tiff, fg_format_pnm;
 
+/* Every format that is read. */
+const fg_format *const *fg_formats(size_t *count);
+
 /* The format whose files begin like `head`, the first `length` bytes; NULL when it is none. */
 const fg_format *fg_format_find(const uint8_t *head, size_t length);
 
@@ -40,6 +43,6 @@ bool fg_format_has_name(const char *name);
 void fg_format_list_endings(char *text, size_t size);
 
 /* Why fg_format_find found none: what the file is and what to do, in words that follow its name. */
-const char *fg_format_problem(const uint8_t *head, size_t length);
+void fg_format_problem(const uint8_t *head, size_t length, char *text, size_t size);
 
 #endif

@@ -36,8 +36,11 @@ static fg_status find_format(fg_context *ctx, const fg_scan_options *options, fg
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s; check the disk or copy it again",
                    source->name, strerror(source->error));
   scan->format = fg_format_find(head, length);
-  if (!scan->format)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: %s", source->name, fg_format_problem(head, length));
+  if (!scan->format) {
+    char problem[300];
+    fg_format_problem(head, length, problem, sizeof problem);
+    return fg_fail(ctx, FG_ERR_DATA, "%s: %s", source->name, problem);
+  }
   bool twice = options->channel == FG_CHANNEL_AUTO && scan->format->has_colour(head, length);
   return twice || scan->format->needs_file ? fg_source_store(ctx, source) : FG_OK;
 }
