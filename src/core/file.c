@@ -278,3 +278,12 @@ fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char 
   }
   return status;
 }
+
+/* An earlier write may have failed, whose errno is long gone. */
+fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what) {
+  bool failed = ferror(out) != 0;
+  errno = 0;
+  if (fflush(out) == 0 && !failed) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s cannot be written: %s; is there space on the disk?", what,
+                 errno ? strerror(errno) : "a write failed");
+}

@@ -38,6 +38,10 @@ void fg_output_discard(fg_output *output); /* harmless after a commit */
 /* The end of a writer that came to `status`: commits where that is FG_OK, else discards. */
 fg_status fg_output_end(fg_context *ctx, fg_output *output, fg_status status);
 
+/* The end of a writer into an open stream: FG_ERR_IO when a write has failed. `what` is what was
+ * written, in words. */
+fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what);
+
 /* FG_ERR_IO: why `path` cannot be written, by its errno, and what to do. */
 fg_status fg_output_fail(fg_context *ctx, const char *path, int error);
 

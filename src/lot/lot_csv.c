@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "core/csv.h"
+#include "core/file.h"
+#include "core/json_writer.h"
 #include "lot/writers.h"
-#include "report/json_writer.h"
 #include "report/words.h"
 
 static void put_text(FILE *out, const char *text) {
@@ -92,7 +93,7 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
       put_values(out, FG_REPORT_FOIL, foil->foil);
     }
   }
-  return fg_report_finish(ctx, out, "foils.csv");
+  return fg_stream_finish(ctx, out, "foils.csv");
 }
 
 fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
@@ -114,5 +115,5 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
       put_values(out, FG_REPORT_BUMP, bump);
     }
   }
-  return fg_report_finish(ctx, out, "bumps.csv");
+  return fg_stream_finish(ctx, out, "bumps.csv");
 }

@@ -4,9 +4,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/file.h"
+#include "core/json_writer.h"
 #include "lot/characteristics.h"
 #include "lot/writers.h"
-#include "report/json_writer.h"
 #include "report/words.h"
 
 /* A control character would start another field. */
@@ -66,5 +67,5 @@ fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FIL
   for (size_t i = 0; i < analysis->foil_count; i++)
     put_foil(out, analysis, &analysis->foils[i], list, count);
   free(list);
-  return fg_report_finish(ctx, out, "results.dfq");
+  return fg_stream_finish(ctx, out, "results.dfq");
 }

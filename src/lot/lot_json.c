@@ -1,6 +1,7 @@
 /* lot.json: "schema": "foilgauge/lot/1" (reports/schema/lot.schema.json). */
 #include <math.h>
 
+#include "core/file.h"
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
 #include "report/scan_loop/scan_model_words.h"
@@ -388,5 +389,5 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_array_end(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);
-  return fg_report_finish(ctx, out, "lot.json");
+  return fg_stream_finish(ctx, out, "lot.json");
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "lot/writers.h"
@@ -490,5 +491,5 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   put_foils(out, analysis);
   FG_TRY(put_origin(ctx, out, analysis));
   fg_html_end(out);
-  return fg_report_finish(ctx, out, "the lot's page");
+  return fg_stream_finish(ctx, out, "the lot's page");
 }

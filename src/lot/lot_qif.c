@@ -3,9 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/file.h"
+#include "core/json_writer.h"
 #include "lot/characteristics.h"
 #include "lot/writers.h"
-#include "report/json_writer.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/words.h"
 
@@ -213,5 +214,5 @@ fg_status fg_lot_write_qif(fg_context *ctx, const fg_lot_analysis *analysis, FIL
   if (q.count) put_results(&q);
   fputs("</QIFDocument>\n", out);
   free(q.list);
-  return fg_report_finish(ctx, out, "results.qif");
+  return fg_stream_finish(ctx, out, "results.qif");
 }

@@ -11,8 +11,8 @@
 
 #include <stdio.h>
 
+#include "core/json_writer.h"
 #include "foilgauge/report.h"
-#include "report/json_writer.h"
 
 typedef struct fg_record {
   char *scan;

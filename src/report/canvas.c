@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/json_writer.h"
 #include "core/memory.h"
-#include "report/json_writer.h"
 
 static const double pi = 3.14159265358979323846;
 

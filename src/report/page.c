@@ -1,5 +1,5 @@
 /* What every page has: its style, its head and its end, and text made harmless. */
-#include "report/json_writer.h"
+#include "core/json_writer.h"
 #include "report/measure/measure_page_parts.h"
 
 static const char style[] =

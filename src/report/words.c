@@ -1,6 +1,5 @@
 #include "report/words.h"
 
-#include <errno.h>
 #include <math.h>
 #include <string.h>
 
@@ -135,13 +134,4 @@ const char *fg_arc_kind_word(fg_arc_kind kind) {
     return "end";
   }
   return "";
-}
-
-/* An earlier write may have failed, whose errno is long gone. */
-fg_status fg_report_finish(fg_context *ctx, FILE *out, const char *what) {
-  bool failed = ferror(out) != 0;
-  errno = 0;
-  if (fflush(out) == 0 && !failed) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s cannot be written: %s; is there space on the disk?", what,
-                 errno ? strerror(errno) : "a write failed");
 }

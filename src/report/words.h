@@ -31,7 +31,4 @@ void fg_report_pair(const fg_report_field *field, const void *object, double val
  * fine enough. */
 int fg_report_decimals(const fg_report_field *field, double u);
 
-/* FG_ERR_IO when the stream has failed. */
-fg_status fg_report_finish(fg_context *ctx, FILE *out, const char *what);
-
 #endif

@@ -8,7 +8,7 @@
 
 #include <cjson/cJSON.h>
 
-#include "report/json_writer.h"
+#include "core/json_writer.h"
 #include "report/words.h"
 #include "support/synthetic_foil.h"
 

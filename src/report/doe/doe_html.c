@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/file.h"
 #include "report/doe/doe_plots.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
@@ -289,7 +290,7 @@ fg_status fg_experiment_write_html(fg_context *ctx, const fg_experiment_report *
   FG_TRY_EXIT(fg_experiment_response_words(ctx, report->experiment, &response));
   FG_TRY_EXIT(fg_experiment_conclusions(ctx, report->experiment, &conclusions));
   FG_TRY_EXIT(put_page(ctx, out, report, &conclusions, response));
-  FG_TRY_EXIT(fg_report_finish(ctx, out, "the page"));
+  FG_TRY_EXIT(fg_stream_finish(ctx, out, "the page"));
 exit:
   fg_sentences_free(&conclusions);
   free(response);

@@ -1,6 +1,7 @@
 /* An experiment as JSON (reports/schema/doe.schema.json). */
 #include <math.h>
 
+#include "core/file.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_json.h"
 #include "report/words.h"
@@ -365,5 +366,5 @@ fg_status fg_experiment_write_json(fg_context *ctx, const fg_experiment_report *
   fg_json_object_end(&json);
   fg_json_end(&json);
   fg_sentences_free(&conclusions);
-  return fg_report_finish(ctx, out, "the JSON report");
+  return fg_stream_finish(ctx, out, "the JSON report");
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/file.h"
 #include "report/doe/doe_words.h"
 #include "report/words.h"
 
@@ -142,7 +143,7 @@ fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report 
     put_wrapped(out, "* ", conclusions.text[i]);
   for (size_t i = 0; i < e->notes; i++)
     put_wrapped(out, "! ", e->note[i]);
-  FG_TRY_EXIT(fg_report_finish(ctx, out, "the table"));
+  FG_TRY_EXIT(fg_stream_finish(ctx, out, "the table"));
 exit:
   fg_sentences_free(&conclusions);
   free(response);

@@ -3,7 +3,8 @@
 #include <string.h>
 
 #include "core/csv.h"
-#include "report/json_writer.h"
+#include "core/file.h"
+#include "core/json_writer.h"
 #include "report/words.h"
 
 static void put_number(FILE *out, double value) {
@@ -143,7 +144,7 @@ fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *ou
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
       FG_TRY(put_disc(ctx, out, &scan, &measurement->discs[k]));
   }
-  return fg_report_finish(ctx, out, "the CSV file");
+  return fg_stream_finish(ctx, out, "the CSV file");
 }
 
 typedef struct edge_point {
@@ -210,5 +211,5 @@ fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE 
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
       put_disc_points(out, i + 1, &measurement->discs[k]);
   }
-  return fg_report_finish(ctx, out, "the file of points");
+  return fg_stream_finish(ctx, out, "the file of points");
 }

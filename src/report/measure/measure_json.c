@@ -4,13 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "report/scan_loop/scan_model_words.h"
 #include "report/words.h"
-
-void fg_json_head(fg_json *json, const char *schema) {
-  fg_json_string(json, "schema", schema);
-  fg_json_string(json, "version", FOILGAUGE_VERSION);
-}
 
 static void write_limit(fg_json *json, const char *name, double limit) {
   if (isfinite(limit)) fg_json_number(json, name, limit);
@@ -337,5 +333,5 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
     FG_TRY(write_scans(ctx, &json, report));
   fg_json_object_end(&json);
   fg_json_end(&json);
-  return fg_report_finish(ctx, out, "the JSON report");
+  return fg_stream_finish(ctx, out, "the JSON report");
 }

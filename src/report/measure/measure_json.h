@@ -2,11 +2,8 @@
 #ifndef FG_REPORT_MEASURE_MEASURE_JSON_H
 #define FG_REPORT_MEASURE_MEASURE_JSON_H
 
+#include "core/json_writer.h"
 #include "foilgauge/report.h"
-#include "report/json_writer.h"
-
-/* "schema" and "version", the first members of every report. */
-void fg_json_head(fg_json *json, const char *schema);
 
 /* Members as a design file has them; loads again with fg_design_parse. */
 void fg_json_design(fg_json *json, const char *name, const fg_design *design);

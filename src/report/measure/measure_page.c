@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
 #include "report/measure/measure_page_parts.h"
@@ -453,5 +454,5 @@ fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *o
   for (size_t i = 0; i < report->scan_count; i++)
     FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
   fg_html_end(out);
-  return fg_report_finish(ctx, out, "the page");
+  return fg_stream_finish(ctx, out, "the page");
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "report/scan_loop/scan_model_words.h"
 #include "report/words.h"
 
@@ -264,5 +265,5 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   if (report->design->form != FG_FORM_DISCS)
     fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%). %s\n", scale);
-  return fg_report_finish(ctx, out, "the table");
+  return fg_stream_finish(ctx, out, "the table");
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "report/drawing.h"
 #include "report/words.h"
@@ -167,7 +168,7 @@ fg_status fg_report_write_overlay(fg_context *ctx, const fg_report *report, FILE
   FG_TRY_EXIT(draw_overlay(ctx, measurement, &picture, &rgb));
   FG_TRY_EXIT(fg_png_encode(ctx, rgb.pixels, rgb.width, rgb.height, 3, &png, &size));
   fwrite(png, 1, size, out);
-  status = fg_report_finish(ctx, out, "the overlay");
+  status = fg_stream_finish(ctx, out, "the overlay");
 exit:
   fg_picture_free(&picture);
   free(rgb.pixels);

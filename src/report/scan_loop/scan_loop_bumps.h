@@ -2,7 +2,7 @@
 #ifndef FG_REPORT_SCAN_LOOP_SCAN_LOOP_BUMPS_H
 #define FG_REPORT_SCAN_LOOP_SCAN_LOOP_BUMPS_H
 
-#include "report/json_writer.h"
+#include "core/json_writer.h"
 #include "scan_loop/bumps.h"
 
 /* Into the open arrays `claims` and `rejected`. */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/text.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
@@ -277,5 +278,5 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   put_candidates(out, loop);
   put_errors(out, loop);
   fg_html_end(out);
-  return fg_report_finish(ctx, out, "the loop's page");
+  return fg_stream_finish(ctx, out, "the loop's page");
 }

@@ -2,6 +2,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "core/file.h"
 #include "report/measure/measure_json.h"
 #include "report/words.h"
 #include "scan_loop/scanner_model.h"
@@ -106,5 +107,5 @@ fg_status fg_scan_loop_write_model(fg_context *ctx, const fg_scan_loop *loop, FI
   fg_json_array_end(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);
-  return fg_report_finish(ctx, out, "the model");
+  return fg_stream_finish(ctx, out, "the model");
 }

@@ -2,7 +2,7 @@
 #ifndef FG_REPORT_SCAN_LOOP_SCAN_LOOP_SHAPES_H
 #define FG_REPORT_SCAN_LOOP_SCAN_LOOP_SHAPES_H
 
-#include "report/json_writer.h"
+#include "core/json_writer.h"
 #include "scan_loop/state.h"
 
 /* The member `shape`: pairs of coordinate and deviation in um. scan.x, scan.y in mm, where edges

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "core/file.h"
 #include "report/scan_loop/scan_loop_bumps.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
@@ -95,5 +96,5 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_text_bumps_rejected(&loop->bumps, out);
   put_errors(out, loop);
   fputs("+- is U = 2 u.\n", out);
-  return fg_report_finish(ctx, out, "the loop's report");
+  return fg_stream_finish(ctx, out, "the loop's report");
 }

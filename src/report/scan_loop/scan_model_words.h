@@ -4,8 +4,8 @@
 
 #include <stdio.h>
 
+#include "core/json_writer.h"
 #include "foilgauge/report.h"
-#include "report/json_writer.h"
 
 struct fg_scanner_model;
 

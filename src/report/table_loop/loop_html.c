@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
@@ -352,5 +353,5 @@ fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE
   put_advice(out, report);
   put_candidates(out, report->result);
   fputs("</main></body></html>\n", out);
-  return fg_report_finish(ctx, out, "the loop's page");
+  return fg_stream_finish(ctx, out, "the loop's page");
 }

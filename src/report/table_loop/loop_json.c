@@ -4,8 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
+#include "core/json_writer.h"
 #include "foilgauge/loop.h"
-#include "report/json_writer.h"
 #include "report/words.h"
 
 static void write_error(fg_json *json, const char *name, const fg_loop_error *error) {
@@ -249,5 +250,5 @@ fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE
   fg_json_object_end(&json);
   fg_json_end(&json);
   free(sentence);
-  return fg_report_finish(ctx, out, "the loop's report");
+  return fg_stream_finish(ctx, out, "the loop's report");
 }

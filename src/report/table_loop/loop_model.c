@@ -1,6 +1,7 @@
 /* "foilgauge/loop-model/1": the declared model plus what was found, for the next analysis. */
+#include "core/file.h"
+#include "core/json_writer.h"
 #include "foilgauge/loop.h"
-#include "report/json_writer.h"
 #include "report/words.h"
 
 static void write_coordinate(fg_json *json, const fg_loop_coordinate *at) {
@@ -82,5 +83,5 @@ fg_status fg_loop_write_model(fg_context *ctx, const fg_loop_report *report, FIL
   }
   fg_json_object_end(&json);
   fg_json_end(&json);
-  return fg_report_finish(ctx, out, "the model");
+  return fg_stream_finish(ctx, out, "the model");
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "report/words.h"
@@ -148,5 +149,5 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   if (report->problem->excluded) fprintf(out, "\nleft out: %s\n", report->problem->excluded);
   for (size_t i = 0; i < result->notes; i++)
     fprintf(out, "note: %s\n", result->note[i]);
-  return fg_report_finish(ctx, out, "the loop's report");
+  return fg_stream_finish(ctx, out, "the loop's report");
 }

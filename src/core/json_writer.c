@@ -1,4 +1,4 @@
-#include "report/json_writer.h"
+#include "core/json_writer.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -149,4 +149,9 @@ void fg_json_numbers(fg_json *json, const char *name, const double *values, size
     fg_json_number(json, NULL, values[i]);
   fg_json_array_end(json);
   fg_json_line_end(json);
+}
+
+void fg_json_head(fg_json *json, const char *schema) {
+  fg_json_string(json, "schema", schema);
+  fg_json_string(json, "version", FOILGAUGE_VERSION);
 }

@@ -5,8 +5,8 @@
  * point; NaN and infinities are null. Strings become valid UTF-8 (a stray byte is written out:
  * \xE4). Errors stay in the stream: the caller checks ferror at the end.
  */
-#ifndef FG_REPORT_JSON_WRITER_H
-#define FG_REPORT_JSON_WRITER_H
+#ifndef FG_CORE_JSON_WRITER_H
+#define FG_CORE_JSON_WRITER_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,6 +39,9 @@ void fg_json_number(fg_json *json, const char *name, double value);
 void fg_json_integer(fg_json *json, const char *name, int64_t value);
 void fg_json_bool(fg_json *json, const char *name, bool value);
 void fg_json_string(fg_json *json, const char *name, const char *text); /* NULL: null */
+
+/* What every report begins with: the schema's name and this version. */
+void fg_json_head(fg_json *json, const char *schema);
 
 /* An array of numbers on one line. */
 void fg_json_numbers(fg_json *json, const char *name, const double *values, size_t count);
