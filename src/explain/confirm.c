@@ -1,4 +1,4 @@
-/* What a search found on discs, confirmed from disc to disc.
+/* Whether discs confirm an effect, each from the others.
  *
  * A disc's own form looks like an effect of the scanner as long as one disc is looked at, and it is
  * no noise that averages out along the edge. So an effect must predict discs that it was not fitted
@@ -7,6 +7,8 @@
  * lie in one disc alone: it is confirmed as well when it stands beside a smooth form of every disc,
  * and each side of the discs predicts the other.
  */
+#include "explain/confirm.h"
+
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +17,7 @@
 #include "core/memory.h"
 #include "core/small_solve.h"
 #include "effect/columns.h"
-#include "scan_loop/state.h"
+#include "explain/search.h"
 
 #define CONFIRM_P 0.005
 /* The same where the best of so many places was taken. */
@@ -27,9 +29,8 @@
 #define AMPLITUDE_ERRORS 3.5
 /* Groups that share the information, at the least. */
 #define GROUPS_LEAST 1.5
-/* Beside a form of so many undulations, this gain in chi² is no chance of the best place. */
+/* Undulations of a disc's form that a step or a ripple is confirmed beside. */
 enum { FORM_HARMONICS = 5 };
-#define SHAPED_CHI2 45.0
 
 typedef struct confirmation {
   const fg_points *points;
@@ -221,7 +222,7 @@ static double judge_sides(confirmation *c) {
   double x[FG_SMALL_MAX];
   if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
   if (effective_groups(c, x) < GROUPS_LEAST) return -INFINITY;
-  if (quadratic(&whole, x) < SHAPED_CHI2 * rest_variance(c, x)) return -INFINITY;
+  if (quadratic(&whole, x) < FG_EXPLAIN_SHAPED_CHI2 * rest_variance(c, x)) return -INFINITY;
   return validated_gain(c, &whole) - LISTED_ERRORS;
 }
 
@@ -317,10 +318,8 @@ static double judge(confirmation *c, fg_effect_found *effect, const double *resi
   return confirmed;
 }
 
-/* Says in `confirmed` (above 0: it is) how well discs confirm the effect, and gives its numbers the
- * uncertainty that discs show. */
-static fg_status confirm(fg_context *ctx, const fg_points *points, fg_effect_found *effect,
-                         const double *residual_um, double *confirmed) {
+fg_status fg_explain_confirm(fg_context *ctx, const fg_points *points, fg_effect_found *effect,
+                             const double *residual_um, double *confirmed) {
   confirmation c = {.points = points, .effect = effect};
   fg_status status = FG_OK;
   size_t rows = points->row_count;
@@ -334,110 +333,5 @@ exit:
   free(c.residual);
   free(c.columns);
   free(c.groups);
-  return status;
-}
-
-static void bar(fg_points *points, const fg_explanations *explanations, const fg_effect *kind) {
-  for (size_t i = 0; i < points->barred_count; i++)
-    if (points->barred[i].effect == kind) return;
-  fg_points_barred *entry = &points->barred[points->barred_count++];
-  *entry =
-      (fg_points_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
-  for (size_t e = 0; e < explanations->candidate_count; e++) {
-    if (explanations->candidates[e].kind != kind) continue;
-    entry->would_explain = explanations->alone[e];
-    entry->share = explanations->share[e];
-    return;
-  }
-}
-
-/* Bars what discs do not confirm: all of it when nothing is confirmed, else the one that is
- * confirmed least, since it may have spoilt the others. */
-static fg_status bar_unconfirmed(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                                 const fg_explanations *explanations, const double *residual_um,
-                                 bool *barred) {
-  double confirmed[FG_EFFECT_SET_MAX], least = 0;
-  size_t failing = 0;
-  for (size_t e = 0; e < set->count; e++) {
-    FG_TRY(confirm(ctx, points, &set->effects[e], residual_um, &confirmed[e]));
-    failing += !(confirmed[e] > 0);
-    least = fmin(least, confirmed[e]);
-  }
-  size_t room = FG_POINTS_BARRED - points->barred_count;
-  size_t most = failing == set->count ? failing : 1;
-  *barred = failing > 0 && room >= most;
-  for (size_t e = 0, n = 0; *barred && e < set->count && n < most; e++) {
-    if (confirmed[e] > least && most == 1) continue;
-    bar(points, explanations, set->effects[e].kind);
-    n++;
-  }
-  return FG_OK;
-}
-
-/* Those that stand for each other in a ring. */
-static unsigned ring_mask(const fg_explanations *explanations, fg_effect_ring ring) {
-  unsigned mask = 0;
-  for (size_t e = 0; e < explanations->candidate_count; e++)
-    if (explanations->candidates[e].kind->ring == ring) mask |= 1u << e;
-  return mask;
-}
-
-static void add_member(fg_explanations *explanations, unsigned mask, const fg_explanation *like) {
-  for (size_t m = 0; m < explanations->count; m++)
-    if (explanations->each[m].mask == mask) return;
-  if (explanations->count == FG_EXPLANATIONS_MAX) return;
-  explanations->each[explanations->count] = *like;
-  explanations->each[explanations->count++].mask = mask;
-  explanations->total++;
-}
-
-/* In one circle an oval and a scale with a shear are one and the same. */
-static void add_ring_alias(fg_explanations *explanations) {
-  size_t known = explanations->count;
-  unsigned scanner = ring_mask(explanations, FG_EFFECT_RING_OF_SCANNER);
-  unsigned oval = ring_mask(explanations, FG_EFFECT_RING_OF_PART);
-  for (size_t m = 0; m < known; m++) {
-    const fg_explanation explanation = explanations->each[m];
-    if (explanation.mask & oval)
-      add_member(explanations, (explanation.mask & ~oval) | scanner, &explanation);
-    else if (explanation.mask & scanner)
-      add_member(explanations, (explanation.mask & ~scanner) | oval, &explanation);
-  }
-}
-
-/* Where every search starts: a set that is out now may have called rows outliers, or bent the
- * geometry out of reach. */
-static void start_again(fg_points *points, const double *weights) {
-  for (size_t i = 0; i < points->row_count; i++)
-    points->rows[i].weight = weights[i];
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_disc *disc = points->views[v].disc;
-    fg_points_part *part = &points->parts[points->views[v].part];
-    points->poses[v].origin_mm = disc->centre_mm;
-    if (!part->radius_known) part->overall_radius_mm = disc->radius_mm;
-  }
-}
-
-fg_status fg_explain_discs_confirm(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                                   fg_explanations *explanations, double *residual_um) {
-  double *weights = NULL;
-  bool barred = true;
-  fg_status status = FG_OK;
-  if (points->part_count == 1) {
-    FG_TRY(fg_explain_discs_settle(ctx, points, set, explanations, residual_um));
-    add_ring_alias(explanations);
-    return FG_OK;
-  }
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *weights, (void **)&weights));
-  for (size_t i = 0; i < points->row_count; i++)
-    weights[i] = points->rows[i].weight;
-  while (barred) {
-    start_again(points, weights);
-    FG_TRY_EXIT(fg_explain_discs_settle(ctx, points, set, explanations, residual_um));
-    FG_TRY_EXIT(bar_unconfirmed(ctx, points, set, explanations, residual_um, &barred));
-  }
-  if (points->barred_count) explanations->right = false;
-exit:
-  free(weights);
   return status;
 }

@@ -60,7 +60,9 @@ typedef struct fg_explanations {
 } fg_explanations;
 
 /* What is searched. */
+typedef struct fg_explain_policy fg_explain_policy;
 typedef struct fg_explain_request {
+  const fg_explain_policy *policy;
   const double *residual_um, *jacobian; /* geometry fitted; as from fg_points_residual */
   const fg_effect_set
       *known; /* NULL: none; its shaped effects are in the search with their shapes */
@@ -72,21 +74,10 @@ typedef struct fg_explain_request {
 fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
                           const fg_explain_request *request, fg_explanations *explanations);
 
-/* The same with the geometry and the effects fitted together in between, until the set stays: what
- * is linear at the wrong geometry leaves traces that look like further effects. `set` gets the
- * winner, fitted; `residual_um` (rows) what it leaves. */
-fg_status fg_explain_settle(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                            fg_explanations *explanations, double *residual_um);
-
-/* The same for discs (disc_search.c, disc_settle.c, discs_confirm.c); what they do not confirm from
- * one to the next is barred. */
-fg_status fg_explain_discs_find(fg_context *ctx, const fg_points *points, const double *residual_um,
-                                const double *jacobian, const fg_effect_set *known,
-                                fg_explanations *explanations);
-fg_status fg_explain_discs_settle(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                                  fg_explanations *explanations, double *residual_um);
-fg_status fg_explain_discs_confirm(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                                   fg_explanations *explanations, double *residual_um);
+/* The whole of it: search and joint fit in turns (settle.h); what discs do not confirm from one to
+ * the next is barred. `set` gets the winner, fitted; `residual_um` (rows) what it leaves. */
+fg_status fg_explain_run(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                         fg_explanations *explanations, double *residual_um);
 
 /* One explanation as a set without numbers. */
 void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set);

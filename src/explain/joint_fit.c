@@ -1,4 +1,5 @@
-/* Geometry and effects fitted together, through the geometry. */
+#include "explain/joint_fit.h"
+
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +8,6 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "effect/columns.h"
-#include "scan_loop/state.h"
 
 enum {
   REFIT_ROUNDS = 12,
@@ -301,7 +301,7 @@ fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set,
   gsl_matrix *alone = NULL;
   fg_status status = FG_OK;
   fg_numerics_start();
-  FG_TRY(fg_points_fit(ctx, points, NULL)); /* counts the parameters */
+  FG_TRY(fg_points_fit(ctx, points, NULL));
   r.parameters = points->parameters;
   r.unknowns = list_unknowns(set, r.list);
   FG_TRY_EXIT(allocate(ctx, &r));

@@ -3,19 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-#include "explain/search.h"
+#include "explain/policy.h"
 
 /* A set is right when what it leaves beyond all effects is likelier than this. */
 #define ACCEPT_P 0.001
 /* What 1 in 1000 gains by chance in one column: a quadratic must gain more than its slope. */
 #define GAIN_LEAST 10.8
-/* Error of the edge model that clean renders leave at most, um (reports/loop_scans.md). */
-#define EDGE_ERROR_UM 0.003
-/* The edges of a picture that is stretched are measured, and an effect's form is known, to this
- * share of what the effect does to the points. */
-#define EFFECT_ERROR 0.003
-/* The same of a crown or a skew, whose form is that of the lowest polynomials. */
-#define BEND_ERROR 0.005
 /* The middle of a polynomial lies within so many picture sizes of the picture's. */
 #define MIDDLE_REACH 1.5
 /* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
@@ -116,7 +109,6 @@ static bool has_form(const fg_explain_search *s, const fg_explain_yardstick *y,
   return true;
 }
 
-/* Fits a set; an excess of INFINITY says that it is no set of its own. */
 fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
                               unsigned mask) {
   const fg_explanations *out = s->out;
@@ -139,11 +131,38 @@ fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yards
   return explanation;
 }
 
-bool fg_explain_is_right(const fg_explain_yardstick *y, const fg_explanation *m) {
+bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
+                         const fg_explanation *m) {
   double chance = m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0;
   double taken = fmax(0, y->none - m->excess);
-  double error = m->mask & y->bends ? BEND_ERROR : EFFECT_ERROR;
+  double error = m->mask & y->bends ? s->policy->bend_error : s->policy->effect_error;
   return m->excess <= chance + y->allowance + error * error * taken;
+}
+
+double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m) {
+  return m->excess - log((double)s->columns.rows / s->out->integral) * m->freedom;
+}
+
+double fg_explain_lone_sum(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e) {
+  set_terms set;
+  size_t rank;
+  list_terms(s->out, 1u << e, &set);
+  if (set.cubic < FG_CANDIDATES_MAX) find_middle(s, y, &set);
+  return fg_explain_solve(&s->columns, set.term, set.count, NULL, NULL, &rank);
+}
+
+double fg_explain_amplitude_u(const fg_explain_search *s, unsigned others, size_t e) {
+  const fg_candidate *effect = &s->out->candidates[e];
+  size_t own = s->policy->smallest_beside_own ? effect->terms : 1, before, rank;
+  set_terms set;
+  double u = INFINITY;
+  list_terms(s->out, others & ~(1u << e), &set);
+  if (set.count + own > FG_EXPLAIN_TERMS) return INFINITY;
+  fg_explain_solve(&s->columns, set.term, set.count, NULL, NULL, &before);
+  for (size_t c = 0; c < own; c++)
+    set.term[set.count++] = (fg_explain_term){1, {effect->column[c]}, {1}};
+  fg_explain_solve(&s->columns, set.term, set.count, NULL, &u, &rank);
+  return rank == before ? INFINITY : u;
 }
 
 fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s) {
@@ -158,52 +177,8 @@ fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s) {
                             .reach = MIDDLE_REACH * extent / FG_FIELD_HALF_MM};
   for (size_t e = 0; e < out->candidate_count; e++)
     if (out->candidates[e].kind->numbers == FG_EFFECT_LED) y.bends |= 1u << e;
-  out->edge_error_um = sqrt(EDGE_ERROR_UM * EDGE_ERROR_UM + s->columns.width_part);
-  y.allowance = (double)s->columns.rows * out->edge_error_um * out->edge_error_um / y.unit;
+  double edge = s->policy->edge_error_um, edge_um = sqrt(edge * edge + s->columns.width_part);
+  if (s->columns.has_width) out->edge_error_um = edge_um; /* else nothing showed it */
+  y.allowance = (double)s->columns.rows * edge_um * edge_um / y.unit;
   return y;
-}
-
-/* ---- what the report says of each ---- */
-
-/* Three and a half standard deviations beside the winner: found in most cases. */
-static double smallest_amplitude(const fg_explain_search *s, const fg_explain_yardstick *y,
-                                 size_t e) {
-  const fg_explanations *out = s->out;
-  set_terms set;
-  double u = INFINITY;
-  size_t rank;
-  unsigned others = out->each[0].mask & fg_explain_mask_of(out, false) & ~(1u << e);
-  list_terms(out, others, &set);
-  const fg_candidate *effect = &out->candidates[e];
-  if (set.count < FG_EXPLAIN_TERMS) {
-    set.term[set.count++] = (fg_explain_term){1, {effect->column[0]}, {1}};
-    size_t before;
-    fg_explain_solve(&s->columns, set.term, set.count - 1, NULL, NULL, &before);
-    fg_explain_solve(&s->columns, set.term, set.count, NULL, &u, &rank);
-    if (rank == before) u = INFINITY;
-  }
-  return 3.5 * sqrt(y->unit) * u;
-}
-
-void fg_explain_describe_effects(fg_explain_search *s, const fg_explain_yardstick *y) {
-  fg_explanations *out = s->out;
-  double none = s->columns.square;
-  out->p_value = gsl_cdf_chisq_Q(
-      fmax(0, none - y->full) / y->unit / (1 + y->allowance / y->freedom), y->freedom);
-  for (size_t e = 0; e < out->candidate_count; e++) {
-    set_terms set;
-    size_t rank;
-    list_terms(out, 1u << e, &set);
-    if (set.cubic < FG_CANDIDATES_MAX) find_middle(s, y, &set);
-    double sum = fg_explain_solve(&s->columns, set.term, set.count, NULL, NULL, &rank);
-    out->alone[e] = none > 0 ? 1 - sum / none : 0;
-    if (!fg_effect_is_free(out->candidates[e].kind))
-      out->smallest_um[e] = smallest_amplitude(s, y, e);
-  }
-}
-
-void fg_explain_describe_width(fg_explain_search *s, const fg_explain_yardstick *y) {
-  fg_explanation first = fg_explain_try(s, y, s->out->each[0].mask);
-  s->out->width_rms_um = sqrt(fmax(first.width, 0) / (double)s->columns.rows);
-  s->out->width_smooth_um = sqrt(s->columns.width_part);
 }

@@ -5,6 +5,7 @@
 #include "explain/explain_columns.h"
 
 typedef struct fg_explain_search {
+  const fg_explain_policy *policy;
   fg_explain_columns columns;
   fg_explanations *out;
   size_t free_column, free_end; /* columns of the free curves */
@@ -24,29 +25,72 @@ typedef struct fg_explain_yardstick {
   double reach;   /* of a polynomial's middle, in units of FG_FIELD_HALF_MM */
 } fg_explain_yardstick;
 
-fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s);
-
-/* Fits a set; an excess of INFINITY says that it is no set of its own. */
-fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
-                              unsigned mask);
-bool fg_explain_is_right(const fg_explain_yardstick *y, const fg_explanation *m);
-
-/* Fill what the report says of every effect, and of the width, beside the best explanation. */
-void fg_explain_describe_effects(fg_explain_search *s, const fg_explain_yardstick *y);
-void fg_explain_describe_width(fg_explain_search *s, const fg_explain_yardstick *y);
+/* ---- candidates.c ---- */
 
 /* Adds an effect whose columns are its own. */
 void fg_explain_add(fg_explain_search *s, const fg_candidate *effect);
+/* The effect in a set; NULL: it is not there, or there is no set. */
+const fg_effect_found *fg_explain_find_known(const fg_effect_set *known, const fg_effect *kind);
+
+size_t fg_explain_bits(unsigned mask);
+/* Of all effects, those that are free curves, or those that are listed. */
+unsigned fg_explain_mask_of(const fg_explanations *out, bool of_free);
+/* Two forms of one effect, and two ripples of one period or two steps at one place. */
+bool fg_explain_has_twins(const fg_explanations *out, unsigned mask);
+/* Puts an explanation into the list, the one that leaves least first. */
+void fg_explain_keep(fg_explanations *out, const fg_explanation *explanation);
+
+/* Shapes nearer to each other than this are one. */
+#define FG_EXPLAIN_TWIN_SHARE 0.05
+
+/* ---- noise.c ---- */
 
 /* Noise of a row and its correlation, from what is left beside geometry and all effects, or all
  * that are listed; returns the rank of the basis that took them out. */
 size_t fg_explain_noise(fg_explain_search *s, bool listed_only);
+/* The same beside all effects, with all columns of a curve that is there: it is no noise. */
+void fg_explain_refine_noise(fg_explain_search *s);
 
 /* FG_ERR_DATA when the last noise rests on too few rows. */
 fg_status fg_explain_check_rows(fg_context *ctx, const fg_explain_search *s);
 
 /* Integral of the correlation of what is left, along the edge. */
 double fg_explain_integral(const fg_explain_columns *columns);
+
+/* ---- score.c ---- */
+
+fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s);
+
+/* Fits a set; an excess of INFINITY says that it is no set of its own. */
+fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
+                              unsigned mask);
+/* Whether it leaves no more than it should. */
+bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
+                         const fg_explanation *m);
+/* Schwarz's criterion: the smaller one is the better one. */
+double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m);
+
+/* Residual sum of one effect alone; the standard deviation of its leading amplitude beside other
+ * effects for noise of 1 um, INFINITY when it lies in them. */
+double fg_explain_lone_sum(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e);
+double fg_explain_amplitude_u(const fg_explain_search *s, unsigned others, size_t e);
+
+/* ---- sets.c ---- */
+
+/* Tries sets as the policy says, and fills the explanations. */
+void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y);
+/* A shape that was found just now has not been fitted with the geometry yet: a set that holds one
+ * and takes most of what there is to take gets its chance before any curve that is not far better.
+ */
+bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                const fg_explanation *best, const fg_explanation *curve);
+
+/* ---- describe.c ---- */
+
+/* Fills what the report says of every effect, and of the width, beside the best explanation. */
+void fg_explain_describe(fg_explain_search *s, const fg_explain_yardstick *y);
+
+/* ---- places.c, placed.c ---- */
 
 /* Gain in chi² that makes one worth a place in the search: its best of some hundred places stands
  * for ln of their number more; and its size, um. */
@@ -60,9 +104,10 @@ typedef struct fg_explain_hit {
 } fg_explain_hit;
 fg_explain_hit fg_explain_find_place(const fg_explain_search *s, size_t rank, const fg_effect *kind,
                                      double *work);
-
-/* Shapes nearer to each other than this are one. */
-#define FG_EXPLAIN_TWIN_SHARE 0.05
+/* What a step at this place leaves beside the basis, its mean square being 1 per um; INFINITY where
+ * too few rows lie on one side. */
+double fg_explain_rest_of_step(const fg_explain_columns *c, size_t rank, const fg_effect *kind,
+                               double at_mm, double *work);
 
 /* Adds a smooth effect with a shape: with the one it has in the known set (NULL: none), and with
  * the one that takes most beside the geometry alone, which a fit beside wrong effects may have
@@ -72,17 +117,12 @@ fg_status fg_explain_add_shaped(fg_context *ctx, fg_explain_search *s, const fg_
                                 const fg_effect_set *known);
 
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
-fg_status fg_explain_find_shaped(fg_context *ctx, fg_explain_search *s);
+fg_status fg_explain_find_on_foils(fg_context *ctx, fg_explain_search *s);
+fg_status fg_explain_find_on_discs(fg_context *ctx, fg_explain_search *s);
 
 /* Steps at other places that the geometry turns into those that are known: a whole bump between the
  * two places takes the difference. They are added as effects of their own. */
 fg_status fg_explain_add_other_steps(fg_context *ctx, fg_explain_search *s,
                                      const fg_effect_set *known);
-
-size_t fg_explain_bits(unsigned mask);
-/* Of all effects, those that are free curves, or those that are listed. */
-unsigned fg_explain_mask_of(const fg_explanations *out, bool of_free);
-/* Puts an explanation into the list, the one that leaves least first. */
-void fg_explain_keep(fg_explanations *out, const fg_explanation *explanation);
 
 #endif

@@ -1,26 +1,22 @@
 /* The search for effects and the fit of the geometry in turns. */
+#include "explain/settle.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
 #include "effect/columns.h"
-#include "explain/settle.h"
+#include "explain/joint_fit.h"
+#include "explain/outliers.h"
+#include "explain/policy.h"
 
-/* Rows this far off are left out, if they are fewer than this share. */
-#define OUTLIER_SIGMAS 5.0
-#define OUTLIER_SHARE  0.02
 /* Largest change of an overall radius, and largest coefficient, that an effect may have. */
 #define SANE_SHARE 0.03
 #define SANE_UM    2000.0
-/* Half the height of the rows that a step in the picture blurs. */
-#define STEP_HALF_MM 0.08
-/* A set that takes no more than this share off what is left has come to rest. */
-#define REST_SHARE   0.05
+/* An amplitude that is more than its uncertainty. */
 #define THERE_SIGMAS 4.0
-#define END_SIGMAS   8.0
-enum { END_ROWS = 3 };
+enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
 
 void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
   memset(set, 0, sizeof *set);
@@ -50,15 +46,16 @@ static void keep_numbers(const fg_effect_set *from, fg_effect_set *to) {
         to->effects[e] = from->effects[k];
 }
 
-bool fg_settle_same_effects(const fg_effect_set *a, const fg_effect_set *b) {
+static bool same_effects(const fg_effect_set *a, const fg_effect_set *b) {
   if (a->count != b->count) return false;
   for (size_t e = 0; e < a->count; e++)
     if (a->effects[e].kind != b->effects[e].kind) return false;
   return true;
 }
 
-fg_status fg_settle_put_back(fg_context *ctx, fg_points *points, const fg_effect_set *set,
-                             double *residual_um, double *jacobian) {
+/* Residual (um) and Jacobian at the set's geometry, with what the set does put back, linearly. */
+static fg_status put_back(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                          double *residual_um, double *jacobian) {
   size_t rows = points->row_count;
   fg_field_list fields;
   double *shift = NULL, *columns = NULL;
@@ -84,72 +81,6 @@ exit:
   return status;
 }
 
-/* Rows far outside what the set leaves elsewhere are no effect of the scanner or the part: an arc
- * that reached into its fillet, a burr. They lose their weight; should there be many, they are no
- * outliers. */
-static fg_status drop_outliers(fg_context *ctx, fg_points *points, const double *residual_um) {
-  double *absolute = NULL;
-  size_t n = 0, out = 0, rows = points->row_count;
-  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *absolute, (void **)&absolute));
-  for (size_t i = 0; i < rows; i++)
-    if (points->rows[i].weight > 0) absolute[n++] = fabs(residual_um[i]);
-  double limit = n ? OUTLIER_SIGMAS * 1.4826 * fg_select(absolute, n, n / 2) : INFINITY;
-  free(absolute);
-  for (size_t i = 0; i < rows; i++)
-    out += fabs(residual_um[i]) > limit;
-  if ((double)out > OUTLIER_SHARE * (double)rows) return FG_OK;
-  for (size_t i = 0; i < rows; i++)
-    if (fabs(residual_um[i]) > limit) points->rows[i].weight = 0;
-  return FG_OK;
-}
-
-static double third_difference(const double *r, size_t at, int step) {
-  size_t k[4];
-  for (int i = 0; i < 4; i++)
-    k[i] = (size_t)((ptrdiff_t)at + i * step);
-  return r[k[0]] - 3 * r[k[1]] + 3 * r[k[2]] - r[k[3]];
-}
-
-static bool same_run(const fg_points *points, size_t a, size_t b) {
-  const fg_points_row *p = &points->rows[a], *q = &points->rows[b];
-  return b < points->row_count && p->view == q->view && p->group == q->group;
-}
-
-/* A run's last rows may reach into a fillet; they leave the line of those before them as no others
- * do. Third differences: what is smooth stays out of them. */
-static fg_status drop_bad_ends(fg_context *ctx, fg_points *points, const double *residual_um) {
-  size_t rows = points->row_count, n = 0;
-  double *size = NULL;
-  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *size, (void **)&size));
-  for (size_t i = 0; i + 3 < rows; i++)
-    if (same_run(points, i, i + 3)) size[n++] = fabs(third_difference(residual_um, i, 1));
-  double limit = n ? END_SIGMAS * 1.4826 * fg_select(size, n, n / 2) : INFINITY;
-  free(size);
-  for (size_t from = 0, to; from < rows; from = to) {
-    for (to = from + 1; to < rows && same_run(points, from, to);)
-      to++;
-    for (size_t k = 0; k < END_ROWS && from + 2 * END_ROWS + 4 < to; k++) {
-      size_t low = from + END_ROWS - 1 - k, high = to - END_ROWS + k;
-      if (fabs(third_difference(residual_um, low, 1)) > limit)
-        for (size_t i = from; i <= low; i++)
-          points->rows[i].weight = 0;
-      if (fabs(third_difference(residual_um, high, -1)) > limit)
-        for (size_t i = high; i < to; i++)
-          points->rows[i].weight = 0;
-    }
-  }
-  return FG_OK;
-}
-
-void fg_settle_leave_steps_out(fg_points *points, const fg_effect_set *set, double half_mm) {
-  for (size_t e = 0; e < set->count; e++)
-    for (size_t i = 0; i < points->row_count; i++)
-      if (set->effects[e].kind->jumps &&
-          fabs((set->effects[e].kind->axis ? points->rows[i].at.y : points->rows[i].at.x) -
-               set->effects[e].shape[0]) < half_mm)
-        points->rows[i].weight = 0;
-}
-
 /* Whether an effect's numbers are more than its uncertainty. */
 static bool is_there(const fg_effect_found *effect) {
   for (size_t c = 0; c < effect->columns; c++)
@@ -172,12 +103,14 @@ static void drop_nothings(fg_effect_set *set) {
 
 /* A search under way. */
 typedef struct settling {
+  const fg_explain_policy *policy;
   fg_effect_set set;
   fg_explanations explanations;
   double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
 } settling;
 
-double fg_settle_square(const fg_points *points, const double *residual_um) {
+/* Weighted sum of squares over the rows that are not kept aside. */
+static double square_of(const fg_points *points, const double *residual_um) {
   double sum = 0;
   for (size_t i = 0; i < points->row_count; i++)
     if (!points->views[points->rows[i].view].aside)
@@ -199,65 +132,69 @@ static bool is_sane(const fg_points *points, const double *geometry, const fg_ef
   return true;
 }
 
-fg_status fg_settle_fit(fg_context *ctx, fg_points *points, fg_effect_set *set, double none,
-                        double *geometry, double *residual_um) {
-  fg_points_geometry_save(points, geometry);
-  fg_status status = fg_joint_fit(ctx, points, set, residual_um);
+/* Fits a set from the geometry that stands. One that runs away, or leaves more than `none` (what no
+ * effect at all leaves), is given up: then the set is empty. */
+static fg_status fit(fg_context *ctx, fg_points *points, double none, settling *at) {
+  fg_points_geometry_save(points, at->geometry);
+  fg_status status = fg_joint_fit(ctx, points, &at->set, at->residual_um);
   if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
-  if (status == FG_OK && is_sane(points, geometry, set) &&
-      fg_settle_square(points, residual_um) <= none)
+  if (status == FG_OK && is_sane(points, at->geometry, &at->set) &&
+      square_of(points, at->residual_um) <= none)
     return FG_OK;
-  fg_points_geometry_load(points, geometry);
-  memset(set, 0, sizeof *set);
+  fg_points_geometry_load(points, at->geometry);
+  memset(&at->set, 0, sizeof at->set);
   ctx->message[0] = 0;
-  return fg_joint_fit(ctx, points, set, residual_um);
+  return fg_joint_fit(ctx, points, &at->set, at->residual_um);
 }
 
-/* How a search goes about it. With `eager`, ripples and steps are looked for at once: right for
- * them, while a large smooth effect leaves traces in the first round that look like them. Two
- * curves can be made of nearly anything, so they come last. */
-typedef struct manner {
-  bool eager, two_curves;
-} manner;
+/* Whether a round from `before` to `left` took so little that a further one would take nothing. */
+static bool rests(const fg_explain_policy *policy, double before, double left) {
+  return !(left <= (1 - policy->rest_share) * before);
+}
 
 /* Search and fit in turns from a start without effects. */
-static fg_status settle_from(fg_context *ctx, fg_points *points, manner how, settling *at) {
-  enum { ROUNDS = 8 };
+static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_manner how,
+                             settling *at) {
+  const fg_explain_policy *policy = at->policy;
   fg_effect_set tried = {.count = 0}, last = {.count = 0};
   double left = INFINITY;
   memset(&at->set, 0, sizeof at->set);
   FG_TRY(fg_joint_fit(ctx, points, &at->set, at->residual_um));
-  double none = fg_settle_square(points, at->residual_um);
-  for (int round = 0; round < (points->coarse ? 2 : ROUNDS); round++) {
+  double none = square_of(points, at->residual_um);
+  for (int round = 0; round < (points->coarse ? COARSE_ROUNDS : ROUNDS); round++) {
     fg_effect_set next;
-    fg_explain_request request = {at->residual_um, at->jacobian,           &at->set,
-                                  &tried,          how.eager || round > 0, how.two_curves};
-    FG_TRY(fg_settle_put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
+    const fg_explain_request request = {.policy = policy,
+                                        .residual_um = at->residual_um,
+                                        .jacobian = at->jacobian,
+                                        .known = &at->set,
+                                        .tried = &tried,
+                                        .look = how.eager || round > 0,
+                                        .two_curves = how.two_curves};
+    FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
     fg_explain_take(&at->explanations, 0, &next);
-    bool same = fg_settle_same_effects(&last, &next);
+    bool same = same_effects(&last, &next);
     last = next;
     keep_numbers(&at->set, &next);
     at->set = next;
-    fg_settle_leave_steps_out(points, &at->set, STEP_HALF_MM);
-    FG_TRY(fg_settle_fit(ctx, points, &at->set, none, at->geometry, at->residual_um));
+    fg_explain_drop_across_steps(points, &at->set, policy->step_half_mm);
+    FG_TRY(fit(ctx, points, none, at));
     /* Given up: what was right to first order is not. */
     if (next.count && !at->set.count) at->explanations.right = false;
     if (!at->explanations.right) tried = next;
-    FG_TRY(drop_outliers(ctx, points, at->residual_um));
+    FG_TRY(fg_explain_drop_outliers(ctx, points, policy->own_noise, at->residual_um));
     double before = left;
-    left = fg_settle_square(points, at->residual_um);
-    bool rests = at->explanations.right || left > (1 - REST_SHARE) * before;
-    if (same && rests && round > 0) break;
-    drop_nothings(&at->set);
+    left = square_of(points, at->residual_um);
+    if (same && round > 0 && (at->explanations.right || rests(policy, before, left))) break;
+    if (policy->drops_nothings) drop_nothings(&at->set);
   }
   return FG_OK;
 }
 
-/* The eager start, and where it does not come to rest at an explanation that is right, the other,
- * and last two curves; the best one stays. */
+/* The manners of the policy, each where the one before does not come to rest at an explanation that
+ * is right; the best one stays. */
 static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
-  static const manner manners[] = {{true, false}, {false, false}, {true, true}};
+  const fg_explain_policy *policy = at->policy;
   size_t numbers = fg_points_geometry_size(points);
   double best = INFINITY, *geometry = NULL;
   settling kept = *at;
@@ -265,13 +202,13 @@ static fg_status settle_best(fg_context *ctx, fg_points *points, settling *at) {
       fg_memory_allocate(ctx, numbers + points->row_count, sizeof *geometry, (void **)&geometry));
   double *residual_um = geometry + numbers;
   fg_status status = FG_OK;
-  for (size_t i = 0; i < sizeof manners / sizeof manners[0]; i++) {
+  for (size_t i = 0; i < policy->manner_count; i++) {
     if (i > 0 && points->coarse) break;
-    if (manners[i].two_curves && points->view_count < 2) continue;
-    FG_TRY_EXIT(settle_from(ctx, points, manners[i], at));
-    double left = fg_settle_square(points, at->residual_um);
+    if (policy->manners[i].two_curves && points->view_count < 2) continue;
+    FG_TRY_EXIT(settle_from(ctx, points, policy->manners[i], at));
+    double left = square_of(points, at->residual_um);
     if (at->explanations.right) goto exit;
-    if (i && !(left <= (1 - REST_SHARE) * best)) continue;
+    if (i && rests(policy, best, left)) continue;
     best = left;
     kept = *at;
     fg_points_geometry_save(points, geometry);
@@ -286,13 +223,19 @@ exit:
   return status;
 }
 
-fg_status fg_explain_settle(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                            fg_explanations *explanations, double *residual_um) {
-  settling at = {.residual_um = residual_um};
+static fg_status drop_ends(fg_context *ctx, fg_points *points, double *residual_um) {
+  fg_effect_set none = {.count = 0};
+  FG_TRY(fg_joint_fit(ctx, points, &none, residual_um));
+  return fg_explain_drop_ends(ctx, points, residual_um);
+}
+
+fg_status fg_explain_settle(fg_context *ctx, fg_points *points, const fg_explain_policy *policy,
+                            fg_effect_set *set, fg_explanations *explanations,
+                            double *residual_um) {
+  settling at = {.policy = policy, .residual_um = residual_um};
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
-  FG_TRY(fg_joint_fit(ctx, points, set, residual_um));
-  FG_TRY(drop_bad_ends(ctx, points, residual_um));
+  if (policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
   FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *at.jacobian,
                             (void **)&at.jacobian));
   FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *at.geometry,

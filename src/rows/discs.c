@@ -218,6 +218,7 @@ fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, si
     FG_TRY_EXIT(add_disc(ctx, points, v, block));
   FG_TRY_EXIT(weigh(ctx, points, block));
   fg_points_find_frame(points);
+  fg_points_count_parameters(points);
 exit:
   if (status != FG_OK) fg_points_free(points);
   return status;

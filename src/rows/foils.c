@@ -241,7 +241,7 @@ void fg_points_find_frame(fg_points *points) {
     f->first_mm[axis] = f->high_mm[axis];
     f->last_mm[axis] = f->low_mm[axis];
     for (size_t i = 0; i < points->row_count; i++) {
-      double at = axis ? points->rows[i].at.y : points->rows[i].at.x;
+      double at = fg_point_along(points->rows[i].at, axis);
       f->first_mm[axis] = fmin(f->first_mm[axis], at - EDGE_ROOM_MM);
       f->last_mm[axis] = fmax(f->last_mm[axis], at + EDGE_ROOM_MM);
     }
@@ -344,6 +344,7 @@ fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t c
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
   FG_TRY_EXIT(take_views(ctx, views, count, points));
   FG_TRY_EXIT(fill(ctx, points));
+  fg_points_count_parameters(points);
   if (points->row_count) qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
   FG_TRY_EXIT(find_range(ctx, points));
 exit:

@@ -33,8 +33,8 @@ static size_t first_of_view(const fg_points *points, size_t view) {
   return at;
 }
 
-static size_t count_parameters(const fg_points *points) {
-  return first_of_view(points, points->view_count);
+void fg_points_count_parameters(fg_points *points) {
+  points->parameters = first_of_view(points, points->view_count);
 }
 
 void fg_points_parameter_name(const fg_points *points, size_t parameter, char *name) {
@@ -142,7 +142,6 @@ static void place_row(fg_points *points, fg_points_row *row, fg_point p) {
 
 void fg_points_residual(fg_points *points, const fg_points_correction *correction, double *residual,
                         double *jacobian) {
-  points->parameters = count_parameters(points);
   if (jacobian) memset(jacobian, 0, points->parameters * points->row_count * sizeof *jacobian);
   for (size_t i = 0; i < points->row_count; i++) {
     fg_points_row *row = &points->rows[i];
@@ -215,7 +214,6 @@ fg_status fg_points_fit(fg_context *ctx, fg_points *points,
   gsl_matrix *normal = NULL;
   gsl_vector *step = NULL;
   fg_numerics_start();
-  points->parameters = count_parameters(points);
   size_t n = points->parameters, rows = points->row_count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows * n, sizeof *jacobian, (void **)&jacobian));

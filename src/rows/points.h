@@ -113,6 +113,8 @@ fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, si
 fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row);
 /* The frame of the fields, from the pictures. */
 void fg_points_find_frame(fg_points *points);
+/* The parameters of the geometry, from views and parts. */
+void fg_points_count_parameters(fg_points *points);
 
 /* Corrections in force: fields of the scanner, and shifts of the midline in the part's frame
  * (`shift_mm`, one per row along the row's normal; NULL: none). */
@@ -135,6 +137,11 @@ void fg_points_residual(fg_points *points, const fg_points_correction *correctio
 enum { FG_POINTS_ROW_PARAMETERS = 7 };
 size_t fg_points_row_parameters(const fg_points *points, size_t row,
                                 size_t parameter[FG_POINTS_ROW_PARAMETERS]);
+
+/* A place along x (axis 0) or y (1). */
+static inline double fg_point_along(fg_point at, int axis) {
+  return axis ? at.y : at.x;
+}
 
 /* Integral of the correlation of values along the edge, at least 1: noise in n rows averages like
  * that in n over it. `row` (NULL: all) are the rows that the values are of, ascending. */

@@ -68,7 +68,7 @@ static fg_status set_apart(fg_context *ctx, const fg_points *together, apart *a)
   a->points.frame = together->frame;
   FG_TRY(fg_memory_allocate(ctx, a->points.row_count, sizeof *a->residual_um,
                             (void **)&a->residual_um));
-  return fg_explain_settle(ctx, &a->points, &a->set, &a->explanations, a->residual_um);
+  return fg_explain_run(ctx, &a->points, &a->set, &a->explanations, a->residual_um);
 }
 
 static size_t numbers_of(const fg_points *points, const fg_effect_set *set) {

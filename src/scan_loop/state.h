@@ -3,6 +3,7 @@
 #define FG_SCAN_LOOP_STATE_H
 
 #include "explain/explain.h"
+#include "explain/joint_fit.h"
 #include "foilgauge/scan_loop.h"
 #include "rows/points.h"
 #include "scan_loop/bumps.h"
@@ -30,10 +31,6 @@ struct fg_scan_loop {
   fg_loop_outcome verdict;
   fg_scan_loop_decisions decided; /* what every report says of the effects */
 };
-
-/* Joint fit of geometry and effects, from the effects' present numbers. `residual_um` (rows, or
- * NULL) gets what is left. */
-fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um);
 
 /* fg_scan_loop_run on scans of one resolution that are measured already; takes them over. */
 fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurements,

@@ -14,7 +14,7 @@
 #include "../support/random.h"
 #include "../support/synthetic_foil.h"
 #include "effect/columns.h"
-#include "explain/explain.h"
+#include "explain/policy.h"
 #include "foilgauge/render.h"
 
 #define AMPLITUDE_UM 20.0
@@ -91,8 +91,10 @@ static void the_search_knows_every_row(void **state) {
     fg_explanations explanations;
     if (effect->off_foils || fg_effect_is_free(effect) || count++ % test_step(4)) continue;
     put_effect(&f, effect);
-    const fg_explain_request request = {
-        .residual_um = f.residual_um, .jacobian = f.jacobian, .look = true};
+    const fg_explain_request request = {.policy = fg_explain_policy_of(&f.points),
+                                        .residual_um = f.residual_um,
+                                        .jacobian = f.jacobian,
+                                        .look = true};
     assert_int_equal(fg_explain_find(&ctx, &f.points, &request, &explanations), FG_OK);
     if (!explanations.right || !in_class(&explanations, effect))
       fail_msg("the search does not find %s", effect->id);

@@ -12,7 +12,7 @@
 #include "../support/random.h"
 #include "../support/synthetic_foil.h"
 #include "effect/columns.h"
-#include "scan_loop/state.h"
+#include "explain/joint_fit.h"
 
 #define NOISE_UM 0.03
 

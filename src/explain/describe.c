@@ -1,0 +1,32 @@
+/* What the report says of each effect beside the best explanation. */
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+
+#include "explain/search.h"
+
+/* Standard deviations of an amplitude that is found in most cases. */
+#define SMALLEST_ERRORS 3.5
+
+static void describe_effects(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanations *out = s->out;
+  double none = s->columns.square;
+  unsigned beside = out->each[0].mask & fg_explain_mask_of(out, false);
+  out->p_value = gsl_cdf_chisq_Q(
+      fmax(0, none - y->full) / y->unit / (1 + y->allowance / y->freedom), y->freedom);
+  for (size_t e = 0; e < out->candidate_count; e++) {
+    out->alone[e] = none > 0 ? 1 - fg_explain_lone_sum(s, y, e) / none : 0;
+    if (!fg_effect_is_free(out->candidates[e].kind))
+      out->smallest_um[e] = SMALLEST_ERRORS * sqrt(y->unit) * fg_explain_amplitude_u(s, beside, e);
+  }
+}
+
+static void describe_width(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanation first = fg_explain_try(s, y, s->out->each[0].mask);
+  s->out->width_rms_um = sqrt(fmax(first.width, 0) / (double)s->columns.rows);
+  s->out->width_smooth_um = sqrt(s->columns.width_part);
+}
+
+void fg_explain_describe(fg_explain_search *s, const fg_explain_yardstick *y) {
+  describe_effects(s, y);
+  describe_width(s, y);
+}

@@ -1,0 +1,69 @@
+/* The noise of a row: what is left beside everything at once. */
+#include <math.h>
+
+#include "explain/search.h"
+
+/* A curve with all its columns leaves less than this share of what a smoother one does. */
+#define FINER 0.9
+/* No row is better known, um: exact data are not of a scanner. */
+#define NOISE_LEAST_UM 1e-4
+/* Rows beyond the numbers that are fitted to them: fewer tell no noise. */
+enum { FREEDOM_LEAST = 12 };
+
+double fg_explain_integral(const fg_explain_columns *s) {
+  return fg_points_integral(s->points, s->row, s->rows, s->left);
+}
+
+static double noise_of(const fg_explain_columns *c, size_t rank) {
+  double freedom = fmax((double)c->rows - (double)rank, 1);
+  return fmax(sqrt(fg_explain_dot(c->rows, c->left, c->left) / freedom), NOISE_LEAST_UM);
+}
+
+fg_status fg_explain_check_rows(fg_context *ctx, const fg_explain_search *s) {
+  size_t numbers = s->columns.geometry_rank + s->freedom;
+  if (s->columns.rows >= numbers + FREEDOM_LEAST) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%zu edge rows are too few to look for effects: %zu numbers would be fitted to "
+                 "them; scan more bumps, or at a higher resolution",
+                 s->columns.rows, numbers);
+}
+
+static void take_noise(fg_explain_search *s, size_t rank) {
+  s->full = fg_explain_dot(s->columns.rows, s->columns.left, s->columns.left);
+  s->freedom = rank - s->columns.geometry_rank;
+  s->out->noise_um = noise_of(&s->columns, rank);
+  s->out->integral = fg_explain_integral(&s->columns);
+}
+
+size_t fg_explain_noise(fg_explain_search *s, bool listed_only) {
+  size_t end = listed_only ? s->free_end : s->free_column;
+  size_t rank = fg_explain_columns_span(&s->columns, s->free_column, end);
+  take_noise(s, rank);
+  return rank;
+}
+
+/* Whether all effects at once have less than all of its columns. */
+static bool is_smoother(const fg_explain_columns *c, const fg_candidate *curve) {
+  for (size_t k = 0; k < curve->columns; k++)
+    if (c->part[curve->column[k]] != FG_EXPLAIN_ITSELF) return true;
+  return false;
+}
+
+void fg_explain_refine_noise(fg_explain_search *s) {
+  const fg_candidate *best = NULL;
+  size_t rank = fg_explain_noise(s, false);
+  double least = FINER * s->out->noise_um;
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    const fg_candidate *curve = &s->out->candidates[e];
+    if (!fg_effect_is_free(curve->kind) || !is_smoother(&s->columns, curve)) continue;
+    size_t from = curve->column[0];
+    size_t more = fg_explain_columns_span_more(&s->columns, rank, from, from + curve->columns);
+    double noise = noise_of(&s->columns, more);
+    if (noise >= least) continue;
+    least = noise;
+    best = curve;
+  }
+  if (!best) return;
+  size_t from = best->column[0];
+  take_noise(s, fg_explain_columns_span_more(&s->columns, rank, from, from + best->columns));
+}

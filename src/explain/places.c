@@ -1,0 +1,96 @@
+/* Where a shape takes most: a grid of starts, then finer around the best one. */
+#include <math.h>
+
+#include "core/small_solve.h"
+#include "explain/search.h"
+
+enum { REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
+enum { COARSER = 40 };
+
+/* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
+static bool has_both_sides(const fg_explain_columns *c, const fg_effect *kind, double at_mm) {
+  size_t low = 0, all = 0;
+  for (size_t i = 0; i < c->rows; i++) {
+    const fg_points_row *row = &c->points->rows[c->row[i]];
+    low += row->weight > 0 && fg_point_along(row->at, kind->axis) < at_mm;
+    all += row->weight > 0;
+  }
+  return low >= SIDE_ROWS && all - low >= SIDE_ROWS;
+}
+
+/* Gain beside everything else, in chi². */
+static fg_explain_hit gain_at(const fg_explain_search *s, size_t rank, const fg_effect *kind,
+                              double place, double *work) {
+  const fg_explain_columns *c = &s->columns;
+  if (kind->jumps && !has_both_sides(c, kind, place)) return (fg_explain_hit){0, 0, place};
+  double shape[FG_FIELD_SHAPES] = {place}, x[FG_SMALL_MAX], square = 0;
+  size_t count = fg_explain_gather(c, kind, shape, work);
+  fg_normal_equations system;
+  fg_explain_hit none = {0, 0, place}, found = none;
+  fg_normal_clear(&system, count);
+  for (size_t a = 0; a < count; a++) {
+    /* What is left stands beside the basis already, and the basis takes its share of the products.
+     */
+    system.right[a] = fg_explain_dot(c->rows, work + a * c->rows, c->left);
+    for (size_t b = 0; b <= a; b++)
+      system.matrix[a][b] = fg_explain_dot(c->rows, work + a * c->rows, work + b * c->rows);
+  }
+  for (size_t k = 0; k < rank; k++) {
+    double along[FG_SMALL_MAX];
+    for (size_t a = 0; a < count; a++) {
+      along[a] = fg_explain_along(c, k, work + a * c->rows);
+      for (size_t b = 0; b <= a; b++)
+        system.matrix[a][b] -= along[a] * along[b];
+    }
+  }
+  for (size_t a = 0; a < count; a++)
+    if (!(system.matrix[a][a] > 1e-3 * (double)c->rows / 64)) return none;
+  if (!fg_normal_solve(&system, 1e-9, x, NULL)) return none;
+  for (size_t a = 0; a < count; a++) {
+    found.gain += x[a] * system.right[a];
+    square += x[a] * x[a];
+  }
+  found.gain /= s->out->noise_um * s->out->noise_um * s->out->integral;
+  found.amplitude = sqrt(square);
+  return found;
+}
+
+/* The best place over a grid of starts, then finer around it. */
+fg_explain_hit fg_explain_find_place(const fg_explain_search *s, size_t rank, const fg_effect *kind,
+                                     double *work) {
+  const fg_field_frame *frame = &s->columns.points->frame;
+  fg_explain_hit best = {0};
+  bool coarse = s->columns.points->coarse;
+  size_t which = 0, starts = kind->starts / (coarse ? COARSER : 1);
+  for (size_t i = 0; i < starts; i++) {
+    fg_explain_hit tried = gain_at(s, rank, kind, kind->start(frame, i, starts), work);
+    if (tried.gain <= best.gain) continue;
+    best = tried;
+    which = i;
+  }
+  double low = kind->start(frame, which > 0 ? which - 1 : 0, starts);
+  double high = kind->start(frame, which + 1 < starts ? which + 1 : which, starts);
+  for (int level = 0; level < (coarse ? 1 : REFINE_LEVELS) && best.gain > 0; level++) {
+    double step = (high - low) / REFINE_STEPS;
+    for (size_t i = 0; i <= REFINE_STEPS; i++) {
+      fg_explain_hit tried = gain_at(s, rank, kind, low + step * (double)i, work);
+      if (tried.gain > best.gain) best = tried;
+    }
+    low = best.at - step;
+    high = best.at + step;
+  }
+  return best;
+}
+
+double fg_explain_rest_of_step(const fg_explain_columns *c, size_t rank, const fg_effect *kind,
+                               double at_mm, double *work) {
+  double shape[FG_FIELD_SHAPES] = {at_mm};
+  if (!has_both_sides(c, kind, at_mm)) return INFINITY;
+  fg_explain_gather(c, kind, shape, work);
+  double rest = fg_explain_dot(c->rows, work, work);
+  for (size_t k = 0; k < rank; k++) {
+    double along = fg_explain_along(c, k, work);
+    rest -= along * along;
+  }
+  return rest;
+}

@@ -1,0 +1,96 @@
+#include "explain/policy.h"
+
+#include <math.h>
+
+/* ---- foils ---- */
+
+static bool scanned_again(const fg_points *points) {
+  return points->view_count > points->part_count;
+}
+
+static size_t most_of_foils(const fg_points *points) {
+  return points->coarse ? 1 : scanned_again(points) ? 3 : 2;
+}
+
+static bool has_lower_score(const fg_explain_search *s, const fg_explanation *explanation,
+                            const fg_explanation *best) {
+  if (!isfinite(explanation->excess)) return false;
+  return !isfinite(best->excess) ||
+         fg_explain_schwarz(s, explanation) < fg_explain_schwarz(s, best);
+}
+
+/* ---- discs ---- */
+
+/* How many effects the points can tell apart. */
+static size_t most_of_discs(const fg_points *points) {
+  return points->coarse ? 1 : points->part_count > 2 ? 5 : 2;
+}
+
+/* What one effect more gains by chance: a set that comes later, and is larger, must gain more. */
+#define ONE_MORE_CHI2 12.0
+
+static bool leaves_less(const fg_explain_search *s, const fg_explanation *explanation,
+                        const fg_explanation *best) {
+  (void)s;
+  return explanation->excess < best->excess - ONE_MORE_CHI2;
+}
+
+static bool has_new_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
+                          const fg_explanation *best, const fg_explanation *curve) {
+  (void)y;
+  (void)best;
+  (void)curve;
+  return s->new_shapes > 0;
+}
+
+static const fg_explain_policy foils = {
+    .middles_with_sets = true,
+    .smoother_curves = true,
+    .other_steps = true,
+    .find_placed = fg_explain_find_on_foils,
+    .effects_most = most_of_foils,
+    .placed_beside = true,
+    .edge_error_um = 0.003, /* clean renders leave at most this (reports/loop_scans.md) */
+    /* Edges of a stretched picture are measured a little wrong (reports/loop_scans.md). */
+    .effect_error = 0.003,
+    .bend_error = 0.005,
+    .one_more_chi2 = INFINITY, /* rows are alike: what all effects would leave says it */
+    .worse_chi2 = 25.0,        /* five standard deviations of one number */
+    .is_better = has_lower_score,
+    .beside_curve = 2,
+    .curve_share = 0.03, /* reports/loop_scans.md, tier curves */
+    .is_worth_fitting = fg_explain_hopes_for_shape,
+    .manners = {{true, false}, {false, false}, {true, true}},
+    .manner_count = 3,
+    .rest_share = 0.05,
+    .drops_nothings = true,
+    .drops_ends = true,
+    .step_half_mm = 0.08,
+};
+
+/* Each disc's form is in the noise and in the free curves alike, so that the sum over all effects
+ * says little of one: a set must not leave one out that takes more than chance, and what is found
+ * must predict discs that it was not fitted to. Their rows are few and lie all over the picture, so
+ * that neither the noise along one edge nor the middle of a polynomial needs help. */
+static const fg_explain_policy discs = {
+    .find_placed = fg_explain_find_on_discs,
+    .effects_most = most_of_discs,
+    .keeps_twins = true,
+    .edge_error_um = 0.01, /* tuned on plates (reports/loop_plate.md) */
+    .one_more_chi2 = ONE_MORE_CHI2,
+    .worse_chi2 = INFINITY, /* none that is much worse is right */
+    .is_better = leaves_less,
+    .beside_curve = 1,
+    .is_worth_fitting = has_new_shape,
+    .smallest_beside_own = true,
+    .manners = {{true, false}},
+    .manner_count = 1,
+    .rest_share = 1, /* one round without a new effect is rest: confirmation judges what it is */
+    .own_noise = true,
+    .step_half_mm = 0.03,
+    .confirms = true,
+};
+
+const fg_explain_policy *fg_explain_policy_of(const fg_points *points) {
+  return points->discs ? &discs : &foils;
+}

@@ -1,0 +1,212 @@
+/* Sets of candidates: which are tried, which are right, and what stands in where none is. */
+#include <math.h>
+
+#include "explain/policy.h"
+
+/* Schwarz's criterion is -2 ln of a probability but for a constant; a difference of 10 is very
+ * strong (Kass and Raftery 1995, section 3.2). */
+#define SCORE_GAIN 10.0
+/* A set with a shape that is not fitted yet may leave this share of what there is, */
+#define FITTING_SHARE 0.1
+/* and this many times what a curve leaves (both tuned on reports/loop_scans.md). */
+#define FITTING_TIMES 30.0
+/* Effects that one curve does not stand for. */
+enum { FEW = 2 };
+
+/* The next set of some candidates, in ascending order; 0 behind the last one. */
+static unsigned next_of(unsigned all, unsigned mask) {
+  return (mask - all) & all;
+}
+
+/* ---- listed effects ---- */
+
+/* Ripples and steps, those in force and all; none where they count as any other effect. */
+typedef struct placed_masks {
+  unsigned known, all;
+} placed_masks;
+
+static placed_masks find_placed_masks(const fg_explain_search *s) {
+  placed_masks masks = {0, 0};
+  size_t count = s->out->candidate_count;
+  for (size_t e = 0; s->policy->placed_beside && e < count; e++) {
+    if (s->out->candidates[e].kind->sought != FG_EFFECT_PLACED) continue;
+    masks.all |= 1u << e;
+    if (e + s->new_shapes < count) masks.known |= 1u << e;
+  }
+  return masks;
+}
+
+/* Few smooth effects, which can stand for each other; ripples and steps stand alone, and all that
+ * are there may be. */
+static bool is_small(unsigned mask, placed_masks placed, size_t most) {
+  unsigned held = mask & placed.all, more = held & ~placed.known;
+  bool one_more = (held & placed.known) == placed.known && fg_explain_bits(more) <= 1;
+  return fg_explain_bits(mask & ~placed.all) <= most &&
+         (fg_explain_bits(mask) <= most || one_more || held == placed.all);
+}
+
+static bool is_set(const fg_explain_search *s, unsigned mask) {
+  return s->policy->keeps_twins || !fg_explain_has_twins(s->out, mask);
+}
+
+/* Whether one more listed effect takes more than it may. */
+static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
+                           const fg_explanation *m) {
+  unsigned more = fg_explain_mask_of(s->out, false) & ~m->mask;
+  if (!isfinite(s->policy->one_more_chi2)) return false;
+  for (size_t e = 0; e < s->out->candidate_count; e++)
+    if ((more >> e & 1) &&
+        m->excess - fg_explain_try(s, y, m->mask | 1u << e).excess > s->policy->one_more_chi2)
+      return true;
+  return false;
+}
+
+/* Listed sets by size; the first size with one that is right ends the search. Returns the best of
+ * those that were tried. */
+static fg_explanation try_listed(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanations *out = s->out;
+  unsigned listed = fg_explain_mask_of(out, false);
+  placed_masks placed = find_placed_masks(s);
+  fg_explanation best = {.excess = INFINITY};
+  size_t most = s->policy->effects_most(s->columns.points);
+  size_t largest = most + fg_explain_bits(placed.all);
+  if (largest > FG_EFFECT_SET_MAX) largest = FG_EFFECT_SET_MAX;
+  for (size_t size = 0; size <= largest && !out->count; size++)
+    for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask)) {
+      if (fg_explain_bits(mask) != size || !is_small(mask, placed, most) || !is_set(s, mask))
+        continue;
+      fg_explanation explanation = fg_explain_try(s, y, mask);
+      if (fg_explain_is_right(s, y, &explanation) && !one_more_helps(s, y, &explanation))
+        fg_explain_keep(out, &explanation);
+      if (s->policy->is_better(s, &explanation, &best)) best = explanation;
+    }
+  return best;
+}
+
+/* Members that are worse than the best as far as the data can show leave. */
+static void drop_worse(const fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanations *out = s->out;
+  size_t kept = 0;
+  for (size_t m = 0; m < out->count; m++)
+    if (out->each[m].excess <= out->each[0].excess + s->policy->worse_chi2 + y->allowance)
+      out->each[kept++] = out->each[m];
+  out->total -= out->count - kept;
+  out->count = kept;
+}
+
+/* The width of the strip puts those that stay in order. Its noise is what the best of them leaves
+ * of it. */
+static void order_by_width(const fg_explain_search *s) {
+  fg_explanations *out = s->out;
+  double width = INFINITY;
+  for (size_t m = 0; m < out->count; m++)
+    width = fmin(width, out->each[m].width);
+  for (size_t m = 0; m < out->count; m++)
+    out->each[m].width = width > 0 ? (out->each[m].width / width - 1) * (double)s->columns.rows : 0;
+  for (size_t m = 1; m < out->count; m++)
+    for (size_t k = m; k > 0 && out->each[k].excess + out->each[k].width <
+                                    out->each[k - 1].excess + out->each[k - 1].width;
+         k--) {
+      fg_explanation swap = out->each[k];
+      out->each[k] = out->each[k - 1];
+      out->each[k - 1] = swap;
+    }
+}
+
+/* ---- free curves ---- */
+
+/* Schwarz's criterion of a set with a free curve, as far as a listed effect beside it goes. */
+static double free_score(const fg_explain_search *s, const fg_explain_yardstick *y,
+                         fg_explanation m) {
+  double share = s->policy->curve_share;
+  if (!isfinite(m.excess)) return INFINITY;
+  m.excess = fmax(0, m.excess - share * share * y->none);
+  return fg_explain_schwarz(s, &m);
+}
+
+/* A free curve, alone or beside few listed effects: the one that leaves least for its columns; the
+ * best listed set stands when none does better. */
+static fg_explanation try_free(const fg_explain_search *s, const fg_explain_yardstick *y,
+                               fg_explanation best) {
+  const fg_explanations *out = s->out;
+  unsigned listed = fg_explain_mask_of(out, false);
+  double score = isfinite(best.excess) ? fg_explain_schwarz(s, &best) : INFINITY;
+  for (size_t size = 0; size <= (s->columns.points->coarse ? 0 : s->policy->beside_curve); size++)
+    for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask)) {
+      if (fg_explain_bits(mask) != size || fg_explain_has_twins(out, mask)) continue;
+      for (size_t e = 0; e < out->candidate_count; e++) {
+        if (!fg_effect_is_free(out->candidates[e].kind)) continue;
+        fg_explanation explanation = fg_explain_try(s, y, mask | 1u << e);
+        /* Every further effect must be worth its while. */
+        double gained = score - fg_explain_schwarz(s, &explanation);
+        if (size) gained = fmin(gained, free_score(s, y, best) - free_score(s, y, explanation));
+        if (!(gained > SCORE_GAIN)) continue;
+        score = fg_explain_schwarz(s, &explanation);
+        best = explanation;
+      }
+    }
+  return best;
+}
+
+/* Two curves, alone or beside one listed effect: a carriage that runs unevenly also sways. One view
+ * could not tell them. */
+static fg_explanation try_two_free(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                   fg_explanation best) {
+  const fg_explanations *out = s->out;
+  unsigned listed = fg_explain_mask_of(out, false), free = fg_explain_mask_of(out, true);
+  if (!s->two_curves || fg_explain_is_right(s, y, &best)) return best;
+  for (unsigned two = 0, first = 1; first || two; first = 0, two = next_of(free, two)) {
+    if (fg_explain_bits(two) != 2 || fg_explain_has_twins(out, two)) continue;
+    for (size_t with = 0; with <= out->candidate_count; with++) {
+      unsigned mask = two | (with < out->candidate_count ? 1u << with & listed : 0);
+      if (with < out->candidate_count && mask == two) continue;
+      fg_explanation explanation = fg_explain_try(s, y, mask);
+      double gained = fmin(fg_explain_schwarz(s, &best) - fg_explain_schwarz(s, &explanation),
+                           free_score(s, y, best) - free_score(s, y, explanation));
+      if (gained > SCORE_GAIN) best = explanation;
+    }
+  }
+  return best;
+}
+
+static bool was_tried(const fg_explain_search *s, const fg_explanation *m) {
+  size_t count = 0;
+  for (size_t e = 0; s->tried && e < s->out->candidate_count; e++) {
+    if (!(m->mask >> e & 1)) continue;
+    if (count == s->tried->count || s->tried->effects[count].kind != s->out->candidates[e].kind)
+      return false;
+    count++;
+  }
+  return s->tried && count > 0 && count == s->tried->count;
+}
+
+bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                const fg_explanation *best, const fg_explanation *curve) {
+  double share = s->policy->curve_share;
+  bool one_curve = fg_explain_bits(curve->mask) == 1 && curve->excess < share * share * y->none;
+  if (one_curve && fg_explain_bits(best->mask) > FEW) return false;
+  return (best->mask & s->unfitted) && best->excess < FITTING_SHARE * y->none &&
+         !was_tried(s, best) && best->excess < FITTING_TIMES * (curve->excess + y->freedom);
+}
+
+/* ---- all of them ---- */
+
+/* What stands in where no listed set is right. */
+static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_explanation best) {
+  fg_explanation curve = try_free(s, y, best);
+  bool hope = s->policy->is_worth_fitting(s, y, &best, &curve);
+  if (!hope) curve = try_two_free(s, y, curve);
+  s->out->right = !hope && fg_explain_is_right(s, y, &curve);
+  fg_explain_keep(s->out, hope ? &best : &curve);
+}
+
+void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanation best = try_listed(s, y);
+  s->out->right = s->out->count > 0;
+  if (!s->out->right) {
+    stand_in(s, y, best);
+    return;
+  }
+  drop_worse(s, y);
+  order_by_width(s);
+}
