@@ -118,21 +118,26 @@ typedef struct fg_loop_candidate {
   size_t row[2]; /* outlier, exchanged runs */
 } fg_loop_candidate;
 
+typedef bool fg_loop_accepts(const fg_loop_problem *problem, size_t a, size_t b);
+typedef size_t fg_loop_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
+/* columns × rows, scaled so that one column's half range is about 1: its coefficient is then the
+ * amplitude in the response's unit. */
+typedef void fg_loop_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                           const double *shape, double *columns);
+/* Start values; returns how many (1 for effects without shape). */
+typedef size_t fg_loop_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                              double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
+
 typedef struct fg_loop_effect {
   const char *id, *level, *frame;
   const char *words; /* "a trend with" */
   bool pair;         /* of coordinates */
   size_t shapes;
   const char *shape_name[FG_LOOP_SHAPES];
-  bool (*accepts)(const fg_loop_problem *problem, size_t a, size_t b);
-  size_t (*columns)(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
-  /* columns × rows, scaled so that one column's half range is about 1: its coefficient is then the
-   * amplitude in the response's unit. */
-  void (*basis)(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                const double *shape, double *columns);
-  /* Start values; returns how many (1 for effects without shape). */
-  size_t (*starts)(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                   double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
+  fg_loop_accepts *accepts;
+  fg_loop_columns *columns;
+  fg_loop_basis *basis;
+  fg_loop_starts *starts;
   /* The shape is a place between rows: it cannot be refined by small steps. */
   bool stepwise;
   bool from_zero;  /* the amplitude is the largest size, not half the range */

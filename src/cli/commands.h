@@ -1,4 +1,5 @@
-/* The program's commands: a row of a table each (main.c). */
+/* The program's commands: a row of a table each (main.c); what they do alike (command.c, form.c).
+ */
 #ifndef FG_CLI_COMMANDS_H
 #define FG_CLI_COMMANDS_H
 

@@ -1,4 +1,3 @@
-#include <argp.h>
 #include <malloc.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,17 +17,6 @@ static const fg_command commands[] = {
     {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
     {NULL, NULL, NULL},
 };
-
-int fg_cli_fail(const fg_context *ctx, fg_status status) {
-  fprintf(stderr, "foilgauge: %s\n", ctx->message);
-  return fg_status_exit_code(status);
-}
-
-fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
-                       void *input) {
-  if (argp_parse(parser, argc, argv, 0, NULL, input) == 0) return FG_OK;
-  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
-}
 
 static void print_help(FILE *out) {
   fputs("foilgauge measures the foils of gas foil bearings from flatbed scans.\n\n"

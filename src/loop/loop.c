@@ -1,7 +1,5 @@
 /* The loop on tables from end to end. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,31 +7,6 @@
 #include "core/text.h"
 #include "loop/effort.h"
 #include "loop/run.h"
-
-const char *fg_loop_verdict_word(fg_loop_verdict verdict) {
-  static const char *const words[] = {
-      "found", "tied", "absent", "inconclusive", "absorbed by geometry", "explained by others"};
-  return words[verdict];
-}
-
-const char *fg_loop_outcome_word(fg_loop_outcome outcome) {
-  static const char *const words[] = {"clean", "explained", "partly explained", "unattributed"};
-  return words[outcome];
-}
-
-fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...) {
-  char text[600];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  FG_TRY(fg_memory_reserve(ctx, result->notes + 1, sizeof *result->note, &result->note_capacity,
-                           (void **)&result->note));
-  result->note[result->notes] = NULL;
-  FG_TRY(fg_text_print(ctx, &result->note[result->notes], "%s", text));
-  result->notes++;
-  return FG_OK;
-}
 
 static fg_status add_candidates(fg_context *ctx, fg_engine_run *run, const fg_loop_effect *effects,
                                 size_t *capacity) {
@@ -181,42 +154,4 @@ exit:
   free(run.candidate);
   if (status != FG_OK) fg_loop_result_free(result);
   return status;
-}
-
-void fg_loop_result_free(fg_loop_result *result) {
-  for (size_t i = 0; i < result->notes; i++)
-    free(result->note[i]);
-  free(result->note);
-  free(result->curve.shape);
-  free(result->rejected);
-  free(result->parameter);
-  free(result->parameter_u);
-  free(result->before_fit);
-  free(result->after_fit);
-  free(result->effect_fit);
-  *result = (fg_loop_result){0};
-}
-
-fg_status fg_loop_claim_evaluate(fg_context *ctx, const fg_loop_problem *problem,
-                                 const fg_loop_claim *claim, double *effect) {
-  double *columns = NULL;
-  size_t rows = problem->rows;
-  memset(effect, 0, rows * sizeof *effect);
-  FG_TRY(fg_memory_allocate(ctx, rows, (claim->columns + 1) * sizeof *columns, (void **)&columns));
-  claim->candidate.effect->basis(problem, &claim->candidate, claim->shape, columns);
-  for (size_t k = 0; k < claim->columns; k++)
-    for (size_t i = 0; i < rows; i++)
-      effect[i] += claim->coefficient[k] * columns[k * rows + i];
-  free(columns);
-  return FG_OK;
-}
-
-double fg_loop_curve_at(const fg_loop_curve *curve, double value) {
-  size_t k = 0;
-  if (value <= curve->shape[0][0]) return curve->shape[0][1];
-  while (k + 1 < curve->count && curve->shape[k + 1][0] < value)
-    k++;
-  if (k + 1 >= curve->count) return curve->shape[curve->count - 1][1];
-  double share = (value - curve->shape[k][0]) / (curve->shape[k + 1][0] - curve->shape[k][0]);
-  return curve->shape[k][1] + share * (curve->shape[k + 1][1] - curve->shape[k][1]);
 }

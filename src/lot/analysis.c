@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 
 static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_lot *lot = analysis->lot;

@@ -4,7 +4,7 @@
 #include "core/file.h"
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 #include "report/words.h"
 
 static void write_inputs(fg_json *json, const fg_lot *lot) {

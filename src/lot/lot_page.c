@@ -7,7 +7,7 @@
 #include "lot/page_parts.h"
 #include "lot/writers.h"
 #include "report/measure/measure_page_parts.h"
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 
 enum { FOIL_ROWS_MAX = 300, POLAR_MAX = 4, BEARING_ROWS_MAX = 200 };
 

@@ -2,27 +2,12 @@
 #include "foilgauge/experiment.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/text.h"
 #include "process/experiment_parts.h"
-
-fg_status fg_experiment_note(fg_context *ctx, fg_experiment *e, const char *format, ...) {
-  char text[1024];
-  va_list arguments;
-  FG_TRY(
-      fg_memory_reserve(ctx, e->notes + 1, sizeof *e->note, &e->note_capacity, (void **)&e->note));
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  e->note[e->notes] = NULL;
-  FG_TRY(fg_text_print(ctx, &e->note[e->notes], "%s", text));
-  e->notes++;
-  return FG_OK;
-}
 
 /* The lowest and highest number of a column. */
 static void range_of(const fg_extended *numbers, size_t rows, double range[2]) {
@@ -294,31 +279,4 @@ fg_status fg_experiment_analyse(fg_context *ctx, const fg_table *runs,
   fg_status status = analyse(ctx, runs, options, experiment);
   if (status != FG_OK) fg_experiment_free(experiment);
   return status;
-}
-
-double fg_factor_real(const fg_factor *factor, double x) {
-  return factor->coded ? fg_coding_to_real(&factor->coding, x) : x;
-}
-
-void fg_experiment_free(fg_experiment *e) {
-  if (!e) return;
-  for (size_t i = 0; i < e->notes; i++)
-    free(e->note[i]);
-  free(e->note);
-  for (size_t i = 0; i < e->constraints; i++)
-    free(e->constraint[i]);
-  free(e->constraint);
-  fg_split_plot_free(&e->split_plot);
-  fg_regression_free(&e->regression);
-  fg_model_free(&e->model);
-  fg_table_free(&e->table);
-  free(e->effect);
-  free(e->setting);
-  free(e->u);
-  free(e->weight);
-  free(e->response);
-  free(e->formula);
-  free(e->block);
-  free(e->whole_plot);
-  *e = (fg_experiment){0};
 }

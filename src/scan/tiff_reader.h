@@ -35,7 +35,7 @@ struct fg_tiff {
   uint8_t *tile, *tile_rows; /* one tile; the rows of a row of tiles */
 };
 
-/* Words for what libtiff said or what the file lacks. */
+/* Words for what libtiff said or what the file lacks. tiff_words.c */
 fg_status fg_tiff_fail(fg_context *ctx, const fg_tiff *reader, const char *what);
 
 /* Chooses how rows are fetched, checks that the file holds them, and says how much memory that

@@ -87,8 +87,12 @@ typedef struct fg_edge_work {
   bool again; /* stations are known: foreign pixels beside the strip are left out of the shape */
 } fg_edge_work;
 
-/* Stations [*first, *last] of a chunk. */
+/* Stations [*first, *last] of a chunk. edges_pixels.c */
 void fg_edges_chunk(const fg_edge_work *work, size_t chunk, size_t *first, size_t *last);
+
+/* Pixels of all chunks, and the middle of each station, smoothed over its neighbours.
+ * edges_pixels.c */
+fg_status fg_edges_collect(fg_context *ctx, fg_edge_work *work);
 
 /* Step 1 and 2: the tone curve and the shape of every station from its middle. edges_shape.c,
  * edges_smooth.c */

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 #include "report/words.h"
 
 static void write_limit(fg_json *json, const char *name, double limit) {

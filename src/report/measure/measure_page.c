@@ -7,7 +7,7 @@
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
 #include "report/measure/measure_page_parts.h"
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 
 void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
   double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);

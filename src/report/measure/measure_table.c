@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 #include "report/words.h"
 
 /* The columns of the bump table and of the disc table: names of rows in the table of fields. */

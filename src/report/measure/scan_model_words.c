@@ -1,4 +1,4 @@
-#include "report/scan_loop/scan_model_words.h"
+#include "report/measure/scan_model_words.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* What a scanner's model is and what it did, where values are reported that it corrected. */
-#ifndef FG_REPORT_SCAN_LOOP_SCAN_MODEL_WORDS_H
-#define FG_REPORT_SCAN_LOOP_SCAN_MODEL_WORDS_H
+#ifndef FG_REPORT_MEASURE_SCAN_MODEL_WORDS_H
+#define FG_REPORT_MEASURE_SCAN_MODEL_WORDS_H
 
 #include <stdio.h>
 

@@ -1,0 +1,16 @@
+/* What every command does alike: reads its line, says why it failed. */
+#include <argp.h>
+#include <stdio.h>
+
+#include "cli/commands.h"
+
+int fg_cli_fail(const fg_context *ctx, fg_status status) {
+  fprintf(stderr, "foilgauge: %s\n", ctx->message);
+  return fg_status_exit_code(status);
+}
+
+fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                       void *input) {
+  if (argp_parse(parser, argc, argv, 0, NULL, input) == 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
+}
