@@ -37,6 +37,7 @@ static size_t midline_columns(const fg_points *points, const fg_effect *effect, 
 /* The true position is d beyond the nominal one: along the normal the nominal lacks d. */
 size_t fg_effect_columns(const fg_points *points, const fg_effect *effect, const double *shape,
                          double *columns) {
+  if (effect->width) return 0;
   if (effect->midline) return midline_columns(points, effect, columns);
   fg_point at[FG_POINTS_PLACES], d[FG_FIELD_COLUMNS];
   size_t count = effect->columns, rows = points->row_count;
@@ -58,7 +59,9 @@ size_t fg_effect_width_columns(const fg_points *points, const fg_effect *effect,
                                const double *shape, double *columns) {
   fg_point d[2][FG_FIELD_COLUMNS];
   size_t count = effect->columns, rows = points->row_count;
-  if (!effect->glass) return 0;
+  for (size_t i = 0; effect->width && i < rows; i++)
+    columns[i] = effect->width(points, &points->rows[i]);
+  if (!effect->glass) return effect->width ? 1 : 0;
   for (size_t i = 0; i < rows; i++) {
     const fg_points_row *row = &points->rows[i];
     fg_point n = row->normal;

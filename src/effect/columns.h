@@ -14,7 +14,7 @@ size_t fg_effect_columns(const fg_points *points, const fg_effect *effect, const
                          double *columns);
 
 /* The same for half the strip's width: a scanner's field stretches the strip as it stretches the
- * foil, a part's effect leaves its thickness alone. Returns 0 for those. */
+ * foil, a part's effect on the midline leaves its thickness alone. Returns 0 for those. */
 size_t fg_effect_width_columns(const fg_points *points, const fg_effect *effect,
                                const double *shape, double *columns);
 

@@ -1,7 +1,8 @@
 /* Every effect of scanner and part that the loop on scans knows: one row says everything that
  * anybody asks of it.
  *
- * A scanner's effect moves places of the glass (`glass`), a part's the strip's midline (`midline`).
+ * A scanner's effect moves places of the glass (`glass`), a part's the strip's midline (`midline`)
+ * or its edges apart (`width`).
  * A free curve is for what no listed effect explains. An effect that comes in two forms has two
  * rows with one id; the first speaks for both where the form does not matter.
  */
@@ -15,9 +16,10 @@
 
 /* How the search comes to it. */
 typedef enum fg_effect_sought {
-  FG_EFFECT_SMOOTH, /* a candidate from the start; a shape is sought beside the geometry alone */
-  FG_EFFECT_PLACED, /* its shape is sought over a grid: it stands alone even in one scan */
-  FG_EFFECT_CURVE,  /* where no listed effect is right */
+  FG_EFFECT_SMOOTH,   /* a candidate from the start; a shape is sought beside the geometry alone */
+  FG_EFFECT_PLACED,   /* its shape is sought over a grid: it stands alone even in one scan */
+  FG_EFFECT_CURVE,    /* where no listed effect is right */
+  FG_EFFECT_OF_WIDTH, /* in the strip's width alone, once the points have settled */
 } fg_effect_sought;
 
 /* The coordinate that it lives on. */
@@ -77,6 +79,9 @@ typedef enum fg_effect_on_discs {
 /* A midline's deviation of every column at one row, along the row's normal; returns how many. */
 typedef size_t fg_effect_midline(const fg_points *points, const fg_points_row *row, double *values);
 
+/* Half the width's change at one row, um per um of amplitude. */
+typedef double fg_effect_width(const fg_points *points, const fg_points_row *row);
+
 /* Start i of `count` of the search for a shape. */
 typedef double fg_effect_start(const fg_field_frame *frame, size_t i, size_t count);
 
@@ -90,7 +95,8 @@ typedef struct fg_effect {
   fg_effect_coordinate coordinate;
   const char *moves; /* a curve: what it moves, in a report's word */
   fg_effect_numbers numbers;
-  bool off_foils; /* foils cannot show it */
+  const char *amplitude_name, *amplitude_symbol; /* NULL: "amplitude_um", "a" */
+  bool off_foils;                                /* foils cannot show it */
   fg_effect_on_discs on_discs;
   size_t discs_least;
 
@@ -99,6 +105,7 @@ typedef struct fg_effect {
   bool spans; /* its shape is a length, not a place */
   fg_field_basis *glass;
   fg_effect_midline *midline;
+  fg_effect_width *width;
 
   int axis; /* of the scanner: where a polynomial's middle or a sought place lies */
   fg_effect_polynomial polynomial;
@@ -140,8 +147,8 @@ static inline bool fg_effect_is_free(const fg_effect *effect) {
 /* "scan.x", "foil.s", ... */
 const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate);
 
-/* Whether an effect can be sought in these points: not every one leaves a trace in a disc, nor is
- * every trace another one than the disc's own form. */
+/* Whether an effect can be sought in these points' residuals: not every one leaves a trace in a
+ * disc, nor is every trace another one than the disc's own form. */
 bool fg_effect_shows(const fg_points *points, const fg_effect *effect);
 
 #endif

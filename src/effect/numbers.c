@@ -66,7 +66,8 @@ static number number_of(const fg_effect_found *effect, size_t i) {
   case FG_EFFECT_AMPLITUDE:
   case FG_EFFECT_LED:
     if (i == 0)
-      return (number){"amplitude_um", fg_effect_found_amplitude(effect), fg_effect_found_u(effect)};
+      return (number){kind->amplitude_name ? kind->amplitude_name : "amplitude_um",
+                      fg_effect_found_amplitude(effect), fg_effect_found_u(effect)};
     break;
   }
   if (i > kind->shapes) return (number){0};

@@ -16,6 +16,7 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
                        fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_STEP);
   sampler->has_part = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_PART);
   sampler->has_normal = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_NORMAL);
+  sampler->has_width = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_WIDTH);
   sampler->has_bump = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_BUMP);
   sampler->has_edge = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
@@ -128,12 +129,27 @@ static double wall(const fg_sampler *sampler, const cross_section *at, double in
   return strength * exp(-0.5 * u * u);
 }
 
+/* Sum of the shapes of one frame where the cross-section meets the midline. */
+static double shape_at(const fg_sampler *sampler, const fg_foil_frame *frame,
+                       const cross_section *at, fg_render_effect_frame of) {
+  double x = at->segment->x + at->dx - at->n * at->nx;
+  double y = at->segment->y + at->dy - at->n * at->ny;
+  return fg_render_effects_shape(&sampler->spec->effects, of, fg_foil_psi(frame, x, y),
+                                 frame->half_span_rad);
+}
+
+static double half_thickness(const fg_sampler *sampler, const fg_foil_frame *frame,
+                             const cross_section *at) {
+  if (!sampler->has_width) return frame->half_thickness_mm;
+  return frame->half_thickness_mm + shape_at(sampler, frame, at, FG_RENDER_EFFECT_WIDTH);
+}
+
 /* Beyond the reach of the edges there is the wall or nothing. */
 static double far_value(const fg_sampler *sampler, const fg_foil_frame *frame,
                         const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
   if (sampler->spec->scanner.wall_amplitude == 0) return 0;
-  double value = wall(sampler, at, frame->half_thickness_mm, -frame->half_thickness_mm);
+  double half = half_thickness(sampler, frame, at), value = wall(sampler, at, half, -half);
   if (value == 0 || !(segment->open_start || segment->open_end)) return value;
   double t = along(at);
   if (segment->open_start) value *= phi(sampler, t / sd);
@@ -144,7 +160,7 @@ static double far_value(const fg_sampler *sampler, const fg_foil_frame *frame,
 static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
                           const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
-  double inner = frame->half_thickness_mm, outer = -inner;
+  double inner = half_thickness(sampler, frame, at), outer = -inner;
   double t = 0;
   bool ends = segment->open_start || segment->open_end;
   bool bump = sampler->has_bump && (segment->bump || segment->joins);
@@ -155,9 +171,7 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
     outer += shift;
   }
   if (sampler->has_normal) {
-    double x = segment->x + at->dx - at->n * at->nx, y = segment->y + at->dy - at->n * at->ny;
-    double shift = fg_render_effects_shape(&sampler->spec->effects, FG_RENDER_EFFECT_NORMAL,
-                                           fg_foil_psi(frame, x, y), frame->half_span_rad);
+    double shift = shape_at(sampler, frame, at, FG_RENDER_EFFECT_NORMAL);
     inner -= shift;
     outer -= shift;
   }

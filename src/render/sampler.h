@@ -25,7 +25,7 @@ typedef struct fg_sampler {
   double edge_reach_mm; /* how far from an undisturbed edge its blur can be seen */
   double reach_mm;      /* how far from the midline of a thin strip a sample can be non-zero */
   double side_mm[2];    /* x, y: side of jumps that the sample is seen from; NaN: its own */
-  bool has_field, has_part, has_normal, has_bump, has_edge;
+  bool has_field, has_part, has_normal, has_width, has_bump, has_edge;
   double one_sided_mm;   /* sd; 0 without */
   double wall_x, wall_y; /* direction */
   double wall_mm;        /* decay length */

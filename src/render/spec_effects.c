@@ -394,7 +394,8 @@ double fg_render_effects_reach(const fg_render_effect_list *list) {
     const fg_render_effect *effect = &list->effects[i];
     fg_render_effect_frame frame = effect->frame;
     if (frame != FG_RENDER_EFFECT_PART && frame != FG_RENDER_EFFECT_NORMAL &&
-        frame != FG_RENDER_EFFECT_BUMP && frame != FG_RENDER_EFFECT_EDGE)
+        frame != FG_RENDER_EFFECT_WIDTH && frame != FG_RENDER_EFFECT_BUMP &&
+        frame != FG_RENDER_EFFECT_EDGE)
       continue;
     double size = effect->row->curve ? fg_curve_largest_um(&effect->curve) : fabs(effect->p[0]);
     reach += 2e-3 * size;

@@ -1,7 +1,8 @@
 /* Effects: what makes the picture or the part differ from the declared model. One row each.
  *
  * A scanner effect is a field: true position = nominal position + d(x, y), in mm. A part effect
- * moves the midline in the foil's frame, or changes the table of bumps.
+ * moves the midline in the foil's frame, changes the strip's thickness, or changes the table of
+ * bumps.
  */
 #ifndef FG_RENDER_SPEC_EFFECTS_H
 #define FG_RENDER_SPEC_EFFECTS_H
@@ -22,6 +23,7 @@ typedef enum fg_render_effect_frame {
                      is counted from the foil's middle, towards the free end */
   FG_RENDER_EFFECT_NORMAL, /* the same along the midline's normal: a part effect whose `along` says
                               so */
+  FG_RENDER_EFFECT_WIDTH,  /* the same of half the strip's thickness: what it adds, mm */
   FG_RENDER_EFFECT_BUMP,  /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
                       where the arc meets its fillets */
   FG_RENDER_EFFECT_EDGE,  /* curve over the direction of the strip's inner side in the scan, degrees
@@ -92,7 +94,7 @@ void fg_render_effects_bump_end(const fg_render_effect_list *list, double u, dou
 void fg_render_effects_edges(const fg_render_effect_list *list, double nx, double ny,
                              double shift_mm[2]);
 
-/* The farthest that a part, bump or edge effect moves anything, mm. */
+/* The farthest that a part, width, bump or edge effect moves anything, mm. */
 double fg_render_effects_reach(const fg_render_effect_list *list);
 
 #endif

@@ -34,14 +34,35 @@ static double bump_direction(const fg_foil *foil, const fg_bump *bump) {
                bump->centre_mm.x - foil->overall.centre_mm.x);
 }
 
+/* Of the strip at a station, from O. */
+static fg_point middle_of(const fg_foil *foil, size_t station) {
+  const fg_station *s = &foil->strip.stations[station];
+  return (fg_point){0.5 * (s->left.x + s->right.x) - foil->overall.centre_mm.x,
+                    0.5 * (s->left.y + s->right.y) - foil->overall.centre_mm.y};
+}
+
 static bool is_usable(const fg_bump *bump) {
   return !(bump->flags & FG_BUMP_NOT_FITTED) && isfinite(bump->radius_mm);
+}
+
+/* Angle that the strip spans about O, without a lip. */
+static double end_to_end(const fg_foil *foil) {
+  double span = 0;
+  fg_point from = {0, 0};
+  for (size_t k = 0; k < foil->strip.count; k++) {
+    if (foil->labels[k].kind == FG_ARC_LIP || !(foil->strip.stations[k].weight > 0)) continue;
+    fg_point to = middle_of(foil, k);
+    span += atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+    from = to;
+  }
+  return fabs(span);
 }
 
 /* The part as its first view shows it. */
 static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part *part) {
   FG_TRY(fg_memory_allocate(ctx, foil->bump_count, sizeof *part->bumps, (void **)&part->bumps));
   part->overall_radius_mm = foil->overall.radius_mm;
+  part->end_to_end_rad = end_to_end(foil);
   part->sense = foil->orientation == FG_CLOCKWISE ? 1 : -1;
   double before = 0;
   for (size_t i = 0; i < foil->bump_count; i++) {

@@ -64,6 +64,7 @@ typedef struct fg_points_part {
   double mean_radius_mm; /* of the bumps, as measured */
   size_t arcs;
   double half_span_rad;
+  double end_to_end_rad; /* the strip as O sees it; 0: not known */
   bool radius_known; /* the overall radius is a gauge's and is not fitted */
 } fg_points_part;
 

@@ -329,6 +329,15 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
+/* The midline says nothing of its strip's thickness, and the bumps do not either. */
+static fg_status search_width(fg_context *ctx, fg_scan_loop *loop) {
+  FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
+  if (!loop->width.found) return FG_OK;
+  if (loop->verdict == FG_LOOP_CLEAN) loop->verdict = FG_LOOP_EXPLAINED;
+  if (loop->verdict == FG_LOOP_UNATTRIBUTED) loop->verdict = FG_LOOP_PARTLY;
+  return FG_OK;
+}
+
 static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   size_t rows = loop->points.row_count;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
@@ -345,6 +354,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   if (loop->tied) FG_TRY(find_ranges(ctx, loop));
   find_verdict(loop);
   FG_TRY(search_bumps(ctx, loop));
+  FG_TRY(search_width(ctx, loop));
   fg_scan_loop_decide(loop, &loop->decided);
   return FG_OK;
 }

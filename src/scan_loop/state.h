@@ -4,6 +4,7 @@
 
 #include "explain/explain.h"
 #include "explain/joint_fit.h"
+#include "explain/width_search.h"
 #include "foilgauge/scan_loop.h"
 #include "rows/points.h"
 #include "scan_loop/bumps.h"
@@ -26,7 +27,8 @@ struct fg_scan_loop {
   fg_effect_set tie[FG_EXPLANATIONS_MAX]; /* the other explanations, fitted */
   size_t tie_count;
   fg_scan_loop_range *
-      *ranges; /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
+      *ranges;             /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
+  fg_width_findings width; /* what moves the strip's edges apart; with the set in force */
   fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;
   fg_scan_loop_decisions decided; /* what every report says of the effects */

@@ -15,6 +15,7 @@
 #include "../support/synthetic_foil.h"
 #include "effect/columns.h"
 #include "explain/policy.h"
+#include "explain/width_search.h"
 #include "foilgauge/render.h"
 
 #define AMPLITUDE_UM 20.0
@@ -89,7 +90,8 @@ static void the_search_knows_every_row(void **state) {
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     fg_context ctx = {0};
     fg_explanations explanations;
-    if (effect->off_foils || fg_effect_is_free(effect) || count++ % test_step(4)) continue;
+    if (effect->off_foils || fg_effect_is_free(effect) || effect->width || count++ % test_step(4))
+      continue;
     put_effect(&f, effect);
     const fg_explain_request request = {.policy = fg_explain_policy_of(&f.points),
                                         .residual_um = f.residual_um,
@@ -105,11 +107,42 @@ static void the_search_knows_every_row(void **state) {
   close_fixture(&f);
 }
 
+static void the_search_of_the_width_knows_every_row(void **state) {
+  (void)state;
+  for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
+    fixture f;
+    fg_context ctx = {0};
+    const fg_effect_set none = {.count = 0};
+    fg_width_findings findings;
+    uint64_t seed = 11;
+    if (!effect->width) continue;
+    open_fixture(&f);
+    assert_int_equal(fg_effect_width_columns(&f.points, effect, NULL, f.columns), 1);
+    for (size_t i = 0; i < f.points.row_count; i++)
+      f.points.rows[i].half_width_mm +=
+          (AMPLITUDE_UM * f.columns[i] + NOISE_UM * random_gaussian(&seed)) / 1000;
+    assert_int_equal(fg_explain_width(&ctx, &f.points, &none, &findings), FG_OK);
+    for (size_t e = 0; e < findings.count; e++) {
+      if (findings.each[e].found != (findings.each[e].effect.kind == effect))
+        fail_msg("the width with %s in it is taken wrongly", effect->id);
+      if (findings.each[e].found)
+        assert_float_equal(fg_effect_found_amplitude(&findings.each[e].effect), AMPLITUDE_UM, 0.1);
+    }
+    if (!findings.found) fail_msg("the search does not find %s", effect->id);
+    close_fixture(&f);
+  }
+}
+
 static void every_row_says_what_it_is(void **state) {
   (void)state;
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     if (!effect->words || !effect->equation) fail_msg("%s has no words", effect->id);
-    if (!effect->glass == !effect->midline) fail_msg("%s moves nothing, or two things", effect->id);
+    if (!!effect->glass + !!effect->midline + !!effect->width != 1)
+      fail_msg("%s moves nothing, or two things", effect->id);
+    if (!effect->width != (effect->sought != FG_EFFECT_OF_WIDTH))
+      fail_msg("%s: where is it sought?", effect->id);
+    if (!effect->amplitude_name != !effect->amplitude_symbol)
+      fail_msg("the amplitude of %s has no name for people", effect->id);
     if (effect->glass && !effect->columns) fail_msg("%s has no columns", effect->id);
     if (fg_effect_is_free(effect) && !effect->moves) fail_msg("%s: what does it move?", effect->id);
     if (effect->shapes && !effect->start == !effect->polynomial)
@@ -155,6 +188,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_row_says_what_it_is),
       cmocka_unit_test(the_search_knows_every_row),
+      cmocka_unit_test(the_search_of_the_width_knows_every_row),
       cmocka_unit_test(the_renderer_knows_every_row),
       cmocka_unit_test(the_benchmark_draws_every_row),
   };
