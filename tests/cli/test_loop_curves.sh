@@ -106,7 +106,7 @@ cat >step.design <<'SPEC'
 {"schema":"foilgauge/design/1","form":"classical","bump_count":6,"bump_radius_mm":2.9,"bump_angle_deg":58,
  "overall_radius_mm":15,"pitch_deg":16,"fillet_radius_mm":0.35,"thickness_mm":0.1,"rotor_diameter_mm":28.8}
 SPEC
-"$program" render step.json -o step.png && "$program" loop step.png --design step.design -o step.out ||
+"$renderer" render step.json -o step.png && "$program" loop step.png --design step.design -o step.out ||
   fail "loop on a step beside a bump"
 says step.out "list(claims) == ['scan.row_step'] and claims['scan.row_step']['verdict'] == 'found'"
 says step.out "abs(claims['scan.row_step']['parameters']['y_mm'] - 11.46) <= 2 * claims['scan.row_step']['uncertainty']['y_mm']"

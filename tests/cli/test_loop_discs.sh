@@ -24,7 +24,7 @@ spec = {"schema": "foilgauge/render/1", "seed": int(seed), "discs": discs, "effe
 spec.update(json.loads("{" + scanner + "}"))
 json.dump(spec, open(name + ".json", "w"))
 PYTHON
-  "$program" render "$1.json" -o "$1.png" || fail "render $1"
+  "$renderer" render "$1.json" -o "$1.png" || fail "render $1"
 }
 
 # Largest error of a radius in um, against the pins in order of size.
@@ -71,7 +71,7 @@ cat >foil.json <<SPEC
  "foils":[{"overall_radius_mm":20.95,"radius_mm":[3.34,3.41,3.36,3.44,3.38,3.35,3.42,3.37,3.40],"rotate_deg":-90}],
  $scanner,"effects":[$effects]}
 SPEC
-"$program" render foil.json -o foil.png && "$program" measure foil.png -o plain.out &&
+"$renderer" render foil.json -o foil.png && "$program" measure foil.png -o plain.out &&
   "$program" measure foil.png --model scanner.json -o corrected.out || fail "measure a foil with the plate's model"
 python3 - <<'PYTHON' || fail "the plate's model does not correct the foil"
 import json

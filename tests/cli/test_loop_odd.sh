@@ -19,7 +19,7 @@ cat >large.json <<'SPEC'
  "scanner":{"dpi":2400,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2}}
 SPEC
 sed 's/"overall_radius_mm":62/"overall_radius_mm":20.9/' large.json >fits.json
-for name in large fits; do "$program" render $name.json -o $name.png || fail "render $name"; done
+for name in large fits; do "$renderer" render $name.json -o $name.png || fail "render $name"; done
 expect 2 "large.png: .* no foil of the design .* overall radius" loop large.png -o never.json
 [ ! -e never.json ] || fail "a report is left of what was not measured"
 

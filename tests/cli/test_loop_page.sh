@@ -65,7 +65,7 @@ holds pair.html '>explained<' scan.scale_y part.ovality 'of one bump differs bet
 [ "$(grep -c 'class="plot vectors"' pair.html)" = 4 ] || fail "a pair is not drawn before and after"
 render decay 9 -70 2400 ''
 sed -i 's/"radius_mm":\[[^]]*\]/"radius_mm":[3.60,3.50,3.45,3.43,3.42,3.415,3.41,3.41,3.41]/' decay.json
-"$program" render decay.json -o decay.png || fail "render a decay"
+"$renderer" render decay.json -o decay.png || fail "render a decay"
 page decay.html decay.png
 holds decay.html '>explained<' part.lip_decay 'Over the bumps: a decay from the lip' 'uniform springback'
 page tie.html faint.png

@@ -54,12 +54,12 @@ expect() {
   grep -q -- "$words" err.txt || fail "$*: does not say '$words' but: $(cat err.txt)"
 }
 
-sed 's/4800/2400/' a.json >half.json && "$program" render half.json -o half.png || fail "render at 2400 dpi"
+sed 's/4800/2400/' a.json >half.json && "$renderer" render half.json -o half.png || fail "render at 2400 dpi"
 expect 65 "one resolution" loop a.png half.png
 expect 64 "given twice" loop a.png --hold-out a.png
 expect 64 "give a scan" loop
 render third 8 -70 ''
-sed -i 's/3.34,3.41/4.24,3.41/' third.json && "$program" render third.json -o third.png || fail "render another foil"
+sed -i 's/3.34,3.41/4.24,3.41/' third.json && "$renderer" render third.json -o third.png || fail "render another foil"
 expect 65 "not the same foil" loop --same-foil a.png third.png
 printf '{"schema":"foilgauge/design/1"}' >wrong.json
 expect 65 "not a model of a scanner" measure a.png --model wrong.json

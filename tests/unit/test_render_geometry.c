@@ -132,16 +132,17 @@ static void strip_is_where_truth_says(void **state) {
   (void)state;
   for (int mirror = 0; mirror < 2; mirror++) {
     picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"seed\":5,\"foils\":[{"
+                            "\"design\":{\"bump_count\":3},"
                             "\"overall_radius_mm\":20.95,\"mirror\":%s,"
                             "\"radius_springback\":{\"mean\":0.02,\"sd\":0.01}}],"
                             "\"scanner\":{" EXACT "}}",
                             mirror ? "true" : "false");
     const fg_render_foil *foil = &p.truth->foils[0];
     double thickness;
-    assert_close(crown(&p, 4, &thickness), 0, 0.004);
+    assert_close(crown(&p, 1, &thickness), 0, 0.004);
     assert_close(thickness, 0.1 / pixel, 0.01);
-    /* The crown is R0 - h from O, below bump 5. */
-    const fg_render_bump *bump = &foil->bumps[4];
+    /* The crown is R0 - h from O, below the middle bump. */
+    const fg_render_bump *bump = &foil->bumps[1];
     assert_close(foil->overall_centre_px.y - bump->centre_px.y, bump->centre_to_centre_mm / pixel,
                  1e-6);
     assert_close(bump->height_mm, 20.95 - (bump->centre_to_centre_mm - bump->radius_mm), 1e-12);
@@ -258,6 +259,7 @@ static void lost_rows_are_sharp(void **state) {
 
 static double crown_with(const char *effect, const char *more, size_t bump) {
   picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"foils\":[{"
+                          "\"design\":{\"bump_count\":3},"
                           "\"overall_radius_mm\":20.95%s}],\"effects\":[%s],"
                           "\"scanner\":{" EXACT "}}",
                           more, effect);
@@ -269,16 +271,16 @@ static double crown_with(const char *effect, const char *more, size_t bump) {
 /* At the crown of the middle bump, which stands upright: psi = 0, u = 0. Rows rise towards O. */
 static void part_effects_move_the_crown(void **state) {
   (void)state;
-  assert_close(crown_with("{\"id\":\"part.bump_crown\",\"amplitude_um\":5}", "", 4), 5, 0.02);
-  assert_close(crown_with("{\"id\":\"part.bump_skew\",\"amplitude_um\":5}", "", 4), 0, 0.02);
-  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5}", "", 4), -5, 0.02);
-  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"phase_deg\":90}", "", 4),
+  assert_close(crown_with("{\"id\":\"part.bump_crown\",\"amplitude_um\":5}", "", 1), 5, 0.02);
+  /* The column is a pixel's: up to half of one beside the crown, where a skew is not level. */
+  assert_close(crown_with("{\"id\":\"part.bump_skew\",\"amplitude_um\":5}", "", 1), 0, 0.03);
+  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5}", "", 1), -5, 0.02);
+  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"phase_deg\":90}", "", 1),
                5, 0.02);
   assert_close(
-      crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"along\":\"normal\"}", "", 4), -5,
+      crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"along\":\"normal\"}", "", 1), -5,
       0.02);
-  /* Bump 1 turned upright: psi = -4 × pitch, u of the spiral is that over half the span. */
-  assert_close(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":0}", "", 4), 0, 0.02);
+  assert_close(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":5}", "", 1), 0, 0.02);
 }
 
 /* A spec whose effect has an amplitude of 0, and of 10 um. */
@@ -337,7 +339,8 @@ static void spiral_lies_beside_the_plain_foil(void **state) {
 static void lip_stands_on_the_land(void **state) {
   (void)state;
   for (int inwards = 0; inwards < 2; inwards++) {
-    picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":{"
+    picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"foils\":[{"
+                            "\"design\":{\"bump_count\":1},\"lip\":{"
                             "\"length_mm\":1.5,\"bend_radius_mm\":0.4,\"side\":\"%s\"}}]}",
                             inwards ? "inwards" : "outwards");
     fg_point o = p.truth->foils[0].overall_centre_px, end, foot, land;
@@ -359,7 +362,7 @@ static void lip_stands_on_the_land(void **state) {
 static void lip_decay_widens_the_first_bumps(void **state) {
   (void)state;
   picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":\"part.lip_decay\","
-                      "\"amplitude_rel\":0.06}]}");
+                      "\"amplitude_rel\":0.06}],\"scanner\":{\"dpi\":1200}}");
   const fg_render_bump *bumps = p.truth->foils[0].bumps;
   for (int i = 0; i < 9; i++) {
     double radius = 3.32 * (1 + 0.06 * exp(-i / 2.0));
@@ -372,11 +375,12 @@ static void lip_decay_widens_the_first_bumps(void **state) {
 /* Two foils share what they have in common: a bed places them apart. */
 static void foils_of_a_bed_lie_apart(void **state) {
   (void)state;
-  picture one = draw(0, "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"rotate_deg\":-90}],"
-                        "\"scanner\":{" EXACT "}}");
-  picture bed = draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":17000,\"foils\":[{"
-                        "\"repeat\":3,\"rotate_deg\":-90,\"rotate_step_deg\":90}],"
-                        "\"scanner\":{" EXACT "}}");
+  picture one = draw(0, "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"rotate_deg\":-90,"
+                        "\"design\":{\"bump_count\":3}}],\"scanner\":{" EXACT "}}");
+  picture bed = draw(
+      0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":9000,\"foils\":[{"
+         "\"design\":{\"bump_count\":3},\"repeat\":3,\"rotate_deg\":-90,\"rotate_step_deg\":90}],"
+         "\"scanner\":{" EXACT "}}");
   assert_int_equal(bed.truth->foil_count, 3);
   assert_close(picture_moments(&bed).area / picture_moments(&one).area, 3, 1e-5);
   drop(&one);
