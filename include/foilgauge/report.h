@@ -1,8 +1,7 @@
 /* Reports: a measurement as JSON, CSV, a table for the terminal, a picture and a page.
  *
- * Every reported quantity is one row of a table (fg_report_fields): its JSON name, where it lies,
- * where its standard uncertainty lies, its unit and its words. JSON, CSV, terminal, page,
- * tolerances and the schema's test all read that table, so a new quantity is a new row.
+ * Every reported quantity is one row of a table (quantity.h): JSON, CSV, terminal, page and
+ * tolerances loop over the rows.
  *
  * Uncertainties: u_<name> is a standard uncertainty (one standard deviation). Where a report for
  * people says ±, it is U = 2 u, the expanded uncertainty with coverage factor k = 2 (about 95 %).
@@ -13,6 +12,7 @@
 #include <stdio.h>
 
 #include "foilgauge/foil.h"
+#include "foilgauge/quantity.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,44 +21,18 @@ extern "C" {
 /* k of the expanded uncertainty U = k u. */
 #define FG_COVERAGE_FACTOR 2.0
 
-/* What a row of the table belongs to. */
-typedef enum fg_report_owner {
-  FG_REPORT_FOIL, /* offsets into fg_foil; "overall.", "correction." are JSON objects; the second
-                     is there where a scanner's model corrected the foil */
-  FG_REPORT_BUMP, /* offsets into fg_bump */
-  FG_REPORT_DISC, /* offsets into fg_disc */
-} fg_report_owner;
-
-typedef enum fg_field_kind {
-  FG_FIELD_NUMBER, /* double */
-  FG_FIELD_PAIR,   /* two doubles, x and y */
-  FG_FIELD_COUNT,  /* size_t */
-} fg_field_kind;
-
-#define FG_NO_UNCERTAINTY ((size_t)-1)
-
-typedef struct fg_report_field {
-  const char *name;   /* JSON name, unit included */
-  const char *unit;   /* for people: "mm", "°", "%", "µm", "" */
-  const char *symbol; /* heading of a column, UTF-8 */
-  const char *words;  /* what it is, for people */
-  fg_field_kind kind;
-  size_t offset;   /* in its owner */
-  size_t u_offset; /* of its standard uncertainty; FG_NO_UNCERTAINTY without */
-  int decimals;    /* at least, where people read it */
-} fg_report_field;
-
-/* The rows of one owner, in the order of the report. */
-const fg_report_field *fg_report_fields(fg_report_owner owner, size_t *count);
-
-/* The row of that name, or NULL. */
-const fg_report_field *fg_report_find(fg_report_owner owner, const char *name);
-
-/* A number or a count of the object (fg_foil, fg_bump, fg_disc) as double; NaN for a pair. */
-double fg_report_value(const fg_report_field *field, const void *object);
-
-/* Its standard uncertainty; NaN when there is none. */
-double fg_report_uncertainty(const fg_report_field *field, const void *object);
+typedef fg_quantity fg_report_field;
+typedef fg_quantity_owner fg_report_owner;
+#define FG_REPORT_FOIL        FG_QUANTITY_OF_FOIL
+#define FG_REPORT_BUMP        FG_QUANTITY_OF_BUMP
+#define FG_REPORT_DISC        FG_QUANTITY_OF_DISC
+#define FG_FIELD_NUMBER       FG_QUANTITY_NUMBER
+#define FG_FIELD_PAIR         FG_QUANTITY_PAIR
+#define FG_FIELD_COUNT        FG_QUANTITY_COUNT
+#define fg_report_fields      fg_quantities
+#define fg_report_find        fg_quantity_find
+#define fg_report_value       fg_quantity_value
+#define fg_report_uncertainty fg_quantity_uncertainty
 
 /* What a value says about its tolerance, its uncertainty considered (after ISO 14253-1): the
  * interval value ± 2 u lies inside both limits, or outside one, or a limit runs through it. A value

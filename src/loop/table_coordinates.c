@@ -7,32 +7,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "loop/table_parts.h"
-
-/* What a foil measurement gives: consequences of springback, not its causes. */
-static const char *const results[] = {"bump_radius_mm",
-                                      "radius_mm",
-                                      "bump_angle_deg",
-                                      "intersection_angle_deg",
-                                      "height_mm",
-                                      "clearance_mm",
-                                      "clearance_error",
-                                      "height_fitted_mm",
-                                      "clearance_fitted_mm",
-                                      "radius_error_pct",
-                                      "bump_angle_error_pct",
-                                      "springback_error_pct",
-                                      "overall_radius_mm",
-                                      "centre_to_centre_mm",
-                                      "height_model_mm",
-                                      "bump_angle_model_deg",
-                                      "rms_um",
-                                      "u_radius_mm"};
-
-static bool is_result(const char *name) {
-  for (size_t i = 0; i < sizeof results / sizeof *results; i++)
-    if (!strcmp(name, results[i])) return true;
-  return false;
-}
+#include "quantity/quantity.h"
 
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name) {
   for (size_t i = 0; i < problem->coordinates; i++)
@@ -136,7 +111,7 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   unsigned roles = 0;
   bool words = column->word_count > 0;
   if (!strcmp(column->name, spec->response)) return FG_OK;
-  if (is_result(column->name))
+  if (fg_quantity_is_result(column->name))
     return leave_out(ctx, build, column->name, "a result of the same measurement, not a cause");
   if (column->missing_count) return leave_out(ctx, build, column->name, "cells are missing");
   if (words && column->number_count)

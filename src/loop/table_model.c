@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "foilgauge/formula.h"
 #include "loop/table_parts.h"
+#include "quantity/quantity.h"
 
 bool fg_loop_table_is_arc_length(const fg_loop_table_spec *spec) {
   return !strcmp(spec->model, "arc_length");
@@ -129,60 +130,41 @@ exit:
   return status;
 }
 
-typedef double springback_value(const fg_design *design, const fg_springback *model);
-
-static double value_angle(const fg_design *design, const fg_springback *model) {
-  (void)design;
-  return model->bump_angle_deg;
+/* The bump's quantities that constant arc length predicts, for a message. */
+static void list_predicted(char *text, size_t size) {
+  size_t count, last = 0;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BUMP, &count);
+  for (size_t i = 0; i < count; i++)
+    if (rows[i].by_arc_length) last = i;
+  text[0] = '\0';
+  for (size_t i = 0; i < count; i++) {
+    size_t used = strlen(text);
+    if (rows[i].by_arc_length)
+      fg_text_clip(text + used, size - used, "%s%s",
+                   !used       ? ""
+                   : i == last ? " or "
+                               : ", ",
+                   rows[i].name);
+  }
 }
 
-static double value_height(const fg_design *design, const fg_springback *model) {
-  (void)design;
-  return model->height_mm;
-}
-
-static double value_clearance(const fg_design *design, const fg_springback *model) {
-  (void)design;
-  return model->clearance_mm;
-}
-
-/* eq 5.9 */
-static double value_clearance_error(const fg_design *design, const fg_springback *model) {
-  fg_nominal nominal;
-  if (fg_design_derive(NULL, design, &nominal) != FG_OK) return NAN;
-  return (nominal.clearance_mm - model->clearance_mm) / nominal.clearance_mm;
-}
-
-static const struct {
-  const char *response;
-  springback_value *value;
-} arc_length_responses[] = {
-    {"bump_angle_deg", value_angle},
-    {"height_mm", value_height},
-    {"clearance_mm", value_clearance},
-    {"clearance_error", value_clearance_error},
-};
-
-static fg_status find_value(fg_context *ctx, const char *response, springback_value **value) {
-  for (size_t i = 0; i < sizeof arc_length_responses / sizeof *arc_length_responses; i++)
-    if (!strcmp(response, arc_length_responses[i].response)) {
-      *value = arc_length_responses[i].value;
-      return FG_OK;
-    }
-  return fg_fail(ctx, FG_ERR_USAGE,
-                 "model arc_length predicts bump_angle_deg, height_mm, clearance_mm or "
-                 "clearance_error from the bump radius, not '%s'",
-                 response);
+static fg_status find_response(fg_context *ctx, const char *response, const fg_quantity **row) {
+  char predicted[200];
+  *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, response);
+  if (*row && (*row)->by_arc_length) return FG_OK;
+  list_predicted(predicted, sizeof predicted);
+  return fg_fail(ctx, FG_ERR_USAGE, "model arc_length predicts %s from the bump radius, not '%s'",
+                 predicted, response);
 }
 
 /* The prediction with an arc longer by the share `stretch`; nothing else of the design changes. */
 static double predict(const fg_design *design, const fg_nominal *nominal, double radius_mm,
-                      double stretch, springback_value *value) {
+                      double stretch, const fg_quantity *response) {
   fg_design stretched = *design;
   fg_springback model;
   stretched.bump_angle_deg *= 1 + stretch;
   fg_design_springback(&stretched, nominal, radius_mm, &model);
-  return value(design, &model);
+  return response->by_arc_length(design, &model);
 }
 
 static fg_status radius_column(fg_context *ctx, const fg_table *table, const fg_extended **radius) {
@@ -200,9 +182,9 @@ fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_sta
   const fg_design *design = build->spec->design;
   const fg_extended *radius;
   fg_nominal nominal;
-  springback_value *value = NULL;
+  const fg_quantity *response = NULL;
   fg_loop_coordinate *constant, *slope;
-  FG_TRY(find_value(ctx, build->spec->response, &value));
+  FG_TRY(find_response(ctx, build->spec->response, &response));
   FG_TRY(radius_column(ctx, build->table, &radius));
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   FG_TRY(fg_loop_table_add_coordinate(ctx, build, "constant", FG_LOOP_SENSITIVITY, &constant));
@@ -214,10 +196,10 @@ fg_status fg_loop_table_fill_arc_length(fg_context *ctx, const fg_loop_table_sta
     if (!(r > 0))
       return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: the bump radius is %g mm; it must be above 0",
                      build->table->source, row + 1, r);
-    problem->residual[i] -= predict(design, &nominal, r, 0, value);
-    constant->value[i] =
-        (predict(design, &nominal, r, small, value) - predict(design, &nominal, r, -small, value)) /
-        (2 * small);
+    problem->residual[i] -= predict(design, &nominal, r, 0, response);
+    constant->value[i] = (predict(design, &nominal, r, small, response) -
+                          predict(design, &nominal, r, -small, response)) /
+                         (2 * small);
     slope->value[i] = constant->value[i] * (r / design->bump_radius_mm - 1);
   }
   fg_loop_table_finish_coordinate(problem, constant);

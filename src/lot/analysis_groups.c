@@ -161,10 +161,10 @@ static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size
 }
 
 static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int bump) {
-  if (!bump) return fg_report_value(quantity->field, foil);
+  if (!bump) return fg_quantity_value(quantity->field, foil);
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number == bump && fg_lot_bump_counts(foil, &foil->bumps[i]))
-      return fg_report_value(quantity->field, &foil->bumps[i]);
+      return fg_quantity_value(quantity->field, &foil->bumps[i]);
   return NAN;
 }
 
@@ -188,7 +188,7 @@ static fg_status study_all(fg_context *ctx, fg_lot_analysis *analysis, const gau
                            double *values) {
   for (size_t q = 0; q < analysis->quantity_count; q++) {
     const fg_lot_quantity *quantity = &analysis->quantities[q];
-    int bumps = quantity->owner == FG_REPORT_BUMP ? (int)quantity->places : 0;
+    int bumps = quantity->owner == FG_QUANTITY_OF_BUMP ? (int)quantity->places : 0;
     for (int bump = bumps ? 1 : 0; bump <= bumps; bump++)
       FG_TRY(study(ctx, analysis, table, quantity, bump, values));
   }

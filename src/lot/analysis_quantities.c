@@ -6,56 +6,44 @@
 #include "core/memory.h"
 #include "foilgauge/distribution.h"
 #include "lot/analysis.h"
+#include "quantity/quantity.h"
 
-/* What every report shows; what has a tolerance comes behind. */
-static const struct {
-  fg_report_owner owner;
-  const char *name;
-} always[] = {
-    {FG_REPORT_BUMP, "radius_mm"},
-    {FG_REPORT_BUMP, "bump_angle_deg"},
-    {FG_REPORT_BUMP, "height_mm"},
-    {FG_REPORT_BUMP, "clearance_mm"},
-    {FG_REPORT_BUMP, "height_fitted_mm"},
-    {FG_REPORT_BUMP, "clearance_fitted_mm"},
-    {FG_REPORT_BUMP, "radius_error_pct"},
-    {FG_REPORT_BUMP, "bump_angle_error_pct"},
-    {FG_REPORT_BUMP, "clearance_error"},
-    {FG_REPORT_FOIL, "overall.radius_mm"},
-    {FG_REPORT_FOIL, "overall.springback_error_pct"},
-    {FG_REPORT_FOIL, "thickness_mm"},
-};
-
-enum { ALWAYS = sizeof always / sizeof always[0] };
-
-static bool is_listed(const fg_lot_analysis *analysis, const fg_report_field *field) {
+static bool is_listed(const fg_lot_analysis *analysis, const fg_quantity *field) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (analysis->quantities[i].field == field) return true;
   return false;
 }
 
-static void list_quantity(fg_lot_analysis *analysis, fg_report_owner owner, const char *name) {
-  const fg_report_field *field = fg_report_find(owner, name);
+static void list_quantity(fg_lot_analysis *analysis, fg_quantity_owner owner,
+                          const fg_quantity *field) {
   if (!field || is_listed(analysis, field)) return;
   const fg_design *design = &analysis->lot->settings.design;
   fg_lot_quantity *quantity = &analysis->quantities[analysis->quantity_count++];
   *quantity = (fg_lot_quantity){.field = field, .owner = owner, .mode = NAN};
   for (size_t i = 0; i < design->tolerance_count; i++)
-    if (!strcmp(design->tolerances[i].quantity, name)) quantity->tolerance = &design->tolerances[i];
+    if (!strcmp(design->tolerances[i].quantity, field->name))
+      quantity->tolerance = &design->tolerances[i];
 }
 
+/* What every report shows; what has a tolerance comes behind. */
 static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
+  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_FOIL};
+  enum { OWNERS = sizeof owners / sizeof owners[0] };
   const fg_design *design = &analysis->lot->settings.design;
   void *block;
-  FG_TRY(fg_memory_allocate(ctx, ALWAYS + 2 * FG_TOLERANCES_MAX, sizeof *analysis->quantities,
-                            &block));
+  FG_TRY(fg_memory_allocate(ctx, OWNERS * (FG_QUANTITY_SHOWN_MAX + FG_TOLERANCES_MAX),
+                            sizeof *analysis->quantities, &block));
   analysis->quantities = block;
-  for (size_t i = 0; i < ALWAYS; i++)
-    list_quantity(analysis, always[i].owner, always[i].name);
-  for (size_t i = 0; i < design->tolerance_count; i++) {
-    list_quantity(analysis, FG_REPORT_BUMP, design->tolerances[i].quantity);
-    list_quantity(analysis, FG_REPORT_FOIL, design->tolerances[i].quantity);
+  for (size_t o = 0; o < OWNERS; o++) {
+    const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+    size_t count = fg_quantity_shown(owners[o], FG_QUANTITY_IN_LOT, shown);
+    for (size_t i = 0; i < count; i++)
+      list_quantity(analysis, owners[o], shown[i]);
   }
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    for (size_t o = 0; o < OWNERS; o++)
+      list_quantity(analysis, owners[o],
+                    fg_quantity_find(owners[o], design->tolerances[i].quantity));
   return FG_OK;
 }
 
@@ -70,7 +58,7 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
   size_t most = 0;
   void *block;
   for (size_t i = 0; i < analysis->foil_count; i++)
-    most += quantity->owner == FG_REPORT_BUMP ? analysis->foils[i].foil->bump_count : 1;
+    most += quantity->owner == FG_QUANTITY_OF_BUMP ? analysis->foils[i].foil->bump_count : 1;
   FG_TRY(fg_memory_allocate(ctx, most, sizeof *quantity->value, &block));
   quantity->value = block;
   FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *quantity->size, &block));
@@ -78,11 +66,11 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
     if (!fg_foil_is_measured(foil)) continue;
-    if (quantity->owner == FG_REPORT_FOIL)
-      take_value(quantity, i, fg_report_value(quantity->field, foil));
-    for (size_t k = 0; quantity->owner == FG_REPORT_BUMP && k < foil->bump_count; k++)
+    if (quantity->owner == FG_QUANTITY_OF_FOIL)
+      take_value(quantity, i, fg_quantity_value(quantity->field, foil));
+    for (size_t k = 0; quantity->owner == FG_QUANTITY_OF_BUMP && k < foil->bump_count; k++)
       if (fg_lot_bump_counts(foil, &foil->bumps[k]))
-        take_value(quantity, i, fg_report_value(quantity->field, &foil->bumps[k]));
+        take_value(quantity, i, fg_quantity_value(quantity->field, &foil->bumps[k]));
   }
   return FG_OK;
 }
@@ -138,7 +126,7 @@ static void add_to_place(fg_lot_place *place, double value) {
 static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysis,
                                  fg_lot_quantity *quantity) {
   void *block;
-  if (quantity->owner != FG_REPORT_BUMP) return FG_OK;
+  if (quantity->owner != FG_QUANTITY_OF_BUMP) return FG_OK;
   quantity->places = highest_number(analysis);
   FG_TRY(fg_memory_allocate(ctx, quantity->places, sizeof *quantity->place, &block));
   quantity->place = block;
@@ -147,7 +135,7 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
     for (size_t k = 0; k < foil->bump_count; k++)
       if (foil->bumps[k].number >= 1 && fg_lot_bump_counts(foil, &foil->bumps[k]))
         add_to_place(&quantity->place[foil->bumps[k].number - 1],
-                     fg_report_value(quantity->field, &foil->bumps[k]));
+                     fg_quantity_value(quantity->field, &foil->bumps[k]));
   }
   for (size_t i = 0; i < quantity->places; i++) {
     fg_lot_place *place = &quantity->place[i];
@@ -190,7 +178,7 @@ static fg_status chart(fg_context *ctx, const fg_lot_analysis *analysis,
   FG_TRY(status);
   fg_context unused;
   quantity->has_subgroups =
-      quantity->owner == FG_REPORT_BUMP &&
+      quantity->owner == FG_QUANTITY_OF_BUMP &&
       fg_chart_subgroups(&unused, quantity->value, quantity->size, analysis->foil_count,
                          FG_SIGMA_FROM_SD, rules, &quantity->means, &quantity->deviations,
                          &quantity->within_sigma) == FG_OK;

@@ -8,7 +8,7 @@ typedef struct fg_characteristic {
   const fg_lot_quantity *quantity;
   int bump;         /* 0: the whole foil */
   double nominal;   /* of the design */
-  const char *kind; /* QIF's name: Radius, Height, Length, Thickness, Angle */
+  const char *kind; /* QIF's name */
 } fg_characteristic;
 
 /* The caller frees *list with free(). */

@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "lot/writers.h"
+#include "quantity/quantity.h"
 #include "report/words.h"
 
 static void put_text(FILE *out, const char *text) {
@@ -28,34 +29,34 @@ static void put_columns(FILE *out, const fg_manifest *manifest, size_t item) {
 }
 
 static void put_heading(FILE *out, const fg_manifest *manifest, const char *more,
-                        fg_report_owner owner) {
+                        fg_quantity_owner owner) {
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < manifest->columns; i++) {
     if (i) fputc(',', out);
     put_text(out, manifest->name[i]);
   }
   fputs(more, out);
   for (size_t i = 0; i < count; i++) {
-    if (fields[i].kind == FG_FIELD_PAIR) continue;
-    fprintf(out, ",%s", fields[i].name);
-    if (fields[i].u_offset != FG_NO_UNCERTAINTY) {
-      const char *dot = strrchr(fields[i].name, '.');
-      int group = dot ? (int)(dot - fields[i].name) + 1 : 0;
-      fprintf(out, ",%.*su_%s", group, fields[i].name, fields[i].name + group);
-    }
+    if (rows[i].kind == FG_QUANTITY_PAIR) continue;
+    fprintf(out, ",%s", rows[i].name);
+    if (!fg_quantity_has_u(&rows[i])) continue;
+    const char *dot = strrchr(rows[i].name, '.');
+    int group = dot ? (int)(dot - rows[i].name) + 1 : 0;
+    fprintf(out, ",%.*su_%s", group, rows[i].name, rows[i].name + group);
   }
   fputc('\n', out);
 }
 
-static void put_values(FILE *out, fg_report_owner owner, const void *object) {
+static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++) {
-    if (fields[i].kind == FG_FIELD_PAIR) continue;
-    put_number(out, fg_report_value(&fields[i], object));
-    if (fields[i].u_offset != FG_NO_UNCERTAINTY)
-      put_number(out, fg_report_uncertainty(&fields[i], object));
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    if (rows[i].kind == FG_QUANTITY_PAIR) continue;
+    size_t width = fg_quantity_numbers(&rows[i], object, numbers);
+    for (size_t k = 0; k < width; k++)
+      put_number(out, numbers[k]);
   }
   fputc('\n', out);
 }
@@ -80,7 +81,7 @@ static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
 fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   size_t next = 0;
-  put_heading(out, &lot->manifest, ",foil_number,verdict,flags,error", FG_REPORT_FOIL);
+  put_heading(out, &lot->manifest, ",foil_number,verdict,flags,error", FG_QUANTITY_OF_FOIL);
   for (size_t item = 0; item < lot->manifest.items; item++) {
     if (lot->records[item].error) put_failed(out, lot, item);
     for (; next < analysis->foil_count && analysis->foils[next].item == item; next++) {
@@ -90,7 +91,7 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
       put_flags(out, fg_foil_flag_words(), foil->foil->flags);
       fputc(',', out);
       put_text(out, foil->foil->error);
-      put_values(out, FG_REPORT_FOIL, foil->foil);
+      put_values(out, FG_QUANTITY_OF_FOIL, foil->foil);
     }
   }
   return fg_stream_finish(ctx, out, "foils.csv");
@@ -102,7 +103,7 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
   const double *stiffness = analysis->stiffness.normalised;
   size_t at = 0;
   put_heading(out, manifest, ",foil_number,bump,flags,normalised_stiffness,verdict",
-              FG_REPORT_BUMP);
+              FG_QUANTITY_OF_BUMP);
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
     for (size_t k = 0; k < foil->foil->bump_count; k++) {
@@ -112,7 +113,7 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
       put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump));
       put_number(out, stiffness[at++]);
       fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
-      put_values(out, FG_REPORT_BUMP, bump);
+      put_values(out, FG_QUANTITY_OF_BUMP, bump);
     }
   }
   return fg_stream_finish(ctx, out, "bumps.csv");

@@ -29,7 +29,7 @@ static void put_number(FILE *out, const char *field, size_t number, double value
 }
 
 static void put_characteristic(FILE *out, size_t number, const fg_characteristic *one) {
-  const fg_report_field *field = one->quantity->field;
+  const fg_quantity *field = one->quantity->field;
   const fg_tolerance *tolerance = one->quantity->tolerance;
   fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s", number, number, number, field->words);
   if (one->bump) fprintf(out, " %d", one->bump);

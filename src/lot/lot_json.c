@@ -5,6 +5,7 @@
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
+#include "report/quantity_json.h"
 #include "report/words.h"
 
 static void write_inputs(fg_json *json, const fg_lot *lot) {
@@ -154,7 +155,7 @@ static void write_quantity(fg_json *json, const fg_lot_quantity *quantity) {
   fg_json_number(json, "min", quantity->least);
   fg_json_number(json, "max", quantity->most);
   fg_json_number(json, "bandwidth", quantity->has_density ? quantity->density.bandwidth : NAN);
-  if (quantity->owner == FG_REPORT_BUMP) write_places(json, quantity);
+  if (quantity->owner == FG_QUANTITY_OF_BUMP) write_places(json, quantity);
   if (quantity->has_chart) {
     write_chart(json, "individuals", &quantity->chart, quantity->chart_sigma);
     fg_json_bool(json, "stable", quantity->stable);
@@ -261,24 +262,14 @@ static void write_pads(fg_json *json, const fg_lot_analysis *analysis,
 
 static void write_bearing(fg_json *json, const fg_lot_analysis *analysis,
                           const fg_lot_bearing *bearing) {
-  const fg_bearing_clearance *clearance = &bearing->clearance;
   fg_json_object(json, NULL);
   fg_json_string(json, "name", bearing->name);
   fg_json_integer(json, "number", (int64_t)bearing->number);
   write_pads(json, analysis, bearing);
   fg_json_numbers(json, "angle_deg", bearing->angle_deg, bearing->places);
   fg_json_numbers(json, "clearance_mm", bearing->clearance_mm, bearing->places);
-  if (bearing->known) {
-    fg_json_integer(json, "count", (int64_t)clearance->count);
-    fg_json_number(json, "mean_mm", clearance->mean_mm);
-    fg_json_number(json, "min_mm", clearance->least_mm);
-    fg_json_number(json, "min_at_deg", clearance->least_at_deg);
-    fg_json_number(json, "max_mm", clearance->most_mm);
-    fg_json_number(json, "circularity_mm", clearance->circularity_mm);
-    fg_json_numbers(json, "offset_mm", clearance->offset_mm, 2);
-    fg_json_number(json, "centred_min_mm", clearance->centred_least_mm);
-    fg_json_numbers(json, "centred_at_mm", clearance->centred_at_mm, 2);
-  }
+  if (bearing->known)
+    fg_json_quantities(json, FG_QUANTITY_OF_BEARING, "", &bearing->clearance, true);
   fg_json_object_end(json);
 }
 

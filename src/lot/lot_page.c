@@ -6,10 +6,11 @@
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "lot/writers.h"
+#include "quantity/quantity.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/measure/scan_model_words.h"
 
-enum { FOIL_ROWS_MAX = 300, POLAR_MAX = 4, BEARING_ROWS_MAX = 200 };
+enum { FOIL_ROWS_MAX = 300, POLAR_MAX = 4, BEARING_ROWS_MAX = 200, UM_PER_MM = 1000 };
 
 static void put_tile(FILE *out, const char *title, size_t count) {
   fprintf(out, "<div><dt>%s</dt><dd>%zu</dd></div>\n", title, count);
@@ -66,7 +67,7 @@ static void put_worst(FILE *out, const fg_lot_analysis *analysis) {
 /* What the first chart shows: the first bump quantity with a tolerance, else the height. */
 static const fg_lot_quantity *leading_quantity(const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    if (analysis->quantities[i].tolerance && analysis->quantities[i].owner == FG_REPORT_BUMP)
+    if (analysis->quantities[i].tolerance && analysis->quantities[i].owner == FG_QUANTITY_OF_BUMP)
       return &analysis->quantities[i];
   return fg_lot_find_quantity(analysis, "height_mm");
 }
@@ -280,7 +281,6 @@ static void put_bearing_name(FILE *out, const fg_lot_bearing *bearing) {
 
 static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
                             const fg_lot_bearing *bearing) {
-  const fg_bearing_clearance *clearance = &bearing->clearance;
   fputs("<tr><td>", out);
   put_bearing_name(out, bearing);
   fputs("</td><td class=\"words\">", out);
@@ -292,21 +292,24 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
       fputs("–", out);
   }
   fputs("</td>", out);
-  const double values[] = {clearance->mean_mm, clearance->least_mm, clearance->most_mm,
-                           clearance->circularity_mm, clearance->centred_least_mm};
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+  const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, shown);
+  for (size_t i = 0; i < count; i++) {
+    double value = fg_quantity_value(shown[i], &bearing->clearance);
     fputs("<td>", out);
-    put_number(out, bearing->known ? 1000 * values[i] : NAN, 4);
+    put_number(out, bearing->known ? UM_PER_MM * value : NAN, 4);
     fputs("</td>", out);
   }
   fputs("</tr>\n", out);
 }
 
 static void put_bearing_table(FILE *out, const fg_lot_analysis *analysis) {
-  fputs("<div class=\"scroll\"><table><thead><tr><th>bearing</th><th>pads</th><th>mean<br>µm</th>"
-        "<th>least<br>µm</th><th>most<br>µm</th><th>circularity<br>µm</th><th>least, rotor "
-        "centred<br>µm</th></tr></thead>\n<tbody>\n",
-        out);
+  const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, shown);
+  fputs("<div class=\"scroll\"><table><thead><tr><th>bearing</th><th>pads</th>", out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, "<th>%s<br>µm</th>", shown[i]->symbol);
+  fputs("</tr></thead>\n<tbody>\n", out);
   for (size_t i = 0; i < analysis->bearing_count && i < BEARING_ROWS_MAX; i++)
     put_bearing_row(out, analysis, &analysis->bearings[i]);
   fputs("</tbody></table></div>\n", out);

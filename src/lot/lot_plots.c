@@ -34,7 +34,7 @@ static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
 }
 
 /* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
-static void axis_title(char *text, size_t size, const fg_report_field *field) {
+static void axis_title(char *text, size_t size, const fg_quantity *field) {
   enum { LETTERS = 28 };
   snprintf(text, size, "%s%s%s", strlen(field->words) > LETTERS ? field->symbol : field->words,
            *field->unit ? ", " : "", field->unit);
@@ -214,7 +214,8 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity) {
   fg_plot_begin(&at, 300, "Control chart, foil after foil");
   fg_plot_y_axis(&at, title);
   fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, quantity->owner == FG_REPORT_BUMP ? "foil (mean of its bumps)" : "foil");
+  fg_plot_x_title(&at,
+                  quantity->owner == FG_QUANTITY_OF_BUMP ? "foil (mean of its bumps)" : "foil");
   fg_plot_segment(&at, at.x_low, chart->centre, at.x_high, chart->centre, "thin");
   fg_plot_segment(&at, at.x_low, chart->point[0].lower, at.x_high, chart->point[0].lower, "limit");
   fg_plot_segment(&at, at.x_low, chart->point[0].upper, at.x_high, chart->point[0].upper, "limit");

@@ -9,52 +9,22 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/seal.h"
+#include "quantity/quantity.h"
 #include "report/words.h"
 
 /* NUMBER_MAX: of a foil or bump. No scan holds so many, and what is counted by number stays small.
  */
-enum { PLACES_MAX = 4, NUMBER_MAX = 10000 };
+enum { NUMBER_MAX = 10000 };
 
-/* Where the values of a field lie in its object, in the order of a record. */
-static size_t places_of(const fg_report_field *field, size_t offset[PLACES_MAX]) {
-  size_t width = field->kind == FG_FIELD_PAIR ? 2 : 1, count = 0;
-  for (size_t i = 0; i < width; i++)
-    offset[count++] = field->offset + i * sizeof(double);
-  if (field->u_offset == FG_NO_UNCERTAINTY) return count;
-  for (size_t i = 0; i < width; i++)
-    offset[count++] = field->u_offset + i * sizeof(double);
-  return count;
-}
-
-static double load_place(const fg_report_field *field, const void *object, size_t offset) {
-  const char *place = (const char *)object + offset;
-  size_t whole;
-  double value;
-  if (field->kind == FG_FIELD_COUNT) {
-    memcpy(&whole, place, sizeof whole);
-    return (double)whole;
-  }
-  memcpy(&value, place, sizeof value);
-  return value;
-}
-
-static void store_place(const fg_report_field *field, void *object, size_t offset, double value) {
-  char *place = (char *)object + offset;
-  size_t whole = value >= 0 && value < 9007199254740992.0 ? (size_t)value : 0;
-  if (field->kind == FG_FIELD_COUNT)
-    memcpy(place, &whole, sizeof whole);
-  else
-    memcpy(place, &value, sizeof value);
-}
-
-static void write_values(fg_json *json, fg_report_owner owner, const void *object) {
-  size_t count, offset[PLACES_MAX];
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+static void write_values(fg_json *json, fg_quantity_owner owner, const void *object) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
   fg_json_array(json, "values");
   for (size_t i = 0; i < count; i++) {
-    size_t places = places_of(&fields[i], offset);
-    for (size_t k = 0; k < places; k++)
-      fg_json_number(json, NULL, load_place(&fields[i], object, offset[k]));
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    size_t width = fg_quantity_numbers(&rows[i], object, numbers);
+    for (size_t k = 0; k < width; k++)
+      fg_json_number(json, NULL, numbers[k]);
   }
   fg_json_array_end(json);
 }
@@ -73,13 +43,13 @@ static void write_foil(fg_json *json, const fg_foil *foil) {
   fg_json_integer(json, "number", foil->number);
   write_flags(json, fg_foil_flag_words(), foil->flags);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
-  write_values(json, FG_REPORT_FOIL, foil);
+  write_values(json, FG_QUANTITY_OF_FOIL, foil);
   fg_json_array(json, "bumps");
   for (size_t i = 0; i < bumps; i++) {
     fg_json_object(json, NULL);
     fg_json_integer(json, "number", foil->bumps[i].number);
     write_flags(json, fg_bump_flag_words(), foil->bumps[i].flags);
-    write_values(json, FG_REPORT_BUMP, &foil->bumps[i]);
+    write_values(json, FG_QUANTITY_OF_BUMP, &foil->bumps[i]);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
@@ -161,21 +131,21 @@ static fg_status read_flags(fg_context *ctx, const cJSON *object, const fg_flag_
   return FG_OK;
 }
 
-static fg_status read_values(fg_context *ctx, const cJSON *object, fg_report_owner owner,
+static fg_status read_values(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
                              void *target) {
-  size_t count, offset[PLACES_MAX];
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
   const cJSON *values = member(object, "values");
   const cJSON *value = cJSON_IsArray(values) ? values->child : NULL;
   for (size_t i = 0; i < count; i++) {
-    size_t places = places_of(&fields[i], offset);
-    for (size_t k = 0; k < places; k++) {
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    for (size_t k = 0; k < fg_quantity_width(&rows[i]); k++, value = value->next) {
       if (!value) return fail_record(ctx, "values are missing");
       if (cJSON_IsNumber(value) && !isfinite(value->valuedouble))
         return fail_record(ctx, "a value that is no number");
-      store_place(&fields[i], target, offset[k], cJSON_IsNumber(value) ? value->valuedouble : NAN);
-      value = value->next;
+      numbers[k] = cJSON_IsNumber(value) ? value->valuedouble : NAN;
     }
+    fg_quantity_restore(&rows[i], target, numbers);
   }
   return value ? fail_record(ctx, "too many values") : FG_OK;
 }
@@ -194,7 +164,7 @@ static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) 
   void *block;
   FG_TRY(read_number(ctx, object, &foil->number));
   FG_TRY(read_flags(ctx, object, fg_foil_flag_words(), &foil->flags));
-  FG_TRY(read_values(ctx, object, FG_REPORT_FOIL, foil));
+  FG_TRY(read_values(ctx, object, FG_QUANTITY_OF_FOIL, foil));
   if (cJSON_IsString(error))
     fg_text_clip(foil->error, sizeof foil->error, "%s", error->valuestring);
   if (!cJSON_IsArray(bumps)) return fail_record(ctx, "no bumps");
@@ -204,7 +174,7 @@ static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) 
     fg_bump *target = &foil->bumps[foil->bump_count++];
     FG_TRY(read_number(ctx, bump, &target->number));
     FG_TRY(read_flags(ctx, bump, fg_bump_flag_words(), &target->flags));
-    FG_TRY(read_values(ctx, bump, FG_REPORT_BUMP, target));
+    FG_TRY(read_values(ctx, bump, FG_QUANTITY_OF_BUMP, target));
   }
   return FG_OK;
 }
@@ -286,26 +256,28 @@ void fg_record_free(fg_record *record) {
   *record = (fg_record){0};
 }
 
-static void write_names(fg_json *json, const char *name, fg_report_owner owner) {
+static void write_names(fg_json *json, const char *name, fg_quantity_owner owner) {
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  const fg_quantity *rows = fg_quantities(owner, &count);
   fg_json_array(json, name);
   for (size_t i = 0; i < count; i++) {
-    bool pair = fields[i].kind == FG_FIELD_PAIR;
-    for (int side = 0; side < (fields[i].u_offset == FG_NO_UNCERTAINTY ? 1 : 2); side++)
-      for (int axis = 0; axis < (pair ? 2 : 1); axis++) {
-        char text[96];
-        snprintf(text, sizeof text, "%s%s%s", side ? "u_" : "", fields[i].name,
-                 pair ? (axis ? "[1]" : "[0]") : "");
-        fg_json_string(json, NULL, text);
-      }
+    bool pair = rows[i].kind == FG_QUANTITY_PAIR;
+    size_t values = pair ? 2 : 1;
+    for (size_t k = 0; k < fg_quantity_width(&rows[i]); k++) {
+      char text[96];
+      snprintf(text, sizeof text, "%s%s%s", k < values ? "" : "u_", rows[i].name,
+               !pair             ? ""
+               : k % values == 1 ? "[1]"
+                                 : "[0]");
+      fg_json_string(json, NULL, text);
+    }
   }
   fg_json_array_end(json);
 }
 
 void fg_record_write_names(fg_json *json) {
-  write_names(json, "foil_values", FG_REPORT_FOIL);
-  write_names(json, "bump_values", FG_REPORT_BUMP);
+  write_names(json, "foil_values", FG_QUANTITY_OF_FOIL);
+  write_names(json, "bump_values", FG_QUANTITY_OF_BUMP);
 }
 
 fg_status fg_record_format_names(fg_context *ctx, char **text) {

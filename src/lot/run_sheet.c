@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/report.h"
+#include "quantity/quantity.h"
 
 /* A mean as it grows: independent parts add in squares, common ones as they are. */
 typedef struct mean {
@@ -24,41 +25,26 @@ static void add(mean *m, double value, double u) {
 
 typedef struct measuring {
   const fg_run_sheet_options *options;
-  const fg_report_field *field;
-  fg_report_owner owner;
+  const fg_quantity *field;
+  fg_quantity_owner owner;
   size_t scan_capacity;
   fg_run_sheet *out;
   double *value, *u; /* of the runs that are kept */
 } measuring;
 
-/* What the bump's own circle says, whatever the overall circle. */
-static bool is_own(const char *quantity) {
-  static const char *const own[] = {"radius_mm", "radius_error_pct", "bump_angle_model_deg",
-                                    "height_model_mm", "rms_um"};
-  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
-    if (!strcmp(own[i], quantity)) return true;
-  return false;
-}
-
 static fg_status find_quantity(fg_context *ctx, measuring *m) {
-  static const fg_report_owner foils[] = {FG_REPORT_FOIL, FG_REPORT_BUMP};
-  static const fg_report_owner discs[] = {FG_REPORT_DISC};
+  static const fg_quantity_owner foils[] = {FG_QUANTITY_OF_FOIL, FG_QUANTITY_OF_BUMP};
+  static const fg_quantity_owner discs[] = {FG_QUANTITY_OF_DISC};
   bool is_disc = m->options->design->form == FG_FORM_DISCS;
-  const fg_report_owner *owners = is_disc ? discs : foils;
+  const fg_quantity_owner *owners = is_disc ? discs : foils;
   char list[700] = "";
   for (size_t i = 0; i < (is_disc ? 1 : 2); i++) {
-    size_t count, used = strlen(list);
-    const fg_report_field *fields = fg_report_fields(owners[i], &count);
-    for (size_t k = 0; k < count; k++) {
-      if (fields[k].kind != FG_FIELD_NUMBER) continue;
-      if (!strcmp(fields[k].name, m->options->quantity)) {
-        m->field = &fields[k];
-        m->owner = owners[i];
-        return FG_OK;
-      }
-      fg_text_clip(list + used, sizeof list - used, "%s%s", used ? ", " : "", fields[k].name);
-      used = strlen(list);
-    }
+    const fg_quantity *found = fg_quantity_find(owners[i], m->options->quantity);
+    fg_quantity_list(owners[i], false, list, sizeof list);
+    if (!found || found->kind != FG_QUANTITY_NUMBER) continue;
+    m->field = found;
+    m->owner = owners[i];
+    return FG_OK;
   }
   return fg_fail(ctx, FG_ERR_DATA, "'%s' is no quantity that a scan gives; there are: %s",
                  m->options->quantity, list);
@@ -70,11 +56,11 @@ static void add_parts(const measuring *m, const void *objects, size_t count, siz
   mean parts = {0};
   for (size_t i = 0; i < count; i++) {
     const void *object = (const char *)objects + i * size;
-    add(&parts, fg_report_value(m->field, object), fg_report_uncertainty(m->field, object));
+    add(&parts, fg_quantity_value(m->field, object), fg_quantity_uncertainty(m->field, object));
   }
   if (!parts.count) return;
   double n = (double)parts.count;
-  double u = is_own(m->field->name) ? sqrt(parts.squares) / n : parts.common / n;
+  double u = m->field->uses & FG_QUANTITY_IS_OWN ? sqrt(parts.squares) / n : parts.common / n;
   add(foils, parts.sum / n, u);
 }
 
@@ -84,12 +70,12 @@ static void read_measurement(const measuring *m, const fg_measurement *measureme
   memcpy(scan->sha256, measurement->sha256, sizeof scan->sha256);
   for (size_t i = 0; i < measurement->foil_count; i++) {
     const fg_foil *foil = &measurement->foils[i];
-    if (m->owner == FG_REPORT_FOIL)
+    if (m->owner == FG_QUANTITY_OF_FOIL)
       add_parts(m, foil, 1, sizeof *foil, &foils);
     else
       add_parts(m, foil->bumps, foil->bump_count, sizeof *foil->bumps, &foils);
   }
-  if (m->owner == FG_REPORT_DISC)
+  if (m->owner == FG_QUANTITY_OF_DISC)
     add_parts(m, measurement->discs, measurement->disc_count, sizeof *measurement->discs, &foils);
   if (!foils.count) return;
   scan->value = foils.sum / (double)foils.count;

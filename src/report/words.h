@@ -24,11 +24,8 @@ const char *fg_orientation_word(fg_orientation orientation);
 const char *fg_arc_kind_word(fg_arc_kind kind);
 const char *fg_channel_word(fg_channel channel);
 
-/* The two values of a pair and of their uncertainties (field->kind FG_FIELD_PAIR). */
-void fg_report_pair(const fg_report_field *field, const void *object, double value[2], double u[2]);
-
 /* How many decimals of a value people should see: U = 2 u shows two digits, or one where that is
  * fine enough. */
-int fg_report_decimals(const fg_report_field *field, double u);
+int fg_report_decimals(const fg_quantity *field, double u);
 
 #endif

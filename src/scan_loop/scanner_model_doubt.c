@@ -3,26 +3,26 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "foilgauge/report.h"
+#include "quantity/quantity.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
 /* Calls for every measured object of `m` in turn, with the same of `other`; NULL where it has none.
  */
-typedef void visitor(fg_report_owner owner, void *object, const void *same, void *user);
+typedef void visitor(fg_quantity_owner owner, void *object, const void *same, void *user);
 
 static void visit_all(fg_measurement *m, const fg_measurement *other, visitor *visit, void *user) {
   for (size_t f = 0; f < m->foil_count; f++) {
     fg_foil *foil = &m->foils[f];
     const fg_foil *same = other && f < other->foil_count ? &other->foils[f] : NULL;
     if (same && same->bump_count != foil->bump_count) same = NULL;
-    visit(FG_REPORT_FOIL, foil, same, user);
+    visit(FG_QUANTITY_OF_FOIL, foil, same, user);
     for (size_t b = 0; b < foil->bump_count; b++)
-      visit(FG_REPORT_BUMP, &foil->bumps[b], same ? &same->bumps[b] : NULL, user);
+      visit(FG_QUANTITY_OF_BUMP, &foil->bumps[b], same ? &same->bumps[b] : NULL, user);
   }
   for (size_t d = 0; d < m->disc_count; d++)
-    visit(FG_REPORT_DISC, &m->discs[d], other && d < other->disc_count ? &other->discs[d] : NULL,
-          user);
+    visit(FG_QUANTITY_OF_DISC, &m->discs[d],
+          other && d < other->disc_count ? &other->discs[d] : NULL, user);
 }
 
 /* The largest move of each value over several visits, in the visits' order. */
@@ -31,38 +31,30 @@ typedef struct moves {
   size_t at;
 } moves;
 
-static bool has_uncertainty(const fg_report_field *field) {
-  return field->kind == FG_FIELD_NUMBER && field->u_offset != FG_NO_UNCERTAINTY;
+static bool has_uncertainty(const fg_quantity *row) {
+  return row->kind == FG_QUANTITY_NUMBER && fg_quantity_has_u(row);
 }
 
-static void take_moves(fg_report_owner owner, void *object, const void *same, void *user) {
+static void take_moves(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++) {
-    if (!has_uncertainty(&fields[i])) continue;
+    if (!has_uncertainty(&rows[i])) continue;
     size_t at = m->at++;
     if (!m->farthest || !same) continue;
-    double move = fabs(fg_report_value(&fields[i], same) - fg_report_value(&fields[i], object));
+    double move = fabs(fg_quantity_value(&rows[i], same) - fg_quantity_value(&rows[i], object));
     if (move > m->farthest[at]) m->farthest[at] = move;
   }
 }
 
-static void add_square(void *object, size_t place, double doubt) {
-  double *u = (double *)(void *)((char *)object + place);
-  *u = hypot(*u, doubt);
-}
-
-static void widen(fg_report_owner owner, void *object, const void *same, void *user) {
+static void widen(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
-  size_t count, first = m->at;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
   (void)same;
   for (size_t i = 0; i < count; i++)
-    if (has_uncertainty(&fields[i])) add_square(object, fields[i].u_offset, m->farthest[m->at++]);
-  if (owner != FG_REPORT_DISC) return;
-  fg_disc *disc = object; /* its first value is the radius */
-  disc->covariance[2][2] += m->farthest[first] * m->farthest[first];
+    if (has_uncertainty(&rows[i])) fg_quantity_widen(&rows[i], object, m->farthest[m->at++]);
 }
 
 /* Adds to every u_ of `m` the farthest that its value is moved by the others, times `share`. */

@@ -147,15 +147,15 @@ static void record_keeps_every_field(void **state) {
   assert_int_equal(back.foils[0].flags, measurement.foils[0].flags);
   assert_int_equal(back.foils[0].bump_count, SYNTHETIC_BUMPS);
   size_t count;
-  const fg_report_field *fields = fg_report_fields(FG_REPORT_BUMP, &count);
+  const fg_quantity *fields = fg_quantities(FG_QUANTITY_OF_BUMP, &count);
   for (size_t b = 0; b < SYNTHETIC_BUMPS; b++)
     for (size_t i = 0; i < count; i++) {
-      double was = fg_report_value(&fields[i], &measurement.foils[0].bumps[b]);
-      double is = fg_report_value(&fields[i], &back.foils[0].bumps[b]);
+      double was = fg_quantity_value(&fields[i], &measurement.foils[0].bumps[b]);
+      double is = fg_quantity_value(&fields[i], &back.foils[0].bumps[b]);
       if (isnan(was) != isnan(is) || fabs(was - is) > 1e-9 * fabs(was))
         fail_msg("%s: %.12g became %.12g", fields[i].name, was, is);
-      was = fg_report_uncertainty(&fields[i], &measurement.foils[0].bumps[b]);
-      is = fg_report_uncertainty(&fields[i], &back.foils[0].bumps[b]);
+      was = fg_quantity_uncertainty(&fields[i], &measurement.foils[0].bumps[b]);
+      is = fg_quantity_uncertainty(&fields[i], &back.foils[0].bumps[b]);
       if (isnan(was) != isnan(is) || fabs(was - is) > 1e-9 * fabs(was))
         fail_msg("u of %s: %.12g became %.12g", fields[i].name, was, is);
     }

@@ -10,6 +10,7 @@
 
 #include "core/json_writer.h"
 #include "report/words.h"
+#include "quantity/quantity.h"
 #include "support/synthetic_foil.h"
 
 typedef struct fixture {
@@ -80,7 +81,7 @@ static void same_number(const cJSON *json, double value) {
   assert_true(fabs(json->valuedouble - value) <= 1e-9 * fabs(value));
 }
 
-static void same_field(const cJSON *object, const fg_report_field *field, const void *values) {
+static void same_field(const cJSON *object, const fg_quantity *field, const void *values) {
   char u_name[64];
   const char *dot = strchr(field->name, '.'), *name = dot ? dot + 1 : field->name;
   if (dot) {
@@ -89,23 +90,23 @@ static void same_field(const cJSON *object, const fg_report_field *field, const 
     object = member(object, group);
   }
   snprintf(u_name, sizeof u_name, "u_%s", name);
-  if (field->kind == FG_FIELD_PAIR) {
-    double value[2], u[2];
-    fg_report_pair(field, values, value, u);
+  if (field->kind == FG_QUANTITY_PAIR) {
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    fg_quantity_numbers(field, values, numbers);
     for (int i = 0; i < 2; i++) {
-      same_number(cJSON_GetArrayItem(member(object, name), i), value[i]);
-      same_number(cJSON_GetArrayItem(member(object, u_name), i), u[i]);
+      same_number(cJSON_GetArrayItem(member(object, name), i), numbers[i]);
+      same_number(cJSON_GetArrayItem(member(object, u_name), i), numbers[2 + i]);
     }
     return;
   }
-  same_number(member(object, name), fg_report_value(field, values));
+  same_number(member(object, name), fg_quantity_value(field, values));
   if (field->u_offset != FG_NO_UNCERTAINTY)
-    same_number(member(object, u_name), fg_report_uncertainty(field, values));
+    same_number(member(object, u_name), fg_quantity_uncertainty(field, values));
 }
 
-static void same_fields(const cJSON *object, fg_report_owner owner, const void *values) {
+static void same_fields(const cJSON *object, fg_quantity_owner owner, const void *values) {
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+  const fg_quantity *fields = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++)
     same_field(object, &fields[i], values);
 }
@@ -114,11 +115,11 @@ static void json_holds_every_field(void **state) {
   fixture *all = *state;
   const fg_foil *foil = &all->measurement.foils[0];
   cJSON *json = json_of(&all->report);
-  same_fields(first_foil(json), FG_REPORT_FOIL, foil);
+  same_fields(first_foil(json), FG_QUANTITY_OF_FOIL, foil);
   const cJSON *bumps = member(first_foil(json), "bumps");
   assert_int_equal(cJSON_GetArraySize(bumps), SYNTHETIC_BUMPS);
   for (int i = 0; i < SYNTHETIC_BUMPS; i++)
-    same_fields(cJSON_GetArrayItem(bumps, i), FG_REPORT_BUMP, &foil->bumps[i]);
+    same_fields(cJSON_GetArrayItem(bumps, i), FG_QUANTITY_OF_BUMP, &foil->bumps[i]);
   cJSON_Delete(json);
 }
 
@@ -208,7 +209,8 @@ static void several_scans_stand_in_scans(void **state) {
   assert_string_equal(member(json, "verdict")->valuestring, "not_measured");
   const cJSON *scans = member(json, "scans");
   assert_int_equal(cJSON_GetArraySize(scans), 2);
-  same_fields(first_foil(cJSON_GetArrayItem(scans, 0)), FG_REPORT_FOIL, &all->measurement.foils[0]);
+  same_fields(first_foil(cJSON_GetArrayItem(scans, 0)), FG_QUANTITY_OF_FOIL,
+              &all->measurement.foils[0]);
   assert_string_equal(member(cJSON_GetArrayItem(scans, 1), "error")->valuestring,
                       "lost.png: cannot be opened");
   cJSON_Delete(json);
@@ -389,7 +391,7 @@ static void a_part_of_another_design_passes_nothing(void **state) {
   assert_int_equal(outcome.verdict, FG_VERDICT_NOT_MEASURED);
   assert_int_equal(fg_bump_verdict(&all->design, foil, foil->bumps), FG_VERDICT_NOT_MEASURED);
   cJSON *json = json_of(&all->report);
-  same_fields(first_foil(json), FG_REPORT_FOIL, foil);
+  same_fields(first_foil(json), FG_QUANTITY_OF_FOIL, foil);
   assert_true(cJSON_IsFalse(member(first_foil(json), "in_tolerance")));
   assert_null(cJSON_GetObjectItem(first_foil(json), "judgements"));
   cJSON_Delete(json);
@@ -459,7 +461,7 @@ static void table_says_what_plus_minus_is(void **state) {
 
 static void decimals_follow_the_uncertainty(void **state) {
   (void)state;
-  const fg_report_field *radius = fg_report_find(FG_REPORT_BUMP, "radius_mm");
+  const fg_quantity *radius = fg_quantity_find(FG_QUANTITY_OF_BUMP, "radius_mm");
   assert_int_equal(fg_report_decimals(radius, 0.0002), 5); /* U = 0.00040 */
   assert_int_equal(fg_report_decimals(radius, 0.5), 4);    /* never fewer than its own */
   assert_int_equal(fg_report_decimals(radius, NAN), 4);

@@ -106,9 +106,9 @@ static void every_row_is_in_the_schema(void **state) {
   (void)state;
   static const char *const definitions[] = {"foil", "bump", "disc"};
   cJSON *schema = load_schema();
-  for (int owner = FG_REPORT_FOIL; owner <= FG_REPORT_DISC; owner++) {
+  for (int owner = FG_QUANTITY_OF_FOIL; owner <= FG_QUANTITY_OF_DISC; owner++) {
     size_t count;
-    const fg_report_field *fields = fg_report_fields((fg_report_owner)owner, &count);
+    const fg_quantity *fields = fg_quantities((fg_quantity_owner)owner, &count);
     for (size_t i = 0; i < count; i++) {
       const char *dot = strchr(fields[i].name, '.'), *name = dot ? dot + 1 : fields[i].name;
       char u_name[64];

@@ -5,6 +5,7 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "quantity/quantity.h"
 #include "report/words.h"
 
 static void put_number(FILE *out, double value) {
@@ -15,36 +16,12 @@ static void put_number(FILE *out, double value) {
   fputs(text, out);
 }
 
-/* "centre_mm" becomes "centre_x_mm": the unit stays last. */
-static void put_axis_name(FILE *out, const char *before, const char *name, char axis) {
-  const char *unit = strrchr(name, '_');
-  fprintf(out, ",%s%.*s_%c%s", before, (int)(unit - name), name, axis, unit);
-}
-
-static void put_field_names(FILE *out, const fg_report_field *field) {
-  if (field->kind == FG_FIELD_PAIR) {
-    put_axis_name(out, "", field->name, 'x');
-    put_axis_name(out, "", field->name, 'y');
-    put_axis_name(out, "u_", field->name, 'x');
-    put_axis_name(out, "u_", field->name, 'y');
-    return;
+static void put_names(FILE *out, const fg_quantity *quantity) {
+  for (size_t k = 0; k < fg_quantity_width(quantity); k++) {
+    char name[64];
+    fg_quantity_column(quantity, k, name, sizeof name);
+    fprintf(out, ",%s", name);
   }
-  fprintf(out, ",%s", field->name);
-  if (field->u_offset != FG_NO_UNCERTAINTY) fprintf(out, ",u_%s", field->name);
-}
-
-static void put_field(FILE *out, const fg_report_field *field, const void *object) {
-  double value[2], u[2];
-  if (field->kind == FG_FIELD_PAIR) {
-    fg_report_pair(field, object, value, u);
-    for (int i = 0; i < 2; i++)
-      put_number(out, value[i]);
-    for (int i = 0; i < 2; i++)
-      put_number(out, u[i]);
-    return;
-  }
-  put_number(out, fg_report_value(field, object));
-  if (field->u_offset != FG_NO_UNCERTAINTY) put_number(out, fg_report_uncertainty(field, object));
 }
 
 static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
@@ -57,11 +34,15 @@ static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
   }
 }
 
-static void put_values(FILE *out, fg_report_owner owner, const void *object) {
+static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
-  for (size_t i = 0; i < count; i++)
-    put_field(out, &fields[i], object);
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    size_t width = fg_quantity_numbers(&rows[i], object, numbers);
+    for (size_t k = 0; k < width; k++)
+      put_number(out, numbers[k]);
+  }
 }
 
 /* What all lines of a scan share. */
@@ -83,17 +64,16 @@ static void put_bump(FILE *out, const scan_lines *scan, const fg_foil *foil, con
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,%d", foil->number, bump->number);
   put_flags(out, fg_bump_flag_words(), fg_bump_flags(scan->design, foil, bump));
-  put_values(out, FG_REPORT_BUMP, bump);
+  put_values(out, FG_QUANTITY_OF_BUMP, bump);
   put_end(out, scan, fg_bump_verdict(scan->design, foil, bump), foil);
 }
 
-static size_t count_places(fg_report_owner owner) {
-  size_t count, places = 0;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
+static size_t count_numbers(fg_quantity_owner owner) {
+  size_t count, numbers = 0;
+  const fg_quantity *rows = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++)
-    places += (fields[i].kind == FG_FIELD_PAIR ? 2u : 1u) *
-              (fields[i].u_offset == FG_NO_UNCERTAINTY ? 1u : 2u);
-  return places;
+    numbers += fg_quantity_width(&rows[i]);
+  return numbers;
 }
 
 /* A foil without bumps is not left out: a line whose values are empty. */
@@ -101,7 +81,7 @@ static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,", foil->number);
   put_flags(out, fg_foil_flag_words(), foil->flags);
-  for (size_t i = count_places(FG_REPORT_BUMP); i-- > 0;)
+  for (size_t i = count_numbers(FG_QUANTITY_OF_BUMP); i-- > 0;)
     fputc(',', out);
   put_end(out, scan, FG_VERDICT_NOT_MEASURED, foil);
 }
@@ -112,26 +92,26 @@ static fg_status put_disc(fg_context *ctx, FILE *out, const scan_lines *scan, co
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d", disc->number);
   put_flags(out, fg_bump_flag_words(), fg_disc_flags(scan->design, disc));
-  put_values(out, FG_REPORT_DISC, disc);
+  put_values(out, FG_QUANTITY_OF_DISC, disc);
   put_end(out, scan, decision.outcome.verdict, NULL);
   fg_decision_free(&decision);
   return FG_OK;
 }
 
-static void put_heading(FILE *out, fg_report_owner owner) {
+static void put_heading(FILE *out, fg_quantity_owner owner) {
   size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
-  fputs(owner == FG_REPORT_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  fputs(owner == FG_QUANTITY_OF_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
   for (size_t i = 0; i < count; i++)
-    put_field_names(out, &fields[i]);
+    put_names(out, &rows[i]);
   fputs(",verdict,model_sha256", out);
-  if (owner == FG_REPORT_BUMP) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
+  if (owner == FG_QUANTITY_OF_BUMP) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
   fputc('\n', out);
 }
 
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
   bool discs = report->design->form == FG_FORM_DISCS;
-  put_heading(out, discs ? FG_REPORT_DISC : FG_REPORT_BUMP);
+  put_heading(out, discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     const scan_lines scan = {report->scans[i].path, report->design, measurement};

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "report/measure/scan_model_words.h"
+#include "report/quantity_json.h"
 #include "report/words.h"
 
 static void write_limit(fg_json *json, const char *name, double limit) {
@@ -91,42 +92,6 @@ static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flag
   fg_json_line_end(json);
 }
 
-/* `prefix` is cut off: the members of `overall` stand in an object of their own. */
-static void write_field(fg_json *json, const fg_report_field *field, const void *object,
-                        size_t prefix) {
-  const char *name = field->name + prefix;
-  char u_name[64];
-  snprintf(u_name, sizeof u_name, "u_%s", name);
-  double value[2], u[2];
-  switch (field->kind) {
-  case FG_FIELD_PAIR:
-    fg_report_pair(field, object, value, u);
-    fg_json_numbers(json, name, value, 2);
-    fg_json_numbers(json, u_name, u, 2);
-    break;
-  case FG_FIELD_NUMBER:
-    fg_json_number(json, name, fg_report_value(field, object));
-    if (field->u_offset != FG_NO_UNCERTAINTY)
-      fg_json_number(json, u_name, fg_report_uncertainty(field, object));
-    break;
-  case FG_FIELD_COUNT:
-    fg_json_integer(json, name, (int64_t)fg_report_value(field, object));
-    break;
-  }
-}
-
-/* The rows whose names start with `group` ("overall.") or, when it is empty, have no dot. */
-static void write_fields(fg_json *json, fg_report_owner owner, const char *group,
-                         const void *object) {
-  size_t count, prefix = strlen(group);
-  const fg_report_field *fields = fg_report_fields(owner, &count);
-  for (size_t i = 0; i < count; i++) {
-    bool belongs =
-        prefix ? !strncmp(fields[i].name, group, prefix) : strchr(fields[i].name, '.') == NULL;
-    if (belongs) write_field(json, &fields[i], object, prefix);
-  }
-}
-
 static void write_covariance(fg_json *json, const double covariance[3][3]) {
   fg_json_array(json, "covariance_mm2");
   fg_json_line(json);
@@ -147,7 +112,7 @@ static void write_bump(fg_json *json, const fg_design *design, const fg_foil *fo
   fg_json_integer(json, "number", bump->number);
   write_flags(json, fg_bump_flag_words(), fg_bump_flags(design, foil, bump));
   fg_json_string(json, "verdict", fg_verdict_word(fg_bump_verdict(design, foil, bump)));
-  write_fields(json, FG_REPORT_BUMP, "", bump);
+  fg_json_quantities(json, FG_QUANTITY_OF_BUMP, "", bump, true);
   write_covariance(json, bump->covariance);
   write_range(json, "radius_range_mm", bump->radius_range_mm);
   write_range(json, "height_range_mm", bump->height_range_mm);
@@ -198,19 +163,8 @@ static void write_judgements(fg_json *json, const fg_decision *decision, const c
 }
 
 static void write_strip(fg_json *json, const fg_strip *strip) {
-  const struct {
-    const char *name;
-    double value;
-  } values[] = {{"step_mm", strip->step_mm},
-                {"blur_left_um", strip->blur_left_um},
-                {"blur_right_um", strip->blur_right_um},
-                {"contrast", strip->contrast},
-                {"noise", strip->noise},
-                {"gamma", strip->gamma}};
   fg_json_object(json, "strip");
-  fg_json_integer(json, "stations", (int64_t)strip->count);
-  for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-    fg_json_number(json, values[i].name, strip->count ? values[i].value : NAN);
+  fg_json_quantities(json, FG_QUANTITY_OF_STRIP, "", strip, strip->count > 0);
   double box[4];
   for (int i = 0; i < 4; i++)
     box[i] = (double)strip->box_px[i];
@@ -221,12 +175,12 @@ static void write_strip(fg_json *json, const fg_strip *strip) {
 static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
   fg_json_string(json, "orientation", measured ? fg_orientation_word(foil->orientation) : NULL);
-  write_fields(json, FG_REPORT_FOIL, "", foil);
+  fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "", foil, true);
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_json_number(json, "thickness_design_mm", design->thickness_mm);
   fg_json_bool(json, "thickness_differs", fg_thickness_differs(design, &strip));
   fg_json_object(json, "overall");
-  write_fields(json, FG_REPORT_FOIL, "overall.", foil);
+  fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "overall.", foil, true);
   write_covariance(json, foil->overall.covariance);
   write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
@@ -269,7 +223,7 @@ fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_bool(json, "bright", disc->bright);
   fg_json_verdict(json, decision.outcome.verdict);
   write_judgements(json, &decision, "disc");
-  write_fields(json, FG_REPORT_DISC, "", disc);
+  fg_json_quantities(json, FG_QUANTITY_OF_DISC, "", disc, true);
   write_covariance(json, disc->covariance);
   write_range(json, "radius_range_mm", disc->radius_range_mm);
   fg_json_object_end(json);

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "quantity/quantity.h"
+#include "report/quantity_json.h"
 #include "report/scan_loop/scan_loop_parts.h"
 #include "scan_loop/scanner_model.h"
 
@@ -155,23 +157,26 @@ void fg_correction_added(const fg_correction *c, char *words, size_t size) {
 }
 
 void fg_correction_largest(fg_correction *most, const fg_correction *one) {
-  double *to[] = {&most->overall_radius_mm, &most->u_overall_radius_mm, &most->radius_mm,
-                  &most->u_radius_mm,       &most->height_mm,           &most->u_height_mm};
-  const double from[] = {one->overall_radius_mm, one->u_overall_radius_mm, one->radius_mm,
-                         one->u_radius_mm,       one->height_mm,           one->u_height_mm};
-  for (size_t i = 0; i < sizeof from / sizeof *from; i++)
-    if (isfinite(from[i]) && !(fabs(from[i]) <= fabs(*to[i]))) *to[i] = from[i];
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);
+  fg_foil to = {.correction = *most};
+  const fg_foil from = {.correction = *one};
+  for (size_t i = 0; i < count; i++) {
+    double old[FG_QUANTITY_NUMBERS_MAX], new[FG_QUANTITY_NUMBERS_MAX];
+    if (strncmp(rows[i].name, "correction.", strlen("correction.")) != 0) continue;
+    size_t width = fg_quantity_numbers(&rows[i], &to, old);
+    fg_quantity_numbers(&rows[i], &from, new);
+    for (size_t k = 0; k < width; k++)
+      if (isfinite(new[k]) && !(fabs(new[k]) <= fabs(old[k]))) old[k] = new[k];
+    fg_quantity_restore(&rows[i], &to, old);
+  }
+  *most = to.correction;
 }
 
 void fg_json_correction(fg_json *json, const fg_correction *c) {
   if (!isfinite(c->overall_radius_mm)) return;
   fg_json_object(json, "correction");
-  fg_json_number(json, "overall_radius_mm", c->overall_radius_mm);
-  fg_json_number(json, "u_overall_radius_mm", c->u_overall_radius_mm);
-  fg_json_number(json, "radius_mm", c->radius_mm);
-  fg_json_number(json, "u_radius_mm", c->u_radius_mm);
-  fg_json_number(json, "height_mm", c->height_mm);
-  fg_json_number(json, "u_height_mm", c->u_height_mm);
+  fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "correction.", &(fg_foil){.correction = *c}, true);
   fg_json_object_end(json);
 }
 

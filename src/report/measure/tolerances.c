@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "foilgauge/report.h"
+#include "quantity/quantity.h"
 
 const char *fg_verdict_word(fg_verdict verdict) {
   switch (verdict) {
@@ -311,16 +312,6 @@ fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_ou
   return FG_OK;
 }
 
-static void append_names(fg_report_owner owner, char *names, size_t size) {
-  size_t count;
-  const fg_report_field *fields = fg_report_fields(owner, &count);
-  for (size_t i = 0; i < count; i++) {
-    size_t used = strlen(names);
-    if (fields[i].kind != FG_FIELD_PAIR)
-      snprintf(names + used, size - used, "%s%s", used ? ", " : "", fields[i].name);
-  }
-}
-
 static bool has_quantity(fg_report_owner owner, const char *name) {
   const fg_report_field *field = fg_report_find(owner, name);
   return field && field->kind != FG_FIELD_PAIR;
@@ -333,8 +324,8 @@ fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
     if (has_quantity(discs ? FG_REPORT_DISC : FG_REPORT_BUMP, quantity)) continue;
     if (!discs && has_quantity(FG_REPORT_FOIL, quantity)) continue;
     char names[800] = "";
-    append_names(discs ? FG_REPORT_DISC : FG_REPORT_BUMP, names, sizeof names);
-    if (!discs) append_names(FG_REPORT_FOIL, names, sizeof names);
+    fg_quantity_list(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, true, names, sizeof names);
+    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, true, names, sizeof names);
     return fg_fail(ctx, FG_ERR_DATA, "tolerances.%s: no such quantity is reported; there are: %s",
                    quantity, names);
   }

@@ -1,0 +1,45 @@
+/* What reports, lots, tables and models ask of the rows of quantities. */
+#ifndef FG_QUANTITY_QUANTITY_H
+#define FG_QUANTITY_QUANTITY_H
+
+#include <stdbool.h>
+
+#include "foilgauge/quantity.h"
+
+/* Rows of one use at most: what a caller must have room for. */
+enum { FG_QUANTITY_SHOWN_MAX = 16 };
+
+/* Numbers that one row may stand for: a pair and its uncertainties. */
+enum { FG_QUANTITY_NUMBERS_MAX = 4 };
+
+bool fg_quantity_has_u(const fg_quantity *quantity);
+
+/* The rows of one use, as people read them: by rank, those without one behind. Their number. */
+size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use,
+                         const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX]);
+
+/* Every number of a row: the values, then their uncertainties where it has any. How many there
+ * are. */
+size_t fg_quantity_width(const fg_quantity *quantity);
+size_t fg_quantity_numbers(const fg_quantity *quantity, const void *object,
+                           double numbers[FG_QUANTITY_NUMBERS_MAX]);
+/* Puts them back; a count that is no whole number becomes 0. */
+void fg_quantity_restore(const fg_quantity *quantity, void *object,
+                         const double numbers[FG_QUANTITY_NUMBERS_MAX]);
+
+/* The name of the k-th of them in a table: "radius_mm", "u_radius_mm"; of a pair "centre_x_mm": the
+ * unit stays last. */
+void fg_quantity_column(const fg_quantity *quantity, size_t k, char *text, size_t size);
+
+/* The values that can be judged, for a message: "radius_mm, ..."; appended. Counts too. */
+void fg_quantity_list(fg_quantity_owner owner, bool counts, char *text, size_t size);
+
+/* Adds `doubt` in squares to the uncertainty, and to the variance in the covariance. */
+void fg_quantity_widen(const fg_quantity *quantity, void *object, double doubt);
+
+/* Whether a table's column of that name is a result of a measurement, not a cause of it: the value
+ * or the uncertainty of a row of a foil, a bump or a disc, also as "bump_radius_mm",
+ * "overall_radius_mm", "overall.radius_mm" or, of the overall circle, without the circle's name. */
+bool fg_quantity_is_result(const char *column);
+
+#endif
