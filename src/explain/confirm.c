@@ -190,30 +190,20 @@ static double judge_discs(confirmation *c, double needed_p, double needed_errors
   return validated_gain(c, &whole) - needed_errors;
 }
 
-/* Integral of the correlation of what the effect leaves, and its variance per unit of weight. */
+/* Variance of what the effect leaves, per unit of weight, for noise that is correlated so; takes
+ * the effect out of the residual. */
 static double rest_variance(const confirmation *c, const double *x) {
-  enum { LAGS = 24 };
-  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1, rest[LAGS] = {0};
+  double square = 0, count = 0;
   size_t rows = c->points->row_count;
   for (size_t i = 0; i < rows; i++) {
-    bool first = i == 0 || c->points->rows[i - 1].view != c->points->rows[i].view;
-    for (size_t lag = LAGS - 1; lag > 0; lag--)
-      rest[lag] = first ? NAN : rest[lag - 1];
-    rest[0] = c->residual[i];
     for (size_t k = 0; k < c->columns_used; k++)
-      rest[0] -= x[k] * c->columns[c->index[k] * rows + i];
-    rest[0] *= sqrt(weight_at(c->points, i));
-    for (size_t lag = 0; lag < LAGS && isfinite(rest[lag]) && rest[0] != 0; lag++) {
-      products[lag] += rest[0] * rest[lag];
-      pairs[lag]++;
-    }
+      c->residual[i] -= x[k] * c->columns[c->index[k] * rows + i];
+    c->residual[i] *= sqrt(weight_at(c->points, i));
+    square += c->residual[i] * c->residual[i];
+    count += c->residual[i] != 0;
   }
-  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
-    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
-    if (rho < 2 / sqrt(pairs[lag])) break;
-    integral += 2 * rho;
-  }
-  return pairs[0] > 0 ? products[0] / pairs[0] * integral : INFINITY;
+  return count > 0 ? square / count * fg_points_integral(c->points, NULL, rows, c->residual)
+                   : INFINITY;
 }
 
 /* The same for a step or a ripple beside the form of every disc, from side to side. */
@@ -222,8 +212,8 @@ static double judge_sides(confirmation *c) {
   double x[FG_SMALL_MAX];
   if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
   if (effective_groups(c, x) < GROUPS_LEAST) return -INFINITY;
-  if (quadratic(&whole, x) < FG_EXPLAIN_SHAPED_CHI2 * rest_variance(c, x)) return -INFINITY;
-  return validated_gain(c, &whole) - LISTED_ERRORS;
+  double gain = validated_gain(c, &whole) - LISTED_ERRORS;
+  return quadratic(&whole, x) < FG_EXPLAIN_SHAPED_CHI2 * rest_variance(c, x) ? -INFINITY : gain;
 }
 
 /* Standard uncertainties of the coefficients from what differs from disc to disc (a sandwich of the

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/correlation.h"
+
 enum { RANGE_MOST = 4096 }; /* stations of one range that are looked at */
 
 /* One residual: of the datum line from its circle, or of the half width from its mean. */
@@ -50,14 +52,6 @@ static void add_arc(const fg_datum_line *line, const fg_arc *arc, int values, si
         sums->pairs[lag] += 1;
       }
   }
-}
-
-/* The first lag whose correlation is within two standard errors of nothing, or negative. */
-static size_t find_cut(const double *correlation, const double *pairs, size_t lags) {
-  size_t lag = 1;
-  while (lag < lags && correlation[lag] > 2 / sqrt(fmax(pairs[lag], 1)))
-    lag++;
-  return lag;
 }
 
 /* A fit of three parameters takes variance out of slow residuals: the correlation that is seen is
@@ -152,7 +146,7 @@ void fg_noise_estimate(const fg_datum_line *line, const fg_arc *arcs, size_t cou
     variance = sums.products[0] / sums.pairs[0];
     for (size_t lag = 0; lag < lags; lag++)
       correlation[lag] = sums.pairs[lag] > 0 ? sums.products[lag] / sums.pairs[lag] / variance : 0;
-    cut = find_cut(correlation, sums.pairs, lags);
+    cut = fg_correlation_lags(sums.products, sums.pairs, lags);
     if (cut < lags) break;
   }
   if (cut == 1) {

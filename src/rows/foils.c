@@ -9,22 +9,6 @@
 /* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
  * tenth and more. */
 #define SAME_SHARE 0.2
-/* Edges lie so far beside the middle of the strip, and are moved by effects. */
-#define EDGE_ROOM_MM 0.2
-/* Knots of free curves that the few places of discs can tell. */
-enum { DISC_KNOTS = 12, COARSE_KNOTS = 6 };
-
-void fg_points_free(fg_points *points) {
-  if (!points) return;
-  for (size_t i = 0; points->parts && i < points->part_count; i++)
-    free(points->parts[i].bumps);
-  free(points->views);
-  free(points->poses);
-  free(points->parts);
-  free(points->rows);
-  memset(points, 0, sizeof *points);
-}
-
 static double turn_to(double angle, double near) {
   return angle - 2 * M_PI * round((angle - near) / (2 * M_PI));
 }
@@ -164,13 +148,6 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to, fg
   return true;
 }
 
-fg_status fg_points_add_row(fg_context *ctx, fg_points *points, const fg_points_row *row) {
-  FG_TRY(fg_memory_reserve(ctx, points->row_count + 1, sizeof *points->rows, &points->row_capacity,
-                           (void **)&points->rows));
-  points->rows[points->row_count++] = *row;
-  return FG_OK;
-}
-
 static void count_arc(fg_points_part *part, int number, double length_mm) {
   double radius = part->bumps[index_of_bump(part, number)].radius_mm, n = (double)++part->arcs;
   part->half_arc_rad += (0.5 * length_mm / radius - part->half_arc_rad) / n;
@@ -245,28 +222,6 @@ static fg_status add_view(fg_context *ctx, fg_points *points, size_t v, size_t f
     k = last + 1;
   }
   return FG_OK;
-}
-
-void fg_points_find_frame(fg_points *points) {
-  fg_field_frame *f = &points->frame;
-  f->knots = points->coarse ? COARSE_KNOTS : points->discs ? DISC_KNOTS : FG_FIELD_COLUMNS;
-  for (int axis = 0; axis < 2; axis++)
-    f->low_mm[axis] = 0;
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_measurement *m = points->views[v].measurement;
-    f->high_mm[0] = fmax(f->high_mm[0], (double)m->width_px * 25.4 / m->dpi[0]);
-    f->high_mm[1] = fmax(f->high_mm[1], (double)m->height_px * 25.4 / m->dpi[1]);
-  }
-  for (int axis = 0; axis < 2; axis++) {
-    f->centre_mm[axis] = 0.5 * (f->low_mm[axis] + f->high_mm[axis]);
-    f->first_mm[axis] = f->high_mm[axis];
-    f->last_mm[axis] = f->low_mm[axis];
-    for (size_t i = 0; i < points->row_count; i++) {
-      double at = fg_point_along(points->rows[i].at, axis);
-      f->first_mm[axis] = fmin(f->first_mm[axis], at - EDGE_ROOM_MM);
-      f->last_mm[axis] = fmax(f->last_mm[axis], at + EDGE_ROOM_MM);
-    }
-  }
 }
 
 /* Gives empty group numbers up, so that groups are 0 .. group_count - 1. */
@@ -353,13 +308,8 @@ static fg_status find_range(fg_context *ctx, fg_points *points) {
   return FG_OK;
 }
 
-fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t count,
-                          fg_points *points) {
-  memset(points, 0, sizeof *points);
-  for (size_t i = 1; i < count; i++)
-    if (!views[i].disc != !views[0].disc)
-      return fg_fail(ctx, FG_ERR_DATA, "foils and discs in one loop: give scans of one kind");
-  if (count && views[0].disc) return fg_points_build_discs(ctx, views, count, points);
+fg_status fg_points_build_foils(fg_context *ctx, const fg_points_view *views, size_t count,
+                                fg_points *points) {
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *views, (void **)&points->views));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *points->poses, (void **)&points->poses));
@@ -371,24 +321,4 @@ fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t c
 exit:
   if (status != FG_OK) fg_points_free(points);
   return status;
-}
-
-double fg_points_integral(const fg_points *points, const size_t *row, size_t count,
-                          const double *value) {
-  enum { LAGS = 16 };
-  double products[LAGS] = {0}, pairs[LAGS] = {0}, integral = 1;
-  for (size_t i = 0; i < count; i++)
-    for (size_t lag = 0; lag < LAGS && i + lag < count; lag++) {
-      const fg_points_row *a = &points->rows[row ? row[i] : i];
-      const fg_points_row *b = &points->rows[row ? row[i + lag] : i + lag];
-      if (a->view != b->view || a->group != b->group) break;
-      products[lag] += value[i] * value[i + lag];
-      pairs[lag]++;
-    }
-  for (size_t lag = 1; lag < LAGS && pairs[lag] > 0 && products[0] > 0; lag++) {
-    double rho = products[lag] / pairs[lag] / (products[0] / pairs[0]);
-    if (rho < 2 / sqrt(pairs[lag])) break;
-    integral += 2 * rho;
-  }
-  return integral;
 }

@@ -107,7 +107,9 @@ fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t c
 
 void fg_points_free(fg_points *points);
 
-/* The same for discs; fg_points_build calls it. */
+/* The same for foils, and for discs; fg_points_build calls them. */
+fg_status fg_points_build_foils(fg_context *ctx, const fg_points_view *views, size_t count,
+                                fg_points *points);
 fg_status fg_points_build_discs(fg_context *ctx, const fg_points_view *views, size_t count,
                                 fg_points *points);
 

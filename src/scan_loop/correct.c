@@ -31,28 +31,39 @@ static void move_edges(const fg_field_list *fields, fg_strip *strip) {
   }
 }
 
-/* The shift at a station: that of the nearest row of its view. It is outwards from the arc's own
- * centre; the station's normal may point the other way. */
+/* The row of a view that is nearest to a place; NULL: the view has none. */
+static const fg_points_row *nearest_row(const fg_points *points, size_t view, fg_point at) {
+  const fg_points_row *row = NULL;
+  double nearest = INFINITY;
+  for (size_t i = 0; i < points->row_count; i++) {
+    if (points->rows[i].view != view) continue;
+    double dx = points->rows[i].at.x - at.x, dy = points->rows[i].at.y - at.y;
+    if (dx * dx + dy * dy >= nearest) continue;
+    nearest = dx * dx + dy * dy;
+    row = &points->rows[i];
+  }
+  return row;
+}
+
+/* The shift at a place, that of the nearest row of its view, outwards from the arc's own centre. */
+static fg_point shift_at(const fg_points *points, size_t view, const double *shift_mm,
+                         fg_point at) {
+  const fg_points_row *row = nearest_row(points, view, at);
+  if (!row) return (fg_point){0, 0};
+  double shift = shift_mm[row - points->rows];
+  return (fg_point){shift * row->normal.x, shift * row->normal.y};
+}
+
 static void take_shift(const fg_points *points, size_t view, const double *shift_mm,
                        fg_strip *strip) {
   for (size_t k = 0; k < strip->count; k++) {
     fg_station *s = &strip->stations[k];
-    double x = 0.5 * (s->left.x + s->right.x), y = 0.5 * (s->left.y + s->right.y);
-    double nearest = INFINITY;
-    size_t row = points->row_count;
-    for (size_t i = 0; i < points->row_count; i++) {
-      if (points->rows[i].view != view) continue;
-      double dx = points->rows[i].at.x - x, dy = points->rows[i].at.y - y;
-      if (dx * dx + dy * dy >= nearest) continue;
-      nearest = dx * dx + dy * dy;
-      row = i;
-    }
-    if (row == points->row_count) return;
-    fg_point n = points->rows[row].normal;
-    s->left.x -= shift_mm[row] * n.x;
-    s->left.y -= shift_mm[row] * n.y;
-    s->right.x -= shift_mm[row] * n.x;
-    s->right.y -= shift_mm[row] * n.y;
+    fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
+    fg_point d = shift_at(points, view, shift_mm, middle);
+    s->left.x -= d.x;
+    s->left.y -= d.y;
+    s->right.x -= d.x;
+    s->right.y -= d.y;
   }
 }
 
@@ -80,19 +91,9 @@ fg_status fg_scan_loop_correct_foil(fg_context *ctx, const fg_foil *foil, const 
 static void take_disc_shift(const fg_points *points, size_t view, const double *shift_mm,
                             fg_disc *disc) {
   for (size_t k = 0; k < disc->station_count; k++) {
-    fg_point *p = &disc->stations[k].at;
-    double nearest = INFINITY;
-    size_t row = points->row_count;
-    for (size_t i = 0; i < points->row_count; i++) {
-      if (points->rows[i].view != view) continue;
-      double d = hypot(points->rows[i].at.x - p->x, points->rows[i].at.y - p->y);
-      if (d >= nearest) continue;
-      nearest = d;
-      row = i;
-    }
-    if (row == points->row_count) return;
-    p->x -= shift_mm[row] * points->rows[row].normal.x;
-    p->y -= shift_mm[row] * points->rows[row].normal.y;
+    fg_point *at = &disc->stations[k].at, d = shift_at(points, view, shift_mm, *at);
+    at->x -= d.x;
+    at->y -= d.y;
   }
 }
 
@@ -134,10 +135,9 @@ static size_t find_view(const fg_points *points, const fg_foil *foil) {
 }
 
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
-                               const fg_field_list *fields, const fg_points *points, size_t scan,
+                               const fg_field_list *fields, const fg_points *points,
                                const double *shift_mm, unsigned threads,
                                fg_measurement *corrected) {
-  (void)scan;
   *corrected = *m;
   corrected->foils = NULL;
   corrected->foil_count = 0;
@@ -155,5 +155,41 @@ fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
   FG_TRY_EXIT(correct_discs(ctx, m, fields, points, shift_mm, corrected));
 exit:
   if (status != FG_OK) fg_measurement_free(corrected);
+  return status;
+}
+
+/* What was corrected is not known exactly: the uncertainties of the foils take what the fit of the
+ * set adds to its geometry's. */
+static void widen_by_effects(const fg_points *points, const fg_measurement *before,
+                             fg_measurement *after) {
+  for (size_t v = 0; v < points->view_count; v++) {
+    const fg_points_part *part = &points->parts[points->views[v].part];
+    if (points->views[v].measurement != before || points->views[v].disc) continue;
+    fg_foil *foil = &after->foils[points->views[v].foil - before->foils];
+    double share = foil->overall.u_springback_error_pct / foil->overall.u_radius_mm;
+    for (size_t b = 0; b < foil->bump_count; b++)
+      for (size_t k = 0; k < part->bump_count; k++) {
+        fg_points_bump bump = part->bumps[k];
+        if (bump.number == foil->bumps[b].number)
+          fg_bump_widen(&after->design, &after->nominal, &foil->overall, bump.effects_mm2,
+                        &foil->bumps[b]);
+      }
+    foil->overall.u_radius_mm = hypot(foil->overall.u_radius_mm, sqrt(part->effects_mm2));
+    foil->overall.u_springback_error_pct = share * foil->overall.u_radius_mm;
+  }
+}
+
+fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
+                                   const fg_effect_set *set, fg_measurement *after) {
+  fg_field_list fields;
+  double *shift = NULL;
+  fg_effect_set_fields(&loop->points, set, &fields);
+  fg_status status = fg_effect_set_shift(ctx, &loop->points, set, &shift);
+  for (size_t i = 0; i < loop->scan_count && status == FG_OK; i++)
+    status = fg_scan_loop_correct(ctx, &loop->before[i], &fields, &loop->points, shift,
+                                  loop->options.threads, &after[i]);
+  for (size_t i = 0; i < loop->scan_count && status == FG_OK && set->count; i++)
+    widen_by_effects(&loop->points, &loop->before[i], &after[i]);
+  free(shift);
   return status;
 }

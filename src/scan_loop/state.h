@@ -59,9 +59,17 @@ fg_status fg_scan_loop_correct_foil(fg_context *ctx, const fg_foil *foil, const 
                                     size_t view, const double *shift_mm, unsigned threads,
                                     fg_foil *corrected);
 
-/* A measurement with every foil corrected. `first_view` is the view of its first measured foil. */
+/* A measurement with every foil and disc corrected. */
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
-                               const fg_field_list *fields, const fg_points *points, size_t scan,
+                               const fg_field_list *fields, const fg_points *points,
                                const double *shift_mm, unsigned threads, fg_measurement *corrected);
+
+/* All of the loop's measurements, with uncertainties that the effects add. The set must be the one
+ * that the points were fitted with last. */
+fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
+                                   const fg_effect_set *set, fg_measurement *after);
+
+/* In a tie, the dimensions under every explanation, as ranges of those of `after`. */
+fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);
 
 #endif

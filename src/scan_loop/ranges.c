@@ -1,0 +1,120 @@
+/* What the dimensions are under every explanation of a tie. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scan_loop/state.h"
+
+/* Standard uncertainties that a range reaches beyond its values: 95 %. */
+#define COVERAGE 2.0
+
+static void widen(double range[2], double value) {
+  if (!isfinite(value)) return;
+  if (!(value >= range[0])) range[0] = value;
+  if (!(value <= range[1])) range[1] = value;
+}
+
+static void widen_ranges(const fg_measurement *m, fg_scan_loop_range *ranges, size_t foil) {
+  const fg_foil *f = &m->foils[foil];
+  for (size_t b = 0; b < f->bump_count; b++) {
+    /* A range holds its value's own uncertainty too: the truth lies in it, not between fits. */
+    double ur = COVERAGE * f->bumps[b].u_radius_mm, uh = COVERAGE * f->bumps[b].u_height_mm;
+    widen(ranges[b].radius_mm, f->bumps[b].radius_mm - ur);
+    widen(ranges[b].radius_mm, f->bumps[b].radius_mm + ur);
+    widen(ranges[b].height_mm, f->bumps[b].height_mm - uh);
+    widen(ranges[b].height_mm, f->bumps[b].height_mm + uh);
+  }
+  widen(ranges[f->bump_count].radius_mm, f->overall.radius_mm - COVERAGE * f->overall.u_radius_mm);
+  widen(ranges[f->bump_count].radius_mm, f->overall.radius_mm + COVERAGE * f->overall.u_radius_mm);
+}
+
+static fg_status allocate_ranges(fg_context *ctx, fg_scan_loop *loop) {
+  size_t foils = 0;
+  for (size_t i = 0; i < loop->scan_count; i++)
+    foils += loop->before[i].foil_count;
+  FG_TRY(fg_memory_allocate(ctx, foils, sizeof *loop->ranges, (void **)&loop->ranges));
+  for (size_t i = 0, k = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
+      size_t count = loop->before[i].foils[f].bump_count + 1;
+      FG_TRY(fg_memory_allocate(ctx, count, sizeof **loop->ranges, (void **)&loop->ranges[k]));
+      for (size_t b = 0; b < count; b++)
+        loop->ranges[k][b] = (fg_scan_loop_range){{NAN, NAN}, {NAN, NAN}};
+    }
+  return FG_OK;
+}
+
+/* The corrected discs carry their ranges at once. */
+static void widen_discs(fg_measurement *after, const fg_measurement *m) {
+  for (size_t d = 0; d < after->disc_count && d < m->disc_count; d++) {
+    double *range = after->discs[d].radius_range_mm;
+    if (range[0] == 0 && range[1] == 0) range[0] = range[1] = NAN;
+    widen(range, m->discs[d].radius_mm - COVERAGE * m->discs[d].u_radius_mm);
+    widen(range, m->discs[d].radius_mm + COVERAGE * m->discs[d].u_radius_mm);
+  }
+}
+
+static void widen_all(fg_scan_loop *loop, const fg_measurement *measurements) {
+  for (size_t i = 0; i < loop->scan_count; i++)
+    widen_discs(&loop->after[i], &measurements[i]);
+  for (size_t i = 0, k = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, k++)
+      if (f < measurements[i].foil_count &&
+          measurements[i].foils[f].bump_count == loop->before[i].foils[f].bump_count)
+        widen_ranges(&measurements[i], loop->ranges[k], f);
+}
+
+/* The corrected foils carry their ranges. */
+static void put_ranges(fg_scan_loop *loop) {
+  for (size_t i = 0, k = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
+      if (f >= loop->after[i].foil_count) continue;
+      fg_foil *foil = &loop->after[i].foils[f];
+      size_t count = loop->before[i].foils[f].bump_count;
+      for (size_t b = 0; b < foil->bump_count && foil->bump_count == count; b++) {
+        memcpy(foil->bumps[b].radius_range_mm, loop->ranges[k][b].radius_mm, 2 * sizeof(double));
+        memcpy(foil->bumps[b].height_range_mm, loop->ranges[k][b].height_mm, 2 * sizeof(double));
+      }
+      memcpy(foil->overall.radius_range_mm, loop->ranges[k][count].radius_mm, 2 * sizeof(double));
+    }
+}
+
+/* A step that may lie elsewhere: its place is known to the interval's uniform distribution. */
+static void widen_step_place(fg_effect_set *set, const fg_effect_set *other) {
+  for (size_t e = 0; e < set->count; e++)
+    for (size_t k = 0; k < other->count; k++) {
+      fg_effect_found *step = &set->effects[e];
+      if (!step->kind->jumps || other->effects[k].kind != step->kind) continue;
+      double apart = fabs(other->effects[k].shape[0] - step->shape[0]);
+      step->u_shape[0] = fmax(step->u_shape[0], apart / sqrt(3));
+    }
+}
+
+fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop) {
+  fg_status status = FG_OK;
+  fg_measurement *tried = NULL;
+  FG_TRY(allocate_ranges(ctx, loop));
+  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *tried, (void **)&tried));
+  widen_all(loop, loop->after);
+  for (size_t m = 1; m < loop->explanations.count && status == FG_OK; m++) {
+    fg_effect_set set;
+    fg_explain_take(&loop->explanations, m, &set);
+    status = fg_joint_fit(ctx, &loop->points, &set, NULL);
+    if (status == FG_ERR_NUMERIC) {
+      status = FG_OK;
+      continue;
+    }
+    if (status == FG_OK) loop->tie[loop->tie_count++] = set;
+    if (status == FG_OK) status = fg_scan_loop_correct_all(ctx, loop, &set, tried);
+    if (status == FG_OK) widen_all(loop, tried);
+    for (size_t i = 0; i < loop->scan_count; i++)
+      fg_measurement_free(&tried[i]);
+  }
+  free(tried);
+  put_ranges(loop);
+  /* The geometry in force is the winner's again. */
+  if (status == FG_OK) status = fg_joint_fit(ctx, &loop->points, &loop->set, NULL);
+  for (size_t k = 0; k < loop->tie_count; k++)
+    widen_step_place(&loop->set, &loop->tie[k]);
+  return status;
+}
