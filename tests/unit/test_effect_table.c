@@ -11,9 +11,7 @@
 #include <cmocka.h>
 
 #include "../support/brief.h"
-#include "../support/random.h"
-#include "../support/synthetic_foil.h"
-#include "effect/columns.h"
+#include "../support/foil_rows.h"
 #include "explain/policy.h"
 #include "explain/width_search.h"
 #include "foilgauge/render.h"
@@ -21,49 +19,16 @@
 #define AMPLITUDE_UM 20.0
 #define NOISE_UM     0.03
 
-/* A foil's rows, with the geometry's derivatives. */
-typedef struct fixture {
-  fg_measurement m;
-  fg_points points;
-  double *residual_um, *jacobian, *columns;
-} fixture;
-
-static void open_fixture(fixture *f) {
-  fg_context ctx = {0};
-  f->m = (fg_measurement){.design = synthetic_design(), .dpi = {4800, 4800}, .foil_count = 1};
-  f->m.nominal = synthetic_nominal(&f->m.design);
-  f->m.width_px = f->m.height_px = 9000;
-  f->m.foils = calloc(1, sizeof *f->m.foils);
-  f->m.foils[0] = synthetic_foil(&f->m.design, &f->m.nominal);
-  fg_points_view view = {.foil = &f->m.foils[0], .measurement = &f->m};
-  assert_int_equal(fg_points_build(&ctx, &view, 1, &f->points), FG_OK);
-  assert_int_equal(fg_points_fit(&ctx, &f->points, NULL), FG_OK);
-  size_t rows = f->points.row_count;
-  f->residual_um = calloc(rows, sizeof(double));
-  f->jacobian = calloc(rows * f->points.parameters, sizeof(double));
-  f->columns = calloc(rows * FG_FIELD_COLUMNS, sizeof(double));
-  fg_points_residual(&f->points, NULL, f->residual_um, f->jacobian);
-}
-
-static void close_fixture(fixture *f) {
-  free(f->residual_um);
-  free(f->jacobian);
-  free(f->columns);
-  fg_points_free(&f->points);
-  synthetic_free(&f->m);
-}
-
 /* Its leading column at the rows, and noise. */
-static void put_effect(fixture *f, const fg_effect *effect) {
+static void put_effect(foil_rows *f, const fg_effect *effect) {
   const fg_field_frame *frame = &f->points.frame;
+  const double amplitude_um = AMPLITUDE_UM;
   int axis = effect->axis;
   double shape[FG_FIELD_SHAPES] = {frame->centre_mm[axis]};
-  uint64_t seed = 7;
   if (effect->start) shape[0] = effect->start(frame, effect->starts * 2 / 3, effect->starts);
   if (effect->jumps) shape[0] = 0.4 * frame->first_mm[axis] + 0.6 * frame->last_mm[axis];
-  assert_true(fg_effect_columns(&f->points, effect, shape, f->columns) > 0);
-  for (size_t i = 0; i < f->points.row_count; i++)
-    f->residual_um[i] = AMPLITUDE_UM * f->columns[i] + NOISE_UM * random_gaussian(&seed);
+  foil_rows_put_noise(f, NOISE_UM);
+  assert_true(foil_rows_add_effect(f, effect, shape, &amplitude_um, 1) > 0);
 }
 
 static bool in_class(const fg_explanations *explanations, const fg_effect *effect) {
@@ -84,9 +49,9 @@ static bool is_candidate(const fg_explanations *explanations, const fg_effect *e
 /* Listed effects are found; curves need only be there, which any search shows. */
 static void the_search_knows_every_row(void **state) {
   (void)state;
-  fixture f;
+  foil_rows f;
   size_t count = 0;
-  open_fixture(&f);
+  foil_rows_open(&f);
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
     fg_context ctx = {0};
     fg_explanations explanations;
@@ -104,19 +69,19 @@ static void the_search_knows_every_row(void **state) {
       if (fg_effect_is_free(curve) && !is_candidate(&explanations, curve))
         fail_msg("the search does not know %s", curve->id);
   }
-  close_fixture(&f);
+  foil_rows_close(&f);
 }
 
 static void the_search_of_the_width_knows_every_row(void **state) {
   (void)state;
   for (const fg_effect *effect = fg_effect_first(); effect; effect = fg_effect_next(effect)) {
-    fixture f;
+    foil_rows f;
     fg_context ctx = {0};
     const fg_effect_set none = {.count = 0};
     fg_width_findings findings;
     uint64_t seed = 11;
     if (!effect->width) continue;
-    open_fixture(&f);
+    foil_rows_open(&f);
     assert_int_equal(fg_effect_width_columns(&f.points, effect, NULL, f.columns), 1);
     for (size_t i = 0; i < f.points.row_count; i++)
       f.points.rows[i].half_width_mm +=
@@ -129,7 +94,7 @@ static void the_search_of_the_width_knows_every_row(void **state) {
         assert_float_equal(fg_effect_found_amplitude(&findings.each[e].effect), AMPLITUDE_UM, 0.1);
     }
     if (!findings.found) fail_msg("the search does not find %s", effect->id);
-    close_fixture(&f);
+    foil_rows_close(&f);
   }
 }
 

@@ -1,0 +1,61 @@
+/* Rows of a synthetic foil with their geometry fitted, and effects put into them. */
+#ifndef FG_TEST_FOIL_ROWS_H
+#define FG_TEST_FOIL_ROWS_H
+
+#include <stdlib.h>
+
+#include "effect/columns.h"
+#include "random.h"
+#include "rows/points.h"
+#include "synthetic_foil.h"
+
+typedef struct foil_rows {
+  fg_measurement m;
+  fg_points points;
+  double *residual_um, *jacobian, *columns;
+} foil_rows;
+
+static inline void foil_rows_open(foil_rows *f) {
+  fg_context ctx = {0};
+  f->m = (fg_measurement){.design = synthetic_design(), .dpi = {4800, 4800}, .foil_count = 1};
+  f->m.nominal = synthetic_nominal(&f->m.design);
+  f->m.width_px = f->m.height_px = 9000;
+  f->m.foils = calloc(1, sizeof *f->m.foils);
+  f->m.foils[0] = synthetic_foil(&f->m.design, &f->m.nominal);
+  fg_points_view view = {.foil = &f->m.foils[0], .measurement = &f->m};
+  assert_int_equal(fg_points_build(&ctx, &view, 1, &f->points), FG_OK);
+  assert_int_equal(fg_points_fit(&ctx, &f->points, NULL), FG_OK);
+  size_t rows = f->points.row_count;
+  f->residual_um = calloc(rows, sizeof(double));
+  f->jacobian = calloc(rows * f->points.parameters, sizeof(double));
+  f->columns = calloc(rows * FG_FIELD_COLUMNS, sizeof(double));
+  fg_points_residual(&f->points, NULL, f->residual_um, f->jacobian);
+}
+
+static inline void foil_rows_close(foil_rows *f) {
+  free(f->residual_um);
+  free(f->jacobian);
+  free(f->columns);
+  fg_points_free(&f->points);
+  synthetic_free(&f->m);
+}
+
+/* Noise in every row's place. */
+static inline void foil_rows_put_noise(foil_rows *f, double noise_um) {
+  uint64_t seed = 7;
+  for (size_t i = 0; i < f->points.row_count; i++)
+    f->residual_um[i] = noise_um * random_gaussian(&seed);
+}
+
+/* An effect's columns with these amplitudes on top; returns how many columns it has. */
+static inline size_t foil_rows_add_effect(foil_rows *f, const fg_effect *effect,
+                                          const double *shape, const double *amplitude_um,
+                                          size_t amplitudes) {
+  size_t count = fg_effect_columns(&f->points, effect, shape, f->columns);
+  for (size_t c = 0; c < amplitudes && c < count; c++)
+    for (size_t i = 0; i < f->points.row_count; i++)
+      f->residual_um[i] += amplitude_um[c] * f->columns[c * f->points.row_count + i];
+  return count;
+}
+
+#endif
