@@ -11,6 +11,7 @@
 
 #include "foilgauge/loop.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/scan_result.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -28,16 +29,6 @@ typedef struct fg_scan_loop_options {
   int64_t date; /* likewise, when its scans were made: seconds since 1970, UTC; 0: not said */
 } fg_scan_loop_options;
 
-/* Lowest and highest value of a dimension over the tied explanations. */
-typedef struct fg_scan_loop_range {
-  double radius_mm[2], height_mm[2];
-} fg_scan_loop_range;
-
-/* Errors of the points, um. */
-typedef struct fg_scan_loop_error {
-  double rms, robust_sd, p95, maximum, held_out_rms; /* NaN without scans kept aside */
-} fg_scan_loop_error;
-
 typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */
 
 /* `hold_out[i]`: scan i only confirms. At least one scan must not be kept aside. FG_ERR_DATA when
@@ -47,8 +38,8 @@ fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool
                            size_t count, const fg_design *design,
                            const fg_scan_loop_options *options, fg_scan_loop **loop);
 void fg_scan_loop_free(fg_scan_loop *loop);
-/* Foils that could not be measured, or are none of the design's: they took no part. */
-size_t fg_scan_loop_left_out(const fg_scan_loop *loop);
+/* What it came to; belongs to the loop. */
+const fg_scan_result *fg_scan_loop_result(const fg_scan_loop *loop);
 
 /* "foilgauge/loop/1", domain "scan". */
 fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out);
@@ -65,6 +56,26 @@ fg_status fg_scanner_model_load(fg_context *ctx, const char *path, fg_scanner_mo
 fg_status fg_scanner_model_parse(fg_context *ctx, const char *path, const char *text,
                                  fg_scanner_model **model);
 void fg_scanner_model_free(fg_scanner_model *model);
+
+/* What a model is and corrects; its words belong to it. */
+enum { FG_SCANNER_MODEL_EFFECTS = 8 };
+typedef struct fg_scanner_model_effect {
+  const char *id, *words;
+  fg_scan_result_parameter parameter[FG_SCAN_RESULT_PARAMETERS];
+  size_t parameters;
+  double half_range_um; /* in its region */
+} fg_scanner_model_effect;
+typedef struct fg_scanner_model_facts {
+  const char *path, *sha256;
+  const char *scanner, *date;   /* NULL: not said */
+  size_t scans;                 /* that it was found on; 0: not said */
+  size_t known_diameters;       /* gauges of them; 0: its absolute scale is not known */
+  bool tied;                    /* other explanations did as well when it was found */
+  double low_mm[2], high_mm[2]; /* its region of the glass */
+  fg_scanner_model_effect effect[FG_SCANNER_MODEL_EFFECTS];
+  size_t effects;
+} fg_scanner_model_facts;
+void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_facts *facts);
 const char *fg_scanner_model_sha256(const fg_scanner_model *model);
 /* Other explanations did as well when it was found. */
 bool fg_scanner_model_is_tied(const fg_scanner_model *model);

@@ -186,7 +186,7 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   FG_TRY(fg_output_set_open(ctx, &a->outputs));
   a->options.date = find_date(a);
   FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
-  *code = fg_scan_loop_left_out(loop) ? 2 : 0;
+  *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
   fg_status status = fg_output_set_write(ctx, &a->outputs, write_output, loop);
   fg_scan_loop_free(loop);
   return status;

@@ -146,6 +146,10 @@ static inline bool fg_effect_is_free(const fg_effect *effect) {
 
 /* "scan.x", "foil.s", ... */
 const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate);
+/* Likewise, of the number of a bump. */
+extern const char fg_effect_bump_coordinate_name[];
+/* With what it is and its unit, for an axis. */
+const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate);
 
 /* Whether an effect can be sought in these points' residuals: not every one leaves a trace in a
  * disc, nor is every trace another one than the disc's own form. */

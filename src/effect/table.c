@@ -45,3 +45,13 @@ const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate) {
                                                            "edge.normal"};
   return names[coordinate];
 }
+
+const char fg_effect_bump_coordinate_name[] = "bump.index";
+
+const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate) {
+  static const char *const titles[FG_EFFECT_COORDINATES] = {
+      "scan.x: across the glass, mm", "scan.y: the carriage's way, mm",
+      "foil.s: along the foil, mm", "bump.phi: place in the bump's arc, −1 to 1",
+      "edge.normal: direction of the edge's outward normal, °"};
+  return titles[coordinate];
+}

@@ -9,8 +9,8 @@
 #include "core/text.h"
 
 const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_RESPONSES] = {
-    {"bump_radius_mm", "um", "uniform springback", 1000},
-    {"bump_angle_deg", "deg", "constant arc length", 1},
+    {"bump_radius_mm", "bump radius", "um", "uniform springback", 1000},
+    {"bump_angle_deg", "bump angle", "deg", "constant arc length", 1},
 };
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };

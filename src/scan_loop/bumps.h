@@ -62,7 +62,7 @@ typedef struct fg_scan_loop_bumps {
 } fg_scan_loop_bumps;
 
 typedef struct fg_scan_loop_bump_response {
-  const char *name, *unit, *model;
+  const char *name, *words, *unit, *model;
   double scale; /* from the response's unit to `unit` */
 } fg_scan_loop_bump_response;
 extern const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_RESPONSES];
@@ -82,6 +82,9 @@ typedef struct fg_scan_loop_bumps_request {
 fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
                                  fg_scan_loop_bumps *bumps);
 void fg_scan_loop_bumps_free(fg_scan_loop_bumps *bumps);
+
+/* For people: "a decay from the lip". */
+const char *fg_scan_loop_bump_effect_words(const fg_loop_effect *effect);
 
 /* Something the reader must know. */
 fg_status fg_scan_loop_bumps_note(fg_context *ctx, fg_scan_loop_bumps *bumps, const char *format,

@@ -6,6 +6,17 @@
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS };
 
+const char *fg_scan_loop_bump_effect_words(const fg_loop_effect *effect) {
+  static const struct {
+    const char *id, *words;
+  } table[] = {{"part.lip_decay", "a decay from the lip"},
+               {"part.stretch", "an arc length unlike the design's"},
+               {"table.order_drift", "a trend over the bumps' numbers"}};
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+    if (!strcmp(table[i].id, effect->id)) return table[i].words;
+  return effect->id;
+}
+
 bool fg_scan_loop_bumps_claimed(const fg_scan_loop_bumps *bumps) {
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
     if (bumps->level[r].result.claims) return true;

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/spread.h"
+#include "scan_loop/result.h"
 
 /* Rows fewer than this cannot carry a search for effects. */
 enum { ROWS_LEAST = 60 };
@@ -203,8 +204,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   find_verdict(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(search_width(ctx, loop));
-  fg_scan_loop_decide(loop, &loop->decided);
-  return FG_OK;
+  return fg_scan_loop_decide(ctx, loop);
 }
 
 static fg_status create(fg_context *ctx, const bool *hold_out, size_t count,
@@ -260,8 +260,8 @@ fg_status fg_scan_loop_run_measured(fg_context *ctx, fg_measurement *measurement
   return close_loop(ctx, loop, result);
 }
 
-size_t fg_scan_loop_left_out(const fg_scan_loop *loop) {
-  return loop->left_out;
+const fg_scan_result *fg_scan_loop_result(const fg_scan_loop *loop) {
+  return &loop->result;
 }
 
 void fg_scan_loop_free(fg_scan_loop *loop) {
@@ -276,6 +276,7 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
     if (loop->before) fg_measurement_free(&loop->before[i]);
     if (loop->after) fg_measurement_free(&loop->after[i]);
   }
+  fg_scan_result_free(&loop->result);
   fg_points_free(&loop->points);
   fg_scan_loop_bumps_free(&loop->bumps);
   free(loop->before);

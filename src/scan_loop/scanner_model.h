@@ -23,6 +23,9 @@ struct fg_scanner_model {
   size_t others;
 };
 
+/* What a loop found of its scanner; free with fg_scanner_model_free. */
+fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scanner_model **model);
+
 /* Whether numbers are such as a scanner can have: FG_ERR_DATA names the member, its value and what
  * is allowed. What is written and what is read pass the same check. `member` is that of the list:
  * "fields", "alternatives[2]". */

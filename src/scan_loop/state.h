@@ -10,6 +10,11 @@
 #include "scan_loop/bumps.h"
 #include "scan_loop/verdict.h"
 
+/* Lowest and highest value of a dimension over the tied explanations. */
+typedef struct fg_scan_loop_range {
+  double radius_mm[2], height_mm[2];
+} fg_scan_loop_range;
+
 struct fg_scan_loop {
   fg_scan_loop_options options;
   fg_measurement *before, *after; /* one per scan */
@@ -31,7 +36,7 @@ struct fg_scan_loop {
   fg_width_findings width; /* what moves the strip's edges apart; with the set in force */
   fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;
-  fg_scan_loop_decisions decided; /* what every report says of the effects */
+  fg_scan_result result; /* what is said of all of it */
 };
 
 /* fg_scan_loop_run on scans of one resolution that are measured already; takes them over. */

@@ -1,11 +1,31 @@
 #include "scan_loop/verdict.h"
 
+#include <math.h>
 #include <string.h>
 
+#include "core/text.h"
+#include "scan_loop/result.h"
+#include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 
 /* Below this share of an effect beside the geometry no data of this kind could show it. */
 #define ABSORBED_SHARE 1e-4
+/* What takes this share of the residual sum alone comes near a curve. */
+#define NEAR_SHARE 0.3
+
+_Static_assert((int)FG_SCAN_RESULT_CLAIMS == (int)FG_EFFECT_SET_MAX, "every effect has its place");
+_Static_assert((int)FG_SCAN_RESULT_EXPLANATIONS == (int)FG_EXPLANATIONS_MAX,
+               "every explanation has its place");
+_Static_assert((int)FG_SCAN_RESULT_UNCLAIMED >= FG_CANDIDATES_MAX + (int)FG_POINTS_BARRED,
+               "every candidate has its place");
+_Static_assert((int)FG_SCAN_X == (int)FG_EFFECT_X && (int)FG_SCAN_Y == (int)FG_EFFECT_Y &&
+                   (int)FG_SCAN_FOIL == (int)FG_EFFECT_FOIL &&
+                   (int)FG_SCAN_PHI == (int)FG_EFFECT_PHI &&
+                   (int)FG_SCAN_NORMAL == (int)FG_EFFECT_NORMAL &&
+                   (int)FG_SCAN_COORDINATES == (int)FG_EFFECT_COORDINATES,
+               "coordinates are numbered alike");
+
+/* ---- explanations ---- */
 
 static bool member_holds(const fg_explanations *explanations, size_t explanation,
                          const fg_effect *kind) {
@@ -16,7 +36,8 @@ static bool member_holds(const fg_explanations *explanations, size_t explanation
   return false;
 }
 
-bool fg_scan_loop_is_sure(const fg_explanations *explanations, const fg_effect *kind) {
+/* Whether every explanation that the data allow holds the effect, in whatever form. */
+static bool is_sure(const fg_explanations *explanations, const fg_effect *kind) {
   for (size_t m = 0; m < explanations->count; m++)
     if (!member_holds(explanations, m, kind)) return false;
   return true;
@@ -37,17 +58,110 @@ static bool covers(const fg_explanations *explanations, size_t explanation, size
   return true;
 }
 
-/* Two forms of one effect are one explanation. */
-static void find_class(const fg_explanations *explanations, fg_scan_loop_decisions *d) {
-  for (size_t m = 0; m < explanations->count; m++) {
-    bool known = false;
-    for (size_t k = 0; k < d->shown_count && !known; k++)
-      known = covers(explanations, m, d->shown[k]) && covers(explanations, d->shown[k], m);
-    if (!known) d->shown[d->shown_count++] = m;
+/* The effects of an explanation as a sum of ids. */
+static void put_name(const fg_explanations *explanations, size_t explanation,
+                     char name[FG_SCAN_RESULT_WORDS]) {
+  size_t used = 0;
+  name[0] = 0;
+  for (size_t e = 0; e < explanations->candidate_count && used + 1 < FG_SCAN_RESULT_WORDS; e++) {
+    if (!(explanations->each[explanation].mask >> e & 1)) continue;
+    fg_text_clip(name + used, FG_SCAN_RESULT_WORDS - used, "%s%s", used ? " + " : "",
+                 explanations->candidates[e].kind->id);
+    used = strlen(name);
   }
-  if (explanations->count == FG_EXPLANATIONS_MAX && explanations->total > FG_EXPLANATIONS_MAX)
-    d->unlisted = explanations->total - FG_EXPLANATIONS_MAX;
 }
+
+/* What an explanation shares with all others (`common`), or what it has of its own: "a together
+ * with b". */
+static void put_words(const fg_explanations *explanations, size_t explanation, bool common,
+                      char words[FG_SCAN_RESULT_WORDS]) {
+  size_t used = 0;
+  fg_text_clip(words, FG_SCAN_RESULT_WORDS, "%s", common ? "" : "nothing more");
+  for (size_t e = 0; e < explanations->candidate_count && used + 1 < FG_SCAN_RESULT_WORDS; e++) {
+    const fg_effect *kind = explanations->candidates[e].kind;
+    if (!(explanations->each[explanation].mask >> e & 1) || is_sure(explanations, kind) != common)
+      continue;
+    fg_text_clip(words + used, FG_SCAN_RESULT_WORDS - used, "%s%s", used ? " together with " : "",
+                 kind->words);
+    used = strlen(words);
+  }
+}
+
+/* Two forms of one effect are one explanation. */
+static void put_explanations(const fg_explanations *from, fg_scan_result *result) {
+  size_t shown[FG_EXPLANATIONS_MAX];
+  for (size_t m = 0; m < from->count; m++) {
+    bool known = false;
+    for (size_t k = 0; k < result->explanations && !known; k++)
+      known = covers(from, m, shown[k]) && covers(from, shown[k], m);
+    if (known) continue;
+    fg_scan_result_explanation *one = &result->explanation[result->explanations];
+    shown[result->explanations++] = m;
+    put_name(from, m, one->name);
+    put_words(from, m, false, one->words);
+  }
+  if (from->count) put_words(from, 0, true, result->common);
+  if (from->count == FG_EXPLANATIONS_MAX && from->total > FG_EXPLANATIONS_MAX)
+    result->unlisted = from->total - FG_EXPLANATIONS_MAX;
+  result->tied = from->count > 1;
+  result->named = result->explanations < 2;
+}
+
+/* ---- claims ---- */
+
+static void put_shares(const fg_explanations *explanations, const fg_effect *kind,
+                       fg_scan_result_claim *claim) {
+  claim->would_explain = claim->retained_share = NAN;
+  for (size_t e = 0; e < explanations->candidate_count; e++)
+    if (explanations->candidates[e].kind == kind) {
+      claim->would_explain = explanations->alone[e];
+      claim->retained_share = explanations->share[e];
+      return;
+    }
+}
+
+static fg_status put_claim(fg_context *ctx, const fg_scan_loop *loop, const fg_effect_found *effect,
+                           fg_scan_result_claim *claim) {
+  const fg_effect *kind = effect->kind;
+  *claim = (fg_scan_result_claim){
+      .id = kind->id,
+      .form = kind->form,
+      .words = kind->words,
+      .equation = kind->equation,
+      .free = fg_effect_is_free(kind),
+      .sure = is_sure(&loop->explanations, kind),
+      .coordinate = (fg_scan_coordinate)kind->coordinate,
+      .coordinate_name = fg_effect_coordinate_name(kind->coordinate),
+      .moves = kind->moves,
+      .basis = kind->bends && !fg_effect_is_free(kind)
+                   ? "deviation of every bump from its best-fit circle"
+                   : NULL,
+      .amplitude_um = fg_effect_found_amplitude(effect),
+  };
+  claim->verdict = claim->sure ? FG_LOOP_FOUND : FG_LOOP_TIED;
+  claim->parameters = fg_scan_result_put_parameters(effect, claim->parameter);
+  put_shares(&loop->explanations, kind, claim);
+  if (!claim->free && !claim->basis) return FG_OK;
+  return fg_scan_result_put_shape(ctx, loop, effect, claim);
+}
+
+static fg_status put_claims(fg_context *ctx, const fg_scan_loop *loop, fg_scan_result *result) {
+  for (size_t i = 0; i < loop->set.count; i++) {
+    fg_scan_result_claim *claim = &result->claim[result->claims++];
+    FG_TRY(put_claim(ctx, loop, &loop->set.effects[i], claim));
+    if (claim->free && (!result->curve || claim->amplitude_um > result->curve->amplitude_um))
+      result->curve = claim;
+  }
+  const fg_explanations *explanations = &loop->explanations;
+  for (size_t e = 0; e < explanations->candidate_count; e++) {
+    const fg_effect *kind = explanations->candidates[e].kind;
+    if (!fg_effect_is_free(kind) && explanations->alone[e] > NEAR_SHARE && !kind->second)
+      result->nearest[result->nearests++] = kind->id;
+  }
+  return FG_OK;
+}
+
+/* ---- what is not claimed ---- */
 
 static bool is_claimed(const fg_effect_set *set, const fg_effect *kind) {
   for (size_t i = 0; i < set->count; i++)
@@ -55,9 +169,9 @@ static bool is_claimed(const fg_effect_set *set, const fg_effect *kind) {
   return false;
 }
 
-static bool is_candidate(const fg_scan_loop_decisions *d, const fg_effect *kind) {
-  for (size_t i = 0; i < d->candidates; i++)
-    if (fg_effect_same(d->candidate[i].kind, kind)) return true;
+static bool is_listed(const fg_scan_result *result, const fg_effect *kind) {
+  for (size_t i = 0; i < result->unclaimeds; i++)
+    if (fg_effect_same(fg_effect_find(result->unclaimed[i].id), kind)) return true;
   return false;
 }
 
@@ -68,32 +182,40 @@ static fg_loop_verdict judge(const fg_explanations *explanations, size_t e) {
 }
 
 /* Of two forms of one effect the first speaks for both. */
-static void list_candidates(const fg_scan_loop *loop, fg_scan_loop_decisions *d) {
+static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
   const fg_explanations *explanations = &loop->explanations;
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     const fg_effect *kind = explanations->candidates[e].kind;
     if (fg_effect_is_free(kind) || kind->second || is_claimed(&loop->set, kind)) continue;
-    d->candidate[d->candidates++] = (fg_scan_loop_unclaimed){kind,
-                                                             judge(explanations, e),
-                                                             explanations->alone[e],
-                                                             explanations->share[e],
-                                                             explanations->smallest_um[e],
-                                                             false};
+    result->unclaimed[result->unclaimeds++] =
+        (fg_scan_result_unclaimed){.id = kind->id,
+                                   .words = kind->words,
+                                   .verdict = judge(explanations, e),
+                                   .would_explain = explanations->alone[e],
+                                   .retained_share = explanations->share[e],
+                                   .smallest_um = explanations->smallest_um[e]};
   }
   for (size_t b = 0; b < loop->points.barred_count; b++) {
     const fg_points_barred *barred = &loop->points.barred[b];
-    if (fg_effect_is_free(barred->effect) || is_claimed(&loop->set, barred->effect) ||
-        is_candidate(d, barred->effect))
+    const fg_effect *kind = barred->effect;
+    if (fg_effect_is_free(kind) || is_claimed(&loop->set, kind) || is_listed(result, kind))
       continue;
-    d->candidate[d->candidates++] =
-        (fg_scan_loop_unclaimed){barred->effect, FG_LOOP_INCONCLUSIVE, barred->would_explain,
-                                 barred->share,  barred->smallest_um,  true};
+    result->unclaimed[result->unclaimeds++] =
+        (fg_scan_result_unclaimed){.id = kind->id,
+                                   .words = kind->words,
+                                   .verdict = FG_LOOP_INCONCLUSIVE,
+                                   .would_explain = barred->would_explain,
+                                   .retained_share = barred->share,
+                                   .smallest_um = barred->smallest_um,
+                                   .barred = true};
   }
 }
 
-static void find_advice(const fg_scan_loop *loop, fg_scan_loop_decisions *d) {
-  if (d->shown_count > 1)
-    d->advice[d->advices++] =
+/* ---- advice and errors ---- */
+
+static void put_advice(const fg_scan_loop *loop, fg_scan_result *result) {
+  if (!result->named)
+    result->advice[result->advices++] =
         loop->points.discs
             ? "scan a plate of several gauges on the same scanner: what all of them show is the "
               "scanner, and an oval is each one's own"
@@ -103,16 +225,55 @@ static void find_advice(const fg_scan_loop *loop, fg_scan_loop_decisions *d) {
               "the part"
             : "scan another foil on the same scanner: what repeats is the scanner";
   if (loop->scale_tied)
-    d->advice[d->advices++] =
+    result->advice[result->advices++] =
         "scan a gauge of known diameter on the same scanner (--form discs): it tells the scale, "
         "which no foil of unknown size can";
 }
 
-void fg_scan_loop_decide(const fg_scan_loop *loop, fg_scan_loop_decisions *d) {
-  memset(d, 0, sizeof *d);
-  for (size_t i = 0; i < loop->set.count; i++)
-    d->sure[i] = fg_scan_loop_is_sure(&loop->explanations, loop->set.effects[i].kind);
-  find_class(&loop->explanations, d);
-  list_candidates(loop, d);
-  find_advice(loop, d);
+static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
+  result->verdict = loop->verdict;
+  result->same_foil = loop->options.same_foil;
+  result->discs = loop->points.discs;
+  result->scale_tied = loop->scale_tied;
+  result->noise_floor_um = loop->noise_floor_um;
+  result->edge_model_error_um = loop->explanations.edge_error_um;
+  result->half_width_rms_um = loop->explanations.width_rms_um;
+  result->half_width_smooth_um = loop->explanations.width_smooth_um;
+  result->p_value = loop->explanations.p_value;
+  result->matters_um = FG_SCAN_LOOP_MATTERS_UM;
+  result->before = loop->error_before;
+  result->after = loop->error_after;
+  result->left_out = loop->left_out;
+  result->note = (const char *const *)loop->bumps.note;
+  result->notes = loop->bumps.notes;
+  /* What was found must hold on scans that had no say in finding it. */
+  result->corrected = loop->set.count > 0;
+  result->contradicted =
+      result->corrected && loop->error_after.held_out_rms > loop->error_before.held_out_rms;
+  for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
+    result->coordinate_name[c] = fg_effect_coordinate_name((fg_effect_coordinate)c);
+    result->coordinate_title[c] = fg_effect_coordinate_title((fg_effect_coordinate)c);
+  }
+}
+
+static fg_status put_model(fg_context *ctx, const fg_scan_loop *loop, fg_scan_result *result) {
+  fg_scanner_model *model = NULL;
+  FG_TRY(fg_scanner_model_of(ctx, loop, &model));
+  result->model = model;
+  return FG_OK;
+}
+
+fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
+  fg_scan_result *result = &loop->result;
+  fg_scan_result_free(result);
+  put_numbers(loop, result);
+  put_explanations(&loop->explanations, result);
+  FG_TRY(put_claims(ctx, loop, result));
+  put_unclaimed(loop, result);
+  put_advice(loop, result);
+  FG_TRY(fg_scan_result_put_bumps(ctx, loop, result));
+  FG_TRY(fg_scan_result_put_rows(ctx, loop, result));
+  FG_TRY(fg_scan_result_put_lines(ctx, loop, result));
+  FG_TRY(fg_scan_result_put_grid(ctx, loop, result));
+  return put_model(ctx, loop, result);
 }

@@ -63,7 +63,8 @@ static void assert_consistent(fg_scan_loop *loop, const char *what) {
                                   fg_scan_loop_write_text};
   char folder[] = "/tmp/foilgauge_statements_XXXXXX", path[3][64], command[400];
   assert_non_null(mkdtemp(folder));
-  fg_scan_loop_decide(loop, &loop->decided);
+  fg_context ctx = {0};
+  assert_int_equal(fg_scan_loop_decide(&ctx, loop), FG_OK);
   for (int i = 0; i < 3; i++) {
     snprintf(path[i], sizeof path[i], "%s/%s", folder, names[i]);
     write_file(loop, writers[i], path[i]);
@@ -79,15 +80,15 @@ static void assert_consistent(fg_scan_loop *loop, const char *what) {
 }
 
 static const char *advice_of(const fg_scan_loop *loop, size_t i) {
-  assert_true(i < loop->decided.advices);
-  return loop->decided.advice[i];
+  assert_true(i < loop->result.advices);
+  return loop->result.advice[i];
 }
 
 static void a_foil_says_one_thing(void **state) {
   (void)state;
   fg_scan_loop *loop = run_loop(FOIL SCALE, FG_FORM_CLASSICAL);
   assert_consistent(loop, "a tie on one scan");
-  assert_int_equal(loop->decided.advices, 1);
+  assert_int_equal(loop->result.advices, 1);
   assert_non_null(strstr(advice_of(loop, 0), "--same-foil"));
   loop->scale_tied = true;
   assert_consistent(loop, "a scale that the edges cannot see");
@@ -98,7 +99,7 @@ static void a_foil_says_one_thing(void **state) {
   loop->explanations.count = 1;
   loop->scale_tied = loop->tied = false;
   assert_consistent(loop, "no tie");
-  assert_int_equal(loop->decided.advices, 0);
+  assert_int_equal(loop->result.advices, 0);
   assert_int_equal(fg_scan_loop_bumps_note(NULL, &loop->bumps, "a <note> & more"), FG_OK);
   loop->error_before.held_out_rms = 1.5;
   loop->error_after.held_out_rms = 0.2;
@@ -111,7 +112,7 @@ static void a_clean_foil_says_one_thing(void **state) {
   fg_scan_loop *loop = run_loop(FOIL "]}", FG_FORM_CLASSICAL);
   assert_int_equal(loop->verdict, FG_LOOP_CLEAN);
   assert_consistent(loop, "a clean scan");
-  assert_int_equal(loop->decided.advices, 0);
+  assert_int_equal(loop->result.advices, 0);
   fg_scan_loop_free(loop);
 }
 
@@ -120,14 +121,14 @@ static void a_ring_says_one_thing(void **state) {
   (void)state;
   fg_scan_loop *loop = run_loop(RING SCALE, FG_FORM_DISCS);
   assert_consistent(loop, "a tie in a ring");
-  assert_int_equal(loop->decided.advices, 1);
+  assert_int_equal(loop->result.advices, 1);
   assert_non_null(strstr(advice_of(loop, 0), "plate of several gauges"));
   fg_points_barred *barred = &loop->points.barred[loop->points.barred_count++];
   *barred = (fg_points_barred){
       .effect = fg_effect_find("scan.row_step"), .would_explain = 0.3, .share = 0.8};
   barred->smallest_um = NAN;
   assert_consistent(loop, "an effect that is not confirmed");
-  const fg_scan_loop_unclaimed *last = &loop->decided.candidate[loop->decided.candidates - 1];
+  const fg_scan_result_unclaimed *last = &loop->result.unclaimed[loop->result.unclaimeds - 1];
   assert_true(last->barred);
   assert_int_equal(last->verdict, FG_LOOP_INCONCLUSIVE);
   fg_scan_loop_free(loop);

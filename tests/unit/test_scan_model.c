@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "scan_loop/result.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 #include "support/near.h"
@@ -30,6 +31,11 @@ static void add_effect(fg_effect_set *set, const char *id, double shape, double 
   }
   effect->shape[0] = shape;
   effect->u_shape[0] = kind->shapes ? fabs(shape) / 7000 : 0;
+}
+
+static void decide(fg_scan_loop *loop) {
+  fg_context ctx = {0};
+  if (fg_scan_loop_decide(&ctx, loop) != FG_OK) fail_msg("%s", ctx.message);
 }
 
 /* A loop that has found two ripples and two steps, and cannot tell a scale from a distortion. */
@@ -63,10 +69,12 @@ static fg_scan_loop *make_loop(void) {
     other->effects[other->count++] = set->effects[e];
   loop->tie_count = 1;
   loop->tied = true;
+  decide(loop);
   return loop;
 }
 
 static void free_loop(fg_scan_loop *loop) {
+  fg_scan_result_free(&loop->result);
   free(loop->before);
   free(loop->hold_out);
   free(loop);
@@ -131,6 +139,7 @@ static void what_would_be_refused_is_not_written(void **state) {
   (void)state;
   assert_non_null(out);
   loop->set.effects[1].coefficient_um[0] = 5000;
+  decide(loop);
   assert_int_equal(fg_scan_loop_write_model(&ctx, loop, out), FG_ERR_DATA);
   assert_non_null(strstr(ctx.message, "scan.carriage_ripple"));
   fclose(out);

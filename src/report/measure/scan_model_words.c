@@ -5,98 +5,74 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/scan_loop.h"
 #include "quantity/quantity.h"
 #include "report/quantity_json.h"
 #include "report/scan_loop/scan_loop_parts.h"
-#include "scan_loop/scanner_model.h"
 
 /* ---- the effects ---- */
 
-/* How far an effect moves anything in the region, um: the half range of its larger component. */
-static double half_range_um(const fg_field_list *list, size_t index) {
-  enum { GRID = 33 };
-  const fg_field_frame *f = &list->frame;
-  fg_field_list one = {.frame = *f, .fields = {list->fields[index]}, .count = 1};
-  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
-  for (int i = 0; i < GRID; i++) { /* every field varies along one axis, or alike along both */
-    double t = i / (GRID - 1.0);
-    fg_point d = fg_field_at(&one, (fg_point){f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
-                                              f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])});
-    low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
-    high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
+static fg_status say_effect(fg_context *ctx, const fg_scanner_model_effect *effect, char **text) {
+  char value[64];
+  FG_TRY(fg_text_append(ctx, text, "%s (", effect->words));
+  for (size_t k = 0; k < effect->parameters; k++) {
+    const fg_scan_result_parameter *p = &effect->parameter[k];
+    fg_scan_loop_value_words(p->told, p->u_told, value, sizeof value);
+    FG_TRY(fg_text_append(ctx, text, "%s = %s%s%s, ", p->symbol, value,
+                          strcmp(p->unit, "°") ? " " : "", p->unit));
   }
-  return 500 * fmax(high.x - low.x, high.y - low.y);
-}
-
-static fg_effect_found effect_of(const fg_field *field) {
-  fg_effect_found effect = {
-      .kind = fg_effect_find(field->id), .columns = field->columns, .shapes = field->shapes};
-  for (size_t c = 0; c < field->columns; c++) {
-    effect.coefficient_um[c] = 1000 * field->amplitude_mm[c];
-    effect.u_coefficient_um[c] = 1000 * field->u_amplitude_mm[c];
-  }
-  memcpy(effect.shape, field->shape, sizeof effect.shape);
-  memcpy(effect.u_shape, field->u_shape, sizeof effect.u_shape);
-  return effect;
+  fg_scan_loop_length_words(effect->half_range_um, value, sizeof value);
+  return fg_text_append(ctx, text, "up to ±%s)", value);
 }
 
 fg_status fg_scanner_model_effects(fg_context *ctx, const fg_scanner_model *model, char **text) {
-  const fg_field_list *list = &model->fields;
+  fg_scanner_model_facts facts;
+  fg_scanner_model_describe(model, &facts);
   *text = NULL;
-  if (!list->count) return fg_text_print(ctx, text, "nothing: no error of the scanner was found");
-  for (size_t i = 0; i < list->count; i++) {
-    const fg_effect_found effect = effect_of(&list->fields[i]);
-    char value[64];
-    fg_scan_loop_parameter p;
-    FG_TRY(fg_text_append(ctx, text, "%s%s (", i ? "; " : "", effect.kind->words));
-    for (size_t k = 0; fg_effect_found_parameter(&effect, k, &p); k++) {
-      fg_scan_loop_value_words(p.value, p.u, value, sizeof value);
-      FG_TRY(fg_text_append(ctx, text, "%s = %s%s%s, ", p.name, value,
-                            strcmp(p.unit, "°") ? " " : "", p.unit));
-    }
-    fg_scan_loop_length_words(half_range_um(list, i), value, sizeof value);
-    FG_TRY(fg_text_append(ctx, text, "up to ±%s)", value));
+  if (!facts.effects) return fg_text_print(ctx, text, "nothing: no error of the scanner was found");
+  for (size_t i = 0; i < facts.effects; i++) {
+    if (i) FG_TRY(fg_text_append(ctx, text, "; "));
+    FG_TRY(say_effect(ctx, &facts.effect[i], text));
   }
   return FG_OK;
 }
 
-static void write_effect(fg_json *json, const fg_field_list *list, size_t index) {
-  const fg_effect_found effect = effect_of(&list->fields[index]);
-  const char *name;
-  double value, u;
+static void write_effect(fg_json *json, const fg_scanner_model_effect *effect) {
   fg_json_object(json, NULL);
-  fg_json_string(json, "id", effect.kind->id);
-  fg_json_string(json, "words", effect.kind->words);
+  fg_json_string(json, "id", effect->id);
+  fg_json_string(json, "words", effect->words);
   for (int side = 0; side < 2; side++) {
     fg_json_object(json, side ? "uncertainty" : "parameters");
-    for (size_t k = 0; fg_effect_found_number(&effect, k, &name, &value, &u); k++)
-      fg_json_number(json, name, side ? u : value);
+    for (size_t k = 0; k < effect->parameters; k++)
+      fg_json_number(json, effect->parameter[k].name,
+                     side ? effect->parameter[k].u : effect->parameter[k].value);
     fg_json_object_end(json);
   }
-  fg_json_number(json, "half_range_um", half_range_um(list, index));
+  fg_json_number(json, "half_range_um", effect->half_range_um);
   fg_json_object_end(json);
 }
 
 void fg_json_scan_model(fg_json *json, const char *name, const fg_scanner_model *model) {
+  fg_scanner_model_facts facts;
   if (!model) {
     fg_json_string(json, name, NULL);
     return;
   }
-  const fg_field_frame *frame = &model->fields.frame;
+  fg_scanner_model_describe(model, &facts);
   fg_json_object(json, name);
-  fg_json_string(json, "path", model->path);
-  fg_json_string(json, "sha256", model->sha256);
-  fg_json_string(json, "scanner", model->scanner[0] ? model->scanner : NULL);
-  fg_json_string(json, "date", model->date[0] ? model->date : NULL);
-  fg_json_integer(json, "scans", (int64_t)model->scans);
-  fg_json_numbers(
-      json, "region_mm",
-      (double[]){frame->low_mm[0], frame->low_mm[1], frame->high_mm[0], frame->high_mm[1]}, 4);
-  fg_json_integer(json, "known_diameters", (int64_t)model->known_diameters);
-  fg_json_bool(json, "tied", model->tied);
+  fg_json_string(json, "path", facts.path);
+  fg_json_string(json, "sha256", facts.sha256);
+  fg_json_string(json, "scanner", facts.scanner);
+  fg_json_string(json, "date", facts.date);
+  fg_json_integer(json, "scans", (int64_t)facts.scans);
+  fg_json_numbers(json, "region_mm",
+                  (double[]){facts.low_mm[0], facts.low_mm[1], facts.high_mm[0], facts.high_mm[1]},
+                  4);
+  fg_json_integer(json, "known_diameters", (int64_t)facts.known_diameters);
+  fg_json_bool(json, "tied", facts.tied);
   fg_json_array(json, "effects");
-  for (size_t i = 0; i < model->fields.count; i++)
-    write_effect(json, &model->fields, i);
+  for (size_t i = 0; i < facts.effects; i++)
+    write_effect(json, &facts.effect[i]);
   fg_json_array_end(json);
   fg_json_object_end(json);
 }
@@ -111,14 +87,18 @@ const fg_scanner_model *fg_report_model(const fg_report *report) {
 }
 
 void fg_scale_words(const fg_scanner_model *model, char *words, size_t size) {
-  if (!model)
+  fg_scanner_model_facts facts;
+  if (!model) {
     fg_text_clip(words, size, "The scanner's own error of scale is not in it.");
-  else if (model->known_diameters)
+    return;
+  }
+  fg_scanner_model_describe(model, &facts);
+  if (facts.known_diameters)
     fg_text_clip(
         words, size,
         "The scanner's scale is that of %zu gauge%s of known diameter, which the model was "
         "found with; what these diameters are uncertain by is not in it.",
-        model->known_diameters, model->known_diameters > 1 ? "s" : "");
+        facts.known_diameters, facts.known_diameters > 1 ? "s" : "");
   else
     fg_text_clip(words, size,
                  "What the scanner's model corrects is in it. An error of scale that is equal in x "
@@ -126,14 +106,16 @@ void fg_scale_words(const fg_scanner_model *model, char *words, size_t size) {
 }
 
 fg_status fg_scanner_model_title(fg_context *ctx, const fg_scanner_model *model, char **text) {
-  const char *slash = strrchr(model->path, '/');
+  fg_scanner_model_facts facts;
+  fg_scanner_model_describe(model, &facts);
+  const char *slash = strrchr(facts.path, '/');
   *text = NULL;
-  FG_TRY(fg_text_append(ctx, text, "%s", slash ? slash + 1 : model->path));
-  if (model->scanner[0]) FG_TRY(fg_text_append(ctx, text, ", of the scanner '%s'", model->scanner));
-  if (model->date[0]) FG_TRY(fg_text_append(ctx, text, ", of %.10s", model->date));
-  if (model->scans)
-    FG_TRY(fg_text_append(ctx, text, ", found on %zu scan%s", model->scans,
-                          model->scans > 1 ? "s" : ""));
+  FG_TRY(fg_text_append(ctx, text, "%s", slash ? slash + 1 : facts.path));
+  if (facts.scanner) FG_TRY(fg_text_append(ctx, text, ", of the scanner '%s'", facts.scanner));
+  if (facts.date) FG_TRY(fg_text_append(ctx, text, ", of %.10s", facts.date));
+  if (facts.scans)
+    FG_TRY(fg_text_append(ctx, text, ", found on %zu scan%s", facts.scans,
+                          facts.scans > 1 ? "s" : ""));
   return FG_OK;
 }
 
@@ -197,9 +179,10 @@ fg_status fg_html_corrected(fg_context *ctx, FILE *out, const fg_scanner_model *
   status = fg_scanner_model_effects(ctx, model, &text);
   FG_TRY(put_text(out, status, text));
   if (moved[0]) fprintf(out, ". It moved %s, and added %s", moved, added);
-  fputs(model->tied ? ". Other explanations did as well when it was found; u holds how far they "
-                      "would have moved each value.</p>\n"
-                    : ".</p>\n",
+  fputs(fg_scanner_model_is_tied(model)
+            ? ". Other explanations did as well when it was found; u holds how far they "
+              "would have moved each value.</p>\n"
+            : ".</p>\n",
         out);
   return FG_OK;
 }
@@ -211,28 +194,30 @@ fg_status fg_html_model_facts(fg_context *ctx, FILE *out, const fg_scanner_model
     fputs("none: the scan is taken as it is</dd>\n", out);
     return FG_OK;
   }
+  fg_scanner_model_facts facts;
+  fg_scanner_model_describe(model, &facts);
   fg_status status = fg_scanner_model_title(ctx, model, &text);
   FG_TRY(put_text(out, status, text));
-  const fg_field_frame *f = &model->fields.frame;
   fprintf(out,
           "</dd>\n<dt>Its SHA-256</dt><dd>%s</dd>\n<dt>Its region</dt><dd>x %.4g to %.4g, y %.4g "
           "to %.4g mm of the glass</dd>\n",
-          model->sha256, f->low_mm[0], f->high_mm[0], f->low_mm[1], f->high_mm[1]);
+          facts.sha256, facts.low_mm[0], facts.high_mm[0], facts.low_mm[1], facts.high_mm[1]);
   return FG_OK;
 }
 
 fg_status fg_text_scan_model(fg_context *ctx, FILE *out, const fg_scanner_model *model) {
   char *title = NULL, *effects = NULL;
   if (!model) return FG_OK;
-  const fg_field_frame *f = &model->fields.frame;
+  fg_scanner_model_facts facts;
+  fg_scanner_model_describe(model, &facts);
   fg_status status = fg_scanner_model_title(ctx, model, &title);
   if (status == FG_OK) status = fg_scanner_model_effects(ctx, model, &effects);
   if (status == FG_OK)
     fprintf(out,
             "CORRECTED by the scanner's model %s\n  SHA-256 %s\n  region x %.4g to %.4g, y %.4g to "
             "%.4g mm of the glass\n  for %s\n",
-            title, model->sha256, f->low_mm[0], f->high_mm[0], f->low_mm[1], f->high_mm[1],
-            effects);
+            title, facts.sha256, facts.low_mm[0], facts.high_mm[0], facts.low_mm[1],
+            facts.high_mm[1], effects);
   free(title);
   free(effects);
   return status;

@@ -157,10 +157,10 @@ static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corr
   fputs("</tr></table></div>\n", out);
 }
 
-static void put_foil(FILE *out, const fg_scan_loop *loop, size_t scan, size_t f) {
-  const fg_foil *b = &loop->before[scan].foils[f], *a = &loop->after[scan].foils[f];
+static void put_foil(FILE *out, const fg_scan_result *result, size_t scan, size_t f) {
+  const fg_foil *b = &result->scan[scan].before->foils[f], *a = &result->scan[scan].after->foils[f];
   fputs("<h3>", out);
-  fg_html_text(out, loop->before[scan].scan);
+  fg_html_text(out, result->scan[scan].before->scan);
   fprintf(out, ", foil %d</h3>\n", b->number);
   if ((b->flags | a->flags) & FG_FOIL_NOT_MEASURED) {
     fputs("<p class=\"note\">Not measured: ", out);
@@ -168,14 +168,14 @@ static void put_foil(FILE *out, const fg_scan_loop *loop, size_t scan, size_t f)
     fputs("</p>\n", out);
     return;
   }
-  bool tied = loop->tied || loop->scale_tied;
-  put_overall(out, b, a, loop->set.count > 0, tied);
-  put_bumps(out, b, a, loop->set.count > 0, tied);
+  bool tied = result->tied || result->scale_tied;
+  put_overall(out, b, a, result->corrected, tied);
+  put_bumps(out, b, a, result->corrected, tied);
 }
 
-static void put_discs(FILE *out, const fg_scan_loop *loop, size_t scan) {
-  const fg_measurement *b = &loop->before[scan], *a = &loop->after[scan];
-  bool corrected = loop->set.count > 0;
+static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
+  const fg_measurement *b = result->scan[scan].before, *a = result->scan[scan].after;
+  bool corrected = result->corrected;
   size_t count = b->disc_count < a->disc_count ? b->disc_count : a->disc_count;
   for (size_t i = 0; i < count; i++) {
     const fg_disc *x = &b->discs[i], *y = &a->discs[i];
@@ -209,46 +209,50 @@ static void put_discs(FILE *out, const fg_scan_loop *loop, size_t scan) {
 
 /* Scans of one foil must give one radius for each bump: how far they are from that needs no truth.
  * The root mean square over the bumps of the difference to the first scan, um. */
-static double disagreement(const fg_scan_loop *loop, const fg_measurement *m) {
+static double disagreement(const fg_scan_result *result, bool after) {
   double sum = 0, n = 0;
-  for (size_t s = 1; s < loop->scan_count; s++)
-    for (size_t f = 0; f < m[s].foil_count && f < m[0].foil_count; f++)
-      for (size_t i = 0; i < m[s].foils[f].bump_count; i++) {
-        const fg_bump *one = &m[s].foils[f].bumps[i];
-        const fg_bump *other = find_bump(&m[0].foils[f], one->number);
+  const fg_measurement *first = after ? result->scan[0].after : result->scan[0].before;
+  for (size_t s = 1; s < result->scans; s++) {
+    const fg_measurement *m = after ? result->scan[s].after : result->scan[s].before;
+    for (size_t f = 0; f < m->foil_count && f < first->foil_count; f++)
+      for (size_t i = 0; i < m->foils[f].bump_count; i++) {
+        const fg_bump *one = &m->foils[f].bumps[i];
+        const fg_bump *other = find_bump(&first->foils[f], one->number);
         if (!other || !isfinite(one->radius_mm) || !isfinite(other->radius_mm)) continue;
         sum += pow(1000 * (one->radius_mm - other->radius_mm), 2);
         n++;
       }
+  }
   return sqrt(sum / n);
 }
 
-static void put_agreement(FILE *out, const fg_scan_loop *loop) {
+static void put_agreement(FILE *out, const fg_scan_result *result) {
   char before[32], after[32];
-  if (!loop->options.same_foil || loop->scan_count < 2) return;
-  double b = disagreement(loop, loop->before), a = disagreement(loop, loop->after);
+  if (!result->same_foil || result->scans < 2) return;
+  double b = disagreement(result, false), a = disagreement(result, true);
   if (!isfinite(a) || !isfinite(b)) return;
   fg_scan_loop_length_words(b, before, sizeof before);
   fg_scan_loop_length_words(a, after, sizeof after);
   fprintf(out, "<p class=\"say\">The radius of one bump differs between the scans by %s rms",
           before);
-  if (loop->set.count) fprintf(out, " before, and by %s after", after);
+  if (result->corrected) fprintf(out, " before, and by %s after", after);
   fputs(".</p>\n", out);
 }
 
-void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_loop *loop) {
+void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_result *result) {
   fputs("<section><h2 class=\"first\">Dimensions</h2>\n<p class=\"note\">± is U = 2u.", out);
-  if (loop->set.count) fputs(" A change larger than U of the corrected value is marked.", out);
-  if (loop->tied || loop->scale_tied)
+  if (result->corrected) fputs(" A change larger than U of the corrected value is marked.", out);
+  if (result->tied || result->scale_tied)
     fputs(" Range: lowest and highest value, U included, over the explanations that the data "
           "cannot tell apart.",
           out);
   fputs("</p>\n", out);
-  put_agreement(out, loop);
-  for (size_t i = 0; i < loop->scan_count; i++) {
-    for (size_t f = 0; f < loop->before[i].foil_count && f < loop->after[i].foil_count; f++)
-      put_foil(out, loop, i, f);
-    put_discs(out, loop, i);
+  put_agreement(out, result);
+  for (size_t i = 0; i < result->scans; i++) {
+    const fg_scan_result_scan *scan = &result->scan[i];
+    for (size_t f = 0; f < scan->before->foil_count && f < scan->after->foil_count; f++)
+      put_foil(out, result, i, f);
+    put_discs(out, result, i);
   }
   fputs("</section>\n", out);
 }

@@ -12,24 +12,24 @@ static void put_tile(FILE *out, const char *name, const char *value, const char 
   fprintf(out, "<div><dt>%s</dt><dd>%s<small>%s</small></dd></div>\n", name, value, small);
 }
 
-static void put_tiles(FILE *out, const fg_scan_loop *loop) {
+static void put_tiles(FILE *out, const fg_scan_result *result) {
   char words[32], small[80];
-  const fg_scan_loop_error *before = &loop->error_before, *after = &loop->error_after;
+  const fg_scan_loop_error *before = &result->before, *after = &result->after;
   fputs("<dl class=\"tiles\">\n", out);
   fg_scan_loop_length_words(before->rms, words, sizeof words);
-  put_tile(out, loop->set.count ? "Edge residual before" : "Edge residual", words, "rms");
-  if (loop->set.count) {
+  put_tile(out, result->corrected ? "Edge residual before" : "Edge residual", words, "rms");
+  if (result->corrected) {
     fg_scan_loop_length_words(after->rms, words, sizeof words);
     put_tile(out, "Edge residual after", words, "rms");
     fg_text_clip(words, sizeof words, "%.3g ×", before->rms / after->rms);
     fg_text_clip(small, sizeof small, "after / before = %.3g", after->rms / before->rms);
     put_tile(out, "Smaller by", words, small);
   }
-  fg_scan_loop_length_words(loop->noise_floor_um, words, sizeof words);
+  fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
   fg_text_clip(small, sizeof small, "what is left is %.3g times this",
-               after->rms / loop->noise_floor_um);
+               after->rms / result->noise_floor_um);
   put_tile(out, "Noise floor", words, small);
-  if (loop->set.count && isfinite(before->held_out_rms)) {
+  if (result->corrected && isfinite(before->held_out_rms)) {
     fg_scan_loop_length_words(after->held_out_rms, words, sizeof words);
     fg_text_clip(small, sizeof small, "after / before = %.3g",
                  after->held_out_rms / before->held_out_rms);
@@ -38,12 +38,12 @@ static void put_tiles(FILE *out, const fg_scan_loop *loop) {
   fputs("</dl>\n", out);
 }
 
-static void put_inputs(FILE *out, const fg_scan_loop *loop) {
+static void put_inputs(FILE *out, const fg_scan_result *result) {
   fputs("<div class=\"scroll\"><table><tr><th>scan</th><th class=\"w\">SHA-256</th>"
         "<th class=\"w\">dpi</th><th class=\"w\">shows</th><th class=\"w\">role</th></tr>\n",
         out);
-  for (size_t i = 0; i < loop->scan_count; i++) {
-    const fg_measurement *m = &loop->before[i];
+  for (size_t i = 0; i < result->scans; i++) {
+    const fg_measurement *m = result->scan[i].before;
     fputs("<tr><td class=\"path\">", out);
     fg_html_text(out, m->scan);
     fprintf(out, "</td><td class=\"w\"><code>%.12s</code></td><td class=\"w\">%.6g", m->sha256,
@@ -55,94 +55,81 @@ static void put_inputs(FILE *out, const fg_scan_loop *loop) {
       fprintf(out, "%s%zu disc%s", m->foil_count ? ", " : "", m->disc_count,
               m->disc_count > 1 ? "s" : "");
     fprintf(out, "</td><td class=\"w\">%s</td></tr>\n",
-            loop->hold_out[i] ? "kept aside: only confirms" : "searched");
+            result->scan[i].hold_out ? "kept aside: only confirms" : "searched");
   }
   fputs("</table></div>\n", out);
-  if (loop->options.same_foil)
+  if (result->same_foil)
     fputs("<p class=\"note\">The scans show the same foil: what stays with the glass is the "
           "scanner, what turns is the part.</p>\n",
           out);
 }
 
-static bool is_tied(const fg_scan_loop *loop) {
-  return loop->decided.shown_count > 1;
-}
-
-/* What was found must hold on scans that had no say in finding it. */
-static void put_doubt(FILE *out, const fg_scan_loop *loop) {
-  if (loop->set.count && loop->error_after.held_out_rms > loop->error_before.held_out_rms)
+static void put_doubt(FILE *out, const fg_scan_result *result) {
+  if (result->contradicted)
     fputs("<p class=\"doubt\">The scans kept aside do not confirm it: there the residual becomes "
           "larger. Do they lie at the same place of the same glass?</p>\n",
           out);
 }
 
-static void put_head(FILE *out, const fg_scan_loop *loop, const char *sentence) {
+static void put_head(FILE *out, const fg_scan_result *result, const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fprintf(out,
           "<section><header><h1>Closing the loop</h1><span class=\"verdict loop-%s\">%s</span>"
           "%s</header>\n<p class=\"say\">",
-          classes[loop->verdict], fg_loop_outcome_word(loop->verdict),
-          is_tied(loop) ? "<span class=\"verdict loop-partly\">tied: not named</span>" : "");
+          classes[result->verdict], fg_loop_outcome_word(result->verdict),
+          result->named ? "" : "<span class=\"verdict loop-partly\">tied: not named</span>");
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
-  put_doubt(out, loop);
-  put_tiles(out, loop);
-  put_inputs(out, loop);
+  put_doubt(out, result);
+  put_tiles(out, result);
+  put_inputs(out, result);
   fputs("</section>\n", out);
 }
 
 /* ---- candidates ---- */
 
-static void put_name(FILE *out, const fg_effect *kind) {
+static void put_name(FILE *out, const char *id, const char *words) {
   fputs("<td class=\"words\">", out);
-  fg_html_text(out, kind->words);
+  fg_html_text(out, words);
   fputs("<i>", out);
-  fg_html_text(out, kind->id);
+  fg_html_text(out, id);
   fputs("</i></td>", out);
-}
-
-static void put_claim(FILE *out, const fg_effect_found *effect, bool sure) {
-  bool free_curve = fg_effect_is_free(effect->kind);
-  fg_scan_loop_parameter p;
-  char words[64];
-  fputs("<tr class=\"on\">", out);
-  put_name(out, effect->kind);
-  fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
-          sure ? free_curve ? "open" : "found" : "tied",
-          free_curve ? "unattributed"
-          : sure     ? "found"
-                     : "tied");
-  if (fg_effect_found_parameter(effect, 0, &p)) {
-    fg_scan_loop_value_words(p.value, p.u, words, sizeof words);
-    fprintf(out, "%s = %s %s", p.name, words, p.unit);
-  } else {
-    fputs("see its curve", out);
-  }
-  fputs("</td>", out);
 }
 
 /* The two last columns: what it alone would take of the residual, and how much of it the geometry
  * does not take over. */
 static void put_shares(FILE *out, double alone, double share) {
-  fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * alone, share < 0.1 ? 2 : 0,
-          100 * share);
+  if (isnan(alone) && isnan(share))
+    fputs("<td>–</td><td>–</td></tr>\n", out);
+  else
+    fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * alone, share < 0.1 ? 2 : 0,
+            100 * share);
 }
 
-static void put_shares_of(FILE *out, const fg_explanations *explanations, const fg_effect *kind) {
-  for (size_t e = 0; e < explanations->candidate_count; e++)
-    if (explanations->candidates[e].kind == kind) {
-      put_shares(out, explanations->alone[e], explanations->share[e]);
-      return;
-    }
-  fputs("<td>–</td><td>–</td></tr>\n", out);
+static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
+  char words[64];
+  fputs("<tr class=\"on\">", out);
+  put_name(out, claim->id, claim->words);
+  fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
+          claim->sure ? claim->free ? "open" : "found" : "tied",
+          claim->free ? "unattributed" : fg_loop_verdict_word(claim->verdict));
+  if (claim->parameters) {
+    const fg_scan_result_parameter *p = &claim->parameter[0];
+    fg_scan_loop_value_words(p->told, p->u_told, words, sizeof words);
+    fprintf(out, "%s = %s %s", p->symbol, words, p->unit);
+  } else {
+    fputs("see its curve", out);
+  }
+  fputs("</td>", out);
+  put_shares(out, claim->would_explain, claim->retained_share);
 }
 
-static void put_candidate(FILE *out, const fg_scan_loop_unclaimed *candidate) {
-  fg_loop_verdict verdict = candidate->verdict;
+static void put_unclaimed(FILE *out, const fg_scan_result_unclaimed *one) {
+  fg_loop_verdict verdict = one->verdict;
   char words[32];
   fputs("<tr>", out);
-  put_name(out, candidate->kind);
-  fg_scan_loop_length_words(candidate->smallest_um, words, sizeof words);
+  put_name(out, one->id, one->words);
+  fg_scan_loop_length_words(one->smallest_um, words, sizeof words);
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
           verdict == FG_LOOP_TIED     ? "tied"
           : verdict == FG_LOOP_ABSENT ? "absent"
@@ -151,73 +138,68 @@ static void put_candidate(FILE *out, const fg_scan_loop_unclaimed *candidate) {
   if (verdict == FG_LOOP_TIED)
     fputs("could be it: see above", out);
   else
-    fprintf(out, "%s%s", isfinite(candidate->smallest_um) ? "would have shown from " : "", words);
-  fputs(candidate->barred ? "<br>seen, and not confirmed from disc to disc</td>" : "</td>", out);
-  put_shares(out, candidate->would_explain, candidate->share);
+    fprintf(out, "%s%s", isfinite(one->smallest_um) ? "would have shown from " : "", words);
+  fputs(one->barred ? "<br>seen, and not confirmed from disc to disc</td>" : "</td>", out);
+  put_shares(out, one->would_explain, one->retained_share);
 }
 
-static void put_candidates(FILE *out, const fg_scan_loop *loop) {
+static void put_candidates(FILE *out, const fg_scan_result *result) {
   fputs("<section><h2 class=\"first\">Candidates and verdicts</h2>\n<div class=\"scroll\"><table>"
         "<tr><th>effect</th><th class=\"w\">verdict</th><th class=\"w\">size, ± U = 2u</th>"
         "<th>alone it would take<br>of the residual</th><th>not absorbed<br>by the circles</th>"
         "</tr>\n",
         out);
-  for (size_t i = 0; i < loop->set.count; i++) {
-    put_claim(out, &loop->set.effects[i], loop->decided.sure[i]);
-    put_shares_of(out, &loop->explanations, loop->set.effects[i].kind);
-  }
-  for (size_t i = 0; i < loop->decided.candidates; i++)
-    put_candidate(out, &loop->decided.candidate[i]);
+  for (size_t i = 0; i < result->claims; i++)
+    put_claim(out, &result->claim[i]);
+  for (size_t i = 0; i < result->unclaimeds; i++)
+    put_unclaimed(out, &result->unclaimed[i]);
   fprintf(out,
           "</table></div>\n<p class=\"note\">Absent: %g µm of it would have shown. Inconclusive: "
           "the data could not have shown that much. Absorbed by geometry: circles that move and "
           "change their radius look the same. Sizes of smooth effects are what they do 18 mm from "
           "the middle.</p></section>\n",
-          FG_SCAN_LOOP_MATTERS_UM);
+          result->matters_um);
 }
 
-static void put_class(FILE *out, const fg_scan_loop *loop) {
-  const fg_explanations *explanations = &loop->explanations;
-  const fg_scan_loop_decisions *decided = &loop->decided;
-  char words[FG_SCAN_LOOP_CLASS_WORDS];
-  if (!is_tied(loop)) return;
+static void put_explanation(FILE *out, const fg_scan_result_explanation *one, bool likeliest) {
+  fputs("<li>", out);
+  fg_html_text(out, one->words);
+  fprintf(out, " <code>%s</code>", one->name);
+  fputs(likeliest ? " <b>(the likeliest: drawn and applied here)</b></li>\n" : "</li>\n", out);
+}
+
+static void put_explanations(FILE *out, const fg_scan_result *result) {
+  if (result->named) return;
   fputs("<section><h2 class=\"first\">What the data cannot tell apart</h2>\n", out);
-  fg_scan_loop_explanation_words(explanations, 0, true, words, sizeof words);
-  if (words[0]) {
+  if (result->common[0]) {
     fputs("<p class=\"note\">Beside what is sure (", out);
-    fg_html_text(out, words);
+    fg_html_text(out, result->common);
     fputs("):</p>\n", out);
   }
   fputs("<ol class=\"words\">\n", out);
-  for (size_t m = 0; m < decided->shown_count; m++) {
-    fg_scan_loop_explanation_words(explanations, decided->shown[m], false, words, sizeof words);
-    fputs("<li>", out);
-    fg_html_text(out, words);
-    fg_scan_loop_explanation_name(explanations, decided->shown[m], words, sizeof words);
-    fprintf(out, " <code>%s</code>", words);
-    fputs(m ? "</li>\n" : " <b>(the likeliest: drawn and applied here)</b></li>\n", out);
-  }
+  for (size_t m = 0; m < result->explanations; m++)
+    put_explanation(out, &result->explanation[m], m == 0);
   fputs("</ol>\n", out);
-  if (decided->unlisted) fprintf(out, "<p class=\"note\">And %zu more.</p>\n", decided->unlisted);
+  if (result->unlisted) fprintf(out, "<p class=\"note\">And %zu more.</p>\n", result->unlisted);
   fputs("<p class=\"note\">Each explains the residual as well as the noise and the edge model "
         "allow to say. The dimensions below carry their range over all of them.</p>\n",
         out);
   fputs("</section>\n", out);
 }
 
-static void put_advice(FILE *out, const fg_scan_loop *loop) {
-  if (!loop->decided.advices) return;
+static void put_advice(FILE *out, const fg_scan_result *result) {
+  if (!result->advices) return;
   fputs("<section><h2 class=\"first\">To tell them apart</h2>\n<ul class=\"words\">\n", out);
-  for (size_t i = 0; i < loop->decided.advices; i++) {
+  for (size_t i = 0; i < result->advices; i++) {
     fputs("<li>", out);
-    fg_html_text(out, loop->decided.advice[i]);
+    fg_html_text(out, result->advice[i]);
     fputs(".</li>\n", out);
   }
   fputs("</ul></section>\n", out);
 }
 
-static void put_scale(FILE *out, const fg_scan_loop *loop) {
-  if (!loop->scale_tied) return;
+static void put_scale(FILE *out, const fg_scan_result *result) {
+  if (!result->scale_tied) return;
   fputs("<section><h2 class=\"first\">A scale that the edges cannot see</h2>\n<p class=\"note\">A "
         "distortion of the optics about another middle, beside a scale of the carriage, leaves the "
         "same edges and another size of everything. That would explain the bumps' arc length as "
@@ -237,12 +219,12 @@ static void put_error(FILE *out, const char *name, double before, double after) 
           words[1], after / before);
 }
 
-static void put_errors(FILE *out, const fg_scan_loop *loop) {
-  const fg_scan_loop_error *b = &loop->error_before, *a = &loop->error_after;
+static void put_errors(FILE *out, const fg_scan_result *result) {
+  const fg_scan_loop_error *b = &result->before, *a = &result->after;
   size_t left_out = 0;
   char words[32];
-  for (size_t i = 0; i < loop->points.row_count; i++)
-    left_out += !(loop->points.rows[i].weight > 0);
+  for (size_t i = 0; i < result->rows; i++)
+    left_out += !(result->row[i].weight > 0);
   fputs("<section><h2 class=\"first\">Errors of the edge rows</h2>\n<div class=\"scroll\"><table>"
         "<tr><th>error</th><th>before</th><th>after</th><th>ratio</th></tr>\n",
         out);
@@ -251,32 +233,33 @@ static void put_errors(FILE *out, const fg_scan_loop *loop) {
   put_error(out, "95th percentile", b->p95, a->p95);
   put_error(out, "maximum", b->maximum, a->maximum);
   put_error(out, "scans kept aside, rms", b->held_out_rms, a->held_out_rms);
-  fg_scan_loop_length_words(loop->noise_floor_um, words, sizeof words);
+  fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
   fprintf(out,
-          "</table></div>\n<p class=\"note\">%zu rows, each the mean of %d neighbours along the "
+          "</table></div>\n<p class=\"note\">%zu rows, each the mean of %zu neighbours along the "
           "strip; %zu of them left out as outliers. Noise floor of a row: %s; after / noise floor "
           "= %.3g.",
-          loop->points.row_count, FG_POINTS_BLOCK, left_out, words, a->rms / loop->noise_floor_um);
+          result->rows, result->row_stations, left_out, words, a->rms / result->noise_floor_um);
   if (!isfinite(b->held_out_rms)) fputs(" No scan was kept aside (<code>--hold-out</code>).", out);
   fputs("</p></section>\n", out);
 }
 
 fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  const fg_scan_result *result = fg_scan_loop_result(loop);
   char *sentence = NULL;
-  FG_TRY(fg_scan_loop_sentence(ctx, loop, &sentence));
+  FG_TRY(fg_scan_loop_sentence(ctx, result, &sentence));
   fg_html_begin(out, "Closing the loop");
-  put_head(out, loop, sentence);
+  put_head(out, result, sentence);
   free(sentence);
-  put_class(out, loop);
-  put_scale(out, loop);
-  put_advice(out, loop);
-  FG_TRY(fg_scan_loop_page_vectors(ctx, out, loop));
-  FG_TRY(fg_scan_loop_page_effects(ctx, out, loop));
-  FG_TRY(fg_scan_loop_page_residuals(ctx, out, loop));
-  fg_scan_loop_page_dimensions(out, loop);
-  fg_scan_loop_page_bumps(out, &loop->bumps);
-  put_candidates(out, loop);
-  put_errors(out, loop);
+  put_explanations(out, result);
+  put_scale(out, result);
+  put_advice(out, result);
+  FG_TRY(fg_scan_loop_page_vectors(ctx, out, result));
+  fg_scan_loop_page_effects(out, result);
+  FG_TRY(fg_scan_loop_page_residuals(ctx, out, result));
+  fg_scan_loop_page_dimensions(out, result);
+  fg_scan_loop_page_bumps(out, result);
+  put_candidates(out, result);
+  put_errors(out, result);
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the loop's page");
 }

@@ -9,59 +9,40 @@
 
 enum { WIDTH = 520, HEIGHT = 264, POINTS_MOST = 1300, BINS = 150, ROWS_IN_BIN = 8, COLOURS = 4 };
 
-/* A plot's data: rows over one coordinate. */
+/* A plot's data: rows over one coordinate, before or after. */
 typedef struct series {
-  const fg_scan_loop *loop;
-  fg_effect_coordinate coordinate;
-  const double *residual_um;
-  double light; /* rows up to this weight are drawn pale and are not in the mean */
+  const fg_scan_result *result;
+  fg_scan_coordinate coordinate;
+  bool after;
 } series;
 
-const char *fg_scan_loop_colour(const fg_scan_loop *loop, size_t scan) {
+/* Colour class of a scan's marks: "k0" to "k3", "k4" from the fifth on. */
+static const char *colour(size_t scan) {
   static const char *const names[] = {"k0", "k1", "k2", "k3", "k4"};
-  (void)loop;
   return names[scan < COLOURS ? scan : COLOURS];
 }
 
-static bool coordinate_of(const fg_points_row *row, fg_effect_coordinate coordinate, double *x) {
-  switch (coordinate) {
-  case FG_EFFECT_X:
-    *x = row->at.x;
-    return true;
-  case FG_EFFECT_Y:
-    *x = row->at.y;
-    return true;
-  case FG_EFFECT_FOIL:
-    *x = row->s_mm;
-    return true;
-  case FG_EFFECT_PHI:
-    *x = row->phi;
-    return row->bump != 0;
-  default:
-    *x = row->normal_rad * 180 / M_PI;
-    return true;
-  }
-}
-
 static bool point_at(const series *s, size_t i, double *x, double *y) {
-  const fg_points_row *row = &s->loop->points.rows[i];
-  *y = s->residual_um[i];
-  return row->weight > 0 && isfinite(*y) && coordinate_of(row, s->coordinate, x) && isfinite(*x);
+  const fg_scan_result_row *row = &s->result->row[i];
+  *y = row->residual_um[s->after];
+  *x = row->place[s->coordinate];
+  return row->weight > 0 && isfinite(*y) && isfinite(*x);
 }
 
 static size_t scan_of(const series *s, size_t i) {
-  return s->loop->points.views[s->loop->points.rows[i].view].scan;
+  return s->result->row[i].scan;
 }
 
+/* Drawn pale, and not in the mean. */
 static bool is_light(const series *s, size_t i) {
-  return s->loop->points.rows[i].weight <= s->light;
+  return s->result->row[i].weight <= s->result->light_weight;
 }
 
 static void put_points(const fg_plot *at, const series *s, size_t scan, bool light) {
-  size_t rows = s->loop->points.row_count, stride = 1 + rows / POINTS_MOST;
-  bool aside = s->loop->hold_out[scan];
+  size_t rows = s->result->rows, stride = 1 + rows / POINTS_MOST;
+  bool aside = s->result->scan[scan].hold_out;
   fprintf(at->out, "<path class=\"%s %s\" d=\"", aside ? "aside" : "dots",
-          light ? "pale" : fg_scan_loop_colour(s->loop, scan));
+          light ? "pale" : colour(scan));
   for (size_t i = 0; i < rows; i += stride) {
     double x, y;
     if (scan_of(s, i) != scan || is_light(s, i) != light || !point_at(s, i, &x, &y)) continue;
@@ -75,7 +56,7 @@ static void put_points(const fg_plot *at, const series *s, size_t scan, bool lig
 /* The mean of all rows in each bin: what the eye should follow. */
 static void put_mean(const fg_plot *at, const series *s, size_t scan) {
   double sum[BINS] = {0}, n[BINS] = {0}, x, y, place[BINS];
-  size_t rows = s->loop->points.row_count, count = 0;
+  size_t rows = s->result->rows, count = 0;
   for (size_t i = 0; i < rows; i++)
     count += scan_of(s, i) == scan && !is_light(s, i) && point_at(s, i, &x, &y);
   size_t bins = count / ROWS_IN_BIN < BINS ? count / ROWS_IN_BIN : BINS;
@@ -92,7 +73,7 @@ static void put_mean(const fg_plot *at, const series *s, size_t scan) {
     sum[b] = n[b] >= 2 ? fmin(at->y_high, fmax(at->y_low, sum[b] / n[b])) : NAN;
   }
   char style[16];
-  snprintf(style, sizeof style, "mean %s", fg_scan_loop_colour(s->loop, scan));
+  snprintf(style, sizeof style, "mean %s", colour(scan));
   fg_plot_line(at, place, sum, bins, style);
 }
 
@@ -108,14 +89,14 @@ static void put_plot(FILE *out, const series *s, const double range[2], double l
   fg_plot at = {out, WIDTH, 70, 510, 12, 214, range[0], range[1], -limit_um, limit_um};
   fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
   fg_plot_begin(&at, HEIGHT, caption);
-  put_noise(&at, s->loop->noise_floor_um);
+  put_noise(&at, s->result->noise_floor_um);
   fg_plot_y_axis(&at, "residual, µm");
   fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, fg_scan_loop_coordinate_title(s->coordinate));
-  for (size_t scan = 0; scan < s->loop->scan_count; scan++)
+  fg_plot_x_title(&at, s->result->coordinate_title[s->coordinate]);
+  for (size_t scan = 0; scan < s->result->scans; scan++)
     for (int light = 1; light >= 0; light--)
       put_points(&at, s, scan, light);
-  for (size_t scan = 0; scan < s->loop->scan_count && scan < COLOURS; scan++)
+  for (size_t scan = 0; scan < s->result->scans && scan < COLOURS; scan++)
     put_mean(&at, s, scan);
   fg_plot_end(&at);
   fputs("</figure>\n", out);
@@ -125,7 +106,7 @@ static bool find_range(const series *s, double range[2]) {
   double x, y;
   range[0] = INFINITY;
   range[1] = -INFINITY;
-  for (size_t i = 0; i < s->loop->points.row_count; i++) {
+  for (size_t i = 0; i < s->result->rows; i++) {
     if (!point_at(s, i, &x, &y)) continue;
     range[0] = fmin(range[0], x);
     range[1] = fmax(range[1], x);
@@ -134,77 +115,82 @@ static bool find_range(const series *s, double range[2]) {
 }
 
 /* Pairs of before and after; without a correction one plot each. */
-static void put_all(FILE *out, const fg_scan_loop *loop, const double limit_um[2]) {
+static void put_all(FILE *out, const fg_scan_result *result, const double limit_um[2]) {
   fputs("<div class=\"two\">\n", out);
-  for (int c = 0; c < FG_EFFECT_COORDINATES; c++) {
-    series s = {loop, (fg_effect_coordinate)c, loop->residual_before, fg_scan_light(&loop->points)};
+  for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
+    series s = {result, (fg_scan_coordinate)c, false};
     double range[2];
     if (!find_range(&s, range)) continue;
-    put_plot(out, &s, range, limit_um[0], loop->set.count ? "Before" : "As measured");
-    s.residual_um = loop->residual_after;
-    if (loop->set.count) put_plot(out, &s, range, limit_um[0], "After, to the same scale");
+    put_plot(out, &s, range, limit_um[0], result->corrected ? "Before" : "As measured");
+    s.after = true;
+    if (result->corrected) put_plot(out, &s, range, limit_um[0], "After, to the same scale");
   }
   fputs("</div>\n", out);
 }
 
 /* On the scale of what was there before, what is left is often a line: enlarged, it shows whether
  * it is noise. */
-static void put_enlarged(FILE *out, const fg_scan_loop *loop, const double limit_um[2]) {
+static void put_enlarged(FILE *out, const fg_scan_result *result, const double limit_um[2]) {
   static const double worth = 3;
   char caption[80];
-  if (!loop->set.count || limit_um[0] < worth * limit_um[1]) return;
+  if (!result->corrected || limit_um[0] < worth * limit_um[1]) return;
   snprintf(caption, sizeof caption, "After, enlarged %.3g times", limit_um[0] / limit_um[1]);
   fprintf(out,
           "<details open><summary>What is left, enlarged %.3g times: is it noise?</summary><div "
           "class=\"two\">\n",
           limit_um[0] / limit_um[1]);
-  for (int c = 0; c < FG_EFFECT_COORDINATES; c++) {
-    series s = {loop, (fg_effect_coordinate)c, loop->residual_after, fg_scan_light(&loop->points)};
+  for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
+    series s = {result, (fg_scan_coordinate)c, true};
     double range[2];
     if (find_range(&s, range)) put_plot(out, &s, range, limit_um[1], caption);
   }
   fputs("</div></details>\n", out);
 }
 
-static bool has_light(const fg_points *points) {
-  double light = fg_scan_light(points);
-  for (size_t i = 0; i < points->row_count; i++)
-    if (points->rows[i].weight > 0 && points->rows[i].weight <= light) return true;
+static bool has_light(const fg_scan_result *result) {
+  for (size_t i = 0; i < result->rows; i++)
+    if (result->row[i].weight > 0 && result->row[i].weight <= result->light_weight) return true;
   return false;
 }
 
-static void put_key(FILE *out, const fg_scan_loop *loop) {
+static void put_scan_keys(FILE *out, const fg_scan_result *result) {
+  fputs(" Scans:", out);
+  for (size_t i = 0; i < result->scans && i <= COLOURS; i++) {
+    fprintf(out, " <span class=\"key %s\">", colour(i));
+    if (i == COLOURS)
+      fputs("others", out);
+    else
+      fg_html_text(out, result->scan[i].before->scan);
+    fputs(result->scan[i].hold_out && i < COLOURS ? " (crosses: kept aside)</span>" : "</span>",
+          out);
+  }
+  fputs(".", out);
+}
+
+static void put_key(FILE *out, const fg_scan_result *result) {
   fputs("<p class=\"note\">Dots: edge rows (thinned). Line: their mean. Grey band: two sd of the "
         "noise of one row.",
         out);
-  if (has_light(&loop->points))
+  if (has_light(result))
     fputs(" Pale: rows that hardly weigh, at the frame where they lie beyond it.", out);
-  if (loop->scan_count > 1) {
-    fputs(" Scans:", out);
-    for (size_t i = 0; i < loop->scan_count && i <= COLOURS; i++) {
-      fprintf(out, " <span class=\"key %s\">", fg_scan_loop_colour(loop, i));
-      if (i == COLOURS)
-        fputs("others", out);
-      else
-        fg_html_text(out, loop->before[i].scan);
-      fputs(loop->hold_out[i] && i < COLOURS ? " (crosses: kept aside)</span>" : "</span>", out);
-    }
-    fputs(".", out);
-  }
+  if (result->scans > 1) put_scan_keys(out, result);
   fputs("</p>\n", out);
 }
 
-fg_status fg_scan_loop_page_residuals(fg_context *ctx, FILE *out, const fg_scan_loop *loop) {
+/* Residuals larger than all but this share of them lie at the frame. */
+#define BEYOND_SHARE 0.003
+
+fg_status fg_scan_loop_page_residuals(fg_context *ctx, FILE *out, const fg_scan_result *result) {
   double limit[2];
-  FG_TRY(fg_scan_loop_residual_limit(ctx, &loop->points, loop->residual_before, 0.003, &limit[0]));
-  FG_TRY(fg_scan_loop_residual_limit(ctx, &loop->points, loop->residual_after, 0.003, &limit[1]));
+  FG_TRY(fg_scan_loop_residual_limit(ctx, result, false, BEYOND_SHARE, &limit[0]));
+  FG_TRY(fg_scan_loop_residual_limit(ctx, result, true, BEYOND_SHARE, &limit[1]));
   for (int i = 0; i < 2; i++)
-    limit[i] = fmax(1.15 * limit[i], 3 * loop->noise_floor_um);
+    limit[i] = fmax(1.15 * limit[i], 3 * result->noise_floor_um);
   if (!(limit[0] > 0)) return FG_OK;
   fputs("<section><h2 class=\"first\">Residual against each coordinate</h2>\n", out);
-  put_key(out, loop);
-  put_all(out, loop, limit);
-  put_enlarged(out, loop, limit);
+  put_key(out, result);
+  put_all(out, result, limit);
+  put_enlarged(out, result, limit);
   fputs("</section>\n", out);
   return FG_OK;
 }

@@ -3,51 +3,45 @@
 #include <stdio.h>
 
 #include "core/file.h"
+#include "foilgauge/scan_loop.h"
 #include "report/scan_loop/scan_loop_bumps.h"
-#include "report/scan_loop/scan_loop_parts.h"
 
-static void put_effects(FILE *out, const fg_scan_loop *loop) {
-  for (size_t i = 0; i < loop->set.count; i++) {
-    const fg_effect_found *effect = &loop->set.effects[i];
-    const char *name;
-    double value, u;
-    if (fg_effect_is_free(effect->kind)) {
-      fprintf(out, "  unattributed, over %s: %.2f um\n",
-              fg_effect_coordinate_name(effect->kind->coordinate),
-              fg_effect_found_amplitude(effect));
+static void put_claims(FILE *out, const fg_scan_result *result) {
+  for (size_t i = 0; i < result->claims; i++) {
+    const fg_scan_result_claim *claim = &result->claim[i];
+    if (claim->free) {
+      fprintf(out, "  unattributed, over %s: %.2f um\n", claim->coordinate_name,
+              claim->amplitude_um);
       continue;
     }
-    fprintf(out, "  %s %s:", loop->decided.sure[i] ? "found" : "tied ", effect->kind->id);
-    for (size_t p = 0; fg_effect_found_number(effect, p, &name, &value, &u); p++)
-      fprintf(out, " %s %.6g +- %.2g", name, value, 2 * u);
+    fprintf(out, "  %s %s:", claim->sure ? "found" : "tied ", claim->id);
+    for (size_t p = 0; p < claim->parameters; p++)
+      fprintf(out, " %s %.6g +- %.2g", claim->parameter[p].name, claim->parameter[p].value,
+              2 * claim->parameter[p].u);
     fputc('\n', out);
   }
 }
 
-static void put_class(FILE *out, const fg_scan_loop *loop) {
-  const fg_scan_loop_decisions *decided = &loop->decided;
-  char name[FG_SCAN_LOOP_CLASS_WORDS];
-  if (decided->shown_count > 1) {
+static void put_explanations(FILE *out, const fg_scan_result *result) {
+  if (!result->named) {
     fputs("The data cannot tell which it is (-o has the range of every dimension over them):\n",
           out);
-    for (size_t k = 0; k < decided->shown_count; k++) {
-      fg_scan_loop_explanation_name(&loop->explanations, decided->shown[k], name, sizeof name);
-      fprintf(out, "  %s\n", name);
-    }
-    if (decided->unlisted) fprintf(out, "  and %zu more\n", decided->unlisted);
+    for (size_t k = 0; k < result->explanations; k++)
+      fprintf(out, "  %s\n", result->explanation[k].name);
+    if (result->unlisted) fprintf(out, "  and %zu more\n", result->unlisted);
   }
-  for (size_t i = 0; i < decided->advices; i++)
-    fprintf(out, "To tell: %s.\n", decided->advice[i]);
+  for (size_t i = 0; i < result->advices; i++)
+    fprintf(out, "To tell: %s.\n", result->advice[i]);
 }
 
-static void put_candidates(FILE *out, const fg_scan_loop *loop) {
-  for (size_t i = 0; i < loop->decided.candidates; i++) {
-    const fg_scan_loop_unclaimed *candidate = &loop->decided.candidate[i];
-    if (candidate->verdict == FG_LOOP_TIED) continue; /* in the class */
-    fprintf(out, "  %s: %s", fg_loop_verdict_word(candidate->verdict), candidate->kind->id);
-    if (isfinite(candidate->smallest_um))
-      fprintf(out, ", would have shown from %.3g um", candidate->smallest_um);
-    fputs(candidate->barred ? "; seen, and not confirmed from disc to disc\n" : "\n", out);
+static void put_unclaimed(FILE *out, const fg_scan_result *result) {
+  for (size_t i = 0; i < result->unclaimeds; i++) {
+    const fg_scan_result_unclaimed *one = &result->unclaimed[i];
+    if (one->verdict == FG_LOOP_TIED) continue; /* in an explanation */
+    fprintf(out, "  %s: %s", fg_loop_verdict_word(one->verdict), one->id);
+    if (isfinite(one->smallest_um))
+      fprintf(out, ", would have shown from %.3g um", one->smallest_um);
+    fputs(one->barred ? "; seen, and not confirmed from disc to disc\n" : "\n", out);
   }
 }
 
@@ -55,8 +49,8 @@ static void put_error(FILE *out, const char *name, double before, double after) 
   if (isfinite(before)) fprintf(out, "  %-22s %10.4g %10.4g\n", name, before, after);
 }
 
-static void put_errors(FILE *out, const fg_scan_loop *loop) {
-  const fg_scan_loop_error *b = &loop->error_before, *a = &loop->error_after;
+static void put_errors(FILE *out, const fg_scan_result *result) {
+  const fg_scan_loop_error *b = &result->before, *a = &result->after;
   fputs("errors of the edge rows, um   before      after\n", out);
   put_error(out, "rms", b->rms, a->rms);
   put_error(out, "robust sd", b->robust_sd, a->robust_sd);
@@ -83,18 +77,21 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
 }
 
 fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
+  const fg_scan_result *result = fg_scan_loop_result(loop);
   fprintf(out, "%s: edge residual %.3f um before, %.3f um after; noise %.3f um\n",
-          fg_loop_outcome_word(loop->verdict), loop->error_before.rms, loop->error_after.rms,
-          loop->noise_floor_um);
-  put_effects(out, loop);
-  fg_text_bumps(&loop->bumps, out);
-  put_class(out, loop);
-  for (size_t i = 0; i < loop->scan_count; i++)
-    put_foils(out, &loop->before[i], &loop->after[i]);
+          fg_loop_outcome_word(result->verdict), result->before.rms, result->after.rms,
+          result->noise_floor_um);
+  put_claims(out, result);
+  fg_text_bumps(&result->bumps, out);
+  for (size_t i = 0; i < result->notes; i++)
+    fprintf(out, "  %s\n", result->note[i]);
+  put_explanations(out, result);
+  for (size_t i = 0; i < result->scans; i++)
+    put_foils(out, result->scan[i].before, result->scan[i].after);
   fputs("not claimed:\n", out);
-  put_candidates(out, loop);
-  fg_text_bumps_rejected(&loop->bumps, out);
-  put_errors(out, loop);
+  put_unclaimed(out, result);
+  fg_text_bumps_rejected(&result->bumps, out);
+  put_errors(out, result);
   fputs("+- is U = 2 u.\n", out);
   return fg_stream_finish(ctx, out, "the loop's report");
 }

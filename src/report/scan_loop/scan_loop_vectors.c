@@ -21,11 +21,10 @@ static const double needle_length = 44,
 
 typedef struct vectors {
   FILE *out;
-  const fg_points *points;
-  const double *residual_um;
+  const fg_scan_result *result;
   size_t scan;
+  bool after;
   bool rings;             /* nothing but discs: needles must stay inside and between them */
-  double light;           /* weight that hardly counts */
   double longest;         /* needle of a large residual */
   size_t block;           /* rows in one needle */
   double low[2], high[2]; /* of the rows, mm */
@@ -33,36 +32,25 @@ typedef struct vectors {
   double unit_per_um;     /* of a needle */
 } vectors;
 
-double fg_scan_light(const fg_points *points) {
-  double most = 0;
-  for (size_t i = 0; i < points->row_count; i++)
-    most = fmax(most, points->rows[i].weight);
-  return 0.1 * most;
-}
-
-fg_status fg_scan_loop_residual_limit(fg_context *ctx, const fg_points *points,
-                                      const double *values, double share, double *limit) {
+fg_status fg_scan_loop_residual_limit(fg_context *ctx, const fg_scan_result *result, bool after,
+                                      double share, double *limit) {
   double *sizes = NULL;
   size_t count = 0;
   *limit = 0;
-  if (!points->row_count) return FG_OK;
-  double least = fg_scan_light(points);
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *sizes, (void **)&sizes));
-  for (size_t i = 0; i < points->row_count; i++)
-    if (points->rows[i].weight > least && isfinite(values[i])) sizes[count++] = fabs(values[i]);
+  if (!result->rows) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, result->rows, sizeof *sizes, (void **)&sizes));
+  for (size_t i = 0; i < result->rows; i++) {
+    double value = result->row[i].residual_um[after];
+    if (result->row[i].weight > result->light_weight && isfinite(value))
+      sizes[count++] = fabs(value);
+  }
   if (count) *limit = fg_select(sizes, count, (size_t)((double)(count - 1) * (1 - share)));
   free(sizes);
   return FG_OK;
 }
 
 static bool is_shown(const vectors *v, size_t i) {
-  return v->points->views[v->points->rows[i].view].scan == v->scan;
-}
-
-/* Neighbours on one arc: the next row starts another where a gap is wider than a few rows. */
-static bool same_arc(const fg_points_row *a, const fg_points_row *b) {
-  return a->view == b->view && a->group == b->group &&
-         hypot(a->at.x - b->at.x, a->at.y - b->at.y) < 0.5;
+  return v->result->row[i].scan == v->scan;
 }
 
 static fg_point place(const vectors *v, fg_point mm) {
@@ -70,17 +58,17 @@ static fg_point place(const vectors *v, fg_point mm) {
 }
 
 static size_t arc_end(const vectors *v, size_t from) {
-  const fg_points_row *rows = v->points->rows;
+  const fg_scan_result_row *row = v->result->row;
   size_t end = from + 1;
-  while (end < v->points->row_count && same_arc(&rows[end - 1], &rows[end]))
+  while (end < v->result->rows && row[end].arc == row[from].arc)
     end++;
   return end;
 }
 
 static void put_strip(const vectors *v) {
-  for (size_t k = 0; k < v->points->view_count; k++) {
-    const fg_foil *foil = v->points->views[k].foil;
-    if (v->points->views[k].scan != v->scan || !foil || !foil->strip.count) continue;
+  for (size_t k = 0; k < v->result->views; k++) {
+    const fg_foil *foil = v->result->view[k].foil;
+    if (v->result->view[k].scan != v->scan || !foil || !foil->strip.count) continue;
     size_t step = 1 + foil->strip.count / 900;
     fputs("<path class=\"strip\" d=\"", v->out);
     for (size_t i = 0; i < foil->strip.count; i += step) {
@@ -100,20 +88,20 @@ static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_
   fg_point at = {0, 0}, normal = {0, 0};
   double n = 0, sum = 0;
   for (size_t i = from; i < to; i++) {
-    const fg_points_row *row = &v->points->rows[i];
-    if (!(row->weight > 0) || !isfinite(v->residual_um[i])) continue;
-    at.x += row->ideal.x;
-    at.y += row->ideal.y;
+    const fg_scan_result_row *row = &v->result->row[i];
+    if (!(row->weight > 0) || !isfinite(row->residual_um[v->after])) continue;
+    at.x += row->ideal_mm.x;
+    at.y += row->ideal_mm.y;
     normal.x += row->normal.x;
     normal.y += row->normal.y;
-    sum += v->residual_um[i];
+    sum += row->residual_um[v->after];
     n++;
   }
   double length = hypot(normal.x, normal.y);
   if (!(n > 0) || !(length > 0)) return false;
   *value = sum / n;
   *base = place(v, (fg_point){at.x / n, at.y / n});
-  if (v->points->rows[from].weight <= v->light) *value = 0;
+  if (v->result->row[from].weight <= v->result->light_weight) *value = 0;
   double reach = fmax(-1.6, fmin(1.6, *value * v->unit_per_um / v->longest)) * v->longest;
   *tip = (fg_point){base->x + reach * normal.x / length, base->y + reach * normal.y / length};
   return true;
@@ -122,14 +110,14 @@ static bool needle(const vectors *v, size_t from, size_t to, fg_point *base, fg_
 typedef enum needle_part { NEEDLES_OUT, NEEDLES_IN, TIPS, BASES } needle_part;
 
 static bool is_ring(const vectors *v, size_t from, size_t end) {
-  fg_point a = v->points->rows[from].at, b = v->points->rows[end - 1].at;
+  fg_point a = v->result->row[from].at_mm, b = v->result->row[end - 1].at_mm;
   return end - from > 8 && hypot(a.x - b.x, a.y - b.y) < 0.5;
 }
 
 static void put_needles(const vectors *v, needle_part part) {
   static const char *const styles[] = {"outwards", "inwards", "tips", "bases"};
   fprintf(v->out, "<path class=\"%s\" d=\"", styles[part]);
-  for (size_t i = 0, end; i < v->points->row_count; i = end) {
+  for (size_t i = 0, end; i < v->result->rows; i = end) {
     end = arc_end(v, i);
     bool open = false;
     for (size_t k = i; k < end && is_shown(v, i); k += v->block) {
@@ -151,16 +139,16 @@ static void put_needles(const vectors *v, needle_part part) {
 
 /* Numbers inside the bumps, away from the needles. */
 static void put_numbers(const vectors *v) {
-  const fg_points *points = v->points;
+  const fg_scan_result *result = v->result;
   size_t count = 0;
-  for (size_t k = 0; k < points->view_count; k++)
-    if (points->views[k].scan == v->scan) count += points->parts[points->views[k].part].bump_count;
+  for (size_t k = 0; k < result->views; k++)
+    if (result->view[k].scan == v->scan) count += result->view[k].bumps;
   if (count > NUMBERS_MOST) return;
-  for (size_t i = 0, end; i < points->row_count; i = end) {
+  for (size_t i = 0, end; i < result->rows; i = end) {
     end = arc_end(v, i);
-    const fg_points_row *row = &points->rows[i + (end - i) / 2];
+    const fg_scan_result_row *row = &result->row[i + (end - i) / 2];
     if (!row->bump || !is_shown(v, i)) continue;
-    fg_point p = place(v, row->ideal);
+    fg_point p = place(v, row->ideal_mm);
     fprintf(v->out, "<text class=\"bump\" x=\"%.1f\" y=\"%.1f\">%d</text>\n",
             p.x - 22 * row->normal.x, p.y - 22 * row->normal.y + 5, row->bump);
   }
@@ -179,12 +167,12 @@ static void put_bar(const vectors *v, int height) {
 
 static double rms_of(const vectors *v) {
   double sum = 0, n = 0;
-  for (size_t i = 0; i < v->points->row_count; i++)
-    if (is_shown(v, i) && v->points->rows[i].weight > 0) {
-      double weight = v->points->rows[i].weight;
-      sum += weight * v->residual_um[i] * v->residual_um[i];
-      n += weight;
-    }
+  for (size_t i = 0; i < v->result->rows; i++) {
+    const fg_scan_result_row *row = &v->result->row[i];
+    if (!is_shown(v, i) || !(row->weight > 0)) continue;
+    sum += row->weight * row->residual_um[v->after] * row->residual_um[v->after];
+    n += row->weight;
+  }
   return sqrt(sum / n);
 }
 
@@ -211,71 +199,72 @@ static void find_box(vectors *v) {
     v->low[axis] = INFINITY;
     v->high[axis] = -INFINITY;
   }
-  for (size_t i = 0; i < v->points->row_count; i++) {
-    const fg_points_row *row = &v->points->rows[i];
+  for (size_t i = 0; i < v->result->rows; i++) {
+    const fg_scan_result_row *row = &v->result->row[i];
     if (!is_shown(v, i)) continue;
     count++;
-    v->low[0] = fmin(v->low[0], row->at.x);
-    v->low[1] = fmin(v->low[1], row->at.y);
-    v->high[0] = fmax(v->high[0], row->at.x);
-    v->high[1] = fmax(v->high[1], row->at.y);
+    v->low[0] = fmin(v->low[0], row->at_mm.x);
+    v->low[1] = fmin(v->low[1], row->at_mm.y);
+    v->high[0] = fmax(v->high[0], row->at_mm.x);
+    v->high[1] = fmax(v->high[1], row->at_mm.y);
   }
   v->block = 1 + count / (v->rings ? RING_NEEDLES_MOST : NEEDLES_MOST);
   v->scale = fmin((WIDTH - 2.0 * MARGIN) / (v->high[0] - v->low[0]),
                   (HEIGHT_MOST - 2.0 * MARGIN) / (v->high[1] - v->low[1]));
 }
 
-static void put_scan(const fg_scan_loop *loop, vectors *v) {
-  if (loop->scan_count > 1) {
+static void put_scan(vectors *v) {
+  const fg_scan_result_scan *scan = &v->result->scan[v->scan];
+  if (v->result->scans > 1) {
     fputs("<h3>", v->out);
-    fg_html_text(v->out, loop->before[v->scan].scan);
-    fputs(loop->hold_out[v->scan] ? " (kept aside: it only confirms)</h3>" : "</h3>", v->out);
+    fg_html_text(v->out, scan->before->scan);
+    fputs(scan->hold_out ? " (kept aside: it only confirms)</h3>" : "</h3>", v->out);
   }
   fputs("<div class=\"two\">\n", v->out);
-  v->residual_um = loop->residual_before;
-  put_figure(v, loop->set.count ? "Before" : "As measured");
-  if (loop->set.count) {
-    v->residual_um = loop->residual_after;
-    put_figure(v, "After");
-  }
+  v->after = false;
+  put_figure(v, v->result->corrected ? "Before" : "As measured");
+  v->after = true;
+  if (v->result->corrected) put_figure(v, "After");
   fputs("</div>\n", v->out);
 }
 
 /* All drawings have one scale, so that they compare. */
-static void put_scans(FILE *out, const fg_scan_loop *loop, double limit_um) {
+static void put_scans(FILE *out, const fg_scan_result *result, double limit_um) {
   double scale = INFINITY;
-  vectors v = {.out = out, .points = &loop->points, .rings = true};
-  for (size_t k = 0; k < v.points->part_count; k++)
-    if (v.points->parts[k].bump_count) v.rings = false;
-  v.light = fg_scan_light(v.points);
+  vectors v = {.out = out, .result = result, .rings = true};
+  for (size_t k = 0; k < result->views; k++)
+    if (result->view[k].bumps) v.rings = false;
   v.longest = v.rings ? ring_needle_length : needle_length;
   for (int drawn = 0; drawn < 2; drawn++)
-    for (v.scan = 0; v.scan < loop->scan_count && v.scan < SCANS_DRAWN; v.scan++) {
+    for (v.scan = 0; v.scan < result->scans && v.scan < SCANS_DRAWN; v.scan++) {
       find_box(&v);
       if (!(v.high[0] > v.low[0]) || !(v.high[1] > v.low[1])) continue;
       scale = fmin(scale, v.scale);
       v.scale = scale;
       v.unit_per_um = fg_scan_loop_nice_below(1000 * v.longest / limit_um / scale) * scale / 1000;
-      if (drawn) put_scan(loop, &v);
+      if (drawn) put_scan(&v);
     }
 }
 
-fg_status fg_scan_loop_page_vectors(fg_context *ctx, FILE *out, const fg_scan_loop *loop) {
+/* Residuals larger than all but this share of them may leave the drawing's scale. */
+#define BEYOND_SHARE 0.01
+
+fg_status fg_scan_loop_page_vectors(fg_context *ctx, FILE *out, const fg_scan_result *result) {
   double limit = 0;
-  FG_TRY(fg_scan_loop_residual_limit(ctx, &loop->points, loop->residual_before, 0.01, &limit));
+  FG_TRY(fg_scan_loop_residual_limit(ctx, result, false, BEYOND_SHARE, &limit));
   if (!(limit > 0)) return FG_OK;
   fprintf(out,
           "<section><h2 class=\"first\">Where the edges leave their circles</h2>\n"
           "<p class=\"note\">Every arc, and how far the measured edges lie from %s: "
           "<span class=\"key outkey\">outside</span> or <span class=\"key inkey\">inside</span> of "
           "the circle. All drawings have one scale.</p>\n",
-          loop->options.same_foil && loop->scan_count > 1
+          result->same_foil && result->scans > 1
               ? "the one set of circles that was fitted to all scans of the foil"
               : "the circles that were fitted to them");
-  put_scans(out, loop, limit);
-  if (loop->scan_count > SCANS_DRAWN)
+  put_scans(out, result, limit);
+  if (result->scans > SCANS_DRAWN)
     fprintf(out, "<p class=\"note\">%zu more scans are not drawn.</p>\n",
-            loop->scan_count - SCANS_DRAWN);
+            result->scans - SCANS_DRAWN);
   fputs("</section>\n", out);
   return FG_OK;
 }

@@ -1,12 +1,21 @@
-#include "report/scan_loop/scan_loop_shapes.h"
-
+/* The shape of one claim as points. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/memory.h"
+#include "scan_loop/result.h"
+#include "scan_loop/state.h"
+
 enum { SHAPE_POINTS = 81 };
 
-static void write_field(fg_json *json, const fg_scan_loop *loop, const fg_effect_found *effect) {
+static void put_point(fg_scan_result_claim *claim, double at, double um) {
+  claim->shape[claim->shape_points][0] = at;
+  claim->shape[claim->shape_points++][1] = um;
+}
+
+static void put_field(const fg_scan_loop *loop, const fg_effect_found *effect,
+                      fg_scan_result_claim *claim) {
   const fg_field_frame *f = &loop->points.frame;
   int along = effect->kind->coordinate == FG_EFFECT_X ? 0 : 1;
   bool moves_x = effect->kind->moves && !strcmp(effect->kind->moves, "x");
@@ -15,19 +24,19 @@ static void write_field(fg_json *json, const fg_scan_loop *loop, const fg_effect
     double t = i / (SHAPE_POINTS - 1.0);
     double at = f->first_mm[along] + t * (f->last_mm[along] - f->first_mm[along]);
     fg_point d = fg_field_at(&list, (fg_point){at, at});
-    double pair[2] = {at, 1000 * (moves_x ? d.x : d.y)};
-    fg_json_numbers(json, NULL, pair, 2);
+    put_point(claim, at, 1000 * (moves_x ? d.x : d.y));
   }
 }
 
-static void write_foil(fg_json *json, const fg_scan_loop *loop, const fg_effect_found *effect) {
+static void put_foil(const fg_scan_loop *loop, const fg_effect_found *effect,
+                     fg_scan_result_claim *claim) {
   const double *psi = loop->points.psi_rad;
   for (int i = 0; i < SHAPE_POINTS; i++) {
-    double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), pair[2] = {2 * t - 1, 0};
+    double values[FG_FIELD_COLUMNS], t = i / (SHAPE_POINTS - 1.0), sum = 0;
     fg_field_splines(psi[0], psi[1], FG_FIELD_COLUMNS, psi[0] + t * (psi[1] - psi[0]), values);
     for (size_t c = 0; c < effect->columns; c++)
-      pair[1] += effect->coefficient_um[c] * values[c];
-    fg_json_numbers(json, NULL, pair, 2);
+      sum += effect->coefficient_um[c] * values[c];
+    put_point(claim, 2 * t - 1, sum);
   }
 }
 
@@ -54,8 +63,8 @@ static double place_of(const fg_points *points, const fg_points_row *row, bool p
 }
 
 /* Means of a deviation at the rows, which are where it is known. */
-static fg_status write_part(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
-                            const fg_effect_found *effect) {
+static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop, const fg_effect_found *effect,
+                          fg_scan_result_claim *claim) {
   const fg_points *points = &loop->points;
   bool phi = effect->kind->coordinate == FG_EFFECT_PHI;
   double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
@@ -75,23 +84,19 @@ static fg_status write_part(fg_context *ctx, fg_json *json, const fg_scan_loop *
     count[bin]++;
   }
   free(shift);
-  for (int k = 0; k < SHAPE_POINTS; k++) {
-    double pair[2] = {at[k] / count[k], sum[k] / count[k]};
-    if (count[k] > 0) fg_json_numbers(json, NULL, pair, 2);
-  }
+  for (int k = 0; k < SHAPE_POINTS; k++)
+    if (count[k] > 0) put_point(claim, at[k] / count[k], sum[k] / count[k]);
   return FG_OK;
 }
 
-fg_status fg_json_scan_shape(fg_context *ctx, fg_json *json, const fg_scan_loop *loop,
-                             const fg_effect_found *effect) {
-  fg_status status = FG_OK;
-  fg_json_array(json, "shape");
+fg_status fg_scan_result_put_shape(fg_context *ctx, const fg_scan_loop *loop,
+                                   const fg_effect_found *effect, fg_scan_result_claim *claim) {
+  FG_TRY(fg_memory_allocate(ctx, SHAPE_POINTS, sizeof *claim->shape, (void **)&claim->shape));
   if (effect->kind->glass)
-    write_field(json, loop, effect);
+    put_field(loop, effect, claim);
   else if (effect->kind->coordinate == FG_EFFECT_FOIL)
-    write_foil(json, loop, effect);
+    put_foil(loop, effect, claim);
   else
-    status = write_part(ctx, json, loop, effect);
-  fg_json_array_end(json);
-  return status;
+    return put_part(ctx, loop, effect, claim);
+  return FG_OK;
 }

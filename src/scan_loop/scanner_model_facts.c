@@ -1,0 +1,57 @@
+/* What a model is and corrects, for reports. */
+#include <math.h>
+#include <string.h>
+
+#include "scan_loop/result.h"
+#include "scan_loop/scanner_model.h"
+
+_Static_assert((int)FG_SCANNER_MODEL_EFFECTS >= (int)FG_FIELDS_MAX, "every field has its place");
+
+/* How far an effect moves anything in the region, um: the half range of its larger component. */
+static double half_range_um(const fg_field_list *list, size_t index) {
+  enum { GRID = 33 };
+  const fg_field_frame *f = &list->frame;
+  fg_field_list one = {.frame = *f, .fields = {list->fields[index]}, .count = 1};
+  fg_point low = {INFINITY, INFINITY}, high = {-INFINITY, -INFINITY};
+  for (int i = 0; i < GRID; i++) { /* every field varies along one axis, or alike along both */
+    double t = i / (GRID - 1.0);
+    fg_point d = fg_field_at(&one, (fg_point){f->low_mm[0] + t * (f->high_mm[0] - f->low_mm[0]),
+                                              f->low_mm[1] + t * (f->high_mm[1] - f->low_mm[1])});
+    low = (fg_point){fmin(low.x, d.x), fmin(low.y, d.y)};
+    high = (fg_point){fmax(high.x, d.x), fmax(high.y, d.y)};
+  }
+  return 500 * fmax(high.x - low.x, high.y - low.y);
+}
+
+static fg_effect_found effect_of(const fg_field *field) {
+  fg_effect_found effect = {
+      .kind = fg_effect_find(field->id), .columns = field->columns, .shapes = field->shapes};
+  for (size_t c = 0; c < field->columns; c++) {
+    effect.coefficient_um[c] = 1000 * field->amplitude_mm[c];
+    effect.u_coefficient_um[c] = 1000 * field->u_amplitude_mm[c];
+  }
+  memcpy(effect.shape, field->shape, sizeof effect.shape);
+  memcpy(effect.u_shape, field->u_shape, sizeof effect.u_shape);
+  return effect;
+}
+
+void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_facts *facts) {
+  const fg_field_frame *frame = &model->fields.frame;
+  *facts = (fg_scanner_model_facts){.path = model->path,
+                                    .sha256 = model->sha256,
+                                    .scanner = model->scanner[0] ? model->scanner : NULL,
+                                    .date = model->date[0] ? model->date : NULL,
+                                    .scans = model->scans,
+                                    .known_diameters = model->known_diameters,
+                                    .tied = model->tied,
+                                    .low_mm = {frame->low_mm[0], frame->low_mm[1]},
+                                    .high_mm = {frame->high_mm[0], frame->high_mm[1]}};
+  for (size_t i = 0; i < model->fields.count; i++) {
+    const fg_effect_found effect = effect_of(&model->fields.fields[i]);
+    fg_scanner_model_effect *one = &facts->effect[facts->effects++];
+    one->id = effect.kind->id;
+    one->words = effect.kind->words;
+    one->parameters = fg_scan_result_put_parameters(&effect, one->parameter);
+    one->half_range_um = half_range_um(&model->fields, i);
+  }
+}
