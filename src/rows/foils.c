@@ -32,12 +32,12 @@ static bool is_usable(const fg_bump *bump) {
 /* Angle that the strip spans about O, without a lip. */
 static double end_to_end(const fg_foil *foil) {
   double span = 0;
-  fg_point from = {0, 0};
+  size_t last = foil->strip.count;
   for (size_t k = 0; k < foil->strip.count; k++) {
     if (foil->labels[k].kind == FG_ARC_LIP || !(foil->strip.stations[k].weight > 0)) continue;
-    fg_point to = middle_of(foil, k);
+    fg_point to = middle_of(foil, k), from = middle_of(foil, last < k ? last : k);
     span += atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
-    from = to;
+    last = k;
   }
   return fabs(span);
 }

@@ -88,6 +88,31 @@ static void views_of_one_part_share_its_groups(void **state) {
 }
 
 /* A foil that was not measured has no geometry, and bars nothing for the others. */
+static fg_point turned(fg_point about, fg_point at, double angle) {
+  double x = at.x - about.x, y = at.y - about.y;
+  return (fg_point){about.x + x * cos(angle) - y * sin(angle),
+                    about.y + x * sin(angle) + y * cos(angle)};
+}
+
+/* However the foil lies, and whether or not its first stations were usable. */
+static void a_part_knows_the_angle_from_end_to_end(void **state) {
+  (void)state;
+  fg_measurement m = measured(1);
+  fg_foil *foil = &m.foils[0];
+  for (int turn = 0; turn < 8; turn++) {
+    for (size_t k = 0; k < foil->strip.count; k++) {
+      fg_station *s = &foil->strip.stations[k];
+      s->left = turned(foil->overall.centre_mm, s->left, 0.8);
+      s->right = turned(foil->overall.centre_mm, s->right, 0.8);
+      if (k < 3) s->weight = 0;
+    }
+    fg_points points = build(&m, false);
+    assert_true(fabs(points.parts[0].end_to_end_rad - 124 * synthetic_pi / 180) < 2e-3);
+    fg_points_free(&points);
+  }
+  synthetic_free(&m);
+}
+
 static void a_foil_that_was_not_measured_is_no_part(void **state) {
   (void)state;
   fg_measurement m = measured(3);
@@ -108,6 +133,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_foil_may_have_more_lands_than_bumps),
       cmocka_unit_test(views_of_one_part_share_its_groups),
+      cmocka_unit_test(a_part_knows_the_angle_from_end_to_end),
       cmocka_unit_test(a_foil_that_was_not_measured_is_no_part),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
