@@ -1,5 +1,7 @@
 #include "core/select.h"
 
+#include <stdlib.h>
+
 double fg_select(double *values, size_t count, size_t k) {
   ptrdiff_t low = 0, high = (ptrdiff_t)count - 1, wanted = (ptrdiff_t)k;
   while (low < high) {
@@ -23,4 +25,13 @@ double fg_select(double *values, size_t count, size_t k) {
       break;
   }
   return values[k];
+}
+
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+void fg_sort(double *values, size_t count) {
+  qsort(values, count, sizeof *values, compare);
 }

@@ -1,4 +1,4 @@
-/* Order statistics without sorting. */
+/* Order statistics. */
 #ifndef FG_CORE_SELECT_H
 #define FG_CORE_SELECT_H
 
@@ -6,5 +6,8 @@
 
 /* The value at position `k` of the sorted values (Hoare's selection); reorders them. count > k. */
 double fg_select(double *values, size_t count, size_t k);
+
+/* Ascending. */
+void fg_sort(double *values, size_t count);
 
 #endif

@@ -1,7 +1,6 @@
 /* A foil from its strip: arcs, uncertainties, numbers, flags, derived quantities. */
 #include "foilgauge/foil.h"
 
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,8 +8,8 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
-#include "geometry/layout.h"
 #include "geometry/places.h"
 #include "geometry/recognise.h"
 #include "geometry/trouble.h"
@@ -21,23 +20,10 @@
 /* A bump fits poorly when it scatters by this factor more than the median bump. */
 #define POOR_SCATTER  3.0
 #define OUTLIER_SHARE 0.02
-/* The edge model's systematic error counts when chance would show it less often than this. */
-#define EDGE_MODEL_P 0.005
-/* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
- * intensity model leaves on clean renders (reports/accuracy.md). */
-#define LINE_SHIFT_BLURS 0.001
-/* Relative error of gamma where halo, wall or a cut-off level shape the edges: all profiles say the
- * same wrong value. */
-#define HIDDEN_TONE_DOUBT 0.23
-/* Where both edges blur into each other that place rests on the shape of the blur: the share grows
- * with the cube of the blur below so many blurs of width (reports/accuracy_hard.md). */
-#define LINE_SHIFT_WIDTHS 3.0
 /* Below so many blurs of width, no plateau is left between the edges. */
 #define COARSE_WIDTHS 2.0
 /* Springback moves the overall radius by less than this factor, and the thickness by nothing. */
 #define SCALE_FACTOR 1.2
-/* Correlation over more stations than this is roughness of the edge. */
-#define ROUGH_STATIONS 3.0
 
 bool fg_foil_is_measured(const fg_foil *foil) {
   return !(foil->flags & (FG_FOIL_NOT_MEASURED | FG_FOIL_NOT_THIS_DESIGN));
@@ -67,142 +53,6 @@ void fg_foil_give_up(fg_foil *foil, const char *why) {
   foil->noise_um = foil->correlation_mm = foil->edge_model_um = NAN;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   forget_overall(&foil->overall);
-}
-
-/* Unit vectors of a bump: u from O to C, v across. */
-static void bump_frame(const fg_layout *layout, const fg_arc *arc, double frame[2][2]) {
-  double dx = arc->circle.x - layout->overall.circle.x;
-  double dy = arc->circle.y - layout->overall.circle.y, d = hypot(dx, dy);
-  frame[0][0] = dx / d;
-  frame[0][1] = dy / d;
-  frame[1][0] = -dy / d;
-  frame[1][1] = dx / d;
-}
-
-/* A shift of (x, y, R) in the bump's frame: (u, v, R). */
-static void to_frame(double frame[2][2], const double in[3], double out[3]) {
-  for (int i = 0; i < 2; i++)
-    out[i] = frame[i][0] * in[0] + frame[i][1] * in[1];
-  out[2] = in[2];
-}
-
-/* The systematic part of the edge model over all bumps, in the bump's frame: mean square of the
- * half-width shifts beyond what the half width's own noise gives. False when there is none. */
-static bool find_edge_model(const fg_layout *layout, const fg_noise_model *noise,
-                            double systematic[3][3]) {
-  double ratio = 0, bumps = 0;
-  memset(systematic, 0, 9 * sizeof(double));
-  for (size_t i = 0; i < layout->turning.bump_count; i++) {
-    fg_arc arc = layout->bumps[i];
-    double shift[3], local[3], frame[2][2];
-    if (!layout->fitted[i] || !fg_arc_half_width_shift(&layout->line, &arc, shift)) continue;
-    fg_arc_covariance(&layout->line, noise, &arc);
-    bump_frame(layout, &arc, frame);
-    to_frame(frame, shift, local);
-    ratio += shift[2] * shift[2] / arc.covariance[2][2];
-    for (int p = 0; p < 3; p++)
-      for (int q = 0; q < 3; q++)
-        systematic[p][q] += local[p] * local[q];
-    bumps++;
-  }
-  if (bumps < 1 || !(ratio > gsl_cdf_chisq_Qinv(EDGE_MODEL_P, bumps))) return false;
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++)
-      systematic[p][q] *= (1 - bumps / ratio) / bumps;
-  return true;
-}
-
-/* Adds a systematic covariance, given in the bump's frame, to a bump's. */
-static void add_systematic(const fg_layout *layout, double systematic[3][3], fg_arc *arc) {
-  double frame[2][2], turn[3][3] = {{0}};
-  bump_frame(layout, arc, frame);
-  for (int i = 0; i < 2; i++)
-    for (int j = 0; j < 2; j++)
-      turn[j][i] = frame[i][j];
-  turn[2][2] = 1;
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++)
-      for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++)
-          arc->covariance[p][q] += turn[p][a] * systematic[a][b] * turn[q][b];
-}
-
-/* The overall circle's own half-width shift, where it exceeds three standard deviations. */
-static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half_width) {
-  fg_arc arc = layout->overall;
-  double shift[3];
-  if (!fg_arc_half_width_shift(&layout->line, &arc, shift)) return;
-  fg_arc_covariance(&layout->line, half_width, &arc);
-  double ratio = shift[2] * shift[2] / arc.covariance[2][2];
-  if (!(ratio > 9)) return;
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++)
-      layout->overall.covariance[p][q] += (1 - 1 / ratio) * shift[p] * shift[q];
-}
-
-/* The strip's thickness in units of the edges' blur. */
-static double widths_in_blurs(const fg_foil *foil) {
-  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
-  return 1000 * foil->strip.thickness_mm / blur_um;
-}
-
-/* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
- * radius of every circle and the crowns, and nothing else. */
-static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
-  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
-  double overlap = fmax(1, LINE_SHIFT_WIDTHS / widths_in_blurs(foil));
-  double shift_mm = LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
-  arc->covariance[2][2] += shift_mm * shift_mm;
-}
-
-static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
-  fg_noise_model noise, half_width;
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
-  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
-  fg_arc_covariance(&layout->line, &noise, &layout->overall);
-  fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
-  add_overall_systematic(layout, &half_width);
-  add_line_shift(foil, &layout->overall);
-}
-
-static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
-  size_t n = 0;
-  for (size_t i = 0; i < layout->turning.bump_count; i++)
-    if (layout->fitted[i]) arcs[n++] = layout->bumps[i];
-  return n;
-}
-
-static fg_status find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil) {
-  fg_arc *arcs = NULL;
-  fg_noise_model noise, half_width;
-  double systematic[3][3];
-  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *arcs, (void **)&arcs));
-  size_t count = gather_bumps(layout, arcs);
-  fg_noise_estimate(&layout->line, arcs, count, 0, &noise);
-  fg_noise_estimate(&layout->line, arcs, count, 1, &half_width);
-  free(arcs);
-  foil->noise_um = 1000 * sqrt(noise.covariance[0]);
-  foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
-  if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
-  bool found = find_edge_model(layout, &half_width, systematic);
-  foil->edge_model_um = found ? 1000 * sqrt(fmax(systematic[2][2], 0)) : 0;
-  for (size_t i = 0; i < layout->turning.bump_count; i++) {
-    if (!layout->fitted[i]) continue;
-    fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
-    if (found) add_systematic(layout, systematic, &layout->bumps[i]);
-    add_line_shift(foil, &layout->bumps[i]);
-  }
-  find_overall_covariance(layout, foil);
-  return FG_OK;
-}
-
-/* The tone curve's share of the thickness' uncertainty. */
-static void add_tone_doubt(fg_foil *foil) {
-  const unsigned hidden = FG_FOIL_ROUGH_EDGE | FG_FOIL_SIDE_BAND | FG_FOIL_CLIPPED;
-  const fg_strip *strip = &foil->strip;
-  double doubt = strip->gamma > 0 ? strip->u_gamma / strip->gamma : 0;
-  if (foil->flags & hidden) doubt = hypot(doubt, HIDDEN_TONE_DOUBT);
-  foil->u_thickness_mm = hypot(strip->u_thickness_mm, doubt * strip->tone_um / 1000);
 }
 
 static void fill_overall(const fg_layout *layout, const fg_design *design, fg_foil *foil) {
@@ -358,8 +208,8 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   fg_nominal nominal;
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   size_t n = layout->turning.bump_count;
-  FG_TRY(find_uncertainties(ctx, layout, foil));
-  add_tone_doubt(foil);
+  FG_TRY(fg_foil_find_uncertainties(ctx, layout, foil));
+  fg_foil_add_tone_doubt(foil);
   fill_overall(layout, design, foil);
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *foil->bumps, (void **)&foil->bumps));
   foil->bump_count = n;
@@ -392,7 +242,7 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
   foil->u_thickness_mm = foil->strip.u_thickness_mm;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   take_over_facts(foil);
-  if (widths_in_blurs(foil) < COARSE_WIDTHS) foil->flags |= FG_FOIL_COARSE_RESOLUTION;
+  if (fg_foil_widths_in_blurs(foil) < COARSE_WIDTHS) foil->flags |= FG_FOIL_COARSE_RESOLUTION;
   FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, &layout, &error));
   fg_status status = FG_OK;
   double factor;

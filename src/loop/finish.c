@@ -4,16 +4,12 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/spread.h"
 #include "core/text.h"
 #include "loop/engine_random.h"
 #include "loop/grid.h"
 #include "loop/run.h"
-
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
                          fg_loop_error *error) {
@@ -83,7 +79,7 @@ static fg_status bootstrap(fg_context *ctx, fg_engine_run *run, double interval[
     }
     ratio[b] = before > 0 ? sqrt(after / before) : 1;
   }
-  qsort(ratio, DRAWS, sizeof *ratio, by_size);
+  fg_sort(ratio, DRAWS);
   interval[0] = ratio[DRAWS * 25 / 1000];
   interval[1] = ratio[DRAWS * 975 / 1000];
 exit:

@@ -10,6 +10,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "loop/engine_random.h"
 #include "loop/permute.h"
 
@@ -123,11 +124,6 @@ typedef struct lone_null {
   double *ratio[2]; /* sorted */
 } lone_null;
 
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* One draw: heavy noise of the fitted size about the fitted response. */
 static void draw(const fg_engine_frame *frame, fg_engine_noise noise, const lone_bench *bench,
                  double sd, uint64_t *seed, double *work, lone_best *best) {
@@ -180,7 +176,7 @@ static fg_status judge_small(fg_context *ctx, const fg_engine_frame *frame, fg_e
     null.ratio[1][b] = nested(frame->problem) ? 1 : one.ratio[1];
   }
   for (size_t k = 0; k < 2; k++) {
-    qsort(null.ratio[k], draws, sizeof **null.ratio, by_size);
+    fg_sort(null.ratio[k], draws);
     lone[k].known = k == 0 || !nested(frame->problem);
     lone[k].length = trace / (double)n;
     if (lone[k].known) take_p(&null, k, best.ratio[k], freedom, &lone[k]);

@@ -4,16 +4,12 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "loop/engine_random.h"
 #include "loop/permute.h"
 
 static size_t family(const fg_engine_bench *bench, size_t candidate) {
   return fg_engine_is_curve(&bench->candidate[candidate]);
-}
-
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 /* Share of the draws' maxima at or above z, the data themselves being one draw. */
@@ -76,7 +72,7 @@ static fg_status flip_all(fg_context *ctx, const fg_engine_bench *bench, size_t 
     maxima[count + 1 + b] = maximum[1];
   }
   for (size_t f = 0; f < 2; f++)
-    qsort(maxima + f * (count + 1), count, sizeof *maxima, by_size);
+    fg_sort(maxima + f * (count + 1), count);
   for (size_t i = 0; i < flips; i++)
     sign[i] = 1;
   fg_engine_bench_flip(bench, sign, z);
@@ -199,7 +195,7 @@ static fg_status simulate_all(fg_context *ctx, const fg_engine_bench *bench, siz
     maxima[draws + b] = maximum[1];
   }
   for (size_t f = 0; f < 2; f++) {
-    qsort(maxima + f * draws, draws, sizeof *maxima, by_size);
+    fg_sort(maxima + f * draws, draws);
     critical[f] = maxima[f * draws + (size_t)((double)draws * (1 - 0.01 / FG_ENGINE_FAMILIES))];
   }
   for (size_t c = 0; c < count; c++)

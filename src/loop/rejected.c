@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
-#include "loop/run.h"
+#include "loop/step.h"
 
 static const double power_80 = 0.8416; /* normal quantile of a power of 80 % */
 

@@ -23,22 +23,9 @@ typedef struct fg_engine_run {
   double sd; /* of the null at this step, whitened rows */
 } fg_engine_run;
 
-/* The state of one step: frame, bench, scores of the null with everything accepted. */
-typedef struct fg_engine_step {
-  fg_engine_frame frame;
-  fg_engine_bench bench;
-  fg_engine_judgement judgement;
-  fg_engine_lone lone[2];
-  fg_engine_stand *stand; /* candidates and the two lone ones */
-  size_t stands;
-} fg_engine_step;
-
-fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engine_set *set,
-                              bool judged, fg_engine_step *step);
-void fg_engine_step_close(fg_engine_step *step);
-
 /* Tries to accept one effect; *accepted says whether there was one. */
 fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accepted, bool *last);
+/* With the others fitted, would another candidate serve better in a claim's place? */
 fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_advise(fg_context *ctx, fg_engine_run *run);

@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "loop/table_parts.h"
 #include "quantity/quantity.h"
@@ -31,16 +32,11 @@ fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_stat
   return FG_OK;
 }
 
-static int by_size(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at) {
   double *sorted = malloc((problem->rows + 1) * sizeof *sorted);
   if (!sorted) return;
   memcpy(sorted, at->value, problem->rows * sizeof *sorted);
-  qsort(sorted, problem->rows, sizeof *sorted, by_size);
+  fg_sort(sorted, problem->rows);
   at->low = sorted[0];
   at->high = sorted[problem->rows - 1];
   at->distinct = 0;

@@ -4,14 +4,10 @@
 
 #include "core/extended.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/doe.h"
 #include "stats/orthogonal.h"
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 static double median(const double *sorted, size_t count) {
   return count % 2 ? sorted[count / 2] : (sorted[count / 2 - 1] + sorted[count / 2]) / 2;
@@ -19,7 +15,7 @@ static double median(const double *sorted, size_t count) {
 
 /* s0 = 1.5 median |c|; PSE = 1.5 median of those |c| below 2.5 s0. */
 static double pseudo_standard_error(double *magnitude, size_t count) {
-  qsort(magnitude, count, sizeof *magnitude, compare_doubles);
+  fg_sort(magnitude, count);
   double first = 1.5 * median(magnitude, count);
   size_t kept = 0;
   while (kept < count && magnitude[kept] < 2.5 * first)

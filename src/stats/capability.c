@@ -5,14 +5,10 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/distribution.h"
 
 enum { NORMALITY_LEAST = 8 };
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
 
 static void describe(const double *values, size_t count, double *mean, double *sd) {
   double squares = 0;
@@ -57,7 +53,7 @@ fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
   double *sorted = block;
   memcpy(sorted, values, count * sizeof *values);
-  qsort(sorted, count, sizeof *sorted, compare_doubles);
+  fg_sort(sorted, count);
   describe(sorted, count, &mean, &sd);
   if (sd > 0) {
     normality->a2 = anderson_darling(sorted, count, mean, sd);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/density.h"
 #include "foilgauge/distribution.h"
 
@@ -53,15 +54,10 @@ static void compare_variances(moments a, moments b, double confidence, fg_compar
   result->f_high = f / fg_distribution_f_quantile(alpha / 2, a.n - 1, b.n - 1);
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Distances from the sample's median. */
 static void take_distances(fg_sample sample, double *distance) {
   memcpy(distance, sample.values, sample.count * sizeof *distance);
-  qsort(distance, sample.count, sizeof *distance, compare_doubles);
+  fg_sort(distance, sample.count);
   double median = fg_sample_quantile(distance, sample.count, 0.5);
   for (size_t i = 0; i < sample.count; i++)
     distance[i] = fabs(sample.values[i] - median);

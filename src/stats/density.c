@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 enum { BIN_ABOVE = 8192, GRID_POINTS = 4096, PAIR_BINS = 1000, SEARCH_POINTS = 1024 };
 
@@ -31,11 +32,6 @@ double fg_sample_quantile(const double *sorted, size_t count, double probability
   if (below + 1 >= count) return sorted[count - 1];
   double share = at - (double)below;
   return sorted[below] + share * (sorted[below + 1] - sorted[below]);
-}
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 static double sample_sd(const double *values, size_t count) {
@@ -178,7 +174,7 @@ fg_status fg_density_fit(fg_context *ctx, const double *values, size_t count,
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(double), &block));
   double *sorted = block;
   if (count) memcpy(sorted, values, count * sizeof *sorted);
-  qsort(sorted, count, sizeof *sorted, compare_doubles);
+  fg_sort(sorted, count);
   if (count < 2 || !(sorted[count - 1] > sorted[0]))
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "a density needs two different values at least"));
   FG_TRY_EXIT(allocate_points(ctx, count > BIN_ABOVE ? GRID_POINTS : count, density));

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "report/doe/doe_frame.h"
+#include "report/doe/doe_axes.h"
 #include "report/doe/doe_plots.h"
 #include "report/doe/doe_words.h"
 
@@ -128,10 +128,10 @@ static void put_runs(const fg_plot *at, const slice *s) {
   const fg_experiment *e = s->e;
   size_t variables = e->model.formula.variables, step = e->regression.rows / POINTS_SHOWN + 1;
   for (size_t i = 0; i < e->regression.rows; i += step)
-    fg_frame_dot(at, "run", fg_factor_real(s->fa, e->setting[i * variables + s->fa->variable]),
-                 fg_factor_real(s->fb, e->setting[i * variables + s->fb->variable]), 5);
-  fg_frame_dot(at, "best", fg_factor_real(s->fa, e->optimum.x[s->a]),
-               fg_factor_real(s->fb, e->optimum.x[s->b]), 6);
+    fg_axes_dot(at, "run", fg_factor_real(s->fa, e->setting[i * variables + s->fa->variable]),
+                fg_factor_real(s->fb, e->setting[i * variables + s->fb->variable]), 5);
+  fg_axes_dot(at, "best", fg_factor_real(s->fa, e->optimum.x[s->a]),
+              fg_factor_real(s->fb, e->optimum.x[s->b]), 6);
 }
 
 static void put_contour(FILE *out, const fg_experiment *e, size_t a, size_t b) {
@@ -145,14 +145,14 @@ static void put_contour(FILE *out, const fg_experiment *e, size_t a, size_t b) {
   memcpy(s.x, e->optimum.x, sizeof s.x);
   double x[2] = {real_a(&s, 0), real_a(&s, GRID)}, y[2] = {real_b(&s, 0), real_b(&s, GRID)};
   snprintf(title, title_size, "%.250s and %.250s", s.fa->name, s.fb->name);
-  fg_plot at = fg_frame_begin(out, title, x, y);
+  fg_plot at = fg_axes_begin(out, title, x, y);
   fg_plot_y_axis(&at, s.fb->name);
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, s.fa->name);
   put_bands(&at, &s);
   put_lines(&at, &s);
   put_runs(&at, &s);
-  fg_frame_end(&at);
+  fg_axes_end(&at);
 }
 
 void fg_doe_plot_contours(FILE *out, const fg_experiment *e) {

@@ -6,47 +6,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
-#include "report/measure/measure_page_parts.h"
+#include "report/measure/measure_page_tables.h"
 #include "report/measure/scan_model_words.h"
-
-void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
-  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
-  int decimals = field->kind == FG_FIELD_COUNT ? 0 : fg_report_decimals(field, u);
-  if (!isfinite(value)) {
-    fputs("–", out);
-    return;
-  }
-  fprintf(out, "%s%.*f", value < 0 ? "−" : "", decimals, fabs(value));
-  if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
-}
-
-static const char *verdict_title(fg_verdict verdict) {
-  switch (verdict) {
-  case FG_VERDICT_PASS:
-    return "Within tolerance";
-  case FG_VERDICT_FAIL:
-    return "Out of tolerance";
-  case FG_VERDICT_UNDECIDED:
-    return "Cannot tell";
-  case FG_VERDICT_NOT_MEASURED:
-    return "Not measured";
-  case FG_VERDICT_NONE:
-    return "No tolerances stated";
-  }
-  return "";
-}
-
-void fg_html_verdict(FILE *out, fg_verdict verdict) {
-  fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
-          verdict_title(verdict));
-}
-
-void fg_html_outcome(FILE *out, const fg_report_outcome *outcome) {
-  if (outcome->rejected && !outcome->exceeded)
-    fputs("<span class=\"verdict fail\">Rejected</span>\n", out);
-  else
-    fg_html_verdict(out, outcome->verdict);
-}
 
 static const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
@@ -108,135 +69,6 @@ static void put_flags(FILE *out, const fg_foil *foil) {
   fputs("</ul>\n", out);
 }
 
-static const char *const bump_columns[] = {
-    "radius_mm",        "bump_angle_deg",       "intersection_angle_deg",
-    "height_mm",        "clearance_mm",         "clearance_fitted_mm",
-    "radius_error_pct", "bump_angle_error_pct", "rms_um"};
-static const char *const disc_columns[] = {"diameter_mm", "radius_mm", "roundness_um", "rms_um",
-                                           "coverage_deg"};
-static const char *const foil_rows[] = {"overall.radius_mm", "overall.springback_error_pct",
-                                        "thickness_mm"};
-
-static const fg_tolerance *find_tolerance(const fg_design *design, const char *quantity) {
-  for (size_t i = 0; i < design->tolerance_count; i++)
-    if (!strcmp(design->tolerances[i].quantity, quantity)) return &design->tolerances[i];
-  return NULL;
-}
-
-static void put_limits(FILE *out, const fg_tolerance *tolerance) {
-  if (!tolerance) return;
-  if (isfinite(tolerance->lower) && isfinite(tolerance->upper))
-    fprintf(out, "%.6g … %.6g", tolerance->lower, tolerance->upper);
-  else if (isfinite(tolerance->lower))
-    fprintf(out, "≥ %.6g", tolerance->lower);
-  else
-    fprintf(out, "≤ %.6g", tolerance->upper);
-}
-
-/* `judged`: the values are those of a part of the design. */
-static void put_cell(FILE *out, const fg_design *design, const fg_report_field *field,
-                     const void *object, bool judged) {
-  const fg_tolerance *tolerance = find_tolerance(design, field->name);
-  fg_verdict verdict = FG_VERDICT_NONE;
-  if (tolerance && judged)
-    verdict = fg_judge_value(tolerance, fg_report_value(field, object),
-                             fg_report_uncertainty(field, object));
-  fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
-  fg_html_value(out, field, object);
-  fputs("</td>", out);
-}
-
-static void put_flag_cell(FILE *out, unsigned flags) {
-  const char *separator = "";
-  fputs("<td class=\"words\">", out);
-  for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++) {
-    if (!(flags & words->flag)) continue;
-    fprintf(out, "%s%s", separator, words->plain);
-    separator = "; ";
-  }
-  fputs("</td></tr>\n", out);
-}
-
-/* Columns that the table always has, then those with a tolerance that it has not. */
-static size_t choose_columns(const fg_design *design, fg_report_owner owner,
-                             const char *const *names, size_t count,
-                             const fg_report_field **columns) {
-  size_t used = 0;
-  for (size_t i = 0; i < count; i++)
-    columns[used++] = fg_report_find(owner, names[i]);
-  for (size_t i = 0; i < design->tolerance_count; i++) {
-    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
-    bool there = field == NULL;
-    for (size_t k = 0; k < used; k++)
-      there = there || columns[k] == field;
-    if (!there) columns[used++] = field;
-  }
-  return used;
-}
-
-typedef struct table_rows {
-  fg_report_owner owner;
-  const char *title;
-  const char *objects;
-  size_t count, size;
-  const fg_foil *foil; /* of the bumps; NULL for discs */
-} table_rows;
-
-static void put_table_head(FILE *out, const fg_design *design, const table_rows *rows,
-                           const fg_report_field *const *columns, size_t count) {
-  bool limits = false;
-  fprintf(out, "<div class=\"scroll\"><table>\n<thead><tr><th>%s</th>", rows->title);
-  for (size_t i = 0; i < count; i++) {
-    fprintf(out, "<th title=\"%s\">%s<br>%s</th>", columns[i]->words, columns[i]->symbol,
-            columns[i]->unit);
-    limits = limits || find_tolerance(design, columns[i]->name);
-  }
-  fputs("<th></th></tr></thead>\n<tbody>\n", out);
-  if (!limits) return;
-  fputs("<tr class=\"limits\"><td>tolerance</td>", out);
-  for (size_t i = 0; i < count; i++) {
-    fputs("<td>", out);
-    put_limits(out, find_tolerance(design, columns[i]->name));
-    fputs("</td>", out);
-  }
-  fputs("<td></td></tr>\n", out);
-}
-
-static void put_table(FILE *out, const fg_design *design, const table_rows *rows,
-                      const char *const *names, size_t name_count) {
-  const fg_report_field *columns[16 + FG_TOLERANCES_MAX];
-  size_t count = choose_columns(design, rows->owner, names, name_count, columns);
-  put_table_head(out, design, rows, columns, count);
-  for (size_t i = 0; i < rows->count; i++) {
-    const void *object = rows->objects + i * rows->size;
-    const fg_bump *bump = object;
-    const fg_disc *disc = object;
-    fprintf(out, "<tr><td>%d</td>", rows->foil ? bump->number : disc->number);
-    for (size_t k = 0; k < count; k++)
-      put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
-    put_flag_cell(out, rows->foil ? fg_bump_flags(design, rows->foil, bump)
-                                  : fg_disc_flags(design, disc));
-  }
-  fputs("</tbody></table></div>\n", out);
-}
-
-static void put_foil_table(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const fg_report_field *rows[16 + FG_TOLERANCES_MAX];
-  size_t count =
-      choose_columns(design, FG_REPORT_FOIL, foil_rows, sizeof foil_rows / sizeof *foil_rows, rows);
-  fputs("<h2>The whole foil</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th>"
-        "<th>value</th><th>unit</th><th>tolerance</th></tr></thead>\n<tbody>\n",
-        out);
-  for (size_t i = 0; i < count; i++) {
-    fprintf(out, "<tr><td>%s</td>", rows[i]->words);
-    put_cell(out, design, rows[i], foil, fg_foil_is_measured(foil));
-    fprintf(out, "<td>%s</td><td>", rows[i]->unit);
-    put_limits(out, find_tolerance(design, rows[i]->name));
-    fputs("</td></tr>\n", out);
-  }
-  fputs("</tbody></table></div>\n", out);
-}
-
 static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
                            const fg_measurement *measurement) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
@@ -294,11 +126,9 @@ static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *m
 }
 
 static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const table_rows rows = {FG_REPORT_BUMP,      "bump", (const char *)foil->bumps, foil->bump_count,
-                           sizeof *foil->bumps, foil};
   fputs("<h2>Bumps</h2>\n", out);
-  put_table(out, design, &rows, bump_columns, sizeof bump_columns / sizeof *bump_columns);
-  put_foil_table(out, design, foil);
+  fg_html_bump_table(out, design, foil);
+  fg_html_foil_table(out, design, foil);
   char thickness[200];
   fg_thickness_words(design, foil, thickness, sizeof thickness);
   if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
@@ -408,12 +238,6 @@ static fg_status put_discs_corrected(fg_context *ctx, FILE *out,
 static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
                            const fg_report_scan *scan) {
   const fg_measurement *measurement = scan->measurement;
-  const table_rows rows = {FG_REPORT_DISC,
-                           "disc",
-                           (const char *)measurement->discs,
-                           measurement->disc_count,
-                           sizeof *measurement->discs,
-                           NULL};
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
   fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
@@ -423,7 +247,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fputs("</p></header>\n", out);
   FG_TRY(put_discs_corrected(ctx, out, measurement));
   FG_TRY(put_picture(ctx, out, measurement, NULL));
-  put_table(out, report->design, &rows, disc_columns, sizeof disc_columns / sizeof *disc_columns);
+  fg_html_disc_table(out, report->design, measurement);
   put_uncertainty(out, measurement->model);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
   fputs("</section>\n", out);

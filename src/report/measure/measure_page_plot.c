@@ -2,16 +2,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/select.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/plot.h"
 
 static bool has_residual(const fg_station_label *label) {
   return isfinite(label->residual_um) && (label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND);
-}
-
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 /* Nearly all residuals fit: one grain of dust must not flatten the rest. What is larger is drawn at
@@ -23,7 +19,7 @@ static double residual_limit(const fg_foil *foil) {
     if (has_residual(&foil->labels[i]) && foil->labels[i].fitted)
       sizes[count++] = fabs((double)foil->labels[i].residual_um);
   if (count) {
-    qsort(sizes, count, sizeof *sizes, compare_doubles);
+    fg_sort(sizes, count);
     limit = 1.4 * sizes[(count - 1) * 199 / 200];
   }
   free(sizes);

@@ -1,4 +1,4 @@
-#include "report/doe/doe_frame.h"
+#include "report/doe/doe_axes.h"
 
 #include <math.h>
 
@@ -22,40 +22,40 @@ static void widen(const double range[2], double *low, double *high) {
   *high += margin;
 }
 
-fg_plot fg_frame_begin(FILE *out, const char *title, const double x[2], const double y[2]) {
+fg_plot fg_axes_begin(FILE *out, const char *title, const double x[2], const double y[2]) {
   fg_plot at = {.out = out,
-                .width = FG_FRAME_WIDTH,
+                .width = FG_AXES_WIDTH,
                 .left = 74,
-                .right = FG_FRAME_WIDTH - 14,
+                .right = FG_AXES_WIDTH - 14,
                 .top = 12,
-                .bottom = FG_FRAME_HEIGHT - 50};
+                .bottom = FG_AXES_HEIGHT - 50};
   widen(x, &at.x_low, &at.x_high);
   widen(y, &at.y_low, &at.y_high);
   fputs("<figure><h3>", out);
   fg_html_text(out, title);
   fputs("</h3>", out);
-  fg_plot_begin(&at, FG_FRAME_HEIGHT, title);
+  fg_plot_begin(&at, FG_AXES_HEIGHT, title);
   return at;
 }
 
-void fg_frame_end(const fg_plot *at) {
+void fg_axes_end(const fg_plot *at) {
   fg_plot_end(at);
   fputs("</figure>\n", at->out);
 }
 
-void fg_frame_dot(const fg_plot *at, const char *style, double x, double y, double radius) {
+void fg_axes_dot(const fg_plot *at, const char *style, double x, double y, double radius) {
   if (isfinite(x) && isfinite(y))
     fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n", style,
             fg_plot_x(at, x), fg_plot_y(at, y), radius);
 }
 
-void fg_frame_line(const fg_plot *at, const char *style, double x0, double y0, double x1,
-                   double y1) {
+void fg_axes_line(const fg_plot *at, const char *style, double x0, double y0, double x1,
+                  double y1) {
   fprintf(at->out, "<path class=\"%s\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", style, fg_plot_x(at, x0),
           fg_plot_y(at, y0), fg_plot_x(at, x1), fg_plot_y(at, y1));
 }
 
-void fg_frame_text(const fg_plot *at, double x, double y, const char *text) {
+void fg_axes_text(const fg_plot *at, double x, double y, const char *text) {
   bool left = fg_plot_x(at, x) > at->left + 0.55 * (at->right - at->left);
   fprintf(at->out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">", left ? "y" : "start",
           fg_plot_x(at, x) + (left ? -9 : 9), fg_plot_y(at, y) + 5);

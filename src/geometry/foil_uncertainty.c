@@ -1,0 +1,160 @@
+/* What a foil's values are uncertain by: scatter of the edges, the edge model, the tone curve. */
+#include "geometry/foil_uncertainty.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* The edge model's systematic error counts when chance would show it less often than this. */
+#define EDGE_MODEL_P 0.005
+/* The overall circle has one half-width shift of its own, no mean of many: it counts beyond so many
+ * standard deviations. */
+#define OVERALL_SHIFT_SIGMAS 3.0
+/* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
+ * intensity model leaves on clean renders (reports/accuracy.md). */
+#define LINE_SHIFT_BLURS 0.001
+/* Where both edges blur into each other that place rests on the shape of the blur: the share grows
+ * with the cube of the blur below so many blurs of width (reports/accuracy_hard.md). */
+#define LINE_SHIFT_WIDTHS 3.0
+/* Relative error of gamma where halo, wall or a cut-off level shape the edges: all profiles say the
+ * same wrong value. */
+#define HIDDEN_TONE_DOUBT 0.23
+/* Correlation over more stations than this is roughness of the edge. */
+#define ROUGH_STATIONS 3.0
+
+/* Unit vectors of a bump: u from O to C, v across. */
+static void bump_axes(const fg_layout *layout, const fg_arc *arc, double axes[2][2]) {
+  double dx = arc->circle.x - layout->overall.circle.x;
+  double dy = arc->circle.y - layout->overall.circle.y, d = hypot(dx, dy);
+  axes[0][0] = dx / d;
+  axes[0][1] = dy / d;
+  axes[1][0] = -dy / d;
+  axes[1][1] = dx / d;
+}
+
+/* A shift of (x, y, R) in the bump's axes: (u, v, R). */
+static void to_axes(double axes[2][2], const double in[3], double out[3]) {
+  for (int i = 0; i < 2; i++)
+    out[i] = axes[i][0] * in[0] + axes[i][1] * in[1];
+  out[2] = in[2];
+}
+
+/* The systematic part of the edge model over all bumps, in the bump's axes: mean square of the
+ * half-width shifts beyond what the half width's own noise gives. False when there is none. */
+static bool find_edge_model(const fg_layout *layout, const fg_noise_model *noise,
+                            double systematic[3][3]) {
+  double ratio = 0, bumps = 0;
+  memset(systematic, 0, 9 * sizeof(double));
+  for (size_t i = 0; i < layout->turning.bump_count; i++) {
+    fg_arc arc = layout->bumps[i];
+    double shift[3], local[3], axes[2][2];
+    if (!layout->fitted[i] || !fg_arc_half_width_shift(&layout->line, &arc, shift)) continue;
+    fg_arc_covariance(&layout->line, noise, &arc);
+    bump_axes(layout, &arc, axes);
+    to_axes(axes, shift, local);
+    ratio += shift[2] * shift[2] / arc.covariance[2][2];
+    for (int p = 0; p < 3; p++)
+      for (int q = 0; q < 3; q++)
+        systematic[p][q] += local[p] * local[q];
+    bumps++;
+  }
+  if (bumps < 1 || !(ratio > gsl_cdf_chisq_Qinv(EDGE_MODEL_P, bumps))) return false;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      systematic[p][q] *= (1 - bumps / ratio) / bumps;
+  return true;
+}
+
+/* Adds a systematic covariance, given in the bump's axes, to a bump's. */
+static void add_systematic(const fg_layout *layout, double systematic[3][3], fg_arc *arc) {
+  double axes[2][2], turn[3][3] = {{0}};
+  bump_axes(layout, arc, axes);
+  for (int i = 0; i < 2; i++)
+    for (int j = 0; j < 2; j++)
+      turn[j][i] = axes[i][j];
+  turn[2][2] = 1;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+          arc->covariance[p][q] += turn[p][a] * systematic[a][b] * turn[q][b];
+}
+
+/* The overall circle's own half-width shift, where it is more than chance. */
+static void add_overall_systematic(fg_layout *layout, const fg_noise_model *half_width) {
+  fg_arc arc = layout->overall;
+  double shift[3];
+  if (!fg_arc_half_width_shift(&layout->line, &arc, shift)) return;
+  fg_arc_covariance(&layout->line, half_width, &arc);
+  double ratio = shift[2] * shift[2] / arc.covariance[2][2];
+  if (!(ratio > OVERALL_SHIFT_SIGMAS * OVERALL_SHIFT_SIGMAS)) return;
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      layout->overall.covariance[p][q] += (1 - 1 / ratio) * shift[p] * shift[q];
+}
+
+double fg_foil_widths_in_blurs(const fg_foil *foil) {
+  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
+  return 1000 * foil->strip.thickness_mm / blur_um;
+}
+
+/* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
+ * radius of every circle and the crowns, and nothing else. */
+static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
+  double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
+  double overlap = fmax(1, LINE_SHIFT_WIDTHS / fg_foil_widths_in_blurs(foil));
+  double shift_mm = LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
+  arc->covariance[2][2] += shift_mm * shift_mm;
+}
+
+static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
+  fg_noise_model noise, half_width;
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
+  fg_arc_covariance(&layout->line, &noise, &layout->overall);
+  fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
+  add_overall_systematic(layout, &half_width);
+  add_line_shift(foil, &layout->overall);
+}
+
+static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
+  size_t n = 0;
+  for (size_t i = 0; i < layout->turning.bump_count; i++)
+    if (layout->fitted[i]) arcs[n++] = layout->bumps[i];
+  return n;
+}
+
+fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil) {
+  fg_arc *arcs = NULL;
+  fg_noise_model noise, half_width;
+  double systematic[3][3];
+  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *arcs, (void **)&arcs));
+  size_t count = gather_bumps(layout, arcs);
+  fg_noise_estimate(&layout->line, arcs, count, 0, &noise);
+  fg_noise_estimate(&layout->line, arcs, count, 1, &half_width);
+  free(arcs);
+  foil->noise_um = 1000 * sqrt(noise.covariance[0]);
+  foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
+  if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
+  bool found = find_edge_model(layout, &half_width, systematic);
+  foil->edge_model_um = found ? 1000 * sqrt(fmax(systematic[2][2], 0)) : 0;
+  for (size_t i = 0; i < layout->turning.bump_count; i++) {
+    if (!layout->fitted[i]) continue;
+    fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
+    if (found) add_systematic(layout, systematic, &layout->bumps[i]);
+    add_line_shift(foil, &layout->bumps[i]);
+  }
+  find_overall_covariance(layout, foil);
+  return FG_OK;
+}
+
+void fg_foil_add_tone_doubt(fg_foil *foil) {
+  const unsigned hidden = FG_FOIL_ROUGH_EDGE | FG_FOIL_SIDE_BAND | FG_FOIL_CLIPPED;
+  const fg_strip *strip = &foil->strip;
+  double doubt = strip->gamma > 0 ? strip->u_gamma / strip->gamma : 0;
+  if (foil->flags & hidden) doubt = hypot(doubt, HIDDEN_TONE_DOUBT);
+  foil->u_thickness_mm = hypot(strip->u_thickness_mm, doubt * strip->tone_um / 1000);
+}

@@ -1,0 +1,16 @@
+/* What a foil's values are uncertain by. */
+#ifndef FG_GEOMETRY_FOIL_UNCERTAINTY_H
+#define FG_GEOMETRY_FOIL_UNCERTAINTY_H
+
+#include "geometry/layout.h"
+
+/* Covariances of the overall circle and of every bump's; noise and edge model of the foil. */
+fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil);
+
+/* The tone curve's share of the thickness' uncertainty. */
+void fg_foil_add_tone_doubt(fg_foil *foil);
+
+/* The strip's thickness in units of the edges' blur. */
+double fg_foil_widths_in_blurs(const fg_foil *foil);
+
+#endif

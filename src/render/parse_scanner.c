@@ -1,0 +1,143 @@
+/* The scanner of a spec. */
+#include <math.h>
+
+#include "render/parse.h"
+
+static fg_status read_litter(const fg_place *place, const cJSON *parent, const char *name,
+                             fg_litter *litter) {
+  static const fg_member table[] = {
+      FG_SPEC_INTEGER(fg_litter, count, 0, 1000000),
+      FG_SPEC_NUMBER(fg_litter, radius_px, 0.1, 1000),
+      FG_SPEC_NUMBER(fg_litter, length_px, 0, 100000),
+      FG_SPEC_NUMBER(fg_litter, contrast, -255, 255),
+      FG_SPEC_END,
+  };
+  const cJSON *object = spec_member(parent, name);
+  if (!object) return FG_OK;
+  fg_place inner = fg_place_inside(place, name);
+  return fg_members_read(&inner, object, table, litter);
+}
+
+static fg_status read_part(const fg_place *place, const cJSON *parent, const char *name,
+                           const fg_member *table, void *base) {
+  const cJSON *object = spec_member(parent, name);
+  if (!object) return FG_OK;
+  fg_place inner = fg_place_inside(place, name);
+  return fg_members_read(&inner, object, table, base);
+}
+
+static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanner *scanner) {
+  static const fg_member table[] = {
+      FG_SPEC_NUMBER(fg_scanner, one_sided_blur_px, 0, 10),
+      FG_SPEC_NUMBER(fg_scanner, edge_roughness_um, 0, 20),
+      FG_SPEC_NUMBER(fg_scanner, edge_common_um, 0, 20),
+      {"correlation_um", FG_MEMBER_NUMBER, offsetof(fg_scanner, edge_correlation_um), 5, 5000},
+      FG_SPEC_OTHER("halo"),
+      FG_SPEC_OTHER("side_wall"),
+      FG_SPEC_OTHER("jpeg"),
+      FG_SPEC_END,
+  };
+  static const fg_member halo[] = {
+      {"fraction", FG_MEMBER_NUMBER, offsetof(fg_scanner, halo_fraction), 0, 0.5},
+      {"length_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, halo_length_px), 4, 60},
+      FG_SPEC_END,
+  };
+  static const fg_member wall[] = {
+      {"amplitude", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_amplitude), -1, 1},
+      {"direction_deg", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_direction_deg), -360, 360},
+      {"length_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_length_px), 1, 30},
+      {"gap_px", FG_MEMBER_NUMBER, offsetof(fg_scanner, wall_gap_px), 0, 30},
+      FG_SPEC_END,
+  };
+  static const fg_member jpeg[] = {
+      {"quality", FG_MEMBER_INTEGER, offsetof(fg_scanner, jpeg_quality), 1, 100},
+      FG_SPEC_END,
+  };
+  if (!rough) return FG_OK;
+  FG_TRY(fg_members_read(place, rough, table, scanner));
+  FG_TRY(read_part(place, rough, "halo", halo, scanner));
+  FG_TRY(read_part(place, rough, "side_wall", wall, scanner));
+  return read_part(place, rough, "jpeg", jpeg, scanner);
+}
+
+/* One number for both axes, or [x, y]. */
+static fg_status read_dpi(const fg_place *place, const cJSON *dpi, double *out) {
+  if (!dpi) return FG_OK;
+  if (cJSON_IsArray(dpi)) {
+    int count;
+    return fg_member_numbers(place, "dpi", dpi, 50, 20000, 2, 2, out, &count);
+  }
+  FG_TRY(fg_member_number(place, "dpi", dpi, 50, 20000, &out[0]));
+  out[1] = out[0];
+  return FG_OK;
+}
+
+static fg_status check_scanner(const fg_place *place, const cJSON *object,
+                               const fg_scanner *scanner) {
+  if (scanner->bits != 8 && scanner->bits != 16)
+    return fg_member_fail(place, "bits", spec_member(object, "bits"), "must be 8 or 16");
+  double strip = scanner->background + scanner->contrast;
+  if (!(strip >= 0 && strip <= 255) || scanner->contrast == 0)
+    return fg_member_fail(place, "contrast", spec_member(object, "contrast"),
+                          "background + contrast must lie within 0 and 255, contrast not 0");
+  if (scanner->jpeg_quality && scanner->bits != 8)
+    return fg_member_fail(place, "bits", spec_member(object, "bits"),
+                          "must be 8 where there is rough.jpeg");
+  return FG_OK;
+}
+
+fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_scanner *scanner) {
+  static const fg_member table[] = {
+      FG_SPEC_INTEGER(fg_scanner, bits, 8, 16),
+      FG_SPEC_NUMBER(fg_scanner, background, 0, 255),
+      FG_SPEC_NUMBER(fg_scanner, contrast, -255, 255),
+      FG_SPEC_NUMBER(fg_scanner, gamma, 0.2, 5),
+      FG_SPEC_NUMBER(fg_scanner, blur_px, 0.4, 10),
+      FG_SPEC_NUMBER(fg_scanner, noise, 0, 100),
+      FG_SPEC_NUMBER(fg_scanner, noise_correlation, 0, 0.95),
+      FG_SPEC_NUMBER(fg_scanner, clip_white, 1, 255),
+      FG_SPEC_OTHER("dpi"),
+      FG_SPEC_OTHER("shading"),
+      FG_SPEC_OTHER("dust"),
+      FG_SPEC_OTHER("specks"),
+      FG_SPEC_OTHER("scratches"),
+      FG_SPEC_OTHER("rough"),
+      FG_SPEC_END,
+  };
+  static const fg_member shading[] = {
+      {"x", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading), -0.5, 0.5},
+      {"y", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + sizeof(double), -0.5, 0.5},
+      {"quadratic", FG_MEMBER_NUMBER, offsetof(fg_scanner, shading) + 2 * sizeof(double), -0.5,
+       0.5},
+      FG_SPEC_END,
+  };
+  if (!object) return FG_OK;
+  FG_TRY(fg_members_read(place, object, table, scanner));
+  FG_TRY(read_dpi(place, spec_member(object, "dpi"), scanner->dpi));
+  FG_TRY(read_part(place, object, "shading", shading, scanner));
+  FG_TRY(read_litter(place, object, "dust", &scanner->dust));
+  FG_TRY(read_litter(place, object, "specks", &scanner->specks));
+  FG_TRY(read_litter(place, object, "scratches", &scanner->scratches));
+  fg_place rough = fg_place_inside(place, "rough");
+  FG_TRY(read_rough(&rough, spec_member(object, "rough"), scanner));
+  return check_scanner(place, object, scanner);
+}
+
+fg_scanner fg_spec_default_scanner(void) {
+  return (fg_scanner){
+      .dpi = {4800, 4800},
+      .bits = 8,
+      .background = 30,
+      .contrast = 175,
+      .gamma = 1,
+      .blur_px = 1.2,
+      .noise = 1,
+      .clip_white = NAN,
+      .dust = {.radius_px = 4, .contrast = 60},
+      .specks = {.radius_px = 12, .contrast = 120},
+      .scratches = {.radius_px = 0.8, .length_px = 300, .contrast = 25},
+      .edge_correlation_um = 50,
+      .halo_length_px = 15,
+      .wall_length_px = 15,
+  };
+}

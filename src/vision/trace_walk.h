@@ -1,0 +1,26 @@
+/* One walk along a strip. trace.c says from which seeds, and which walks are strips. */
+#ifndef FG_VISION_TRACE_WALK_H
+#define FG_VISION_TRACE_WALK_H
+
+#include "vision/trace.h"
+
+typedef struct fg_trace_walker {
+  const fg_tiles *tiles;
+  const fg_segmentation *segmentation;
+  const fg_object *object;
+  double half_window_px; /* of a cut */
+  double width_px;       /* of the strip at the seed */
+  double contrast;
+  double blur_sum; /* over the cuts of a walk */
+  size_t blur_count;
+} fg_trace_walker;
+
+/* The strip's own contrast at a seed: the largest excess of the pixels around it, less the
+ * extremes (a 90th percentile). */
+double fg_trace_contrast_at(const fg_trace_walker *walker, fg_point seed);
+
+/* Both ways from a seed; a seed on no strip leaves the trace empty. */
+fg_status fg_trace_from_seed(fg_context *ctx, fg_trace_walker *walker, fg_point seed,
+                             fg_trace *trace);
+
+#endif
