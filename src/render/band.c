@@ -27,7 +27,7 @@ static double reach_px(const fg_sampler *sampler, double half_width_mm, double r
   double pixel = fmin(sampler->pixel_mm[0], sampler->pixel_mm[1]);
   double field = 0;
   for (size_t i = 0; i < sampler->spec->effects.count; i++)
-    if (sampler->spec->effects.effects[i].row->frame == FG_RENDER_EFFECT_STEP)
+    if (sampler->spec->effects.effects[i].row->target == FG_RENDER_EFFECT_STEP)
       field += 1e-3 * fabs(sampler->spec->effects.effects[i].p[0]);
   return (half_width_mm + reach_mm + field) / pixel + 3;
 }
@@ -56,7 +56,7 @@ static fg_point mark_point(const fg_sampler *sampler, const fg_segment *segment,
 }
 
 static double segment_reach_px(const fg_sampler *sampler, const fg_segment *segment) {
-  return reach_px(sampler, sampler->spec->scene.frames[segment->foil].half_thickness_mm,
+  return reach_px(sampler, sampler->spec->scene.drawn[segment->foil].half_thickness_mm,
                   sampler->reach_mm);
 }
 

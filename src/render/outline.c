@@ -1,4 +1,4 @@
-/* The midline of one foil: lip, lands, fillets, bumps, in its own frame. */
+/* The midline of one foil: lip, lands, fillets, bumps, in its own coordinates. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -248,20 +248,20 @@ fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
   double start =
       first->axis_rad - first->land_rad - request->first_land_mm / request->overall_radius_mm;
   double end = last->axis_rad + last->land_rad + request->last_land_mm / request->overall_radius_mm;
-  fg_foil_frame *frame = &scene->frames[foil];
-  frame->first_segment = scene->segment_count;
+  fg_drawn_foil *drawn = &scene->drawn[foil];
+  drawn->first_segment = scene->segment_count;
   if (!(end - start < 2 * pi))
     return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s: the foil is longer than a full turn",
                    place->path, place->member);
   FG_TRY(append_all(&o, plans, start, end));
-  frame->segment_count = scene->segment_count - frame->first_segment;
-  if (frame->segment_count == 0)
+  drawn->segment_count = scene->segment_count - drawn->first_segment;
+  if (drawn->segment_count == 0)
     return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s: the foil has no length", place->path,
                    place->member);
-  scene->segments[frame->first_segment].open_start = true;
+  scene->segments[drawn->first_segment].open_start = true;
   scene->segments[scene->segment_count - 1].open_end = true;
-  frame->length_mm = o.s_mm;
-  frame->half_span_rad = 0.5 * (end - start);
-  frame->half_thickness_mm = 0.5 * request->design.thickness_mm;
+  drawn->length_mm = o.s_mm;
+  drawn->half_span_rad = 0.5 * (end - start);
+  drawn->half_thickness_mm = 0.5 * request->design.thickness_mm;
   return FG_OK;
 }

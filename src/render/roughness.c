@@ -27,23 +27,23 @@ static void smooth_noise(fg_random *random, double sd, float *white, float *out,
 }
 
 fg_status fg_roughness_build(fg_context *ctx, const fg_scanner *scanner, uint64_t seed, size_t foil,
-                             fg_foil_frame *frame) {
+                             fg_drawn_foil *drawn) {
   if (scanner->edge_roughness_um <= 0 && scanner->edge_common_um <= 0) return FG_OK;
   float *white = NULL, *common = NULL;
   fg_status status = FG_OK;
   fg_random random;
   fg_random_seed(&random, seed, FG_STREAM_ROUGHNESS, foil);
-  frame->roughness_step_mm = 1e-3 * scanner->edge_correlation_um / STEPS_PER_CORRELATION;
-  size_t count = (size_t)(frame->length_mm / frame->roughness_step_mm) + 4;
-  frame->roughness_count = count;
+  drawn->roughness_step_mm = 1e-3 * scanner->edge_correlation_um / STEPS_PER_CORRELATION;
+  size_t count = (size_t)(drawn->length_mm / drawn->roughness_step_mm) + 4;
+  drawn->roughness_count = count;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 2 * HALF_WIDTH, sizeof *white, (void **)&white));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *common, (void **)&common));
   smooth_noise(&random, 1e-3 * scanner->edge_common_um, white, common, count);
   for (int edge = 0; edge < 2; edge++) {
-    FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(float), (void **)&frame->roughness[edge]));
-    smooth_noise(&random, 1e-3 * scanner->edge_roughness_um, white, frame->roughness[edge], count);
+    FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof(float), (void **)&drawn->roughness[edge]));
+    smooth_noise(&random, 1e-3 * scanner->edge_roughness_um, white, drawn->roughness[edge], count);
     for (size_t i = 0; i < count; i++)
-      frame->roughness[edge][i] += common[i];
+      drawn->roughness[edge][i] += common[i];
   }
 exit:
   free(white);

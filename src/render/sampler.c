@@ -97,13 +97,13 @@ static double along(const cross_section *at) {
 }
 
 /* Catmull-Rom between the drawn values. */
-static double roughness(const fg_foil_frame *frame, int edge, double s_mm) {
-  double place = s_mm / frame->roughness_step_mm + 1;
-  double last = (double)frame->roughness_count - 3;
+static double roughness(const fg_drawn_foil *drawn, int edge, double s_mm) {
+  double place = s_mm / drawn->roughness_step_mm + 1;
+  double last = (double)drawn->roughness_count - 3;
   place = place < 1 ? 1 : place > last ? last : place;
   size_t i = (size_t)place;
   double t = place - (double)i;
-  const float *v = frame->roughness[edge] + i - 1;
+  const float *v = drawn->roughness[edge] + i - 1;
   double a = (double)v[0], b = (double)v[1], c = (double)v[2], d = (double)v[3];
   return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
@@ -129,27 +129,27 @@ static double wall(const fg_sampler *sampler, const cross_section *at, double in
   return strength * exp(-0.5 * u * u);
 }
 
-/* Sum of the shapes of one frame where the cross-section meets the midline. */
-static double shape_at(const fg_sampler *sampler, const fg_foil_frame *frame,
-                       const cross_section *at, fg_render_effect_frame of) {
+/* Sum of the shapes of one target where the cross-section meets the midline. */
+static double shape_at(const fg_sampler *sampler, const fg_drawn_foil *drawn,
+                       const cross_section *at, fg_render_effect_target of) {
   double x = at->segment->x + at->dx - at->n * at->nx;
   double y = at->segment->y + at->dy - at->n * at->ny;
-  return fg_render_effects_shape(&sampler->spec->effects, of, fg_foil_psi(frame, x, y),
-                                 frame->half_span_rad);
+  return fg_render_effects_shape(&sampler->spec->effects, of, fg_foil_psi(drawn, x, y),
+                                 drawn->half_span_rad);
 }
 
-static double half_thickness(const fg_sampler *sampler, const fg_foil_frame *frame,
+static double half_thickness(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                              const cross_section *at) {
-  if (!sampler->has_width) return frame->half_thickness_mm;
-  return frame->half_thickness_mm + shape_at(sampler, frame, at, FG_RENDER_EFFECT_WIDTH);
+  if (!sampler->has_width) return drawn->half_thickness_mm;
+  return drawn->half_thickness_mm + shape_at(sampler, drawn, at, FG_RENDER_EFFECT_WIDTH);
 }
 
 /* Beyond the reach of the edges there is the wall or nothing. */
-static double far_value(const fg_sampler *sampler, const fg_foil_frame *frame,
+static double far_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                         const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
   if (sampler->spec->scanner.wall_amplitude == 0) return 0;
-  double half = half_thickness(sampler, frame, at), value = wall(sampler, at, half, -half);
+  double half = half_thickness(sampler, drawn, at), value = wall(sampler, at, half, -half);
   if (value == 0 || !(segment->open_start || segment->open_end)) return value;
   double t = along(at);
   if (segment->open_start) value *= phi(sampler, t / sd);
@@ -157,21 +157,21 @@ static double far_value(const fg_sampler *sampler, const fg_foil_frame *frame,
   return value;
 }
 
-static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
+static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                           const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
-  double inner = half_thickness(sampler, frame, at), outer = -inner;
+  double inner = half_thickness(sampler, drawn, at), outer = -inner;
   double t = 0;
   bool ends = segment->open_start || segment->open_end;
   bool bump = sampler->has_bump && (segment->bump || segment->joins);
-  if (ends || frame->roughness[0] || bump) t = along(at);
+  if (ends || drawn->roughness[0] || bump) t = along(at);
   if (bump) {
     double shift = fg_segment_bump_shift(&sampler->spec->effects, segment, t);
     inner += shift;
     outer += shift;
   }
   if (sampler->has_normal) {
-    double shift = shape_at(sampler, frame, at, FG_RENDER_EFFECT_NORMAL);
+    double shift = shape_at(sampler, drawn, at, FG_RENDER_EFFECT_NORMAL);
     inner -= shift;
     outer -= shift;
   }
@@ -181,9 +181,9 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
     inner += shift[0];
     outer += shift[1];
   }
-  if (frame->roughness[0]) {
-    inner += roughness(frame, 0, segment->s_mm + t);
-    outer += roughness(frame, 1, segment->s_mm + t);
+  if (drawn->roughness[0]) {
+    inner += roughness(drawn, 0, segment->s_mm + t);
+    outer += roughness(drawn, 1, segment->s_mm + t);
   }
   double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
   double inner_sd = edge_sd(sampler, sd, at->ny, bright);
@@ -200,12 +200,12 @@ static double strip_value(const fg_sampler *sampler, const fg_foil_frame *frame,
 static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
                          double y, double sd) {
   const fg_scene *scene = &sampler->spec->scene;
-  const fg_foil_frame *frame = &scene->frames[scene->segments[ids[0]].foil];
+  const fg_drawn_foil *drawn = &scene->drawn[scene->segments[ids[0]].foil];
   if (sampler->has_part) {
     /* The shape moves radially, so a place belongs to the part that is radially below it. */
-    double dx = x - frame->x, dy = y - frame->y, distance = hypot(dx, dy);
+    double dx = x - drawn->x, dy = y - drawn->y, distance = hypot(dx, dy);
     double shift = fg_render_effects_shape(&sampler->spec->effects, FG_RENDER_EFFECT_PART,
-                                           fg_foil_psi(frame, x, y), frame->half_span_rad);
+                                           fg_foil_psi(drawn, x, y), drawn->half_span_rad);
     x -= shift * dx / distance;
     y -= shift * dy / distance;
   }
@@ -214,9 +214,9 @@ static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t co
     try_segment(&scene->segments[ids[i]], x, y, &best);
   if (!best.segment) return 0;
   double limit =
-      sampler->edge_reach_mm + frame->half_thickness_mm + phi_limit * (sd - sampler->sd_mm);
-  if (fabs(best.n) > limit) return far_value(sampler, frame, &best, sd);
-  return strip_value(sampler, frame, &best, sd);
+      sampler->edge_reach_mm + drawn->half_thickness_mm + phi_limit * (sd - sampler->sd_mm);
+  if (fabs(best.n) > limit) return far_value(sampler, drawn, &best, sd);
+  return strip_value(sampler, drawn, &best, sd);
 }
 
 static double shape_value(const fg_sampler *sampler, const fg_shape *shape, double x, double y,

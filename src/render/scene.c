@@ -32,32 +32,32 @@ double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segm
          (value * (1 + 2 * s) + slope * 2 / segment->bump_mm * s * segment->length_mm);
 }
 
-double fg_foil_psi(const fg_foil_frame *frame, double x_mm, double y_mm) {
-  double angle = atan2(y_mm - frame->y, x_mm - frame->x) - frame->axis_rad;
-  return frame->mirror * remainder(angle, 2 * pi);
+double fg_foil_psi(const fg_drawn_foil *drawn, double x_mm, double y_mm) {
+  double angle = atan2(y_mm - drawn->y, x_mm - drawn->x) - drawn->axis_rad;
+  return drawn->mirror * remainder(angle, 2 * pi);
 }
 
-/* From the foil's own frame (middle along x) to the true frame. */
-static fg_point turn(const fg_foil_frame *frame, double x, double y) {
-  double c = cos(frame->axis_rad), s = sin(frame->axis_rad);
-  y *= frame->mirror;
+/* From the foil's own coordinates (middle along x) to the true ones. */
+static fg_point turn(const fg_drawn_foil *drawn, double x, double y) {
+  double c = cos(drawn->axis_rad), s = sin(drawn->axis_rad);
+  y *= drawn->mirror;
   return (fg_point){c * x - s * y, s * x + c * y};
 }
 
-static void turn_segment(const fg_foil_frame *frame, fg_segment *segment) {
-  fg_point at = turn(frame, segment->x, segment->y);
+static void turn_segment(const fg_drawn_foil *drawn, fg_segment *segment) {
+  fg_point at = turn(drawn, segment->x, segment->y);
   segment->x = at.x;
   segment->y = at.y;
   if (segment->line) {
-    fg_point a = turn(frame, segment->ax, segment->ay), b = turn(frame, segment->bx, segment->by);
+    fg_point a = turn(drawn, segment->ax, segment->ay), b = turn(drawn, segment->bx, segment->by);
     segment->ax = a.x;
     segment->ay = a.y;
     segment->bx = b.x;
     segment->by = b.y;
     return;
   }
-  segment->angle = frame->axis_rad + frame->mirror * segment->angle;
-  segment->sweep *= frame->mirror;
+  segment->angle = drawn->axis_rad + drawn->mirror * segment->angle;
+  segment->sweep *= drawn->mirror;
   segment->ax = cos(segment->angle);
   segment->ay = sin(segment->angle);
   segment->bx = cos(segment->angle + segment->sweep);
@@ -77,25 +77,25 @@ static void box_add(box *b, double x, double y, double reach) {
   b->high[1] = fmax(b->high[1], y + reach);
 }
 
-static box foil_box(const fg_scene *scene, const fg_foil_frame *frame) {
+static box foil_box(const fg_scene *scene, const fg_drawn_foil *drawn) {
   box b = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-  for (size_t i = 0; i < frame->segment_count; i++) {
-    const fg_segment *segment = &scene->segments[frame->first_segment + i];
+  for (size_t i = 0; i < drawn->segment_count; i++) {
+    const fg_segment *segment = &scene->segments[drawn->first_segment + i];
     int steps = 1 + (int)(segment->length_mm / 0.05);
     for (int k = 0; k <= steps; k++) {
       fg_point p = fg_segment_point(segment, segment->length_mm * k / steps);
-      box_add(&b, p.x, p.y, frame->half_thickness_mm);
+      box_add(&b, p.x, p.y, drawn->half_thickness_mm);
     }
   }
   return b;
 }
 
-static void move_foil(fg_scene *scene, fg_foil_frame *frame, double x_mm, double y_mm) {
-  frame->x += x_mm;
-  frame->y += y_mm;
-  for (size_t i = 0; i < frame->segment_count; i++) {
-    scene->segments[frame->first_segment + i].x += x_mm;
-    scene->segments[frame->first_segment + i].y += y_mm;
+static void move_foil(fg_scene *scene, fg_drawn_foil *drawn, double x_mm, double y_mm) {
+  drawn->x += x_mm;
+  drawn->y += y_mm;
+  for (size_t i = 0; i < drawn->segment_count; i++) {
+    scene->segments[drawn->first_segment + i].x += x_mm;
+    scene->segments[drawn->first_segment + i].y += y_mm;
   }
 }
 
@@ -105,7 +105,7 @@ typedef struct shelf {
   double x_px, y_px, height_px;
 } shelf;
 
-static void place_automatically(fg_render_spec *spec, fg_foil_frame *frame, const box *b,
+static void place_automatically(fg_render_spec *spec, fg_drawn_foil *drawn, const box *b,
                                 size_t foil, shelf *at) {
   double margin = spec->margin_px;
   double width = (b->high[0] - b->low[0]) / spec->pixel_mm[0];
@@ -118,21 +118,21 @@ static void place_automatically(fg_render_spec *spec, fg_foil_frame *frame, cons
   fg_random random;
   fg_random_seed(&random, spec->seed, FG_STREAM_PLACE, foil);
   double dx = fg_random_uniform(&random), dy = fg_random_uniform(&random);
-  move_foil(&spec->scene, frame, (at->x_px + dx) * spec->pixel_mm[0] - b->low[0],
+  move_foil(&spec->scene, drawn, (at->x_px + dx) * spec->pixel_mm[0] - b->low[0],
             (at->y_px + dy) * spec->pixel_mm[1] - b->low[1]);
   at->x_px += ceil(width + 1 + margin);
   at->height_px = fmax(at->height_px, ceil(height + 1));
 }
 
-static void finish_foil_truth(const fg_render_spec *spec, const fg_foil_frame *frame,
+static void finish_foil_truth(const fg_render_spec *spec, const fg_drawn_foil *drawn,
                               fg_render_foil *foil) {
-  foil->rotate_deg = remainder(frame->axis_rad * 180 / pi, 360);
-  foil->overall_centre_px = (fg_point){frame->x / spec->pixel_mm[0], frame->y / spec->pixel_mm[1]};
+  foil->rotate_deg = remainder(drawn->axis_rad * 180 / pi, 360);
+  foil->overall_centre_px = (fg_point){drawn->x / spec->pixel_mm[0], drawn->y / spec->pixel_mm[1]};
   fg_render_bump *bumps = (fg_render_bump *)foil->bumps;
   for (size_t i = 0; i < foil->bump_count; i++) {
-    fg_point c = turn(frame, bumps[i].centre_px.x, bumps[i].centre_px.y);
+    fg_point c = turn(drawn, bumps[i].centre_px.x, bumps[i].centre_px.y);
     bumps[i].centre_px =
-        (fg_point){(frame->x + c.x) / spec->pixel_mm[0], (frame->y + c.y) / spec->pixel_mm[1]};
+        (fg_point){(drawn->x + c.x) / spec->pixel_mm[0], (drawn->y + c.y) / spec->pixel_mm[1]};
   }
 }
 
@@ -140,22 +140,22 @@ static fg_status build_foil(const fg_place *place, fg_render_spec *spec,
                             const fg_foil_request *request, int copy, shelf *at, box *all) {
   fg_scene *scene = &spec->scene;
   size_t foil = scene->foil_count++;
-  fg_foil_frame *frame = &scene->frames[foil];
-  frame->axis_rad = (request->rotate_deg + copy * request->rotate_step_deg) * pi / 180;
-  frame->mirror = request->mirror ? -1 : 1;
+  fg_drawn_foil *drawn = &scene->drawn[foil];
+  drawn->axis_rad = (request->rotate_deg + copy * request->rotate_step_deg) * pi / 180;
+  drawn->mirror = request->mirror ? -1 : 1;
   FG_TRY(fg_outline_build(place, spec, request, scene, foil));
-  for (size_t i = 0; i < frame->segment_count; i++)
-    turn_segment(frame, &scene->segments[frame->first_segment + i]);
-  box b = foil_box(scene, frame);
+  for (size_t i = 0; i < drawn->segment_count; i++)
+    turn_segment(drawn, &scene->segments[drawn->first_segment + i]);
+  box b = foil_box(scene, drawn);
   if (isnan(request->centre_mm[0]))
-    place_automatically(spec, frame, &b, foil, at);
+    place_automatically(spec, drawn, &b, foil, at);
   else
-    move_foil(scene, frame, request->centre_mm[0], request->centre_mm[1]);
-  b = foil_box(scene, frame);
+    move_foil(scene, drawn, request->centre_mm[0], request->centre_mm[1]);
+  b = foil_box(scene, drawn);
   box_add(all, b.low[0], b.low[1], 0);
   box_add(all, b.high[0], b.high[1], 0);
-  finish_foil_truth(spec, frame, &scene->foils[foil]);
-  return fg_roughness_build(place->ctx, &spec->scanner, spec->seed, foil, frame);
+  finish_foil_truth(spec, drawn, &scene->foils[foil]);
+  return fg_roughness_build(place->ctx, &spec->scanner, spec->seed, foil, drawn);
 }
 
 static fg_status build_foils(const fg_place *place, fg_render_spec *spec, box *all) {
@@ -165,7 +165,7 @@ static fg_status build_foils(const fg_place *place, fg_render_spec *spec, box *a
   if (count > FG_RENDER_FOILS_MAX)
     return fg_member_fail(place, "foils", NULL, "at most 4096 foils, copies counted");
   fg_scene *scene = &spec->scene;
-  FG_TRY(fg_memory_allocate(place->ctx, count, sizeof *scene->frames, (void **)&scene->frames));
+  FG_TRY(fg_memory_allocate(place->ctx, count, sizeof *scene->drawn, (void **)&scene->drawn));
   FG_TRY(fg_memory_allocate(place->ctx, count, sizeof *scene->foils, (void **)&scene->foils));
   shelf at = {spec->margin_px, spec->margin_px, 0};
   for (size_t i = 0; i < spec->request_count; i++) {
@@ -278,11 +278,11 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
 void fg_scene_free(fg_scene *scene) {
   for (size_t i = 0; i < scene->foil_count; i++) {
     free((void *)scene->foils[i].bumps);
-    free(scene->frames[i].roughness[0]);
-    free(scene->frames[i].roughness[1]);
+    free(scene->drawn[i].roughness[0]);
+    free(scene->drawn[i].roughness[1]);
   }
   free(scene->segments);
-  free(scene->frames);
+  free(scene->drawn);
   free(scene->foils);
   free(scene->shapes);
   free(scene->discs);
@@ -299,10 +299,10 @@ static fg_point inner_side(const fg_segment *segment, fg_point at) {
 fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
                             fg_point *point_px) {
   const fg_scene *scene = &spec->scene;
-  if (foil >= scene->foil_count || !(s_mm >= 0 && s_mm <= scene->frames[foil].length_mm))
+  if (foil >= scene->foil_count || !(s_mm >= 0 && s_mm <= scene->drawn[foil].length_mm))
     return fg_fail(ctx, FG_ERR_USAGE, "there is no foil %zu with a midline of %g mm", foil, s_mm);
-  const fg_foil_frame *frame = &scene->frames[foil];
-  size_t i = frame->first_segment, last = i + frame->segment_count - 1;
+  const fg_drawn_foil *drawn = &scene->drawn[foil];
+  size_t i = drawn->first_segment, last = i + drawn->segment_count - 1;
   while (i < last && s_mm > scene->segments[i].s_mm + scene->segments[i].length_mm)
     i++;
   const fg_segment *segment = &scene->segments[i];
@@ -313,12 +313,12 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
   fg_render_effects_edges(&spec->effects, inner.x, inner.y, shift);
   double w = fg_segment_bump_shift(&spec->effects, segment, t) + 0.5 * (shift[0] + shift[1]);
   w -= fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_NORMAL,
-                               fg_foil_psi(frame, p.x, p.y), frame->half_span_rad);
+                               fg_foil_psi(drawn, p.x, p.y), drawn->half_span_rad);
   p.x += w * inner.x;
   p.y += w * inner.y;
-  double dx = p.x - frame->x, dy = p.y - frame->y;
+  double dx = p.x - drawn->x, dy = p.y - drawn->y;
   double radial = fg_render_effects_shape(&spec->effects, FG_RENDER_EFFECT_PART,
-                                          fg_foil_psi(frame, p.x, p.y), frame->half_span_rad);
+                                          fg_foil_psi(drawn, p.x, p.y), drawn->half_span_rad);
   double distance = hypot(dx, dy);
   point_px->x = (p.x + radial * dx / distance) / spec->pixel_mm[0];
   point_px->y = (p.y + radial * dy / distance) / spec->pixel_mm[1];

@@ -66,7 +66,7 @@ typedef struct fg_scanner {
   int jpeg_quality; /* 0: none */
 } fg_scanner;
 
-/* A piece of a midline, in mm of the true frame. Arc length runs from the lip to the free end. */
+/* A piece of a midline, in mm of true coordinates. Arc length runs from the lip to the free end. */
 typedef struct fg_segment {
   bool line;
   bool open_start, open_end; /* the strip ends here */
@@ -84,18 +84,18 @@ typedef struct fg_segment {
   size_t foil;
 } fg_segment;
 
-typedef struct fg_foil_frame {
+typedef struct fg_drawn_foil {
   double x, y, axis_rad, mirror; /* O; direction of the middle; +1 or -1 */
   double half_span_rad, half_thickness_mm, length_mm;
   size_t first_segment, segment_count;
   float *roughness[2]; /* inner and outer edge, shift to the inner side in mm; NULL: none */
   size_t roughness_count;
   double roughness_step_mm;
-} fg_foil_frame;
+} fg_drawn_foil;
 
 /* Discs, dust and scratches: a capsule, or a circle with lobes. */
 typedef struct fg_shape {
-  double x0, y0, x1, y1, radius; /* mm, true frame */
+  double x0, y0, x1, y1, radius; /* mm, true coordinates */
   double value;                  /* what it sets coverage to, or adds to it */
   bool adds;
   int lobes;
@@ -105,7 +105,7 @@ typedef struct fg_shape {
 typedef struct fg_scene {
   fg_segment *segments;
   size_t segment_count, segment_capacity;
-  fg_foil_frame *frames;
+  fg_drawn_foil *drawn;
   fg_render_foil *foils;
   size_t foil_count;
   fg_shape *shapes;
@@ -147,15 +147,16 @@ void fg_scene_free(fg_scene *scene);
 fg_point fg_segment_point(const fg_segment *segment, double t_mm);
 
 /* Direction of a place about O, from the foil's middle towards its free end. */
-double fg_foil_psi(const fg_foil_frame *frame, double x_mm, double y_mm);
+double fg_foil_psi(const fg_drawn_foil *drawn, double x_mm, double y_mm);
 
 /* Shift of a bump's arc by its effects, towards the inner side, mm; on a fillet that joins it, what
  * fades the shift out. */
 double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segment *segment,
                              double t_mm);
 
-/* Appends the segments of one foil in its own frame (O at the origin, the middle along x, bump
- * numbers along rising angle), and fills its bumps (places in mm, same frame) and frame. */
+/* Appends the segments of one foil in its own coordinates (O at the origin, the middle along x,
+ * bump numbers along rising angle), and fills its bumps (places in mm, the same) and what is drawn
+ * of it. */
 fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
                            const fg_foil_request *request, fg_scene *scene, size_t foil);
 
@@ -164,6 +165,6 @@ fg_render_bump fg_outline_nominal(const fg_render_design *design);
 
 /* The edges' random deviation of one foil, where the scanner asks for it. */
 fg_status fg_roughness_build(fg_context *ctx, const fg_scanner *scanner, uint64_t seed, size_t foil,
-                             fg_foil_frame *frame);
+                             fg_drawn_foil *drawn);
 
 #endif

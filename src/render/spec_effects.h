@@ -1,8 +1,8 @@
 /* Effects: what makes the picture or the part differ from the declared model. One row each.
  *
  * A scanner effect is a field: true position = nominal position + d(x, y), in mm. A part effect
- * moves the midline in the foil's frame, changes the strip's thickness, or changes the table of
- * bumps.
+ * moves the midline in the foil's coordinates, changes the strip's thickness, or changes the table
+ * of bumps.
  */
 #ifndef FG_RENDER_SPEC_EFFECTS_H
 #define FG_RENDER_SPEC_EFFECTS_H
@@ -15,7 +15,7 @@
 
 enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 4, FG_RENDER_EFFECTS_MAX = 16 };
 
-typedef enum fg_render_effect_frame {
+typedef enum fg_render_effect_target {
   FG_RENDER_EFFECT_SCANNER, /* field(p, x_mm, y_mm, d) adds to d */
   FG_RENDER_EFFECT_STEP,    /* the same, but a jump at p[1] of the row's axis: it comes after the
                                optics, so it is sharp in the picture and not blurred */
@@ -31,7 +31,7 @@ typedef enum fg_render_effect_frame {
   FG_RENDER_EFFECT_TABLE, /* shape(p, index, count): factor on the bump's radius; index from 1 */
   FG_RENDER_EFFECT_STRETCH, /* shape(p, R - R_D in mm, ·): factor on the bump's arc length R alpha
                              */
-} fg_render_effect_frame;
+} fg_render_effect_target;
 
 typedef struct fg_render_effect_parameter {
   const char *name;
@@ -41,7 +41,7 @@ typedef struct fg_render_effect_parameter {
 
 typedef struct fg_render_effect_row {
   const char *id;
-  fg_render_effect_frame frame;
+  fg_render_effect_target target;
   fg_render_effect_parameter parameters[FG_RENDER_EFFECT_PARAMETERS_MAX];
   void (*field)(const double *p, double x_mm, double y_mm, double d_mm[2]);
   double (*shape)(const double *p, double coordinate, double extent);
@@ -51,7 +51,7 @@ typedef struct fg_render_effect_row {
 
 typedef struct fg_render_effect {
   const fg_render_effect_row *row;
-  fg_render_effect_frame frame; /* the row's, or FG_RENDER_EFFECT_NORMAL */
+  fg_render_effect_target target; /* the row's, or FG_RENDER_EFFECT_NORMAL */
   double p[FG_RENDER_EFFECT_PARAMETERS_MAX];
   fg_curve curve;
   int moves;  /* FG_RENDER_EFFECT_SCANNER with a curve: the axis of the displacement, 0 x, 1 y */
@@ -63,13 +63,17 @@ typedef struct fg_render_effect_list {
   size_t count;
 } fg_render_effect_list;
 
+/* Every effect that a spec may name; ends with id NULL. */
+const fg_render_effect_row *fg_render_effect_rows(void);
+
+/* spec_effects_parse.c */
 fg_status fg_render_effects_parse(const fg_place *place, const cJSON *array,
                                   fg_render_effect_list *list);
 
-/* Fills in parameters that refer to the picture's middle. */
+/* Fills in parameters that refer to the picture's middle. From here on: spec_effects_apply.c */
 void fg_render_effects_resolve(fg_render_effect_list *list, double width_mm, double height_mm);
 
-bool fg_render_effects_have(const fg_render_effect_list *list, fg_render_effect_frame frame);
+bool fg_render_effects_have(const fg_render_effect_list *list, fg_render_effect_target target);
 
 /* d(x, y) of all scanner effects. `side_mm` is x, y of the picture's pixel that is being made: it
  * says on which side of a jump we are. */
@@ -80,8 +84,8 @@ void fg_render_effects_field(const fg_render_effect_list *list, double x_mm, dou
 double fg_render_effects_next_step(const fg_render_effect_list *list, int axis, double low_mm,
                                    double high_mm);
 
-/* Sum (factors: product) of the shapes of one frame. */
-double fg_render_effects_shape(const fg_render_effect_list *list, fg_render_effect_frame frame,
+/* Sum (factors: product) of the shapes of one target. */
+double fg_render_effects_shape(const fg_render_effect_list *list, fg_render_effect_target target,
                                double coordinate, double extent);
 
 /* A bump's curves need not end at 0: the fillets take over with their value and slope (per u,

@@ -85,9 +85,9 @@ static void put_scan(cJSON *root, const fg_render_spec *spec) {
 }
 
 static void put_curve(cJSON *entry, const fg_render_effect *effect) {
-  if (effect->row->frame == FG_RENDER_EFFECT_SCANNER)
+  if (effect->row->target == FG_RENDER_EFFECT_SCANNER)
     cJSON_AddStringToObject(entry, "moves", effect->moves ? "y" : "x");
-  if (effect->row->frame == FG_RENDER_EFFECT_EDGE)
+  if (effect->row->target == FG_RENDER_EFFECT_EDGE)
     cJSON_AddStringToObject(entry, "edges", effect->apart ? "apart" : "together");
   cJSON *knots = cJSON_AddArrayToObject(entry, "knots");
   for (size_t i = 0; i < effect->curve.count; i++) {

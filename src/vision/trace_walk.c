@@ -2,6 +2,7 @@
 #include "vision/trace_walk.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "core/memory.h"
 #include "foilgauge/strip.h"

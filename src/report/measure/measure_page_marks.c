@@ -14,7 +14,7 @@ void fg_html_value(FILE *out, const fg_report_field *field, const void *object) 
   if (isfinite(u)) fprintf(out, " <i>± %.*f</i>", decimals, FG_COVERAGE_FACTOR * u);
 }
 
-static const char *verdict_title(fg_verdict verdict) {
+const char *fg_html_verdict_title(fg_verdict verdict) {
   switch (verdict) {
   case FG_VERDICT_PASS:
     return "Within tolerance";
@@ -32,7 +32,7 @@ static const char *verdict_title(fg_verdict verdict) {
 
 void fg_html_verdict(FILE *out, fg_verdict verdict) {
   fprintf(out, "<span class=\"verdict %s\">%s</span>\n", fg_verdict_word(verdict),
-          verdict_title(verdict));
+          fg_html_verdict_title(verdict));
 }
 
 void fg_html_outcome(FILE *out, const fg_report_outcome *outcome) {

@@ -12,7 +12,8 @@ void fg_html_end(FILE *out);
 /* Text with <, >, &, quotes and stray bytes made harmless. */
 void fg_html_text(FILE *out, const char *text);
 
-/* The verdict as a coloured pill. */
+/* "Within tolerance", ...; and the same as a coloured pill. */
+const char *fg_html_verdict_title(fg_verdict verdict);
 void fg_html_verdict(FILE *out, fg_verdict verdict);
 /* The same of an outcome: "Rejected" when it is a defect and no value that fails. */
 void fg_html_outcome(FILE *out, const fg_report_outcome *outcome);
