@@ -1,0 +1,222 @@
+/* The correction: edges that a known scanner, or a known part, moved are put back. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "../support/foil_rows.h"
+#include "../support/near.h"
+#include "scan_loop/state.h"
+
+/* Room for rounding, and for what a fit of circles stops at. */
+#define EDGE_MM   1e-9
+#define CIRCLE_MM 2e-6
+
+static fg_field_list scanner(const foil_rows *f) {
+  static const struct {
+    const char *id;
+    double amplitude_um;
+  } effects[] = {{"scan.scale_y", 40}, {"scan.shear", 25}, {"scan.carriage_ripple", 5}};
+  fg_effect_set set = {.count = 0};
+  fg_field_list fields;
+  for (size_t e = 0; e < sizeof effects / sizeof *effects; e++) {
+    const fg_effect *kind = fg_effect_find(effects[e].id);
+    assert_non_null(kind);
+    set.effects[set.count++] = (fg_effect_found){.kind = kind,
+                                                 .columns = kind->columns,
+                                                 .shapes = kind->shapes,
+                                                 .coefficient_um = {effects[e].amplitude_um},
+                                                 .shape = {3.1}};
+  }
+  fg_effect_set_fields(&f->points, &set, &fields);
+  assert_int_equal(fields.count, 3);
+  return fields;
+}
+
+/* Where a scanner with this field sees a place: true = seen + d(seen). */
+static fg_point seen_at(const fg_field_list *fields, fg_point truth) {
+  fg_point seen = truth;
+  for (int k = 0; k < 12; k++) {
+    fg_point d = fg_field_at(fields, seen);
+    seen = (fg_point){truth.x - d.x, truth.y - d.y};
+  }
+  return seen;
+}
+
+/* A measurement of the synthetic foil as a scanner with the fields sees it (NULL: a perfect one),
+ * corrected by `correction` (NULL: not). */
+static fg_measurement measure(const foil_rows *f, const fg_field_list *fields,
+                              const fg_field_list *correction) {
+  fg_context ctx = {0};
+  fg_measurement m = f->m, corrected;
+  fg_foil foil = f->m.foils[0];
+  size_t bytes = foil.strip.count * sizeof *foil.strip.stations;
+  foil.strip.stations = malloc(bytes);
+  memcpy(foil.strip.stations, f->m.foils[0].strip.stations, bytes);
+  for (size_t k = 0; fields && k < foil.strip.count; k++) {
+    fg_station *s = &foil.strip.stations[k];
+    s->left = seen_at(fields, s->left);
+    s->right = seen_at(fields, s->right);
+  }
+  m.foils = &foil;
+  assert_int_equal(fg_scan_loop_correct(&ctx, &m, correction, NULL, NULL, 1, &corrected), FG_OK);
+  free(foil.strip.stations);
+  return corrected;
+}
+
+static void same_edges(const fg_strip *got, const fg_strip *wanted, double tolerance_mm) {
+  assert_int_equal(got->count, wanted->count);
+  for (size_t k = 0; k < got->count; k++) {
+    assert_near(got->stations[k].left.x, wanted->stations[k].left.x, tolerance_mm);
+    assert_near(got->stations[k].left.y, wanted->stations[k].left.y, tolerance_mm);
+    assert_near(got->stations[k].right.x, wanted->stations[k].right.x, tolerance_mm);
+    assert_near(got->stations[k].right.y, wanted->stations[k].right.y, tolerance_mm);
+  }
+}
+
+static void same_circles(const fg_foil *got, const fg_foil *wanted, double tolerance_mm) {
+  assert_int_equal(got->bump_count, wanted->bump_count);
+  assert_int_equal(got->bump_count, SYNTHETIC_BUMPS);
+  assert_near(got->overall.radius_mm, wanted->overall.radius_mm, tolerance_mm);
+  assert_near(got->overall.centre_mm.x, wanted->overall.centre_mm.x, tolerance_mm);
+  assert_near(got->overall.centre_mm.y, wanted->overall.centre_mm.y, tolerance_mm);
+  for (size_t b = 0; b < got->bump_count; b++) {
+    assert_int_equal(got->bumps[b].number, wanted->bumps[b].number);
+    assert_near(got->bumps[b].radius_mm, wanted->bumps[b].radius_mm, tolerance_mm);
+    assert_near(got->bumps[b].centre_mm.x, wanted->bumps[b].centre_mm.x, tolerance_mm);
+    assert_near(got->bumps[b].centre_mm.y, wanted->bumps[b].centre_mm.y, tolerance_mm);
+    assert_near(got->bumps[b].height_mm, wanted->bumps[b].height_mm, tolerance_mm);
+  }
+}
+
+static void what_a_scanner_moved_is_put_back(void **state) {
+  (void)state;
+  foil_rows f;
+  foil_rows_open(&f);
+  fg_field_list fields = scanner(&f);
+  fg_measurement truth = measure(&f, NULL, NULL);
+  fg_measurement wrong = measure(&f, &fields, NULL), right = measure(&f, &fields, &fields);
+  assert_true(fabs(wrong.foils[0].overall.radius_mm - truth.foils[0].overall.radius_mm) > 5e-3);
+  same_edges(&right.foils[0].strip, &f.m.foils[0].strip, EDGE_MM);
+  same_circles(&right.foils[0], &truth.foils[0], CIRCLE_MM);
+  fg_measurement_free(&truth);
+  fg_measurement_free(&wrong);
+  fg_measurement_free(&right);
+  foil_rows_close(&f);
+}
+
+/* The circle that the synthetic foil was made of, not only the one that was measured. */
+static void the_corrected_foil_is_the_one_that_was_drawn(void **state) {
+  (void)state;
+  foil_rows f;
+  foil_rows_open(&f);
+  fg_field_list fields = scanner(&f);
+  fg_measurement right = measure(&f, &fields, &fields);
+  const fg_foil *drawn = &f.m.foils[0], *got = &right.foils[0];
+  const double residual_mm = 0.4e-3; /* that the synthetic midline has */
+  assert_near(got->overall.radius_mm, drawn->overall.radius_mm, residual_mm);
+  for (size_t b = 0; b < got->bump_count; b++)
+    assert_near(got->bumps[b].radius_mm, drawn->bumps[b].radius_mm, 4 * residual_mm);
+  fg_measurement_free(&right);
+  foil_rows_close(&f);
+}
+
+/* A station's shift is that of the nearest row: from one row to the next it changes by less than
+ * this, and its direction by the angle between them. */
+#define NEXT_ROW_MM 1.5e-4
+
+static void what_the_part_moved_is_put_back(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  foil_rows f;
+  double *shift_mm;
+  foil_rows_open(&f);
+  fg_measurement truth = measure(&f, NULL, NULL), wrong, right;
+  const fg_effect *oval = fg_effect_find("part.ovality");
+  fg_effect_set set = {.effects = {{.kind = oval, .columns = 2, .coefficient_um = {9, -4}}},
+                       .count = 1};
+  assert_int_equal(fg_effect_set_shift(&ctx, &f.points, &set, &shift_mm), FG_OK);
+  fg_strip *strip = &f.m.foils[0].strip;
+  for (size_t k = 0; k < strip->count; k++) {
+    fg_station *s = &strip->stations[k];
+    fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
+    size_t nearest = 0;
+    for (size_t i = 1; i < f.points.row_count; i++)
+      if (hypot(f.points.rows[i].at.x - middle.x, f.points.rows[i].at.y - middle.y) <
+          hypot(f.points.rows[nearest].at.x - middle.x, f.points.rows[nearest].at.y - middle.y))
+        nearest = i;
+    fg_point n = f.points.rows[nearest].normal;
+    s->left = (fg_point){s->left.x + shift_mm[nearest] * n.x, s->left.y + shift_mm[nearest] * n.y};
+    s->right =
+        (fg_point){s->right.x + shift_mm[nearest] * n.x, s->right.y + shift_mm[nearest] * n.y};
+  }
+  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, NULL, NULL, NULL, 1, &wrong), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, NULL, &f.points, shift_mm, 1, &right), FG_OK);
+  assert_true(fabs(wrong.foils[0].overall.radius_mm - truth.foils[0].overall.radius_mm) > 5e-3);
+  same_edges(&right.foils[0].strip, &truth.foils[0].strip, NEXT_ROW_MM);
+  same_circles(&right.foils[0], &truth.foils[0], NEXT_ROW_MM / 3);
+  free(shift_mm);
+  fg_measurement_free(&truth);
+  fg_measurement_free(&wrong);
+  fg_measurement_free(&right);
+  foil_rows_close(&f);
+}
+
+static void what_a_scanner_did_to_a_disc_is_put_back(void **state) {
+  (void)state;
+  enum { STATIONS = 720 };
+  fg_context ctx = {0};
+  foil_rows f;
+  foil_rows_open(&f);
+  fg_field_list fields = scanner(&f);
+  const fg_point centre = {17, 25};
+  const double radius_mm = 4;
+  fg_disc_point seen[STATIONS];
+  for (int k = 0; k < STATIONS; k++) {
+    double angle = 2 * synthetic_pi * k / STATIONS;
+    fg_point at = {centre.x + radius_mm * cos(angle), centre.y + radius_mm * sin(angle)};
+    seen[k] = (fg_disc_point){
+        .at = seen_at(&fields, at), .u = 1e-4, .split = NAN, .u_split = NAN, .used = true};
+  }
+  fg_disc disc = {.number = 1, .stations = seen, .station_count = STATIONS};
+  fg_measurement m = {.disc_count = 1, .discs = &disc}, wrong, right;
+  assert_int_equal(fg_scan_loop_correct(&ctx, &m, NULL, NULL, NULL, 1, &wrong), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &m, &fields, NULL, NULL, 1, &right), FG_OK);
+  assert_true(fabs(wrong.discs[0].radius_mm - radius_mm) > 1e-3);
+  assert_near(right.discs[0].radius_mm, radius_mm, EDGE_MM);
+  assert_near(right.discs[0].centre_mm.x, centre.x, EDGE_MM);
+  assert_near(right.discs[0].centre_mm.y, centre.y, EDGE_MM);
+  fg_measurement_free(&wrong);
+  fg_measurement_free(&right);
+  foil_rows_close(&f);
+}
+
+/* Why it could not be measured stays as it is. */
+static void a_foil_that_was_not_measured_stays_so(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  foil_rows f;
+  foil_rows_open(&f);
+  fg_field_list fields = scanner(&f);
+  fg_measurement corrected;
+  f.m.foils[0].flags = FG_FOIL_NOT_MEASURED | FG_FOIL_COARSE_RESOLUTION;
+  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, &fields, NULL, NULL, 1, &corrected), FG_OK);
+  assert_int_equal(corrected.foils[0].flags, f.m.foils[0].flags);
+  assert_true(isnan(corrected.foils[0].overall.radius_mm));
+  fg_measurement_free(&corrected);
+  foil_rows_close(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(what_a_scanner_moved_is_put_back),
+      cmocka_unit_test(the_corrected_foil_is_the_one_that_was_drawn),
+      cmocka_unit_test(what_the_part_moved_is_put_back),
+      cmocka_unit_test(what_a_scanner_did_to_a_disc_is_put_back),
+      cmocka_unit_test(a_foil_that_was_not_measured_stays_so),
+  };
+  return cmocka_run_group_tests_name("correction", tests, NULL, NULL);
+}
