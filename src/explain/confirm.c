@@ -19,18 +19,30 @@
 #include "effect/columns.h"
 #include "explain/search.h"
 
+/* Chance of an amplitude like this where there is none (these and those below were tuned on
+ * reports/loop_plate.md: plates with and without an effect, of true and of lobed pins). */
 #define CONFIRM_P 0.005
 /* The same where the best of so many places was taken. */
 #define CONFIRM_SHAPED_P 1e-4
 /* Standard errors that the gain of a free curve has to exceed; of a listed effect. */
 #define FREE_ERRORS   3.0
 #define LISTED_ERRORS 1.0
-/* Amplitude in its standard uncertainties, at the least. */
+/* Amplitude in its standard uncertainties, at the least: what is said to be the smallest that would
+ * have shown (describe.c). */
 #define AMPLITUDE_ERRORS 3.5
 /* Groups that share the information, at the least. */
 #define GROUPS_LEAST 1.5
 /* Undulations of a disc's form that a step or a ripple is confirmed beside. */
 enum { FORM_HARMONICS = 5 };
+/* Normal equations are singular where a pivot is this share of its diagonal: of an effect; of a
+ * form, whose rows may lie on a short arc. */
+#define SINGULAR      1e-9
+#define FORM_SINGULAR 1e-12
+/* A column with a smaller sum of squares beside the forms is nothing, um². */
+#define NOTHING_UM2 1e-6
+/* Student's t has no fewer degrees of freedom, and no scatter is less. */
+#define FREEDOM_LEAST 0.5
+#define SCATTER_LEAST 1e-300
 
 typedef struct confirmation {
   const fg_points *points;
@@ -69,7 +81,7 @@ static void take_form_out(const fg_points *points, size_t first, size_t last, si
     form_basis(points, i, harmonics, basis);
     fg_normal_add(&system, basis, values[i], weight_at(points, i));
   }
-  if (!fg_normal_solve(&system, 1e-12, x, NULL)) return;
+  if (!fg_normal_solve(&system, FORM_SINGULAR, x, NULL)) return;
   for (size_t i = first; i < last; i++) {
     form_basis(points, i, harmonics, basis);
     for (size_t k = 0; k < unknowns; k++)
@@ -144,7 +156,7 @@ static double validated_gain(const confirmation *c, const fg_normal_equations *w
     double x[FG_SMALL_MAX];
     if (!(c->groups[g].matrix[0][0] > 0)) continue;
     add_system(&others, &c->groups[g], -1);
-    if (!fg_normal_solve(&others, 1e-9, x, NULL)) return -INFINITY;
+    if (!fg_normal_solve(&others, SINGULAR, x, NULL)) return -INFINITY;
     double gain = 2 * linear(&c->groups[g], x) - quadratic(&c->groups[g], x);
     sum += gain;
     squares += gain * gain;
@@ -164,8 +176,8 @@ static double scatter_p(const confirmation *c, const double *x, double groups) {
     scatter += (have - expect) * (have - expect);
     n++;
   }
-  double t = amount / sqrt(fmax(scatter * n / fmax(n - 1, 1), 1e-300));
-  return gsl_cdf_tdist_Q(t, fmax(groups - (double)c->columns_used, 0.5));
+  double t = amount / sqrt(fmax(scatter * n / fmax(n - 1, 1), SCATTER_LEAST));
+  return gsl_cdf_tdist_Q(t, fmax(groups - (double)c->columns_used, FREEDOM_LEAST));
 }
 
 /* Whole normal equations and their solution; false when there is nothing to solve. */
@@ -176,7 +188,7 @@ static bool solve_whole(confirmation *c, bool sides, fg_normal_equations *whole,
   fg_normal_clear(whole, c->columns_used);
   for (size_t g = 0; g < c->group_count; g++)
     add_system(whole, &c->groups[g], 1);
-  return c->columns_used && fg_normal_solve(whole, 1e-9, x, inverse);
+  return c->columns_used && fg_normal_solve(whole, SINGULAR, x, inverse);
 }
 
 /* How well the effect is confirmed from disc to disc: above 0 it is. */
@@ -274,7 +286,7 @@ static void prepare(confirmation *c, const double *residual_um, size_t harmonics
     take_forms_out(c->points, harmonics, column);
     for (size_t i = 0; i < rows; i++)
       square += weight_at(c->points, i) * column[i] * column[i];
-    if (square > 1e-6) c->index[c->columns_used++] = k;
+    if (square > NOTHING_UM2) c->index[c->columns_used++] = k;
   }
   take_forms_out(c->points, harmonics, c->residual);
 }

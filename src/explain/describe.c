@@ -4,7 +4,8 @@
 
 #include "explain/search.h"
 
-/* Standard deviations of an amplitude that is found in most cases. */
+/* Standard deviations of an amplitude that is found in most cases: at chi² 10.8 (score.c) one of
+ * 3.5 is in 58 of 100. */
 #define SMALLEST_ERRORS 3.5
 
 static void describe_effects(fg_explain_search *s, const fg_explain_yardstick *y) {

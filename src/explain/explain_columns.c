@@ -11,6 +11,10 @@
 #define VANISHED 1e-8
 /* A term of which less than this share stands beside the terms before it is one of them. */
 #define DEPENDENT 1e-6
+/* A vector of which less than this share stands beside the basis lies in it: rounding. */
+#define IN_BASIS 1e-12
+/* Smooth parts of the width that take so many times what chance takes are there. */
+#define CHANCE_TIMES 3.0
 
 double fg_explain_dot(size_t n, const double *a, const double *b) {
   enum { LANES = 8 }; /* sums that do not wait for each other */
@@ -57,7 +61,7 @@ static bool extend(fg_explain_columns *s, size_t rank, const double *v, double l
   memcpy(to, v, s->rows * sizeof *to);
   fg_explain_take_out(s, rank, to);
   double left = fg_explain_dot(s->rows, to, to);
-  if (!(left > fmax(1e-12 * whole, least))) return false;
+  if (!(left > fmax(IN_BASIS * whole, least))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
   find_support(s, rank);
@@ -261,8 +265,7 @@ fg_status fg_explain_width_doubt(fg_context *ctx, fg_explain_columns *s) {
   fg_explain_take_out(s, more, left);
   double after = fg_explain_dot(s->rows, left, left), n = (double)s->rows;
   double chance = (double)(more - rank) * after / fmax(n - (double)more, 1);
-  /* Three times what chance takes: below that nothing is known to be there. */
-  if (before - after > 3 * chance) s->width_part = (before - after - chance) / n;
+  if (before - after > CHANCE_TIMES * chance) s->width_part = (before - after - chance) / n;
   memcpy(s->basis, kept, kept_size);
   for (size_t k = 0; k < s->geometry_rank; k++)
     find_support(s, k);

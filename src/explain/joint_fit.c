@@ -13,8 +13,26 @@ enum {
   REFIT_ROUNDS = 12,
   UNKNOWNS_MAX = FG_EFFECT_SET_MAX * (FG_EFFECT_COLUMNS_MAX + FG_FIELD_SHAPES)
 };
+/* A coefficient's step that ends the fit, and its largest one, um. */
 #define STEP_END_UM  1e-5
 #define STEP_MOST_UM 60.0
+/* A shape's largest step: this share of itself, and where it is a place as much of a mm; the
+ * hundredth part of that ends the fit. */
+#define SHAPE_SHARE 0.02
+#define SHAPE_MM    0.5
+#define SHAPE_END   100
+/* Half the span of a derivative by a shape, of itself; no shape counts as smaller, mm. */
+#define DERIVE_SHARE 1e-5
+#define SHAPE_LEAST  1e-3
+/* Rows of scans that only confirm weigh so much: enough to fit their own pose. */
+#define ASIDE_WEIGHT 1e-6
+/* Damping for what no row tells: of a diagonal, and beside it. */
+#define DAMP_SHARE 1e-10
+#define DAMP       1e-12
+/* Rows of less than this share of the largest weight, and those whose normal lies farther from the
+ * step's direction, do not hold its place. */
+#define ROUGH_WEIGHT 0.1
+#define ALONG_LEAST  0.3
 
 /* One unknown of the effects: a coefficient, or a shape by its numerical derivative. */
 typedef struct unknown {
@@ -47,7 +65,7 @@ static void effect_design(const fg_points *points, const fg_effect_set *set, con
       continue;
     }
     memset(to, 0, rows * sizeof *to);
-    double step = 1e-5 * fmax(fabs(effect->shape[list[k].index]), 1e-3);
+    double step = DERIVE_SHARE * fmax(fabs(effect->shape[list[k].index]), SHAPE_LEAST);
     for (int side = -1; side <= 1; side += 2) {
       memcpy(shape, effect->shape, sizeof shape);
       shape[list[k].index] += side * step;
@@ -78,7 +96,7 @@ static const double *column_of(const refit *r, size_t k) {
 static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
   const fg_points_row *row = &r->points->rows[i];
   if (!r->points->views[row->view].aside) return row->weight;
-  return a < r->parameters && b < r->parameters ? row->weight * 1e-6 : 0;
+  return a < r->parameters && b < r->parameters ? row->weight * ASIDE_WEIGHT : 0;
 }
 
 static double hold_of(const fg_effect_found *effect, bool shape) {
@@ -126,7 +144,7 @@ static void assemble(refit *r) {
     hold_free(r, k);
   for (size_t a = 0; a < n; a++) {
     double d = gsl_matrix_get(r->normal, a, a);
-    gsl_matrix_set(r->normal, a, a, d * (1 + 1e-10) + 1e-12);
+    gsl_matrix_set(r->normal, a, a, d * (1 + DAMP_SHARE) + DAMP);
   }
 }
 
@@ -145,10 +163,11 @@ static double move(refit *r) {
     double step = gsl_vector_get(r->right, r->parameters + k);
     if (r->list[k].shape) {
       /* A period moves by its share; the middle of a lens, which may lie at 0, by its size. */
-      double most = 0.02 * fabs(effect->shape[r->list[k].index]) + (effect->columns == 1 ? 0.5 : 0);
+      double most = SHAPE_SHARE * fabs(effect->shape[r->list[k].index]) +
+                    (effect->columns == 1 ? SHAPE_MM : 0);
       step = fmax(-most, fmin(most, step));
       effect->shape[r->list[k].index] += step;
-      largest = fmax(largest, 100 * fabs(step) / most * STEP_END_UM);
+      largest = fmax(largest, SHAPE_END * fabs(step) / most * STEP_END_UM);
     } else {
       step = fmax(-STEP_MOST_UM, fmin(STEP_MOST_UM, step));
       effect->coefficient_um[r->list[k].index] += step;
@@ -162,14 +181,14 @@ static double move(refit *r) {
  * hardly count do not hold it. */
 static double place_u(const fg_points *points, const fg_effect_found *step) {
   double above = -INFINITY, below = INFINITY, most = 0;
-  bool over_y = step->kind->axis == 1;
   for (size_t i = 0; i < points->row_count; i++)
     most = fmax(most, points->rows[i].weight);
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
-    double at = over_y ? row->ideal.y : row->ideal.x;
-    bool rough = row->weight > 0 && row->weight < 0.1 * most; /* 0: left out for the step itself */
-    if (rough || fabs(over_y ? row->normal.y : row->normal.x) < 0.3) continue;
+    double at = fg_point_along(row->ideal, step->kind->axis);
+    bool rough =
+        row->weight > 0 && row->weight < ROUGH_WEIGHT * most; /* 0: left out for the step itself */
+    if (rough || fabs(fg_point_along(row->normal, step->kind->axis)) < ALONG_LEAST) continue;
     if (at <= step->shape[0])
       above = fmax(above, at);
     else

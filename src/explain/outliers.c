@@ -6,13 +6,14 @@
 #include "core/memory.h"
 #include "core/select.h"
 
-/* Rows this far off are left out, if they are fewer than this share: of normal noise one in two
+/* Rows this far off are left out, if they are fewer than this share: of normal noise 1 in 1.7
  * million is. */
 #define OUTLIER_SIGMAS 5.0
 #define OUTLIER_SHARE  0.02
-/* Of a third difference at a run's end (tuned on reports/accuracy_hard.md). */
+/* Of a third difference at a run's end (tuned on reports/loop_scans.md). */
 #define END_SIGMAS 8.0
-enum { END_ROWS = 3 };
+/* Rows at either end that may leave, and rows that a run must have between them. */
+enum { END_ROWS = 3, BETWEEN = 4 };
 /* Standard deviation of a normal distribution whose absolute values have the median 1. */
 #define SD_PER_MEDIAN 1.4826
 
@@ -73,7 +74,7 @@ fg_status fg_explain_drop_ends(fg_context *ctx, fg_points *points, const double 
   for (size_t from = 0, to; from < rows; from = to) {
     for (to = from + 1; to < rows && same_run(points, from, to);)
       to++;
-    for (size_t k = 0; k < END_ROWS && from + 2 * END_ROWS + 4 < to; k++) {
+    for (size_t k = 0; k < END_ROWS && from + 2 * END_ROWS + BETWEEN < to; k++) {
       size_t low = from + END_ROWS - 1 - k, high = to - END_ROWS + k;
       if (fabs(third_difference(residual_um, low, 1)) > limit) drop_range(points, from, low + 1);
       if (fabs(third_difference(residual_um, high, -1)) > limit) drop_range(points, high, to);

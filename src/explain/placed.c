@@ -6,7 +6,8 @@
 #include "core/memory.h"
 #include "explain/search.h"
 
-/* A step elsewhere that leaves no more than this is as good; one so near is the same. */
+/* A step elsewhere that leaves no more than this is as good (1 in 600 by chance); one so near is
+ * the same. */
 #define OTHER_STEP_CHI2 10.0
 #define OTHER_STEP_MM   0.3
 

@@ -4,8 +4,15 @@
 #include "core/small_solve.h"
 #include "explain/search.h"
 
+/* Steps of each finer grid between the neighbours of the best place; how often; rows on either side
+ * of a step. */
 enum { REFINE_STEPS = 24, REFINE_LEVELS = 4, SIDE_ROWS = 12 };
+/* A quick look takes every so many starts. */
 enum { COARSER = 40 };
+/* A column beside the basis with less than this mean square tells nothing: one row in 64 000. */
+#define COLUMN_LEAST (1e-3 / 64)
+/* Its normal equations are singular where a pivot is this share of its diagonal. */
+#define SINGULAR 1e-9
 
 /* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
 static bool has_both_sides(const fg_explain_columns *c, const fg_effect *kind, double at_mm) {
@@ -44,8 +51,8 @@ static fg_explain_hit gain_at(const fg_explain_search *s, size_t rank, const fg_
     }
   }
   for (size_t a = 0; a < count; a++)
-    if (!(system.matrix[a][a] > 1e-3 * (double)c->rows / 64)) return none;
-  if (!fg_normal_solve(&system, 1e-9, x, NULL)) return none;
+    if (!(system.matrix[a][a] > COLUMN_LEAST * (double)c->rows)) return none;
+  if (!fg_normal_solve(&system, SINGULAR, x, NULL)) return none;
   for (size_t a = 0; a < count; a++) {
     found.gain += x[a] * system.right[a];
     square += x[a] * x[a];

@@ -7,13 +7,16 @@
 
 /* A set is right when what it leaves beyond all effects is likelier than this. */
 #define ACCEPT_P 0.001
-/* What 1 in 1000 gains by chance in one column: a quadratic must gain more than its slope. */
+/* What 1 in 1000 gains by chance in one column (chi² of 1): a quadratic must gain more than its
+ * slope. */
 #define GAIN_LEAST 10.8
-/* The middle of a polynomial lies within so many picture sizes of the picture's. */
+/* The middle of a polynomial lies within so many picture sizes of the picture's: farther off it is
+ * a scale. */
 #define MIDDLE_REACH 1.5
 /* Of a deviation of every bump, the lowest polynomial makes at least this share: else it is
- * neither a crown nor a skew but a curve. */
+ * neither a crown nor a skew but a curve (tuned on reports/loop_scans.md, tier curves). */
 #define LOWEST_SHARE 0.6
+/* Steps of the grid for a middle; of the finer ones around its best, each over two of its steps. */
 enum { MIDDLE_STEPS = 60, MIDDLE_LEVELS = 3, MIDDLE_FINER = 10 };
 
 typedef struct set_terms {

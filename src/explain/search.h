@@ -40,7 +40,8 @@ bool fg_explain_has_twins(const fg_explanations *out, unsigned mask);
 /* Puts an explanation into the list, the one that leaves least first. */
 void fg_explain_keep(fg_explanations *out, const fg_explanation *explanation);
 
-/* Shapes nearer to each other than this are one. */
+/* Shapes nearer to each other than this are one: over a foil's 40 mm a ripple of 2 mm turns by as
+ * much as a wave then. */
 #define FG_EXPLAIN_TWIN_SHARE 0.05
 
 /* ---- noise.c ---- */
@@ -93,7 +94,8 @@ void fg_explain_describe(fg_explain_search *s, const fg_explain_yardstick *y);
 /* ---- places.c, placed.c ---- */
 
 /* Gain in chi² that makes one worth a place in the search: its best of some hundred places stands
- * for ln of their number more; and its size, um. */
+ * for ln of their number more and its size, um (both
+ * tuned on reports/loop_scans.md). */
 #define FG_EXPLAIN_SHAPED_CHI2     45.0
 #define FG_EXPLAIN_SHAPED_LEAST_UM 0.15
 

@@ -11,11 +11,13 @@
 #include "explain/outliers.h"
 #include "explain/policy.h"
 
-/* Largest change of an overall radius, and largest coefficient, that an effect may have. */
+/* Largest change of an overall radius, and largest coefficient, that an effect may have: far beyond
+ * the 40 um of reports/loop_scans.md. */
 #define SANE_SHARE 0.03
 #define SANE_UM    2000.0
-/* An amplitude that is more than its uncertainty. */
+/* An amplitude that is more than its uncertainty (1 in 16 000 by chance). */
 #define THERE_SIGMAS 4.0
+/* Turns of search and fit, at most. */
 enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
 
 void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {

@@ -116,7 +116,7 @@ static bool average_block(const fg_disc *disc, size_t from, size_t to, fg_points
     radius += hypot(dx, dy);
     n++;
   }
-  if (n < 0.75 * (double)(to - from)) return false;
+  if (n < FG_POINTS_BLOCK_SHARE * (double)(to - from)) return false;
   double angle = first + turn / n;
   *row = (fg_points_row){.weight = n};
   row->at = (fg_point){disc->centre_mm.x + radius / n * cos(angle),
@@ -140,7 +140,7 @@ static double noise_beside_form(const fg_disc *disc, const fg_points_row *rows, 
     for (int k = 0; k < 3; k++)
       sum += share[k] *
              hypot(rows[at[k]].at.x - disc->centre_mm.x, rows[at[k]].at.y - disc->centre_mm.y);
-    work[i] = fabs(1000 * sum) / sqrt(1.5);
+    work[i] = fabs(1000 * sum) / sqrt(1.5); /* 1 + 1/4 + 1/4 */
   }
   return 1.4826 * fg_select(work, count, count / 2);
 }

@@ -9,6 +9,8 @@
 /* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
  * tenth and more. */
 #define SAME_SHARE 0.2
+/* Half the angle between the outer bumps, at the least: of one bump it is nothing. */
+#define HALF_SPAN_LEAST_RAD 0.1
 static double turn_to(double angle, double near) {
   return angle - 2 * M_PI * round((angle - near) / (2 * M_PI));
 }
@@ -64,7 +66,8 @@ static fg_status start_part(fg_context *ctx, const fg_foil *foil, fg_points_part
   double first = part->bumps[0].direction_rad;
   double last = part->bumps[part->bump_count - 1].direction_rad;
   part->middle_rad = 0.5 * (first + last);
-  part->half_span_rad = fmax(0.5 * fabs(last - first), 0.1) * (1 + 1.0 / (double)part->bump_count);
+  part->half_span_rad =
+      fmax(0.5 * fabs(last - first), HALF_SPAN_LEAST_RAD) * (1 + 1.0 / (double)part->bump_count);
   return FG_OK;
 }
 
@@ -136,7 +139,7 @@ static bool average_block(const fg_points_view *view, size_t from, size_t to, fg
     row->s_mm += s->s_mm;
     n++;
   }
-  if (n < 0.75 * (double)(to - from)) return false;
+  if (n < FG_POINTS_BLOCK_SHARE * (double)(to - from)) return false;
   row->at.x /= n;
   row->at.y /= n;
   row->half_width_mm /= n;

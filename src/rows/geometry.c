@@ -10,6 +10,12 @@
 #include "rows/points.h"
 
 enum { FIT_ROUNDS = 8 };
+/* A step of Gauss-Newton that ends the fit, mm and rad; damping of a diagonal, and beside it;
+ * growth of the residual that is rounding. */
+#define STEP_END   1e-9
+#define DAMP_SHARE 1e-12
+#define DAMP       1e-12
+#define ROUNDING   1e-9
 
 /* Parameters: per part R0, then X, beta, R of every bump; per view O.x, O.y, and a turn where it
  * is not the part's first. */
@@ -194,7 +200,7 @@ static fg_status solve_step(fg_context *ctx, const fg_points *points, const doub
     }
   }
   for (size_t a = 0; a < n; a++)
-    gsl_matrix_set(normal, a, a, gsl_matrix_get(normal, a, a) * (1 + 1e-12) + 1e-12);
+    gsl_matrix_set(normal, a, a, gsl_matrix_get(normal, a, a) * (1 + DAMP_SHARE) + DAMP);
   if (gsl_linalg_cholesky_decomp1(normal) || gsl_linalg_cholesky_svx(normal, step))
     return fg_fail(ctx, FG_ERR_NUMERIC, "the geometry cannot be fitted to these scans");
   return FG_OK;
@@ -231,11 +237,11 @@ fg_status fg_points_fit(fg_context *ctx, fg_points *points,
     if (round == 0) square = weighted_square(points, residual);
     FG_TRY_EXIT(solve_step(ctx, points, residual, jacobian, normal, step));
     move_geometry(points, step);
-    if (gsl_vector_max(step) < 1e-9 && gsl_vector_min(step) > -1e-9) break;
+    if (gsl_vector_max(step) < STEP_END && gsl_vector_min(step) > -STEP_END) break;
   }
   fg_points_residual(points, correction, residual, NULL);
   if (!(weighted_square(points, residual) <=
-        square * (1 + 1e-9))) { /* rows too few to lead anywhere */
+        square * (1 + ROUNDING))) { /* rows too few to lead anywhere */
     fg_points_geometry_load(points, start);
     fg_points_residual(points, correction, residual, NULL);
   }

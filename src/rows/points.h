@@ -15,6 +15,8 @@
 #include "foilgauge/foil.h"
 
 enum { FG_POINTS_BLOCK = 4, FG_POINTS_BARRED = 24 };
+/* A block is a row when this share of its stations is usable. */
+#define FG_POINTS_BLOCK_SHARE 0.75
 
 /* One foil or disc on one scan. */
 typedef struct fg_points_view {
@@ -65,7 +67,7 @@ typedef struct fg_points_part {
   size_t arcs;
   double half_span_rad;
   double end_to_end_rad; /* the strip as O sees it; 0: not known */
-  bool radius_known; /* the overall radius is a gauge's and is not fitted */
+  bool radius_known;     /* the overall radius is a gauge's and is not fitted */
 } fg_points_part;
 
 typedef struct fg_points_pose {
