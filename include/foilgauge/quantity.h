@@ -56,10 +56,13 @@ typedef struct fg_quantity {
   fg_quantity_kind kind;
   size_t offset;   /* in its owner */
   size_t u_offset; /* of its standard uncertainty; FG_NO_UNCERTAINTY without */
-  size_t variance; /* of u_ squared, where a covariance of the object holds it too; 0: none does */
-  int decimals;    /* at least, where people read it */
-  unsigned uses;   /* fg_quantity_use */
-  int rank;        /* among those that people read, from 1; 0: behind them, in order of the rows */
+  /* Where a covariance of the object (double [3][3]) holds the square of u_ too: its offset, 0 when
+   * none does, and which row of it is this (the first of a pair's). */
+  size_t covariance;
+  size_t covariance_row;
+  int decimals;  /* at least, where people read it */
+  unsigned uses; /* fg_quantity_use */
+  int rank;      /* among those that people read, from 1; 0: behind them, in order of the rows */
   /* For quality systems, which know lengths and angles: QIF's name of the characteristic (NULL:
    * not exported; ratios and percentages follow from the others) and what the design asks for. */
   const char *characteristic;

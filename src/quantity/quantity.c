@@ -30,18 +30,18 @@ bool fg_quantity_has_u(const fg_quantity *quantity) {
   return quantity->u_offset != FG_NO_UNCERTAINTY;
 }
 
-static size_t values_of(const fg_quantity *quantity) {
+size_t fg_quantity_values(const fg_quantity *quantity) {
   return quantity->kind == FG_QUANTITY_PAIR ? 2 : 1;
 }
 
 size_t fg_quantity_width(const fg_quantity *quantity) {
-  return values_of(quantity) * (fg_quantity_has_u(quantity) ? 2 : 1);
+  return fg_quantity_values(quantity) * (fg_quantity_has_u(quantity) ? 2 : 1);
 }
 
 size_t fg_quantity_numbers(const fg_quantity *quantity, const void *object,
                            double numbers[FG_QUANTITY_NUMBERS_MAX]) {
   const char *from = object;
-  size_t values = values_of(quantity), whole;
+  size_t values = fg_quantity_values(quantity), whole;
   memcpy(numbers, from + quantity->offset, values * sizeof *numbers);
   if (quantity->kind == FG_QUANTITY_COUNT) {
     memcpy(&whole, from + quantity->offset, sizeof whole);
@@ -56,7 +56,7 @@ void fg_quantity_restore(const fg_quantity *quantity, void *object,
                          const double numbers[FG_QUANTITY_NUMBERS_MAX]) {
   static const double whole_max = 9007199254740992.0; /* 2^53: every whole number up to it */
   char *to = object;
-  size_t values = values_of(quantity);
+  size_t values = fg_quantity_values(quantity);
   bool countable = numbers[0] >= 0 && numbers[0] < whole_max;
   size_t whole = countable ? (size_t)numbers[0] : 0;
   if (quantity->kind == FG_QUANTITY_COUNT)
@@ -81,16 +81,6 @@ double fg_quantity_uncertainty(const fg_quantity *quantity, const void *object) 
   return numbers[1];
 }
 
-void fg_quantity_widen(const fg_quantity *quantity, void *object, double doubt) {
-  double numbers[FG_QUANTITY_NUMBERS_MAX];
-  fg_quantity_numbers(quantity, object, numbers);
-  numbers[1] = hypot(numbers[1], doubt);
-  fg_quantity_restore(quantity, object, numbers);
-  if (!quantity->variance) return;
-  double *variance = (double *)(void *)((char *)object + quantity->variance);
-  *variance += doubt * doubt;
-}
-
 static bool reads_before(const fg_quantity *a, const fg_quantity *b) {
   return a->rank && (!b->rank || a->rank < b->rank);
 }
@@ -110,7 +100,7 @@ size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use,
 }
 
 void fg_quantity_column(const fg_quantity *quantity, size_t k, char *text, size_t size) {
-  size_t values = values_of(quantity);
+  size_t values = fg_quantity_values(quantity);
   const char *u = k < values ? "" : "u_", *unit = strrchr(quantity->name, '_');
   if (values == 1 || !unit)
     fg_text_clip(text, size, "%s%s", u, quantity->name);

@@ -18,6 +18,9 @@ bool fg_quantity_has_u(const fg_quantity *quantity);
 size_t fg_quantity_shown(fg_quantity_owner owner, fg_quantity_use use,
                          const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX]);
 
+/* Values of a row: two of a pair, else one. */
+size_t fg_quantity_values(const fg_quantity *quantity);
+
 /* Every number of a row: the values, then their uncertainties where it has any. How many there
  * are. */
 size_t fg_quantity_width(const fg_quantity *quantity);
@@ -34,8 +37,17 @@ void fg_quantity_column(const fg_quantity *quantity, size_t k, char *text, size_
 /* The values that can be judged, for a message: "radius_mm, ..."; appended. Counts too. */
 void fg_quantity_list(fg_quantity_owner owner, bool counts, char *text, size_t size);
 
-/* Adds `doubt` in squares to the uncertainty, and to the variance in the covariance. */
-void fg_quantity_widen(const fg_quantity *quantity, void *object, double doubt);
+/* How many numbers all rows of an owner with an uncertainty have, those without u_ counted. */
+size_t fg_quantity_moves(fg_quantity_owner owner);
+
+/* What widens an object: how far each of these numbers would lie elsewhere, row by row. */
+
+/* Of each the farther of what `farthest` holds and of `other` minus `object`. */
+void fg_quantity_take_moves(fg_quantity_owner owner, const void *object, const void *other,
+                            double *farthest);
+
+/* Adds `share` of every move to its uncertainty, in squares, and to the covariances. */
+void fg_quantity_widen(fg_quantity_owner owner, void *object, const double *moves, double share);
 
 /* Whether a table's column of that name is a result of a measurement, not a cause of it: the value
  * or the uncertainty of a row of a foil, a bump or a disc, also as "bump_radius_mm",

@@ -19,5 +19,7 @@ extern const fg_quantity_rows fg_quantities_of_foil, fg_quantities_of_bump, fg_q
 #define FG_AT(type, member) .offset = offsetof(type, member), .u_offset = FG_NO_UNCERTAINTY
 #define FG_AT_U(type, member, u_member)                                                            \
   .offset = offsetof(type, member), .u_offset = offsetof(type, u_member)
+#define FG_IN_COVARIANCE(type, member, row)                                                        \
+  .covariance = offsetof(type, member), .covariance_row = (row)
 
 #endif

@@ -25,51 +25,36 @@ static void visit_all(fg_measurement *m, const fg_measurement *other, visitor *v
           other && d < other->disc_count ? &other->discs[d] : NULL, user);
 }
 
-/* The largest move of each value over several visits, in the visits' order. */
+/* The farthest that each value is moved over several visits, in the visits' order. */
 typedef struct moves {
   double *farthest; /* NULL: only counted */
   size_t at;
+  double share;
 } moves;
-
-static bool has_uncertainty(const fg_quantity *row) {
-  return row->kind == FG_QUANTITY_NUMBER && fg_quantity_has_u(row);
-}
 
 static void take_moves(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
-  size_t count;
-  const fg_quantity *rows = fg_quantities(owner, &count);
-  for (size_t i = 0; i < count; i++) {
-    if (!has_uncertainty(&rows[i])) continue;
-    size_t at = m->at++;
-    if (!m->farthest || !same) continue;
-    double move = fabs(fg_quantity_value(&rows[i], same) - fg_quantity_value(&rows[i], object));
-    if (move > m->farthest[at]) m->farthest[at] = move;
-  }
+  if (m->farthest && same) fg_quantity_take_moves(owner, object, same, m->farthest + m->at);
+  m->at += fg_quantity_moves(owner);
 }
 
 static void widen(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
-  size_t count;
-  const fg_quantity *rows = fg_quantities(owner, &count);
   (void)same;
-  for (size_t i = 0; i < count; i++)
-    if (has_uncertainty(&rows[i])) fg_quantity_widen(&rows[i], object, m->farthest[m->at++]);
+  fg_quantity_widen(owner, object, m->farthest + m->at, m->share);
+  m->at += fg_quantity_moves(owner);
 }
 
 /* Adds to every u_ of `m` the farthest that its value is moved by the others, times `share`. */
 static fg_status widen_by(fg_context *ctx, const fg_measurement *others, size_t other_count,
                           double share, fg_measurement *m) {
-  moves all = {NULL, 0};
+  moves all = {.share = share};
   visit_all(m, NULL, take_moves, &all);
-  size_t count = all.at;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *all.farthest, (void **)&all.farthest));
+  FG_TRY(fg_memory_allocate(ctx, all.at, sizeof *all.farthest, (void **)&all.farthest));
   for (size_t o = 0; o < other_count; o++) {
     all.at = 0;
     visit_all(m, &others[o], take_moves, &all);
   }
-  for (size_t k = 0; k < count; k++)
-    all.farthest[k] *= share;
   all.at = 0;
   visit_all(m, NULL, widen, &all);
   free(all.farthest);

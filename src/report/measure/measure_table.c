@@ -3,16 +3,11 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "quantity/quantity.h"
 #include "report/measure/scan_model_words.h"
 #include "report/words.h"
 
-/* The columns of the bump table and of the disc table: names of rows in the table of fields. */
-static const char *const bump_columns[] = {"radius_mm",           "bump_angle_deg",
-                                           "height_mm",           "clearance_mm",
-                                           "clearance_fitted_mm", "radius_error_pct"};
-static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um", "coverage_deg"};
-
-enum { COLUMNS_MAX = 8, DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
+enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
 
 typedef struct column {
   const fg_report_field *field;
@@ -115,22 +110,21 @@ static void put_row(FILE *out, const column *columns, size_t count, int number, 
   fputc('\n', out);
 }
 
-static size_t make_columns(const char *const *names, size_t count, const row_set *rows,
-                           column *columns) {
-  size_t used = 0;
-  for (size_t i = 0; i < count && used < COLUMNS_MAX; i++) {
-    columns[used].field = fg_report_find(rows->owner, names[i]);
-    if (columns[used].field) measure_column(&columns[used++], rows);
+static size_t make_columns(const row_set *rows, column *columns) {
+  const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, shown);
+  for (size_t i = 0; i < count; i++) {
+    columns[i].field = shown[i];
+    measure_column(&columns[i], rows);
   }
-  return used;
+  return count;
 }
 
 static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   const row_set rows = {FG_REPORT_BUMP, (const char *)foil->bumps, foil->bump_count,
                         sizeof *foil->bumps};
-  column columns[COLUMNS_MAX];
-  size_t count =
-      make_columns(bump_columns, sizeof bump_columns / sizeof *bump_columns, &rows, columns);
+  column columns[FG_QUANTITY_SHOWN_MAX];
+  size_t count = make_columns(&rows, columns);
   fputs("bump", out);
   put_cells(out, columns, count, false);
   fputs("    ", out);
@@ -143,9 +137,8 @@ static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
 static void put_discs(FILE *out, const fg_design *design, const fg_measurement *measurement) {
   const row_set rows = {FG_REPORT_DISC, (const char *)measurement->discs, measurement->disc_count,
                         sizeof *measurement->discs};
-  column columns[COLUMNS_MAX];
-  size_t count =
-      make_columns(disc_columns, sizeof disc_columns / sizeof *disc_columns, &rows, columns);
+  column columns[FG_QUANTITY_SHOWN_MAX];
+  size_t count = make_columns(&rows, columns);
   fputs("disc", out);
   put_cells(out, columns, count, false);
   fputs("    ", out);
@@ -156,8 +149,7 @@ static void put_discs(FILE *out, const fg_design *design, const fg_measurement *
 }
 
 /* "overall radius 20.9500 ± 0.0012 mm" */
-static void put_quantity(FILE *out, const fg_foil *foil, const char *name) {
-  const fg_report_field *field = fg_report_find(FG_REPORT_FOIL, name);
+static void put_quantity(FILE *out, const fg_foil *foil, const fg_quantity *field) {
   double value = fg_report_value(field, foil), u = fg_report_uncertainty(field, foil);
   int decimals = fg_report_decimals(field, u);
   fprintf(out, "  %s ", field->words);
@@ -191,6 +183,15 @@ static void put_thickness_words(FILE *out, const fg_design *design, const fg_foi
   if (rest) fprintf(out, "    %.*s,\n    %s\n", (int)(rest - words), words, rest + 2);
 }
 
+static void put_quantities(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_FOIL, FG_QUANTITY_ON_TERMINAL, shown);
+  for (size_t i = 0; i < count; i++) {
+    put_quantity(out, foil, shown[i]);
+    if (shown[i]->offset == offsetof(fg_foil, thickness_mm)) put_thickness_words(out, design, foil);
+  }
+}
+
 static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   char defect[200];
   if (foil->flags & FG_FOIL_NOT_MEASURED) {
@@ -204,11 +205,7 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   if (foil->flags & FG_FOIL_NOT_THIS_DESIGN) fprintf(out, "  NOT MEASURED: %s\n", foil->error);
   if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
-  put_quantity(out, foil, "overall.radius_mm");
-  put_quantity(out, foil, "overall.springback_error_pct");
-  put_quantity(out, foil, "thickness_mm");
-  put_thickness_words(out, design, foil);
-  put_quantity(out, foil, "noise_um");
+  put_quantities(out, design, foil);
   put_correction(out, &foil->correction);
   put_foil_flags(out, foil->flags);
   put_bumps(out, design, foil);

@@ -5,6 +5,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "quantity/quantity.h"
 #include "report/drawing.h"
 #include "report/words.h"
 
@@ -30,10 +31,6 @@ static fg_status put_text(fg_context *ctx, const legend *at, double column_em, u
   return fg_cv_draw_text(ctx, at->rgb, ascii, where, &style);
 }
 
-static const char *const bump_columns[] = {"radius_mm", "bump_angle_deg", "intersection_angle_deg",
-                                           "height_mm", "clearance_mm",   "radius_error_pct"};
-static const char *const disc_columns[] = {"diameter_mm", "roundness_um", "rms_um"};
-
 static void value_text(const fg_report_field *field, const void *object, char *text, size_t size) {
   double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
   int decimals = fg_report_decimals(field, u);
@@ -45,27 +42,25 @@ static void value_text(const fg_report_field *field, const void *object, char *t
     snprintf(text, size, "%.*f", decimals, value);
 }
 
-static fg_status put_heading(fg_context *ctx, legend *at, fg_report_owner owner,
-                             const char *const *names, size_t count) {
+static fg_status put_heading(fg_context *ctx, legend *at, const fg_quantity *const *columns,
+                             size_t count) {
   for (size_t i = 0; i < count; i++) {
     char text[64];
-    const fg_report_field *field = fg_report_find(owner, names[i]);
-    snprintf(text, sizeof text, "%s %s", field->symbol, field->unit);
+    snprintf(text, sizeof text, "%s %s", columns[i]->symbol, columns[i]->unit);
     FG_TRY(put_text(ctx, at, 4 + 17.0 * (double)i, 0xa8b4c0, text));
   }
   at->line++;
   return FG_OK;
 }
 
-static fg_status put_row(fg_context *ctx, legend *at, fg_report_owner owner,
-                         const char *const *names, size_t count, int number, bool bad,
-                         const void *object) {
+static fg_status put_row(fg_context *ctx, legend *at, const fg_quantity *const *columns,
+                         size_t count, int number, bool bad, const void *object) {
   char text[64];
   uint32_t colour = bad ? 0xff6b6b : 0xf0f3f6;
   snprintf(text, sizeof text, "%d", number);
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_BUMP, text));
   for (size_t i = 0; i < count; i++) {
-    value_text(fg_report_find(owner, names[i]), object, text, sizeof text);
+    value_text(columns[i], object, text, sizeof text);
     FG_TRY(put_text(ctx, at, 4 + 17.0 * (double)i, colour, text));
   }
   at->line++;
@@ -87,19 +82,21 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, 
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
   at->line++;
   if (!all) return FG_OK;
-  size_t columns = sizeof bump_columns / sizeof *bump_columns;
-  FG_TRY(put_heading(ctx, at, FG_REPORT_BUMP, bump_columns, columns));
+  const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BUMP, FG_QUANTITY_ON_PICTURE, columns);
+  FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < foil->bump_count; i++)
-    FG_TRY(put_row(ctx, at, FG_REPORT_BUMP, bump_columns, columns, foil->bumps[i].number,
+    FG_TRY(put_row(ctx, at, columns, count, foil->bumps[i].number,
                    fg_bump_flags(design, foil, &foil->bumps[i]) != 0, &foil->bumps[i]));
   return FG_OK;
 }
 
 static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *measurement) {
-  size_t columns = sizeof disc_columns / sizeof *disc_columns;
-  FG_TRY(put_heading(ctx, at, FG_REPORT_DISC, disc_columns, columns));
+  const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE, columns);
+  FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < measurement->disc_count; i++)
-    FG_TRY(put_row(ctx, at, FG_REPORT_DISC, disc_columns, columns, measurement->discs[i].number,
+    FG_TRY(put_row(ctx, at, columns, count, measurement->discs[i].number,
                    fg_disc_flags(&measurement->design, &measurement->discs[i]) != 0,
                    &measurement->discs[i]));
   return FG_OK;

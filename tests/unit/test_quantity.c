@@ -1,0 +1,389 @@
+/* A quantity is one row: reports, schemas, tables and what widens an uncertainty know every row. */
+#include <stdbool.h>
+#include <sys/types.h>
+
+#include <cjson/cJSON.h>
+
+#include "foilgauge/bearing.h"
+#include "foilgauge/report.h"
+#include "foilgauge/scan_loop.h"
+#include "quantity/quantity.h"
+#include "support/measured_render.h"
+#include "support/synthetic_foil.h"
+
+static void every_row_is_whole(void **state) {
+  (void)state;
+  for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++) {
+    size_t count;
+    const fg_quantity *rows = fg_quantities(owner, &count);
+    assert_true(count > 0);
+    for (size_t i = 0; i < count; i++) {
+      assert_true(rows[i].name && rows[i].unit && rows[i].symbol && rows[i].words);
+      assert_int_equal(rows[i].characteristic != NULL, rows[i].nominal != NULL);
+      /* What quality systems get is taken from a lot's statistics. */
+      if (rows[i].characteristic) assert_true(rows[i].uses & FG_QUANTITY_IN_LOT);
+      if (rows[i].by_arc_length) assert_int_equal(owner, FG_QUANTITY_OF_BUMP);
+      if (rows[i].covariance) assert_true(fg_quantity_has_u(&rows[i]));
+    }
+  }
+}
+
+static void a_name_is_there_once(void **state) {
+  (void)state;
+  for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++) {
+    size_t count;
+    const fg_quantity *rows = fg_quantities(owner, &count);
+    for (size_t i = 0; i < count; i++)
+      for (size_t k = 0; k < i; k++) {
+        assert_string_not_equal(rows[i].name, rows[k].name);
+        assert_string_not_equal(rows[i].words, rows[k].words);
+        assert_int_not_equal(rows[i].offset, rows[k].offset);
+        if (rows[i].rank) assert_int_not_equal(rows[i].rank, rows[k].rank);
+      }
+  }
+  /* A tolerance names a quantity of a foil or of its bumps: never of both. */
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);
+  for (size_t i = 0; i < count; i++)
+    assert_null(fg_quantity_find(FG_QUANTITY_OF_BUMP, rows[i].name));
+}
+
+/* More rows of one use than there is room for would be cut off. */
+static void every_use_has_room(void **state) {
+  (void)state;
+  for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++)
+    for (unsigned use = FG_QUANTITY_ON_PAGE; use <= FG_QUANTITY_IN_LOT; use <<= 1) {
+      const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+      size_t count, wanted = 0;
+      const fg_quantity *rows = fg_quantities(owner, &count);
+      for (size_t i = 0; i < count; i++)
+        wanted += (rows[i].uses & use) != 0;
+      assert_int_equal(fg_quantity_shown(owner, (fg_quantity_use)use, shown), wanted);
+      for (size_t i = 1; i < wanted; i++)
+        assert_true(!shown[i]->rank || (shown[i - 1]->rank && shown[i - 1]->rank < shown[i]->rank));
+    }
+  char names[800] = "";
+  fg_quantity_list(FG_QUANTITY_OF_BUMP, true, names, sizeof names);
+  fg_quantity_list(FG_QUANTITY_OF_FOIL, true, names, sizeof names);
+  assert_true(strlen(names) + 1 < sizeof names);
+}
+
+/* ---- reports ---- */
+
+static char *text_of(const fg_report *report,
+                     fg_status (*write)(fg_context *, const fg_report *, FILE *)) {
+  fg_context ctx = {0};
+  char *text = NULL;
+  size_t length;
+  FILE *out = open_memstream(&text, &length);
+  assert_non_null(out);
+  assert_int_equal(write(&ctx, report, out), FG_OK);
+  fclose(out);
+  return text;
+}
+
+/* The member of an object that a row is written as, "overall.radius_mm" two levels down. */
+static const cJSON *member_of(const cJSON *object, const char *name, const char *before) {
+  char group[64], last[96];
+  const char *dot = strchr(name, '.');
+  snprintf(group, sizeof group, "%.*s", dot ? (int)(dot - name) : 0, name);
+  snprintf(last, sizeof last, "%s%s", before, dot ? dot + 1 : name);
+  if (dot) object = cJSON_GetObjectItemCaseSensitive(object, group);
+  return cJSON_GetObjectItemCaseSensitive(object, last);
+}
+
+static void same(const cJSON *written, double number) {
+  assert_true(cJSON_IsNumber(written));
+  assert_true(fabs(written->valuedouble - number) <= 1e-9 * fabs(number));
+}
+
+static void holds_every_row(const cJSON *object, fg_quantity_owner owner, const void *values) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    size_t width = fg_quantity_numbers(&rows[i], values, numbers);
+    for (size_t k = 0; k < width; k++) {
+      bool pair = rows[i].kind == FG_QUANTITY_PAIR;
+      size_t per = fg_quantity_values(&rows[i]);
+      const cJSON *written = member_of(object, rows[i].name, k < per ? "" : "u_");
+      if (pair) written = cJSON_GetArrayItem(written, (int)(k % per));
+      if (!written) fail_msg("JSON lacks %s", rows[i].name);
+      same(written, numbers[k]);
+    }
+  }
+}
+
+/* The heading of a CSV holds the names of all numbers, in their order. */
+static void heads_every_row(const char *csv, fg_quantity_owner owner) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  const char *at = csv, *end = strchr(csv, '\n');
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < fg_quantity_width(&rows[i]); k++) {
+      char name[64], cell[80];
+      fg_quantity_column(&rows[i], k, name, sizeof name);
+      snprintf(cell, sizeof cell, ",%s,", name);
+      at = strstr(at, cell);
+      if (!at || at > end) fail_msg("CSV lacks %s", name);
+    }
+}
+
+static const cJSON *item(const cJSON *object, const char *list, int i) {
+  return cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(object, list), i);
+}
+
+static void reports_hold_every_row(void **state) {
+  (void)state;
+  fg_design design = synthetic_design();
+  fg_nominal nominal = synthetic_nominal(&design);
+  fg_measurement measurement = synthetic_measurement(&design);
+  fg_foil *foil = &measurement.foils[0];
+  foil->correction = (fg_correction){1e-3, 2e-4, 3e-3, 4e-4, 5e-3, 6e-4};
+  fg_report_scan scan = {"a.png", &measurement, NULL};
+  fg_report report = {&design, &nominal, &scan, 1};
+  char *text = text_of(&report, fg_report_write_json);
+  cJSON *json = cJSON_Parse(text);
+  const cJSON *written = item(json, "foils", 0);
+  holds_every_row(written, FG_QUANTITY_OF_FOIL, foil);
+  holds_every_row(item(written, "bumps", 3), FG_QUANTITY_OF_BUMP, &foil->bumps[3]);
+  holds_every_row(cJSON_GetObjectItemCaseSensitive(written, "strip"), FG_QUANTITY_OF_STRIP,
+                  &foil->strip);
+  cJSON_Delete(json);
+  free(text);
+  text = text_of(&report, fg_report_write_csv);
+  heads_every_row(text, FG_QUANTITY_OF_BUMP);
+  free(text);
+  synthetic_free(&measurement);
+}
+
+static void reports_hold_every_row_of_discs(void **state) {
+  (void)state;
+  fg_design design = synthetic_design();
+  design.form = FG_FORM_DISCS;
+  fg_nominal nominal = {0};
+  fg_disc disc = synthetic_disc(1, 1.5);
+  fg_measurement measurement = {.dpi = {1200, 1200}, .discs = &disc, .disc_count = 1};
+  fg_report_scan scan = {"discs.png", &measurement, NULL};
+  fg_report report = {&design, &nominal, &scan, 1};
+  char *text = text_of(&report, fg_report_write_json);
+  cJSON *json = cJSON_Parse(text);
+  holds_every_row(item(json, "discs", 0), FG_QUANTITY_OF_DISC, &disc);
+  cJSON_Delete(json);
+  free(text);
+  text = text_of(&report, fg_report_write_csv);
+  heads_every_row(text, FG_QUANTITY_OF_DISC);
+  free(text);
+  free(disc.edge);
+  free(disc.residual_um);
+}
+
+/* ---- schemas ---- */
+
+static cJSON *load_schema(const char *path) {
+  FILE *file = fopen(path, "r");
+  assert_non_null(file);
+  char *text = calloc(1, 1 << 20);
+  assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
+  fclose(file);
+  cJSON *schema = cJSON_Parse(text);
+  assert_non_null(schema);
+  free(text);
+  return schema;
+}
+
+static const cJSON *properties_of(const cJSON *schema, const char *definition) {
+  const cJSON *all = cJSON_GetObjectItemCaseSensitive(schema, "$defs");
+  const cJSON *one = cJSON_GetObjectItemCaseSensitive(all, definition);
+  return cJSON_GetObjectItemCaseSensitive(one, "properties");
+}
+
+static void schemas_know_every_row(void **state) {
+  (void)state;
+  static const struct {
+    const char *path, *definition;
+  } schemas[FG_QUANTITY_OWNERS] = {
+      [FG_QUANTITY_OF_FOIL] = {"reports/schema/measure.schema.json", "foil"},
+      [FG_QUANTITY_OF_BUMP] = {"reports/schema/measure.schema.json", "bump"},
+      [FG_QUANTITY_OF_DISC] = {"reports/schema/measure.schema.json", "disc"},
+      [FG_QUANTITY_OF_STRIP] = {"reports/schema/measure.schema.json", "strip"},
+      [FG_QUANTITY_OF_BEARING] = {"reports/schema/lot.schema.json", "bearing"},
+  };
+  for (fg_quantity_owner owner = 0; owner < FG_QUANTITY_OWNERS; owner++) {
+    size_t count;
+    const fg_quantity *rows = fg_quantities(owner, &count);
+    cJSON *schema = load_schema(schemas[owner].path);
+    for (size_t i = 0; i < count; i++) {
+      char group[64], u_name[96];
+      const char *dot = strchr(rows[i].name, '.'), *name = dot ? dot + 1 : rows[i].name;
+      snprintf(group, sizeof group, "%.*s", dot ? (int)(dot - rows[i].name) : 0, rows[i].name);
+      snprintf(u_name, sizeof u_name, "u_%s", name);
+      const cJSON *known = properties_of(schema, dot ? group : schemas[owner].definition);
+      if (!cJSON_HasObjectItem(known, name))
+        fail_msg("%s lacks %s", schemas[owner].path, rows[i].name);
+      assert_int_equal(cJSON_HasObjectItem(known, u_name), fg_quantity_has_u(&rows[i]));
+    }
+    cJSON_Delete(schema);
+  }
+}
+
+/* ---- uncertainties ---- */
+
+/* A bump that everything can be derived of, and nothing has been. */
+static fg_bump bare_bump(const fg_bump *from) {
+  fg_bump bump;
+  memset(&bump, 0xff, sizeof bump); /* doubles that are no number */
+  bump.number = from->number;
+  bump.flags = 0;
+  bump.centre_mm = from->centre_mm;
+  bump.radius_mm = from->radius_mm;
+  memcpy(bump.covariance, from->covariance, sizeof bump.covariance);
+  return bump;
+}
+
+/* A row without its function would keep what was there before; what was corrected by a loop is
+ * uncertain by (X, R, R0), and everything that follows from them grows. */
+static void a_bumps_rows_are_derived_and_widened(void **state) {
+  (void)state;
+  fg_design design = synthetic_design();
+  fg_nominal nominal = synthetic_nominal(&design);
+  fg_measurement measurement = synthetic_measurement(&design);
+  const fg_foil *foil = &measurement.foils[0];
+  fg_thickness strip = fg_foil_thickness(&design, foil);
+  double doubt[3][3] = {{4e-8, 0, 0}, {0, 9e-8, 0}, {0, 0, 1e-8}};
+  fg_bump bump = bare_bump(&foil->bumps[2]);
+  fg_bump_derive(&design, &nominal, &foil->overall, &strip, &bump);
+  fg_bump wider = bump;
+  fg_bump_widen(&design, &nominal, &foil->overall, doubt, &wider);
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BUMP, &count);
+  for (size_t i = 0; i < count; i++) {
+    double numbers[FG_QUANTITY_NUMBERS_MAX];
+    if (!fg_quantity_has_u(&rows[i])) continue;
+    size_t width = fg_quantity_numbers(&rows[i], &bump, numbers);
+    for (size_t k = 0; k < width; k++)
+      if (!isfinite(numbers[k])) fail_msg("%s is not derived", rows[i].name);
+    if (rows[i].kind == FG_QUANTITY_PAIR) continue; /* (X, R, R0) do not say where a bump lies */
+    if (!(fg_quantity_uncertainty(&rows[i], &wider) > fg_quantity_uncertainty(&rows[i], &bump)))
+      fail_msg("u of %s is not widened", rows[i].name);
+  }
+  synthetic_free(&measurement);
+}
+
+#define FIELD(id, amplitude, u)                                                                    \
+  "{\"id\":\"" id "\",\"amplitude_mm\":[" amplitude "],\"u_amplitude_mm\":[" u                     \
+  "],\"shape\":[],\"u_shape\":[]}"
+/* A stretch of y and a shear, which moves x: nothing stays where it was. */
+#define MODEL(u, other)                                                                            \
+  "{\"schema\":\"foilgauge/scan-model/1\",\"scanner\":null,\"tied\":false,\"dpi\":[1200,1200],"    \
+  "\"region_mm\":[0,0,60,60],\"fields\":[" FIELD("scan.scale_y", "0.036", u) "," FIELD(            \
+      "scan.shear", "0.01", u) "],\"alternatives\":[" other "]}"
+#define OTHER "[" FIELD("scan.shear", "0.02", "0") "]"
+
+/* A foil and a disc, corrected by a model. */
+static measured corrected_by(const char *json, fg_scanner_model **model) {
+  enum { STATIONS = 360 };
+  char spec[4096];
+  small_foil(spec, sizeof spec, 3, "", "\"dpi\":1200");
+  measured m = measure_render(spec, NULL);
+  assert_int_equal(m.status, FG_OK);
+  assert_int_equal(m.result.foil_count, 1);
+  m.result.discs = calloc(1, sizeof *m.result.discs);
+  m.result.disc_count = 1;
+  m.result.discs[0] = synthetic_disc(1, 1.5);
+  fg_disc *disc = &m.result.discs[0];
+  disc->station_count = STATIONS;
+  disc->stations = calloc(STATIONS, sizeof *disc->stations);
+  for (int i = 0; i < STATIONS; i++) {
+    double angle = 2 * synthetic_pi * i / STATIONS;
+    double radius = 1.5 + 1e-3 * cos(2 * angle) + 2e-4 * sin(7 * angle);
+    disc->stations[i] = (fg_disc_point){
+        .at = {10 + radius * cos(angle), 12 + radius * sin(angle)}, .u = 1e-4, .used = true};
+  }
+  if (fg_scanner_model_parse(&m.ctx, "model.json", json, model) != FG_OK ||
+      fg_scanner_model_apply(&m.ctx, *model, &m.result, 1, NULL) != FG_OK)
+    fail_msg("%s", m.ctx.message);
+  return m;
+}
+
+static void grows(fg_quantity_owner owner, const void *narrow, const void *wide) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    double before[FG_QUANTITY_NUMBERS_MAX], after[FG_QUANTITY_NUMBERS_MAX];
+    if (!fg_quantity_has_u(&rows[i])) continue;
+    size_t width = fg_quantity_numbers(&rows[i], narrow, before);
+    fg_quantity_numbers(&rows[i], wide, after);
+    for (size_t k = fg_quantity_values(&rows[i]); k < width; k++) {
+      if (!(after[k] > before[k]))
+        fail_msg("u of %s does not grow: %g to %g", rows[i].name, before[k], after[k]);
+      if (!rows[i].covariance) continue;
+      size_t row = rows[i].covariance_row + k - fg_quantity_values(&rows[i]);
+      double added = after[k] * after[k] - before[k] * before[k];
+      size_t at = rows[i].covariance + (3 * row + row) * sizeof(double);
+      double held[2];
+      memcpy(&held[0], (const char *)narrow + at, sizeof *held);
+      memcpy(&held[1], (const char *)wide + at, sizeof *held);
+      if (!(fabs(held[1] - held[0] - added) <= 1e-6 * added))
+        fail_msg("the covariance does not hold what u of %s grew by", rows[i].name);
+    }
+  }
+}
+
+static void grows_everywhere(const char *json) {
+  fg_scanner_model *sure, *unsure;
+  measured narrow = corrected_by(MODEL("0", ""), &sure), wide = corrected_by(json, &unsure);
+  const fg_foil *a = &narrow.result.foils[0], *b = &wide.result.foils[0];
+  grows(FG_QUANTITY_OF_FOIL, a, b);
+  assert_int_equal(a->bump_count, 3);
+  for (size_t i = 0; i < a->bump_count; i++)
+    grows(FG_QUANTITY_OF_BUMP, &a->bumps[i], &b->bumps[i]);
+  grows(FG_QUANTITY_OF_DISC, narrow.result.discs, wide.result.discs);
+  fg_scanner_model_free(sure);
+  fg_scanner_model_free(unsure);
+  measured_free(&narrow);
+  measured_free(&wide);
+}
+
+static void a_model_that_is_unsure_widens_every_row(void **state) {
+  (void)state;
+  grows_everywhere(MODEL("0.004", ""));
+}
+
+static void a_tie_widens_every_row(void **state) {
+  (void)state;
+  grows_everywhere(MODEL("0", OTHER));
+}
+
+/* ---- tables ---- */
+
+static void tables_tell_results_from_causes(void **state) {
+  (void)state;
+  static const char *const results[] = {
+      "radius_mm",           "bump_radius_mm",     "overall_radius_mm",    "overall.radius_mm",
+      "u_radius_mm",         "u_height_mm",        "springback_error_pct", "rms_um",
+      "overall.u_radius_mm", "diameter_mm",        "roundness_um",         "u_centre_x_mm",
+      "bump_angle_deg",      "bump_bump_angle_deg"};
+  static const char *const causes[] = {"thickness_mm", "position_deg", "centre_x_mm", "die",
+                                       "temp_C",       "angle_deg",    "height",      "u_"};
+  for (size_t i = 0; i < sizeof results / sizeof *results; i++)
+    if (!fg_quantity_is_result(results[i])) fail_msg("%s is taken for a cause", results[i]);
+  for (size_t i = 0; i < sizeof causes / sizeof *causes; i++)
+    if (fg_quantity_is_result(causes[i])) fail_msg("%s is taken for a result", causes[i]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_row_is_whole),
+      cmocka_unit_test(a_name_is_there_once),
+      cmocka_unit_test(every_use_has_room),
+      cmocka_unit_test(reports_hold_every_row),
+      cmocka_unit_test(reports_hold_every_row_of_discs),
+      cmocka_unit_test(schemas_know_every_row),
+      cmocka_unit_test(a_bumps_rows_are_derived_and_widened),
+      cmocka_unit_test(a_model_that_is_unsure_widens_every_row),
+      cmocka_unit_test(a_tie_widens_every_row),
+      cmocka_unit_test(tables_tell_results_from_causes),
+  };
+  return cmocka_run_group_tests_name("quantity", tests, NULL, NULL);
+}
