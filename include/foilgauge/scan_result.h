@@ -18,9 +18,9 @@ extern "C" {
 #endif
 
 enum {
-  FG_SCAN_RESULT_CLAIMS = 7,
+  FG_SCAN_RESULT_CLAIMS = 15,
   FG_SCAN_RESULT_EXPLANATIONS = 8,
-  FG_SCAN_RESULT_UNCLAIMED = 50,
+  FG_SCAN_RESULT_UNCLAIMED = 58,
   FG_SCAN_RESULT_PARAMETERS = 4,
   FG_SCAN_RESULT_ADVICE = 2,
   FG_SCAN_RESULT_WORDS = 512,
@@ -56,8 +56,10 @@ typedef struct fg_scan_result_parameter {
 typedef struct fg_scan_result_claim {
   const char *id, *form; /* form: "normal", "radial"; NULL: it has one only */
   const char *words, *equation;
-  bool free; /* a curve that no listed effect explains */
-  bool sure; /* every explanation that the data allow holds it */
+  const char *says; /* what its sign means; NULL: its words say all */
+  bool of_width;    /* of the strip's width: residual and dimensions are without it */
+  bool free;        /* a curve that no listed effect explains */
+  bool sure;        /* every explanation that the data allow holds it */
   fg_loop_verdict verdict;
   fg_scan_coordinate coordinate; /* of curves, and of what the part does */
   const char *coordinate_name;   /* "foil.s" */
@@ -66,8 +68,10 @@ typedef struct fg_scan_result_claim {
   fg_scan_result_parameter parameter[FG_SCAN_RESULT_PARAMETERS];
   size_t parameters;
   double amplitude_um;
+  double p_value;        /* that it, or no effect at all, is needed */
   double retained_share; /* of it beside the geometry; NaN: was not searched */
-  double would_explain;  /* share of the residual sum that it alone takes; likewise */
+  double would_explain;  /* share of the residual sum, or of the widths', that it alone takes;
+                            likewise */
   double (*shape)[2];    /* coordinate and deviation in um, of curves and of what has a basis */
   size_t shape_points;
 } fg_scan_result_claim;
@@ -81,6 +85,7 @@ typedef struct fg_scan_result_explanation {
 /* An effect that is not claimed. `tied`: one of several explanations holds it. */
 typedef struct fg_scan_result_unclaimed {
   const char *id, *words;
+  bool of_width;
   fg_loop_verdict verdict;
   double would_explain, retained_share;
   double smallest_um; /* would have shown; NaN: no size would */
@@ -214,13 +219,16 @@ typedef struct fg_scan_result {
   bool tied;         /* several explanations */
   bool named;        /* what was found has a name: no two explanations differ in more than a form */
   bool scale_tied;   /* a scale that the edges cannot see would do what the part's stretch does */
-  bool corrected;    /* there are claims: before and after differ */
+  bool corrected;    /* there are claims of the points: before and after differ */
+  bool of_width;     /* there are claims of the width */
   bool contradicted; /* scans kept aside become worse */
   double noise_floor_um, edge_model_error_um;
   double half_width_rms_um, half_width_smooth_um;
   double p_value;    /* that no effect is needed */
   double matters_um; /* an effect of this size would be a nuisance: `absent` below it */
   fg_scan_loop_error before, after;
+  double width_before_um,
+      width_after_um; /* with `of_width`: rms of half the width about its mean */
 
   fg_scan_result_scan *scan;
   size_t scans;

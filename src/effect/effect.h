@@ -87,9 +87,10 @@ typedef double fg_effect_start(const fg_field_frame *frame, size_t i, size_t cou
 
 typedef struct fg_effect {
   const char *id;
-  const char *form;  /* "normal", "radial": of an effect in two forms; else NULL */
-  bool second;       /* form: the first row speaks for both */
-  const char *words; /* for people */
+  const char *form;    /* "normal", "radial": of an effect in two forms; else NULL */
+  bool second;         /* form: the first row speaks for both */
+  const char *words;   /* for people */
+  const char *says[2]; /* what a positive and a negative amplitude mean; NULL: `words` say all */
   const char *equation;
   fg_effect_sought sought;
   fg_effect_coordinate coordinate;

@@ -14,6 +14,11 @@ static void put_unit(const fg_effect *kind, fg_scan_result_parameter *p) {
   p->unit = "";
   p->told = p->value;
   p->u_told = p->u;
+  if (p->name == kind->amplitude_name) {
+    p->symbol = kind->amplitude_symbol;
+    p->unit = "µm";
+    return;
+  }
   for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
     if (strcmp(p->name, units[i].name) != 0) continue;
     p->symbol = units[i].people;

@@ -13,10 +13,12 @@
 /* What takes this share of the residual sum alone comes near a curve. */
 #define NEAR_SHARE 0.3
 
-_Static_assert((int)FG_SCAN_RESULT_CLAIMS == (int)FG_EFFECT_SET_MAX, "every effect has its place");
+_Static_assert((int)FG_SCAN_RESULT_CLAIMS == (int)FG_EFFECT_SET_MAX + (int)FG_WIDTH_EFFECTS_MAX,
+               "every effect has its place");
 _Static_assert((int)FG_SCAN_RESULT_EXPLANATIONS == (int)FG_EXPLANATIONS_MAX,
                "every explanation has its place");
-_Static_assert((int)FG_SCAN_RESULT_UNCLAIMED >= FG_CANDIDATES_MAX + (int)FG_POINTS_BARRED,
+_Static_assert((int)FG_SCAN_RESULT_UNCLAIMED >=
+                   FG_CANDIDATES_MAX + (int)FG_POINTS_BARRED + (int)FG_WIDTH_EFFECTS_MAX,
                "every candidate has its place");
 _Static_assert((int)FG_SCAN_X == (int)FG_EFFECT_X && (int)FG_SCAN_Y == (int)FG_EFFECT_Y &&
                    (int)FG_SCAN_FOIL == (int)FG_EFFECT_FOIL &&
@@ -137,12 +139,41 @@ static fg_status put_claim(fg_context *ctx, const fg_scan_loop *loop, const fg_e
                    ? "deviation of every bump from its best-fit circle"
                    : NULL,
       .amplitude_um = fg_effect_found_amplitude(effect),
+      .p_value = loop->explanations.p_value,
   };
   claim->verdict = claim->sure ? FG_LOOP_FOUND : FG_LOOP_TIED;
   claim->parameters = fg_scan_result_put_parameters(effect, claim->parameter);
   put_shares(&loop->explanations, kind, claim);
   if (!claim->free && !claim->basis) return FG_OK;
   return fg_scan_result_put_shape(ctx, loop, effect, claim);
+}
+
+static void put_width_claim(const fg_width_effect *from, fg_scan_result_claim *claim) {
+  const fg_effect *kind = from->effect.kind;
+  *claim = (fg_scan_result_claim){
+      .id = kind->id,
+      .words = kind->words,
+      .equation = kind->equation,
+      .says = kind->says[fg_effect_found_amplitude(&from->effect) < 0],
+      .of_width = true,
+      .sure = true,
+      .verdict = FG_LOOP_FOUND,
+      .coordinate = (fg_scan_coordinate)kind->coordinate,
+      .coordinate_name = fg_effect_coordinate_name(kind->coordinate),
+      .amplitude_um = fg_effect_found_amplitude(&from->effect),
+      .p_value = from->p_value,
+      .retained_share = from->share,
+      .would_explain = from->would_explain,
+  };
+  claim->parameters = fg_scan_result_put_parameters(&from->effect, claim->parameter);
+}
+
+static void put_width(const fg_width_findings *width, fg_scan_result *result) {
+  for (size_t e = 0; e < width->count; e++)
+    if (width->each[e].found) put_width_claim(&width->each[e], &result->claim[result->claims++]);
+  result->of_width = width->found > 0;
+  result->width_before_um = width->rms_before_um;
+  result->width_after_um = width->rms_after_um;
 }
 
 static fg_status put_claims(fg_context *ctx, const fg_scan_loop *loop, fg_scan_result *result) {
@@ -175,10 +206,24 @@ static bool is_listed(const fg_scan_result *result, const fg_effect *kind) {
   return false;
 }
 
-static fg_loop_verdict judge(const fg_explanations *explanations, size_t e) {
-  if (any_member_holds(explanations, explanations->candidates[e].kind)) return FG_LOOP_TIED;
-  if (explanations->smallest_um[e] <= FG_SCAN_LOOP_MATTERS_UM) return FG_LOOP_ABSENT;
-  return explanations->share[e] < ABSORBED_SHARE ? FG_LOOP_ABSORBED : FG_LOOP_INCONCLUSIVE;
+static fg_loop_verdict judge(double smallest_um, double share) {
+  if (smallest_um <= FG_SCAN_LOOP_MATTERS_UM) return FG_LOOP_ABSENT;
+  return share < ABSORBED_SHARE ? FG_LOOP_ABSORBED : FG_LOOP_INCONCLUSIVE;
+}
+
+static void put_width_unclaimed(const fg_width_findings *width, fg_scan_result *result) {
+  for (size_t e = 0; e < width->count; e++) {
+    const fg_width_effect *one = &width->each[e];
+    if (one->found) continue;
+    result->unclaimed[result->unclaimeds++] =
+        (fg_scan_result_unclaimed){.id = one->effect.kind->id,
+                                   .words = one->effect.kind->words,
+                                   .of_width = true,
+                                   .verdict = judge(one->smallest_um, one->share),
+                                   .would_explain = one->would_explain,
+                                   .retained_share = one->share,
+                                   .smallest_um = one->smallest_um};
+  }
 }
 
 /* Of two forms of one effect the first speaks for both. */
@@ -187,13 +232,15 @@ static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     const fg_effect *kind = explanations->candidates[e].kind;
     if (fg_effect_is_free(kind) || kind->second || is_claimed(&loop->set, kind)) continue;
-    result->unclaimed[result->unclaimeds++] =
-        (fg_scan_result_unclaimed){.id = kind->id,
-                                   .words = kind->words,
-                                   .verdict = judge(explanations, e),
-                                   .would_explain = explanations->alone[e],
-                                   .retained_share = explanations->share[e],
-                                   .smallest_um = explanations->smallest_um[e]};
+    result->unclaimed[result->unclaimeds++] = (fg_scan_result_unclaimed){
+        .id = kind->id,
+        .words = kind->words,
+        .verdict = any_member_holds(explanations, kind)
+                       ? FG_LOOP_TIED
+                       : judge(explanations->smallest_um[e], explanations->share[e]),
+        .would_explain = explanations->alone[e],
+        .retained_share = explanations->share[e],
+        .smallest_um = explanations->smallest_um[e]};
   }
   for (size_t b = 0; b < loop->points.barred_count; b++) {
     const fg_points_barred *barred = &loop->points.barred[b];
@@ -269,7 +316,9 @@ fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
   put_numbers(loop, result);
   put_explanations(&loop->explanations, result);
   FG_TRY(put_claims(ctx, loop, result));
+  put_width(&loop->width, result);
   put_unclaimed(loop, result);
+  put_width_unclaimed(&loop->width, result);
   put_advice(loop, result);
   FG_TRY(fg_scan_result_put_bumps(ctx, loop, result));
   FG_TRY(fg_scan_result_put_rows(ctx, loop, result));

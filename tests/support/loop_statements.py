@@ -60,5 +60,9 @@ for name, title in (("rms", "rms"), ("robust_sd", "robust sd"), ("p95", "95th pe
     if before is None: continue
     page_says(f"<td>{title}</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
     text_says(f"  {title:22s} {before:10.4g} {after:10.4g}", "error")
+if "half_width" in report["before"]:
+    before, after = (report[side]["half_width"]["rms"] for side in ("before", "after"))
+    page_says(f"<td>half the width, rms</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
+    text_says(f"  {'half the width, rms':22s} {before:10.4g} {after:10.4g}", "error")
 if missing: print("\n".join(missing))
 sys.exit(bool(missing))

@@ -106,6 +106,8 @@ static void every_row_says_what_it_is(void **state) {
       fail_msg("%s moves nothing, or two things", effect->id);
     if (!effect->width != (effect->sought != FG_EFFECT_OF_WIDTH))
       fail_msg("%s: where is it sought?", effect->id);
+    if (!effect->says[0] != !effect->says[1])
+      fail_msg("%s says something one way only", effect->id);
     if (!effect->amplitude_name != !effect->amplitude_symbol)
       fail_msg("the amplitude of %s has no name for people", effect->id);
     if (effect->glass && !effect->columns) fail_msg("%s has no columns", effect->id);

@@ -138,7 +138,7 @@ static void put_parameters(FILE *out, const fg_scan_result *result) {
 }
 
 void fg_scan_loop_page_effects(FILE *out, const fg_scan_result *result) {
-  if (!result->corrected) return;
+  if (!result->claims) return;
   fputs("<section><h2 class=\"first\">What was found, drawn</h2>\n", out);
   put_parameters(out, result);
   fputs("<div class=\"two\">\n", out);

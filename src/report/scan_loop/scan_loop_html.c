@@ -98,12 +98,12 @@ static void put_name(FILE *out, const char *id, const char *words) {
 
 /* The two last columns: what it alone would take of the residual, and how much of it the geometry
  * does not take over. */
-static void put_shares(FILE *out, double alone, double share) {
+static void put_shares(FILE *out, double alone, double share, bool of_width) {
   if (isnan(alone) && isnan(share))
     fputs("<td>–</td><td>–</td></tr>\n", out);
   else
-    fprintf(out, "<td>%.0f %%</td><td>%.*f %%</td></tr>\n", 100 * alone, share < 0.1 ? 2 : 0,
-            100 * share);
+    fprintf(out, "<td>%.0f %%%s</td><td>%.*f %%</td></tr>\n", 100 * alone,
+            of_width ? " of the width" : "", share < 0.1 ? 2 : 0, 100 * share);
 }
 
 static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
@@ -121,7 +121,7 @@ static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
     fputs("see its curve", out);
   }
   fputs("</td>", out);
-  put_shares(out, claim->would_explain, claim->retained_share);
+  put_shares(out, claim->would_explain, claim->retained_share, claim->of_width);
 }
 
 static void put_unclaimed(FILE *out, const fg_scan_result_unclaimed *one) {
@@ -140,7 +140,7 @@ static void put_unclaimed(FILE *out, const fg_scan_result_unclaimed *one) {
   else
     fprintf(out, "%s%s", isfinite(one->smallest_um) ? "would have shown from " : "", words);
   fputs(one->barred ? "<br>seen, and not confirmed from disc to disc</td>" : "</td>", out);
-  put_shares(out, one->would_explain, one->retained_share);
+  put_shares(out, one->would_explain, one->retained_share, one->of_width);
 }
 
 static void put_candidates(FILE *out, const fg_scan_result *result) {
@@ -233,6 +233,8 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   put_error(out, "95th percentile", b->p95, a->p95);
   put_error(out, "maximum", b->maximum, a->maximum);
   put_error(out, "scans kept aside, rms", b->held_out_rms, a->held_out_rms);
+  if (result->of_width)
+    put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
   fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
   fprintf(out,
           "</table></div>\n<p class=\"note\">%zu rows, each the mean of %zu neighbours along the "

@@ -38,7 +38,7 @@ static void write_claim(fg_json *json, const fg_scan_result *result,
   write_parameters(json, claim, false);
   write_parameters(json, claim, true);
   fg_json_number(json, "amplitude", claim->amplitude_um);
-  fg_json_number(json, "p_value", result->p_value);
+  fg_json_number(json, "p_value", claim->p_value);
   fg_json_number(json, "retained_share", claim->retained_share);
   if (claim->basis) {
     fg_json_string(json, "basis", claim->basis);
@@ -109,6 +109,11 @@ static fg_status write_side(fg_context *ctx, fg_json *json, const char *name,
   fg_json_number(json, "robust_sd", error->robust_sd);
   fg_json_number(json, "p95", error->p95);
   fg_json_number(json, "maximum", error->maximum);
+  if (result->of_width) {
+    fg_json_object(json, "half_width");
+    fg_json_number(json, "rms", after ? result->width_after_um : result->width_before_um);
+    fg_json_object_end(json);
+  }
   fg_json_array(json, "foils");
   for (size_t i = 0; i < result->scans; i++)
     FG_TRY(write_foils(ctx, json, after ? result->scan[i].after : result->scan[i].before));

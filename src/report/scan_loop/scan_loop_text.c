@@ -57,6 +57,8 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   put_error(out, "95th percentile", b->p95, a->p95);
   put_error(out, "maximum", b->maximum, a->maximum);
   put_error(out, "scans kept aside, rms", b->held_out_rms, a->held_out_rms);
+  if (result->of_width)
+    put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
 }
 
 static void put_foils(FILE *out, const fg_measurement *before, const fg_measurement *after) {

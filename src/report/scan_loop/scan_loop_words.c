@@ -53,7 +53,7 @@ static fg_status say_claims(fg_context *ctx, const fg_scan_result *result, bool 
   bool first = true;
   for (size_t i = 0; i < result->claims; i++) {
     const fg_scan_result_claim *claim = &result->claim[i];
-    if (claim->free != free_curves || !claim->sure) continue;
+    if (claim->free != free_curves || !claim->sure || claim->of_width) continue;
     const char *between = free_curves ? ", nor " : "; ";
     FG_TRY(fg_text_append(ctx, text, "%s%s", first ? before : between, claim->words));
     FG_TRY(say_parameters(ctx, claim, text));
@@ -130,8 +130,27 @@ static fg_status say_points(fg_context *ctx, const fg_scan_result *result, char 
   return say_errors(ctx, result, text);
 }
 
+/* What moves the edges apart stands for itself: the residual is without it. */
+static fg_status say_width(fg_context *ctx, const fg_scan_result *result, char **text) {
+  char value[64], before[32], after[32];
+  for (size_t i = 0; i < result->claims; i++) {
+    const fg_scan_result_claim *claim = &result->claim[i];
+    const fg_scan_result_parameter *p = &claim->parameter[0];
+    if (!claim->of_width) continue;
+    fg_scan_loop_value_words(p->told, p->u_told, value, sizeof value);
+    FG_TRY(fg_text_append(ctx, text, " In the strip's width: %s (%s = %s %s). ",
+                          claim->says ? claim->says : claim->words, p->symbol, value, p->unit));
+    FG_TRY(say_chance(ctx, claim->p_value, text));
+  }
+  fg_scan_loop_length_words(result->width_before_um, before, sizeof before);
+  fg_scan_loop_length_words(result->width_after_um, after, sizeof after);
+  return fg_text_append(ctx, text, " Half the width deviates by %s rms before and %s after.",
+                        before, after);
+}
+
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text) {
   *text = NULL;
   FG_TRY(say_points(ctx, result, text));
+  if (result->of_width) FG_TRY(say_width(ctx, result, text));
   return fg_scan_loop_bumps_sentence(ctx, &result->bumps, text);
 }
