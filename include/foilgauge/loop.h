@@ -128,6 +128,22 @@ typedef void fg_loop_basis(const fg_loop_problem *problem, const fg_loop_candida
 typedef size_t fg_loop_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]);
 
+/* What concerns single rows. */
+typedef enum fg_loop_lone {
+  FG_LOOP_NOT_LONE,
+  FG_LOOP_WRONG_ROW,      /* one response is wrong */
+  FG_LOOP_EXCHANGED_ROWS, /* two changed places */
+} fg_loop_lone;
+
+/* What the loop on scans looks for over the bumps of its foils, in this order. */
+typedef enum fg_loop_over_bumps {
+  FG_LOOP_NOT_OVER_BUMPS,
+  FG_LOOP_BUMP_DECAY,   /* from the lip */
+  FG_LOOP_BUMP_STRETCH, /* of the arc length: it shows in the angles alone */
+  FG_LOOP_BUMP_TREND,   /* over their number */
+  FG_LOOP_BUMP_KINDS
+} fg_loop_over_bumps;
+
 typedef struct fg_loop_effect {
   const char *id, *level, *frame;
   const char *words; /* "a trend with" */
@@ -143,6 +159,11 @@ typedef struct fg_loop_effect {
   bool from_zero;  /* the amplitude is the largest size, not half the range */
   bool own_levels; /* each value that was measured has a level of its own: nothing is known between
                     */
+  bool slope;      /* its coefficient is half the change over its coordinate's range */
+  bool unattributed; /* a curve of what no listed effect explains */
+  fg_loop_lone lone;
+  fg_loop_over_bumps over_bumps;
+  const char *bump_words; /* "a decay from the lip" */
 } fg_loop_effect;
 
 /* How far a step of the search is, 0 to 1, and how many effects the steps before it found. */

@@ -51,9 +51,6 @@ bool fg_engine_is_curve(const fg_loop_candidate *candidate);
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               char name[FG_LOOP_NAME]);
 bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b);
-/* The rows of the two lone effects, and the curves of the unattributed family. */
-const fg_loop_effect *fg_engine_lone_effects(void);
-const fg_loop_effect *fg_engine_curve_effects(void);
 /* The candidate's columns at the rows of a frame: columns × n. */
 fg_status fg_engine_gather(fg_context *ctx, const fg_engine_frame *frame,
                            const fg_loop_candidate *candidate, const double *shape,

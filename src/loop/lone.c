@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "effect/table_effects.h"
 #include "loop/engine_random.h"
 #include "loop/permute.h"
 
@@ -223,7 +224,7 @@ static fg_status judge_large(fg_context *ctx, const fg_engine_frame *frame, fg_e
 
 fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
                                size_t draws, uint64_t seed, fg_engine_lone lone[2]) {
-  const fg_loop_effect *effects = fg_engine_lone_effects();
+  const fg_loop_effect *effects = fg_loop_lone_effects();
   lone_bench bench = {.n = frame->n};
   fg_status status = FG_OK;
   memset(lone, 0, 2 * sizeof *lone);

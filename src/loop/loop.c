@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "effect/table_effects.h"
 #include "loop/effort.h"
 #include "loop/run.h"
 
@@ -38,7 +39,7 @@ static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
   for (size_t i = 0; i < rows; i++)
     run->train[i] = !problem->aside || !problem->aside[i];
   FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
-  if (!problem->few) FG_TRY(add_candidates(ctx, run, fg_engine_curve_effects(), &capacity));
+  if (!problem->few) FG_TRY(add_candidates(ctx, run, fg_loop_curve_effects(), &capacity));
   fg_engine_effort effort;
   fg_engine_effort_estimate(problem, run->candidate, run->candidates, &effort);
   FG_TRY(fg_engine_effort_check(ctx, &effort, options->minutes, options->mebibytes));

@@ -207,13 +207,12 @@ static bool over_bumps(const fg_loop_problem *problem, size_t a, size_t b) {
 }
 
 static void choose_effects(fg_scan_loop_bumps *bumps) {
-  static const char *const wanted[] = {"part.lip_decay", "part.stretch", "table.order_drift"};
   size_t count = 0;
-  for (size_t k = 0; k < FG_SCAN_LOOP_BUMP_EFFECTS; k++)
+  for (int kind = FG_LOOP_NOT_OVER_BUMPS + 1; kind < FG_LOOP_BUMP_KINDS; kind++)
     for (const fg_loop_effect *e = fg_loop_table_effects(); e->id; e++) {
-      if (strcmp(e->id, wanted[k]) != 0) continue;
+      if ((int)e->over_bumps != kind) continue;
       bumps->effect[count] = *e;
-      if (strcmp(e->id, "part.stretch") != 0) bumps->effect[count].accepts = over_bumps;
+      if (kind != FG_LOOP_BUMP_STRETCH) bumps->effect[count].accepts = over_bumps;
       count++;
     }
 }
@@ -258,7 +257,7 @@ static double over_responses(const fg_loop_problem *problem, double p_value) {
 }
 
 static bool is_exchange(const fg_loop_candidate *candidate) {
-  return candidate->effect && !strcmp(candidate->effect->id, "table.exchanged_runs");
+  return candidate->effect && candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
 }
 
 /* Bumps do not change places. */
@@ -285,7 +284,7 @@ static fg_status judge_claim(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t 
   *kept = false;
   strip_aliases(claim);
   if (is_exchange(&claim->candidate)) return FG_OK;
-  if (!strcmp(id, "table.outlier")) {
+  if (claim->candidate.effect->lone == FG_LOOP_WRONG_ROW) {
     const fg_scan_loop_bump *bump = &bumps->bump[level->problem.row[claim->candidate.row[0]]];
     return fg_scan_loop_bumps_note(ctx, bumps,
                                    "bumps: %s of bump %d of foil %zu stands out from the others",
@@ -334,7 +333,7 @@ static void judge_rejected(fg_scan_loop_bump_level *level) {
     rows += !problem->aside[i];
   for (size_t k = 0; k < level->result.rejects; k++) {
     fg_loop_rejected *one = &level->result.rejected[k];
-    size_t needed = strcmp(one->candidate.effect->id, "part.stretch") ? ORDERS : SIGNS;
+    size_t needed = one->candidate.effect->over_bumps == FG_LOOP_BUMP_STRETCH ? SIGNS : ORDERS;
     one->p_value = over_responses(problem, one->p_value);
     if (problem->few && rows < needed) one->smallest_detectable = NAN;
     if (one->smallest_detectable < level->least) one->smallest_detectable = level->least;

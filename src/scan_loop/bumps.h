@@ -20,7 +20,7 @@ enum {
   FG_SCAN_LOOP_BUMP_RADIUS = 0, /* responses */
   FG_SCAN_LOOP_BUMP_ANGLE = 1,
   FG_SCAN_LOOP_BUMP_RESPONSES = 2,
-  FG_SCAN_LOOP_BUMP_EFFECTS = 3,
+  FG_SCAN_LOOP_BUMP_EFFECTS = FG_LOOP_BUMP_KINDS - 1,
 };
 
 /* One bump of one part; views of the same part are averaged. `doubt`: how far the value may be off
@@ -82,9 +82,6 @@ typedef struct fg_scan_loop_bumps_request {
 fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
                                  fg_scan_loop_bumps *bumps);
 void fg_scan_loop_bumps_free(fg_scan_loop_bumps *bumps);
-
-/* For people: "a decay from the lip". */
-const char *fg_scan_loop_bump_effect_words(const fg_loop_effect *effect);
 
 /* Something the reader must know. */
 fg_status fg_scan_loop_bumps_note(fg_context *ctx, fg_scan_loop_bumps *bumps, const char *format,

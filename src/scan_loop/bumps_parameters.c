@@ -6,17 +6,6 @@
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS };
 
-const char *fg_scan_loop_bump_effect_words(const fg_loop_effect *effect) {
-  static const struct {
-    const char *id, *words;
-  } table[] = {{"part.lip_decay", "a decay from the lip"},
-               {"part.stretch", "an arc length unlike the design's"},
-               {"table.order_drift", "a trend over the bumps' numbers"}};
-  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
-    if (!strcmp(table[i].id, effect->id)) return table[i].words;
-  return effect->id;
-}
-
 bool fg_scan_loop_bumps_claimed(const fg_scan_loop_bumps *bumps) {
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
     if (bumps->level[r].result.claims) return true;
@@ -72,10 +61,17 @@ bool fg_scan_loop_bumps_parameter(const fg_scan_loop_bumps *bumps, size_t respon
                                   double *value, double *u) {
   const fg_scan_loop_bump_level *level = &bumps->level[response];
   const fg_loop_coordinate *at = &level->problem.problem.coordinate[claim->candidate.a];
-  const char *id = claim->candidate.effect->id;
-  parameters p = !strcmp(id, "part.lip_decay") ? decay_parameters(level, response, claim)
-                 : !strcmp(id, "part.stretch") ? stretch_parameters(at, claim)
-                                               : drift_parameters(at, response, claim);
+  parameters p = {.count = 0};
+  switch (claim->candidate.effect->over_bumps) {
+  case FG_LOOP_BUMP_DECAY:
+    p = decay_parameters(level, response, claim);
+    break;
+  case FG_LOOP_BUMP_STRETCH:
+    p = stretch_parameters(at, claim);
+    break;
+  default:
+    p = drift_parameters(at, response, claim);
+  }
   if (i >= p.count) return false;
   *name = p.name[i];
   *value = p.value[i];

@@ -25,7 +25,7 @@ static void visit_unknown(const fg_scan_loop_bumps *bumps, size_t response,
                           fg_scan_loop_bumps_visitor *visit, void *user) {
   const fg_scan_loop_bump_level *level = &bumps->level[response];
   for (const fg_loop_effect *e = bumps->effect; e->id; e++) {
-    bool of_angles = !strcmp(e->id, "part.stretch");
+    bool of_angles = e->over_bumps == FG_LOOP_BUMP_STRETCH;
     const fg_loop_rejected one = {.candidate = {.effect = e},
                                   .verdict = FG_LOOP_INCONCLUSIVE,
                                   .would_explain = NAN,

@@ -24,7 +24,7 @@ typedef struct source {
 
 static void put_ties(const fg_loop_claim *claim, fg_scan_result_bump_claim *out) {
   for (size_t i = 0; i < claim->aliases; i++) {
-    /* "part.stretch(bump)": a sum has no id and keeps its words. */
+    /* Beside its name with the coordinate: a sum has no id and keeps its words. */
     const fg_loop_alias *alias = &claim->alias[i];
     fg_text_clip(out->tied[i].name, sizeof out->tied[i].name, "%s", alias->name);
     fg_text_clip(out->tied[i].id, sizeof out->tied[i].id, "%s",
@@ -37,7 +37,7 @@ static void put_claim(const source *from, const fg_loop_claim *claim,
                       fg_scan_result_bump_claim *out) {
   *out = (fg_scan_result_bump_claim){
       .id = claim->candidate.effect->id,
-      .words = fg_scan_loop_bump_effect_words(claim->candidate.effect),
+      .words = claim->candidate.effect->bump_words,
       .verdict = claim->verdict,
       .amplitude = from->scale * claim->amplitude,
       .u_amplitude = from->scale * claim->amplitude_u,
@@ -66,7 +66,7 @@ static void visit_unclaimed(size_t r, const fg_loop_rejected *one, void *user) {
   if (!list->counts)
     response->unclaimed[response->unclaimeds] = (fg_scan_result_bump_unclaimed){
         .id = one->candidate.effect->id,
-        .words = fg_scan_loop_bump_effect_words(one->candidate.effect),
+        .words = one->candidate.effect->bump_words,
         .verdict = one->verdict,
         .would_explain = one->would_explain,
         .p_value = one->p_value,

@@ -25,7 +25,7 @@ static fg_loop_claim *find_stretch(fg_scan_loop_bumps *bumps, double *rel) {
       fg_loop_claim *claim = &bumps->level[r].result.claim[i];
       const char *name;
       double u;
-      if (strcmp(claim->candidate.effect->id, "part.stretch") != 0) continue;
+      if (claim->candidate.effect->over_bumps != FG_LOOP_BUMP_STRETCH) continue;
       if (!fg_scan_loop_bumps_parameter(bumps, r, claim, 0, &name, rel, &u)) continue;
       if (!strcmp(name, "arc_length_rel")) return claim;
     }
@@ -88,7 +88,7 @@ fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop) {
       ctx, &loop->bumps,
       "points: %s about another middle, beside a scale of the carriage, "
       "leaves the same edges and makes every length %.0f ppm %s; the arc "
-      "lengths of the bumps speak for it or for part.stretch: the ranges "
+      "lengths of the bumps speak for it or for %s: the ranges "
       "hold both",
-      optical->id, fabs(1e6 * rel), rel > 0 ? "smaller" : "larger");
+      optical->id, fabs(1e6 * rel), rel > 0 ? "smaller" : "larger", stretch->candidate.effect->id);
 }

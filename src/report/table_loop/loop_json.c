@@ -23,17 +23,15 @@ static void write_error(fg_json *json, const char *name, const fg_loop_error *er
 }
 
 static bool is_lone(const fg_loop_claim *claim) {
-  return !claim->candidate.effect->accepts;
+  return claim->candidate.effect->lone != FG_LOOP_NOT_LONE;
 }
 
 /* What turns the coefficient into a slope per unit of its column, or into a share of the arc
  * length; NaN for other forms. */
 static double natural_unit(const fg_loop_report *report, const fg_loop_claim *claim) {
   const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
-  const char *id = claim->candidate.effect->id;
   if (claim->candidate.effect->from_zero) return 1 / fmax(fabs(at->low), fabs(at->high));
-  if (!strcmp(id, "table.linear") || !strcmp(id, "table.order_drift"))
-    return 2 / (at->high - at->low);
+  if (claim->candidate.effect->slope) return 2 / (at->high - at->low);
   return NAN;
 }
 
@@ -55,7 +53,7 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
   if (isfinite(unit))
     fg_json_number(json, effect->from_zero ? "stretch" : "slope_per_unit", unit * coefficient[0]);
   if (!uncertainty && is_lone(claim)) {
-    bool pair = !strcmp(effect->id, "table.exchanged_runs");
+    bool pair = effect->lone == FG_LOOP_EXCHANGED_ROWS;
     fg_json_integer(json, "row", (int64_t)report->problem->row[claim->candidate.row[0]] + 1);
     if (pair)
       fg_json_integer(json, "second_row",

@@ -25,7 +25,7 @@ static number_text number(const char *format, double value) {
 static void row_words(const fg_loop_report *report, const fg_loop_claim *claim, char *text,
                       size_t size) {
   size_t first = report->problem->row[claim->candidate.row[0]] + 1;
-  if (!strcmp(claim->candidate.effect->id, "table.exchanged_runs"))
+  if (claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS)
     fg_text_clip(text, size, "the responses of rows %zu and %zu changed places", first,
                  report->problem->row[claim->candidate.row[1]] + 1);
   else

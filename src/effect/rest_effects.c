@@ -1,10 +1,8 @@
-/* Effects that belong to the engine itself: lone rows, and the curves of what nothing explains. */
+/* Rows of a table that stand alone, and the curves of what no listed effect explains. */
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-#include "core/text.h"
-#include "loop/engine.h"
+#include "effect/table_effects.h"
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -18,17 +16,19 @@ static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *
   (void)shape;
   memset(columns, 0, problem->rows * sizeof *columns);
   columns[candidate->row[0]] = 1;
-  if (fg_engine_is_exchange(candidate)) columns[candidate->row[1]] = -1;
+  if (candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS) columns[candidate->row[1]] = -1;
 }
 
 static const fg_loop_effect lone_effects[] = {
     {.id = "table.outlier",
+     .lone = FG_LOOP_WRONG_ROW,
      .level = "runs",
      .frame = "row",
      .words = "one wrong response",
      .columns = one_column,
      .basis = lone_basis},
     {.id = "table.exchanged_runs",
+     .lone = FG_LOOP_EXCHANGED_ROWS,
      .level = "runs",
      .frame = "row",
      .words = "two responses that changed places",
@@ -36,16 +36,8 @@ static const fg_loop_effect lone_effects[] = {
      .basis = lone_basis},
 };
 
-const fg_loop_effect *fg_engine_lone_effects(void) {
+const fg_loop_effect *fg_loop_lone_effects(void) {
   return lone_effects;
-}
-
-bool fg_engine_is_lone(const fg_loop_candidate *candidate) {
-  return candidate->effect == &lone_effects[0] || candidate->effect == &lone_effects[1];
-}
-
-bool fg_engine_is_exchange(const fg_loop_candidate *candidate) {
-  return candidate->effect == &lone_effects[1];
 }
 
 /* Curves: natural cubic splines with a few or more knots, and waves. */
@@ -146,6 +138,7 @@ static size_t wave_starts(const fg_loop_problem *problem, const fg_loop_candidat
 
 static const fg_loop_effect curve_effects[] = {
     {.id = "unattributed.smooth",
+     .unattributed = true,
      .level = "any",
      .frame = "coordinate",
      .words = "a smooth curve over",
@@ -153,6 +146,7 @@ static const fg_loop_effect curve_effects[] = {
      .columns = few_columns,
      .basis = spline_basis},
     {.id = "unattributed.curve",
+     .unattributed = true,
      .level = "any",
      .frame = "coordinate",
      .words = "a curve over",
@@ -160,6 +154,7 @@ static const fg_loop_effect curve_effects[] = {
      .columns = many_columns,
      .basis = spline_basis},
     {.id = "unattributed.winding",
+     .unattributed = true,
      .level = "any",
      .frame = "coordinate",
      .words = "a winding curve over",
@@ -167,6 +162,7 @@ static const fg_loop_effect curve_effects[] = {
      .columns = most_columns,
      .basis = spline_basis},
     {.id = "unattributed.wave",
+     .unattributed = true,
      .level = "any",
      .frame = "coordinate",
      .words = "a wave over",
@@ -179,36 +175,6 @@ static const fg_loop_effect curve_effects[] = {
     {0},
 };
 
-const fg_loop_effect *fg_engine_curve_effects(void) {
+const fg_loop_effect *fg_loop_curve_effects(void) {
   return curve_effects;
-}
-
-bool fg_engine_is_curve(const fg_loop_candidate *candidate) {
-  return candidate->effect >= curve_effects &&
-         candidate->effect < curve_effects + sizeof curve_effects / sizeof *curve_effects;
-}
-
-size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
-                                   const fg_loop_candidate *candidate) {
-  return candidate->effect->columns(problem, candidate);
-}
-
-bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b) {
-  return a->effect == b->effect && a->a == b->a && a->b == b->b && a->row[0] == b->row[0] &&
-         a->row[1] == b->row[1];
-}
-
-void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                              char name[FG_LOOP_NAME]) {
-  const char *id = candidate->effect->id;
-  if (fg_engine_is_exchange(candidate))
-    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
-                 candidate->row[1] + 1);
-  else if (fg_engine_is_lone(candidate))
-    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu)", id, candidate->row[0] + 1);
-  else if (candidate->effect->pair)
-    fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,
-                 problem->coordinate[candidate->b].name);
-  else
-    fg_text_clip(name, FG_LOOP_NAME, "%s(%s)", id, problem->coordinate[candidate->a].name);
 }

@@ -1,0 +1,161 @@
+/* Forms over a column of a table: numbers, levels, two columns together. */
+#include <math.h>
+#include <string.h>
+
+#include "effect/forms.h"
+
+/* -1 at the lowest value, +1 at the highest. */
+static double scaled(const fg_loop_coordinate *at, size_t row) {
+  return at->high > at->low ? (2 * at->value[row] - at->low - at->high) / (at->high - at->low) : 0;
+}
+
+bool fg_loop_form_accepts_linear(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return fg_loop_form_is_number(at) && !fg_loop_form_is_sequence(at);
+}
+
+void fg_loop_form_linear_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                               const double *shape, double *columns) {
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scaled(fg_loop_form_first(problem, candidate), i);
+}
+
+bool fg_loop_form_accepts_quadratic(const fg_loop_problem *problem, size_t a, size_t b) {
+  return fg_loop_form_accepts_linear(problem, a, b) && problem->coordinate[a].distinct >= 3;
+}
+
+void fg_loop_form_quadratic_basis(const fg_loop_problem *problem,
+                                  const fg_loop_candidate *candidate, const double *shape,
+                                  double *columns) {
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++) {
+    double x = scaled(fg_loop_form_first(problem, candidate), i);
+    columns[i] = x;
+    columns[problem->rows + i] = 2 * x * x - 1;
+  }
+}
+
+/* Numbers with numbers; the difference in slope where one is a factor of few levels. */
+bool fg_loop_form_accepts_interaction(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
+  if (a >= b || fg_loop_form_is_sequence(x) || fg_loop_form_is_sequence(y)) return false;
+  if (x->levels && y->levels) return false;
+  if (x->levels) return fg_loop_form_is_number(y) && x->levels <= 4;
+  if (y->levels) return fg_loop_form_is_number(x) && y->levels <= 4;
+  return fg_loop_form_is_number(x) && fg_loop_form_is_number(y);
+}
+
+size_t fg_loop_form_interaction_columns(const fg_loop_problem *problem,
+                                        const fg_loop_candidate *candidate) {
+  size_t levels =
+      problem->coordinate[candidate->a].levels + problem->coordinate[candidate->b].levels;
+  return levels ? levels - 1 : 1;
+}
+
+void fg_loop_form_interaction_basis(const fg_loop_problem *problem,
+                                    const fg_loop_candidate *candidate, const double *shape,
+                                    double *columns) {
+  const fg_loop_coordinate *x = fg_loop_form_first(problem, candidate);
+  const fg_loop_coordinate *y = &problem->coordinate[candidate->b];
+  const fg_loop_coordinate *factor = x->levels ? x : y, *number = x->levels ? y : x;
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++) {
+    if (!factor->levels) {
+      columns[i] = scaled(x, i) * scaled(y, i);
+      continue;
+    }
+    for (size_t k = 1; k < factor->levels; k++)
+      columns[(k - 1) * problem->rows + i] = factor->value[i] == (double)k ? scaled(number, i) : 0;
+  }
+}
+
+/* Words, or numbers that take few values often. */
+bool fg_loop_form_accepts_factor(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  if (at->levels) return at->levels >= 2 && at->levels <= FG_LOOP_COLUMNS;
+  return fg_loop_form_is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
+         problem->rows >= 4 * at->distinct;
+}
+
+size_t fg_loop_form_factor_columns(const fg_loop_problem *problem,
+                                   const fg_loop_candidate *candidate) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  return (at->levels ? at->levels : at->distinct) - 1;
+}
+
+void fg_loop_form_factor_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                               const double *shape, double *columns) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  size_t count = at->levels ? at->levels : at->distinct;
+  (void)shape;
+  memset(columns, 0,
+         fg_loop_form_factor_columns(problem, candidate) * problem->rows * sizeof *columns);
+  for (size_t i = 0; i < problem->rows; i++)
+    for (size_t k = 1; k < count; k++)
+      if (at->value[i] == (at->levels ? (double)k : at->few[k]))
+        columns[(k - 1) * problem->rows + i] = 1;
+}
+
+bool fg_loop_form_accepts_threshold(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  return fg_loop_form_is_number(at) && at->distinct >= 4;
+}
+
+/* Fewer rows than these on one side are rows, not a level. */
+enum { SIDE_ROWS = 3 };
+
+void fg_loop_form_threshold_basis(const fg_loop_problem *problem,
+                                  const fg_loop_candidate *candidate, const double *shape,
+                                  double *columns) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = at->value[i] > shape[0] ? 1 : -1;
+}
+
+enum { THRESHOLDS = 23 };
+
+static bool sides_hold(const fg_loop_problem *problem, const fg_loop_coordinate *at, double place) {
+  size_t above = 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    above += at->value[i] > place;
+  size_t least = problem->rows / 8 > SIDE_ROWS ? problem->rows / 8 : SIDE_ROWS;
+  return above >= least && problem->rows - above >= least;
+}
+
+/* Between neighbouring values; where there are many, spread over the range. */
+size_t fg_loop_form_threshold_starts(const fg_loop_problem *problem,
+                                     const fg_loop_candidate *candidate,
+                                     double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  size_t count = 0;
+  if (at->distinct <= FG_LOOP_COLUMNS + 1) {
+    for (size_t i = 1; i < at->distinct; i++)
+      if (sides_hold(problem, at, (at->few[i - 1] + at->few[i]) / 2))
+        starts[count++][0] = (at->few[i - 1] + at->few[i]) / 2;
+    return count;
+  }
+  for (size_t i = 1; i <= THRESHOLDS; i++) {
+    double place = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
+    if (sides_hold(problem, at, place)) starts[count++][0] = place;
+  }
+  return count;
+}
+
+bool fg_loop_form_accepts_sensitivity(const fg_loop_problem *problem, size_t a, size_t b) {
+  (void)b;
+  return (problem->coordinate[a].roles & FG_LOOP_SENSITIVITY) != 0;
+}
+
+void fg_loop_form_sensitivity_basis(const fg_loop_problem *problem,
+                                    const fg_loop_candidate *candidate, const double *shape,
+                                    double *columns) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  double scale = fmax(fabs(at->low), fabs(at->high));
+  (void)shape;
+  for (size_t i = 0; i < problem->rows; i++)
+    columns[i] = scale > 0 ? at->value[i] / scale : 0;
+}

@@ -1,0 +1,14 @@
+#include "effect/forms.h"
+
+bool fg_loop_form_is_number(const fg_loop_coordinate *at) {
+  return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 2;
+}
+
+bool fg_loop_form_is_sequence(const fg_loop_coordinate *at) {
+  return (at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP)) != 0;
+}
+
+const fg_loop_coordinate *fg_loop_form_first(const fg_loop_problem *problem,
+                                             const fg_loop_candidate *candidate) {
+  return &problem->coordinate[candidate->a];
+}

@@ -1,0 +1,40 @@
+/* What the engine asks of a candidate. */
+#include "core/text.h"
+#include "loop/engine.h"
+
+bool fg_engine_is_lone(const fg_loop_candidate *candidate) {
+  return candidate->effect->lone != FG_LOOP_NOT_LONE;
+}
+
+bool fg_engine_is_exchange(const fg_loop_candidate *candidate) {
+  return candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
+}
+
+bool fg_engine_is_curve(const fg_loop_candidate *candidate) {
+  return candidate->effect->unattributed;
+}
+
+size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
+                                   const fg_loop_candidate *candidate) {
+  return candidate->effect->columns(problem, candidate);
+}
+
+bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b) {
+  return a->effect == b->effect && a->a == b->a && a->b == b->b && a->row[0] == b->row[0] &&
+         a->row[1] == b->row[1];
+}
+
+void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                              char name[FG_LOOP_NAME]) {
+  const char *id = candidate->effect->id;
+  if (fg_engine_is_exchange(candidate))
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
+                 candidate->row[1] + 1);
+  else if (fg_engine_is_lone(candidate))
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu)", id, candidate->row[0] + 1);
+  else if (candidate->effect->pair)
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,
+                 problem->coordinate[candidate->b].name);
+  else
+    fg_text_clip(name, FG_LOOP_NAME, "%s(%s)", id, problem->coordinate[candidate->a].name);
+}
