@@ -36,6 +36,12 @@ static size_t spiral_radial(const fg_points *points, const fg_points_row *row, d
   return 1;
 }
 
+/* Half of it to either edge; from one end of the foil to the other. */
+static double thickness_taper(const fg_points *points, const fg_points_row *row) {
+  double span = points->parts[row->part].end_to_end_rad;
+  return span > 0 ? 0.5 * row->psi / span : 0;
+}
+
 /* A deviation takes the arc's centre with it, and so the zero of the angle: an even one shows as
  * its slope too, of which P3 is what a circle leaves, and an odd one as P4. */
 static size_t crown(const fg_points *points, const fg_points_row *row, double *values) {
@@ -81,6 +87,16 @@ const fg_effect fg_effects_part[] = {
      .equation = "a (ψ/ψ_end)³",
      .coordinate = FG_EFFECT_FOIL,
      .midline = spiral_radial},
+    {.id = "part.thickness_taper",
+     .words = "a strip whose thickness changes along the foil",
+     .says = {"the strip is thicker towards the free end",
+              "the strip is thinner towards the free end"},
+     .equation = "t = t0 + Δt ψ/ψ_span, from the lip's end to the free end",
+     .sought = FG_EFFECT_OF_WIDTH,
+     .coordinate = FG_EFFECT_FOIL,
+     .amplitude_name = "thickness_change_um",
+     .amplitude_symbol = "Δt",
+     .width = thickness_taper},
     {.id = "part.bump_crown",
      .words = "bumps flatter or sharper at the crown than a circle",
      .equation = "even in the place in the arc, led by a P4",

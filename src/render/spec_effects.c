@@ -66,6 +66,11 @@ static double spiral(const double *p, double psi, double half_span) {
   return 1e-3 * p[0] * u * u * u;
 }
 
+/* Half of it to either edge, and half of that at either end of the foil. */
+static double thickness_taper(const double *p, double psi, double half_span) {
+  return 1e-3 * p[0] * 0.25 * psi / half_span;
+}
+
 /* Flat with zero slope at |u| = 1, so that arc and fillet stay joined. */
 static double bump_crown(const double *p, double u, double unused) {
   (void)unused;
@@ -167,6 +172,13 @@ static const fg_render_effect_row rows[] = {
      {{"amplitude_um", NAN, -1000, 1000}},
      NULL,
      spiral,
+     0,
+     NULL},
+    {"part.thickness_taper",
+     FG_RENDER_EFFECT_WIDTH,
+     {{"thickness_change_um", NAN, -100, 100}},
+     NULL,
+     thickness_taper,
      0,
      NULL},
     {"part.bump_crown",

@@ -11,7 +11,7 @@ SCANNER_EFFECTS = [
     "scan.optical_cubic", "scan.carriage_quadratic", "scan.column_step",
     "scan.carriage_start",
 ]  # fmt: skip
-PART_EFFECTS = ["part.ovality", "part.spiral", "part.bump_crown", "part.bump_skew"]
+PART_EFFECTS = ["part.ovality", "part.spiral", "part.bump_crown", "part.bump_skew", "part.thickness_taper"]
 # Coordinate of a free-form curve, and the direction that it moves the picture in.
 CURVES = [
     ("scan.x", "x"), ("scan.y", "y"), ("foil.s", None), ("bump.phi", None), ("edge.normal", None),
@@ -114,6 +114,8 @@ def draw_effect(rng, kind, half_mm, ranges_mm, size=None):
         if oval:
             effect["phase_deg"] = float(rng.uniform(-90, 90))
         effect["along"] = str(rng.choice(["radius", "normal"]))
+    elif kind == "part.thickness_taper":
+        effect["thickness_change_um"] = sign * size
     elif kind.startswith("part."):
         effect["amplitude_um"] = sign * size
     else:
