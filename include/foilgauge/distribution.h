@@ -19,7 +19,6 @@ double fg_distribution_t_two_sided(double t, double freedom);          /* P(|T| 
 double fg_distribution_t_quantile(double probability, double freedom); /* P(T < q) = probability */
 double fg_distribution_f_upper(double f, double freedom_1, double freedom_2);
 double fg_distribution_f_quantile(double probability, double freedom_1, double freedom_2);
-double fg_distribution_chi2_upper(double chi2, double freedom);
 double fg_distribution_chi2_quantile(double probability, double freedom);
 double fg_distribution_normal_quantile(double probability);
 

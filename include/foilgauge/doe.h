@@ -30,7 +30,6 @@ fg_status fg_coding_parse(fg_context *ctx, const char *text, fg_coding *coding);
 /* The lowest and the highest value in the table. FG_ERR_DATA when they are equal. */
 fg_status fg_coding_from_data(fg_context *ctx, const fg_table *table, const char *name,
                               fg_coding *coding);
-double fg_coding_to_coded(const fg_coding *coding, double real);
 double fg_coding_to_real(const fg_coding *coding, double coded);
 /* Replaces the table's column by coded values, to all digits. */
 fg_status fg_coding_apply(fg_context *ctx, const fg_coding *coding, fg_table *table);
@@ -107,10 +106,6 @@ typedef struct fg_split_plot {
  * there are runs. Free with fg_split_plot_free. */
 fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg_formula *formula,
                                 const char *response, const char *plot, fg_split_plot *result);
-/* The factor by which the ordinary standard error of a coefficient of this term is to be
- * multiplied: the root of its error's mean square over the residual mean square of the ordinary
- * fit. */
-double fg_split_plot_inflation(const fg_split_plot *result, const char *term, double residual_sd);
 void fg_split_plot_free(fg_split_plot *result);
 
 #ifdef __cplusplus

@@ -108,9 +108,6 @@ typedef struct fg_prediction {
 fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression, const double *row,
                                 fg_prediction *prediction);
 
-/* Element (i, j) of the covariance matrix of the coefficients; 0 where aliased. */
-double fg_regression_covariance(const fg_regression *regression, size_t i, size_t j);
-
 void fg_regression_free(fg_regression *regression);
 
 #ifdef __cplusplus

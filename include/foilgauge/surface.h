@@ -88,12 +88,6 @@ fg_status fg_surface_optimum_region(fg_context *ctx, const fg_surface *surface, 
 fg_status fg_surface_ridge_path(fg_context *ctx, const fg_surface *surface, bool highest,
                                 const double *radii, size_t count, double *path);
 
-/* The model row at x (with the word factors of `setting`) and the prediction there: the mean with
- * its confidence interval and the interval of one confirmation run. */
-fg_status fg_surface_predict(fg_context *ctx, const fg_surface *surface, const fg_model *model,
-                             const fg_regression *regression, const double *setting,
-                             const double *x, fg_prediction *prediction);
-
 #ifdef __cplusplus
 }
 #endif

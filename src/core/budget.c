@@ -16,7 +16,3 @@ fg_status fg_budget_take(fg_context *ctx, fg_budget *budget, size_t bytes) {
 void fg_budget_give(fg_budget *budget, size_t bytes) {
   if (budget) atomic_fetch_sub(&budget->used, bytes);
 }
-
-size_t fg_budget_used(fg_budget *budget) {
-  return budget ? atomic_load(&budget->used) : 0;
-}

@@ -23,6 +23,4 @@ fg_status fg_budget_take(fg_context *ctx, fg_budget *budget, size_t bytes);
 
 void fg_budget_give(fg_budget *budget, size_t bytes);
 
-size_t fg_budget_used(fg_budget *budget);
-
 #endif

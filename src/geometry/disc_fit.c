@@ -214,8 +214,12 @@ static fg_status fill_points(fg_context *ctx, const fit_work *w, fg_disc *disc) 
   return FG_OK;
 }
 
-fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, double level_doubt_mm,
-                      fg_disc *disc) {
+/* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`,
+ * FG_BUMP_OUTLIERS and FG_BUMP_POOR_FIT. `points` are in order; what is left out of the fit loses
+ * its `used`. `level_doubt_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half
+ * of the points are usable. */
+static fg_status fit_disc(fg_context *ctx, fg_disc_point *points, size_t count,
+                          double level_doubt_mm, fg_disc *disc) {
   fit_work w = {.points = points, .count = count};
   double *block = NULL;
   size_t usable = 0;
@@ -251,7 +255,7 @@ fg_status fg_disc_measure_again(fg_context *ctx, fg_disc *disc) {
   disc->edge = NULL;
   disc->residual_um = NULL;
   disc->flags &= ~(unsigned)(FG_BUMP_OUTLIERS | FG_BUMP_POOR_FIT);
-  fg_status status = fg_disc_fit(ctx, points, disc->station_count, disc->level_doubt_mm, disc);
+  fg_status status = fit_disc(ctx, points, disc->station_count, disc->level_doubt_mm, disc);
   free(points);
   return status;
 }

@@ -9,13 +9,6 @@
 
 #include "foilgauge/foil.h"
 
-/* Fills the circle, covariance, roundness, rms, coverage, points, edge and residuals of `disc`,
- * FG_BUMP_OUTLIERS and FG_BUMP_POOR_FIT. `points` are in order; what is left out of the fit loses
- * its `used`. `level_doubt_mm` adds to the radius' uncertainty. FG_ERR_NUMERIC when fewer than half
- * of the points are usable. */
-fg_status fg_disc_fit(fg_context *ctx, fg_disc_point *points, size_t count, double level_doubt_mm,
-                      fg_disc *disc);
-
 /* Measures disc->stations, which were moved, again; what does not come from the circle stays. */
 fg_status fg_disc_measure_again(fg_context *ctx, fg_disc *disc);
 

@@ -72,7 +72,7 @@ static fg_status right_form(fg_context *ctx, const fg_engine_run *run, const fg_
     if (fg_engine_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
         !(fg_engine_total_p(&step->judgement, c) < bar(run)) || step->stand[c].z <= best)
       continue;
-    FG_TRY(fg_engine_beside(ctx, &step->frame, fg_engine_step_noises(step).at, &step->stand[c],
+    FG_TRY(fg_engine_beside(ctx, &step->training, fg_engine_step_noises(step).at, &step->stand[c],
                             &step->stand[curve], &p));
     if (p <= BESIDE_P) continue;
     best = step->stand[c].z;
@@ -94,7 +94,7 @@ static fg_status wrong_form(fg_context *ctx, const fg_engine_run *run, const fg_
     double p;
     if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(fg_engine_beside(ctx, &step->frame, fg_engine_step_noises(step).at,
+    FG_TRY(fg_engine_beside(ctx, &step->training, fg_engine_step_noises(step).at,
                             &step->stand[*winner], &step->stand[c], &p));
     if (p > BESIDE_P || !(fg_engine_total_p(&step->judgement, c) < run->options.accept_p)) continue;
     if (step->stand[c].z > best) {
@@ -123,7 +123,7 @@ static fg_status hinges_on_a_row(fg_context *ctx, const fg_engine_run *run,
   for (size_t s = run->candidates; s < step->stands && !*hinges; s++) {
     double p;
     if (fg_engine_is_exchange(&step->stand[s].candidate)) continue;
-    FG_TRY(fg_engine_beside(ctx, &step->frame, fg_engine_step_noises(step).at, &step->stand[s],
+    FG_TRY(fg_engine_beside(ctx, &step->training, fg_engine_step_noises(step).at, &step->stand[s],
                             &step->stand[stand], &p));
     *hinges = p > HINGE_P;
   }
@@ -209,7 +209,7 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
   }
   fg_engine_stand refined = step->stand[winner];
   memcpy(refined.shape, with.shape[with.count - 1 - run->has_curve], sizeof refined.shape);
-  FG_TRY(fg_engine_alias_class(ctx, &step->frame, fg_engine_step_noises(step).at, step->stand,
+  FG_TRY(fg_engine_alias_class(ctx, &step->training, fg_engine_step_noises(step).at, step->stand,
                                step->stands, &refined, &claim));
   claim.verdict = claim.aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
   run->set = with;
@@ -275,7 +275,7 @@ static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *ste
     FG_TRY(wrong_form(ctx, run, step, &winner, &curve, &wrong));
     if (wrong) FG_TRY(take_best_curve(ctx, run, step, curve, accepted));
     if (wrong && *accepted) return FG_OK;
-    FG_TRY(fg_engine_simplify(ctx, &step->frame, fg_engine_step_noises(step).at, step->stand,
+    FG_TRY(fg_engine_simplify(ctx, &step->training, fg_engine_step_noises(step).at, step->stand,
                               run->candidates, winner, &winner));
     FG_TRY(second_form(ctx, run, step, winner, accepted));
     if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));

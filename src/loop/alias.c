@@ -16,9 +16,9 @@ static const double shows = 0.002;   /* the winner's surplus shows below this */
 static const double pair_loss = 0.1; /* a sum of two must explain all but this */
 enum { PAIR_POOL = 10 };
 
-/* Whitened residual and columns of a frame at one noise; `basis` has room for more columns. */
+/* Whitened residual and columns of a training at one noise; `basis` has room for more columns. */
 typedef struct alias_bench {
-  const fg_engine_frame *frame;
+  const fg_engine_training *training;
   fg_engine_noise noise;
   size_t n, rank;
   double *basis, *y, *columns, *unit;
@@ -28,28 +28,28 @@ typedef struct alias_bench {
 
 enum { ROOM = 3 * FG_LOOP_COLUMNS };
 
-static fg_status open_one(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                          alias_bench *bench) {
-  size_t n = frame->n;
-  *bench = (alias_bench){.frame = frame, .noise = noise, .n = n};
-  FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + ROOM) * sizeof *bench->basis,
+static fg_status open_one(fg_context *ctx, const fg_engine_training *training,
+                          fg_engine_noise noise, alias_bench *bench) {
+  size_t n = training->n;
+  *bench = (alias_bench){.training = training, .noise = noise, .n = n};
+  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + ROOM) * sizeof *bench->basis,
                             (void **)&bench->basis));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
   FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->columns));
   FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->unit));
-  bench->rank = fg_engine_null_basis(frame, noise, bench->basis);
-  memcpy(bench->y, frame->y, n * sizeof *bench->y);
-  fg_engine_whiten(frame, noise, bench->y);
+  bench->rank = fg_engine_null_basis(training, noise, bench->basis);
+  memcpy(bench->y, training->y, n * sizeof *bench->y);
+  fg_engine_whiten(training, noise, bench->y);
   bench->rss = fg_engine_project_out(n, bench->basis, bench->rank, bench->y);
   bench->freedom = (double)n - (double)bench->rank;
   return FG_OK;
 }
 
-static fg_status open_bench(fg_context *ctx, const fg_engine_frame *frame,
+static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
                             const fg_engine_noise noise[2], alias_bench bench[2]) {
   bench[1] = (alias_bench){0};
-  FG_TRY(open_one(ctx, frame, noise[0], &bench[0]));
-  return open_one(ctx, frame, noise[1], &bench[1]);
+  FG_TRY(open_one(ctx, training, noise[0], &bench[0]));
+  return open_one(ctx, training, noise[1], &bench[1]);
 }
 
 static void close_bench(alias_bench bench[2]) {
@@ -62,24 +62,25 @@ static void close_bench(alias_bench bench[2]) {
 }
 
 /* Constant in every group that shares a level: judged between groups, with their freedom. */
-static bool between_groups(const fg_engine_frame *frame, const double *columns, size_t count) {
+static bool between_groups(const fg_engine_training *training, const double *columns,
+                           size_t count) {
   for (size_t k = 0; k < count; k++)
-    for (size_t i = 1; i < frame->n; i++)
-      if (frame->group[i] == frame->group[i - 1] &&
-          columns[k * frame->n + i] != columns[k * frame->n + i - 1])
+    for (size_t i = 1; i < training->n; i++)
+      if (training->group[i] == training->group[i - 1] &&
+          columns[k * training->n + i] != columns[k * training->n + i - 1])
         return false;
-  return frame->levels > 0;
+  return training->levels > 0;
 }
 
 /* Adds the candidate's columns behind those already there; returns how many are new. */
 static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_stand *stand,
                         size_t rank, size_t *added) {
-  const fg_loop_problem *problem = bench->frame->problem;
+  const fg_loop_problem *problem = bench->training->problem;
   size_t count = fg_engine_candidate_columns(problem, &stand->candidate);
-  FG_TRY(fg_engine_gather(ctx, bench->frame, &stand->candidate, stand->shape, bench->columns));
-  bench->between = between_groups(bench->frame, bench->columns, count);
+  FG_TRY(fg_engine_gather(ctx, bench->training, &stand->candidate, stand->shape, bench->columns));
+  bench->between = between_groups(bench->training, bench->columns, count);
   for (size_t k = 0; k < count; k++)
-    fg_engine_whiten(bench->frame, bench->noise, bench->columns + k * bench->n);
+    fg_engine_whiten(bench->training, bench->noise, bench->columns + k * bench->n);
   *added = fg_engine_orthonormal(bench->n, bench->basis, rank, bench->columns, count,
                                  bench->basis + rank * bench->n, NULL);
   return FG_OK;
@@ -141,7 +142,7 @@ static fg_status compare_one(fg_context *ctx, alias_bench *bench, const fg_engin
   double surplus = explained(bench, bench->rank + test->rank, test->more);
   double k = (double)test->more + (double)winner->candidate.effect->shapes;
   double left = bench->rss - test->gain - surplus;
-  double freedom = bench->between ? (double)bench->frame->groups - 1 : bench->freedom;
+  double freedom = bench->between ? (double)bench->training->groups - 1 : bench->freedom;
   freedom -= (double)test->rank + shapes + k;
   test->p_value = 1;
   if (test->more > 0 && freedom >= 1 && left > 0)
@@ -162,19 +163,19 @@ static fg_status compare(fg_context *ctx, alias_bench bench[2], const fg_engine_
   return FG_OK;
 }
 
-fg_status fg_engine_beside(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_beside(fg_context *ctx, const fg_engine_training *training,
                            const fg_engine_noise noise[2], const fg_engine_stand *base,
                            const fg_engine_stand *other, double *p_value) {
   alias_bench bench[2] = {0};
   alias_test test = {0};
-  fg_status status = open_bench(ctx, frame, noise, bench);
+  fg_status status = open_bench(ctx, training, noise, bench);
   if (status == FG_OK) status = compare(ctx, bench, other, base, NULL, NULL, &test);
   *p_value = test.p_value;
   close_bench(bench);
   return status;
 }
 
-fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training,
                              const fg_engine_noise noise[2], const fg_engine_stand *stand,
                              size_t count, size_t winner, size_t *simplest) {
   alias_bench bench[2] = {0};
@@ -182,7 +183,7 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_frame *frame,
   double best = -INFINITY;
   fg_status status = FG_OK;
   *simplest = winner;
-  FG_TRY_EXIT(open_bench(ctx, frame, noise, bench));
+  FG_TRY_EXIT(open_bench(ctx, training, noise, bench));
   FG_TRY_EXIT(extend(ctx, bench, &stand[winner], bench->rank, &rank));
   size_t whole = rank + stand[winner].candidate.effect->shapes;
   for (size_t c = 0; c < count; c++) {
@@ -241,12 +242,12 @@ static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const fg_engine
       FG_TRY(compare(ctx, bench, winner, pool[k], pool[i], winner_fit, &test));
       bool contains = test.more == 0 && test.rank > winner_rank;
       if (contains || test.p_value < shows || test.gain < (1 - pair_loss) * gain) continue;
-      add_alias(bench->frame->problem, pool[k], pool[i], &test, gain, claim);
+      add_alias(bench->training->problem, pool[k], pool[i], &test, gain, claim);
     }
   return FG_OK;
 }
 
-fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *training,
                                 const fg_engine_noise noise[2], const fg_engine_stand *stand,
                                 size_t count, const fg_engine_stand *winner, fg_loop_claim *claim) {
   alias_bench bench[2] = {0};
@@ -254,7 +255,7 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_frame *frame,
   double *winner_fit = NULL;
   size_t rank = 0, pooled = 0, listed = 0;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_bench(ctx, frame, noise, bench));
+  FG_TRY_EXIT(open_bench(ctx, training, noise, bench));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof *pool, (void **)&pool));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bench->n, sizeof *winner_fit, (void **)&winner_fit));
   FG_TRY_EXIT(extend(ctx, bench, winner, bench->rank, &rank));
@@ -270,7 +271,7 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_frame *frame,
     FG_TRY_EXIT(compare(ctx, bench, winner, pool[c], NULL, winner_fit, &test));
     bool contains = test.more == 0 && test.rank > rank;
     if (!contains && test.p_value >= shows)
-      add_alias(frame->problem, pool[c], NULL, &test, gain, claim);
+      add_alias(training->problem, pool[c], NULL, &test, gain, claim);
     else if (!contains && !fg_engine_is_lone(&pool[c]->candidate) && test.rank <= 2)
       pool[pooled++] = pool[c];
   }

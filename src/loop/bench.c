@@ -13,7 +13,7 @@ static size_t candidate_versions(const fg_loop_problem *problem, const fg_loop_c
 }
 
 static fg_status list_versions(fg_context *ctx, fg_engine_bench *bench) {
-  const fg_loop_problem *problem = bench->frame->problem;
+  const fg_loop_problem *problem = bench->training->problem;
   double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES];
   size_t count = 0;
   for (size_t c = 0; c < bench->candidates; c++)
@@ -36,15 +36,15 @@ static fg_status list_versions(fg_context *ctx, fg_engine_bench *bench) {
 /* Weights of the noise models by residual likelihood: with S the residual sum and f the freedom,
  * f log S - 2 log|W| + log|X'W'WX|, so that S exp(rest / f) compares. */
 static fg_status weigh_noises(fg_context *ctx, fg_engine_bench *bench) {
-  const fg_engine_frame *frame = bench->frame;
+  const fg_engine_training *training = bench->training;
   double terms[FG_ENGINE_NOISES], best = INFINITY, sums[FG_ENGINE_NOISES];
-  bench->noises = fg_engine_noise_grid(frame, bench->noise);
+  bench->noises = fg_engine_noise_grid(training, bench->noise);
   for (size_t j = 0; j < bench->noises; j++) {
     fg_engine_fit fit;
-    FG_TRY(fg_engine_least_squares(ctx, frame, bench->noise[j], &fit));
-    terms[j] = fg_engine_log_det(frame, bench->noise[j]) + fit.log_det;
+    FG_TRY(fg_engine_least_squares(ctx, training, bench->noise[j], &fit));
+    terms[j] = fg_engine_log_det(training, bench->noise[j]) + fit.log_det;
     sums[j] = fit.rss;
-    bench->freedom = frame->n > fit.rank ? frame->n - fit.rank : 0;
+    bench->freedom = training->n > fit.rank ? training->n - fit.rank : 0;
     fg_engine_fit_free(&fit);
   }
   double freedom = bench->freedom ? (double)bench->freedom : 1;
@@ -52,7 +52,7 @@ static fg_status weigh_noises(fg_context *ctx, fg_engine_bench *bench) {
     best = fmin(best, terms[j]);
   for (size_t j = 0; j < bench->noises; j++)
     bench->weight[j] = exp((terms[j] - best) / freedom);
-  if (frame->n <= FG_ENGINE_SMALL_ROWS) return FG_OK;
+  if (training->n <= FG_ENGINE_SMALL_ROWS) return FG_OK;
   size_t chosen = 0;
   for (size_t j = 1; j < bench->noises; j++)
     if (sums[j] * bench->weight[j] < sums[chosen] * bench->weight[chosen]) chosen = j;
@@ -63,12 +63,12 @@ static fg_status weigh_noises(fg_context *ctx, fg_engine_bench *bench) {
 }
 
 /* Orthonormal columns of the null, whitened; those that are aliased stay zero. */
-static fg_status null_basis(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                            double **basis) {
-  size_t n = frame->n;
-  FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + 1) * sizeof **basis, (void **)basis));
-  size_t rank = fg_engine_null_basis(frame, noise, *basis);
-  memset(*basis + rank * n, 0, n * (frame->columns + 1 - rank) * sizeof **basis);
+static fg_status null_basis(fg_context *ctx, const fg_engine_training *training,
+                            fg_engine_noise noise, double **basis) {
+  size_t n = training->n;
+  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + 1) * sizeof **basis, (void **)basis));
+  size_t rank = fg_engine_null_basis(training, noise, *basis);
+  memset(*basis + rank * n, 0, n * (training->columns + 1 - rank) * sizeof **basis);
   return FG_OK;
 }
 
@@ -76,18 +76,18 @@ static fg_status null_basis(fg_context *ctx, const fg_engine_frame *frame, fg_en
 static fg_status version_basis(fg_context *ctx, fg_engine_bench *bench, size_t v,
                                fg_engine_noise noise, const double *null, double *columns,
                                double *unit) {
-  const fg_engine_frame *frame = bench->frame;
+  const fg_engine_training *training = bench->training;
   fg_engine_version *version = &bench->version[v];
   const fg_loop_candidate *candidate = &bench->candidate[version->candidate];
-  size_t n = frame->n, count = fg_engine_candidate_columns(frame->problem, candidate);
+  size_t n = training->n, count = fg_engine_candidate_columns(training->problem, candidate);
   double lengths[FG_LOOP_COLUMNS], whole = 0;
-  FG_TRY(fg_engine_gather(ctx, frame, candidate, bench->shape[v], columns));
+  FG_TRY(fg_engine_gather(ctx, training, candidate, bench->shape[v], columns));
   for (size_t k = 0; k < count; k++) {
-    fg_engine_whiten(frame, noise, columns + k * n);
+    fg_engine_whiten(training, noise, columns + k * n);
     for (size_t i = 0; i < n; i++)
       whole += columns[k * n + i] * columns[k * n + i];
   }
-  version->rank = fg_engine_orthonormal(n, null, frame->columns, columns, count, unit, lengths);
+  version->rank = fg_engine_orthonormal(n, null, training->columns, columns, count, unit, lengths);
   version->length = 0;
   for (size_t k = 0; k < count; k++)
     version->length += lengths[k] / (double)count;
@@ -103,18 +103,18 @@ static void put_rows(size_t n, size_t width, size_t first, const double *columns
 }
 
 static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
-  const fg_engine_frame *frame = bench->frame;
-  size_t n = frame->n, width = frame->columns + bench->columns;
+  const fg_engine_training *training = bench->training;
+  size_t n = training->n, width = training->columns + bench->columns;
   fg_status status = FG_OK;
   double *null = NULL, *work = NULL;
   size_t each = n * FG_LOOP_COLUMNS;
-  FG_TRY_EXIT(null_basis(ctx, frame, bench->noise[j], &null));
+  FG_TRY_EXIT(null_basis(ctx, training, bench->noise[j], &null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, width * sizeof *work, (void **)&bench->rows[j]));
-  put_rows(n, width, 0, null, frame->columns, bench->rows[j]);
+  put_rows(n, width, 0, null, training->columns, bench->rows[j]);
   for (size_t v = 0; v < bench->versions; v++) {
     FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[j], null, work, work + each));
-    put_rows(n, width, frame->columns + bench->version[v].first, work + each,
+    put_rows(n, width, training->columns + bench->version[v].first, work + each,
              bench->version[v].rank, bench->rows[j]);
   }
 exit:
@@ -123,20 +123,21 @@ exit:
   return status;
 }
 
-fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_training *training,
                                 const fg_loop_candidate *candidate, size_t candidates,
                                 fg_engine_bench *bench) {
   fg_status status = FG_OK;
-  *bench = (fg_engine_bench){.frame = frame, .candidate = candidate, .candidates = candidates};
-  bench->rank = frame->columns;
+  *bench =
+      (fg_engine_bench){.training = training, .candidate = candidate, .candidates = candidates};
+  bench->rank = training->columns;
   FG_TRY_EXIT(list_versions(ctx, bench));
   FG_TRY_EXIT(weigh_noises(ctx, bench));
-  size_t width = frame->columns + bench->columns;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, width + bench->versions + frame->n + 1,
+  size_t width = training->columns + bench->columns;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, width + bench->versions + training->n + 1,
                                  sizeof *bench->scratch, (void **)&bench->scratch));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame->flips + 1, width * sizeof *bench->flip_scores + 1,
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training->flips + 1, width * sizeof *bench->flip_scores + 1,
                                  (void **)&bench->flip_scores));
-  for (size_t j = bench->noises; frame->n <= FG_ENGINE_SMALL_ROWS && j-- > 0;)
+  for (size_t j = bench->noises; training->n <= FG_ENGINE_SMALL_ROWS && j-- > 0;)
     FG_TRY_EXIT(fill_noise(ctx, bench, j));
 exit:
   if (status != FG_OK) fg_engine_bench_free(bench);
@@ -240,12 +241,12 @@ static void clear_scores(const fg_engine_bench *bench, fg_engine_score *score) {
 
 void fg_engine_bench_score(const fg_engine_bench *bench, const double *y, fg_engine_score *score,
                            size_t *null) {
-  size_t n = bench->frame->n, width = bench->rank + bench->columns;
+  size_t n = bench->training->n, width = bench->rank + bench->columns;
   double *sums = bench->scratch, *white = bench->scratch + width, lowest = INFINITY;
   clear_scores(bench, score);
   for (size_t j = 0; j < bench->noises; j++) {
     memcpy(white, y, n * sizeof *white);
-    fg_engine_whiten(bench->frame, bench->noise[j], white);
+    fg_engine_whiten(bench->training, bench->noise[j], white);
     products(n, width, bench->rows[j], white, sums);
     double rss = sum_of_squares(white, n) - sum_of_squares(sums, bench->rank);
     if (rss * bench->weight[j] < lowest) {
@@ -260,19 +261,19 @@ void fg_engine_bench_score(const fg_engine_bench *bench, const double *y, fg_eng
 /* Adds u × residual to the sums of each flip group. */
 static void add_scores(const fg_engine_bench *bench, const double *unit, size_t count, size_t first,
                        const double *residual) {
-  const fg_engine_frame *frame = bench->frame;
+  const fg_engine_training *training = bench->training;
   size_t width = bench->rank + bench->columns;
   for (size_t k = 0; k < count; k++)
-    for (size_t i = 0; i < frame->n; i++)
-      bench->flip_scores[frame->flip[i] * width + first + k] +=
-          unit[k * frame->n + i] * residual[i];
+    for (size_t i = 0; i < training->n; i++)
+      bench->flip_scores[training->flip[i] * width + first + k] +=
+          unit[k * training->n + i] * residual[i];
 }
 
 static void total_scores(const fg_engine_bench *bench, fg_engine_score *score) {
   size_t width = bench->rank + bench->columns;
   double *sums = bench->scratch;
   memset(sums, 0, width * sizeof *sums);
-  for (size_t g = 0; g < bench->frame->flips; g++)
+  for (size_t g = 0; g < bench->training->flips; g++)
     for (size_t k = 0; k < width; k++)
       sums[k] += bench->flip_scores[g * width + k];
   clear_scores(bench, score);
@@ -282,18 +283,18 @@ static void total_scores(const fg_engine_bench *bench, fg_engine_score *score) {
 
 fg_status fg_engine_bench_prepare_flips(fg_context *ctx, fg_engine_bench *bench, size_t noise,
                                         fg_engine_score *score) {
-  const fg_engine_frame *frame = bench->frame;
-  size_t n = frame->n, width = bench->rank + bench->columns, each = n * FG_LOOP_COLUMNS;
+  const fg_engine_training *training = bench->training;
+  size_t n = training->n, width = bench->rank + bench->columns, each = n * FG_LOOP_COLUMNS;
   fg_status status = FG_OK;
   double *null = NULL, *work = NULL, *residual = NULL;
-  FG_TRY_EXIT(null_basis(ctx, frame, bench->noise[noise], &null));
+  FG_TRY_EXIT(null_basis(ctx, training, bench->noise[noise], &null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
-  memcpy(residual, frame->y, n * sizeof *residual);
-  fg_engine_whiten(frame, bench->noise[noise], residual);
-  bench->flip_rss = fg_engine_project_out(n, null, frame->columns, residual);
-  memset(bench->flip_scores, 0, frame->flips * width * sizeof *bench->flip_scores);
-  add_scores(bench, null, frame->columns, 0, residual);
+  memcpy(residual, training->y, n * sizeof *residual);
+  fg_engine_whiten(training, bench->noise[noise], residual);
+  bench->flip_rss = fg_engine_project_out(n, null, training->columns, residual);
+  memset(bench->flip_scores, 0, training->flips * width * sizeof *bench->flip_scores);
+  add_scores(bench, null, training->columns, 0, residual);
   for (size_t v = 0; v < bench->versions; v++) {
     fg_engine_bench_tell(bench, 0, v, bench->versions);
     FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[noise], null, work, work + each));
@@ -313,7 +314,7 @@ void fg_engine_bench_flip(const fg_engine_bench *bench, const signed char *sign,
   size_t width = bench->rank + bench->columns;
   double *sums = bench->scratch;
   memset(sums, 0, width * sizeof *sums);
-  for (size_t g = 0; g < bench->frame->flips; g++)
+  for (size_t g = 0; g < bench->training->flips; g++)
     for (size_t k = 0; k < width; k++)
       sums[k] += sign[g] * bench->flip_scores[g * width + k];
   double rss = bench->flip_rss - sum_of_squares(sums, bench->rank);

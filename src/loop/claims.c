@@ -10,10 +10,10 @@
 
 /* d(effect)/d(shape) at fixed coefficients: columns × n, where the shape may move by small steps.
  */
-static fg_status shape_slope(fg_context *ctx, const fg_engine_frame *frame,
+static fg_status shape_slope(fg_context *ctx, const fg_engine_training *training,
                              const fg_loop_candidate *candidate, const double *shape, size_t d,
                              const double *beta, double *slope) {
-  size_t count = fg_engine_candidate_columns(frame->problem, candidate), n = frame->n;
+  size_t count = fg_engine_candidate_columns(training->problem, candidate), n = training->n;
   double *columns = NULL, moved[FG_LOOP_SHAPES];
   double step = shape[d] != 0 ? 1e-4 * fabs(shape[d]) : 1e-12;
   FG_TRY(fg_memory_allocate(ctx, n, count * sizeof *columns, (void **)&columns));
@@ -22,7 +22,7 @@ static fg_status shape_slope(fg_context *ctx, const fg_engine_frame *frame,
   for (int side = -1; side <= 1 && status == FG_OK; side += 2) {
     memcpy(moved, shape, sizeof moved);
     moved[d] += side * step;
-    status = fg_engine_gather(ctx, frame, candidate, moved, columns);
+    status = fg_engine_gather(ctx, training, candidate, moved, columns);
     for (size_t k = 0; k < count; k++)
       for (size_t i = 0; i < n; i++)
         slope[i] += side * beta[k] * columns[k * n + i] / (2 * step);
@@ -31,46 +31,46 @@ static fg_status shape_slope(fg_context *ctx, const fg_engine_frame *frame,
   return status;
 }
 
-/* The frame's columns and, behind them, the slopes of all shapes. */
-static fg_status append_slopes(fg_context *ctx, fg_engine_frame *frame, const fg_engine_set *set,
-                               const fg_engine_fit *fit) {
-  size_t n = frame->n, extra = 0, first = frame->problem->parameters;
+/* The training's columns and, behind them, the slopes of all shapes. */
+static fg_status append_slopes(fg_context *ctx, fg_engine_training *training,
+                               const fg_engine_set *set, const fg_engine_fit *fit) {
+  size_t n = training->n, extra = 0, first = training->problem->parameters;
   for (size_t m = 0; m < set->count; m++)
     if (!set->candidate[m].effect->stepwise) extra += set->candidate[m].effect->shapes;
   if (extra == 0) return FG_OK;
   double *x = NULL;
-  FG_TRY(fg_memory_allocate(ctx, n, (frame->columns + extra) * sizeof *x, (void **)&x));
-  memcpy(x, frame->x, n * frame->columns * sizeof *x);
-  free(frame->x);
-  frame->x = x;
+  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + extra) * sizeof *x, (void **)&x));
+  memcpy(x, training->x, n * training->columns * sizeof *x);
+  free(training->x);
+  training->x = x;
   for (size_t m = 0; m < set->count; m++) {
     const fg_loop_effect *effect = set->candidate[m].effect;
     for (size_t d = 0; d < effect->shapes && !effect->stepwise; d++)
-      FG_TRY(shape_slope(ctx, frame, &set->candidate[m], set->shape[m], d, fit->beta + first,
-                         x + n * frame->columns++));
+      FG_TRY(shape_slope(ctx, training, &set->candidate[m], set->shape[m], d, fit->beta + first,
+                         x + n * training->columns++));
     if (!fg_engine_is_exchange(&set->candidate[m]))
-      first += fg_engine_candidate_columns(frame->problem, &set->candidate[m]);
+      first += fg_engine_candidate_columns(training->problem, &set->candidate[m]);
   }
   return FG_OK;
 }
 
 /* Half the range over the rows: extremes at rows a and b; its gradient by the coefficients (and
  * shapes) is half the difference of the columns there. */
-static void amplitude(const fg_engine_frame *frame, const fg_engine_fit *fit,
+static void amplitude(const fg_engine_training *training, const fg_engine_fit *fit,
                       const fg_engine_fit *wide, size_t first, size_t count, size_t slope,
                       size_t slopes, double variance, fg_loop_claim *claim) {
-  size_t n = frame->n, low = 0, high = 0, index[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
+  size_t n = training->n, low = 0, high = 0, index[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
   double lowest = INFINITY, highest = -INFINITY, gradient[FG_LOOP_COLUMNS + FG_LOOP_SHAPES];
   for (size_t i = 0; i < n; i++) {
     double value = 0;
     for (size_t k = first; k < first + count; k++)
-      value += fit->beta[k] * frame->x[k * n + i];
+      value += fit->beta[k] * training->x[k * n + i];
     if (value < lowest) lowest = value, low = i;
     if (value > highest) highest = value, high = i;
   }
   for (size_t k = 0; k < count + slopes; k++) {
     index[k] = k < count ? first + k : slope + k - count;
-    gradient[k] = (frame->x[index[k] * n + high] - frame->x[index[k] * n + low]) / 2;
+    gradient[k] = (training->x[index[k] * n + high] - training->x[index[k] * n + low]) / 2;
   }
   double sum = 0;
   for (size_t i = 0; i < count + slopes; i++)
@@ -82,32 +82,34 @@ static void amplitude(const fg_engine_frame *frame, const fg_engine_fit *fit,
 
 /* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom.
  */
-static double freedom_of(const fg_engine_frame *frame, size_t first, size_t count, double freedom) {
-  if (!frame->levels) return freedom;
+static double freedom_of(const fg_engine_training *training, size_t first, size_t count,
+                         double freedom) {
+  if (!training->levels) return freedom;
   for (size_t k = first; k < first + count; k++)
-    for (size_t i = 1; i < frame->n; i++)
-      if (frame->group[i] == frame->group[i - 1] &&
-          frame->x[k * frame->n + i] != frame->x[k * frame->n + i - 1])
+    for (size_t i = 1; i < training->n; i++)
+      if (training->group[i] == training->group[i - 1] &&
+          training->x[k * training->n + i] != training->x[k * training->n + i - 1])
         return freedom;
-  return fmax((double)frame->groups - 1 - (double)count, 1);
+  return fmax((double)training->groups - 1 - (double)count, 1);
 }
 
-static void describe(const fg_engine_frame *frame, const fg_engine_fit *fit,
+static void describe(const fg_engine_training *training, const fg_engine_fit *fit,
                      const fg_engine_fit *wide, const fg_engine_set *set, double variance,
                      double freedom, fg_loop_claim *claim) {
-  size_t first = frame->problem->parameters, slope = fit->columns;
+  size_t first = training->problem->parameters, slope = fit->columns;
   for (size_t m = 0; m < set->count; m++) {
     const fg_loop_candidate *candidate = &set->candidate[m];
     const fg_loop_effect *effect = candidate->effect;
     size_t slopes = effect->stepwise ? 0 : effect->shapes;
-    size_t count = fg_engine_candidate_columns(frame->problem, candidate);
-    double own = fg_engine_is_lone(candidate) ? freedom : freedom_of(frame, first, count, freedom);
+    size_t count = fg_engine_candidate_columns(training->problem, candidate);
+    double own =
+        fg_engine_is_lone(candidate) ? freedom : freedom_of(training, first, count, freedom);
     double t = gsl_cdf_tdist_Qinv(0.025, own);
     memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
     claim[m].candidate = *candidate;
     claim[m].columns = count;
     if (fg_engine_is_exchange(candidate)) {
-      const double *response = frame->problem->response;
+      const double *response = training->problem->response;
       claim[m].coefficient[0] = (response[candidate->row[0]] - response[candidate->row[1]]) / 2;
       claim[m].amplitude = fabs(claim[m].coefficient[0]);
       claim[m].amplitude_u = claim[m].coefficient_u[0] = sqrt(variance / 2);
@@ -117,7 +119,7 @@ static void describe(const fg_engine_frame *frame, const fg_engine_fit *fit,
         claim[m].coefficient[k] = fit->beta[at];
         claim[m].coefficient_u[k] = sqrt(variance * wide->inverse[at * wide->columns + at]);
       }
-      amplitude(frame, fit, wide, first, count, slope, slopes, variance, &claim[m]);
+      amplitude(training, fit, wide, first, count, slope, slopes, variance, &claim[m]);
       if (fg_engine_is_lone(candidate) || effect->from_zero) {
         claim[m].amplitude = fabs(claim[m].coefficient[0]);
         claim[m].amplitude_u = claim[m].coefficient_u[0];
@@ -138,17 +140,17 @@ fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, 
                                const fg_engine_set *set, fg_engine_noise noise,
                                fg_loop_claim *claim, double *parameter, double *parameter_u) {
   fg_status status = FG_OK;
-  fg_engine_frame frame = {0};
+  fg_engine_training training = {0};
   fg_engine_fit fit = {0}, wide = {0};
-  FG_TRY_EXIT(fg_engine_frame_build(ctx, problem, keep, set, &frame));
-  FG_TRY_EXIT(fg_engine_least_squares(ctx, &frame, noise, &fit));
-  FG_TRY_EXIT(append_slopes(ctx, &frame, set, &fit));
-  FG_TRY_EXIT(fg_engine_least_squares(ctx, &frame, noise, &wide));
+  FG_TRY_EXIT(fg_engine_training_build(ctx, problem, keep, set, &training));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &fit));
+  FG_TRY_EXIT(append_slopes(ctx, &training, set, &fit));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &wide));
   /* The correlation was estimated too. */
   size_t used = wide.rank + problem->correlated;
-  double freedom = frame.n > used ? (double)(frame.n - used) : NAN;
+  double freedom = training.n > used ? (double)(training.n - used) : NAN;
   double variance = fit.rss / freedom;
-  describe(&frame, &fit, &wide, set, variance, freedom, claim);
+  describe(&training, &fit, &wide, set, variance, freedom, claim);
   for (size_t k = 0; k < problem->parameters; k++) {
     parameter[k] = fit.beta[k];
     parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);
@@ -156,6 +158,6 @@ fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, 
 exit:
   fg_engine_fit_free(&fit);
   fg_engine_fit_free(&wide);
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
   return status;
 }

@@ -17,7 +17,7 @@ static double count_columns(const fg_loop_problem *problem, const fg_loop_candid
   return columns;
 }
 
-/* Small frames: every candidate is scored in every draw at every noise model. */
+/* Few rows: every candidate is scored in every draw at every noise model. */
 static void estimate_small(const fg_loop_problem *problem, double rows, double columns,
                            fg_engine_effort *effort) {
   double noises = problem->group_level ? LEVEL_NOISES : problem->correlated ? NOISES : 1;

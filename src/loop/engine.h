@@ -1,8 +1,8 @@
 /* The engine's inner parts. Columns are stored one after the other unless said otherwise.
  *
- * A frame is the training rows of a problem with the columns of the null: the declared model's
- * Jacobian and the effects accepted so far. A bench is a frame at every noise model that is
- * considered, with every candidate whitened, projected and orthonormal, so that scoring a vector
+ * A training is the rows that a step learns from, with the columns of the null: the declared
+ * model's Jacobian and the effects accepted so far. A bench is a training at every noise model that
+ * is considered, with every candidate whitened, projected and orthonormal, so that scoring a vector
  * of responses is one product. */
 #ifndef FG_LOOP_ENGINE_H
 #define FG_LOOP_ENGINE_H
@@ -26,7 +26,7 @@ typedef struct fg_engine_set {
   size_t count;
 } fg_engine_set;
 
-typedef struct fg_engine_frame {
+typedef struct fg_engine_training {
   const fg_loop_problem *problem;
   size_t n, *row;              /* rows of the problem */
   size_t *group, groups;       /* renumbered */
@@ -36,12 +36,13 @@ typedef struct fg_engine_frame {
   double *y;                   /* n, exchanged runs put back */
   size_t columns;
   double *x; /* columns × n */
-} fg_engine_frame;
+} fg_engine_training;
 
 /* problem rows where keep[row]; NULL: all. */
-fg_status fg_engine_frame_build(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
-                                const fg_engine_set *set, fg_engine_frame *frame);
-void fg_engine_frame_free(fg_engine_frame *frame);
+fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *problem,
+                                   const bool *keep, const fg_engine_set *set,
+                                   fg_engine_training *training);
+void fg_engine_training_free(fg_engine_training *training);
 
 size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
                                    const fg_loop_candidate *candidate);
@@ -51,18 +52,20 @@ bool fg_engine_is_curve(const fg_loop_candidate *candidate);
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               char name[FG_LOOP_NAME]);
 bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b);
-/* The candidate's columns at the rows of a frame: columns × n. */
-fg_status fg_engine_gather(fg_context *ctx, const fg_engine_frame *frame,
+/* The candidate's columns at the rows of a training: columns × n. */
+fg_status fg_engine_gather(fg_context *ctx, const fg_engine_training *training,
                            const fg_loop_candidate *candidate, const double *shape,
                            double *columns);
 
 /* y := W y. W'W is the inverse of the rows' covariance in units of their variance: series with
  * correlation rho^|i - j|, and lambda more where rows share a group. */
-void fg_engine_whiten(const fg_engine_frame *frame, fg_engine_noise noise, double *y);
+void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y);
 /* y := W^-1 y: draws of that covariance from white numbers. */
-void fg_engine_colour(const fg_engine_frame *frame, fg_engine_noise noise, double *y);
-double fg_engine_log_det(const fg_engine_frame *frame, fg_engine_noise noise); /* -2 log |W| */
-size_t fg_engine_noise_grid(const fg_engine_frame *frame, fg_engine_noise grid[FG_ENGINE_NOISES]);
+void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y);
+double fg_engine_log_det(const fg_engine_training *training,
+                         fg_engine_noise noise); /* -2 log |W| */
+size_t fg_engine_noise_grid(const fg_engine_training *training,
+                            fg_engine_noise grid[FG_ENGINE_NOISES]);
 
 /* Takes `rank` orthonormal columns out of v, twice; returns |v|² left. */
 double fg_engine_project_out(size_t n, const double *basis, size_t rank, double *v);
@@ -71,8 +74,10 @@ double fg_engine_project_out(size_t n, const double *basis, size_t rank, double 
 size_t fg_engine_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,
                              size_t count, double *out, double *lengths);
 
-/* Orthonormal whitened columns of the null: room for frame->columns × n; returns their number. */
-size_t fg_engine_null_basis(const fg_engine_frame *frame, fg_engine_noise noise, double *basis);
+/* Orthonormal whitened columns of the null: room for training->columns × n; returns their number.
+ */
+size_t fg_engine_null_basis(const fg_engine_training *training, fg_engine_noise noise,
+                            double *basis);
 
 typedef struct fg_engine_fit {
   size_t columns, rank;
@@ -81,7 +86,7 @@ typedef struct fg_engine_fit {
   double rss;      /* whitened */
   double log_det;  /* log |X'W'WX| over the columns kept */
 } fg_engine_fit;
-fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_training *training,
                                   fg_engine_noise noise, fg_engine_fit *fit);
 void fg_engine_fit_free(fg_engine_fit *fit);
 
@@ -98,7 +103,7 @@ typedef struct fg_engine_watch {
 } fg_engine_watch;
 
 typedef struct fg_engine_bench {
-  const fg_engine_frame *frame;
+  const fg_engine_training *training;
   const fg_loop_candidate *candidate;
   size_t candidates;
   double (*shape)[FG_LOOP_SHAPES]; /* versions */
@@ -107,7 +112,7 @@ typedef struct fg_engine_bench {
   fg_engine_noise noise[FG_ENGINE_NOISES];
   double weight[FG_ENGINE_NOISES]; /* exp(log terms / freedom): noises compare by rss × weight */
   size_t noises;
-  double *rows[FG_ENGINE_NOISES]; /* n × (rank + columns), row by row; only for small frames */
+  double *rows[FG_ENGINE_NOISES]; /* n × (rank + columns), row by row; only where rows are few */
   double *flip_scores;            /* flips × (rank + columns), at the flips' noise */
   double flip_rss;                /* |r|² there */
   double *scratch;                /* for one scoring */
@@ -120,7 +125,7 @@ typedef struct fg_engine_score {
   size_t version, noise;
 } fg_engine_score;
 
-fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_training *training,
                                 const fg_loop_candidate *candidate, size_t candidates,
                                 fg_engine_bench *bench);
 /* `done` of `all` in one half of the step. */
@@ -129,7 +134,8 @@ void fg_engine_bench_free(fg_engine_bench *bench);
 /* Scores `y` (not whitened). `null` is the best noise without any candidate. */
 void fg_engine_bench_score(const fg_engine_bench *bench, const double *y, fg_engine_score *score,
                            size_t *null);
-/* Makes flip_scores at a noise from the frame's y; in large frames also the observed scores. */
+/* Makes flip_scores at a noise from the training's y; where rows are many also the observed scores.
+ */
 fg_status fg_engine_bench_prepare_flips(fg_context *ctx, fg_engine_bench *bench, size_t noise,
                                         fg_engine_score *score);
 /* The largest z of each family over the candidates for one draw of signs. */

@@ -6,18 +6,18 @@
 
 #include "core/memory.h"
 
-static fg_status criterion(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                           double *value) {
+static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
+                           fg_engine_noise noise, double *value) {
   fg_engine_fit fit;
-  FG_TRY(fg_engine_least_squares(ctx, frame, noise, &fit));
-  double freedom = (double)frame->n - (double)fit.rank;
-  *value = freedom * log(fit.rss) + fg_engine_log_det(frame, noise) + fit.log_det;
+  FG_TRY(fg_engine_least_squares(ctx, training, noise, &fit));
+  double freedom = (double)training->n - (double)fit.rank;
+  *value = freedom * log(fit.rss) + fg_engine_log_det(training, noise) + fit.log_det;
   fg_engine_fit_free(&fit);
   return FG_OK;
 }
 
 /* Between the points of the grid: steps that shrink, in rho and in the logarithm of lambda. */
-static fg_status polish(fg_context *ctx, const fg_engine_frame *frame, double best,
+static fg_status polish(fg_context *ctx, const fg_engine_training *training, double best,
                         fg_engine_noise *noise) {
   double rho_step = 0.1, lambda_step = 0.4;
   for (int round = 0; round < 4; round++) {
@@ -29,8 +29,8 @@ static fg_status polish(fg_context *ctx, const fg_engine_frame *frame, double be
     };
     for (size_t i = 0; i < 4; i++) {
       double value;
-      if (i < 2 ? !frame->problem->correlated : !frame->levels) continue;
-      FG_TRY(criterion(ctx, frame, tries[i], &value));
+      if (i < 2 ? !training->problem->correlated : !training->levels) continue;
+      FG_TRY(criterion(ctx, training, tries[i], &value));
       if (!(value < best)) continue;
       best = value;
       *noise = tries[i];
@@ -41,32 +41,33 @@ static fg_status polish(fg_context *ctx, const fg_engine_frame *frame, double be
   return FG_OK;
 }
 
-fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_frame *frame,
-                                 fg_engine_noise *noise) {
+/* The noise model with the largest residual likelihood. */
+static fg_status choose_noise(fg_context *ctx, const fg_engine_training *training,
+                              fg_engine_noise *noise) {
   fg_engine_noise grid[FG_ENGINE_NOISES];
   double best = INFINITY, value;
-  size_t count = fg_engine_noise_grid(frame, grid);
+  size_t count = fg_engine_noise_grid(training, grid);
   *noise = grid[0];
   for (size_t j = 0; j < count; j++) {
-    FG_TRY(criterion(ctx, frame, grid[j], &value));
+    FG_TRY(criterion(ctx, training, grid[j], &value));
     if (!(value < best)) continue;
     best = value;
     *noise = grid[j];
   }
-  return frame->n <= FG_ENGINE_SMALL_ROWS ? polish(ctx, frame, best, noise) : FG_OK;
+  return training->n <= FG_ENGINE_SMALL_ROWS ? polish(ctx, training, best, noise) : FG_OK;
 }
 
 static fg_status residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
                               fg_engine_noise noise, const fg_engine_set *set, double *rss) {
-  fg_engine_frame frame;
+  fg_engine_training training;
   fg_engine_fit fit;
-  FG_TRY(fg_engine_frame_build(ctx, problem, keep, set, &frame));
-  fg_status status = fg_engine_least_squares(ctx, &frame, noise, &fit);
+  FG_TRY(fg_engine_training_build(ctx, problem, keep, set, &training));
+  fg_status status = fg_engine_least_squares(ctx, &training, noise, &fit);
   if (status == FG_OK) {
     *rss = fit.rss;
     fg_engine_fit_free(&fit);
   }
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
   return status;
 }
 
@@ -131,22 +132,23 @@ fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, cons
   return FG_OK;
 }
 
-static void subtract_fit(const fg_engine_frame *frame, const fg_engine_fit *fit, double *residual) {
-  memcpy(residual, frame->y, frame->n * sizeof *residual);
-  for (size_t k = 0; k < frame->columns; k++)
-    for (size_t i = 0; i < frame->n; i++)
-      residual[i] -= fit->beta[k] * frame->x[k * frame->n + i];
+static void subtract_fit(const fg_engine_training *training, const fg_engine_fit *fit,
+                         double *residual) {
+  memcpy(residual, training->y, training->n * sizeof *residual);
+  for (size_t k = 0; k < training->columns; k++)
+    for (size_t i = 0; i < training->n; i++)
+      residual[i] -= fit->beta[k] * training->x[k * training->n + i];
 }
 
-static fg_status fit_fold(fg_context *ctx, const fg_engine_frame *whole, const bool *keep,
+static fg_status fit_fold(fg_context *ctx, const fg_engine_training *whole, const bool *keep,
                           const fg_engine_set *set, fg_engine_noise noise, double *residual) {
-  fg_engine_frame frame;
+  fg_engine_training training;
   fg_engine_fit fit = {0};
-  FG_TRY(fg_engine_frame_build(ctx, whole->problem, keep, set, &frame));
-  fg_status status = fg_engine_least_squares(ctx, &frame, noise, &fit);
+  FG_TRY(fg_engine_training_build(ctx, whole->problem, keep, set, &training));
+  fg_status status = fg_engine_least_squares(ctx, &training, noise, &fit);
   if (status == FG_OK) subtract_fit(whole, &fit, residual);
   fg_engine_fit_free(&fit);
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
   return status;
 }
 
@@ -154,24 +156,24 @@ fg_status fg_engine_cross_validate(fg_context *ctx, const fg_loop_problem *probl
                                    const bool *keep, const fg_engine_set *set,
                                    fg_engine_noise noise, double *residual) {
   fg_status status = FG_OK;
-  fg_engine_frame frame;
+  fg_engine_training training;
   bool *fold_keep = NULL;
   double *all = NULL;
-  FG_TRY(fg_engine_frame_build(ctx, problem, keep, set, &frame));
-  size_t folds = frame.groups <= 30 ? frame.groups : 10;
+  FG_TRY(fg_engine_training_build(ctx, problem, keep, set, &training));
+  size_t folds = training.groups <= 30 ? training.groups : 10;
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows, sizeof *fold_keep, (void **)&fold_keep));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame.n, sizeof *all, (void **)&all));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training.n, sizeof *all, (void **)&all));
   for (size_t fold = 0; fold < folds; fold++) {
-    for (size_t i = 0; i < frame.n; i++)
-      fold_keep[frame.row[i]] = frame.group[i] % folds != fold;
-    FG_TRY_EXIT(fit_fold(ctx, &frame, fold_keep, set, noise, all));
-    for (size_t i = 0; i < frame.n; i++)
-      if (frame.group[i] % folds == fold) residual[i] = all[i];
+    for (size_t i = 0; i < training.n; i++)
+      fold_keep[training.row[i]] = training.group[i] % folds != fold;
+    FG_TRY_EXIT(fit_fold(ctx, &training, fold_keep, set, noise, all));
+    for (size_t i = 0; i < training.n; i++)
+      if (training.group[i] % folds == fold) residual[i] = all[i];
   }
 exit:
   free(fold_keep);
   free(all);
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
   return status;
 }
 
@@ -180,59 +182,60 @@ fg_status fg_engine_cross_validated_gain(fg_context *ctx, const fg_loop_problem 
                                          const fg_engine_set *after, fg_engine_noise noise,
                                          double *gain, double *standard_error) {
   fg_status status = FG_OK;
-  fg_engine_frame frame;
+  fg_engine_training training;
   double *residual = NULL, *sum = NULL, squares = 0;
-  FG_TRY(fg_engine_frame_build(ctx, problem, keep, before, &frame));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame.n, 2 * sizeof *residual, (void **)&residual));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame.groups, sizeof *sum, (void **)&sum));
+  FG_TRY(fg_engine_training_build(ctx, problem, keep, before, &training));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training.n, 2 * sizeof *residual, (void **)&residual));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training.groups, sizeof *sum, (void **)&sum));
   FG_TRY_EXIT(fg_engine_cross_validate(ctx, problem, keep, before, noise, residual));
-  FG_TRY_EXIT(fg_engine_cross_validate(ctx, problem, keep, after, noise, residual + frame.n));
-  fg_engine_whiten(&frame, noise, residual);
-  fg_engine_whiten(&frame, noise, residual + frame.n);
+  FG_TRY_EXIT(fg_engine_cross_validate(ctx, problem, keep, after, noise, residual + training.n));
+  fg_engine_whiten(&training, noise, residual);
+  fg_engine_whiten(&training, noise, residual + training.n);
   *gain = 0;
-  for (size_t i = 0; i < frame.n; i++)
-    sum[frame.group[i]] +=
-        residual[i] * residual[i] - residual[frame.n + i] * residual[frame.n + i];
-  for (size_t g = 0; g < frame.groups; g++)
+  for (size_t i = 0; i < training.n; i++)
+    sum[training.group[i]] +=
+        residual[i] * residual[i] - residual[training.n + i] * residual[training.n + i];
+  for (size_t g = 0; g < training.groups; g++)
     *gain += sum[g];
-  double groups = (double)frame.groups, mean = *gain / groups;
-  for (size_t g = 0; g < frame.groups; g++)
+  double groups = (double)training.groups, mean = *gain / groups;
+  for (size_t g = 0; g < training.groups; g++)
     squares += (sum[g] - mean) * (sum[g] - mean);
   *standard_error = sqrt(squares / (groups - 1) * groups);
 exit:
   free(residual);
   free(sum);
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
   return status;
 }
 
-static void add_effects(const fg_engine_frame *frame, const fg_engine_fit *fit, double *effect) {
-  size_t parameters = frame->problem->parameters;
-  memset(effect, 0, frame->n * sizeof *effect);
-  for (size_t k = parameters; k < frame->columns; k++)
-    for (size_t i = 0; i < frame->n; i++)
-      effect[i] += fit->beta[k] * frame->x[k * frame->n + i];
-  for (size_t i = 0; i < frame->n; i++)
-    effect[i] += frame->problem->residual[i] - frame->y[i]; /* exchanged runs */
+static void add_effects(const fg_engine_training *training, const fg_engine_fit *fit,
+                        double *effect) {
+  size_t parameters = training->problem->parameters;
+  memset(effect, 0, training->n * sizeof *effect);
+  for (size_t k = parameters; k < training->columns; k++)
+    for (size_t i = 0; i < training->n; i++)
+      effect[i] += fit->beta[k] * training->x[k * training->n + i];
+  for (size_t i = 0; i < training->n; i++)
+    effect[i] += training->problem->residual[i] - training->y[i]; /* exchanged runs */
 }
 
 fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
                             const fg_engine_set *set, bool choose, fg_engine_noise *noise,
                             double *residual, double *effect, double *sd) {
   fg_status status = FG_OK;
-  fg_engine_frame frame = {0}, all = {0};
+  fg_engine_training training = {0}, all = {0};
   fg_engine_fit fit = {0};
-  FG_TRY_EXIT(fg_engine_frame_build(ctx, problem, keep, set, &frame));
-  FG_TRY_EXIT(fg_engine_frame_build(ctx, problem, NULL, set, &all));
-  if (choose) FG_TRY_EXIT(fg_engine_choose_noise(ctx, &frame, noise));
-  FG_TRY_EXIT(fg_engine_least_squares(ctx, &frame, *noise, &fit));
+  FG_TRY_EXIT(fg_engine_training_build(ctx, problem, keep, set, &training));
+  FG_TRY_EXIT(fg_engine_training_build(ctx, problem, NULL, set, &all));
+  if (choose) FG_TRY_EXIT(choose_noise(ctx, &training, noise));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, *noise, &fit));
   if (residual) subtract_fit(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);
-  double freedom = frame.n > fit.rank ? (double)(frame.n - fit.rank) : NAN;
+  double freedom = training.n > fit.rank ? (double)(training.n - fit.rank) : NAN;
   if (sd) *sd = sqrt(fit.rss / freedom * (1 + noise->lambda));
 exit:
   fg_engine_fit_free(&fit);
-  fg_engine_frame_free(&frame);
-  fg_engine_frame_free(&all);
+  fg_engine_training_free(&training);
+  fg_engine_training_free(&all);
   return status;
 }

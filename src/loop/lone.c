@@ -17,7 +17,7 @@
 
 typedef struct lone_bench {
   size_t n;
-  double *a; /* n × n; only the diagonal in large frames */
+  double *a; /* n × n; only the diagonal where rows are many */
   double *diagonal;
   double *mean; /* fitted response */
 } lone_bench;
@@ -75,18 +75,18 @@ static void best_exchange(const lone_bench *bench, const double *response, const
     }
 }
 
-static fg_status fill(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
+static fg_status fill(fg_context *ctx, const fg_engine_training *training, fg_engine_noise noise,
                       lone_bench *bench) {
-  size_t n = frame->n;
+  size_t n = training->n;
   fg_status status = FG_OK;
   double *null = NULL, *work = NULL;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, (frame->columns + 1) * sizeof *null, (void **)&null));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, (training->columns + 1) * sizeof *null, (void **)&null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, n * sizeof *work, (void **)&work));
-  size_t rank = fg_engine_null_basis(frame, noise, null);
+  size_t rank = fg_engine_null_basis(training, noise, null);
   for (size_t i = 0; i < n; i++) {
     double *v = work + i * n;
     v[i] = 1;
-    fg_engine_whiten(frame, noise, v);
+    fg_engine_whiten(training, noise, v);
     fg_engine_project_out(n, null, rank, v);
   }
   for (size_t i = 0; i < n; i++)
@@ -104,17 +104,17 @@ exit:
 }
 
 /* The response that the null expects: what was measured less the residual. */
-static fg_status fill_mean(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                           lone_bench *bench) {
+static fg_status fill_mean(fg_context *ctx, const fg_engine_training *training,
+                           fg_engine_noise noise, lone_bench *bench) {
   fg_engine_fit fit;
-  FG_TRY(fg_engine_least_squares(ctx, frame, noise, &fit));
-  for (size_t i = 0; i < frame->n; i++) {
-    double residual = frame->y[i];
-    for (size_t k = 0; k < frame->columns; k++)
-      residual -= fit.beta[k] * frame->x[k * frame->n + i];
-    size_t row = frame->row[i];
-    bench->mean[i] =
-        frame->y[i] - frame->problem->residual[row] + frame->problem->response[row] - residual;
+  FG_TRY(fg_engine_least_squares(ctx, training, noise, &fit));
+  for (size_t i = 0; i < training->n; i++) {
+    double residual = training->y[i];
+    for (size_t k = 0; k < training->columns; k++)
+      residual -= fit.beta[k] * training->x[k * training->n + i];
+    size_t row = training->row[i];
+    bench->mean[i] = training->y[i] - training->problem->residual[row] +
+                     training->problem->response[row] - residual;
   }
   fg_engine_fit_free(&fit);
   return FG_OK;
@@ -126,18 +126,18 @@ typedef struct lone_null {
 } lone_null;
 
 /* One draw: heavy noise of the fitted size about the fitted response. */
-static void draw(const fg_engine_frame *frame, fg_engine_noise noise, const lone_bench *bench,
+static void draw(const fg_engine_training *training, fg_engine_noise noise, const lone_bench *bench,
                  double sd, uint64_t *seed, double *work, lone_best *best) {
   size_t n = bench->n;
   double *y = work, *ay = work + n, *response = work + 2 * n;
   for (size_t i = 0; i < n; i++)
     y[i] = sd * fg_engine_random_heavy(seed);
-  fg_engine_colour(frame, noise, y);
+  fg_engine_colour(training, noise, y);
   for (size_t i = 0; i < n; i++)
     response[i] = bench->mean[i] + y[i];
   double rss = apply(bench, y, ay);
   best_outlier(bench, ay, rss, best);
-  if (!nested(frame->problem)) best_exchange(bench, response, ay, rss, best);
+  if (!nested(training->problem)) best_exchange(bench, response, ay, rss, best);
 }
 
 static void take_p(const lone_null *null, size_t kind, double ratio, double freedom,
@@ -151,10 +151,10 @@ static void take_p(const lone_null *null, size_t kind, double ratio, double free
   lone->f_critical = (1 / edge - 1) * (freedom - 1);
 }
 
-static fg_status judge_small(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                             const lone_bench *bench, size_t draws, uint64_t seed,
-                             fg_engine_lone lone[2]) {
-  size_t n = frame->n;
+static fg_status judge_small(fg_context *ctx, const fg_engine_training *training,
+                             fg_engine_noise noise, const lone_bench *bench, size_t draws,
+                             uint64_t seed, fg_engine_lone lone[2]) {
+  size_t n = training->n;
   fg_status status = FG_OK;
   double *work = NULL;
   lone_null null = {.draws = draws};
@@ -162,29 +162,30 @@ static fg_status judge_small(fg_context *ctx, const fg_engine_frame *frame, fg_e
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, 3 * sizeof *work, (void **)&work));
   for (size_t k = 0; k < 2; k++)
     FG_TRY_EXIT(fg_memory_allocate(ctx, draws, sizeof **null.ratio, (void **)&null.ratio[k]));
-  double rss = apply(bench, frame->y, work);
+  double rss = apply(bench, training->y, work);
   best_outlier(bench, work, rss, &best);
-  double trace = 0, freedom = (double)(n - frame->columns);
+  double trace = 0, freedom = (double)(n - training->columns);
   for (size_t i = 0; i < n; i++) {
-    size_t row = frame->row[i];
+    size_t row = training->row[i];
     trace += bench->diagonal[i];
-    work[n + i] = frame->y[i] - frame->problem->residual[row] + frame->problem->response[row];
+    work[n + i] =
+        training->y[i] - training->problem->residual[row] + training->problem->response[row];
   }
-  if (!nested(frame->problem)) best_exchange(bench, work + n, work, rss, &best);
+  if (!nested(training->problem)) best_exchange(bench, work + n, work, rss, &best);
   for (size_t b = 0; b < draws; b++) {
-    draw(frame, noise, bench, sqrt(rss / freedom), &seed, work, &one);
+    draw(training, noise, bench, sqrt(rss / freedom), &seed, work, &one);
     null.ratio[0][b] = one.ratio[0];
-    null.ratio[1][b] = nested(frame->problem) ? 1 : one.ratio[1];
+    null.ratio[1][b] = nested(training->problem) ? 1 : one.ratio[1];
   }
   for (size_t k = 0; k < 2; k++) {
     fg_sort(null.ratio[k], draws);
-    lone[k].known = k == 0 || !nested(frame->problem);
+    lone[k].known = k == 0 || !nested(training->problem);
     lone[k].length = trace / (double)n;
     if (lone[k].known) take_p(&null, k, best.ratio[k], freedom, &lone[k]);
   }
-  lone[0].candidate.row[0] = frame->row[best.row[0]];
-  lone[1].candidate.row[0] = frame->row[best.pair[0]];
-  lone[1].candidate.row[1] = frame->row[best.pair[1]];
+  lone[0].candidate.row[0] = training->row[best.row[0]];
+  lone[1].candidate.row[0] = training->row[best.pair[0]];
+  lone[1].candidate.row[1] = training->row[best.pair[1]];
 exit:
   free(work);
   free(null.ratio[0]);
@@ -194,16 +195,16 @@ exit:
 
 /* Many rows: the residual over its sd against the tail of the heavy law, times the rows. Leverage
  * is small there. */
-static fg_status judge_large(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                             fg_engine_lone lone[2]) {
+static fg_status judge_large(fg_context *ctx, const fg_engine_training *training,
+                             fg_engine_noise noise, fg_engine_lone lone[2]) {
   fg_engine_fit fit;
   size_t worst = 0;
   double largest = 0, sum = 0;
-  FG_TRY(fg_engine_least_squares(ctx, frame, noise, &fit));
-  for (size_t i = 0; i < frame->n; i++) {
-    double residual = frame->y[i];
-    for (size_t k = 0; k < frame->columns; k++)
-      residual -= fit.beta[k] * frame->x[k * frame->n + i];
+  FG_TRY(fg_engine_least_squares(ctx, training, noise, &fit));
+  for (size_t i = 0; i < training->n; i++) {
+    double residual = training->y[i];
+    for (size_t k = 0; k < training->columns; k++)
+      residual -= fit.beta[k] * training->x[k * training->n + i];
     sum += residual * residual;
     if (fabs(residual) > largest) {
       largest = fabs(residual);
@@ -211,33 +212,35 @@ static fg_status judge_large(fg_context *ctx, const fg_engine_frame *frame, fg_e
     }
   }
   fg_engine_fit_free(&fit);
-  double n = (double)frame->n, rest = sqrt((sum - largest * largest) / n);
+  double n = (double)training->n, rest = sqrt((sum - largest * largest) / n);
   lone[0].known = true;
   lone[0].ratio = 1 - largest * largest / sum;
   lone[0].length = 1;
   lone[0].p_value =
       fmin(1, FG_ENGINE_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
   lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(0.01 / FG_ENGINE_FAMILIES / 2 / n, 4), 2) / 2;
-  lone[0].candidate.row[0] = frame->row[worst];
+  lone[0].candidate.row[0] = training->row[worst];
   return FG_OK;
 }
 
-fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                               size_t draws, uint64_t seed, fg_engine_lone lone[2]) {
+fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
+                               fg_engine_noise noise, size_t draws, uint64_t seed,
+                               fg_engine_lone lone[2]) {
   const fg_loop_effect *effects = fg_loop_lone_effects();
-  lone_bench bench = {.n = frame->n};
+  lone_bench bench = {.n = training->n};
   fg_status status = FG_OK;
   memset(lone, 0, 2 * sizeof *lone);
   for (size_t k = 0; k < 2; k++)
     lone[k].candidate.effect = &effects[k];
-  if (!frame->problem->exchangeable || frame->n < frame->columns + 4) return FG_OK;
-  if (frame->n > FG_ENGINE_SMALL_ROWS) return judge_large(ctx, frame, noise, lone);
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame->n, frame->n * sizeof *bench.a, (void **)&bench.a));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame->n, sizeof *bench.a, (void **)&bench.diagonal));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, frame->n, sizeof *bench.a, (void **)&bench.mean));
-  FG_TRY_EXIT(fill(ctx, frame, noise, &bench));
-  FG_TRY_EXIT(fill_mean(ctx, frame, noise, &bench));
-  FG_TRY_EXIT(judge_small(ctx, frame, noise, &bench, draws, seed, lone));
+  if (!training->problem->exchangeable || training->n < training->columns + 4) return FG_OK;
+  if (training->n > FG_ENGINE_SMALL_ROWS) return judge_large(ctx, training, noise, lone);
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, training->n, training->n * sizeof *bench.a, (void **)&bench.a));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *bench.a, (void **)&bench.diagonal));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *bench.a, (void **)&bench.mean));
+  FG_TRY_EXIT(fill(ctx, training, noise, &bench));
+  FG_TRY_EXIT(fill_mean(ctx, training, noise, &bench));
+  FG_TRY_EXIT(judge_small(ctx, training, noise, &bench, draws, seed, lone));
 exit:
   free(bench.a);
   free(bench.diagonal);

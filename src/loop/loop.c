@@ -71,19 +71,19 @@ static fg_status note_aliased(fg_context *ctx, fg_engine_run *run, const fg_engi
 
 /* Enough rows, and a residual that is more than rounding? */
 static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
-  fg_engine_frame frame;
+  fg_engine_training training;
   fg_engine_fit fit = {0};
   double size = 0;
-  FG_TRY(fg_engine_frame_build(ctx, run->problem, run->train, NULL, &frame));
-  fg_status status = fg_engine_least_squares(ctx, &frame, (fg_engine_noise){0}, &fit);
-  if (status == FG_OK && frame.n < fit.rank + 3)
+  FG_TRY(fg_engine_training_build(ctx, run->problem, run->train, NULL, &training));
+  fg_status status = fg_engine_least_squares(ctx, &training, (fg_engine_noise){0}, &fit);
+  if (status == FG_OK && training.n < fit.rank + 3)
     status = fg_fail(ctx, FG_ERR_DATA,
                      "%zu rows for %zu parameters of the declared model leave %zu to judge it by; "
                      "the loop needs 3 at least: measure more rows, or declare fewer terms",
-                     frame.n, fit.rank, frame.n - fit.rank);
+                     training.n, fit.rank, training.n - fit.rank);
   if (status == FG_OK) status = note_aliased(ctx, run, &fit);
-  for (size_t i = 0; i < frame.n; i++) {
-    double value = run->problem->response ? run->problem->response[frame.row[i]] : frame.y[i];
+  for (size_t i = 0; i < training.n; i++) {
+    double value = run->problem->response ? run->problem->response[training.row[i]] : training.y[i];
     size += value * value;
   }
   *worth = status == FG_OK && fit.rss > 1e-20 * size;
@@ -92,14 +92,14 @@ static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
         fg_engine_note(ctx, run->result,
                        "The declared model fits every row to the last digit: no residual is left "
                        "to look into.");
-  if (status == FG_OK && frame.groups < 8 && !run->problem->few)
+  if (status == FG_OK && training.groups < 8 && !run->problem->few)
     status =
         fg_engine_note(ctx, run->result,
                        "%zu groups take part: flipping their signs can give no p-value below "
                        "%.3g, so nothing can be claimed at p < 0.01. Measure 8 groups or more.",
-                       frame.groups, ldexp(1, 1 - (int)frame.groups));
+                       training.groups, ldexp(1, 1 - (int)training.groups));
   fg_engine_fit_free(&fit);
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
   return status;
 }
 

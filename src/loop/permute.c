@@ -54,7 +54,7 @@ static void take_maximum(const fg_engine_bench *bench, const double *z, const do
 
 static fg_status flip_all(fg_context *ctx, const fg_engine_bench *bench, size_t draws,
                           uint64_t seed, fg_engine_judgement *judgement, double *critical) {
-  size_t flips = bench->frame->flips, count = draw_count(flips, draws);
+  size_t flips = bench->training->flips, count = draw_count(flips, draws);
   fg_status status = FG_OK;
   double *maxima = NULL, *z = NULL;
   signed char *sign = NULL;
@@ -104,12 +104,12 @@ static size_t cautious_noise(const fg_engine_bench *bench, const double *criteri
  * raise the bar for itself. */
 static void noise_criteria(const fg_engine_bench *bench, const fg_engine_version *best,
                            double *criterion) {
-  const fg_engine_frame *frame = bench->frame;
-  size_t n = frame->n, width = bench->rank + bench->columns;
+  const fg_engine_training *training = bench->training;
+  size_t n = training->n, width = bench->rank + bench->columns;
   for (size_t j = 0; j < bench->noises; j++) {
     double *y = bench->scratch + width, *sums = bench->scratch, rss = 0;
-    memcpy(y, frame->y, n * sizeof *y);
-    fg_engine_whiten(frame, bench->noise[j], y);
+    memcpy(y, training->y, n * sizeof *y);
+    fg_engine_whiten(training, bench->noise[j], y);
     memset(sums, 0, width * sizeof *sums);
     for (size_t i = 0; i < n; i++) {
       rss += y[i] * y[i];
@@ -140,12 +140,12 @@ static void standardise(size_t draws, size_t count, const double *z, double *shi
 
 static void simulate(const fg_engine_bench *bench, fg_engine_noise noise, size_t draws,
                      uint64_t seed, double *y, fg_engine_score *score, double *z) {
-  const fg_engine_frame *frame = bench->frame;
+  const fg_engine_training *training = bench->training;
   for (size_t b = 0; b < draws; b++) {
     fg_engine_bench_tell(bench, 1, b, draws);
-    for (size_t i = 0; i < frame->n; i++)
+    for (size_t i = 0; i < training->n; i++)
       y[i] = fg_engine_random_normal(&seed);
-    fg_engine_colour(frame, noise, y);
+    fg_engine_colour(training, noise, y);
     fg_engine_bench_score(bench, y, score, NULL);
     for (size_t c = 0; c < bench->candidates; c++)
       z[b * bench->candidates + c] = score[c].z;
@@ -181,7 +181,7 @@ static fg_status simulate_all(fg_context *ctx, const fg_engine_bench *bench, siz
   double *z = NULL, *y = NULL, *maxima = NULL, *shift = NULL, critical[2];
   fg_engine_score *score = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, draws, count * sizeof *z + 1, (void **)&z));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, bench->frame->n, sizeof *y, (void **)&y));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bench->training->n, sizeof *y, (void **)&y));
   FG_TRY_EXIT(fg_memory_allocate(ctx, draws, 2 * sizeof *maxima, (void **)&maxima));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 2 * sizeof *shift, (void **)&shift));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *score, (void **)&score));
@@ -228,12 +228,12 @@ static fg_status allocate(fg_context *ctx, size_t count, fg_engine_judgement *ju
 fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, size_t draws, uint64_t seed,
                             fg_engine_judgement *judgement) {
   fg_status status = FG_OK;
-  bool small = bench->frame->n <= FG_ENGINE_SMALL_ROWS;
+  bool small = bench->training->n <= FG_ENGINE_SMALL_ROWS;
   double critical = INFINITY, criterion[FG_ENGINE_NOISES];
   FG_TRY_EXIT(allocate(ctx, bench->candidates, judgement));
   if (bench->candidates == 0) goto exit;
   if (small)
-    fg_engine_bench_score(bench, bench->frame->y, judgement->score, &judgement->null_noise);
+    fg_engine_bench_score(bench, bench->training->y, judgement->score, &judgement->null_noise);
   size_t best = best_candidate(bench, judgement->score);
   size_t noise = 0;
   if (small) {
@@ -245,7 +245,7 @@ fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, size_t draw
   }
   FG_TRY_EXIT(fg_engine_bench_prepare_flips(ctx, bench, noise, small ? NULL : judgement->score));
   /* Few: p_flip and smallest_p stay 0. */
-  if (!bench->frame->problem->few || !small) {
+  if (!bench->training->problem->few || !small) {
     FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));
     critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
   }

@@ -12,7 +12,7 @@ typedef struct fg_engine_judgement {
   size_t candidates;
   fg_engine_score *score; /* candidates */
   double *p_flip;         /* candidates */
-  double *p_simulated;    /* NaN in large frames */
+  double *p_simulated;    /* NaN where rows are many */
   double *f_critical;     /* F ratio that would just pass, as max-T asks; infinity: none does */
   double *z_critical;     /* deviate that would just pass; simulated */
   size_t null_noise;      /* best noise of the null, index into the bench's */
@@ -25,7 +25,7 @@ fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, size_t draw
                             fg_engine_judgement *judgement);
 void fg_engine_judgement_free(fg_engine_judgement *judgement);
 
-/* Small frames: for every candidate the amplitude (half range; of unit variance of the rows' own
+/* Few rows: for every candidate the amplitude (half range; of unit variance of the rows' own
  * noise) that passes max-T in four draws of five; NaN where none does. Curves included. */
 fg_status fg_engine_smallest_amplitudes(fg_context *ctx, const fg_engine_bench *bench,
                                         const fg_engine_judgement *judgement, uint64_t seed,
@@ -41,7 +41,8 @@ typedef struct fg_engine_lone {
   double length;     /* mean |M W e|² of a row */
 } fg_engine_lone;
 
-fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_frame *frame, fg_engine_noise noise,
-                               size_t draws, uint64_t seed, fg_engine_lone lone[2]);
+fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
+                               fg_engine_noise noise, size_t draws, uint64_t seed,
+                               fg_engine_lone lone[2]);
 
 #endif

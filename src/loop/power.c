@@ -23,7 +23,7 @@ typedef struct power_bench {
 } power_bench;
 
 static fg_status open_power(fg_context *ctx, const fg_engine_bench *bench, power_bench *power) {
-  size_t n = bench->frame->n;
+  size_t n = bench->training->n;
   *power = (power_bench){.bench = bench, .width = bench->rank + bench->columns};
   size_t row = (power->width + 1) * sizeof(double);
   for (size_t j = 0; j < bench->noises; j++) {
@@ -33,7 +33,7 @@ static fg_status open_power(fg_context *ctx, const fg_engine_bench *bench, power
   }
   FG_TRY(fg_memory_allocate(ctx, DRAWS, n * sizeof(double), (void **)&power->draws));
   FG_TRY(fg_memory_allocate(ctx, n, 2 * sizeof(double), (void **)&power->white));
-  return fg_memory_allocate(ctx, bench->frame->problem->rows, FG_LOOP_COLUMNS * sizeof(double),
+  return fg_memory_allocate(ctx, bench->training->problem->rows, FG_LOOP_COLUMNS * sizeof(double),
                             (void **)&power->f);
 }
 
@@ -51,7 +51,7 @@ static void close_power(power_bench *power) {
 static void products(const power_bench *power, size_t j, const double *white, double *sums) {
   const fg_engine_bench *bench = power->bench;
   memset(sums, 0, (power->width + 1) * sizeof *sums);
-  for (size_t i = 0; i < bench->frame->n; i++) {
+  for (size_t i = 0; i < bench->training->n; i++) {
     const double *row = bench->rows[j] + i * power->width;
     for (size_t k = 0; k < power->width; k++)
       sums[k] += row[k] * white[i];
@@ -61,15 +61,15 @@ static void products(const power_bench *power, size_t j, const double *white, do
 
 static void draw_noise(power_bench *power, fg_engine_noise noise, uint64_t seed) {
   const fg_engine_bench *bench = power->bench;
-  size_t n = bench->frame->n;
+  size_t n = bench->training->n;
   for (size_t b = 0; b < DRAWS; b++) {
     double *y = power->draws + b * n;
     for (size_t i = 0; i < n; i++)
       y[i] = fg_engine_random_normal(&seed);
-    fg_engine_colour(bench->frame, noise, y);
+    fg_engine_colour(bench->training, noise, y);
     for (size_t j = 0; j < bench->noises; j++) {
       memcpy(power->white, y, n * sizeof *y);
-      fg_engine_whiten(bench->frame, bench->noise[j], power->white);
+      fg_engine_whiten(bench->training, bench->noise[j], power->white);
       products(power, j, power->white, power->noise[j] + b * (power->width + 1));
     }
   }
@@ -79,13 +79,13 @@ static void draw_noise(power_bench *power, fg_engine_noise noise, uint64_t seed)
  * one that the declared model absorbs. Half range 1. */
 static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version) {
   const fg_engine_bench *bench = power->bench;
-  const fg_engine_frame *frame = bench->frame;
-  size_t n = frame->n;
+  const fg_engine_training *training = bench->training;
+  size_t n = training->n;
   double low = INFINITY, high = -INFINITY, *f = power->f, *other = power->white + n;
-  FG_TRY(fg_engine_gather(ctx, frame, &bench->candidate[bench->version[version].candidate],
+  FG_TRY(fg_engine_gather(ctx, training, &bench->candidate[bench->version[version].candidate],
                           bench->shape[version], f));
   const fg_loop_candidate *candidate = &bench->candidate[bench->version[version].candidate];
-  size_t count = fg_engine_candidate_columns(frame->problem, candidate);
+  size_t count = fg_engine_candidate_columns(training->problem, candidate);
   for (size_t i = 0; i < n; i++) {
     for (size_t k = 1; k < count; k++)
       f[i] += (double)(k + 1) * f[k * n + i];
@@ -97,11 +97,11 @@ static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version)
     f[i] /= scale > 0 ? scale : 1;
   for (size_t j = 0; j < bench->noises; j++) {
     memcpy(power->white, f, n * sizeof *f);
-    fg_engine_whiten(frame, bench->noise[j], power->white);
+    fg_engine_whiten(training, bench->noise[j], power->white);
     products(power, j, power->white, power->effect[j]);
     for (size_t b = 0; b < DRAWS; b++) {
       memcpy(other, power->draws + b * n, n * sizeof *other);
-      fg_engine_whiten(frame, bench->noise[j], other);
+      fg_engine_whiten(training, bench->noise[j], other);
       power->cross[j][b] = 0;
       for (size_t i = 0; i < n; i++)
         power->cross[j][b] += other[i] * power->white[i];

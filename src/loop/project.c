@@ -1,4 +1,4 @@
-/* Projections and least squares of a frame (modified Gram-Schmidt, taken out twice). */
+/* Projections and least squares of a training (modified Gram-Schmidt, taken out twice). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,15 +50,16 @@ size_t fg_engine_orthonormal(size_t n, const double *basis, size_t rank, const d
   return added;
 }
 
-size_t fg_engine_null_basis(const fg_engine_frame *frame, fg_engine_noise noise, double *basis) {
-  size_t n = frame->n, rank = 0;
-  memcpy(basis, frame->x, n * frame->columns * sizeof *basis);
-  for (size_t k = 0; k < frame->columns; k++) {
+size_t fg_engine_null_basis(const fg_engine_training *training, fg_engine_noise noise,
+                            double *basis) {
+  size_t n = training->n, rank = 0;
+  memcpy(basis, training->x, n * training->columns * sizeof *basis);
+  for (size_t k = 0; k < training->columns; k++) {
     double *v = basis + rank * n;
     memmove(v, basis + k * n, n * sizeof *v);
-    fg_engine_whiten(frame, noise, v);
+    fg_engine_whiten(training, noise, v);
     double whole = dot(n, v, v), left = fg_engine_project_out(n, basis, rank, v);
-    if (!(left > (k < frame->problem->parameters ? declared_span : same_span) * whole)) continue;
+    if (!(left > (k < training->problem->parameters ? declared_span : same_span) * whole)) continue;
     for (size_t i = 0; i < n; i++)
       v[i] /= sqrt(left);
     rank++;
@@ -128,11 +129,11 @@ static fg_status fit_allocate(fg_context *ctx, size_t columns, fg_engine_fit *fi
   return fg_memory_allocate(ctx, columns, columns * sizeof *fit->beta, (void **)&fit->inverse);
 }
 
-fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_frame *frame,
+fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_training *training,
                                   fg_engine_noise noise, fg_engine_fit *fit) {
   fg_status status = FG_OK;
-  size_t n = frame->n, columns = frame->columns;
-  triangle t = {.columns = columns, .declared = frame->problem->parameters};
+  size_t n = training->n, columns = training->columns;
+  triangle t = {.columns = columns, .declared = training->problem->parameters};
   double *x = NULL, *y = NULL, *small = NULL;
   FG_TRY_EXIT(fit_allocate(ctx, columns, fit));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, columns * sizeof *x + 1, (void **)&x));
@@ -141,11 +142,11 @@ fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_frame *frame,
   FG_TRY_EXIT(fg_memory_allocate(ctx, columns, sizeof *t.kept, (void **)&t.kept));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *y, (void **)&y));
   FG_TRY_EXIT(fg_memory_allocate(ctx, columns, 2 * sizeof *y, (void **)&small));
-  memcpy(x, frame->x, n * columns * sizeof *x);
-  memcpy(y, frame->y, n * sizeof *y);
+  memcpy(x, training->x, n * columns * sizeof *x);
+  memcpy(y, training->y, n * sizeof *y);
   for (size_t k = 0; k < columns; k++)
-    fg_engine_whiten(frame, noise, x + k * n);
-  fg_engine_whiten(frame, noise, y);
+    fg_engine_whiten(training, noise, x + k * n);
+  fg_engine_whiten(training, noise, y);
   decompose(n, x, &t);
   for (size_t k = 0; k < t.rank; k++)
     small[k] = dot(n, t.basis + k * n, y);

@@ -85,7 +85,7 @@ fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   fg_status status = fg_memory_allocate(ctx, run->candidates + 2, sizeof *result->rejected,
                                         (void **)&result->rejected);
   double sd_white = sqrt(step.bench.flip_rss / (double)step.bench.freedom), *amplitude = NULL;
-  if (status == FG_OK && step.frame.n <= FG_ENGINE_SMALL_ROWS) {
+  if (status == FG_OK && step.training.n <= FG_ENGINE_SMALL_ROWS) {
     status = fg_memory_allocate(ctx, run->candidates, sizeof *amplitude, (void **)&amplitude);
     if (status == FG_OK)
       status = fg_engine_smallest_amplitudes(ctx, &step.bench, &step.judgement,

@@ -33,18 +33,18 @@ fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engi
   size_t draws = run->options.simulations;
   fg_status status = FG_OK;
   memset(step, 0, sizeof *step);
-  FG_TRY_EXIT(fg_engine_frame_build(ctx, run->problem, run->train, set, &step->frame));
-  if (!draws) draws = step->frame.n <= FG_ENGINE_SMALL_ROWS ? DRAWS_SMALL : DRAWS;
+  FG_TRY_EXIT(fg_engine_training_build(ctx, run->problem, run->train, set, &step->training));
+  if (!draws) draws = step->training.n <= FG_ENGINE_SMALL_ROWS ? DRAWS_SMALL : DRAWS;
   if (!judged) draws = DRAWS_UNJUDGED;
   FG_TRY_EXIT(
-      fg_engine_bench_build(ctx, &step->frame, run->candidate, run->candidates, &step->bench));
+      fg_engine_bench_build(ctx, &step->training, run->candidate, run->candidates, &step->bench));
   step->bench.watch =
       (fg_engine_watch){run->options.progress, run->options.progress_user, run->result->claims};
   FG_TRY_EXIT(fg_engine_permute(ctx, &step->bench, draws, run->options.seed, &step->judgement));
   fg_engine_noise noise = step->bench.noise[step->judgement.null_noise];
   if (judged)
-    FG_TRY_EXIT(
-        fg_engine_judge_lone(ctx, &step->frame, noise, draws, run->options.seed + 1, step->lone));
+    FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise, draws, run->options.seed + 1,
+                                     step->lone));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) fg_engine_step_close(step);
@@ -54,7 +54,7 @@ exit:
 void fg_engine_step_close(fg_engine_step *step) {
   fg_engine_judgement_free(&step->judgement);
   fg_engine_bench_free(&step->bench);
-  fg_engine_frame_free(&step->frame);
+  fg_engine_training_free(&step->training);
   free(step->stand);
   step->stand = NULL;
 }

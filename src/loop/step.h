@@ -4,9 +4,9 @@
 
 #include "loop/run.h"
 
-/* The state of one step: frame, bench, scores of the null with everything accepted. */
+/* The state of one step: training, bench, scores of the null with everything accepted. */
 typedef struct fg_engine_step {
-  fg_engine_frame frame;
+  fg_engine_training training;
   fg_engine_bench bench;
   fg_engine_judgement judgement;
   fg_engine_lone lone[2];

@@ -29,7 +29,7 @@ fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run) {
       continue;
     }
     if (step.stand[best].z > step.stand[own].z)
-      status = fg_engine_simplify(ctx, &step.frame, fg_engine_step_noises(&step).at, step.stand,
+      status = fg_engine_simplify(ctx, &step.training, fg_engine_step_noises(&step).at, step.stand,
                                   run->candidates, best, &best);
     if (status == FG_OK) {
       size_t chosen = step.stand[best].z > step.stand[own].z ? best : own;
@@ -38,8 +38,8 @@ fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run) {
       fg_engine_candidate_name(run->problem, &claim->candidate, claim->name);
       run->set.candidate[m] = claim->candidate;
       memcpy(run->set.shape[m], step.stand[chosen].shape, sizeof run->set.shape[m]);
-      status = fg_engine_alias_class(ctx, &step.frame, fg_engine_step_noises(&step).at, step.stand,
-                                     step.stands, &step.stand[chosen], claim);
+      status = fg_engine_alias_class(ctx, &step.training, fg_engine_step_noises(&step).at,
+                                     step.stand, step.stands, &step.stand[chosen], claim);
       claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
     }
     fg_engine_step_close(&step);

@@ -26,6 +26,7 @@ fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_stat
                                        fg_loop_coordinate **added);
 void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at);
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name);
+/* table_hold_out.c */
 fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build);
 
 #endif

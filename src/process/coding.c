@@ -53,10 +53,6 @@ static fg_extended to_coded(const fg_coding *coding, fg_extended real) {
   return fg_extended_divide(fg_extended_subtract(real, centre_of(coding)), half_of(coding));
 }
 
-double fg_coding_to_coded(const fg_coding *coding, double real) {
-  return to_coded(coding, fg_extended_of(real)).value;
-}
-
 double fg_coding_to_real(const fg_coding *coding, double coded) {
   fg_extended step = fg_extended_multiply(fg_extended_of(coded), half_of(coding));
   return fg_extended_add(centre_of(coding), step).value;

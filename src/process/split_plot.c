@@ -176,15 +176,6 @@ exit:
   return status;
 }
 
-double fg_split_plot_inflation(const fg_split_plot *result, const char *term, double residual_sd) {
-  for (size_t t = 0; t < result->terms; t++) {
-    if (strcmp(result->term[t].row.name, term) != 0) continue;
-    double error = result->term[t].whole_plot ? result->plot_ms : result->run_ms;
-    return sqrt(error) / residual_sd;
-  }
-  return NAN;
-}
-
 void fg_split_plot_free(fg_split_plot *result) {
   if (!result) return;
   for (size_t t = 0; t < result->terms; t++)

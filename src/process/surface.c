@@ -313,18 +313,3 @@ fg_status fg_surface_ridge_path(fg_context *ctx, const fg_surface *s, bool highe
   return FG_OK;
 }
 
-fg_status fg_surface_predict(fg_context *ctx, const fg_surface *surface, const fg_model *model,
-                             const fg_regression *regression, const double *setting,
-                             const double *x, fg_prediction *prediction) {
-  double full[FG_FORMULA_VARIABLES] = {0};
-  double *row = NULL;
-  for (size_t v = 0; setting && v < model->formula.variables; v++)
-    full[v] = setting[v];
-  for (size_t k = 0; k < surface->factors; k++)
-    full[surface->variable[k]] = x[k];
-  FG_TRY(fg_memory_allocate(ctx, model->columns, sizeof *row, (void **)&row));
-  fg_status status = fg_model_row(ctx, model, full, row);
-  if (status == FG_OK) status = fg_regression_predict(ctx, regression, row, prediction);
-  free(row);
-  return status;
-}

@@ -23,7 +23,7 @@ void fg_random_seed(fg_random *random, uint64_t seed, uint64_t stream, uint64_t 
     random->state[i] = splitmix(&state);
 }
 
-uint64_t fg_random_next(fg_random *random) {
+static uint64_t next(fg_random *random) {
   uint64_t *s = random->state;
   uint64_t result = rotate_left(s[0] + s[3], 23) + s[0];
   uint64_t t = s[1] << 17;
@@ -37,11 +37,11 @@ uint64_t fg_random_next(fg_random *random) {
 }
 
 double fg_random_uniform(fg_random *random) {
-  return (double)(fg_random_next(random) >> 11) * 0x1p-53;
+  return (double)(next(random) >> 11) * 0x1p-53;
 }
 
 double fg_random_normal(fg_random *random) {
-  return gsl_cdf_ugaussian_Pinv(((double)(fg_random_next(random) >> 12) + 0.5) * 0x1p-52);
+  return gsl_cdf_ugaussian_Pinv(((double)(next(random) >> 12) + 0.5) * 0x1p-52);
 }
 
 void fg_noise_table_fill(fg_noise_table *table) {
@@ -63,12 +63,12 @@ void fg_noise_draw(const fg_noise_table *table, fg_random *random, float *out, s
   fg_random local = *random;
   size_t i = 0;
   for (; i + 2 <= count; i += 2) {
-    uint64_t bits = fg_random_next(&local);
+    uint64_t bits = next(&local);
     out[i] = q[bits & mask] + q[(bits >> 11) & mask];
     out[i + 1] = q[(bits >> 22) & mask] + q[(bits >> 33) & mask];
   }
   if (i < count) {
-    uint64_t bits = fg_random_next(&local);
+    uint64_t bits = next(&local);
     out[i] = q[bits & mask] + q[(bits >> 11) & mask];
   }
   *random = local;

@@ -11,7 +11,6 @@ typedef struct fg_random {
 
 /* `stream` and `index` give independent sequences for one seed. */
 void fg_random_seed(fg_random *random, uint64_t seed, uint64_t stream, uint64_t index);
-uint64_t fg_random_next(fg_random *random);
 double fg_random_uniform(fg_random *random); /* [0, 1) */
 double fg_random_normal(fg_random *random);  /* exact, for the few numbers of the geometry */
 

@@ -54,7 +54,9 @@ static double large_residual(const fg_measurement *measurement) {
   return largest;
 }
 
-double fg_drawing_magnification(const fg_measurement *measurement) {
+/* The magnification of residuals that makes the larger ones about 0.9 mm long: 1, 2 or 5 times a
+ * power of ten. 1000 when there are none. */
+static double magnification_of(const fg_measurement *measurement) {
   static const double steps[] = {1, 2, 5, 10};
   double largest = large_residual(measurement);
   if (!(largest > 0)) return 1000;
@@ -266,7 +268,7 @@ static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, const fg_measure
 
 fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
                               const fg_measurement *measurement) {
-  double magnification = fg_drawing_magnification(measurement);
+  double magnification = magnification_of(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(draw_foil(ctx, canvas, &measurement->foils[i], magnification));
   for (size_t i = 0; i < measurement->disc_count; i++)

@@ -12,10 +12,6 @@ enum {
   FG_COLOUR_TEXT = 0xffffff,
 };
 
-/* The magnification of residuals that makes the larger ones about 0.9 mm long: 1, 2 or 5 times a
- * power of ten. 1000 when there are none. */
-double fg_drawing_magnification(const fg_measurement *measurement);
-
 /* Draws every foil and disc, and the residuals' scale in the emptiest corner. */
 fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
                               const fg_measurement *measurement);

@@ -29,11 +29,6 @@ double fg_distribution_f_quantile(double probability, double freedom_1, double f
   return gsl_cdf_fdist_Pinv(probability, freedom_1, freedom_2);
 }
 
-double fg_distribution_chi2_upper(double chi2, double freedom) {
-  if (!(freedom > 0) || isnan(chi2)) return NAN;
-  return chi2 <= 0 ? 1 : gsl_cdf_chisq_Q(chi2, freedom);
-}
-
 double fg_distribution_chi2_quantile(double probability, double freedom) {
   if (!(freedom > 0) || !(probability > 0 && probability < 1)) return NAN;
   return gsl_cdf_chisq_Pinv(probability, freedom);

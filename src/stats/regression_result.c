@@ -17,13 +17,6 @@ fg_status fg_regression_note(fg_context *ctx, fg_regression *regression, const c
   return status;
 }
 
-double fg_regression_covariance(const fg_regression *regression, size_t i, size_t j) {
-  const fg_extended *u = regression->inverse_root;
-  size_t n = regression->columns;
-  double covariance = fg_extended_dot(u + i * n, u + j * n, n).value;
-  return covariance * regression->residual_sd * regression->residual_sd;
-}
-
 fg_status fg_regression_predict(fg_context *ctx, const fg_regression *regression, const double *row,
                                 fg_prediction *prediction) {
   size_t n = regression->columns;

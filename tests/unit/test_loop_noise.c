@@ -47,47 +47,47 @@ static const fg_engine_noise noises[] = {{0, 0}, {0.6, 0}, {0, 2}, {0.3, 0.7}, {
 static void whitening_undoes_the_covariance(void **state) {
   (void)state;
   fg_loop_problem problem = make_problem();
-  fg_engine_frame frame;
-  assert_int_equal(fg_engine_frame_build(NULL, &problem, NULL, NULL, &frame), FG_OK);
+  fg_engine_training training;
+  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
     double c[ROWS][ROWS], column[ROWS];
     for (size_t k = 0; k < ROWS; k++) {
       for (size_t i = 0; i < ROWS; i++)
         column[i] = covariance(noises[m], i, k);
-      fg_engine_whiten(&frame, noises[m], column);
+      fg_engine_whiten(&training, noises[m], column);
       for (size_t i = 0; i < ROWS; i++)
         c[i][k] = column[i];
     }
     for (size_t i = 0; i < ROWS; i++) {
-      fg_engine_whiten(&frame, noises[m], c[i]);
+      fg_engine_whiten(&training, noises[m], c[i]);
       for (size_t k = 0; k < ROWS; k++)
         assert_near(c[i][k], i == k, 1e-12);
     }
   }
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
 }
 
 static void colouring_undoes_whitening(void **state) {
   (void)state;
   fg_loop_problem problem = make_problem();
-  fg_engine_frame frame;
+  fg_engine_training training;
   double y[ROWS];
-  assert_int_equal(fg_engine_frame_build(NULL, &problem, NULL, NULL, &frame), FG_OK);
+  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
     memcpy(y, residual, sizeof y);
-    fg_engine_whiten(&frame, noises[m], y);
-    fg_engine_colour(&frame, noises[m], y);
+    fg_engine_whiten(&training, noises[m], y);
+    fg_engine_colour(&training, noises[m], y);
     for (size_t i = 0; i < ROWS; i++)
       assert_near(y[i], residual[i], 1e-12);
   }
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
 }
 
 static void the_determinant_is_the_covariance_s(void **state) {
   (void)state;
   fg_loop_problem problem = make_problem();
-  fg_engine_frame frame;
-  assert_int_equal(fg_engine_frame_build(NULL, &problem, NULL, NULL, &frame), FG_OK);
+  fg_engine_training training;
+  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
     gsl_matrix *c = gsl_matrix_alloc(ROWS, ROWS);
     double log_det = 0;
@@ -97,29 +97,29 @@ static void the_determinant_is_the_covariance_s(void **state) {
     assert_int_equal(gsl_linalg_cholesky_decomp1(c), 0);
     for (size_t i = 0; i < ROWS; i++)
       log_det += 2 * log(gsl_matrix_get(c, i, i));
-    assert_near(fg_engine_log_det(&frame, noises[m]), log_det, 1e-10);
+    assert_near(fg_engine_log_det(&training, noises[m]), log_det, 1e-10);
     gsl_matrix_free(c);
   }
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
 }
 
 /* At the solution the whitened residual is orthogonal to the whitened columns. */
 static void least_squares_solves_the_normal_equations(void **state) {
   (void)state;
   fg_loop_problem problem = make_problem();
-  fg_engine_frame frame;
+  fg_engine_training training;
   fg_engine_fit fit;
-  assert_int_equal(fg_engine_frame_build(NULL, &problem, NULL, NULL, &frame), FG_OK);
+  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
   for (size_t m = 0; m < sizeof noises / sizeof *noises; m++) {
     double r[ROWS], x[ROWS], sum = 0;
-    assert_int_equal(fg_engine_least_squares(NULL, &frame, noises[m], &fit), FG_OK);
+    assert_int_equal(fg_engine_least_squares(NULL, &training, noises[m], &fit), FG_OK);
     for (size_t i = 0; i < ROWS; i++)
       r[i] = residual[i] - fit.beta[0] - fit.beta[1] * jacobian[ROWS + i];
-    fg_engine_whiten(&frame, noises[m], r);
+    fg_engine_whiten(&training, noises[m], r);
     for (size_t k = 0; k < 2; k++) {
       double dot = 0;
       memcpy(x, jacobian + k * ROWS, sizeof x);
-      fg_engine_whiten(&frame, noises[m], x);
+      fg_engine_whiten(&training, noises[m], x);
       for (size_t i = 0; i < ROWS; i++)
         dot += x[i] * r[i];
       assert_near(dot, 0, 1e-10);
@@ -129,7 +129,7 @@ static void least_squares_solves_the_normal_equations(void **state) {
     assert_near(fit.rss, sum, 1e-10);
     fg_engine_fit_free(&fit);
   }
-  fg_engine_frame_free(&frame);
+  fg_engine_training_free(&training);
 }
 
 static void deviates_and_ratios_agree(void **state) {
