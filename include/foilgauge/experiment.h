@@ -64,7 +64,7 @@ typedef struct fg_factor {
 
 /* What is said of a coefficient beyond regression.coefficient[i] (same index): the error is that
  * of its stratum. */
-typedef struct fg_effect {
+typedef struct fg_experiment_effect {
   bool block;      /* belongs to the blocks: not an effect of interest */
   bool whole_plot; /* judged by the scatter of whole plots */
   double freedom;  /* of its error */
@@ -73,7 +73,7 @@ typedef struct fg_effect {
   double u_measurement; /* part of the standard error that the measurement's uncertainty makes */
   double contrast;      /* estimate as in an orthogonal design of this size, for Lenth and plots */
   double lenth_p_value; /* NaN without Lenth */
-} fg_effect;
+} fg_experiment_effect;
 
 typedef struct fg_optimum {
   double x[FG_SURFACE_FACTORS]; /* model's units, in the order of surface.variable */
@@ -98,7 +98,7 @@ typedef struct fg_experiment {
   bool magnitude, sign_chosen; /* the response is |y|; by AUTO */
   fg_model model;
   fg_regression regression;
-  fg_effect *effect; /* regression.columns */
+  fg_experiment_effect *effect; /* regression.columns */
   fg_factor factor[FG_FORMULA_VARIABLES];
   size_t factors;
   double *setting;   /* rows × model.formula.variables: every run for predictions */
@@ -108,7 +108,7 @@ typedef struct fg_experiment {
   double process_sd; /* scatter beside the measurement's; NaN: not separated */
 
   bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
-  fg_lenth lenth; /* of fg_effect.contrast */
+  fg_lenth lenth; /* of fg_experiment_effect.contrast */
   fg_box_cox box_cox;
   fg_curvature curvature;
   fg_split_plot split_plot;

@@ -284,7 +284,7 @@ typedef struct fg_loop_result {
   size_t notes, note_capacity;
 } fg_loop_result;
 
-/* Runs the engine. FG_ERR_DATA when nothing can be judged at all: fewer than four rows beyond the
+/* Runs the engine. FG_ERR_DATA when nothing can be judged at all: fewer than three rows beyond the
  * parameters, a residual that is zero or constant within rounding is not an error but a result
  * (`clean` with a note). Free with fg_loop_result_free. */
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,

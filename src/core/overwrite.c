@@ -13,13 +13,13 @@
 typedef enum place_kind { NOWHERE, A_FILE, A_NEW_FILE, A_STREAM } place_kind;
 
 /* Where a path leads. */
-typedef struct fg_place {
+typedef struct fg_output_place {
   const char *path;
   place_kind kind; /* A_STREAM: standard input or output that is no file */
   dev_t device;
   ino_t inode;
   char *canonical; /* of a new file */
-} fg_place;
+} fg_output_place;
 
 /* "folder/name" with every link in the folder followed; NULL: no such folder, or out of memory. */
 static char *canonical_path(const char *path) {
@@ -33,9 +33,10 @@ static char *canonical_path(const char *path) {
   return canonical;
 }
 
-static fg_status find_place(fg_context *ctx, const char *path, int standard, fg_place *place) {
+static fg_status find_place(fg_context *ctx, const char *path, int standard,
+                            fg_output_place *place) {
   struct stat info;
-  *place = (fg_place){.path = path};
+  *place = (fg_output_place){.path = path};
   if (!path) return FG_OK;
   bool is_standard = !strcmp(path, "-");
   if ((is_standard ? fstat(standard, &info) : stat(path, &info)) == 0) {
@@ -55,17 +56,17 @@ static fg_status find_place(fg_context *ctx, const char *path, int standard, fg_
   return FG_OK;
 }
 
-static bool is_same(const fg_place *a, const fg_place *b) {
+static bool is_same(const fg_output_place *a, const fg_output_place *b) {
   if (a->kind != b->kind) return false;
   if (a->kind == A_FILE) return a->device == b->device && a->inode == b->inode;
   return a->kind == A_NEW_FILE && !strcmp(a->canonical, b->canonical);
 }
 
-static const char *name_of(const fg_place *output) {
+static const char *name_of(const fg_output_place *output) {
   return strcmp(output->path, "-") ? output->path : "standard output";
 }
 
-static fg_status check_pair(fg_context *ctx, const fg_place *a, const fg_place *b) {
+static fg_status check_pair(fg_context *ctx, const fg_output_place *a, const fg_output_place *b) {
   bool both_standard = a->kind == A_STREAM && b->kind == A_STREAM;
   if (!both_standard && !is_same(a, b)) return FG_OK;
   if (!strcmp(a->path, b->path))
@@ -80,7 +81,7 @@ fg_status fg_overwrite_begin(fg_context *ctx, const char *const *outputs, size_t
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *overwrite->places, &block));
   overwrite->places = block;
   for (size_t i = 0; i < count; i++) {
-    fg_place *place = &overwrite->places[i];
+    fg_output_place *place = &overwrite->places[i];
     FG_TRY(find_place(ctx, outputs[i], STDOUT_FILENO, place));
     overwrite->count = i + 1;
     for (size_t other = 0; other < i; other++)
@@ -91,9 +92,9 @@ fg_status fg_overwrite_begin(fg_context *ctx, const char *const *outputs, size_t
 
 fg_status fg_overwrite_check(fg_context *ctx, const fg_overwrite *overwrite, const char *input,
                              const char *words) {
-  fg_place place;
+  fg_output_place place;
   FG_TRY(find_place(ctx, input, STDIN_FILENO, &place));
-  const fg_place *found = NULL;
+  const fg_output_place *found = NULL;
   for (size_t i = 0; i < overwrite->count && !found; i++)
     if (is_same(&overwrite->places[i], &place)) found = &overwrite->places[i];
   free(place.canonical);
@@ -106,7 +107,7 @@ fg_status fg_overwrite_check(fg_context *ctx, const fg_overwrite *overwrite, con
 }
 
 bool fg_overwrite_is_same(const char *a, const char *b) {
-  fg_place one = {0}, other = {0};
+  fg_output_place one = {0}, other = {0};
   bool same = find_place(NULL, a, STDIN_FILENO, &one) == FG_OK &&
               find_place(NULL, b, STDIN_FILENO, &other) == FG_OK && is_same(&one, &other);
   free(one.canonical);

@@ -16,7 +16,7 @@ extern "C" {
 #endif
 
 typedef struct fg_overwrite {
-  struct fg_place *places; /* of the outputs */
+  struct fg_output_place *places; /* of the outputs */
   size_t count;
 } fg_overwrite;
 

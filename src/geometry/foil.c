@@ -8,9 +8,9 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "geometry/bump_places.h"
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
-#include "geometry/places.h"
 #include "geometry/recognise.h"
 #include "geometry/trouble.h"
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "foilgauge/scan.h"
-#include "measure/discs.h"
+#include "measure/measure_discs.h"
 #include "measure/reader.h"
 #include "measure/session.h"
 

@@ -43,19 +43,19 @@ static bool is_block_term(const fg_experiment *e, size_t term) {
          e->model.formula.term[term].power[e->block_variable] > 0;
 }
 
-static void fill_effect(const fg_experiment *e, size_t j, fg_effect *effect) {
+static void fill_effect(const fg_experiment *e, size_t j, fg_experiment_effect *effect) {
   const fg_regression *reg = &e->regression;
   const fg_coefficient *c = &reg->coefficient[j];
-  *effect = (fg_effect){.block = is_block_term(e, c->term),
-                        .whole_plot = is_whole_plot(e, c->term),
-                        .u_measurement = NAN,
-                        .contrast = NAN,
-                        .lenth_p_value = NAN,
-                        .standard_error = c->standard_error,
-                        .t = c->t,
-                        .p_value = c->p_value,
-                        .low = c->low,
-                        .high = c->high};
+  *effect = (fg_experiment_effect){.block = is_block_term(e, c->term),
+                                   .whole_plot = is_whole_plot(e, c->term),
+                                   .u_measurement = NAN,
+                                   .contrast = NAN,
+                                   .lenth_p_value = NAN,
+                                   .standard_error = c->standard_error,
+                                   .t = c->t,
+                                   .p_value = c->p_value,
+                                   .low = c->low,
+                                   .high = c->high};
   double variance = inverse_at(reg, j, j);
   double sd = error_of(e, effect->whole_plot, &effect->freedom);
   effect->relative_pct = c->term == FG_MODEL_CONSTANT ? NAN : fg_doe_relative_effect_pct(reg, j);
@@ -72,7 +72,7 @@ static void fill_effect(const fg_experiment *e, size_t j, fg_effect *effect) {
 }
 
 /* b = G y with G = (X'WX)^-1 X'W, so u²(b_j) = sum_i G_ji² u_i². `row` holds row j of (X'X)^-1. */
-static void propagate(const fg_experiment *e, size_t j, double *row, fg_effect *effect) {
+static void propagate(const fg_experiment *e, size_t j, double *row, fg_experiment_effect *effect) {
   const fg_regression *reg = &e->regression;
   double sum = 0;
   for (size_t k = 0; k < reg->columns; k++)

@@ -22,18 +22,18 @@ static fg_status read_spec(const fg_place *place, const cJSON *root, fg_render_s
       FG_SPEC_END,
   };
   FG_TRY(fg_members_read(place, root, table, spec));
-  const cJSON *schema = spec_member(root, "schema");
+  const cJSON *schema = fg_spec_member(root, "schema");
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/render/1") != 0)
     return fg_member_fail(place, "schema", schema, "must be \"foilgauge/render/1\"");
   double seed = 0;
-  if (spec_member(root, "seed"))
-    FG_TRY(fg_member_number(place, "seed", spec_member(root, "seed"), 0, 0x1p53, &seed));
+  if (fg_spec_member(root, "seed"))
+    FG_TRY(fg_member_number(place, "seed", fg_spec_member(root, "seed"), 0, 0x1p53, &seed));
   spec->seed = (uint64_t)seed;
   fg_place scanner = fg_place_inside(place, "scanner");
-  FG_TRY(fg_spec_read_scanner(&scanner, spec_member(root, "scanner"), &spec->scanner));
-  FG_TRY(fg_render_effects_parse(place, spec_member(root, "effects"), &spec->effects));
-  FG_TRY(fg_spec_read_discs(place, spec_member(root, "discs"), spec));
-  return fg_spec_read_foils(place, spec_member(root, "foils"), spec);
+  FG_TRY(fg_spec_read_scanner(&scanner, fg_spec_member(root, "scanner"), &spec->scanner));
+  FG_TRY(fg_render_effects_parse(place, fg_spec_member(root, "effects"), &spec->effects));
+  FG_TRY(fg_spec_read_discs(place, fg_spec_member(root, "discs"), spec));
+  return fg_spec_read_foils(place, fg_spec_member(root, "foils"), spec);
 }
 
 static fg_status default_foil(fg_context *ctx, fg_render_spec *spec) {

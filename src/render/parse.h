@@ -15,7 +15,7 @@
   { NULL, FG_MEMBER_END, 0, 0, 0 }
 
 /* The member, or NULL. */
-static inline const cJSON *spec_member(const cJSON *object, const char *name) {
+static inline const cJSON *fg_spec_member(const cJSON *object, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 

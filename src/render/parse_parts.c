@@ -41,7 +41,7 @@ static fg_status read_lip(const fg_place *place, const cJSON *lip, fg_foil_reque
   if (!request->has_lip) return FG_OK;
   fg_place inner = fg_place_inside(place, "lip");
   FG_TRY(fg_members_read(&inner, lip, table, &request->lip));
-  const cJSON *side = spec_member(lip, "side");
+  const cJSON *side = fg_spec_member(lip, "side");
   if (!side) return FG_OK;
   if (!cJSON_IsString(side) ||
       (strcmp(side->valuestring, "outwards") && strcmp(side->valuestring, "inwards")))
@@ -91,7 +91,7 @@ static fg_status read_crushed(const fg_place *place, const cJSON *array, fg_foil
 static fg_status read_list(const fg_place *place, const cJSON *foil, const char *name, double low,
                            double high, int bumps, double *values) {
   int count;
-  const cJSON *array = spec_member(foil, name);
+  const cJSON *array = fg_spec_member(foil, name);
   return array ? fg_member_numbers(place, name, array, low, high, bumps, bumps, values, &count)
                : FG_OK;
 }
@@ -148,20 +148,20 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
   };
   *request = fg_spec_default_foil();
   FG_TRY(fg_members_read(place, foil, table, request));
-  const cJSON *design = spec_member(foil, "design");
+  const cJSON *design = fg_spec_member(foil, "design");
   fg_place inside = fg_place_inside(place, "design");
   if (design) FG_TRY(read_design(&inside, design, &request->design));
-  const cJSON *form = spec_member(design, "form");
+  const cJSON *form = fg_spec_member(design, "form");
   if (cJSON_IsString(form) && !strcmp(form->valuestring, "sinusoidal")) request->has_lip = false;
-  FG_TRY(read_lip(place, spec_member(foil, "lip"), request));
-  FG_TRY(read_missing(place, spec_member(foil, "missing"), request));
-  FG_TRY(read_crushed(place, spec_member(foil, "crushed"), request));
-  FG_TRY(read_springback(place, spec_member(foil, "radius_springback"), request));
+  FG_TRY(read_lip(place, fg_spec_member(foil, "lip"), request));
+  FG_TRY(read_missing(place, fg_spec_member(foil, "missing"), request));
+  FG_TRY(read_crushed(place, fg_spec_member(foil, "crushed"), request));
+  FG_TRY(read_springback(place, fg_spec_member(foil, "radius_springback"), request));
   int bumps = request->design.bump_count;
   FG_TRY(read_list(place, foil, "radius_mm", 0.01, 1000, bumps, request->radius_mm));
   FG_TRY(read_list(place, foil, "bump_angle_deg", 0.1, 179, bumps, request->bump_angle_deg));
   int count;
-  const cJSON *centre = spec_member(foil, "centre_mm");
+  const cJSON *centre = fg_spec_member(foil, "centre_mm");
   if (centre)
     FG_TRY(
         fg_member_numbers(place, "centre_mm", centre, -1e4, 1e4, 2, 2, request->centre_mm, &count));
@@ -197,7 +197,7 @@ static fg_status read_disc(const fg_place *place, const cJSON *disc, fg_disc_req
   *request = (fg_disc_request){.radius_mm = NAN};
   FG_TRY(fg_members_read(place, disc, table, request));
   int count;
-  FG_TRY(fg_member_numbers(place, "centre_mm", spec_member(disc, "centre_mm"), -1e4, 1e4, 2, 2,
+  FG_TRY(fg_member_numbers(place, "centre_mm", fg_spec_member(disc, "centre_mm"), -1e4, 1e4, 2, 2,
                            request->centre_mm, &count));
   if (isnan(request->radius_mm)) return fg_member_fail(place, "radius_mm", NULL, "a disc needs it");
   return FG_OK;

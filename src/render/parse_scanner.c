@@ -12,7 +12,7 @@ static fg_status read_litter(const fg_place *place, const cJSON *parent, const c
       FG_SPEC_NUMBER(fg_litter, contrast, -255, 255),
       FG_SPEC_END,
   };
-  const cJSON *object = spec_member(parent, name);
+  const cJSON *object = fg_spec_member(parent, name);
   if (!object) return FG_OK;
   fg_place inner = fg_place_inside(place, name);
   return fg_members_read(&inner, object, table, litter);
@@ -20,7 +20,7 @@ static fg_status read_litter(const fg_place *place, const cJSON *parent, const c
 
 static fg_status read_part(const fg_place *place, const cJSON *parent, const char *name,
                            const fg_member *table, void *base) {
-  const cJSON *object = spec_member(parent, name);
+  const cJSON *object = fg_spec_member(parent, name);
   if (!object) return FG_OK;
   fg_place inner = fg_place_inside(place, name);
   return fg_members_read(&inner, object, table, base);
@@ -75,13 +75,13 @@ static fg_status read_dpi(const fg_place *place, const cJSON *dpi, double *out) 
 static fg_status check_scanner(const fg_place *place, const cJSON *object,
                                const fg_scanner *scanner) {
   if (scanner->bits != 8 && scanner->bits != 16)
-    return fg_member_fail(place, "bits", spec_member(object, "bits"), "must be 8 or 16");
+    return fg_member_fail(place, "bits", fg_spec_member(object, "bits"), "must be 8 or 16");
   double strip = scanner->background + scanner->contrast;
   if (!(strip >= 0 && strip <= 255) || scanner->contrast == 0)
-    return fg_member_fail(place, "contrast", spec_member(object, "contrast"),
+    return fg_member_fail(place, "contrast", fg_spec_member(object, "contrast"),
                           "background + contrast must lie within 0 and 255, contrast not 0");
   if (scanner->jpeg_quality && scanner->bits != 8)
-    return fg_member_fail(place, "bits", spec_member(object, "bits"),
+    return fg_member_fail(place, "bits", fg_spec_member(object, "bits"),
                           "must be 8 where there is rough.jpeg");
   return FG_OK;
 }
@@ -113,13 +113,13 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   };
   if (!object) return FG_OK;
   FG_TRY(fg_members_read(place, object, table, scanner));
-  FG_TRY(read_dpi(place, spec_member(object, "dpi"), scanner->dpi));
+  FG_TRY(read_dpi(place, fg_spec_member(object, "dpi"), scanner->dpi));
   FG_TRY(read_part(place, object, "shading", shading, scanner));
   FG_TRY(read_litter(place, object, "dust", &scanner->dust));
   FG_TRY(read_litter(place, object, "specks", &scanner->specks));
   FG_TRY(read_litter(place, object, "scratches", &scanner->scratches));
   fg_place rough = fg_place_inside(place, "rough");
-  FG_TRY(read_rough(&rough, spec_member(object, "rough"), scanner));
+  FG_TRY(read_rough(&rough, fg_spec_member(object, "rough"), scanner));
   return check_scanner(place, object, scanner);
 }
 

@@ -123,7 +123,7 @@ static void json_holds_every_field(void **state) {
   cJSON_Delete(json);
 }
 
-/* The names of DESIGN section 1 and 3, spelt out: the table must not drift from them. */
+/* The names that users write, spelt out: the table must not drift from them. */
 static void json_has_the_agreed_names(void **state) {
   fixture *all = *state;
   static const char *const bump_names[] = {"radius_mm",

@@ -80,8 +80,8 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
           e->regression.residual_freedom ? "p" : "p (Lenth)", 100 * e->confidence);
   for (size_t j = 0; j < e->regression.columns; j++) {
     const fg_coefficient *c = &e->regression.coefficient[j];
-    const fg_effect *effect = &e->effect[j];
-    bool on = fg_effect_of_interest(e, j) && fg_effect_p_value(e, j) < 1 - e->confidence;
+    const fg_experiment_effect *effect = &e->effect[j];
+    bool on = fg_experiment_of_interest(e, j) && fg_experiment_p_value(e, j) < 1 - e->confidence;
     fputs(on ? "<tr class=\"on\">" : "<tr>", out);
     put_name_cell(out, c->name);
     put_cell(out, c->estimate, 5);
@@ -89,7 +89,7 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
     put_cell(out, effect->standard_error, 4);
     put_cell(out, effect->u_measurement, 3);
     put_cell(out, effect->t, 4);
-    put_p_cell(out, fg_effect_p_value(e, j));
+    put_p_cell(out, fg_experiment_p_value(e, j));
     put_cell(out, effect->low, 4);
     put_cell(out, effect->high, 4);
     put_cell(out, c->vif, 4);

@@ -51,7 +51,7 @@ static void put_coefficients(fg_json *json, const fg_experiment *e) {
   fg_json_array(json, "coefficients");
   for (size_t j = 0; j < e->regression.columns; j++) {
     const fg_coefficient *c = &e->regression.coefficient[j];
-    const fg_effect *effect = &e->effect[j];
+    const fg_experiment_effect *effect = &e->effect[j];
     fg_json_object(json, NULL);
     fg_json_string(json, "name", c->name);
     fg_json_bool(json, "aliased", c->aliased);

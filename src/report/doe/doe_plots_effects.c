@@ -29,14 +29,14 @@ static size_t collect_bars(const fg_experiment *e, bar *bars) {
   size_t count = 0;
   for (size_t j = 0; j < e->regression.columns; j++) {
     double size = fabs(has_error ? e->effect[j].t : e->effect[j].contrast);
-    if (fg_effect_of_interest(e, j) && isfinite(size)) bars[count++] = (bar){j, size};
+    if (fg_experiment_of_interest(e, j) && isfinite(size)) bars[count++] = (bar){j, size};
   }
   qsort(bars, count, sizeof *bars, compare_bars);
   return count;
 }
 
 static bool is_on(const fg_experiment *e, size_t column) {
-  return fg_effect_p_value(e, column) < 1 - e->confidence;
+  return fg_experiment_p_value(e, column) < 1 - e->confidence;
 }
 
 static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_t count) {

@@ -48,7 +48,7 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
           "std.err", "t", lenth ? "p (Lenth)" : "p", 100 * e->confidence);
   for (size_t j = 0; j < e->regression.columns; j++) {
     const fg_coefficient *c = &e->regression.coefficient[j];
-    const fg_effect *effect = &e->effect[j];
+    const fg_experiment_effect *effect = &e->effect[j];
     fprintf(out, "%-30s", c->name);
     if (c->aliased) {
       fputs("  cannot be told from the ones above\n", out);
@@ -58,7 +58,7 @@ static void put_coefficients(FILE *out, const fg_experiment *e) {
     put_number(out, 9, effect->relative_pct);
     put_number(out, 10, effect->standard_error);
     put_number(out, 8, effect->t);
-    put_p(out, fg_effect_p_value(e, j));
+    put_p(out, fg_experiment_p_value(e, j));
     put_number(out, 11, effect->low);
     put_number(out, 10, effect->high);
     fputc('\n', out);

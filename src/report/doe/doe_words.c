@@ -28,12 +28,12 @@ const char *fg_goal_word(fg_goal goal) {
   return goal == FG_GOAL_LOWEST ? "lowest" : goal == FG_GOAL_HIGHEST ? "highest" : "target";
 }
 
-double fg_effect_p_value(const fg_experiment *e, size_t column) {
+double fg_experiment_p_value(const fg_experiment *e, size_t column) {
   double p_value = e->effect[column].p_value;
   return e->regression.residual_freedom ? p_value : e->effect[column].lenth_p_value;
 }
 
-bool fg_effect_of_interest(const fg_experiment *e, size_t column) {
+bool fg_experiment_of_interest(const fg_experiment *e, size_t column) {
   const fg_coefficient *c = &e->regression.coefficient[column];
   return c->term != FG_MODEL_CONSTANT && !c->aliased && !e->effect[column].block;
 }
@@ -93,11 +93,11 @@ static const fg_factor *main_factor(const fg_experiment *e, size_t column) {
 
 static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, fg_sentences *s) {
   const fg_coefficient *c = &e->regression.coefficient[j];
-  const fg_effect *effect = &e->effect[j];
+  const fg_experiment_effect *effect = &e->effect[j];
   const fg_factor *factor = main_factor(e, j);
   char p_value[16], interval[80] = "";
   double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
-  fg_p_value_text(p_value, fg_effect_p_value(e, j));
+  fg_p_value_text(p_value, fg_experiment_p_value(e, j));
   const char *equals = *p_value == '<' ? "" : "= ";
   if (isfinite(effect->low))
     snprintf(interval, sizeof interval, ", %g %% interval %.3g to %.3g", 100 * e->confidence,
@@ -114,9 +114,9 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
   size_t found = 0, judged = 0;
   char rest[600] = "";
   for (size_t j = 0; j < e->regression.columns; j++) {
-    if (!fg_effect_of_interest(e, j) || !isfinite(fg_effect_p_value(e, j))) continue;
+    if (!fg_experiment_of_interest(e, j) || !isfinite(fg_experiment_p_value(e, j))) continue;
     judged++;
-    if (fg_effect_p_value(e, j) < 1 - e->confidence) {
+    if (fg_experiment_p_value(e, j) < 1 - e->confidence) {
       found++;
       FG_TRY(say_effect(ctx, e, j, s));
     } else {

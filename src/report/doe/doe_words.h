@@ -22,10 +22,10 @@ const char *fg_surface_kind_word(fg_surface_kind kind);
 const char *fg_goal_word(fg_goal goal);
 
 /* The p value to judge a column by: its own, or Lenth's where there is no error; NaN: neither. */
-double fg_effect_p_value(const fg_experiment *experiment, size_t column);
+double fg_experiment_p_value(const fg_experiment *experiment, size_t column);
 
 /* A column of the model that is neither constant, nor block, nor aliased. */
-bool fg_effect_of_interest(const fg_experiment *experiment, size_t column);
+bool fg_experiment_of_interest(const fg_experiment *experiment, size_t column);
 
 /* The factor of the surface's axis k. */
 const fg_factor *fg_surface_factor(const fg_experiment *experiment, size_t k);

@@ -1,6 +1,6 @@
 /* Which place of the pitch each bump stands at, and which places are empty. */
-#ifndef FG_GEOMETRY_PLACES_H
-#define FG_GEOMETRY_PLACES_H
+#ifndef FG_GEOMETRY_BUMP_PLACES_H
+#define FG_GEOMETRY_BUMP_PLACES_H
 
 #include "geometry/layout.h"
 

@@ -1,4 +1,4 @@
-#include "measure/discs.h"
+#include "measure/measure_discs.h"
 
 #include <math.h>
 #include <stdlib.h>

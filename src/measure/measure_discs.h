@@ -1,6 +1,6 @@
 /* Every round feature of a scan. */
-#ifndef FG_MEASURE_DISCS_H
-#define FG_MEASURE_DISCS_H
+#ifndef FG_MEASURE_MEASURE_DISCS_H
+#define FG_MEASURE_MEASURE_DISCS_H
 
 #include "foilgauge/foil.h"
 #include "vision/tiles.h"

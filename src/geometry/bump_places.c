@@ -1,4 +1,4 @@
-#include "geometry/places.h"
+#include "geometry/bump_places.h"
 
 #include <math.h>
 
