@@ -62,7 +62,8 @@ void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal)
   fg_json_object_end(json);
 }
 
-void fg_json_input(fg_json *json, const fg_report_scan *scan) {
+/* One member of `inputs`. */
+static void write_input(fg_json *json, const fg_report_scan *scan) {
   const fg_measurement *measurement = scan->measurement;
   fg_json_object(json, NULL);
   fg_json_string(json, "path", scan->path);
@@ -144,7 +145,7 @@ void fg_json_verdict(fg_json *json, fg_verdict verdict) {
   fg_json_string(json, "verdict", fg_verdict_word(verdict));
 }
 
-void fg_json_counts(fg_json *json, const fg_report_outcome *outcome) {
+static void write_counts(fg_json *json, const fg_report_outcome *outcome) {
   fg_json_object(json, "counts");
   fg_json_line(json);
   fg_json_integer(json, "exceeded", (int64_t)outcome->exceeded);
@@ -273,10 +274,10 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/measure/1");
   fg_json_verdict(&json, outcome.verdict);
-  fg_json_counts(&json, &outcome);
+  write_counts(&json, &outcome);
   fg_json_array(&json, "inputs");
   for (size_t i = 0; i < report->scan_count; i++)
-    fg_json_input(&json, &report->scans[i]);
+    write_input(&json, &report->scans[i]);
   fg_json_array_end(&json);
   fg_json_scan_model(&json, "model", fg_report_model(report));
   fg_json_design(&json, "design", report->design);

@@ -12,12 +12,6 @@ void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal)
 /* "in_tolerance": true only for a pass; null where nothing is judged. And "verdict". */
 void fg_json_verdict(fg_json *json, fg_verdict verdict);
 
-/* "counts". */
-void fg_json_counts(fg_json *json, const fg_report_outcome *outcome);
-
-/* One member of `inputs`. */
-void fg_json_input(fg_json *json, const fg_report_scan *scan);
-
 /* One member of `foils`, of `discs`. */
 fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
                        const fg_foil *foil);

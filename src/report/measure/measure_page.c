@@ -153,8 +153,8 @@ static void put_reasons(FILE *out, const fg_decision *decision, fg_verdict verdi
   for (size_t i = 0; i < decision->count; i++) {
     if (list[i].verdict != verdict || list[i].missing) continue;
     if (!last)
-      fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", fg_html_verdict_title(verdict), values,
-              values == 1 ? "value" : "values");
+      fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", fg_html_verdict_title(verdict),
+              values, values == 1 ? "value" : "values");
     if (list[i].tolerance != last) {
       fprintf(out, "%s%s", last ? "; " : "", list[i].field->words);
       if (list[i].number) fprintf(out, " %d", list[i].number);

@@ -25,7 +25,9 @@ static fg_status say_effect(fg_context *ctx, const fg_scanner_model_effect *effe
   return fg_text_append(ctx, text, "up to ±%s)", value);
 }
 
-fg_status fg_scanner_model_effects(fg_context *ctx, const fg_scanner_model *model, char **text) {
+/* "a wrong scale along the carriage's way (q = 2000 ± 1 ppm); ...": what it corrects. The caller
+ * frees. */
+static fg_status effects_of(fg_context *ctx, const fg_scanner_model *model, char **text) {
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
   *text = NULL;
@@ -105,7 +107,8 @@ void fg_scale_words(const fg_scanner_model *model, char *words, size_t size) {
                  "and y is not: the model was found without a known diameter.");
 }
 
-fg_status fg_scanner_model_title(fg_context *ctx, const fg_scanner_model *model, char **text) {
+/* "left.json, of the scanner 'left desk', 2026-03-14, found on 2 scans". The caller frees. */
+static fg_status title_of(fg_context *ctx, const fg_scanner_model *model, char **text) {
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
   const char *slash = strrchr(facts.path, '/');
@@ -173,10 +176,10 @@ fg_status fg_html_corrected(fg_context *ctx, FILE *out, const fg_scanner_model *
   char *text;
   if (!model) return FG_OK;
   fputs("<p class=\"corrected\"><b>Corrected by the scanner&#39;s model</b> ", out);
-  fg_status status = fg_scanner_model_title(ctx, model, &text);
+  fg_status status = title_of(ctx, model, &text);
   FG_TRY(put_text(out, status, text));
   fputs(". It corrects ", out);
-  status = fg_scanner_model_effects(ctx, model, &text);
+  status = effects_of(ctx, model, &text);
   FG_TRY(put_text(out, status, text));
   if (moved[0]) fprintf(out, ". It moved %s, and added %s", moved, added);
   fputs(fg_scanner_model_is_tied(model)
@@ -196,7 +199,7 @@ fg_status fg_html_model_facts(fg_context *ctx, FILE *out, const fg_scanner_model
   }
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
-  fg_status status = fg_scanner_model_title(ctx, model, &text);
+  fg_status status = title_of(ctx, model, &text);
   FG_TRY(put_text(out, status, text));
   fprintf(out,
           "</dd>\n<dt>Its SHA-256</dt><dd>%s</dd>\n<dt>Its region</dt><dd>x %.4g to %.4g, y %.4g "
@@ -210,8 +213,8 @@ fg_status fg_text_scan_model(fg_context *ctx, FILE *out, const fg_scanner_model 
   if (!model) return FG_OK;
   fg_scanner_model_facts facts;
   fg_scanner_model_describe(model, &facts);
-  fg_status status = fg_scanner_model_title(ctx, model, &title);
-  if (status == FG_OK) status = fg_scanner_model_effects(ctx, model, &effects);
+  fg_status status = title_of(ctx, model, &title);
+  if (status == FG_OK) status = effects_of(ctx, model, &effects);
   if (status == FG_OK)
     fprintf(out,
             "CORRECTED by the scanner's model %s\n  SHA-256 %s\n  region x %.4g to %.4g, y %.4g to "

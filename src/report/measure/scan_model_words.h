@@ -20,14 +20,6 @@ enum { FG_SCALE_WORDS = 256, FG_CORRECTION_WORDS = 256 };
 /* Whether the scanner's error of scale is in the uncertainties: a sentence. NULL: no model. */
 void fg_scale_words(const struct fg_scanner_model *model, char *words, size_t size);
 
-/* "left.json, of the scanner 'left desk', 2026-03-14, found on 2 scans": what was corrected by;
- * "a wrong scale along the carriage's way (q = 2000 ± 1 ppm); ...": what it corrects. The caller
- * frees. */
-fg_status fg_scanner_model_title(fg_context *ctx, const struct fg_scanner_model *model,
-                                 char **text);
-fg_status fg_scanner_model_effects(fg_context *ctx, const struct fg_scanner_model *model,
-                                   char **text);
-
 /* "R0 by -41.9 µm, R by up to +8.2 µm, ...": what it did to one foil; "0.01 µm to u of R0, ...":
  * what it added. Empty where nothing was corrected. */
 void fg_correction_moved(const fg_correction *correction, char *words, size_t size);
