@@ -1,23 +1,6 @@
 #!/bin/bash
 # A bed of foils through the program: reading order and places, one foil that cannot be measured, limits.
-set -euo pipefail
-program=$1
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-
-fail() {
-  echo "test_bed: $*" >&2
-  exit 1
-}
-
-# expect CODE WORDS ARG...: measure with these arguments ends so.
-expect() {
-  local wanted=$1 words=$2 code=0
-  shift 2
-  "$program" measure "$@" >"$work/out" 2>"$work/err" || code=$?
-  [ $code -eq "$wanted" ] || fail "measure $*: exit code $code, not $wanted: $(cat "$work/err")"
-  [ -z "$words" ] || grep -q -- "$words" "$work/err" || fail "measure $*: does not say '$words': $(cat "$work/err")"
-}
+. tests/support/cli.sh
 
 cat >"$work/spec.json" <<'SPEC'
 {"schema": "foilgauge/render/1", "seed": 5, "width_px": 6400, "height_px": 3200, "foils": [
@@ -26,8 +9,8 @@ cat >"$work/spec.json" <<'SPEC'
   {"rotate_deg": -90, "centre_mm": [26, 60]}, {"rotate_deg": 90, "centre_mm": [75, 30]}],
  "scanner": {"dpi": 1200}}
 SPEC
-"$program" render "$work/spec.json" -o "$work/bed.png"
-expect 2 "" "$work/bed.png" -o "$work/bed.json" --csv "$work/bed.csv"
+"$program" render "$work/spec.json" -o "$work/bed.png" || fail "render"
+expect 2 "" "$program" measure "$work/bed.png" -o "$work/bed.json" --csv "$work/bed.csv"
 python3 - "$work/bed.json" <<'CHECK' || fail "the report is wrong"
 import json, sys
 foils = json.load(open(sys.argv[1]))["foils"]
@@ -45,12 +28,12 @@ head -1 "$work/bed.csv" | grep -q ',foil_x_mm,foil_y_mm,foil_width_mm,foil_heigh
 
 # The same with one thread, and with eight.
 for threads in 1 8; do
-  expect 2 "" "$work/bed.png" --threads $threads -o "$work/again.json"
+  expect 2 "" "$program" measure "$work/bed.png" --threads $threads -o "$work/again.json"
   cmp "$work/bed.json" "$work/again.json" || fail "$threads threads give another report"
 done
 
-expect 65 "max-memory" "$work/bed.png" --max-memory 1
-expect 65 "more than the 20000000 that are read" "$work/bed.png" --max-pixels 20000000
-expect 64 "channel" "$work/bed.png" --channel infrared
-grep -q . "$work/out" && fail "an error wrote results"
-echo "bed: done"
+expect 65 "max-memory" "$program" measure "$work/bed.png" --max-memory 1
+expect 65 "more than the 20000000 that are read" "$program" measure "$work/bed.png" --max-pixels 20000000
+expect 64 "channel" "$program" measure "$work/bed.png" --channel infrared
+grep -q . "$work/stdout" && fail "an error wrote results"
+exit $failed

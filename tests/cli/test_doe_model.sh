@@ -1,37 +1,17 @@
 #!/bin/bash
 # `foilgauge doe --model FILE.json`: what the loop found is taken out before the analysis.
-set -u
-program=$(realpath "$1")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failed=0
-
-fail() {
-  echo "FAILED: $*"
-  failed=1
-}
-
-# expect CODE WORDS ARGUMENTS...
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$program" "$@" >out.txt 2>err.txt </dev/null
-  local got=$?
-  [ $got -eq "$code" ] || fail "$*: exit $got, not $code ($(head -c 300 err.txt))"
-  [ -z "$words" ] || grep -qE -e "$words" err.txt || fail "$*: does not say '$words' but: $(head -c 400 err.txt)"
-}
+. tests/support/cli.sh
 
 # y = 3 + T/100 + humidity/10, and noise of sd 0.05; z is another response.
 awk 'BEGIN { srand(5); print "run,T,humidity,y,z"
   for (i = 1; i <= 32; i++) { T = 500 + 50 * (i % 3); h = 15 + 45 * rand()
     e = (rand() + rand() + rand() + rand() - 2) * 0.0866
     printf "%d,%d,%.3f,%.4f,%.4f\n", i, T, h, 3 + T / 100 + h / 10 + e, rand() } }' >runs.csv
-expect 0 '' loop --table runs.csv --response y --model '1 + T' --model-out better.json -o loop.json
+expect 0 '' "$program" loop --table runs.csv --response y --model '1 + T' --model-out better.json -o loop.json
 grep -q '"table.linear' better.json || fail "the loop has not found the humidity"
 
-expect 0 '' doe runs.csv --response y --model T --code none -o before.json
-expect 0 '' doe runs.csv --response y --model better.json --code none -o after.json
+expect 0 '' "$program" doe runs.csv --response y --model T --code none -o before.json
+expect 0 '' "$program" doe runs.csv --response y --model better.json --code none -o after.json
 python3 - <<'P' || fail "the analysis does not start from the better model"
 import json
 before, after = (json.load(open(name + ".json")) for name in ("before", "after"))
@@ -55,7 +35,7 @@ sed 's/"response": "y"/"response": "w"/' better.json >other.json
 printf '{"schema":"foilgauge/scan-model/1","fields":[]}' >scanner.json
 printf '{"schema":"foilgauge/design/1"}' >design.json
 while IFS='|' read -r code words data response model; do
-  expect "$code" "$words" doe $data --response $response --model $model -o never.json
+  expect "$code" "$words" "$program" doe $data --response $response --model $model -o never.json
   [ ! -e never.json ] || fail "$data with $model leaves a report behind"
 done <<'TABLE'
 65|no column 'humidity'|without.csv|y|better.json
@@ -71,7 +51,7 @@ done <<'TABLE'
 65|design.json|runs.csv|y|design.json
 74|missing.json|runs.csv|y|missing.json
 TABLE
-expect 64 'response' doe runs.csv --model better.json
-expect 65 'better.json' measure runs.csv --model better.json
+expect 64 'response' "$program" doe runs.csv --model better.json
+expect 65 'better.json' "$program" measure runs.csv --model better.json
 
 exit $failed

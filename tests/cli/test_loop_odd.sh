@@ -2,16 +2,6 @@
 # The loop on what is no foil of the design: it says so, the foils beside it still count, nothing ends with a signal.
 . tests/support/loop.sh
 
-# expect CODE WORDS ARGUMENTS...
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$program" "$@" >out.txt 2>err.txt </dev/null
-  local got=$?
-  [ $got -eq "$code" ] || fail "$*: exit code $got, not $code"
-  grep -q -- "$words" err.txt || fail "$*: does not say '$words' but: $(cat err.txt)"
-}
-
 # Three times as large as the design has it, and no thicker.
 cat >large.json <<'SPEC'
 {"schema":"foilgauge/render/1","seed":3,
@@ -20,7 +10,7 @@ cat >large.json <<'SPEC'
 SPEC
 sed 's/"overall_radius_mm":62/"overall_radius_mm":20.9/' large.json >fits.json
 for name in large fits; do "$renderer" render $name.json -o $name.png || fail "render $name"; done
-expect 2 "large.png: .* no foil of the design .* overall radius" loop large.png -o never.json
+expect 2 "large.png: .* no foil of the design .* overall radius" "$program" loop large.png -o never.json
 [ ! -e never.json ] || fail "a report is left of what was not measured"
 
 # Beside a foil of the design it takes no part, and the report says so.

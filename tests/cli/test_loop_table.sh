@@ -1,28 +1,8 @@
 #!/bin/bash
 # `foilgauge loop --table`: what it prints and writes, what it refuses.
-set -u
-program=$1
-root=$(cd "$(dirname "$0")/../.." && pwd)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failures=0
+. tests/support/cli.sh
+listened="stdout stderr"
 
-fail() {
-  echo "FAIL: $*"
-  failures=$((failures + 1))
-}
-
-# expect CODE WORDS ARGUMENT...: exit code, and words on standard output or error.
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$program" loop "$@" >"$folder/out" 2>"$folder/err"
-  local got=$?
-  [ "$got" = "$code" ] || fail "$*: exit $got, not $code"
-  grep -qF -- "$words" "$folder/out" "$folder/err" || fail "$*: does not say '$words'"
-}
-
-cd "$folder" || exit 1
 awk 'BEGIN { srand(3); print "run,T,humidity,copy,shelf,y"
   for (i = 1; i <= 24; i++) { T = 500 + 50 * (i % 3); h = 15 + 45 * rand()
     e = (rand() + rand() + rand() - 1.5) * 0.6
@@ -35,27 +15,27 @@ head -8 t.csv >few.csv
 head -1 t.csv >header.csv
 model=(--response y --model "1 + T")
 
-expect 0 '"name": "table.linear(copy)"' --table t.csv "${model[@]}" -o - # a tie, not a winner
-grep -q '"verdict": "tied"' out || fail "copies of a column do not tie"
-expect 0 "fits every row" --table exact.csv "${model[@]}" -o -
-expect 0 '"verdict": "clean"' --table constant.csv --response y --model 1 -o -
-expect 0 "can give no p-value below 0.0156" --table few.csv "${model[@]}" -o -
-expect 65 "no rows" --table header.csv "${model[@]}"
-expect 65 "row 3" --table word.csv "${model[@]}" -o never.json
-expect 65 "row 3" --table hole.csv "${model[@]}" -o never.json
-expect 65 "no column 'Q'" --table t.csv --response y --model "1 + Q" -o never.json
-expect 65 "no column 'z'" --table t.csv --response z --model "1 + T" -o never.json
-expect 64 "uses the response" --table t.csv --response y --model "1 + y" -o never.json
-expect 64 "character 5" --table t.csv --response y --model "1 + * T" -o never.json
-expect 64 "not 'y'" --table t.csv --response y --model arc_length -o never.json
-expect 65 "leave 2 to judge it by" --table few.csv --response y --model "1 + T + run + run^2 + humidity"
-expect 64 "a share from 0" --table t.csv "${model[@]}" --hold-out 0.9
-expect 64 "no row has that value" --table t.csv "${model[@]}" --hold-out T=999
-expect 64 "--table DATA.csv is missing" "${model[@]}"
-expect 64 "--response COLUMN" --table t.csv --model 1
-expect 64 "" --table t.csv "${model[@]}" --seed x
-expect 74 "none.csv" --table none.csv "${model[@]}"
-expect 74 "no/such" --table t.csv "${model[@]}" -o no/such/out.json
+expect 0 '"name": "table.linear\(copy\)"' "$program" loop --table t.csv "${model[@]}" -o - # a tie, not a winner
+grep -q '"verdict": "tied"' stdout || fail "copies of a column do not tie"
+expect 0 "fits every row" "$program" loop --table exact.csv "${model[@]}" -o -
+expect 0 '"verdict": "clean"' "$program" loop --table constant.csv --response y --model 1 -o -
+expect 0 "can give no p-value below 0.0156" "$program" loop --table few.csv "${model[@]}" -o -
+expect 65 "no rows" "$program" loop --table header.csv "${model[@]}"
+expect 65 "row 3" "$program" loop --table word.csv "${model[@]}" -o never.json
+expect 65 "row 3" "$program" loop --table hole.csv "${model[@]}" -o never.json
+expect 65 "no column 'Q'" "$program" loop --table t.csv --response y --model "1 + Q" -o never.json
+expect 65 "no column 'z'" "$program" loop --table t.csv --response z --model "1 + T" -o never.json
+expect 64 "uses the response" "$program" loop --table t.csv --response y --model "1 + y" -o never.json
+expect 64 "character 5" "$program" loop --table t.csv --response y --model "1 + * T" -o never.json
+expect 64 "not 'y'" "$program" loop --table t.csv --response y --model arc_length -o never.json
+expect 65 "leave 2 to judge it by" "$program" loop --table few.csv --response y --model "1 + T + run + run^2 + humidity"
+expect 64 "a share from 0" "$program" loop --table t.csv "${model[@]}" --hold-out 0.9
+expect 64 "no row has that value" "$program" loop --table t.csv "${model[@]}" --hold-out T=999
+expect 64 "--table DATA.csv is missing" "$program" loop "${model[@]}"
+expect 64 "--response COLUMN" "$program" loop --table t.csv --model 1
+expect 64 "" "$program" loop --table t.csv "${model[@]}" --seed x
+expect 74 "none.csv" "$program" loop --table none.csv "${model[@]}"
+expect 74 "no/such" "$program" loop --table t.csv "${model[@]}" -o no/such/out.json
 [ -e never.json ] && fail "a refused table leaves an output file"
 
 # The same input gives the same bytes; another seed keeps other rows aside.
@@ -64,27 +44,27 @@ expect 74 "no/such" --table t.csv "${model[@]}" -o no/such/out.json
 cmp -s a.json b.json || fail "two runs differ"
 "$program" loop --table t.csv "${model[@]}" --seed 9 -o c.json
 cmp -s a.json c.json && fail "the seed changes nothing"
-expect 0 '"rows_kept_aside": 12' --table t.csv "${model[@]}" --hold-out shelf=S1 -o -
+expect 0 '"rows_kept_aside": 12' "$program" loop --table t.csv "${model[@]}" --hold-out shelf=S1 -o -
 grep -q "trend with humidity" a.html || fail "the page does not say what was found"
 grep -qE "nan|inf[^a-z]" a.html && fail "the page holds numbers that are none"
 grep -q "table.linear" a.model.json || fail "the model file lacks the effect"
 
 echo '{"response": "y", "model": "1 + T"}' >declared.json
-expect 0 '"model": "1 + T"' --table t.csv --declared declared.json -o -
+expect 0 '"model": "1 \+ T"' "$program" loop --table t.csv --declared declared.json -o -
 echo '{"response": 3}' >declared.json
-expect 65 "response must be a text" --table t.csv --declared declared.json
+expect 65 "response must be a text" "$program" loop --table t.csv --declared declared.json
 
 echo '{"design": 5}' >declared.json
-expect 65 "design must be an object" --table t.csv "${model[@]}" --declared declared.json
+expect 65 "design must be an object" "$program" loop --table t.csv "${model[@]}" --declared declared.json
 echo '{"design": {"bump_radius": 3}}' >declared.json
-expect 65 "design.bump_radius" --table t.csv "${model[@]}" --declared declared.json
-expect 74 "none.json" --table t.csv "${model[@]}" --declared none.json
+expect 65 "design.bump_radius" "$program" loop --table t.csv "${model[@]}" --declared declared.json
+expect 74 "none.json" "$program" loop --table t.csv "${model[@]}" --declared none.json
 
 # What would take too long is refused before it starts, with the limit and the way out.
 awk 'BEGIN { print "x,y"; for (i = 0; i < 250000; i++) print i % 97 "," i % 89 }' >long.csv
-expect 65 "512 MiB. Leave out columns" --table long.csv --response y --model 1 -o never.json
-expect 65 "the limit is 0.001 minutes" --table t.csv "${model[@]}" --minutes 0.001 -o never.json
-expect 64 "above 0" --table t.csv "${model[@]}" --minutes 0
+expect 65 "512 MiB. Leave out columns" "$program" loop --table long.csv --response y --model 1 -o never.json
+expect 65 "the limit is 0.001 minutes" "$program" loop --table t.csv "${model[@]}" --minutes 0.001 -o never.json
+expect 64 "above 0" "$program" loop --table t.csv "${model[@]}" --minutes 0
 [ -e never.json ] && fail "a refused search leaves an output file"
 
 # A bar where standard error is a terminal, and only there.
@@ -94,14 +74,14 @@ if [ -z "${FOILGAUGE_TEST_BRIEF:-}" ] && command -v script >/dev/null; then
   script -qec "'$program' loop --table slow.csv --response y --model '1 + T' -o bar.json" typed >/dev/null
   grep -q "0 found, next \[" typed || fail "no bar on a terminal"
 fi
-expect 0 '"verdict"' --table t.csv "${model[@]}" -o -
-[ -s err ] && fail "a bar where there is no terminal"
+expect 0 '"verdict"' "$program" loop --table t.csv "${model[@]}" -o -
+[ -s stderr ] && fail "a bar where there is no terminal"
 
 # Units: numbers far from 1 give the same verdict; squares that are no numbers are refused.
 for power in -300 300; do
   awk -F, -v OFS=, -v power=$power 'NR > 1 { $6 = $6 "e" power } { print }' t.csv >far.csv
-  expect 0 '"name": "table.linear(copy)"' --table far.csv "${model[@]}" --html far.html -o -
-  grep -qE "nan|inf[^a-z]" out far.html && fail "1e$power: numbers that are none"
+  expect 0 '"name": "table.linear\(copy\)"' "$program" loop --table far.csv "${model[@]}" --html far.html -o -
+  grep -qE "nan|inf[^a-z]" stdout far.html && fail "1e$power: numbers that are none"
   "$program" doe far.csv --response y --model "1 + T" >out 2>err
   [ $? = 65 ] || fail "doe takes responses of 1e$power"
   grep -q "give it in another unit" err || fail "doe does not say what to do with 1e$power"
@@ -112,4 +92,4 @@ done
 code=$?
 [ "$code" = 0 ] || [ "$code" = 77 ] || fail "the report does not validate"
 
-[ "$failures" = 0 ]
+exit $failed

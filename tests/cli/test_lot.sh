@@ -1,33 +1,8 @@
 #!/bin/bash
 # `foilgauge lot` and `merge`: kept, resumed, killed, out of space, sharded, and always the same report.
 # FOILGAUGE_KILLS: how often a run is killed (default 12).
-set -u
-program=$(realpath "$1")
-root=$PWD
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# expect CODE WORDS COMMAND...: the exit code, and words on standard error or output.
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$@" >stdout 2>stderr
-  local got=$?
-  [ "$got" = "$code" ] || fail "exit $got, not $code: $* ($(head -c 300 stderr))"
-  [ -z "$words" ] || cat stdout stderr | grep -qE -e "$words" || fail "no '$words' in: $(cat stdout stderr)"
-}
-
-# same A B: the same files with the same bytes.
-same() {
-  diff -r "$1" "$2" >difference 2>&1 || fail "$1 and $2 differ: $(head -n 3 difference)"
-}
+. tests/support/cli.sh
+listened="stdout stderr"
 
 # Eleven small foils, one of them with a name that would like to be markup, and a file that is no scan.
 mkdir scans
@@ -192,10 +167,7 @@ if command -v xmllint >/dev/null; then
   xmllint --noout --schema "$root/tests/support/qif3_results.xsd" one/results.qif 2>xmllint.log ||
     fail "results.qif: $(head -n 3 xmllint.log)"
 fi
-if python3 -c 'import jsonschema' 2>/dev/null; then
-  (cd "$root" && python3 tests/support/validate_schema.py reports/schema lot.schema.json "$folder/one/lot.json") ||
-    fail "lot.json does not validate"
-fi
+valid lot.schema.json one/lot.json
 python3 - one/results.dfq <<'P' || fail "results.dfq"
 import re, sys
 lines = open(sys.argv[1], "rb").read().decode().split("\r\n")
@@ -206,4 +178,4 @@ values = [line for line in lines if line.startswith("K0001/")]
 assert len(values) == 11 * count and len({v.split()[0] for v in values}) == count
 P
 
-[ $failures = 0 ]
+exit $failed

@@ -1,30 +1,7 @@
 #!/bin/bash
 # What lies in a lot's folder, and among its scans: records that were changed, names of any bytes.
-set -u
-program=$(realpath "$1")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# expect CODE WORDS COMMAND...: the exit code, and words on standard error or output.
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$@" >stdout 2>stderr
-  local got=$?
-  [ "$got" = "$code" ] || fail "exit $got, not $code: $* ($(head -c 300 stderr))"
-  [ -z "$words" ] || cat stdout stderr | grep -qaE -e "$words" || fail "no '$words' in: $(cat stdout stderr)"
-}
-
-same() {
-  diff -r "$1" "$2" >difference 2>&1 || fail "$1 and $2 differ: $(head -n 3 difference)"
-}
+. tests/support/cli.sh
+listened="stdout stderr"
 
 mkdir scans
 for i in 1 2 3; do
@@ -151,4 +128,4 @@ expect 65 "pad_column: .* no column 'pads'" timeout 60 "$program" lot lot.csv --
 expect 65 'more than 12 groups' lot many.csv --group die -o early
 expect 0 '2 foils of 2 scans' lot lot.csv --group die -o early
 
-[ $failures = 0 ]
+exit $failed

@@ -1,17 +1,10 @@
 #!/bin/bash
 # `foilgauge measure` and what cannot be measured: the exit code, words that help, and no file left.
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failures=0
+. tests/support/cli.sh
+cd "$root" || exit 1
+folder=$work
 out=$folder/out
 mkdir "$out"
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
 
 # check CODE WORDS FILE [OPTION...]: measure's exit code and words (a regular expression) on
 # standard error. Where it wrote no report, nothing may lie in the folder of outputs.
@@ -160,6 +153,4 @@ for bad in empty lost cut; do
   rm -f "$out/a.json"
 done
 
-[ "$failures" = 0 ] && echo "all right" && exit 0
-echo "$failures failures"
-exit 1
+exit $failed

@@ -1,31 +1,14 @@
 #!/bin/bash
 # `foilgauge measure`: what it writes where, its exit codes, and that nothing half-written remains.
-set -u
-program=$1
 shared=${FOILGAUGE_SHARED:-../shared}
 scan=$(ls samples/*.png "$shared"/scans/p1_classical.png 2>/dev/null | head -n 1)
 if [ -z "$scan" ]; then
   echo "skipped: no sample scan"
   exit 77
 fi
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-# expect CODE WORDS COMMAND...: the exit code, and words on standard error (a regular expression).
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$@" >"$folder/stdout" 2>"$folder/stderr"
-  local got=$?
-  [ "$got" = "$code" ] || fail "exit $got, not $code: $* ($(head -c 300 "$folder/stderr"))"
-  [ -z "$words" ] || grep -qE "$words" "$folder/stderr" || fail "no '$words' in: $(cat "$folder/stderr")"
-}
+. tests/support/cli.sh
+cd "$root" || exit 1
+folder=$work
 
 # only NAME...: nothing but these lies in the folder of outputs.
 only() {
@@ -138,6 +121,4 @@ expect 64 'overwrite' "$program" measure "$folder/scan.png" -o "$folder/./scan.p
 cmp -s "$scan" "$folder/scan.png" || fail "the scan was overwritten"
 only
 
-[ "$failures" = 0 ] && echo "all right" && exit 0
-echo "$failures failures"
-exit 1
+exit $failed

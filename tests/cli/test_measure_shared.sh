@@ -1,19 +1,16 @@
 #!/bin/bash
 # `foilgauge measure` on scans of a renderer that is not this project's, against their truth.
-set -u
-program=$1
-shared=${FOILGAUGE_SHARED:-../shared}/scans
+shared=$(realpath -m "${FOILGAUGE_SHARED:-../shared}")/scans
 if [ ! -e "$shared/p1_classical.png" ] || ! command -v python3 >/dev/null; then
   echo "skipped: no $shared/p1_classical.png, or no python3"
   exit 77
 fi
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+. tests/support/cli.sh
 
 # compare NAME R_UM HEIGHT_UM: the largest errors that are allowed.
 compare() {
-  "$program" measure "$shared/$1.png" -d "$shared/$4.design.json" -o "$folder/$1.json" || return 1
-  python3 - "$folder/$1.json" "$shared/$1.truth.json" "$2" "$3" <<'PYTHON'
+  "$program" measure "$shared/$1.png" -d "$shared/$4.design.json" -o "$work/$1.json" || return 1
+  python3 - "$work/$1.json" "$shared/$1.truth.json" "$2" "$3" <<'PYTHON'
 import json, math, sys
 report, truth = (json.load(open(path)) for path in sys.argv[1:3])
 radius_um, height_um = map(float, sys.argv[3:5])
@@ -47,9 +44,8 @@ sys.exit(len(bad) > 0)
 PYTHON
 }
 
-failures=0
 while read -r name radius height design; do
-  compare "$name" "$radius" "$height" "$design" || { echo "FAILED: $name"; failures=$((failures + 1)); }
+  compare "$name" "$radius" "$height" "$design" || fail "$name"
 done <<'TABLE'
 p1_classical 0.4 0.1 gen2
 p2_dark_on_light 0.4 0.1 gen2
@@ -57,5 +53,4 @@ p3_sinusoidal_16bit 0.4 0.1 sinusoidal
 p4_lip_springback 0.4 0.1 gen2
 p7_rough 20 2 gen2
 TABLE
-[ "$failures" = 0 ] && echo "all right" && exit 0
-exit 1
+exit $failed

@@ -1,16 +1,7 @@
 #!/bin/bash
 # The model of a scanner: what it was made for, lots corrected by it, and every wrong model refused with words.
 . tests/support/loop.sh
-
-# expect CODE WORDS ARGUMENTS...: the exit code, and words on standard error or output.
-expect() {
-  local code=$1 words=$2
-  shift 2
-  "$program" "$@" >out.txt 2>err.txt </dev/null
-  local got=$?
-  [ $got -eq "$code" ] || fail "$*: exit $got, not $code ($(head -c 300 err.txt))"
-  [ -z "$words" ] || cat out.txt err.txt | grep -qE -e "$words" || fail "$*: does not say '$words' but: $(head -c 400 err.txt)"
-}
+listened="stdout stderr"
 
 # render NAME SEED ROTATION EFFECTS [DPI]: every scan shows the same piece of glass.
 render() { render_foil "$1" "$2" "$3" "$4" "${5:-1200}" '"width_px":1900,"height_px":1900,'; }
@@ -21,19 +12,19 @@ render b 2 15 "$scale"
 mkdir scans
 for i in 1 2 3; do render scans/s$i 1$i $((i * 100)) "$scale"; done
 rm scans/*.json
-expect 0 '' loop --same-foil a.png b.png --scanner 'left desk' --model-out left.json
+expect 0 '' "$program" loop --same-foil a.png b.png --scanner 'left desk' --model-out left.json
 [ "$(value left.json "r['scanner'], r['tied'], r['level'], [f['id'] for f in r['fields']]")" = \
   "('left desk', False, 'points', ['scan.scale_y'])" ] || fail "left.json is not what was asked for"
 [ "$(value left.json "r['inputs'][1]['sha256']")" = "$(sha256sum b.png | cut -c1-64)" ] || fail "left.json: inputs"
 
 # What it was made for.
-expect 0 '' measure scans/s1.png --model left.json --scanner 'left desk' -o s1.out
+expect 0 '' "$program" measure scans/s1.png --model left.json --scanner 'left desk' -o s1.out
 near "R0 corrected" "$(value s1.out "r['foils'][0]['overall']['radius_mm']")" 20.95 0.001
 [ "$(value s1.out "r['inputs'][0]['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "model_sha256"
 [ "$(value s1.out "r['foils'][0]['place_mm'][2] > 10")" = True ] || fail "a corrected foil has lost its place"
 # What is corrected says so, by what, and what that did: on the page, in the JSON, in the table, in the CSV.
-expect 0 '' measure scans/s1.png --model left.json --html s1.html --csv s1.csv -o s1.out
-expect 0 '' measure scans/s1.png --html plain.html --csv plain.csv -o plain.out
+expect 0 '' "$program" measure scans/s1.png --model left.json --html s1.html --csv s1.csv -o s1.out
+expect 0 '' "$program" measure scans/s1.png --html plain.html --csv plain.csv -o plain.out
 script -qec "$program measure scans/s1.png --model left.json" s1.txt >/dev/null </dev/null
 script -qec "$program measure scans/s1.png" plain.txt >/dev/null </dev/null
 day=$(value left.json "r['date'][:10]") sum=$(sha256sum left.json | cut -c1-64)
@@ -67,14 +58,14 @@ for name in "radius_mm", "height_mm":
     assert 0 < c["u_" + name] < 1e-4
 P
 
-expect 65 "scanner 'left desk', not of 'right desk'" measure a.png --model left.json --scanner 'right desk'
+expect 65 "scanner 'left desk', not of 'right desk'" "$program" measure a.png --model left.json --scanner 'right desk'
 sed 's/"left desk"/null/' left.json >nameless.json
-expect 65 'does not say which scanner' measure a.png --model nameless.json --scanner 'left desk'
-expect 0 '' measure a.png --model nameless.json -o x.out
-expect 64 'give one' measure a.png --scanner 'left desk'
-expect 64 'name of 1 to' loop a.png --scanner ''
+expect 65 'does not say which scanner' "$program" measure a.png --model nameless.json --scanner 'left desk'
+expect 0 '' "$program" measure a.png --model nameless.json -o x.out
+expect 64 'give one' "$program" measure a.png --scanner 'left desk'
+expect 64 'name of 1 to' "$program" loop a.png --scanner ''
 render half 3 -75 "$scale" 600
-expect 65 '600 dpi and the model is of a scanner at 1200' measure half.png --model left.json -o never.out
+expect 65 '600 dpi and the model is of a scanner at 1200' "$program" measure half.png --model left.json -o never.out
 [ ! -e never.out ] || fail "a refused model leaves a report behind"
 
 # Its region: outside it is said, at twice that far it is refused.
@@ -87,11 +78,11 @@ json.dump(model, open(sys.argv[1], "w"))
 P
 }
 region small.json 30 && region tiny.json 15
-expect 0 'reaches beyond the 30 x 30 mm' measure a.png --model small.json -o x.out
+expect 0 'reaches beyond the 30 x 30 mm' "$program" measure a.png --model small.json -o x.out
 [ "$(value x.out "r['foils'][0]['flags']")" = "['beyond_model_region']" ] || fail "a foil beyond the region has no flag"
-expect 0 'reaches beyond' measure a.png --model small.json --html x.html
+expect 0 'reaches beyond' "$program" measure a.png --model small.json --html x.html
 grep -q 'reaches beyond the region' x.html || fail "the page does not say that the foil reaches beyond the region"
-expect 65 'times as far on the glass as the 15 x 15 mm' measure a.png --model tiny.json
+expect 65 'times as far on the glass as the 15 x 15 mm' "$program" measure a.png --model tiny.json
 
 # A tie widens: the truth is inside although the explanation in use may be the wrong one.
 python3 - <<'P'
@@ -100,7 +91,7 @@ model = json.load(open("left.json"))
 model["tied"], model["alternatives"] = True, [[]]
 json.dump(model, open("tied.json", "w"))
 P
-expect 0 'other explanations did as well' measure scans/s1.png --model tied.json -o tied.out
+expect 0 'other explanations did as well' "$program" measure scans/s1.png --model tied.json -o tied.out
 python3 - <<'P'
 import json
 model = json.load(open("left.json"))
@@ -108,7 +99,7 @@ for field in model["fields"]:
     field["u_amplitude_mm"] = [30 * u for u in field["u_amplitude_mm"]]
 json.dump(model, open("vague.json", "w"))
 P
-expect 0 '' measure scans/s1.png --model vague.json -o vague.out
+expect 0 '' "$program" measure scans/s1.png --model vague.json -o vague.out
 python3 - <<'P' || fail "a tied model does not widen the uncertainty to what its alternative would change"
 import json
 read = lambda name: json.load(open(name))["foils"][0]
@@ -148,9 +139,9 @@ del model["fields"]
 json.dump(model, open("empty.json", "w"))
 P
 while IFS='|' read -r file code words; do
-  expect "$code" "$words" measure a.png --model "$file" -o never.out
-  grep -q "$file" err.txt || fail "$file is not named"
-  expect "$code" "$words" lot scans --model "$file" -o never
+  expect "$code" "$words" "$program" measure a.png --model "$file" -o never.out
+  grep -q "$file" $work/stderr || fail "$file is not named"
+  expect "$code" "$words" "$program" lot scans --model "$file" -o never
   [ ! -e never.out ] && [ ! -e never ] || fail "$file leaves something behind"
 done <<'TABLE'
 text.json|65|no JSON at byte
@@ -172,8 +163,8 @@ missing.json|74|missing.json
 TABLE
 
 # A lot corrected by it: the same numbers as one by one, and the report says by what.
-expect 0 '' lot scans -o plain
-expect 0 '' lot scans --model left.json --scanner 'left desk' -o one
+expect 0 '' "$program" lot scans -o plain
+expect 0 '' "$program" lot scans --model left.json --scanner 'left desk' -o one
 [ "$(value one/lot.json "r['model_sha256']")" = "$(sha256sum left.json | cut -c1-64)" ] || fail "lot.json: model_sha256"
 [ "$(value plain/lot.json "r['model_sha256']")" = None ] || fail "lot.json without a model"
 for words in "$sum" 'left desk' "$day" 'Corrected by' 'a wrong scale along' 'It moved R0 by [-+]' 'without a known diameter'; do
@@ -183,7 +174,7 @@ grep -q 'Corrected by' plain/index.html && fail "a lot that is not corrected say
 [ "$(value one/lot.json "r['model']['scanner'], r['model']['path'], r['correction']['u_height_mm'] > 0")" = \
   "('left desk', 'scanner_model.json', True)" ] || fail "lot.json: the model"
 [ "$(value plain/lot.json "r['model'], 'correction' in r")" = "(None, False)" ] || fail "lot.json without a model: model"
-expect 0 '' lot scans --model small.json -o beyond
+expect 0 '' "$program" lot scans --model small.json -o beyond
 grep -q '3 of 3 foils reach beyond' beyond/index.html || fail "the lot's page does not say that foils reach beyond the region"
 [ "$(value beyond/lot.json "all('beyond_model_region' in f['flags'] for f in r['foils'])")" = True ] || fail "lot.json: no flag"
 cmp -s left.json one/scanner_model.json || fail "the lot does not keep its model"
@@ -200,32 +191,32 @@ P
 # Kept while the model stays; another one, or none, is another measurement.
 sed 's/0\.036/0.035/' left.json >other.json
 cmp -s left.json other.json && sed 's/"version"/ "version"/' left.json >other.json
-expect 0 ' 0 to measure, 3 kept' lot scans --model left.json -o one --resume --dry-run
-expect 0 ' 3 to measure, 0 kept' lot scans --model other.json -o one --resume --dry-run
-expect 0 ' 3 to measure, 0 kept' lot scans -o one --resume --dry-run
+expect 0 ' 0 to measure, 3 kept' "$program" lot scans --model left.json -o one --resume --dry-run
+expect 0 ' 3 to measure, 0 kept' "$program" lot scans --model other.json -o one --resume --dry-run
+expect 0 ' 3 to measure, 0 kept' "$program" lot scans -o one --resume --dry-run
 cp -r one again
-expect 0 '' lot scans -o again --resume
+expect 0 '' "$program" lot scans -o again --resume
 diff -r again plain || fail "a lot resumed without its model is not the lot without it"
-expect 0 ' 0 to measure, 3 kept' lot scans --recipe one/recipe.json -o one --resume --dry-run
+expect 0 ' 0 to measure, 3 kept' "$program" lot scans --recipe one/recipe.json -o one --resume --dry-run
 cp -r one swapped && cp other.json swapped/scanner_model.json
-expect 65 'not the model that' lot scans --recipe swapped/recipe.json -o no
-expect 65 "not of 'right desk'" lot scans --recipe one/recipe.json --scanner 'right desk' -o no
+expect 65 'not the model that' "$program" lot scans --recipe swapped/recipe.json -o no
+expect 65 "not of 'right desk'" "$program" lot scans --recipe one/recipe.json --scanner 'right desk' -o no
 
 # Shards: wherever the model's file lies, the lot is the same; other models do not mix.
 mkdir elsewhere && cp left.json elsewhere/renamed.json
 mkdir part
-expect 0 '' lot scans --model left.json -o part/1 --shard 1/2
-expect 0 '' lot scans --model elsewhere/renamed.json -o part/2 --shard 2/2
-expect 0 '3 foils' merge part/1 part/2 -o merged
+expect 0 '' "$program" lot scans --model left.json -o part/1 --shard 1/2
+expect 0 '' "$program" lot scans --model elsewhere/renamed.json -o part/2 --shard 2/2
+expect 0 '3 foils' "$program" merge part/1 part/2 -o merged
 diff -r one merged || fail "shards with a model are not the lot"
-expect 0 '' lot scans --model other.json -o foreign --shard 2/2
-expect 65 "scanner's models differ" merge part/1 foreign -o no
-expect 0 '' lot scans -o bare --shard 2/2
-expect 65 "scanner's models differ" merge part/1 bare -o no
+expect 0 '' "$program" lot scans --model other.json -o foreign --shard 2/2
+expect 65 "scanner's models differ" "$program" merge part/1 foreign -o no
+expect 0 '' "$program" lot scans -o bare --shard 2/2
+expect 65 "scanner's models differ" "$program" merge part/1 bare -o no
 
 # A scan that the model does not fit is not measured; the others are.
 cp half.png scans/half.png
-expect 2 '600 dpi' lot scans --model left.json -o mixed
+expect 2 '600 dpi' "$program" lot scans --model left.json -o mixed
 [ "$(value mixed/lot.json "r['counts']['foils'], r['counts']['scans_not_measured']")" = "(3, 1)" ] || fail "mixed lot"
 
 # What the loop refuses.
@@ -234,7 +225,7 @@ render third 8 -70 ''
 sed -i 's/3.34,3.41/4.24,3.41/' third.json && "$program" render third.json -o third.png || fail "render another foil"
 while IFS='|' read -r code words arguments; do
   # shellcheck disable=SC2086
-  expect "$code" "$words" loop $arguments
+  expect "$code" "$words" "$program" loop $arguments
 done <<'TABLE'
 65|one resolution|a.png half.png
 65|one resolution|a.png --hold-out half.png
@@ -259,8 +250,8 @@ for bumps in 1 2; do
 SPEC
   printf '{"schema":"foilgauge/design/1","bump_count":%d}' $bumps >few_design.json
   "$program" render few.json -o few.png || fail "render $bumps bumps"
-  [ $bumps -eq 1 ] && expect 65 'edge rows are too few' loop few.png --design few_design.json -o few.out && continue
-  expect 0 '' loop few.png --design few_design.json -o few.out
+  [ $bumps -eq 1 ] && expect 65 'edge rows are too few' "$program" loop few.png --design few_design.json -o few.out && continue
+  expect 0 '' "$program" loop few.png --design few_design.json -o few.out
   [ "$(value few.out "r['verdict'], r['bumps']['count']")" = "('clean', $bumps)" ] || fail "$bumps bumps: verdict"
   value few.out "r['notes'][0]" | grep -q "$bumps measured: no effect over them can be told" ||
     fail "$bumps bumps: nothing is said of them"

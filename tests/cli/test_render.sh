@@ -1,25 +1,8 @@
 #!/bin/bash
 # foilgauge render: exit codes, no file left behind on failure, the same bytes, bounded memory.
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-complain() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
-
-expect() { # expected exit code, words on standard error, command...
-  local code=$1 words=$2
-  shift 2
-  "$@" >"$folder/out" 2>"$folder/err"
-  local got=$?
-  if [ "$got" -ne "$code" ] || { [ -n "$words" ] && ! grep -q -- "$words" "$folder/err"; }; then
-    complain "$* -> $got, not $code with '$words': $(cat "$folder/err")"
-  fi
-}
+. tests/support/cli.sh
+cd "$root" || exit 1
+folder=$work
 
 expect 64 'SPEC.json' "$program" render
 expect 64 'where the scan goes' "$program" render samples/render/clean.json
@@ -29,7 +12,7 @@ expect 65 'scanner.dpi' "$program" render "$folder/bad.json" -o "$folder/a.png"
 expect 74 'nowhere' "$program" render samples/render/clean.json -o "$folder/nowhere/a.png"
 expect 74 'nowhere' "$program" render samples/render/clean.json -o "$folder/a.png" \
   --truth "$folder/nowhere/t.json"
-ls -A "$folder" | grep -q 'a\.png' && complain "left behind: $(ls -A "$folder")"
+ls -A "$folder" | grep -q 'a\.png' && fail "left behind: $(ls -A "$folder")"
 
 tiers="clean rough"
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || tiers=rough
@@ -37,8 +20,8 @@ for tier in $tiers; do
   expect 0 '' "$program" render "samples/render/$tier.json" -o "$folder/$tier.png" \
     --truth "$folder/$tier.json"
   "$program" render "samples/render/$tier.json" -o - | cmp - "$folder/$tier.png" ||
-    complain "$tier: not the same bytes"
-  grep -q '"foilgauge/truth/1"' "$folder/$tier.json" || complain "$tier: no truth"
+    fail "$tier: not the same bytes"
+  grep -q '"foilgauge/truth/1"' "$folder/$tier.json" || fail "$tier: no truth"
 done
 
 # 160 million pixels: held whole, coverage alone would be 640 MB. Address space is what counts, and
@@ -50,4 +33,4 @@ END
 if ! nm "$program" 2>/dev/null | grep -q __asan; then
   expect 0 '' bash -c "ulimit -v 250000; exec '$program' render '$folder/wide.json' -o /dev/null"
 fi
-exit $((failures > 0))
+exit $failed

@@ -1,15 +1,8 @@
 #!/bin/bash
 # What is odd about a scan's resolution is said: on the terminal, in JSON and on the page.
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+. tests/support/cli.sh
+cd "$root" || exit 1
+folder=$work
 
 # render NAME DPI
 render() {
@@ -42,5 +35,4 @@ said resolution_contradicts_file 'measured at 2300 dpi as was given, but the fil
 said unequal_resolution 'the resolutions along x and y differ: 2400 × 1200 dpi' "$folder/tall.png"
 said resolution_contradicts_file 'measured at 2400 dpi as was given' "$folder/tall.png" --dpi 2400
 
-[ $failures = 0 ] && echo "all right"
-exit $((failures > 0))
+exit $failed

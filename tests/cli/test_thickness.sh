@@ -2,16 +2,7 @@
 # A strip that is not as thick as the design says: clearances are over the strip as it is, both are said where they
 # differ by more than U, and the thickness has a tolerance of its own.
 #   test_thickness.sh PROGRAM
-set -u
-program=$(realpath "$1")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-
-fail() {
-  echo "FAIL: $*" >&2
-  exit 1
-}
+. tests/support/cli.sh
 
 cat >thick.json <<'J'
 {"schema": "foilgauge/render/1", "seed": 4, "foils": [{"design": {"thickness_mm": 0.105}, "rotate_deg": 20}],
@@ -49,3 +40,4 @@ grep -q 'the design says' plain.txt plain.html && fail "said of a strip that is 
 "$program" measure thick.png --design limit.json -o never.out
 [ $? = 1 ] || fail "a thickness beyond its tolerance"
 "$program" measure plain.png --design limit.json -o ok.out || fail "a thickness within its tolerance: $?"
+exit $failed

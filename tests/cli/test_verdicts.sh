@@ -1,23 +1,12 @@
 #!/bin/bash
 # One verdict everywhere: exit code, JSON, CSV, page, terminal and lot say the same of a foil that passes, fails,
 # cannot be told, lacks a bump, was not measured, or is no foil of the design.
-set -u
-program=$(realpath "$1")
 shared=$(realpath -m "${FOILGAUGE_SHARED:-../shared}")
 if ! command -v python3 >/dev/null; then
   echo "skipped: no python3"
   exit 77
 fi
-root=$PWD
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+. tests/support/cli.sh
 
 render() { # NAME FOIL
   echo "{\"schema\":\"foilgauge/render/1\",\"seed\":4,\"foils\":[$2],\"scanner\":{\"dpi\":1200,\"noise\":2}}" >spec.json
@@ -213,6 +202,4 @@ design 5 '"height_mm":{"min":0.1,"max":1}'
 lot 2 fail wide.png gap.png
 holds whole/lot.json 'f["verdict"] == "not_measured" and r["quantities"]["overall.radius_mm"]["count"] == 1'
 
-[ "$failures" = 0 ] && echo "all right" && exit 0
-echo "$failures failures"
-exit 1
+exit $failed
