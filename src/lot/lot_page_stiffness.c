@@ -8,7 +8,7 @@ static void put_spread_row(FILE *out, const char *title, const fg_lot_spread *sp
                            spread->most};
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
     fputs("<td>", out);
-    put_number(out, values[i], 4);
+    fg_lot_put_number(out, values[i], 4);
     fputs("</td>", out);
   }
   fputs("</tr>\n", out);

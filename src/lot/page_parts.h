@@ -1,24 +1,26 @@
-/* What the files of a lot's page share. */
+/* What the files of a lot's page share, and its sections. */
 #ifndef FG_LOT_PAGE_PARTS_H
 #define FG_LOT_PAGE_PARTS_H
 
-#include <math.h>
 #include <stdio.h>
 
 #include "lot/analysis.h"
 
 /* A dash where it is not known. */
-static inline void put_number(FILE *out, double value, int digits) {
-  if (isfinite(value))
-    fprintf(out, "%s%.*g", value < 0 ? "−" : "", digits, fabs(value));
-  else
-    fputs("–", out);
-}
+void fg_lot_put_number(FILE *out, double value, int digits);
+
+/* What people call a foil. */
+void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
 
 /* What the strips measure, and what the design says where that is another thickness. */
 void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis);
 
-/* The section on the stiffness of the bumps. */
+/* The sections, in the page's order. */
+void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis);
 
 #endif

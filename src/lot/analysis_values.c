@@ -1,0 +1,38 @@
+/* What every part of the analysis asks: which bumps count, a quantity by name, a spread. */
+#include <math.h>
+#include <string.h>
+
+#include "lot/analysis.h"
+
+bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump) {
+  return fg_foil_is_measured(foil) && !(bump->flags & FG_BUMP_CRUSHED);
+}
+
+const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name) {
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (!strcmp(analysis->quantities[i].field->name, name)) return &analysis->quantities[i];
+  return NULL;
+}
+
+fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
+                           fg_bandwidth_rule rule, fg_lot_spread *spread) {
+  fg_density density;
+  double squares = 0;
+  *spread =
+      (fg_lot_spread){.count = count, .mode = NAN, .sd = NAN, .least = INFINITY, .most = -INFINITY};
+  for (size_t i = 0; i < count; i++) {
+    spread->mean += (values[i] - values[0]) / (double)count;
+    spread->least = fmin(spread->least, values[i]);
+    spread->most = fmax(spread->most, values[i]);
+  }
+  spread->mean = count ? spread->mean + values[0] : NAN;
+  for (size_t i = 0; i < count; i++)
+    squares += (values[i] - spread->mean) * (values[i] - spread->mean);
+  if (count > 1) spread->sd = sqrt(squares / (double)(count - 1));
+  spread->relative_sd_pct = 100 * spread->sd / fabs(spread->mean);
+  if (!(spread->sd > 0)) return FG_OK;
+  FG_TRY(fg_density_fit(ctx, values, count, rule, &density));
+  spread->mode = fg_density_mode(&density);
+  fg_density_free(&density);
+  return FG_OK;
+}

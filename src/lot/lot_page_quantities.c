@@ -1,0 +1,151 @@
+/* The lot's page: statistics of the quantities, capability, charts, springback. */
+#include <math.h>
+
+#include "lot/lot_plots.h"
+#include "lot/page_parts.h"
+
+static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<h1>Quantities</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>unit"
+        "</th><th>n</th><th>mean</th><th>s</th><th>median</th><th>mode</th><th>min</th><th>max</th>"
+        "<th>runs</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < analysis->quantity_count; i++) {
+    const fg_lot_quantity *quantity = &analysis->quantities[i];
+    const double values[] = {quantity->mean, quantity->sd,    quantity->median,
+                             quantity->mode, quantity->least, quantity->most};
+    fprintf(out, "<tr><td>%s</td><td>%s</td><td>%zu</td>", quantity->field->words,
+            quantity->field->unit, quantity->count);
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+      fputs("<td>", out);
+      fg_lot_put_number(out, values[k], k == 1 ? 3 : 6);
+      fputs("</td>", out);
+    }
+    fprintf(out, "<td>%s</td></tr>\n",
+            !quantity->has_chart ? "–"
+            : quantity->stable   ? "stable"
+                                 : "not stable");
+  }
+  fputs("</tbody></table></div>\n", out);
+  if (analysis->crushed)
+    fprintf(out,
+            "<p class=\"note\">%zu of %zu bumps are crushed: they are in no statistics, stiffness "
+            "or clearance of this page.</p>\n",
+            analysis->crushed, analysis->bumps);
+}
+
+static void put_ratio(FILE *out, const fg_ratio *ratio) {
+  fputs("<td>", out);
+  fg_lot_put_number(out, ratio->value, 3);
+  if (isfinite(ratio->value)) {
+    fputs(" <i>", out);
+    fg_lot_put_number(out, ratio->low, 3);
+    fputs(" … ", out);
+    fg_lot_put_number(out, ratio->high, 3);
+    fputs("</i>", out);
+  }
+  fputs("</td>", out);
+}
+
+static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
+  const fg_capability *capability = &quantity->capability;
+  fprintf(out, "<tr><td>%s</td><td>", quantity->field->words);
+  fg_lot_put_number(out, quantity->tolerance->lower, 6);
+  fputs(" … ", out);
+  fg_lot_put_number(out, quantity->tolerance->upper, 6);
+  fputs("</td>", out);
+  put_ratio(out, &capability->p);
+  put_ratio(out, &capability->pk);
+  put_ratio(out, &capability->c);
+  put_ratio(out, &capability->ck);
+  fputs("<td>", out);
+  fg_lot_put_number(out, capability->quantile_pk, 3);
+  fprintf(out, "</td><td class=\"words\">%s, %s</td></tr>\n",
+          capability->stable ? "stable" : "not stable",
+          capability->normal ? "normal" : "not normal: the quantile method holds");
+}
+
+static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
+  bool any = false;
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    any = any || analysis->quantities[i].has_capability;
+  if (!any) return;
+  fputs("<h2>Capability</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>"
+        "tolerance</th><th>Pp</th><th>Ppk</th><th>Cp</th><th>Cpk</th><th>Ppk by quantiles</th><th>"
+        "</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (analysis->quantities[i].has_capability) put_capability_row(out, &analysis->quantities[i]);
+  fprintf(
+      out,
+      "</tbody></table></div>\n<p class=\"note\">Intervals at %.4g %%. Cp and Cpk speak of what "
+      "the process will do, so they are stated only while its control charts show no signal; "
+      "otherwise Pp and Ppk tell what it did.</p>\n",
+      100 * analysis->lot->settings.confidence);
+}
+
+static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
+  unsigned rules = 0;
+  for (size_t i = 0; i < quantity->chart.count; i++)
+    rules |= quantity->chart.point[i].rules;
+  fprintf(out, "Limits at three sigma from foil to foil; %zu signals", quantity->chart.signals);
+  for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
+    if (rules & (1u << (rule - 1))) fprintf(out, "; %s", fg_run_rule_words(rule));
+  if (quantity->has_subgroups)
+    fprintf(out, ". Spread within foils: %zu signals", quantity->deviations.signals);
+  fputs(".", out);
+}
+
+static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
+  static const char *const shown[] = {"radius_error_pct", "height_mm", "overall.radius_mm"};
+  fputs("<h2>How the process runs</h2>\n", out);
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+    if (!quantity || !quantity->has_chart) continue;
+    fputs("<figure>", out);
+    fg_lot_plot_chart(out, quantity);
+    fputs("<figcaption>", out);
+    put_signals(out, quantity);
+    fputs("</figcaption></figure>\n", out);
+  }
+}
+
+void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<section>\n", out);
+  put_quantity_rows(out, analysis);
+  put_capability(out, analysis);
+  put_charts(out, analysis);
+  fputs("</section>\n", out);
+}
+
+void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_mm");
+  const fg_lot_quantity *errors = fg_lot_find_quantity(analysis, "radius_error_pct");
+  const fg_lot_quantity *angles = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
+  fputs("<section>\n<h1>Springback</h1>\n<figure>", out);
+  fg_lot_plot_places(out, errors);
+  fg_lot_plot_places(out, angles);
+  fputs("<figcaption>Each bump number: mean and two standard deviations over the foils."
+        "</figcaption></figure>\n<h2>Radius over design</h2>\n<figure>",
+        out);
+  fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bump_radius_mm, 0,
+                      "radius over design");
+  fputs("<figcaption>Histogram and kernel density.</figcaption></figure>\n", out);
+  if (analysis->has_correlation) {
+    const fg_lot_correlation *line = &analysis->correlation;
+    fputs("<h2>Angle against radius</h2>\n<figure>", out);
+    fg_lot_plot_correlation(out, analysis);
+    fprintf(out,
+            "<figcaption>Dashed: constant arc length. Orange: least squares over %zu bumps (%zu "
+            "trimmed by their radius), slope %.3f, r %.3f. In logarithms, where a constant arc "
+            "length is a slope of −1 exactly: %.4f",
+            line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope);
+    if (isfinite(line->log_freedom))
+      fprintf(out, " (%.4f … %.4f; bumps of %zu foils, %.1f degrees of freedom)", line->log_low,
+              line->log_high, line->foils, line->log_freedom);
+    fprintf(out,
+            ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
+            "</figcaption></figure>\n",
+            line->count, line->arc_length_mean_pct, line->arc_length_sd_pct);
+  }
+  fputs("</section>\n", out);
+}
