@@ -21,19 +21,6 @@ extern "C" {
 /* k of the expanded uncertainty U = k u. */
 #define FG_COVERAGE_FACTOR 2.0
 
-typedef fg_quantity fg_report_field;
-typedef fg_quantity_owner fg_report_owner;
-#define FG_REPORT_FOIL        FG_QUANTITY_OF_FOIL
-#define FG_REPORT_BUMP        FG_QUANTITY_OF_BUMP
-#define FG_REPORT_DISC        FG_QUANTITY_OF_DISC
-#define FG_FIELD_NUMBER       FG_QUANTITY_NUMBER
-#define FG_FIELD_PAIR         FG_QUANTITY_PAIR
-#define FG_FIELD_COUNT        FG_QUANTITY_COUNT
-#define fg_report_fields      fg_quantities
-#define fg_report_find        fg_quantity_find
-#define fg_report_value       fg_quantity_value
-#define fg_report_uncertainty fg_quantity_uncertainty
-
 /* What a value says about its tolerance, its uncertainty considered (after ISO 14253-1): the
  * interval value ± 2 u lies inside both limits, or outside one, or a limit runs through it. A value
  * whose uncertainty is not known is judged as if it were 0. */
@@ -56,7 +43,7 @@ fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b);
 
 typedef struct fg_judgement {
   const fg_tolerance *tolerance; /* of the design; not owned */
-  const fg_report_field *field;
+  const fg_quantity *row;
   int number; /* of the bump or disc; 0: the whole foil */
   double value, u;
   bool missing;  /* of a bump that is not there: no value, and a fail */

@@ -44,7 +44,7 @@ static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
     if (i && !(severity > foil->severity)) continue;
     foil->severity = severity;
     foil->worst_number = judgement->number;
-    foil->worst_field = judgement->field;
+    foil->worst_row = judgement->row;
     foil->worst_value = judgement->value;
   }
 }
@@ -73,7 +73,7 @@ static void rank_by_spread(fg_lot_analysis *analysis) {
       if (!(severity > foil->severity)) continue;
       foil->severity = severity;
       foil->worst_number = bump->number;
-      foil->worst_field = height->field;
+      foil->worst_row = height->row;
       foil->worst_value = bump->height_mm;
     }
   }

@@ -16,7 +16,7 @@ typedef struct fg_lot_foil {
   bool exceeded;       /* a value fails */
   double severity;     /* the farthest value: 1 at its limit; without tolerances in sd of the lot */
   int worst_number;    /* its bump; 0: the whole foil */
-  const fg_quantity *worst_field;
+  const fg_quantity *worst_row;
   double worst_value;
 } fg_lot_foil;
 
@@ -28,7 +28,7 @@ typedef struct fg_lot_place {
 
 /* One quantity over the lot. */
 typedef struct fg_lot_quantity {
-  const fg_quantity *field;
+  const fg_quantity *row;
   fg_quantity_owner owner;
   const fg_tolerance *tolerance; /* NULL: none */
   double *value;                 /* what is known, foil by foil; owned */

@@ -161,10 +161,10 @@ static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size
 }
 
 static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int bump) {
-  if (!bump) return fg_quantity_value(quantity->field, foil);
+  if (!bump) return fg_quantity_value(quantity->row, foil);
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number == bump && fg_lot_bump_counts(foil, &foil->bumps[i]))
-      return fg_quantity_value(quantity->field, &foil->bumps[i]);
+      return fg_quantity_value(quantity->row, &foil->bumps[i]);
   return NAN;
 }
 

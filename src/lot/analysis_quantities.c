@@ -8,20 +8,20 @@
 #include "lot/analysis.h"
 #include "quantity/quantity.h"
 
-static bool is_listed(const fg_lot_analysis *analysis, const fg_quantity *field) {
+static bool is_listed(const fg_lot_analysis *analysis, const fg_quantity *row) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    if (analysis->quantities[i].field == field) return true;
+    if (analysis->quantities[i].row == row) return true;
   return false;
 }
 
 static void list_quantity(fg_lot_analysis *analysis, fg_quantity_owner owner,
-                          const fg_quantity *field) {
-  if (!field || is_listed(analysis, field)) return;
+                          const fg_quantity *row) {
+  if (!row || is_listed(analysis, row)) return;
   const fg_design *design = &analysis->lot->settings.design;
   fg_lot_quantity *quantity = &analysis->quantities[analysis->quantity_count++];
-  *quantity = (fg_lot_quantity){.field = field, .owner = owner, .mode = NAN};
+  *quantity = (fg_lot_quantity){.row = row, .owner = owner, .mode = NAN};
   for (size_t i = 0; i < design->tolerance_count; i++)
-    if (!strcmp(design->tolerances[i].quantity, field->name))
+    if (!strcmp(design->tolerances[i].quantity, row->name))
       quantity->tolerance = &design->tolerances[i];
 }
 
@@ -67,10 +67,10 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
     const fg_foil *foil = analysis->foils[i].foil;
     if (!fg_foil_is_measured(foil)) continue;
     if (quantity->owner == FG_QUANTITY_OF_FOIL)
-      take_value(quantity, i, fg_quantity_value(quantity->field, foil));
+      take_value(quantity, i, fg_quantity_value(quantity->row, foil));
     for (size_t k = 0; quantity->owner == FG_QUANTITY_OF_BUMP && k < foil->bump_count; k++)
       if (fg_lot_bump_counts(foil, &foil->bumps[k]))
-        take_value(quantity, i, fg_quantity_value(quantity->field, &foil->bumps[k]));
+        take_value(quantity, i, fg_quantity_value(quantity->row, &foil->bumps[k]));
   }
   return FG_OK;
 }
@@ -135,7 +135,7 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
     for (size_t k = 0; k < foil->bump_count; k++)
       if (foil->bumps[k].number >= 1 && fg_lot_bump_counts(foil, &foil->bumps[k]))
         add_to_place(&quantity->place[foil->bumps[k].number - 1],
-                     fg_quantity_value(quantity->field, &foil->bumps[k]));
+                     fg_quantity_value(quantity->row, &foil->bumps[k]));
   }
   for (size_t i = 0; i < quantity->places; i++) {
     fg_lot_place *place = &quantity->place[i];

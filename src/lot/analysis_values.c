@@ -10,7 +10,7 @@ bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump) {
 
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    if (!strcmp(analysis->quantities[i].field->name, name)) return &analysis->quantities[i];
+    if (!strcmp(analysis->quantities[i].row->name, name)) return &analysis->quantities[i];
   return NULL;
 }
 

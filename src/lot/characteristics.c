@@ -16,7 +16,7 @@ fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analys
   *count = 0;
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
-    const fg_quantity *row = quantity->field;
+    const fg_quantity *row = quantity->row;
     if (!row->characteristic || !quantity->count) continue;
     double nominal = row->nominal(&analysis->lot->settings.design, &analysis->lot->nominal);
     bool of_bumps = quantity->owner == FG_QUANTITY_OF_BUMP;
@@ -28,12 +28,12 @@ fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analys
 
 double fg_characteristic_value(const fg_characteristic *characteristic, const fg_foil *foil,
                                double *u) {
-  const fg_quantity *field = characteristic->quantity->field;
+  const fg_quantity *row = characteristic->quantity->row;
   const void *object = characteristic->bump ? NULL : foil;
   for (size_t i = 0; characteristic->bump && i < foil->bump_count; i++)
     if (foil->bumps[i].number == characteristic->bump) object = &foil->bumps[i];
   *u = NAN;
   if (!object || !fg_foil_is_measured(foil)) return NAN;
-  *u = fg_quantity_uncertainty(field, object);
-  return fg_quantity_value(field, object);
+  *u = fg_quantity_uncertainty(row, object);
+  return fg_quantity_value(row, object);
 }

@@ -29,15 +29,15 @@ static void put_number(FILE *out, const char *field, size_t number, double value
 }
 
 static void put_characteristic(FILE *out, size_t number, const fg_characteristic *one) {
-  const fg_quantity *field = one->quantity->field;
+  const fg_quantity *row = one->quantity->row;
   const fg_tolerance *tolerance = one->quantity->tolerance;
-  fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s", number, number, number, field->words);
+  fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s", number, number, number, row->words);
   if (one->bump) fprintf(out, " %d", one->bump);
   fprintf(out, "\r\nK2022/%zu 6\r\n", number); /* decimal places */
   put_number(out, "K2101", number, one->nominal);
   if (tolerance) put_number(out, "K2110", number, tolerance->lower);
   if (tolerance) put_number(out, "K2111", number, tolerance->upper);
-  fprintf(out, "K2142/%zu %s\r\n", number, field->unit);
+  fprintf(out, "K2142/%zu %s\r\n", number, row->unit);
 }
 
 static void put_foil(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil,

@@ -60,9 +60,9 @@ static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_
   fg_json_string(json, "defect", rejected ? defect : NULL);
   fg_json_bool(json, "exceeded", foil->exceeded);
   fg_json_number(json, "severity", foil->severity);
-  fg_json_string(json, "worst_quantity", foil->worst_field ? foil->worst_field->name : NULL);
+  fg_json_string(json, "worst_quantity", foil->worst_row ? foil->worst_row->name : NULL);
   fg_json_integer(json, "worst_bump", foil->worst_number);
-  fg_json_number(json, "worst_value", foil->worst_field ? foil->worst_value : NAN);
+  fg_json_number(json, "worst_value", foil->worst_row ? foil->worst_value : NAN);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }
@@ -146,7 +146,7 @@ static void write_places(fg_json *json, const fg_lot_quantity *quantity) {
 }
 
 static void write_quantity(fg_json *json, const fg_lot_quantity *quantity) {
-  fg_json_object(json, quantity->field->name);
+  fg_json_object(json, quantity->row->name);
   fg_json_integer(json, "count", (int64_t)quantity->count);
   fg_json_number(json, "mean", quantity->mean);
   fg_json_number(json, "sd", quantity->sd);
@@ -276,7 +276,7 @@ static void write_bearing(fg_json *json, const fg_lot_analysis *analysis,
 static void write_difference(fg_json *json, const fg_lot_difference *difference) {
   const fg_comparison *comparison = &difference->comparison;
   fg_json_object(json, NULL);
-  fg_json_string(json, "quantity", difference->quantity->field->name);
+  fg_json_string(json, "quantity", difference->quantity->row->name);
   fg_json_string(json, "a", difference->a);
   fg_json_string(json, "b", difference->b);
   fg_json_integer(json, "count_a", (int64_t)difference->count_a);
@@ -299,7 +299,7 @@ static void write_gauge(fg_json *json, const fg_lot_gauge *gauge) {
   const fg_gauge_study *study = &gauge->study;
   fg_json_object(json, NULL);
   fg_json_line(json);
-  fg_json_string(json, "quantity", gauge->quantity->field->name);
+  fg_json_string(json, "quantity", gauge->quantity->row->name);
   fg_json_integer(json, "bump", gauge->bump);
   fg_json_integer(json, "parts", (int64_t)study->parts);
   fg_json_integer(json, "operators", (int64_t)study->operators);

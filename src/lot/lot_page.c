@@ -32,12 +32,12 @@ static void put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
     fg_html_text(out, foil->foil->error);
   } else if (fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect)) {
     fputs(defect, out);
-  } else if (foil->worst_field) {
-    fputs(foil->worst_field->words, out);
+  } else if (foil->worst_row) {
+    fputs(foil->worst_row->words, out);
     if (foil->worst_number) fprintf(out, " of bump %d", foil->worst_number);
     fputs(": ", out);
     fg_lot_put_number(out, foil->worst_value, 5);
-    fprintf(out, " %s", foil->worst_field->unit);
+    fprintf(out, " %s", foil->worst_row->unit);
   }
 }
 
@@ -102,7 +102,7 @@ static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analy
     fprintf(out,
             "<figcaption>%s of each bump number: mean and two standard deviations over the "
             "foils%s.</figcaption></figure>\n",
-            leading->field->words, leading->tolerance ? "; red: tolerance" : "");
+            leading->row->words, leading->tolerance ? "; red: tolerance" : "");
   }
   fputs("</section>\n", out);
   return FG_OK;

@@ -18,7 +18,7 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
         out);
   for (size_t i = 0; i < analysis->difference_count; i++) {
     const fg_lot_difference *one = &analysis->differences[i];
-    fprintf(out, "<tr><td>%s</td><td class=\"words\">", one->quantity->field->words);
+    fprintf(out, "<tr><td>%s</td><td class=\"words\">", one->quantity->row->words);
     fg_html_text(out, one->a);
     fputs(" against ", out);
     fg_html_text(out, one->b);
@@ -45,9 +45,8 @@ void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
     fprintf(out,
             "<tr><td>%s</td><td>%d</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g"
             "</td><td>%.0f</td></tr>\n",
-            gauge->quantity->field->words, gauge->bump, study->repeatability,
-            study->reproducibility, study->grr, study->part, study->grr_pct,
-            floor(study->distinct_categories));
+            gauge->quantity->row->words, gauge->bump, study->repeatability, study->reproducibility,
+            study->grr, study->part, study->grr_pct, floor(study->distinct_categories));
   }
   fputs("</tbody></table></div>\n</section>\n", out);
 }

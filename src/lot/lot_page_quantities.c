@@ -13,8 +13,8 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
     const double values[] = {quantity->mean, quantity->sd,    quantity->median,
                              quantity->mode, quantity->least, quantity->most};
-    fprintf(out, "<tr><td>%s</td><td>%s</td><td>%zu</td>", quantity->field->words,
-            quantity->field->unit, quantity->count);
+    fprintf(out, "<tr><td>%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
+            quantity->row->unit, quantity->count);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
       fputs("<td>", out);
       fg_lot_put_number(out, values[k], k == 1 ? 3 : 6);
@@ -48,7 +48,7 @@ static void put_ratio(FILE *out, const fg_ratio *ratio) {
 
 static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
   const fg_capability *capability = &quantity->capability;
-  fprintf(out, "<tr><td>%s</td><td>", quantity->field->words);
+  fprintf(out, "<tr><td>%s</td><td>", quantity->row->words);
   fg_lot_put_number(out, quantity->tolerance->lower, 6);
   fputs(" … ", out);
   fg_lot_put_number(out, quantity->tolerance->upper, 6);

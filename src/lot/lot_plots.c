@@ -34,10 +34,10 @@ static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
 }
 
 /* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
-static void axis_title(char *text, size_t size, const fg_quantity *field) {
+static void axis_title(char *text, size_t size, const fg_quantity *row) {
   enum { LETTERS = 28 };
-  snprintf(text, size, "%s%s%s", strlen(field->words) > LETTERS ? field->symbol : field->words,
-           *field->unit ? ", " : "", field->unit);
+  snprintf(text, size, "%s%s%s", strlen(row->words) > LETTERS ? row->symbol : row->words,
+           *row->unit ? ", " : "", row->unit);
 }
 
 void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
@@ -55,7 +55,7 @@ void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
   }
   widen(&low, &high, 0.06);
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
-  axis_title(title, sizeof title, quantity->field);
+  axis_title(title, sizeof title, quantity->row);
   fg_plot_begin(&at, 300, "Mean and two standard deviations of every bump number");
   fg_plot_y_axis(&at, title);
   fg_plot_x_title(&at, "bump, 1 is next to the lip");
@@ -210,7 +210,7 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity) {
   widen(&low, &high, 0.08);
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.5, (double)chart->count + 0.5, low, high};
   size_t every = chart->count / CHART_POINTS_MAX + 1;
-  axis_title(title, sizeof title, quantity->field);
+  axis_title(title, sizeof title, quantity->row);
   fg_plot_begin(&at, 300, "Control chart, foil after foil");
   fg_plot_y_axis(&at, title);
   fg_plot_x_numbers(&at);

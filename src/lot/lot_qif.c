@@ -82,7 +82,7 @@ static void put_tolerance(FILE *out, const fg_tolerance *tolerance) {
 }
 
 static void put_name(FILE *out, const fg_characteristic *one) {
-  fputs(one->quantity->field->words, out);
+  fputs(one->quantity->row->words, out);
   if (one->bump) fprintf(out, " %d", one->bump);
 }
 

@@ -3,9 +3,9 @@
  * {"scan", "sha256", "measured_with", "error", "foils": [{"number", "flags", "error", "values",
  *  "bumps": [{"number", "flags", "values"}]}], "checksum"}
  * `scan_bytes` follows `scan` where a file name is not UTF-8: its bytes as hex digits. The checksum
- * is of the line itself (lot/seal.h). `values` are those of the table of fields (report.h) in its
- * order; the first line of the file names them. A quantity with an uncertainty takes two places, a
- * pair four. */
+ * is of the line itself (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in
+ * its order; the first line of the file names them. A quantity with an uncertainty takes two
+ * places, a pair four. */
 #ifndef FG_LOT_RECORD_H
 #define FG_LOT_RECORD_H
 

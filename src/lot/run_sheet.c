@@ -25,7 +25,7 @@ static void add(mean *m, double value, double u) {
 
 typedef struct measuring {
   const fg_run_sheet_options *options;
-  const fg_quantity *field;
+  const fg_quantity *row;
   fg_quantity_owner owner;
   size_t scan_capacity;
   fg_run_sheet *out;
@@ -42,7 +42,7 @@ static fg_status find_quantity(fg_context *ctx, measuring *m) {
     const fg_quantity *found = fg_quantity_find(owners[i], m->options->quantity);
     fg_quantity_list(owners[i], false, list, sizeof list);
     if (!found || found->kind != FG_QUANTITY_NUMBER) continue;
-    m->field = found;
+    m->row = found;
     m->owner = owners[i];
     return FG_OK;
   }
@@ -56,11 +56,11 @@ static void add_parts(const measuring *m, const void *objects, size_t count, siz
   mean parts = {0};
   for (size_t i = 0; i < count; i++) {
     const void *object = (const char *)objects + i * size;
-    add(&parts, fg_quantity_value(m->field, object), fg_quantity_uncertainty(m->field, object));
+    add(&parts, fg_quantity_value(m->row, object), fg_quantity_uncertainty(m->row, object));
   }
   if (!parts.count) return;
   double n = (double)parts.count;
-  double u = m->field->uses & FG_QUANTITY_IS_OWN ? sqrt(parts.squares) / n : parts.common / n;
+  double u = m->row->uses & FG_QUANTITY_IS_OWN ? sqrt(parts.squares) / n : parts.common / n;
   add(foils, parts.sum / n, u);
 }
 

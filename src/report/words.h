@@ -26,6 +26,6 @@ const char *fg_channel_word(fg_channel channel);
 
 /* How many decimals of a value people should see: U = 2 u shows two digits, or one where that is
  * fine enough. */
-int fg_report_decimals(const fg_quantity *field, double u);
+int fg_report_decimals(const fg_quantity *row, double u);
 
 #endif

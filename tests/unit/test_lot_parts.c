@@ -123,7 +123,7 @@ static void bad_recipes_say_why(void **state) {
   }
 }
 
-/* Every row of the table of fields survives; a value that is not known stays unknown. */
+/* Every row of the quantities survives; a value that is not known stays unknown. */
 static void record_keeps_every_field(void **state) {
   (void)state;
   fg_context ctx;

@@ -58,10 +58,9 @@ static void crushed_bumps_are_in_no_statistics(void **state) {
     const fg_lot_quantity *a = &sound.quantities[i], *b = &with.quantities[i];
     assert_int_equal(a->count, b->count);
     if (a->count && !(a->mean == b->mean && a->most == b->most && a->least == b->least))
-      fail_msg("%s: mean %.9g became %.9g", a->field->name, a->mean, b->mean);
+      fail_msg("%s: mean %.9g became %.9g", a->row->name, a->mean, b->mean);
     if (a->places && a->place[8].mean != b->place[8].mean)
-      fail_msg("%s of bump 9: %.9g became %.9g", a->field->name, a->place[8].mean,
-               b->place[8].mean);
+      fail_msg("%s of bump 9: %.9g became %.9g", a->row->name, a->place[8].mean, b->place[8].mean);
   }
   assert_true(sound.correlation.log_slope == with.correlation.log_slope);
   assert_true(sound.correlation.arc_length_sd_pct == with.correlation.arc_length_sd_pct);

@@ -14,14 +14,14 @@ static const char *base_name(const char *path) {
   return slash && slash[1] ? slash + 1 : path;
 }
 
-static void put_tile(FILE *out, fg_report_owner owner, const char *name, const char *title,
+static void put_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
                      const void *object) {
-  const fg_report_field *field = fg_report_find(owner, name);
-  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
-  int decimals = fg_report_decimals(field, u);
+  const fg_quantity *row = fg_quantity_find(owner, name);
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
+  int decimals = fg_report_decimals(row, u);
   fprintf(out, "<div><dt>%s</dt><dd>", title);
   if (isfinite(value))
-    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), field->unit);
+    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), row->unit);
   else
     fputs("–", out);
   if (isfinite(u)) fprintf(out, "<small>± %.*f</small>", decimals, FG_COVERAGE_FACTOR * u);
@@ -30,11 +30,11 @@ static void put_tile(FILE *out, fg_report_owner owner, const char *name, const c
 
 /* Mean over the bumps, with their spread as a standard deviation: it says more than one bump. */
 static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, const char *title) {
-  const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, name);
+  const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, name);
   double sum = 0, squares = 0;
   size_t count = 0;
   for (size_t i = 0; i < foil->bump_count; i++) {
-    double value = fg_report_value(field, &foil->bumps[i]);
+    double value = fg_quantity_value(row, &foil->bumps[i]);
     if (!isfinite(value)) continue;
     count++;
     double step = value - sum;
@@ -42,22 +42,22 @@ static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, cons
     squares += step * (value - sum);
   }
   if (count == 0) return;
-  fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, field->decimals, sum, field->unit);
+  fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, row->decimals, sum, row->unit);
   if (count > 1)
-    fprintf(out, "<small>s = %.*f, n = %zu</small>", field->decimals,
+    fprintf(out, "<small>s = %.*f, n = %zu</small>", row->decimals,
             sqrt(squares / (double)(count - 1)), count);
   fputs("</dd></div>\n", out);
 }
 
 static void put_tiles(FILE *out, const fg_foil *foil) {
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, FG_REPORT_FOIL, "overall.radius_mm", "Overall radius", foil);
-  put_tile(out, FG_REPORT_FOIL, "overall.springback_error_pct", "Overall springback", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback", foil);
   put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
   put_mean_tile(out, foil, "height_mm", "Bump height, mean");
   put_mean_tile(out, foil, "clearance_mm", "Clearance, free, mean");
   put_mean_tile(out, foil, "clearance_fitted_mm", "Clearance, fitted, mean");
-  put_tile(out, FG_REPORT_FOIL, "thickness_mm", "Thickness", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
 
@@ -156,7 +156,7 @@ static void put_reasons(FILE *out, const fg_decision *decision, fg_verdict verdi
       fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", fg_html_verdict_title(verdict),
               values, values == 1 ? "value" : "values");
     if (list[i].tolerance != last) {
-      fprintf(out, "%s%s", last ? "; " : "", list[i].field->words);
+      fprintf(out, "%s%s", last ? "; " : "", list[i].row->words);
       if (list[i].number) fprintf(out, " %d", list[i].number);
     } else {
       fprintf(out, ", %d", list[i].number);

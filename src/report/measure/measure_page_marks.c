@@ -3,9 +3,9 @@
 
 #include "report/measure/measure_page_parts.h"
 
-void fg_html_value(FILE *out, const fg_report_field *field, const void *object) {
-  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
-  int decimals = field->kind == FG_FIELD_COUNT ? 0 : fg_report_decimals(field, u);
+void fg_html_value(FILE *out, const fg_quantity *row, const void *object) {
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
+  int decimals = row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(row, u);
   if (!isfinite(value)) {
     fputs("–", out);
     return;

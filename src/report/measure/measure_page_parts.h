@@ -19,7 +19,7 @@ void fg_html_verdict(FILE *out, fg_verdict verdict);
 void fg_html_outcome(FILE *out, const fg_report_outcome *outcome);
 
 /* "3.39288 ± 0.00042", or "–" when it is not known. */
-void fg_html_value(FILE *out, const fg_report_field *field, const void *object);
+void fg_html_value(FILE *out, const fg_quantity *row, const void *object);
 
 /* The foil (NULL: the whole scan) cut out of its scan, with circles and residuals over it. Where
  * the scan cannot be read again (standard input) the drawing stands alone. */

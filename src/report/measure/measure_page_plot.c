@@ -94,10 +94,10 @@ static const series both_series[] = {
 static void springback_range(const fg_foil *foil, double range[2]) {
   range[0] = range[1] = 0;
   for (size_t k = 0; k < 2; k++) {
-    const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, both_series[k].quantity);
+    const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, both_series[k].quantity);
     for (size_t i = 0; i < foil->bump_count; i++) {
-      double value = fg_report_value(field, &foil->bumps[i]);
-      double u = fg_report_uncertainty(field, &foil->bumps[i]);
+      double value = fg_quantity_value(row, &foil->bumps[i]);
+      double u = fg_quantity_uncertainty(row, &foil->bumps[i]);
       if (!isfinite(value)) continue;
       double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
       range[0] = fmin(range[0], value - expanded);
@@ -110,8 +110,8 @@ static void springback_range(const fg_foil *foil, double range[2]) {
 }
 
 static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) {
-  const fg_report_field *field = fg_report_find(FG_REPORT_BUMP, one->quantity);
-  double value = fg_report_value(field, bump), u = fg_report_uncertainty(field, bump);
+  const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, one->quantity);
+  double value = fg_quantity_value(row, bump), u = fg_quantity_uncertainty(row, bump);
   if (!isfinite(value)) return;
   double x = fg_plot_x(at, bump->number) + one->shift, y = fg_plot_y(at, value);
   double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;

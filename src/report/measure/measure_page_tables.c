@@ -2,16 +2,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "quantity/quantity.h"
 #include "report/measure/measure_page_tables.h"
 
-static const char *const bump_columns[] = {
-    "radius_mm",        "bump_angle_deg",       "intersection_angle_deg",
-    "height_mm",        "clearance_mm",         "clearance_fitted_mm",
-    "radius_error_pct", "bump_angle_error_pct", "rms_um"};
-static const char *const disc_columns[] = {"diameter_mm", "radius_mm", "roundness_um", "rms_um",
-                                           "coverage_deg"};
-static const char *const foil_rows[] = {"overall.radius_mm", "overall.springback_error_pct",
-                                        "thickness_mm"};
+enum { PAGE_COLUMNS_MAX = FG_QUANTITY_SHOWN_MAX + FG_TOLERANCES_MAX };
 
 static const fg_tolerance *find_tolerance(const fg_design *design, const char *quantity) {
   for (size_t i = 0; i < design->tolerance_count; i++)
@@ -30,15 +24,15 @@ static void put_limits(FILE *out, const fg_tolerance *tolerance) {
 }
 
 /* `judged`: the values are those of a part of the design. */
-static void put_cell(FILE *out, const fg_design *design, const fg_report_field *field,
-                     const void *object, bool judged) {
-  const fg_tolerance *tolerance = find_tolerance(design, field->name);
+static void put_cell(FILE *out, const fg_design *design, const fg_quantity *row, const void *object,
+                     bool judged) {
+  const fg_tolerance *tolerance = find_tolerance(design, row->name);
   fg_verdict verdict = FG_VERDICT_NONE;
   if (tolerance && judged)
-    verdict = fg_judge_value(tolerance, fg_report_value(field, object),
-                             fg_report_uncertainty(field, object));
+    verdict = fg_judge_value(tolerance, fg_quantity_value(row, object),
+                             fg_quantity_uncertainty(row, object));
   fprintf(out, "<td class=\"%s\">", fg_verdict_word(verdict));
-  fg_html_value(out, field, object);
+  fg_html_value(out, row, object);
   fputs("</td>", out);
 }
 
@@ -54,24 +48,21 @@ static void put_flag_cell(FILE *out, unsigned flags) {
 }
 
 /* Columns that the table always has, then those with a tolerance that it has not. */
-static size_t choose_columns(const fg_design *design, fg_report_owner owner,
-                             const char *const *names, size_t count,
-                             const fg_report_field **columns) {
-  size_t used = 0;
-  for (size_t i = 0; i < count; i++)
-    columns[used++] = fg_report_find(owner, names[i]);
+static size_t choose_columns(const fg_design *design, fg_quantity_owner owner,
+                             const fg_quantity *columns[PAGE_COLUMNS_MAX]) {
+  size_t used = fg_quantity_shown(owner, FG_QUANTITY_ON_PAGE, columns);
   for (size_t i = 0; i < design->tolerance_count; i++) {
-    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
-    bool there = field == NULL;
+    const fg_quantity *row = fg_quantity_find(owner, design->tolerances[i].quantity);
+    bool there = row == NULL;
     for (size_t k = 0; k < used; k++)
-      there = there || columns[k] == field;
-    if (!there) columns[used++] = field;
+      there = there || columns[k] == row;
+    if (!there) columns[used++] = row;
   }
   return used;
 }
 
 typedef struct table_rows {
-  fg_report_owner owner;
+  fg_quantity_owner owner;
   const char *title;
   const char *objects;
   size_t count, size;
@@ -79,7 +70,7 @@ typedef struct table_rows {
 } table_rows;
 
 static void put_table_head(FILE *out, const fg_design *design, const table_rows *rows,
-                           const fg_report_field *const *columns, size_t count) {
+                           const fg_quantity *const *columns, size_t count) {
   bool limits = false;
   fprintf(out, "<div class=\"scroll\"><table>\n<thead><tr><th>%s</th>", rows->title);
   for (size_t i = 0; i < count; i++) {
@@ -98,10 +89,9 @@ static void put_table_head(FILE *out, const fg_design *design, const table_rows 
   fputs("<td></td></tr>\n", out);
 }
 
-static void put_table(FILE *out, const fg_design *design, const table_rows *rows,
-                      const char *const *names, size_t name_count) {
-  const fg_report_field *columns[16 + FG_TOLERANCES_MAX];
-  size_t count = choose_columns(design, rows->owner, names, name_count, columns);
+static void put_table(FILE *out, const fg_design *design, const table_rows *rows) {
+  const fg_quantity *columns[PAGE_COLUMNS_MAX];
+  size_t count = choose_columns(design, rows->owner, columns);
   put_table_head(out, design, rows, columns, count);
   for (size_t i = 0; i < rows->count; i++) {
     const void *object = rows->objects + i * rows->size;
@@ -117,9 +107,8 @@ static void put_table(FILE *out, const fg_design *design, const table_rows *rows
 }
 
 void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const fg_report_field *rows[16 + FG_TOLERANCES_MAX];
-  size_t count =
-      choose_columns(design, FG_REPORT_FOIL, foil_rows, sizeof foil_rows / sizeof *foil_rows, rows);
+  const fg_quantity *rows[PAGE_COLUMNS_MAX];
+  size_t count = choose_columns(design, FG_QUANTITY_OF_FOIL, rows);
   fputs("<h2>The whole foil</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th>"
         "<th>value</th><th>unit</th><th>tolerance</th></tr></thead>\n<tbody>\n",
         out);
@@ -134,17 +123,14 @@ void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil)
 }
 
 void fg_html_bump_table(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const table_rows rows = {FG_REPORT_BUMP,      "bump", (const char *)foil->bumps, foil->bump_count,
+  const table_rows rows = {FG_QUANTITY_OF_BUMP, "bump", (const char *)foil->bumps, foil->bump_count,
                            sizeof *foil->bumps, foil};
-  put_table(out, design, &rows, bump_columns, sizeof bump_columns / sizeof *bump_columns);
+  put_table(out, design, &rows);
 }
 
 void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement *measurement) {
-  const table_rows rows = {FG_REPORT_DISC,
-                           "disc",
-                           (const char *)measurement->discs,
-                           measurement->disc_count,
-                           sizeof *measurement->discs,
-                           NULL};
-  put_table(out, design, &rows, disc_columns, sizeof disc_columns / sizeof *disc_columns);
+  const table_rows rows = {
+      FG_QUANTITY_OF_DISC,        "disc", (const char *)measurement->discs, measurement->disc_count,
+      sizeof *measurement->discs, NULL};
+  put_table(out, design, &rows);
 }

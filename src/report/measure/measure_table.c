@@ -10,25 +10,25 @@
 enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
 
 typedef struct column {
-  const fg_report_field *field;
+  const fg_quantity *row;
   int decimals;
   int width;   /* of the value */
   int u_width; /* of ±; 0 without */
 } column;
 
 typedef struct row_set {
-  fg_report_owner owner;
+  fg_quantity_owner owner;
   const char *objects; /* an array */
   size_t count, size;
 } row_set;
 
 /* So many decimals that U = k u shows two digits; one, where two would be nanometres and less. */
-int fg_report_decimals(const fg_report_field *field, double u) {
+int fg_report_decimals(const fg_quantity *row, double u) {
   double expanded = FG_COVERAGE_FACTOR * u;
-  if (!(expanded > 0)) return field->decimals;
+  if (!(expanded > 0)) return row->decimals;
   int decimals = 1 - (int)floor(log10(expanded));
   if (decimals > DECIMALS_FINE) decimals = (int)fmax(DECIMALS_FINE, decimals - 1);
-  if (decimals < field->decimals) return field->decimals;
+  if (decimals < row->decimals) return row->decimals;
   return decimals > DECIMALS_MAX ? DECIMALS_MAX : decimals;
 }
 
@@ -44,27 +44,27 @@ static int number_width(double value, int decimals) {
 }
 
 /* U of a value that is known. */
-static double expanded_of(const fg_report_field *field, const void *object) {
-  if (!isfinite(fg_report_value(field, object))) return NAN;
-  return FG_COVERAGE_FACTOR * fg_report_uncertainty(field, object);
+static double expanded_of(const fg_quantity *row, const void *object) {
+  if (!isfinite(fg_quantity_value(row, object))) return NAN;
+  return FG_COVERAGE_FACTOR * fg_quantity_uncertainty(row, object);
 }
 
 static void measure_column(column *target, const row_set *rows) {
-  const fg_report_field *field = target->field;
+  const fg_quantity *row = target->row;
   double largest_u = 0;
   for (size_t i = 0; i < rows->count; i++) {
-    double u = fg_report_uncertainty(field, rows->objects + i * rows->size);
+    double u = fg_quantity_uncertainty(row, rows->objects + i * rows->size);
     if (u > largest_u) largest_u = u;
   }
-  target->decimals = field->kind == FG_FIELD_COUNT ? 0 : fg_report_decimals(field, largest_u);
-  target->width = text_width(field->symbol);
-  if (text_width(field->unit) > target->width) target->width = text_width(field->unit);
-  target->u_width = field->u_offset == FG_NO_UNCERTAINTY ? 0 : 1;
+  target->decimals = row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(row, largest_u);
+  target->width = text_width(row->symbol);
+  if (text_width(row->unit) > target->width) target->width = text_width(row->unit);
+  target->u_width = row->u_offset == FG_NO_UNCERTAINTY ? 0 : 1;
   for (size_t i = 0; i < rows->count; i++) {
     const void *object = rows->objects + i * rows->size;
-    int width = number_width(fg_report_value(field, object), target->decimals);
+    int width = number_width(fg_quantity_value(row, object), target->decimals);
     if (width > target->width) target->width = width;
-    width = number_width(expanded_of(field, object), target->decimals);
+    width = number_width(expanded_of(row, object), target->decimals);
     if (target->u_width && width > target->u_width) target->u_width = width;
   }
 }
@@ -82,7 +82,7 @@ static void put_number(FILE *out, double value, int decimals, int width) {
 static void put_cells(FILE *out, const column *columns, size_t count, bool units) {
   for (size_t i = 0; i < count; i++) {
     fputs("  ", out);
-    put_padded(out, units ? columns[i].field->unit : columns[i].field->symbol, columns[i].width);
+    put_padded(out, units ? columns[i].row->unit : columns[i].row->symbol, columns[i].width);
     if (!columns[i].u_width) continue;
     fputc(' ', out);
     put_padded(out, units ? "" : "±", columns[i].u_width);
@@ -101,10 +101,10 @@ static void put_row(FILE *out, const column *columns, size_t count, int number, 
   for (size_t i = 0; i < count; i++) {
     const column *at = &columns[i];
     fputs("  ", out);
-    put_number(out, fg_report_value(at->field, object), at->decimals, at->width);
+    put_number(out, fg_quantity_value(at->row, object), at->decimals, at->width);
     if (!at->u_width) continue;
     fputc(' ', out);
-    put_number(out, expanded_of(at->field, object), at->decimals, at->u_width);
+    put_number(out, expanded_of(at->row, object), at->decimals, at->u_width);
   }
   put_flags(out, fg_bump_flag_words(), flags);
   fputc('\n', out);
@@ -114,14 +114,14 @@ static size_t make_columns(const row_set *rows, column *columns) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
   size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, shown);
   for (size_t i = 0; i < count; i++) {
-    columns[i].field = shown[i];
+    columns[i].row = shown[i];
     measure_column(&columns[i], rows);
   }
   return count;
 }
 
 static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const row_set rows = {FG_REPORT_BUMP, (const char *)foil->bumps, foil->bump_count,
+  const row_set rows = {FG_QUANTITY_OF_BUMP, (const char *)foil->bumps, foil->bump_count,
                         sizeof *foil->bumps};
   column columns[FG_QUANTITY_SHOWN_MAX];
   size_t count = make_columns(&rows, columns);
@@ -135,8 +135,8 @@ static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
 }
 
 static void put_discs(FILE *out, const fg_design *design, const fg_measurement *measurement) {
-  const row_set rows = {FG_REPORT_DISC, (const char *)measurement->discs, measurement->disc_count,
-                        sizeof *measurement->discs};
+  const row_set rows = {FG_QUANTITY_OF_DISC, (const char *)measurement->discs,
+                        measurement->disc_count, sizeof *measurement->discs};
   column columns[FG_QUANTITY_SHOWN_MAX];
   size_t count = make_columns(&rows, columns);
   fputs("disc", out);
@@ -149,13 +149,13 @@ static void put_discs(FILE *out, const fg_design *design, const fg_measurement *
 }
 
 /* "overall radius 20.9500 ± 0.0012 mm" */
-static void put_quantity(FILE *out, const fg_foil *foil, const fg_quantity *field) {
-  double value = fg_report_value(field, foil), u = fg_report_uncertainty(field, foil);
-  int decimals = fg_report_decimals(field, u);
-  fprintf(out, "  %s ", field->words);
+static void put_quantity(FILE *out, const fg_foil *foil, const fg_quantity *row) {
+  double value = fg_quantity_value(row, foil), u = fg_quantity_uncertainty(row, foil);
+  int decimals = fg_report_decimals(row, u);
+  fprintf(out, "  %s ", row->words);
   put_number(out, value, decimals, 0);
   if (isfinite(u)) fprintf(out, " ± %.*f", decimals, FG_COVERAGE_FACTOR * u);
-  fprintf(out, " %s\n", field->unit);
+  fprintf(out, " %s\n", row->unit);
 }
 
 static void put_foil_flags(FILE *out, unsigned flags) {

@@ -31,9 +31,9 @@ static fg_status put_text(fg_context *ctx, const legend *at, double column_em, u
   return fg_cv_draw_text(ctx, at->rgb, ascii, where, &style);
 }
 
-static void value_text(const fg_report_field *field, const void *object, char *text, size_t size) {
-  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
-  int decimals = fg_report_decimals(field, u);
+static void value_text(const fg_quantity *row, const void *object, char *text, size_t size) {
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
+  int decimals = fg_report_decimals(row, u);
   if (!isfinite(value))
     snprintf(text, size, "-");
   else if (isfinite(u))
@@ -70,10 +70,12 @@ static fg_status put_row(fg_context *ctx, legend *at, const fg_quantity *const *
 static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
                           bool all) {
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
-  value_text(fg_report_find(FG_REPORT_FOIL, "overall.radius_mm"), foil, radius, sizeof radius);
-  value_text(fg_report_find(FG_REPORT_FOIL, "overall.springback_error_pct"), foil, error,
+  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.radius_mm"), foil, radius,
+             sizeof radius);
+  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.springback_error_pct"), foil, error,
              sizeof error);
-  value_text(fg_report_find(FG_REPORT_FOIL, "thickness_mm"), foil, thickness, sizeof thickness);
+  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm"), foil, thickness,
+             sizeof thickness);
   if (!fg_foil_is_measured(foil))
     snprintf(text, sizeof text, "Foil %d: not measured: %.180s", foil->number, foil->error);
   else

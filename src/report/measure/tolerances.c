@@ -1,4 +1,4 @@
-/* Verdicts: the design names quantities, the table of fields says where they lie. What a foil, a
+/* Verdicts: the design names quantities, their rows say where they lie. What a foil, a
  * scan or a run comes to is decided here and nowhere else. */
 #include <math.h>
 #include <stdarg.h>
@@ -62,12 +62,12 @@ static void add_unmeasured(fg_report_outcome *outcome) {
                  &(fg_report_outcome){.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1});
 }
 
-static fg_judgement judge(const fg_tolerance *tolerance, const fg_report_field *field,
-                          const void *object, int number) {
-  double value = fg_report_value(field, object), u = fg_report_uncertainty(field, object);
+static fg_judgement judge(const fg_tolerance *tolerance, const fg_quantity *row, const void *object,
+                          int number) {
+  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
   fg_verdict verdict = fg_judge_value(tolerance, value, u);
   return (fg_judgement){.tolerance = tolerance,
-                        .field = field,
+                        .row = row,
                         .number = number,
                         .value = value,
                         .u = u,
@@ -78,10 +78,10 @@ static fg_judgement judge(const fg_tolerance *tolerance, const fg_report_field *
 /* Of a bump that the design states and the foil lacks. Behind the last bump that was found nothing
  * but the design says that there should be one: where the scan's border may hide it, it is not
  * measured. */
-static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_report_field *field,
-                                  int number, bool hidden) {
+static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_quantity *row, int number,
+                                  bool hidden) {
   return (fg_judgement){.tolerance = tolerance,
-                        .field = field,
+                        .row = row,
                         .number = number,
                         .value = NAN,
                         .u = NAN,
@@ -187,14 +187,14 @@ static void take(fg_decision *decision, fg_judgement judgement) {
   outcome->not_measured += judgement.verdict == FG_VERDICT_NOT_MEASURED;
 }
 
-static void judge_bumps(const fg_tolerance *tolerance, const fg_report_field *field, int last,
+static void judge_bumps(const fg_tolerance *tolerance, const fg_quantity *row, int last,
                         const fg_foil *foil, fg_decision *decision) {
   int found = last_found(foil);
   for (int number = 1; number <= last; number++) {
     const fg_bump *bump = find_bump(foil, number);
     bool hidden = number > found && may_be_hidden(foil);
-    take(decision, bump ? judge(tolerance, field, bump, number)
-                        : judge_nothing(tolerance, field, number, hidden));
+    take(decision, bump ? judge(tolerance, row, bump, number)
+                        : judge_nothing(tolerance, row, number, hidden));
   }
 }
 
@@ -223,10 +223,10 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
   }
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
-    const fg_report_field *field = fg_report_find(FG_REPORT_FOIL, tolerance->quantity);
-    if (field) take(decision, judge(tolerance, field, foil, 0));
-    field = fg_report_find(FG_REPORT_BUMP, tolerance->quantity);
-    if (field) judge_bumps(tolerance, field, last, foil, decision);
+    const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_FOIL, tolerance->quantity);
+    if (row) take(decision, judge(tolerance, row, foil, 0));
+    row = fg_quantity_find(FG_QUANTITY_OF_BUMP, tolerance->quantity);
+    if (row) judge_bumps(tolerance, row, last, foil, decision);
   }
   judge_whole(design, foil, &decision->outcome);
   return FG_OK;
@@ -237,8 +237,8 @@ fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc
   FG_TRY(allocate(ctx, design->tolerance_count, 1, decision));
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
-    const fg_report_field *field = fg_report_find(FG_REPORT_DISC, tolerance->quantity);
-    if (field) take(decision, judge(tolerance, field, disc, disc->number));
+    const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_DISC, tolerance->quantity);
+    if (row) take(decision, judge(tolerance, row, disc, disc->number));
   }
   return FG_OK;
 }
@@ -248,20 +248,20 @@ void fg_decision_free(fg_decision *decision) {
   *decision = (fg_decision){.outcome = {.verdict = FG_VERDICT_NONE}};
 }
 
-static fg_verdict object_verdict(const fg_design *design, fg_report_owner owner,
+static fg_verdict object_verdict(const fg_design *design, fg_quantity_owner owner,
                                  const void *object) {
   fg_verdict verdict = FG_VERDICT_NONE;
   for (size_t i = 0; i < design->tolerance_count; i++) {
-    const fg_report_field *field = fg_report_find(owner, design->tolerances[i].quantity);
-    if (field)
-      verdict = fg_verdict_worse(verdict, judge(&design->tolerances[i], field, object, 0).verdict);
+    const fg_quantity *row = fg_quantity_find(owner, design->tolerances[i].quantity);
+    if (row)
+      verdict = fg_verdict_worse(verdict, judge(&design->tolerances[i], row, object, 0).verdict);
   }
   return verdict;
 }
 
 fg_verdict fg_bump_verdict(const fg_design *design, const fg_foil *foil, const fg_bump *bump) {
   if (!fg_foil_is_measured(foil)) return FG_VERDICT_NOT_MEASURED;
-  fg_verdict verdict = object_verdict(design, FG_REPORT_BUMP, bump);
+  fg_verdict verdict = object_verdict(design, FG_QUANTITY_OF_BUMP, bump);
   if (bump->flags & FG_BUMP_NOT_FITTED)
     verdict = fg_verdict_worse(verdict, FG_VERDICT_NOT_MEASURED);
   return verdict;
@@ -277,7 +277,7 @@ unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bu
 }
 
 unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc) {
-  return reported(disc->flags, object_verdict(design, FG_REPORT_DISC, disc));
+  return reported(disc->flags, object_verdict(design, FG_QUANTITY_OF_DISC, disc));
 }
 
 static void add_decision(fg_report_outcome *outcome, fg_decision *decision) {
@@ -312,17 +312,17 @@ fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_ou
   return FG_OK;
 }
 
-static bool has_quantity(fg_report_owner owner, const char *name) {
-  const fg_report_field *field = fg_report_find(owner, name);
-  return field && field->kind != FG_FIELD_PAIR;
+static bool has_quantity(fg_quantity_owner owner, const char *name) {
+  const fg_quantity *row = fg_quantity_find(owner, name);
+  return row && row->kind != FG_QUANTITY_PAIR;
 }
 
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
   bool discs = design->form == FG_FORM_DISCS;
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const char *quantity = design->tolerances[i].quantity;
-    if (has_quantity(discs ? FG_REPORT_DISC : FG_REPORT_BUMP, quantity)) continue;
-    if (!discs && has_quantity(FG_REPORT_FOIL, quantity)) continue;
+    if (has_quantity(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, quantity)) continue;
+    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, quantity)) continue;
     char names[800] = "";
     fg_quantity_list(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, true, names, sizeof names);
     if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, true, names, sizeof names);
