@@ -25,7 +25,5 @@ static bool shows_on_discs(const fg_points *points, const fg_effect *effect) {
 
 bool fg_effect_shows(const fg_points *points, const fg_effect *effect) {
   if (effect->sought == FG_EFFECT_OF_WIDTH) return false;
-  for (size_t i = 0; i < points->barred_count; i++)
-    if (fg_effect_same(points->barred[i].effect, effect)) return false;
   return points->discs ? shows_on_discs(points, effect) : !effect->off_foils;
 }

@@ -3,6 +3,12 @@
 
 #include "explain/search.h"
 
+bool fg_explain_seeks(const fg_explain_search *s, const fg_effect *kind) {
+  for (size_t i = 0; i < s->out->barred.count; i++)
+    if (fg_effect_same(s->out->barred.each[i].effect, kind)) return false;
+  return fg_effect_shows(s->columns.points, kind);
+}
+
 void fg_explain_add(fg_explain_search *s, const fg_candidate *effect) {
   fg_explanations *out = s->out;
   size_t e = out->candidate_count++, first;

@@ -9,12 +9,13 @@
 #include "explain/policy.h"
 #include "explain/settle.h"
 
-static void bar(fg_points *points, const fg_explanations *explanations, const fg_effect *kind) {
-  for (size_t i = 0; i < points->barred_count; i++)
-    if (points->barred[i].effect == kind) return;
-  fg_points_barred *entry = &points->barred[points->barred_count++];
+static void bar(fg_explain_bars *barred, const fg_explanations *explanations,
+                const fg_effect *kind) {
+  for (size_t i = 0; i < barred->count; i++)
+    if (barred->each[i].effect == kind) return;
+  fg_explain_barred *entry = &barred->each[barred->count++];
   *entry =
-      (fg_points_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
+      (fg_explain_barred){.effect = kind, .would_explain = NAN, .smallest_um = NAN, .share = NAN};
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     if (explanations->candidates[e].kind != kind) continue;
     entry->would_explain = explanations->alone[e];
@@ -24,10 +25,11 @@ static void bar(fg_points *points, const fg_explanations *explanations, const fg
 }
 
 /* Bars what discs do not confirm: all of it when nothing is confirmed, else the one that is
- * confirmed least, since it may have spoilt the others. */
-static fg_status bar_unconfirmed(fg_context *ctx, fg_points *points, fg_effect_set *set,
+ * confirmed least, since it may have spoilt the others. Without anything more to bar `barred` stays
+ * as it is. */
+static fg_status bar_unconfirmed(fg_context *ctx, const fg_points *points, fg_effect_set *set,
                                  const fg_explanations *explanations, const double *residual_um,
-                                 bool *barred) {
+                                 fg_explain_bars *barred) {
   double confirmed[FG_EFFECT_SET_MAX], least = 0;
   size_t failing = 0;
   for (size_t e = 0; e < set->count; e++) {
@@ -35,12 +37,11 @@ static fg_status bar_unconfirmed(fg_context *ctx, fg_points *points, fg_effect_s
     failing += !(confirmed[e] > 0);
     least = fmin(least, confirmed[e]);
   }
-  size_t room = FG_POINTS_BARRED - points->barred_count;
   size_t most = failing == set->count ? failing : 1;
-  *barred = failing > 0 && room >= most;
-  for (size_t e = 0, n = 0; *barred && e < set->count && n < most; e++) {
+  if (!failing || barred->count + most > FG_EXPLAIN_BARRED_MAX) return FG_OK;
+  for (size_t e = 0, n = 0; e < set->count && n < most; e++) {
     if (confirmed[e] > least && most == 1) continue;
-    bar(points, explanations, set->effects[e].kind);
+    bar(barred, explanations, set->effects[e].kind);
     n++;
   }
   return FG_OK;
@@ -94,18 +95,21 @@ static void start_again(fg_points *points, const double *weights) {
 static fg_status settle_confirmed(fg_context *ctx, fg_points *points,
                                   const fg_explain_policy *policy, fg_effect_set *set,
                                   fg_explanations *explanations, double *residual_um) {
+  fg_explain_bars barred = {.count = 0};
   double *weights = NULL;
-  bool barred = true;
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *weights, (void **)&weights));
   for (size_t i = 0; i < points->row_count; i++)
     weights[i] = points->rows[i].weight;
-  while (barred) {
+  bool more = true;
+  while (more) {
+    size_t before = barred.count;
     start_again(points, weights);
-    FG_TRY_EXIT(fg_explain_settle(ctx, points, policy, set, explanations, residual_um));
+    FG_TRY_EXIT(fg_explain_settle(ctx, points, policy, &barred, set, explanations, residual_um));
     FG_TRY_EXIT(bar_unconfirmed(ctx, points, set, explanations, residual_um, &barred));
+    more = barred.count > before;
   }
-  if (points->barred_count) explanations->right = false;
+  if (barred.count) explanations->right = false;
 exit:
   free(weights);
   return status;
@@ -116,7 +120,7 @@ fg_status fg_explain_run(fg_context *ctx, fg_points *points, fg_effect_set *set,
   const fg_explain_policy *policy = fg_explain_policy_of(points);
   if (policy->confirms && points->part_count > 1)
     return settle_confirmed(ctx, points, policy, set, explanations, residual_um);
-  FG_TRY(fg_explain_settle(ctx, points, policy, set, explanations, residual_um));
+  FG_TRY(fg_explain_settle(ctx, points, policy, NULL, set, explanations, residual_um));
   if (policy->confirms) add_ring_alias(explanations);
   return FG_OK;
 }

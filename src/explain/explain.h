@@ -19,7 +19,7 @@
 #include "foilgauge/scan_loop.h"
 #include "rows/points.h"
 
-enum { FG_CANDIDATES_MAX = 26, FG_EXPLANATIONS_MAX = 8 };
+enum { FG_CANDIDATES_MAX = 26, FG_EXPLANATIONS_MAX = 8, FG_EXPLAIN_BARRED_MAX = 24 };
 
 /* An effect as it enters the search: its shape is known by now, but for the middle c of a
  * polynomial, which is found with every set anew. */
@@ -42,6 +42,17 @@ typedef struct fg_explanation {
   double middle_mm[FG_CANDIDATES_MAX]; /* of the polynomials in it */
 } fg_explanation;
 
+/* Effects that were found and that not all parts confirm: a search leaves them out. */
+typedef struct fg_explain_barred {
+  const fg_effect *effect;
+  double would_explain, share, smallest_um; /* as in fg_explanations */
+} fg_explain_barred;
+
+typedef struct fg_explain_bars {
+  fg_explain_barred each[FG_EXPLAIN_BARRED_MAX];
+  size_t count;
+} fg_explain_bars;
+
 typedef struct fg_explanations {
   fg_candidate candidates[FG_CANDIDATES_MAX];
   size_t candidate_count;
@@ -57,6 +68,7 @@ typedef struct fg_explanations {
   double share[FG_CANDIDATES_MAX]; /* |M f|² / |f|² beside the geometry */
   double smallest_um[FG_CANDIDATES_MAX]; /* amplitude that would have shown beside the winner */
   double alone[FG_CANDIDATES_MAX];       /* share of the residual sum that it alone takes */
+  fg_explain_bars barred;                /* what the search left out */
 } fg_explanations;
 
 /* What is searched. */
@@ -66,9 +78,10 @@ typedef struct fg_explain_request {
   const double *residual_um, *jacobian; /* geometry fitted; as from fg_points_residual */
   const fg_effect_set
       *known; /* NULL: none; its shaped effects are in the search with their shapes */
-  const fg_effect_set *tried; /* NULL: none; this set was fitted and is not right */
-  bool look;                  /* for further shaped effects */
-  bool two_curves;            /* where one is not enough and there are several views */
+  const fg_effect_set *tried;    /* NULL: none; this set was fitted and is not right */
+  const fg_explain_bars *barred; /* NULL: none */
+  bool look;                     /* for further shaped effects */
+  bool two_curves;               /* where one is not enough and there are several views */
 } fg_explain_request;
 
 fg_status fg_explain_find(fg_context *ctx, const fg_points *points,

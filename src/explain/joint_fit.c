@@ -80,6 +80,7 @@ static void effect_design(const fg_points *points, const fg_effect_set *set, con
 typedef struct refit {
   fg_points *points;
   fg_effect_set *set;
+  fg_joint_fit_part *parts; /* NULL: not asked for */
   unknown list[UNKNOWNS_MAX];
   size_t unknowns, parameters;
   double *residual, *jacobian, *design, *work; /* per row */
@@ -235,16 +236,16 @@ static void find_effects_covariance(refit *r, double variance, const gsl_matrix 
       size[e] = fmax(size[e], fabs(effect->coefficient_um[c]));
   }
   for (size_t p = 0, at = 0; p < r->points->part_count; p++) {
-    fg_points_part *part = &r->points->parts[p];
-    part->effects_mm2 = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
-    for (size_t b = 0; b < part->bump_count; b++) {
+    size_t bumps = r->points->parts[p].bump_count;
+    r->parts[p].overall = fmax(0, effects_covariance(r, variance, size, r->normal, alone, at, at));
+    for (size_t b = 0; b < bumps; b++) {
       size_t index[3] = {at + 1 + 3 * b, at + 3 + 3 * b, at}; /* X, R, R0 */
       for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-          part->bumps[b].effects_mm2[i][k] =
+          r->parts[p].bumps[b][i][k] =
               effects_covariance(r, variance, size, r->normal, alone, index[i], index[k]);
     }
-    at += 1 + 3 * part->bump_count;
+    at += 1 + 3 * bumps;
   }
 }
 
@@ -268,7 +269,7 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
     else
       effect->u_coefficient_um[r->list[k].index] = u;
   }
-  if (gsl_linalg_cholesky_decomp1(alone) || gsl_linalg_cholesky_invert(alone)) return;
+  if (!r->parts || gsl_linalg_cholesky_decomp1(alone) || gsl_linalg_cholesky_invert(alone)) return;
   find_effects_covariance(r, variance, alone);
 }
 
@@ -314,9 +315,9 @@ static void release(refit *r) {
   gsl_vector_free(r->right);
 }
 
-fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set,
-                       double *residual_um) {
-  refit r = {.points = points, .set = set};
+static fg_status run(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um,
+                     fg_joint_fit_part *parts) {
+  refit r = {.points = points, .set = set, .parts = parts};
   gsl_matrix *alone = NULL;
   fg_status status = FG_OK;
   fg_numerics_start();
@@ -343,4 +344,52 @@ exit:
   gsl_matrix_free(alone);
   release(&r);
   return status;
+}
+
+fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set,
+                       double *residual_um) {
+  return run(ctx, points, set, residual_um, NULL);
+}
+
+static fg_status open_parts(fg_context *ctx, const fg_points *points, fg_joint_fit_result *result) {
+  FG_TRY(
+      fg_memory_allocate(ctx, points->part_count, sizeof *result->parts, (void **)&result->parts));
+  for (size_t p = 0; p < points->part_count; p++)
+    FG_TRY(fg_memory_allocate(ctx, points->parts[p].bump_count, sizeof *result->parts[p].bumps,
+                              (void **)&result->parts[p].bumps));
+  return FG_OK;
+}
+
+static fg_status find_shift(fg_context *ctx, const fg_points *points, fg_joint_fit_result *result) {
+  double *along = NULL;
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *result->shift_mm,
+                            (void **)&result->shift_mm));
+  FG_TRY(fg_effect_set_shift(ctx, points, &result->set, &along));
+  for (size_t i = 0; i < points->row_count; i++) {
+    fg_point n = points->rows[i].normal;
+    result->shift_mm[i] = (fg_point){along[i] * n.x, along[i] * n.y};
+  }
+  free(along);
+  return FG_OK;
+}
+
+fg_status fg_joint_fit_open(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                            fg_joint_fit_result *result) {
+  *result = (fg_joint_fit_result){.points = points, .set = *set};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_parts(ctx, points, result));
+  FG_TRY_EXIT(run(ctx, points, &result->set, NULL, result->parts));
+  fg_effect_set_fields(points, &result->set, &result->fields);
+  FG_TRY_EXIT(find_shift(ctx, points, result));
+exit:
+  if (status != FG_OK) fg_joint_fit_close(result);
+  return status;
+}
+
+void fg_joint_fit_close(fg_joint_fit_result *result) {
+  for (size_t p = 0; result->parts && p < result->points->part_count; p++)
+    free(result->parts[p].bumps);
+  free(result->parts);
+  free(result->shift_mm);
+  *result = (fg_joint_fit_result){.points = NULL};
 }

@@ -8,4 +8,25 @@
  * gets what is left. */
 fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um);
 
+/* What the effects of a fit add to the covariance of its geometry's noise, mm². */
+typedef struct fg_joint_fit_part {
+  double overall;        /* variance of R0 */
+  double (*bumps)[3][3]; /* owned; of (X, R, R0) of every bump */
+} fg_joint_fit_part;
+
+/* A fit that stays what it is whatever is fitted next to the same points: the set with its numbers,
+ * and what it does at the geometry that was fitted beside it. */
+typedef struct fg_joint_fit_result {
+  const fg_points *points; /* their rows and views; the geometry is not read */
+  fg_effect_set set;
+  fg_field_list fields;     /* of the scanner */
+  fg_point *shift_mm;       /* owned; per row: where the part's own effects moved it */
+  fg_joint_fit_part *parts; /* owned */
+} fg_joint_fit_result;
+
+/* Fits from the set's present numbers. The points must outlive the result. */
+fg_status fg_joint_fit_open(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                            fg_joint_fit_result *result);
+void fg_joint_fit_close(fg_joint_fit_result *result);
+
 #endif

@@ -88,7 +88,7 @@ static bool add_best(fg_explain_search *s, bool listed_only, double *work) {
   fg_explain_hit best = {0};
   const fg_effect *which = NULL;
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
-    if (kind->sought != FG_EFFECT_PLACED || !fg_effect_shows(s->columns.points, kind)) continue;
+    if (kind->sought != FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
     fg_explain_hit found = fg_explain_find_place(s, rank, kind, work);
     if (found.gain <= FG_EXPLAIN_SHAPED_CHI2 || found.amplitude <= FG_EXPLAIN_SHAPED_LEAST_UM)
       continue;
@@ -138,7 +138,7 @@ fg_status fg_explain_find_on_discs(fg_context *ctx, fg_explain_search *s) {
   if (s->out->candidate_count >= FG_CANDIDATES_MAX) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
-    if (kind->sought != FG_EFFECT_PLACED || !fg_effect_shows(s->columns.points, kind)) continue;
+    if (kind->sought != FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
     size_t rank = fg_explain_noise(s, false);
     fg_explain_hit hit = fg_explain_find_place(s, rank, kind, work);
     fg_candidate found = {.kind = kind, .shape = {hit.at}};

@@ -57,7 +57,7 @@ static fg_status add_smooth(fg_context *ctx, fg_explain_search *s, const fg_effe
   for (int axis = 0; axis < 2 && s->policy->middles_with_sets; axis++)
     fg_explain_columns_add(&s->columns, &fg_effect_powers[axis], none, &first[axis], &share[axis]);
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
-    if (kind->sought == FG_EFFECT_PLACED || !fg_effect_shows(s->columns.points, kind)) continue;
+    if (kind->sought == FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
     if (fg_effect_is_free(kind))
       add_curve(s, kind);
     else if (kind->polynomial && s->policy->middles_with_sets)
@@ -86,6 +86,7 @@ fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
                           const fg_explain_request *request, fg_explanations *explanations) {
   memset(explanations, 0, sizeof *explanations);
   const fg_explain_policy *policy = request->policy;
+  if (request->barred) explanations->barred = *request->barred;
   fg_explain_search s = {.policy = policy,
                          .out = explanations,
                          .tried = request->tried,

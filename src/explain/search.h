@@ -27,6 +27,8 @@ typedef struct fg_explain_yardstick {
 
 /* ---- candidates.c ---- */
 
+/* Whether an effect is looked for: these points can show it, and it is not barred. */
+bool fg_explain_seeks(const fg_explain_search *s, const fg_effect *kind);
 /* Adds an effect whose columns are its own. */
 void fg_explain_add(fg_explain_search *s, const fg_candidate *effect);
 /* The effect in a set; NULL: it is not there, or there is no set. */

@@ -106,6 +106,7 @@ static void drop_nothings(fg_effect_set *set) {
 /* A search under way. */
 typedef struct settling {
   const fg_explain_policy *policy;
+  const fg_explain_bars *barred;
   fg_effect_set set;
   fg_explanations explanations;
   double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
@@ -170,6 +171,7 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
                                         .jacobian = at->jacobian,
                                         .known = &at->set,
                                         .tried = &tried,
+                                        .barred = at->barred,
                                         .look = how.eager || round > 0,
                                         .two_curves = how.two_curves};
     FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
@@ -232,9 +234,9 @@ static fg_status drop_ends(fg_context *ctx, fg_points *points, double *residual_
 }
 
 fg_status fg_explain_settle(fg_context *ctx, fg_points *points, const fg_explain_policy *policy,
-                            fg_effect_set *set, fg_explanations *explanations,
-                            double *residual_um) {
-  settling at = {.policy = policy, .residual_um = residual_um};
+                            const fg_explain_bars *barred, fg_effect_set *set,
+                            fg_explanations *explanations, double *residual_um) {
+  settling at = {.policy = policy, .barred = barred, .residual_um = residual_um};
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
   if (policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));

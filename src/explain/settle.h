@@ -4,10 +4,11 @@
 
 #include "explain/explain.h"
 
-/* Fits the geometry and the effects together between searches, until the set stays: what is linear
- * at the wrong geometry leaves traces that look like further effects. `set` gets the winner,
- * fitted; `residual_um` (rows) what it leaves. */
+/* Without the barred effects (NULL: none), fits the geometry and the effects together between
+ * searches, until the set stays: what is linear at the wrong geometry leaves traces that look like
+ * further effects. `set` gets the winner, fitted; `residual_um` (rows) what it leaves. */
 fg_status fg_explain_settle(fg_context *ctx, fg_points *points, const fg_explain_policy *policy,
-                            fg_effect_set *set, fg_explanations *explanations, double *residual_um);
+                            const fg_explain_bars *barred, fg_effect_set *set,
+                            fg_explanations *explanations, double *residual_um);
 
 #endif

@@ -14,7 +14,7 @@
 #include "field/field.h"
 #include "foilgauge/foil.h"
 
-enum { FG_POINTS_BLOCK = 4, FG_POINTS_BARRED = 24 };
+enum { FG_POINTS_BLOCK = 4 };
 /* A block is a row when this share of its stations is usable. */
 #define FG_POINTS_BLOCK_SHARE 0.75
 
@@ -52,12 +52,10 @@ typedef struct fg_points_row {
 typedef struct fg_points_bump {
   int number;
   double distance_mm, direction_rad, radius_mm; /* X, beta, R */
-  double effects_mm2[3][3]; /* covariance of (X, R, R0) that the effects in force add to noise */
 } fg_points_bump;
 
 typedef struct fg_points_part {
   double overall_radius_mm;
-  double effects_mm2;    /* variance of it that the effects in force add */
   fg_points_bump *bumps; /* owned */
   size_t bump_count;
   double sense;          /* +1: numbers rise with the angle (clockwise as seen) */
@@ -75,13 +73,6 @@ typedef struct fg_points_pose {
   double turn_rad;    /* 0 in a part's first view */
 } fg_points_pose;
 
-/* An effect that was found and that not all parts confirm. */
-struct fg_effect;
-typedef struct fg_points_barred {
-  const struct fg_effect *effect;
-  double would_explain, share, smallest_um; /* as in fg_explanations */
-} fg_points_barred;
-
 typedef struct fg_points {
   fg_points_view *views; /* owned */
   fg_points_pose *poses; /* owned; one per view */
@@ -97,8 +88,6 @@ typedef struct fg_points {
   bool coarse;          /* searches are a quick look */
   bool discs;           /* parts are discs: an overall circle each, and nothing else */
   size_t known_count;   /* parts whose radius is known */
-  fg_points_barred barred[FG_POINTS_BARRED]; /* effects that a search leaves out */
-  size_t barred_count;
 } fg_points;
 
 /* Rows and a start of the geometry from measured foils. Views of one part must have the same bumps

@@ -45,21 +45,23 @@ static const fg_points_row *nearest_row(const fg_points *points, size_t view, fg
   return row;
 }
 
-/* The shift at a place, that of the nearest row of its view, outwards from the arc's own centre. */
-static fg_point shift_at(const fg_points *points, size_t view, const double *shift_mm,
-                         fg_point at) {
-  const fg_points_row *row = nearest_row(points, view, at);
-  if (!row) return (fg_point){0, 0};
-  double shift = shift_mm[row - points->rows];
-  return (fg_point){shift * row->normal.x, shift * row->normal.y};
+/* What is taken out of edges: a scanner's fields, and of a fit what its part moved. */
+typedef struct correction {
+  const fg_field_list *fields;    /* NULL: none */
+  const fg_joint_fit_result *fit; /* NULL: none */
+} correction;
+
+/* The shift at a place, that of the nearest row of its view. */
+static fg_point shift_at(const fg_joint_fit_result *fit, size_t view, fg_point at) {
+  const fg_points_row *row = nearest_row(fit->points, view, at);
+  return row ? fit->shift_mm[row - fit->points->rows] : (fg_point){0, 0};
 }
 
-static void take_shift(const fg_points *points, size_t view, const double *shift_mm,
-                       fg_strip *strip) {
+static void take_shift(const fg_joint_fit_result *fit, size_t view, fg_strip *strip) {
   for (size_t k = 0; k < strip->count; k++) {
     fg_station *s = &strip->stations[k];
     fg_point middle = {0.5 * (s->left.x + s->right.x), 0.5 * (s->left.y + s->right.y)};
-    fg_point d = shift_at(points, view, shift_mm, middle);
+    fg_point d = shift_at(fit, view, middle);
     s->left.x -= d.x;
     s->left.y -= d.y;
     s->right.x -= d.x;
@@ -67,10 +69,19 @@ static void take_shift(const fg_points *points, size_t view, const double *shift
   }
 }
 
-fg_status fg_scan_loop_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
-                                    const fg_field_list *fields, const fg_points *points,
-                                    size_t view, const double *shift_mm, unsigned threads,
-                                    fg_foil *corrected) {
+/* The view of a foil, or of a disc, in a fit; false: it has none. */
+static bool find_view(const fg_joint_fit_result *fit, const fg_foil *foil, const fg_disc *disc,
+                      size_t *view) {
+  for (*view = 0; fit && *view < fit->points->view_count; ++*view) {
+    const fg_points_view *one = &fit->points->views[*view];
+    if (foil ? one->foil == foil : one->disc == disc) return true;
+  }
+  return false;
+}
+
+static fg_status correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
+                              const correction *c, unsigned threads, fg_foil *corrected) {
+  size_t view;
   memset(corrected, 0, sizeof *corrected);
   memcpy(corrected->place_mm, foil->place_mm, sizeof corrected->place_mm);
   corrected->number = foil->number;
@@ -80,25 +91,17 @@ fg_status fg_scan_loop_correct_foil(fg_context *ctx, const fg_foil *foil, const 
     return FG_OK;
   }
   FG_TRY(copy_strip(ctx, &foil->strip, &corrected->strip));
-  if (fields && fields->count) move_edges(fields, &corrected->strip);
-  if (shift_mm) take_shift(points, view, shift_mm, &corrected->strip);
+  if (c->fields && c->fields->count) move_edges(c->fields, &corrected->strip);
+  if (find_view(c->fit, foil, NULL, &view)) take_shift(c->fit, view, &corrected->strip);
   fg_status status = fg_strip_measure_thickness(ctx, &corrected->strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, design, threads, corrected);
   if (status != FG_OK) fg_foil_free(corrected);
   return status;
 }
 
-static void take_disc_shift(const fg_points *points, size_t view, const double *shift_mm,
-                            fg_disc *disc) {
-  for (size_t k = 0; k < disc->station_count; k++) {
-    fg_point *at = &disc->stations[k].at, d = shift_at(points, view, shift_mm, *at);
-    at->x -= d.x;
-    at->y -= d.y;
-  }
-}
-
-static fg_status correct_disc(fg_context *ctx, const fg_disc *disc, const fg_field_list *fields,
-                              const fg_points *points, const double *shift_mm, fg_disc *corrected) {
+static fg_status correct_disc(fg_context *ctx, const fg_disc *disc, const correction *c,
+                              fg_disc *corrected) {
+  size_t view;
   *corrected = *disc;
   corrected->edge = NULL;
   corrected->residual_um = NULL;
@@ -106,38 +109,19 @@ static fg_status correct_disc(fg_context *ctx, const fg_disc *disc, const fg_fie
   FG_TRY(fg_memory_allocate(ctx, disc->station_count, sizeof *disc->stations,
                             (void **)&corrected->stations));
   memcpy(corrected->stations, disc->stations, disc->station_count * sizeof *disc->stations);
-  for (size_t k = 0; fields && k < disc->station_count; k++)
-    corrected->stations[k].at = moved(fields, disc->stations[k].at);
-  size_t v = 0;
-  while (points && v < points->view_count && points->views[v].disc != disc)
-    v++;
-  if (shift_mm && points && v < points->view_count) take_disc_shift(points, v, shift_mm, corrected);
+  bool shifted = find_view(c->fit, NULL, disc, &view);
+  for (size_t k = 0; k < disc->station_count; k++) {
+    fg_point *at = &corrected->stations[k].at;
+    if (c->fields) *at = moved(c->fields, *at);
+    fg_point d = shifted ? shift_at(c->fit, view, *at) : (fg_point){0, 0};
+    at->x -= d.x;
+    at->y -= d.y;
+  }
   return fg_disc_measure_again(ctx, corrected);
 }
 
-static fg_status correct_discs(fg_context *ctx, const fg_measurement *m,
-                               const fg_field_list *fields, const fg_points *points,
-                               const double *shift_mm, fg_measurement *corrected) {
-  FG_TRY(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&corrected->discs));
-  for (size_t d = 0; d < m->disc_count; d++) {
-    corrected->disc_count++;
-    FG_TRY(correct_disc(ctx, &m->discs[d], fields, points, shift_mm, &corrected->discs[d]));
-  }
-  return FG_OK;
-}
-
-/* The view of a foil of a scan; the number of views when it has none. */
-static size_t find_view(const fg_points *points, const fg_foil *foil) {
-  size_t v = 0;
-  while (points && v < points->view_count && points->views[v].foil != foil)
-    v++;
-  return v;
-}
-
-fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
-                               const fg_field_list *fields, const fg_points *points,
-                               const double *shift_mm, unsigned threads,
-                               fg_measurement *corrected) {
+static fg_status correct(fg_context *ctx, const fg_measurement *m, const correction *c,
+                         unsigned threads, fg_measurement *corrected) {
   *corrected = *m;
   corrected->foils = NULL;
   corrected->foil_count = 0;
@@ -146,50 +130,58 @@ fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils, (void **)&corrected->foils));
   for (size_t f = 0; f < m->foil_count; f++) {
-    size_t view = find_view(points, &m->foils[f]);
-    bool known = points && view < points->view_count;
-    FG_TRY_EXIT(fg_scan_loop_correct_foil(ctx, &m->foils[f], &m->design, fields, points, view,
-                                          known ? shift_mm : NULL, threads, &corrected->foils[f]));
+    FG_TRY_EXIT(correct_foil(ctx, &m->foils[f], &m->design, c, threads, &corrected->foils[f]));
     corrected->foil_count++;
   }
-  FG_TRY_EXIT(correct_discs(ctx, m, fields, points, shift_mm, corrected));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&corrected->discs));
+  for (size_t d = 0; d < m->disc_count; d++) {
+    corrected->disc_count++;
+    FG_TRY_EXIT(correct_disc(ctx, &m->discs[d], c, &corrected->discs[d]));
+  }
 exit:
   if (status != FG_OK) fg_measurement_free(corrected);
   return status;
 }
 
+fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
+                               const fg_field_list *fields, unsigned threads,
+                               fg_measurement *corrected) {
+  return correct(ctx, m, &(correction){.fields = fields}, threads, corrected);
+}
+
 /* What was corrected is not known exactly: the uncertainties of the foils take what the fit of the
  * set adds to its geometry's. */
-static void widen_by_effects(const fg_points *points, const fg_measurement *before,
+static void widen_by_effects(const fg_joint_fit_result *fit, const fg_measurement *before,
                              fg_measurement *after) {
+  const fg_points *points = fit->points;
   for (size_t v = 0; v < points->view_count; v++) {
     const fg_points_part *part = &points->parts[points->views[v].part];
+    const fg_joint_fit_part *adds = &fit->parts[points->views[v].part];
     if (points->views[v].measurement != before || points->views[v].disc) continue;
     fg_foil *foil = &after->foils[points->views[v].foil - before->foils];
     double share = foil->overall.u_springback_error_pct / foil->overall.u_radius_mm;
     for (size_t b = 0; b < foil->bump_count; b++)
-      for (size_t k = 0; k < part->bump_count; k++) {
-        fg_points_bump bump = part->bumps[k];
-        if (bump.number == foil->bumps[b].number)
-          fg_bump_widen(&after->design, &after->nominal, &foil->overall, bump.effects_mm2,
+      for (size_t k = 0; k < part->bump_count; k++)
+        if (part->bumps[k].number == foil->bumps[b].number)
+          fg_bump_widen(&after->design, &after->nominal, &foil->overall, adds->bumps[k],
                         &foil->bumps[b]);
-      }
-    foil->overall.u_radius_mm = hypot(foil->overall.u_radius_mm, sqrt(part->effects_mm2));
+    foil->overall.u_radius_mm = hypot(foil->overall.u_radius_mm, sqrt(adds->overall));
     foil->overall.u_springback_error_pct = share * foil->overall.u_radius_mm;
   }
 }
 
+fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
+                                      const fg_joint_fit_result *fit, unsigned threads,
+                                      fg_measurement *corrected) {
+  FG_TRY(correct(ctx, m, &(correction){&fit->fields, fit}, threads, corrected));
+  if (fit->set.count) widen_by_effects(fit, m, corrected);
+  return FG_OK;
+}
+
 fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
-                                   const fg_effect_set *set, fg_measurement *after) {
-  fg_field_list fields;
-  double *shift = NULL;
-  fg_effect_set_fields(&loop->points, set, &fields);
-  fg_status status = fg_effect_set_shift(ctx, &loop->points, set, &shift);
-  for (size_t i = 0; i < loop->scan_count && status == FG_OK; i++)
-    status = fg_scan_loop_correct(ctx, &loop->before[i], &fields, &loop->points, shift,
-                                  loop->options.threads, &after[i]);
-  for (size_t i = 0; i < loop->scan_count && status == FG_OK && set->count; i++)
-    widen_by_effects(&loop->points, &loop->before[i], &after[i]);
-  free(shift);
-  return status;
+                                   const fg_joint_fit_result *fit, fg_measurement *after) {
+  for (size_t i = 0; i < loop->scan_count; i++)
+    FG_TRY(
+        fg_scan_loop_correct_fitted(ctx, &loop->before[i], fit, loop->options.threads, &after[i]));
+  return FG_OK;
 }

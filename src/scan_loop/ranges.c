@@ -90,26 +90,33 @@ static void widen_step_place(fg_effect_set *set, const fg_effect_set *other) {
     }
 }
 
+/* What the dimensions are under one explanation that is not the winner. One that cannot be fitted
+ * is none. */
+static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
+                          fg_measurement *tried) {
+  fg_effect_set set;
+  fg_joint_fit_result fit;
+  fg_explain_take(&loop->explanations, explanation, &set);
+  fg_status status = fg_joint_fit_open(ctx, &loop->points, &set, &fit);
+  if (status == FG_ERR_NUMERIC) return FG_OK;
+  if (status != FG_OK) return status;
+  loop->tie[loop->tie_count++] = fit.set;
+  status = fg_scan_loop_correct_all(ctx, loop, &fit, tried);
+  if (status == FG_OK) widen_all(loop, tried);
+  for (size_t i = 0; i < loop->scan_count; i++)
+    fg_measurement_free(&tried[i]);
+  fg_joint_fit_close(&fit);
+  return status;
+}
+
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop) {
   fg_status status = FG_OK;
   fg_measurement *tried = NULL;
   FG_TRY(allocate_ranges(ctx, loop));
   FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *tried, (void **)&tried));
   widen_all(loop, loop->after);
-  for (size_t m = 1; m < loop->explanations.count && status == FG_OK; m++) {
-    fg_effect_set set;
-    fg_explain_take(&loop->explanations, m, &set);
-    status = fg_joint_fit(ctx, &loop->points, &set, NULL);
-    if (status == FG_ERR_NUMERIC) {
-      status = FG_OK;
-      continue;
-    }
-    if (status == FG_OK) loop->tie[loop->tie_count++] = set;
-    if (status == FG_OK) status = fg_scan_loop_correct_all(ctx, loop, &set, tried);
-    if (status == FG_OK) widen_all(loop, tried);
-    for (size_t i = 0; i < loop->scan_count; i++)
-      fg_measurement_free(&tried[i]);
-  }
+  for (size_t m = 1; m < loop->explanations.count && status == FG_OK; m++)
+    status = widen_by(ctx, loop, m, tried);
   free(tried);
   put_ranges(loop);
   /* The geometry in force is the winner's again. */

@@ -187,6 +187,16 @@ static fg_status search_width(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
+/* The winner fitted once more, and every scan corrected by it. */
+static fg_status correct(fg_context *ctx, fg_scan_loop *loop) {
+  fg_joint_fit_result fit;
+  FG_TRY(fg_joint_fit_open(ctx, &loop->points, &loop->set, &fit));
+  loop->set = fit.set;
+  fg_status status = fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
+  fg_joint_fit_close(&fit);
+  return status;
+}
+
 static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   size_t rows = loop->points.row_count;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_before));
@@ -198,8 +208,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
   loop->noise_floor_um = loop->explanations.noise_um;
   loop->tied = loop->explanations.count > 1;
-  FG_TRY(fg_joint_fit(ctx, &loop->points, &loop->set, NULL));
-  FG_TRY(fg_scan_loop_correct_all(ctx, loop, &loop->set, loop->after));
+  FG_TRY(correct(ctx, loop));
   if (loop->tied) FG_TRY(fg_scan_loop_find_ranges(ctx, loop));
   find_verdict(loop);
   FG_TRY(search_bumps(ctx, loop));

@@ -133,8 +133,8 @@ fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model,
   FG_TRY(check_place(ctx, model, m, warning));
   fg_measurement corrected = {0}, own = {0};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, NULL, NULL, threads, &corrected));
-  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, NULL, NULL, threads, &own));
+  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, threads, &corrected));
+  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, threads, &own));
   FG_TRY_EXIT(fg_scanner_model_widen(ctx, model, m, threads, &corrected));
   FG_TRY_EXIT(fg_scanner_model_widen_tie(ctx, model, m, threads, &corrected));
   flag_reach(&model->fields.frame, &corrected);

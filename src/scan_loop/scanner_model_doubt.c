@@ -81,7 +81,7 @@ fg_status fg_scanner_model_widen(fg_context *ctx, const fg_scanner_model *model,
       fg_field_list moved = model->fields;
       fg_measurement other;
       if (!move_number(&moved.fields[f], c)) continue;
-      FG_TRY(fg_scan_loop_correct(ctx, m, &moved, NULL, NULL, threads, &other));
+      FG_TRY(fg_scan_loop_correct(ctx, m, &moved, threads, &other));
       fg_status status = widen_by(ctx, &other, 1, 1, corrected);
       fg_measurement_free(&other);
       FG_TRY(status);
@@ -96,8 +96,7 @@ fg_status fg_scanner_model_widen_tie(fg_context *ctx, const fg_scanner_model *mo
   fg_status status = FG_OK;
   size_t count = 0;
   while (count < model->others && status == FG_OK) {
-    status =
-        fg_scan_loop_correct(ctx, m, &model->other[count], NULL, NULL, threads, &others[count]);
+    status = fg_scan_loop_correct(ctx, m, &model->other[count], threads, &others[count]);
     if (status == FG_OK) count++;
   }
   if (status == FG_OK) status = widen_by(ctx, others, count, 1 / sqrt(3), corrected);

@@ -56,23 +56,20 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
 /* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
 fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop);
 
-/* Copies a measured foil with corrected edges and measures it again: fields move the edges by
- * d(x, y); `shift` (one per row of `points`, for the rows of `view`) takes the part's own deviation
- * out. Either may be NULL. */
-fg_status fg_scan_loop_correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
-                                    const fg_field_list *fields, const fg_points *points,
-                                    size_t view, const double *shift_mm, unsigned threads,
-                                    fg_foil *corrected);
-
-/* A measurement with every foil and disc corrected. */
+/* Copies a measurement with corrected edges and measures its foils and discs again: fields move an
+ * edge by d(x, y). NULL: there are none. */
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,
-                               const fg_field_list *fields, const fg_points *points,
-                               const double *shift_mm, unsigned threads, fg_measurement *corrected);
+                               const fg_field_list *fields, unsigned threads,
+                               fg_measurement *corrected);
 
-/* All of the loop's measurements, with uncertainties that the effects add. The set must be the one
- * that the points were fitted with last. */
+/* The same by a fit to these edges: its fields, then what its part moved, with the uncertainties
+ * that its effects add. */
+fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
+                                      const fg_joint_fit_result *fit, unsigned threads,
+                                      fg_measurement *corrected);
+/* All of the loop's measurements. */
 fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
-                                   const fg_effect_set *set, fg_measurement *after);
+                                   const fg_joint_fit_result *fit, fg_measurement *after);
 
 /* In a tie, the dimensions under every explanation, as ranges of those of `after`. */
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);

@@ -18,7 +18,7 @@ _Static_assert((int)FG_SCAN_RESULT_CLAIMS == (int)FG_EFFECT_SET_MAX + (int)FG_WI
 _Static_assert((int)FG_SCAN_RESULT_EXPLANATIONS == (int)FG_EXPLANATIONS_MAX,
                "every explanation has its place");
 _Static_assert((int)FG_SCAN_RESULT_UNCLAIMED >=
-                   FG_CANDIDATES_MAX + (int)FG_POINTS_BARRED + (int)FG_WIDTH_EFFECTS_MAX,
+                   FG_CANDIDATES_MAX + (int)FG_EXPLAIN_BARRED_MAX + (int)FG_WIDTH_EFFECTS_MAX,
                "every candidate has its place");
 _Static_assert((int)FG_SCAN_X == (int)FG_EFFECT_X && (int)FG_SCAN_Y == (int)FG_EFFECT_Y &&
                    (int)FG_SCAN_FOIL == (int)FG_EFFECT_FOIL &&
@@ -242,8 +242,8 @@ static void put_unclaimed(const fg_scan_loop *loop, fg_scan_result *result) {
         .retained_share = explanations->share[e],
         .smallest_um = explanations->smallest_um[e]};
   }
-  for (size_t b = 0; b < loop->points.barred_count; b++) {
-    const fg_points_barred *barred = &loop->points.barred[b];
+  for (size_t b = 0; b < explanations->barred.count; b++) {
+    const fg_explain_barred *barred = &explanations->barred.each[b];
     const fg_effect *kind = barred->effect;
     if (fg_effect_is_free(kind) || is_claimed(&loop->set, kind) || is_listed(result, kind))
       continue;

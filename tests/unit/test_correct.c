@@ -62,7 +62,7 @@ static fg_measurement measure(const foil_rows *f, const fg_field_list *fields,
     s->right = seen_at(fields, s->right);
   }
   m.foils = &foil;
-  assert_int_equal(fg_scan_loop_correct(&ctx, &m, correction, NULL, NULL, 1, &corrected), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &m, correction, 1, &corrected), FG_OK);
   free(foil.strip.stations);
   return corrected;
 }
@@ -136,9 +136,15 @@ static void what_the_part_moved_is_put_back(void **state) {
   foil_rows_open(&f);
   fg_measurement truth = measure(&f, NULL, NULL), wrong, right;
   const fg_effect *oval = fg_effect_find("part.ovality");
-  fg_effect_set set = {.effects = {{.kind = oval, .columns = 2, .coefficient_um = {9, -4}}},
-                       .count = 1};
+  const fg_effect_set set = {.effects = {{.kind = oval, .columns = 2, .coefficient_um = {9, -4}}},
+                             .count = 1};
   assert_int_equal(fg_effect_set_shift(&ctx, &f.points, &set, &shift_mm), FG_OK);
+  fg_point *vectors = calloc(f.points.row_count, sizeof *vectors);
+  for (size_t i = 0; i < f.points.row_count; i++) {
+    fg_point n = f.points.rows[i].normal;
+    vectors[i] = (fg_point){shift_mm[i] * n.x, shift_mm[i] * n.y};
+  }
+  const fg_joint_fit_result fit = {.points = &f.points, .shift_mm = vectors};
   fg_strip *strip = &f.m.foils[0].strip;
   for (size_t k = 0; k < strip->count; k++) {
     fg_station *s = &strip->stations[k];
@@ -148,20 +154,46 @@ static void what_the_part_moved_is_put_back(void **state) {
       if (hypot(f.points.rows[i].at.x - middle.x, f.points.rows[i].at.y - middle.y) <
           hypot(f.points.rows[nearest].at.x - middle.x, f.points.rows[nearest].at.y - middle.y))
         nearest = i;
-    fg_point n = f.points.rows[nearest].normal;
-    s->left = (fg_point){s->left.x + shift_mm[nearest] * n.x, s->left.y + shift_mm[nearest] * n.y};
-    s->right =
-        (fg_point){s->right.x + shift_mm[nearest] * n.x, s->right.y + shift_mm[nearest] * n.y};
+    fg_point d = vectors[nearest];
+    s->left = (fg_point){s->left.x + d.x, s->left.y + d.y};
+    s->right = (fg_point){s->right.x + d.x, s->right.y + d.y};
   }
-  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, NULL, NULL, NULL, 1, &wrong), FG_OK);
-  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, NULL, &f.points, shift_mm, 1, &right), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, NULL, 1, &wrong), FG_OK);
+  assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &right), FG_OK);
   assert_true(fabs(wrong.foils[0].overall.radius_mm - truth.foils[0].overall.radius_mm) > 5e-3);
   same_edges(&right.foils[0].strip, &truth.foils[0].strip, NEXT_ROW_MM);
   same_circles(&right.foils[0], &truth.foils[0], NEXT_ROW_MM / 3);
   free(shift_mm);
+  free(vectors);
   fg_measurement_free(&truth);
   fg_measurement_free(&wrong);
   fg_measurement_free(&right);
+  foil_rows_close(&f);
+}
+
+/* A fit corrects as it did, whatever is fitted to the same points after it. */
+static void a_later_fit_changes_no_correction(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  foil_rows f;
+  foil_rows_open(&f);
+  const fg_effect *oval = fg_effect_find("part.ovality"), *shear = fg_effect_find("scan.shear");
+  fg_effect_set set = {.effects = {{.kind = shear, .columns = 1}, {.kind = oval, .columns = 2}},
+                       .count = 2};
+  fg_effect_set none = {.count = 0};
+  fg_joint_fit_result fit;
+  fg_measurement before, after;
+  assert_int_equal(fg_joint_fit_open(&ctx, &f.points, &set, &fit), FG_OK);
+  assert_true(fabs(fit.set.effects[0].coefficient_um[0]) > 1e-3);
+  assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &before), FG_OK);
+  assert_int_equal(fg_joint_fit(&ctx, &f.points, &none, NULL), FG_OK);
+  assert_int_equal(fg_scan_loop_correct_fitted(&ctx, &f.m, &fit, 1, &after), FG_OK);
+  same_edges(&after.foils[0].strip, &before.foils[0].strip, 0);
+  same_circles(&after.foils[0], &before.foils[0], 0);
+  assert_near(after.foils[0].overall.u_radius_mm, before.foils[0].overall.u_radius_mm, 0);
+  fg_measurement_free(&before);
+  fg_measurement_free(&after);
+  fg_joint_fit_close(&fit);
   foil_rows_close(&f);
 }
 
@@ -183,8 +215,8 @@ static void what_a_scanner_did_to_a_disc_is_put_back(void **state) {
   }
   fg_disc disc = {.number = 1, .stations = seen, .station_count = STATIONS};
   fg_measurement m = {.disc_count = 1, .discs = &disc}, wrong, right;
-  assert_int_equal(fg_scan_loop_correct(&ctx, &m, NULL, NULL, NULL, 1, &wrong), FG_OK);
-  assert_int_equal(fg_scan_loop_correct(&ctx, &m, &fields, NULL, NULL, 1, &right), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &m, NULL, 1, &wrong), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &m, &fields, 1, &right), FG_OK);
   assert_true(fabs(wrong.discs[0].radius_mm - radius_mm) > 1e-3);
   assert_near(right.discs[0].radius_mm, radius_mm, EDGE_MM);
   assert_near(right.discs[0].centre_mm.x, centre.x, EDGE_MM);
@@ -203,7 +235,7 @@ static void a_foil_that_was_not_measured_stays_so(void **state) {
   fg_field_list fields = scanner(&f);
   fg_measurement corrected;
   f.m.foils[0].flags = FG_FOIL_NOT_MEASURED | FG_FOIL_COARSE_RESOLUTION;
-  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, &fields, NULL, NULL, 1, &corrected), FG_OK);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &f.m, &fields, 1, &corrected), FG_OK);
   assert_int_equal(corrected.foils[0].flags, f.m.foils[0].flags);
   assert_true(isnan(corrected.foils[0].overall.radius_mm));
   fg_measurement_free(&corrected);
@@ -215,6 +247,7 @@ int main(void) {
       cmocka_unit_test(what_a_scanner_moved_is_put_back),
       cmocka_unit_test(the_corrected_foil_is_the_one_that_was_drawn),
       cmocka_unit_test(what_the_part_moved_is_put_back),
+      cmocka_unit_test(a_later_fit_changes_no_correction),
       cmocka_unit_test(what_a_scanner_did_to_a_disc_is_put_back),
       cmocka_unit_test(a_foil_that_was_not_measured_stays_so),
   };
