@@ -14,4 +14,8 @@ typedef struct fg_spread {
 /* Of |residual|; reorders them. All NaN when there are none. */
 fg_spread fg_spread_of(double *sizes, size_t count);
 
+/* So many robust standard deviations of what has these sizes (1.4826 times the upper median each);
+ * INFINITY when there are none. Reorders them. */
+double fg_spread_limit(double *sizes, size_t count, double deviations);
+
 #endif

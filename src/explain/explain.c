@@ -96,6 +96,7 @@ static fg_status settle_confirmed(fg_context *ctx, fg_points *points,
                                   const fg_explain_policy *policy, fg_effect_set *set,
                                   fg_explanations *explanations, double *residual_um) {
   fg_explain_bars barred = {.count = 0};
+  const fg_settle_request request = {points, policy, &barred};
   double *weights = NULL;
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *weights, (void **)&weights));
@@ -105,7 +106,7 @@ static fg_status settle_confirmed(fg_context *ctx, fg_points *points,
   while (more) {
     size_t before = barred.count;
     start_again(points, weights);
-    FG_TRY_EXIT(fg_explain_settle(ctx, points, policy, &barred, set, explanations, residual_um));
+    FG_TRY_EXIT(fg_explain_settle(ctx, &request, set, explanations, residual_um));
     FG_TRY_EXIT(bar_unconfirmed(ctx, points, set, explanations, residual_um, &barred));
     more = barred.count > before;
   }
@@ -120,7 +121,8 @@ fg_status fg_explain_run(fg_context *ctx, fg_points *points, fg_effect_set *set,
   const fg_explain_policy *policy = fg_explain_policy_of(points);
   if (policy->confirms && points->part_count > 1)
     return settle_confirmed(ctx, points, policy, set, explanations, residual_um);
-  FG_TRY(fg_explain_settle(ctx, points, policy, NULL, set, explanations, residual_um));
+  const fg_settle_request request = {.points = points, .policy = policy};
+  FG_TRY(fg_explain_settle(ctx, &request, set, explanations, residual_um));
   if (policy->confirms) add_ring_alias(explanations);
   return FG_OK;
 }

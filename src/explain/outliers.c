@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/spread.h"
 
 /* Rows this far off are left out, if they are fewer than this share: of normal noise 1 in 1.7
  * million is. */
@@ -14,14 +14,6 @@
 #define END_SIGMAS 8.0
 /* Rows at either end that may leave, and rows that a run must have between them. */
 enum { END_ROWS = 3, BETWEEN = 4 };
-/* Standard deviation of a normal distribution whose absolute values have the median 1. */
-#define SD_PER_MEDIAN 1.4826
-
-/* Limit at so many robust standard deviations; reorders the sizes. */
-static double limit_of(double *sizes, size_t count, double sigmas) {
-  return count ? sigmas * SD_PER_MEDIAN * fg_select(sizes, count, count / 2) : INFINITY;
-}
-
 /* Residual, or in units of its row's noise, but for one factor. */
 static double size_of(const fg_points_row *row, bool own_noise, double residual) {
   return own_noise ? fabs(residual) * sqrt(row->weight / FG_POINTS_BLOCK) : fabs(residual);
@@ -35,7 +27,7 @@ fg_status fg_explain_drop_outliers(fg_context *ctx, fg_points *points, bool own_
   for (size_t i = 0; i < rows; i++)
     if (points->rows[i].weight > 0)
       absolute[n++] = size_of(&points->rows[i], own_noise, residual_um[i]);
-  double limit = limit_of(absolute, n, OUTLIER_SIGMAS);
+  double limit = fg_spread_limit(absolute, n, OUTLIER_SIGMAS);
   free(absolute);
   for (size_t i = 0; i < rows; i++)
     out += size_of(&points->rows[i], own_noise, residual_um[i]) > limit;
@@ -69,7 +61,7 @@ fg_status fg_explain_drop_ends(fg_context *ctx, fg_points *points, const double 
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *size, (void **)&size));
   for (size_t i = 0; i + 3 < rows; i++)
     if (same_run(points, i, i + 3)) size[n++] = fabs(third_difference(residual_um, i, 1));
-  double limit = limit_of(size, n, END_SIGMAS);
+  double limit = fg_spread_limit(size, n, END_SIGMAS);
   free(size);
   for (size_t from = 0, to; from < rows; from = to) {
     for (to = from + 1; to < rows && same_run(points, from, to);)

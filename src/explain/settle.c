@@ -233,13 +233,13 @@ static fg_status drop_ends(fg_context *ctx, fg_points *points, double *residual_
   return fg_explain_drop_ends(ctx, points, residual_um);
 }
 
-fg_status fg_explain_settle(fg_context *ctx, fg_points *points, const fg_explain_policy *policy,
-                            const fg_explain_bars *barred, fg_effect_set *set,
+fg_status fg_explain_settle(fg_context *ctx, const fg_settle_request *request, fg_effect_set *set,
                             fg_explanations *explanations, double *residual_um) {
-  settling at = {.policy = policy, .barred = barred, .residual_um = residual_um};
+  fg_points *points = request->points;
+  settling at = {.policy = request->policy, .barred = request->barred, .residual_um = residual_um};
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
-  if (policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
+  if (at.policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
   FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *at.jacobian,
                             (void **)&at.jacobian));
   FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *at.geometry,

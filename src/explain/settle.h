@@ -4,11 +4,16 @@
 
 #include "explain/explain.h"
 
-/* Without the barred effects (NULL: none), fits the geometry and the effects together between
- * searches, until the set stays: what is linear at the wrong geometry leaves traces that look like
- * further effects. `set` gets the winner, fitted; `residual_um` (rows) what it leaves. */
-fg_status fg_explain_settle(fg_context *ctx, fg_points *points, const fg_explain_policy *policy,
-                            const fg_explain_bars *barred, fg_effect_set *set,
+typedef struct fg_settle_request {
+  fg_points *points; /* gets the geometry that was fitted beside the winner */
+  const fg_explain_policy *policy;
+  const fg_explain_bars *barred; /* NULL: none */
+} fg_settle_request;
+
+/* Fits the geometry and the effects together between searches, until the set stays: what is linear
+ * at the wrong geometry leaves traces that look like further effects. `set` gets the winner,
+ * fitted; `residual_um` (rows) what it leaves. */
+fg_status fg_explain_settle(fg_context *ctx, const fg_settle_request *request, fg_effect_set *set,
                             fg_explanations *explanations, double *residual_um);
 
 #endif

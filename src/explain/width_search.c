@@ -7,8 +7,8 @@
 #include <gsl/gsl_cdf.h>
 
 #include "core/memory.h"
-#include "core/select.h"
 #include "core/small_solve.h"
+#include "core/spread.h"
 #include "effect/columns.h"
 
 /* Chance of a claim where there is nothing. One look per effect, at every scan that is ever
@@ -175,7 +175,7 @@ static fg_status drop_outliers(fg_context *ctx, width_fit *f) {
   FG_TRY(fg_memory_allocate(ctx, f->count, sizeof *size, (void **)&size));
   for (size_t i = 0; i < f->count; i++)
     if (f->rows[i].weight > 0) size[n++] = fabs(left_um(f, &f->rows[i]));
-  double limit = n ? OUTLIER_SIGMAS * 1.4826 * fg_select(size, n, n / 2) : INFINITY;
+  double limit = fg_spread_limit(size, n, OUTLIER_SIGMAS);
   for (size_t i = 0; i < f->count; i++)
     if (fabs(left_um(f, &f->rows[i])) > limit) f->rows[i].weight = 0;
   free(size);

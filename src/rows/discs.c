@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/select.h"
+#include "core/spread.h"
 #include "rows/points.h"
 
 /* So many rows carry any search; the blocks grow with the edges. */
@@ -142,7 +142,7 @@ static double noise_beside_form(const fg_disc *disc, const fg_points_row *rows, 
              hypot(rows[at[k]].at.x - disc->centre_mm.x, rows[at[k]].at.y - disc->centre_mm.y);
     work[i] = fabs(1000 * sum) / sqrt(1.5); /* 1 + 1/4 + 1/4 */
   }
-  return 1.4826 * fg_select(work, count, count / 2);
+  return fg_spread_limit(work, count, 1);
 }
 
 /* An edge that is no circle is no gauge: all that it leaves counts as its noise. */

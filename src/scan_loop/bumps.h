@@ -78,6 +78,11 @@ typedef struct fg_scan_loop_bumps_request {
   uint64_t seed;
 } fg_scan_loop_bumps_request;
 
+/* Fills `bump`: one row per bump of a part. A part's scans that were kept aside show nothing new of
+ * it. */
+fg_status fg_scan_loop_bumps_collect(fg_context *ctx, const fg_scan_loop_bumps_request *request,
+                                     fg_scan_loop_bumps *bumps);
+
 /* Foils that are too small, or have no lip, are no error but a note. */
 fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
                                  fg_scan_loop_bumps *bumps);
