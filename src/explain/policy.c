@@ -81,6 +81,7 @@ static const fg_explain_policy discs = {
     .worse_chi2 = INFINITY, /* none that is much worse is right */
     .is_better = leaves_less,
     .beside_curve = 1,
+    .curves_alone_last = true, /* confirmation drops the effect that does not belong there */
     .is_worth_fitting = has_new_shape,
     .smallest_beside_own = true,
     .manners = {{true, false}},

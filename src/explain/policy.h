@@ -41,8 +41,10 @@ struct fg_explain_policy {
 
   /* ---- where no listed set is right ---- */
   size_t beside_curve; /* listed effects beside a curve, at most */
-  double curve_share;  /* a curve is known to this share of itself: no effect stands beside it for
-                          less */
+  bool
+      curves_alone_last; /* curve by curve, alone only where that is better than beside an effect */
+  double curve_share;    /* a curve is known to this share of itself: no effect stands beside it for
+                            less */
   /* Whether the best listed set has a shape that is to be fitted with the geometry before any
    * curve is believed. */
   bool (*is_worth_fitting)(const fg_explain_search *search, const fg_explain_yardstick *yardstick,

@@ -124,28 +124,47 @@ static double free_score(const fg_explain_search *s, const fg_explain_yardstick 
   return fg_explain_schwarz(s, &m);
 }
 
+/* The best set with a curve so far, and its score. */
+typedef struct curve_trial {
+  fg_explanation best;
+  double score;
+} curve_trial;
+
+/* Every curve of a mask beside a listed set. Every further effect must be worth its while. */
+static void try_curves(const fg_explain_search *s, const fg_explain_yardstick *y, unsigned curves,
+                       unsigned beside, curve_trial *trial) {
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    if (!(curves >> e & 1)) continue;
+    fg_explanation explanation = fg_explain_try(s, y, beside | 1u << e);
+    double gained = trial->score - fg_explain_schwarz(s, &explanation);
+    if (beside)
+      gained = fmin(gained, free_score(s, y, trial->best) - free_score(s, y, explanation));
+    if (!(gained > SCORE_GAIN)) continue;
+    *trial = (curve_trial){explanation, fg_explain_schwarz(s, &explanation)};
+  }
+}
+
+static void try_curves_beside(const fg_explain_search *s, const fg_explain_yardstick *y,
+                              unsigned curves, size_t size, curve_trial *trial) {
+  unsigned listed = fg_explain_mask_of(s->out, false);
+  for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask))
+    if (fg_explain_bits(mask) == size && !fg_explain_has_twins(s->out, mask))
+      try_curves(s, y, curves, mask, trial);
+}
+
 /* A free curve, alone or beside few listed effects: the one that leaves least for its columns; the
  * best listed set stands when none does better. */
 static fg_explanation try_free(const fg_explain_search *s, const fg_explain_yardstick *y,
                                fg_explanation best) {
-  const fg_explanations *out = s->out;
-  unsigned listed = fg_explain_mask_of(out, false);
-  double score = isfinite(best.excess) ? fg_explain_schwarz(s, &best) : INFINITY;
-  for (size_t size = 0; size <= (s->columns.points->coarse ? 0 : s->policy->beside_curve); size++)
-    for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask)) {
-      if (fg_explain_bits(mask) != size || fg_explain_has_twins(out, mask)) continue;
-      for (size_t e = 0; e < out->candidate_count; e++) {
-        if (!fg_effect_is_free(out->candidates[e].kind)) continue;
-        fg_explanation explanation = fg_explain_try(s, y, mask | 1u << e);
-        /* Every further effect must be worth its while. */
-        double gained = score - fg_explain_schwarz(s, &explanation);
-        if (size) gained = fmin(gained, free_score(s, y, best) - free_score(s, y, explanation));
-        if (!(gained > SCORE_GAIN)) continue;
-        score = fg_explain_schwarz(s, &explanation);
-        best = explanation;
-      }
-    }
-  return best;
+  unsigned free = fg_explain_mask_of(s->out, true);
+  size_t most = s->columns.points->coarse ? 0 : s->policy->beside_curve;
+  curve_trial trial = {best, isfinite(best.excess) ? fg_explain_schwarz(s, &best) : INFINITY};
+  for (size_t size = 0; size <= most && !s->policy->curves_alone_last; size++)
+    try_curves_beside(s, y, free, size, &trial);
+  for (size_t e = 0; e < s->out->candidate_count && s->policy->curves_alone_last; e++)
+    for (size_t size = most + 1; size-- > 0;)
+      try_curves_beside(s, y, free & 1u << e, size, &trial);
+  return trial.best;
 }
 
 /* Two curves, alone or beside one listed effect: a carriage that runs unevenly also sways. One view
