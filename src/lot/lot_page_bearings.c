@@ -62,6 +62,29 @@ static void put_mean_and_sd(FILE *out, const fg_lot_spread *spread) {
   fputs(" %", out);
 }
 
+/* How the foils lie around the bearings, drawings of the first, and a line of each. */
+static void put_assembled(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  bool assumed =
+      fg_manifest_column(&analysis->lot->manifest, settings->bearing_column) == FG_NO_COLUMN;
+  fprintf(out,
+          "<p class=\"note\">%zu pads of %zu bumps, %.2f° apart, from bump %zu of each foil; "
+          "clearances of the foils fitted into the sleeve%s.%s%s</p>\n<div class=\"pair\">\n",
+          analysis->layout.pads, analysis->layout.bumps_per_pad,
+          fg_bearing_pitch_deg(&analysis->layout), analysis->layout.first_bump,
+          assumed ? ". The manifest assigns no bearing: foils in a row are taken together" : "",
+          analysis->layout_note[0] ? " " : "", analysis->layout_note);
+  for (size_t i = 0; i < analysis->bearing_count && i < POLAR_MAX; i++) {
+    fputs("<figure>", out);
+    fg_lot_plot_polar(out, analysis, &analysis->bearings[i]);
+    fputs("<figcaption>Bearing ", out);
+    put_bearing_name(out, &analysis->bearings[i]);
+    fputs("; radial lines: pads.</figcaption></figure>\n", out);
+  }
+  fputs("</div>\n", out);
+  put_bearing_table(out, analysis);
+}
+
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   const fg_lot_quantity *clearance = fg_lot_find_quantity(analysis, "clearance_fitted_mm");
@@ -83,25 +106,6 @@ void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis) {
     fprintf(out, "; with the design's thickness clearances would be %.3g µm %s.</p>\n",
             1000 * fabs(more), more > 0 ? "larger" : "smaller");
   }
-  if (analysis->bearing_count) {
-    bool assumed =
-        fg_manifest_column(&analysis->lot->manifest, settings->bearing_column) == FG_NO_COLUMN;
-    fprintf(out,
-            "<p class=\"note\">%zu pads of %zu bumps, %.2f° apart, from bump %zu of each foil; "
-            "clearances of the foils fitted into the sleeve%s.%s%s</p>\n<div class=\"pair\">\n",
-            analysis->layout.pads, analysis->layout.bumps_per_pad,
-            fg_bearing_pitch_deg(&analysis->layout), analysis->layout.first_bump,
-            assumed ? ". The manifest assigns no bearing: foils in a row are taken together" : "",
-            analysis->layout_note[0] ? " " : "", analysis->layout_note);
-    for (size_t i = 0; i < analysis->bearing_count && i < POLAR_MAX; i++) {
-      fputs("<figure>", out);
-      fg_lot_plot_polar(out, analysis, &analysis->bearings[i]);
-      fputs("<figcaption>Bearing ", out);
-      put_bearing_name(out, &analysis->bearings[i]);
-      fputs("; radial lines: pads.</figcaption></figure>\n", out);
-    }
-    fputs("</div>\n", out);
-    put_bearing_table(out, analysis);
-  }
+  if (analysis->bearing_count) put_assembled(out, analysis);
   fputs("</section>\n", out);
 }

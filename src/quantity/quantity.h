@@ -37,12 +37,11 @@ void fg_quantity_column(const fg_quantity *quantity, size_t k, char *text, size_
 /* The values that can be judged, for a message: "radius_mm, ..."; appended. Counts too. */
 void fg_quantity_list(fg_quantity_owner owner, bool counts, char *text, size_t size);
 
-/* How many numbers all rows of an owner with an uncertainty have, those without u_ counted. */
+/* What widens an object: how far each value that has an uncertainty would lie elsewhere, one after
+ * the other, two of a pair. How many they are. */
 size_t fg_quantity_moves(fg_quantity_owner owner);
 
-/* What widens an object: how far each of these numbers would lie elsewhere, row by row. */
-
-/* Of each the farther of what `farthest` holds and of `other` minus `object`. */
+/* The farther, in size, of what `farthest` holds and of `other` minus `object`. */
 void fg_quantity_take_moves(fg_quantity_owner owner, const void *object, const void *other,
                             double *farthest);
 

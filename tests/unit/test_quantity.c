@@ -7,7 +7,9 @@
 #include "foilgauge/bearing.h"
 #include "foilgauge/report.h"
 #include "foilgauge/scan_loop.h"
+#include "lot/characteristics.h"
 #include "quantity/quantity.h"
+#include "support/made_lot.h"
 #include "support/measured_render.h"
 #include "support/synthetic_foil.h"
 
@@ -355,6 +357,49 @@ static void a_tie_widens_every_row(void **state) {
   grows_everywhere(MODEL("0", OTHER));
 }
 
+/* ---- lots ---- */
+
+static void lots_know_every_row(void **state) {
+  (void)state;
+  enum { FOILS = 3, BUMPS = 3 };
+  fg_context ctx = {0};
+  fg_design design = synthetic_design();
+  design.bump_count = BUMPS;
+  fg_lot lot = made_lot(&design, FOILS, BUMPS, "", NULL);
+  for (size_t f = 0; f < FOILS; f++)
+    for (size_t b = 0; b < BUMPS; b++)
+      made_bump(&lot, f, b, 3.3 + 0.01 * (double)(f + b), 63 - 0.1 * (double)f);
+  fg_lot_analysis analysis = {0};
+  if (fg_lot_analyse(&ctx, &lot, &analysis) != FG_OK) fail_msg("%s", ctx.message);
+  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_FOIL};
+  for (size_t o = 0; o < 2; o++) {
+    size_t count;
+    const fg_quantity *rows = fg_quantities(owners[o], &count);
+    for (size_t i = 0; i < count; i++) {
+      bool wanted = rows[i].uses & FG_QUANTITY_IN_LOT;
+      if (wanted != (fg_lot_find_quantity(&analysis, rows[i].name) != NULL))
+        fail_msg("statistics of %s in a lot", rows[i].name);
+    }
+  }
+  size_t count;
+  fg_characteristic *list = NULL;
+  assert_int_equal(fg_characteristics_list(&ctx, &analysis, &list, &count), FG_OK);
+  for (size_t o = 0; o < 2; o++) {
+    size_t rows_count;
+    const fg_quantity *rows = fg_quantities(owners[o], &rows_count);
+    for (size_t i = 0; i < rows_count; i++) {
+      size_t exported = 0;
+      for (size_t k = 0; k < count; k++)
+        exported += list[k].quantity->row == &rows[i];
+      size_t wanted = owners[o] == FG_QUANTITY_OF_BUMP ? BUMPS : 1;
+      assert_int_equal(exported, rows[i].characteristic ? wanted : 0);
+    }
+  }
+  free(list);
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+}
+
 /* ---- tables ---- */
 
 static void tables_tell_results_from_causes(void **state) {
@@ -383,6 +428,7 @@ int main(void) {
       cmocka_unit_test(a_bumps_rows_are_derived_and_widened),
       cmocka_unit_test(a_model_that_is_unsure_widens_every_row),
       cmocka_unit_test(a_tie_widens_every_row),
+      cmocka_unit_test(lots_know_every_row),
       cmocka_unit_test(tables_tell_results_from_causes),
   };
   return cmocka_run_group_tests_name("quantity", tests, NULL, NULL);
