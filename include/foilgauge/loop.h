@@ -166,13 +166,16 @@ typedef struct fg_loop_effect {
   const char *bump_words; /* "a decay from the lip" */
 } fg_loop_effect;
 
+/* An effect is accepted below this probability of noise alone, over everything that was tried. */
+#define FG_LOOP_ACCEPT_P 0.01
+
 /* How far a step of the search is, 0 to 1, and how many effects the steps before it found. */
 typedef void fg_loop_progress(void *user, size_t found, double share);
 
 typedef struct fg_loop_options {
   const fg_loop_effect *effects; /* a table that ends with id NULL */
   uint64_t seed;
-  double accept_p;    /* 0: 0.01 */
+  double accept_p;    /* 0: FG_LOOP_ACCEPT_P */
   size_t simulations; /* 0: 999 */
   double matters;     /* amplitude that matters, in the response's unit; 0: one noise sd */
   double minutes,

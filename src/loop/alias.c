@@ -12,6 +12,9 @@
 #include "core/memory.h"
 #include "core/text.h"
 
+/* Where the winner explains more than a simpler one at this level, it stays. */
+#define SIMPLER_P FG_LOOP_ACCEPT_P
+
 static const double shows = 0.002;   /* the winner's surplus shows below this */
 static const double pair_loss = 0.1; /* a sum of two must explain all but this */
 enum { PAIR_POOL = 10 };
@@ -193,7 +196,8 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training
     FG_TRY_EXIT(extend(ctx, bench, &stand[c], bench->rank + rank, &inside));
     if (inside > 0) continue;
     FG_TRY_EXIT(compare(ctx, bench, &stand[winner], &stand[c], NULL, NULL, &test));
-    if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < 0.01) continue;
+    if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < SIMPLER_P)
+      continue;
     if (stand[c].z > best) {
       best = stand[c].z;
       *simplest = c;

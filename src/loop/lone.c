@@ -122,6 +122,7 @@ static fg_status fill_mean(fg_context *ctx, const fg_engine_training *training,
 
 typedef struct lone_null {
   size_t draws;
+  double accept_p;  /* of all families */
   double *ratio[2]; /* sorted */
 } lone_null;
 
@@ -147,21 +148,23 @@ static void take_p(const lone_null *null, size_t kind, double ratio, double free
     below++;
   lone->ratio = ratio;
   lone->p_value = fmin(1, FG_ENGINE_FAMILIES * (1 + (double)below) / (1 + (double)null->draws));
-  double edge = null->ratio[kind][(size_t)((double)null->draws * 0.01 / FG_ENGINE_FAMILIES)];
+  double edge =
+      null->ratio[kind][(size_t)((double)null->draws * null->accept_p / FG_ENGINE_FAMILIES)];
   lone->f_critical = (1 / edge - 1) * (freedom - 1);
 }
 
 static fg_status judge_small(fg_context *ctx, const fg_engine_training *training,
-                             fg_engine_noise noise, const lone_bench *bench, size_t draws,
-                             uint64_t seed, fg_engine_lone lone[2]) {
+                             fg_engine_noise noise, const lone_bench *bench,
+                             const fg_engine_null *how, fg_engine_lone lone[2]) {
   size_t n = training->n;
   fg_status status = FG_OK;
   double *work = NULL;
-  lone_null null = {.draws = draws};
+  lone_null null = {.draws = how->draws, .accept_p = how->accept_p};
+  uint64_t seed = how->seed;
   lone_best best = {0}, one;
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, 3 * sizeof *work, (void **)&work));
   for (size_t k = 0; k < 2; k++)
-    FG_TRY_EXIT(fg_memory_allocate(ctx, draws, sizeof **null.ratio, (void **)&null.ratio[k]));
+    FG_TRY_EXIT(fg_memory_allocate(ctx, null.draws, sizeof **null.ratio, (void **)&null.ratio[k]));
   double rss = apply(bench, training->y, work);
   best_outlier(bench, work, rss, &best);
   double trace = 0, freedom = (double)(n - training->columns);
@@ -172,13 +175,13 @@ static fg_status judge_small(fg_context *ctx, const fg_engine_training *training
         training->y[i] - training->problem->residual[row] + training->problem->response[row];
   }
   if (!nested(training->problem)) best_exchange(bench, work + n, work, rss, &best);
-  for (size_t b = 0; b < draws; b++) {
+  for (size_t b = 0; b < null.draws; b++) {
     draw(training, noise, bench, sqrt(rss / freedom), &seed, work, &one);
     null.ratio[0][b] = one.ratio[0];
     null.ratio[1][b] = nested(training->problem) ? 1 : one.ratio[1];
   }
   for (size_t k = 0; k < 2; k++) {
-    fg_sort(null.ratio[k], draws);
+    fg_sort(null.ratio[k], null.draws);
     lone[k].known = k == 0 || !nested(training->problem);
     lone[k].length = trace / (double)n;
     if (lone[k].known) take_p(&null, k, best.ratio[k], freedom, &lone[k]);
@@ -196,7 +199,7 @@ exit:
 /* Many rows: the residual over its sd against the tail of the heavy law, times the rows. Leverage
  * is small there. */
 static fg_status judge_large(fg_context *ctx, const fg_engine_training *training,
-                             fg_engine_noise noise, fg_engine_lone lone[2]) {
+                             fg_engine_noise noise, double accept_p, fg_engine_lone lone[2]) {
   fg_engine_fit fit;
   size_t worst = 0;
   double largest = 0, sum = 0;
@@ -218,13 +221,13 @@ static fg_status judge_large(fg_context *ctx, const fg_engine_training *training
   lone[0].length = 1;
   lone[0].p_value =
       fmin(1, FG_ENGINE_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
-  lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(0.01 / FG_ENGINE_FAMILIES / 2 / n, 4), 2) / 2;
+  lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(accept_p / FG_ENGINE_FAMILIES / 2 / n, 4), 2) / 2;
   lone[0].candidate.row[0] = training->row[worst];
   return FG_OK;
 }
 
 fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, size_t draws, uint64_t seed,
+                               fg_engine_noise noise, const fg_engine_null *null,
                                fg_engine_lone lone[2]) {
   const fg_loop_effect *effects = fg_loop_lone_effects();
   lone_bench bench = {.n = training->n};
@@ -233,14 +236,15 @@ fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *traini
   for (size_t k = 0; k < 2; k++)
     lone[k].candidate.effect = &effects[k];
   if (!training->problem->exchangeable || training->n < training->columns + 4) return FG_OK;
-  if (training->n > FG_ENGINE_SMALL_ROWS) return judge_large(ctx, training, noise, lone);
+  if (training->n > FG_ENGINE_SMALL_ROWS)
+    return judge_large(ctx, training, noise, null->accept_p, lone);
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, training->n, training->n * sizeof *bench.a, (void **)&bench.a));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *bench.a, (void **)&bench.diagonal));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *bench.a, (void **)&bench.mean));
   FG_TRY_EXIT(fill(ctx, training, noise, &bench));
   FG_TRY_EXIT(fill_mean(ctx, training, noise, &bench));
-  FG_TRY_EXIT(judge_small(ctx, training, noise, &bench, draws, seed, lone));
+  FG_TRY_EXIT(judge_small(ctx, training, noise, &bench, null, lone));
 exit:
   free(bench.a);
   free(bench.diagonal);

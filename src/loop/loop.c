@@ -34,7 +34,7 @@ static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
   size_t capacity = 0, rows = problem->rows;
   *run = (fg_engine_run){.problem = problem, .units = units, .options = *options, .result = result};
   run->options.matters = ldexp(options->matters, -units->response);
-  if (!(run->options.accept_p > 0)) run->options.accept_p = 0.01;
+  if (!(run->options.accept_p > 0)) run->options.accept_p = FG_LOOP_ACCEPT_P;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *run->train, (void **)&run->train));
   for (size_t i = 0; i < rows; i++)
     run->train[i] = !problem->aside || !problem->aside[i];
@@ -69,6 +69,14 @@ static fg_status note_aliased(fg_context *ctx, fg_engine_run *run, const fg_engi
   return status;
 }
 
+/* So many that flips of their signs can give a p-value below it: a sign and all others make one. */
+static size_t groups_needed(double accept_p) {
+  size_t groups = 1;
+  while (groups < 64 && ldexp(1, 1 - (int)groups) >= accept_p)
+    groups++;
+  return groups;
+}
+
 /* Enough rows, and a residual that is more than rounding? */
 static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
   fg_engine_training training;
@@ -92,12 +100,13 @@ static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
         fg_engine_note(ctx, run->result,
                        "The declared model fits every row to the last digit: no residual is left "
                        "to look into.");
-  if (status == FG_OK && training.groups < 8 && !run->problem->few)
-    status =
-        fg_engine_note(ctx, run->result,
-                       "%zu groups take part: flipping their signs can give no p-value below "
-                       "%.3g, so nothing can be claimed at p < 0.01. Measure 8 groups or more.",
-                       training.groups, ldexp(1, 1 - (int)training.groups));
+  size_t least = groups_needed(run->options.accept_p);
+  if (status == FG_OK && training.groups < least && !run->problem->few)
+    status = fg_engine_note(
+        ctx, run->result,
+        "%zu groups take part: flipping their signs can give no p-value below "
+        "%.3g, so nothing can be claimed at p < %g. Measure %zu groups or more.",
+        training.groups, ldexp(1, 1 - (int)training.groups), run->options.accept_p, least);
   fg_engine_fit_free(&fit);
   fg_engine_training_free(&training);
   return status;

@@ -52,9 +52,16 @@ static void take_maximum(const fg_engine_bench *bench, const double *z, const do
   }
 }
 
-static fg_status flip_all(fg_context *ctx, const fg_engine_bench *bench, size_t draws,
-                          uint64_t seed, fg_engine_judgement *judgement, double *critical) {
-  size_t flips = bench->training->flips, count = draw_count(flips, draws);
+/* Index of the largest of `count` sorted maxima that is no accident yet. */
+static size_t critical_index(size_t count, double accept_p) {
+  double last = (double)(count - 1);
+  return (size_t)(last - ceil(accept_p * last - 1e-9)); /* no step up by rounding */
+}
+
+static fg_status flip_all(fg_context *ctx, const fg_engine_bench *bench, const fg_engine_null *null,
+                          fg_engine_judgement *judgement, double *critical) {
+  size_t flips = bench->training->flips, count = draw_count(flips, null->draws);
+  uint64_t seed = null->seed;
   fg_status status = FG_OK;
   double *maxima = NULL, *z = NULL;
   signed char *sign = NULL;
@@ -65,7 +72,7 @@ static fg_status flip_all(fg_context *ctx, const fg_engine_bench *bench, size_t 
   for (size_t b = 0; b < count; b++) {
     double maximum[2];
     fg_engine_bench_tell(bench, 1, b, count);
-    draw_signs(flips, draws, b, &seed, sign);
+    draw_signs(flips, null->draws, b, &seed, sign);
     fg_engine_bench_flip(bench, sign, z);
     take_maximum(bench, z, NULL, NULL, maximum);
     maxima[b] = maximum[0];
@@ -78,7 +85,7 @@ static fg_status flip_all(fg_context *ctx, const fg_engine_bench *bench, size_t 
   fg_engine_bench_flip(bench, sign, z);
   for (size_t c = 0; c < bench->candidates; c++)
     judgement->p_flip[c] = tail(maxima + family(bench, c) * (count + 1), count, z[c]);
-  *critical = count ? maxima[(count - 1) * 99 / 100] : INFINITY;
+  *critical = count ? maxima[critical_index(count, null->accept_p)] : INFINITY;
 exit:
   free(maxima);
   free(z);
@@ -175,8 +182,9 @@ static void critical_ratios(const fg_engine_bench *bench, const double critical[
 }
 
 static fg_status simulate_all(fg_context *ctx, const fg_engine_bench *bench, size_t noise,
-                              size_t draws, uint64_t seed, fg_engine_judgement *judgement) {
-  size_t count = bench->candidates;
+                              const fg_engine_null *null, fg_engine_judgement *judgement) {
+  size_t count = bench->candidates, draws = null->draws;
+  double passing = 1 - null->accept_p / FG_ENGINE_FAMILIES;
   fg_status status = FG_OK;
   double *z = NULL, *y = NULL, *maxima = NULL, *shift = NULL, critical[2];
   fg_engine_score *score = NULL;
@@ -185,7 +193,7 @@ static fg_status simulate_all(fg_context *ctx, const fg_engine_bench *bench, siz
   FG_TRY_EXIT(fg_memory_allocate(ctx, draws, 2 * sizeof *maxima, (void **)&maxima));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 2 * sizeof *shift, (void **)&shift));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *score, (void **)&score));
-  simulate(bench, bench->noise[noise], draws, seed, y, score, z);
+  simulate(bench, bench->noise[noise], draws, null->seed ^ 0x5851f42d4c957f2du, y, score, z);
   double *scale = shift + count;
   standardise(draws, count, z, shift, scale);
   for (size_t b = 0; b < draws; b++) {
@@ -196,7 +204,7 @@ static fg_status simulate_all(fg_context *ctx, const fg_engine_bench *bench, siz
   }
   for (size_t f = 0; f < 2; f++) {
     fg_sort(maxima + f * draws, draws);
-    critical[f] = maxima[f * draws + (size_t)((double)draws * (1 - 0.01 / FG_ENGINE_FAMILIES))];
+    critical[f] = maxima[f * draws + (size_t)((double)draws * passing)];
   }
   for (size_t c = 0; c < count; c++)
     judgement->p_simulated[c] =
@@ -225,7 +233,7 @@ static fg_status allocate(fg_context *ctx, size_t count, fg_engine_judgement *ju
   return FG_OK;
 }
 
-fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, size_t draws, uint64_t seed,
+fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, const fg_engine_null *null,
                             fg_engine_judgement *judgement) {
   fg_status status = FG_OK;
   bool small = bench->training->n <= FG_ENGINE_SMALL_ROWS;
@@ -246,11 +254,10 @@ fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, size_t draw
   FG_TRY_EXIT(fg_engine_bench_prepare_flips(ctx, bench, noise, small ? NULL : judgement->score));
   /* Few: p_flip and smallest_p stay 0. */
   if (!bench->training->problem->few || !small) {
-    FG_TRY_EXIT(flip_all(ctx, bench, draws, seed, judgement, &critical));
+    FG_TRY_EXIT(flip_all(ctx, bench, null, judgement, &critical));
     critical_ratios(bench, (double[2]){critical, critical}, NULL, NULL, judgement);
   }
-  if (small)
-    FG_TRY_EXIT(simulate_all(ctx, bench, noise, draws, seed ^ 0x5851f42d4c957f2du, judgement));
+  if (small) FG_TRY_EXIT(simulate_all(ctx, bench, noise, null, judgement));
 exit:
   if (status != FG_OK) fg_engine_judgement_free(judgement);
   return status;

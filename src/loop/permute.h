@@ -21,7 +21,14 @@ typedef struct fg_engine_judgement {
   double smallest_p;      /* of flips */
 } fg_engine_judgement;
 
-fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, size_t draws, uint64_t seed,
+/* How the null is drawn, and the level at which an effect would be accepted. */
+typedef struct fg_engine_null {
+  size_t draws;
+  uint64_t seed;
+  double accept_p;
+} fg_engine_null;
+
+fg_status fg_engine_permute(fg_context *ctx, fg_engine_bench *bench, const fg_engine_null *null,
                             fg_engine_judgement *judgement);
 void fg_engine_judgement_free(fg_engine_judgement *judgement);
 
@@ -42,7 +49,7 @@ typedef struct fg_engine_lone {
 } fg_engine_lone;
 
 fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, size_t draws, uint64_t seed,
+                               fg_engine_noise noise, const fg_engine_null *null,
                                fg_engine_lone lone[2]);
 
 #endif

@@ -40,11 +40,11 @@ fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engi
       fg_engine_bench_build(ctx, &step->training, run->candidate, run->candidates, &step->bench));
   step->bench.watch =
       (fg_engine_watch){run->options.progress, run->options.progress_user, run->result->claims};
-  FG_TRY_EXIT(fg_engine_permute(ctx, &step->bench, draws, run->options.seed, &step->judgement));
+  fg_engine_null null = {draws, run->options.seed, run->options.accept_p};
+  FG_TRY_EXIT(fg_engine_permute(ctx, &step->bench, &null, &step->judgement));
   fg_engine_noise noise = step->bench.noise[step->judgement.null_noise];
-  if (judged)
-    FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise, draws, run->options.seed + 1,
-                                     step->lone));
+  null.seed++;
+  if (judged) FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise, &null, step->lone));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) fg_engine_step_close(step);

@@ -21,7 +21,7 @@ enum { ORDERS = 6, SIGNS = 9 };
 
 /* A claim must be this many times what all bumps together may be off by. */
 static const double beyond_doubt = 3;
-static const double accept_p = 0.01; /* over both responses */
+static const double accept_p = FG_LOOP_ACCEPT_P; /* over both responses */
 
 fg_status fg_scan_loop_bumps_note(fg_context *ctx, fg_scan_loop_bumps *bumps, const char *format,
                                   ...) {
