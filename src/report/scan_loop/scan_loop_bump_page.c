@@ -10,38 +10,6 @@
 
 enum { WIDTH = 520, HEIGHT = 264 };
 
-static const char *unit_words(const char *unit) {
-  return !strcmp(unit, "um") ? "µm" : !strcmp(unit, "deg") ? "°" : unit;
-}
-
-/* ---- the sentence ---- */
-
-static fg_status say_claim(fg_context *ctx, const fg_scan_result_response *response,
-                           const fg_scan_result_bump_claim *claim, bool first, char **text) {
-  char value[64];
-  fg_scan_loop_value_words(claim->amplitude, claim->u_amplitude, value, sizeof value);
-  FG_TRY(fg_text_append(ctx, text, "%s%s in the %s (half range %s %s)",
-                        first ? " Over the bumps: " : "; ", claim->words, response->words, value,
-                        unit_words(response->unit)));
-  if (!claim->ties) return FG_OK;
-  return fg_text_append(ctx, text, ", or %s%s", claim->tied[0].name,
-                        claim->ties > 1 ? " or others" : "");
-}
-
-fg_status fg_scan_loop_bumps_sentence(fg_context *ctx, const fg_scan_result_bumps *bumps,
-                                      char **text) {
-  bool first = true;
-  for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
-    for (size_t m = 0; m < bumps->response[r].claims; m++, first = false)
-      FG_TRY(say_claim(ctx, &bumps->response[r], &bumps->response[r].claim[m], first, text));
-  if (bumps->curve) {
-    FG_TRY(fg_text_append(ctx, text, "%sno listed effect explains how the %s varies",
-                          first ? " Over the bumps: " : "; ", bumps->curve->words));
-    first = false;
-  }
-  return first ? FG_OK : fg_text_append(ctx, text, ".");
-}
-
 /* ---- drawings ---- */
 
 typedef struct view {
@@ -68,7 +36,7 @@ static void put_plot(FILE *out, const view *v, const double range[4], bool after
                      const char *caption) {
   fg_plot at = {out, WIDTH, 72, 510, 12, 214, range[0], range[1], range[2], range[3]};
   char title[64];
-  snprintf(title, sizeof title, "off the model, %s", unit_words(v->response->unit));
+  snprintf(title, sizeof title, "off the model, %s", fg_scan_loop_unit_words(v->response->unit));
   fprintf(out, "<figure><figcaption><b>%s</b></figcaption>", caption);
   fg_plot_begin(&at, HEIGHT, caption);
   fg_plot_y_axis(&at, title);
@@ -145,7 +113,8 @@ static void put_unclaimed(FILE *out, const fg_scan_result_response *response,
   fprintf(out, "<td class=\"w\"><span class=\"tag %s\">%s</span></td><td class=\"w\">",
           one->verdict == FG_LOOP_ABSENT ? "absent" : "open", fg_loop_verdict_word(one->verdict));
   if (isfinite(one->smallest))
-    fprintf(out, "would have shown from %.3g %s", one->smallest, unit_words(response->unit));
+    fprintf(out, "would have shown from %.3g %s", one->smallest,
+            fg_scan_loop_unit_words(response->unit));
   else
     fputs("–", out);
   fprintf(out, "</td><td>%.2g</td></tr>\n", one->p_value);
@@ -169,7 +138,7 @@ static void put_error(FILE *out, const char *name, const char *model, const char
                       const fg_scan_result_bump_error *e) {
   if (!isfinite(e->rms[0])) return;
   fprintf(out, "<tr><td>%s, %s</td><td class=\"w\">%s</td><td>%.3g</td><td>%.3g</td>", name,
-          unit_words(unit), model, e->rms[0], e->rms[1]);
+          fg_scan_loop_unit_words(unit), model, e->rms[0], e->rms[1]);
   if (isfinite(e->held_out_rms[0]))
     fprintf(out, "<td>%.3g</td><td>%.3g</td></tr>\n", e->held_out_rms[0], e->held_out_rms[1]);
   else

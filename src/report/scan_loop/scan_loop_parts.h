@@ -13,10 +13,13 @@ void fg_scan_loop_value_words(double value, double u, char *words, size_t size);
 /* "0.0302 µm"; nm below a nanometre, so that figures beside each other have one unit. */
 void fg_scan_loop_length_words(double um, char *words, size_t size);
 
+/* "µm" for "um", "°" for "deg". */
+const char *fg_scan_loop_unit_words(const char *unit);
+
 /* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
 double fg_scan_loop_nice_below(double most);
 
-/* The page's one sentence; the caller frees it. */
+/* The page's one sentence; the caller frees it. scan_loop_sentence.c */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text);
 
 /* ---- what an effect does (scan_loop_curves.c) ---- */
@@ -40,9 +43,6 @@ void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_result *result);
 
 /* ---- the bumps (scan_loop_bump_page.c) ---- */
 
-/* Appends what was found over the bumps. */
-fg_status fg_scan_loop_bumps_sentence(fg_context *ctx, const fg_scan_result_bumps *bumps,
-                                      char **text);
 void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result);
 
 #endif
