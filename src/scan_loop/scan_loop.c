@@ -10,8 +10,6 @@
 
 /* Rows fewer than this cannot carry a search for effects. */
 enum { ROWS_LEAST = 60 };
-/* Residual over the noise that says that something is there. */
-#define MUCH 1.5
 
 /* A copy confirms nothing, and counts its noise twice. */
 static fg_status check_different(fg_context *ctx, const char *const *paths,
@@ -108,27 +106,6 @@ static fg_scan_loop_error summarise(fg_context *ctx, const fg_points *points,
   return e;
 }
 
-static bool has_free(const fg_effect_set *set, bool wanted) {
-  for (size_t e = 0; e < set->count; e++)
-    if (fg_effect_is_free(set->effects[e].kind) == wanted) return true;
-  return false;
-}
-
-/* A residual that all effects and curves together would take is not clean, even when no set of
- * them was found that holds. */
-static bool leaves_much(const fg_scan_loop *loop) {
-  return !loop->points.discs && !loop->explanations.right &&
-         loop->error_after.rms > MUCH * loop->noise_floor_um;
-}
-
-static void find_verdict(fg_scan_loop *loop) {
-  bool listed = has_free(&loop->set, false), rest = has_free(&loop->set, true);
-  loop->verdict = listed && (rest || !loop->explanations.right) ? FG_LOOP_PARTLY
-                  : listed                                      ? FG_LOOP_EXPLAINED
-                  : rest || leaves_much(loop)                   ? FG_LOOP_UNATTRIBUTED
-                                                                : FG_LOOP_CLEAN;
-}
-
 /* Where most effects of the size that matters could not have been seen, `absent` effects must not
  * look like a clean scanner. */
 static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
@@ -136,7 +113,7 @@ static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t e = 0; e < loop->explanations.candidate_count; e++) {
     bool is_listed = !fg_effect_is_free(loop->explanations.candidates[e].kind);
     listed += is_listed;
-    hidden += is_listed && !(loop->explanations.smallest_um[e] <= FG_SCAN_LOOP_MATTERS_UM);
+    hidden += is_listed && !fg_scan_loop_would_show(loop->explanations.smallest_um[e]);
   }
   if (2 * hidden <= listed) return FG_OK;
   return fg_scan_loop_bumps_note(
@@ -152,9 +129,8 @@ static bool bends_bumps(const fg_effect_set *set) {
   return false;
 }
 
-/* Points come first; only where they are clean the bumps decide. */
 static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
-  size_t response;
+  const fg_loop_outcome points = fg_scan_loop_points_outcome(loop);
   const fg_scan_loop_bumps_request request = {
       .before = loop->before,
       .after = loop->after,
@@ -162,29 +138,13 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .scan_count = loop->scan_count,
       .same_foil = loop->options.same_foil,
       .bent = bends_bumps(&loop->set),
-      .open =
-          loop->tied || loop->verdict == FG_LOOP_PARTLY || loop->verdict == FG_LOOP_UNATTRIBUTED,
+      .open = loop->tied || points == FG_LOOP_PARTLY || points == FG_LOOP_UNATTRIBUTED,
       .seed = loop->options.seed,
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
   if (!loop->points.discs) FG_TRY(say_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
-  FG_TRY(fg_scan_loop_scale_doubt(ctx, loop));
-  if (loop->verdict != FG_LOOP_CLEAN) return FG_OK;
-  bool listed = fg_scan_loop_bumps_claimed(&loop->bumps);
-  bool rest = fg_scan_loop_bumps_curve(&loop->bumps, &response) != NULL;
-  if (listed || rest)
-    loop->verdict = !listed ? FG_LOOP_UNATTRIBUTED : rest ? FG_LOOP_PARTLY : FG_LOOP_EXPLAINED;
-  return FG_OK;
-}
-
-/* The midline says nothing of its strip's thickness, and the bumps do not either. */
-static fg_status search_width(fg_context *ctx, fg_scan_loop *loop) {
-  FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
-  if (!loop->width.found) return FG_OK;
-  if (loop->verdict == FG_LOOP_CLEAN) loop->verdict = FG_LOOP_EXPLAINED;
-  if (loop->verdict == FG_LOOP_UNATTRIBUTED) loop->verdict = FG_LOOP_PARTLY;
-  return FG_OK;
+  return fg_scan_loop_scale_doubt(ctx, loop);
 }
 
 /* The winner fitted once more, and every scan corrected by it. */
@@ -210,9 +170,9 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   loop->tied = loop->explanations.count > 1;
   FG_TRY(correct(ctx, loop));
   if (loop->tied) FG_TRY(fg_scan_loop_find_ranges(ctx, loop));
-  find_verdict(loop);
   FG_TRY(search_bumps(ctx, loop));
-  FG_TRY(search_width(ctx, loop));
+  FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
+  loop->verdict = fg_scan_loop_outcome(loop);
   return fg_scan_loop_decide(ctx, loop);
 }
 

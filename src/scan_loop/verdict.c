@@ -207,7 +207,7 @@ static bool is_listed(const fg_scan_result *result, const fg_effect *kind) {
 }
 
 static fg_loop_verdict judge(double smallest_um, double share) {
-  if (smallest_um <= FG_SCAN_LOOP_MATTERS_UM) return FG_LOOP_ABSENT;
+  if (fg_scan_loop_would_show(smallest_um)) return FG_LOOP_ABSENT;
   return share < ABSORBED_SHARE ? FG_LOOP_ABSORBED : FG_LOOP_INCONCLUSIVE;
 }
 
