@@ -31,14 +31,19 @@ static void add(fixture *f, const char *name, const double *values, size_t rows)
   check(f, fg_table_add_numbers(&f->ctx, &f->table, name, values, rows));
 }
 
-static void run(fixture *f) {
+/* Accepted at a level; 0: the engine's own. */
+static void run_at(fixture *f, double accept_p) {
   fg_design design;
   fg_design_default(&design);
   f->spec.design = &design;
   f->spec.seed = 1;
-  fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1};
+  fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = 1, .accept_p = accept_p};
   check(f, fg_loop_table_problem_build(&f->ctx, &f->table, &f->spec, &f->problem));
   check(f, fg_loop_run(&f->ctx, &f->problem.problem, &options, &f->result));
+}
+
+static void run(fixture *f) {
+  run_at(f, 0);
 }
 
 static void clear(fixture *f) {
@@ -289,6 +294,36 @@ static void the_same_seed_gives_the_same(void **state) {
   clear(&b);
 }
 
+static double smallest_of(const fixture *f, const char *name) {
+  for (size_t i = 0; i < f->result.rejects; i++)
+    if (!strcmp(f->result.rejected[i].name, name)) return f->result.rejected[i].smallest_detectable;
+  fail_msg("%s is not among what was rejected", name);
+  return NAN;
+}
+
+/* What is asked of a claim is asked of what would have shown: a trend, and one wrong row. */
+static void what_would_have_shown_follows_the_level(void **state) {
+  static const double level[] = {0.05, 0, 0.005}; /* 0: 0.01 */
+  double trend[3], lone[3];
+  (void)state;
+  for (size_t k = 0; k < 3; k++) {
+    fixture f;
+    runs_data data;
+    make_runs(5, &data);
+    load_runs(&f, &data);
+    run_at(&f, level[k]);
+    assert_int_equal(f.result.claims, 0);
+    trend[k] = smallest_of(&f, "table.linear(humidity_pct)");
+    lone[k] = NAN;
+    for (size_t i = 0; i < f.result.rejects; i++)
+      if (f.result.rejected[i].candidate.effect->lone == FG_LOOP_WRONG_ROW)
+        lone[k] = f.result.rejected[i].smallest_detectable;
+    clear(&f);
+  }
+  assert_true(trend[0] < trend[1] && trend[1] < trend[2]);
+  assert_true(lone[0] < lone[1] && lone[1] < lone[2]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(clean_runs_are_clean),
@@ -301,6 +336,7 @@ int main(void) {
       cmocka_unit_test(foils_that_differ_by_chance_are_no_effect),
       cmocka_unit_test(stretch_is_found_beside_arc_length),
       cmocka_unit_test(the_same_seed_gives_the_same),
+      cmocka_unit_test(what_would_have_shown_follows_the_level),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -238,6 +238,24 @@ static void a_clean_foil_holds_nothing_to_draw(void **state) {
   fg_scan_loop_free(loop);
 }
 
+/* JSON has a ratio, people read ppm; what the sentence needs stands beside each other. */
+static void a_scale_is_told_in_ppm(void **state) {
+  (void)state;
+  odd_input in = foil_input();
+  in.scan[0].scanner.scale = 0.002;
+  fg_scan_loop *loop = close_loop(&in);
+  const fg_scan_result *result = fg_scan_loop_result(loop);
+  assert_same(loop);
+  assert_true(result->claims > 0 && result->corrected);
+  const fg_scan_result_parameter *p = &result->claim[0].parameter[0];
+  assert_string_equal(p->name, "value");
+  assert_string_equal(p->unit, "ppm");
+  assert_near(fabs(p->value), 0.002, 0.0002);
+  assert_near(p->told, 1e6 * p->value, 1e-6);
+  assert_near(p->u_told, 1e6 * p->u, 1e-6);
+  fg_scan_loop_free(loop);
+}
+
 /* The line that is drawn, the grid and the model are the claim's own numbers. */
 static void a_ripple_is_what_is_drawn(void **state) {
   (void)state;
@@ -273,6 +291,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_ring_is_tied),
       cmocka_unit_test(a_clean_foil_holds_nothing_to_draw),
+      cmocka_unit_test(a_scale_is_told_in_ppm),
       cmocka_unit_test(a_ripple_is_what_is_drawn),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

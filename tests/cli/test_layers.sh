@@ -1,0 +1,36 @@
+#!/bin/bash
+# The rooms of the code (src/README.md): a report reads public results only, and an effect's id
+# stands in its row and nowhere else.
+set -u
+failed=0
+
+say() {
+  echo "FAILED: $1"
+  failed=1
+}
+
+private='#include "(field|rows|effect|explain|scan_loop|loop)/'
+found=$(grep -nE "$private" -r src/report)
+[ -z "$found" ] || say "a report includes what is private to the loop: $found"
+
+# Left is used by right, never the other way.
+must_not_include() {
+  found=$(grep -nE "#include \"($2)/" -r "src/$1")
+  [ -z "$found" ] || say "$1 includes what stands right of it: $found"
+}
+must_not_include field 'rows|effect|explain|scan_loop|loop|report|lot|cli'
+must_not_include rows 'effect|explain|scan_loop|loop|report|lot|cli'
+must_not_include effect 'explain|scan_loop|loop|report|lot|cli'
+must_not_include explain 'scan_loop|report|lot|cli'
+must_not_include scan_loop 'report|lot|cli'
+must_not_include loop 'scan_loop|explain|report|lot|cli'
+must_not_include report 'cli'
+
+ids=$(grep -rhoE '(\.id = |OVER_GLASS\()"[^"]+"' src/effect | grep -oE '"[^"]+"')
+[ "$(echo "$ids" | wc -l)" -ge 30 ] || say "the effects' ids are not found where they should be"
+any=$(echo "$ids" | tr -d '"' | sed 's/\./\\./g' | paste -sd '|')
+found=$(grep -rnE --include=*.c --include=*.h "\"([^\"]*[^a-z_.\"])?($any)([^a-z_.\"][^\"]*)?\"" src |
+  grep -vE '^src/(effect|render)/')
+[ -z "$found" ] || say "an effect is told by its id: $found"
+
+exit $failed
