@@ -56,6 +56,8 @@ struct fg_explain_policy {
   size_t manner_count;
   double rest_share; /* a set that is not right has come to rest when a round takes no more of what
                         is left */
+  bool rests_in_force; /* it rests when it finds the set in force again, not the one it found last:
+                          one that the fit gave up is tried again, without its outliers */
   bool drops_nothings; /* what the fit has made nothing of leaves */
   bool drops_ends;     /* an arc's last rows may reach into its fillet */
   bool own_noise;      /* rows are outliers by their own noise, not by their size */

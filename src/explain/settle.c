@@ -177,7 +177,7 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
     FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
     fg_explain_take(&at->explanations, 0, &next);
-    bool same = same_effects(&last, &next);
+    bool same = same_effects(policy->rests_in_force ? &at->set : &last, &next);
     last = next;
     keep_numbers(&at->set, &next);
     at->set = next;
