@@ -103,15 +103,6 @@ static const char doc[] =
     "Exit code: 0 done; 2 some scans could not be measured; 64 usage; 65 bad data; 74 input or "
     "output.";
 
-static double parse_number(struct argp_state *state, const char *name, const char *text,
-                           double lowest, double highest) {
-  char *end;
-  double value = strtod(text, &end);
-  if (end == text || *end || !(value >= lowest && value <= highest))
-    argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
-  return value;
-}
-
 static void parse_code(struct argp_state *state, const char *text, doe_arguments *a) {
   fg_context ctx = {0};
   if (!strcmp(text, "none")) {
@@ -143,7 +134,7 @@ static void parse_goal(struct argp_state *state, const char *text, doe_arguments
   a->options.goal = FG_GOAL_HIGHEST;
   if (!strcmp(text, "highest")) return;
   a->options.goal = FG_GOAL_TARGET;
-  a->options.target = parse_number(state, "goal", text, -1e300, 1e300);
+  a->options.target = fg_cli_number(state, "goal", text, -1e300, 1e300);
 }
 
 static void parse_constraint(struct argp_state *state, const char *text, doe_arguments *a) {
@@ -210,13 +201,13 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     parse_constraint(state, text, a);
     break;
   case OPTION_CONFIDENCE:
-    a->options.confidence = parse_number(state, "confidence", text, 0.5, 0.9999);
+    a->options.confidence = fg_cli_number(state, "confidence", text, 0.5, 0.9999);
     break;
   case OPTION_DPI:
-    a->dpi = parse_number(state, "dpi", text, 1, 1e6);
+    a->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
   case OPTION_THREADS:
-    a->threads = (unsigned)parse_number(state, "threads", text, 1, 1024);
+    a->threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
     break;
   case ARGP_KEY_ARG:
     if (a->data) argp_error(state, "more than one DATA.csv: %s", text);

@@ -62,15 +62,6 @@ static const char doc[] =
     "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output. A "
     "shard is not judged: 0 or 2.";
 
-static double parse_number(struct argp_state *state, const char *name, const char *text,
-                           double lowest, double highest) {
-  char *end;
-  double value = strtod(text, &end);
-  if (end == text || *end || !(value >= lowest && value <= highest))
-    argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
-  return value;
-}
-
 static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
   unsigned long long index, count;
   char rest;
@@ -90,7 +81,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     arguments->design = text;
     break;
   case 'j':
-    arguments->jobs = (int)parse_number(state, "jobs", text, 1, 1024);
+    arguments->jobs = (int)fg_cli_number(state, "jobs", text, 1, 1024);
     break;
   case OPTION_RECIPE:
     arguments->recipe = text;
@@ -108,7 +99,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     arguments->group = text;
     break;
   case OPTION_DPI:
-    arguments->dpi = parse_number(state, "dpi", text, 1, 1e6);
+    arguments->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
   case OPTION_RESUME:
     arguments->resume = true;

@@ -110,15 +110,6 @@ static char *name_formats(int key, const char *text, void *input) {
   return asprintf(&whole, "SCAN is a %s%s", names, text) < 0 ? (char *)text : whole;
 }
 
-static double parse_number(struct argp_state *state, const char *name, const char *text,
-                           double lowest, double highest) {
-  char *end;
-  double value = strtod(text, &end);
-  if (end == text || *end || !(value >= lowest && value <= highest))
-    argp_error(state, "--%s: '%s' is not a number from %g to %g", name, text, lowest, highest);
-  return value;
-}
-
 static fg_channel parse_channel(struct argp_state *state, const char *text) {
   for (int channel = FG_CHANNEL_AUTO; channel <= FG_CHANNEL_LUMINANCE; channel++)
     if (!strcmp(text, fg_channel_word((fg_channel)channel))) return (fg_channel)channel;
@@ -158,10 +149,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     arguments->form = text;
     break;
   case OPTION_DPI:
-    arguments->options.dpi = parse_number(state, "dpi", text, 1, 1e6);
+    arguments->options.dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
   case OPTION_THREADS:
-    arguments->options.threads = (unsigned)parse_number(state, "threads", text, 1, 1024);
+    arguments->options.threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
     break;
   case OPTION_CHANNEL:
     arguments->options.channel = parse_channel(state, text);
@@ -170,10 +161,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     arguments->options.allow_lossy = true;
     break;
   case OPTION_MAX_PIXELS:
-    arguments->options.pixel_cap = (uint64_t)parse_number(state, "max-pixels", text, 1, 1e15);
+    arguments->options.pixel_cap = (uint64_t)fg_cli_number(state, "max-pixels", text, 1, 1e15);
     break;
   case OPTION_MAX_MEMORY:
-    arguments->options.memory_cap = (size_t)parse_number(state, "max-memory", text, 1, 1 << 24)
+    arguments->options.memory_cap = (size_t)fg_cli_number(state, "max-memory", text, 1, 1 << 24)
                                     << 20;
     break;
   case ARGP_KEY_ARGS:

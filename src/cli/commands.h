@@ -25,11 +25,16 @@ fg_command_run fg_cmd_lot;
 fg_command_run fg_cmd_merge;
 
 struct argp;
+struct argp_state;
 
 /* Reads the command line into `input`. A wrong one ends the program (argp, exit code 64);
  * FG_ERR_MEMORY when argp has no memory, which it says by its return value alone. */
 fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                        void *input);
+
+/* The number of an option --name; one that is none or out of range ends the program (64). */
+double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,
+                     double highest);
 
 /* Prints "foilgauge: <message>" on standard error and returns the status' exit code. */
 int fg_cli_fail(const fg_context *ctx, fg_status status);

@@ -6,6 +6,7 @@
 
 /* The value at position `k` of the sorted values (Hoare's selection); reorders them. count > k. */
 double fg_select(double *values, size_t count, size_t k);
+float fg_select_float(float *values, size_t count, size_t k);
 
 /* Ascending. */
 void fg_sort(double *values, size_t count);

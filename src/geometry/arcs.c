@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/spread.h"
 
 #define OUTLIER_SIGMAS   5.0
 #define OUTLIER_LEAST_MM 0.0003
@@ -77,8 +78,7 @@ static double find_scatter(const fg_datum_line *line, const fg_arc *arc, double 
       double r = fg_arc_residual(line, &arc->circle, k);
       if (isfinite(r)) work[n++] = fabs(r);
     }
-  if (!n) return 0;
-  return 1.4826 * fg_select(work, n, n / 2);
+  return n ? fg_robust_sd(work, n) : 0;
 }
 
 /* Gathers the usable stations; with `all` outliers too. */

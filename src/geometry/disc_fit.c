@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/small_solve.h"
+#include "core/spread.h"
 
 enum { ROUNDS = 4, BAND_FIRST = 12, HARMONICS_MOST = 400 };
 /* Points further off than so many robust deviations, and at least so far, are left out. */
@@ -49,7 +50,7 @@ static double residual_scatter(fit_work *w) {
   size_t n = 0;
   for (size_t i = 0; i < w->count; i++)
     if (w->points[i].used) w->scratch[n++] = fabs(w->residuals[i]);
-  return 1.4826 * median(w->scratch, n);
+  return fg_robust_sd(w->scratch, n);
 }
 
 /* Weights 1/(u² + s²): s is what the edge itself scatters by, beyond the pixels' noise. */

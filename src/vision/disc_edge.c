@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/spread.h"
 
 enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64 };
 #define SECTOR_PX  48.0
@@ -19,6 +20,7 @@ enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64
 /* Less contrast than this many counts is no edge. */
 #define CONTRAST_LEAST  6.0
 #define TRIM_DEVIATIONS 2.5
+#define TRIM_LEAST_PX   0.3
 /* Clipped light may exceed the end of the scale by this share of the contrast. */
 #define WHITE_DOUBT 0.1
 
@@ -145,7 +147,7 @@ static double trim(const fg_point *points, size_t n, const fg_circle *circle, do
   double sum = 0, used = 0;
   for (size_t i = 0; i < n; i++)
     scratch[i] = fabs(hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius);
-  double limit = fmax(TRIM_DEVIATIONS * 1.4826 * fg_select(scratch, n, n / 2), 0.3);
+  double limit = fmax(fg_spread_limit(scratch, n, TRIM_DEVIATIONS), TRIM_LEAST_PX);
   for (size_t i = 0; i < n; i++) {
     double off = hypot(points[i].x - circle->x, points[i].y - circle->y) - circle->radius;
     weights[i] = fabs(off) <= limit;

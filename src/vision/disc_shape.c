@@ -1,15 +1,16 @@
 /* The shape of a round edge around its turn: sectors' fits, smoothed by their first harmonics. */
 #include "vision/disc_edge.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/small_solve.h"
+#include "vision/course.h"
 
 enum { HARMONICS_MAX = 3, BASIS_MAX = 2 * HARMONICS_MAX + 1 };
-#define OUTLIER_DEVIATIONS 4.0
 
 /* One value of the shape around the turn. */
 typedef struct course {
@@ -42,7 +43,8 @@ static double deviation(const course *c, size_t sector) {
 static bool fit_course(course *c, double limit) {
   fg_normal_equations system;
   fg_normal_clear(&system, c->unknowns);
-  double sum = 0, expected = 0, count = 0, x[FG_SMALL_MAX], row[BASIS_MAX];
+  fg_course_sums sums = {0};
+  double row[BASIS_MAX];
   for (size_t s = 0; s < c->work->ring.sector_count; s++) {
     const fg_step_fit *fit = &c->work->sectors[s];
     double off = deviation(c, s), angle = sector_angle(c->work, (double)s);
@@ -52,19 +54,12 @@ static bool fit_course(course *c, double limit) {
       row[2 * k - 1] = cos((double)k * angle);
       row[2 * k] = sin((double)k * angle);
     }
-    sum += off * off;
-    expected += fit->sd[c->value] * fit->sd[c->value];
-    count++;
+    sums.squares += off * off;
+    sums.expected += fit->sd[c->value] * fit->sd[c->value];
+    sums.count++;
     fg_normal_add(&system, row, fit->values[c->value], 1);
   }
-  for (size_t b = 1; b < c->unknowns; b++)
-    system.matrix[b][b] += 1e-3 * system.matrix[0][0];
-  if (!fg_normal_solve(&system, 0, x, NULL)) return false;
-  memcpy(c->coefficients, x, c->unknowns * sizeof *x);
-  double freedom = count - (double)c->unknowns;
-  if (isfinite(limit) && freedom > 4 && sum > 0)
-    c->real = fmax(0, 1 - 2 * expected * freedom / (sum * count));
-  return true;
+  return fg_course_solve(&system, &sums, isfinite(limit), c->coefficients, &c->real);
 }
 
 static void find_course(course *c) {
@@ -75,7 +70,7 @@ static void find_course(course *c) {
     size_t n = 0;
     for (size_t s = 0; s < c->work->ring.sector_count; s++)
       if (c->work->sectors[s].good) c->scratch[n++] = fabs(deviation(c, s));
-    limit = n ? OUTLIER_DEVIATIONS * 1.4826 * fg_select(c->scratch, n, n / 2) + 1e-9 : INFINITY;
+    limit = fg_course_limit(c->scratch, n);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/spread.h"
 #include "vision/edges.h"
 
 /* The misfit is looked at over so many stations to either side; it is no chance when it is above
@@ -37,7 +38,7 @@ static double usual_misfit(const double *misfit, size_t count, double *work, dou
   double median = fg_select(work, n, n / 2);
   for (size_t i = 0; i < n; i++)
     work[i] = fabs(work[i] - median);
-  *spread = 1.4826 * fg_select(work, n, n / 2);
+  *spread = fg_robust_sd(work, n);
   return median;
 }
 

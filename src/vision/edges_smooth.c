@@ -8,10 +8,9 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/small_solve.h"
+#include "vision/course.h"
 
 enum { BASIS_MAX = 7 };
-/* Segments further than this many robust deviations from the smooth course are left out of it. */
-#define OUTLIER_DEVIATIONS 4.0
 
 /* One value of the shape over all segments. */
 typedef struct course {
@@ -56,30 +55,23 @@ static double median_in_place(double *values, size_t count) {
 static bool fit_course(course *c, double limit) {
   fg_normal_equations system;
   fg_normal_clear(&system, c->unknowns);
-  double sum = 0, expected = 0, count = 0, x[FG_SMALL_MAX];
+  fg_course_sums sums = {0};
   for (size_t s = 0; s < c->work->segment_count; s++) {
     double deviation = c->values[s] - predict(c, c->basis[s]);
     if (!isfinite(c->values[s]) || fabs(deviation) > limit) continue;
-    sum += deviation * deviation;
-    expected += c->sd[s] * c->sd[s];
-    count++;
+    sums.squares += deviation * deviation;
+    sums.expected += c->sd[s] * c->sd[s];
+    sums.count++;
     fg_normal_add(&system, c->basis[s], c->values[s], 1);
   }
-  for (size_t b = 1; b < c->unknowns; b++)
-    system.matrix[b][b] += 1e-3 * system.matrix[0][0];
-  if (!fg_normal_solve(&system, 0, x, NULL)) return false;
-  memcpy(c->coefficients, x, c->unknowns * sizeof *x);
-  double freedom = count - (double)c->unknowns;
-  if (isfinite(limit) && freedom > 4 && sum > 0)
-    c->real = fmax(0, 1 - 2 * expected * freedom / (sum * count));
-  return true;
+  return fg_course_solve(&system, &sums, isfinite(limit), c->coefficients, &c->real);
 }
 
 static double deviation_limit(course *c) {
   size_t n = 0;
   for (size_t s = 0; s < c->work->segment_count; s++)
     if (isfinite(c->values[s])) c->scratch[n++] = fabs(c->values[s] - predict(c, c->basis[s]));
-  return OUTLIER_DEVIATIONS * 1.4826 * median_in_place(c->scratch, n) + 1e-9;
+  return fg_course_limit(c->scratch, n);
 }
 
 static void find_course(course *c) {

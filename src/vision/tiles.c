@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 /* Contrast (range) of a tile's block means, in 8-bit counts, above which it is kept: as many times
  * the median step between neighbouring blocks, which a strip through the tile hardly changes. For
@@ -121,32 +122,6 @@ static fg_status reduce_strip(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
   return FG_OK;
 }
 
-/* Middle of an even number of values by selection (Hoare); reorders them. */
-static float select_median(float *values, int count) {
-  int low = 0, high = count - 1, wanted = count / 2;
-  while (low < high) {
-    float pivot = values[(low + high) / 2];
-    int i = low, j = high;
-    while (i <= j) {
-      while (values[i] < pivot)
-        i++;
-      while (values[j] > pivot)
-        j--;
-      if (i > j) break;
-      float swap = values[i];
-      values[i++] = values[j];
-      values[j--] = swap;
-    }
-    if (wanted <= j)
-      high = j;
-    else if (wanted >= i)
-      low = i;
-    else
-      break;
-  }
-  return values[wanted];
-}
-
 /* Block means of one tile of a strip that is still held. */
 static void copy_blocks(const fg_tiles *tiles, int32_t column, int32_t strip, float *out) {
   const float *row =
@@ -165,7 +140,7 @@ static float median_step(const float *blocks) {
       const float *b = blocks + y * FG_BLOCKS_PER_TILE + x;
       steps[count++] = fabsf(b[0] - b[-1]);
     }
-  return select_median(steps, count);
+  return fg_select_float(steps, (size_t)count, (size_t)count / 2);
 }
 
 static bool has_contrast(const float *blocks) {
@@ -185,7 +160,7 @@ static void mark_wanted(fg_tiles *tiles, int32_t strip) {
     copy_blocks(tiles, c, strip, blocks);
     tiles->wanted[first + (size_t)c] = has_contrast(blocks);
     tiles->medians[first + (size_t)c] =
-        select_median(blocks, FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE);
+        fg_select_float(blocks, sizeof blocks / sizeof *blocks, sizeof blocks / sizeof *blocks / 2);
   }
 }
 

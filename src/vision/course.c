@@ -1,0 +1,33 @@
+#include "vision/course.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/spread.h"
+
+/* Stations further than this many robust deviations from the smooth course are left out of it; the
+ * floor is for values that are all the same. */
+#define OUTLIER_DEVIATIONS 4.0
+#define LIMIT_LEAST        1e-9
+/* Of the constant's weight, on every other coefficient: a course that turns nowhere stays solvable.
+ */
+#define RIDGE 1e-3
+/* Fewer degrees of freedom than these tell nothing of the scatter. */
+#define FREEDOM_LEAST 4
+
+bool fg_course_solve(fg_normal_equations *system, const fg_course_sums *sums, bool judged,
+                     double *coefficients, double *real) {
+  double x[FG_SMALL_MAX];
+  for (size_t b = 1; b < system->unknowns; b++)
+    system->matrix[b][b] += RIDGE * system->matrix[0][0];
+  if (!fg_normal_solve(system, 0, x, NULL)) return false;
+  memcpy(coefficients, x, system->unknowns * sizeof *x);
+  double freedom = sums->count - (double)system->unknowns;
+  if (judged && freedom > FREEDOM_LEAST && sums->squares > 0)
+    *real = fmax(0, 1 - 2 * sums->expected * freedom / (sums->squares * sums->count));
+  return true;
+}
+
+double fg_course_limit(double *sizes, size_t count) {
+  return fg_spread_limit(sizes, count, OUTLIER_DEVIATIONS) + LIMIT_LEAST;
+}
