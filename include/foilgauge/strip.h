@@ -1,6 +1,6 @@
 /* A traced strip: both edges of a foil's cross-section along its whole length.
  *
- * The vision side fills it, the geometry side reads it. Positions are in mm of the scan's frame:
+ * The vision side fills it, the geometry side reads it. Positions are in mm of the scan:
  * x right, y down, pixel centres at whole numbers times the axis' pixel size.
  */
 #ifndef FOILGAUGE_STRIP_H

@@ -27,21 +27,21 @@ static inline double signed_distance(const fg_circle_arc *arc, double x, double 
   return 2 * p / (1 + sqrt(square > 0 ? square : 0));
 }
 
-double fg_circle_arc_ms(const fg_circle_frame *frame, const fg_circle_arc *arc) {
+double fg_circle_arc_ms(const fg_circle_scaled *scaled, const fg_circle_arc *arc) {
   double sum = 0;
-  for (size_t i = 0; i < frame->count; i++) {
-    double d = signed_distance(arc, frame->x[i], frame->y[i]);
-    sum += frame->weight[i] * d * d;
+  for (size_t i = 0; i < scaled->count; i++) {
+    double d = signed_distance(arc, scaled->x[i], scaled->y[i]);
+    sum += scaled->weight[i] * d * d;
   }
   return sum;
 }
 
-double fg_circle_arc_profile_ms(const fg_circle_frame *frame, const fg_circle_arc *arc,
+double fg_circle_arc_profile_ms(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
                                 double *mean) {
-  const double *restrict x = frame->x, *restrict y = frame->y, *restrict w = frame->weight;
-  double *restrict d = frame->scratch;
+  const double *restrict x = scaled->x, *restrict y = scaled->y, *restrict w = scaled->weight;
+  double *restrict d = scaled->scratch;
   const fg_circle_arc local = *arc;
-  size_t count = frame->count;
+  size_t count = scaled->count;
   for (size_t i = 0; i < count; i++)
     d[i] = signed_distance(&local, x[i], y[i]);
   /* Two lanes each: one chain of additions would cost more than the square roots. */
@@ -73,7 +73,7 @@ fg_circle_arc fg_circle_arc_step(const fg_circle_arc *arc, double bend, double t
 }
 
 fg_circle_arc fg_circle_arc_rebase(const fg_circle_arc *arc) {
-  /* k v - n for v from q to the frame's origin: from the centre to the origin, times k. */
+  /* k v - n for v from q to the origin: from the centre to the origin, times k. */
   double x = -arc->curvature * arc->qx - arc->nx, y = -arc->curvature * arc->qy - arc->ny;
   double length = hypot(x, y);
   fg_circle_arc based = *arc;

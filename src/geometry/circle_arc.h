@@ -15,39 +15,39 @@
 
 #include <stdbool.h>
 
-#include "geometry/circle_frame.h"
+#include "geometry/circle_scaled.h"
 
 typedef struct fg_circle_arc {
-  double qx, qy;    /* a point on the circle, in the frame */
+  double qx, qy;    /* a point on the circle, scaled */
   double nx, ny;    /* unit vector towards the centre */
   double curvature; /* k = 1 / R; negative while a search passes through flat */
 } fg_circle_arc;
 
-/* The arc's point is the one nearest to the frame's origin, that is, amid the points. */
+/* The arc's point is the one nearest to the origin, that is, amid the points. */
 fg_circle_arc fg_circle_arc_from(const fg_circle *circle);
 fg_circle fg_circle_arc_circle(const fg_circle_arc *arc);
 
-/* Mean square distance of the frame's points. */
-double fg_circle_arc_ms(const fg_circle_frame *frame, const fg_circle_arc *arc);
+/* Mean square distance of the scaled points. */
+double fg_circle_arc_ms(const fg_circle_scaled *scaled, const fg_circle_arc *arc);
 
 /* The same with the best radius about the arc's centre, and the mean distance that leads to it;
- * uses frame->scratch. */
-double fg_circle_arc_profile_ms(const fg_circle_frame *frame, const fg_circle_arc *arc,
+ * uses scaled->scratch. */
+double fg_circle_arc_profile_ms(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
                                 double *mean);
 
 /* Turned by an angle (towards n turned by -90 degrees), moved along n, bent. */
 fg_circle_arc fg_circle_arc_step(const fg_circle_arc *arc, double bend, double turn_rad,
                                  double shift);
 
-/* The same circle with its point nearest to the frame's origin and curvature not negative. */
+/* The same circle with its point nearest to the origin and curvature not negative. */
 fg_circle_arc fg_circle_arc_rebase(const fg_circle_arc *arc);
 
 /* Damped Newton on the exact Hessian, to the last digits. Says whether it converged; *arc is the
  * best found in any case. */
-bool fg_circle_arc_polish(const fg_circle_frame *frame, fg_circle_arc *arc);
+bool fg_circle_arc_polish(const fg_circle_scaled *scaled, fg_circle_arc *arc);
 
 /* (J'WJ)^-1 of (x, y, R) in the points' units and weights. False where it is singular. */
-bool fg_circle_arc_covariance(const fg_circle_frame *frame, const fg_circle_arc *arc,
+bool fg_circle_arc_covariance(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
                               double covariance[3][3]);
 
 #endif

@@ -1,6 +1,6 @@
 #include <math.h>
 
-#include "geometry/circle_frame.h"
+#include "geometry/circle_scaled.h"
 
 /* The hyper fit (Al-Sharadqah and Chernov 2009) minimises the mean of
  * (A z + B x + C y + D)², z = x² + y², under A'NA = 1, where N removes the essential bias:
@@ -10,7 +10,7 @@
  *         | 4<y>  0    1   0 |
  *         |  2    0    0   0 |
  *
- * In the frame <x> = <y> = <xy> = 0. The last row gives D = A (2 eta - <z>), the middle rows
+ * Scaled, <x> = <y> = <xy> = 0. The last row gives D = A (2 eta - <z>), the middle rows
  * B = -A <xz> / (<xx> - eta) and C = -A <yz> / (<yy> - eta); the first row is then one equation,
  *
  *     g(eta) = var(z) - 4 eta <z> - 4 eta² - <xz>² / (<xx> - eta) - <yz>² / (<yy> - eta) = 0,
@@ -21,16 +21,16 @@ typedef struct moments {
   double z, xx, yy, xz, yz, variance_z;
 } moments;
 
-static moments take_moments(const fg_circle_frame *frame) {
+static moments take_moments(const fg_circle_scaled *scaled) {
   moments m = {0};
-  for (size_t i = 0; i < frame->count; i++) {
-    double x = frame->x[i], y = frame->y[i], w = frame->weight[i];
+  for (size_t i = 0; i < scaled->count; i++) {
+    double x = scaled->x[i], y = scaled->y[i], w = scaled->weight[i];
     m.xx += w * x * x;
     m.yy += w * y * y;
   }
   m.z = m.xx + m.yy;
-  for (size_t i = 0; i < frame->count; i++) {
-    double x = frame->x[i], y = frame->y[i], w = frame->weight[i];
+  for (size_t i = 0; i < scaled->count; i++) {
+    double x = scaled->x[i], y = scaled->y[i], w = scaled->weight[i];
     double z = x * x + y * y - m.z;
     m.xz += w * x * z;
     m.yz += w * y * z;
@@ -62,9 +62,9 @@ static double smallest_eta(const moments *m) {
   return eta;
 }
 
-fg_status fg_circle_estimate_in_frame(fg_context *ctx, const fg_circle_frame *frame,
-                                      fg_circle *circle) {
-  moments m = take_moments(frame);
+fg_status fg_circle_estimate_scaled(fg_context *ctx, const fg_circle_scaled *scaled,
+                                    fg_circle *circle) {
+  moments m = take_moments(scaled);
   double eta = smallest_eta(&m);
   double x = m.xz / (2 * (m.xx - eta)), y = m.yz / (2 * (m.yy - eta));
   double radius = sqrt(x * x + y * y + m.z - 2 * eta);
@@ -76,11 +76,11 @@ fg_status fg_circle_estimate_in_frame(fg_context *ctx, const fg_circle_frame *fr
 
 fg_status fg_circle_estimate(fg_context *ctx, const fg_point *points, const double *weights,
                              size_t count, fg_circle *circle) {
-  fg_circle_frame frame;
+  fg_circle_scaled scaled;
   fg_circle local;
-  FG_TRY(fg_circle_frame_make(ctx, points, weights, count, &frame));
-  fg_status status = fg_circle_estimate_in_frame(ctx, &frame, &local);
-  if (status == FG_OK) *circle = fg_circle_out_of_frame(&frame, &local);
-  fg_circle_frame_free(&frame);
+  FG_TRY(fg_circle_scale_points(ctx, points, weights, count, &scaled));
+  fg_status status = fg_circle_estimate_scaled(ctx, &scaled, &local);
+  if (status == FG_OK) *circle = fg_circle_out_of_scaled(&scaled, &local);
+  fg_circle_scaled_free(&scaled);
   return status;
 }

@@ -8,7 +8,7 @@
 /* Nelder-Mead over the curvature and the direction to the centre, as seen from a point of the
  * starting arc; the radius is the mean distance from that centre, so the simplex is a triangle. */
 typedef struct search {
-  const fg_circle_frame *frame;
+  const fg_circle_scaled *scaled;
   fg_circle_arc start;
 } search;
 
@@ -17,7 +17,7 @@ static double search_objective(const gsl_vector *at, void *parameters) {
   double mean;
   fg_circle_arc arc =
       fg_circle_arc_step(&s->start, gsl_vector_get(at, 0), gsl_vector_get(at, 1), 0);
-  double ms = fg_circle_arc_profile_ms(s->frame, &arc, &mean);
+  double ms = fg_circle_arc_profile_ms(s->scaled, &arc, &mean);
   return isfinite(ms) ? ms : GSL_POSINF;
 }
 
@@ -26,7 +26,7 @@ static fg_circle_arc search_result(const search *s, const gsl_vector *at) {
   double mean;
   fg_circle_arc arc =
       fg_circle_arc_step(&s->start, gsl_vector_get(at, 0), gsl_vector_get(at, 1), 0);
-  fg_circle_arc_profile_ms(s->frame, &arc, &mean);
+  fg_circle_arc_profile_ms(s->scaled, &arc, &mean);
   arc.qx -= mean * arc.nx;
   arc.qy -= mean * arc.ny;
   arc.curvature /= 1 + arc.curvature * mean;
@@ -56,13 +56,13 @@ static fg_status nelder_mead(fg_context *ctx, search *s, size_t *iterations) {
 
 /* Down to the minimum from one start. *reached says whether it is one: finite, converged, and no
  * worse than the best line, which every proper minimum beats. */
-static fg_status descend(fg_context *ctx, const fg_circle_frame *frame, fg_circle_arc *arc,
+static fg_status descend(fg_context *ctx, const fg_circle_scaled *scaled, fg_circle_arc *arc,
                          size_t *iterations, bool *reached) {
-  search s = {frame, fg_circle_arc_rebase(arc)};
+  search s = {scaled, fg_circle_arc_rebase(arc)};
   FG_TRY(nelder_mead(ctx, &s, iterations));
   *arc = s.start;
-  *reached = fg_circle_arc_polish(frame, arc) && arc->curvature > FG_CIRCLE_FLAT &&
-             fg_circle_arc_ms(frame, arc) <= frame->line_ms * (1 + 1e-9);
+  *reached = fg_circle_arc_polish(scaled, arc) && arc->curvature > FG_CIRCLE_FLAT &&
+             fg_circle_arc_ms(scaled, arc) <= scaled->line_ms * (1 + 1e-9);
   return FG_OK;
 }
 
@@ -77,17 +77,18 @@ static bool usable(const fg_circle *circle) {
  * then the other, then the best line bent a little to either side (which is where the minimum lies
  * when the points are nearly straight but scatter more than their sagitta). A start that is far off
  * costs one evaluation. */
-static size_t list_starts(const fg_circle_frame *frame, const fg_circle *given,
+static size_t list_starts(const fg_circle_scaled *scaled, const fg_circle *given,
                           fg_circle_arc starts[STARTS_MAX]) {
   size_t count = 0;
   fg_circle circle;
   if (given && usable(given)) {
-    circle = fg_circle_into_frame(frame, given);
+    circle = fg_circle_into_scaled(scaled, given);
     if (usable(&circle)) starts[count++] = fg_circle_arc_from(&circle);
   }
-  if (fg_circle_estimate_in_frame(NULL, frame, &circle) == FG_OK)
+  if (fg_circle_estimate_scaled(NULL, scaled, &circle) == FG_OK)
     starts[count++] = fg_circle_arc_from(&circle);
-  if (count == 2 && !(fg_circle_arc_ms(frame, &starts[0]) <= fg_circle_arc_ms(frame, &starts[1]))) {
+  if (count == 2 &&
+      !(fg_circle_arc_ms(scaled, &starts[0]) <= fg_circle_arc_ms(scaled, &starts[1]))) {
     fg_circle_arc bad = starts[0];
     starts[0] = starts[1];
     starts[1] = bad;
@@ -101,44 +102,44 @@ static size_t list_starts(const fg_circle_frame *frame, const fg_circle *given,
  * line does there may be several, and every start is tried. */
 static const double clear_share = 0.1;
 
-static fg_status best_arc(fg_context *ctx, const fg_circle_frame *frame, const fg_circle *given,
+static fg_status best_arc(fg_context *ctx, const fg_circle_scaled *scaled, const fg_circle *given,
                           fg_circle_arc *best, size_t *iterations) {
   fg_circle_arc starts[STARTS_MAX];
-  size_t count = list_starts(frame, given, starts);
+  size_t count = list_starts(scaled, given, starts);
   double best_ms = INFINITY;
-  for (size_t i = 0; i < count && best_ms > clear_share * frame->line_ms; i++) {
+  for (size_t i = 0; i < count && best_ms > clear_share * scaled->line_ms; i++) {
     bool reached = false;
-    FG_TRY(descend(ctx, frame, &starts[i], iterations, &reached));
-    double ms = fg_circle_arc_ms(frame, &starts[i]);
+    FG_TRY(descend(ctx, scaled, &starts[i], iterations, &reached));
+    double ms = fg_circle_arc_ms(scaled, &starts[i]);
     if (!reached || !(ms < best_ms)) continue;
     best_ms = ms;
     *best = starts[i];
   }
   if (best_ms < INFINITY) return FG_OK;
   return fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: a line fits %zu points better than any circle",
-                 frame->count);
+                 scaled->count);
 }
 
-static fg_status fit_in_frame(fg_context *ctx, const fg_circle_frame *frame, const fg_circle *given,
-                              fg_circle_fit *fit) {
+static fg_status fit_scaled(fg_context *ctx, const fg_circle_scaled *scaled, const fg_circle *given,
+                            fg_circle_fit *fit) {
   fg_circle_arc arc;
   fg_circle_fit found = {0};
-  FG_TRY(best_arc(ctx, frame, given, &arc, &found.iterations));
-  if (!fg_circle_arc_covariance(frame, &arc, found.covariance))
+  FG_TRY(best_arc(ctx, scaled, given, &arc, &found.iterations));
+  if (!fg_circle_arc_covariance(scaled, &arc, found.covariance))
     return fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: the points do not determine a circle");
   fg_circle local = fg_circle_arc_circle(&arc);
-  found.circle = fg_circle_out_of_frame(frame, &local);
-  found.rms = frame->scale * sqrt(fg_circle_arc_ms(frame, &arc));
+  found.circle = fg_circle_out_of_scaled(scaled, &local);
+  found.rms = scaled->scale * sqrt(fg_circle_arc_ms(scaled, &arc));
   *fit = found;
   return FG_OK;
 }
 
 fg_status fg_circle_fit_geometric(fg_context *ctx, const fg_point *points, const double *weights,
                                   size_t count, const fg_circle *start, fg_circle_fit *fit) {
-  fg_circle_frame frame;
+  fg_circle_scaled scaled;
   fg_numerics_start();
-  FG_TRY(fg_circle_frame_make(ctx, points, weights, count, &frame));
-  fg_status status = fit_in_frame(ctx, &frame, start, fit);
-  fg_circle_frame_free(&frame);
+  FG_TRY(fg_circle_scale_points(ctx, points, weights, count, &scaled));
+  fg_status status = fit_scaled(ctx, &scaled, start, fit);
+  fg_circle_scaled_free(&scaled);
   return status;
 }

@@ -5,25 +5,25 @@
 #include <gsl/gsl_multifit_nlinear.h>
 
 #include "core/numerics.h"
-#include "geometry/circle_frame.h"
+#include "geometry/circle_scaled.h"
 
 /* Deliberately not the parameters of the geometric fit: centre and radius as they are, so that the
- * two share nothing but the points' frame. */
+ * two share nothing but the scaled points. */
 static int residuals(const gsl_vector *at, void *parameters, gsl_vector *out) {
-  const fg_circle_frame *frame = parameters;
+  const fg_circle_scaled *scaled = parameters;
   double x = gsl_vector_get(at, 0), y = gsl_vector_get(at, 1), radius = gsl_vector_get(at, 2);
-  for (size_t i = 0; i < frame->count; i++) {
-    double distance = hypot(frame->x[i] - x, frame->y[i] - y);
-    gsl_vector_set(out, i, sqrt(frame->weight[i]) * (distance - radius));
+  for (size_t i = 0; i < scaled->count; i++) {
+    double distance = hypot(scaled->x[i] - x, scaled->y[i] - y);
+    gsl_vector_set(out, i, sqrt(scaled->weight[i]) * (distance - radius));
   }
   return GSL_SUCCESS;
 }
 
 static int jacobian(const gsl_vector *at, void *parameters, gsl_matrix *out) {
-  const fg_circle_frame *frame = parameters;
+  const fg_circle_scaled *scaled = parameters;
   double x = gsl_vector_get(at, 0), y = gsl_vector_get(at, 1);
-  for (size_t i = 0; i < frame->count; i++) {
-    double dx = x - frame->x[i], dy = y - frame->y[i], root = sqrt(frame->weight[i]);
+  for (size_t i = 0; i < scaled->count; i++) {
+    double dx = x - scaled->x[i], dy = y - scaled->y[i], root = sqrt(scaled->weight[i]);
     double distance = fmax(hypot(dx, dy), 1e-12);
     gsl_matrix_set(out, i, 0, root * dx / distance);
     gsl_matrix_set(out, i, 1, root * dy / distance);
@@ -32,7 +32,7 @@ static int jacobian(const gsl_vector *at, void *parameters, gsl_matrix *out) {
   return GSL_SUCCESS;
 }
 
-static fg_status publish(fg_context *ctx, const fg_circle_frame *frame,
+static fg_status publish(fg_context *ctx, const fg_circle_scaled *scaled,
                          gsl_multifit_nlinear_workspace *work, fg_circle_fit *fit) {
   double flat[9];
   gsl_matrix_view covariance = gsl_matrix_view_array(flat, 3, 3);
@@ -41,31 +41,31 @@ static fg_status publish(fg_context *ctx, const fg_circle_frame *frame,
   if (!isfinite(local.x) || !isfinite(local.y) || !(local.radius > 0) ||
       gsl_multifit_nlinear_covar(gsl_multifit_nlinear_jac(work), 0, &covariance.matrix))
     return fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: Levenberg-Marquardt found no circle");
-  /* The frame is turned: rows and columns of the centre turn back. */
+  /* The scaled points are turned: rows and columns of the centre turn back. */
   const double turn[3][3] = {
-      {frame->axis_x, -frame->axis_y, 0}, {frame->axis_y, frame->axis_x, 0}, {0, 0, 1}};
+      {scaled->axis_x, -scaled->axis_y, 0}, {scaled->axis_y, scaled->axis_x, 0}, {0, 0, 1}};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) {
       double sum = 0;
       for (int k = 0; k < 9; k++)
         sum += turn[i][k / 3] * flat[k] * turn[j][k % 3];
-      fit->covariance[i][j] = sum / frame->weight_sum;
+      fit->covariance[i][j] = sum / scaled->weight_sum;
     }
-  fit->circle = fg_circle_out_of_frame(frame, &local);
-  fit->rms = frame->scale * gsl_blas_dnrm2(gsl_multifit_nlinear_residual(work));
+  fit->circle = fg_circle_out_of_scaled(scaled, &local);
+  fit->rms = scaled->scale * gsl_blas_dnrm2(gsl_multifit_nlinear_residual(work));
   fit->iterations = gsl_multifit_nlinear_niter(work);
   return FG_OK;
 }
 
-static fg_status run(fg_context *ctx, fg_circle_frame *frame, const fg_circle *start,
+static fg_status run(fg_context *ctx, fg_circle_scaled *scaled, const fg_circle *start,
                      fg_circle_fit *fit) {
   double at[3] = {start->x, start->y, start->radius};
   gsl_vector_view start_view = gsl_vector_view_array(at, 3);
   gsl_multifit_nlinear_parameters how = gsl_multifit_nlinear_default_parameters();
   gsl_multifit_nlinear_fdf problem = {
-      .f = residuals, .df = jacobian, .n = frame->count, .p = 3, .params = frame};
+      .f = residuals, .df = jacobian, .n = scaled->count, .p = 3, .params = scaled};
   gsl_multifit_nlinear_workspace *work =
-      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, frame->count, 3);
+      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how, scaled->count, 3);
   if (!work) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: Levenberg-Marquardt");
   int info, code = gsl_multifit_nlinear_init(&start_view.vector, &problem, work);
   if (code == GSL_SUCCESS)
@@ -73,7 +73,7 @@ static fg_status run(fg_context *ctx, fg_circle_frame *frame, const fg_circle *s
   /* GSL_ENOPROG: no step helps any more, which is how an exact minimum looks. */
   fg_status status =
       code == GSL_SUCCESS || code == GSL_ENOPROG
-          ? publish(ctx, frame, work, fit)
+          ? publish(ctx, scaled, work, fit)
           : fg_fail(ctx, FG_ERR_NUMERIC, "circle fit: Levenberg-Marquardt: %s", gsl_strerror(code));
   gsl_multifit_nlinear_free(work);
   return status;
@@ -81,16 +81,16 @@ static fg_status run(fg_context *ctx, fg_circle_frame *frame, const fg_circle *s
 
 fg_status fg_circle_fit_levenberg(fg_context *ctx, const fg_point *points, const double *weights,
                                   size_t count, const fg_circle *start, fg_circle_fit *fit) {
-  fg_circle_frame frame;
+  fg_circle_scaled scaled;
   fg_circle local;
   fg_numerics_start();
-  FG_TRY(fg_circle_frame_make(ctx, points, weights, count, &frame));
+  FG_TRY(fg_circle_scale_points(ctx, points, weights, count, &scaled));
   fg_status status = FG_OK;
   if (start)
-    local = fg_circle_into_frame(&frame, start);
+    local = fg_circle_into_scaled(&scaled, start);
   else
-    status = fg_circle_estimate_in_frame(ctx, &frame, &local);
-  if (status == FG_OK) status = run(ctx, &frame, &local, fit);
-  fg_circle_frame_free(&frame);
+    status = fg_circle_estimate_scaled(ctx, &scaled, &local);
+  if (status == FG_OK) status = run(ctx, &scaled, &local, fit);
+  fg_circle_scaled_free(&scaled);
   return status;
 }

@@ -58,12 +58,13 @@ static void distance_of(const fg_circle_arc *arc, double x, double y, distance *
   hessian_of_distance(arc, p, s, g, p_gradient, d);
 }
 
-static void gather(const fg_circle_frame *frame, const fg_circle_arc *arc, normal_equations *sums) {
+static void gather(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
+                   normal_equations *sums) {
   memset(sums, 0, sizeof *sums);
-  for (size_t n = 0; n < frame->count; n++) {
+  for (size_t n = 0; n < scaled->count; n++) {
     distance d;
-    double w = frame->weight[n];
-    distance_of(arc, frame->x[n], frame->y[n], &d);
+    double w = scaled->weight[n];
+    distance_of(arc, scaled->x[n], scaled->y[n], &d);
     sums->ms += w * d.value * d.value;
     for (int i = 0; i < 3; i++) {
       sums->gradient[i] += w * d.value * d.gradient[i];
@@ -112,7 +113,7 @@ static void solve(double factor[3][3], const double diagonal[3], const double ri
 
 /* A step with the least damping (from *damping upwards) that does not make things worse. Returns
  * its size relative to the arc, or a negative number when there is none. */
-static double take_step(const fg_circle_frame *frame, normal_equations *sums, fg_circle_arc *arc,
+static double take_step(const fg_circle_scaled *scaled, normal_equations *sums, fg_circle_arc *arc,
                         double *damping) {
   const double diagonal[3] = {sums->gauss[0][0], sums->gauss[1][1], sums->gauss[2][2]};
   const double slack = 1e-13 * sums->ms + DBL_EPSILON * DBL_EPSILON;
@@ -121,7 +122,7 @@ static double take_step(const fg_circle_frame *frame, normal_equations *sums, fg
     if (!factorise(sums->hessian, diagonal, *damping, factor)) continue;
     solve(factor, diagonal, sums->gradient, step);
     fg_circle_arc moved = fg_circle_arc_step(arc, -step[BEND], -step[TURN], -step[SHIFT]);
-    if (!(fg_circle_arc_ms(frame, &moved) <= sums->ms + slack)) continue;
+    if (!(fg_circle_arc_ms(scaled, &moved) <= sums->ms + slack)) continue;
     double scale = fmax(fabs(arc->curvature), FG_CIRCLE_FLAT);
     *arc = fg_circle_arc_rebase(&moved);
     return fmax(fmax(fabs(step[BEND]) / scale, fabs(step[TURN])), fabs(step[SHIFT]));
@@ -131,13 +132,13 @@ static double take_step(const fg_circle_frame *frame, normal_equations *sums, fg
 
 /* Converged when a step is down to rounding, or when full Newton steps no longer shrink although
  * they are tiny: what is left is the rounding of the sums. */
-bool fg_circle_arc_polish(const fg_circle_frame *frame, fg_circle_arc *arc) {
+bool fg_circle_arc_polish(const fg_circle_scaled *scaled, fg_circle_arc *arc) {
   double damping = 0, before = INFINITY;
   *arc = fg_circle_arc_rebase(arc);
   for (int iteration = 0; iteration < 200; iteration++) {
     normal_equations sums;
-    gather(frame, arc, &sums);
-    double size = take_step(frame, &sums, arc, &damping);
+    gather(scaled, arc, &sums);
+    double size = take_step(scaled, &sums, arc, &damping);
     if (size < 0) return before < 1e-8;
     if (size < 4 * DBL_EPSILON) return true;
     if (damping == 0 && size < 1e-9 && size >= 0.5 * before) return true;
@@ -148,27 +149,27 @@ bool fg_circle_arc_polish(const fg_circle_frame *frame, fg_circle_arc *arc) {
 }
 
 /* Centre = q + shift n + n(theta) / k, R = 1 / k: their derivatives by bend, turn and shift, in the
- * points' axes. All in the frame's unit, which cancels: residuals are in it as well. */
-static void derivatives_of_circle(const fg_circle_frame *frame, const fg_circle_arc *arc,
+ * points' axes. All in the scaled points' unit, which cancels: residuals are in it as well. */
+static void derivatives_of_circle(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
                                   double derivative[3][3]) {
   double radius = 1 / arc->curvature, square = radius * radius;
   double x[3] = {-square * arc->nx, radius * arc->ny, arc->nx};
   double y[3] = {-square * arc->ny, -radius * arc->nx, arc->ny};
   for (int i = 0; i < 3; i++) {
-    derivative[0][i] = x[i] * frame->axis_x - y[i] * frame->axis_y;
-    derivative[1][i] = x[i] * frame->axis_y + y[i] * frame->axis_x;
+    derivative[0][i] = x[i] * scaled->axis_x - y[i] * scaled->axis_y;
+    derivative[1][i] = x[i] * scaled->axis_y + y[i] * scaled->axis_x;
     derivative[2][i] = i == BEND ? -square : 0;
   }
 }
 
-bool fg_circle_arc_covariance(const fg_circle_frame *frame, const fg_circle_arc *arc,
+bool fg_circle_arc_covariance(const fg_circle_scaled *scaled, const fg_circle_arc *arc,
                               double covariance[3][3]) {
   normal_equations sums;
   double factor[3][3], derivative[3][3];
-  gather(frame, arc, &sums);
+  gather(scaled, arc, &sums);
   const double diagonal[3] = {sums.gauss[0][0], sums.gauss[1][1], sums.gauss[2][2]};
   if (!factorise(sums.gauss, diagonal, 0, factor)) return false;
-  derivatives_of_circle(frame, arc, derivative);
+  derivatives_of_circle(scaled, arc, derivative);
   for (int j = 0; j < 3; j++) {
     double solution[3];
     solve(factor, diagonal, derivative[j], solution);
@@ -176,7 +177,7 @@ bool fg_circle_arc_covariance(const fg_circle_frame *frame, const fg_circle_arc 
       covariance[i][j] = 0;
       for (int k = 0; k < 3; k++)
         covariance[i][j] += derivative[i][k] * solution[k];
-      covariance[i][j] /= frame->weight_sum;
+      covariance[i][j] /= scaled->weight_sum;
     }
   }
   return true;

@@ -213,7 +213,7 @@ static void collect(const fg_engine_bench *bench, size_t j, double rss, const do
         fg_engine_version_freedom(bench, version) + 2 > (double)bench->freedom)
       continue;
     double left = rss - sum_of_squares(sums + version->first, version->rank);
-    double weighted = fmax(left, 1e-12 * rss) * bench->weight[j];
+    double weighted = fmax(left, FG_ENGINE_RATIO_LEAST * rss) * bench->weight[j];
     if (weighted < best->ratio) {
       best->ratio = weighted;
       best->version = v;
@@ -325,7 +325,8 @@ void fg_engine_bench_flip(const fg_engine_bench *bench, const signed char *sign,
     double k = fg_engine_version_freedom(bench, version);
     if (version->rank == 0 || k + 2 > (double)bench->freedom) continue;
     double left = rss - sum_of_squares(sums + bench->rank + version->first, version->rank);
-    double one = fg_engine_deviate(fmax(left / rss, 1e-12), k, (double)bench->freedom);
+    double one =
+        fg_engine_deviate(fmax(left / rss, FG_ENGINE_RATIO_LEAST), k, (double)bench->freedom);
     z[version->candidate] = fmax(z[version->candidate], one);
   }
 }

@@ -15,6 +15,9 @@ enum {
   FG_ENGINE_NOISES = 32,
 };
 
+/* Of residual sums, with a candidate over without: what an exact fit leaves is rounding. */
+#define FG_ENGINE_RATIO_LEAST 1e-12
+
 typedef struct fg_engine_noise {
   double rho, lambda;
 } fg_engine_noise;

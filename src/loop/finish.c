@@ -11,6 +11,10 @@
 #include "loop/grid.h"
 #include "loop/run.h"
 
+/* Strong correlation makes the sd of a row larger than what these rows show: the noise floor that
+ * is said is at the most so many times their rms. */
+#define FLOOR_OVER_RMS 1.25
+
 static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
                          fg_loop_error *error) {
   size_t count = 0, rows = run->problem->rows, held = 0;
@@ -184,8 +188,7 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   result->noise.lambda = noise->lambda;
   FG_TRY(measure(ctx, run, result->before_fit, &result->before));
   FG_TRY(measure(ctx, run, result->after_fit, &result->after));
-  /* Strong correlation makes the sd of a row larger than what these rows show. */
-  result->noise_floor = fmin(result->noise.sd, 1.25 * result->after.rms);
+  result->noise_floor = fmin(result->noise.sd, FLOOR_OVER_RMS * result->after.rms);
   FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
   FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
                          &result->after.cross_validated_rms));

@@ -15,6 +15,13 @@
 #include "loop/engine_random.h"
 #include "loop/permute.h"
 
+/* A row whose residual keeps less of its own error than this is held by the model alone: nothing
+ * can tell that it is wrong. */
+#define HELD_ALONE 1e-9
+/* In many rows an outlier is judged against the tails of t with so many degrees of freedom, those
+ * of fg_engine_random_heavy. */
+#define TAIL_FREEDOM 4
+
 typedef struct lone_bench {
   size_t n;
   double *a; /* n × n; only the diagonal where rows are many */
@@ -48,8 +55,8 @@ static double apply(const lone_bench *bench, const double *y, double *ay) {
 static void best_outlier(const lone_bench *bench, const double *ay, double rss, lone_best *best) {
   best->ratio[0] = INFINITY;
   for (size_t i = 0; i < bench->n; i++) {
-    if (bench->diagonal[i] < 1e-9) continue;
-    double ratio = fmax(1 - ay[i] * ay[i] / bench->diagonal[i] / rss, 1e-12);
+    if (bench->diagonal[i] < HELD_ALONE) continue;
+    double ratio = fmax(1 - ay[i] * ay[i] / bench->diagonal[i] / rss, FG_ENGINE_RATIO_LEAST);
     if (ratio < best->ratio[0]) {
       best->ratio[0] = ratio;
       best->row[0] = i;
@@ -66,7 +73,7 @@ static void best_exchange(const lone_bench *bench, const double *response, const
       double d = response[j] - response[i];
       double change = 2 * d * (ay[i] - ay[j]) +
                       d * d * (bench->diagonal[i] + bench->diagonal[j] - 2 * bench->a[i * n + j]);
-      double ratio = fmax(1 + change / rss, 1e-12);
+      double ratio = fmax(1 + change / rss, FG_ENGINE_RATIO_LEAST);
       if (ratio < best->ratio[1]) {
         best->ratio[1] = ratio;
         best->pair[0] = j;
@@ -219,9 +226,10 @@ static fg_status judge_large(fg_context *ctx, const fg_engine_training *training
   lone[0].known = true;
   lone[0].ratio = 1 - largest * largest / sum;
   lone[0].length = 1;
-  lone[0].p_value =
-      fmin(1, FG_ENGINE_FAMILIES * 2 * n * gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, 4));
-  lone[0].f_critical = pow(gsl_cdf_tdist_Qinv(accept_p / FG_ENGINE_FAMILIES / 2 / n, 4), 2) / 2;
+  lone[0].p_value = fmin(1, FG_ENGINE_FAMILIES * 2 * n *
+                                gsl_cdf_tdist_Q(sqrt(2.0) * largest / rest, TAIL_FREEDOM));
+  lone[0].f_critical =
+      pow(gsl_cdf_tdist_Qinv(accept_p / FG_ENGINE_FAMILIES / 2 / n, TAIL_FREEDOM), 2) / 2;
   lone[0].candidate.row[0] = training->row[worst];
   return FG_OK;
 }

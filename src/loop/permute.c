@@ -93,11 +93,14 @@ exit:
   return status;
 }
 
-/* The strongest correlation that the data do not rule out (2.7 in twice the log likelihood), so
- * that a short series does not pass for white by luck. */
+/* In twice the log likelihood: the 90 % quantile of chi² with one degree of freedom. */
+#define NOT_RULED_OUT 2.7
+
+/* The strongest correlation that the data do not rule out, so that a short series does not pass for
+ * white by luck. */
 static size_t cautious_noise(const fg_engine_bench *bench, const double *criterion, size_t best) {
   size_t chosen = best;
-  double allowed = criterion[best] * exp(2.7 / (double)bench->freedom);
+  double allowed = criterion[best] * exp(NOT_RULED_OUT / (double)bench->freedom);
   for (size_t j = 0; j < bench->noises; j++) {
     fg_engine_noise noise = bench->noise[chosen], other = bench->noise[j];
     bool stronger =

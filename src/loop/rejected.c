@@ -31,10 +31,13 @@ static bool is_alias(const fg_engine_run *run, const fg_loop_candidate *candidat
   return false;
 }
 
+/* Less of an effect than this beside the null is the rounding of the projection. */
+#define ABSORBED_SHARE 1e-8
+
 static fg_loop_verdict judge_rejected(const fg_engine_run *run, const fg_loop_rejected *one) {
   double matters = run->options.matters > 0 ? run->options.matters : run->sd;
   if (is_alias(run, &one->candidate)) return FG_LOOP_EXPLAINED_BY_OTHERS;
-  if (one->retained_share < 1e-8) return FG_LOOP_ABSORBED;
+  if (one->retained_share < ABSORBED_SHARE) return FG_LOOP_ABSORBED;
   if (isfinite(one->smallest_detectable) && one->smallest_detectable <= matters)
     return FG_LOOP_ABSENT;
   return FG_LOOP_INCONCLUSIVE;

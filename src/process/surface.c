@@ -105,7 +105,7 @@ static double slope_along(const fg_surface *s, size_t k) {
   return slope;
 }
 
-/* In the eigenvectors' frame the surface is sum (g_k u_k + e_k u_k²): x = sum u_k v_k with
+/* Along the eigenvectors the surface is sum (g_k u_k + e_k u_k²): x = sum u_k v_k with
  * u_k = -g_k / (2 (e_k - shift)); shift 0 is the stationary point. The shift is edge - distance:
  * kept apart, a distance far below the rounding of the edge still counts. */
 static void shifted_point(const fg_surface *s, double edge, double distance, double *x) {

@@ -1,6 +1,6 @@
 /* One way to draw, two places to draw on: a picture of pixels, and inline SVG.
  *
- * Positions are in mm of the scan's frame. Widths and heights of letters are in units of the
+ * Positions are in mm of the scan. Widths and heights of letters are in units of the
  * canvas, so that a picture of any size looks alike.
  */
 #ifndef FG_REPORT_CANVAS_H
