@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/foil.h"
+#include "support/near.h"
 #include "support/random.h"
 
 typedef struct derive_case {
@@ -34,11 +35,6 @@ static derive_case make_case(double radius, double x, double overall_radius) {
 
 static void derive(derive_case *c) {
   fg_bump_derive(&c->design, &c->nominal, &c->overall, &c->strip, &c->bump);
-}
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
 }
 
 static void design_bump_has_no_error(void **state) {

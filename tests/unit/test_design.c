@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/design.h"
+#include "support/near.h"
 
 #define SCHEMA "\"schema\": \"foilgauge/design/1\""
 #define CORE                                                                                       \
@@ -18,11 +19,6 @@
   "\"thickness_mm\": 0.1"
 
 static const double pi = 3.14159265358979323846;
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.15g is not %.15g within %g", value, expected, tolerance);
-}
 
 /* Table 5.6; eq 5.1, 5.2, 5.5 and 5.8. */
 static void default_design_has_known_values(void **state) {

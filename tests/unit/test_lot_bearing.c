@@ -1,5 +1,6 @@
 /* Clearance around the bearings of a made lot: where the bumps stand, which foil is meant. */
 #include "support/made_lot.h"
+#include "support/near.h"
 
 /* Three foils of the design; bump 9 of the second stands highest. */
 static fg_lot nine_bumps(const fg_design *design) {
@@ -16,11 +17,6 @@ static const fg_lot_bearing *only_bearing(const fg_lot *lot, fg_lot_analysis *an
   assert_int_equal(analysis->bearing_count, 1);
   assert_true(analysis->bearings[0].known);
   return &analysis->bearings[0];
-}
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.12g is not %.12g within %g", value, expected, tolerance);
 }
 
 static void a_recipe_without_a_layout_has_the_design_s(void **state) {

@@ -2,6 +2,7 @@
 #include "lot/lot_plots.h"
 #include "lot/writers.h"
 #include "support/made_lot.h"
+#include "support/near.h"
 
 enum { FOILS = 6, BUMPS = 9 };
 
@@ -13,11 +14,6 @@ static fg_lot sound_lot(const fg_design *design) {
       made_bump(&lot, i, k, radius, 63.15 * 3.32 / radius + 0.02 * (double)(i % 3));
     }
   return lot;
-}
-
-static void assert_near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance))
-    fail_msg("%.12g is not %.12g within %g", value, expected, tolerance);
 }
 
 static char *text_of(const fg_lot_analysis *analysis, fg_lot_writer *writer) {

@@ -13,6 +13,7 @@
 #include "foilgauge/anova.h"
 #include "foilgauge/doe.h"
 #include "foilgauge/surface.h"
+#include "support/near.h"
 
 typedef struct experiment {
   fg_context ctx;
@@ -36,18 +37,14 @@ static void drop(experiment *e) {
   fg_table_free(&e->table);
 }
 
-static void near(double value, double expected, double tolerance) {
-  if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g, not %.15g", value, expected);
-}
-
 static void one_run(void **state) {
   experiment e;
   (void)state;
   fit(&e, "x,y\n3,5\n", "y ~ x", NULL);
   assert_int_equal(e.reg.rank, 1);
-  near(e.reg.coefficient[0].estimate, 5, 0);
+  assert_near(e.reg.coefficient[0].estimate, 5, 0);
   assert_true(e.reg.coefficient[1].aliased && isnan(e.reg.coefficient[1].estimate));
-  near(e.reg.alias[0].factor[0], 3, 0);
+  assert_near(e.reg.alias[0].factor[0], 3, 0);
   assert_non_null(strstr(e.reg.note[0], "no residual freedom"));
   drop(&e);
 }
@@ -56,7 +53,7 @@ static void equal_responses(void **state) {
   experiment e;
   (void)state;
   fit(&e, "x,y\n1,0.7\n2,0.7\n3,0.7\n5,0.7\n", "y ~ x", NULL);
-  near(e.reg.coefficient[0].estimate, 0.7, 1e-16);
+  assert_near(e.reg.coefficient[0].estimate, 0.7, 1e-16);
   assert_true(e.reg.total_ss == 0 && isnan(e.reg.r2));
   assert_non_null(strstr(e.reg.note[0], "all responses are equal"));
   drop(&e);
@@ -66,7 +63,7 @@ static void exact_fit(void **state) {
   experiment e;
   (void)state;
   fit(&e, "x,y\n1,0.3\n2,0.6\n3,0.9\n5,1.5\n", "y ~ x", NULL);
-  near(e.reg.coefficient[1].estimate, 0.3, 0);
+  assert_near(e.reg.coefficient[1].estimate, 0.3, 0);
   assert_true(e.reg.residual_ss == 0 && e.reg.r2 == 1 && e.reg.coefficient[1].p_value == 0);
   assert_non_null(strstr(e.reg.note[0], "reproduces the response exactly"));
   drop(&e);
@@ -84,16 +81,16 @@ static void aliases_are_named(void **state) {
   assert_int_equal(alias->column, 3);
   assert_int_equal(alias->count, 2);
   assert_int_equal(alias->with[0], 1);
-  near(alias->factor[0], 1, 1e-14);
-  near(alias->factor[1], 2, 1e-14);
+  assert_near(alias->factor[0], 1, 1e-14);
+  assert_near(alias->factor[1], 2, 1e-14);
   assert_int_equal(e.reg.sequential[2].freedom, 0);
   assert_true(isnan(e.reg.coefficient[3].estimate));
   assert_non_null(
       strstr(e.reg.note[0], "c cannot be told apart from others (it is 1 × a + 2 × b)"));
   fg_prediction p;
   assert_int_equal(fg_regression_predict(&e.ctx, &e.reg, (double[]){1, 3, 0.2, 3.4}, &p), FG_OK);
-  near(p.mean, e.reg.fitted[2], 1e-14);
-  near(p.standard_error, e.reg.residual_sd * sqrt(e.reg.leverage[2]), 1e-14);
+  assert_near(p.mean, e.reg.fitted[2], 1e-14);
+  assert_near(p.standard_error, e.reg.residual_sd * sqrt(e.reg.leverage[2]), 1e-14);
   drop(&e);
 }
 
@@ -104,7 +101,7 @@ static void a_fraction_has_its_alias(void **state) {
   fit(&e, "A,B,C,y\n-1,-1,1,3\n1,-1,-1,5\n-1,1,-1,4\n1,1,1,9\n", "y ~ A + B + C + A:B", NULL);
   assert_int_equal(e.reg.aliases, 1);
   assert_int_equal(e.reg.alias[0].with[0], 3);
-  near(e.reg.alias[0].factor[0], 1, 1e-15);
+  assert_near(e.reg.alias[0].factor[0], 1, 1e-15);
   drop(&e);
 }
 
@@ -115,11 +112,11 @@ static void weights_repeat_runs(void **state) {
   (void)state;
   fit(&weighted, "x,y\n1,2\n2,3\n3,7\n4,6\n6,9\n", "y ~ x", weights);
   fit(&repeated, "x,y\n1,2\n2,3\n2,3\n3,7\n4,6\n4,6\n4,6\n6,9\n", "y ~ x", NULL);
-  near(weighted.reg.coefficient[1].estimate, repeated.reg.coefficient[1].estimate, 1e-15);
-  near(weighted.reg.residual_ss, repeated.reg.residual_ss, 1e-14);
-  near(weighted.reg.total_ss, repeated.reg.total_ss, 1e-14);
-  near(weighted.reg.residual[1], repeated.reg.residual[1], 1e-15);
-  near(weighted.reg.leverage[3], 3 * repeated.reg.leverage[4], 1e-15);
+  assert_near(weighted.reg.coefficient[1].estimate, repeated.reg.coefficient[1].estimate, 1e-15);
+  assert_near(weighted.reg.residual_ss, repeated.reg.residual_ss, 1e-14);
+  assert_near(weighted.reg.total_ss, repeated.reg.total_ss, 1e-14);
+  assert_near(weighted.reg.residual[1], repeated.reg.residual[1], 1e-15);
+  assert_near(weighted.reg.leverage[3], 3 * repeated.reg.leverage[4], 1e-15);
   drop(&weighted);
   drop(&repeated);
   fg_table table;
@@ -156,7 +153,7 @@ static void deletion_is_what_it_says(void **state) {
     double x = all.table.column[0].number[left].value, y = all.table.column[1].number[left].value;
     assert_int_equal(fg_regression_predict(&e.ctx, &e.reg, (double[]){1, x, x * x}, &p), FG_OK);
     press += (y - p.mean) * (y - p.mean);
-    near(all.reg.external[left], (y - p.mean) / p.run_standard_error, 1e-11);
+    assert_near(all.reg.external[left], (y - p.mean) / p.run_standard_error, 1e-11);
     double cook = 0;
     for (size_t i = 0; i < ROWS; i++) {
       double at = all.table.column[0].number[i].value;
@@ -164,10 +161,10 @@ static void deletion_is_what_it_says(void **state) {
                        FG_OK);
       cook += pow(all.reg.fitted[i] - p.mean, 2) / (3 * pow(all.reg.residual_sd, 2));
     }
-    near(all.reg.cook[left], cook, 1e-11 * (1 + cook));
+    assert_near(all.reg.cook[left], cook, 1e-11 * (1 + cook));
     drop(&e);
   }
-  near(all.reg.press, press, 1e-11 * press);
+  assert_near(all.reg.press, press, 1e-11 * press);
   drop(&all);
 }
 
@@ -175,7 +172,7 @@ static void a_lever_run_is_noted(void **state) {
   experiment e;
   (void)state;
   fit(&e, "g,y\na,1\na,2\nb,7\na,4\n", "y ~ g", NULL);
-  near(e.reg.leverage[2], 1, 1e-15);
+  assert_near(e.reg.leverage[2], 1, 1e-15);
   assert_true(isnan(e.reg.press) && isnan(e.reg.internal[2]) && isnan(e.reg.cook[2]));
   assert_non_null(strstr(e.reg.note[0], "run 3 alone determines"));
   drop(&e);
@@ -188,12 +185,14 @@ static void partial_squares_are_drops(void **state) {
   (void)state;
   fit(&full, text, "y ~ g + x", NULL);
   fit(&without, text, "y ~ x", NULL);
-  near(full.reg.partial[0].sum_of_squares, without.reg.residual_ss - full.reg.residual_ss, 1e-11);
+  assert_near(full.reg.partial[0].sum_of_squares, without.reg.residual_ss - full.reg.residual_ss,
+              1e-11);
   assert_int_equal(full.reg.partial[0].freedom, 2);
   drop(&without);
   fit(&without, text, "y ~ g", NULL);
-  near(full.reg.partial[1].sum_of_squares, without.reg.residual_ss - full.reg.residual_ss, 1e-11);
-  near(full.reg.partial[1].f, pow(full.reg.coefficient[3].t, 2), 1e-10);
+  assert_near(full.reg.partial[1].sum_of_squares, without.reg.residual_ss - full.reg.residual_ss,
+              1e-11);
+  assert_near(full.reg.partial[1].f, pow(full.reg.coefficient[3].t, 2), 1e-10);
   drop(&full);
   drop(&without);
 }
@@ -215,17 +214,17 @@ static void split_plot_has_two_errors(void **state) {
   assert_int_equal(s.terms, 3);
   assert_string_equal(s.term[0].row.name, "T");
   assert_int_equal(s.term[0].whole_plot, 1);
-  near(s.term[0].row.sum_of_squares, 200, 1e-12);
-  near(s.plot_ss, 8, 1e-12);
+  assert_near(s.term[0].row.sum_of_squares, 200, 1e-12);
+  assert_near(s.plot_ss, 8, 1e-12);
   assert_int_equal(s.plot_freedom, 2);
-  near(s.term[0].row.f, 50, 1e-11);
+  assert_near(s.term[0].row.f, 50, 1e-11);
   /* differences over D within loads: 4, 0, 6, 2 */
-  near(s.term[1].row.sum_of_squares, 18, 1e-12);
-  near(s.term[2].row.sum_of_squares, 2, 1e-12);
-  near(s.run_ss, 8, 1e-12);
+  assert_near(s.term[1].row.sum_of_squares, 18, 1e-12);
+  assert_near(s.term[2].row.sum_of_squares, 2, 1e-12);
+  assert_near(s.run_ss, 8, 1e-12);
   assert_int_equal(s.run_freedom, 2);
-  near(s.term[1].row.f, 4.5, 1e-12);
-  near(s.plot_variance, 0, 1e-12);
+  assert_near(s.term[1].row.f, 4.5, 1e-12);
+  assert_near(s.plot_variance, 0, 1e-12);
   assert_int_equal(s.balanced, 1);
   fg_split_plot_free(&s);
   assert_int_equal(fg_split_plot_analyse(&ctx, &table, &formula, "y", "y", &s), FG_OK);
@@ -256,7 +255,7 @@ static void optima_beat_a_grid(void **state) {
     fit(&e, text, "y ~ x1*x2 + x1^2 + x2^2", NULL);
     assert_int_equal(fg_surface_make(&ctx, &e.model, &e.reg, NULL, &s), FG_OK);
     assert_int_equal(s.kind, shape ? FG_SURFACE_SADDLE : FG_SURFACE_MINIMUM);
-    near(2 * (3 * s.stationary[0] - 0.5 * s.stationary[1]) + 1, 0, 1e-12);
+    assert_near(2 * (3 * s.stationary[0] - 0.5 * s.stationary[1]) + 1, 0, 1e-12);
     for (int highest = 0; highest < 2; highest++) {
       double low[] = {-1, 0.2}, high[] = {0.5, 1.5}, x[2], ball[2], turn = highest ? -1 : 1;
       double radius = 1.2, best_box = INFINITY, best_ball = INFINITY;
@@ -292,9 +291,9 @@ static void planes_are_walked_straight(void **state) {
   assert_int_equal(s.kind, FG_SURFACE_PLANE);
   assert_false(s.has_stationary);
   assert_int_equal(fg_surface_ridge_path(&e.ctx, &s, false, (double[]){1, 2}, 2, path), FG_OK);
-  near(path[0], -0.6, 1e-9);
-  near(path[1], -0.8, 1e-9);
-  near(path[3], -1.6, 1e-9);
+  assert_near(path[0], -0.6, 1e-9);
+  assert_near(path[1], -0.8, 1e-9);
+  assert_near(path[3], -1.6, 1e-9);
   double low[] = {-1, 3}, high[] = {1, 2}, x[2];
   assert_int_equal(fg_surface_optimum_box(&e.ctx, &s, false, low, high, x), FG_ERR_USAGE);
   drop(&e);
@@ -309,8 +308,8 @@ static void the_hard_case_has_its_radius(void **state) {
   fit(&e, "a,b,y\n0,0,0\n1,0,-1\n-1,0,-1\n0,1,1\n0,-1,1\n2,1,-3\n", "y ~ a + b + a^2 + b^2", NULL);
   assert_int_equal(fg_surface_make(&e.ctx, &e.model, &e.reg, NULL, &s), FG_OK);
   assert_int_equal(fg_surface_optimum_ball(&e.ctx, &s, false, 1.5, x), FG_OK);
-  near(fabs(x[0]), 1.5, 1e-9);
-  near(x[1], 0, 1e-9);
+  assert_near(fabs(x[0]), 1.5, 1e-9);
+  assert_near(x[1], 0, 1e-9);
   drop(&e);
 }
 
@@ -321,11 +320,11 @@ static void oneway_groups(void **state) {
   (void)state;
   assert_int_equal(fg_table_parse(&ctx, "t", "g,y\n1,1\n1,3\n2,5\n2,7\n", 20, &table), FG_OK);
   assert_int_equal(fg_anova_oneway_compute(&ctx, &table, "y", "g", &a), FG_OK);
-  near(a.between_ss, 16, 0);
-  near(a.within_ss, 4, 0);
-  near(a.f, 8, 0);
-  near(a.group[1].mean, 6, 0);
-  near(a.p_value, 0.105572809, 1e-9); /* 1 - sqrt(F / (F + 2)) on 1 and 2 */
+  assert_near(a.between_ss, 16, 0);
+  assert_near(a.within_ss, 4, 0);
+  assert_near(a.f, 8, 0);
+  assert_near(a.group[1].mean, 6, 0);
+  assert_near(a.p_value, 0.105572809, 1e-9); /* 1 - sqrt(F / (F + 2)) on 1 and 2 */
   fg_anova_oneway_free(&a);
   assert_int_equal(fg_anova_oneway_compute(&ctx, &table, "g", "z", &a), FG_ERR_DATA);
   fg_table_free(&table);
