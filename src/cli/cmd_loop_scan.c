@@ -65,7 +65,8 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Find what the scanner or the foil does that the geometry lacks: a wrong scale, a shear, a "
     "ripple or step of the carriage, an optical distortion, an oval or spiral foil, flattened or "
-    "skewed bumps, or a curve that is none of these; correct the dimensions.\v"
+    "skewed bumps, a strip that is thicker at one end, or a curve that is none of these; correct "
+    "the dimensions.\v"
     "One scan detects almost everything and tells almost nothing smooth apart: the report names "
     "the class and the range of every dimension over it. A second scan of the foil, turned by "
     "about "

@@ -14,8 +14,9 @@
 /* Chance of a claim where there is nothing. One look per effect, at every scan that is ever
  * measured. */
 #define CHANCE 0.001
-/* What half the width may be off at FG_FIELD_HALF_MM from the middle because the edge model errs
- * with the place: twice the largest of the shaded scans in reports/loop_width.md. */
+/* Standard uncertainty of half the width at FG_FIELD_HALF_MM from the middle because the edge model
+ * errs with the place. Tuned on the shaded renders of reports/loop_width.md (gamma, shading,
+ * flare), where it was 0.02 in the mean square and 0.04 at most. */
 #define PLACE_UM 0.04
 /* Rows this far off (dust, a burr) lose their weight. */
 #define OUTLIER_SIGMAS 5.0
