@@ -20,56 +20,7 @@
 #include "core/file.h"
 #include "core/sha256.h"
 #include "core/temporary.h"
-
-typedef struct folder {
-  char path[200], file[256];
-} folder;
-
-static int make_folder(void **state) {
-  folder *made = calloc(1, sizeof *made);
-  const char *parent = getenv("TMPDIR");
-  snprintf(made->path, sizeof made->path, "%s/foilgauge-test-XXXXXX",
-           parent && *parent ? parent : "/tmp");
-  if (!mkdtemp(made->path)) return -1;
-  snprintf(made->file, sizeof made->file, "%s/report.json", made->path);
-  *state = made;
-  return 0;
-}
-
-static int count_entries(const folder *where) {
-  int count = 0;
-  DIR *entries = opendir(where->path);
-  for (struct dirent *entry; entries && (entry = readdir(entries));)
-    count += strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..");
-  closedir(entries);
-  return count;
-}
-
-static int remove_folder(void **state) {
-  folder *made = *state;
-  DIR *entries = opendir(made->path);
-  for (struct dirent *entry; entries && (entry = readdir(entries));)
-    unlinkat(dirfd(entries), entry->d_name, 0);
-  closedir(entries);
-  int result = rmdir(made->path);
-  free(made);
-  return result;
-}
-
-static void write_file(const char *path, const char *content) {
-  fg_context ctx = {0};
-  fg_output output;
-  if (fg_output_open(&ctx, path, &output) != FG_OK) fail_msg("%s", ctx.message);
-  fputs(content, output.stream);
-  if (fg_output_commit(&ctx, &output) != FG_OK) fail_msg("%s", ctx.message);
-}
-
-static void assert_content(const char *path, const char *content) {
-  char *text = NULL;
-  assert_int_equal(fg_file_read_text(NULL, path, 1000, &text), FG_OK);
-  assert_string_equal(text, content);
-  free(text);
-}
+#include "support/folder.h"
 
 static void file_appears_only_when_whole(void **state) {
   folder *where = *state;
@@ -252,139 +203,6 @@ static void names_may_be_as_long_as_names_can_be(void **state) {
   assert_content(path, "long");
 }
 
-/* More than stdio buffers, so that a write fails before the commit. */
-static fg_status write_much(fg_context *ctx, const char *path) {
-  fg_output output;
-  FG_TRY(fg_output_open(ctx, path, &output));
-  for (int i = 0; i < 100000; i++)
-    fputs("0123456789", output.stream);
-  return fg_output_commit(ctx, &output);
-}
-
-static fg_status write_little(fg_context *ctx, const char *path) {
-  fg_output output;
-  FG_TRY(fg_output_open(ctx, path, &output));
-  fputs("0123456789", output.stream);
-  return fg_output_commit(ctx, &output);
-}
-
-static void full_device_is_an_error(void **state) {
-  (void)state;
-  if (access("/dev/full", W_OK) != 0) skip();
-  fg_context ctx = {0};
-  assert_int_equal(write_much(&ctx, "/dev/full"), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "/dev/full: cannot be written: No space left on device"));
-  assert_non_null(strstr(ctx.message, "free some space"));
-  assert_int_equal(write_little(&ctx, "/dev/full"), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "No space left"));
-}
-
-static void full_disk_leaves_the_old_file(void **state) {
-  folder *where = *state;
-  write_file(where->file, "old");
-  struct rlimit before, low;
-  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
-  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
-  low = (struct rlimit){.rlim_cur = 5, .rlim_max = before.rlim_max};
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
-  fg_context much = {0}, little = {0};
-  fg_status much_status = write_much(&much, where->file);
-  fg_status little_status = write_little(&little, where->file);
-  setrlimit(RLIMIT_FSIZE, &before);
-  signal(SIGXFSZ, handler);
-  assert_int_equal(much_status, FG_ERR_IO);
-  assert_int_equal(little_status, FG_ERR_IO);
-  assert_non_null(strstr(much.message, where->file));
-  assert_non_null(strstr(much.message, "too large"));
-  assert_non_null(strstr(little.message, "too large"));
-  assert_content(where->file, "old");
-  assert_int_equal(count_entries(where), 1);
-}
-
-/* Space that comes back before the commit does not bring back what was lost. */
-static void passing_shortage_is_an_error(void **state) {
-  folder *where = *state;
-  struct rlimit before, low;
-  fg_context ctx = {0};
-  fg_output output;
-  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_OK);
-  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
-  void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
-  low = (struct rlimit){.rlim_cur = 5, .rlim_max = before.rlim_max};
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
-  for (int i = 0; i < 100000; i++)
-    fputs("0123456789", output.stream);
-  setrlimit(RLIMIT_FSIZE, &before);
-  signal(SIGXFSZ, handler);
-  assert_int_equal(fg_output_commit(&ctx, &output), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, where->file));
-  assert_non_null(strstr(ctx.message, "too large"));
-  assert_int_equal(count_entries(where), 0);
-}
-
-static void unwritable_places_are_named(void **state) {
-  folder *where = *state;
-  char inside[300], missing[300];
-  snprintf(missing, sizeof missing, "%s/none/report.json", where->path);
-  snprintf(inside, sizeof inside, "%s/report.json", where->file);
-  write_file(where->file, "x");
-  const struct {
-    const char *path;
-    fg_status status;
-    const char *says;
-  } cases[] = {
-      {where->path, FG_ERR_IO, "folder"},
-      {missing, FG_ERR_IO, "create its folder"},
-      {inside, FG_ERR_IO, "is a file, not a folder"},
-      {"", FG_ERR_USAGE, "empty name"},
-  };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-    fg_context ctx = {0};
-    fg_output output;
-    assert_int_equal(fg_output_open(&ctx, cases[i].path, &output), cases[i].status);
-    if (!strstr(ctx.message, cases[i].says)) fail_msg("%s", ctx.message);
-    assert_null(output.stream);
-    fg_output_discard(&output);
-  }
-  assert_int_equal(count_entries(where), 1);
-}
-
-static void read_only_file_is_respected(void **state) {
-  folder *where = *state;
-  write_file(where->file, "keep");
-  chmod(where->file, 0444);
-  if (access(where->file, W_OK) == 0) skip(); /* root may write all */
-  fg_context ctx = {0};
-  fg_output output;
-  assert_int_equal(fg_output_open(&ctx, where->file, &output), FG_ERR_IO);
-  assert_non_null(strstr(ctx.message, "ermission"));
-  assert_content(where->file, "keep");
-}
-
-static void standard_output_stays_open(void **state) {
-  folder *where = *state;
-  fg_output output;
-  fflush(stdout);
-  int kept = dup(STDOUT_FILENO);
-  int descriptor = open(where->file, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  assert_int_equal(dup2(descriptor, STDOUT_FILENO), STDOUT_FILENO);
-  fg_status first = fg_output_open(NULL, "-", &output);
-  fputs("one", output.stream);
-  fg_status committed = fg_output_commit(NULL, &output);
-  fg_status second = fg_output_open(NULL, NULL, &output);
-  fputs("never", output.stream);
-  fg_output_discard(&output);
-  ssize_t put = write(STDOUT_FILENO, " two", 4);
-  dup2(kept, STDOUT_FILENO);
-  close(kept);
-  close(descriptor);
-  assert_int_equal(first, FG_OK);
-  assert_int_equal(committed, FG_OK);
-  assert_int_equal(second, FG_OK);
-  assert_int_equal(put, 4);
-  assert_content(where->file, "one two");
-}
-
 static void text_is_read_whole(void **state) {
   folder *where = *state;
   char *text = NULL, content[20001];
@@ -429,7 +247,6 @@ static void sha256_is_the_standards(void **state) {
 }
 
 int main(void) {
-#define WITH_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
   const struct CMUnitTest tests[] = {
       WITH_FOLDER(file_appears_only_when_whole),
       WITH_FOLDER(discard_leaves_nothing),
@@ -443,12 +260,6 @@ int main(void) {
       WITH_FOLDER(symbolic_link_stays_a_link),
       WITH_FOLDER(bare_name_goes_to_the_current_folder),
       WITH_FOLDER(names_may_be_as_long_as_names_can_be),
-      cmocka_unit_test(full_device_is_an_error),
-      WITH_FOLDER(full_disk_leaves_the_old_file),
-      WITH_FOLDER(passing_shortage_is_an_error),
-      WITH_FOLDER(unwritable_places_are_named),
-      WITH_FOLDER(read_only_file_is_respected),
-      WITH_FOLDER(standard_output_stays_open),
       WITH_FOLDER(text_is_read_whole),
       WITH_FOLDER(what_is_no_text_is_refused),
       WITH_FOLDER(sha256_is_the_standards),
