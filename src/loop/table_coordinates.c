@@ -8,7 +8,7 @@
 #include "core/select.h"
 #include "core/text.h"
 #include "loop/table_parts.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name) {
   for (size_t i = 0; i < problem->coordinates; i++)

@@ -7,7 +7,7 @@
 #include "core/text.h"
 #include "foilgauge/formula.h"
 #include "loop/table_parts.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 bool fg_loop_table_is_arc_length(const fg_loop_table_spec *spec) {
   return !strcmp(spec->model, "arc_length");

@@ -6,7 +6,7 @@
 #include "core/memory.h"
 #include "foilgauge/distribution.h"
 #include "lot/analysis.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 static bool is_listed(const fg_lot_analysis *analysis, const fg_quantity *row) {
   for (size_t i = 0; i < analysis->quantity_count; i++)

@@ -6,7 +6,7 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "lot/writers.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/words.h"
 
 static void put_text(FILE *out, const char *text) {

@@ -3,7 +3,7 @@
 
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/measure/measure_page_parts.h"
 
 enum { POLAR_MAX = 4, BEARING_ROWS_MAX = 200, UM_PER_MM = 1000 };

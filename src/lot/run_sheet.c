@@ -7,7 +7,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/report.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 /* A mean as it grows: independent parts add in squares, common ones as they are. */
 typedef struct mean {

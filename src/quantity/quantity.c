@@ -1,4 +1,4 @@
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 enum { CIRCLE = 3 }; /* rows of a circle's covariance: x, y, radius */
 

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 static void write_quantity(fg_json *json, const fg_quantity *quantity, const char *name,
                            const double *numbers) {

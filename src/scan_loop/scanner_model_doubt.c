@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
 

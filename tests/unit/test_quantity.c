@@ -8,7 +8,7 @@
 #include "foilgauge/report.h"
 #include "foilgauge/scan_loop.h"
 #include "lot/characteristics.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "support/made_lot.h"
 #include "support/measured_render.h"
 #include "support/synthetic_foil.h"

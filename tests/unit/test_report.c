@@ -10,7 +10,7 @@
 
 #include "core/json_writer.h"
 #include "report/words.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "support/synthetic_foil.h"
 
 typedef struct fixture {

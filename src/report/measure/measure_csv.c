@@ -5,7 +5,7 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/words.h"
 
 static void put_number(FILE *out, double value) {

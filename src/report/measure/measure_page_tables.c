@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/measure/measure_page_tables.h"
 
 enum { PAGE_COLUMNS_MAX = FG_QUANTITY_SHOWN_MAX + FG_TOLERANCES_MAX };

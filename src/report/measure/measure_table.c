@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/measure/scan_model_words.h"
 #include "report/words.h"
 

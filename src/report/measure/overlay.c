@@ -5,7 +5,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/drawing.h"
 #include "report/words.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 #include "report/quantity_json.h"
 #include "report/scan_loop/scan_loop_parts.h"
 

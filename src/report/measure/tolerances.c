@@ -7,7 +7,7 @@
 
 #include "core/memory.h"
 #include "foilgauge/report.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 const char *fg_verdict_word(fg_verdict verdict) {
   switch (verdict) {

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "quantity/quantity.h"
+#include "quantity/quantity_rows.h"
 
 enum { NAME_BYTES = 96 };
 

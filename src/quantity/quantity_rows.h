@@ -1,6 +1,6 @@
 /* What reports, lots, tables and models ask of the rows of quantities. */
-#ifndef FG_QUANTITY_QUANTITY_H
-#define FG_QUANTITY_QUANTITY_H
+#ifndef FG_QUANTITY_QUANTITY_ROWS_H
+#define FG_QUANTITY_QUANTITY_ROWS_H
 
 #include <stdbool.h>
 
