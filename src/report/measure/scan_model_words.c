@@ -7,8 +7,9 @@
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
 #include "quantity/quantity_rows.h"
+#include "report/measure/measure_page_parts.h"
 #include "report/quantity_json.h"
-#include "report/scan_loop/scan_loop_parts.h"
+#include "report/value_words.h"
 
 /* ---- the effects ---- */
 

@@ -4,14 +4,9 @@
 
 #include "foilgauge/scan_loop.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/value_words.h"
 
 /* ---- words (scan_loop_words.c) ---- */
-
-/* "0.0010003 ± 0.0000012": value and U = 2u, U with two digits. */
-void fg_scan_loop_value_words(double value, double u, char *words, size_t size);
-
-/* "0.0302 µm"; nm below a nanometre, so that figures beside each other have one unit. */
-void fg_scan_loop_length_words(double um, char *words, size_t size);
 
 /* "µm" for "um", "°" for "deg". */
 const char *fg_scan_loop_unit_words(const char *unit);
