@@ -28,7 +28,7 @@ E2
 
 knife=${FOILGAUGE_SHARED:-$root/../shared}/real/knife_scale_1200dpi.png
 if [ -e "$knife" ]; then
-  for form in classical sinusoidal; do expect 2 "no foil of the design" loop "$knife" --dpi 1200 --form $form; done
+  for form in classical sinusoidal; do expect 2 "no foil of the design" "$program" loop "$knife" --dpi 1200 --form $form; done
 fi
 
 exit $failed

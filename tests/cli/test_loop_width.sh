@@ -42,6 +42,8 @@ right thinner -4
 grep -q "the strip is thinner towards the free end" thinner.html || fail "the page does not say which end is thinner"
 [ "$(value thinner.model "' '.join(f['id'] for f in r['fields'])")" = scan.carriage_ripple ] || fail "model of thinner"
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
 # Clean, and rough: nothing is claimed, and what would have been seen is told.
 render_foil clean 5 60 "" 2400
 loop clean
@@ -49,7 +51,7 @@ loop clean
 [ "$(value clean.out "[c['verdict'] for c in r['rejected'] if c['id'] == '$id']")" = "['absent']" ] || fail "not absent"
 near "smallest change" "$(value clean.out "[c for c in r['rejected'] if c['id'] == '$id'][0]['smallest_amplitude']")" 1 0.6
 [ "$(value clean.out "'half_width' in r['before']")" = False ] || fail "widths without a claim"
-"$program" render "$root/samples/render/rough.json" -o rough.png || fail "render rough"
+"$renderer" render "$root/samples/render/rough.json" -o rough.png || fail "render rough"
 loop rough
 [[ "$(claims rough)" != *$id* ]] || fail "rough: $(claims rough)"
 
@@ -60,7 +62,7 @@ cat >discs.json <<SPEC
  "discs":[{"centre_mm":[7,7],"radius_mm":4},{"centre_mm":[20,7],"radius_mm":4.5},{"centre_mm":[13,19],"radius_mm":4}],
  "scanner":{"dpi":2400,"background":30,"contrast":175,"blur_px":1.3,"noise":1.2}}
 SPEC
-"$program" render discs.json -o discs.png || fail "render discs"
+"$renderer" render discs.json -o discs.png || fail "render discs"
 loop discs --form discs
 grep -q "$id" discs.out && fail "a disc's thickness is looked for"
 
