@@ -1,7 +1,6 @@
 /* Published experiments, to the digits that their authors print: Montgomery, Design and Analysis
- * of Experiments (etch, filtration, yield); Box, Hunter and Hunter, Statistics for Experimenters
- * (pilot plant, poison, woolen, penicillin); Lenth, Response-surface methods in R, JSS 32-7 (2009)
- * (ChemReact, helicopter); Montgomery, Peck and Vining (acetylene). */
+ * of Experiments; Box, Hunter and Hunter, Statistics for Experimenters (pilot plant, penicillin);
+ * Lenth, Response-surface methods in R, JSS 32-7 (2009); Montgomery, Peck and Vining (acetylene). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
