@@ -22,7 +22,7 @@ typedef struct picture {
   double *dn; /* 8-bit scale */
 } picture;
 
-static fg_status keep_row(fg_context *ctx, void *user, int64_t row, const void *pixels) {
+static inline fg_status keep_row(fg_context *ctx, void *user, int64_t row, const void *pixels) {
   (void)ctx;
   picture *p = user;
   for (int64_t x = 0; x < p->width; x++)
@@ -31,7 +31,7 @@ static fg_status keep_row(fg_context *ctx, void *user, int64_t row, const void *
   return FG_OK;
 }
 
-static picture draw(int64_t strip_rows, const char *json) {
+static inline picture draw(int64_t strip_rows, const char *json) {
   fg_context ctx = {0};
   picture p = {0};
   fg_status status = fg_render_parse(&ctx, "spec.json", json, &p.spec);
@@ -54,7 +54,7 @@ __attribute__((format(printf, 1, 2))) static picture draw_format(const char *for
   return draw(0, json);
 }
 
-static void drop(picture *p) {
+static inline void drop(picture *p) {
   fg_render_free(p->spec);
   free(p->dn);
 }
@@ -69,8 +69,31 @@ static void drop(picture *p) {
 /* All tests draw on 20 with a contrast of 200 in 16 bit without noise, unless they say so. */
 #define EXACT "\"bits\":16,\"background\":20,\"contrast\":200,\"noise\":0"
 
-static double coverage(const picture *p, int64_t x, int64_t y) {
+static inline double coverage(const picture *p, int64_t x, int64_t y) {
   return (p->dn[y * p->width + x] - 20) / 200;
+}
+
+static const double pixel = 25.4 / 4800;
+
+/* Centre of mass of a column, and its sum. */
+static inline void column(const picture *p, int64_t x, int64_t y0, int64_t y1, double *centre,
+                          double *sum) {
+  *centre = *sum = 0;
+  for (int64_t y = y0; y <= y1; y++) {
+    *sum += coverage(p, x, y);
+    *centre += coverage(p, x, y) * (double)y;
+  }
+  *centre /= *sum;
+}
+
+/* Column through the crown of bump `index` of an upright foil (direction -90°). */
+static inline double crown(const picture *p, size_t index, double *thickness_px) {
+  const fg_render_foil *foil = &p->truth->foils[0];
+  const fg_render_bump *bump = &foil->bumps[index];
+  double expected = bump->centre_px.y + bump->radius_mm / pixel, centre;
+  column(p, llround(bump->centre_px.x), llround(expected) - 40, llround(expected) + 40, &centre,
+         thickness_px);
+  return centre - expected;
 }
 
 #endif

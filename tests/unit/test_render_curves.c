@@ -1,8 +1,6 @@
 /* Free-form curves of scanner and part: what moves, by how much, and where. */
 #include "render_picture.h"
 
-static const double pixel = 25.4 / 4800;
-
 typedef struct field_case {
   const char *effect;
   double dx_um, dy_um; /* d at the disc's true centre (1.6, 1.2) mm */
@@ -45,7 +43,7 @@ static void curves_move_the_picture(void **state) {
 
 /* Column through the crown of the middle bump of an upright foil: where its midline is, and the
  * strip's thickness. */
-static double crown(const picture *p, double *thickness_px) {
+static double middle_crown(const picture *p, double *thickness_px) {
   const fg_render_bump *bump = &p->truth->foils[0].bumps[4];
   double expected = bump->centre_px.y + bump->radius_mm / pixel, centre = 0;
   int64_t x = llround(bump->centre_px.x);
@@ -61,7 +59,7 @@ static double crown_with(const char *effect) {
   picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"effects\":[%s],"
                           "\"scanner\":{" EXACT "}}",
                           effect);
-  double thickness, moved = crown(&p, &thickness);
+  double thickness, moved = middle_crown(&p, &thickness);
   drop(&p);
   return moved * pixel * 1e3;
 }
@@ -87,7 +85,7 @@ static void edges_move_apart(void **state) {
   picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":"
                       "\"free.edge.normal\",\"edges\":\"apart\",\"knots\":[[0,0],[90,4],[180,1]]}],"
                       "\"scanner\":{" EXACT "}}");
-  double thickness, moved = crown(&p, &thickness);
+  double thickness, moved = middle_crown(&p, &thickness);
   assert_close(moved, 0, 0.004);
   assert_close(thickness, 0.108 / pixel, 0.01);
   drop(&p);

@@ -3,8 +3,6 @@
 
 #include <gsl/gsl_cdf.h>
 
-static const double pixel = 25.4 / 4800;
-
 typedef struct moments {
   double area, x, y;
 } moments;
@@ -105,27 +103,6 @@ static void edges_are_where_they_should_be(void **state) {
     check_edge(angles[i], 2.4, "\"background\":220,\"contrast\":-200");
     check_edge(angles[i], 0.7, "\"background\":20,\"contrast\":200");
   }
-}
-
-/* Centre of mass of a column, and its sum. */
-static void column(const picture *p, int64_t x, int64_t y0, int64_t y1, double *centre,
-                   double *sum) {
-  *centre = *sum = 0;
-  for (int64_t y = y0; y <= y1; y++) {
-    *sum += coverage(p, x, y);
-    *centre += coverage(p, x, y) * (double)y;
-  }
-  *centre /= *sum;
-}
-
-/* Column through the crown of bump `index` of an upright foil (direction -90°). */
-static double crown(const picture *p, size_t index, double *thickness_px) {
-  const fg_render_foil *foil = &p->truth->foils[0];
-  const fg_render_bump *bump = &foil->bumps[index];
-  double expected = bump->centre_px.y + bump->radius_mm / pixel, centre;
-  column(p, llround(bump->centre_px.x), llround(expected) - 40, llround(expected) + 40, &centre,
-         thickness_px);
-  return centre - expected;
 }
 
 static void strip_is_where_truth_says(void **state) {
@@ -257,84 +234,6 @@ static void lost_rows_are_sharp(void **state) {
   drop(&b);
 }
 
-static double crown_with(const char *effect, const char *more, size_t bump) {
-  picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"foils\":[{"
-                          "\"design\":{\"bump_count\":3},"
-                          "\"overall_radius_mm\":20.95%s}],\"effects\":[%s],"
-                          "\"scanner\":{" EXACT "}}",
-                          more, effect);
-  double thickness, moved = crown(&p, bump, &thickness);
-  drop(&p);
-  return moved * pixel * 1e3;
-}
-
-/* At the crown of the middle bump, which stands upright: psi = 0, u = 0. Rows rise towards O. */
-static void part_effects_move_the_crown(void **state) {
-  (void)state;
-  assert_close(crown_with("{\"id\":\"part.bump_crown\",\"amplitude_um\":5}", "", 1), 5, 0.02);
-  /* The column is a pixel's: up to half of one beside the crown, where a skew is not level. */
-  assert_close(crown_with("{\"id\":\"part.bump_skew\",\"amplitude_um\":5}", "", 1), 0, 0.03);
-  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5}", "", 1), -5, 0.02);
-  assert_close(crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"phase_deg\":90}", "", 1),
-               5, 0.02);
-  assert_close(
-      crown_with("{\"id\":\"part.ovality\",\"amplitude_um\":5,\"along\":\"normal\"}", "", 1), -5,
-      0.02);
-  assert_close(crown_with("{\"id\":\"part.spiral\",\"amplitude_um\":5}", "", 1), 0, 0.02);
-}
-
-/* A spec whose effect has an amplitude of 0, and of 10 um. */
-static void parse_without_and_with(fg_context *ctx, const char *format, fg_render_spec *specs[2]) {
-  char json[512];
-  for (int i = 0; i < 2; i++) {
-    snprintf(json, sizeof json, format, i ? 10 : 0);
-    assert_int_equal(fg_render_parse(ctx, "spec.json", json, &specs[i]), FG_OK);
-  }
-}
-
-/* Along the normal every place of the midline moves at right angles to it, on a flank too. */
-static void normal_ovality_moves_at_right_angles(void **state) {
-  (void)state;
-  fg_context ctx = {0};
-  const char *format =
-      "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":null,\"centre_mm\":[20,30]}],"
-      "\"effects\":[{\"id\":\"part.ovality\",\"amplitude_um\":%d,"
-      "\"along\":\"normal\"}]}";
-  fg_render_spec *specs[2];
-  parse_without_and_with(&ctx, format, specs);
-  for (double s = 2; s < 40; s += 0.37) {
-    fg_point at, on, moved;
-    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s, &at), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, specs[0], 0, s + 1e-4, &on), FG_OK);
-    assert_int_equal(fg_render_midline(&ctx, specs[1], 0, s, &moved), FG_OK);
-    double tx = on.x - at.x, ty = on.y - at.y, dx = moved.x - at.x, dy = moved.y - at.y;
-    double along = (dx * tx + dy * ty) / hypot(tx, ty);
-    assert_close(along * pixel * 1e3, 0, 0.01);
-    assert_true(hypot(dx, dy) * pixel * 1e3 < 10.01);
-  }
-  for (int i = 0; i < 2; i++)
-    fg_render_free(specs[i]);
-}
-
-static void spiral_lies_beside_the_plain_foil(void **state) {
-  (void)state;
-  fg_context ctx = {0};
-  const char *format = "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"lip\":null,"
-                       "\"first_land_mm\":1,\"last_land_mm\":1,\"centre_mm\":[20,30]}],\"effects\":"
-                       "[{\"id\":\"part.spiral\","
-                       "\"amplitude_um\":%d}]}";
-  fg_render_spec *specs[2];
-  parse_without_and_with(&ctx, format, specs);
-  fg_point a, b;
-  assert_int_equal(fg_render_midline(&ctx, specs[0], 0, 0, &a), FG_OK);
-  assert_int_equal(fg_render_midline(&ctx, specs[1], 0, 0, &b), FG_OK);
-  /* The lip's end of the foil has u = -1: it moves inwards by the amplitude. */
-  double ox = 20 / pixel, oy = 30 / pixel;
-  assert_close((hypot(b.x - ox, b.y - oy) - hypot(a.x - ox, a.y - oy)) * pixel * 1e3, -10, 0.2);
-  for (int i = 0; i < 2; i++)
-    fg_render_free(specs[i]);
-}
-
 /* The lip stands on the land at 90 degrees, outwards or inwards. */
 static void lip_stands_on_the_land(void **state) {
   (void)state;
@@ -357,19 +256,6 @@ static void lip_stands_on_the_land(void **state) {
     assert_close(across, -0.4, 1e-9); /* beyond the land's end, away from bump 1 */
     drop(&p);
   }
-}
-
-static void lip_decay_widens_the_first_bumps(void **state) {
-  (void)state;
-  picture p = draw(0, "{\"schema\":\"foilgauge/render/1\",\"effects\":[{\"id\":\"part.lip_decay\","
-                      "\"amplitude_rel\":0.06}],\"scanner\":{\"dpi\":1200}}");
-  const fg_render_bump *bumps = p.truth->foils[0].bumps;
-  for (int i = 0; i < 9; i++) {
-    double radius = 3.32 * (1 + 0.06 * exp(-i / 2.0));
-    assert_close(bumps[i].radius_mm, radius, 1e-12);
-    assert_close(bumps[i].bump_angle_deg * radius, 63.15 * 3.32, 1e-9);
-  }
-  drop(&p);
 }
 
 /* Two foils share what they have in common: a bed places them apart. */
@@ -398,11 +284,7 @@ int main(void) {
       cmocka_unit_test(unequal_resolution),
       cmocka_unit_test(fields_move_the_picture),
       cmocka_unit_test(lost_rows_are_sharp),
-      cmocka_unit_test(part_effects_move_the_crown),
-      cmocka_unit_test(normal_ovality_moves_at_right_angles),
-      cmocka_unit_test(spiral_lies_beside_the_plain_foil),
       cmocka_unit_test(lip_stands_on_the_land),
-      cmocka_unit_test(lip_decay_widens_the_first_bumps),
       cmocka_unit_test(foils_of_a_bed_lie_apart),
   };
   return cmocka_run_group_tests_name("render geometry", tests, NULL, NULL);
