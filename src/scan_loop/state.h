@@ -28,7 +28,7 @@ struct fg_scan_loop {
   fg_scan_loop_error error_before, error_after;
   double noise_floor_um;
   bool tied;
-  bool scale_tied;                        /* scan_scale.c */
+  bool scale_tied;                        /* scale_doubt.c */
   fg_effect_set tie[FG_EXPLANATIONS_MAX]; /* the other explanations, fitted */
   size_t tie_count;
   fg_scan_loop_range *

@@ -1,0 +1,117 @@
+"""How well an effect can be seen at all: generalised least squares with its form and the noise's
+covariance known, every number of the geometry and the pose of each scan left free."""
+
+import math
+
+import numpy as np
+
+from loop_foil import Midline, natural_spline
+
+MM_PER_PX = 25.4 / 4800
+STEP_MM = 4 * MM_PER_PX  # rows as the loop has them
+
+
+def scanner_shift_um(effect, at):
+    """What an effect of unit size moves places (mm), um along x and y."""
+    d = np.zeros_like(at)
+    x, y = at.T
+    name = effect["id"]
+    if name == "scan.scale_y":
+        d[:, 1] = 1000 * effect["value"] * y
+    elif name == "scan.shear":
+        d[:, 0] = 1000 * effect["value"] * y
+    elif name == "scan.carriage_ripple":
+        wave = 2 * np.pi * y / effect["period_mm"] + np.radians(effect["phase_deg"])
+        d[:, 1] = effect["amplitude_um"] * np.sin(wave)
+    elif name == "scan.row_step":
+        d[:, 1] = effect["amplitude_um"] * (y > effect["y_mm"])
+    elif name == "scan.column_step":
+        d[:, 0] = effect["amplitude_um"] * (x > effect["x_mm"])
+    elif name == "scan.carriage_start":
+        d[:, 1] = effect["amplitude_um"] * np.exp(-y / effect["length_mm"])
+    elif name in ("free.scan.x", "free.scan.y"):
+        along = x if name.endswith("x") else y
+        d[:, 0 if effect["moves"] == "x" else 1] = natural_spline(effect["knots"], along)
+    elif name.startswith("scan."):
+        axis = 1 if name == "scan.carriage_quadratic" else 0
+        power = 3 if name.endswith("cubic") else 2
+        middle = effect.get("centre_mm", 20.0)
+        d[:, axis] = effect["amplitude_um"] * ((at[:, axis] - middle) / effect["half_width_mm"]) ** power
+    return d
+
+
+def geometry_columns(midline, normal, first_scan):
+    """Derivatives of the residual by R0, each bump's X, beta and R, the pose, and from the second scan on
+    the turn. Returns (part's columns, scan's own columns)."""
+    n, part = len(midline.xy), [np.where(midline.bump < 0, 1.0, 0.0)]
+    for i in range(midline.count):
+        on = midline.bump == i
+        axis = np.array([math.cos(midline.axis[i]), math.sin(midline.axis[i])])
+        across = np.array([-axis[1], axis[0]])
+        part.append(np.where(on, 1.0, 0.0))
+        part.append(np.where(on, midline.normal @ axis, 0.0))
+        part.append(np.where(on, midline.normal @ across, 0.0))
+    turned = np.stack([-midline.xy[:, 1], midline.xy[:, 0]], axis=1)
+    own = [normal[:, 0], normal[:, 1]]
+    if not first_scan:
+        own.append(np.sum(turned * midline.normal, axis=1))
+    return np.array(part).T, np.array(own).T.reshape(n, -1)
+
+
+def whiten(midline, scanner, columns):
+    """Columns through the inverse root of the covariance of a row of the midline, arc by arc."""
+    rough = scanner.get("rough", {})
+    smooth = math.hypot(rough.get("edge_common_um", 0), rough.get("edge_roughness_um", 0) / math.sqrt(2))
+    length = rough.get("correlation_um", 50) / 1000
+    share = scanner.get("noise_correlation", 0)
+    edge = scanner["noise"] / abs(scanner["contrast"]) * math.sqrt(2 * scanner["blur_px"] * math.sqrt(math.pi))
+    white = edge * math.sqrt((1 + share) / (1 - share)) / math.sqrt(2 * 4) * MM_PER_PX * 1000
+    out = np.empty_like(columns)
+    for piece in midline.pieces:
+        along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(midline.xy[piece], axis=0).T))])
+        apart = along[:, None] - along[None]
+        covariance = smooth**2 * np.exp(-((apart / length) ** 2)) + (white**2 + 1e-6) * np.eye(len(along))
+        out[piece] = np.linalg.solve(np.linalg.cholesky(covariance), columns[piece])
+    return out
+
+
+def pieces_of(midline):
+    """Arcs and lands: where the next row is far away, or of another bump, a new one begins."""
+    far = np.hypot(*np.diff(midline.xy, axis=0).T) > 3 * STEP_MM
+    cut = np.flatnonzero(far | (np.diff(midline.bump) != 0)) + 1
+    return np.split(np.arange(len(midline.bump)), cut)
+
+
+def standard_errors(case, effect):
+    """The effect as it stands in the case, in standard errors of its size."""
+    parts, blocks, scans = {}, [], 0
+    for k, spec in enumerate(case["specs"]):
+        for f, foil in enumerate(spec["foils"]):
+            midline = Midline(foil, case["design"], STEP_MM)
+            midline.pieces = pieces_of(midline)
+            normal = midline.to_scan(midline.normal)
+            at = midline.to_scan(midline.xy) + np.array(foil["centre_mm"])
+            key = f if case["same_foil"] else (k, f)
+            first = key not in parts
+            parts.setdefault(key, len(parts))
+            shape = np.sum(scanner_shift_um(effect, at) * normal, axis=1) + midline.part_shift_um([effect])
+            if effect["id"] == "free.edge.normal":  # both edges, which face opposite ways
+                degrees = np.degrees(np.arctan2(normal[:, 1], normal[:, 0]))
+                faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]
+                shape = (faces[0] - faces[1]) / 2
+            part, own = geometry_columns(midline, normal, first)
+            white = whiten(midline, spec["scanner"], np.column_stack([shape, part, own]))
+            blocks.append((parts[key], part.shape[1], white))
+            scans += own.shape[1]
+    width = max(p for _, p, _ in blocks)
+    geometry = np.zeros((sum(len(w) for *_, w in blocks), width * len(parts) + scans))
+    signal, row, column = np.empty(len(geometry)), 0, width * len(parts)
+    for part, count, white in blocks:
+        rows = slice(row, row + len(white))
+        signal[rows] = white[:, 0]
+        geometry[rows, part * width : part * width + count] = white[:, 1 : 1 + count]
+        own = white.shape[1] - 1 - count
+        geometry[rows, column : column + own] = white[:, 1 + count :]
+        row, column = row + len(white), column + own
+    left = signal - geometry @ np.linalg.lstsq(geometry, signal, rcond=None)[0]
+    return float(np.linalg.norm(left))
