@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/distribution.h"
 #include "lot/analysis.h"
 #include "stats/cluster_line.h"
@@ -93,11 +94,6 @@ static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis,
   return status;
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* The values that `share` of all lie below and above. */
 static fg_status tails_of(fg_context *ctx, const double *values, size_t count, double share,
                           double limits[2]) {
@@ -105,7 +101,7 @@ static fg_status tails_of(fg_context *ctx, const double *values, size_t count, d
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *values, &block));
   double *sorted = block;
   memcpy(sorted, values, count * sizeof *values);
-  qsort(sorted, count, sizeof *sorted, compare_doubles);
+  fg_sort(sorted, count);
   limits[0] = fg_sample_quantile(sorted, count, share);
   limits[1] = fg_sample_quantile(sorted, count, 1 - share);
   free(sorted);

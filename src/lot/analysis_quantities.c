@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/distribution.h"
 #include "lot/analysis.h"
 #include "quantity/quantity_rows.h"
@@ -75,11 +76,6 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
   return FG_OK;
 }
 
-static int compare_doubles(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static fg_status describe(fg_context *ctx, const fg_lot_settings *settings,
                           fg_lot_quantity *quantity) {
   fg_lot_spread spread;
@@ -95,7 +91,7 @@ static fg_status describe(fg_context *ctx, const fg_lot_settings *settings,
   FG_TRY(fg_memory_allocate(ctx, quantity->count, sizeof(double), &block));
   double *sorted = block;
   memcpy(sorted, quantity->value, quantity->count * sizeof *sorted);
-  qsort(sorted, quantity->count, sizeof *sorted, compare_doubles);
+  fg_sort(sorted, quantity->count);
   quantity->median = fg_sample_quantile(sorted, quantity->count, 0.5);
   free(sorted);
   if (!(quantity->sd > 0)) return FG_OK;

@@ -7,6 +7,9 @@
 #include "field/field.h"
 #include "foilgauge/scan_result.h"
 
+/* What takes this share of the residual sum alone comes near a curve. */
+#define FG_SCAN_LOOP_NEAR_SHARE 0.3
+
 struct fg_scan_loop;
 
 /* The numbers of an effect; returns how many. */

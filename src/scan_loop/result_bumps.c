@@ -10,9 +10,6 @@
 _Static_assert((int)FG_SCAN_RESULT_RESPONSES == (int)FG_SCAN_LOOP_BUMP_RESPONSES,
                "every response has its place");
 
-/* What takes this share of the residual sum comes near a curve. */
-#define NEAR_SHARE 0.3
-
 typedef struct source {
   const fg_scan_loop_bumps *bumps;
   const fg_scan_loop_bump_level *level;
@@ -143,7 +140,7 @@ static fg_status put_curve(fg_context *ctx, const source *from, fg_scan_result_r
   out->curve_p = curve->p_value;
   FG_TRY(fg_memory_allocate(ctx, result->rejects, sizeof *out->nearest, (void **)&out->nearest));
   for (size_t k = 0; k < result->rejects; k++)
-    if (result->rejected[k].would_explain > NEAR_SHARE)
+    if (result->rejected[k].would_explain > FG_SCAN_LOOP_NEAR_SHARE)
       out->nearest[out->nearests++] = result->rejected[k].candidate.effect->id;
   return FG_OK;
 }

@@ -10,8 +10,6 @@
 
 /* Below this share of an effect beside the geometry no data of this kind could show it. */
 #define ABSORBED_SHARE 1e-4
-/* What takes this share of the residual sum alone comes near a curve. */
-#define NEAR_SHARE 0.3
 
 _Static_assert((int)FG_SCAN_RESULT_CLAIMS == (int)FG_EFFECT_SET_MAX + (int)FG_WIDTH_EFFECTS_MAX,
                "every effect has its place");
@@ -186,7 +184,8 @@ static fg_status put_claims(fg_context *ctx, const fg_scan_loop *loop, fg_scan_r
   const fg_explanations *explanations = &loop->explanations;
   for (size_t e = 0; e < explanations->candidate_count; e++) {
     const fg_effect *kind = explanations->candidates[e].kind;
-    if (!fg_effect_is_free(kind) && explanations->alone[e] > NEAR_SHARE && !kind->second)
+    if (!fg_effect_is_free(kind) && explanations->alone[e] > FG_SCAN_LOOP_NEAR_SHARE &&
+        !kind->second)
       result->nearest[result->nearests++] = kind->id;
   }
   return FG_OK;
