@@ -1,6 +1,6 @@
 /* The forward model: foils and a scanner in, a scan and its truth out.
  *
- * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds two to start from).
+ * A spec is JSON with "schema": "foilgauge/render/1" (samples/render/ holds specs to start from).
  * What is drawn is exact: the strip's midline is made of lines and arcs, a sample of the picture is
  * the blurred strip at its signed distance, and the picture is low-passed in two dimensions, so
  * that what blur does to a curved edge is really there. The same spec and seed give the same bytes,
@@ -31,14 +31,26 @@
  *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
  *   scanner:
  *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
- *     gamma [1], blur_px [1.2; at least 0.4], noise [1 DN], noise_correlation [0] to the next
- *     pixel along x and y, clip_white, shading {x, y, quadratic}: relative, at the picture's edges
+ *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm], noise
+ *     [1 DN], noise_correlation [0] to the next pixel along x and y, clip_white, shading {x, y,
+ *     quadratic}: relative, at the picture's edges
  *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
+ *     rows_lost[] {y_mm, count}: behind that place of the picture `count` rows of the glass were
+ *       never read; negative: the carriage stood still, and the row before it is seen as often
+ *       again (its noise is new). Whole rows, sharp; the truth has it as scan.row_step of count
+ *       × the rows' pitch, half a row before the first row beyond it
+ *     chip_seams[] {x_mm, shift_um, shift_y_um [0]}: what lies behind a seam between two chips of a
+ *       contact image sensor is seen at true = nominal + shift; seams add up from left to right.
+ *       The truth has each as scan.column_step, with amplitude_y_um where it shifts along y
  *     rough:
  *       one_sided_blur_px [0]: blur added (in squares) to edges that go from bright to dark along
- *         rising rows, in proportion to the edge normal's share along the rows' way
- *       edge_roughness_um, edge_common_um [0]: sd per edge, and of both together, with the
- *         autocorrelation exp(-(d / correlation_um)²) along the strip [50]
+ *         the carriage's way, in proportion to the edge normal's share along it; one_sided_way
+ *         ["+y"] or "-y": a scan of the same part turned by 180° has the other
+ *       motion_blur_px [0]: length along y over which a row is read while the carriage moves
+ *       edge_roughness_um, edge_common_um [0]: sd per edge, and of both together, along the strip
+ *         with the correlation_um [50; 0.2 to 1e5] L and the correlation_form "gaussian",
+ *         exp(-(d / L)²), or "exponential", exp(-d / L) ["gaussian"]. The sd is that of the edge
+ *         itself: blur takes its share of what is finer than it. A disc's edge has both sds
  *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
  *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
  *         edges that face the direction, decaying over the length, times the cosine to it

@@ -56,8 +56,8 @@ int fg_cmd_render(int argc, char **argv) {
       .parser = parse_option,
       .args_doc = "SPEC.json",
       .doc = "Renders a scan of foils as SPEC.json describes them, and the truth about it.\v"
-             "samples/render/clean.json and rough.json are specs to start from. The same spec "
-             "gives the same bytes."};
+             "samples/render/clean.json, rough.json and harsh.json are specs to start from; "
+             "include/foilgauge/render.h lists their members. The same spec gives the same bytes."};
   render_arguments arguments = {0};
   fg_context ctx = {0};
   argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);

@@ -25,7 +25,7 @@ static fg_point nominal_px(const fg_sampler *sampler, double x, double y) {
 /* In pixels, with room for the step between marks and for jumps of a field. */
 static double reach_px(const fg_sampler *sampler, double half_width_mm, double reach_mm) {
   double pixel = fmin(sampler->pixel_mm[0], sampler->pixel_mm[1]);
-  double field = 0;
+  double field = fg_jumps_reach_mm(&sampler->spec->effects.jumps);
   for (size_t i = 0; i < sampler->spec->effects.count; i++)
     if (sampler->spec->effects.effects[i].row->target == FG_RENDER_EFFECT_STEP)
       field += 1e-3 * fabs(sampler->spec->effects.effects[i].p[0]);

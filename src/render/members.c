@@ -107,3 +107,17 @@ fg_status fg_members_read(const fg_place *place, const cJSON *object, const fg_m
   }
   return FG_OK;
 }
+
+fg_status fg_member_choice(const fg_place *place, const cJSON *object, const char *name,
+                           const char *const words[2], int *choice) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
+  if (!item) return FG_OK;
+  for (int i = 0; i < 2; i++)
+    if (cJSON_IsString(item) && !strcmp(item->valuestring, words[i])) {
+      *choice = i;
+      return FG_OK;
+    }
+  char what[64];
+  snprintf(what, sizeof what, "must be \"%s\" or \"%s\"", words[0], words[1]);
+  return fg_member_fail(place, name, item, what);
+}

@@ -51,4 +51,8 @@ fg_status fg_member_number(const fg_place *place, const char *name, const cJSON 
 fg_status fg_member_numbers(const fg_place *place, const char *name, const cJSON *item, double low,
                             double high, int least, int most, double *values, int *count);
 
+/* One of two words, as its number; absent: *choice stays. */
+fg_status fg_member_choice(const fg_place *place, const cJSON *object, const char *name,
+                           const char *const words[2], int *choice);
+
 #endif

@@ -1,7 +1,11 @@
 /* The scanner of a spec. */
 #include <math.h>
 
+#include <stdio.h>
+
 #include "render/parse.h"
+
+static const double LEAST_BLUR_PX = 0.4; /* sampling at three per pixel smooths with 0.3 */
 
 static fg_status read_litter(const fg_place *place, const cJSON *parent, const char *name,
                              fg_litter *litter) {
@@ -29,9 +33,12 @@ static fg_status read_part(const fg_place *place, const cJSON *parent, const cha
 static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanner *scanner) {
   static const fg_member table[] = {
       FG_SPEC_NUMBER(fg_scanner, one_sided_blur_px, 0, 10),
+      FG_SPEC_NUMBER(fg_scanner, motion_blur_px, 0, 20),
       FG_SPEC_NUMBER(fg_scanner, edge_roughness_um, 0, 20),
       FG_SPEC_NUMBER(fg_scanner, edge_common_um, 0, 20),
-      {"correlation_um", FG_MEMBER_NUMBER, offsetof(fg_scanner, edge_correlation_um), 5, 5000},
+      {"correlation_um", FG_MEMBER_NUMBER, offsetof(fg_scanner, edge_correlation_um), 0.2, 1e5},
+      FG_SPEC_OTHER("one_sided_way"),
+      FG_SPEC_OTHER("correlation_form"),
       FG_SPEC_OTHER("halo"),
       FG_SPEC_OTHER("side_wall"),
       FG_SPEC_OTHER("jpeg"),
@@ -54,21 +61,44 @@ static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanne
       FG_SPEC_END,
   };
   if (!rough) return FG_OK;
+  int against = 0, exponential = 0;
   FG_TRY(fg_members_read(place, rough, table, scanner));
+  FG_TRY(
+      fg_member_choice(place, rough, "one_sided_way", (const char *const[]){"+y", "-y"}, &against));
+  FG_TRY(fg_member_choice(place, rough, "correlation_form",
+                          (const char *const[]){"gaussian", "exponential"}, &exponential));
+  scanner->one_sided_way = against ? -1 : 1;
+  scanner->edge_exponential = exponential == 1;
   FG_TRY(read_part(place, rough, "halo", halo, scanner));
   FG_TRY(read_part(place, rough, "side_wall", wall, scanner));
   return read_part(place, rough, "jpeg", jpeg, scanner);
 }
 
 /* One number for both axes, or [x, y]. */
-static fg_status read_dpi(const fg_place *place, const cJSON *dpi, double *out) {
-  if (!dpi) return FG_OK;
-  if (cJSON_IsArray(dpi)) {
+static fg_status read_axes(const fg_place *place, const cJSON *scanner, const char *name,
+                           double low, double high, double out[2]) {
+  const cJSON *item = fg_spec_member(scanner, name);
+  if (!item) return FG_OK;
+  if (cJSON_IsArray(item)) {
     int count;
-    return fg_member_numbers(place, "dpi", dpi, 50, 20000, 2, 2, out, &count);
+    return fg_member_numbers(place, name, item, low, high, 2, 2, out, &count);
   }
-  FG_TRY(fg_member_number(place, "dpi", dpi, 50, 20000, &out[0]));
+  FG_TRY(fg_member_number(place, name, item, low, high, &out[0]));
   out[1] = out[0];
+  return FG_OK;
+}
+
+/* Samples are smoothed alike along both axes, by what the coarser one needs. */
+static fg_status check_blur(const fg_place *place, const cJSON *object, const fg_scanner *scanner) {
+  double coarsest = fmin(scanner->dpi[0], scanner->dpi[1]);
+  for (int axis = 0; axis < 2; axis++) {
+    double least = LEAST_BLUR_PX * scanner->dpi[axis] / coarsest;
+    char what[96];
+    snprintf(what, sizeof what, "must be at least %g along %s at these resolutions", least,
+             axis ? "y" : "x");
+    if (scanner->blur_px[axis] < least)
+      return fg_member_fail(place, "blur_px", fg_spec_member(object, "blur_px"), what);
+  }
   return FG_OK;
 }
 
@@ -92,7 +122,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_NUMBER(fg_scanner, background, 0, 255),
       FG_SPEC_NUMBER(fg_scanner, contrast, -255, 255),
       FG_SPEC_NUMBER(fg_scanner, gamma, 0.2, 5),
-      FG_SPEC_NUMBER(fg_scanner, blur_px, 0.4, 10),
+      FG_SPEC_OTHER("blur_px"),
       FG_SPEC_NUMBER(fg_scanner, noise, 0, 100),
       FG_SPEC_NUMBER(fg_scanner, noise_correlation, 0, 0.95),
       FG_SPEC_NUMBER(fg_scanner, clip_white, 1, 255),
@@ -102,6 +132,8 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_OTHER("specks"),
       FG_SPEC_OTHER("scratches"),
       FG_SPEC_OTHER("rough"),
+      FG_SPEC_OTHER("rows_lost"),
+      FG_SPEC_OTHER("chip_seams"),
       FG_SPEC_END,
   };
   static const fg_member shading[] = {
@@ -113,7 +145,10 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   };
   if (!object) return FG_OK;
   FG_TRY(fg_members_read(place, object, table, scanner));
-  FG_TRY(read_dpi(place, fg_spec_member(object, "dpi"), scanner->dpi));
+  FG_TRY(read_axes(place, object, "dpi", 50, 20000, scanner->dpi));
+  FG_TRY(read_axes(place, object, "blur_px", LEAST_BLUR_PX, 10, scanner->blur_px));
+  FG_TRY(check_blur(place, object, scanner));
+  FG_TRY(fg_jumps_read(place, object, &scanner->jumps));
   FG_TRY(read_part(place, object, "shading", shading, scanner));
   FG_TRY(read_litter(place, object, "dust", &scanner->dust));
   FG_TRY(read_litter(place, object, "specks", &scanner->specks));
@@ -130,7 +165,8 @@ fg_scanner fg_spec_default_scanner(void) {
       .background = 30,
       .contrast = 175,
       .gamma = 1,
-      .blur_px = 1.2,
+      .blur_px = {1.2, 1.2},
+      .one_sided_way = 1,
       .noise = 1,
       .clip_white = NAN,
       .dust = {.radius_px = 4, .contrast = 60},

@@ -13,7 +13,8 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
     sampler->pixel_mm[axis] = spec->pixel_mm[axis];
   sampler->sd_mm = 0.3 * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
   sampler->has_field = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_SCANNER) ||
-                       fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_STEP);
+                       fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_STEP) ||
+                       spec->effects.jumps.count > 0;
   sampler->has_part = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_PART);
   sampler->has_normal = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_NORMAL);
   sampler->has_width = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_WIDTH);
@@ -96,21 +97,25 @@ static double along(const cross_section *at) {
   return segment->length_mm * (0.5 + turned / segment->sweep);
 }
 
-/* Catmull-Rom between the drawn values. */
 static double roughness(const fg_drawn_foil *drawn, int edge, double s_mm) {
   double place = s_mm / drawn->roughness_step_mm + 1;
   double last = (double)drawn->roughness_count - 3;
   place = place < 1 ? 1 : place > last ? last : place;
-  size_t i = (size_t)place;
-  double t = place - (double)i;
-  const float *v = drawn->roughness[edge] + i - 1;
-  double a = (double)v[0], b = (double)v[1], c = (double)v[2], d = (double)v[3];
-  return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+  return fg_roughness_at(drawn->roughness[edge], place);
 }
 
-/* Bright-to-dark edges, along the carriage's way (rows rising), are blurred more. (mx, my) points
+/* A disc's values have one before the first and three behind the last, of the circle that closes.
+ */
+static double disc_roughness(const fg_shape *shape, double dx, double dy) {
+  double turn = atan2(dy, dx) / (2 * 3.14159265358979323846);
+  return fg_roughness_at(shape->roughness,
+                         1 + (turn - floor(turn)) * (double)shape->roughness_count);
+}
+
+/* Bright-to-dark edges, along the carriage's way, are blurred more. (mx, my) points
  * out of the bright-or-dark thing; `bright` is +1 when the thing is brighter than around it. */
 static double edge_sd(const fg_sampler *sampler, double sd, double my, double bright) {
+  my *= sampler->spec->scanner.one_sided_way;
   if (sampler->one_sided_mm <= 0 || my * bright <= 0) return sd;
   double extra = sampler->one_sided_mm * my;
   return sqrt(sd * sd + extra * extra);
@@ -234,6 +239,8 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
   if (shape->lobes &&
       fabs(edge) < fabs(shape->lobe_mm) + phi_limit * hypot(sd, sampler->one_sided_mm))
     edge -= shape->lobe_mm * cos(shape->lobes * (atan2(dy, dx) - shape->lobe_phase_rad));
+  if (shape->roughness && fabs(edge) < sampler->edge_reach_mm + phi_limit * sd)
+    edge -= disc_roughness(shape, dx, dy);
   if (!shape->adds && r > 0 && sampler->has_edge) {
     /* A hole's edge looks inwards: its normal, and what moves it, turn round. */
     double out = shape->value > 0.5 ? 1 : -1, shift[2];

@@ -155,7 +155,7 @@ static fg_status build_foil(const fg_place *place, fg_render_spec *spec,
   box_add(all, b.low[0], b.low[1], 0);
   box_add(all, b.high[0], b.high[1], 0);
   finish_foil_truth(spec, drawn, &scene->foils[foil]);
-  return fg_roughness_build(place->ctx, &spec->scanner, spec->seed, foil, drawn);
+  return fg_roughness_build(place->ctx, spec, foil, drawn);
 }
 
 static fg_status build_foils(const fg_place *place, fg_render_spec *spec, box *all) {
@@ -176,7 +176,7 @@ static fg_status build_foils(const fg_place *place, fg_render_spec *spec, box *a
   return FG_OK;
 }
 
-static void build_discs(fg_render_spec *spec, box *all) {
+static fg_status build_discs(const fg_place *place, fg_render_spec *spec, box *all) {
   fg_scene *scene = &spec->scene;
   for (size_t i = 0; i < spec->disc_request_count; i++) {
     const fg_disc_request *request = &spec->disc_requests[i];
@@ -191,12 +191,14 @@ static void build_discs(fg_render_spec *spec, box *all) {
                    .lobes = request->lobes,
                    .lobe_mm = 1e-3 * request->lobe_um,
                    .lobe_phase_rad = request->lobe_phase_deg * pi / 180};
+    FG_TRY(fg_roughness_build_disc(place->ctx, spec, i, &scene->shapes[scene->shape_count - 1]));
     scene->discs[scene->disc_count++] =
         (fg_render_disc){.centre_px = {x / spec->pixel_mm[0], y / spec->pixel_mm[1]},
                          .radius_mm = request->radius_mm,
                          .hole = request->hole};
     box_add(all, x, y, request->radius_mm);
   }
+  return FG_OK;
 }
 
 /* Sizes vary from half to one and a half, contrast from half to full. */
@@ -232,6 +234,7 @@ static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box
   double *sizes[2] = {&spec->width_px, &spec->height_px};
   for (int axis = 0; axis < 2; axis++) {
     double need = all->high[axis] / spec->pixel_mm[axis] + spec->margin_px;
+    if (axis == 1) need += fg_jumps_rows_more(&spec->scanner.jumps);
     if (isnan(*sizes[axis])) *sizes[axis] = ceil(need);
     if (!(*sizes[axis] >= 16 && *sizes[axis] <= 200000))
       return fg_fail(place->ctx, FG_ERR_DATA,
@@ -257,13 +260,15 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
                             (void **)&scene->shapes));
   FG_TRY(fg_memory_allocate(place->ctx, spec->disc_request_count, sizeof *scene->discs,
                             (void **)&scene->discs));
-  build_discs(spec, &all);
+  FG_TRY(build_discs(place, spec, &all));
   FG_TRY(fit_size(place, spec, &all));
   scatter_litter(spec, &scanner->dust, FG_STREAM_DUST);
   scatter_litter(spec, &scanner->specks, FG_STREAM_SPECKS);
   scatter_litter(spec, &scanner->scratches, FG_STREAM_SCRATCHES);
-  fg_render_effects_resolve(&spec->effects, spec->width_px * spec->pixel_mm[0],
-                            spec->height_px * spec->pixel_mm[1]);
+  const double size_mm[2] = {spec->width_px * spec->pixel_mm[0],
+                             spec->height_px * spec->pixel_mm[1]};
+  fg_render_effects_resolve(&spec->effects, size_mm[0], size_mm[1]);
+  FG_TRY(fg_jumps_build(place, &scanner->jumps, spec->pixel_mm, size_mm, &spec->effects.jumps));
   spec->truth = (fg_render_truth){.width_px = (int64_t)spec->width_px,
                                   .height_px = (int64_t)spec->height_px,
                                   .bits = scanner->bits,
@@ -281,6 +286,8 @@ void fg_scene_free(fg_scene *scene) {
     free(scene->drawn[i].roughness[0]);
     free(scene->drawn[i].roughness[1]);
   }
+  for (size_t i = 0; i < scene->shape_count; i++)
+    free(scene->shapes[i].roughness);
   free(scene->segments);
   free(scene->drawn);
   free(scene->foils);

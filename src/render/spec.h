@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "foilgauge/render.h"
+#include "render/jumps.h"
 #include "render/spec_effects.h"
 
 enum { FG_RENDER_BUMPS_MAX = 64, FG_RENDER_FOILS_MAX = 4096 };
@@ -56,14 +57,19 @@ typedef struct fg_litter {
 typedef struct fg_scanner {
   double dpi[2];
   int bits;
-  double background, contrast, gamma, blur_px, noise, noise_correlation, clip_white;
-  double shading[3]; /* relative, at the picture's edge: x, y, quadratic */
+  double background, contrast, gamma, noise, noise_correlation, clip_white;
+  double blur_px[2];     /* x, y */
+  double motion_blur_px; /* along y: the carriage moves while a row is read */
+  double shading[3];     /* relative, at the picture's edge: x, y, quadratic */
   fg_litter dust, specks, scratches;
   double one_sided_blur_px;
+  int one_sided_way; /* +1: the carriage went along rising rows, -1: against them */
   double edge_roughness_um, edge_common_um, edge_correlation_um;
+  bool edge_exponential; /* the scatter's autocorrelation; else Gaussian */
   double halo_fraction, halo_length_px;
   double wall_amplitude, wall_direction_deg, wall_length_px, wall_gap_px;
   int jpeg_quality; /* 0: none */
+  fg_jump_requests jumps;
 } fg_scanner;
 
 /* A piece of a midline, in mm of true coordinates. Arc length runs from the lip to the free end. */
@@ -100,6 +106,8 @@ typedef struct fg_shape {
   bool adds;
   int lobes;
   double lobe_mm, lobe_phase_rad;
+  float *roughness; /* outwards, mm, at equal angles from that of x; NULL: none */
+  size_t roughness_count;
 } fg_shape;
 
 typedef struct fg_scene {
@@ -164,7 +172,12 @@ fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
 fg_render_bump fg_outline_nominal(const fg_render_design *design);
 
 /* The edges' random deviation of one foil, where the scanner asks for it. */
-fg_status fg_roughness_build(fg_context *ctx, const fg_scanner *scanner, uint64_t seed, size_t foil,
+fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t foil,
                              fg_drawn_foil *drawn);
+fg_status fg_roughness_build_disc(fg_context *ctx, const fg_render_spec *spec, size_t disc,
+                                  fg_shape *shape);
+
+/* Catmull-Rom between drawn values, from the second to the last but one. */
+double fg_roughness_at(const float *values, double place);
 
 #endif

@@ -11,6 +11,7 @@
 #include <stddef.h>
 
 #include "render/curve.h"
+#include "render/jumps.h"
 #include "render/members.h"
 
 enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 4, FG_RENDER_EFFECTS_MAX = 16 };
@@ -61,6 +62,7 @@ typedef struct fg_render_effect {
 typedef struct fg_render_effect_list {
   fg_render_effect effects[FG_RENDER_EFFECTS_MAX];
   size_t count;
+  fg_render_jump_list jumps; /* of the scanner's lost rows and seams */
 } fg_render_effect_list;
 
 /* Every effect that a spec may name; ends with id NULL. */

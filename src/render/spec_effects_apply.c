@@ -36,11 +36,12 @@ void fg_render_effects_field(const fg_render_effect_list *list, double x_mm, dou
     if (effect->target == FG_RENDER_EFFECT_STEP)
       effect->row->field(effect->p, side_mm[0], side_mm[1], d_mm);
   }
+  fg_jumps_field(&list->jumps, side_mm, d_mm);
 }
 
 double fg_render_effects_next_step(const fg_render_effect_list *list, int axis, double low_mm,
                                    double high_mm) {
-  double next = NAN;
+  double next = fg_jumps_next(&list->jumps, axis, low_mm, high_mm);
   for (size_t i = 0; i < list->count; i++) {
     const fg_render_effect *effect = &list->effects[i];
     double at = effect->p[1];

@@ -5,26 +5,12 @@
 
 #include "render/spec_effects.h"
 
-/* One of two words; absent: the first. */
-static fg_status parse_choice(const fg_place *place, const cJSON *object, const char *name,
-                              const char *const words[2], int *choice) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, name);
-  if (!item) return FG_OK;
-  for (int i = 0; i < 2; i++)
-    if (cJSON_IsString(item) && !strcmp(item->valuestring, words[i])) {
-      *choice = i;
-      return FG_OK;
-    }
-  char what[64];
-  snprintf(what, sizeof what, "must be \"%s\" or \"%s\"", words[0], words[1]);
-  return fg_member_fail(place, name, item, what);
-}
-
 static fg_status parse_direction(const fg_place *place, const cJSON *object,
                                  fg_render_effect *effect) {
   int normal = 0;
   if (effect->row->target != FG_RENDER_EFFECT_PART) return FG_OK;
-  FG_TRY(parse_choice(place, object, "along", (const char *const[]){"radius", "normal"}, &normal));
+  FG_TRY(
+      fg_member_choice(place, object, "along", (const char *const[]){"radius", "normal"}, &normal));
   if (normal) effect->target = FG_RENDER_EFFECT_NORMAL;
   return FG_OK;
 }
@@ -53,8 +39,9 @@ static fg_status parse_curve(const fg_place *place, const cJSON *object, fg_rend
                          effect));
   int apart = 0;
   effect->moves = effect->row->axis;
-  FG_TRY(parse_choice(place, object, "moves", (const char *const[]){"x", "y"}, &effect->moves));
-  FG_TRY(parse_choice(place, object, "edges", (const char *const[]){"together", "apart"}, &apart));
+  FG_TRY(fg_member_choice(place, object, "moves", (const char *const[]){"x", "y"}, &effect->moves));
+  FG_TRY(
+      fg_member_choice(place, object, "edges", (const char *const[]){"together", "apart"}, &apart));
   effect->apart = apart == 1;
   return fg_curve_parse(place, cJSON_GetObjectItemCaseSensitive(object, "knots"),
                         effect->row->curve, &effect->curve);

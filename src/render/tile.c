@@ -10,20 +10,38 @@ static int64_t round_up(double value, int64_t step) {
   return step * (int64_t)ceil(value / (double)step);
 }
 
-/* Gaussian of sd `sigma` convolved with the pixel's box, at samples: what the sampling has already
- * smoothed is taken off first. The sum is 1, so plateaus keep their value. */
-static fg_status make_kernel(fg_context *ctx, double blur_px, double sampled_px, int *taps,
-                             float **kernel) {
+/* Integral of the normal distribution function of sd `sigma`. */
+static double ramp(double u, double sigma) {
+  double z = u / sigma;
+  return 0.5 * u * erfc(-z / sqrt(2.0)) +
+         sigma * exp(-0.5 * z * z) / sqrt(2 * 3.14159265358979323846);
+}
+
+/* Gaussian of sd `sigma` through the pixel's box, and through that of the motion while it is read:
+ * a box is the difference of what it integrates, and two boxes that of its integral. */
+static double kernel_weight(double u, double sigma, double motion_px) {
+  const double still_px = 0.01; /* below this the difference of ramps loses digits */
+  double half = 0.5 * motion_px;
+  if (motion_px < still_px)
+    return 0.5 * (erf((u + 0.5) / (sigma * sqrt(2.0))) - erf((u - 0.5) / (sigma * sqrt(2.0))));
+  return (ramp(u + 0.5 + half, sigma) - ramp(u + 0.5 - half, sigma) - ramp(u - 0.5 + half, sigma) +
+          ramp(u - 0.5 - half, sigma)) /
+         motion_px;
+}
+
+/* At samples: what the sampling has already smoothed is taken off first. The sum is 1, so plateaus
+ * keep their value. */
+static fg_status make_kernel(fg_context *ctx, double blur_px, double motion_px, double sampled_px,
+                             int *taps, float **kernel) {
   double sigma = sqrt(blur_px * blur_px - sampled_px * sampled_px);
-  *taps = (int)ceil(FG_SAMPLES * (0.5 + 4.5 * sigma));
+  *taps = (int)ceil(FG_SAMPLES * (0.5 + 0.5 * motion_px + 4.5 * sigma));
   size_t count = 2 * (size_t)*taps + 1;
   double sum = 0;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof **kernel, (void **)kernel));
   for (int pass = 0; pass < 2; pass++)
     for (int k = -*taps; k <= *taps; k++) {
       double u = (double)k / FG_SAMPLES;
-      double weight =
-          0.5 * (erf((u + 0.5) / (sigma * sqrt(2.0))) - erf((u - 0.5) / (sigma * sqrt(2.0))));
+      double weight = kernel_weight(u, sigma, motion_px);
       if (pass == 0)
         sum += weight;
       else
@@ -77,8 +95,9 @@ fg_status fg_tiler_create(fg_context *ctx, fg_sampler *sampler, fg_tiler *tiler)
   *tiler = (fg_tiler){.sampler = sampler};
   int taps = 0;
   for (int axis = 0; axis < 2; axis++) {
-    FG_TRY(make_kernel(ctx, scanner->blur_px, sampler->sd_mm / sampler->pixel_mm[axis],
-                       &tiler->taps[axis], &tiler->kernel[axis]));
+    FG_TRY(make_kernel(ctx, scanner->blur_px[axis], axis ? scanner->motion_blur_px : 0,
+                       sampler->sd_mm / sampler->pixel_mm[axis], &tiler->taps[axis],
+                       &tiler->kernel[axis]));
     if (tiler->taps[axis] > taps) taps = tiler->taps[axis];
   }
   tiler->margin_px = round_up((double)(taps + 1) / FG_SAMPLES, FG_BLOCK_PX);

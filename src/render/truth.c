@@ -1,4 +1,5 @@
 /* The truth of a render as JSON: what was drawn, with the names of a report. */
+#include <math.h>
 #include <stdlib.h>
 
 #include <cjson/cJSON.h>
@@ -61,24 +62,35 @@ static void put_foil(cJSON *object, const fg_render_foil *truth, const fg_render
   put_bumps(object, truth);
 }
 
+/* One number where both axes agree. */
+static void put_axes(cJSON *object, const char *name, const double value[2]) {
+  if (value[0] == value[1])
+    put(object, name, value[0]);
+  else
+    cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(value, 2));
+}
+
 static void put_scan(cJSON *root, const fg_render_spec *spec) {
   const fg_scanner *scanner = &spec->scanner;
   cJSON *scan = cJSON_AddObjectToObject(root, "scan");
-  if (scanner->dpi[0] == scanner->dpi[1])
-    put(scan, "dpi", scanner->dpi[0]);
-  else
-    cJSON_AddItemToObject(scan, "dpi", cJSON_CreateDoubleArray(scanner->dpi, 2));
+  put_axes(scan, "dpi", scanner->dpi);
   put(scan, "width", (double)spec->truth.width_px);
   put(scan, "height", (double)spec->truth.height_px);
   put(scan, "bits", scanner->bits);
-  put(scan, "blur_px", scanner->blur_px);
+  put_axes(scan, "blur_px", scanner->blur_px);
+  put(scan, "motion_blur_px", scanner->motion_blur_px);
   put(scan, "background", scanner->background);
   put(scan, "contrast", scanner->contrast);
   put(scan, "gamma", scanner->gamma);
   put(scan, "noise", scanner->noise);
   put(scan, "noise_correlation", scanner->noise_correlation);
   put(scan, "one_sided_blur_px", scanner->one_sided_blur_px);
+  cJSON_AddStringToObject(scan, "one_sided_way", scanner->one_sided_way < 0 ? "-y" : "+y");
   put(scan, "edge_roughness_um", scanner->edge_roughness_um);
+  put(scan, "edge_common_um", scanner->edge_common_um);
+  put(scan, "correlation_um", scanner->edge_correlation_um);
+  cJSON_AddStringToObject(scan, "correlation_form",
+                          scanner->edge_exponential ? "exponential" : "gaussian");
   put(scan, "halo_fraction", scanner->halo_fraction);
   put(scan, "side_wall_amplitude", scanner->wall_amplitude);
   put(scan, "seed", (double)spec->seed);
@@ -96,6 +108,18 @@ static void put_curve(cJSON *entry, const fg_render_effect *effect) {
   }
 }
 
+/* Lost rows and seams are effects under the names that reports give them. */
+static cJSON *jump_entry(const fg_render_jump *jump) {
+  cJSON *entry = cJSON_CreateObject();
+  double along = jump->repeats * jump->d_mm[jump->axis];
+  cJSON_AddStringToObject(entry, "id", jump->axis ? "scan.row_step" : "scan.column_step");
+  put(entry, "amplitude_um", 1e3 * along);
+  put(entry, jump->axis ? "y_mm" : "x_mm", jump->at_mm);
+  if (jump->axis) put(entry, "rows", round(along / jump->every_mm));
+  if (!jump->axis && jump->d_mm[1] != 0) put(entry, "amplitude_y_um", 1e3 * jump->d_mm[1]);
+  return entry;
+}
+
 static void put_effects(cJSON *root, const fg_render_effect_list *list) {
   cJSON *effects = cJSON_AddArrayToObject(root, "effects");
   for (size_t i = 0; i < list->count; i++) {
@@ -107,6 +131,8 @@ static void put_effects(cJSON *root, const fg_render_effect_list *list) {
     if (effect->row->curve) put_curve(entry, effect);
     cJSON_AddItemToArray(effects, entry);
   }
+  for (size_t i = 0; i < list->jumps.count; i++)
+    cJSON_AddItemToArray(effects, jump_entry(&list->jumps.each[i]));
 }
 
 static void put_discs(cJSON *root, const fg_render_spec *spec) {

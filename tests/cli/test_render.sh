@@ -14,8 +14,8 @@ expect 74 'nowhere' "$program" render samples/render/clean.json -o "$folder/a.pn
   --truth "$folder/nowhere/t.json"
 ls -A "$folder" | grep -q 'a\.png' && fail "left behind: $(ls -A "$folder")"
 
-tiers="clean rough"
-[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || tiers=rough
+tiers="clean rough harsh"
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || tiers=harsh
 for tier in $tiers; do
   expect 0 '' "$program" render "samples/render/$tier.json" -o "$folder/$tier.png" \
     --truth "$folder/$tier.json"

@@ -1,4 +1,4 @@
-/* What the rendered scanner does to light: tone, noise, clipping, JPEG, roughness, halo, wall; the
+/* What the rendered scanner does to light: tone, noise, clipping, JPEG, halo, wall; the
  * same bytes every time. */
 #include "render_picture.h"
 
@@ -150,61 +150,6 @@ static void wall_shows_on_one_side(void **state) {
   drop(&p);
 }
 
-/* Edge of every column along the bumps' crowns: position on both sides against the smooth foil. */
-static void roughness_has_its_size(void **state) {
-  (void)state;
-  const char *format = "{\"schema\":\"foilgauge/render/1\",\"seed\":%d,\"foils\":[{"
-                       "\"centre_mm\":[22,24],\"design\":{\"bump_count\":1,"
-                       "\"fillet_radius_mm\":0.35},\"lip\":null,\"first_land_mm\":12,"
-                       "\"last_land_mm\":12}],\"width_px\":8300,\"height_px\":1600,"
-                       "\"scanner\":{" EXACT "%s}}";
-  char rough[512], smooth[512];
-  snprintf(rough, sizeof rough, format, 7,
-           ",\"rough\":{\"edge_roughness_um\":1.5,\"edge_common_um\":1,\"correlation_um\":50}");
-  snprintf(smooth, sizeof smooth, format, 7, "");
-  picture a = draw(0, rough), b = draw(0, smooth);
-  double sum = 0, squares = 0, lag = 0, before = 0;
-  int64_t count = 0;
-  for (int64_t x = 3850; x < 4450; x++) { /* the bump, nearly level */
-    double width[2] = {0, 0};
-    for (int64_t y = 0; y < a.height; y++) {
-      width[0] += coverage(&a, x, y);
-      width[1] += coverage(&b, x, y);
-    }
-    double error = (width[0] - width[1]) * 25.4e3 / 4800; /* um: difference of two edges */
-    sum += error;
-    squares += error * error;
-    lag += error * before;
-    before = error;
-    count++;
-  }
-  /* 600 columns of 5.3 um hold about 36 independent lengths: 12 % for the sd of one draw. */
-  assert_close(sqrt(squares / (double)count), 1.5 * sqrt(2.0), 0.8);
-  assert_true(lag / squares > 0.9);
-  drop(&a);
-  drop(&b);
-}
-
-/* Bright-to-dark along the rows' way is softer; turned upside down, it is the other edge. */
-static void blur_is_one_sided(void **state) {
-  (void)state;
-  picture p =
-      draw(0, "{\"schema\":\"foilgauge/render/1\",\"width_px\":250,\"height_px\":250,"
-              "\"discs\":[{\"centre_mm\":[0.66,0.66],\"radius_mm\":0.4}],\"scanner\":{" EXACT
-              ",\"blur_px\":1.8,\"rough\":{\"one_sided_blur_px\":2.2}}}");
-  int64_t x = llround(0.66 * 4800 / 25.4);
-  double steepest[2] = {0, 0};
-  for (int64_t y = 0; y + 1 < p.height; y++) {
-    double step = coverage(&p, x, y + 1) - coverage(&p, x, y);
-    steepest[0] = fmax(steepest[0], step);
-    steepest[1] = fmax(steepest[1], -step);
-  }
-  const double root = 2.5066282746310002; /* sqrt(2 pi) */
-  assert_close(1 / (steepest[0] * root), sqrt(1.8 * 1.8 + 1.0 / 6), 0.08);
-  assert_close(1 / (steepest[1] * root), sqrt(1.8 * 1.8 + 2.2 * 2.2 + 1.0 / 6), 0.12);
-  drop(&p);
-}
-
 static void jpeg_keeps_what_is_flat_and_rounds_the_rest(void **state) {
   (void)state;
   fg_jpeg jpeg;
@@ -297,8 +242,6 @@ int main(void) {
       cmocka_unit_test(shading_and_clipping),
       cmocka_unit_test(halo_moves_light),
       cmocka_unit_test(wall_shows_on_one_side),
-      cmocka_unit_test(roughness_has_its_size),
-      cmocka_unit_test(blur_is_one_sided),
       cmocka_unit_test(jpeg_keeps_what_is_flat_and_rounds_the_rest),
       cmocka_unit_test(same_spec_same_bytes_whatever_the_strip),
       cmocka_unit_test(file_holds_the_rows),

@@ -15,7 +15,9 @@ typedef struct bad_spec {
 
 #define HEAD "{\"schema\":\"foilgauge/render/1\","
 
-#define CURVE(id, members) HEAD "\"effects\":[{\"id\":\"free." id "\"," members "}]}"
+#define ROUGH(members)       HEAD "\"scanner\":{\"rough\":{" members "}}}"
+#define JUMPS(name, members) HEAD "\"scanner\":{\"" name "\":" members "}}"
+#define CURVE(id, members)   HEAD "\"effects\":[{\"id\":\"free." id "\"," members "}]}"
 
 static void too_many_knots_are_refused(void **state) {
   (void)state;
@@ -72,6 +74,31 @@ static void bad_specs_are_refused_by_name(void **state) {
       {HEAD "\"scanner\":{\"bits\":16,\"rough\":{\"jpeg\":{\"quality\":90}}}}", "must be 8 where"},
       {HEAD "\"scanner\":{\"rough\":{\"halo\":{\"fraction\":2}}}}",
        "scanner.rough.halo.fraction is 2"},
+      {HEAD "\"scanner\":{\"blur_px\":[1,2,3]}}", "scanner.blur_px is [1,2,3]: must be an array"},
+      {HEAD "\"scanner\":{\"blur_px\":[1,0.2]}}", "scanner.blur_px[1] is 0.2: must be a number"},
+      {HEAD "\"scanner\":{\"blur_px\":\"soft\"}}", "scanner.blur_px is \"soft\""},
+      {HEAD "\"scanner\":{\"dpi\":[4800,1200]}}", "at least 1.6 along x at these resolutions"},
+      {ROUGH("\"motion_blur_px\":-1"), "scanner.rough.motion_blur_px is -1: must be a number"},
+      {ROUGH("\"motion_blur_px\":NaN"), "this is not JSON"},
+      {ROUGH("\"one_sided_way\":\"x\""), "one_sided_way is \"x\": must be \"+y\" or \"-y\""},
+      {ROUGH("\"correlation_um\":0.1"), "correlation_um is 0.1: must be a number from 0.2 to"},
+      {ROUGH("\"correlation_form\":2"), "must be \"gaussian\" or \"exponential\""},
+      {JUMPS("rows_lost", "3"), "scanner.rows_lost is 3: must be an array of at most 64"},
+      {JUMPS("rows_lost", "[3]"), "scanner.rows_lost[0] is 3: must be an object"},
+      {JUMPS("rows_lost", "[{\"count\":3}]"), "scanner.rows_lost[0].y_mm is missing"},
+      {JUMPS("rows_lost", "[{\"y_mm\":1}]"), "scanner.rows_lost[0].count is missing"},
+      {JUMPS("rows_lost", "[{\"y_mm\":1,\"count\":0}]"), "rows_lost[0].count is 0: say how many"},
+      {JUMPS("rows_lost", "[{\"y_mm\":1,\"count\":1.5}]"), "count is 1.5: must be a whole number"},
+      {JUMPS("rows_lost", "[{\"y_mm\":1,\"count\":2000}]"), "count is 2000: must be a number"},
+      {JUMPS("rows_lost", "[{\"y_mm\":900,\"count\":1}]"),
+       "scanner.rows_lost[0] is at 900 mm: must be within the picture's"},
+      {JUMPS("chip_seams", "{}"), "scanner.chip_seams is {}: must be an array"},
+      {JUMPS("chip_seams", "[{\"shift_um\":3}]"), "scanner.chip_seams[0].x_mm is missing"},
+      {JUMPS("chip_seams", "[{\"x_mm\":1}]"), "chip_seams[0].shift_um is missing: say by how much"},
+      {JUMPS("chip_seams", "[{\"x_mm\":1,\"shift_um\":1e999}]"), "chip_seams[0].shift_um is"},
+      {JUMPS("chip_seams", "[{\"x_mm\":1,\"shift\":3}]"), "shift is 3: there is no such member"},
+      {JUMPS("chip_seams", "[{\"x_mm\":900,\"shift_um\":3}]"),
+       "scanner.chip_seams[0] is at 900 mm: must be within the picture's"},
       {HEAD "\"effects\":[{\"id\":\"scan.magic\"}]}", "effects[0].id is \"scan.magic\""},
       {HEAD "\"effects\":[{\"id\":\"scan.scale_y\"}]}", "effects[0].value is missing"},
       {HEAD "\"effects\":[{\"id\":\"scan.scale_y\",\"value\":0.001,\"x\":1}]}",

@@ -1,0 +1,100 @@
+/* Blur by direction: its own along x and y, the carriage's motion, and what one side gets more. */
+#include "render_picture.h"
+
+/* Sd of a disc's edge along a line through its middle, of what the profile climbs by: [0] where it
+ * begins, [1] where it ends, along rising x or y. */
+static void edge_sds(const char *scanner, int axis, double sd_px[2]) {
+  picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":250,"
+                          "\"height_px\":250,\"discs\":[{\"centre_mm\":[0.66,0.66],"
+                          "\"radius_mm\":0.4}],\"scanner\":{" EXACT ",%s}}",
+                          scanner);
+  int64_t middle = llround(0.66 / pixel);
+  for (int edge = 0; edge < 2; edge++) {
+    double sum = 0, first = 0, second = 0;
+    for (int64_t i = edge ? middle : 0; i + 1 < (edge ? 250 : middle); i++) {
+      double step = axis ? coverage(&p, middle, i + 1) - coverage(&p, middle, i)
+                         : coverage(&p, i + 1, middle) - coverage(&p, i, middle);
+      sum += step;
+      first += step * (double)i;
+      second += step * (double)(i * i);
+    }
+    sd_px[edge] = sqrt(second / sum - first / sum * first / sum);
+  }
+  drop(&p);
+}
+
+/* Beside the optics: the pixel's own box, and that of the step that is looked at. */
+static double with_pixel(double optics_px) {
+  return sqrt(optics_px * optics_px + 1.0 / 6);
+}
+
+/* Bright-to-dark along the carriage's way is softer; where it goes the other way, the other edge.
+ */
+static void blur_is_one_sided(void **state) {
+  (void)state;
+  const char *scanner = "\"blur_px\":1.8,\"rough\":{\"one_sided_blur_px\":2.2%s}";
+  const char *ways[] = {"", ",\"one_sided_way\":\"+y\"", ",\"one_sided_way\":\"-y\""};
+  for (size_t i = 0; i < 3; i++) {
+    char members[128];
+    double sd[2];
+    snprintf(members, sizeof members, scanner, ways[i]);
+    edge_sds(members, 1, sd);
+    int soft = i < 2 ? 1 : 0;
+    assert_close(sd[!soft], with_pixel(1.8), 0.02);
+    assert_close(sd[soft], with_pixel(hypot(1.8, 2.2)), 0.05);
+    edge_sds(members, 0, sd);
+    assert_close(sd[0], with_pixel(1.8), 0.02);
+    assert_close(sd[1], with_pixel(1.8), 0.02);
+  }
+}
+
+static void blur_has_its_own_size_along_each_axis(void **state) {
+  (void)state;
+  for (int axis = 0; axis < 2; axis++) {
+    double sd[2];
+    edge_sds("\"blur_px\":[0.9,2.4]", axis, sd);
+    for (int i = 0; i < 2; i++)
+      assert_close(sd[i], with_pixel(axis ? 2.4 : 0.9), 0.01);
+  }
+}
+
+/* A box of 6 px beside a Gaussian of 1. */
+static void motion_blurs_along_the_way(void **state) {
+  (void)state;
+  const char *scanner = "\"blur_px\":1,\"rough\":{\"motion_blur_px\":6}";
+  for (int axis = 0; axis < 2; axis++) {
+    double sd[2];
+    edge_sds(scanner, axis, sd);
+    for (int i = 0; i < 2; i++)
+      assert_close(sd[i], with_pixel(axis ? sqrt(1 + 6 * 6 / 12.0) : 1), 0.01);
+  }
+}
+
+/* Widths are what they were: blur moves no edge of a straight strip, and makes no light. */
+static void blur_keeps_the_light(void **state) {
+  (void)state;
+  const char *scanners[] = {"\"blur_px\":1", "\"blur_px\":[2.5,0.7]",
+                            "\"blur_px\":1,\"rough\":{\"motion_blur_px\":5}"};
+  double sums[3] = {0};
+  for (size_t i = 0; i < 3; i++) {
+    picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":250,"
+                            "\"height_px\":250,\"discs\":[{\"centre_mm\":[0.66,0.66],"
+                            "\"radius_mm\":0.4}],\"scanner\":{" EXACT ",%s}}",
+                            scanners[i]);
+    for (int64_t k = 0; k < p.width * p.height; k++)
+      sums[i] += (p.dn[k] - 20) / 200;
+    drop(&p);
+  }
+  assert_close(sums[1] / sums[0], 1, 1e-5);
+  assert_close(sums[2] / sums[0], 1, 1e-5);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(blur_is_one_sided),
+      cmocka_unit_test(blur_has_its_own_size_along_each_axis),
+      cmocka_unit_test(motion_blurs_along_the_way),
+      cmocka_unit_test(blur_keeps_the_light),
+  };
+  return cmocka_run_group_tests_name("render blur", tests, NULL, NULL);
+}
