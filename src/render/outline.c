@@ -64,6 +64,19 @@ static void derive_bump(const fg_foil_request *request, fg_render_bump *bump) {
       180 / pi * safe_acos((x * x - r * r - overall * overall) / (2 * r * overall));
 }
 
+/* The circle moves towards O as it is; the law of cosines says where it crosses the overall circle
+ * then, and the fillets follow. */
+static void raise_bump(double overall, double by_mm, fg_render_bump *bump) {
+  if (by_mm == 0) return;
+  double x = bump->centre_to_centre_mm - by_mm, r = bump->radius_mm;
+  bump->centre_to_centre_mm = x;
+  bump->bump_angle_deg =
+      2 * 180 / pi * safe_acos((x * x + r * r - overall * overall) / (2 * x * r));
+  bump->height_mm = overall - (x - r);
+  bump->intersection_angle_deg =
+      180 / pi * safe_acos((x * x - r * r - overall * overall) / (2 * r * overall));
+}
+
 fg_render_bump fg_outline_nominal(const fg_render_design *design) {
   fg_foil_request request = {.overall_radius_mm = design->overall_radius_mm, .height_factor = {1}};
   fg_render_bump bump = {
@@ -204,6 +217,8 @@ static fg_status make_bumps(outline *o, bump_plan *plans, fg_render_bump *bumps,
                             fg_render_effects_shape(&o->spec->effects, FG_RENDER_EFFECT_STRETCH,
                                                     bump.radius_mm - design->bump_radius_mm, 1);
     derive_bump(request, &bump);
+    raise_bump(request->overall_radius_mm, fg_render_effects_lift(&o->spec->effects, i + 1, true),
+               &bump);
     FG_TRY(plan_bump(o, &bump, &plans[i]));
     bump.centre_px = (fg_point){bump.centre_to_centre_mm * cos(plans[i].axis_rad),
                                 bump.centre_to_centre_mm * sin(plans[i].axis_rad)};

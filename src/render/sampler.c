@@ -18,7 +18,8 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->has_part = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_PART);
   sampler->has_normal = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_NORMAL);
   sampler->has_width = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_WIDTH);
-  sampler->has_bump = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_BUMP);
+  sampler->has_bump = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_BUMP) ||
+                      fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_LIFT);
   sampler->has_edge = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
   double direction = scanner->wall_direction_deg * 3.14159265358979323846 / 180;

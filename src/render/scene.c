@@ -19,9 +19,11 @@ fg_point fg_segment_point(const fg_segment *segment, double t_mm) {
 
 double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segment *segment,
                              double t_mm) {
-  if (segment->bump)
-    return fg_render_effects_shape(effects, FG_RENDER_EFFECT_BUMP,
-                                   2 * t_mm / segment->length_mm - 1, 1);
+  if (segment->bump) {
+    double u = 2 * t_mm / segment->length_mm - 1, flat = 1 - u * u;
+    return fg_render_effects_shape(effects, FG_RENDER_EFFECT_BUMP, u, 1) +
+           fg_render_effects_lift(effects, segment->bump, false) * flat * flat;
+  }
   if (!segment->joins) return 0;
   double value, slope;
   fg_render_effects_bump_end(effects, segment->joins, &value, &slope);
@@ -229,6 +231,24 @@ static void scatter_litter(fg_render_spec *spec, const fg_litter *litter, fg_ran
   }
 }
 
+int fg_scene_most_bumps(const fg_render_spec *spec) {
+  int most = 0;
+  for (size_t i = 0; i < spec->request_count; i++)
+    if (spec->requests[i].design.bump_count > most) most = spec->requests[i].design.bump_count;
+  return most;
+}
+
+/* A bump that is raised by its number is there on some foil. */
+static fg_status check_lifts(const fg_place *place, const fg_render_spec *spec) {
+  int most = fg_scene_most_bumps(spec);
+  for (size_t i = 0; i < spec->effects.count; i++)
+    if (spec->effects.effects[i].lift.last > most)
+      return fg_fail(place->ctx, FG_ERR_DATA,
+                     "%s: effects[%zu] raises bump %d: no foil has so many", place->path, i,
+                     spec->effects.effects[i].lift.last);
+  return FG_OK;
+}
+
 static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box *all) {
   const char *names[2] = {"width_px", "height_px"};
   double *sizes[2] = {&spec->width_px, &spec->height_px};
@@ -253,6 +273,7 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   for (int axis = 0; axis < 2; axis++)
     spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
   box all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+  FG_TRY(check_lifts(place, spec));
   FG_TRY(build_foils(place, spec, &all));
   size_t litter = (size_t)scanner->dust.count + (size_t)scanner->specks.count +
                   (size_t)scanner->scratches.count;

@@ -213,6 +213,7 @@ static const fg_render_effect_row rows[] = {
     {"free.scan.y", FG_RENDER_EFFECT_SCANNER, {{0}}, NULL, NULL, 1, &along_mm},
     {"free.foil.s", FG_RENDER_EFFECT_PART, {{0}}, NULL, NULL, 0, &unit_axis},
     {"free.bump.phi", FG_RENDER_EFFECT_BUMP, {{0}}, NULL, NULL, 0, &unit_axis},
+    {"free.bump.index", FG_RENDER_EFFECT_LIFT, {{0}}, NULL, NULL, 0, NULL},
     {"free.edge.normal", FG_RENDER_EFFECT_EDGE, {{0}}, NULL, NULL, 0, &direction},
     {0},
 };

@@ -12,6 +12,7 @@
 
 #include "render/curve.h"
 #include "render/jumps.h"
+#include "render/lift.h"
 #include "render/members.h"
 
 enum { FG_RENDER_EFFECT_PARAMETERS_MAX = 4, FG_RENDER_EFFECTS_MAX = 16 };
@@ -27,6 +28,7 @@ typedef enum fg_render_effect_target {
   FG_RENDER_EFFECT_WIDTH,  /* the same of half the strip's thickness: what it adds, mm */
   FG_RENDER_EFFECT_BUMP,  /* shape(p, u, ·): shift in mm away from the bump's centre; u is -1 and 1
                       where the arc meets its fillets */
+  FG_RENDER_EFFECT_LIFT,  /* of single bumps: lift.h */
   FG_RENDER_EFFECT_EDGE,  /* curve over the direction of the strip's inner side in the scan, degrees
                            */
   FG_RENDER_EFFECT_TABLE, /* shape(p, index, count): factor on the bump's radius; index from 1 */
@@ -55,8 +57,9 @@ typedef struct fg_render_effect {
   fg_render_effect_target target; /* the row's, or FG_RENDER_EFFECT_NORMAL */
   double p[FG_RENDER_EFFECT_PARAMETERS_MAX];
   fg_curve curve;
-  int moves;  /* FG_RENDER_EFFECT_SCANNER with a curve: the axis of the displacement, 0 x, 1 y */
-  bool apart; /* FG_RENDER_EFFECT_EDGE: the edges move away from each other, not together */
+  fg_lift lift; /* FG_RENDER_EFFECT_LIFT */
+  int moves;    /* FG_RENDER_EFFECT_SCANNER with a curve: the axis of the displacement, 0 x, 1 y */
+  bool apart;   /* FG_RENDER_EFFECT_EDGE: the edges move away from each other, not together */
 } fg_render_effect;
 
 typedef struct fg_render_effect_list {
@@ -94,6 +97,9 @@ double fg_render_effects_shape(const fg_render_effect_list *list, fg_render_effe
  * outwards) at the end u = -1 or 1, and fade them out. */
 void fg_render_effects_bump_end(const fg_render_effect_list *list, double u, double *value_mm,
                                 double *slope_mm);
+
+/* How far a bump is raised, mm: with its flanks, or at its middle alone. */
+double fg_render_effects_lift(const fg_render_effect_list *list, int bump, bool whole);
 
 /* Shift of the two edges of a strip whose inner side lies in the direction (nx, ny) of the scan, to
  * that side, mm: [0] the inner edge, [1] the outer. */

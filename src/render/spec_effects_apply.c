@@ -75,6 +75,14 @@ void fg_render_effects_bump_end(const fg_render_effect_list *list, double u, dou
   }
 }
 
+double fg_render_effects_lift(const fg_render_effect_list *list, int bump, bool whole) {
+  double sum_um = 0;
+  for (size_t i = 0; i < list->count; i++)
+    if (list->effects[i].target == FG_RENDER_EFFECT_LIFT && list->effects[i].lift.whole == whole)
+      sum_um += list->effects[i].lift.um[bump - 1];
+  return 1e-3 * sum_um;
+}
+
 void fg_render_effects_edges(const fg_render_effect_list *list, double nx, double ny,
                              double shift_mm[2]) {
   double direction_deg = atan2(ny, nx) * 180 / pi;
@@ -97,9 +105,11 @@ double fg_render_effects_reach(const fg_render_effect_list *list) {
     fg_render_effect_target target = effect->target;
     if (target != FG_RENDER_EFFECT_PART && target != FG_RENDER_EFFECT_NORMAL &&
         target != FG_RENDER_EFFECT_WIDTH && target != FG_RENDER_EFFECT_BUMP &&
-        target != FG_RENDER_EFFECT_EDGE)
+        target != FG_RENDER_EFFECT_EDGE && target != FG_RENDER_EFFECT_LIFT)
       continue;
-    double size = effect->row->curve ? fg_curve_largest_um(&effect->curve) : fabs(effect->p[0]);
+    double size = effect->row->curve                ? fg_curve_largest_um(&effect->curve)
+                  : target == FG_RENDER_EFFECT_LIFT ? fg_lift_largest_um(&effect->lift)
+                                                    : fabs(effect->p[0]);
     reach += 2e-3 * size;
   }
   return reach;

@@ -67,6 +67,13 @@ static fg_status parse_parameters(const fg_place *place, const cJSON *object,
   return FG_OK;
 }
 
+static fg_status parse_members(const fg_place *place, const cJSON *item, fg_render_effect *effect) {
+  if (effect->row->target == FG_RENDER_EFFECT_LIFT)
+    return fg_lift_parse(place, item, &effect->lift);
+  FG_TRY((effect->row->curve ? parse_curve : parse_parameters)(place, item, effect));
+  return parse_direction(place, item, effect);
+}
+
 fg_status fg_render_effects_parse(const fg_place *place, const cJSON *array,
                                   fg_render_effect_list *list) {
   list->count = 0;
@@ -83,9 +90,7 @@ fg_status fg_render_effects_parse(const fg_place *place, const cJSON *array,
     if (!row->id)
       return fg_member_fail(&inner, "id", id, "must be the name of an effect such as scan.scale_y");
     list->effects[list->count] = (fg_render_effect){.row = row, .target = row->target};
-    FG_TRY(
-        (row->curve ? parse_curve : parse_parameters)(&inner, item, &list->effects[list->count]));
-    FG_TRY(parse_direction(&inner, item, &list->effects[list->count]));
+    FG_TRY(parse_members(&inner, item, &list->effects[list->count]));
     list->count++;
   }
   return FG_OK;

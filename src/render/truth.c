@@ -120,7 +120,13 @@ static cJSON *jump_entry(const fg_render_jump *jump) {
   return entry;
 }
 
-static void put_effects(cJSON *root, const fg_render_effect_list *list) {
+static void put_lift(cJSON *entry, const fg_render_effect *effect, int bumps) {
+  cJSON_AddStringToObject(entry, "form", effect->lift.whole ? "whole" : "crown");
+  cJSON_AddItemToObject(entry, "values_um", cJSON_CreateDoubleArray(effect->lift.um, bumps));
+}
+
+static void put_effects(cJSON *root, const fg_render_spec *spec) {
+  const fg_render_effect_list *list = &spec->effects;
   cJSON *effects = cJSON_AddArrayToObject(root, "effects");
   for (size_t i = 0; i < list->count; i++) {
     const fg_render_effect *effect = &list->effects[i];
@@ -129,6 +135,7 @@ static void put_effects(cJSON *root, const fg_render_effect_list *list) {
     for (int k = 0; k < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
       put(entry, effect->row->parameters[k].name, effect->p[k]);
     if (effect->row->curve) put_curve(entry, effect);
+    if (effect->target == FG_RENDER_EFFECT_LIFT) put_lift(entry, effect, fg_scene_most_bumps(spec));
     cJSON_AddItemToArray(effects, entry);
   }
   for (size_t i = 0; i < list->jumps.count; i++)
@@ -169,7 +176,7 @@ fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char
   }
   put_discs(root, spec);
   put_scan(root, spec);
-  put_effects(root, &spec->effects);
+  put_effects(root, spec);
   *json = cJSON_Print(root);
   cJSON_Delete(root);
   return *json ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory for the truth");

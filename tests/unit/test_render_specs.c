@@ -17,6 +17,7 @@ typedef struct bad_spec {
 
 #define ROUGH(members)       HEAD "\"scanner\":{\"rough\":{" members "}}}"
 #define JUMPS(name, members) HEAD "\"scanner\":{\"" name "\":" members "}}"
+#define LIFT(members)        HEAD "\"effects\":[{\"id\":\"free.bump.index\"" members "}]}"
 #define CURVE(id, members)   HEAD "\"effects\":[{\"id\":\"free." id "\"," members "}]}"
 
 static void too_many_knots_are_refused(void **state) {
@@ -116,6 +117,24 @@ static void bad_specs_are_refused_by_name(void **state) {
       {CURVE("foil.s", "\"knots\":[[0,2],[1.5,4]]"), "knots[1].u is 1.5: must be a number from -1"},
       {CURVE("edge.normal", "\"edges\":1,\"knots\":[[0,2],[1,4]]"), "edges is 1: must be"},
       {CURVE("edge.normal", "\"knots\":[[0,2],[360,2]]"), "0 and 360 are one direction"},
+      {LIFT(""), "say which bumps, one way: bumps, every, period_bumps or values_um"},
+      {LIFT(",\"amplitude_um\":4"), "say which bumps, one way"},
+      {LIFT(",\"amplitude_um\":4,\"every\":3,\"bumps\":[2]"), "say which bumps, one way"},
+      {LIFT(",\"every\":3"), "effects[0].amplitude_um is missing: bumps, every and"},
+      {LIFT(",\"amplitude_um\":1,\"values_um\":[1,2]"), "effects[0].amplitude_um is 1: bumps"},
+      {LIFT(",\"amplitude_um\":4,\"every\":0"), "effects[0].every is 0: must be a number from 1"},
+      {LIFT(",\"amplitude_um\":4,\"every\":2.5"),
+       "effects[0].every is 2.5: must be a whole number"},
+      {LIFT(",\"amplitude_um\":4,\"bumps\":[2],\"first\":1"), "first is 1: belongs to every"},
+      {LIFT(",\"amplitude_um\":4,\"every\":2,\"phase_deg\":1"), "belongs to period_bumps"},
+      {LIFT(",\"amplitude_um\":4,\"period_bumps\":1"),
+       "period_bumps is 1: must be a number from 1.5"},
+      {LIFT(",\"amplitude_um\":99,\"every\":3"), "effects[0].amplitude_um is 99: must be a number"},
+      {LIFT(",\"amplitude_um\":4,\"bumps\":[]"), "effects[0].bumps is []: must be an array of 1"},
+      {LIFT(",\"amplitude_um\":4,\"bumps\":[1.5]"), "effects[0].bumps is [1.5]: must be whole"},
+      {LIFT(",\"amplitude_um\":4,\"bumps\":[12]"), "effects[0] raises bump 12: no foil has so"},
+      {LIFT(",\"values_um\":[1,null]"), "effects[0].values_um[1] is null: must be a number"},
+      {LIFT(",\"values_um\":[1],\"form\":\"half\""), "must be \"crown\" or \"whole\""},
       {HEAD "\"effects\":[{\"id\":\"part.stretch\"}]}", "effects[0].value_rel is missing"},
   };
   for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
