@@ -184,6 +184,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_string(&json, "verdict", fg_loop_outcome_word(result->verdict));
   write_inputs(&json, result);
   fg_json_bool(&json, "same_foil", result->same_foil);
+  fg_json_number(&json, "p_value", result->p_value);
   write_noise(&json, result);
   fg_json_string(&json, "unit", "um");
   FG_TRY(write_side(ctx, &json, "before", result, false));
