@@ -99,6 +99,12 @@ class Midline:
             return effect["amplitude_um"] * (1 - u * u) ** 2
         if effect["id"] == "part.bump_skew":
             return effect["amplitude_um"] * u * (1 - u * u) ** 2 * np.sqrt(5) * 25 / 16
+        if effect["id"] == "free.bump.index":  # single bumps, at their middle
+            number = self.bump + 1
+            on = np.isin(number, effect["bumps"]) if "bumps" in effect else number >= effect.get("first", effect["every"])
+            if "bumps" not in effect:
+                on &= (number - effect.get("first", effect["every"])) % effect["every"] == 0
+            return effect["amplitude_um"] * on * (1 - u * u) ** 2
         return natural_spline(effect["knots"], u) if effect["id"] == "free.bump.phi" else None
 
     def claimed_shift_um(self, report, sense):

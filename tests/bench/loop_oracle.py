@@ -58,6 +58,15 @@ def geometry_columns(midline, normal, first_scan):
     return np.array(part).T, np.array(own).T.reshape(n, -1)
 
 
+def correlation(apart, length, form):
+    if form == "gaussian":
+        return np.exp(-((apart / length) ** 2))
+    if form == "exponential":
+        return np.exp(-apart / length)
+    near = 2.1462 * apart / length  # Matern with 3/2: 1/e at the length
+    return (1 + near) * np.exp(-near)
+
+
 def whiten(midline, scanner, columns):
     """Columns through the inverse root of the covariance of a row of the midline, arc by arc."""
     rough = scanner.get("rough", {})
@@ -70,7 +79,8 @@ def whiten(midline, scanner, columns):
     for piece in midline.pieces:
         along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(midline.xy[piece], axis=0).T))])
         apart = along[:, None] - along[None]
-        covariance = smooth**2 * np.exp(-((apart / length) ** 2)) + (white**2 + 1e-6) * np.eye(len(along))
+        covariance = smooth**2 * correlation(apart, length, rough.get("correlation_form", "gaussian"))
+        covariance += (white**2 + 1e-6) * np.eye(len(along))
         out[piece] = np.linalg.solve(np.linalg.cholesky(covariance), columns[piece])
     return out
 
@@ -82,8 +92,8 @@ def pieces_of(midline):
     return np.split(np.arange(len(midline.bump)), cut)
 
 
-def standard_errors(case, effect):
-    """The effect as it stands in the case, in standard errors of its size."""
+def standard_errors(case, effects):
+    """The effects as they stand in the case, together: in standard errors of their common size."""
     parts, blocks, scans = {}, [], 0
     for k, spec in enumerate(case["specs"]):
         for f, foil in enumerate(spec["foils"]):
@@ -94,11 +104,13 @@ def standard_errors(case, effect):
             key = f if case["same_foil"] else (k, f)
             first = key not in parts
             parts.setdefault(key, len(parts))
-            shape = np.sum(scanner_shift_um(effect, at) * normal, axis=1) + midline.part_shift_um([effect])
-            if effect["id"] == "free.edge.normal":  # both edges, which face opposite ways
-                degrees = np.degrees(np.arctan2(normal[:, 1], normal[:, 0]))
-                faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]
-                shape = (faces[0] - faces[1]) / 2
+            shape = midline.part_shift_um(effects)
+            for effect in effects:
+                shape = shape + np.sum(scanner_shift_um(effect, at) * normal, axis=1)
+                if effect["id"] == "free.edge.normal":  # both edges, which face opposite ways
+                    degrees = np.degrees(np.arctan2(normal[:, 1], normal[:, 0]))
+                    faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]
+                    shape = shape + (faces[0] - faces[1]) / 2
             part, own = geometry_columns(midline, normal, first)
             white = whiten(midline, spec["scanner"], np.column_stack([shape, part, own]))
             blocks.append((parts[key], part.shape[1], white))

@@ -34,9 +34,9 @@ def write_design(folder, design):
     return path
 
 
-def run_loop(program, folder, case, more=()):
-    """(report or None, exit status, seconds)."""
-    paths = render(program, folder, case["specs"])
+def run_loop(program, folder, case, more=(), draw=render):
+    """(report or None, exit status, seconds). draw: who renders."""
+    paths = draw(program, folder, case["specs"])
     out = os.path.join(folder, "loop.json")
     options = ["--same-foil"] if case["same_foil"] else []
     command = [program, "loop", *options, *paths, "--design", write_design(folder, case["design"])]
@@ -47,6 +47,18 @@ def run_loop(program, folder, case, more=()):
         return None, done.returncode, seconds
     with open(out, encoding="utf-8") as f:
         return json.load(f), done.returncode, seconds
+
+
+def measured_foils(program, folder, case, draw=render):
+    """What `measure` says of every scan, or None."""
+    paths, out = draw(program, folder, case["specs"]), os.path.join(folder, "measure.json")
+    command = [program, "measure", *paths, "--design", write_design(folder, case["design"]), "-o", out]
+    subprocess.run(command, stderr=subprocess.DEVNULL)
+    if not os.path.exists(out):
+        return None
+    with open(out, encoding="utf-8") as f:
+        report = json.load(f)
+    return [foil for scan in report.get("scans", [report]) for foil in scan["foils"]]
 
 
 def true_foils(case):
@@ -161,6 +173,7 @@ def judge_names(report, wanted):
         "claims": " + ".join(claims),
         "class": " | ".join(sorted(" + ".join(sorted(m)) for m in classes)),
         "unattributed": curve["coordinate"] + ":" + str(curve.get("moves")) if curve else "",
+        "tied": int(any(c["verdict"] == "tied" for c in report["claims"])),
         "named": int(named),
         "in_class": int(named or frozenset(wanted) in classes),
         "right_coordinate": int(right),
@@ -171,7 +184,8 @@ def judge(case, report, code, seconds):
     wanted = sorted(e["id"] for e in case["effects"])
     row = {"wanted": " + ".join(wanted), "exit": code, "seconds": round(seconds, 2)}
     if report is None:
-        blank = {"claims": "", "class": "", "unattributed": "", "named": 0, "in_class": 0, "right_coordinate": 0}
+        blank = {"claims": "", "class": "", "unattributed": "", "tied": 0, "named": 0, "in_class": 0}
+        blank["right_coordinate"] = 0
         row.update(verdict="failed", **blank)
         before = after = None
     else:

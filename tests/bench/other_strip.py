@@ -116,6 +116,10 @@ def deviate(walk, effects):
             moved -= (mm * on * walk.u * (1 - walk.u**2) * 1.5 * math.sqrt(3))[:, None] * walk.side
         elif e["id"] == "free.bump.phi":
             moved -= (on * natural_spline(e["knots"], walk.u) / 1000)[:, None] * walk.side
+        elif e["id"] == "free.bump.index":
+            first, every = e.get("first", e.get("every")), e.get("every")
+            raised = e.get("bumps") or range(first, walk.bump.max() + 2, every)
+            moved -= (mm * np.isin(walk.bump + 1, list(raised)) * (1 + np.cos(np.pi * walk.u)) / 2)[:, None] * walk.side
         elif e["id"] == "part.thickness_taper":
             wider += e["thickness_change_um"] / 1000 * end / 4
     walk.xy = walk.xy + moved

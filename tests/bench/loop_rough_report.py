@@ -1,0 +1,324 @@
+"""Tables and the plot of loop_rough.py."""
+
+import os
+
+import numpy as np
+
+from loop_rough_plot import kolmogorov_smirnov, svg_of_p_values
+from loop_scans_report import QUANTITIES, is_scanner, markdown, number, share
+
+# What is asked for, and whether less or more of it is good.
+ASKED = {
+    "claims": ("≤", 1.0), "class": ("≥", 95.0), "wrong": ("≤", 1.0), "exact": ("≥", 95.0), "curves": ("≥", 90.0),
+    "worse": ("≤", 2.0), "floor": ("≤", 1.2), "within": ("between", (93.0, 97.0)), "ranges": ("≥", 95.0),
+    "p": ("≥", 0.01), "one": ("≤", 3.0), "pair": ("≤", 8.0),
+}  # fmt: skip
+SLACK = 1.02  # an error that grew by less has not
+BEYOND = 0.1  # of the median floor: what a change of an error must be to be more than noise
+
+
+def claims(row):
+    return row["verdict"] != "clean"
+
+
+def is_curve(row):
+    return "free." in row["wanted"] or row["wanted"].count("scan.column_step") > 1
+
+
+def right_place(row):
+    """A curve over the coordinate that it lives on; seams also by their row."""
+    if "scan.column_step" in row["wanted"]:
+        said = set(filter(None, row["claims"].split(" + ")))
+        return said == {"scan.column_step"} or (not said and row["unattributed"].startswith("scan.x"))
+    return bool(number(row, "right_coordinate"))
+
+
+def is_right(row):
+    if not row["wanted"]:
+        return not claims(row)
+    return right_place(row) if is_curve(row) else bool(number(row, "in_class"))
+
+
+def wrong(row, tied):
+    return bool(row["claims"]) and not is_right(row) and bool(number(row, "tied")) == tied
+
+
+def told(row):
+    """Named, and nothing is tied with it: the data tell."""
+    return number(row, "named") and not number(row, "tied") and not row["class"]
+
+
+def judged_by(row):
+    """The circles have one truth where nothing but the scanner is wrong; else there is the midline."""
+    return QUANTITIES if is_scanner(row) or not row["wanted"] else ("profile",)
+
+
+def floors(rows):
+    return {q: float(np.median([number(r, q + "_floor_um") for r in rows])) for q in (*QUANTITIES, "profile")}
+
+
+def worse(row, least):
+    after, before = (lambda q: number(row, q + "_after_um")), (lambda q: number(row, q + "_before_um"))
+    return any(after(q) > max(SLACK * before(q), before(q) + BEYOND * least[q]) for q in judged_by(row))
+
+
+def corrected(row):
+    return any(row[q + "_after_um"] != row[q + "_before_um"] for q in QUANTITIES)
+
+
+def over_floor(rows, quantity):
+    own = [number(r, quantity + "_after_um") / max(number(r, quantity + "_floor_um"), 1e-4) for r in rows]
+    return float(np.median(own)) if own else None
+
+
+def mean_of(rows, name):
+    return 100 * float(np.mean([number(r, name) for r in rows])) if rows else None
+
+
+def ranges_held(rows):
+    stated, held = (sum(number(r, f"{q}_{side}") for r in rows for q in QUANTITIES) for side in ("ranges", "ranges_hold"))
+    return 100 * held / stated if stated else None
+
+
+def percent(rows, test):
+    return 100 * float(np.mean([bool(test(r)) for r in rows])) if rows else None
+
+
+def p_values(rows):
+    return sorted(number(r, "p_value") for r in rows if not r["wanted"] and r["p_value"] not in ("", "None"))
+
+
+# --- at a glance --------------------------------------------------------------------------------
+
+
+def measures(rows):
+    """{what: (key in ASKED, value, of how many)} of one renderer's rows."""
+    of = lambda *kinds: [r for r in rows if r["tier"].replace("other-", "") in kinds]
+    clean, named, pairs, curves = of("clean"), of("single", "pair"), of("pair"), of("curve", "odd")
+    fixed = [r for r in rows if r["wanted"] and is_scanner(r) and corrected(r)]
+    sure = [r for r in fixed if told(r)]
+    zero = floors(rows) if rows else {}
+    chance = p_values(rows)
+    seconds = lambda own: float(np.percentile([number(r, "seconds") for r in own], 95)) if own else None
+    result = {
+        "clean inputs with a claim, %": ("claims", percent(clean, claims), len(clean)),
+        "p-values of clean inputs uniform: Kolmogorov-Smirnov's p": (
+            "p", kolmogorov_smirnov(chance)[1] if chance else None, len(chance)),
+        "one effect: in class, %": ("class", percent(named, is_right), len(named)),
+        "one effect: a wrong cause, called `found`, %": ("wrong", percent(named, lambda r: wrong(r, False)), len(named)),
+        "turned pairs: exactly named, %": ("exact", percent(pairs, lambda r: number(r, "named")), len(pairs)),
+        "unlisted curves, seams, single bumps: right place, %": ("curves", percent(curves, is_right), len(curves)),
+        "made worse, %": ("worse", percent(rows, lambda r: worse(r, zero)), len(rows)),
+    }  # fmt: skip
+    for q in QUANTITIES:
+        result[f"{q} after / floor, median, where the data tell"] = ("floor", over_floor(sure, q), len(sure))
+    for q in QUANTITIES:
+        inside = mean_of(fixed, q + "_within_after")
+        result[f"intervals of {q} after a correction that hold, %"] = ("within", inside, len(fixed))
+    tied = [r for r in rows if is_scanner(r)]
+    result["ranges of ties that hold the truth, %"] = ("ranges", ranges_held(tied), len(tied))
+    lone = [r for r in rows if r["layout"] == "single"]
+    turned = [r for r in rows if r["layout"] in ("90", "45")]
+    result["one scan, s (95 % are below)"] = ("one", seconds(lone), len(lone))
+    result["a pair, s (95 % are below)"] = ("pair", seconds(turned), len(turned))
+    return result
+
+
+def asked(key):
+    sign, limit = ASKED[key]
+    return f"{limit[0]:g} to {limit[1]:g}" if sign == "between" else f"{sign} {limit:g}"
+
+
+def verdict_of(key, value):
+    sign, limit = ASKED[key]
+    if value is None:
+        return "–"
+    low, high = {"≤": (-np.inf, limit), "≥": (limit, np.inf), "between": limit}[sign]
+    return "yes" if low <= value <= high else "**no**"
+
+
+def glance_lines(rows):
+    other = lambda r: r["tier"].startswith("other-")
+    own, second = measures([r for r in rows if not other(r)]), measures([r for r in rows if other(r)])
+    table = []
+    for what, (key, value, count) in own.items():
+        cells = [what, asked(key)]
+        for v, n in ((value, count), second[what][1:]):
+            cells += ["–" if v is None else f"{v:.3g} (of {n})", verdict_of(key, v)]
+        table.append(cells)
+    return markdown(["what", "asked", "this renderer", "holds", "second renderer", "holds"], table)
+
+
+# --- tables by tier -----------------------------------------------------------------------------
+
+NAMES = ["inputs", "failed", "claims %", "in class %", "exactly named %", "wrong, `found` %", "wrong, tied %",
+         "unattributed %", "made worse %", "s", "most s"]  # fmt: skip
+
+
+def naming_cells(rows, zero):
+    seconds = [number(r, "seconds") for r in rows]
+    return [
+        len(rows), sum(r["verdict"] == "failed" for r in rows), share(rows, claims), share(rows, is_right),
+        share(rows, lambda r: number(r, "named")), share(rows, lambda r: wrong(r, False)),
+        share(rows, lambda r: wrong(r, True)), share(rows, lambda r: r["unattributed"]),
+        share(rows, lambda r: worse(r, zero)), f"{np.median(seconds):.1f}", f"{max(seconds):.1f}",
+    ]  # fmt: skip
+
+
+def asked_cells():
+    return ["**asked**", "", "", f"clean {asked('claims')}", f"{asked('class')}; curves {asked('curves')}",
+            f"pairs {asked('exact')}", asked("wrong"), "", "", asked("worse"), "",
+            f"{asked('one')}; pair {asked('pair')}"]  # fmt: skip
+
+
+def by_tier(rows, tiers, seed=None):
+    for name, tier in tiers.items():
+        own = [r for r in rows if r["tier"] == name and seed in (None, r["seed"])]
+        if own:
+            yield name, tier.title, own
+
+
+def naming_lines(rows, tiers):
+    table = [asked_cells()]
+    table += [[title, *naming_cells(own, floors(own))] for _, title, own in by_tier(rows, tiers)]
+    return markdown(["tier", *NAMES], table)
+
+
+def seed_lines(rows, tiers):
+    table = []
+    for seed in sorted({r["seed"] for r in rows}):
+        for name, title, own in by_tier(rows, tiers, seed):
+            table.append([seed, title, *naming_cells(own, floors([r for r in rows if r["tier"] == name]))])
+    return markdown(["seed", "tier", *NAMES], table)
+
+
+def effect_lines(rows):
+    """In class, of how many, effect by effect."""
+    kinds = sorted({r["wanted"] for r in rows if r["wanted"] and not is_curve(r)})
+    tiers = ("single", "pair", "other-single", "other-pair")
+    table = []
+    for kind in kinds:
+        cells = [kind]
+        for tier in tiers:
+            own = [r for r in rows if r["wanted"] == kind and r["tier"] == tier]
+            cells.append(f"{sum(is_right(r) for r in own)} of {len(own)}" if own else "–")
+        table.append(cells)
+    return markdown(["effect", "one scan", "pair", "second renderer, one scan", "pair"], table)
+
+
+def error_cells(rows, q):
+    median = lambda side: np.median([number(r, f"{q}_{side}_um") for r in rows])
+    return f"{median('before'):.3g} → {median('after'):.3g}, {median('floor'):.3g}"
+
+
+def error_lines(rows, tiers):
+    table = [["**asked**", "", "", *["", asked("floor")] * 3]]
+    for _, title, group in by_tier(rows, tiers):
+        own = [r for r in group if is_scanner(r)]
+        if not own:
+            continue
+        sure, cells = [r for r in own if told(r)], [title, len(own)]
+        cells.append(sum(map(bool, map(told, own))))
+        for q in QUANTITIES:
+            ratio = over_floor(sure, q)
+            cells += [error_cells(own, q), "–" if ratio is None else f"{ratio:.2f}"]
+        table.append(cells)
+    header = ["tier", "inputs", "told"]
+    for q in QUANTITIES:
+        header += [f"{q}: before → after, floor", f"{q} after / floor, told"]
+    return markdown(header, table)
+
+
+def profile_lines(rows, tiers):
+    table = []
+    for _, title, group in by_tier(rows, tiers):
+        own = [r for r in group if r["wanted"]]
+        if own:
+            right = [r for r in own if is_right(r)]
+            ratio = over_floor(right, "profile")
+            table.append([title, len(own), error_cells(own, "profile"), "–" if ratio is None else f"{ratio:.2f}"])
+    return markdown(["tier", "inputs", "before → after, floor, µm", "after / floor, in class"], table)
+
+
+def interval_lines(rows, tiers):
+    table = [["**asked**", "", *[asked("within")] * 3, "", *[asked("ranges")] * 3]]
+    for _, title, group in by_tier(rows, tiers):
+        own = [r for r in group if is_scanner(r) and corrected(r)]
+        if not own:
+            continue
+        cells = [title, len(own)]
+        for q in QUANTITIES:
+            cells.append(" → ".join(f"{mean_of(own, f'{q}_within_{side}'):.0f}" for side in ("before", "after")))
+        cells.append(sum(number(r, "R0_ranges") > 0 for r in own))
+        for q in QUANTITIES:
+            stated = sum(number(r, q + "_ranges") for r in own)
+            held = sum(number(r, q + "_ranges_hold") for r in own)
+            cells.append(f"{100 * held / stated:.0f} of {stated:.0f}" if stated else "–")
+        table.append(cells)
+    header = ["tier", "corrected inputs", *[f"{q} within U, %" for q in QUANTITIES], "with ranges"]
+    return markdown(header + [f"ranges of {q} that hold, %" for q in QUANTITIES], table)
+
+
+def p_lines(rows):
+    table = []
+    for title, second in (("this renderer", False), ("second renderer", True)):
+        values = p_values([r for r in rows if r["tier"].startswith("other-") == second])
+        if values:
+            d, p = kolmogorov_smirnov(values)
+            below = [f"{100 * np.mean(np.array(values) < level):.1f}" for level in (0.01, 0.05, 0.5)]
+            table.append([title, len(values), f"{d:.3f}", f"{p:.2g}", *below, f"{values[0]:.1g}"])
+    return markdown(["clean inputs", "n", "D", "p", "below 0.01, %", "below 0.05, %", "below 0.5, %", "least"], table)
+
+
+def missed_lines(rows, tiers):
+    table = []
+    for name, _, own in by_tier(rows, tiers):
+        for r in own:
+            if is_right(r):
+                continue
+            said = " + ".join(filter(None, [r["claims"], r["unattributed"] and "unattributed " + r["unattributed"]]))
+            tie = f" ({r['class']})" if r["class"] else ""
+            change = ", ".join(f"{r[q + '_before_um']} → {r[q + '_after_um']}" for q in QUANTITIES)
+            table.append([name, r["seed"], r["index"], r["layout"], r["wanted"] or "nothing",
+                          (said or r["verdict"]) + tie, change])  # fmt: skip
+    return markdown(["tier", "seed", "case", "layout", "there", "said (tied)", "R, h, R0 error, µm"], table)
+
+
+TEXT = """Made by `python3 tests/bench/loop_rough.py build/foilgauge{options}`: {count} inputs of the seeds {seeds}, a row each in
+loop_rough.csv with the effects that were put in. Scatter of 0 to 0.4 px, correlated over 2 to 15 px of the edge (Gaussian or
+exponential), blur 1.4 to 2.4 px; in half of them one-sided blur, in a third each a halo, a side wall, JPEG. The second renderer
+(other_scanner.py) shares nothing with the program's: scatter of 0.15 to 0.35 px over 5 to 11 px, exponential or Matern, a sensor that
+lags along the carriage's way, halo, grain, tone, clipped white, JPEG. Effects are 1.5 times the size that an oracle, which knows their
+form and the noise's covariance, sees at 5 standard errors (a taper of the thickness: 10 µm).
+
+In class: what is there was named, or is one of the explanations that the report says it cannot tell apart. Wrong: something
+is claimed, and what is there is not among the explanations. Told: exactly named, and nothing is tied with it. Floor: the same foils
+and scatter without the effect, measured. Worse: an error (R, h, R0; where the part deviates, that of the midline) is larger after than
+before, by more than 2 % and a tenth of the tier's median floor. Curves: `unattributed` over the right coordinate; seams also as their row."""
+
+
+def write(folder, rows, tiers):
+    seeds = sorted({r["seed"] for r in rows})
+    whole = all(sum(r["tier"] == n and r["seed"] == s for r in rows) >= t.count for n, t in tiers.items() for s in seeds)
+    options = " --all" if "13" in seeds else ""
+    text = TEXT.format(options=options, count=len(rows), seeds=", ".join(seeds))
+    lines = ["# The loop on scans with rough edges", "", text, ""]
+    if not whole:
+        lines += ["**A part of the benchmark: not every tier of every seed is whole.**", ""]
+    lines += ["## What was asked, and what holds", "", *glance_lines(rows)]
+    lines += ["", "## Named", "", *naming_lines(rows, tiers), "", "Effect by effect, in class:", "", *effect_lines(rows)]
+    lines += ["", "## Errors against truth, effects of the scanner", "", "Medians, µm.", "", *error_lines(rows, tiers)]
+    lines += ["", "Distance of the true midline from what is reported, all effects; medians.", "", *profile_lines(rows, tiers)]
+    lines += ["", "## Intervals", "", "Of inputs with an effect of the scanner whose dimensions were corrected: values within U = 2 u of the",
+              "truth, before → after; and how many of the ranges that a tie gives hold the truth.", "", *interval_lines(rows, tiers)]  # fmt: skip
+    lines += ["", "## p-values where nothing is there", "", "That no effect is needed (`p_value` of the report); uniform is right. "
+              "Kolmogorov-Smirnov against uniform.", "", *p_lines(rows), "", "![sorted p-values](loop_rough.svg)"]  # fmt: skip
+    lines += ["", "## Seed by seed", "", *seed_lines(rows, tiers)]
+    lines += ["", "## Every input that is not right", "", *missed_lines(rows, tiers)]
+    with open(os.path.join(folder, "loop_rough.md"), "w", encoding="utf-8") as f:
+        f.write("\n".join(lines) + "\n")
+    own = [(title, p_values([r for r in rows if r["tier"].startswith("other-") == second]))
+           for title, second in (("this renderer", False), ("second renderer", True))]  # fmt: skip
+    with open(os.path.join(folder, "loop_rough.svg"), "w", encoding="utf-8") as f:
+        f.write(svg_of_p_values(own))
+    print("wrote loop_rough.md and .svg")
