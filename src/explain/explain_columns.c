@@ -9,6 +9,10 @@
 
 /* A column whose mean square is less than this beside the geometry is nothing. */
 #define VANISHED 1e-8
+/* What no effect of this size, um, makes larger than so many standard errors is nothing either: of
+ * columns that are nearly the same such remainders follow the noise of their rows' places. */
+#define LARGEST_UM  50.0
+#define SEEN_ERRORS 3.0
 /* A term of which less than this share stands beside the terms before it is one of them. */
 #define DEPENDENT 1e-6
 /* A vector of which less than this share stands beside the basis lies in it: rounding. */
@@ -55,13 +59,14 @@ static void find_support(fg_explain_columns *s, size_t rank) {
 }
 
 /* Adds v to the basis unless it lies in it already, or what it adds has no more than `least`. */
-static bool extend(fg_explain_columns *s, size_t rank, const double *v, double least) {
+static bool extend(fg_explain_columns *s, size_t rank, const double *v, double share,
+                   double least) {
   double *to = s->basis + rank * s->rows, whole = fg_explain_dot(s->rows, v, v);
   if (!(whole > least)) return false;
   memcpy(to, v, s->rows * sizeof *to);
   fg_explain_take_out(s, rank, to);
   double left = fg_explain_dot(s->rows, to, to);
-  if (!(left > fmax(IN_BASIS * whole, least))) return false;
+  if (!(left > fmax(share * whole, least))) return false;
   for (size_t i = 0; i < s->rows; i++)
     to[i] /= sqrt(left);
   find_support(s, rank);
@@ -79,9 +84,22 @@ static size_t weigh(const fg_explain_columns *s, size_t count, double *out) {
   return count;
 }
 
+/* Weighted values of all rows, made independent: those in use. `values` may be the work's. */
+static void whiten(const fg_explain_columns *s, const double *values, double *out) {
+  double *all = s->white;
+  for (size_t i = 0; i < s->points->row_count; i++)
+    all[i] = sqrt(s->points->rows[i].weight / FG_POINTS_BLOCK) * values[i];
+  fg_whitening_apply(&s->whitening, all);
+  for (size_t i = 0; i < s->rows; i++)
+    out[i] = all[s->row[i]];
+}
+
 size_t fg_explain_gather(const fg_explain_columns *s, const fg_effect *effect, const double *shape,
                          double *out) {
-  return weigh(s, fg_effect_columns(s->points, effect, shape, s->work), out);
+  size_t count = fg_effect_columns(s->points, effect, shape, s->work);
+  for (size_t c = 0; c < count; c++)
+    whiten(s, s->work + c * s->points->row_count, out + c * s->rows);
+  return count;
 }
 
 static void fill_products(fg_explain_columns *s, size_t from) {
@@ -125,7 +143,7 @@ size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
         s->left[i] = v[i] + v[i + s->rows];
       v = s->left;
     }
-    if (extend(s, rank, v, VANISHED * (double)s->rows)) rank++;
+    if (extend(s, rank, v, DEPENDENT, s->least)) rank++;
   }
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_explain_take_out(s, rank, s->left);
@@ -134,7 +152,7 @@ size_t fg_explain_columns_span(fg_explain_columns *s, size_t skip, size_t end) {
 
 size_t fg_explain_columns_span_more(fg_explain_columns *s, size_t rank, size_t from, size_t to) {
   for (size_t c = from; c < to; c++)
-    if (extend(s, rank, s->values + c * s->rows, VANISHED * (double)s->rows)) rank++;
+    if (extend(s, rank, s->values + c * s->rows, DEPENDENT, s->least)) rank++;
   memcpy(s->left, s->residual, s->rows * sizeof *s->left);
   fg_explain_take_out(s, rank, s->left);
   return rank;
@@ -176,7 +194,7 @@ double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *term
       right -= lower[n][k] * forward[k];
     }
     if (x) x[a] = 0;
-    if (!(pivot > fmax(DEPENDENT * whole, VANISHED * (double)s->rows))) continue;
+    if (!(pivot > fmax(DEPENDENT * whole, s->least))) continue;
     lower[n][n] = sqrt(pivot);
     forward[n] = right / lower[n][n];
     sum -= forward[n] * forward[n];
@@ -238,7 +256,7 @@ static size_t nuisance(const fg_explain_columns *s, double *out) {
  * basis is borrowed: the caller spans it again. */
 static size_t span_more(fg_explain_columns *s, size_t rank, const double *v, size_t count) {
   for (size_t c = 0; c < count; c++)
-    if (extend(s, rank, v + c * s->rows, 0)) rank++;
+    if (extend(s, rank, v + c * s->rows, IN_BASIS, 0)) rank++;
   return rank;
 }
 
@@ -292,6 +310,8 @@ static fg_status allocate(fg_context *ctx, fg_explain_columns *s) {
   size_t most = s->points->parameters + all;
   FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->first, (void **)&s->first));
   FG_TRY(fg_memory_allocate(ctx, most, sizeof *s->last, (void **)&s->last));
+  FG_TRY(fg_memory_allocate(ctx, s->points->row_count, sizeof *s->white, (void **)&s->white));
+  FG_TRY(fg_whitening_open(ctx, s->points, &s->whitening));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->values));
   FG_TRY(fg_memory_allocate(ctx, all, vector, (void **)&s->strain));
   FG_TRY(fg_memory_allocate(ctx, 1, vector, (void **)&s->residual));
@@ -326,13 +346,11 @@ static void span_geometry(fg_explain_columns *s, const double *residual_um,
                           const double *jacobian) {
   double *column = s->left; /* borrowed */
   for (size_t a = 0; a < s->points->parameters; a++) {
-    for (size_t i = 0; i < s->rows; i++)
-      column[i] = weight_of(s, i) * jacobian[a * s->points->row_count + s->row[i]];
-    if (fg_explain_dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, 0))
+    whiten(s, jacobian + a * s->points->row_count, column);
+    if (fg_explain_dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, IN_BASIS, 0))
       s->geometry_rank++;
   }
-  for (size_t i = 0; i < s->rows; i++)
-    s->residual[i] = weight_of(s, i) * residual_um[s->row[i]];
+  whiten(s, residual_um, s->residual);
   fg_explain_take_out(s, s->geometry_rank, s->residual);
   s->square = fg_explain_dot(s->rows, s->residual, s->residual);
 }
@@ -342,12 +360,16 @@ fg_status fg_explain_columns_open(fg_context *ctx, const fg_points *points,
                                   fg_explain_columns *s) {
   memset(s, 0, sizeof *s);
   s->points = points;
+  const fg_scatter *scatter = &points->scatter;
+  s->integral = scatter->share > 0 ? scatter->integral : 1;
   fg_status status = list_rows(ctx, s);
   if (status == FG_OK) status = allocate(ctx, s);
   if (status != FG_OK) {
     fg_explain_columns_close(s);
     return status;
   }
+  double noise = SEEN_ERRORS * scatter->row_um / LARGEST_UM;
+  s->least = fmax(VANISHED * (double)s->rows, noise * noise * s->integral);
   span_geometry(s, residual_um, jacobian);
   fill_width(s);
   return FG_OK;
@@ -366,5 +388,7 @@ void fg_explain_columns_close(fg_explain_columns *s) {
   free(s->gram);
   free(s->right);
   free(s->work);
+  free(s->white);
+  fg_whitening_close(&s->whitening);
   memset(s, 0, sizeof *s);
 }

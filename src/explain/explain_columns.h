@@ -3,6 +3,7 @@
 #define FG_EXPLAIN_EXPLAIN_COLUMNS_H
 
 #include "explain/explain.h"
+#include "rows/scatter.h"
 
 enum { FG_EXPLAIN_COLUMNS = 256, FG_EXPLAIN_TERMS = 64 };
 
@@ -28,10 +29,14 @@ typedef struct fg_explain_columns {
   double *strain;   /* the same columns in half the width */
   size_t count;
   fg_explain_part part[FG_EXPLAIN_COLUMNS];
-  double *gram;      /* FG_EXPLAIN_COLUMNS²: products of the columns */
-  double *right;     /* products with the residual */
-  double square;     /* of the residual */
+  double *gram;  /* FG_EXPLAIN_COLUMNS²: products of the columns */
+  double *right; /* products with the residual */
+  double square; /* of the residual */
+  fg_whitening whitening;
+  double least;      /* square of a vector that tells anything */
+  double integral;   /* of the correlation that it takes out */
   double *work;      /* FG_EFFECT_COLUMNS_MAX × all rows */
+  double *white;     /* all rows */
   double *left;      /* residual beside everything */
   double *width;     /* half the strip's width, um, without its mean over the part */
   bool has_width;    /* false for discs */

@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "effect/columns.h"
+#include "rows/scatter.h"
 
 enum {
   REFIT_ROUNDS = 12,
@@ -84,6 +85,8 @@ typedef struct refit {
   unknown list[UNKNOWNS_MAX];
   size_t unknowns, parameters;
   double *residual, *jacobian, *design, *work; /* per row */
+  double *white;                               /* residual, weighted and made independent */
+  fg_whitening whitening;
   gsl_matrix *normal;
   gsl_vector *right;
 } refit;
@@ -95,9 +98,25 @@ static const double *column_of(const refit *r, size_t k) {
 
 /* Rows of scans that only confirm fit their own pose, and nothing else of theirs counts. */
 static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
-  const fg_points_row *row = &r->points->rows[i];
-  if (!r->points->views[row->view].aside) return row->weight;
-  return a < r->parameters && b < r->parameters ? row->weight * ASIDE_WEIGHT : 0;
+  if (!r->points->views[r->points->rows[i].view].aside) return FG_POINTS_BLOCK;
+  return a < r->parameters && b < r->parameters ? FG_POINTS_BLOCK * ASIDE_WEIGHT : 0;
+}
+
+static void whiten(const refit *r, double *values) {
+  for (size_t i = 0; i < r->points->row_count; i++)
+    values[i] *= sqrt(r->points->rows[i].weight / FG_POINTS_BLOCK);
+  fg_whitening_apply(&r->whitening, values);
+}
+
+/* Residual and all columns for generalised least squares. */
+static void whiten_all(refit *r) {
+  size_t rows = r->points->row_count;
+  memcpy(r->white, r->residual, rows * sizeof *r->white);
+  whiten(r, r->white);
+  for (size_t k = 0; k < r->parameters; k++)
+    whiten(r, r->jacobian + k * rows);
+  for (size_t k = 0; k < r->unknowns; k++)
+    whiten(r, r->design + k * rows);
 }
 
 static double hold_of(const fg_effect_found *effect, bool shape) {
@@ -126,8 +145,7 @@ static void add_row(refit *r, size_t i) {
   for (size_t a = 0; a < count; a++) /* geometry in mm */
     value[a] = column_of(r, own[a])[i] * (a < geometry ? 1000 : 1);
   for (size_t a = 0; a < count; a++) {
-    *gsl_vector_ptr(r->right, own[a]) +=
-        row_weight(r, i, own[a], own[a]) * value[a] * r->residual[i];
+    *gsl_vector_ptr(r->right, own[a]) += row_weight(r, i, own[a], own[a]) * value[a] * r->white[i];
     for (size_t b = 0; b < count; b++)
       *gsl_matrix_ptr(r->normal, own[a], own[b]) +=
           row_weight(r, i, own[a], own[b]) * value[a] * value[b];
@@ -202,13 +220,12 @@ static double place_u(const fg_points *points, const fg_effect_found *step) {
 static double row_variance(const refit *r) {
   double sum = 0, rows = 0;
   for (size_t i = 0; i < r->points->row_count; i++) {
-    r->work[i] = sqrt(r->points->rows[i].weight) * r->residual[i];
     if (r->points->views[r->points->rows[i].view].aside) continue;
-    sum += r->points->rows[i].weight * r->residual[i] * r->residual[i];
+    sum += FG_POINTS_BLOCK * r->white[i] * r->white[i];
     rows++;
   }
   double freedom = fmax(rows - (double)(r->parameters + r->unknowns), 1);
-  return sum / freedom * fg_points_integral(r->points, NULL, r->points->row_count, r->work);
+  return sum / freedom * fg_points_integral(r->points, NULL, r->points->row_count, r->white);
 }
 
 /* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the
@@ -296,6 +313,8 @@ static fg_status evaluate(fg_context *ctx, refit *r) {
 
 static fg_status allocate(fg_context *ctx, refit *r) {
   size_t rows = r->points->row_count, n = r->parameters + r->unknowns;
+  FG_TRY(fg_whitening_open(ctx, r->points, &r->whitening));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->white));
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&r->residual));
   FG_TRY(fg_memory_allocate(ctx, rows * r->parameters, sizeof(double), (void **)&r->jacobian));
   FG_TRY(fg_memory_allocate(ctx, rows * (r->unknowns + 1), sizeof(double), (void **)&r->design));
@@ -307,6 +326,8 @@ static fg_status allocate(fg_context *ctx, refit *r) {
 }
 
 static void release(refit *r) {
+  fg_whitening_close(&r->whitening);
+  free(r->white);
   free(r->residual);
   free(r->jacobian);
   free(r->design);
@@ -329,12 +350,14 @@ static fg_status run(fg_context *ctx, fg_points *points, fg_effect_set *set, dou
     FG_TRY_EXIT(evaluate(ctx, &r));
     if (!r.unknowns) break;
     effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    whiten_all(&r);
     FG_TRY_EXIT(solve(ctx, &r));
     if (move(&r) < STEP_END_UM) break;
   }
   if (r.unknowns) {
     FG_TRY_EXIT(evaluate(ctx, &r));
     effect_design(points, set, r.list, r.unknowns, r.work, r.design);
+    whiten_all(&r);
     alone = gsl_matrix_alloc(r.parameters, r.parameters);
     if (alone) find_uncertainties(&r, alone);
     if (!alone) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu numbers", r.parameters);

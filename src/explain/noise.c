@@ -14,8 +14,10 @@ double fg_explain_integral(const fg_explain_columns *s) {
   return fg_points_integral(s->points, s->row, s->rows, s->left);
 }
 
+/* A smooth value keeps its size beside correlated noise, which is smaller by the root of its
+ * integral. */
 static double noise_of(const fg_explain_columns *c, size_t rank) {
-  double freedom = fmax((double)c->rows - (double)rank, 1);
+  double freedom = fmax((double)c->rows - (double)rank, 1) * c->integral;
   return fmax(sqrt(fg_explain_dot(c->rows, c->left, c->left) / freedom), NOISE_LEAST_UM);
 }
 
@@ -32,7 +34,7 @@ static void take_noise(fg_explain_search *s, size_t rank) {
   s->full = fg_explain_dot(s->columns.rows, s->columns.left, s->columns.left);
   s->freedom = rank - s->columns.geometry_rank;
   s->out->noise_um = noise_of(&s->columns, rank);
-  s->out->integral = fg_explain_integral(&s->columns);
+  s->out->integral = s->columns.integral * fg_explain_integral(&s->columns);
 }
 
 size_t fg_explain_noise(fg_explain_search *s, bool listed_only) {

@@ -60,6 +60,7 @@ static const fg_explain_policy foils = {
     .beside_curve = 2,
     .curve_share = 0.03, /* reports/loop_scans.md, tier curves */
     .is_worth_fitting = fg_explain_hopes_for_shape,
+    .scatters = true,
     .manners = {{true, false}, {false, false}, {true, true}},
     .manner_count = 3,
     .rest_share = 0.05,

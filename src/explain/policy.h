@@ -52,6 +52,7 @@ struct fg_explain_policy {
   bool smallest_beside_own; /* the least amplitude of an effect is told beside its other columns */
 
   /* ---- search and fit in turns ---- */
+  bool scatters; /* neighbours along an edge share their noise; else what is left says how much */
   fg_explain_manner manners[FG_EXPLAIN_MANNERS_MAX]; /* the next one where the last is not right */
   size_t manner_count;
   double rest_share; /* a set that is not right has come to rest when a round takes no more of what

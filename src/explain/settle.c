@@ -10,6 +10,7 @@
 #include "explain/joint_fit.h"
 #include "explain/outliers.h"
 #include "explain/policy.h"
+#include "rows/scatter.h"
 
 /* Largest change of an overall radius, and largest coefficient, that an effect may have: far beyond
  * the 40 um of reports/loop_scans.md. */
@@ -174,6 +175,7 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
                                         .barred = at->barred,
                                         .look = how.eager || round > 0,
                                         .two_curves = how.two_curves};
+    if (policy->scatters) FG_TRY(fg_points_find_scatter(ctx, points, at->residual_um));
     FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
     fg_explain_take(&at->explanations, 0, &next);

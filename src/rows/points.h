@@ -73,6 +73,17 @@ typedef struct fg_points_pose {
   double turn_rad;    /* 0 in a part's first view */
 } fg_points_pose;
 
+/* Noise along an arc (rows/scatter.h). */
+typedef enum fg_scatter_form { FG_SCATTER_GAUSSIAN, FG_SCATTER_EXPONENTIAL } fg_scatter_form;
+typedef struct fg_scatter {
+  double share; /* of a row's variance that neighbours have in common; 0: rows are independent */
+  double range_mm;
+  fg_scatter_form form;
+  double row_um;   /* standard deviation of a row that is a mean of a whole block */
+  double integral; /* of the correlation along the edge: noise in n rows averages like that in n
+                      over it */
+} fg_scatter;
+
 typedef struct fg_points {
   fg_points_view *views; /* owned */
   fg_points_pose *poses; /* owned; one per view */
@@ -88,6 +99,7 @@ typedef struct fg_points {
   bool coarse;          /* searches are a quick look */
   bool discs;           /* parts are discs: an overall circle each, and nothing else */
   size_t known_count;   /* parts whose radius is known */
+  fg_scatter scatter;   /* as it was found last */
 } fg_points;
 
 /* Rows and a start of the geometry from measured foils. Views of one part must have the same bumps

@@ -1,0 +1,306 @@
+/* The rows' noise by restricted likelihood: what every arc holds beside polynomials along it. */
+#include "rows/scatter.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/spread.h"
+
+/* The scatter of edges is correlated over 0.02 to 0.1 mm of arc on real flatbeds (reports/real);
+ * a little more on either side keeps an estimate from sticking to the bound. */
+#define RANGE_LEAST_MM 0.01
+#define RANGE_MOST_MM  0.12
+#define SHARE_MOST     0.8
+/* Rows are independent unless a correlation is likelier by this: chi² of two numbers, 1 in 20. */
+#define GAIN_LEAST 6.0
+/* Polynomials along an arc: one per so much of it, which leaves what is shorter; their number; rows
+ * for each of them. */
+#define POLYNOMIAL_MM  0.45
+enum { POLYNOMIALS_LEAST = 6, POLYNOMIALS_MOST = 16, ROWS_EACH = 4 };
+/* Arcs whose square is so many standard errors above the median one hold something else: a step,
+ * dirt. So many in all may. */
+#define ARC_SIGMAS 5.0
+#define ARCS_MOST  0.25
+/* Steps of the climb: of the range and of the share's odds; halved so often. */
+#define STEP_START 1.5
+enum { HALVINGS = 4, CLIMBS = 40 };
+
+typedef struct arc {
+  size_t from, to, rows, polynomials;
+  bool out; /* holds something else */
+  double square, freedom;
+} arc;
+
+typedef struct search {
+  fg_context *ctx;
+  fg_points *points;
+  const double *weighted; /* residual */
+  double *polynomials;    /* POLYNOMIALS_MOST × rows, weighted */
+  double *left, *columns; /* the same, whitened */
+  arc *arcs;
+  size_t arc_count;
+} search;
+
+static bool same_arc(const fg_points *points, size_t a, size_t b) {
+  const fg_points_row *p = &points->rows[a], *q = &points->rows[b];
+  return p->view == q->view && p->group == q->group;
+}
+
+static fg_status list_arcs(search *s) {
+  const fg_points *points = s->points;
+  FG_TRY(fg_memory_allocate(s->ctx, points->row_count, sizeof *s->arcs, (void **)&s->arcs));
+  for (size_t from = 0, to; from < points->row_count; from = to) {
+    arc *a = &s->arcs[s->arc_count];
+    *a = (arc){.from = from};
+    for (to = from; to < points->row_count && same_arc(points, from, to); to++)
+      a->rows += points->rows[to].weight > 0;
+    a->to = to;
+    double length = fabs(points->rows[to - 1].s_mm - points->rows[from].s_mm) / POLYNOMIAL_MM;
+    a->polynomials = (size_t)fmax(POLYNOMIALS_LEAST, fmin(POLYNOMIALS_MOST, round(length)));
+    if (a->rows >= ROWS_EACH * a->polynomials) s->arc_count++;
+  }
+  return FG_OK;
+}
+
+/* Chebyshev's along each arc. */
+static void fill_polynomials(search *s) {
+  size_t rows = s->points->row_count;
+  for (size_t k = 0; k < s->arc_count; k++) {
+    const arc *a = &s->arcs[k];
+    double low = s->points->rows[a->from].s_mm, high = s->points->rows[a->to - 1].s_mm;
+    for (size_t i = a->from; i < a->to; i++) {
+      const fg_points_row *row = &s->points->rows[i];
+      double x = acos(fmax(-1, fmin(1, 2 * (row->s_mm - low) / (high - low) - 1)));
+      double weight = sqrt(row->weight / FG_POINTS_BLOCK);
+      for (size_t p = 0; p < a->polynomials; p++)
+        s->polynomials[p * rows + i] = weight * cos((double)p * x);
+    }
+  }
+}
+
+static double dot(const double *a, const double *b, size_t n) {
+  double sum = 0;
+  for (size_t i = 0; i < n; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+/* Takes the polynomials out of one arc; returns ln of the determinant of their products. */
+static double take_out(search *s, arc *a) {
+  size_t rows = s->points->row_count, n = a->to - a->from;
+  double determinant = 0, *left = s->left + a->from;
+  a->freedom = (double)a->rows;
+  for (size_t p = 0; p < a->polynomials; p++) {
+    double *own = s->columns + p * rows + a->from, square = dot(own, own, n);
+    for (size_t q = 0; q < p; q++) {
+      const double *before = s->columns + q * rows + a->from;
+      double along = dot(own, before, n);
+      for (size_t i = 0; i < n; i++)
+        own[i] -= along * before[i];
+    }
+    double rest = dot(own, own, n);
+    if (!(rest > 1e-12 * square)) { /* rounding: it lies in those before it */
+      memset(own, 0, n * sizeof *own);
+      continue;
+    }
+    determinant += log(rest);
+    a->freedom--;
+    for (size_t i = 0; i < n; i++)
+      own[i] /= sqrt(rest);
+    double along = dot(own, left, n);
+    for (size_t i = 0; i < n; i++)
+      left[i] -= along * own[i];
+  }
+  a->square = dot(left, left, n);
+  return determinant;
+}
+
+/* -2 ln of the restricted likelihood but for a constant; a row's variance takes its best value. */
+static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
+  size_t rows = s->points->row_count;
+  fg_whitening whitening;
+  double square = 0, freedom = 0, determinants = 0;
+  s->points->scatter = *scatter;
+  FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
+  memcpy(s->left, s->weighted, rows * sizeof *s->left);
+  memcpy(s->columns, s->polynomials, POLYNOMIALS_MOST * rows * sizeof *s->columns);
+  fg_whitening_apply(&whitening, s->left);
+  for (size_t p = 0; p < POLYNOMIALS_MOST; p++)
+    fg_whitening_apply(&whitening, s->columns + p * rows);
+  for (size_t k = 0; k < s->arc_count; k++) {
+    arc *a = &s->arcs[k];
+    double determinant = take_out(s, a);
+    if (a->out) continue;
+    for (size_t i = a->from; whitening.band && i < a->to; i++)
+      if (whitening.used[i]) determinant -= 2 * log(whitening.scale[i]);
+    determinants += determinant;
+    square += a->square;
+    freedom += a->freedom;
+  }
+  fg_whitening_close(&whitening);
+  *value = square > 0 ? freedom * log(square / freedom) + determinants : INFINITY;
+  s->points->scatter.row_um = sqrt(square / fmax(freedom, 1));
+  return FG_OK;
+}
+
+typedef struct trial {
+  fg_scatter scatter;
+  double deviance;
+} trial;
+
+static fg_status try_one(search *s, fg_scatter scatter, trial *best, bool *better) {
+  double value;
+  *better = false;
+  scatter.integral = 1;
+  if (scatter.range_mm < RANGE_LEAST_MM || scatter.range_mm > RANGE_MOST_MM) return FG_OK;
+  if (scatter.share > SHARE_MOST) return FG_OK;
+  FG_TRY(deviance(s, &scatter, &value));
+  if (!(value < best->deviance)) return FG_OK;
+  *best = (trial){s->points->scatter, value};
+  *better = true;
+  return FG_OK;
+}
+
+static fg_status try_grid(search *s, trial *best) {
+  static const double ranges[] = {0.015, 0.025, 0.04, 0.065, 0.1};
+  static const double shares[] = {0.15, 0.4, 0.7, 0.9};
+  bool better;
+  for (int form = FG_SCATTER_GAUSSIAN; form <= FG_SCATTER_EXPONENTIAL; form++)
+    for (size_t r = 0; r < sizeof ranges / sizeof *ranges; r++)
+      for (size_t k = 0; k < sizeof shares / sizeof *shares; k++)
+        FG_TRY(try_one(
+            s,
+            (fg_scatter){.share = shares[k], .range_mm = ranges[r], .form = (fg_scatter_form)form},
+            best, &better));
+  return FG_OK;
+}
+
+static double share_of_odds(double odds) {
+  return odds / (1 + odds);
+}
+
+/* Range and odds of the share up and down, each by itself and both at once, in ever smaller steps.
+ */
+static fg_status climb(search *s, trial *best) {
+  double step = STEP_START;
+  for (int halving = 0, tries = 0; halving < HALVINGS && tries < CLIMBS; tries++) {
+    const fg_scatter from = best->scatter;
+    double odds = from.share / (1 - from.share);
+    bool any = false, better;
+    for (int direction = 0; direction < 8; direction++) {
+      static const int way[8][2] = {{1, 0}, {-1, 0},  {0, 1},  {0, -1},
+                                    {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
+      fg_scatter to = from;
+      to.range_mm *= pow(step, way[direction][0]);
+      to.share = share_of_odds(odds * pow(step, 2 * way[direction][1]));
+      FG_TRY(try_one(s, to, best, &better));
+      any = any || better;
+    }
+    if (any) continue;
+    step = sqrt(step);
+    halving++;
+  }
+  return FG_OK;
+}
+
+/* The first time over a grid, later from where it was. */
+static fg_status find(search *s, fg_scatter from, trial *best) {
+  bool better;
+  fg_scatter none = {.integral = 1};
+  best->deviance = INFINITY;
+  FG_TRY(deviance(s, &none, &best->deviance));
+  double white = best->deviance;
+  best->scatter = s->points->scatter;
+  trial correlated = {.deviance = INFINITY};
+  if (from.share > 0)
+    FG_TRY(try_one(s, from, &correlated, &better));
+  else
+    FG_TRY(try_grid(s, &correlated));
+  FG_TRY(climb(s, &correlated));
+  if (white - correlated.deviance > GAIN_LEAST) *best = correlated;
+  return FG_OK;
+}
+
+static int compare(const void *a, const void *b) {
+  double p = *(const double *)a, q = *(const double *)b;
+  return (p > q) - (p < q);
+}
+
+/* Leaves arcs out that hold more than noise; returns how many. */
+static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
+  double value, *each = NULL;
+  *out = 0;
+  FG_TRY(deviance(s, scatter, &value));
+  FG_TRY(fg_memory_allocate(s->ctx, s->arc_count, sizeof *each, (void **)&each));
+  for (size_t k = 0; k < s->arc_count; k++)
+    each[k] = s->arcs[k].square / fmax(s->arcs[k].freedom, 1);
+  qsort(each, s->arc_count, sizeof *each, compare);
+  double median = each[s->arc_count / 2],
+         most = each[(size_t)((1 - ARCS_MOST) * (double)s->arc_count)];
+  free(each);
+  for (size_t k = 0; k < s->arc_count; k++) {
+    arc *a = &s->arcs[k];
+    double mean = a->square / fmax(a->freedom, 1);
+    a->out = mean > median * (1 + ARC_SIGMAS * sqrt(2 / fmax(a->freedom, 1))) && mean > most;
+    *out += a->out;
+  }
+  return FG_OK;
+}
+
+static double spacing_of(const fg_points *points) {
+  double sum = 0, n = 0;
+  for (size_t i = 1; i < points->row_count; i++) {
+    if (!same_arc(points, i - 1, i)) continue;
+    sum += fabs(points->rows[i].s_mm - points->rows[i - 1].s_mm);
+    n++;
+  }
+  return n > 0 ? sum / n : 1;
+}
+
+static double integral_of(const fg_points *points, const fg_scatter *s) {
+  double spacing = spacing_of(points), sum = 1;
+  for (int lag = 1; lag * spacing < 10 * s->range_mm; lag++) {
+    double d = lag * spacing / s->range_mm;
+    sum += 2 * s->share * exp(s->form == FG_SCATTER_GAUSSIAN ? -d * d : -d);
+  }
+  return sum;
+}
+
+static fg_status open(search *s) {
+  size_t rows = s->points->row_count, columns = POLYNOMIALS_MOST * rows;
+  FG_TRY(list_arcs(s));
+  FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->polynomials));
+  FG_TRY(fg_memory_allocate(s->ctx, columns, sizeof(double), (void **)&s->columns));
+  FG_TRY(fg_memory_allocate(s->ctx, rows, sizeof(double), (void **)&s->left));
+  fill_polynomials(s);
+  return FG_OK;
+}
+
+fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um) {
+  search s = {.ctx = ctx, .points = points};
+  fg_scatter from = points->scatter;
+  trial best = {.scatter = {.integral = 1}};
+  double *weighted = NULL;
+  size_t out;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *weighted, (void **)&weighted));
+  for (size_t i = 0; i < points->row_count; i++)
+    weighted[i] = residual_um[i] * sqrt(points->rows[i].weight / FG_POINTS_BLOCK);
+  s.weighted = weighted;
+  FG_TRY_EXIT(open(&s));
+  if (!s.arc_count) goto exit;
+  FG_TRY_EXIT(find(&s, from, &best));
+  FG_TRY_EXIT(leave_out(&s, &best.scatter, &out));
+  if (out) FG_TRY_EXIT(find(&s, best.scatter, &best));
+  best.scatter.integral = integral_of(points, &best.scatter);
+exit:
+  points->scatter = status == FG_OK ? best.scatter : from;
+  free(weighted);
+  free(s.arcs);
+  free(s.polynomials);
+  free(s.columns);
+  free(s.left);
+  return status;
+}

@@ -1,0 +1,170 @@
+/* Rows with correlated noise made independent: banded Cholesky of a Gaussian correlation, the
+ * innovations of a Kalman filter for an exponential one, which is that of a state with one step of
+ * memory. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "rows/scatter.h"
+
+/* A Gaussian correlation over more ranges than this is none: exp(-9) = 1e-4. */
+#define BAND_RANGES 3.0
+/* The least that a row holds beside those before it, of its own variance. */
+#define PIVOT_LEAST 1e-4
+
+static bool starts_arc(const fg_points *points, size_t i) {
+  const fg_points_row *row = &points->rows[i];
+  return i == 0 || row->view != row[-1].view || row->group != row[-1].group;
+}
+
+static double distance(const fg_points *points, size_t a, size_t b) {
+  return fabs(points->rows[a].s_mm - points->rows[b].s_mm);
+}
+
+/* The most rows that lie within a length of one. */
+static size_t rows_within(const fg_points *points, double length_mm) {
+  size_t most = 1;
+  for (size_t i = 0, from = 0; i < points->row_count; i++) {
+    if (starts_arc(points, i)) from = i;
+    while (distance(points, i, from) > length_mm)
+      from++;
+    most = i - from > most ? i - from : most;
+  }
+  return most;
+}
+
+/* Row i of the banded factor, from the rows of it before; `lower` is `band` + 1 wide, the diagonal
+ * first. */
+static void factor_row(const fg_points *points, const fg_whitening *w, size_t i, size_t start,
+                       double *lower) {
+  const fg_scatter *s = &points->scatter;
+  size_t width = w->band + 1, reach = i - start < w->band ? i - start : w->band;
+  double *own = lower + i * width, square = 1;
+  for (size_t k = reach; k > 0; k--) { /* with row i - k */
+    const double *other = own - k * width;
+    double d = distance(points, i, i - k) / s->range_mm, sum = s->share * exp(-d * d);
+    if (!w->used[i - k]) continue;
+    for (size_t m = k + 1; m <= reach && m - k <= w->band; m++)
+      sum -= own[m] * other[m - k];
+    own[k] = sum / other[0];
+    square -= own[k] * own[k];
+  }
+  own[0] = sqrt(fmax(square, PIVOT_LEAST));
+}
+
+static fg_status factor(fg_context *ctx, const fg_points *points, fg_whitening *w) {
+  size_t width = w->band + 1, start = 0;
+  double *lower = NULL;
+  FG_TRY(fg_memory_allocate(ctx, w->rows * width, sizeof *lower, (void **)&lower));
+  for (size_t i = 0; i < w->rows; i++) {
+    if (w->first[i]) start = i;
+    if (!w->used[i]) continue;
+    factor_row(points, w, i, start, lower);
+    w->scale[i] = 1 / lower[i * width];
+    w->log_determinant += 2 * log(lower[i * width]);
+    memcpy(w->before + i * w->band, lower + i * width + 1, w->band * sizeof *lower);
+  }
+  free(lower);
+  return FG_OK;
+}
+
+/* Per row: what of the state is left from the row before, and what of an innovation enters it. */
+static void filter(const fg_points *points, fg_whitening *w) {
+  const fg_scatter *s = &points->scatter;
+  double known = s->share; /* variance of the state */
+  size_t last = 0;
+  for (size_t i = 0; i < w->rows; i++) {
+    if (w->first[i]) last = w->rows;
+    if (!w->used[i]) continue;
+    double keep = last < w->rows ? exp(-distance(points, i, last) / s->range_mm) : 0;
+    known = keep * keep * known + (1 - keep * keep) * s->share;
+    double square = known + 1 - s->share, gain = known / square;
+    known *= 1 - gain;
+    w->before[2 * i] = keep;
+    w->before[2 * i + 1] = gain;
+    w->scale[i] = 1 / sqrt(square);
+    w->log_determinant += log(square);
+    last = i;
+  }
+}
+
+static fg_status allocate(fg_context *ctx, const fg_points *points, fg_whitening *w) {
+  const fg_scatter *s = &points->scatter;
+  w->rows = points->row_count;
+  w->exponential = s->form == FG_SCATTER_EXPONENTIAL;
+  w->band = w->exponential ? 2 : rows_within(points, BAND_RANGES * s->range_mm);
+  FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->used, (void **)&w->used));
+  FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->first, (void **)&w->first));
+  FG_TRY(fg_memory_allocate(ctx, w->rows, sizeof *w->scale, (void **)&w->scale));
+  return fg_memory_allocate(ctx, w->rows * w->band, sizeof *w->before, (void **)&w->before);
+}
+
+fg_status fg_whitening_open(fg_context *ctx, const fg_points *points, fg_whitening *w) {
+  *w = (fg_whitening){.rows = points->row_count};
+  if (!(points->scatter.share > 0) || !points->row_count) return FG_OK;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(allocate(ctx, points, w));
+  for (size_t i = 0; i < w->rows; i++) {
+    w->used[i] = points->rows[i].weight > 0;
+    w->first[i] = starts_arc(points, i);
+  }
+  if (w->exponential)
+    filter(points, w);
+  else
+    FG_TRY_EXIT(factor(ctx, points, w));
+  double size = sqrt(points->scatter.integral); /* smooth values keep theirs */
+  for (size_t i = 0; i < w->rows; i++)
+    w->scale[i] *= size;
+  w->unit = 1 / size;
+exit:
+  if (status != FG_OK) fg_whitening_close(w);
+  return status;
+}
+
+void fg_whitening_close(fg_whitening *w) {
+  free(w->used);
+  free(w->first);
+  free(w->scale);
+  free(w->before);
+  *w = (fg_whitening){.rows = 0};
+}
+
+static void apply_factor(const fg_whitening *w, double *v) {
+  for (size_t i = 0, start = 0; i < w->rows; i++) {
+    if (w->first[i]) start = i;
+    if (!w->used[i]) {
+      v[i] = 0;
+      continue;
+    }
+    const double *before = w->before + i * w->band;
+    size_t reach = i - start < w->band ? i - start : w->band;
+    double sum = 0;
+    for (size_t k = 1; k <= reach; k++)
+      sum += before[k - 1] * v[i - k];
+    v[i] = (v[i] - sum * w->unit) * w->scale[i];
+  }
+}
+
+static void apply_filter(const fg_whitening *w, double *v) {
+  double state = 0;
+  for (size_t i = 0; i < w->rows; i++) {
+    if (w->first[i]) state = 0;
+    if (!w->used[i]) {
+      v[i] = 0;
+      continue;
+    }
+    state *= w->before[2 * i];
+    double innovation = v[i] - state;
+    state += w->before[2 * i + 1] * innovation;
+    v[i] = innovation * w->scale[i];
+  }
+}
+
+void fg_whitening_apply(const fg_whitening *w, double *values) {
+  if (!w->band) return;
+  if (w->exponential)
+    apply_filter(w, values);
+  else
+    apply_factor(w, values);
+}
