@@ -26,7 +26,7 @@ import numpy as np
 
 from loop_cases import GEN2, draw_foil, log_uniform, place
 from loop_foil import natural_spline
-from other_strip import bump_of, coverage, outline_of
+from other_strip import bump_of, coverage, disc_outline, outline_of
 
 STEP_PX = 0.25
 BAND = 128  # rows; whole blocks of JPEG
@@ -129,6 +129,8 @@ def outlines_of(spec, rng):
                 inner = np.degrees(np.arctan2(-normal[:, 1], -normal[:, 0]))
                 outline = outline - natural_spline(e["knots"], inner, 360.0)[:, None] / 1000 * normal
         yield outline + np.array(foil["centre_mm"])
+    for disc in spec.get("discs", []):
+        yield disc_outline(rng, disc, edges, STEP_PX * mm_per_px)
 
 
 def filter_along(picture, kernel, axis):

@@ -153,6 +153,14 @@ def outline_of(rng, foil, effects, edges, step_mm):
     return outline @ turn, normal @ turn
 
 
+def disc_outline(rng, disc, edges, step_mm):
+    """A pin's outline (mm): its one edge has both scatters. Closed over a seam that no correlation crosses."""
+    angle = np.linspace(0, 2 * np.pi, max(16, int(2 * np.pi * disc["radius_mm"] / step_mm)), endpoint=False)
+    draw = lambda: scatter(rng, len(angle), step_mm, edges["correlation_mm"], edges["form"])
+    radius = disc["radius_mm"] + edges["common_mm"] * draw() + edges["own_mm"] * draw()
+    return np.array(disc["centre_mm"]) + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
 def cut(points):
     """Pieces of a closed polygon's sides, cut where they cross whole x or y; sides are shorter than a pixel."""
     ends = np.roll(points, -1, axis=0)
