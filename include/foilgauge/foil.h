@@ -41,6 +41,10 @@ typedef enum fg_foil_flag {
   FG_FOIL_UNEQUAL_RESOLUTION = 1u << 14, /* "unequal_resolution": of x and y */
   /* "beyond_model_region": it reaches beyond where the scanner's model was found */
   FG_FOIL_BEYOND_MODEL_REGION = 1u << 20,
+  /* A correction that does not pay was left out, see `choice`. */
+  FG_FOIL_OVERALL_RADIUS_LEFT = 1u << 21, /* "overall_radius_not_corrected" */
+  FG_FOIL_RADIUS_LEFT = 1u << 22,         /* "radius_not_corrected" */
+  FG_FOIL_HEIGHT_LEFT = 1u << 23,         /* "height_not_corrected" */
 } fg_foil_flag;
 
 typedef enum fg_bump_flag {
@@ -128,6 +132,31 @@ typedef struct fg_correction {
   double height_mm, u_height_mm;
 } fg_correction;
 
+/* Dimensions that a correction is decided about, each over all bumps of a foil: whether it lowers
+ * the expected error (src/scan_loop/pays.h). What else is reported follows from them. */
+typedef enum fg_corrected {
+  FG_CORRECTED_OVERALL_RADIUS,
+  FG_CORRECTED_RADIUS,
+  FG_CORRECTED_HEIGHT,
+  FG_CORRECTED
+} fg_corrected;
+
+typedef enum fg_correction_reason {
+  FG_CORRECTION_NONE,     /* there was none */
+  FG_CORRECTION_PAYS,     /* it removes more error than it adds */
+  FG_CORRECTION_SMALL,    /* far below the value's own u: it goes with the others */
+  FG_CORRECTION_DOUBTFUL, /* it would add more error than it removes */
+  FG_CORRECTION_TIED,     /* explanations that cannot be told apart do not agree about it */
+  FG_CORRECTION_LOST,     /* the corrected edges do not show the same bumps */
+} fg_correction_reason;
+
+/* What a correction would do, rms over the bumps (R0: with its sign), and what came of it. */
+typedef struct fg_correction_choice {
+  fg_correction_reason reason;
+  bool moved;
+  double move_mm, u_move_mm;
+} fg_correction_choice;
+
 typedef enum fg_orientation {
   FG_CLOCKWISE, /* bump numbers rise clockwise as the scan is seen */
   FG_COUNTERCLOCKWISE,
@@ -150,6 +179,8 @@ typedef struct fg_foil {
   double correlation_mm;    /* integral length of their autocorrelation along the strip */
   double edge_model_um;     /* systematic part: what half-width variation says */
   fg_correction correction; /* by a scanner's model */
+  /* By a scanner's model or a loop: what was moved, and what was left as measured. */
+  fg_correction_choice choice[FG_CORRECTED];
 } fg_foil;
 
 /* One station of the turn around a round feature; equal steps of direction. Lengths in mm. */
@@ -183,6 +214,7 @@ typedef struct fg_disc {
   float *residual_um; /* owned; radial, outwards positive */
   /* As in fg_correction. */
   double radius_correction_mm, u_radius_correction_mm;
+  fg_correction_choice choice; /* over all discs of the scan: of the radius */
   /* Lowest and highest radius over explanations that a loop could not tell apart; both 0: none. */
   double radius_range_mm[2];
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */

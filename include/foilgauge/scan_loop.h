@@ -82,8 +82,9 @@ bool fg_scanner_model_is_tied(const fg_scanner_model *model);
 /* FG_ERR_DATA unless the model is of the scanner of that name; NULL: any. */
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,
                                          const char *path, const char *scanner);
-/* Corrects the edges of every foil and measures it again, with the model's uncertainty in every
- * u_, and in a tie with how far the other explanations would have moved it. FG_ERR_DATA when the
+/* Corrects the edges of every foil and measures it again; of R0, R and h what that does not make
+ * better stays as it was (`choice` of fg_foil). The model's uncertainty is in every u_, and in a
+ * tie how far from it each explanation would have put the value. FG_ERR_DATA when the
  * model is of another resolution, or a foil lies more than twice as far on the glass as what the
  * model was found on; `warning` (200 bytes, or NULL) gets words when it lies outside at all. Part
  * effects are of the foil they were found on and are not applied. What it did is in `correction` of

@@ -63,6 +63,28 @@ static const fg_lot_quantity *leading_quantity(const fg_lot_analysis *analysis) 
   return fg_lot_find_quantity(analysis, "height_mm");
 }
 
+/* What the model does not know well enough to correct. */
+static void put_left(FILE *out, const fg_lot_analysis *analysis) {
+  static const struct {
+    unsigned flag;
+    const char *words, *name;
+  } kinds[] = {
+      {FG_FOIL_OVERALL_RADIUS_LEFT, "overall radius R0", "overall_radius_not_corrected"},
+      {FG_FOIL_RADIUS_LEFT, "bump radii R", "radius_not_corrected"},
+      {FG_FOIL_HEIGHT_LEFT, "bump heights h", "height_not_corrected"},
+  };
+  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+    size_t left = 0;
+    for (size_t i = 0; i < analysis->foil_count; i++)
+      left += (analysis->foils[i].foil->flags & kinds[k].flag) != 0;
+    if (left)
+      fprintf(out,
+              "<ul class=\"flags\"><li>The %s of %zu of %zu foils are left as measured: the model "
+              "would add more error than it removes (flag %s in foils.csv).</li></ul>\n",
+              kinds[k].words, left, analysis->foil_count, kinds[k].name);
+  }
+}
+
 /* By what, what it did at most, and how many foils it was not made for. */
 static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
@@ -80,6 +102,7 @@ static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis
         "model was found in: there the correction is not known to hold (flag "
         "beyond_model_region in foils.csv).</li></ul>\n",
         beyond, analysis->foil_count);
+  put_left(out, analysis);
   return FG_OK;
 }
 

@@ -37,6 +37,15 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_BEYOND_MODEL_REGION, "beyond_model_region",
      "It reaches beyond the region that the scanner's model was found in: there the correction is "
      "not known to hold."},
+    {FG_FOIL_OVERALL_RADIUS_LEFT, "overall_radius_not_corrected",
+     "The overall radius is left as measured: what would correct it is not known well enough to "
+     "make it better."},
+    {FG_FOIL_RADIUS_LEFT, "radius_not_corrected",
+     "The bump radii are left as measured: what would correct them is not known well enough to "
+     "make them better."},
+    {FG_FOIL_HEIGHT_LEFT, "height_not_corrected",
+     "The bump heights are left as measured: what would correct them is not known well enough to "
+     "make them better."},
     {0, NULL, NULL},
 };
 

@@ -64,19 +64,24 @@ static void widen_all(fg_scan_loop *loop, const fg_measurement *measurements) {
         widen_ranges(&measurements[i], loop->ranges[k], f);
 }
 
-/* The corrected foils carry their ranges. */
-static void put_ranges(fg_scan_loop *loop) {
+void fg_scan_loop_put_ranges(fg_scan_loop *loop) {
   for (size_t i = 0, k = 0; i < loop->scan_count; i++)
     for (size_t f = 0; f < loop->before[i].foil_count; f++, k++) {
       if (f >= loop->after[i].foil_count) continue;
       fg_foil *foil = &loop->after[i].foils[f];
       size_t count = loop->before[i].foils[f].bump_count;
       for (size_t b = 0; b < foil->bump_count && foil->bump_count == count; b++) {
+        widen(loop->ranges[k][b].radius_mm, foil->bumps[b].radius_mm);
+        widen(loop->ranges[k][b].height_mm, foil->bumps[b].height_mm);
         memcpy(foil->bumps[b].radius_range_mm, loop->ranges[k][b].radius_mm, 2 * sizeof(double));
         memcpy(foil->bumps[b].height_range_mm, loop->ranges[k][b].height_mm, 2 * sizeof(double));
       }
+      widen(loop->ranges[k][count].radius_mm, foil->overall.radius_mm);
       memcpy(foil->overall.radius_range_mm, loop->ranges[k][count].radius_mm, 2 * sizeof(double));
     }
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t d = 0; d < loop->after[i].disc_count; d++)
+      widen(loop->after[i].discs[d].radius_range_mm, loop->after[i].discs[d].radius_mm);
 }
 
 /* A step that may lie elsewhere: its place is known to the interval's uniform distribution. */
@@ -103,6 +108,7 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
   loop->tie[loop->tie_count++] = fit.set;
   status = fg_scan_loop_correct_all(ctx, loop, &fit, tried);
   if (status == FG_OK) widen_all(loop, tried);
+  if (status == FG_OK) status = fg_scan_loop_take_moves(ctx, loop, &fit, tried);
   for (size_t i = 0; i < loop->scan_count; i++)
     fg_measurement_free(&tried[i]);
   fg_joint_fit_close(&fit);
@@ -118,7 +124,6 @@ fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop) {
   for (size_t m = 1; m < loop->explanations.count && status == FG_OK; m++)
     status = widen_by(ctx, loop, m, tried);
   free(tried);
-  put_ranges(loop);
   /* The geometry in force is the winner's again. */
   if (status == FG_OK) status = fg_joint_fit(ctx, &loop->points, &loop->set, NULL);
   for (size_t k = 0; k < loop->tie_count; k++)

@@ -153,6 +153,8 @@ static fg_status correct(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_joint_fit_open(ctx, &loop->points, &loop->set, &fit));
   loop->set = fit.set;
   fg_status status = fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
+  if (status == FG_OK && fit.set.count)
+    status = fg_scan_loop_take_moves(ctx, loop, &fit, loop->after);
   fg_joint_fit_close(&fit);
   return status;
 }
@@ -170,6 +172,8 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   loop->tied = loop->explanations.count > 1;
   FG_TRY(correct(ctx, loop));
   if (loop->tied) FG_TRY(fg_scan_loop_find_ranges(ctx, loop));
+  FG_TRY(fg_scan_loop_keep_what_pays(ctx, loop));
+  if (loop->tied) fg_scan_loop_put_ranges(loop);
   FG_TRY(search_bumps(ctx, loop));
   FG_TRY(fg_explain_width(ctx, &loop->points, &loop->set, &loop->width));
   loop->verdict = fg_scan_loop_outcome(loop);
@@ -241,6 +245,9 @@ void fg_scan_loop_free(fg_scan_loop *loop) {
   for (size_t k = 0; loop->ranges && k < foils; k++)
     free(loop->ranges[k]);
   free(loop->ranges);
+  for (size_t i = 0; loop->pays && i < loop->scan_count; i++)
+    fg_pays_close(&loop->pays[i]);
+  free(loop->pays);
   for (size_t i = 0; i < loop->scan_count; i++) {
     if (loop->before) fg_measurement_free(&loop->before[i]);
     if (loop->after) fg_measurement_free(&loop->after[i]);

@@ -90,8 +90,13 @@ static double added(double u, double own) {
   return sqrt(fmax(0, u * u - own * own));
 }
 
-/* `own`: as measured again, before the model's doubt. */
-static void sum_up_foil(const fg_foil *before, const fg_foil *own, fg_foil *foil) {
+static bool is_left(const fg_correction_choice choice[FG_CORRECTED]) {
+  return !fg_pay_is_moved(choice) && choice[FG_CORRECTED_RADIUS].reason != FG_CORRECTION_NONE;
+}
+
+/* `corrected`: as measured again, before the model's doubt. */
+static void sum_up_foil(const fg_foil *before, const fg_foil *corrected, fg_foil *foil) {
+  const fg_foil *own = is_left(foil->choice) ? before : corrected;
   fg_correction *c = &foil->correction;
   *c = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
   if (foil->flags & FG_FOIL_NOT_MEASURED) return;
@@ -107,13 +112,18 @@ static void sum_up_foil(const fg_foil *before, const fg_foil *own, fg_foil *foil
   }
 }
 
+static bool is_left_disc(const fg_correction_choice *choice) {
+  return !choice->moved && choice->reason != FG_CORRECTION_NONE;
+}
+
 static void sum_up(const fg_measurement *before, const fg_measurement *own, fg_measurement *m) {
   for (size_t f = 0; f < m->foil_count; f++)
     sum_up_foil(&before->foils[f], &own->foils[f], &m->foils[f]);
   for (size_t d = 0; d < m->disc_count; d++) {
     fg_disc *disc = &m->discs[d];
     disc->radius_correction_mm = disc->radius_mm - before->discs[d].radius_mm;
-    disc->u_radius_correction_mm = added(disc->u_radius_mm, own->discs[d].u_radius_mm);
+    const fg_disc *bare = is_left_disc(&disc->choice) ? &before->discs[d] : &own->discs[d];
+    disc->u_radius_correction_mm = added(disc->u_radius_mm, bare->u_radius_mm);
   }
 }
 
@@ -127,23 +137,41 @@ static void replace(fg_measurement *m, fg_measurement *corrected) {
   *m = *corrected;
 }
 
+/* Of what the model corrects that which pays. */
+static fg_status keep_what_pays(fg_context *ctx, const fg_measurement *m,
+                                const fg_model_doubt *doubt, fg_measurement *corrected) {
+  fg_correction_choice choice[FG_CORRECTED], *to = choice;
+  const fg_pay *pay = &doubt->pays.discs;
+  fg_pay_decide(&pay, 1, &to);
+  fg_pay_keep_discs(m, pay, choice, corrected);
+  for (size_t f = 0; f < m->foil_count; f++) {
+    if (m->foils[f].flags & FG_FOIL_NOT_MEASURED) continue;
+    pay = &doubt->pays.foil[f];
+    fg_pay_decide(&pay, 1, &to);
+    FG_TRY(
+        fg_pay_keep_foil(ctx, &(fg_pay_foil){m, &m->foils[f], pay, choice}, &corrected->foils[f]));
+  }
+  return FG_OK;
+}
+
 fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
                                  unsigned threads, char *warning) {
   if (warning) warning[0] = 0;
   FG_TRY(check_place(ctx, model, m, warning));
-  fg_measurement corrected = {0}, own = {0};
+  fg_measurement corrected = {0};
+  fg_model_doubt doubt;
   fg_status status = FG_OK;
+  FG_TRY(fg_model_doubt_open(ctx, model, m, threads, &doubt));
   FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, threads, &corrected));
-  FG_TRY_EXIT(fg_scan_loop_correct(ctx, m, &model->fields, threads, &own));
-  FG_TRY_EXIT(fg_scanner_model_widen(ctx, model, m, threads, &corrected));
-  FG_TRY_EXIT(fg_scanner_model_widen_tie(ctx, model, m, threads, &corrected));
+  if (model->fields.count || model->others) FG_TRY_EXIT(keep_what_pays(ctx, m, &doubt, &corrected));
+  FG_TRY_EXIT(fg_model_doubt_widen(ctx, &doubt, &corrected));
   flag_reach(&model->fields.frame, &corrected);
-  sum_up(m, &own, &corrected);
+  sum_up(m, &doubt.each[0], &corrected);
   replace(m, &corrected);
   memcpy(m->model_sha256, model->sha256, sizeof m->model_sha256);
   m->model = model;
 exit:
   if (status != FG_OK) fg_measurement_free(&corrected);
-  fg_measurement_free(&own);
+  fg_model_doubt_close(&doubt);
   return status;
 }

@@ -5,8 +5,11 @@
 #include "explain/explain.h"
 #include "field/field.h"
 #include "foilgauge/scan_loop.h"
+#include "scan_loop/pays.h"
 
 enum { FG_MODEL_DATE = 32 };
+/* Amplitudes and shapes of all fields. */
+enum { FG_MODEL_NUMBERS_MAX = FG_FIELDS_MAX * (FG_FIELD_COLUMNS + FG_FIELD_SHAPES) };
 
 struct fg_scanner_model {
   char sha256[65]; /* of the file */
@@ -34,15 +37,22 @@ fg_status fg_scanner_model_check_place(fg_context *ctx, const double dpi[2],
 fg_status fg_scanner_model_check_fields(fg_context *ctx, const char *member,
                                         const fg_field_list *list);
 
-/* Adds to every u_ of `corrected` what the uncertainties of the model's own numbers do to it. */
-fg_status fg_scanner_model_widen(fg_context *ctx, const fg_scanner_model *model,
-                                 const fg_measurement *m, unsigned threads,
-                                 fg_measurement *corrected);
+/* What a model does to a measurement, and how well that is known. */
+typedef struct fg_model_doubt {
+  fg_measurement each[FG_PAYS_EXPLANATIONS_MAX]; /* owned: by the model, then by what was tied */
+  size_t count;
+  double *step[FG_MODEL_NUMBERS_MAX]; /* owned: how far every value moves by the uncertainty of one
+                                         of the model's numbers */
+  size_t steps;
+  fg_pays pays;
+} fg_model_doubt;
 
-/* Adds to every u_ of `corrected` how far the other explanations would have moved its value: they
- * do equally well, so the value may lie anywhere between (a rectangle of that half width). */
-fg_status fg_scanner_model_widen_tie(fg_context *ctx, const fg_scanner_model *model,
-                                     const fg_measurement *m, unsigned threads,
-                                     fg_measurement *corrected);
+fg_status fg_model_doubt_open(fg_context *ctx, const fg_scanner_model *model,
+                              const fg_measurement *m, unsigned threads, fg_model_doubt *doubt);
+void fg_model_doubt_close(fg_model_doubt *doubt);
+
+/* Adds to every u_ what the uncertainties of the model's numbers do to it, and the mean square of
+ * what the explanations would have given instead of the value that is reported. */
+fg_status fg_model_doubt_widen(fg_context *ctx, const fg_model_doubt *doubt, fg_measurement *kept);
 
 #endif

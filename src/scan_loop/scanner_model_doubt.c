@@ -25,40 +25,38 @@ static void visit_all(fg_measurement *m, const fg_measurement *other, visitor *v
           other && d < other->disc_count ? &other->discs[d] : NULL, user);
 }
 
-/* The farthest that each value is moved over several visits, in the visits' order. */
+/* How far every value that has an uncertainty lies elsewhere, in the visits' order. */
 typedef struct moves {
-  double *farthest; /* NULL: only counted */
+  double *each; /* NULL: only counted */
   size_t at;
   double share;
 } moves;
 
 static void take_moves(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
-  if (m->farthest && same) fg_quantity_take_moves(owner, object, same, m->farthest + m->at);
+  if (m->each && same) fg_quantity_take_moves(owner, object, same, m->each + m->at);
   m->at += fg_quantity_moves(owner);
 }
 
 static void widen(fg_quantity_owner owner, void *object, const void *same, void *user) {
   moves *m = user;
   (void)same;
-  fg_quantity_widen(owner, object, m->farthest + m->at, m->share);
+  fg_quantity_widen(owner, object, m->each + m->at, m->share);
   m->at += fg_quantity_moves(owner);
 }
 
-/* Adds to every u_ of `m` the farthest that its value is moved by the others, times `share`. */
-static fg_status widen_by(fg_context *ctx, const fg_measurement *others, size_t other_count,
-                          double share, fg_measurement *m) {
-  moves all = {.share = share};
-  visit_all(m, NULL, take_moves, &all);
-  FG_TRY(fg_memory_allocate(ctx, all.at, sizeof *all.farthest, (void **)&all.farthest));
-  for (size_t o = 0; o < other_count; o++) {
-    all.at = 0;
-    visit_all(m, &others[o], take_moves, &all);
-  }
-  all.at = 0;
-  visit_all(m, NULL, widen, &all);
-  free(all.farthest);
+static fg_status find_moves(fg_context *ctx, fg_measurement *from, const fg_measurement *to,
+                            double **each) {
+  moves all = {.each = NULL};
+  visit_all(from, NULL, take_moves, &all);
+  FG_TRY(fg_memory_allocate(ctx, all.at, sizeof **each, (void **)each));
+  all = (moves){.each = *each};
+  visit_all(from, to, take_moves, &all);
   return FG_OK;
+}
+
+static void add_moves(fg_measurement *m, double *each, double share) {
+  visit_all(m, NULL, widen, &(moves){.each = each, .share = share});
 }
 
 static size_t number_count(const fg_field *field) {
@@ -73,34 +71,67 @@ static bool move_number(fg_field *field, size_t k) {
   return u > 0;
 }
 
-fg_status fg_scanner_model_widen(fg_context *ctx, const fg_scanner_model *model,
-                                 const fg_measurement *m, unsigned threads,
-                                 fg_measurement *corrected) {
-  for (size_t f = 0; f < model->fields.count; f++)
-    for (size_t c = 0; c < number_count(&model->fields.fields[f]); c++) {
-      fg_field_list moved = model->fields;
-      fg_measurement other;
+/* What becomes of `own` when one number of the model lies elsewhere. */
+static fg_status step(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
+                      unsigned threads, fg_model_doubt *doubt) {
+  fg_measurement other;
+  FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &other));
+  fg_pays_add_step(&doubt->pays, &doubt->each[0], &other);
+  fg_status status = find_moves(ctx, &doubt->each[0], &other, &doubt->step[doubt->steps]);
+  fg_measurement_free(&other);
+  if (status == FG_OK) doubt->steps++;
+  return status;
+}
+
+static fg_status step_all(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
+                          unsigned threads, fg_model_doubt *doubt) {
+  for (size_t f = 0; f < fields->count; f++)
+    for (size_t c = 0; c < number_count(&fields->fields[f]); c++) {
+      fg_field_list moved = *fields;
       if (!move_number(&moved.fields[f], c)) continue;
-      FG_TRY(fg_scan_loop_correct(ctx, m, &moved, threads, &other));
-      fg_status status = widen_by(ctx, &other, 1, 1, corrected);
-      fg_measurement_free(&other);
-      FG_TRY(status);
+      FG_TRY(step(ctx, &moved, m, threads, doubt));
     }
   return FG_OK;
 }
 
-fg_status fg_scanner_model_widen_tie(fg_context *ctx, const fg_scanner_model *model,
-                                     const fg_measurement *m, unsigned threads,
-                                     fg_measurement *corrected) {
-  fg_measurement others[FG_EXPLANATIONS_MAX];
+static fg_status explain(fg_context *ctx, const fg_field_list *fields, const fg_measurement *m,
+                         unsigned threads, fg_model_doubt *doubt) {
+  FG_TRY(fg_scan_loop_correct(ctx, m, fields, threads, &doubt->each[doubt->count]));
+  fg_pays_add(&doubt->pays, m, &doubt->each[doubt->count++]);
+  return FG_OK;
+}
+
+fg_status fg_model_doubt_open(fg_context *ctx, const fg_scanner_model *model,
+                              const fg_measurement *m, unsigned threads, fg_model_doubt *doubt) {
   fg_status status = FG_OK;
-  size_t count = 0;
-  while (count < model->others && status == FG_OK) {
-    status = fg_scan_loop_correct(ctx, m, &model->other[count], threads, &others[count]);
-    if (status == FG_OK) count++;
-  }
-  if (status == FG_OK) status = widen_by(ctx, others, count, 1 / sqrt(3), corrected);
-  for (size_t o = 0; o < count; o++)
-    fg_measurement_free(&others[o]);
+  *doubt = (fg_model_doubt){.count = 0};
+  FG_TRY_EXIT(fg_pays_open(ctx, m, &doubt->pays));
+  FG_TRY_EXIT(explain(ctx, &model->fields, m, threads, doubt));
+  FG_TRY_EXIT(step_all(ctx, &model->fields, m, threads, doubt));
+  for (size_t k = 0; k < model->others; k++)
+    FG_TRY_EXIT(explain(ctx, &model->other[k], m, threads, doubt));
+exit:
+  if (status != FG_OK) fg_model_doubt_close(doubt);
   return status;
+}
+
+void fg_model_doubt_close(fg_model_doubt *doubt) {
+  for (size_t k = 0; k < doubt->count; k++)
+    fg_measurement_free(&doubt->each[k]);
+  for (size_t k = 0; k < doubt->steps; k++)
+    free(doubt->step[k]);
+  fg_pays_close(&doubt->pays);
+  *doubt = (fg_model_doubt){.count = 0};
+}
+
+fg_status fg_model_doubt_widen(fg_context *ctx, const fg_model_doubt *doubt, fg_measurement *kept) {
+  for (size_t k = 0; k < doubt->steps; k++)
+    add_moves(kept, doubt->step[k], 1);
+  for (size_t k = 0; k < doubt->count; k++) {
+    double *each = NULL;
+    FG_TRY(find_moves(ctx, kept, &doubt->each[k], &each));
+    add_moves(kept, each, 1 / sqrt((double)doubt->count));
+    free(each);
+  }
+  return FG_OK;
 }

@@ -8,6 +8,7 @@
 #include "foilgauge/scan_loop.h"
 #include "rows/points.h"
 #include "scan_loop/bumps.h"
+#include "scan_loop/pays.h"
 #include "scan_loop/verdict.h"
 
 /* Lowest and highest value of a dimension over the tied explanations. */
@@ -33,6 +34,7 @@ struct fg_scan_loop {
   size_t tie_count;
   fg_scan_loop_range *
       *ranges;             /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
+  fg_pays *pays;           /* per scan: what the explanations would move; NULL: no effects */
   fg_width_findings width; /* what moves the strip's edges apart; with the set in force */
   fg_scan_loop_bumps bumps; /* the bumps of `after` against the declared springback model */
   fg_loop_outcome verdict;
@@ -71,7 +73,15 @@ fg_status fg_scan_loop_correct_fitted(fg_context *ctx, const fg_measurement *m,
 fg_status fg_scan_loop_correct_all(fg_context *ctx, const fg_scan_loop *loop,
                                    const fg_joint_fit_result *fit, fg_measurement *after);
 
-/* In a tie, the dimensions under every explanation, as ranges of those of `after`. */
+/* In a tie, the dimensions under every explanation. */
 fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);
+/* As ranges of those of `after`, which hold what is reported too. */
+void fg_scan_loop_put_ranges(fg_scan_loop *loop);
+
+/* What an explanation would move: `corrected` are all scans by its fit. The one in force first. */
+fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop,
+                                  const fg_joint_fit_result *fit, const fg_measurement *corrected);
+/* Leaves in `after` of the corrections those that pay (pays.h). */
+fg_status fg_scan_loop_keep_what_pays(fg_context *ctx, fg_scan_loop *loop);
 
 #endif

@@ -70,6 +70,30 @@ page decay.html decay.png
 holds decay.html '>explained<' part.lip_decay 'Over the bumps: a decay from the lip' 'uniform springback'
 page tie.html faint.png
 holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
+# What could be it agrees about R0 and h, which are moved, and not about R, which stays as measured: the page, the
+# terminal and the JSON say so, and the ranges hold what is reported.
+holds tie.html 'R stays as measured' 'R left as measured: the correction is' 'cannot tell apart' 'follow from R0, R and h'
+"$program" loop faint.png -o tie.out || fail "loop on a tie"
+python3 - <<'PYTHON' || fail "a tie moves what its explanations do not agree about, or does not say so"
+import json
+r = json.load(open("tie.out"))
+before, after = (r[side]["foils"][0] for side in ("before", "after"))
+choice = {c["quantity"]: c for c in after["corrections"]}
+assert [choice[q]["moved"] for q in ("overall_radius_mm", "radius_mm", "height_mm")] == [True, False, True], choice
+assert choice["radius_mm"]["reason"].startswith("differs between explanations")
+assert after["flags"] == before["flags"] + ["radius_not_corrected"] and "corrections" not in before
+assert abs(after["overall"]["radius_mm"] - 20.95) < abs(before["overall"]["radius_mm"] - 20.95)
+for was, now in zip(before["bumps"], after["bumps"]):
+    assert now["radius_mm"] == was["radius_mm"] and now["u_radius_mm"] > was["u_radius_mm"]
+    assert now["height_mm"] != was["height_mm"]
+    derived = after["overall"]["radius_mm"] - (now["centre_to_centre_mm"] - now["radius_mm"])
+    assert abs(now["height_mm"] - derived) < 1e-8
+    assert now["radius_range_mm"][0] <= now["radius_mm"] <= now["radius_range_mm"][1]
+PYTHON
+if command -v script >/dev/null; then
+  script -qec "'$program' loop faint.png" tie.txt </dev/null >/dev/null
+  holds tie.txt 'R left as measured: the correction is' ' um and differs between' 'R0 moved by the mean of what could be it'
+fi
 page aside.html a.png --hold-out other.png
 holds aside.html 'only confirms' 'On scans kept aside' 'class="aside k1"'
 "$program" loop clean.png --html /nowhere/x.html 2>err.txt

@@ -84,7 +84,8 @@ expect 0 'reaches beyond' "$program" measure a.png --model small.json --html x.h
 grep -q 'reaches beyond the region' x.html || fail "the page does not say that the foil reaches beyond the region"
 expect 65 'times as far on the glass as the 15 x 15 mm' "$program" measure a.png --model tiny.json
 
-# A tie widens: the truth is inside although the explanation in use may be the wrong one.
+# In a tie of a scale and nothing at all no dimension is moved to what one of them says: it stays as scanned, the
+# truth is inside its U, and the report says so.
 python3 - <<'P'
 import json
 model = json.load(open("left.json"))
@@ -92,6 +93,8 @@ model["tied"], model["alternatives"] = True, [[]]
 json.dump(model, open("tied.json", "w"))
 P
 expect 0 'other explanations did as well' "$program" measure scans/s1.png --model tied.json -o tied.out
+expect 0 '' "$program" measure scans/s1.png -o scanned.out
+expect 0 '' "$program" measure scans/s1.png --model tied.json --html tied.html
 python3 - <<'P'
 import json
 model = json.load(open("left.json"))
@@ -103,11 +106,21 @@ expect 0 '' "$program" measure scans/s1.png --model vague.json -o vague.out
 python3 - <<'P' || fail "a tied model does not widen the uncertainty to what its alternative would change"
 import json
 read = lambda name: json.load(open(name))["foils"][0]
-tied, sure = read("tied.out"), read("s1.out")
+tied, sure, scanned = read("tied.out"), read("s1.out"), read("scanned.out")
 import subprocess
 move = 0.002 * 20.95 / 2  # the scale along one axis, on a circle seen over some 120 degrees: half and more
-assert tied["overall"]["radius_mm"] == sure["overall"]["radius_mm"]
-assert tied["overall"]["u_radius_mm"] > 0.3 * move > 10 * sure["overall"]["u_radius_mm"]
+assert tied["overall"]["radius_mm"] == scanned["overall"]["radius_mm"] != sure["overall"]["radius_mm"]
+assert [b["height_mm"] for b in tied["bumps"]] == [b["height_mm"] for b in scanned["bumps"]]
+off = abs(scanned["overall"]["radius_mm"] - sure["overall"]["radius_mm"])
+assert tied["overall"]["u_radius_mm"] > 0.6 * off > 0.3 * move > 10 * sure["overall"]["u_radius_mm"]
+assert tied["correction"]["overall_radius_mm"] == 0
+assert {c["quantity"]: c["moved"] for c in tied["corrections"]} == dict.fromkeys(["overall_radius_mm", "radius_mm", "height_mm"], False)
+assert all(c["reason"].startswith("differs between explanations") for c in tied["corrections"])
+assert abs(tied["corrections"][0]["move_mm"]) > 0.4 * off  # the mean of all and nothing
+assert all(c["moved"] for c in sure["corrections"]) and "radius_not_corrected" in tied["flags"]
+page = open("tied.html").read()
+for words in "R0 left as measured", "R left as measured", "h left as measured", "cannot tell apart", "It moved nothing":
+    assert words in page, words
 for other in tied, read("vague.out"):  # every quantity with an uncertainty is widened
     pairs = list(zip(other["bumps"], sure["bumps"]))
     for name in pairs[0][0]:  # of a clearance beside the thickness' far larger u, not to be seen for every bump

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "report/correction_words.h"
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
 #include "report/words.h"
@@ -186,6 +187,7 @@ static void write_foil_values(fg_json *json, const fg_design *design, const fg_f
   write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
   fg_json_correction(json, &foil->correction);
+  fg_json_choices(json, foil);
   write_strip(json, &foil->strip);
   fg_json_array(json, "bumps");
   for (size_t i = 0; i < foil->bump_count; i++)
@@ -227,6 +229,7 @@ fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_quantities(json, FG_QUANTITY_OF_DISC, "", disc, true);
   write_covariance(json, disc->covariance);
   write_range(json, "radius_range_mm", disc->radius_range_mm);
+  fg_json_disc_choice(json, disc);
   fg_json_object_end(json);
   fg_decision_free(&decision);
   return FG_OK;

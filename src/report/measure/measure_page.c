@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
+#include "report/correction_words.h"
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/scan_model_words.h"
 
@@ -203,6 +204,7 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
   fg_correction_moved(&foil->correction, moved, sizeof moved);
   fg_correction_added(&foil->correction, added, sizeof added);
   if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
+  fg_html_choices(out, foil);
   if (foil->error[0]) {
     fputs("<p class=\"reasons\">", out);
     fg_html_text(out, foil->error);
@@ -232,7 +234,9 @@ static fg_status put_discs_corrected(fg_context *ctx, FILE *out,
     fg_text_clip(moved, sizeof moved, "radii by up to %+.3g µm", 1000 * most);
     fg_text_clip(added, sizeof added, "up to %.2g µm to their u", 1000 * u);
   }
-  return fg_html_corrected(ctx, out, measurement->model, moved, added);
+  FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
+  if (measurement->disc_count) fg_html_disc_choice(out, &measurement->discs[0]);
+  return FG_OK;
 }
 
 static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,

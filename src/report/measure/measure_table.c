@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "quantity/quantity_rows.h"
+#include "report/correction_words.h"
 #include "report/measure/scan_model_words.h"
 #include "report/words.h"
 
@@ -163,11 +164,15 @@ static void put_foil_flags(FILE *out, unsigned flags) {
     if (flags & words->flag) fprintf(out, "  %s: %s\n", words->name, words->plain);
 }
 
-static void put_correction(FILE *out, const fg_correction *correction) {
-  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
-  fg_correction_moved(correction, moved, sizeof moved);
-  fg_correction_added(correction, added, sizeof added);
+static void put_correction(FILE *out, const fg_foil *foil) {
+  char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS], left[FG_CHOICE_WORDS];
+  fg_correction_moved(&foil->correction, moved, sizeof moved);
+  fg_correction_added(&foil->correction, added, sizeof added);
   if (moved[0]) fprintf(out, "  the model moved %s\n  and added %s\n", moved, added);
+  for (int k = 0; k < FG_CORRECTED; k++) {
+    fg_choice_words(fg_corrected_symbol((fg_corrected)k), &foil->choice[k], false, left);
+    if (left[0]) fprintf(out, "  %s\n", left);
+  }
 }
 
 static void put_place(FILE *out, const fg_foil *foil) {
@@ -206,7 +211,7 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
   put_quantities(out, design, foil);
-  put_correction(out, &foil->correction);
+  put_correction(out, foil);
   put_foil_flags(out, foil->flags);
   put_bumps(out, design, foil);
 }

@@ -123,13 +123,23 @@ static fg_status title_of(fg_context *ctx, const fg_scanner_model *model, char *
   return FG_OK;
 }
 
+/* What was left as measured was not moved, and is not named. */
 void fg_correction_moved(const fg_correction *c, char *words, size_t size) {
+  const struct {
+    const char *name;
+    double mm;
+  } moves[] = {
+      {"R0 by", c->overall_radius_mm}, {"R by up to", c->radius_mm}, {"h by up to", c->height_mm}};
+  size_t used = 0;
   words[0] = 0;
-  if (isfinite(c->overall_radius_mm) && isfinite(c->radius_mm))
-    fg_text_clip(words, size, "R0 by %+.3g µm, R by up to %+.3g µm, h by up to %+.3g µm",
-                 1000 * c->overall_radius_mm, 1000 * c->radius_mm, 1000 * c->height_mm);
-  else if (isfinite(c->overall_radius_mm))
-    fg_text_clip(words, size, "R0 by %+.3g µm", 1000 * c->overall_radius_mm);
+  if (!isfinite(c->overall_radius_mm)) return;
+  for (size_t i = 0; i < sizeof moves / sizeof *moves && used + 1 < size; i++) {
+    if (!isfinite(moves[i].mm) || moves[i].mm == 0) continue;
+    fg_text_clip(words + used, size - used, "%s%s %+.3g µm", used ? ", " : "", moves[i].name,
+                 1000 * moves[i].mm);
+    used = strlen(words);
+  }
+  if (!used) fg_text_clip(words, size, "nothing");
 }
 
 void fg_correction_added(const fg_correction *c, char *words, size_t size) {
@@ -184,8 +194,8 @@ fg_status fg_html_corrected(fg_context *ctx, FILE *out, const fg_scanner_model *
   FG_TRY(put_text(out, status, text));
   if (moved[0]) fprintf(out, ". It moved %s, and added %s", moved, added);
   fputs(fg_scanner_model_is_tied(model)
-            ? ". Other explanations did as well when it was found; u holds how far they "
-              "would have moved each value.</p>\n"
+            ? ". Other explanations did as well when it was found; u holds how far from "
+              "it each of them would have put a value.</p>\n"
             : ".</p>\n",
         out);
   return FG_OK;

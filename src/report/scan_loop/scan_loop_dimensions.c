@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "report/correction_words.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
 typedef struct value {
@@ -169,6 +170,7 @@ static void put_foil(FILE *out, const fg_scan_result *result, size_t scan, size_
     return;
   }
   bool tied = result->tied || result->scale_tied;
+  fg_html_choices(out, a);
   put_overall(out, b, a, result->corrected, tied);
   put_bumps(out, b, a, result->corrected, tied);
 }
@@ -205,6 +207,7 @@ static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
     fputs("</tr>\n", out);
   }
   if (count) fputs("</table></div>\n", out);
+  if (count) fg_html_disc_choice(out, &a->discs[0]);
 }
 
 /* Scans of one foil must give one radius for each bump: how far they are from that needs no truth.
@@ -241,10 +244,14 @@ static void put_agreement(FILE *out, const fg_scan_result *result) {
 
 void fg_scan_loop_page_dimensions(FILE *out, const fg_scan_result *result) {
   fputs("<section><h2 class=\"first\">Dimensions</h2>\n<p class=\"note\">± is U = 2u.", out);
-  if (result->corrected) fputs(" A change larger than U of the corrected value is marked.", out);
+  if (result->corrected)
+    fputs(" A change larger than U of the corrected value is marked. A dimension is moved only "
+          "where that makes its expected error smaller; what was left as measured has in its ± "
+          "what was not corrected.",
+          out);
   if (result->tied || result->scale_tied)
     fputs(" Range: lowest and highest value, U included, over the explanations that the data "
-          "cannot tell apart.",
+          "cannot tell apart, and the value that is reported.",
           out);
   fputs("</p>\n", out);
   put_agreement(out, result);

@@ -165,7 +165,7 @@ static void put_explanation(FILE *out, const fg_scan_result_explanation *one, bo
   fputs("<li>", out);
   fg_html_text(out, one->words);
   fprintf(out, " <code>%s</code>", one->name);
-  fputs(likeliest ? " <b>(the likeliest: drawn and applied here)</b></li>\n" : "</li>\n", out);
+  fputs(likeliest ? " <b>(the likeliest: drawn here)</b></li>\n" : "</li>\n", out);
 }
 
 static void put_explanations(FILE *out, const fg_scan_result *result) {
@@ -182,7 +182,8 @@ static void put_explanations(FILE *out, const fg_scan_result *result) {
   fputs("</ol>\n", out);
   if (result->unlisted) fprintf(out, "<p class=\"note\">And %zu more.</p>\n", result->unlisted);
   fputs("<p class=\"note\">Each explains the residual as well as the noise and the edge model "
-        "allow to say. The dimensions below carry their range over all of them.</p>\n",
+        "allow to say. The dimensions below carry their range over all of them; a dimension is "
+        "moved, by their mean, only where that is better whichever of them is true.</p>\n",
         out);
   fputs("</section>\n", out);
 }

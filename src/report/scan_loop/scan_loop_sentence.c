@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "report/correction_words.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
 static fg_status say_parameters(fg_context *ctx, const fg_scan_result_claim *claim, char **text) {
@@ -71,6 +72,58 @@ static fg_status say_errors(fg_context *ctx, const fg_scan_result *result, char 
       result->after.held_out_rms <= result->before.held_out_rms ? "falls" : "rises", before, after);
 }
 
+/* How many of the foils, or scans of discs, keep a dimension as measured. */
+typedef struct kept {
+  size_t left[FG_CORRECTED], tied[FG_CORRECTED], all;
+} kept;
+
+static void count_kept(const fg_correction_choice *choice, kept *k) {
+  if (choice[FG_CORRECTED_RADIUS].reason == FG_CORRECTION_NONE) return;
+  k->all++;
+  for (int d = 0; d < FG_CORRECTED; d++) {
+    k->left[d] += fg_choice_is_left(&choice[d]);
+    k->tied[d] += fg_choice_is_left(&choice[d]) && choice[d].reason == FG_CORRECTION_TIED;
+  }
+}
+
+static kept count_all_kept(const fg_scan_result *result) {
+  kept k = {.all = 0};
+  for (size_t i = 0; i < result->scans; i++)
+    for (size_t f = 0; f < result->scan[i].after->foil_count; f++)
+      count_kept(result->scan[i].after->foils[f].choice, &k);
+  return k;
+}
+
+/* What does not pay is left as measured, and said. */
+static fg_status say_kept(fg_context *ctx, const fg_scan_result *result, char **text) {
+  const kept k = count_all_kept(result);
+  size_t kinds = 0, whole = 0, tied = 0, at = 0;
+  for (int d = 0; d < FG_CORRECTED; d++) {
+    kinds += k.left[d] > 0;
+    whole += k.all && k.left[d] == k.all;
+    tied += k.tied[d];
+  }
+  if (!kinds) return FG_OK;
+  if (whole == FG_CORRECTED) {
+    FG_TRY(fg_text_append(ctx, text, " All dimensions stay as measured"));
+  } else {
+    for (int d = 0; d < FG_CORRECTED; d++) {
+      if (!k.left[d]) continue;
+      const char *between = !at ? " " : at + 1 == kinds ? " and " : ", ";
+      FG_TRY(fg_text_append(ctx, text, "%s%s", between, fg_corrected_symbol((fg_corrected)d)));
+      if (k.left[d] < k.all)
+        FG_TRY(fg_text_append(ctx, text, " of %zu of %zu foils", k.left[d], k.all));
+      at++;
+    }
+    FG_TRY(fg_text_append(ctx, text, kinds > 1 ? " stay as measured" : " stays as measured"));
+  }
+  const char *why = !tied ? "a correction would add more error than it removes"
+                    : result->named
+                        ? "the forms that it can have differ in how far they would move it"
+                        : "what could be it differs in how far it would move it";
+  return fg_text_append(ctx, text, ": %s.", why);
+}
+
 static fg_status say_chance(fg_context *ctx, double p, char **text) {
   if (p < 1e-12) return fg_text_append(ctx, text, "Noise alone would do this with p < 10⁻¹².");
   return fg_text_append(ctx, text, "Noise alone would do this with p = %.2g.", p);
@@ -99,7 +152,8 @@ static fg_status say_points(fg_context *ctx, const fg_scan_result *result, char 
   if (result->tied) FG_TRY(say_explanations(ctx, result, text));
   FG_TRY(fg_text_append(ctx, text, ". "));
   FG_TRY(say_chance(ctx, result->p_value, text));
-  return say_errors(ctx, result, text);
+  FG_TRY(say_errors(ctx, result, text));
+  return say_kept(ctx, result, text);
 }
 
 /* What moves the edges apart stands for itself: the residual is without it. */

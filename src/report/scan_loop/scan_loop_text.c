@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "foilgauge/scan_loop.h"
+#include "report/correction_words.h"
 #include "report/scan_loop/scan_loop_bumps.h"
 
 static void put_claims(FILE *out, const fg_scan_result *result) {
@@ -61,7 +62,19 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
     put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
 }
 
-static void put_foils(FILE *out, const fg_measurement *before, const fg_measurement *after) {
+/* What was left, and in a tie what was moved all the same. */
+static void put_choice(FILE *out, const char *symbol, const fg_correction_choice *choice,
+                       bool tied) {
+  char words[FG_CHOICE_WORDS];
+  fg_choice_words(symbol, choice, true, words);
+  if (words[0]) fprintf(out, "  %s\n", words);
+  if (tied && choice->moved && choice->reason == FG_CORRECTION_PAYS)
+    fprintf(out, "  %s moved by the mean of what could be it, +- %.2g um\n", symbol,
+            2000 * choice->u_move_mm);
+}
+
+static void put_foils(FILE *out, const fg_measurement *before, const fg_measurement *after,
+                      bool tied) {
   for (size_t f = 0; f < before->foil_count && f < after->foil_count; f++) {
     const fg_foil *b = &before->foils[f], *a = &after->foils[f];
     fprintf(out, "%s foil %d: R0 %.5f -> %.5f mm\n", before->scan, b->number, b->overall.radius_mm,
@@ -70,11 +83,14 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
       fprintf(out, "  bump %d: R %.5f -> %.5f mm, h %.5f -> %.5f mm\n", b->bumps[k].number,
               b->bumps[k].radius_mm, a->bumps[k].radius_mm, b->bumps[k].height_mm,
               a->bumps[k].height_mm);
+    for (int k = 0; k < FG_CORRECTED; k++)
+      put_choice(out, fg_corrected_symbol((fg_corrected)k), &a->choice[k], tied);
   }
   for (size_t d = 0; d < before->disc_count && d < after->disc_count; d++) {
     const fg_disc *b = &before->discs[d], *a = &after->discs[d];
     fprintf(out, "%s disc %d: D %.5f -> %.5f mm, rms %.2f -> %.2f um\n", before->scan, b->number,
             b->diameter_mm, a->diameter_mm, b->rms_um, a->rms_um);
+    if (d + 1 == before->disc_count) put_choice(out, "R of all discs", &a->choice, tied);
   }
 }
 
@@ -89,7 +105,7 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
     fprintf(out, "  %s\n", result->note[i]);
   put_explanations(out, result);
   for (size_t i = 0; i < result->scans; i++)
-    put_foils(out, result->scan[i].before, result->scan[i].after);
+    put_foils(out, result->scan[i].before, result->scan[i].after, result->tied);
   fputs("not claimed:\n", out);
   put_unclaimed(out, result);
   fg_text_bumps_rejected(&result->bumps, out);

@@ -1,0 +1,132 @@
+/* Which dimensions the loop moves. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scan_loop/state.h"
+
+static fg_status open_all(fg_context *ctx, fg_scan_loop *loop) {
+  FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *loop->pays, (void **)&loop->pays));
+  for (size_t i = 0; i < loop->scan_count; i++)
+    FG_TRY(fg_pays_open(ctx, &loop->before[i], &loop->pays[i]));
+  return FG_OK;
+}
+
+/* (X, R, R0) to (R0, R, h), h = R0 - X + R. */
+static void turn_covariance(double from[3][3], double to[FG_CORRECTED][FG_CORRECTED]) {
+  static const double turn[FG_CORRECTED][3] = {{0, 0, 1}, {0, 1, 0}, {-1, 1, 1}};
+  for (int a = 0; a < FG_CORRECTED; a++)
+    for (int b = 0; b < FG_CORRECTED; b++) {
+      to[a][b] = 0;
+      for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+          to[a][b] += turn[a][i] * from[i][k] * turn[b][k];
+    }
+}
+
+static void add_overall(fg_pay *pay, size_t item, double variance) {
+  double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
+  noise[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS] = variance;
+  fg_pay_add_noise(pay, item, noise);
+}
+
+static void add_foil_noise(const fg_points_part *part, const fg_joint_fit_part *adds,
+                           const fg_foil *foil, fg_pay *pay) {
+  double noise[FG_CORRECTED][FG_CORRECTED];
+  for (size_t b = 0; b < foil->bump_count; b++)
+    for (size_t k = 0; k < part->bump_count; k++)
+      if (part->bumps[k].number == foil->bumps[b].number) {
+        turn_covariance(adds->bumps[k], noise);
+        fg_pay_add_noise(pay, b, noise);
+      }
+  add_overall(pay, foil->bump_count, adds->overall);
+  pay->noises++;
+}
+
+/* A gauge's radius is given, and the fit tells nothing of it. */
+static void add_disc_noise(const fg_points_part *part, const fg_joint_fit_part *adds, size_t disc,
+                           fg_pay *pay) {
+  double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
+  if (!part->radius_known) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
+  fg_pay_add_noise(pay, disc, noise);
+}
+
+fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop,
+                                  const fg_joint_fit_result *fit, const fg_measurement *corrected) {
+  if (!loop->pays) FG_TRY(open_all(ctx, loop));
+  const fg_points *points = fit->points;
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    fg_pays_add(&loop->pays[i], &loop->before[i], &corrected[i]);
+    loop->pays[i].discs.noises++;
+  }
+  for (size_t v = 0; v < points->view_count; v++) {
+    const fg_points_view *view = &points->views[v];
+    const fg_measurement *before = &loop->before[view->scan];
+    const fg_points_part *part = &points->parts[view->part];
+    fg_pays *pays = &loop->pays[view->scan];
+    if (view->foil)
+      add_foil_noise(part, &fit->parts[view->part], view->foil,
+                     &pays->foil[view->foil - before->foils]);
+    else
+      add_disc_noise(part, &fit->parts[view->part], (size_t)(view->disc - before->discs),
+                     &pays->discs);
+  }
+  return FG_OK;
+}
+
+/* All scans of one foil are decided as one. */
+typedef struct together {
+  const fg_pay **pay;
+  fg_correction_choice **choice;
+} together;
+
+static void decide_foil(fg_scan_loop *loop, size_t scan, size_t foil, const together *all) {
+  bool same = loop->options.same_foil;
+  size_t count = 0;
+  for (size_t i = same ? 0 : scan; i < (same ? loop->scan_count : scan + 1); i++) {
+    all->pay[count] = &loop->pays[i].foil[foil];
+    all->choice[count++] = loop->after[i].foils[foil].choice;
+  }
+  fg_pay_decide(all->pay, count, all->choice);
+}
+
+static fg_status keep_foils(fg_context *ctx, fg_scan_loop *loop, size_t scan) {
+  const fg_measurement *before = &loop->before[scan];
+  fg_measurement *after = &loop->after[scan];
+  for (size_t f = 0; f < after->foil_count; f++) {
+    fg_correction_choice choice[FG_CORRECTED];
+    memcpy(choice, after->foils[f].choice, sizeof choice);
+    if (before->foils[f].flags & FG_FOIL_NOT_MEASURED) continue;
+    const fg_pay_foil of = {before, &before->foils[f], &loop->pays[scan].foil[f], choice};
+    FG_TRY(fg_pay_keep_foil(ctx, &of, &after->foils[f]));
+    fg_pay_widen_foil(&of, &after->foils[f]);
+  }
+  return FG_OK;
+}
+
+static void keep_discs(fg_scan_loop *loop, size_t scan) {
+  fg_correction_choice choice[FG_CORRECTED];
+  const fg_pay *pay = &loop->pays[scan].discs;
+  fg_pay_decide(&pay, 1, &(fg_correction_choice *){choice});
+  fg_pay_keep_discs(&loop->before[scan], pay, choice, &loop->after[scan]);
+  fg_pay_widen_discs(pay, choice, &loop->after[scan]);
+}
+
+fg_status fg_scan_loop_keep_what_pays(fg_context *ctx, fg_scan_loop *loop) {
+  fg_status status = FG_OK;
+  together all = {.pay = NULL};
+  if (!loop->pays) return FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *all.pay, (void **)&all.pay));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *all.choice, (void **)&all.choice));
+  for (size_t i = 0; i < loop->scan_count; i++)
+    for (size_t f = 0; f < loop->after[i].foil_count; f++)
+      decide_foil(loop, i, f, &all);
+  for (size_t i = 0; i < loop->scan_count; i++) {
+    FG_TRY_EXIT(keep_foils(ctx, loop, i));
+    keep_discs(loop, i);
+  }
+exit:
+  free(all.pay);
+  free(all.choice);
+  return status;
+}

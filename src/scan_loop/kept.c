@@ -1,0 +1,197 @@
+/* What is reported of a foil whose correction pays in part, or not at all. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "scan_loop/pays.h"
+
+static fg_status copy_array(fg_context *ctx, const void *from, size_t count, size_t size,
+                            void **to) {
+  *to = NULL;
+  if (!from) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, count, size, to));
+  memcpy(*to, from, count * size);
+  return FG_OK;
+}
+
+static fg_status copy_foil(fg_context *ctx, const fg_foil *from, fg_foil *to) {
+  fg_foil copy = *from;
+  const fg_strip *strip = &from->strip;
+  void *bumps = NULL, *labels = NULL, *stations = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(copy_array(ctx, from->bumps, from->bump_count, sizeof *from->bumps, &bumps));
+  FG_TRY_EXIT(copy_array(ctx, from->labels, strip->count, sizeof *from->labels, &labels));
+  FG_TRY_EXIT(copy_array(ctx, strip->stations, strip->count, sizeof *strip->stations, &stations));
+  copy.bumps = bumps;
+  copy.labels = labels;
+  copy.strip.stations = stations;
+  *to = copy;
+exit:
+  if (status != FG_OK) {
+    free(bumps);
+    free(labels);
+    free(stations);
+  }
+  return status;
+}
+
+static double mean_turn_deg(const fg_pay *pay, size_t item) {
+  double sum = 0;
+  for (size_t e = 0; e < pay->explanations; e++)
+    sum += pay->item[item].turn_deg[e];
+  return sum / (double)pay->explanations;
+}
+
+static fg_point mean_centre(const fg_pay *pay) {
+  fg_point sum = {0, 0};
+  for (size_t e = 0; e < pay->explanations; e++) {
+    sum.x += pay->centre[e].x;
+    sum.y += pay->centre[e].y;
+  }
+  return (fg_point){sum.x / (double)pay->explanations, sum.y / (double)pay->explanations};
+}
+
+/* By how much a dimension of an item is moved; NaN: it cannot be said. */
+static double moved_by(const fg_pay *pay, size_t item, const fg_correction_choice *choice,
+                       fg_corrected k) {
+  double mean[FG_CORRECTED];
+  fg_pay_mean(pay, item, mean);
+  return choice[k].moved ? mean[k] : 0;
+}
+
+static void put_overall(const fg_design *design, const fg_foil *before, const fg_pay *pay,
+                        const fg_correction_choice *choice, fg_overall *overall) {
+  const fg_overall *from = &before->overall;
+  double designed = design->overall_radius_mm;
+  double by = moved_by(pay, pay->items - 1, choice, FG_CORRECTED_OVERALL_RADIUS);
+  fg_point centre = mean_centre(pay);
+  if (!choice[FG_CORRECTED_OVERALL_RADIUS].moved) centre = (fg_point){0, 0};
+  overall->radius_mm = from->radius_mm + by;
+  overall->centre_mm = (fg_point){from->centre_mm.x + centre.x, from->centre_mm.y + centre.y};
+  overall->u_radius_mm = sqrt(overall->covariance[2][2]);
+  overall->springback_error_pct = 100 * (designed - overall->radius_mm) / designed;
+  overall->u_springback_error_pct = 100 * overall->u_radius_mm / designed;
+}
+
+/* R and h as decided, X = R0 + R - h, in the direction that goes with R0. A bump of which a move
+ * cannot be said stays as it was corrected. */
+static void put_bump(const fg_foil *before, const fg_pay *pay, size_t item,
+                     const fg_correction_choice *choice, const fg_overall *overall, fg_bump *bump) {
+  const fg_bump *from = &before->bumps[item];
+  double radius = from->radius_mm + moved_by(pay, item, choice, FG_CORRECTED_RADIUS);
+  double height = from->height_mm + moved_by(pay, item, choice, FG_CORRECTED_HEIGHT);
+  double turn = choice[FG_CORRECTED_OVERALL_RADIUS].moved ? mean_turn_deg(pay, item) : 0;
+  double direction = (from->position_deg + turn) * M_PI / 180;
+  double distance = overall->radius_mm + radius - height;
+  if (!isfinite(distance) || !isfinite(direction)) return;
+  bump->radius_mm = radius;
+  bump->centre_mm = (fg_point){overall->centre_mm.x + distance * cos(direction),
+                               overall->centre_mm.y + distance * sin(direction)};
+}
+
+/* (R0, R, h) to (X, R, R0), X = R0 + R - h. */
+static void turn_moment(double from[FG_CORRECTED][FG_CORRECTED], double to[3][3]) {
+  static const double turn[3][FG_CORRECTED] = {{1, 1, -1}, {0, 1, 0}, {1, 0, 0}};
+  for (int i = 0; i < 3; i++)
+    for (int k = 0; k < 3; k++) {
+      to[i][k] = 0;
+      for (int a = 0; a < FG_CORRECTED; a++)
+        for (int b = 0; b < FG_CORRECTED; b++)
+          to[i][k] += turn[i][a] * from[a][b] * turn[k][b];
+    }
+}
+
+void fg_pay_widen_foil(const fg_pay_foil *of, fg_foil *after) {
+  double moment[FG_CORRECTED][FG_CORRECTED], covariance[3][3];
+  if (!of->pay->explanations || fg_pay_is_whole(of->pay, of->choice)) return;
+  double share = after->overall.u_springback_error_pct / after->overall.u_radius_mm;
+  for (size_t b = 0; b < after->bump_count; b++) {
+    fg_pay_moment(of->pay, b, of->choice, moment);
+    turn_moment(moment, covariance);
+    fg_bump_widen(&of->m->design, &of->m->nominal, &after->overall, covariance, &after->bumps[b]);
+  }
+  fg_pay_moment(of->pay, after->bump_count, of->choice, moment);
+  double added = moment[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS];
+  after->overall.u_radius_mm = hypot(after->overall.u_radius_mm, sqrt(added));
+  after->overall.u_springback_error_pct = share * after->overall.u_radius_mm;
+}
+
+static void put_dimensions(const fg_pay_foil *of, fg_foil *foil) {
+  const fg_design *design = &of->m->design;
+  const fg_thickness strip = fg_foil_thickness(design, foil);
+  put_overall(design, of->before, of->pay, of->choice, &foil->overall);
+  for (size_t b = 0; b < foil->bump_count; b++) {
+    put_bump(of->before, of->pay, b, of->choice, &foil->overall, &foil->bumps[b]);
+    fg_bump_derive(design, &of->m->nominal, &foil->overall, &strip, &foil->bumps[b]);
+  }
+}
+
+bool fg_pay_is_moved(const fg_correction_choice choice[FG_CORRECTED]) {
+  for (int k = 0; k < FG_CORRECTED; k++)
+    if (choice[k].moved) return true;
+  return false;
+}
+
+static void flag_left(fg_foil *foil) {
+  static const unsigned flags[FG_CORRECTED] = {
+      [FG_CORRECTED_OVERALL_RADIUS] = FG_FOIL_OVERALL_RADIUS_LEFT,
+      [FG_CORRECTED_RADIUS] = FG_FOIL_RADIUS_LEFT,
+      [FG_CORRECTED_HEIGHT] = FG_FOIL_HEIGHT_LEFT,
+  };
+  for (int k = 0; k < FG_CORRECTED; k++)
+    if (foil->choice[k].reason != FG_CORRECTION_NONE && !foil->choice[k].moved)
+      foil->flags |= flags[k];
+}
+
+fg_status fg_pay_keep_foil(fg_context *ctx, const fg_pay_foil *of, fg_foil *after) {
+  if (!fg_pay_is_whole(of->pay, of->choice)) {
+    if (fg_pay_is_moved(of->choice)) {
+      put_dimensions(of, after);
+    } else {
+      fg_foil copy;
+      FG_TRY(copy_foil(ctx, of->before, &copy));
+      fg_foil_free(after);
+      *after = copy;
+    }
+  }
+  memcpy(after->choice, of->choice, sizeof after->choice);
+  flag_left(after);
+  return FG_OK;
+}
+
+/* Its roundness and residuals are of the corrected edge all the same: they are what the effects
+ * were found by. */
+static void keep_circle(const fg_disc *from, fg_disc *disc) {
+  memcpy(disc->covariance, from->covariance, sizeof disc->covariance);
+  disc->centre_mm = from->centre_mm;
+  memcpy(disc->u_centre_mm, from->u_centre_mm, sizeof disc->u_centre_mm);
+}
+
+void fg_pay_keep_discs(const fg_measurement *before, const fg_pay *pay,
+                       const fg_correction_choice *choice, fg_measurement *after) {
+  const int k = FG_CORRECTED_RADIUS;
+  for (size_t d = 0; d < after->disc_count && d < pay->items; d++) {
+    fg_disc *disc = &after->discs[d];
+    const fg_disc *from = &before->discs[d];
+    disc->choice = choice[k];
+    if (fg_pay_is_whole(pay, choice)) continue;
+    if (!choice[k].moved) keep_circle(from, disc);
+    disc->radius_mm = from->radius_mm + moved_by(pay, d, choice, FG_CORRECTED_RADIUS);
+    disc->u_radius_mm = choice[k].moved ? sqrt(disc->covariance[2][2]) : from->u_radius_mm;
+    disc->diameter_mm = 2 * disc->radius_mm;
+    disc->u_diameter_mm = 2 * disc->u_radius_mm;
+  }
+}
+
+void fg_pay_widen_discs(const fg_pay *pay, const fg_correction_choice *choice,
+                        fg_measurement *after) {
+  const int k = FG_CORRECTED_RADIUS;
+  double moment[FG_CORRECTED][FG_CORRECTED];
+  if (fg_pay_is_whole(pay, choice)) return;
+  for (size_t d = 0; d < after->disc_count && d < pay->items; d++) {
+    fg_pay_moment(pay, d, choice, moment);
+    after->discs[d].u_radius_mm = hypot(after->discs[d].u_radius_mm, sqrt(moment[k][k]));
+    after->discs[d].u_diameter_mm = 2 * after->discs[d].u_radius_mm;
+  }
+}

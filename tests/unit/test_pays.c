@@ -1,0 +1,331 @@
+/* Whether a correction pays, and what is reported where it does not. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#include "../support/foil_rows.h"
+#include "../support/near.h"
+#include "scan_loop/pays.h"
+#include "scan_loop/state.h"
+
+enum { R0 = FG_CORRECTED_OVERALL_RADIUS, R = FG_CORRECTED_RADIUS, H = FG_CORRECTED_HEIGHT };
+#define UM 1e-3
+
+/* Two bumps and R0 alone, every own u 1 um; no explanation yet. */
+enum { ITEMS = 3 };
+
+static fg_pay open_pay(fg_pay_item item[ITEMS]) {
+  memset(item, 0, ITEMS * sizeof *item);
+  for (int i = 0; i < ITEMS; i++)
+    for (int k = 0; k < FG_CORRECTED; k++)
+      item[i].u[k] = i + 1 < ITEMS || k == R0 ? UM : NAN;
+  return (fg_pay){.item = item, .items = ITEMS, .noises = 1};
+}
+
+/* An explanation that moves every R0, R and h alike. */
+static void explain(fg_pay *pay, double overall_um, double radius_um, double height_um) {
+  size_t at = pay->explanations++;
+  for (size_t i = 0; i < pay->items; i++) {
+    bool bump = i + 1 < pay->items;
+    pay->item[i].move[at][R0] = overall_um * UM;
+    pay->item[i].move[at][R] = bump ? radius_um * UM : NAN;
+    pay->item[i].move[at][H] = bump ? height_um * UM : NAN;
+  }
+}
+
+static void put_noise(fg_pay *pay, int k, double u_um) {
+  for (size_t i = 0; i < pay->items; i++)
+    pay->item[i].noise[k][k] = u_um * UM * u_um * UM;
+}
+
+static void decide(const fg_pay *pay, fg_correction_choice choice[FG_CORRECTED]) {
+  fg_pay_decide(&pay, 1, &choice);
+}
+
+static void choose(const fg_pay *pay, int k, fg_correction_reason reason, bool moved) {
+  fg_correction_choice choice[FG_CORRECTED];
+  decide(pay, choice);
+  assert_int_equal(choice[k].reason, reason);
+  assert_int_equal(choice[k].moved, moved);
+}
+
+static void a_move_pays_beyond_twice_its_variance(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  explain(&pay, 1.5, 1.4, 0.5);
+  for (int k = 0; k < FG_CORRECTED; k++)
+    put_noise(&pay, k, 1);
+  choose(&pay, R0, FG_CORRECTION_PAYS, true);
+  choose(&pay, R, FG_CORRECTION_DOUBTFUL, false);
+  choose(&pay, H, FG_CORRECTION_DOUBTFUL, false);
+}
+
+static void what_is_known_exactly_is_moved(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  explain(&pay, 0.5, 2, -3);
+  for (int k = 0; k < FG_CORRECTED; k++)
+    choose(&pay, k, FG_CORRECTION_PAYS, true);
+}
+
+/* It follows the others, either way. */
+static void what_hardly_changes_anything_is_not_decided(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  explain(&pay, 0, 5, 0.01);
+  put_noise(&pay, H, 0.02);
+  choose(&pay, R0, FG_CORRECTION_SMALL, true);
+  choose(&pay, H, FG_CORRECTION_SMALL, true);
+  put_noise(&pay, R, 5);
+  choose(&pay, R, FG_CORRECTION_DOUBTFUL, false);
+  choose(&pay, R0, FG_CORRECTION_SMALL, false);
+  pay = open_pay(item);
+  explain(&pay, 0, 0, 0);
+  choose(&pay, R, FG_CORRECTION_SMALL, true);
+}
+
+static void what_is_no_number_moves_nothing(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  explain(&pay, NAN, 5, 5);
+  item[1].move[0][R] = NAN; /* one bump of two was not fitted */
+  put_noise(&pay, H, NAN);
+  choose(&pay, R0, FG_CORRECTION_NONE, false);
+  choose(&pay, R, FG_CORRECTION_PAYS, true);
+  choose(&pay, H, FG_CORRECTION_DOUBTFUL, false);
+}
+
+static void a_tie_moves_only_where_all_explanations_agree(void **state) {
+  (void)state;
+  static const struct {
+    double one, other;
+    bool moved;
+  } ties[] = {{10, 6, true},    /* to 8: nearer to both */
+              {10, 2, false},   /* to 6: 36 > 2 × 16, but farther from 2 than nothing is */
+              {10, 0, false},   /* one of them is nothing */
+              {10, -9, false}}; /* they pull apart */
+  for (size_t i = 0; i < sizeof ties / sizeof *ties; i++) {
+    fg_pay_item item[ITEMS];
+    fg_pay pay = open_pay(item);
+    double mean[FG_CORRECTED];
+    explain(&pay, ties[i].one, ties[i].one, 0);
+    explain(&pay, ties[i].other, ties[i].other, 0);
+    choose(&pay, R, ties[i].moved ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED, ties[i].moved);
+    choose(&pay, R0, ties[i].moved ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED, ties[i].moved);
+    fg_pay_mean(&pay, 0, mean);
+    assert_near(mean[R], (ties[i].one + ties[i].other) / 2 * UM, 1e-12);
+  }
+}
+
+/* Bumps that gain and bumps that lose are weighed together. */
+static void all_bumps_of_a_kind_are_one_decision(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  explain(&pay, 0, 3, 0);
+  put_noise(&pay, R, 1);
+  item[1].move[0][R] = 0.1 * UM;
+  choose(&pay, R, FG_CORRECTION_PAYS, true); /* 9.01 > 2 × 2 */
+  item[1].noise[R][R] = 16 * UM * UM;
+  choose(&pay, R, FG_CORRECTION_DOUBTFUL, false); /* 9.01 < 2 × 17 */
+}
+
+static void scans_of_one_foil_are_one_decision(void **state) {
+  (void)state;
+  fg_pay_item item[2][ITEMS];
+  fg_pay pay[2] = {open_pay(item[0]), open_pay(item[1])};
+  fg_correction_choice choice[2][FG_CORRECTED];
+  explain(&pay[0], 1, 1, 1);
+  explain(&pay[1], -3, -3, -3);
+  for (int i = 0; i < 2; i++)
+    put_noise(&pay[i], R0, 1);
+  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2,
+                (fg_correction_choice *[]){choice[0], choice[1]});
+  for (int i = 0; i < 2; i++)
+    assert_true(choice[i][R0].moved); /* 10 > 2 × 2 */
+  assert_near(choice[0][R0].move_mm, UM, 1e-12);
+  assert_near(choice[1][R0].move_mm, -3 * UM, 1e-12);
+  assert_near(choice[1][R].move_mm, 3 * UM, 1e-12);
+  pay[1].lost = true; /* one of them cannot be corrected: none is */
+  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2,
+                (fg_correction_choice *[]){choice[0], choice[1]});
+  assert_int_equal(choice[0][R0].reason, FG_CORRECTION_LOST);
+  assert_false(choice[0][R0].moved);
+}
+
+static void the_doubt_is_about_what_is_reported(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  double moment[FG_CORRECTED][FG_CORRECTED];
+  fg_correction_choice choice[FG_CORRECTED] = {[R] = {.moved = true}};
+  explain(&pay, 4, 10, 2);
+  explain(&pay, 2, 6, 4);
+  put_noise(&pay, R, 1);
+  put_noise(&pay, H, 1);
+  fg_pay_moment(&pay, 0, choice, moment);
+  assert_near(moment[R][R], (1 + 4) * UM * UM, 1e-15);  /* noise, and ± 2 about 8 */
+  assert_near(moment[H][H], (1 + 10) * UM * UM, 1e-15); /* noise, and 2² and 4² about 0 */
+  assert_near(moment[R][H], (2 * 2 - 2 * 4) / 2. * UM * UM, 1e-15); /* R is 2 above, then below */
+  assert_near(moment[R0][R0], 10 * UM * UM, 1e-15);
+}
+
+/* ---- what is reported ---- */
+
+/* The synthetic foil, and what a scanner's scale and shear make of it, as a pay of one foil. */
+typedef struct fixture {
+  foil_rows rows;
+  fg_measurement corrected;
+  fg_pays pays;
+} fixture;
+
+static void open_fixture(fixture *f) {
+  fg_context ctx = {0};
+  fg_field_list fields;
+  foil_rows_open(&f->rows);
+  const fg_effect *scale = fg_effect_find("scan.scale_y"), *shear = fg_effect_find("scan.shear");
+  const fg_effect_set set = {.effects = {{.kind = scale, .columns = 1, .coefficient_um = {40}},
+                                         {.kind = shear, .columns = 1, .coefficient_um = {25}}},
+                             .count = 2};
+  fg_effect_set_fields(&f->rows.points, &set, &fields);
+  assert_int_equal(fg_scan_loop_correct(&ctx, &f->rows.m, &fields, 1, &f->corrected), FG_OK);
+  assert_int_equal(fg_pays_open(&ctx, &f->rows.m, &f->pays), FG_OK);
+  fg_pays_add(&f->pays, &f->rows.m, &f->corrected);
+}
+
+static void close_fixture(fixture *f) {
+  fg_pays_close(&f->pays);
+  fg_measurement_free(&f->corrected);
+  foil_rows_close(&f->rows);
+}
+
+static void keep(fixture *f, fg_correction_choice choice[FG_CORRECTED]) {
+  fg_context ctx = {0};
+  const fg_pay_foil of = {&f->rows.m, &f->rows.m.foils[0], &f->pays.foil[0], choice};
+  assert_int_equal(fg_pay_keep_foil(&ctx, &of, &f->corrected.foils[0]), FG_OK);
+  fg_pay_widen_foil(&of, &f->corrected.foils[0]);
+}
+
+/* What a report derives must be what anyone derives of its circles. */
+static void hold_together(const fg_foil *foil) {
+  const fg_overall *o = &foil->overall;
+  for (size_t b = 0; b < foil->bump_count; b++) {
+    const fg_bump *bump = &foil->bumps[b];
+    double x = hypot(bump->centre_mm.x - o->centre_mm.x, bump->centre_mm.y - o->centre_mm.y);
+    double r = bump->radius_mm, half = (x * x + r * r - o->radius_mm * o->radius_mm) / (2 * x * r);
+    assert_near(bump->centre_to_centre_mm, x, 1e-12);
+    assert_near(bump->height_mm, o->radius_mm - (x - r), 1e-12);
+    assert_near(bump->bump_angle_deg, 2 * acos(half) * 180 / synthetic_pi, 1e-9);
+  }
+}
+
+static void one_dimension_moves_and_the_report_holds_together(void **state) {
+  (void)state;
+  for (int k = 0; k < FG_CORRECTED; k++) {
+    fixture f;
+    open_fixture(&f);
+    fg_foil before = f.rows.m.foils[0], *after = &f.corrected.foils[0];
+    double overall = after->overall.radius_mm, r = after->bumps[4].radius_mm,
+           h = after->bumps[4].height_mm;
+    assert_true(fabs(overall - before.overall.radius_mm) > 5 * UM);
+    fg_correction_choice choice[FG_CORRECTED] = {{.reason = FG_CORRECTION_TIED},
+                                                 {.reason = FG_CORRECTION_TIED},
+                                                 {.reason = FG_CORRECTION_TIED}};
+    choice[k] = (fg_correction_choice){.reason = FG_CORRECTION_PAYS, .moved = true};
+    keep(&f, choice);
+    assert_near(after->overall.radius_mm, k == R0 ? overall : before.overall.radius_mm, 1e-12);
+    assert_near(after->bumps[4].radius_mm, k == R ? r : before.bumps[4].radius_mm, 1e-12);
+    assert_near(after->bumps[4].height_mm, k == H ? h : before.bumps[4].height_mm, 1e-12);
+    hold_together(after);
+    assert_int_equal(after->flags & (FG_FOIL_OVERALL_RADIUS_LEFT | FG_FOIL_RADIUS_LEFT),
+                     (k == R0 ? 0 : FG_FOIL_OVERALL_RADIUS_LEFT) |
+                         (k == R ? 0 : FG_FOIL_RADIUS_LEFT));
+    close_fixture(&f);
+  }
+}
+
+static void what_is_left_is_as_measured_and_says_its_doubt(void **state) {
+  (void)state;
+  fixture f;
+  open_fixture(&f);
+  const fg_foil *before = &f.rows.m.foils[0];
+  fg_foil *after = &f.corrected.foils[0];
+  double move = after->bumps[4].height_mm - before->bumps[4].height_mm;
+  fg_correction_choice choice[FG_CORRECTED] = {{.reason = FG_CORRECTION_TIED},
+                                               {.reason = FG_CORRECTION_DOUBTFUL},
+                                               {.reason = FG_CORRECTION_TIED}};
+  keep(&f, choice);
+  for (size_t b = 0; b < before->bump_count; b++) {
+    assert_near(after->bumps[b].radius_mm, before->bumps[b].radius_mm, 0);
+    assert_near(after->bumps[b].height_mm, before->bumps[b].height_mm, 0);
+    assert_near(after->bumps[b].clearance_mm, before->bumps[b].clearance_mm, 0);
+    assert_near(after->bumps[b].centre_mm.x, before->bumps[b].centre_mm.x, 0);
+  }
+  assert_near(after->strip.stations[99].left.x, before->strip.stations[99].left.x, 0);
+  assert_near(after->bumps[4].u_height_mm, hypot(before->bumps[4].u_height_mm, move), 1e-9);
+  assert_near(after->overall.u_springback_error_pct / before->overall.u_springback_error_pct,
+              after->overall.u_radius_mm / before->overall.u_radius_mm, 1e-9);
+  close_fixture(&f);
+}
+
+static void what_pays_as_a_whole_stays_as_it_was_corrected(void **state) {
+  (void)state;
+  fixture f;
+  open_fixture(&f);
+  fg_foil *after = &f.corrected.foils[0], was = *after;
+  fg_bump bump = after->bumps[3];
+  fg_correction_choice choice[FG_CORRECTED];
+  decide(&f.pays.foil[0], choice);
+  for (int k = 0; k < FG_CORRECTED; k++)
+    assert_true(choice[k].moved);
+  keep(&f, choice);
+  assert_ptr_equal(after->bumps, was.bumps);
+  assert_memory_equal(&after->overall, &was.overall, sizeof was.overall);
+  assert_memory_equal(&after->bumps[3], &bump, sizeof bump);
+  assert_int_equal(after->flags, was.flags);
+  close_fixture(&f);
+}
+
+static void other_bumps_after_the_correction_are_none(void **state) {
+  (void)state;
+  fixture f;
+  fg_context ctx = {0};
+  fg_correction_choice choice[FG_CORRECTED];
+  open_fixture(&f);
+  fg_pays_close(&f.pays);
+  assert_int_equal(fg_pays_open(&ctx, &f.rows.m, &f.pays), FG_OK);
+  f.corrected.foils[0].bumps[8].number = 11;
+  fg_pays_add(&f.pays, &f.rows.m, &f.corrected);
+  decide(&f.pays.foil[0], choice);
+  assert_int_equal(choice[R].reason, FG_CORRECTION_LOST);
+  keep(&f, choice);
+  assert_int_equal(f.corrected.foils[0].bumps[8].number, 9);
+  assert_near(f.corrected.foils[0].bumps[8].u_radius_mm, f.rows.m.foils[0].bumps[8].u_radius_mm, 0);
+  close_fixture(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_move_pays_beyond_twice_its_variance),
+      cmocka_unit_test(what_is_known_exactly_is_moved),
+      cmocka_unit_test(what_hardly_changes_anything_is_not_decided),
+      cmocka_unit_test(what_is_no_number_moves_nothing),
+      cmocka_unit_test(a_tie_moves_only_where_all_explanations_agree),
+      cmocka_unit_test(all_bumps_of_a_kind_are_one_decision),
+      cmocka_unit_test(scans_of_one_foil_are_one_decision),
+      cmocka_unit_test(the_doubt_is_about_what_is_reported),
+      cmocka_unit_test(one_dimension_moves_and_the_report_holds_together),
+      cmocka_unit_test(what_is_left_is_as_measured_and_says_its_doubt),
+      cmocka_unit_test(what_pays_as_a_whole_stays_as_it_was_corrected),
+      cmocka_unit_test(other_bumps_after_the_correction_are_none),
+  };
+  return cmocka_run_group_tests_name("what pays", tests, NULL, NULL);
+}
