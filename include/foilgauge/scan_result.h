@@ -20,7 +20,7 @@ extern "C" {
 enum {
   FG_SCAN_RESULT_CLAIMS = 15,
   FG_SCAN_RESULT_EXPLANATIONS = 8,
-  FG_SCAN_RESULT_UNCLAIMED = 58,
+  FG_SCAN_RESULT_UNCLAIMED = 60,
   FG_SCAN_RESULT_PARAMETERS = 4,
   FG_SCAN_RESULT_ADVICE = 2,
   FG_SCAN_RESULT_WORDS = 512,
@@ -34,6 +34,8 @@ typedef enum fg_scan_coordinate {
   FG_SCAN_Y,
   FG_SCAN_FOIL,   /* along the foil, mm from the lip's side */
   FG_SCAN_PHI,    /* place in the bump's arc, -1 to 1 */
+  FG_SCAN_INDEX,  /* number of the bump, with less than half a one to either side for the place in
+                     its arc */
   FG_SCAN_NORMAL, /* direction of the edge's outward normal, degrees */
   FG_SCAN_COORDINATES
 } fg_scan_coordinate;

@@ -1,4 +1,5 @@
 /* Free curves, for what no listed effect explains: one row each. */
+#include <limits.h>
 #include <math.h>
 
 #include "effect/midline.h"
@@ -65,6 +66,63 @@ static size_t phi(const fg_points *points, const fg_points_row *row, double *val
   return count + fg_midline_stretch(points, row, 4, values + count);
 }
 
+/* ---- over the number of the bump ---- */
+
+enum { HALF = FG_FIELD_COLUMNS / 2 };
+
+/* Numbers of the first and the last bump of any part, whose bumps are in order. */
+static void find_numbers(const fg_points *points, int *first, int *last) {
+  *first = INT_MAX;
+  *last = INT_MIN;
+  for (size_t p = 0; p < points->part_count; p++) {
+    const fg_points_part *part = &points->parts[p];
+    if (!part->bump_count) continue;
+    int ends[2] = {part->bumps[0].number, part->bumps[part->bump_count - 1].number};
+    for (int e = 0; e < 2; e++) {
+      if (ends[e] < *first) *first = ends[e];
+      if (ends[e] > *last) *last = ends[e];
+    }
+  }
+}
+
+/* Of more bumps than columns: patterns that repeat after so many bumps, and smooth ones of so many
+ * half waves over all of them, in the order of the columns. */
+static double pattern(int column, int k, int count) {
+  static const double periods[] = {2, 3, 4, 5, 6, 2.5, 3.5, 8, 10};
+  static const int is_wave[FG_FIELD_COLUMNS] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0,
+                                                0, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0};
+  int waves = 0, smooth = 0;
+  for (int c = 0; c < column; c++)
+    *(is_wave[c] ? &waves : &smooth) += 1;
+  if (!is_wave[column]) return cos(M_PI * (smooth + 1) * (k + 0.5) / count);
+  double turn = 2 * M_PI * k / periods[waves / 2];
+  return waves % 2 ? sin(turn) : cos(turn);
+}
+
+/* What belongs to single bumps beyond their circles: of few bumps the P4 (raised at the middle) and
+ * the P3 (leaning) of each; up to as many as there are columns the P4 of each; of more, patterns of
+ * it. The first half of the columns is what all effects at once have. */
+static size_t single_bumps(const fg_points *points, const fg_points_row *row, double *values) {
+  int first, last;
+  for (int c = 0; c < FG_FIELD_COLUMNS; c++)
+    values[c] = 0;
+  if (!row->bump) return FG_FIELD_COLUMNS;
+  find_numbers(points, &first, &last);
+  double legendre[2];
+  fg_midline_legendre(row, 3, 1, 2, legendre);
+  int k = row->bump - first, count = last - first + 1;
+  if (count <= HALF) {
+    values[k] = legendre[1];
+    values[HALF + k] = legendre[0];
+  } else if (count <= FG_FIELD_COLUMNS) {
+    values[k % 2 * HALF + k / 2] = legendre[1];
+  } else {
+    for (int c = 0; c < FG_FIELD_COLUMNS; c++)
+      values[c] = pattern(c, k, count) * legendre[1];
+  }
+  return FG_FIELD_COLUMNS;
+}
+
 /* Over the foil. */
 static size_t free_s(const fg_points *points, const fg_points_row *row, double share,
                      double *values) {
@@ -125,6 +183,16 @@ const fg_effect fg_effects_curves[] = {
      .midline = phi,
      .coarse = FG_EFFECT_SMOOTHER,
      .rough = {8, 16}, /* of sixteen polynomials */
+     .hold = FREE_HOLD,
+     .bends = true},
+    {.id = "free.bump.index",
+     .words = "deviations of single bumps from their circles",
+     A_CURVE,
+     .coordinate = FG_EFFECT_INDEX,
+     .moves = "along the normal",
+     .midline = single_bumps,
+     .coarse = FG_EFFECT_SMOOTHER,
+     .rough = {HALF, FG_FIELD_COLUMNS},
      .hold = FREE_HOLD,
      .bends = true},
     {.id = "free.edge.normal",

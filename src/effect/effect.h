@@ -28,6 +28,7 @@ typedef enum fg_effect_coordinate {
   FG_EFFECT_Y,
   FG_EFFECT_FOIL,   /* psi, from the foil's middle */
   FG_EFFECT_PHI,    /* in the bump's arc, -1 to 1 */
+  FG_EFFECT_INDEX,  /* number of the bump */
   FG_EFFECT_NORMAL, /* direction of the edge's normal */
   FG_EFFECT_COORDINATES
 } fg_effect_coordinate;
@@ -147,8 +148,6 @@ static inline bool fg_effect_is_free(const fg_effect *effect) {
 
 /* "scan.x", "foil.s", ... */
 const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate);
-/* Likewise, of the number of a bump. */
-extern const char fg_effect_bump_coordinate_name[];
 /* With what it is and its unit, for an axis. */
 const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate);
 

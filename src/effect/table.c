@@ -41,17 +41,18 @@ bool fg_effect_same(const fg_effect *a, const fg_effect *b) {
 }
 
 const char *fg_effect_coordinate_name(fg_effect_coordinate coordinate) {
-  static const char *const names[FG_EFFECT_COORDINATES] = {"scan.x", "scan.y", "foil.s", "bump.phi",
-                                                           "edge.normal"};
+  static const char *const names[FG_EFFECT_COORDINATES] = {"scan.x",   "scan.y",     "foil.s",
+                                                           "bump.phi", "bump.index", "edge.normal"};
   return names[coordinate];
 }
 
-const char fg_effect_bump_coordinate_name[] = "bump.index";
-
 const char *fg_effect_coordinate_title(fg_effect_coordinate coordinate) {
   static const char *const titles[FG_EFFECT_COORDINATES] = {
-      "scan.x: across the glass, mm", "scan.y: the carriage's way, mm",
-      "foil.s: along the foil, mm", "bump.phi: place in the bump's arc, −1 to 1",
+      "scan.x: across the glass, mm",
+      "scan.y: the carriage's way, mm",
+      "foil.s: along the foil, mm",
+      "bump.phi: place in the bump's arc, −1 to 1",
+      "bump.index: number of the bump, and the place in its arc",
       "edge.normal: direction of the edge's outward normal, °"};
   return titles[coordinate];
 }

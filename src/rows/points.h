@@ -11,6 +11,8 @@
 #ifndef FG_ROWS_POINTS_H
 #define FG_ROWS_POINTS_H
 
+#include <math.h>
+
 #include "field/field.h"
 #include "foilgauge/foil.h"
 
@@ -147,6 +149,12 @@ size_t fg_points_row_parameters(const fg_points *points, size_t row,
 /* A place along x (axis 0) or y (1). */
 static inline double fg_point_along(fg_point at, int axis) {
   return axis ? at.y : at.x;
+}
+
+/* Place along the row of bumps: its number, and beside it the place in its arc; NaN on a land. */
+static inline double fg_points_along_bumps(const fg_points_row *row) {
+  const double half = 0.45; /* of the way to the next one */
+  return row->bump ? row->bump + half * row->phi : NAN;
 }
 
 /* Integral of the correlation of values along the edge, at least 1: noise in n rows averages like

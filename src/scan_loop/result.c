@@ -50,6 +50,7 @@ static fg_scan_result_row row_of(const fg_scan_loop *loop, size_t i, size_t arc)
                 [FG_SCAN_Y] = row->at.y,
                 [FG_SCAN_FOIL] = row->s_mm,
                 [FG_SCAN_PHI] = row->bump ? row->phi : NAN,
+                [FG_SCAN_INDEX] = fg_points_along_bumps(row),
                 [FG_SCAN_NORMAL] = row->normal_rad * 180 / M_PI},
       .weight = row->weight,
       .residual_um = {loop->residual_before[i], loop->residual_after[i]},

@@ -177,7 +177,7 @@ fg_status fg_scan_result_put_bumps(fg_context *ctx, const fg_scan_loop *loop,
   out->count = bumps->count - out->aside;
   out->parts = bumps->parts;
   out->lip = bumps->lip;
-  out->coordinate_name = fg_effect_bump_coordinate_name;
+  out->coordinate_name = fg_effect_coordinate_name(FG_EFFECT_INDEX);
   out->height_um = scaled(&bumps->height, 1000);
   FG_TRY(put_unclaimed(ctx, bumps, result));
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {

@@ -87,9 +87,10 @@ static size_t sum_fields(const fg_field_list *list, int axis, drawn_line *line) 
 static bool row_place(const fg_points_row *row, fg_effect_coordinate coordinate, double *x) {
   double degrees = 180 / M_PI;
   *x = coordinate == FG_EFFECT_PHI      ? row->phi
+       : coordinate == FG_EFFECT_INDEX  ? fg_points_along_bumps(row)
        : coordinate == FG_EFFECT_NORMAL ? row->normal_rad * degrees
                                         : row->psi * degrees;
-  return coordinate != FG_EFFECT_PHI || row->bump;
+  return (coordinate != FG_EFFECT_PHI && coordinate != FG_EFFECT_INDEX) || row->bump;
 }
 
 /* Rows look along the normal of their own arc, which on a bump points to the shaft; over the foil
@@ -196,7 +197,9 @@ static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop,
   if (!count) return FG_OK;
   line->coordinate = (fg_scan_coordinate)coordinate;
   line->free = has_free(&loop->set, coordinate);
-  if (line->free && coordinate != FG_EFFECT_NORMAL) take_circles(coordinate, line);
+  /* What single bumps deviate by is beside their circles already. */
+  if (line->free && coordinate != FG_EFFECT_NORMAL && coordinate != FG_EFFECT_INDEX)
+    take_circles(coordinate, line);
   bridge(line);
   result->lines++;
   return FG_OK;

@@ -53,8 +53,10 @@ static double fillet_to_fillet_rad(const fg_points *points, const fg_points_row 
 }
 
 /* Where a row lies on the coordinate; NaN: nowhere. */
-static double place_of(const fg_points *points, const fg_points_row *row, bool phi) {
-  if (phi)
+static double place_of(const fg_points *points, const fg_points_row *row,
+                       fg_effect_coordinate coordinate) {
+  if (coordinate == FG_EFFECT_INDEX) return fg_points_along_bumps(row);
+  if (coordinate == FG_EFFECT_PHI)
     return row->bump ? row->phi * points->parts[row->part].half_arc_rad /
                            fillet_to_fillet_rad(points, row)
                      : NAN;
@@ -66,17 +68,17 @@ static double place_of(const fg_points *points, const fg_points_row *row, bool p
 static fg_status put_part(fg_context *ctx, const fg_scan_loop *loop, const fg_effect_found *effect,
                           fg_scan_result_claim *claim) {
   const fg_points *points = &loop->points;
-  bool phi = effect->kind->coordinate == FG_EFFECT_PHI;
+  fg_effect_coordinate over = effect->kind->coordinate;
   double low = INFINITY, high = -INFINITY, sum[SHAPE_POINTS] = {0}, at[SHAPE_POINTS] = {0};
   double count[SHAPE_POINTS] = {0}, *shift = NULL;
   fg_effect_set alone = {.effects = {*effect}, .count = 1};
   FG_TRY(fg_effect_set_shift(ctx, points, &alone, &shift));
   for (size_t i = 0; i < points->row_count; i++) {
-    low = fmin(low, place_of(points, &points->rows[i], phi));
-    high = fmax(high, place_of(points, &points->rows[i], phi));
+    low = fmin(low, place_of(points, &points->rows[i], over));
+    high = fmax(high, place_of(points, &points->rows[i], over));
   }
   for (size_t i = 0; i < points->row_count; i++) {
-    double place = place_of(points, &points->rows[i], phi);
+    double place = place_of(points, &points->rows[i], over);
     if (!isfinite(place)) continue;
     size_t bin = (size_t)fmin(SHAPE_POINTS - 1, (place - low) / (high - low) * SHAPE_POINTS);
     sum[bin] += 1000 * shift[i];

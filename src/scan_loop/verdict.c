@@ -21,6 +21,7 @@ _Static_assert((int)FG_SCAN_RESULT_UNCLAIMED >=
 _Static_assert((int)FG_SCAN_X == (int)FG_EFFECT_X && (int)FG_SCAN_Y == (int)FG_EFFECT_Y &&
                    (int)FG_SCAN_FOIL == (int)FG_EFFECT_FOIL &&
                    (int)FG_SCAN_PHI == (int)FG_EFFECT_PHI &&
+                   (int)FG_SCAN_INDEX == (int)FG_EFFECT_INDEX &&
                    (int)FG_SCAN_NORMAL == (int)FG_EFFECT_NORMAL &&
                    (int)FG_SCAN_COORDINATES == (int)FG_EFFECT_COORDINATES,
                "coordinates are numbered alike");

@@ -51,6 +51,8 @@ static const char *caption_words(const fg_scan_result_line *line) {
        [FG_SCAN_PHI] = "Deviation of every bump from its circle, away from its centre positive",
        [FG_SCAN_NORMAL] = "What the direction of the edge does, outwards positive"},
       {[FG_SCAN_FOIL] = "Deviation of the foil from its best circle, outwards positive",
+       [FG_SCAN_INDEX] = "Deviation of single bumps from their circles, away from their centres "
+                         "positive",
        [FG_SCAN_PHI] = "Deviation of every bump from its best circle, away from its centre "
                        "positive",
        [FG_SCAN_NORMAL] = "What the direction of the edge does, outwards positive"}};
