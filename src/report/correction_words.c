@@ -39,13 +39,7 @@ const char *fg_correction_reason_words(fg_correction_reason reason) {
 }
 
 bool fg_choice_is_left(const fg_correction_choice *choice) {
-  return choice->reason != FG_CORRECTION_NONE && !choice->moved;
-}
-
-bool fg_choices_are_left(const fg_correction_choice *choice, size_t count) {
-  for (size_t k = 0; k < count; k++)
-    if (!fg_choice_is_left(&choice[k])) return false;
-  return count > 0;
+  return choice->reason > FG_CORRECTION_SMALL && !choice->moved;
 }
 
 void fg_choice_words(const char *symbol, const fg_correction_choice *choice, bool plain,

@@ -11,9 +11,8 @@ enum { FG_CHOICE_WORDS = 240 };
 const char *fg_corrected_symbol(fg_corrected dimension);
 const char *fg_correction_reason_words(fg_correction_reason reason);
 
-/* There was a correction, and the dimension is as measured all the same. */
+/* There was a correction that counts, and the dimension is as measured all the same. */
 bool fg_choice_is_left(const fg_correction_choice *choice);
-bool fg_choices_are_left(const fg_correction_choice *choice, size_t count); /* all of them */
 
 /* "R left as measured: the correction is 1.2 ± 1.9 µm and would add more error than it removes";
  * with `plain` in ASCII. Empty for what was moved. */

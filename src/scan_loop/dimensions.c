@@ -1,4 +1,5 @@
 /* Which dimensions the loop moves. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,53 +25,71 @@ static void turn_covariance(double from[3][3], double to[FG_CORRECTED][FG_CORREC
     }
 }
 
-static void add_overall(fg_pay *pay, size_t item, double variance) {
-  double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
-  noise[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS] = variance;
+/* A set that is not right leaves a smooth rest, of which its own fit takes up as much as any other
+ * fit would: what the effects add to the variances is larger by what is left of all effects over
+ * what noise would leave of them (Birge's ratio). */
+static double misfit_of(const fg_explanations *explanations, size_t explanation) {
+  const fg_explanation *one = &explanations->each[explanation];
+  if (explanations->right || explanation >= explanations->count || !(one->freedom > 0)) return 1;
+  return isfinite(one->excess) ? fmax(1, one->excess / one->freedom) : 1;
+}
+
+static void add_scaled(fg_pay *pay, size_t item, double noise[FG_CORRECTED][FG_CORRECTED],
+                       double scale) {
+  for (int a = 0; a < FG_CORRECTED; a++)
+    for (int b = 0; b < FG_CORRECTED; b++)
+      noise[a][b] *= scale;
   fg_pay_add_noise(pay, item, noise);
 }
 
 static void add_foil_noise(const fg_points_part *part, const fg_joint_fit_part *adds,
-                           const fg_foil *foil, fg_pay *pay) {
-  double noise[FG_CORRECTED][FG_CORRECTED];
+                           const fg_foil *foil, double scale, fg_pay *pay) {
+  double noise[FG_CORRECTED][FG_CORRECTED], alone[FG_CORRECTED][FG_CORRECTED] = {{0}};
   for (size_t b = 0; b < foil->bump_count; b++)
     for (size_t k = 0; k < part->bump_count; k++)
       if (part->bumps[k].number == foil->bumps[b].number) {
         turn_covariance(adds->bumps[k], noise);
-        fg_pay_add_noise(pay, b, noise);
+        add_scaled(pay, b, noise, scale);
       }
-  add_overall(pay, foil->bump_count, adds->overall);
+  alone[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS] = adds->overall;
+  add_scaled(pay, foil->bump_count, alone, scale);
   pay->noises++;
 }
 
 /* A gauge's radius is given, and the fit tells nothing of it. */
 static void add_disc_noise(const fg_points_part *part, const fg_joint_fit_part *adds, size_t disc,
-                           fg_pay *pay) {
+                           double scale, fg_pay *pay) {
   double noise[FG_CORRECTED][FG_CORRECTED] = {{0}};
   if (!part->radius_known) noise[FG_CORRECTED_RADIUS][FG_CORRECTED_RADIUS] = adds->overall;
-  fg_pay_add_noise(pay, disc, noise);
+  add_scaled(pay, disc, noise, scale);
 }
 
-fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop,
+static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_t view,
+                       double scale) {
+  const fg_points_view *one = &fit->points->views[view];
+  const fg_points_part *part = &fit->points->parts[one->part];
+  const fg_joint_fit_part *adds = &fit->parts[one->part];
+  const fg_measurement *before = &loop->before[one->scan];
+  fg_pays *pays = &loop->pays[one->scan];
+  if (one->foil) {
+    fg_pay *pay = &pays->foil[one->foil - before->foils];
+    add_foil_noise(part, adds, one->foil, scale, pay);
+    pay->misfit = pay->misfit || scale > 1;
+  } else {
+    add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, &pays->discs);
+  }
+}
+
+fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected) {
+  double scale = misfit_of(&loop->explanations, explanation);
   if (!loop->pays) FG_TRY(open_all(ctx, loop));
-  const fg_points *points = fit->points;
   for (size_t i = 0; i < loop->scan_count; i++) {
     fg_pays_add(&loop->pays[i], &loop->before[i], &corrected[i]);
     loop->pays[i].discs.noises++;
   }
-  for (size_t v = 0; v < points->view_count; v++) {
-    const fg_points_view *view = &points->views[v];
-    const fg_measurement *before = &loop->before[view->scan];
-    const fg_points_part *part = &points->parts[view->part];
-    fg_pays *pays = &loop->pays[view->scan];
-    if (view->foil)
-      add_foil_noise(part, &fit->parts[view->part], view->foil,
-                     &pays->foil[view->foil - before->foils]);
-    else
-      add_disc_noise(part, &fit->parts[view->part], (size_t)(view->disc - before->discs),
-                     &pays->discs);
-  }
+  for (size_t v = 0; v < fit->points->view_count; v++)
+    take_noise(loop, fit, v, scale);
   return FG_OK;
 }
 

@@ -140,7 +140,7 @@ static void flag_left(fg_foil *foil) {
       [FG_CORRECTED_HEIGHT] = FG_FOIL_HEIGHT_LEFT,
   };
   for (int k = 0; k < FG_CORRECTED; k++)
-    if (foil->choice[k].reason != FG_CORRECTION_NONE && !foil->choice[k].moved)
+    if (foil->choice[k].reason > FG_CORRECTION_SMALL && !foil->choice[k].moved)
       foil->flags |= flags[k];
 }
 

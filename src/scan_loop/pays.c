@@ -252,7 +252,7 @@ void fg_pay_moment(const fg_pay *pay, size_t item, const fg_correction_choice *c
 }
 
 bool fg_pay_is_whole(const fg_pay *pay, const fg_correction_choice choice[FG_CORRECTED]) {
-  if (pay->explanations > 1 || pay->lost) return false;
+  if (pay->explanations > 1 || pay->misfit || pay->lost) return false;
   for (int k = 0; k < FG_CORRECTED; k++)
     if (!choice[k].moved && choice[k].reason != FG_CORRECTION_NONE) return false;
   return true;

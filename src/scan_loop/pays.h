@@ -40,6 +40,7 @@ typedef struct fg_pay {
   fg_point centre[FG_PAYS_EXPLANATIONS_MAX]; /* moves of O */
   size_t explanations;                       /* that could be measured; the first is in force */
   double noises;                             /* sums in `noise` */
+  bool misfit; /* the explanation in force leaves more than noise: the fit's own u is too small */
   bool lost; /* the explanation in force does not show the same bumps: nothing is known */
 } fg_pay;
 

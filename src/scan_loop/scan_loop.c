@@ -154,7 +154,7 @@ static fg_status correct(fg_context *ctx, fg_scan_loop *loop) {
   loop->set = fit.set;
   fg_status status = fg_scan_loop_correct_all(ctx, loop, &fit, loop->after);
   if (status == FG_OK && fit.set.count)
-    status = fg_scan_loop_take_moves(ctx, loop, &fit, loop->after);
+    status = fg_scan_loop_take_moves(ctx, loop, 0, &fit, loop->after);
   fg_joint_fit_close(&fit);
   return status;
 }

@@ -178,6 +178,19 @@ static void the_doubt_is_about_what_is_reported(void **state) {
   assert_near(moment[R0][R0], 10 * UM * UM, 1e-15);
 }
 
+/* Its own u says too little: that of the moment is reported. */
+static void what_does_not_fit_is_no_whole(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  fg_correction_choice choice[FG_CORRECTED];
+  explain(&pay, 5, 5, 5);
+  decide(&pay, choice);
+  assert_true(fg_pay_is_whole(&pay, choice));
+  pay.misfit = true;
+  assert_false(fg_pay_is_whole(&pay, choice));
+}
+
 /* ---- what is reported ---- */
 
 /* The synthetic foil, and what a scanner's scale and shear make of it, as a pay of one foil. */
@@ -322,6 +335,7 @@ int main(void) {
       cmocka_unit_test(all_bumps_of_a_kind_are_one_decision),
       cmocka_unit_test(scans_of_one_foil_are_one_decision),
       cmocka_unit_test(the_doubt_is_about_what_is_reported),
+      cmocka_unit_test(what_does_not_fit_is_no_whole),
       cmocka_unit_test(one_dimension_moves_and_the_report_holds_together),
       cmocka_unit_test(what_is_left_is_as_measured_and_says_its_doubt),
       cmocka_unit_test(what_pays_as_a_whole_stays_as_it_was_corrected),

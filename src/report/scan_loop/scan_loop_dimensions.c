@@ -15,6 +15,7 @@ typedef struct quantity {
   double to_fine;
   value before, after;
   const double *range; /* over tied explanations; NULL or both 0: none */
+  bool left;           /* as measured: its correction does not pay */
 } quantity;
 
 /* As many decimals as U has with two digits, at most six. */
@@ -37,6 +38,10 @@ static void put_value(FILE *out, value v) {
 
 static void put_change(FILE *out, const quantity *q) {
   double change = q->after.value - q->before.value;
+  if (q->left) {
+    fputs("<td><i>left</i></td>", out);
+    return;
+  }
   if (!isfinite(change)) {
     fputs("<td>–</td>", out);
     return;
@@ -78,28 +83,32 @@ static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_
                     1000,
                     {b->radius_mm, b->u_radius_mm},
                     {a->radius_mm, a->u_radius_mm},
-                    a->radius_range_mm};
+                    a->radius_range_mm,
+                    false};
   q[1] = (quantity){"height h, free",
                     "mm",
                     "µm",
                     1000,
                     {b->height_mm, b->u_height_mm},
                     {a->height_mm, a->u_height_mm},
-                    a->height_range_mm};
+                    a->height_range_mm,
+                    false};
   q[2] = (quantity){"angle α",
                     "°",
                     "°",
                     1,
                     {b->bump_angle_deg, b->u_bump_angle_deg},
                     {a->bump_angle_deg, a->u_bump_angle_deg},
-                    NULL};
+                    NULL,
+                    false};
   q[3] = (quantity){"clearance, free",
                     "mm",
                     "µm",
                     1000,
                     {b->clearance_mm, b->u_clearance_mm},
                     {a->clearance_mm, a->u_clearance_mm},
-                    NULL};
+                    NULL,
+                    false};
 }
 
 static void put_heads(FILE *out, const quantity *q, size_t count, const char *first, bool corrected,
@@ -134,6 +143,8 @@ static void put_bumps(FILE *out, const fg_foil *b, const fg_foil *a, bool correc
     const fg_bump *after = find_bump(a, b->bumps[i].number);
     if (!after) continue;
     bump_quantities(&b->bumps[i], after, q);
+    q[0].left = fg_choice_is_left(&a->choice[FG_CORRECTED_RADIUS]);
+    q[1].left = fg_choice_is_left(&a->choice[FG_CORRECTED_HEIGHT]);
     if (!opened) put_heads(out, q, BUMP_QUANTITIES, "bump", corrected, tied);
     opened = true;
     fprintf(out, "<tr><td>%d</td>", b->bumps[i].number);
@@ -151,7 +162,8 @@ static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corr
                 1000,
                 {b->overall.radius_mm, b->overall.u_radius_mm},
                 {a->overall.radius_mm, a->overall.u_radius_mm},
-                a->overall.radius_range_mm};
+                a->overall.radius_range_mm,
+                fg_choice_is_left(&a->choice[FG_CORRECTED_OVERALL_RADIUS])};
   put_heads(out, &q, 1, "circle", corrected, tied);
   fputs("<tr><td>overall</td>", out);
   put_quantity(out, &q, corrected, tied);
@@ -187,14 +199,16 @@ static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
                       1000,
                       {x->diameter_mm, x->u_diameter_mm},
                       {y->diameter_mm, y->u_diameter_mm},
-                      NULL},
+                      NULL,
+                      fg_choice_is_left(&y->choice)},
                      {"roundness",
                       "µm",
                       "µm",
                       1,
                       {x->roundness_um, x->u_roundness_um},
                       {y->roundness_um, y->u_roundness_um},
-                      NULL}};
+                      NULL,
+                      false}};
     if (i == 0) {
       fputs("<h3>", out);
       fg_html_text(out, b->scan);

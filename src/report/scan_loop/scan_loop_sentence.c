@@ -117,11 +117,12 @@ static fg_status say_kept(fg_context *ctx, const fg_scan_result *result, char **
     }
     FG_TRY(fg_text_append(ctx, text, kinds > 1 ? " stay as measured" : " stays as measured"));
   }
-  const char *why = !tied ? "a correction would add more error than it removes"
-                    : result->named
-                        ? "the forms that it can have differ in how far they would move it"
-                        : "what could be it differs in how far it would move it";
-  return fg_text_append(ctx, text, ": %s.", why);
+  const char *move = result->named ? "the forms that the effect can have would move"
+                                   : "these explanations would move";
+  if (!tied)
+    return fg_text_append(ctx, text, ": a correction would add more error than it removes.");
+  return fg_text_append(ctx, text, ": %s %s by different amounts.", move,
+                        kinds > 1 ? "them" : "it");
 }
 
 static fg_status say_chance(fg_context *ctx, double p, char **text) {
