@@ -261,6 +261,8 @@ static fg_status judge_claims(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t
   result->claims = count;
   judge_rejected(level);
   if (result->has_curve && !(result->curve.rms > level->least)) result->has_curve = false;
+  FG_TRY(find_effects(ctx, level));
+  FG_TRY(fg_scan_loop_bumps_find_single(ctx, bumps, response, seed));
   return find_effects(ctx, level);
 }
 

@@ -7,7 +7,11 @@
  *
  * With fewer than FG_SCAN_LOOP_BUMP_FOILS foils the bumps are the units that were drawn
  * independently, beside a level of each foil: what is found is then said of these foils. With more,
- * the foils are the units, as in a table of a lot. */
+ * the foils are the units, as in a table of a lot.
+ *
+ * A bump that is raised with its flanks leaves nothing on the points: every bump has a circle of
+ * its own. It is a dimension, and shows here: bumps that stand apart from the others by their
+ * number, or with a cycle over it, are what no effect explains (`bump.index`). */
 #ifndef FG_SCAN_LOOP_BUMPS_H
 #define FG_SCAN_LOOP_BUMPS_H
 
@@ -105,6 +109,10 @@ const fg_loop_curve *fg_scan_loop_bumps_curve(const fg_scan_loop_bumps *bumps, s
  * flip. */
 fg_status fg_scan_loop_bumps_null_p(fg_context *ctx, const fg_loop_problem *problem,
                                     const fg_loop_claim *claim, uint64_t seed, double *p_value);
+/* Bumps that stand apart from the others of a response by their number, or that follow a cycle over
+ * it, become its curve and a note; beside what was found, and unless there is a curve. */
+fg_status fg_scan_loop_bumps_find_single(fg_context *ctx, fg_scan_loop_bumps *bumps,
+                                         size_t response, uint64_t seed);
 /* The i-th parameter of a claim; false beyond the last. */
 bool fg_scan_loop_bumps_parameter(const fg_scan_loop_bumps *bumps, size_t response,
                                   const fg_loop_claim *claim, size_t i, const char **name,

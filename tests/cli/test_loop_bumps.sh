@@ -1,0 +1,37 @@
+#!/bin/bash
+# The loop on a scan of a foil of which single bumps deviate: told as that, not as steps of the carriage.
+. tests/support/loop.sh
+
+# says REPORT EXPRESSION: of a report r, its curve and its claims.
+says() {
+  python3 - "$1" "$2" <<'PYTHON' || fail "$1: not so: $2"
+import json, sys
+r = json.load(open(sys.argv[1]))
+claims, curve = [c["id"] for c in r["claims"]], r["unattributed"]
+height = {b["number"]: b["height_mm"] for b in r["after"]["foils"][0]["bumps"]}
+true = {b["index"]: b["height_mm"] for b in json.load(open(sys.argv[1][:-4] + ".truth.json"))["bumps"]}
+off = {n: 1000 * (height[n] - true[n]) for n in true}
+sys.exit(not eval(sys.argv[2]))
+PYTHON
+}
+
+# Every third bump raised at its middle leaves a P4 beside its circle.
+render_foil middle 31 34 '{"id":"free.bump.index","form":"crown","amplitude_um":4,"every":3}' 4800
+"$program" loop middle.png -o middle.out || fail "loop on bumps that are raised at their middle"
+says middle.out "r['verdict'] == 'unattributed' and not claims and curve['coordinate'] == 'bump.index'"
+says middle.out "r['after']['rms'] < 1.5 * r['noise_floor'] and r['before']['rms'] > 4 * r['after']['rms']"
+# The curve is drawn over number and place: it is there on bumps 3, 6, 9, and nowhere else.
+says middle.out "all((max(abs(v) for x, v in curve['shape'] if abs(x - n) < 0.45) > 0.2) == (n % 3 == 0) for n in true)"
+# The circles' heights hold what circles take of it.
+says middle.out "all(abs(off[n] - (3.66 if n % 3 == 0 else 0)) < 0.6 for n in true)"
+
+# The whole of it: that is another bump for the geometry, and the bumps are held against each other.
+render_foil whole 32 -61 '{"id":"free.bump.index","form":"whole","amplitude_um":4,"every":3}' 4800
+"$program" loop whole.png -o whole.out --html whole.html || fail "loop on bumps that are raised"
+says whole.out "r['verdict'] == 'unattributed' and not claims and curve['coordinate'] == 'bump.index'"
+says whole.out "[n for n, v in curve['shape'] if abs(v) > 0.1] == [3, 6, 9] and curve['moves'] == 'bump_angle_deg'"
+says whole.out "any('bumps 3, 6, 9, every 3rd' in n for n in r['notes']) and all(abs(off[n]) < 0.3 for n in true)"
+grep -q 'every 3rd' whole.html || fail "the page does not say which bumps"
+
+for report in middle whole; do valid loop_scan.schema.json $report.out; done
+exit $failed
