@@ -40,6 +40,21 @@ def scanner_shift_um(effect, at):
     return d
 
 
+def smooth_listed(midline, at, normal):
+    """Columns of the table's effects that are smooth, their middles and lengths free as far as columns can: what an unlisted
+    curve must stand beside."""
+    wide = lambda name, middle=20.0: {"id": name, "amplitude_um": 10.0, "half_width_mm": 18.0, "centre_mm": middle}
+    glass = [{"id": name, "value": 1e-3} for name in ("scan.scale_y", "scan.shear")]
+    glass += [wide(name, m) for name in ("scan.optical_quadratic", "scan.carriage_quadratic") for m in (5.0, 35.0)]
+    glass += [wide("scan.optical_cubic", m) for m in (5.0, 20.0, 35.0)]
+    glass += [{"id": "scan.carriage_start", "amplitude_um": 10.0, "length_mm": length} for length in (3.0, 8.0)]
+    columns = [np.sum(scanner_shift_um(e, at) * normal, axis=1) for e in glass]
+    part = [{"id": "part.ovality", "phase_deg": phase} for phase in (0, 45)]
+    part += [{"id": name} for name in ("part.spiral", "part.bump_crown", "part.bump_skew")]
+    columns += [midline.part_shift_um([{**e, "amplitude_um": 10.0}]) for e in part]
+    return np.array(columns).T
+
+
 def geometry_columns(midline, normal, first_scan):
     """Derivatives of the residual by R0, each bump's X, beta and R, the pose, and from the second scan on
     the turn. Returns (part's columns, scan's own columns)."""
@@ -92,8 +107,9 @@ def pieces_of(midline):
     return np.split(np.arange(len(midline.bump)), cut)
 
 
-def standard_errors(case, effects):
-    """The effects as they stand in the case, together: in standard errors of their common size."""
+def standard_errors(case, effects, unlisted=False):
+    """The effects as they stand in the case, together: in standard errors of their common size. Unlisted ones are seen by
+    what smooth listed effects cannot take up (of one scan)."""
     parts, blocks, scans = {}, [], 0
     for k, spec in enumerate(case["specs"]):
         for f, foil in enumerate(spec["foils"]):
@@ -112,6 +128,8 @@ def standard_errors(case, effects):
                     faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]
                     shape = shape + (faces[0] - faces[1]) / 2
             part, own = geometry_columns(midline, normal, first)
+            if unlisted:
+                own = np.column_stack([own, smooth_listed(midline, at, normal)])
             white = whiten(midline, spec["scanner"], np.column_stack([shape, part, own]))
             blocks.append((parts[key], part.shape[1], white))
             scans += own.shape[1]

@@ -201,6 +201,7 @@ def main():
     parser.add_argument("--out", default=os.path.join(ROOT, "reports"))
     options = parser.parse_args()
     program, seeds = os.path.abspath(options.program), options.seed or SEEDS + [KEPT_ASIDE] * options.all
+    os.makedirs(options.out, exist_ok=True)
     results = Results(os.path.join(options.out, "loop_plate_rough.csv"), options.fresh, "R_within_floor")
     count = COUNT if options.cases is None else min(options.cases, COUNT)
     jobs = [{"tier": n, "seed": s, "index": k} for n in options.tier or TIERS for s in seeds for k in range(count)]

@@ -8,7 +8,8 @@ Inputs that the CSV holds are not run again (--fresh: all are), so that a run ca
 made tier by tier.
 
 Effects are 1.5 times the size that is seen at 5 standard errors by an oracle that knows the effect's form and the
-noise's covariance (loop_oracle.py); a taper of the thickness, which moves no midline, is 10 µm.
+noise's covariance (loop_oracle.py); unlisted curves by what the table's smooth effects leave of them; a taper of the
+thickness, which moves no midline, is 10 µm.
 
 Writes reports/loop_rough.csv, .md and .svg."""
 
@@ -23,6 +24,7 @@ import loop_rough_report
 from loop_cases import CURVES, PART_EFFECTS, SCANNER_EFFECTS, draw_case, log_uniform
 from loop_oracle import standard_errors
 from loop_run import Results, errors_um, judge, measured_foils, pair_foils, profile_um, render, run_loop
+from loop_scans_report import is_scanner
 from other_scanner import draw_other, render_other
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
@@ -30,6 +32,7 @@ ALL = SCANNER_EFFECTS + PART_EFFECTS
 ODD = ["seams", "every", "one", "two"]
 STANDARD_ERRORS = 7.5
 SEEDS, KEPT_ASIDE = [11, 12], 13
+NEXT_SEED = 20  # every seed goes on further along the kinds: together they have all of them about equally often
 MM_PER_PX = 25.4 / 4800
 
 
@@ -49,10 +52,10 @@ TIERS = {
     "pair": Tier("turned by 90° or 45°, one effect", ["90", "45"], 20, ALL),
     "curve": Tier("one scan, an unlisted curve", ["single"], 14, CURVES),
     "odd": Tier("one scan, seams in x or single bumps raised", ["single"], 12, ODD),
-    "other-clean": Tier("second renderer, nothing there", ["single", "single", "90", "single"], 20, [], True),
-    "other-single": Tier("second renderer, one scan, one effect", ["single"], 20, ALL, True),
-    "other-pair": Tier("second renderer, turned, one effect", ["90", "45"], 8, ALL, True),
-    "other-curve": Tier("second renderer, an unlisted curve", ["single"], 7, CURVES, True),
+    "other-clean": Tier("second renderer, nothing there", ["single", "single", "90", "single"], 15, [], True),
+    "other-single": Tier("second renderer, one scan, one effect", ["single"], 14, ALL, True),
+    "other-pair": Tier("second renderer, turned, one effect", ["90", "45"], 5, ALL, True),
+    "other-curve": Tier("second renderer, an unlisted curve", ["single"], 5, CURVES, True),
 }
 
 
@@ -104,9 +107,9 @@ def draw_odd(rng, kind, case):
     return [effect]
 
 
-def size_by_oracle(case):
+def size_by_oracle(case, unlisted):
     seen = {**case, "specs": [{**s, "scanner": as_rough(s["scanner"])} for s in case["specs"]]} if case["other"] else case
-    factor = STANDARD_ERRORS / max(standard_errors(seen, case["effects"]), 1e-9)
+    factor = STANDARD_ERRORS / max(standard_errors(seen, case["effects"], unlisted), 1e-9)
     for effect in case["effects"]:
         for member in ("amplitude_um", "value"):
             if member in effect:
@@ -119,8 +122,7 @@ def make_case(name, index, seed):
     tier = TIERS[name]
     rng = np.random.default_rng([seed, 7 + list(TIERS).index(name), index])
     layout = tier.layouts[index % len(tier.layouts)]
-    # Every seed goes on where the one before stopped: together they have every kind equally often.
-    kind = tier.kinds[(index + tier.count * (seed - SEEDS[0])) % len(tier.kinds)] if tier.kinds else None
+    kind = tier.kinds[(index + NEXT_SEED * (seed - SEEDS[0])) % len(tier.kinds)] if tier.kinds else None
     listed = [kind] if kind and kind not in ODD else []
     case = {**draw_case(rng, layout, index, listed, 10.0 if listed else None), "other": tier.other}
     if kind in ODD:
@@ -134,7 +136,7 @@ def make_case(name, index, seed):
         spec["scanner"].update(rough=rough, bits=8, blur_px=float(rng.uniform(1.4, 2.4)), noise_correlation=0.5)
         spec["scanner"]["noise"] = float(rng.uniform(1, 2.5))
     if case["effects"]:
-        size_by_oracle(case)
+        size_by_oracle(case, unlisted=tier.kinds in (CURVES, ODD))
     return layout, case
 
 
@@ -146,9 +148,12 @@ def render_others(program, folder, specs):
 
 
 def floor_um(program, folder, case, draw, row):
-    """Errors of the same foils with the same scatter and no effect, measured."""
+    """Errors of the same foils with the same scatter and no effect, measured; not where the part is what is wrong."""
+    names = ("R", "h", "R0", "profile")
     if not case["effects"]:
-        return {f"{q}_floor_um": row[f"{q}_before_um"] for q in ("R", "h", "R0", "profile")}
+        return {f"{q}_floor_um": row[f"{q}_before_um"] for q in names}
+    if not is_scanner(row):
+        return {f"{q}_floor_um": "" for q in names}
     bare = {**case, "effects": [], "specs": [{**s, "effects": []} for s in case["specs"]]}
     foils = measured_foils(program, folder, bare, draw)
     pairs = pair_foils(bare, foils) if foils is not None else None
@@ -180,6 +185,7 @@ def main():
     options = parser.parse_args()
     program = os.path.abspath(options.program)
     seeds = options.seed or SEEDS + [KEPT_ASIDE] * options.all
+    os.makedirs(options.out, exist_ok=True)
     results = Results(os.path.join(options.out, "loop_rough.csv"), options.fresh, "profile_floor_um")
     jobs = []
     for name in options.tier or TIERS:

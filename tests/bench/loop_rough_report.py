@@ -54,8 +54,13 @@ def judged_by(row):
     return QUANTITIES if is_scanner(row) or not row["wanted"] else ("profile",)
 
 
+def with_floor(rows):
+    return [r for r in rows if r["R_floor_um"]]
+
+
 def floors(rows):
-    return {q: float(np.median([number(r, q + "_floor_um") for r in rows])) for q in (*QUANTITIES, "profile")}
+    median = lambda q: float(np.median([number(r, q + "_floor_um") for r in with_floor(rows)]))
+    return {q: median(q) if with_floor(rows) else 0.0 for q in (*QUANTITIES, "profile")}
 
 
 def worse(row, least):
@@ -69,8 +74,8 @@ def corrected(row):
 
 def over_floor(rows, quantity):
     """Of medians: one foil's R0 can be right by chance, with the effect and without it."""
-    after, floor = ([number(r, f"{quantity}_{side}_um") for r in rows] for side in ("after", "floor"))
-    return float(np.median(after) / max(np.median(floor), 1e-4)) if rows else None
+    after, floor = ([number(r, f"{quantity}_{side}_um") for r in with_floor(rows)] for side in ("after", "floor"))
+    return float(np.median(after) / max(np.median(floor), 1e-4)) if floor else None
 
 
 def mean_of(rows, name):
@@ -236,10 +241,11 @@ def profile_lines(rows, tiers):
     for _, title, group in by_tier(rows, tiers):
         own = [r for r in group if r["wanted"]]
         if own:
-            right = [r for r in own if is_right(r)]
-            ratio = over_floor(right, "profile")
-            table.append([title, len(own), error_cells(own, "profile"), "–" if ratio is None else f"{ratio:.2f}"])
-    return markdown(["tier", "inputs", "before → after, floor, µm", "after / floor, in class"], table)
+            right, least = [r for r in own if is_right(r)], floors(group)["profile"]
+            cells = [" → ".join(f"{np.median([number(r, f'profile_{side}_um') for r in some]):.3g}" for side in ("before", "after"))
+                     if some else "–" for some in (own, right)]  # fmt: skip
+            table.append([title, len(own), *cells, f"{least:.3g}" if least else "–"])
+    return markdown(["tier", "inputs", "all: before → after", "in class: before → after", "floor"], table)
 
 
 def interval_lines(rows, tiers):
@@ -313,7 +319,8 @@ loop_rough.csv with the effects that were put in. Scatter of 0 to 0.4 px, correl
 exponential), blur 1.4 to 2.4 px; in half of them one-sided blur, in a third each a halo, a side wall, JPEG. The second renderer
 (other_scanner.py) shares nothing with the program's: scatter of 0.15 to 0.35 px over 5 to 11 px, exponential or Matern, a sensor that
 lags along the carriage's way, halo, grain, tone, clipped white, JPEG. Effects are 1.5 times the size that an oracle, which knows their
-form and the noise's covariance, sees at 5 standard errors (a taper of the thickness: 10 µm).
+form and the noise's covariance, sees at 5 standard errors (unlisted curves, seams and bumps: by what all smooth listed effects together leave of them; a taper of
+the thickness: 10 µm).
 
 In class: what is there was named, or is one of the explanations that the report says it cannot tell apart. Wrong: something
 is claimed, and what is there is not among the explanations. Told: exactly named, and nothing is tied with it. Floor: the same foils
@@ -333,7 +340,7 @@ def write(folder, rows, tiers):
     lines += ["## What was asked, and what holds", "", *glance_lines(rows)]
     lines += ["", "## Named", "", *naming_lines(rows, tiers), "", "Effect by effect, in class:", "", *effect_lines(rows)]
     lines += ["", "## Errors against truth, effects of the scanner", "", "Medians, µm.", "", *error_lines(rows, tiers)]
-    lines += ["", "Distance of the true midline from what is reported, all effects; medians.", "", *profile_lines(rows, tiers)]
+    lines += ["", "Distance of the true midline from what is reported, all effects; medians, µm.", "", *profile_lines(rows, tiers)]
     lines += ["", "## Intervals", "", "Of inputs with an effect of the scanner whose dimensions were corrected: values within U = 2 u of the",
               "truth, before → after; and how many of the ranges that a tie gives hold the truth.", "", *interval_lines(rows, tiers)]  # fmt: skip
     lines += ["", "## p-values where nothing is there", "", "That no effect is needed (`p_value` of the report); uniform is right. "

@@ -228,12 +228,21 @@ def tone(light, scanner):
     return 255 * (linear if power == 1 else linear ** np.float32(1 / power))
 
 
+def blurred_where(covered, margin, sd):
+    """Most of a scan is empty: only the columns that the strip comes near."""
+    light, columns = np.zeros_like(covered), np.flatnonzero(covered.any(axis=0))
+    if len(columns):
+        near = slice(max(columns[0] - margin, 0), columns[-1] + margin + 1)
+        light[:, near] = gaussian(covered[:, near], sd)
+    return light
+
+
 def optics(covered, halo, scanner):
     """Blurred rows, BAND at a time: (first row, light)."""
     margin = int(4.5 * scanner["blur_px"]) + 1
     for top in range(0, len(covered), BAND):
         bottom, low = min(top + BAND, len(covered)), max(top - margin, 0)
-        light = gaussian(covered[low : bottom + margin], scanner["blur_px"])[top - low : bottom - low]
+        light = blurred_where(covered[low : bottom + margin], margin, scanner["blur_px"])[top - low : bottom - low]
         if halo:
             light += np.float32(scanner["halo"]["fraction"]) * (halo.rows(top, bottom) - light)
         yield top, light
