@@ -68,8 +68,8 @@ def worse(row, least):
     return any(after(q) > max(SLACK * before(q), before(q) + BEYOND * least[q]) for q in judged_by(row))
 
 
-def corrected(row):
-    return any(row[q + "_after_um"] != row[q + "_before_um"] for q in QUANTITIES)
+def corrected(row, quantities=QUANTITIES):
+    return any(row[q + "_after_um"] != row[q + "_before_um"] for q in quantities)
 
 
 def over_floor(rows, quantity):
@@ -120,8 +120,9 @@ def measures(rows):
     for q in QUANTITIES:
         result[f"{q} after / floor (medians), where the data tell"] = ("floor", over_floor(sure, q), len(sure))
     for q in QUANTITIES:
-        inside = mean_of(fixed, q + "_within_after")
-        result[f"intervals of {q} after a correction that hold, %"] = ("within", inside, len(fixed))
+        moved = [r for r in fixed if corrected(r, [q])]
+        inside = mean_of(moved, q + "_within_after")
+        result[f"intervals of {q} after a correction that hold, %"] = ("within", inside, len(moved))
     tied = [r for r in rows if is_scanner(r)]
     result["ranges of ties that hold the truth, %"] = ("ranges", ranges_held(tied), len(tied))
     lone = [r for r in rows if r["layout"] == "single"]
@@ -256,7 +257,9 @@ def interval_lines(rows, tiers):
             continue
         cells = [title, len(own)]
         for q in QUANTITIES:
-            cells.append(" → ".join(f"{mean_of(own, f'{q}_within_{side}'):.0f}" for side in ("before", "after")))
+            moved = [r for r in own if corrected(r, [q])]
+            both = [mean_of(moved, f"{q}_within_{side}") for side in ("before", "after")]
+            cells.append(f"{both[0]:.0f} → {both[1]:.0f} of {len(moved)}" if moved else "–")
         cells.append(sum(number(r, "R0_ranges") > 0 for r in own))
         for q in QUANTITIES:
             stated = sum(number(r, q + "_ranges") for r in own)
@@ -341,8 +344,8 @@ def write(folder, rows, tiers):
     lines += ["", "## Named", "", *naming_lines(rows, tiers), "", "Effect by effect, in class:", "", *effect_lines(rows)]
     lines += ["", "## Errors against truth, effects of the scanner", "", "Medians, µm.", "", *error_lines(rows, tiers)]
     lines += ["", "Distance of the true midline from what is reported, all effects; medians, µm.", "", *profile_lines(rows, tiers)]
-    lines += ["", "## Intervals", "", "Of inputs with an effect of the scanner whose dimensions were corrected: values within U = 2 u of the",
-              "truth, before → after; and how many of the ranges that a tie gives hold the truth.", "", *interval_lines(rows, tiers)]  # fmt: skip
+    lines += ["", "## Intervals", "", "Inputs with an effect of the scanner where the dimension was corrected: values within U = 2 u of the",
+              "truth, before → after, of how many inputs; and how many of the ranges that a tie gives hold the truth.", "", *interval_lines(rows, tiers)]  # fmt: skip
     lines += ["", "## p-values where nothing is there", "", "That no effect is needed (`p_value` of the report); uniform is right. "
               "Kolmogorov-Smirnov against uniform.", "", *p_lines(rows), "", "![sorted p-values](loop_rough.svg)"]  # fmt: skip
     lines += ["", "## Seed by seed", "", *seed_lines(rows, tiers)]
