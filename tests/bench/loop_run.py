@@ -168,7 +168,8 @@ def judge_names(report, wanted):
     said = sorted(claims + (["free." + curve["coordinate"]] if curve else []))
     named = said == wanted
     classes = {frozenset(member.split(" + ")) for c in report["claims"] for member in c.get("alias_class", [])}
-    right = any(w == "free." + (curve or {}).get("coordinate", "") for w in wanted)
+    curves = [curve, *curve.get("others", [])] if curve else []
+    right = any("free." + c["coordinate"] in wanted for c in curves)
     return {
         "claims": " + ".join(claims),
         "class": " | ".join(sorted(" + ".join(sorted(m)) for m in classes)),
