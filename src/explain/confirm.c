@@ -17,7 +17,7 @@
 #include "core/memory.h"
 #include "core/small_solve.h"
 #include "effect/columns.h"
-#include "explain/search.h"
+#include "explain/policy.h"
 
 /* Chance of an amplitude like this where there is none (these and those below were tuned on
  * reports/loop_plate.md: plates with and without an effect, of true and of lobed pins). */
@@ -225,7 +225,9 @@ static double judge_sides(confirmation *c) {
   if (!solve_whole(c, true, &whole, x, NULL)) return -INFINITY;
   if (effective_groups(c, x) < GROUPS_LEAST) return -INFINITY;
   double gain = validated_gain(c, &whole) - LISTED_ERRORS;
-  return quadratic(&whole, x) < FG_EXPLAIN_SHAPED_CHI2 * rest_variance(c, x) ? -INFINITY : gain;
+  return quadratic(&whole, x) < fg_explain_policy_of(c->points)->placed_chi2 * rest_variance(c, x)
+             ? -INFINITY
+             : gain;
 }
 
 /* Standard uncertainties of the coefficients from what differs from disc to disc (a sandwich of the

@@ -8,17 +8,33 @@
  * 3.5 is in 58 of 100. */
 #define SMALLEST_ERRORS 3.5
 
+/* That no effect is needed: by all of them at once, and where one is found by the best one of the
+ * family, if that says more. */
+static double p_of_none(const fg_explain_search *s, const fg_explain_yardstick *y,
+                        const double *left) {
+  const fg_explanations *out = s->out;
+  double none = s->columns.square, beyond = 1 + y->allowance / y->freedom;
+  double p = gsl_cdf_chisq_Q(fmax(0, none - y->full) / y->unit / beyond, y->freedom);
+  for (size_t e = 0; out->each[0].mask && e < out->candidate_count; e++) {
+    if (fg_effect_is_free(out->candidates[e].kind)) continue;
+    double gain = fmax(0, (none - left[e]) / y->unit - y->allowance);
+    p = fmin(p, (double)out->candidate_count *
+                    gsl_cdf_chisq_Q(gain, (double)out->candidates[e].terms));
+  }
+  return fmin(p, 1);
+}
+
 static void describe_effects(fg_explain_search *s, const fg_explain_yardstick *y) {
   fg_explanations *out = s->out;
-  double none = s->columns.square;
+  double none = s->columns.square, left[FG_CANDIDATES_MAX];
   unsigned beside = out->each[0].mask & fg_explain_mask_of(out, false);
-  out->p_value = gsl_cdf_chisq_Q(
-      fmax(0, none - y->full) / y->unit / (1 + y->allowance / y->freedom), y->freedom);
   for (size_t e = 0; e < out->candidate_count; e++) {
-    out->alone[e] = none > 0 ? 1 - fg_explain_lone_sum(s, y, e) / none : 0;
+    left[e] = fg_explain_lone_sum(s, y, e);
+    out->alone[e] = none > 0 ? 1 - left[e] / none : 0;
     if (!fg_effect_is_free(out->candidates[e].kind))
       out->smallest_um[e] = SMALLEST_ERRORS * sqrt(y->unit) * fg_explain_amplitude_u(s, beside, e);
   }
+  out->p_value = p_of_none(s, y, left);
 }
 
 static void describe_width(fg_explain_search *s, const fg_explain_yardstick *y) {

@@ -347,7 +347,8 @@ static void span_geometry(fg_explain_columns *s, const double *residual_um,
   double *column = s->left; /* borrowed */
   for (size_t a = 0; a < s->points->parameters; a++) {
     whiten(s, jacobian + a * s->points->row_count, column);
-    if (fg_explain_dot(s->rows, column, column) > 0 && extend(s, s->geometry_rank, column, IN_BASIS, 0))
+    if (fg_explain_dot(s->rows, column, column) > 0 &&
+        extend(s, s->geometry_rank, column, IN_BASIS, 0))
       s->geometry_rank++;
   }
   whiten(s, residual_um, s->residual);

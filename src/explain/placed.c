@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "explain/search.h"
+#include "explain/policy.h"
 
 /* A step elsewhere that leaves no more than this is as good (1 in 600 by chance); one so near is
  * the same. */
@@ -90,7 +90,7 @@ static bool add_best(fg_explain_search *s, bool listed_only, double *work) {
   for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
     if (kind->sought != FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
     fg_explain_hit found = fg_explain_find_place(s, rank, kind, work);
-    if (found.gain <= FG_EXPLAIN_SHAPED_CHI2 || found.amplitude <= FG_EXPLAIN_SHAPED_LEAST_UM)
+    if (found.gain <= s->policy->placed_chi2 || found.amplitude <= FG_EXPLAIN_SHAPED_LEAST_UM)
       continue;
     if (which && found.gain <= best.gain) continue;
     best = found;
@@ -144,7 +144,7 @@ fg_status fg_explain_find_on_discs(fg_context *ctx, fg_explain_search *s) {
     fg_candidate found = {.kind = kind, .shape = {hit.at}};
     if (!(hit.gain > 0) || hit.amplitude <= FG_EXPLAIN_SHAPED_LEAST_UM) continue;
     double gain = gain_over_rest(s, rank, &found);
-    if (gain <= fmax(most, FG_EXPLAIN_SHAPED_CHI2)) continue;
+    if (gain <= fmax(most, s->policy->placed_chi2)) continue;
     most = gain;
     best = found;
   }

@@ -54,8 +54,11 @@ static const fg_explain_policy foils = {
     /* Edges of a stretched picture are measured a little wrong (reports/loop_scans.md). */
     .effect_error = 0.003,
     .bend_error = 0.005,
-    .one_more_chi2 = INFINITY, /* rows are alike: what all effects would leave says it */
-    .worse_chi2 = 25.0,        /* five standard deviations of one number */
+    /* By chance 1 in 45 000 of one effect; of some dozen that are sought, 1 in 5 000. */
+    .one_more_chi2 = 18.0,
+    .counts_columns = true,
+    .placed_chi2 = 30.0, /* of 300 places 1 in 10 000 by chance */
+    .worse_chi2 = 25.0,  /* five standard deviations of one number */
     .is_better = has_lower_score,
     .beside_curve = 2,
     .curve_share = 0.03, /* reports/loop_scans.md, tier curves */
@@ -79,6 +82,7 @@ static const fg_explain_policy discs = {
     .keeps_twins = true,
     .edge_error_um = 0.01, /* tuned on plates (reports/loop_plate.md) */
     .one_more_chi2 = ONE_MORE_CHI2,
+    .placed_chi2 = 45.0,    /* tuned on plates (reports/loop_plate.md) */
     .worse_chi2 = INFINITY, /* none that is much worse is right */
     .is_better = leaves_less,
     .beside_curve = 1,

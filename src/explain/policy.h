@@ -33,7 +33,11 @@ struct fg_explain_policy {
   double edge_error_um; /* of the edge model: below it effects are not told apart */
   double effect_error;  /* an effect's form is known to this share of what it does to the rows; */
   double bend_error;    /* the same of one that is led by the lowest polynomials */
-  double one_more_chi2; /* a set is not right beside which a further effect gains more */
+  double one_more_chi2; /* a set is not right beside which a further effect gains more, */
+  bool counts_columns;  /* with one column; as much by chance with several, and beside what the
+                           edges' model leaves */
+  double placed_chi2;   /* gain of a ripple or step that makes it worth a place in the search: its
+                           best of some hundred places stands for ln of their number more */
   double worse_chi2;    /* a set so much worse than the best one is not tied with it */
   /* Whether a listed set stands before the best one so far where none is right. */
   bool (*is_better)(const fg_explain_search *search, const fg_explanation *explanation,

@@ -134,12 +134,17 @@ fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yards
   return explanation;
 }
 
+double fg_explain_known_to(const fg_explain_search *s, const fg_explain_yardstick *y,
+                           const fg_explanation *m) {
+  double taken = fmax(0, y->none - m->excess);
+  double error = m->mask & y->bends ? s->policy->bend_error : s->policy->effect_error;
+  return y->allowance + error * error * taken;
+}
+
 bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
                          const fg_explanation *m) {
   double chance = m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0;
-  double taken = fmax(0, y->none - m->excess);
-  double error = m->mask & y->bends ? s->policy->bend_error : s->policy->effect_error;
-  return m->excess <= chance + y->allowance + error * error * taken;
+  return m->excess <= chance + fg_explain_known_to(s, y, m);
 }
 
 double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m) {

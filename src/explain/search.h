@@ -67,6 +67,9 @@ fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s);
 /* Fits a set; an excess of INFINITY says that it is no set of its own. */
 fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yardstick *y,
                               unsigned mask);
+/* Excess that edges and the forms of its effects may leave, in chi². */
+double fg_explain_known_to(const fg_explain_search *s, const fg_explain_yardstick *y,
+                           const fg_explanation *m);
 /* Whether it leaves no more than it should. */
 bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
                          const fg_explanation *m);
@@ -95,10 +98,7 @@ void fg_explain_describe(fg_explain_search *s, const fg_explain_yardstick *y);
 
 /* ---- places.c, placed.c ---- */
 
-/* Gain in chi² that makes one worth a place in the search: its best of some hundred places stands
- * for ln of their number more and its size, um (both
- * tuned on reports/loop_scans.md). */
-#define FG_EXPLAIN_SHAPED_CHI2     45.0
+/* A size that makes one worth a place in the search, um (tuned on reports/loop_scans.md). */
 #define FG_EXPLAIN_SHAPED_LEAST_UM 0.15
 
 /* Where one takes most beside the first `rank` vectors of the basis, with `left` beside them: its

@@ -1,4 +1,5 @@
 /* Sets of candidates: which are tried, which are right, and what stands in where none is. */
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 
 #include "explain/policy.h"
@@ -49,15 +50,28 @@ static bool is_set(const fg_explain_search *s, unsigned mask) {
   return s->policy->keeps_twins || !fg_explain_has_twins(s->out, mask);
 }
 
+/* What one more effect gains by chance, with the columns that it adds. One that was sought over
+ * places has had more chances. */
+static double chance_of(const fg_explain_search *s, size_t e, double columns) {
+  const fg_explain_policy *policy = s->policy;
+  if (!policy->counts_columns) return policy->one_more_chi2;
+  double p = gsl_cdf_chisq_Q(policy->one_more_chi2, 1);
+  double chance = gsl_cdf_chisq_Qinv(p, fmax(columns, 1));
+  bool placed = s->out->candidates[e].kind->sought == FG_EFFECT_PLACED;
+  return placed ? fmax(chance, policy->placed_chi2) : chance;
+}
+
 /* Whether one more listed effect takes more than it may. */
 static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
                            const fg_explanation *m) {
   unsigned more = fg_explain_mask_of(s->out, false) & ~m->mask;
-  if (!isfinite(s->policy->one_more_chi2)) return false;
-  for (size_t e = 0; e < s->out->candidate_count; e++)
-    if ((more >> e & 1) &&
-        m->excess - fg_explain_try(s, y, m->mask | 1u << e).excess > s->policy->one_more_chi2)
-      return true;
+  double known_to = s->policy->counts_columns ? fg_explain_known_to(s, y, m) : 0;
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    if (!(more >> e & 1)) continue;
+    fg_explanation with = fg_explain_try(s, y, m->mask | 1u << e);
+    double gain = m->excess - with.excess;
+    if (gain > known_to + chance_of(s, e, m->freedom - with.freedom)) return true;
+  }
   return false;
 }
 

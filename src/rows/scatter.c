@@ -17,7 +17,7 @@
 #define GAIN_LEAST 6.0
 /* Polynomials along an arc: one per so much of it, which leaves what is shorter; their number; rows
  * for each of them. */
-#define POLYNOMIAL_MM  0.45
+#define POLYNOMIAL_MM 0.45
 enum { POLYNOMIALS_LEAST = 6, POLYNOMIALS_MOST = 16, ROWS_EACH = 4 };
 /* Arcs whose square is so many standard errors above the median one hold something else: a step,
  * dirt. So many in all may. */
@@ -43,20 +43,15 @@ typedef struct search {
   size_t arc_count;
 } search;
 
-static bool same_arc(const fg_points *points, size_t a, size_t b) {
-  const fg_points_row *p = &points->rows[a], *q = &points->rows[b];
-  return p->view == q->view && p->group == q->group;
-}
-
 static fg_status list_arcs(search *s) {
   const fg_points *points = s->points;
   FG_TRY(fg_memory_allocate(s->ctx, points->row_count, sizeof *s->arcs, (void **)&s->arcs));
   for (size_t from = 0, to; from < points->row_count; from = to) {
     arc *a = &s->arcs[s->arc_count];
     *a = (arc){.from = from};
-    for (to = from; to < points->row_count && same_arc(points, from, to); to++)
-      a->rows += points->rows[to].weight > 0;
-    a->to = to;
+    to = a->to = fg_points_arc_end(points, from);
+    for (size_t i = from; i < to; i++)
+      a->rows += points->rows[i].weight > 0;
     double length = fabs(points->rows[to - 1].s_mm - points->rows[from].s_mm) / POLYNOMIAL_MM;
     a->polynomials = (size_t)fmax(POLYNOMIALS_LEAST, fmin(POLYNOMIALS_MOST, round(length)));
     if (a->rows >= ROWS_EACH * a->polynomials) s->arc_count++;
@@ -251,10 +246,10 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
 
 static double spacing_of(const fg_points *points) {
   double sum = 0, n = 0;
-  for (size_t i = 1; i < points->row_count; i++) {
-    if (!same_arc(points, i - 1, i)) continue;
-    sum += fabs(points->rows[i].s_mm - points->rows[i - 1].s_mm);
-    n++;
+  for (size_t i = 0, to; i < points->row_count; i = to) {
+    to = fg_points_arc_end(points, i);
+    sum += fabs(points->rows[to - 1].s_mm - points->rows[i].s_mm);
+    n += (double)(to - i - 1);
   }
   return n > 0 ? sum / n : 1;
 }

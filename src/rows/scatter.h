@@ -9,6 +9,10 @@
 
 #include "rows/points.h"
 
+/* Behind the last row of the arc that starts at a row: neighbours on one view of one bump, land or
+ * disc. What lies farther apart than 4 mm shares no noise, and polynomials could not follow it. */
+size_t fg_points_arc_end(const fg_points *points, size_t from);
+
 /* Fills points->scatter by restricted likelihood (Patterson and Thompson 1971) from what the
  * residual of every arc holds beside polynomials along it, which take what is smooth. */
 fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um);

@@ -13,9 +13,17 @@
 /* The least that a row holds beside those before it, of its own variance. */
 #define PIVOT_LEAST 1e-4
 
-static bool starts_arc(const fg_points *points, size_t i) {
-  const fg_points_row *row = &points->rows[i];
-  return i == 0 || row->view != row[-1].view || row->group != row[-1].group;
+/* A disc's edge is cut into arcs of this length. */
+#define ARC_MOST_MM 4.0
+
+size_t fg_points_arc_end(const fg_points *points, size_t from) {
+  const fg_points_row *first = &points->rows[from];
+  size_t to = from;
+  while (to < points->row_count && points->rows[to].view == first->view &&
+         points->rows[to].group == first->group &&
+         fabs(points->rows[to].s_mm - first->s_mm) < ARC_MOST_MM)
+    to++;
+  return to;
 }
 
 static double distance(const fg_points *points, size_t a, size_t b) {
@@ -25,8 +33,11 @@ static double distance(const fg_points *points, size_t a, size_t b) {
 /* The most rows that lie within a length of one. */
 static size_t rows_within(const fg_points *points, double length_mm) {
   size_t most = 1;
-  for (size_t i = 0, from = 0; i < points->row_count; i++) {
-    if (starts_arc(points, i)) from = i;
+  for (size_t i = 0, from = 0, end = 0; i < points->row_count; i++) {
+    if (i == end) {
+      from = i;
+      end = fg_points_arc_end(points, i);
+    }
     while (distance(points, i, from) > length_mm)
       from++;
     most = i - from > most ? i - from : most;
@@ -105,10 +116,10 @@ fg_status fg_whitening_open(fg_context *ctx, const fg_points *points, fg_whiteni
   if (!(points->scatter.share > 0) || !points->row_count) return FG_OK;
   fg_status status = FG_OK;
   FG_TRY_EXIT(allocate(ctx, points, w));
-  for (size_t i = 0; i < w->rows; i++) {
+  for (size_t i = 0; i < w->rows; i++)
     w->used[i] = points->rows[i].weight > 0;
-    w->first[i] = starts_arc(points, i);
-  }
+  for (size_t i = 0; i < w->rows; i = fg_points_arc_end(points, i))
+    w->first[i] = true;
   if (w->exponential)
     filter(points, w);
   else
