@@ -57,10 +57,11 @@ bool fg_explain_has_twins(const fg_explanations *out, unsigned mask) {
 void fg_explain_keep(fg_explanations *out, const fg_explanation *explanation) {
   out->total++;
   size_t at = out->count < FG_EXPLANATIONS_MAX ? out->count++ : FG_EXPLANATIONS_MAX;
-  if (at == FG_EXPLANATIONS_MAX && explanation->excess >= out->each[FG_EXPLANATIONS_MAX - 1].excess)
+  double own = fg_explain_akaike(explanation);
+  if (at == FG_EXPLANATIONS_MAX && own >= fg_explain_akaike(&out->each[FG_EXPLANATIONS_MAX - 1]))
     return;
   if (at == FG_EXPLANATIONS_MAX) at--;
-  for (; at > 0 && out->each[at - 1].excess > explanation->excess; at--)
+  for (; at > 0 && fg_explain_akaike(&out->each[at - 1]) > own; at--)
     out->each[at] = out->each[at - 1];
   out->each[at] = *explanation;
 }

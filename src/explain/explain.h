@@ -19,7 +19,7 @@
 #include "foilgauge/scan_loop.h"
 #include "rows/points.h"
 
-enum { FG_CANDIDATES_MAX = 28, FG_EXPLANATIONS_MAX = 8, FG_EXPLAIN_BARRED_MAX = 24 };
+enum { FG_CANDIDATES_MAX = 28, FG_EXPLANATIONS_MAX = 16, FG_EXPLAIN_BARRED_MAX = 24 };
 
 /* An effect as it enters the search: its shape is known by now, but for the middle c of a
  * polynomial, which is found with every set anew. */

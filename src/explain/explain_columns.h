@@ -43,10 +43,10 @@ typedef struct fg_explain_columns {
   double width_part; /* mean square of the widths' smooth part that no field of the scanner makes */
 } fg_explain_columns;
 
-/* A term of a set: a weighted sum of up to three columns. */
+/* A term of a set: a weighted sum of columns. */
 typedef struct fg_explain_term {
-  size_t count, column[3];
-  double weight[3];
+  size_t count, column[FG_EFFECT_COLUMNS_MAX];
+  double weight[FG_EFFECT_COLUMNS_MAX];
 } fg_explain_term;
 
 fg_status fg_explain_columns_open(fg_context *ctx, const fg_points *points,

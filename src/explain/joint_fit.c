@@ -225,7 +225,8 @@ static double row_variance(const refit *r) {
     rows++;
   }
   double freedom = fmax(rows - (double)(r->parameters + r->unknowns), 1);
-  return sum / freedom * fg_points_integral(r->points, NULL, r->points->row_count, r->white);
+  double integral = fg_points_integral(r->points, NULL, r->points->row_count, r->white);
+  return sum / freedom * fmax(r->points->scatter.swell, integral);
 }
 
 /* What the effects in force add to the covariance of two numbers of the geometry. `whole` is the

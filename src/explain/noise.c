@@ -34,7 +34,8 @@ static void take_noise(fg_explain_search *s, size_t rank) {
   s->full = fg_explain_dot(s->columns.rows, s->columns.left, s->columns.left);
   s->freedom = rank - s->columns.geometry_rank;
   s->out->noise_um = noise_of(&s->columns, rank);
-  s->out->integral = s->columns.integral * fg_explain_integral(&s->columns);
+  double swell = s->columns.points->scatter.swell;
+  s->out->integral = s->columns.integral * fmax(swell, fg_explain_integral(&s->columns));
 }
 
 size_t fg_explain_noise(fg_explain_search *s, bool listed_only) {

@@ -115,6 +115,48 @@ fg_status fg_explain_find_on_foils(fg_context *ctx, fg_explain_search *s) {
   return FG_OK;
 }
 
+/* What the best smooth effect takes by itself. */
+static double best_alone(fg_explain_search *s) {
+  const fg_explain_yardstick y = fg_explain_yardstick_of(s);
+  double least = s->columns.square;
+  for (size_t e = 0; e < s->out->candidate_count; e++)
+    if (!fg_effect_is_free(s->out->candidates[e].kind))
+      least = fmin(least, fg_explain_lone_sum(s, &y, e));
+  return (s->columns.square - least) / y.unit;
+}
+
+static bool is_there(const fg_explain_search *s, const fg_candidate *placed) {
+  unsigned both = 1u << s->out->candidate_count;
+  fg_explanations *out = s->out;
+  if (out->candidate_count == FG_CANDIDATES_MAX) return true;
+  out->candidates[out->candidate_count++] = *placed; /* on trial */
+  bool twin = false;
+  for (size_t e = 0; e + 1 < out->candidate_count; e++)
+    twin = twin || fg_explain_has_twins(out, both | 1u << e);
+  out->candidate_count--;
+  return twin;
+}
+
+fg_status fg_explain_find_in_place(fg_context *ctx, fg_explain_search *s) {
+  double *work = NULL, most = 0;
+  FG_TRY(fg_memory_allocate(ctx, s->columns.rows, 2 * sizeof *work, (void **)&work));
+  fg_explain_noise(s, false);
+  most = best_alone(s);
+  memcpy(s->columns.left, s->columns.residual, s->columns.rows * sizeof *s->columns.left);
+  for (const fg_effect *kind = fg_effect_first(); kind; kind = fg_effect_next(kind)) {
+    if (kind->sought != FG_EFFECT_PLACED || !fg_explain_seeks(s, kind)) continue;
+    fg_explain_hit hit = fg_explain_find_place(s, s->columns.geometry_rank, kind, work);
+    fg_candidate found = {.kind = kind, .shape = {hit.at}};
+    if (hit.gain < fmax(s->policy->one_more_chi2, most - s->policy->worse_chi2)) continue;
+    if (is_there(s, &found)) continue;
+    s->unfitted |= 1u << s->out->candidate_count;
+    fg_explain_add(s, &found);
+    s->new_shapes++;
+  }
+  free(work);
+  return FG_OK;
+}
+
 /* The gain in units of the noise that the effect leaves: where it is most of the residual, the
  * noise that it stands against must not hold it. */
 static double gain_over_rest(fg_explain_search *s, size_t rank, const fg_candidate *effect) {

@@ -36,9 +36,12 @@ struct fg_explain_policy {
   double one_more_chi2; /* a set is not right beside which a further effect gains more, */
   bool counts_columns;  /* with one column; as much by chance with several, and beside what the
                            edges' model leaves */
-  double placed_chi2;   /* gain of a ripple or step that makes it worth a place in the search: its
-                           best of some hundred places stands for ln of their number more */
-  double worse_chi2;    /* a set so much worse than the best one is not tied with it */
+  double
+      quadratic_chi2; /* of one view: what a quadratic gains over its slope; else it is a scale */
+  double placed_chi2; /* gain of a ripple or step that makes it worth a place in the search: its
+                         best of some hundred places stands for ln of their number more */
+  bool has_rivals;    /* smooth curves that do as well are tied with listed sets */
+  double worse_chi2;  /* a set so much worse than the best one is not tied with it */
   /* Whether a listed set stands before the best one so far where none is right. */
   bool (*is_better)(const fg_explain_search *search, const fg_explanation *explanation,
                     const fg_explanation *best);

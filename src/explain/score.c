@@ -7,9 +7,6 @@
 
 /* A set is right when what it leaves beyond all effects is likelier than this. */
 #define ACCEPT_P 0.001
-/* What 1 in 1000 gains by chance in one column (chi² of 1): a quadratic must gain more than its
- * slope. */
-#define GAIN_LEAST 10.8
 /* The middle of a polynomial lies within so many picture sizes of the picture's: farther off it is
  * a scale. */
 #define MIDDLE_REACH 1.5
@@ -85,7 +82,9 @@ static bool is_quadratic(const fg_explain_search *s, const fg_explain_yardstick 
   memmove(&without.term[at], &without.term[at + 1], (set->count - at - 1) * sizeof without.term[0]);
   without.count--;
   double alone = fg_explain_solve(&s->columns, without.term, without.count, NULL, NULL, &rank);
-  return alone - sum > GAIN_LEAST * y->unit;
+  const fg_points *points = s->columns.points;
+  bool again = points->view_count > points->part_count;
+  return alone - sum >= (again ? FG_EXPLAIN_GAIN_LEAST : s->policy->quadratic_chi2) * y->unit;
 }
 
 /* Crown and skew are led by their lowest polynomial. */

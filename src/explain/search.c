@@ -98,6 +98,7 @@ fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
   if (policy->other_steps) FG_TRY_EXIT(fg_explain_add_other_steps(ctx, &s, request->known));
   FG_TRY_EXIT(fg_explain_width_doubt(ctx, &s.columns));
   if (request->look) FG_TRY_EXIT(policy->find_placed(ctx, &s));
+  if (policy->has_rivals) FG_TRY_EXIT(fg_explain_find_in_place(ctx, &s));
   fg_explain_refine_noise(&s);
   FG_TRY_EXIT(fg_explain_check_rows(ctx, &s));
   const fg_explain_yardstick y = fg_explain_yardstick_of(&s);

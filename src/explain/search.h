@@ -39,8 +39,13 @@ size_t fg_explain_bits(unsigned mask);
 unsigned fg_explain_mask_of(const fg_explanations *out, bool of_free);
 /* Two forms of one effect, and two ripples of one period or two steps at one place. */
 bool fg_explain_has_twins(const fg_explanations *out, unsigned mask);
-/* Puts an explanation into the list, the one that leaves least first. */
+/* Puts an explanation into the list, the likeliest first: the one that leaves least, a number more
+ * counting two (Akaike 1974). */
 void fg_explain_keep(fg_explanations *out, const fg_explanation *explanation);
+/* What they are sorted by. */
+static inline double fg_explain_akaike(const fg_explanation *m) {
+  return m->excess - 2 * m->freedom;
+}
 
 /* Shapes nearer to each other than this are one: over a foil's 40 mm a ripple of 2 mm turns by as
  * much as a wave then. */
@@ -61,6 +66,9 @@ fg_status fg_explain_check_rows(fg_context *ctx, const fg_explain_search *s);
 double fg_explain_integral(const fg_explain_columns *columns);
 
 /* ---- score.c ---- */
+
+/* What 1 in 1000 gains by chance in one column (chi² of 1). */
+#define FG_EXPLAIN_GAIN_LEAST 10.8
 
 fg_explain_yardstick fg_explain_yardstick_of(fg_explain_search *s);
 
@@ -90,6 +98,11 @@ void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y);
  */
 bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
                                 const fg_explanation *best, const fg_explanation *curve);
+
+/* ---- rivals.c ---- */
+
+/* Adds free curves that do as well as the best listed explanation, smooth ones of few numbers. */
+void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y);
 
 /* ---- describe.c ---- */
 
@@ -123,6 +136,9 @@ fg_status fg_explain_add_shaped(fg_context *ctx, fg_explain_search *s, const fg_
 /* Looks for ripples and steps beside everything else, and adds those that stand out. */
 fg_status fg_explain_find_on_foils(fg_context *ctx, fg_explain_search *s);
 fg_status fg_explain_find_on_discs(fg_context *ctx, fg_explain_search *s);
+/* Ripples and steps that beside the geometry alone take as much as the best smooth effect: they may
+ * be what it only follows. */
+fg_status fg_explain_find_in_place(fg_context *ctx, fg_explain_search *s);
 
 /* Steps at other places that the geometry turns into those that are known: a whole bump between the
  * two places takes the difference. They are added as effects of their own. */

@@ -101,8 +101,11 @@ static fg_explanation try_listed(fg_explain_search *s, const fg_explain_yardstic
 static void drop_worse(const fg_explain_search *s, const fg_explain_yardstick *y) {
   fg_explanations *out = s->out;
   size_t kept = 0;
+  double least = INFINITY;
   for (size_t m = 0; m < out->count; m++)
-    if (out->each[m].excess <= out->each[0].excess + s->policy->worse_chi2 + y->allowance)
+    least = fmin(least, out->each[m].excess);
+  for (size_t m = 0; m < out->count; m++)
+    if (out->each[m].excess <= least + s->policy->worse_chi2 + y->allowance)
       out->each[kept++] = out->each[m];
   out->total -= out->count - kept;
   out->count = kept;
@@ -118,8 +121,8 @@ static void order_by_width(const fg_explain_search *s) {
   for (size_t m = 0; m < out->count; m++)
     out->each[m].width = width > 0 ? (out->each[m].width / width - 1) * (double)s->columns.rows : 0;
   for (size_t m = 1; m < out->count; m++)
-    for (size_t k = m; k > 0 && out->each[k].excess + out->each[k].width <
-                                    out->each[k - 1].excess + out->each[k - 1].width;
+    for (size_t k = m; k > 0 && fg_explain_akaike(&out->each[k]) + out->each[k].width <
+                                    fg_explain_akaike(&out->each[k - 1]) + out->each[k - 1].width;
          k--) {
       fg_explanation swap = out->each[k];
       out->each[k] = out->each[k - 1];
@@ -240,6 +243,7 @@ void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y) {
     stand_in(s, y, best);
     return;
   }
+  if (s->policy->has_rivals) fg_explain_add_rivals(s, y);
   drop_worse(s, y);
   order_by_width(s);
 }

@@ -84,6 +84,7 @@ typedef struct fg_scatter {
   double row_um;   /* standard deviation of a row that is a mean of a whole block */
   double integral; /* of the correlation along the edge: noise in n rows averages like that in n
                       over it */
+  double swell;    /* noise of long waves over what share, range and form say of it: at least 1 */
 } fg_scatter;
 
 typedef struct fg_points {

@@ -19,6 +19,12 @@
  * for each of them. */
 #define POLYNOMIAL_MM 0.45
 enum { POLYNOMIALS_LEAST = 6, POLYNOMIALS_MOST = 16, ROWS_EACH = 4 };
+/* Waves between these lengths, mm: longer than what the form of the correlation is fitted to, and
+ * shorter than what effects make; what is in them says whether the form holds towards long ones. A
+ * wave of noise may be so many times larger than the form says. */
+#define WAVE_SHORT_MM 0.4
+#define WAVE_LONG_MM  0.75
+#define SWELL_MOST    2.5
 /* Arcs whose square is so many standard errors above the median one hold something else: a step,
  * dirt. So many in all may. */
 #define ARC_SIGMAS 5.0
@@ -244,6 +250,42 @@ static fg_status leave_out(search *s, const fg_scatter *scatter, size_t *out) {
   return FG_OK;
 }
 
+/* Degrees of polynomials that are such waves along an arc: [from, to). */
+static void find_waves(const fg_points *points, const arc *a, size_t *from, size_t *to) {
+  double length = fabs(points->rows[a->to - 1].s_mm - points->rows[a->from].s_mm);
+  *from = (size_t)fmax(POLYNOMIALS_LEAST, ceil(2 * length / WAVE_LONG_MM));
+  *to = (size_t)fmin(POLYNOMIALS_MOST,
+                     fmin(floor(2 * length / WAVE_SHORT_MM), (double)(a->rows / ROWS_EACH)));
+}
+
+/* Mean square along such waves over that of all rows, both whitened: 1 where the form holds. */
+static fg_status find_swell(search *s, fg_scatter *scatter) {
+  double value, square = 0, count = 0;
+  size_t rows = s->points->row_count;
+  for (size_t k = 0; k < s->arc_count; k++)
+    s->arcs[k].polynomials = POLYNOMIALS_MOST;
+  fill_polynomials(s);
+  FG_TRY(deviance(s, scatter, &value)); /* leaves orthonormal polynomials, in order */
+  fg_whitening whitening;
+  FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
+  memcpy(s->left, s->weighted, rows * sizeof *s->left);
+  fg_whitening_apply(&whitening, s->left);
+  fg_whitening_close(&whitening);
+  for (size_t k = 0; k < s->arc_count; k++) {
+    const arc *a = &s->arcs[k];
+    size_t from, to;
+    find_waves(s->points, a, &from, &to);
+    for (size_t p = from; p < to && !a->out; p++) {
+      double along = dot(s->columns + p * rows + a->from, s->left + a->from, a->to - a->from);
+      square += along * along;
+      count++;
+    }
+  }
+  double mean = count > 0 ? square / count / (scatter->row_um * scatter->row_um) : 1;
+  scatter->swell = fmin(fmax(mean, 1), SWELL_MOST);
+  return FG_OK;
+}
+
 static double spacing_of(const fg_points *points) {
   double sum = 0, n = 0;
   for (size_t i = 0, to; i < points->row_count; i = to) {
@@ -276,7 +318,7 @@ static fg_status open(search *s) {
 fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um) {
   search s = {.ctx = ctx, .points = points};
   fg_scatter from = points->scatter;
-  trial best = {.scatter = {.integral = 1}};
+  trial best = {.scatter = {.integral = 1, .swell = 1}};
   double *weighted = NULL;
   size_t out;
   fg_status status = FG_OK;
@@ -289,6 +331,7 @@ fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const doubl
   FG_TRY_EXIT(find(&s, from, &best));
   FG_TRY_EXIT(leave_out(&s, &best.scatter, &out));
   if (out) FG_TRY_EXIT(find(&s, best.scatter, &best));
+  FG_TRY_EXIT(find_swell(&s, &best.scatter));
   best.scatter.integral = integral_of(points, &best.scatter);
 exit:
   points->scatter = status == FG_OK ? best.scatter : from;

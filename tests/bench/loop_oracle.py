@@ -11,8 +11,8 @@ MM_PER_PX = 25.4 / 4800
 STEP_MM = 4 * MM_PER_PX  # rows as the loop has them
 
 
-def scanner_shift_um(effect, at):
-    """What an effect of unit size moves places (mm), um along x and y."""
+def scanner_shift_um(effect, at, middle_mm):
+    """What an effect of unit size moves places (mm), um along x and y; `middle_mm` of the picture."""
     d = np.zeros_like(at)
     x, y = at.T
     name = effect["id"]
@@ -35,7 +35,7 @@ def scanner_shift_um(effect, at):
     elif name.startswith("scan."):
         axis = 1 if name == "scan.carriage_quadratic" else 0
         power = 3 if name.endswith("cubic") else 2
-        middle = effect.get("centre_mm", 20.0)
+        middle = effect.get("centre_mm", middle_mm[axis])
         d[:, axis] = effect["amplitude_um"] * ((at[:, axis] - middle) / effect["half_width_mm"]) ** power
     return d
 
@@ -117,12 +117,13 @@ def standard_errors(case, effects, unlisted=False):
             midline.pieces = pieces_of(midline)
             normal = midline.to_scan(midline.normal)
             at = midline.to_scan(midline.xy) + np.array(foil["centre_mm"])
+            middle = [0.5 * MM_PER_PX * spec[side] for side in ("width_px", "height_px")]
             key = f if case["same_foil"] else (k, f)
             first = key not in parts
             parts.setdefault(key, len(parts))
             shape = midline.part_shift_um(effects)
             for effect in effects:
-                shape = shape + np.sum(scanner_shift_um(effect, at) * normal, axis=1)
+                shape = shape + np.sum(scanner_shift_um(effect, at, middle) * normal, axis=1)
                 if effect["id"] == "free.edge.normal":  # both edges, which face opposite ways
                     degrees = np.degrees(np.arctan2(normal[:, 1], normal[:, 0]))
                     faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]

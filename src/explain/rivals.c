@@ -1,0 +1,121 @@
+/* Free curves of few numbers that do as well as the listed effects: a curve in x, say, that an oval
+ * follows within the noise. */
+#include <math.h>
+
+#include "explain/search.h"
+
+/* A curve that can follow the listed effects themselves stands beside them only when Schwarz's
+ * criterion prefers it strongly (Kass and Raftery 1995, section 3.2). */
+#define FOLLOWER_GAIN 10.0
+/* It follows an effect of which it leaves no more than this share. */
+#define FOLLOWED_SHARE 0.05
+/* Numbers of a smooth curve, beside its mean. */
+enum { NUMBERS_MOST = 8 };
+
+/* Legendre's polynomial of a degree. */
+static double legendre(size_t degree, double x) {
+  double before = 1, now = x;
+  if (degree == 0) return 1;
+  for (size_t n = 1; n < degree; n++) {
+    double next = ((double)(2 * n + 1) * x * now - (double)n * before) / (double)(n + 1);
+    before = now;
+    now = next;
+  }
+  return now;
+}
+
+/* Splines whose coefficients follow a polynomial are one; other curves have their lowest columns
+ * first. */
+static size_t list_terms(const fg_explain_search *s, const fg_candidate *curve, size_t numbers,
+                         fg_explain_term *term) {
+  size_t knots = s->columns.points->frame.knots, count = 0;
+  bool splines = curve->kind->coarse != FG_EFFECT_SMOOTHER;
+  for (size_t n = 0; n < numbers + splines && n < curve->columns; n++) {
+    fg_explain_term *to = &term[count++];
+    *to = (fg_explain_term){.count = 1, .column = {curve->column[n]}, .weight = {1}};
+    if (!splines) continue;
+    to->count = curve->columns < knots ? curve->columns : knots;
+    for (size_t i = 0; i < to->count; i++) {
+      to->column[i] = curve->column[i];
+      to->weight[i] = legendre(n, 2 * (double)i / (double)(to->count - 1) - 1);
+    }
+  }
+  return count;
+}
+
+/* The curve of as many numbers as Schwarz's criterion says. */
+static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                size_t e) {
+  fg_explanation best = {.excess = INFINITY};
+  fg_explain_term term[NUMBERS_MOST + 1];
+  double x[NUMBERS_MOST + 1];
+  for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers++) {
+    size_t count = list_terms(s, &s->out->candidates[e], numbers, term), rank;
+    double sum = fg_explain_solve(&s->columns, term, count, x, NULL, &rank);
+    fg_explanation m = {.mask = 1u << e,
+                        .excess = fmax(0, sum - y->full) / y->unit,
+                        .freedom = y->freedom - (double)rank};
+    if (rank == 0 || !fg_explain_is_right(s, y, &m)) continue;
+    if (isfinite(best.excess) && fg_explain_schwarz(s, &m) >= fg_explain_schwarz(s, &best))
+      continue;
+    best = m;
+    if (s->columns.has_width) best.width = fg_explain_width_sum(&s->columns, term, count, x);
+  }
+  return best;
+}
+
+static double left_by(const fg_explain_columns *c, const fg_candidate *curve, size_t column) {
+  enum { MOST = FG_FIELD_COLUMNS };
+  double lower[MOST][MOST], square = c->gram[column * FG_EXPLAIN_COLUMNS + column], left = square;
+  double forward[MOST];
+  size_t used[MOST], n = 0;
+  for (size_t a = 0; a < curve->columns; a++) {
+    size_t own = curve->column[a];
+    double whole = c->gram[own * FG_EXPLAIN_COLUMNS + own], pivot = whole;
+    double along = c->gram[own * FG_EXPLAIN_COLUMNS + column];
+    for (size_t k = 0; k < n; k++) {
+      double value = c->gram[own * FG_EXPLAIN_COLUMNS + curve->column[used[k]]];
+      for (size_t j = 0; j < k; j++)
+        value -= lower[n][j] * lower[k][j];
+      lower[n][k] = value / lower[k][k];
+      pivot -= lower[n][k] * lower[n][k];
+      along -= lower[n][k] * forward[k];
+    }
+    if (!(pivot > 1e-6 * whole)) continue;
+    lower[n][n] = sqrt(pivot);
+    forward[n] = along / lower[n][n];
+    left -= forward[n] * forward[n];
+    used[n++] = a;
+  }
+  return square > 0 ? left / square : 0;
+}
+
+/* Whether a curve can follow every effect of a set. */
+static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsigned mask) {
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    const fg_candidate *effect = &s->out->candidates[e];
+    if (!(mask >> e & 1)) continue;
+    for (size_t k = 0; k < effect->terms; k++)
+      if (left_by(&s->columns, curve, effect->column[k]) > FOLLOWED_SHARE) return false;
+  }
+  return true;
+}
+
+void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanations *out = s->out;
+  const fg_explanation *best = &out->each[0];
+  for (size_t m = 1; m < out->count; m++)
+    if (fg_explain_schwarz(s, &out->each[m]) < fg_explain_schwarz(s, best)) best = &out->each[m];
+  unsigned listed = best->mask;
+  double score = fg_explain_schwarz(s, best);
+  for (size_t e = 0; listed && e < out->candidate_count; e++) {
+    const fg_candidate *curve = &out->candidates[e];
+    if (!fg_effect_is_free(curve->kind)) continue;
+    if (curve->kind->bends && (listed & y->bends))
+      continue; /* told from a curve by what leads it */
+    fg_explanation rival = smoothest(s, y, e);
+    if (!isfinite(rival.excess)) continue;
+    double gain = score - fg_explain_schwarz(s, &rival);
+    if (gain >= (follows(s, curve, listed) ? FOLLOWER_GAIN : 0)) fg_explain_keep(out, &rival);
+  }
+}
