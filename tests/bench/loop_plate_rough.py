@@ -2,6 +2,7 @@
 shear, ripple, lost rows, all four, or nothing; `loop --form discs --model-out` on the plate, `measure --model` on a foil.
 
 Usage: loop_plate_rough.py PROGRAM [--cases N] [--tier NAME]... [--seed S]... [--all] [--threads N] [--fresh] [--report-only]
+       [--pictures DIR]
 
 Seed 13 runs only with --all, and nobody looks at it while limits are set. Scanners that the CSV holds are not run again.
 Writes reports/loop_plate_rough.csv and .md."""
@@ -18,7 +19,7 @@ from loop_cases import GEN2, draw_foil, place
 from loop_plate import effects, plate_spec, scanner
 from loop_rough import KEPT_ASIDE, SEEDS, draw_rough, render_others
 from loop_rough_report import BEYOND, SLACK, asked, over_floor, verdict_of
-from loop_run import Results, errors_um, pair_foils, render, within, write_design
+from loop_run import Results, errors_um, kept, pair_foils, render, within, write_design
 from loop_scans_report import QUANTITIES, markdown, number, share
 from other_scanner import draw_other
 
@@ -84,10 +85,11 @@ def measure(program, folder, case, path, model=None):
     return errors_um(pairs), within(pairs)
 
 
-def work_on(program, key):
+def work_on(program, key, pictures=None):
     found, plate, case = make_scanner(key["tier"], key["index"], key["seed"])
     bare = {**case, "effects": [], "specs": [{**s, "effects": []} for s in case["specs"]]}
     draw = render if key["tier"] == "plate" else render_others
+    draw = kept(draw, os.path.abspath(pictures)) if pictures else draw
     with tempfile.TemporaryDirectory() as folder:
         model, report = find_model(program, folder, draw(program, folder, [plate])[0])
         picture = draw(program, folder, case["specs"])[0]
@@ -198,15 +200,17 @@ def main():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--report-only", action="store_true")
+    parser.add_argument("--pictures", help="a folder that keeps what was rendered, for other programs")
     parser.add_argument("--out", default=os.path.join(ROOT, "reports"))
     options = parser.parse_args()
     program, seeds = os.path.abspath(options.program), options.seed or SEEDS + [KEPT_ASIDE] * options.all
-    os.makedirs(options.out, exist_ok=True)
+    for folder in filter(None, (options.out, options.pictures)):
+        os.makedirs(folder, exist_ok=True)
     results = Results(os.path.join(options.out, "loop_plate_rough.csv"), options.fresh, "R_within_floor")
     count = COUNT if options.cases is None else min(options.cases, COUNT)
     jobs = [{"tier": n, "seed": s, "index": k} for n in options.tier or TIERS for s in seeds for k in range(count)]
     if not options.report_only:
-        results.run(jobs, lambda key: work_on(program, key), options.threads)
+        results.run(jobs, lambda key: work_on(program, key, options.pictures), options.threads)
     write(options.out, results.rows)
 
 

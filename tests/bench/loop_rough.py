@@ -2,6 +2,7 @@
 strip, one-sided blur, halo, the part's wall beside an edge, JPEG; and on scans of a second renderer (other_scanner.py).
 
 Usage: loop_rough.py PROGRAM [--cases N] [--tier NAME]... [--seed S]... [--all] [--threads N] [--fresh] [--report-only]
+       [--pictures DIR]
 
 Seeds 11 and 12 are for whoever works on the loop; 13 runs only with --all, and nobody looks at it while limits are set.
 Inputs that the CSV holds are not run again (--fresh: all are), so that a run can be broken off and taken up, or be
@@ -23,7 +24,7 @@ import numpy as np
 import loop_rough_report
 from loop_cases import CURVES, PART_EFFECTS, SCANNER_EFFECTS, draw_case, log_uniform
 from loop_oracle import standard_errors
-from loop_run import Results, errors_um, judge, measured_foils, pair_foils, profile_um, render, run_loop
+from loop_run import Results, errors_um, judge, kept, measured_foils, pair_foils, profile_um, render, run_loop
 from loop_scans_report import is_scanner
 from other_scanner import draw_other, render_other
 
@@ -161,9 +162,10 @@ def floor_um(program, folder, case, draw, row):
     return {f"{q}_floor_um": float(f"{e:.5g}") for q, e in errors.items()}
 
 
-def work_on(program, key):
+def work_on(program, key, pictures=None):
     layout, case = make_case(key["tier"], key["index"], key["seed"])
     draw = render_others if case["other"] else render
+    draw = kept(draw, os.path.abspath(pictures)) if pictures else draw
     with tempfile.TemporaryDirectory() as folder:
         report, code, seconds = run_loop(program, folder, case, draw=draw)
         row = {"layout": layout, **judge(case, report, code, seconds)}
@@ -181,18 +183,20 @@ def main():
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--report-only", action="store_true")
+    parser.add_argument("--pictures", help="a folder that keeps what was rendered, for other programs")
     parser.add_argument("--out", default=os.path.join(ROOT, "reports"))
     options = parser.parse_args()
     program = os.path.abspath(options.program)
     seeds = options.seed or SEEDS + [KEPT_ASIDE] * options.all
-    os.makedirs(options.out, exist_ok=True)
+    for folder in filter(None, (options.out, options.pictures)):
+        os.makedirs(folder, exist_ok=True)
     results = Results(os.path.join(options.out, "loop_rough.csv"), options.fresh, "profile_floor_um")
     jobs = []
     for name in options.tier or TIERS:
         count = TIERS[name].count if options.cases is None else min(options.cases, TIERS[name].count)
         jobs += [{"tier": name, "seed": seed, "index": k} for seed in seeds for k in range(count)]
     if not options.report_only:
-        results.run(jobs, lambda key: work_on(program, key), options.threads)
+        results.run(jobs, lambda key: work_on(program, key, options.pictures), options.threads)
     loop_rough_report.write(options.out, results.rows, TIERS)
 
 
