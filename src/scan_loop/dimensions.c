@@ -6,6 +6,10 @@
 #include "core/memory.h"
 #include "scan_loop/state.h"
 
+/* An explanation a hundred times less likely than the likeliest, 2 ln 100: the loop claims nothing
+ * on less than that either. */
+#define UNLIKELY_CHI2 9.2
+
 static fg_status open_all(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_memory_allocate(ctx, loop->scan_count, sizeof *loop->pays, (void **)&loop->pays));
   for (size_t i = 0; i < loop->scan_count; i++)
@@ -32,6 +36,20 @@ static double misfit_of(const fg_explanations *explanations, size_t explanation)
   const fg_explanation *one = &explanations->each[explanation];
   if (explanations->right || explanation >= explanations->count || !(one->freedom > 0)) return 1;
   return isfinite(one->excess) ? fmax(1, one->excess / one->freedom) : 1;
+}
+
+/* Excess beyond what noise makes of the columns that a set leaves out: chi² that compare. */
+static double excess_beyond(const fg_explanation *one) {
+  return one->excess - one->freedom;
+}
+
+/* What is tied leaves no more than it may; but of sets that do, one may leave far more than
+ * another. Such a one is in the ranges and has no say in what is moved. */
+static bool is_unlikely(const fg_explanations *explanations, size_t explanation) {
+  double least = INFINITY;
+  for (size_t m = 0; m < explanations->count; m++)
+    least = fmin(least, excess_beyond(&explanations->each[m]));
+  return excess_beyond(&explanations->each[explanation]) > least + UNLIKELY_CHI2;
 }
 
 static void add_scaled(fg_pay *pay, size_t item, double noise[FG_CORRECTED][FG_CORRECTED],
@@ -83,6 +101,7 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected) {
   double scale = misfit_of(&loop->explanations, explanation);
+  if (explanation && is_unlikely(&loop->explanations, explanation)) return FG_OK;
   if (!loop->pays) FG_TRY(open_all(ctx, loop));
   for (size_t i = 0; i < loop->scan_count; i++) {
     fg_pays_add(&loop->pays[i], &loop->before[i], &corrected[i]);
@@ -94,58 +113,54 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
 }
 
 /* All scans of one foil are decided as one. */
-typedef struct together {
-  const fg_pay **pay;
-  fg_correction_choice **choice;
-} together;
-
-static void decide_foil(fg_scan_loop *loop, size_t scan, size_t foil, const together *all) {
+static void decide_foil(const fg_scan_loop *loop, size_t scan, size_t foil, const fg_pay **pay,
+                        fg_pay_decision *each, fg_pay_decision **to) {
   bool same = loop->options.same_foil;
   size_t count = 0;
   for (size_t i = same ? 0 : scan; i < (same ? loop->scan_count : scan + 1); i++) {
-    all->pay[count] = &loop->pays[i].foil[foil];
-    all->choice[count++] = loop->after[i].foils[foil].choice;
+    pay[count] = &loop->pays[i].foil[foil];
+    to[count++] = &each[i];
   }
-  fg_pay_decide(all->pay, count, all->choice);
+  fg_pay_decide(pay, count, to);
 }
 
-static fg_status keep_foils(fg_context *ctx, fg_scan_loop *loop, size_t scan) {
+static fg_status keep_foil(fg_context *ctx, fg_scan_loop *loop, size_t scan, size_t foil,
+                           const fg_pay_decision *decision) {
   const fg_measurement *before = &loop->before[scan];
-  fg_measurement *after = &loop->after[scan];
-  for (size_t f = 0; f < after->foil_count; f++) {
-    fg_correction_choice choice[FG_CORRECTED];
-    memcpy(choice, after->foils[f].choice, sizeof choice);
-    if (before->foils[f].flags & FG_FOIL_NOT_MEASURED) continue;
-    const fg_pay_foil of = {before, &before->foils[f], &loop->pays[scan].foil[f], choice};
-    FG_TRY(fg_pay_keep_foil(ctx, &of, &after->foils[f]));
-    fg_pay_widen_foil(&of, &after->foils[f]);
-  }
+  fg_foil *after = &loop->after[scan].foils[foil];
+  if (before->foils[foil].flags & FG_FOIL_NOT_MEASURED) return FG_OK;
+  const fg_pay_foil of = {before, &before->foils[foil], &loop->pays[scan].foil[foil], decision};
+  FG_TRY(fg_pay_keep_foil(ctx, &of, after));
+  fg_pay_widen_foil(&of, after);
   return FG_OK;
 }
 
 static void keep_discs(fg_scan_loop *loop, size_t scan) {
-  fg_correction_choice choice[FG_CORRECTED];
+  fg_pay_decision decision;
   const fg_pay *pay = &loop->pays[scan].discs;
-  fg_pay_decide(&pay, 1, &(fg_correction_choice *){choice});
-  fg_pay_keep_discs(&loop->before[scan], pay, choice, &loop->after[scan]);
-  fg_pay_widen_discs(pay, choice, &loop->after[scan]);
+  fg_pay_decide(&pay, 1, &(fg_pay_decision *){&decision});
+  fg_pay_keep_discs(&loop->before[scan], pay, &decision, &loop->after[scan]);
+  fg_pay_widen_discs(pay, &decision, &loop->after[scan]);
 }
 
 fg_status fg_scan_loop_keep_what_pays(fg_context *ctx, fg_scan_loop *loop) {
   fg_status status = FG_OK;
-  together all = {.pay = NULL};
+  const fg_pay **pay = NULL;
+  fg_pay_decision *each = NULL, **to = NULL;
   if (!loop->pays) return FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *all.pay, (void **)&all.pay));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *all.choice, (void **)&all.choice));
-  for (size_t i = 0; i < loop->scan_count; i++)
-    for (size_t f = 0; f < loop->after[i].foil_count; f++)
-      decide_foil(loop, i, f, &all);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *pay, (void **)&pay));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *each, (void **)&each));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, loop->scan_count, sizeof *to, (void **)&to));
   for (size_t i = 0; i < loop->scan_count; i++) {
-    FG_TRY_EXIT(keep_foils(ctx, loop, i));
+    for (size_t f = 0; f < loop->after[i].foil_count; f++) {
+      decide_foil(loop, i, f, pay, each, to);
+      FG_TRY_EXIT(keep_foil(ctx, loop, i, f, &each[i]));
+    }
     keep_discs(loop, i);
   }
 exit:
-  free(all.pay);
-  free(all.choice);
+  free(pay);
+  free(each);
+  free(to);
   return status;
 }

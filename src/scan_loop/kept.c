@@ -36,38 +36,29 @@ exit:
   return status;
 }
 
-static double mean_turn_deg(const fg_pay *pay, size_t item) {
+/* Centre and directions go with R0. */
+static double turn_deg(const fg_pay *pay, size_t item, const fg_pay_decision *decision) {
   double sum = 0;
   for (size_t e = 0; e < pay->explanations; e++)
-    sum += pay->item[item].turn_deg[e];
-  return sum / (double)pay->explanations;
+    sum += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * pay->item[item].turn_deg[e];
+  return sum;
 }
 
-static fg_point mean_centre(const fg_pay *pay) {
+static fg_point centre_move(const fg_pay *pay, const fg_pay_decision *decision) {
   fg_point sum = {0, 0};
   for (size_t e = 0; e < pay->explanations; e++) {
-    sum.x += pay->centre[e].x;
-    sum.y += pay->centre[e].y;
+    sum.x += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * pay->centre[e].x;
+    sum.y += decision->part[FG_CORRECTED_OVERALL_RADIUS][e] * pay->centre[e].y;
   }
-  return (fg_point){sum.x / (double)pay->explanations, sum.y / (double)pay->explanations};
+  return sum;
 }
 
-/* By how much a dimension of an item is moved; NaN: it cannot be said. */
-static double moved_by(const fg_pay *pay, size_t item, const fg_correction_choice *choice,
-                       fg_corrected k) {
-  double mean[FG_CORRECTED];
-  fg_pay_mean(pay, item, mean);
-  return choice[k].moved ? mean[k] : 0;
-}
-
-static void put_overall(const fg_design *design, const fg_foil *before, const fg_pay *pay,
-                        const fg_correction_choice *choice, fg_overall *overall) {
-  const fg_overall *from = &before->overall;
-  double designed = design->overall_radius_mm;
-  double by = moved_by(pay, pay->items - 1, choice, FG_CORRECTED_OVERALL_RADIUS);
-  fg_point centre = mean_centre(pay);
-  if (!choice[FG_CORRECTED_OVERALL_RADIUS].moved) centre = (fg_point){0, 0};
-  overall->radius_mm = from->radius_mm + by;
+static void put_overall(const fg_pay_foil *of, fg_overall *overall) {
+  const fg_overall *from = &of->before->overall;
+  double designed = of->m->design.overall_radius_mm, move[FG_CORRECTED];
+  fg_pay_move(of->pay, of->pay->items - 1, of->decision, move);
+  fg_point centre = centre_move(of->pay, of->decision);
+  overall->radius_mm = from->radius_mm + move[FG_CORRECTED_OVERALL_RADIUS];
   overall->centre_mm = (fg_point){from->centre_mm.x + centre.x, from->centre_mm.y + centre.y};
   overall->u_radius_mm = sqrt(overall->covariance[2][2]);
   overall->springback_error_pct = 100 * (designed - overall->radius_mm) / designed;
@@ -76,14 +67,14 @@ static void put_overall(const fg_design *design, const fg_foil *before, const fg
 
 /* R and h as decided, X = R0 + R - h, in the direction that goes with R0. A bump of which a move
  * cannot be said stays as it was corrected. */
-static void put_bump(const fg_foil *before, const fg_pay *pay, size_t item,
-                     const fg_correction_choice *choice, const fg_overall *overall, fg_bump *bump) {
-  const fg_bump *from = &before->bumps[item];
-  double radius = from->radius_mm + moved_by(pay, item, choice, FG_CORRECTED_RADIUS);
-  double height = from->height_mm + moved_by(pay, item, choice, FG_CORRECTED_HEIGHT);
-  double turn = choice[FG_CORRECTED_OVERALL_RADIUS].moved ? mean_turn_deg(pay, item) : 0;
-  double direction = (from->position_deg + turn) * M_PI / 180;
+static void put_bump(const fg_pay_foil *of, size_t item, const fg_overall *overall, fg_bump *bump) {
+  const fg_bump *from = &of->before->bumps[item];
+  double move[FG_CORRECTED];
+  fg_pay_move(of->pay, item, of->decision, move);
+  double radius = from->radius_mm + move[FG_CORRECTED_RADIUS];
+  double height = from->height_mm + move[FG_CORRECTED_HEIGHT];
   double distance = overall->radius_mm + radius - height;
+  double direction = (from->position_deg + turn_deg(of->pay, item, of->decision)) * M_PI / 180;
   if (!isfinite(distance) || !isfinite(direction)) return;
   bump->radius_mm = radius;
   bump->centre_mm = (fg_point){overall->centre_mm.x + distance * cos(direction),
@@ -104,26 +95,25 @@ static void turn_moment(double from[FG_CORRECTED][FG_CORRECTED], double to[3][3]
 
 void fg_pay_widen_foil(const fg_pay_foil *of, fg_foil *after) {
   double moment[FG_CORRECTED][FG_CORRECTED], covariance[3][3];
-  if (!of->pay->explanations || fg_pay_is_whole(of->pay, of->choice)) return;
+  if (!of->pay->explanations || fg_pay_is_whole(of->pay, of->decision)) return;
   double share = after->overall.u_springback_error_pct / after->overall.u_radius_mm;
   for (size_t b = 0; b < after->bump_count; b++) {
-    fg_pay_moment(of->pay, b, of->choice, moment);
+    fg_pay_moment(of->pay, b, of->decision, moment);
     turn_moment(moment, covariance);
     fg_bump_widen(&of->m->design, &of->m->nominal, &after->overall, covariance, &after->bumps[b]);
   }
-  fg_pay_moment(of->pay, after->bump_count, of->choice, moment);
+  fg_pay_moment(of->pay, after->bump_count, of->decision, moment);
   double added = moment[FG_CORRECTED_OVERALL_RADIUS][FG_CORRECTED_OVERALL_RADIUS];
   after->overall.u_radius_mm = hypot(after->overall.u_radius_mm, sqrt(added));
   after->overall.u_springback_error_pct = share * after->overall.u_radius_mm;
 }
 
 static void put_dimensions(const fg_pay_foil *of, fg_foil *foil) {
-  const fg_design *design = &of->m->design;
-  const fg_thickness strip = fg_foil_thickness(design, foil);
-  put_overall(design, of->before, of->pay, of->choice, &foil->overall);
+  const fg_thickness strip = fg_foil_thickness(&of->m->design, foil);
+  put_overall(of, &foil->overall);
   for (size_t b = 0; b < foil->bump_count; b++) {
-    put_bump(of->before, of->pay, b, of->choice, &foil->overall, &foil->bumps[b]);
-    fg_bump_derive(design, &of->m->nominal, &foil->overall, &strip, &foil->bumps[b]);
+    put_bump(of, b, &foil->overall, &foil->bumps[b]);
+    fg_bump_derive(&of->m->design, &of->m->nominal, &foil->overall, &strip, &foil->bumps[b]);
   }
 }
 
@@ -145,8 +135,8 @@ static void flag_left(fg_foil *foil) {
 }
 
 fg_status fg_pay_keep_foil(fg_context *ctx, const fg_pay_foil *of, fg_foil *after) {
-  if (!fg_pay_is_whole(of->pay, of->choice)) {
-    if (fg_pay_is_moved(of->choice)) {
+  if (!fg_pay_is_whole(of->pay, of->decision)) {
+    if (fg_pay_is_moved(of->decision->choice)) {
       put_dimensions(of, after);
     } else {
       fg_foil copy;
@@ -155,7 +145,7 @@ fg_status fg_pay_keep_foil(fg_context *ctx, const fg_pay_foil *of, fg_foil *afte
       *after = copy;
     }
   }
-  memcpy(after->choice, of->choice, sizeof after->choice);
+  memcpy(after->choice, of->decision->choice, sizeof after->choice);
   flag_left(after);
   return FG_OK;
 }
@@ -169,28 +159,28 @@ static void keep_circle(const fg_disc *from, fg_disc *disc) {
 }
 
 void fg_pay_keep_discs(const fg_measurement *before, const fg_pay *pay,
-                       const fg_correction_choice *choice, fg_measurement *after) {
-  const int k = FG_CORRECTED_RADIUS;
+                       const fg_pay_decision *decision, fg_measurement *after) {
   for (size_t d = 0; d < after->disc_count && d < pay->items; d++) {
     fg_disc *disc = &after->discs[d];
     const fg_disc *from = &before->discs[d];
-    disc->choice = choice[k];
-    if (fg_pay_is_whole(pay, choice)) continue;
-    if (!choice[k].moved) keep_circle(from, disc);
-    disc->radius_mm = from->radius_mm + moved_by(pay, d, choice, FG_CORRECTED_RADIUS);
-    disc->u_radius_mm = choice[k].moved ? sqrt(disc->covariance[2][2]) : from->u_radius_mm;
+    double move[FG_CORRECTED];
+    disc->choice = decision->choice[FG_CORRECTED_RADIUS];
+    if (fg_pay_is_whole(pay, decision)) continue;
+    if (!disc->choice.moved) keep_circle(from, disc);
+    fg_pay_move(pay, d, decision, move);
+    disc->radius_mm = from->radius_mm + move[FG_CORRECTED_RADIUS];
+    disc->u_radius_mm = disc->choice.moved ? sqrt(disc->covariance[2][2]) : from->u_radius_mm;
     disc->diameter_mm = 2 * disc->radius_mm;
     disc->u_diameter_mm = 2 * disc->u_radius_mm;
   }
 }
 
-void fg_pay_widen_discs(const fg_pay *pay, const fg_correction_choice *choice,
-                        fg_measurement *after) {
+void fg_pay_widen_discs(const fg_pay *pay, const fg_pay_decision *decision, fg_measurement *after) {
   const int k = FG_CORRECTED_RADIUS;
   double moment[FG_CORRECTED][FG_CORRECTED];
-  if (fg_pay_is_whole(pay, choice)) return;
+  if (fg_pay_is_whole(pay, decision)) return;
   for (size_t d = 0; d < after->disc_count && d < pay->items; d++) {
-    fg_pay_moment(pay, d, choice, moment);
+    fg_pay_moment(pay, d, decision, moment);
     after->discs[d].u_radius_mm = hypot(after->discs[d].u_radius_mm, sqrt(moment[k][k]));
     after->discs[d].u_diameter_mm = 2 * after->discs[d].u_radius_mm;
   }

@@ -11,6 +11,12 @@
 #define SMALL_SHARE 0.1
 /* m² > 2 u² (see the header). */
 #define PAYS_RATIO 2.0
+/* Explanations that agree about less than that of their mean move agree about nothing: moving by it
+ * would gain 6 % of what the mean is worth. */
+#define AGREED_SHARE 0.25
+/* Steps to the shortest point between explanations, and the share of its square that ends them. */
+enum { SHORTEST_STEPS = 1000 };
+#define SHORTEST_END 1e-9
 
 static bool is_measured(const fg_foil *foil) {
   return !(foil->flags & FG_FOIL_NOT_MEASURED);
@@ -75,13 +81,24 @@ static void moves_of(const fg_foil *from, const fg_foil *to, size_t item,
   move[FG_CORRECTED_HEIGHT] = bump ? to->bumps[item].height_mm - from->bumps[item].height_mm : NAN;
 }
 
+/* An explanation that shows other bumps: what the one in force says, so that scans of one foil keep
+ * the same explanations. */
+static void say_nothing(fg_pay *pay, size_t at) {
+  pay->centre[at] = pay->centre[0];
+  for (size_t i = 0; i < pay->items; i++) {
+    memcpy(pay->item[i].move[at], pay->item[i].move[0], sizeof pay->item[i].move[at]);
+    pay->item[i].turn_deg[at] = pay->item[i].turn_deg[0];
+  }
+}
+
 static void add_foil(fg_pay *pay, const fg_foil *before, const fg_foil *corrected) {
   if (!is_measured(before) || pay->lost || pay->explanations == FG_PAYS_EXPLANATIONS_MAX) return;
+  size_t at = pay->explanations++;
   if (!same_bumps(before, corrected)) {
-    pay->lost = !pay->explanations; /* another explanation that is lost says nothing */
+    if (at) say_nothing(pay, at);
+    pay->lost = !at;
     return;
   }
-  size_t at = pay->explanations++;
   pay->centre[at] = (fg_point){corrected->overall.centre_mm.x - before->overall.centre_mm.x,
                                corrected->overall.centre_mm.y - before->overall.centre_mm.y};
   for (size_t i = 0; i < pay->items; i++) {
@@ -146,74 +163,126 @@ void fg_pays_add_step(fg_pays *pays, const fg_measurement *corrected,
 
 /* ---- the rule ---- */
 
-void fg_pay_mean(const fg_pay *pay, size_t item, double mean[FG_CORRECTED]) {
-  for (int k = 0; k < FG_CORRECTED; k++) {
-    mean[k] = pay->explanations ? 0 : NAN;
-    for (size_t e = 0; e < pay->explanations; e++)
-      mean[k] += pay->item[item].move[e][k] / (double)pay->explanations;
-  }
-}
+/* What one kind of all items and views comes to, mm²: products of the explanations' moves, and sums
+ * of their noise and of the values' own u². */
+typedef struct sums {
+  double items, noise, own;
+  double product[FG_PAYS_EXPLANATIONS_MAX][FG_PAYS_EXPLANATIONS_MAX];
+  size_t explanations;
+} sums;
 
 static double noise_of(const fg_pay *pay, size_t item, int a, int b) {
   return pay->noises > 0 ? pay->item[item].noise[a][b] / pay->noises : 0;
 }
 
-/* Sums over items, mm²: of the mean move, of its noise, of the scatter of the explanations, of the
- * value's own u; of what is left by and what is moved by every explanation. */
-typedef struct sums {
-  double items, move, noise, scatter, own;
-  double left[FG_PAYS_EXPLANATIONS_MAX], size[FG_PAYS_EXPLANATIONS_MAX];
-  size_t explanations;
-} sums;
+static bool is_known(const fg_pay *pay, size_t item, int k) {
+  for (size_t e = 0; e < pay->explanations; e++)
+    if (!isfinite(pay->item[item].move[e][k])) return false;
+  return pay->explanations > 0;
+}
 
 static void sum_up(const fg_pay *pay, int k, sums *s) {
   if (pay->explanations > s->explanations) s->explanations = pay->explanations;
   for (size_t i = 0; i < pay->items; i++) {
-    double mean[FG_CORRECTED];
-    fg_pay_mean(pay, i, mean);
-    if (!isfinite(mean[k])) continue;
+    const fg_pay_item *item = &pay->item[i];
+    if (!is_known(pay, i, k)) continue;
     s->items++;
-    s->move += mean[k] * mean[k];
     s->noise += noise_of(pay, i, k, k);
-    s->own += pay->item[i].u[k] * pay->item[i].u[k];
-    for (size_t e = 0; e < pay->explanations; e++) {
-      double one = pay->item[i].move[e][k], off = one - mean[k];
-      s->scatter += off * off / (double)pay->explanations;
-      s->left[e] += off * off;
-      s->size[e] += one * one;
-    }
+    s->own += item->u[k] * item->u[k];
+    for (size_t a = 0; a < pay->explanations; a++)
+      for (size_t b = 0; b < pay->explanations; b++)
+        s->product[a][b] += item->move[a][k] * item->move[b][k];
   }
 }
 
-static bool brings_nearer(const sums *s) {
+/* Products of the move that is made of these parts: with one explanation's, and with itself. */
+static double along(const sums *s, const double *part, size_t explanation) {
+  double sum = 0;
   for (size_t e = 0; e < s->explanations; e++)
-    if (!(s->left[e] < s->size[e])) return false;
-  return true;
+    sum += part[e] * s->product[explanation][e];
+  return sum;
 }
 
-static fg_correction_reason judge(const sums *s) {
-  double doubt = s->noise + s->scatter;
+static double size_of(const sums *s, const double *part) {
+  double sum = 0;
+  for (size_t e = 0; e < s->explanations; e++)
+    sum += part[e] * along(s, part, e);
+  return sum;
+}
+
+/* Mean square of how far the explanations lie from the move. */
+static double scatter_about(const sums *s, const double *part) {
+  double sum = 0, size = size_of(s, part);
+  if (s->explanations < 2) return 0;
+  for (size_t e = 0; e < s->explanations; e++)
+    sum += s->product[e][e] - 2 * along(s, part, e) + size;
+  return fmax(0, sum) / (double)s->explanations;
+}
+
+static void put_mean(size_t explanations, double *part) {
+  for (size_t e = 0; e < FG_PAYS_EXPLANATIONS_MAX; e++)
+    part[e] = e < explanations ? 1 / (double)explanations : 0;
+}
+
+/* From where it stands towards the explanation that it gains least for, until it gains as much for
+ * that one as for the others (Gilbert 1966). */
+static void put_shortest(const sums *s, double *part) {
+  put_mean(s->explanations, part);
+  for (int step = 0; step < SHORTEST_STEPS && s->explanations > 1; step++) {
+    size_t worst = 0;
+    for (size_t e = 1; e < s->explanations; e++)
+      if (along(s, part, e) < along(s, part, worst)) worst = e;
+    double size = size_of(s, part), least = along(s, part, worst);
+    double apart = size - 2 * least + s->product[worst][worst];
+    if (!(size - least > SHORTEST_END * size) || !(apart > 0)) return;
+    double share = fmin(1, (size - least) / apart);
+    for (size_t e = 0; e < s->explanations; e++)
+      part[e] = (1 - share) * part[e] + (e == worst ? share : 0);
+  }
+}
+
+/* `part` gets the move: that which explanations agree about, and for what is left their mean. */
+static fg_correction_reason judge(const sums *s, double *part) {
+  double agreed[FG_PAYS_EXPLANATIONS_MAX];
+  put_mean(s->explanations, part);
   if (s->items < 1) return FG_CORRECTION_NONE;
-  if (s->move + doubt <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
-  if (!(s->move > PAYS_RATIO * doubt))
-    return s->scatter > s->noise ? FG_CORRECTION_TIED : FG_CORRECTION_DOUBTFUL;
-  return brings_nearer(s) ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED;
+  double mean = size_of(s, part), scatter = scatter_about(s, part);
+  if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
+  put_shortest(s, agreed);
+  double move = size_of(s, agreed);
+  if (!(move > PAYS_RATIO * s->noise) || !(move >= AGREED_SHARE * AGREED_SHARE * mean))
+    return scatter > s->noise ? FG_CORRECTION_TIED : FG_CORRECTION_DOUBTFUL;
+  memcpy(part, agreed, sizeof agreed);
+  return FG_CORRECTION_PAYS;
 }
 
-/* The first item of R0 has its sign; of many values the root of the mean square. */
-static void tell(const fg_pay *pay, int k, fg_correction_choice *choice) {
+static double move_of(const fg_pay *pay, size_t item, int k, const double *part) {
+  double sum = 0;
+  for (size_t e = 0; e < pay->explanations; e++)
+    sum += part[e] * pay->item[item].move[e][k];
+  return sum;
+}
+
+/* R0 has its sign; of many values the root of the mean square. */
+static void tell(const fg_pay *pay, int k, const double *part, fg_correction_choice *choice) {
   sums s = {.items = 0};
-  double mean[FG_CORRECTED];
   sum_up(pay, k, &s);
-  choice->move_mm = sqrt(s.move / s.items);
-  choice->u_move_mm = sqrt((s.noise + s.scatter) / s.items);
-  if (k != FG_CORRECTED_OVERALL_RADIUS || !pay->items) return;
-  fg_pay_mean(pay, pay->items - 1, mean);
-  choice->move_mm = mean[k];
+  choice->move_mm = sqrt(size_of(&s, part) / s.items);
+  choice->u_move_mm = sqrt((s.noise + scatter_about(&s, part)) / s.items);
+  if (k == FG_CORRECTED_OVERALL_RADIUS && s.items > 0)
+    choice->move_mm = move_of(pay, pay->items - 1, k, part);
 }
 
-void fg_pay_decide(const fg_pay *const *pay, size_t count, fg_correction_choice *const *choice) {
+static void put_decision(const fg_pay *pay, int k, const double *part, fg_pay_decision *decision) {
+  fg_correction_choice *choice = &decision->choice[k];
+  tell(pay, k, part, choice);
+  for (size_t e = 0; e < FG_PAYS_EXPLANATIONS_MAX; e++)
+    decision->part[k][e] = choice->moved ? part[e] : 0;
+}
+
+void fg_pay_decide(const fg_pay *const *pay, size_t count, fg_pay_decision *const *decision) {
   fg_correction_reason reason[FG_CORRECTED];
+  double part[FG_CORRECTED][FG_PAYS_EXPLANATIONS_MAX];
   bool moved = false, left = false, lost = false;
   for (size_t i = 0; i < count; i++)
     lost = lost || pay[i]->lost;
@@ -221,39 +290,45 @@ void fg_pay_decide(const fg_pay *const *pay, size_t count, fg_correction_choice 
     sums s = {.items = 0};
     for (size_t i = 0; i < count; i++)
       sum_up(pay[i], k, &s);
-    reason[k] = lost ? FG_CORRECTION_LOST : judge(&s);
+    reason[k] = judge(&s, part[k]);
+    if (lost) reason[k] = FG_CORRECTION_LOST;
     moved = moved || reason[k] == FG_CORRECTION_PAYS;
     left = left || reason[k] >= FG_CORRECTION_DOUBTFUL;
   }
   for (size_t i = 0; i < count; i++)
     for (int k = 0; k < FG_CORRECTED; k++) {
-      bool along = reason[k] == FG_CORRECTION_SMALL && (moved || !left);
-      choice[i][k] = (fg_correction_choice){.reason = reason[k],
-                                            .moved = reason[k] == FG_CORRECTION_PAYS || along};
-      tell(pay[i], k, &choice[i][k]);
+      bool follows = reason[k] == FG_CORRECTION_SMALL && (moved || !left);
+      decision[i]->choice[k] = (fg_correction_choice){
+          .reason = reason[k], .moved = reason[k] == FG_CORRECTION_PAYS || follows};
+      put_decision(pay[i], k, part[k], decision[i]);
     }
 }
 
-void fg_pay_moment(const fg_pay *pay, size_t item, const fg_correction_choice *choice,
-                   double moment[FG_CORRECTED][FG_CORRECTED]) {
-  double mean[FG_CORRECTED];
-  fg_pay_mean(pay, item, mean);
+void fg_pay_move(const fg_pay *pay, size_t item, const fg_pay_decision *decision,
+                 double move[FG_CORRECTED]) {
   for (int k = 0; k < FG_CORRECTED; k++)
-    if (!choice[k].moved) mean[k] = 0;
+    move[k] = decision->choice[k].moved ? move_of(pay, item, k, decision->part[k]) : 0;
+}
+
+void fg_pay_moment(const fg_pay *pay, size_t item, const fg_pay_decision *decision,
+                   double moment[FG_CORRECTED][FG_CORRECTED]) {
+  double made[FG_CORRECTED];
+  fg_pay_move(pay, item, decision, made);
   for (int a = 0; a < FG_CORRECTED; a++)
     for (int b = 0; b < FG_CORRECTED; b++) {
       moment[a][b] = noise_of(pay, item, a, b);
       for (size_t e = 0; e < pay->explanations; e++) {
         const double *move = pay->item[item].move[e];
-        double product = (move[a] - mean[a]) * (move[b] - mean[b]);
+        double product = (move[a] - made[a]) * (move[b] - made[b]);
         if (isfinite(product)) moment[a][b] += product / (double)pay->explanations;
       }
     }
 }
 
-bool fg_pay_is_whole(const fg_pay *pay, const fg_correction_choice choice[FG_CORRECTED]) {
+bool fg_pay_is_whole(const fg_pay *pay, const fg_pay_decision *decision) {
   if (pay->explanations > 1 || pay->misfit || pay->lost) return false;
   for (int k = 0; k < FG_CORRECTED; k++)
-    if (!choice[k].moved && choice[k].reason != FG_CORRECTION_NONE) return false;
+    if (!decision->choice[k].moved && decision->choice[k].reason != FG_CORRECTION_NONE)
+      return false;
   return true;
 }

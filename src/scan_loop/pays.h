@@ -3,8 +3,12 @@
  * A correction moves a dimension by m, which is known to u. Left as it is the dimension keeps the
  * error b that m estimates, E(m²) = b² + u²; moved, it gets u for b. Moving pays where b² > u²,
  * and m² - u² is what the data say of b²: m² > 2 u². Explanations i that the data cannot tell apart
- * count alike: m is the mean of their m_i, u² the mean of their u_i² and how the m_i scatter about
- * m; and since only one of them is true, moving by m must bring the dimension nearer to every m_i.
+ * ask for moves m_i, and one of them is true. A move t leaves |m_i - t|² of |m_i|², over all values
+ * of the dimension: it gains 2 t·m_i - |t|². What gains most where it gains least is the shortest
+ * t between the m_i (of their convex hull, Wolfe 1976): there t·m_i >= |t|², so that it gains |t|²
+ * at least, whichever is true. That is what the explanations agree about; where they pull apart it
+ * is nothing. u² is then the mean of the u_i², and what is reported holds how far the m_i lie from
+ * t as well.
  *
  * One dimension of all bumps of a foil, or of all discs of a scan, is decided as one, by sums of
  * squares: neighbours stay comparable. Scans of one foil are decided together.
@@ -15,8 +19,8 @@
  * directions go with R0, thickness, residuals and edges with the corrected edges where anything is
  * moved.
  *
- * The u of a reported value holds the second moment about it of what the correction could be:
- * moved, u² of the move; left, m² + u². */
+ * The u of a reported value holds the second moment about it of what the correction could be, all
+ * explanations alike: moved, u² of the move; left, m² + u². */
 #ifndef FG_SCAN_LOOP_PAYS_H
 #define FG_SCAN_LOOP_PAYS_H
 
@@ -41,7 +45,7 @@ typedef struct fg_pay {
   size_t explanations;                       /* that could be measured; the first is in force */
   double noises;                             /* sums in `noise` */
   bool misfit; /* the explanation in force leaves more than noise: the fit's own u is too small */
-  bool lost; /* the explanation in force does not show the same bumps: nothing is known */
+  bool lost;   /* the explanation in force does not show the same bumps: nothing is known */
 } fg_pay;
 
 /* Of every foil, and of the discs, of one measurement. */
@@ -63,17 +67,23 @@ void fg_pays_add_step(fg_pays *pays, const fg_measurement *corrected,
 /* Adds a covariance of (R0, R, h), mm²; the caller counts `noises`. */
 void fg_pay_add_noise(fg_pay *pay, size_t item, double noise[FG_CORRECTED][FG_CORRECTED]);
 
-/* Decides about all of `pay` as one; `choice`, FG_CORRECTED for each, tells its own numbers. */
-void fg_pay_decide(const fg_pay *const *pay, size_t count, fg_correction_choice *const *choice);
+/* What came of it: told, and how much of every explanation's move is made (0: left; sum 1). */
+typedef struct fg_pay_decision {
+  fg_correction_choice choice[FG_CORRECTED];
+  double part[FG_CORRECTED][FG_PAYS_EXPLANATIONS_MAX];
+} fg_pay_decision;
 
-/* Mean of the moves of one item, and the second moment of (R0, R, h) about what is reported. */
-void fg_pay_mean(const fg_pay *pay, size_t item, double mean[FG_CORRECTED]);
-void fg_pay_moment(const fg_pay *pay, size_t item, const fg_correction_choice *choice,
+/* Decides about all of `pay` as one; every decision tells its own numbers. */
+void fg_pay_decide(const fg_pay *const *pay, size_t count, fg_pay_decision *const *decision);
+
+/* By how much one item is moved, and the second moment of (R0, R, h) about what is reported. */
+void fg_pay_move(const fg_pay *pay, size_t item, const fg_pay_decision *decision,
+                 double move[FG_CORRECTED]);
+void fg_pay_moment(const fg_pay *pay, size_t item, const fg_pay_decision *decision,
                    double moment[FG_CORRECTED][FG_CORRECTED]);
 
 /* Whether everything is what the one explanation says: then what it measured stands. */
-bool fg_pay_is_whole(const fg_pay *pay, const fg_correction_choice choice[FG_CORRECTED]);
-
+bool fg_pay_is_whole(const fg_pay *pay, const fg_pay_decision *decision);
 bool fg_pay_is_moved(const fg_correction_choice choice[FG_CORRECTED]);
 
 /* ---- what is reported (kept.c) ---- */
@@ -82,7 +92,7 @@ typedef struct fg_pay_foil {
   const fg_measurement *m; /* of its design and nominal values */
   const fg_foil *before;
   const fg_pay *pay;
-  const fg_correction_choice *choice; /* FG_CORRECTED */
+  const fg_pay_decision *decision;
 } fg_pay_foil;
 
 /* Values, flags and choices: `after` is what the explanation in force makes of the foil. Where that
@@ -93,8 +103,7 @@ void fg_pay_widen_foil(const fg_pay_foil *of, fg_foil *after);
 
 /* The same of discs. */
 void fg_pay_keep_discs(const fg_measurement *before, const fg_pay *pay,
-                       const fg_correction_choice *choice, fg_measurement *after);
-void fg_pay_widen_discs(const fg_pay *pay, const fg_correction_choice *choice,
-                        fg_measurement *after);
+                       const fg_pay_decision *decision, fg_measurement *after);
+void fg_pay_widen_discs(const fg_pay *pay, const fg_pay_decision *decision, fg_measurement *after);
 
 #endif

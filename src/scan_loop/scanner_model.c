@@ -140,16 +140,16 @@ static void replace(fg_measurement *m, fg_measurement *corrected) {
 /* Of what the model corrects that which pays. */
 static fg_status keep_what_pays(fg_context *ctx, const fg_measurement *m,
                                 const fg_model_doubt *doubt, fg_measurement *corrected) {
-  fg_correction_choice choice[FG_CORRECTED], *to = choice;
+  fg_pay_decision decision, *to = &decision;
   const fg_pay *pay = &doubt->pays.discs;
   fg_pay_decide(&pay, 1, &to);
-  fg_pay_keep_discs(m, pay, choice, corrected);
+  fg_pay_keep_discs(m, pay, &decision, corrected);
   for (size_t f = 0; f < m->foil_count; f++) {
     if (m->foils[f].flags & FG_FOIL_NOT_MEASURED) continue;
     pay = &doubt->pays.foil[f];
     fg_pay_decide(&pay, 1, &to);
-    FG_TRY(
-        fg_pay_keep_foil(ctx, &(fg_pay_foil){m, &m->foils[f], pay, choice}, &corrected->foils[f]));
+    FG_TRY(fg_pay_keep_foil(ctx, &(fg_pay_foil){m, &m->foils[f], pay, &decision},
+                            &corrected->foils[f]));
   }
   return FG_OK;
 }

@@ -78,7 +78,7 @@ fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);
 /* As ranges of those of `after`, which hold what is reported too. */
 void fg_scan_loop_put_ranges(fg_scan_loop *loop);
 
-/* What an explanation would move: `corrected` are all scans by its fit. In their order, the one in
+/* What an explanation would move, unless it is far less likely than others: `corrected` are all scans by its fit. In their order, the one in
  * force first. */
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected);

@@ -92,7 +92,7 @@ for was, now in zip(before["bumps"], after["bumps"]):
 PYTHON
 if command -v script >/dev/null; then
   script -qec "'$program' loop faint.png" tie.txt </dev/null >/dev/null
-  holds tie.txt 'R left as measured: the correction is' ' um and differs between' 'R0 moved by the mean of what could be it'
+  holds tie.txt 'R left as measured: the correction is' ' um and differs between' 'R0 moved by what all explanations agree about'
 fi
 page aside.html a.png --hold-out other.png
 holds aside.html 'only confirms' 'On scans kept aside' 'class="aside k1"'

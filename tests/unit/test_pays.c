@@ -42,15 +42,15 @@ static void put_noise(fg_pay *pay, int k, double u_um) {
     pay->item[i].noise[k][k] = u_um * UM * u_um * UM;
 }
 
-static void decide(const fg_pay *pay, fg_correction_choice choice[FG_CORRECTED]) {
-  fg_pay_decide(&pay, 1, &choice);
+static void decide(const fg_pay *pay, fg_pay_decision *decision) {
+  fg_pay_decide(&pay, 1, &decision);
 }
 
 static void choose(const fg_pay *pay, int k, fg_correction_reason reason, bool moved) {
-  fg_correction_choice choice[FG_CORRECTED];
-  decide(pay, choice);
-  assert_int_equal(choice[k].reason, reason);
-  assert_int_equal(choice[k].moved, moved);
+  fg_pay_decision decision;
+  decide(pay, &decision);
+  assert_int_equal(decision.choice[k].reason, reason);
+  assert_int_equal(decision.choice[k].moved, moved);
 }
 
 static void a_move_pays_beyond_twice_its_variance(void **state) {
@@ -103,26 +103,70 @@ static void what_is_no_number_moves_nothing(void **state) {
   choose(&pay, H, FG_CORRECTION_DOUBTFUL, false);
 }
 
-static void a_tie_moves_only_where_all_explanations_agree(void **state) {
+static void a_tie_moves_as_far_as_all_explanations_agree(void **state) {
   (void)state;
   static const struct {
-    double one, other;
-    bool moved;
-  } ties[] = {{10, 6, true},    /* to 8: nearer to both */
-              {10, 2, false},   /* to 6: 36 > 2 × 16, but farther from 2 than nothing is */
-              {10, 0, false},   /* one of them is nothing */
-              {10, -9, false}}; /* they pull apart */
+    double one, other, moved; /* 0: left */
+  } ties[] = {{10, 6, 6}, {10, 2, 2}, {-10, -10, -10}, {10, 1, 0}, {10, 0, 0}, {10, -9, 0}};
   for (size_t i = 0; i < sizeof ties / sizeof *ties; i++) {
     fg_pay_item item[ITEMS];
     fg_pay pay = open_pay(item);
-    double mean[FG_CORRECTED];
+    fg_pay_decision decision;
+    double move[FG_CORRECTED];
     explain(&pay, ties[i].one, ties[i].one, 0);
     explain(&pay, ties[i].other, ties[i].other, 0);
-    choose(&pay, R, ties[i].moved ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED, ties[i].moved);
-    choose(&pay, R0, ties[i].moved ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED, ties[i].moved);
-    fg_pay_mean(&pay, 0, mean);
-    assert_near(mean[R], (ties[i].one + ties[i].other) / 2 * UM, 1e-12);
+    decide(&pay, &decision);
+    fg_pay_move(&pay, 0, &decision, move);
+    for (int k = R0; k <= R; k++) {
+      assert_int_equal(decision.choice[k].moved, ties[i].moved != 0);
+      assert_int_equal(decision.choice[k].reason,
+                       ties[i].moved != 0 ? FG_CORRECTION_PAYS : FG_CORRECTION_TIED);
+      assert_near(move[k], ties[i].moved * UM, 1e-9);
+    }
   }
+}
+
+/* What they agree about stays whole where they differ about one bump only. */
+static void what_one_bump_leaves_open_takes_nothing_from_the_others(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  fg_pay_decision decision;
+  double move[FG_CORRECTED];
+  explain(&pay, 0, 0, 8);
+  explain(&pay, 0, 0, 8);
+  item[1].move[0][H] = 5 * UM;
+  item[1].move[1][H] = -3 * UM;
+  decide(&pay, &decision);
+  fg_pay_move(&pay, 0, &decision, move);
+  assert_near(move[H], 8 * UM, 1e-9);
+  fg_pay_move(&pay, 1, &decision, move);
+  assert_near(move[H], 0, 1e-6);
+}
+
+/* Whichever of three is true, the error falls, and by at least the square of the move. */
+static void no_explanation_is_made_worse(void **state) {
+  (void)state;
+  fg_pay_item item[ITEMS];
+  fg_pay pay = open_pay(item);
+  fg_pay_decision decision;
+  static const double moves[3][2] = {{9, 1}, {4, 6}, {2, -1}};
+  double t[2], move[FG_CORRECTED];
+  for (size_t e = 0; e < 3; e++) {
+    explain(&pay, 0, 0, 0);
+    for (size_t i = 0; i < 2; i++)
+      item[i].move[e][R] = moves[e][i] * UM;
+  }
+  decide(&pay, &decision);
+  assert_true(decision.choice[R].moved);
+  for (size_t i = 0; i < 2; i++) {
+    fg_pay_move(&pay, i, &decision, move);
+    t[i] = move[R] / UM;
+  }
+  double size = t[0] * t[0] + t[1] * t[1];
+  for (size_t e = 0; e < 3; e++)
+    assert_true(t[0] * moves[e][0] + t[1] * moves[e][1] > size * (1 - 1e-6));
+  assert_near(t[0], 2 + 2 * 3 / 53., 1e-6); /* between the last two: the shortest */
 }
 
 /* Bumps that gain and bumps that lose are weighed together. */
@@ -142,23 +186,21 @@ static void scans_of_one_foil_are_one_decision(void **state) {
   (void)state;
   fg_pay_item item[2][ITEMS];
   fg_pay pay[2] = {open_pay(item[0]), open_pay(item[1])};
-  fg_correction_choice choice[2][FG_CORRECTED];
+  fg_pay_decision each[2];
   explain(&pay[0], 1, 1, 1);
   explain(&pay[1], -3, -3, -3);
   for (int i = 0; i < 2; i++)
     put_noise(&pay[i], R0, 1);
-  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2,
-                (fg_correction_choice *[]){choice[0], choice[1]});
+  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2, (fg_pay_decision *[]){&each[0], &each[1]});
   for (int i = 0; i < 2; i++)
-    assert_true(choice[i][R0].moved); /* 10 > 2 × 2 */
-  assert_near(choice[0][R0].move_mm, UM, 1e-12);
-  assert_near(choice[1][R0].move_mm, -3 * UM, 1e-12);
-  assert_near(choice[1][R].move_mm, 3 * UM, 1e-12);
+    assert_true(each[i].choice[R0].moved); /* 10 > 2 × 2 */
+  assert_near(each[0].choice[R0].move_mm, UM, 1e-12);
+  assert_near(each[1].choice[R0].move_mm, -3 * UM, 1e-12);
+  assert_near(each[1].choice[R].move_mm, 3 * UM, 1e-12);
   pay[1].lost = true; /* one of them cannot be corrected: none is */
-  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2,
-                (fg_correction_choice *[]){choice[0], choice[1]});
-  assert_int_equal(choice[0][R0].reason, FG_CORRECTION_LOST);
-  assert_false(choice[0][R0].moved);
+  fg_pay_decide((const fg_pay *[]){&pay[0], &pay[1]}, 2, (fg_pay_decision *[]){&each[0], &each[1]});
+  assert_int_equal(each[0].choice[R0].reason, FG_CORRECTION_LOST);
+  assert_false(each[0].choice[R0].moved);
 }
 
 static void the_doubt_is_about_what_is_reported(void **state) {
@@ -166,14 +208,14 @@ static void the_doubt_is_about_what_is_reported(void **state) {
   fg_pay_item item[ITEMS];
   fg_pay pay = open_pay(item);
   double moment[FG_CORRECTED][FG_CORRECTED];
-  fg_correction_choice choice[FG_CORRECTED] = {[R] = {.moved = true}};
+  fg_pay_decision decision = {.choice = {[R] = {.moved = true}}, .part = {[R] = {0.5, 0.5}}};
   explain(&pay, 4, 10, 2);
   explain(&pay, 2, 6, 4);
   put_noise(&pay, R, 1);
   put_noise(&pay, H, 1);
-  fg_pay_moment(&pay, 0, choice, moment);
-  assert_near(moment[R][R], (1 + 4) * UM * UM, 1e-15);  /* noise, and ± 2 about 8 */
-  assert_near(moment[H][H], (1 + 10) * UM * UM, 1e-15); /* noise, and 2² and 4² about 0 */
+  fg_pay_moment(&pay, 0, &decision, moment);
+  assert_near(moment[R][R], (1 + 4) * UM * UM, 1e-15);              /* noise, and ± 2 about 8 */
+  assert_near(moment[H][H], (1 + 10) * UM * UM, 1e-15);             /* noise, and 2² and 4² */
   assert_near(moment[R][H], (2 * 2 - 2 * 4) / 2. * UM * UM, 1e-15); /* R is 2 above, then below */
   assert_near(moment[R0][R0], 10 * UM * UM, 1e-15);
 }
@@ -183,12 +225,12 @@ static void what_does_not_fit_is_no_whole(void **state) {
   (void)state;
   fg_pay_item item[ITEMS];
   fg_pay pay = open_pay(item);
-  fg_correction_choice choice[FG_CORRECTED];
+  fg_pay_decision decision;
   explain(&pay, 5, 5, 5);
-  decide(&pay, choice);
-  assert_true(fg_pay_is_whole(&pay, choice));
+  decide(&pay, &decision);
+  assert_true(fg_pay_is_whole(&pay, &decision));
   pay.misfit = true;
-  assert_false(fg_pay_is_whole(&pay, choice));
+  assert_false(fg_pay_is_whole(&pay, &decision));
 }
 
 /* ---- what is reported ---- */
@@ -220,9 +262,9 @@ static void close_fixture(fixture *f) {
   foil_rows_close(&f->rows);
 }
 
-static void keep(fixture *f, fg_correction_choice choice[FG_CORRECTED]) {
+static void keep(fixture *f, const fg_pay_decision *decision) {
   fg_context ctx = {0};
-  const fg_pay_foil of = {&f->rows.m, &f->rows.m.foils[0], &f->pays.foil[0], choice};
+  const fg_pay_foil of = {&f->rows.m, &f->rows.m.foils[0], &f->pays.foil[0], decision};
   assert_int_equal(fg_pay_keep_foil(&ctx, &of, &f->corrected.foils[0]), FG_OK);
   fg_pay_widen_foil(&of, &f->corrected.foils[0]);
 }
@@ -249,11 +291,12 @@ static void one_dimension_moves_and_the_report_holds_together(void **state) {
     double overall = after->overall.radius_mm, r = after->bumps[4].radius_mm,
            h = after->bumps[4].height_mm;
     assert_true(fabs(overall - before.overall.radius_mm) > 5 * UM);
-    fg_correction_choice choice[FG_CORRECTED] = {{.reason = FG_CORRECTION_TIED},
-                                                 {.reason = FG_CORRECTION_TIED},
-                                                 {.reason = FG_CORRECTION_TIED}};
-    choice[k] = (fg_correction_choice){.reason = FG_CORRECTION_PAYS, .moved = true};
-    keep(&f, choice);
+    fg_pay_decision decision = {.choice = {{.reason = FG_CORRECTION_TIED},
+                                           {.reason = FG_CORRECTION_TIED},
+                                           {.reason = FG_CORRECTION_TIED}}};
+    decision.choice[k] = (fg_correction_choice){.reason = FG_CORRECTION_PAYS, .moved = true};
+    decision.part[k][0] = 1;
+    keep(&f, &decision);
     assert_near(after->overall.radius_mm, k == R0 ? overall : before.overall.radius_mm, 1e-12);
     assert_near(after->bumps[4].radius_mm, k == R ? r : before.bumps[4].radius_mm, 1e-12);
     assert_near(after->bumps[4].height_mm, k == H ? h : before.bumps[4].height_mm, 1e-12);
@@ -272,10 +315,10 @@ static void what_is_left_is_as_measured_and_says_its_doubt(void **state) {
   const fg_foil *before = &f.rows.m.foils[0];
   fg_foil *after = &f.corrected.foils[0];
   double move = after->bumps[4].height_mm - before->bumps[4].height_mm;
-  fg_correction_choice choice[FG_CORRECTED] = {{.reason = FG_CORRECTION_TIED},
+  const fg_pay_decision decision = {.choice = {{.reason = FG_CORRECTION_TIED},
                                                {.reason = FG_CORRECTION_DOUBTFUL},
-                                               {.reason = FG_CORRECTION_TIED}};
-  keep(&f, choice);
+                                               {.reason = FG_CORRECTION_TIED}}};
+  keep(&f, &decision);
   for (size_t b = 0; b < before->bump_count; b++) {
     assert_near(after->bumps[b].radius_mm, before->bumps[b].radius_mm, 0);
     assert_near(after->bumps[b].height_mm, before->bumps[b].height_mm, 0);
@@ -295,11 +338,11 @@ static void what_pays_as_a_whole_stays_as_it_was_corrected(void **state) {
   open_fixture(&f);
   fg_foil *after = &f.corrected.foils[0], was = *after;
   fg_bump bump = after->bumps[3];
-  fg_correction_choice choice[FG_CORRECTED];
-  decide(&f.pays.foil[0], choice);
+  fg_pay_decision decision;
+  decide(&f.pays.foil[0], &decision);
   for (int k = 0; k < FG_CORRECTED; k++)
-    assert_true(choice[k].moved);
-  keep(&f, choice);
+    assert_true(decision.choice[k].moved);
+  keep(&f, &decision);
   assert_ptr_equal(after->bumps, was.bumps);
   assert_memory_equal(&after->overall, &was.overall, sizeof was.overall);
   assert_memory_equal(&after->bumps[3], &bump, sizeof bump);
@@ -311,15 +354,15 @@ static void other_bumps_after_the_correction_are_none(void **state) {
   (void)state;
   fixture f;
   fg_context ctx = {0};
-  fg_correction_choice choice[FG_CORRECTED];
+  fg_pay_decision decision;
   open_fixture(&f);
   fg_pays_close(&f.pays);
   assert_int_equal(fg_pays_open(&ctx, &f.rows.m, &f.pays), FG_OK);
   f.corrected.foils[0].bumps[8].number = 11;
   fg_pays_add(&f.pays, &f.rows.m, &f.corrected);
-  decide(&f.pays.foil[0], choice);
-  assert_int_equal(choice[R].reason, FG_CORRECTION_LOST);
-  keep(&f, choice);
+  decide(&f.pays.foil[0], &decision);
+  assert_int_equal(decision.choice[R].reason, FG_CORRECTION_LOST);
+  keep(&f, &decision);
   assert_int_equal(f.corrected.foils[0].bumps[8].number, 9);
   assert_near(f.corrected.foils[0].bumps[8].u_radius_mm, f.rows.m.foils[0].bumps[8].u_radius_mm, 0);
   close_fixture(&f);
@@ -331,7 +374,9 @@ int main(void) {
       cmocka_unit_test(what_is_known_exactly_is_moved),
       cmocka_unit_test(what_hardly_changes_anything_is_not_decided),
       cmocka_unit_test(what_is_no_number_moves_nothing),
-      cmocka_unit_test(a_tie_moves_only_where_all_explanations_agree),
+      cmocka_unit_test(a_tie_moves_as_far_as_all_explanations_agree),
+      cmocka_unit_test(what_one_bump_leaves_open_takes_nothing_from_the_others),
+      cmocka_unit_test(no_explanation_is_made_worse),
       cmocka_unit_test(all_bumps_of_a_kind_are_one_decision),
       cmocka_unit_test(scans_of_one_foil_are_one_decision),
       cmocka_unit_test(the_doubt_is_about_what_is_reported),

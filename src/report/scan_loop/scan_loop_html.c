@@ -183,7 +183,7 @@ static void put_explanations(FILE *out, const fg_scan_result *result) {
   if (result->unlisted) fprintf(out, "<p class=\"note\">And %zu more.</p>\n", result->unlisted);
   fputs("<p class=\"note\">Each explains the residual as well as the noise and the edge model "
         "allow to say. The dimensions below carry their range over all of them; a dimension is "
-        "moved, by their mean, only where that is better whichever of them is true.</p>\n",
+        "moved only as far as that is better whichever of them is true.</p>\n",
         out);
   fputs("</section>\n", out);
 }

@@ -69,7 +69,7 @@ static void put_choice(FILE *out, const char *symbol, const fg_correction_choice
   fg_choice_words(symbol, choice, true, words);
   if (words[0]) fprintf(out, "  %s\n", words);
   if (tied && choice->moved && choice->reason == FG_CORRECTION_PAYS)
-    fprintf(out, "  %s moved by the mean of what could be it, +- %.2g um\n", symbol,
+    fprintf(out, "  %s moved by what all explanations agree about, +- %.2g um\n", symbol,
             2000 * choice->u_move_mm);
 }
 
