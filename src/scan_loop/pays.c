@@ -17,6 +17,10 @@
 /* Steps to the shortest point between explanations, and the share of its square that ends them. */
 enum { SHORTEST_STEPS = 1000 };
 #define SHORTEST_END 1e-9
+/* What every explanation keeps of what the shortest move gains for it, on the way to their mean;
+ * and bisections of that way. */
+#define KEPT_GAIN 0.5
+enum { AGREED_STEPS = 30 };
 
 static bool is_measured(const fg_foil *foil) {
   return !(foil->flags & FG_FOIL_NOT_MEASURED);
@@ -241,6 +245,36 @@ static void put_shortest(const sums *s, double *part) {
   }
 }
 
+/* Gains every explanation that much, at least? */
+static bool gains(const sums *s, const double *part, double least) {
+  double size = size_of(s, part);
+  for (size_t e = 0; e < s->explanations; e++)
+    if (2 * along(s, part, e) - size < least) return false;
+  return true;
+}
+
+/* From the shortest move towards their mean, which is best on average, as far as none of them loses
+ * more than its share of what the shortest one gains, which comes back. */
+static double put_agreed(const sums *s, double *part) {
+  double shortest[FG_PAYS_EXPLANATIONS_MAX], mean[FG_PAYS_EXPLANATIONS_MAX];
+  double low = 0, high = 1;
+  put_shortest(s, shortest);
+  put_mean(s->explanations, mean);
+  memcpy(part, shortest, sizeof shortest);
+  double gain = size_of(s, shortest);
+  for (int step = 0; step < AGREED_STEPS && s->explanations > 1; step++) {
+    double share = step ? 0.5 * (low + high) : high;
+    double tried[FG_PAYS_EXPLANATIONS_MAX] = {0};
+    for (size_t e = 0; e < s->explanations; e++)
+      tried[e] = (1 - share) * shortest[e] + share * mean[e];
+    bool good = gains(s, tried, KEPT_GAIN * gain);
+    if (good) memcpy(part, tried, sizeof tried);
+    if (good && !step) break;
+    *(good ? &low : &high) = share;
+  }
+  return gain;
+}
+
 /* `part` gets the move: that which explanations agree about, and for what is left their mean. */
 static fg_correction_reason judge(const sums *s, double *part) {
   double agreed[FG_PAYS_EXPLANATIONS_MAX];
@@ -248,9 +282,8 @@ static fg_correction_reason judge(const sums *s, double *part) {
   if (s->items < 1) return FG_CORRECTION_NONE;
   double mean = size_of(s, part), scatter = scatter_about(s, part);
   if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
-  put_shortest(s, agreed);
-  double move = size_of(s, agreed);
-  if (!(move > PAYS_RATIO * s->noise) || !(move >= AGREED_SHARE * AGREED_SHARE * mean))
+  double gain = put_agreed(s, agreed);
+  if (!(gain > PAYS_RATIO * s->noise) || !(gain >= AGREED_SHARE * AGREED_SHARE * mean))
     return scatter > s->noise ? FG_CORRECTION_TIED : FG_CORRECTION_DOUBTFUL;
   memcpy(part, agreed, sizeof agreed);
   return FG_CORRECTION_PAYS;

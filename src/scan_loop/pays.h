@@ -7,7 +7,8 @@
  * of the dimension: it gains 2 t·m_i - |t|². What gains most where it gains least is the shortest
  * t between the m_i (of their convex hull, Wolfe 1976): there t·m_i >= |t|², so that it gains |t|²
  * at least, whichever is true. That is what the explanations agree about; where they pull apart it
- * is nothing. u² is then the mean of the u_i², and what is reported holds how far the m_i lie from
+ * is nothing. Their mean is best on average: t goes from the shortest one towards it as far as each
+ * keeps half of that gain. u² is then the mean of the u_i², and what is reported holds how far the m_i lie from
  * t as well.
  *
  * One dimension of all bumps of a foil, or of all discs of a scan, is decided as one, by sums of
