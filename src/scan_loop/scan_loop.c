@@ -165,6 +165,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof(double), (void **)&loop->residual_after));
   FG_TRY(fg_joint_fit(ctx, &loop->points, &loop->set, loop->residual_before));
   FG_TRY(fg_explain_run(ctx, &loop->points, &loop->set, &loop->explanations, loop->residual_after));
+  FG_TRY(fg_scan_loop_find_single_bumps(ctx, loop));
   FG_TRY(fg_scan_loop_check_one_foil(ctx, loop));
   loop->error_before = summarise(ctx, &loop->points, loop->residual_before);
   loop->error_after = summarise(ctx, &loop->points, loop->residual_after);

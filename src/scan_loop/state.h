@@ -52,6 +52,9 @@ fg_status fg_scan_loop_leave_out(fg_context *ctx, fg_scan_loop *loop);
 /* A note for each. */
 fg_status fg_scan_loop_say_left_out(fg_context *ctx, fg_scan_loop *loop);
 
+/* What single bumps deviate by where the search found none of it: joins what was found. */
+fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop);
+
 /* Under same_foil, once the points are settled: FG_ERR_DATA when the scans show different foils. */
 fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop);
 

@@ -1,0 +1,194 @@
+/* Deviations of single bumps from their circles that are too small for the search, which asks of
+ * a curve that it gains more than all its columns may by chance. Here the columns are few: one
+ * bump, some, or a cycle over them, raised at the middle or leaning; and the noise is what the same
+ * bumps show of finer polynomials, whatever its correlation along the edge. What depends on the
+ * direction of the edge is taken out first: an edge model errs with it. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "effect/columns.h"
+#include "effect/midline.h"
+#include "loop/engine.h"
+#include "scan_loop/bump_pattern.h"
+#include "scan_loop/state.h"
+
+/* Polynomials of a bump: a circle's own, those that are judged, those that are noise. */
+enum { CIRCLE = 3, JUDGED = 2, NOISE = 4, ORDERS = CIRCLE + JUDGED + NOISE };
+/* Rows of a bump that tell its polynomials apart. */
+enum { ROWS_LEAST = 2 * ORDERS };
+
+/* Amplitudes of one bump over their standard deviations for noise of 1. */
+typedef struct amplitudes {
+  int number;
+  double weight[ORDERS], sum[ORDERS]; /* over the bump's views */
+} amplitudes;
+
+/* Least squares of the polynomials, one after the other: an amplitude beside all that come before
+ * and after it is what the last of them has. */
+static void add_view(const double *columns, const double *value, size_t n, double *work,
+                     amplitudes *to) {
+  for (int order = CIRCLE; order < ORDERS; order++) {
+    size_t used = 0;
+    double *others = work, *basis = work + ORDERS * n, own = 0, along = 0;
+    for (int k = 0; k < ORDERS; k++)
+      if (k != order) memcpy(others + n * used++, columns + (size_t)k * n, n * sizeof *others);
+    size_t rank = fg_engine_orthonormal(n, NULL, 0, others, used, basis, NULL);
+    double *column = others; /* the copies are in the basis by now */
+    memcpy(column, columns + (size_t)order * n, n * sizeof *column);
+    own = fg_engine_project_out(n, basis, rank, column);
+    for (size_t i = 0; i < n; i++)
+      along += column[i] * value[i];
+    to->weight[order] += own;
+    to->sum[order] += along;
+  }
+}
+
+/* Residual of every row that counts, with what follows the edge's direction taken out. */
+static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, double *value) {
+  const fg_points *points = &loop->points;
+  const fg_effect *normal = fg_effect_find("free.edge.normal");
+  size_t rows = points->row_count;
+  double *columns = NULL, *basis;
+  FG_TRY(fg_memory_allocate(ctx, 2 * rows, FG_EFFECT_COLUMNS_MAX * sizeof *columns,
+                            (void **)&columns));
+  basis = columns + rows * FG_EFFECT_COLUMNS_MAX;
+  size_t count = fg_effect_columns(points, normal, NULL, columns);
+  for (size_t i = 0; i < rows; i++) {
+    const fg_points_row *row = &points->rows[i];
+    double root = points->views[row->view].aside ? 0 : sqrt(row->weight);
+    value[i] = root * loop->residual_after[i];
+    for (size_t c = 0; c < count; c++)
+      columns[c * rows + i] *= root;
+  }
+  size_t rank = fg_engine_orthonormal(rows, NULL, 0, columns, count, basis, NULL);
+  fg_engine_project_out(rows, basis, rank, value);
+  free(columns);
+  return FG_OK;
+}
+
+/* Polynomials of the place in the arc that is there: a raised bump turns back sooner, and over the
+ * shorter arc those of the common one look alike. */
+static void fill_columns(const fg_points *points, const size_t *row, size_t n, double *columns) {
+  double low = INFINITY, high = -INFINITY;
+  for (size_t i = 0; i < n; i++) {
+    low = fmin(low, points->rows[row[i]].phi);
+    high = fmax(high, points->rows[row[i]].phi);
+  }
+  for (size_t i = 0; i < n; i++) {
+    fg_points_row own = points->rows[row[i]];
+    double values[ORDERS] = {1};
+    own.phi = 2 * (own.phi - low) / (high - low) - 1;
+    fg_midline_legendre(&own, 1, 1, ORDERS - 1, values + 1);
+    for (int k = 0; k < ORDERS; k++)
+      columns[(size_t)k * n + i] = sqrt(own.weight) * values[k];
+  }
+}
+
+static amplitudes *find_number(amplitudes *list, size_t *count, int number) {
+  size_t k = 0;
+  while (k < *count && list[k].number < number)
+    k++;
+  if (k < *count && list[k].number == number) return &list[k];
+  if (*count == FG_BUMP_PATTERN_MOST) return NULL;
+  memmove(&list[k + 1], &list[k], (*count - k) * sizeof *list);
+  ++*count;
+  list[k] = (amplitudes){.number = number};
+  return &list[k];
+}
+
+/* Every bump of every view; rows of a bump on a view are neighbours. */
+static fg_status collect(fg_context *ctx, const fg_scan_loop *loop, amplitudes *list,
+                         size_t *count) {
+  const fg_points *points = &loop->points;
+  size_t rows = points->row_count, *row = NULL;
+  double *value = NULL, *work = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * rows, sizeof *value, (void **)&value));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *row, (void **)&row));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, 3 * ORDERS * sizeof *work, (void **)&work));
+  FG_TRY_EXIT(without_directions(ctx, loop, value));
+  double *own = value + rows, *columns = work + 2 * ORDERS * rows;
+  for (size_t from = 0, to; from < rows; from = to) {
+    const fg_points_row *first = &points->rows[from];
+    size_t n = 0;
+    for (to = from;
+         to < rows && points->rows[to].view == first->view && points->rows[to].bump == first->bump;
+         to++) {
+      if (!(points->rows[to].weight > 0) || points->views[first->view].aside) continue;
+      own[n] = value[to];
+      row[n++] = to;
+    }
+    amplitudes *of = first->bump && n >= ROWS_LEAST ? find_number(list, count, first->bump) : NULL;
+    if (!of) continue;
+    fill_columns(points, row, n, columns);
+    add_view(columns, own, n, work, of);
+  }
+exit:
+  free(value);
+  free(row);
+  free(work);
+  return status;
+}
+
+static double standard(const amplitudes *a, int order) {
+  return a->weight[order] > 0 ? a->sum[order] / sqrt(a->weight[order]) : 0;
+}
+
+static double square_about_mean(const amplitudes *list, size_t count, int order) {
+  double mean = 0, sum = 0;
+  for (size_t k = 0; k < count; k++)
+    mean += standard(&list[k], order) / (double)count;
+  for (size_t k = 0; k < count; k++)
+    sum += pow(standard(&list[k], order) - mean, 2);
+  return sum;
+}
+
+/* Probability that nothing of single bumps is there. */
+static double find_p(const amplitudes *list, size_t count, uint64_t seed) {
+  fg_bump_values at = {.n = count, .noise_freedom = NOISE * (double)(count - 1)};
+  double least = 1;
+  for (int order = CIRCLE + JUDGED; order < ORDERS; order++)
+    at.noise_square += square_about_mean(list, count, order);
+  for (int order = CIRCLE; order < CIRCLE + JUDGED; order++) {
+    double p_value;
+    for (size_t k = 0; k < count; k++) {
+      at.number[k] = list[k].number;
+      at.value[k] = standard(&list[k], order);
+    }
+    fg_bump_pattern_find(&at, seed, &p_value);
+    least = fmin(least, JUDGED * p_value);
+  }
+  return least;
+}
+
+/* The curve of single bumps joins every explanation, and is fitted beside the winner. */
+static fg_status join(fg_context *ctx, fg_scan_loop *loop, size_t candidate, double p_value) {
+  fg_explanations *explanations = &loop->explanations;
+  for (size_t m = 0; m < explanations->count; m++)
+    explanations->each[m].mask |= 1u << candidate;
+  explanations->p_value = fmin(explanations->p_value, p_value);
+  const fg_candidate *from = &explanations->candidates[candidate];
+  loop->set.effects[loop->set.count++] =
+      (fg_effect_found){.kind = from->kind, .columns = from->columns};
+  return fg_joint_fit(ctx, &loop->points, &loop->set, loop->residual_after);
+}
+
+fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
+  const fg_explanations *explanations = &loop->explanations;
+  size_t candidate = 0, count = 0;
+  amplitudes list[FG_BUMP_PATTERN_MOST];
+  if (loop->points.discs || loop->points.coarse || loop->set.count == FG_EFFECT_SET_MAX)
+    return FG_OK;
+  for (size_t e = 0; e < loop->set.count; e++)
+    if (loop->set.effects[e].kind->bends) return FG_OK;
+  while (candidate < explanations->candidate_count &&
+         explanations->candidates[candidate].kind->coordinate != FG_EFFECT_INDEX)
+    candidate++;
+  if (candidate == explanations->candidate_count) return FG_OK;
+  FG_TRY(collect(ctx, loop, list, &count));
+  if (count < FG_BUMP_PATTERN_LEAST) return FG_OK;
+  double p_value = find_p(list, count, loop->options.seed);
+  return p_value < FG_BUMP_PATTERN_P ? join(ctx, loop, candidate, p_value) : FG_OK;
+}

@@ -1,0 +1,71 @@
+/* Values over the bumps' numbers: some stand apart, some follow a cycle, and of scatter alone
+ * neither is told; with and without noise that is known from elsewhere. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "loop/engine_random.h"
+#include "scan_loop/bump_pattern.h"
+
+static fg_bump_values scatter(size_t n, double noise_freedom, uint64_t *seed) {
+  fg_bump_values at = {.n = n, .noise_freedom = noise_freedom};
+  for (size_t k = 0; k < n; k++) {
+    at.number[k] = (double)k + 1;
+    at.value[k] = fg_engine_random_normal(seed);
+  }
+  for (double f = 0; f < noise_freedom; f++)
+    at.noise_square += pow(fg_engine_random_normal(seed), 2);
+  return at;
+}
+
+/* Noise that is known tells a bump of seven standard deviations, and three of five. */
+static void known_noise_tells_few(void **state) {
+  (void)state;
+  for (uint64_t seed = 1; seed <= 10; seed++) {
+    uint64_t draw = 100 * seed;
+    double p_value;
+    fg_bump_values at = scatter(9, 32, &draw);
+    at.value[seed % 9] -= 9;
+    fg_bump_pattern found = fg_bump_pattern_find(&at, seed, &p_value);
+    assert_true(p_value < FG_BUMP_PATTERN_P && found.by < 0 && found.apart[seed % 9]);
+    at = scatter(9, 32, &draw);
+    for (size_t k = 2; k < 9; k += 3)
+      at.value[k] += 6;
+    found = fg_bump_pattern_find(&at, seed, &p_value);
+    assert_true(p_value < FG_BUMP_PATTERN_P);
+    double apart = fg_bump_pattern_at(&found, &at, 5) - fg_bump_pattern_at(&found, &at, 4);
+    assert_true(apart > 3);
+  }
+}
+
+/* P-values of scatter: as many below a tenth as there should be, or fewer (of two forms both). */
+static void scatter_is_not_told(void **state) {
+  (void)state;
+  const double freedom[] = {0, 32};
+  enum { DRAWS = 60 };
+  for (size_t f = 0; f < 2; f++) {
+    size_t tenth = 0;
+    double least = 1;
+    for (uint64_t seed = 1; seed <= DRAWS; seed++) {
+      uint64_t draw = 7777 * seed;
+      double p_value;
+      fg_bump_values at = scatter(6 + seed % 6, freedom[f], &draw);
+      fg_bump_pattern_find(&at, seed, &p_value);
+      tenth += p_value < 0.1;
+      least = fmin(least, p_value);
+    }
+    assert_true(tenth <= 14); /* of 6: 1 in 1000 by chance */
+    assert_true(least > FG_BUMP_PATTERN_P);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(known_noise_tells_few),
+      cmocka_unit_test(scatter_is_not_told),
+  };
+  return cmocka_run_group_tests_name("single bumps", tests, NULL, NULL);
+}
