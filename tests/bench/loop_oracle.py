@@ -35,7 +35,7 @@ def scanner_shift_um(effect, at, middle_mm):
     elif name.startswith("scan."):
         axis = 1 if name == "scan.carriage_quadratic" else 0
         power = 3 if name.endswith("cubic") else 2
-        middle = effect.get("centre_mm", middle_mm[axis])
+        middle = effect["centre_mm"] if "centre_mm" in effect else middle_mm[axis]
         d[:, axis] = effect["amplitude_um"] * ((at[:, axis] - middle) / effect["half_width_mm"]) ** power
     return d
 
@@ -43,12 +43,12 @@ def scanner_shift_um(effect, at, middle_mm):
 def smooth_listed(midline, at, normal):
     """Columns of the table's effects that are smooth, their middles and lengths free as far as columns can: what an unlisted
     curve must stand beside."""
-    wide = lambda name, middle=20.0: {"id": name, "amplitude_um": 10.0, "half_width_mm": 18.0, "centre_mm": middle}
+    wide = lambda name, middle: {"id": name, "amplitude_um": 10.0, "half_width_mm": 18.0, "centre_mm": middle}
     glass = [{"id": name, "value": 1e-3} for name in ("scan.scale_y", "scan.shear")]
     glass += [wide(name, m) for name in ("scan.optical_quadratic", "scan.carriage_quadratic") for m in (5.0, 35.0)]
     glass += [wide("scan.optical_cubic", m) for m in (5.0, 20.0, 35.0)]
     glass += [{"id": "scan.carriage_start", "amplitude_um": 10.0, "length_mm": length} for length in (3.0, 8.0)]
-    columns = [np.sum(scanner_shift_um(e, at) * normal, axis=1) for e in glass]
+    columns = [np.sum(scanner_shift_um(e, at, None) * normal, axis=1) for e in glass]
     part = [{"id": "part.ovality", "phase_deg": phase} for phase in (0, 45)]
     part += [{"id": name} for name in ("part.spiral", "part.bump_crown", "part.bump_skew")]
     columns += [midline.part_shift_um([{**e, "amplitude_um": 10.0}]) for e in part]

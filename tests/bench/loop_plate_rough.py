@@ -48,6 +48,8 @@ def make_scanner(name, index, seed):
         scan = {**scanner(rng), "rough": draw_rough(rng), "noise_correlation": 0.5, "blur_px": float(rng.uniform(1.4, 2.4))}
     else:
         scan = draw_other(rng)
+        # Unequal ones make every pin's height another than its width: no midline shows that, but a pin does.
+        scan["lag_px"] = [float(np.mean(scan["lag_px"]))] * 2
     plate = plate_spec(rng, scan, found)
     step_through_pin(rng, plate, found)
     right, bottom = (max(d["centre_mm"][k] + d["radius_mm"] for d in plate["discs"]) for k in (0, 1))

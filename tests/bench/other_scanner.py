@@ -83,8 +83,8 @@ def field_mm(effects, at):
             d[:, "xy".index(e.get("moves", own))] += natural_spline(e["knots"], x if own == "x" else y) / 1000
         elif name.startswith("scan.") and name.endswith(("quadratic", "cubic")):
             axis = 1 if "carriage" in name else 0
-            middle, power = e.get("centre_mm", 20.0), 3 if name.endswith("cubic") else 2
-            d[:, axis] += mm * ((at[:, axis] - middle) / e.get("half_width_mm", 18)) ** power
+            power = 3 if name.endswith("cubic") else 2
+            d[:, axis] += mm * ((at[:, axis] - e["centre_mm"]) / e.get("half_width_mm", 18)) ** power
     return d
 
 
@@ -94,6 +94,12 @@ def picture_mm(effects, true):
     for _ in range(14):
         at = true - field_mm(effects, at)
     return at
+
+
+def with_middles(spec):
+    """Distortions without a centre are about the middle of the picture."""
+    size = [spec[side] / 2 * 25.4 / spec["scanner"]["dpi"] for side in ("width_px", "height_px")]
+    return [{"centre_mm": size["carriage" in e["id"]], **e} for e in spec["effects"]]
 
 
 def strips_between(effects, name, member, end):
@@ -106,7 +112,7 @@ def strips_between(effects, name, member, end):
 
 def cover(spec, outlines_mm):
     """Rows and columns that are lost or doubled: every part of the picture is covered for itself."""
-    width, height, effects = spec["width_px"], spec["height_px"], spec["effects"]
+    width, height, effects = spec["width_px"], spec["height_px"], with_middles(spec)
     result = np.zeros((height, width), np.float32)
     for top, bottom, dy in strips_between(effects, "scan.row_step", "y_mm", height):
         for left, right, dx in strips_between(effects, "scan.column_step", "x_mm", width):
