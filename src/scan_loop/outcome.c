@@ -11,10 +11,11 @@ static bool has_free(const fg_effect_set *set, bool wanted) {
 }
 
 /* A residual that all effects and curves together would take is not clean, even when no set of
- * them was found that holds. */
+ * them was found that holds: beside the scatter of rough edges it need not be large. */
 static bool leaves_much(const fg_scan_loop *loop) {
   return !loop->points.discs && !loop->explanations.right &&
-         loop->error_after.rms > MUCH * loop->noise_floor_um;
+         (loop->error_after.rms > MUCH * loop->noise_floor_um ||
+          loop->explanations.p_value < FG_LOOP_ACCEPT_P);
 }
 
 fg_loop_outcome fg_scan_loop_points_outcome(const fg_scan_loop *loop) {

@@ -33,5 +33,22 @@ says whole.out "[n for n, v in curve['shape'] if abs(v) > 0.1] == [3, 6, 9] and 
 says whole.out "any('bumps 3, 6, 9, every 3rd' in n for n in r['notes']) and all(abs(off[n]) < 0.3 for n in true)"
 grep -q 'every 3rd' whole.html || fail "the page does not say which bumps"
 
-for report in middle whole; do valid loop_scan.schema.json $report.out; done
+# Beside the scatter of real edges: one bump, and a seam between two chips of the sensor.
+rough='"bits":8,"noise":1.8,"noise_correlation":0.6,"blur_px":1.9,"rough":{"edge_roughness_um":1,"edge_common_um":0.5,"correlation_um":40}'
+# render_rough NAME SEED EFFECTS [MEMBERS OF THE SCANNER, each with a comma behind it]
+render_rough() {
+  cat >"$1.json" <<SPEC
+{"schema":"foilgauge/render/1","seed":$2,"foils":[{"overall_radius_mm":20.95,"rotate_deg":-61,
+ "radius_springback":{"mean":0.02,"sd":0.007}}],"scanner":{${4-}$rough},"effects":[$3]}
+SPEC
+  "$renderer" render "$1.json" -o "$1.png" --truth "$1.truth.json" || fail "render $1"
+}
+render_rough lone 33 '{"id":"free.bump.index","form":"crown","amplitude_um":36,"bumps":[4]}'
+"$program" loop lone.png -o lone.out || fail "loop on a rough scan of a foil with one bump that is raised"
+says lone.out "r['verdict'] == 'unattributed' and not claims and curve['coordinate'] == 'bump.index'"
+render_rough seam 34 '' '"chip_seams":[{"x_mm":20,"shift_um":14}],'
+"$program" loop seam.png -o seam.out || fail "loop on a rough scan with a seam"
+says seam.out "'scan.column_step' in claims + [m for c in r['claims'] for m in c.get('alias_class') or []]"
+
+for report in middle whole lone seam; do valid loop_scan.schema.json $report.out; done
 exit $failed
