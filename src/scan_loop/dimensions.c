@@ -43,9 +43,7 @@ static double excess_beyond(const fg_explanation *one) {
   return one->excess - one->freedom;
 }
 
-/* What is tied leaves no more than it may; but of sets that do, one may leave far more than
- * another. Such a one is in the ranges and has no say in what is moved. */
-static bool is_unlikely(const fg_explanations *explanations, size_t explanation) {
+bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation) {
   double least = INFINITY;
   for (size_t m = 0; m < explanations->count; m++)
     least = fmin(least, excess_beyond(&explanations->each[m]));
@@ -101,7 +99,7 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected) {
   double scale = misfit_of(&loop->explanations, explanation);
-  if (explanation && is_unlikely(&loop->explanations, explanation)) return FG_OK;
+  if (explanation && fg_scan_loop_is_unlikely(&loop->explanations, explanation)) return FG_OK;
   if (!loop->pays) FG_TRY(open_all(ctx, loop));
   for (size_t i = 0; i < loop->scan_count; i++) {
     fg_pays_add(&loop->pays[i], &loop->before[i], &corrected[i]);

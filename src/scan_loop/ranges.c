@@ -105,6 +105,7 @@ static fg_status widen_by(fg_context *ctx, fg_scan_loop *loop, size_t explanatio
   fg_status status = fg_joint_fit_open(ctx, &loop->points, &set, &fit);
   if (status == FG_ERR_NUMERIC) return FG_OK;
   if (status != FG_OK) return status;
+  loop->unlikely[loop->tie_count] = fg_scan_loop_is_unlikely(&loop->explanations, explanation);
   loop->tie[loop->tie_count++] = fit.set;
   status = fg_scan_loop_correct_all(ctx, loop, &fit, tried);
   if (status == FG_OK) widen_all(loop, tried);

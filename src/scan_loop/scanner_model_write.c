@@ -39,10 +39,11 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   memcpy(made->dpi, loop->before[0].dpi, sizeof made->dpi);
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
-  made->tied = loop->tied;
   fg_effect_set_fields(&loop->points, &loop->set, &made->fields);
-  for (; made->others < loop->tie_count; made->others++)
-    fg_effect_set_fields(&loop->points, &loop->tie[made->others], &made->other[made->others]);
+  for (size_t k = 0; k < loop->tie_count; k++)
+    if (!loop->unlikely[k])
+      fg_effect_set_fields(&loop->points, &loop->tie[k], &made->other[made->others++]);
+  made->tied = made->others > 0;
   *model = made;
   return FG_OK;
 }

@@ -31,6 +31,7 @@ struct fg_scan_loop {
   bool tied;
   bool scale_tied;                        /* scale_doubt.c */
   fg_effect_set tie[FG_EXPLANATIONS_MAX]; /* the other explanations, fitted */
+  bool unlikely[FG_EXPLANATIONS_MAX];     /* of them: in the ranges, and no more */
   size_t tie_count;
   fg_scan_loop_range *
       *ranges;             /* per scan and foil: bump_count + 1 (the last: overall); NULL: no tie */
@@ -81,8 +82,12 @@ fg_status fg_scan_loop_find_ranges(fg_context *ctx, fg_scan_loop *loop);
 /* As ranges of those of `after`, which hold what is reported too. */
 void fg_scan_loop_put_ranges(fg_scan_loop *loop);
 
-/* What an explanation would move, unless it is far less likely than others: `corrected` are all scans by its fit. In their order, the one in
- * force first. */
+/* What is tied leaves no more than it may; but of sets that do, one may leave far more than
+ * another. Such a one is in the ranges and has no say in what is moved, nor in a model. */
+bool fg_scan_loop_is_unlikely(const fg_explanations *explanations, size_t explanation);
+
+/* What an explanation would move, unless it is far less likely than others: `corrected` are all
+ * scans by its fit. In their order, the one in force first. */
 fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t explanation,
                                   const fg_joint_fit_result *fit, const fg_measurement *corrected);
 /* Leaves in `after` of the corrections those that pay (pays.h). */
