@@ -103,7 +103,7 @@ def measures(rows):
     of = lambda *kinds: [r for r in rows if r["tier"].replace("other-", "") in kinds]
     clean, named, pairs, curves = of("clean"), of("single", "pair"), of("pair"), of("curve", "odd")
     fixed = [r for r in rows if r["wanted"] and is_scanner(r) and corrected(r)]
-    sure = [r for r in fixed if told(r)]
+    sure = [r for r in fixed if told(r) and not is_curve(r)]
     zero = floors(rows) if rows else {}
     chance = p_values(rows)
     seconds = lambda own: float(np.percentile([number(r, "seconds") for r in own], 95)) if own else None
