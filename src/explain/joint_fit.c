@@ -27,6 +27,8 @@ enum {
 #define SHAPE_LEAST  1e-3
 /* Rows of scans that only confirm weigh so much: enough to fit their own pose. */
 #define ASIDE_WEIGHT 1e-6
+/* Size of a free curve, um: what scanners and foils do is of this order (reports/loop_scans.md). */
+#define CURVE_UM 15.0
 /* Damping for what no row tells: of a diagonal, and beside it. */
 #define DAMP_SHARE 1e-10
 #define DAMP       1e-12
@@ -119,8 +121,13 @@ static void whiten_all(refit *r) {
     whiten(r, r->design + k * rows);
 }
 
-static double hold_of(const fg_effect_found *effect, bool shape) {
-  return shape ? 0 : effect->kind->hold;
+/* A curve's coefficients are of some size, and noise of smooth things must not make larger ones:
+ * the weight that a normal distribution of that size has beside rows with this noise. */
+static double hold_of(const fg_points *points, const fg_effect_found *effect, bool shape) {
+  const fg_scatter *s = &points->scatter;
+  if (shape || effect->kind->hold == 0) return 0;
+  double noise = FG_POINTS_BLOCK * s->row_um * s->row_um * s->integral * s->swell;
+  return fmax(effect->kind->hold, noise / (CURVE_UM * CURVE_UM));
 }
 
 /* Free curves hold what the geometry can follow, and reach where no row lies: of all curves that
@@ -128,7 +135,7 @@ static double hold_of(const fg_effect_found *effect, bool shape) {
 static void hold_free(refit *r, size_t k) {
   const fg_effect_found *effect = &r->set->effects[r->list[k].effect];
   size_t a = r->parameters + k;
-  double hold = hold_of(effect, r->list[k].shape);
+  double hold = hold_of(r->points, effect, r->list[k].shape);
   if (hold == 0) return;
   double held = hold * effect->coefficient_um[r->list[k].index];
   gsl_matrix_set(r->normal, a, a, gsl_matrix_get(r->normal, a, a) + hold);
@@ -239,7 +246,7 @@ static double effects_covariance(const refit *r, double variance, const double *
   double sum = variance * (gsl_matrix_get(whole, a, b) - gsl_matrix_get(alone, a, b));
   for (size_t k = 0; k < r->unknowns; k++) {
     size_t c = r->parameters + k;
-    double hold = hold_of(&r->set->effects[r->list[k].effect], r->list[k].shape);
+    double hold = hold_of(r->points, &r->set->effects[r->list[k].effect], r->list[k].shape);
     double t = hold * size[r->list[k].effect];
     sum += gsl_matrix_get(whole, a, c) * gsl_matrix_get(whole, b, c) * (t * t - variance * hold);
   }

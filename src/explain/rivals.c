@@ -1,16 +1,20 @@
 /* Free curves of few numbers that do as well as the listed effects: a curve in x, say, that an oval
  * follows within the noise. */
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 
 #include "explain/search.h"
 
-/* A curve that can follow the listed effects themselves stands beside them only when Schwarz's
+/* A curve that can follow the one listed effect itself stands beside it only when Schwarz's
  * criterion prefers it strongly (Kass and Raftery 1995, section 3.2). */
 #define FOLLOWER_GAIN 10.0
 /* It follows an effect of which it leaves no more than this share. */
 #define FOLLOWED_SHARE 0.05
+/* A smooth curve is there when chance gains as much less often than this: of some ten curves of
+ * five sizes each, 1 in 2000. */
+#define CURVE_P 1e-5
 /* Numbers of a smooth curve, beside its mean. */
-enum { NUMBERS_MOST = 8 };
+enum { NUMBERS_MOST = 16 };
 
 /* Legendre's polynomial of a degree. */
 static double legendre(size_t degree, double x) {
@@ -43,9 +47,9 @@ static size_t list_terms(const fg_explain_search *s, const fg_candidate *curve, 
   return count;
 }
 
-/* The curve of as many numbers as Schwarz's criterion says. */
-static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yardstick *y,
-                                size_t e) {
+/* The curve of as many numbers as Schwarz's criterion says; of those that are right. */
+static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
+                                bool right) {
   fg_explanation best = {.excess = INFINITY};
   fg_explain_term term[NUMBERS_MOST + 1];
   double x[NUMBERS_MOST + 1];
@@ -55,7 +59,7 @@ static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yar
     fg_explanation m = {.mask = 1u << e,
                         .excess = fmax(0, sum - y->full) / y->unit,
                         .freedom = y->freedom - (double)rank};
-    if (rank == 0 || !fg_explain_is_right(s, y, &m)) continue;
+    if (rank == 0 || (right && !fg_explain_is_right(s, y, &m))) continue;
     if (isfinite(best.excess) && fg_explain_schwarz(s, &m) >= fg_explain_schwarz(s, &best))
       continue;
     best = m;
@@ -101,21 +105,61 @@ static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsig
   return true;
 }
 
+fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y) {
+  fg_explanation best = {.excess = INFINITY};
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    if (!fg_effect_is_free(s->out->candidates[e].kind)) continue;
+    fg_explanation m = smoothest(s, y, e, false);
+    if (!isfinite(m.excess)) continue;
+    if (!isfinite(best.excess) || fg_explain_schwarz(s, &m) < fg_explain_schwarz(s, &best))
+      best = m;
+  }
+  return best;
+}
+
+bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
+                            unsigned mask, double known_to) {
+  fg_explain_term term[NUMBERS_MOST + 1];
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    if (!fg_effect_is_free(s->out->candidates[e].kind)) continue;
+    for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers *= 2) {
+      size_t count = list_terms(s, &s->out->candidates[e], numbers, term), columns;
+      double gain = fg_explain_gain_of_more(s, y, mask, term, count, &columns) - known_to;
+      if (columns > 0 && gain > gsl_cdf_chisq_Qinv(CURVE_P, (double)columns)) return true;
+    }
+  }
+  return false;
+}
+
+/* Schwarz's criterion of a listed set. A place that was sought is a number too, and stands for ln
+ * of how many there were. */
+static double listed_score(const fg_explain_search *s, const fg_explanation *m) {
+  double score = fg_explain_schwarz(s, m), number = log((double)s->columns.rows / s->out->integral);
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    const fg_effect *kind = s->out->candidates[e].kind;
+    if ((m->mask >> e & 1) && kind->sought == FG_EFFECT_PLACED)
+      score += number + 2 * log((double)kind->starts);
+  }
+  return score;
+}
+
 void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y) {
   fg_explanations *out = s->out;
   const fg_explanation *best = &out->each[0];
   for (size_t m = 1; m < out->count; m++)
-    if (fg_explain_schwarz(s, &out->each[m]) < fg_explain_schwarz(s, best)) best = &out->each[m];
+    if (listed_score(s, &out->each[m]) < listed_score(s, best)) best = &out->each[m];
   unsigned listed = best->mask;
-  double score = fg_explain_schwarz(s, best);
+  double score = listed_score(s, best);
+  bool one = fg_explain_bits(listed) == 1; /* several that make one curve are none the likelier */
   for (size_t e = 0; listed && e < out->candidate_count; e++) {
     const fg_candidate *curve = &out->candidates[e];
     if (!fg_effect_is_free(curve->kind)) continue;
     if (curve->kind->bends && (listed & y->bends))
       continue; /* told from a curve by what leads it */
-    fg_explanation rival = smoothest(s, y, e);
+    fg_explanation rival = smoothest(s, y, e, true);
     if (!isfinite(rival.excess)) continue;
     double gain = score - fg_explain_schwarz(s, &rival);
-    if (gain >= (follows(s, curve, listed) ? FOLLOWER_GAIN : 0)) fg_explain_keep(out, &rival);
+    if (gain >= (one && follows(s, curve, listed) ? FOLLOWER_GAIN : 0))
+      fg_explain_keep(out, &rival);
   }
 }

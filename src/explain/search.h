@@ -84,6 +84,11 @@ bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick 
 /* Schwarz's criterion: the smaller one is the better one. */
 double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m);
 
+/* What further terms gain beside a set, in chi², with so many numbers. */
+double fg_explain_gain_of_more(const fg_explain_search *s, const fg_explain_yardstick *y,
+                               unsigned mask, const fg_explain_term *more, size_t count,
+                               size_t *numbers);
+
 /* Residual sum of one effect alone; the standard deviation of its leading amplitude beside other
  * effects for noise of 1 um, INFINITY when it lies in them. */
 double fg_explain_lone_sum(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e);
@@ -103,6 +108,11 @@ bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yar
 
 /* Adds free curves that do as well as the best listed explanation, smooth ones of few numbers. */
 void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y);
+/* Whether a smooth free curve beside a set gains more than chance, and more than `known_to`. */
+bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
+                            unsigned mask, double known_to);
+/* The smooth free curve that Schwarz's criterion prefers, whether it is right or not. */
+fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y);
 
 /* ---- describe.c ---- */
 

@@ -61,7 +61,7 @@ static double chance_of(const fg_explain_search *s, size_t e, double columns) {
   return placed ? fmax(chance, policy->placed_chi2) : chance;
 }
 
-/* Whether one more listed effect takes more than it may. */
+/* Whether one more listed effect, or a smooth curve, takes more than it may. */
 static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
                            const fg_explanation *m) {
   unsigned more = fg_explain_mask_of(s->out, false) & ~m->mask;
@@ -72,7 +72,7 @@ static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstic
     double gain = m->excess - with.excess;
     if (gain > known_to + chance_of(s, e, m->freedom - with.freedom)) return true;
   }
-  return false;
+  return s->policy->has_rivals && fg_explain_curve_helps(s, y, m->mask, known_to);
 }
 
 /* Listed sets by size; the first size with one that is right ends the search. Returns the best of
@@ -230,6 +230,11 @@ bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yar
 /* What stands in where no listed set is right. */
 static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_explanation best) {
   fg_explanation curve = try_free(s, y, best);
+  if (s->policy->has_rivals) {
+    fg_explanation smooth = fg_explain_best_smooth(s, y);
+    bool better = fg_explain_schwarz(s, &smooth) < fg_explain_schwarz(s, &curve);
+    if (isfinite(smooth.excess) && better) curve = smooth;
+  }
   bool hope = s->policy->is_worth_fitting(s, y, &best, &curve);
   if (!hope) curve = try_two_free(s, y, curve);
   s->out->right = !hope && fg_explain_is_right(s, y, &curve);

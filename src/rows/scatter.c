@@ -258,28 +258,45 @@ static void find_waves(const fg_points *points, const arc *a, size_t *from, size
                      fmin(floor(2 * length / WAVE_SHORT_MM), (double)(a->rows / ROWS_EACH)));
 }
 
+/* The same deviation of every bump is no noise: what is left of the waves of one degree. */
+typedef struct waves {
+  double sum, square, count;
+} waves;
+
+static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_MOST],
+                      waves *of_lands) {
+  size_t rows = s->points->row_count, from, to;
+  bool bump = s->points->rows[a->from].bump != 0;
+  find_waves(s->points, a, &from, &to);
+  for (size_t p = from; p < to && !a->out; p++) {
+    double along = dot(s->columns + p * rows + a->from, s->left + a->from, a->to - a->from);
+    waves *w = bump ? &of_bumps[p] : of_lands;
+    w->sum += along;
+    w->square += along * along;
+    w->count++;
+  }
+}
+
 /* Mean square along such waves over that of all rows, both whitened: 1 where the form holds. */
 static fg_status find_swell(search *s, fg_scatter *scatter) {
-  double value, square = 0, count = 0;
-  size_t rows = s->points->row_count;
+  waves bumps[POLYNOMIALS_MOST] = {{0}}, lands = {0};
+  double value;
+  fg_whitening whitening;
   for (size_t k = 0; k < s->arc_count; k++)
     s->arcs[k].polynomials = POLYNOMIALS_MOST;
   fill_polynomials(s);
   FG_TRY(deviance(s, scatter, &value)); /* leaves orthonormal polynomials, in order */
-  fg_whitening whitening;
   FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
-  memcpy(s->left, s->weighted, rows * sizeof *s->left);
+  memcpy(s->left, s->weighted, s->points->row_count * sizeof *s->left);
   fg_whitening_apply(&whitening, s->left);
   fg_whitening_close(&whitening);
-  for (size_t k = 0; k < s->arc_count; k++) {
-    const arc *a = &s->arcs[k];
-    size_t from, to;
-    find_waves(s->points, a, &from, &to);
-    for (size_t p = from; p < to && !a->out; p++) {
-      double along = dot(s->columns + p * rows + a->from, s->left + a->from, a->to - a->from);
-      square += along * along;
-      count++;
-    }
+  for (size_t k = 0; k < s->arc_count; k++)
+    add_waves(s, &s->arcs[k], bumps, &lands);
+  double square = lands.square, count = lands.count;
+  for (size_t p = 0; p < POLYNOMIALS_MOST; p++) {
+    if (bumps[p].count < 2) continue;
+    square += bumps[p].square - bumps[p].sum * bumps[p].sum / bumps[p].count;
+    count += bumps[p].count - 1;
   }
   double mean = count > 0 ? square / count / (scatter->row_um * scatter->row_um) : 1;
   scatter->swell = fmin(fmax(mean, 1), SWELL_MOST);

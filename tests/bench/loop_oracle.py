@@ -48,7 +48,7 @@ def smooth_listed(midline, at, normal):
     glass += [wide(name, m) for name in ("scan.optical_quadratic", "scan.carriage_quadratic") for m in (5.0, 35.0)]
     glass += [wide("scan.optical_cubic", m) for m in (5.0, 20.0, 35.0)]
     glass += [{"id": "scan.carriage_start", "amplitude_um": 10.0, "length_mm": length} for length in (3.0, 8.0)]
-    columns = [np.sum(scanner_shift_um(e, at, None) * normal, axis=1) for e in glass]
+    columns = [np.sum(scanner_shift_um(e, at, (0, 0)) * normal, axis=1) for e in glass]
     part = [{"id": "part.ovality", "phase_deg": phase} for phase in (0, 45)]
     part += [{"id": name} for name in ("part.spiral", "part.bump_crown", "part.bump_skew")]
     columns += [midline.part_shift_um([{**e, "amplitude_um": 10.0}]) for e in part]
