@@ -79,6 +79,8 @@ typedef struct fg_explain_request {
   const fg_effect_set
       *known; /* NULL: none; its shaped effects are in the search with their shapes */
   const fg_effect_set *tried;    /* NULL: none; this set was fitted and is not right */
+  const fg_effect_set *given_up; /* fitted and run away, or worse than nothing: none of these */
+  size_t given_up_count;
   const fg_explain_bars *barred; /* NULL: none */
   bool look;                     /* for further shaped effects */
   bool two_curves;               /* where one is not enough and there are several views */

@@ -32,6 +32,7 @@ struct fg_explain_policy {
   bool keeps_twins;     /* one effect in two forms is a set */
   double edge_error_um; /* of the edge model: below it effects are not told apart */
   double effect_error;  /* an effect's form is known to this share of what it does to the rows; */
+  double more_error;    /* what one more effect takes beside it may be so much of that */
   double bend_error;    /* the same of one that is led by the lowest polynomials */
   double one_more_chi2; /* a set is not right beside which a further effect gains more, */
   bool counts_columns;  /* with one column; as much by chance with several, and beside what the

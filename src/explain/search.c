@@ -89,6 +89,8 @@ fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
   if (request->barred) explanations->barred = *request->barred;
   fg_explain_search s = {.policy = policy,
                          .out = explanations,
+                         .given_up = request->given_up,
+                         .given_up_count = request->given_up_count,
                          .tried = request->tried,
                          .two_curves = request->two_curves};
   fg_status status = FG_OK;

@@ -8,13 +8,15 @@ typedef struct fg_explain_search {
   const fg_explain_policy *policy;
   fg_explain_columns columns;
   fg_explanations *out;
-  size_t free_column, free_end; /* columns of the free curves */
-  bool two_curves;              /* may stand in */
-  const fg_effect_set *tried;   /* was fitted and is not right, or NULL */
-  double full;                  /* residual sum beside everything */
-  size_t freedom;               /* columns that took it */
-  size_t new_shapes;            /* ripples and steps that were found in this round */
-  unsigned unfitted;            /* effects with a shape that was found in this round */
+  size_t free_column, free_end;  /* columns of the free curves */
+  bool two_curves;               /* may stand in */
+  const fg_effect_set *given_up; /* no fit of these holds */
+  size_t given_up_count;
+  const fg_effect_set *tried; /* was fitted and is not right, or NULL */
+  double full;                /* residual sum beside everything */
+  size_t freedom;             /* columns that took it */
+  size_t new_shapes;          /* ripples and steps that were found in this round */
+  unsigned unfitted;          /* effects with a shape that was found in this round */
 } fg_explain_search;
 
 /* What the search compares with: everything at once. */

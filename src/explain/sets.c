@@ -46,7 +46,25 @@ static bool is_small(unsigned mask, placed_masks placed, size_t most) {
          (fg_explain_bits(mask) <= most || one_more || held == placed.all);
 }
 
+/* Whether a mask is a set that is there, of some effects. */
+static bool holds(const fg_explain_search *s, const fg_effect_set *set, unsigned mask) {
+  size_t count = 0;
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    if (!(mask >> e & 1)) continue;
+    if (count == set->count || set->effects[count].kind != s->out->candidates[e].kind) return false;
+    count++;
+  }
+  return count > 0 && count == set->count;
+}
+
+static bool was_given_up(const fg_explain_search *s, unsigned mask) {
+  for (size_t i = 0; i < s->given_up_count; i++)
+    if (holds(s, &s->given_up[i], mask)) return true;
+  return false;
+}
+
 static bool is_set(const fg_explain_search *s, unsigned mask) {
+  if (was_given_up(s, mask)) return false;
   return s->policy->keeps_twins || !fg_explain_has_twins(s->out, mask);
 }
 
@@ -65,7 +83,8 @@ static double chance_of(const fg_explain_search *s, size_t e, double columns) {
 static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
                            const fg_explanation *m) {
   unsigned more = fg_explain_mask_of(s->out, false) & ~m->mask;
-  double known_to = s->policy->counts_columns ? fg_explain_known_to(s, y, m) : 0;
+  double error = s->policy->more_error, taken = fmax(0, y->none - m->excess);
+  double known_to = s->policy->counts_columns ? y->allowance + error * error * taken : 0;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     if (!(more >> e & 1)) continue;
     fg_explanation with = fg_explain_try(s, y, m->mask | 1u << e);
@@ -151,7 +170,7 @@ typedef struct curve_trial {
 static void try_curves(const fg_explain_search *s, const fg_explain_yardstick *y, unsigned curves,
                        unsigned beside, curve_trial *trial) {
   for (size_t e = 0; e < s->out->candidate_count; e++) {
-    if (!(curves >> e & 1)) continue;
+    if (!(curves >> e & 1) || was_given_up(s, beside | 1u << e)) continue;
     fg_explanation explanation = fg_explain_try(s, y, beside | 1u << e);
     double gained = trial->score - fg_explain_schwarz(s, &explanation);
     if (beside)
@@ -205,24 +224,14 @@ static fg_explanation try_two_free(const fg_explain_search *s, const fg_explain_
   return best;
 }
 
-static bool was_tried(const fg_explain_search *s, const fg_explanation *m) {
-  size_t count = 0;
-  for (size_t e = 0; s->tried && e < s->out->candidate_count; e++) {
-    if (!(m->mask >> e & 1)) continue;
-    if (count == s->tried->count || s->tried->effects[count].kind != s->out->candidates[e].kind)
-      return false;
-    count++;
-  }
-  return s->tried && count > 0 && count == s->tried->count;
-}
-
 bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yardstick *y,
                                 const fg_explanation *best, const fg_explanation *curve) {
   double share = s->policy->curve_share;
   bool one_curve = fg_explain_bits(curve->mask) == 1 && curve->excess < share * share * y->none;
   if (one_curve && fg_explain_bits(best->mask) > FEW) return false;
   return (best->mask & s->unfitted) && best->excess < FITTING_SHARE * y->none &&
-         !was_tried(s, best) && best->excess < FITTING_TIMES * (curve->excess + y->freedom);
+         !(s->tried && holds(s, s->tried, best->mask)) &&
+         best->excess < FITTING_TIMES * (curve->excess + y->freedom);
 }
 
 /* ---- all of them ---- */

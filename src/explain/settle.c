@@ -20,6 +20,8 @@
 #define THERE_SIGMAS 4.0
 /* Turns of search and fit, at most. */
 enum { ROUNDS = 8, COARSE_ROUNDS = 2 };
+/* Sets that no fit holds, at most: then they come again. */
+enum { GIVEN_UP_MOST = 16 };
 
 void fg_explain_take(const fg_explanations *explanations, size_t explanation, fg_effect_set *set) {
   memset(set, 0, sizeof *set);
@@ -110,6 +112,8 @@ typedef struct settling {
   const fg_explain_bars *barred;
   fg_effect_set set;
   fg_explanations explanations;
+  fg_effect_set given_up[GIVEN_UP_MOST];
+  size_t given_up_count;
   double *residual_um, *jacobian, *geometry; /* per row; parameters × rows; to come back to */
 } settling;
 
@@ -146,6 +150,7 @@ static fg_status fit(fg_context *ctx, fg_points *points, double none, settling *
       square_of(points, at->residual_um) <= none)
     return FG_OK;
   fg_points_geometry_load(points, at->geometry);
+  if (at->given_up_count < GIVEN_UP_MOST) at->given_up[at->given_up_count++] = at->set;
   memset(&at->set, 0, sizeof at->set);
   ctx->message[0] = 0;
   return fg_joint_fit(ctx, points, &at->set, at->residual_um);
@@ -172,6 +177,9 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
                                         .jacobian = at->jacobian,
                                         .known = &at->set,
                                         .tried = &tried,
+                                        .given_up = at->given_up,
+                                        .given_up_count =
+                                            policy->drops_nothings ? at->given_up_count : 0,
                                         .barred = at->barred,
                                         .look = how.eager || round > 0,
                                         .two_curves = how.two_curves};

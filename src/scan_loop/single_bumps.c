@@ -48,7 +48,9 @@ static void add_view(const double *columns, const double *value, size_t n, doubl
 /* Residual of every row that counts, with what follows the edge's direction taken out. */
 static fg_status without_directions(fg_context *ctx, const fg_scan_loop *loop, double *value) {
   const fg_points *points = &loop->points;
-  const fg_effect *normal = fg_effect_find("free.edge.normal");
+  const fg_effect *normal = fg_effect_first();
+  while (!(fg_effect_is_free(normal) && normal->coordinate == FG_EFFECT_NORMAL))
+    normal = fg_effect_next(normal);
   size_t rows = points->row_count;
   double *columns = NULL, *basis;
   FG_TRY(fg_memory_allocate(ctx, 2 * rows, FG_EFFECT_COLUMNS_MAX * sizeof *columns,
@@ -181,8 +183,11 @@ fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop) {
   amplitudes list[FG_BUMP_PATTERN_MOST];
   if (loop->points.discs || loop->points.coarse || loop->set.count == FG_EFFECT_SET_MAX)
     return FG_OK;
+  if (!explanations->right) return FG_OK;
+  /* What a curve leaves of itself, or bends, is no single bump's. */
   for (size_t e = 0; e < loop->set.count; e++)
-    if (loop->set.effects[e].kind->bends) return FG_OK;
+    if (loop->set.effects[e].kind->bends || fg_effect_is_free(loop->set.effects[e].kind))
+      return FG_OK;
   while (candidate < explanations->candidate_count &&
          explanations->candidates[candidate].kind->coordinate != FG_EFFECT_INDEX)
     candidate++;
