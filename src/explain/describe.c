@@ -1,5 +1,4 @@
 /* What the report says of each effect beside the best explanation. */
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 
 #include "explain/search.h"
@@ -14,12 +13,12 @@ static double p_of_none(const fg_explain_search *s, const fg_explain_yardstick *
                         const double *left) {
   const fg_explanations *out = s->out;
   double none = s->columns.square, beyond = 1 + y->allowance / y->freedom;
-  double p = gsl_cdf_chisq_Q(fmax(0, none - y->full) / y->unit / beyond, y->freedom);
+  double p = fg_explain_chance(s, fmax(0, none - y->full) / y->unit / beyond, y->freedom);
   for (size_t e = 0; out->each[0].mask && e < out->candidate_count; e++) {
     if (fg_effect_is_free(out->candidates[e].kind)) continue;
     double gain = fmax(0, (none - left[e]) / y->unit - y->allowance);
     p = fmin(p, (double)out->candidate_count *
-                    gsl_cdf_chisq_Q(gain, (double)out->candidates[e].terms));
+                    fg_explain_chance(s, gain, (double)out->candidates[e].terms));
   }
   return fmin(p, 1);
 }

@@ -1,4 +1,5 @@
 /* The noise of a row: what is left beside everything at once. */
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 
 #include "explain/search.h"
@@ -9,6 +10,20 @@
 #define NOISE_LEAST_UM 1e-4
 /* Rows beyond the numbers that are fitted to them: fewer tell no noise. */
 enum { FREEDOM_LEAST = 12 };
+
+double fg_explain_chance(const fg_explain_search *s, double chi2, double numbers) {
+  double known = s->columns.points->scatter.freedom;
+  if (!(numbers > 0)) return 1;
+  return known > 0 ? gsl_cdf_fdist_Q(chi2 / numbers, numbers, known)
+                   : gsl_cdf_chisq_Q(chi2, numbers);
+}
+
+double fg_explain_chance_limit(const fg_explain_search *s, double p, double numbers) {
+  double known = s->columns.points->scatter.freedom;
+  if (!(numbers > 0)) return 0;
+  return known > 0 ? numbers * gsl_cdf_fdist_Qinv(p, numbers, known)
+                   : gsl_cdf_chisq_Qinv(p, numbers);
+}
 
 double fg_explain_integral(const fg_explain_columns *s) {
   return fg_points_integral(s->points, s->row, s->rows, s->left);

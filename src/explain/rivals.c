@@ -1,6 +1,5 @@
 /* Free curves of few numbers that do as well as the listed effects: a curve in x, say, that an oval
  * follows within the noise. */
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 
 #include "explain/search.h"
@@ -125,7 +124,7 @@ bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardsti
     for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers *= 2) {
       size_t count = list_terms(s, &s->out->candidates[e], numbers, term), columns;
       double gain = fg_explain_gain_of_more(s, y, mask, term, count, &columns) - known_to;
-      if (columns > 0 && gain > gsl_cdf_chisq_Qinv(CURVE_P, (double)columns)) return true;
+      if (columns > 0 && gain > fg_explain_chance_limit(s, CURVE_P, (double)columns)) return true;
     }
   }
   return false;

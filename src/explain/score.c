@@ -1,14 +1,11 @@
 /* One set of effects: its least squares, and whether it is right. */
-#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <string.h>
 
 #include "explain/policy.h"
 
-/* A set is right when what it leaves beyond all effects is likelier than this: a noise that is
- * known to a tenth makes 1 in 1000 of 1 in 100 000. What single effects and curves gain is judged
- * by itself. */
-#define ACCEPT_P 1e-5
+/* A set is right when what it leaves beyond all effects is likelier than this. */
+#define ACCEPT_P 0.001
 /* The middle of a polynomial lies within so many picture sizes of the picture's: farther off it is
  * a scale. */
 #define MIDDLE_REACH 1.5
@@ -144,7 +141,7 @@ double fg_explain_known_to(const fg_explain_search *s, const fg_explain_yardstic
 
 bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
                          const fg_explanation *m) {
-  double chance = m->freedom > 0 ? gsl_cdf_chisq_Qinv(ACCEPT_P, m->freedom) : 0;
+  double chance = fg_explain_chance_limit(s, ACCEPT_P, m->freedom);
   return m->excess <= chance + fg_explain_known_to(s, y, m);
 }
 

@@ -64,6 +64,11 @@ void fg_explain_refine_noise(fg_explain_search *s);
 /* FG_ERR_DATA when the last noise rests on too few rows. */
 fg_status fg_explain_check_rows(fg_context *ctx, const fg_explain_search *s);
 
+/* Probability of so large a chi² of so many numbers by chance, and the chi² of a probability, the
+ * noise being known as well as it is: Fisher's F. */
+double fg_explain_chance(const fg_explain_search *s, double chi2, double numbers);
+double fg_explain_chance_limit(const fg_explain_search *s, double p, double numbers);
+
 /* Integral of the correlation of what is left, along the edge. */
 double fg_explain_integral(const fg_explain_columns *columns);
 

@@ -85,6 +85,7 @@ typedef struct fg_scatter {
   double integral; /* of the correlation along the edge: noise in n rows averages like that in n
                       over it */
   double swell;    /* noise of long waves over what share, range and form say of it: at least 1 */
+  double freedom;  /* that the noise of long waves is known with; 0: exactly */
 } fg_scatter;
 
 typedef struct fg_points {

@@ -25,6 +25,9 @@ enum { POLYNOMIALS_LEAST = 6, POLYNOMIALS_MOST = 16, ROWS_EACH = 4 };
 #define WAVE_SHORT_MM 0.4
 #define WAVE_LONG_MM  0.75
 #define SWELL_MOST    2.5
+/* What such a wave is worth, with what all shorter ones say: on 200 clean renders the noise of long
+ * waves scatters by a tenth (reports/loop_rough.md, p-values). */
+#define FREEDOM_PER_WAVE 2.0
 /* Arcs whose square is so many standard errors above the median one hold something else: a step,
  * dirt. So many in all may. */
 #define ARC_SIGMAS 5.0
@@ -300,6 +303,7 @@ static fg_status find_swell(search *s, fg_scatter *scatter) {
   }
   double mean = count > 0 ? square / count / (scatter->row_um * scatter->row_um) : 1;
   scatter->swell = fmin(fmax(mean, 1), SWELL_MOST);
+  scatter->freedom = FREEDOM_PER_WAVE * count;
   return FG_OK;
 }
 
