@@ -5,7 +5,7 @@
 #include "explain/explain.h"
 #include "rows/scatter.h"
 
-enum { FG_EXPLAIN_COLUMNS = 256, FG_EXPLAIN_TERMS = 64 };
+enum { FG_EXPLAIN_COLUMNS = 320, FG_EXPLAIN_TERMS = 64 };
 
 /* How a column enters the basis of all effects at once. A curve is finer than noise along the edge
  * may be told from: with all its columns it would take that for its own. */

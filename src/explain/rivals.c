@@ -15,6 +15,11 @@
 /* Numbers of a smooth curve, beside its mean. */
 enum { NUMBERS_MOST = 16 };
 
+/* Single bumps have no neighbours: a curve over them is judged by itself. */
+static bool is_smooth(const fg_effect *kind) {
+  return fg_effect_is_free(kind) && kind->coordinate != FG_EFFECT_INDEX;
+}
+
 /* Legendre's polynomial of a degree. */
 static double legendre(size_t degree, double x) {
   double before = 1, now = x;
@@ -107,7 +112,7 @@ static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsig
 fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y) {
   fg_explanation best = {.excess = INFINITY};
   for (size_t e = 0; e < s->out->candidate_count; e++) {
-    if (!fg_effect_is_free(s->out->candidates[e].kind)) continue;
+    if (!is_smooth(s->out->candidates[e].kind)) continue;
     fg_explanation m = smoothest(s, y, e, false);
     if (!isfinite(m.excess)) continue;
     if (!isfinite(best.excess) || fg_explain_schwarz(s, &m) < fg_explain_schwarz(s, &best))
@@ -120,7 +125,7 @@ bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardsti
                             unsigned mask, double known_to) {
   fg_explain_term term[NUMBERS_MOST + 1];
   for (size_t e = 0; e < s->out->candidate_count; e++) {
-    if (!fg_effect_is_free(s->out->candidates[e].kind)) continue;
+    if (!is_smooth(s->out->candidates[e].kind)) continue;
     for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers *= 2) {
       size_t count = list_terms(s, &s->out->candidates[e], numbers, term), columns;
       double gain = fg_explain_gain_of_more(s, y, mask, term, count, &columns) - known_to;
@@ -152,7 +157,7 @@ void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y) 
   bool one = fg_explain_bits(listed) == 1; /* several that make one curve are none the likelier */
   for (size_t e = 0; listed && e < out->candidate_count; e++) {
     const fg_candidate *curve = &out->candidates[e];
-    if (!fg_effect_is_free(curve->kind)) continue;
+    if (!is_smooth(curve->kind)) continue;
     if (curve->kind->bends && (listed & y->bends))
       continue; /* told from a curve by what leads it */
     fg_explanation rival = smoothest(s, y, e, true);

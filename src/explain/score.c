@@ -24,6 +24,10 @@ static void put_cubic(const fg_candidate *e, double t, fg_explain_term *term) {
   *term = (fg_explain_term){3, {e->column[0], e->column[1], e->column[2]}, {1, -3 * t, 3 * t * t}};
 }
 
+static void put_quadratic(const fg_candidate *e, double t, fg_explain_term *term) {
+  *term = (fg_explain_term){2, {e->column[0], e->column[1]}, {1, -2 * t}};
+}
+
 static void list_terms(const fg_explanations *out, unsigned mask, set_terms *set) {
   set->count = 0;
   set->cubic = FG_CANDIDATES_MAX;
@@ -70,10 +74,47 @@ static double middle_of(const fg_explain_search *s, const fg_candidate *effect, 
   return s->columns.points->frame.centre_mm[effect->kind->axis] + FG_FIELD_HALF_MM * t;
 }
 
+static bool scanned_again(const fg_explain_search *s) {
+  return s->columns.points->view_count > s->columns.points->part_count;
+}
+
+/* Of one view a quadratic gains little over its slope, and its middle may come out anywhere: where
+ * that is too far off it is held at the end of its reach, on the side that leaves less. Returns how
+ * many numbers that takes. */
+static size_t hold_middles(const fg_explain_search *s, const fg_explain_yardstick *y, unsigned mask,
+                           const double *x, set_terms *set) {
+  size_t held = 0;
+  if (s->policy->quadratic_chi2 > 0 || scanned_again(s)) return 0;
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    const fg_candidate *effect = &s->out->candidates[e];
+    if (!(mask >> e & 1) || effect->polynomial != FG_EFFECT_QUADRATIC) continue;
+    const double *own = x + set->first[e] + held;
+    if (fabs(0.5 * own[1]) <= y->reach * fabs(own[0])) continue;
+    size_t at = set->first[e], rank;
+    memmove(&set->term[at + 1], &set->term[at + 2], (set->count - at - 2) * sizeof set->term[0]);
+    set->count--;
+    held++;
+    for (size_t k = e + 1; k < s->out->candidate_count; k++)
+      set->first[k]--;
+    double left[2], middle[2] = {-y->reach, y->reach};
+    for (int side = 0; side < 2; side++) {
+      put_quadratic(effect, middle[side], &set->term[at]);
+      left[side] = fg_explain_solve(&s->columns, set->term, set->count, NULL, NULL, &rank);
+    }
+    if (left[0] < left[1]) put_quadratic(effect, middle[0], &set->term[at]);
+  }
+  return held;
+}
+
 /* A quadratic whose middle is far off is a scale; one that gains nothing over it is one. */
 static bool is_quadratic(const fg_explain_search *s, const fg_explain_yardstick *y,
                          const set_terms *set, size_t e, const double *x, double sum, double *t) {
   const double *own = x + set->first[e];
+  const fg_explain_term *term = &set->term[set->first[e]];
+  if (term->count > 1) { /* its middle is held */
+    *t = -0.5 * term->weight[1];
+    return true;
+  }
   *t = own[0] != 0 ? -0.5 * own[1] / own[0] : INFINITY;
   if (!(fabs(*t) <= y->reach)) return false;
   set_terms without = *set;
@@ -81,9 +122,8 @@ static bool is_quadratic(const fg_explain_search *s, const fg_explain_yardstick 
   memmove(&without.term[at], &without.term[at + 1], (set->count - at - 1) * sizeof without.term[0]);
   without.count--;
   double alone = fg_explain_solve(&s->columns, without.term, without.count, NULL, NULL, &rank);
-  const fg_points *points = s->columns.points;
-  bool again = points->view_count > points->part_count;
-  return alone - sum >= (again ? FG_EXPLAIN_GAIN_LEAST : s->policy->quadratic_chi2) * y->unit;
+  double least = scanned_again(s) ? FG_EXPLAIN_GAIN_LEAST : s->policy->quadratic_chi2;
+  return alone - sum >= least * y->unit;
 }
 
 /* Crown and skew are led by their lowest polynomial. */
@@ -122,6 +162,9 @@ fg_explanation fg_explain_try(const fg_explain_search *s, const fg_explain_yards
     explanation.middle_mm[set.cubic] =
         middle_of(s, &out->candidates[set.cubic], find_middle(s, y, &set));
   double sum = fg_explain_solve(&s->columns, set.term, set.count, x, NULL, &rank);
+  size_t held = hold_middles(s, y, mask, x, &set);
+  if (held) sum = fg_explain_solve(&s->columns, set.term, set.count, x, NULL, &rank);
+  rank += held;
   explanation.excess = fmax(0, sum - y->full) / y->unit;
   explanation.freedom = y->freedom - (double)rank - (set.cubic < FG_CANDIDATES_MAX);
   for (size_t e = 0; e < out->candidate_count; e++)
