@@ -52,7 +52,7 @@ static const fg_explain_policy foils = {
     .placed_beside = true,
     .edge_error_um = 0.003, /* clean renders leave at most this (reports/loop_scans.md) */
     /* Edges of a stretched picture are measured a little wrong (reports/loop_scans.md). */
-    .effect_error = 0.007,
+    .effect_error = 0.0055,
     .more_error = 0.01,
     .bend_error = 0.005,
     /* By chance 1 in 45 000 of one effect; of some dozen that are sought, 1 in 5 000. */

@@ -188,6 +188,11 @@ bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick 
   return m->excess <= chance + fg_explain_known_to(s, y, m);
 }
 
+bool fg_explain_is_exact(const fg_explain_search *s, const fg_explain_yardstick *y,
+                         const fg_explanation *m) {
+  return m->excess <= fg_explain_chance_limit(s, ACCEPT_P, m->freedom) + y->allowance;
+}
+
 double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m) {
   return m->excess - log((double)s->columns.rows / s->out->integral) * m->freedom;
 }

@@ -88,6 +88,9 @@ double fg_explain_known_to(const fg_explain_search *s, const fg_explain_yardstic
 /* Whether it leaves no more than it should. */
 bool fg_explain_is_right(const fg_explain_search *s, const fg_explain_yardstick *y,
                          const fg_explanation *m);
+/* Whether it is also without what the forms of effects may leave. */
+bool fg_explain_is_exact(const fg_explain_search *s, const fg_explain_yardstick *y,
+                         const fg_explanation *m);
 /* Schwarz's criterion: the smaller one is the better one. */
 double fg_explain_schwarz(const fg_explain_search *s, const fg_explanation *m);
 

@@ -1,6 +1,7 @@
 /* Sets of candidates: which are tried, which are right, and what stands in where none is. */
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <string.h>
 
 #include "explain/policy.h"
 
@@ -94,25 +95,63 @@ static bool one_more_helps(const fg_explain_search *s, const fg_explain_yardstic
   return s->policy->has_rivals && fg_explain_curve_helps(s, y, m->mask, known_to);
 }
 
+/* What a pass over the sets of one size looks for. */
+typedef struct pass {
+  placed_masks placed;
+  size_t size, most;
+  bool exact;   /* right without what the forms of effects may leave */
+  double least; /* and with less than this */
+} pass;
+
+/* Keeps the sets of one size that are right; `best` becomes the best of those that are tried. */
+static void try_size(fg_explain_search *s, const fg_explain_yardstick *y, const pass *p,
+                     fg_explanation *best) {
+  unsigned listed = fg_explain_mask_of(s->out, false);
+  for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask)) {
+    if (fg_explain_bits(mask) != p->size || !is_small(mask, p->placed, p->most) || !is_set(s, mask))
+      continue;
+    fg_explanation explanation = fg_explain_try(s, y, mask);
+    bool right = fg_explain_is_right(s, y, &explanation) && explanation.excess < p->least &&
+                 (!p->exact || fg_explain_is_exact(s, y, &explanation));
+    if (right && !one_more_helps(s, y, &explanation)) fg_explain_keep(s->out, &explanation);
+    if (s->policy->is_better(s, &explanation, best)) *best = explanation;
+  }
+}
+
+/* What is right only because forms of effects are not known exactly gives way to one effect more
+ * that is right without that, where the difference is more than all that forms leave. */
+static void try_exact(fg_explain_search *s, const fg_explain_yardstick *y, pass p) {
+  fg_explanations *out = s->out;
+  fg_explanation each[FG_EXPLANATIONS_MAX], best = {.excess = INFINITY};
+  size_t count = out->count, total = out->total;
+  memcpy(each, out->each, sizeof each);
+  for (size_t m = 0; m < count; m++) {
+    if (fg_explain_is_exact(s, y, &each[m])) return;
+    p.least = fmin(p.least, each[m].excess - fg_explain_known_to(s, y, &each[m]));
+  }
+  p.exact = true;
+  p.size++;
+  out->count = out->total = 0;
+  try_size(s, y, &p, &best);
+  if (out->count) return;
+  memcpy(out->each, each, sizeof each);
+  out->count = count;
+  out->total = total;
+}
+
 /* Listed sets by size; the first size with one that is right ends the search. Returns the best of
  * those that were tried. */
 static fg_explanation try_listed(fg_explain_search *s, const fg_explain_yardstick *y) {
-  fg_explanations *out = s->out;
-  unsigned listed = fg_explain_mask_of(out, false);
-  placed_masks placed = find_placed_masks(s);
   fg_explanation best = {.excess = INFINITY};
-  size_t most = s->policy->effects_most(s->columns.points);
-  size_t largest = most + fg_explain_bits(placed.all);
+  pass p = {.placed = find_placed_masks(s),
+            .most = s->policy->effects_most(s->columns.points),
+            .least = INFINITY};
+  size_t largest = p.most + fg_explain_bits(p.placed.all);
   if (largest > FG_EFFECT_SET_MAX) largest = FG_EFFECT_SET_MAX;
-  for (size_t size = 0; size <= largest && !out->count; size++)
-    for (unsigned mask = 0, first = 1; first || mask; first = 0, mask = next_of(listed, mask)) {
-      if (fg_explain_bits(mask) != size || !is_small(mask, placed, most) || !is_set(s, mask))
-        continue;
-      fg_explanation explanation = fg_explain_try(s, y, mask);
-      if (fg_explain_is_right(s, y, &explanation) && !one_more_helps(s, y, &explanation))
-        fg_explain_keep(out, &explanation);
-      if (s->policy->is_better(s, &explanation, &best)) best = explanation;
-    }
+  for (; p.size <= largest && !s->out->count; p.size++)
+    try_size(s, y, &p, &best);
+  p.size--;
+  if (s->out->count && s->policy->has_rivals && p.size < largest) try_exact(s, y, p);
   return best;
 }
 

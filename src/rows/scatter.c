@@ -129,9 +129,12 @@ static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
   s->points->scatter = *scatter;
   FG_TRY(fg_whitening_open(s->ctx, s->points, &whitening));
   memcpy(s->left, s->weighted, rows * sizeof *s->left);
-  memcpy(s->columns, s->polynomials, POLYNOMIALS_MOST * rows * sizeof *s->columns);
+  size_t most = 0;
+  for (size_t k = 0; k < s->arc_count; k++)
+    most = s->arcs[k].polynomials > most ? s->arcs[k].polynomials : most;
+  memcpy(s->columns, s->polynomials, most * rows * sizeof *s->columns);
   fg_whitening_apply(&whitening, s->left);
-  for (size_t p = 0; p < POLYNOMIALS_MOST; p++)
+  for (size_t p = 0; p < most; p++)
     fg_whitening_apply(&whitening, s->columns + p * rows);
   for (size_t k = 0; k < s->arc_count; k++) {
     arc *a = &s->arcs[k];

@@ -33,6 +33,8 @@ says whole.out "[n for n, v in curve['shape'] if abs(v) > 0.1] == [3, 6, 9] and 
 says whole.out "any('bumps 3, 6, 9, every 3rd' in n for n in r['notes']) and all(abs(off[n]) < 0.3 for n in true)"
 grep -q 'every 3rd' whole.html || fail "the page does not say which bumps"
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
 # Beside the scatter of real edges: one bump, and a seam between two chips of the sensor.
 rough='"bits":8,"noise":1.8,"noise_correlation":0.6,"blur_px":1.9,"rough":{"edge_roughness_um":1,"edge_common_um":0.5,"correlation_um":40}'
 # render_rough NAME SEED EFFECTS [MEMBERS OF THE SCANNER, each with a comma behind it]

@@ -27,6 +27,7 @@ for circle, right, name, most in pairs:
     assert error < most and error < 4 * circle["u_" + name], (name, error, circle["u_" + name])
 PYTHON
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
 other --seed 6 --name ripple --effect scan.carriage_ripple=25,period_mm=3.3,phase_deg=40
 "$program" loop ripple.png -o ripple.json || fail "loop"
 claim="[c for c in r['claims'] if c['id'] == 'scan.carriage_ripple'][0]['parameters']"
