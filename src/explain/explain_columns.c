@@ -74,7 +74,7 @@ static bool extend(fg_explain_columns *s, size_t rank, const double *v, double s
 }
 
 static double weight_of(const fg_explain_columns *s, size_t i) {
-  return sqrt(s->points->rows[s->row[i]].weight / FG_POINTS_BLOCK);
+  return fg_points_root_weight(&s->points->rows[s->row[i]]);
 }
 
 static size_t weigh(const fg_explain_columns *s, size_t count, double *out) {
@@ -88,7 +88,7 @@ static size_t weigh(const fg_explain_columns *s, size_t count, double *out) {
 static void whiten(const fg_explain_columns *s, const double *values, double *out) {
   double *all = s->white;
   for (size_t i = 0; i < s->points->row_count; i++)
-    all[i] = sqrt(s->points->rows[i].weight / FG_POINTS_BLOCK) * values[i];
+    all[i] = fg_points_root_weight(&s->points->rows[i]) * values[i];
   fg_whitening_apply(&s->whitening, all);
   for (size_t i = 0; i < s->rows; i++)
     out[i] = all[s->row[i]];
@@ -170,21 +170,28 @@ static double term_product(const fg_explain_columns *s, const fg_explain_term *a
   return sum;
 }
 
-static double term_right(const fg_explain_columns *s, const fg_explain_term *a) {
+/* What terms are fitted to: the products of all columns with it, its square, and what a term must
+ * leave to count. */
+typedef struct target {
+  const double *right;
+  double square, least;
+} target;
+
+static double term_right(const target *to, const fg_explain_term *a) {
   double sum = 0;
   for (size_t i = 0; i < a->count; i++)
-    sum += a->weight[i] * s->right[a->column[i]];
+    sum += a->weight[i] * to->right[a->column[i]];
   return sum;
 }
 
 /* Cholesky, row by row; a term that adds nothing is left out. */
-double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
-                        double *x, double *last_u, size_t *rank) {
-  double lower[FG_EXPLAIN_TERMS][FG_EXPLAIN_TERMS], forward[FG_EXPLAIN_TERMS], sum = s->square;
+static double fit_terms(const fg_explain_columns *s, const target *to, const fg_explain_term *terms,
+                        size_t count, double *x, double *last_u, size_t *rank) {
+  double lower[FG_EXPLAIN_TERMS][FG_EXPLAIN_TERMS], forward[FG_EXPLAIN_TERMS], sum = to->square;
   size_t used[FG_EXPLAIN_TERMS], n = 0;
   for (size_t a = 0; a < count; a++) {
     double whole = term_product(s, &terms[a], &terms[a]), pivot = whole;
-    double right = term_right(s, &terms[a]);
+    double right = term_right(to, &terms[a]);
     for (size_t k = 0; k < n; k++) {
       double value = term_product(s, &terms[a], &terms[used[k]]);
       for (size_t j = 0; j < k; j++)
@@ -194,7 +201,7 @@ double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *term
       right -= lower[n][k] * forward[k];
     }
     if (x) x[a] = 0;
-    if (!(pivot > fmax(DEPENDENT * whole, s->least))) continue;
+    if (!(pivot > fmax(DEPENDENT * whole, to->least))) continue;
     lower[n][n] = sqrt(pivot);
     forward[n] = right / lower[n][n];
     sum -= forward[n] * forward[n];
@@ -209,6 +216,20 @@ double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *term
   }
   *rank = n;
   return fmax(sum, 0);
+}
+
+double fg_explain_solve(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
+                        double *x, double *last_u, size_t *rank) {
+  const target residual = {s->right, s->square, s->least};
+  return fit_terms(s, &residual, terms, count, x, last_u, rank);
+}
+
+double fg_explain_share_left(const fg_explain_columns *s, const fg_explain_term *terms,
+                             size_t count, size_t column) {
+  const double *products = s->gram + column * FG_EXPLAIN_COLUMNS;
+  const target to = {products, products[column], 0};
+  size_t rank;
+  return to.square > 0 ? fit_terms(s, &to, terms, count, NULL, NULL, &rank) / to.square : 0;
 }
 
 /* ---- widths ---- */

@@ -82,6 +82,10 @@ size_t fg_explain_columns_span_more(fg_explain_columns *columns, size_t rank, si
 double fg_explain_solve(const fg_explain_columns *columns, const fg_explain_term *terms,
                         size_t count, double *x, double *last_u, size_t *rank);
 
+/* Share of a column's square that terms leave of it. */
+double fg_explain_share_left(const fg_explain_columns *columns, const fg_explain_term *terms,
+                             size_t count, size_t column);
+
 /* Residual sum of the widths when terms have these coefficients. */
 double fg_explain_width_sum(const fg_explain_columns *columns, const fg_explain_term *terms,
                             size_t count, const double *x);

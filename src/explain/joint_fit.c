@@ -106,7 +106,7 @@ static double row_weight(const refit *r, size_t i, size_t a, size_t b) {
 
 static void whiten(const refit *r, double *values) {
   for (size_t i = 0; i < r->points->row_count; i++)
-    values[i] *= sqrt(r->points->rows[i].weight / FG_POINTS_BLOCK);
+    values[i] *= fg_points_root_weight(&r->points->rows[i]);
   fg_whitening_apply(&r->whitening, values);
 }
 

@@ -72,39 +72,18 @@ static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yar
   return best;
 }
 
-static double left_by(const fg_explain_columns *c, const fg_candidate *curve, size_t column) {
-  enum { MOST = FG_FIELD_COLUMNS };
-  double lower[MOST][MOST], square = c->gram[column * FG_EXPLAIN_COLUMNS + column], left = square;
-  double forward[MOST];
-  size_t used[MOST], n = 0;
-  for (size_t a = 0; a < curve->columns; a++) {
-    size_t own = curve->column[a];
-    double whole = c->gram[own * FG_EXPLAIN_COLUMNS + own], pivot = whole;
-    double along = c->gram[own * FG_EXPLAIN_COLUMNS + column];
-    for (size_t k = 0; k < n; k++) {
-      double value = c->gram[own * FG_EXPLAIN_COLUMNS + curve->column[used[k]]];
-      for (size_t j = 0; j < k; j++)
-        value -= lower[n][j] * lower[k][j];
-      lower[n][k] = value / lower[k][k];
-      pivot -= lower[n][k] * lower[n][k];
-      along -= lower[n][k] * forward[k];
-    }
-    if (!(pivot > 1e-6 * whole)) continue;
-    lower[n][n] = sqrt(pivot);
-    forward[n] = along / lower[n][n];
-    left -= forward[n] * forward[n];
-    used[n++] = a;
-  }
-  return square > 0 ? left / square : 0;
-}
-
 /* Whether a curve can follow every effect of a set. */
 static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsigned mask) {
+  fg_explain_term term[FG_EFFECT_COLUMNS_MAX];
+  for (size_t k = 0; k < curve->columns; k++)
+    term[k] = (fg_explain_term){1, {curve->column[k]}, {1}};
   for (size_t e = 0; e < s->out->candidate_count; e++) {
     const fg_candidate *effect = &s->out->candidates[e];
     if (!(mask >> e & 1)) continue;
     for (size_t k = 0; k < effect->terms; k++)
-      if (left_by(&s->columns, curve, effect->column[k]) > FOLLOWED_SHARE) return false;
+      if (fg_explain_share_left(&s->columns, term, curve->columns, effect->column[k]) >
+          FOLLOWED_SHARE)
+        return false;
   }
   return true;
 }

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "core/spread.h"
 
 /* The scatter of edges is correlated over 0.02 to 0.1 mm of arc on real flatbeds (reports/real);
  * a little more on either side keeps an estimate from sticking to the bound. */
@@ -77,7 +76,7 @@ static void fill_polynomials(search *s) {
     for (size_t i = a->from; i < a->to; i++) {
       const fg_points_row *row = &s->points->rows[i];
       double x = acos(fmax(-1, fmin(1, 2 * (row->s_mm - low) / (high - low) - 1)));
-      double weight = sqrt(row->weight / FG_POINTS_BLOCK);
+      double weight = fg_points_root_weight(row);
       for (size_t p = 0; p < a->polynomials; p++)
         s->polynomials[p * rows + i] = weight * cos((double)p * x);
     }
@@ -348,7 +347,7 @@ fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const doubl
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *weighted, (void **)&weighted));
   for (size_t i = 0; i < points->row_count; i++)
-    weighted[i] = residual_um[i] * sqrt(points->rows[i].weight / FG_POINTS_BLOCK);
+    weighted[i] = residual_um[i] * fg_points_root_weight(&points->rows[i]);
   s.weighted = weighted;
   FG_TRY_EXIT(open(&s));
   if (!s.arc_count) goto exit;

@@ -7,6 +7,8 @@
 #ifndef FG_ROWS_SCATTER_H
 #define FG_ROWS_SCATTER_H
 
+#include <math.h>
+
 #include "rows/points.h"
 
 /* Behind the last row of the arc that starts at a row: neighbours on one view of one bump, land or
@@ -31,6 +33,11 @@ typedef struct fg_whitening {
   bool *first;            /* owned; rows that start an arc */
   double log_determinant; /* of the correlation, over all rows in use */
 } fg_whitening;
+
+/* Root of a row's weight: 1 for a whole block. */
+static inline double fg_points_root_weight(const fg_points_row *row) {
+  return sqrt(row->weight / FG_POINTS_BLOCK);
+}
 
 /* All rows as they are (band 0) where points->scatter.share is 0. */
 fg_status fg_whitening_open(fg_context *ctx, const fg_points *points, fg_whitening *whitening);
