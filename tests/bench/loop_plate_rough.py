@@ -19,7 +19,7 @@ from loop_cases import GEN2, draw_foil, place
 from loop_plate import effects, plate_spec, scanner
 from loop_rough import KEPT_ASIDE, SEEDS, draw_rough, render_others
 from loop_rough_report import BEYOND, SLACK, asked, over_floor, verdict_of
-from loop_run import Results, errors_um, kept, pair_foils, render, within, write_design
+from loop_run import Results, add_options, errors_um, kept, pair_foils, render, within, write_design
 from loop_scans_report import QUANTITIES, markdown, number, share
 from other_scanner import draw_other
 
@@ -196,14 +196,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--cases", type=int, help="at most so many scanners of every tier and seed")
-    parser.add_argument("--tier", action="append", choices=TIERS)
-    parser.add_argument("--seed", action="append", type=int)
-    parser.add_argument("--all", action="store_true", help="the seed that is kept aside too")
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--fresh", action="store_true")
-    parser.add_argument("--report-only", action="store_true")
-    parser.add_argument("--pictures", help="a folder that keeps what was rendered, for other programs")
-    parser.add_argument("--out", default=os.path.join(ROOT, "reports"))
+    add_options(parser, TIERS, os.path.join(ROOT, "reports"))
     options = parser.parse_args()
     program, seeds = os.path.abspath(options.program), options.seed or SEEDS + [KEPT_ASIDE] * options.all
     for folder in filter(None, (options.out, options.pictures)):

@@ -24,7 +24,7 @@ import numpy as np
 import loop_rough_report
 from loop_cases import CURVES, PART_EFFECTS, SCANNER_EFFECTS, draw_case, log_uniform
 from loop_oracle import standard_errors
-from loop_run import Results, errors_um, judge, kept, measured_foils, pair_foils, profile_um, render, run_loop
+from loop_run import Results, add_options, errors_um, judge, kept, measured_foils, pair_foils, profile_um, render, run_loop
 from loop_scans_report import is_scanner
 from other_scanner import draw_other, render_other
 
@@ -177,14 +177,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--cases", type=int, help="at most so many of every tier and seed")
-    parser.add_argument("--tier", action="append", choices=TIERS)
-    parser.add_argument("--seed", action="append", type=int)
-    parser.add_argument("--all", action="store_true", help="the seed that is kept aside too")
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--fresh", action="store_true")
-    parser.add_argument("--report-only", action="store_true")
-    parser.add_argument("--pictures", help="a folder that keeps what was rendered, for other programs")
-    parser.add_argument("--out", default=os.path.join(ROOT, "reports"))
+    add_options(parser, TIERS, os.path.join(ROOT, "reports"))
     options = parser.parse_args()
     program = os.path.abspath(options.program)
     seeds = options.seed or SEEDS + [KEPT_ASIDE] * options.all

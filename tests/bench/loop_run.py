@@ -267,3 +267,15 @@ class Results:
             for n, _ in enumerate(pool.map(one, todo), 1):
                 if n % 20 == 0:
                     print(f"{n} of {len(todo)}", flush=True)
+
+
+def add_options(parser, tiers, out):
+    """Those that the benchmarks on rough edges share."""
+    parser.add_argument("--tier", action="append", choices=tiers)
+    parser.add_argument("--seed", action="append", type=int)
+    parser.add_argument("--all", action="store_true", help="the seed that is kept aside too")
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--report-only", action="store_true")
+    parser.add_argument("--pictures", help="a folder that keeps what was rendered, for other programs")
+    parser.add_argument("--out", default=out)
