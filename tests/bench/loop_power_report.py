@@ -1,0 +1,96 @@
+"""reports/loop_power.md from loop_power.csv."""
+
+import numpy as np
+from scipy import stats
+
+GOALS = {6: 0.70, 10: 0.97}  # of "found and in class"
+
+
+def share(rows, name):
+    known = [int(r[name]) for r in rows if r[name] != ""]
+    return f"{sum(known)}/{len(known)}" if known else "–"
+
+
+def percent(rows, name):
+    known = [int(r[name]) for r in rows if r[name] != ""]
+    return f"{100 * sum(known) / len(known):.1f} %" if known else "–"
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return lines + ["| " + " | ".join(str(c) for c in row) + " |" for row in rows] + [""]
+
+
+def of(rows, **wanted):
+    return [r for r in rows if all(r[k] == str(v) for k, v in wanted.items())]
+
+
+def power(rows, tables):
+    sizes = sorted({int(r["size"]) for r in rows})
+    designs = [d for d in tables.DESIGNS if of(rows, design=d)]
+    total = []
+    for size in sizes:
+        own = of(rows, size=size)
+        total.append([size, percent(own, "found"), f"{100 * GOALS[size]:.0f} %" if size in GOALS else "–",
+                      percent(own, "claimed"), percent(own, "exact"), percent(own, "wrong"),
+                      percent(own, "peer_claimed"), percent(own, "peer_found"), len(own)])
+    out = table(["size", "found and in class", "to reach", "anything claimed", "the claim itself", "a claim without the truth",
+                 "plain search: anything", "plain search: the truth first", "tables"], total)
+    for design in designs:
+        out += [f"### {design}", "",
+                "Found and in class of all tables; in brackets what the plain search calls anything at all.", ""]
+        lines = []
+        for kind in (k for k in tables.KINDS if of(rows, design=design, kind=k)):
+            cells = [of(rows, design=design, kind=kind, size=s) for s in sizes]
+            wrong = of(rows, design=design, kind=kind)
+            lines.append([kind] + [f"{share(c, 'found')} ({share(c, 'peer_claimed')})" if c else "–" for c in cells]
+                         + [share(wrong, "wrong")])
+        out += table(["kind"] + [str(s) for s in sizes] + ["a claim without the truth"], lines)
+    return out
+
+
+def uniform(rows):
+    """Of family p-values of clean tables: how many lie in each tenth, and Kolmogorov and Smirnov's p."""
+    p = np.array([float(r["family_p"]) for r in rows if r["family_p"] != ""])
+    if len(p) < 5:
+        return ["–", "–"]
+    tenths = np.histogram(p, np.linspace(0, 1, 11))[0]
+    return [" ".join(str(t) for t in tenths), f"{stats.kstest(p, 'uniform').pvalue:.2g}"]
+
+
+def clean(rows, tables):
+    lines = []
+    for kind in (k for k in tables.CLEAN if of(rows, kind=k)):
+        own = of(rows, kind=kind)
+        by = [share(of(own, design=d), "found") for d in tables.DESIGNS]
+        lines.append([kind, share(own, "found"), percent(own, "found"), *by, share(own, "claimed"), share(own, "peer_claimed"),
+                      *uniform(own)])
+    everything = ["all", share(rows, "found"), percent(rows, "found"),
+                  *[share(of(rows, design=d), "found") for d in tables.DESIGNS], share(rows, "claimed"),
+                  share(rows, "peer_claimed"), *uniform(rows)]
+    return table(["noise", "false claims", "share", *tables.DESIGNS, "any claim", "plain search: any claim",
+                  "family p-values by tenths", "uniform (KS)"], lines + [everything])
+
+
+def summary(rows, tables):
+    effects, unlike = [r for r in rows if r["size"] != "0"], [r for r in rows if r["size"] == "0"]
+    failed = sum(r["verdict"] == "failed" for r in rows)
+    seconds = [float(r["seconds"]) for r in rows]
+    out = ["# Power of the loop on tables, against an oracle", "",
+           f"{len(effects)} tables with one effect, {len(unlike)} clean ones. `python3 tests/bench/loop_power.py build/foilgauge` "
+           f"(seeds {', '.join(sorted({r['seed'] for r in rows}, key=int))}; "
+           f"{np.median(seconds) if seconds else 0:.2f} s a table, {max(seconds, default=0):.1f} s at most; the program failed on {failed}).",
+           "", "Designs: an experiment of 24 runs (`1 + T + D + T:D`), a lot of 14 foils of 9 bumps (`1`, `--group foil`), a series of "
+           "200 readings (`1`, or a trend with a column). A size is in standard errors of the amplitude for an oracle that knows "
+           "the effect's form with all its non-linear parameters, and the noise; for spread and serial correlation it is the square root "
+           "of twice the expected log likelihood ratio. A dash: no such table exists (24 runs cannot be correlated that much).", "",
+           "Found and in class: a claim is the truth, on its column, or its alias class holds it; of a curve that nothing lists, "
+           "anything that names its coordinate. The plain search: the largest F over candidates with shapes on a grid, limit "
+           "simulated under white noise; it knows the levels' variance, and nothing of correlation, spread or heavy tails.", ""]
+    if effects:
+        out += ["## Effects", ""] + power(effects, tables)
+    if unlike:
+        out += ["## Clean tables", "", "False: a claim that the noise does not justify (of unequal spread anything but "
+                "`table.spread`, of correlated noise anything but `table.serial_correlation` or a class that holds it).", ""]
+        out += clean(unlike, tables)
+    return "\n".join(out)
