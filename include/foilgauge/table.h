@@ -6,7 +6,8 @@
  * A cell is a number, a word, or missing (empty, NA, NaN, inf). What a column is taken for is
  * decided where it is used: a column of words is a factor; a column of numbers with a word in it
  * is most likely a slip of the pen, so it is an error that names row and column, unless the
- * formula says factor(name).
+ * formula says factor(name). So is a column whose numbers may mean something else: decimal commas
+ * beside decimal points, separators of thousands.
  */
 #ifndef FOILGAUGE_TABLE_H
 #define FOILGAUGE_TABLE_H
@@ -37,8 +38,12 @@ typedef struct fg_column {
                           the two marks above */
   char **words;        /* the distinct words, in order of appearance */
   size_t word_count;
-  size_t number_count;  /* cells that are numbers */
-  size_t missing_count; /* cells that are missing */
+  size_t number_count;         /* cells that are numbers */
+  size_t missing_count;        /* cells that are missing */
+  size_t point_row, comma_row; /* from 1, the first number with a decimal point, and with a comma;
+                                  0: none */
+  bool comma_proven;           /* a decimal comma that cannot separate thousands: 0,5 */
+  char *doubt;                 /* what speaks against its numbers, with the place; NULL: nothing */
   size_t capacity, word_capacity, mark_capacity;
   size_t *slot; /* hash of words[]: index + 1, 0 where free */
   size_t slot_count;
@@ -55,7 +60,8 @@ typedef struct fg_table {
 } fg_table;
 
 /* Reads CSV (RFC 4180; LF, CRLF or CR; UTF-8 with or without a byte order mark; comma, semicolon
- * or tab, whichever the header holds most). The first row names the columns. Blank rows and rows
+ * or tab: fg_csv_separator). Between semicolons and tabs a comma may be the decimal mark, in all
+ * columns alike. The first row names the columns. Blank rows and rows
  * whose cells are all empty are left out. FG_ERR_DATA names row (first data row = 1), line and
  * column: no header, no rows, duplicate or empty names, too few or too many cells, an open
  * quote, a NUL byte, UTF-16. `source` is the file's name for messages. Free with fg_table_free. */
@@ -75,13 +81,18 @@ fg_status fg_table_add_words(fg_context *ctx, fg_table *table, const char *name,
 fg_status fg_table_find(fg_context *ctx, const fg_table *table, const char *name,
                         const fg_column **column);
 
+/* FG_ERR_DATA, with row, line and what to do, for words among the column's numbers and for numbers
+ * that are in doubt. Missing cells are neither. */
+fg_status fg_table_check(fg_context *ctx, const fg_table *table, const char *name);
+
 /* The column as numbers: FG_ERR_DATA with the row of the first cell that is missing or a word. */
 fg_status fg_table_numbers(fg_context *ctx, const fg_table *table, const char *name,
                            const fg_extended **numbers);
 
 /* The column as a factor: levels in order (numbers ascending, words by byte value, as R in the C
  * locale), and for every row the index of its level. The caller frees both with
- * fg_levels_free. FG_ERR_DATA for missing cells; for words among numbers unless `forced`. */
+ * fg_levels_free. FG_ERR_DATA for missing cells; for what fg_table_check refuses unless `forced`.
+ */
 typedef struct fg_levels {
   size_t count, rows;
   char **name;   /* count */

@@ -98,8 +98,10 @@ static const struct argp_option options[] = {
 static const char doc[] =
     "Analyse a designed experiment: effects with their errors, analysis of variance, the best "
     "setting. `foilgauge doe plan --help` plans one.\v"
-    "DATA.csv holds a run per row; the first row names the columns. - is standard input. Without "
-    "-o the results go to standard output: as a table on a terminal, else as JSON.\n\n"
+    "DATA.csv holds a run per row; the first row names the columns; commas, semicolons or tabs "
+    "between the cells, decimal points or (not between commas) decimal commas. - is standard "
+    "input. Without -o the results go to standard output: as a table on a terminal, else as "
+    "JSON.\n\n"
     "Exit code: 0 done; 2 some scans could not be measured; 64 usage; 65 bad data; 74 input or "
     "output.";
 

@@ -82,7 +82,9 @@ static const char doc[] =
     "Find what the residual of a declared model holds: which effect the model lacks, how sure that "
     "is, what it could be confused with, which measurement would tell.\v"
     "Columns that the model does not use are candidates, and so are the order of the runs and the "
-    "bump's number. Without -o a table is printed on a terminal and JSON elsewhere.\n\n"
+    "bump's number. DATA.csv has commas, semicolons or tabs between the cells, decimal points or "
+    "(not between commas) decimal commas. Without -o a table is printed on a terminal and JSON "
+    "elsewhere.\n\n"
     "Exit code: 0 done; 64 usage; 65 bad data; 74 input or output.";
 
 static void parse_number(struct argp_state *state, const char *name, const char *text,

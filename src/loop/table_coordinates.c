@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/text.h"
+#include "foilgauge/formula.h"
 #include "loop/table_parts.h"
 #include "quantity/quantity_rows.h"
 
@@ -99,6 +100,19 @@ static bool is_in_range(const fg_table *table, const fg_column *column) {
   return largest == 0 || (largest >= FG_LOOP_TABLE_SMALLEST && largest <= FG_LOOP_TABLE_LARGEST);
 }
 
+/* Groups are names, and so is what the model puts into factor(). */
+static bool names_are_meant(const fg_loop_table_spec *spec, const char *column) {
+  fg_context ignored = {0};
+  fg_formula formula = {0};
+  bool meant = spec->group && !strcmp(spec->group, column);
+  if (!meant && fg_formula_parse(&ignored, spec->model, &formula) == FG_OK)
+    for (size_t v = 0; v < formula.variables; v++)
+      meant = meant || (formula.variable[v].transform == FG_TRANSFORM_FACTOR &&
+                        !strcmp(formula.variable[v].column, column));
+  fg_formula_free(&formula);
+  return meant;
+}
+
 static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
                             const fg_column *column) {
   fg_loop_problem *problem = &build->out->problem;
@@ -110,8 +124,10 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   if (fg_quantity_is_result(column->name))
     return leave_out(ctx, build, column->name, "a result of the same measurement, not a cause");
   if (column->missing_count) return leave_out(ctx, build, column->name, "cells are missing");
-  if (words && column->number_count)
-    return leave_out(ctx, build, column->name, "words among numbers");
+  if (column->doubt || (words && column->number_count))
+    return names_are_meant(spec, column->name)
+               ? leave_out(ctx, build, column->name, "words among numbers")
+               : fg_table_check(ctx, build->table, column->name);
   if (!words && !is_in_range(build->table, column))
     return leave_out(ctx, build, column->name,
                      "numbers too large or too small to compute with; give it in another unit");

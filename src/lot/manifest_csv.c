@@ -96,28 +96,40 @@ static void on_row(int end, void *user) {
   if (r->status == FG_OK) r->status = end_row(r);
 }
 
-static unsigned char delimiter_of(const char *text) {
-  size_t line = strcspn(text, "\r\n"), best = 0;
-  unsigned char delimiter = ',';
-  static const unsigned char known[] = {',', ';', '\t'};
-  for (size_t i = 0; i < sizeof known; i++) {
-    size_t found = 0;
-    for (size_t k = 0; k < line; k++)
-      found += (unsigned char)text[k] == known[i];
-    if (found > best) {
-      best = found;
-      delimiter = known[i];
+/* Whether the column's new cells are numbers, one with a decimal comma at least. */
+static bool has_decimal_commas(const fg_manifest *manifest, size_t from, size_t column) {
+  bool commas = false;
+  for (size_t i = from; i < manifest->items; i++) {
+    const char *cell = fg_manifest_cell(manifest, i, column);
+    fg_csv_number kind = fg_csv_number_kind(cell, strlen(cell));
+    if (*cell && kind != FG_CSV_WHOLE && kind != FG_CSV_COMMA) return false;
+    commas = commas || kind == FG_CSV_COMMA;
+  }
+  return commas;
+}
+
+/* A lot writes its tables with commas between the cells: numbers get points. */
+static void write_points(fg_manifest *manifest, size_t from) {
+  for (size_t column = 1; column < manifest->columns; column++) {
+    if (!has_decimal_commas(manifest, from, column)) continue;
+    for (size_t i = from; i < manifest->items; i++) {
+      char *cell = manifest->cell[i * manifest->columns + column];
+      char *comma = cell ? strchr(cell, ',') : NULL;
+      if (comma) *comma = '.';
     }
   }
-  return delimiter;
 }
 
 static fg_status parse_rows(csv_reader *r, const char *text) {
   struct csv_parser parser;
-  size_t size = strlen(text);
+  size_t from = r->manifest->items, size = strlen(text);
+  unsigned char separator = fg_csv_separator(text, size);
+  size_t hint = fg_csv_hint(text, size, &separator);
+  text += hint;
+  size -= hint;
   if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0)
     return fg_fail(r->ctx, FG_ERR_MEMORY, "out of memory: a CSV reader");
-  csv_set_delim(&parser, delimiter_of(text));
+  csv_set_delim(&parser, separator);
   bool broken = csv_parse(&parser, text, size, on_cell, on_row, r) != size;
   broken = csv_fini(&parser, on_cell, on_row, r) != 0 || broken;
   csv_free(&parser);
@@ -127,6 +139,7 @@ static fg_status parse_rows(csv_reader *r, const char *text) {
   if (r->status == FG_OK && !r->named)
     return fg_fail(r->ctx, FG_ERR_DATA, "%s: empty; the first row must name the columns",
                    r->source);
+  if (r->status == FG_OK && separator != ',') write_points(r->manifest, from);
   return r->status;
 }
 

@@ -6,6 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "core/csv.h"
 #include "core/extended.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -69,6 +70,7 @@ void fg_column_free(fg_column *column) {
   free(column->slot);
   free(column->word);
   free(column->number);
+  free(column->doubt);
   free(column->name);
 }
 
@@ -153,14 +155,29 @@ static bool is_missing(const char *text, size_t length) {
   return false;
 }
 
+/* false: it is no number. */
+static bool read_number(fg_column *column, size_t row, const char *text, size_t length, bool commas,
+                        fg_extended *number) {
+  char pointed[128];
+  if (fg_extended_parse(text, length, number)) {
+    if (!column->point_row && memchr(text, '.', length)) column->point_row = row + 1;
+    return true;
+  }
+  if (!commas || fg_csv_number_kind(text, length) != FG_CSV_COMMA) return false;
+  if (!column->comma_row) column->comma_row = row + 1;
+  column->comma_proven = column->comma_proven || !fg_csv_may_be_thousands(text, length);
+  return fg_csv_point(text, length, pointed, sizeof pointed) &&
+         fg_extended_parse(pointed, length, number);
+}
+
 fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
-                              size_t length) {
+                              size_t length, bool commas) {
   fg_extended number;
   while (length && (text[0] == ' ' || text[0] == '\t'))
     text++, length--;
   while (length && (text[length - 1] == ' ' || text[length - 1] == '\t'))
     length--;
-  if (fg_extended_parse(text, length, &number))
+  if (read_number(column, row, text, length, commas, &number))
     return fg_column_push_number(ctx, column, row, number);
   if (is_missing(text, length)) return fg_column_push_missing(ctx, column, row);
   char *word = NULL;

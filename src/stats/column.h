@@ -19,8 +19,12 @@ fg_status fg_column_push_number(fg_context *ctx, fg_column *column, size_t row, 
 fg_status fg_column_push_missing(fg_context *ctx, fg_column *column, size_t row);
 fg_status fg_column_push_word(fg_context *ctx, fg_column *column, size_t row, const char *word);
 
-/* Decides what the text is (number, missing or word) and appends it. */
+/* Decides what the text is (number, missing or word) and appends it. With `commas` a number may
+ * have a decimal comma. */
 fg_status fg_column_push_text(fg_context *ctx, fg_column *column, size_t row, const char *text,
-                              size_t length);
+                              size_t length, bool commas);
+
+/* Once all rows are there: gives the columns their doubts, by what the whole table holds. */
+fg_status fg_table_doubt_decimals(fg_context *ctx, fg_table *table, unsigned char separator);
 
 #endif

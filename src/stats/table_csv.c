@@ -14,10 +14,11 @@ typedef struct csv_reader {
   fg_table *table;
   const char *source;
   fg_status status;
-  size_t line;    /* of the text, being fed */
-  size_t column;  /* of the next cell */
-  bool header;    /* the header is complete */
-  bool empty;     /* all cells of this row so far are empty */
+  size_t line;   /* of the text, being fed */
+  size_t column; /* of the next cell */
+  bool header;   /* the header is complete */
+  bool empty;    /* all cells of this row so far are empty */
+  unsigned char separator;
   char **pending; /* cells of the row, held until it is known not to be empty */
   size_t *pending_length;
   size_t pending_capacity, pending_length_capacity;
@@ -65,16 +66,25 @@ static fg_status hold_cell(csv_reader *r, const char *text, size_t length) {
   return FG_OK;
 }
 
+/* Whether the row has too many cells as it has when decimal commas stand between commas. */
+static bool commas_in_numbers(const csv_reader *r) {
+  if (r->separator != ',' || r->column <= r->table->columns) return false;
+  for (size_t i = 0; i < r->column; i++)
+    if (r->pending[i][strspn(r->pending[i], "-0123456789")]) return false;
+  return true;
+}
+
 static fg_status end_row(csv_reader *r) {
   fg_table *table = r->table;
   if (r->empty) return FG_OK;
   if (r->column != table->columns)
-    return fg_fail(r->ctx, FG_ERR_DATA,
-                   "%s: row %zu (line %zu) has %zu cells, the header names %zu columns", r->source,
-                   table->rows + 1, r->line, r->column, table->columns);
+    return fg_fail(
+        r->ctx, FG_ERR_DATA, "%s: row %zu (line %zu) has %zu cells, the header names %zu columns%s",
+        r->source, table->rows + 1, r->line, r->column, table->columns,
+        commas_in_numbers(r) ? "; decimal commas? Then separate the cells by semicolons" : "");
   for (size_t i = 0; i < table->columns; i++)
     FG_TRY(fg_column_push_text(r->ctx, &table->column[i], table->rows, r->pending[i],
-                               r->pending_length[i]));
+                               r->pending_length[i], r->separator != ','));
   FG_TRY(fg_memory_reserve(r->ctx, table->rows + 1, sizeof *table->line, &table->line_capacity,
                            (void **)&table->line));
   table->line[table->rows++] = r->line;
@@ -97,19 +107,6 @@ static void on_row(int terminator, void *reader) {
   r->header = true;
   r->column = 0;
   r->empty = true;
-}
-
-/* The separator that the header line holds most of. */
-static unsigned char guess_delimiter(const char *text, size_t size) {
-  static const unsigned char candidates[] = {',', ';', '\t'};
-  size_t counts[3] = {0};
-  for (size_t i = 0; i < size && text[i] != '\n' && text[i] != '\r'; i++)
-    for (size_t k = 0; k < 3; k++)
-      counts[k] += (unsigned char)text[i] == candidates[k];
-  size_t best = 0;
-  for (size_t k = 1; k < 3; k++)
-    if (counts[k] > counts[best]) best = k;
-  return candidates[best];
 }
 
 static fg_status fail_syntax(csv_reader *r) {
@@ -153,14 +150,23 @@ fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, 
   csv_reader reader = {.ctx = ctx, .table = table, .source = source, .empty = true};
   *table = (fg_table){0};
   FG_TRY(check_encoding(ctx, source, &text, &size));
+  size_t hint = fg_csv_hint(text, size, &reader.separator);
+  if (hint) {
+    text += hint;
+    size -= hint;
+    reader.line = 1;
+  } else {
+    reader.separator = fg_csv_separator(text, size);
+  }
   if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0)
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
-  csv_set_delim(&parser, guess_delimiter(text, size));
+  csv_set_delim(&parser, reader.separator);
   FG_TRY_EXIT(fg_text_print(ctx, &table->source, "%s", source));
   FG_TRY_EXIT(feed(&reader, &parser, text, size));
   if (!reader.header)
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: empty; the first row must name columns", source));
   if (!table->rows) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: a header, but no rows", source));
+  FG_TRY_EXIT(fg_table_doubt_decimals(ctx, table, reader.separator));
 exit:
   csv_free(&parser);
   for (size_t i = 0; i < reader.pending_capacity; i++)

@@ -46,6 +46,24 @@ static void manifest_reads_back_what_it_writes(void **state) {
   fg_manifest_free(&again);
 }
 
+/* Numbers with decimal commas get points; names that hold commas stay. */
+static void manifest_numbers_get_points(void **state) {
+  (void)state;
+  fg_context ctx;
+  fg_manifest manifest = {0};
+  const char *text =
+      "sep=;\r\nscan;coil_mm;name;mixed\r\na,5.png;0,102;a,1;0,5\r\nb.png;1;2,5;1.5\r\n"
+      "c.png;;3;\r\n";
+  assert_int_equal(fg_manifest_parse(&ctx, "m.csv", text, "dir", &manifest), FG_OK);
+  assert_int_equal(manifest.items, 3);
+  assert_string_equal(fg_manifest_scan(&manifest, 0), "dir/a,5.png");
+  assert_string_equal(fg_manifest_cell(&manifest, 0, 1), "0.102");
+  assert_string_equal(fg_manifest_cell(&manifest, 1, 1), "1");
+  assert_string_equal(fg_manifest_cell(&manifest, 1, 2), "2,5");
+  assert_string_equal(fg_manifest_cell(&manifest, 0, 3), "0,5");
+  fg_manifest_free(&manifest);
+}
+
 static void bad_manifests_say_why(void **state) {
   (void)state;
   static const struct {
@@ -254,6 +272,7 @@ static void record_keeps_a_name_of_any_bytes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(manifest_reads_back_what_it_writes),
+      cmocka_unit_test(manifest_numbers_get_points),
       cmocka_unit_test(bad_manifests_say_why),
       cmocka_unit_test(recipe_reads_back_what_it_writes),
       cmocka_unit_test(bad_recipes_say_why),

@@ -28,6 +28,7 @@ static void bad_text_is_named(void **state) {
       {"T,,D\n1,2,3\n", "column 2 has no name"},
       {"T,D\n1,2\n3\n", "row 2 (line 3) has 1 cells, the header names 2"},
       {"T,D\n1,2\n\n3,4,5\n", "row 2 (line 4) has 3 cells"},
+      {"T,D\n1,5,2\n", "decimal commas? Then separate the cells by semicolons"},
       {"T,D\n1,\"2\n3,4\n", "quote that is not closed"},
       {"T,D\n1,2\"3\n", "line 2: a quote"},
       {"\xff\xfeT", "UTF-16"},
@@ -195,6 +196,120 @@ static void a_million_rows(void **state) {
   free(text);
 }
 
+/* Decimal commas between semicolons and tabs: the same digits as with points. */
+static void decimal_commas_are_read(void **state) {
+  static const char *const texts[] = {
+      "T;D;n\n0,1;-1,25e-3;3\n+,5;1234,;NA\n",
+      "\xef\xbb\xbfT;D;n\r\n\"0,1\"; -1,25e-3 ;3\r\n+,5;1234,;\r\n;;\r\n",
+      "sep=;\r\nT;D;n\r\n0,1;-1,25e-3;3\r\n0,5;1234,0;n/a",
+      "\"T\"\t\"D\"\tn\n0,1\t-1,25e-3\t3\n0,500\t1234\t\n",
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    fg_extended tenth;
+    const fg_extended *t = NULL, *d = NULL;
+    assert_int_equal(parse(&ctx, texts[i], &table), FG_OK);
+    assert_int_equal(table.rows, 2);
+    assert_int_equal(fg_table_numbers(&ctx, &table, "T", &t), FG_OK);
+    assert_int_equal(fg_table_numbers(&ctx, &table, "D", &d), FG_OK);
+    assert_true(fg_extended_parse("0.1", 3, &tenth));
+    assert_true(t[0].value == tenth.value && t[0].tail == tenth.tail && t[1].value == 0.5);
+    assert_true(d[0].value == -1.25e-3 && d[1].value == 1234);
+    assert_int_equal(table.column[2].missing_count, 1);
+    assert_int_equal(table.line[0], i == 2 ? 3 : 2);
+    fg_table_free(&table);
+  }
+}
+
+/* Commas and semicolons in names do not decide; what separates every row does. */
+static void separators_are_told_by_the_rows(void **state) {
+  static const struct {
+    const char *text, *second;
+  } cases[] = {
+      {"\"a;b;c\",d\n1,2\n", "d"},
+      {"Radius, mm;Winkel, Grad\n1,5;2,5\n", "Winkel, Grad"},
+      {"x;y, z, u\n1,5;2\n7;8\n", "y, z, u"},
+      {"scan,die\na.png;b.png,1\nc.png,2\n", "die"},
+      {"a,b;\n1,2\n3,4\n", "b;"},
+      {"a\tb, c\n1,5\t2,5\n", "b, c"},
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    if (parse(&ctx, cases[i].text, &table) != FG_OK) fail_msg("case %zu: %s", i, ctx.message);
+    assert_int_equal(table.columns, 2);
+    assert_string_equal(table.column[1].name, cases[i].second);
+    fg_table_free(&table);
+  }
+}
+
+/* Numbers that may mean something else, and words among numbers, are refused where they are used,
+ * and nowhere else; factor(name) takes them as names. */
+static void doubtful_columns_are_refused(void **state) {
+  static const struct {
+    const char *text, *words;
+  } cases[] = {
+      {"x,D\n1,\"1,5\"\n2,\"2,5\"\n", "row 1 (line 2), column 'D': '1,5' is a number to people"},
+      {"x,D\n1,1.5\n2,\"2,5\"\n", "row 2 (line 3), column 'D': '2,5'"},
+      {"x,D\n1,\"1,234\"\n2,7\n", "needs semicolons"},
+      {"x;D\n1;1.5\n\n2;2,5\n",
+       "row 1 (line 2), column 'D': a point, but a comma in line 4, column 'D'"},
+      {"x;D\n1;2\n2;1.234\n0,5;3\n", "row 2 (line 3), column 'D': a point, but a comma in line 4, "
+                                     "column 'x'"},
+      {"x;D\n1;1.000\n2;0,5\n", "row 1 (line 2), column 'D': a point, but a comma in line 3"},
+      {"x;D\n1;1.234,5\n2;2,5\n", "row 1 (line 2), column 'D': '1.234,5' is a number"},
+      {"x;D\n1;1.234.567\n2;2\n", "without separators of thousands"},
+      {"x;D\n1;1'234\n2;-5\n", "without separators of thousands"},
+      {"x;D\n1;1\xc2\xa0"
+       "234,5\n2;5\n",
+       "without separators of thousands"},
+      {"x;D\n1;2\n2;oven\n", "row 2 (line 3), column 'D': 'oven' is not a number"},
+      {"x;D\n1;2,5\n2;-\n", "row 2 (line 3), column 'D': '-' is not a number"},
+      {"x\tD\n1\t1,234\n2\t2,345\n", "a decimal mark or thousands?"},
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    fg_context ctx = {0};
+    fg_table table, copy;
+    fg_levels levels;
+    const fg_extended *numbers = NULL;
+    assert_int_equal(parse(&ctx, cases[i].text, &table), FG_OK);
+    assert_int_equal(fg_table_check(&ctx, &table, "D"), FG_ERR_DATA);
+    if (!strstr(ctx.message, cases[i].words))
+      fail_msg("case %zu: '%s' lacks '%s'", i, ctx.message, cases[i].words);
+    assert_int_equal(fg_table_numbers(&ctx, &table, "D", &numbers), FG_ERR_DATA);
+    assert_int_equal(fg_table_levels(&ctx, &table, "D", false, &levels), FG_ERR_DATA);
+    assert_int_equal(fg_table_levels(&ctx, &table, "D", true, &levels), FG_OK);
+    fg_levels_free(&levels);
+    assert_int_equal(fg_table_numbers(&ctx, &table, "x", &numbers), FG_OK);
+    assert_int_equal(fg_table_copy(&ctx, &table, &copy), FG_OK);
+    assert_int_equal(fg_table_check(&ctx, &copy, "D"), FG_ERR_DATA);
+    fg_table_free(&copy);
+    fg_table_free(&table);
+  }
+}
+
+/* What looks alike and is not: words, dates, names of samples, numbers with missing ones. */
+static void sound_columns_are_not_refused(void **state) {
+  static const char *const texts[] = {
+      "x,D\n1,2.5\n2,\n3,NA\n",       "x,D\n1,01.02.2024\n2,2.2.2024\n",
+      "x,D\n1,\"a, b\"\n2,\"c\"\n",   "x;D\n1,5;A7\n2;A8,5\n",
+      "x;D\n1;1.234\n2;2.345\n",      "x;D\n1;12:30\n2;1,2,3\n",
+      "x\tD\n0,5\t1,234\n2\t2,345\n", "x;D\n1;1,234\n2;\n",
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    assert_int_equal(parse(&ctx, texts[i], &table), FG_OK);
+    if (fg_table_check(&ctx, &table, "D") != FG_OK) fail_msg("case %zu: %s", i, ctx.message);
+    fg_table_free(&table);
+  }
+}
+
 static void rows_are_selected(void **state) {
   fg_context ctx = {0};
   fg_table table, part;
@@ -219,6 +334,10 @@ int main(void) {
       cmocka_unit_test(arithmetic_has_thirty_digits),
       cmocka_unit_test(words_among_numbers_need_factor),
       cmocka_unit_test(a_million_rows),
+      cmocka_unit_test(decimal_commas_are_read),
+      cmocka_unit_test(separators_are_told_by_the_rows),
+      cmocka_unit_test(doubtful_columns_are_refused),
+      cmocka_unit_test(sound_columns_are_not_refused),
       cmocka_unit_test(rows_are_selected),
   };
   return cmocka_run_group_tests_name("table", tests, NULL, NULL);
