@@ -22,6 +22,7 @@ import numpy as np
 
 import loop_power_peer as peer
 import loop_power_tables as tables
+from loop_names import curve_over, member, members
 from loop_power_report import summary
 
 FIELDS = ["design", "kind", "size", "table", "seed", "verdict", "found", "claimed", "exact", "wrong", "truth", "claims",
@@ -60,13 +61,6 @@ def ask(program, design, y, more=()):
 # ---- what was said against what is so ----
 
 
-def member(name):
-    """(id, what stands in its brackets) of "table.linear(humidity_pct)"."""
-    identity, _, rest = name.partition("(")
-    inside = rest.rstrip(")")
-    return identity, frozenset(part.strip() for part in inside.split(",") if part.strip())
-
-
 def right_member(name, truth):
     """Whether that one name, or that sum of two, is the truth."""
     parts = [member(part) for part in name.split(" + ")]
@@ -84,22 +78,13 @@ def right_member(name, truth):
     return (identity, where) in truth.accepted
 
 
-def members(claim):
-    """The names in a claim's class, its own first."""
-    own = claim["name"]
-    if claim["id"] in ("table.outlier", "table.exchanged_runs"):
-        rows = sorted(int(v) for k, v in claim["parameters"].items() if "row" in k and v is not None)
-        own = f"{claim['id']}({', '.join(str(r) for r in rows)})" if rows else own
-    return [own] + [alias["name"] for alias in claim["alias_class"]]
-
-
 def lone_rows(report):
     return {row for c in report["claims"] if c["id"] == "table.outlier" for row in member(members(c)[0])[1]}
 
 
 def judge(report, truth):
     said = [members(c) for c in report["claims"]]
-    curve = (report["unattributed"] or {}).get("coordinate", "")
+    curve = curve_over(report)
     right = [any(right_member(n, truth) for n in names) for names in said]
     found = any(right) or bool(truth.anywhere and truth.anywhere in curve)
     exact = any(right_member(names[0], truth) for names in said) or bool(truth.anywhere and truth.anywhere in curve)
@@ -136,7 +121,7 @@ def judge_clean(report, kind):
     said = [members(c) for c in report["claims"]]
     allowed = ALLOWED.get(kind)
     false = [not any(allowed and member(n)[0] == allowed for n in names) for names in said]
-    curve = (report["unattributed"] or {}).get("coordinate", "")
+    curve = curve_over(report)
     return {"found": int(any(false) or bool(curve)), "claimed": int(bool(said or curve)), "exact": "", "wrong": "",
             **said_words(report, said, curve)}
 
