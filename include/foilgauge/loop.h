@@ -337,12 +337,21 @@ void fg_loop_table_problem_free(fg_loop_table_problem *problem);
 
 /* ---- reports ---- */
 
+/* A file that the table was made from: a scan of a run, a part of a lot. */
+typedef struct fg_loop_input {
+  const char *path, *sha256;
+} fg_loop_input;
+
 typedef struct fg_loop_report {
   const char *path, *sha256;
   const fg_loop_table_spec *spec;
   const fg_loop_table_problem *problem;
   const fg_loop_result *result;
   uint64_t seed;
+  const fg_loop_input *input; /* beside `path` */
+  size_t inputs;
+  const char *const *row_name; /* of the table's rows: "foil 3, bump 5"; NULL: their numbers */
+  const char *said;            /* how the table was made, a note; NULL: nothing */
 } fg_loop_report;
 
 /* "foilgauge/loop/1" (reports/schema/loop.schema.json). */

@@ -102,6 +102,15 @@ fg_status fg_table_levels(fg_context *ctx, const fg_table *table, const char *na
                           fg_levels *levels);
 void fg_levels_free(fg_levels *levels);
 
+/* Takes a column out. FG_ERR_DATA with the names that there are. */
+fg_status fg_table_drop(fg_context *ctx, fg_table *table, const char *name);
+
+/* Makes words that count numbers: dates (2024-05-31, 31.05.2024, a time of day behind them or not)
+ * become days since the earliest of their column; more than `most` different words that differ in
+ * the digits at their end only (F001, F002 ...) these digits. `said` (appended to; may be NULL at
+ * first) tells which columns and how; the caller frees it. */
+fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t most, char **said);
+
 /* A copy that may be changed. */
 fg_status fg_table_copy(fg_context *ctx, const fg_table *table, fg_table *copy);
 

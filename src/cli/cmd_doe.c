@@ -7,11 +7,9 @@
 
 #include "cli/commands.h"
 #include "cli/doe_plan.h"
-#include "cli/output_set.h"
-#include "core/memory.h"
-#include "core/sha256.h"
+#include "cli/runs.h"
+#include "core/text.h"
 #include "foilgauge/loop.h"
-#include "foilgauge/run_sheet.h"
 
 /* What the command can write. */
 typedef enum output_kind { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT } output_kind;
@@ -24,7 +22,7 @@ static report_writer *const writers[OUT_COUNT] = {
     [OUT_TABLE] = fg_experiment_write_table,
 };
 
-enum { CODINGS = FG_FORMULA_VARIABLES, CSV_BYTES_MAX = 1 << 30 };
+enum { CODINGS = FG_FORMULA_VARIABLES };
 
 typedef struct doe_arguments {
   const char *data, *scans, *design_path;
@@ -224,44 +222,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-/* The whole input, NUL bytes included (the table's reader names their place). */
-static fg_status read_all(fg_context *ctx, const char *path, char **text, size_t *size) {
-  FILE *in = fg_is_standard(path) ? stdin : fopen(path, "rb");
-  size_t capacity = 0, got;
-  fg_status status = FG_OK;
-  *text = NULL;
-  *size = 0;
-  if (!in) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened; is the name right?", path);
-  do {
-    FG_TRY_EXIT(fg_memory_reserve(ctx, *size + 65536, 1, &capacity, (void **)text));
-    got = fread(*text + *size, 1, capacity - *size, in);
-    *size += got;
-    if (*size > CSV_BYTES_MAX)
-      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: more than 1 GiB; is it a table of runs?", path));
-  } while (got > 0);
-  if (ferror(in)) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_IO, "%s: cannot be read; is it a file?", path));
-exit:
-  if (in != stdin) fclose(in);
-  return status;
-}
-
-static fg_status read_sheet(fg_context *ctx, doe_run *run) {
-  const char *path = run->arguments.data;
-  struct sha256_ctx sum;
-  char *text = NULL;
-  size_t size = 0;
-  fg_status status = read_all(ctx, path, &text, &size);
-  if (status == FG_OK) {
-    sha256_init(&sum);
-    sha256_update(&sum, size, (const uint8_t *)text);
-    fg_sha256_finish(&sum, run->sha256);
-    status = fg_table_parse(ctx, fg_is_standard(path) ? "standard input" : path, text, size,
-                            &run->sheet);
-  }
-  free(text);
-  return status;
-}
-
 /* --model may be a formula, or name what `foilgauge loop --model-out` wrote. */
 static bool is_model_file(const char *model) {
   size_t length = model ? strlen(model) : 0;
@@ -277,35 +237,19 @@ static fg_status check_outputs(fg_context *ctx, doe_run *run) {
   return fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs);
 }
 
-/* fg_run_sheet_visit */
-static fg_status check_scan(fg_context *ctx, void *user, const char *scan) {
-  doe_run *run = user;
-  return fg_output_set_check(ctx, &run->outputs, &(fg_input){scan, "the scan"}, 1);
-}
-
 static fg_status measure_scans(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
   fg_design design;
-  const char *slash = strrchr(a->data, '/');
-  char folder[4096];
-  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - a->data) + (slash == a->data) : 0,
-           a->data);
   fg_design_default(&design);
   if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &design));
-  const fg_run_sheet_options sheet = {.column = a->scans,
-                                      .quantity = a->options.response,
-                                      .folder = folder,
-                                      .design = &design,
-                                      .measure = {a->dpi, a->threads},
-                                      .visit = check_scan,
-                                      .user = run};
-  FG_TRY(fg_run_sheet_measure(ctx, &run->sheet, &sheet, &run->measured));
-  for (size_t i = 0; i < run->measured.scans; i++)
-    if (run->measured.scan[i].error)
-      fprintf(stderr, "foilgauge: row %zu: %s\n", run->measured.scan[i].run,
-              run->measured.scan[i].error);
-  if (asprintf(&run->u_name, "u_%s", a->options.response) < 0)
-    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a name");
+  const fg_runs_scans how = {.sheet_path = a->data,
+                             .column = a->scans,
+                             .quantity = a->options.response,
+                             .design = &design,
+                             .measure = {a->dpi, a->threads},
+                             .outputs = &run->outputs};
+  FG_TRY(fg_runs_measure(ctx, &run->sheet, &how, &run->measured));
+  FG_TRY(fg_text_print(ctx, &run->u_name, "u_%s", a->options.response));
   const fg_column *column;
   if (fg_table_find(NULL, &run->measured.table, run->u_name, &column) == FG_OK)
     a->options.uncertainty = run->u_name;
@@ -350,7 +294,7 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   a->options.constraint = a->constraint;
   choose_standard_output(&run->outputs);
   FG_TRY(check_outputs(ctx, run));
-  FG_TRY(read_sheet(ctx, run));
+  FG_TRY(fg_runs_read(ctx, a->data, &run->sheet, run->sha256));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
   FG_TRY(take_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));

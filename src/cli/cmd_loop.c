@@ -9,10 +9,9 @@
 
 #include "cli/commands.h"
 #include "cli/loop_outputs.h"
+#include "cli/loop_source.h"
 #include "cli/progress.h"
 #include "core/file.h"
-#include "core/sha256.h"
-#include "foilgauge/loop.h"
 
 typedef fg_status loop_writer(fg_context *ctx, const fg_loop_report *report, FILE *out);
 
@@ -24,7 +23,8 @@ static loop_writer *const writers[FG_LOOP_OUTPUTS] = {
 };
 
 typedef struct loop_arguments {
-  const char *table_path, *design_path, *declared_path;
+  fg_loop_source_request source;
+  const char *design_path, *declared_path;
   fg_output_set outputs;
   fg_loop_table_spec spec;
   double matters, minutes, mebibytes;
@@ -46,17 +46,40 @@ enum {
   OPTION_MATTERS,
   OPTION_MINUTES,
   OPTION_MEMORY,
+  OPTION_LOT,
+  OPTION_DOE,
+  OPTION_SCANS,
+  OPTION_WITHOUT,
+  OPTION_DPI,
+  OPTION_THREADS,
 };
 
 /* What a search may take by estimate before it is refused. */
 static const double default_minutes = 10, default_mebibytes = 512;
 
+/* A lot's response where none is named. */
+static const char lot_response[] = "radius_mm", lot_model[] = "1";
+
 static const struct argp_option options[] = {
     {"table", OPTION_TABLE, "DATA.csv", 0, "The measured data", 0},
-    {"response", OPTION_RESPONSE, "COLUMN", 0, "What was measured", 0},
+    {"lot", OPTION_LOT, "DIR", 0,
+     "The bumps or foils of a lot that `foilgauge lot -o DIR` measured; what its manifest says and "
+     "the bump's number are candidates",
+     0},
+    {"doe", OPTION_DOE, "RUNS.csv", 0,
+     "Runs whose scans are measured first, as `foilgauge doe --scans` does", 0},
+    {"scans", OPTION_SCANS, "DIR", 0,
+     "With --doe: the folder of the scans that the column `scan` names (default: that of "
+     "RUNS.csv), or another column that names them",
+     0},
+    {"response", OPTION_RESPONSE, "COLUMN", 0,
+     "What was measured; with --lot and --doe any reported quantity (--lot: radius_mm)", 0},
+    {"without", OPTION_WITHOUT, "COLUMN", 0, "Leave this column out (may be repeated)", 0},
+    {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans of --doe; overrules the files", 0},
+    {"threads", OPTION_THREADS, "N", 0, "Threads that measure them (default: one per core)", 0},
     {"model", OPTION_MODEL, "FORMULA", 0,
-     "The declared model: a formula ('1 + T + D + T:D + T^2'), or arc_length (from the bump "
-     "radius)",
+     "The declared model: a formula ('1 + T + D + T:D + T^2'; --lot: 1), or arc_length (from the "
+     "bump radius)",
      0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
     {"order", OPTION_ORDER, "COLUMN", 0,
@@ -85,7 +108,8 @@ static const char doc[] =
     "bump's number. DATA.csv has commas, semicolons or tabs between the cells, decimal points or "
     "(not between commas) decimal commas. Without -o a table is printed on a terminal and JSON "
     "elsewhere.\n\n"
-    "Exit code: 0 done; 64 usage; 65 bad data; 74 input or output.";
+    "Exit code: 0 done; 2 some scans of --doe could not be measured; 64 usage; 65 bad data; 74 "
+    "input or output.";
 
 static void parse_number(struct argp_state *state, const char *name, const char *text,
                          double *value) {
@@ -100,13 +124,23 @@ static void parse_seed(struct argp_state *state, const char *text, uint64_t *see
   if (*end || end == text || *text == '-') argp_error(state, "--seed %s: a whole number", text);
 }
 
+static void check_source(struct argp_state *state, const fg_loop_source_request *source) {
+  int given = (source->table != NULL) + (source->lot != NULL) + (source->runs != NULL);
+  if (!given) argp_error(state, "--table DATA.csv is missing");
+  if (given > 1) argp_error(state, "one of --table, --lot and --doe at a time");
+  if (source->scans && !source->runs) argp_error(state, "--scans belongs to --doe RUNS.csv");
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   loop_arguments *arguments = state->input;
   const struct {
     int key;
     const char **into;
   } texts[] = {
-      {OPTION_TABLE, &arguments->table_path},
+      {OPTION_TABLE, &arguments->source.table},
+      {OPTION_LOT, &arguments->source.lot},
+      {OPTION_DOE, &arguments->source.runs},
+      {OPTION_SCANS, &arguments->source.scans},
       {OPTION_RESPONSE, &arguments->spec.response},
       {OPTION_MODEL, &arguments->spec.model},
       {OPTION_GROUP, &arguments->spec.group},
@@ -136,11 +170,21 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_SEED:
     parse_seed(state, text, &arguments->spec.seed);
     return 0;
+  case OPTION_WITHOUT:
+    if (arguments->source.withouts == FG_LOOP_WITHOUTS) argp_error(state, "too many --without");
+    arguments->source.without[arguments->source.withouts++] = text;
+    return 0;
+  case OPTION_DPI:
+    arguments->source.dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
+    return 0;
+  case OPTION_THREADS:
+    arguments->source.threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
+    return 0;
   case ARGP_KEY_ARG:
-    argp_error(state, "%s: give the data by --table", text);
+    argp_error(state, "%s: give the data by --table, --lot or --doe", text);
     return 0;
   case ARGP_KEY_END:
-    if (!arguments->table_path) argp_error(state, "--table DATA.csv is missing");
+    check_source(state, &arguments->source);
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -204,6 +248,8 @@ static fg_status read_declared(fg_context *ctx, loop_arguments *arguments, fg_de
     FG_TRY(take_design(ctx, arguments, design));
   }
   if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, design));
+  if (arguments->source.lot && !arguments->spec.response) arguments->spec.response = lot_response;
+  if (arguments->source.lot && !arguments->spec.model) arguments->spec.model = lot_model;
   if (!arguments->spec.response)
     return fg_fail(ctx, FG_ERR_USAGE, "which column was measured? --response COLUMN");
   if (!arguments->spec.model)
@@ -216,20 +262,11 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
 }
 
 static fg_status check_outputs(fg_context *ctx, loop_arguments *arguments) {
-  const fg_input inputs[] = {{arguments->table_path, "the table"},
-                             {arguments->declared_path, "the declared model"},
+  const fg_input inputs[] = {{arguments->declared_path, "the declared model"},
                              {arguments->design_path, "the design"}};
   fg_loop_outputs_choose(&arguments->outputs);
+  FG_TRY(fg_loop_source_check(ctx, &arguments->source, &arguments->outputs));
   return fg_output_set_check(ctx, &arguments->outputs, inputs, sizeof inputs / sizeof *inputs);
-}
-
-static fg_status read_table(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
-  char *text = NULL;
-  FG_TRY(fg_file_read_text(ctx, path, (size_t)1 << 30, &text));
-  fg_status status = fg_table_parse(ctx, path, text, strlen(text), table);
-  fg_sha256_text(text, sha256);
-  free(text);
-  return status;
 }
 
 static void show_progress(void *user, size_t found, double share) {
@@ -238,7 +275,7 @@ static void show_progress(void *user, size_t found, double share) {
   fg_progress_show(progress, (int64_t)(1000 * share), 1000);
 }
 
-static fg_status search(fg_context *ctx, const loop_arguments *arguments,
+static fg_status search(fg_context *ctx, const loop_arguments *arguments, const char *path,
                         const fg_loop_problem *problem, fg_loop_result *result) {
   fg_progress progress;
   const fg_loop_options how = {.effects = fg_loop_table_effects(),
@@ -248,42 +285,57 @@ static fg_status search(fg_context *ctx, const loop_arguments *arguments,
                                .mebibytes = arguments->mebibytes,
                                .progress = show_progress,
                                .progress_user = &progress};
-  fg_progress_begin(&progress, arguments->table_path);
+  fg_progress_begin(&progress, path);
   fg_status status = fg_loop_run(ctx, problem, &how, result);
   fg_progress_end(&progress);
   return status;
 }
 
-static fg_status run_loop(fg_context *ctx, loop_arguments *arguments) {
+static bool has_own_design(const loop_arguments *arguments) {
+  return arguments->design_path ||
+         cJSON_GetObjectItemCaseSensitive(arguments->declared, "design") != NULL;
+}
+
+static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *failed) {
   fg_status status = FG_OK;
-  fg_table table = {0};
+  fg_loop_source source = {0};
   fg_design design;
   fg_loop_table_problem problem = {0};
   fg_loop_result result = {0};
-  char sha256[65] = "";
+  fg_loop_table_spec *spec = &arguments->spec;
   fg_design_default(&design);
   FG_TRY_EXIT(check_outputs(ctx, arguments));
   FG_TRY_EXIT(read_declared(ctx, arguments, &design));
-  arguments->spec.design = &design;
-  FG_TRY_EXIT(read_table(ctx, arguments->table_path, &table, sha256));
+  spec->design = &design;
+  FG_TRY_EXIT(fg_loop_source_read(ctx, &arguments->source, has_own_design(arguments),
+                                  &arguments->outputs, spec, &design, &source));
   FG_TRY_EXIT(fg_output_set_open(ctx, &arguments->outputs));
-  FG_TRY_EXIT(fg_loop_table_problem_build(ctx, &table, &arguments->spec, &problem));
-  FG_TRY_EXIT(search(ctx, arguments, &problem.problem, &result));
-  fg_loop_report report = {arguments->table_path, sha256, &arguments->spec, &problem, &result,
-                           arguments->spec.seed};
+  FG_TRY_EXIT(fg_loop_table_problem_build(ctx, source.table, spec, &problem));
+  FG_TRY_EXIT(search(ctx, arguments, source.path, &problem.problem, &result));
+  fg_loop_report report = {.path = source.path,
+                           .sha256 = source.sha256,
+                           .spec = spec,
+                           .problem = &problem,
+                           .result = &result,
+                           .seed = spec->seed,
+                           .input = source.input,
+                           .inputs = source.inputs,
+                           .row_name = source.row_name,
+                           .said = source.said};
   FG_TRY_EXIT(fg_output_set_write(ctx, &arguments->outputs, write_output, &report));
 exit:
+  *failed = source.failed;
   fg_output_set_close(&arguments->outputs);
   fg_loop_result_free(&result);
   fg_loop_table_problem_free(&problem);
-  fg_table_free(&table);
+  fg_loop_source_free(&source);
   cJSON_Delete(arguments->declared);
   return status;
 }
 
 /* The loop on a table, or on scans (cmd_loop_scan.c). */
 static bool is_about_a_table(int argc, char **argv) {
-  static const char *const words[] = {"--table", "--response", "--declared"};
+  static const char *const words[] = {"--table", "--lot", "--doe", "--response", "--declared"};
   for (int i = 1; i < argc; i++)
     for (size_t w = 0; w < sizeof words / sizeof *words; w++)
       if (!strncmp(argv[i], words[w], strlen(words[w]))) return true;
@@ -300,6 +352,7 @@ int fg_cmd_loop(int argc, char **argv) {
                               .mebibytes = default_mebibytes};
   argv[0] = (char[]){"foilgauge loop"};
   argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_status status = run_loop(&ctx, &arguments);
-  return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);
+  bool failed = false;
+  fg_status status = run_loop(&ctx, &arguments, &failed);
+  return status == FG_OK ? 2 * failed : fg_cli_fail(&ctx, status);
 }

@@ -74,7 +74,9 @@ static const char doc[] =
     "With a design of form \"discs\" (or --form discs) the scan shows round holes or discs: a "
     "plate "
     "of gauges tells the scanner's errors, known diameters_mm in the design its absolute scale.\n\n"
-    "With --table DATA.csv the loop is closed on a table: `foilgauge loop --table X --help`.\n\n"
+    "With --table DATA.csv the loop is closed on a table, with --lot DIR on what a lot measured, "
+    "with "
+    "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table X --help`.\n\n"
     "Exit code: 0 done; 2 a foil could not be measured and took no part; 64 usage; 65 bad data; 74 "
     "input or output; 130 interrupted.";
 
@@ -138,7 +140,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     add_scan(state, text, false);
     return 0;
   case ARGP_KEY_END:
-    if (a->count == a->kept_aside) argp_error(state, "give a scan, or --table DATA.csv");
+    if (a->count == a->kept_aside)
+      argp_error(state, "give a scan, or --table DATA.csv, --lot DIR, --doe RUNS.csv");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;

@@ -121,8 +121,7 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   unsigned roles = 0;
   bool words = column->word_count > 0;
   if (!strcmp(column->name, spec->response)) return FG_OK;
-  if (fg_quantity_is_result(column->name))
-    return leave_out(ctx, build, column->name, "a result of the same measurement, not a cause");
+  if (fg_quantity_is_result(column->name)) return FG_OK;
   if (column->missing_count) return leave_out(ctx, build, column->name, "cells are missing");
   if (column->doubt || (words && column->number_count))
     return names_are_meant(spec, column->name)
@@ -154,10 +153,28 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   return FG_OK;
 }
 
+/* One sentence for all: a lot's table has dozens. */
+static fg_status say_results(fg_context *ctx, const fg_loop_table_state *build) {
+  size_t said = 0;
+  for (size_t c = 0; c < build->table->columns; c++) {
+    const char *name = build->table->column[c].name;
+    char **text = &build->out->excluded;
+    if (!strcmp(name, build->spec->response) || !fg_quantity_is_result(name)) continue;
+    FG_TRY(fg_text_append(ctx, text, "%s%s",
+                          said    ? ", "
+                          : *text ? "; results of the same measurement, not causes: "
+                                  : "results of the same measurement, not causes: ",
+                          name));
+    said++;
+  }
+  return FG_OK;
+}
+
 fg_status fg_loop_table_fill_coordinates(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   for (size_t c = 0; c < build->table->columns; c++)
     FG_TRY(add_column(ctx, build, &build->table->column[c]));
+  FG_TRY(say_results(ctx, build));
   if (build->order || build->spec->group) return FG_OK;
   fg_loop_coordinate *at;
   FG_TRY(fg_loop_table_add_coordinate(ctx, build, "row", FG_LOOP_ORDER, &at));

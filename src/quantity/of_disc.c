@@ -79,8 +79,7 @@ static const fg_quantity rows[] = {
      .symbol = "n",
      .words = "points in the fit",
      .kind = FG_QUANTITY_COUNT,
-     FG_AT(fg_disc, points),
-     .uses = CAUSE},
+     FG_AT(fg_disc, points)},
 };
 
 const fg_quantity_rows fg_quantities_of_disc = FG_QUANTITY_ROWS(rows);

@@ -34,6 +34,14 @@ static bool is_result_of(const fg_quantity *row, const char *part, const char *c
   return false;
 }
 
+/* What a lot's tables say of foils and bumps beside their quantities. */
+static bool is_judgement(const char *column) {
+  static const char *const names[] = {"normalised_stiffness", "verdict", "flags", "error"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!strcmp(column, names[i])) return true;
+  return false;
+}
+
 bool fg_quantity_is_result(const char *column) {
   static const struct {
     fg_quantity_owner owner;
@@ -41,6 +49,7 @@ bool fg_quantity_is_result(const char *column) {
   } parts[] = {
       {FG_QUANTITY_OF_BUMP, "bump"}, {FG_QUANTITY_OF_FOIL, "foil"}, {FG_QUANTITY_OF_DISC, "disc"}};
   char plain[NAME_BYTES];
+  if (is_judgement(column)) return true;
   if (strlen(column) >= sizeof plain) return false;
   fg_text_clip(plain, sizeof plain, "%s", column);
   for (char *dot = strchr(plain, '.'); dot; dot = strchr(dot, '.'))

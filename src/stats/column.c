@@ -45,8 +45,14 @@ static fg_status grow_names(fg_context *ctx, fg_table *table) {
 }
 
 size_t fg_column_find(const fg_table *table, const char *name) {
-  size_t slot = table->name_slots ? *find_name(table, name) : 0;
-  return slot ? slot - 1 : table->columns;
+  size_t i = 0;
+  if (table->name_slots) {
+    size_t slot = *find_name(table, name);
+    return slot ? slot - 1 : table->columns;
+  }
+  while (i < table->columns && strcmp(table->column[i].name, name) != 0) /* one was taken out */
+    i++;
+  return i;
 }
 
 fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_column **column) {
@@ -74,11 +80,18 @@ void fg_column_free(fg_column *column) {
   free(column->name);
 }
 
-void fg_column_drop_last(fg_table *table) {
-  fg_column_free(&table->column[--table->columns]);
-  free(table->name_slot); /* made again with the next column */
+void fg_column_drop(fg_table *table, size_t index) {
+  fg_column_free(&table->column[index]);
+  table->columns--;
+  memmove(&table->column[index], &table->column[index + 1],
+          (table->columns - index) * sizeof *table->column);
+  free(table->name_slot);
   table->name_slot = NULL;
   table->name_slots = 0;
+}
+
+void fg_column_drop_last(fg_table *table) {
+  fg_column_drop(table, table->columns - 1);
 }
 
 static fg_status push_cell(fg_context *ctx, fg_column *column, size_t row, fg_extended number,

@@ -10,8 +10,9 @@ fg_status fg_column_open(fg_context *ctx, fg_table *table, const char *name, fg_
 /* The number of the column of that name; table->columns when there is none. */
 size_t fg_column_find(const fg_table *table, const char *name);
 
-/* Takes the last column away. */
+/* Takes the last column away, or the one at `index`. */
 void fg_column_drop_last(fg_table *table);
+void fg_column_drop(fg_table *table, size_t index);
 void fg_column_free(fg_column *column); /* what it owns */
 
 /* One more cell in the column, which holds `row` cells so far. */

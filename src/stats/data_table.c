@@ -91,6 +91,13 @@ fg_status fg_table_find(fg_context *ctx, const fg_table *table, const char *name
   return status;
 }
 
+fg_status fg_table_drop(fg_context *ctx, fg_table *table, const char *name) {
+  const fg_column *column = NULL;
+  FG_TRY(fg_table_find(ctx, table, name, &column));
+  fg_column_drop(table, (size_t)(column - table->column));
+  return FG_OK;
+}
+
 /* "runs.csv: row 3 (line 4), column 'T': " and the rest. */
 static fg_status fail_at(fg_context *ctx, const fg_table *table, const fg_column *column,
                          size_t row, const char *what) {

@@ -19,10 +19,18 @@ static size_t first_row(const fg_table *table, const fg_column *column, size_t w
   return row + 1;
 }
 
+/* A word of the column that is no number to people either; NULL: none. */
+static const char *true_word(const fg_column *column) {
+  for (size_t i = 0; i < column->word_count; i++)
+    if (fg_csv_number_kind(column->words[i], strlen(column->words[i])) == FG_CSV_WORD)
+      return column->words[i];
+  return NULL;
+}
+
 /* Words that look like numbers: such a column would be names, or names among numbers. */
 static fg_status doubt_words(fg_context *ctx, const fg_table *table, fg_column *column,
                              unsigned char separator) {
-  char what[300];
+  char what[500];
   for (size_t i = 0; i < column->word_count; i++) {
     const char *word = column->words[i];
     fg_csv_number kind = fg_csv_number_kind(word, strlen(word));
@@ -32,8 +40,11 @@ static fg_status doubt_words(fg_context *ctx, const fg_table *table, fg_column *
         : separator == ','
             ? "a decimal comma needs semicolons between the cells; else write a point"
             : "write it with a point";
-    fg_text_clip(what, sizeof what, "'%.80s' is a number to people and a word to a program: %s",
-                 word, advice);
+    const char *other = true_word(column);
+    fg_text_clip(what, sizeof what,
+                 "'%.80s' is a number to people and a word to a program: %s%s%.80s%s", word, advice,
+                 other ? "; and '" : "", other ? other : "",
+                 other ? "' in the same column is none" : "");
     return doubt(ctx, table, column, first_row(table, column, i), what);
   }
   return FG_OK;

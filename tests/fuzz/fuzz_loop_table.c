@@ -77,7 +77,12 @@ static void run_loop(const fg_loop_table_spec *spec, fg_table *table, bool check
   if (fg_loop_table_problem_build(&ctx, table, spec, &problem) != FG_OK) return;
   if (problem.problem.parameters <= PARAMETERS &&
       fg_loop_run(&ctx, &problem.problem, &options, &result) == FG_OK) {
-    fg_loop_report report = {"table.csv", "", spec, &problem, &result, 1};
+    fg_loop_report report = {.path = "table.csv",
+                             .sha256 = "",
+                             .spec = spec,
+                             .problem = &problem,
+                             .result = &result,
+                             .seed = 1};
     write_reports(&report, check);
     use_model(&report, table);
     fg_loop_result_free(&result);

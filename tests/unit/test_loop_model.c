@@ -41,7 +41,12 @@ static void write_model(const char *path) {
   assert_int_equal(fg_loop_table_problem_build(&ctx, &table, &spec, &problem), FG_OK);
   assert_int_equal(fg_loop_run(&ctx, &problem.problem, &options, &result), FG_OK);
   assert_int_equal(result.claims, 1);
-  fg_loop_report report = {"found.csv", "", &spec, &problem, &result, 1};
+  fg_loop_report report = {.path = "found.csv",
+                           .sha256 = "",
+                           .spec = &spec,
+                           .problem = &problem,
+                           .result = &result,
+                           .seed = 1};
   FILE *file = fopen(path, "w");
   assert_non_null(file);
   assert_int_equal(fg_loop_write_model(&ctx, &report, file), FG_OK);

@@ -77,7 +77,12 @@ static fg_status run(fg_context *ctx, const fg_table *table, fg_loop_table_spec 
   *result = (fg_loop_result){0};
   FG_TRY(fg_loop_table_problem_build(ctx, table, spec, &problem));
   fg_status status = fg_loop_run(ctx, &problem.problem, &options, result);
-  fg_loop_report report = {"table.csv", "", spec, &problem, result, 1};
+  fg_loop_report report = {.path = "table.csv",
+                           .sha256 = "",
+                           .spec = spec,
+                           .problem = &problem,
+                           .result = result,
+                           .seed = 1};
   if (status == FG_OK) check_reports(&report);
   fg_loop_table_problem_free(&problem);
   return status;

@@ -276,11 +276,26 @@ static void lots_know_every_row(void **state) {
 
 static void tables_tell_results_from_causes(void **state) {
   (void)state;
-  static const char *const results[] = {
-      "radius_mm",           "bump_radius_mm",     "overall_radius_mm",    "overall.radius_mm",
-      "u_radius_mm",         "u_height_mm",        "springback_error_pct", "rms_um",
-      "overall.u_radius_mm", "diameter_mm",        "roundness_um",         "u_centre_x_mm",
-      "bump_angle_deg",      "bump_bump_angle_deg"};
+  static const char *const results[] = {"radius_mm",
+                                        "bump_radius_mm",
+                                        "overall_radius_mm",
+                                        "overall.radius_mm",
+                                        "u_radius_mm",
+                                        "u_height_mm",
+                                        "springback_error_pct",
+                                        "rms_um",
+                                        "overall.u_radius_mm",
+                                        "diameter_mm",
+                                        "roundness_um",
+                                        "u_centre_x_mm",
+                                        "bump_angle_deg",
+                                        "bump_bump_angle_deg",
+                                        "arc_end_mm",
+                                        "points",
+                                        "overall.points",
+                                        "normalised_stiffness",
+                                        "verdict",
+                                        "flags"};
   static const char *const causes[] = {"thickness_mm", "position_deg", "centre_x_mm", "die",
                                        "temp_C",       "angle_deg",    "height",      "u_"};
   for (size_t i = 0; i < sizeof results / sizeof *results; i++)

@@ -310,6 +310,64 @@ static void sound_columns_are_not_refused(void **state) {
   }
 }
 
+/* Dates become days, serial numbers their digits; what is neither stays words. */
+static void words_that_count_are_numbers(void **state) {
+  static const struct {
+    const char *cells[4];
+    double first, last; /* NaN: the column stays words */
+  } cases[] = {
+      {{"2024-02-28", "2024-03-01", "", "2023-12-31"}, 59, 0},
+      {{"2100-02-28", "2100-03-01", "2100-02-27", "2100-02-26"}, 2, 0},
+      {{"31.12.2023", "01.01.2024", "01.03.2024", "29.02.2024"}, 0, 60},
+      {{"2024-05-01T06:00", "2024-05-01 18:00:36", "2024-05-02", "2024-05-02T12:00Z"}, 0, 1.25},
+      {{"F001", "F002", "", "F010"}, 1, 10},
+      {{"2023-02-29", "2023-03-01", "2023-03-02", "2023-03-03"}, NAN, NAN},
+      {{"03/04/2024", "04/04/2024", "05/04/2024", "06/04/2024"}, NAN, NAN},
+      {{"2024-05-01", "2024-05-02", "later", "2024-05-03"}, NAN, NAN},
+      {{"F001", "F002", "G003", "F004"}, NAN, NAN},
+      {{"A", "A", "B", "A"}, NAN, NAN},
+  };
+  (void)state;
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    fg_context ctx = {0};
+    fg_table table;
+    const fg_column *w = NULL;
+    char text[200], *said = NULL;
+    const char *const *cells = cases[i].cells;
+    snprintf(text, sizeof text, "x,w\n1,%s\n2,%s\n3,%s\n4,%s\n", cells[0], cells[1], cells[2],
+             cells[3]);
+    assert_int_equal(parse(&ctx, text, &table), FG_OK);
+    assert_int_equal(fg_table_count_words(&ctx, &table, 2, &said), FG_OK);
+    assert_int_equal(fg_table_find(&ctx, &table, "w", &w), FG_OK);
+    assert_int_equal(w->word_count == 0, isfinite(cases[i].first));
+    assert_int_equal(said != NULL, isfinite(cases[i].first));
+    if (isfinite(cases[i].first)) {
+      assert_true(fabs(w->number[0].value - cases[i].first) < 1e-9);
+      assert_true(fabs(w->number[3].value - cases[i].last) < 1e-9);
+      assert_int_equal(w->number_count + w->missing_count, 4);
+    }
+    free(said);
+    fg_table_free(&table);
+  }
+}
+
+static void columns_are_dropped(void **state) {
+  fg_context ctx = {0};
+  fg_table table;
+  const fg_column *column;
+  (void)state;
+  assert_int_equal(parse(&ctx, "a,b,c\n1,x,2\n3,y,4\n", &table), FG_OK);
+  assert_int_equal(fg_table_drop(&ctx, &table, "d"), FG_ERR_DATA);
+  assert_int_equal(fg_table_drop(&ctx, &table, "b"), FG_OK);
+  assert_int_equal(fg_table_find(&ctx, &table, "b", &column), FG_ERR_DATA);
+  assert_int_equal(fg_table_find(&ctx, &table, "c", &column), FG_OK);
+  assert_true(column->number[1].value == 4);
+  assert_int_equal(fg_table_add_numbers(&ctx, &table, "b", (double[]){5, 6}, 2), FG_OK);
+  assert_int_equal(fg_table_add_numbers(&ctx, &table, "c", (double[]){5, 6}, 2), FG_ERR_USAGE);
+  assert_int_equal(fg_table_find(&ctx, &table, "b", &column), FG_OK);
+  fg_table_free(&table);
+}
+
 static void rows_are_selected(void **state) {
   fg_context ctx = {0};
   fg_table table, part;
@@ -338,6 +396,8 @@ int main(void) {
       cmocka_unit_test(separators_are_told_by_the_rows),
       cmocka_unit_test(doubtful_columns_are_refused),
       cmocka_unit_test(sound_columns_are_not_refused),
+      cmocka_unit_test(words_that_count_are_numbers),
+      cmocka_unit_test(columns_are_dropped),
       cmocka_unit_test(rows_are_selected),
   };
   return cmocka_run_group_tests_name("table", tests, NULL, NULL);

@@ -308,11 +308,16 @@ static void put_candidates(FILE *out, const fg_loop_result *result) {
 
 static void put_advice(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
-  if (!result->advices && !result->notes && !report->problem->excluded) return;
+  if (!result->advices && !result->notes && !report->problem->excluded && !report->said) return;
   fputs("<section><h2>What to know, and to do next</h2><ul>\n", out);
   for (size_t i = 0; i < result->advices; i++) {
     fputs("<li>", out);
     fg_html_text(out, result->advice[i].text);
+    fputs("</li>\n", out);
+  }
+  if (report->said) {
+    fputs("<li>", out);
+    fg_html_text(out, report->said);
     fputs("</li>\n", out);
   }
   for (size_t i = 0; i < result->notes; i++) {

@@ -62,6 +62,17 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
   fg_json_object_end(json);
 }
 
+/* What the rows of a lone claim are called, where they have names. */
+static void write_row_names(fg_json *json, const fg_loop_report *report,
+                            const fg_loop_claim *claim) {
+  if (!report->row_name || !is_lone(claim)) return;
+  size_t rows = claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS ? 2 : 1;
+  fg_json_array(json, "row_names");
+  for (size_t i = 0; i < rows; i++)
+    fg_json_string(json, NULL, report->row_name[report->problem->row[claim->candidate.row[i]]]);
+  fg_json_array_end(json);
+}
+
 static void write_claim(fg_json *json, const fg_loop_report *report, const fg_loop_claim *claim) {
   static const char *const held_out[] = {"none kept aside", "not contradicted", "confirmed"};
   fg_json_object(json, NULL);
@@ -78,6 +89,7 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   fg_json_array_end(json);
   write_parameters(json, report, claim, false);
   write_parameters(json, report, claim, true);
+  write_row_names(json, report, claim);
   fg_json_number(json, "amplitude", claim->amplitude);
   fg_json_number(json, "u_amplitude", claim->amplitude_u);
   fg_json_numbers(json, "amplitude_interval_95", claim->interval, 2);
@@ -162,6 +174,14 @@ static void write_inputs(fg_json *json, const fg_loop_report *report) {
   fg_json_line_end(json);
   fg_json_array_end(json);
   fg_json_object_end(json);
+  for (size_t i = 0; i < report->inputs; i++) {
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_string(json, "path", report->input[i].path);
+    fg_json_string(json, "sha256", report->input[i].sha256);
+    fg_json_line_end(json);
+    fg_json_object_end(json);
+  }
   fg_json_array_end(json);
   fg_json_object(json, "declared");
   fg_json_string(json, "response", report->spec->response);
@@ -242,6 +262,7 @@ fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE
   write_findings(&json, report);
   fg_json_string(&json, "not_candidates", report->problem->excluded);
   fg_json_array(&json, "notes");
+  if (report->said) fg_json_string(&json, NULL, report->said);
   for (size_t i = 0; i < result->notes; i++)
     fg_json_string(&json, NULL, result->note[i]);
   fg_json_array_end(&json);

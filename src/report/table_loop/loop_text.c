@@ -24,8 +24,14 @@ static number_text number(const char *format, double value) {
 
 static void row_words(const fg_loop_report *report, const fg_loop_claim *claim, char *text,
                       size_t size) {
-  size_t first = report->problem->row[claim->candidate.row[0]] + 1;
-  if (claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS)
+  const size_t *row = report->problem->row;
+  size_t first = row[claim->candidate.row[0]] + 1;
+  if (report->row_name && claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS)
+    fg_text_clip(text, size, "the responses of %s and %s changed places",
+                 report->row_name[first - 1], report->row_name[row[claim->candidate.row[1]]]);
+  else if (report->row_name)
+    fg_text_clip(text, size, "the response of %s is wrong", report->row_name[first - 1]);
+  else if (claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS)
     fg_text_clip(text, size, "the responses of rows %zu and %zu changed places", first,
                  report->problem->row[claim->candidate.row[1]] + 1);
   else
@@ -147,6 +153,7 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   write_errors(result, out);
   write_rejected(result, out);
   if (report->problem->excluded) fprintf(out, "\nleft out: %s\n", report->problem->excluded);
+  if (report->said) fprintf(out, "note: %s\n", report->said);
   for (size_t i = 0; i < result->notes; i++)
     fprintf(out, "note: %s\n", result->note[i]);
   return fg_stream_finish(ctx, out, "the loop's report");

@@ -1,0 +1,139 @@
+#include "cli/loop_source.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/runs.h"
+#include "core/memory.h"
+#include "core/text.h"
+
+/* Beyond, names are no levels that an effect may have: they may count. */
+enum { LEVELS_MOST = FG_LOOP_COLUMNS };
+
+static const char scan_column[] = "scan";
+
+fg_status fg_loop_source_check(fg_context *ctx, const fg_loop_source_request *request,
+                               fg_output_set *outputs) {
+  static const char *const files[] = {"results.jsonl", "manifest.csv", "recipe.json", "lot.json",
+                                      "index.html",    "foils.csv",    "bumps.csv"};
+  const fg_input tables[] = {{request->table, "the table"}, {request->runs, "the table of runs"}};
+  FG_TRY(fg_output_set_check(ctx, outputs, tables, 2));
+  for (size_t i = 0; request->lot && i < sizeof files / sizeof *files; i++) {
+    char *path = NULL;
+    FG_TRY(fg_text_print(ctx, &path, "%s/%s", request->lot, files[i]));
+    fg_status status = fg_output_set_check(ctx, outputs, &(fg_input){path, "a file of the lot"}, 1);
+    free(path);
+    FG_TRY(status);
+  }
+  return FG_OK;
+}
+
+static fg_status drop_columns(fg_context *ctx, const fg_loop_source_request *request,
+                              fg_table *table) {
+  for (size_t i = 0; i < request->withouts; i++)
+    FG_TRY(fg_table_drop(ctx, table, request->without[i]));
+  return FG_OK;
+}
+
+static fg_status read_table(fg_context *ctx, const fg_loop_source_request *request,
+                            fg_loop_source *source) {
+  source->path = request->table;
+  FG_TRY(fg_runs_read(ctx, request->table, &source->read, source->sha256));
+  source->table = &source->read;
+  return drop_columns(ctx, request, &source->read);
+}
+
+static fg_status read_lot(fg_context *ctx, const fg_loop_source_request *request, bool has_design,
+                          fg_loop_table_spec *spec, fg_design *design, fg_loop_source *source) {
+  fg_lot_table *lot = &source->lot;
+  const fg_lot_table_options options = {.quantity = spec->response,
+                                        .with_radius = !strcmp(spec->model, "arc_length"),
+                                        .without = request->without,
+                                        .withouts = request->withouts};
+  FG_TRY(fg_lot_table_read(ctx, request->lot, &options, lot));
+  FG_TRY(fg_memory_allocate(ctx, 2, sizeof *source->input, (void **)&source->input));
+  for (size_t i = 0; i < 2; i++)
+    source->input[i] = (fg_loop_input){lot->path[i + 1], lot->sha256[i + 1]};
+  source->inputs = 2;
+  source->table = &lot->table;
+  source->path = lot->path[0];
+  memcpy(source->sha256, lot->sha256[0], sizeof source->sha256);
+  source->row_name = (const char *const *)lot->name;
+  source->said = lot->said;
+  lot->said = NULL;
+  if (!spec->group) spec->group = lot->group;
+  if (!has_design) *design = lot->design;
+  return FG_OK;
+}
+
+/* --scans is a folder, or as in `doe` the column that names the scans. */
+static void choose_scans(const fg_loop_source_request *request, fg_runs_scans *how) {
+  struct stat about;
+  how->column = scan_column;
+  if (!request->scans) return;
+  if (stat(request->scans, &about) == 0 && S_ISDIR(about.st_mode))
+    how->folder = request->scans;
+  else
+    how->column = request->scans;
+}
+
+static fg_status name_runs(fg_context *ctx, fg_loop_source *source) {
+  const fg_run_sheet *measured = &source->measured;
+  FG_TRY(
+      fg_memory_allocate(ctx, measured->table.rows, sizeof *source->name, (void **)&source->name));
+  for (size_t i = 0; i < measured->table.rows; i++)
+    FG_TRY(fg_text_print(ctx, &source->name[i], "run %zu", measured->row[i]));
+  source->row_name = (const char *const *)source->name;
+  FG_TRY(fg_memory_allocate(ctx, measured->scans, sizeof *source->input, (void **)&source->input));
+  for (size_t i = 0; i < measured->scans; i++)
+    source->input[i] = (fg_loop_input){measured->scan[i].path, measured->scan[i].sha256};
+  source->inputs = measured->scans;
+  source->failed = measured->failed > 0;
+  if (!measured->failed && !measured->empty) return FG_OK;
+  return fg_text_append(ctx, &source->said,
+                        "%sleft out: %zu runs without a scan, %zu scans that "
+                        "could not be measured",
+                        source->said ? "; " : "", measured->empty, measured->failed);
+}
+
+static fg_status read_runs(fg_context *ctx, const fg_loop_source_request *request,
+                           fg_output_set *outputs, const fg_loop_table_spec *spec,
+                           const fg_design *design, fg_loop_source *source) {
+  fg_runs_scans how = {.sheet_path = request->runs,
+                       .quantity = spec->response,
+                       .design = design,
+                       .measure = {request->dpi, request->threads},
+                       .outputs = outputs};
+  choose_scans(request, &how);
+  source->path = request->runs;
+  FG_TRY(fg_runs_read(ctx, request->runs, &source->read, source->sha256));
+  FG_TRY(drop_columns(ctx, request, &source->read));
+  FG_TRY(fg_runs_measure(ctx, &source->read, &how, &source->measured));
+  fg_table *table = &source->measured.table;
+  source->table = table;
+  FG_TRY(fg_table_drop(ctx, table, how.column));
+  FG_TRY(fg_table_count_words(ctx, table, LEVELS_MOST, &source->said));
+  return name_runs(ctx, source);
+}
+
+fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *request,
+                              bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
+                              fg_design *design, fg_loop_source *source) {
+  *source = (fg_loop_source){0};
+  if (request->lot) return read_lot(ctx, request, has_design, spec, design, source);
+  if (request->runs) return read_runs(ctx, request, outputs, spec, design, source);
+  return read_table(ctx, request, source);
+}
+
+void fg_loop_source_free(fg_loop_source *source) {
+  for (size_t i = 0; source->name && i < source->measured.table.rows; i++)
+    free(source->name[i]);
+  free(source->name);
+  free(source->input);
+  free(source->said);
+  fg_table_free(&source->read);
+  fg_lot_table_free(&source->lot);
+  fg_run_sheet_free(&source->measured);
+  *source = (fg_loop_source){0};
+}

@@ -1,0 +1,126 @@
+/* Words that count: dates and serial numbers as numbers, so that a trend over them can be seen. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "stats/column.h"
+
+/* Days from 1970-01-01 in the Gregorian calendar (Hinnant 2013, "chrono-compatible low-level date
+ * algorithms"). */
+static double days_of(int year, int month, int day) {
+  int y = month <= 2 ? year - 1 : year, era = y / 400, of_era = y - 400 * era;
+  int of_year = (153 * (month > 2 ? month - 3 : month + 9) + 2) / 5 + day - 1;
+  return era * 146097.0 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
+}
+
+static bool is_day(int year, int month, int day) {
+  static const int days[] = {31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  bool leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+  return year >= 1900 && year < 2200 && month >= 1 && month <= 12 && day >= 1 &&
+         day <= days[month - 1] - (month == 2 && !leap);
+}
+
+/* A time of day behind the date, in days; NaN: something else. */
+static double read_time(const char *text) {
+  int hour, minute, end = 0;
+  double second = 0;
+  if (!*text) return 0;
+  if (*text != ' ' && *text != 'T') return NAN;
+  if (sscanf(text + 1, "%2d:%2d%n", &hour, &minute, &end) < 2 || hour > 24 || minute > 59)
+    return NAN;
+  text += 1 + end;
+  end = 0;
+  if (*text == ':' && sscanf(text, ":%9lf%n", &second, &end) == 1) text += end;
+  if (*text == 'Z') text++;
+  return *text ? NAN : (hour + (minute + second / 60) / 60) / 24;
+}
+
+/* Days from 1970; NaN: no date. What is written with strokes may begin with day or month: no date.
+ */
+static double read_date(const char *text) {
+  int year = 0, month = 0, day = 0, end = 0;
+  if (strspn(text, "0123456789") == 4)
+    (void)sscanf(text, "%4d-%2d-%2d%n", &year, &month, &day, &end);
+  else
+    (void)sscanf(text, "%2d.%2d.%4d%n", &day, &month, &year, &end);
+  return end && is_day(year, month, day) ? days_of(year, month, day) + read_time(text + end) : NAN;
+}
+
+/* What a word counts, of a column of such words; NaN: nothing. */
+typedef double counter(const char *word, const fg_column *column);
+
+static double count_date(const char *word, const fg_column *column) {
+  (void)column;
+  return read_date(word);
+}
+
+static size_t length_before_digits(const char *word) {
+  size_t length = strlen(word);
+  while (length && word[length - 1] >= '0' && word[length - 1] <= '9')
+    length--;
+  return length;
+}
+
+static double count_serial(const char *word, const fg_column *column) {
+  size_t length = length_before_digits(word), first = length_before_digits(column->words[0]);
+  bool alike = length == first && !memcmp(word, column->words[0], length);
+  size_t digits = strlen(word) - length;
+  return alike && digits && digits <= 15 ? strtod(word + length, NULL) : NAN;
+}
+
+/* values: of the words; false when one of them counts nothing. */
+static bool count_all(const fg_column *column, counter *count, double *values) {
+  for (size_t i = 0; i < column->word_count; i++) {
+    values[i] = count(column->words[i], column);
+    if (!isfinite(values[i])) return false;
+  }
+  return true;
+}
+
+static void make_numbers(fg_column *column, size_t rows, const double *values, double origin) {
+  for (size_t i = 0; i < rows; i++) {
+    if (column->word[i] == FG_TABLE_MISSING) continue;
+    column->number[i] = (fg_extended){values[column->word[i]] - origin, 0};
+    column->word[i] = FG_TABLE_NOT_A_WORD;
+    column->number_count++;
+  }
+  for (size_t i = 0; i < column->word_count; i++)
+    free(column->words[i]);
+  column->word_count = 0;
+  memset(column->slot, 0, column->slot_count * sizeof *column->slot);
+}
+
+static fg_status count_column(fg_context *ctx, const fg_table *table, fg_column *column,
+                              size_t most, char **said) {
+  double *values = NULL;
+  size_t first = 0;
+  const char *separator = *said ? "; " : "";
+  FG_TRY(fg_memory_allocate(ctx, column->word_count, sizeof *values, (void **)&values));
+  fg_status status = FG_OK;
+  if (count_all(column, count_date, values)) {
+    for (size_t i = 1; i < column->word_count; i++)
+      if (values[i] < values[first]) first = i;
+    status = fg_text_append(ctx, said, "%s%s counts days since %s", separator, column->name,
+                            column->words[first]);
+    make_numbers(column, table->rows, values, values[first]);
+  } else if (column->word_count > most && count_all(column, count_serial, values)) {
+    status =
+        fg_text_append(ctx, said, "%s%s counts by the digits behind '%.*s'", separator,
+                       column->name, (int)length_before_digits(column->words[0]), column->words[0]);
+    make_numbers(column, table->rows, values, 0);
+  }
+  free(values);
+  return status;
+}
+
+fg_status fg_table_count_words(fg_context *ctx, fg_table *table, size_t most, char **said) {
+  for (size_t i = 0; i < table->columns; i++) {
+    fg_column *column = &table->column[i];
+    if (column->word_count > 1 && !column->number_count && !column->doubt)
+      FG_TRY(count_column(ctx, table, column, most, said));
+  }
+  return FG_OK;
+}
