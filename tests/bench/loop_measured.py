@@ -2,7 +2,8 @@
 
 The tables of tests/data/measured through `foilgauge loop`: what each is known for beside what is said, with
 seeds 1 to N, and after a change of origin or unit. Writes loop_measured.md. With --check every table once, against
-tests/data/measured/expected.json (exit code 1 where they differ); with --units origins and units alone; --accept
+tests/data/measured/expected.json (exit code 1 where they differ); with --units origins and units alone (exit code 1
+where a table depends on them and is not listed, or the other way round); --accept
 writes what is missed today into expected.json.
 """
 
@@ -136,6 +137,42 @@ def changes(path, case, before):
         yield "x 1e-12", name, times(1e-12)
 
 
+def copied(path, out, response):
+    """Every column twice: words under other words, numbers in another unit from another origin."""
+    header, rows = read_table(path)
+    new = [list(r) for r in rows]
+    names = list(header)
+    for k, name in enumerate(header):
+        if name == response:
+            continue
+        names.append(f"copy_of_{name}")
+        values = numeric([r[k] for r in rows])
+        for i, row in enumerate(new):
+            row.append("L" + rows[i][k] if values is None else repr(3.0 + 2.0 * values[i]))
+    with open(out, "w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([names] + new)
+
+
+def copy_differences(program, case):
+    """A column that codes another one is one candidate: what is found stays found, under either name, and what
+    is clean stays clean."""
+    path = os.path.join(DATA, case["table"] + ".csv")
+    plain = judge(ask(program, path, case, case["runs"][0]), case)
+    with tempfile.TemporaryDirectory() as folder:
+        other = os.path.join(folder, "copied.csv")
+        copied(path, other, case["response"])
+        report = ask(program, other, case, case["runs"][0])
+    for claim in report["claims"]:
+        claim["name"] = claim["name"].replace("copy_of_", "")
+        for alias in claim["alias_class"]:
+            alias["name"] = alias["name"].replace("copy_of_", "")
+    if report["unattributed"]:
+        report["unattributed"]["coordinate"] = report["unattributed"]["coordinate"].replace("copy_of_", "")
+    now = judge(report, case)
+    return [] if set(now) <= set(plain) else [f"{case['table']} with a copy of every column: {'; '.join(now)}; "
+                                              f"before: {'; '.join(plain) or 'right'}"]
+
+
 def amplitudes(report):
     return sorted(c["amplitude"] for c in report["claims"] if c["amplitude"] is not None)
 
@@ -159,6 +196,10 @@ def unit_differences(program, case):
                 out += [f"{case['table']}: {column} {what}: amplitude {b:g} instead of {a * factor:g}" for a, b in pairs
                         if not math.isclose(a * factor, b, rel_tol=1e-3)]
     return out
+
+
+def all_differences(program, cases):
+    return [d for case in cases for d in unit_differences(program, case) + copy_differences(program, case)]
 
 
 # ---- the report ----
@@ -203,7 +244,7 @@ def report_page(program, cases, seeds):
     head = ["table", "declared", "option", "known", "found", "tied with", "error before → after", "cross-fitted", "verdict",
             "right?", f"different answers (verdicts) of {seeds} seeds"]
     lines = [line for case in cases for line in lines_of(program, case, seeds)]
-    differences = [d for case in cases for d in unit_differences(program, case)]
+    differences = all_differences(program, cases)
     right = sum(line[9] == "right" for line in lines)
     same = sum(line[10] == "1 (1)" for line in lines)
     out = ["# The loop on measured tables", "",
@@ -211,8 +252,8 @@ def report_page(program, cases, seeds):
            f"{same} of {len(lines)} say the same with every seed.", "", "    python3 tests/bench/loop_measured.py build/foilgauge", "",
            "| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     out += ["| " + " | ".join(line) + " |" for line in lines]
-    out += ["", "## Origin and unit", "", "The response and every column of numbers moved by 1e9 of its scatter, times 1e-12 (the "
-            "response also times 1e12 and -1): " + ("the same claims every time." if not differences else
+    out += ["", "## Origin, unit and copies", "", "The response and every column of numbers moved by 1e9 of its scatter, times 1e-12 (the "
+            "response also times 1e12 and -1), and every column given twice: " + ("the same claims every time." if not differences else
                                                     f"{len(differences)} times another answer."), ""]
     return "\n".join(out + [f"- {d}" for d in differences]) + "\n"
 
@@ -227,6 +268,16 @@ def check(program, cases):
         if wrong != listed:
             bad += 1
             print(f"{case['table']}: {'; '.join(wrong) or 'right'}" + (f" (listed: {'; '.join(listed)})" if listed else ""))
+    return bad
+
+
+def check_units(program, cases):
+    """How many tables depend on an origin or unit without being listed as such, or the other way round."""
+    bad = 0
+    for case in cases:
+        differences, listed = all_differences(program, [case]), case.get("units_not_yet", False)
+        print("\n".join(differences) or f"{case['table']}: the same claims for every origin and unit" + (" (listed!)" if listed else ""))
+        bad += bool(differences) != listed
     return bad
 
 
@@ -268,9 +319,7 @@ def main():
     elif a.check:
         sys.exit(1 if check(a.program, cases) else 0)
     elif a.units:
-        differences = [d for case in cases for d in unit_differences(a.program, case)]
-        print("\n".join(differences) or "the same claims for every origin and unit")
-        sys.exit(1 if differences else 0)
+        sys.exit(1 if check_units(a.program, cases) else 0)
     else:
         text = report_page(a.program, cases, a.seeds)
         with open(os.path.join(a.out, "loop_measured.md"), "w", encoding="utf-8") as file:

@@ -49,6 +49,15 @@ def power(rows, tables):
     return out
 
 
+def oracle_line(rows):
+    """Of kinds whose size is of one amplitude: whether the tables are what they are said to be."""
+    off = np.array([float(r["oracle_z"]) - float(r["size"]) for r in rows if r["oracle_z"] and r["kind"] != "masked_outliers"])
+    if len(off) < 5:
+        return []
+    return [f"The oracle's own estimate, less the size: {off.mean():.2f} on average, standard deviation {off.std():.2f} "
+            f"({len(off)} tables; 0 and 1 were the tables exactly what they are said to be).", ""]
+
+
 def uniform(rows):
     """Of family p-values of clean tables: how many lie in each tenth, and Kolmogorov and Smirnov's p."""
     p = np.array([float(r["family_p"]) for r in rows if r["family_p"] != ""])
@@ -88,7 +97,7 @@ def summary(rows, tables):
            "anything that names its coordinate. The plain search: the largest F over candidates with shapes on a grid, limit "
            "simulated under white noise; it knows the levels' variance, and nothing of correlation, spread or heavy tails.", ""]
     if effects:
-        out += ["## Effects", ""] + power(effects, tables)
+        out += ["## Effects", ""] + oracle_line(effects) + power(effects, tables)
     if unlike:
         out += ["## Clean tables", "", "False: a claim that the noise does not justify (of unequal spread anything but "
                 "`table.spread`, of correlated noise anything but `table.serial_correlation` or a class that holds it).", ""]

@@ -230,7 +230,7 @@ def curve(rng, d):
 MEANS = {f.__name__: f for f in (linear, quadratic, interaction_numbers, interaction_words, factor, group_offset,
                                  threshold, drift, step, transient, cycle_long, cycle_short, outlier, curve)}
 SCATTERS = ["spread", "serial_correlation"]
-KINDS = list(MEANS) + ["exchanged_runs"] + SCATTERS
+KINDS = list(MEANS) + ["masked_outliers", "exchanged_runs"] + SCATTERS
 CLEAN = ["white", "t4", "t3", "laplace", "unequal_spread", "group_levels", "correlated"]
 
 
@@ -241,6 +241,24 @@ def retained(form, design):
 
 def declared_part(rng, design):
     return design.x @ (rng.normal(size=design.x.shape[1]) * 3)
+
+
+def masked_outliers_table(rng, design, size):
+    """Two or three wrong values, each of that size for who leaves the others out: together they hide each other."""
+    rows = rng.choice(design.n, int(rng.integers(2, 4)), replace=False)
+    a = design.projected()
+    own = np.diag(np.linalg.inv(a[np.ix_(rows, rows)]))  # squared standard error of each beside the others
+    form = np.zeros(design.n)
+    form[rows] = size * np.sqrt(own) * rng.choice([-1, 1], len(rows))
+    return Truth([], form, rows=rows.tolist()), declared_part(rng, design) + form + of_scatter(rng, design)
+
+
+def oracle_z(truth, design, y):
+    """What the oracle sees in this table: the size on average, with a standard deviation of 1."""
+    if truth.form is None:
+        return ""
+    a = design.projected()
+    return float(truth.form @ a @ y / math.sqrt(truth.form @ a @ truth.form))
 
 
 def of_scatter(rng, design, scatter=None):
@@ -334,6 +352,8 @@ def effect_table(name, kind, size, seed, index):
     design = DESIGNS[name](rng)
     if kind == "exchanged_runs":
         made = exchanged_table(rng, design, size)
+    elif kind == "masked_outliers":
+        made = masked_outliers_table(rng, design, size)
     elif kind in SCATTERS:
         made = scatter_table(rng, design, kind, size)
     else:
