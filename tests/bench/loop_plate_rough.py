@@ -18,7 +18,8 @@ import numpy as np
 from loop_cases import GEN2, draw_foil, place
 from loop_plate import effects, plate_spec, scanner
 from loop_rough import KEPT_ASIDE, SEEDS, draw_rough, render_others
-from loop_rough_report import BEYOND, SLACK, asked, over_floor, verdict_of
+from loop_rough_asked import asked, verdict_of
+from loop_rough_judged import BEYOND, SLACK, over_floor
 from loop_run import Results, add_options, errors_um, kept, pair_foils, render, within, write_design
 from loop_scans_report import QUANTITIES, markdown, number, share
 from other_scanner import draw_other

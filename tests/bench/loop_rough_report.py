@@ -5,159 +5,11 @@ import os
 
 import numpy as np
 
+from loop_rough_asked import asked, glance_lines, missed_figures_lines
+from loop_rough_judged import (claims, corrected, floors, is_curve, is_right, mean_of, over_floor, p_values, told, worse,
+                               wrong)
 from loop_rough_plot import kolmogorov_smirnov, svg_of_p_values
 from loop_scans_report import QUANTITIES, is_scanner, markdown, number, share
-
-# What is asked for, and whether less or more of it is good.
-ASKED = {
-    "claims": ("≤", 1.0), "class": ("≥", 95.0), "wrong": ("≤", 1.0), "exact": ("≥", 95.0), "curves": ("≥", 90.0),
-    "worse": ("≤", 2.0), "floor": ("≤", 1.2), "within": ("between", (93.0, 97.0)), "ranges": ("≥", 95.0),
-    "p": ("≥", 0.01), "one": ("≤", 3.0), "pair": ("≤", 8.0),
-}  # fmt: skip
-SLACK = 1.02  # an error that grew by less has not
-BEYOND = 0.1  # of the median floor: what a change of an error must be to be more than noise
-
-
-def claims(row):
-    return row["verdict"] != "clean"
-
-
-def is_curve(row):
-    return "free." in row["wanted"] or row["wanted"].count("scan.column_step") > 1
-
-
-def right_place(row):
-    """A curve over the coordinate that it lives on; seams also by their row."""
-    if "scan.column_step" in row["wanted"]:
-        said = set(filter(None, row["claims"].split(" + ")))
-        return said == {"scan.column_step"} or (not said and row["unattributed"].startswith("scan.x"))
-    return bool(number(row, "right_coordinate"))
-
-
-def is_right(row):
-    if not row["wanted"]:
-        return not claims(row)
-    return right_place(row) if is_curve(row) else bool(number(row, "in_class"))
-
-
-def wrong(row, tied):
-    return bool(row["claims"]) and not is_right(row) and bool(number(row, "tied")) == tied
-
-
-def told(row):
-    """Named, and nothing is tied with it: the data tell."""
-    return number(row, "named") and not number(row, "tied") and not row["class"]
-
-
-def judged_by(row):
-    """The circles have one truth where nothing but the scanner is wrong; else there is the midline."""
-    return QUANTITIES if is_scanner(row) or not row["wanted"] else ("profile",)
-
-
-def with_floor(rows):
-    return [r for r in rows if r["R_floor_um"]]
-
-
-def floors(rows):
-    median = lambda q: float(np.median([number(r, q + "_floor_um") for r in with_floor(rows)]))
-    return {q: median(q) if with_floor(rows) else 0.0 for q in (*QUANTITIES, "profile")}
-
-
-def worse(row, least):
-    after, before = (lambda q: number(row, q + "_after_um")), (lambda q: number(row, q + "_before_um"))
-    return any(after(q) > max(SLACK * before(q), before(q) + BEYOND * least[q]) for q in judged_by(row))
-
-
-def corrected(row, quantities=QUANTITIES):
-    return any(row[q + "_after_um"] != row[q + "_before_um"] for q in quantities)
-
-
-def over_floor(rows, quantity):
-    """Of medians: one foil's R0 can be right by chance, with the effect and without it."""
-    after, floor = ([number(r, f"{quantity}_{side}_um") for r in with_floor(rows)] for side in ("after", "floor"))
-    return float(np.median(after) / max(np.median(floor), 1e-4)) if floor else None
-
-
-def mean_of(rows, name):
-    return 100 * float(np.mean([number(r, name) for r in rows])) if rows else None
-
-
-def ranges_held(rows):
-    stated, held = (sum(number(r, f"{q}_{side}") for r in rows for q in QUANTITIES) for side in ("ranges", "ranges_hold"))
-    return 100 * held / stated if stated else None
-
-
-def percent(rows, test):
-    return 100 * float(np.mean([bool(test(r)) for r in rows])) if rows else None
-
-
-def p_values(rows):
-    return sorted(number(r, "p_value") for r in rows if not r["wanted"] and r["p_value"] not in ("", "None"))
-
-
-# --- at a glance --------------------------------------------------------------------------------
-
-
-def measures(rows):
-    """{what: (key in ASKED, value, of how many)} of one renderer's rows."""
-    of = lambda *kinds: [r for r in rows if r["tier"].replace("other-", "") in kinds]
-    clean, named, pairs, curves = of("clean"), of("single", "pair"), of("pair"), of("curve", "odd")
-    fixed = [r for r in rows if r["wanted"] and is_scanner(r) and corrected(r)]
-    sure = [r for r in fixed if told(r) and not is_curve(r)]
-    zero = floors(rows) if rows else {}
-    chance = p_values(rows)
-    seconds = lambda own: float(np.percentile([number(r, "seconds") for r in own], 95)) if own else None
-    result = {
-        "clean inputs with a claim, %": ("claims", percent(clean, claims), len(clean)),
-        "p-values of clean inputs uniform: Kolmogorov-Smirnov's p": (
-            "p", kolmogorov_smirnov(chance)[1] if chance else None, len(chance)),
-        "one effect: in class, %": ("class", percent(named, is_right), len(named)),
-        "one effect: a wrong cause, called `found`, %": ("wrong", percent(named, lambda r: wrong(r, False)), len(named)),
-        "turned pairs: exactly named, %": ("exact", percent(pairs, lambda r: number(r, "named")), len(pairs)),
-        "unlisted curves, seams, single bumps: right place, %": ("curves", percent(curves, is_right), len(curves)),
-        "made worse, %": ("worse", percent(rows, lambda r: worse(r, zero)), len(rows)),
-    }  # fmt: skip
-    for q in QUANTITIES:
-        result[f"{q} after / floor (medians), where the data tell"] = ("floor", over_floor(sure, q), len(sure))
-    for q in QUANTITIES:
-        moved = [r for r in fixed if corrected(r, [q])]
-        inside = mean_of(moved, q + "_within_after")
-        result[f"intervals of {q} after a correction that hold, %"] = ("within", inside, len(moved))
-    tied = [r for r in rows if is_scanner(r)]
-    result["ranges of ties that hold the truth, %"] = ("ranges", ranges_held(tied), len(tied))
-    lone = [r for r in rows if r["layout"] == "single"]
-    turned = [r for r in rows if r["layout"] in ("90", "45")]
-    result["one scan, s (95 % are below)"] = ("one", seconds(lone), len(lone))
-    result["a pair, s (95 % are below)"] = ("pair", seconds(turned), len(turned))
-    return result
-
-
-def asked(key):
-    sign, limit = ASKED[key]
-    return f"{limit[0]:g} to {limit[1]:g}" if sign == "between" else f"{sign} {limit:g}"
-
-
-def verdict_of(key, value):
-    sign, limit = ASKED[key]
-    if value is None:
-        return "–"
-    low, high = {"≤": (-np.inf, limit), "≥": (limit, np.inf), "between": limit}[sign]
-    return "yes" if low <= value <= high else "**no**"
-
-
-def glance_lines(rows):
-    other = lambda r: r["tier"].startswith("other-")
-    own, second = measures([r for r in rows if not other(r)]), measures([r for r in rows if other(r)])
-    table = []
-    for what, (key, value, count) in own.items():
-        cells = [what, asked(key)]
-        for v, n in ((value, count), second[what][1:]):
-            cells += ["–" if v is None else f"{v:.3g} (of {n})", verdict_of(key, v)]
-        table.append(cells)
-    return markdown(["what", "asked", "this renderer", "holds", "second renderer", "holds"], table)
-
-
-# --- tables by tier -----------------------------------------------------------------------------
 
 NAMES = ["inputs", "failed", "claims %", "in class %", "exactly named %", "wrong, `found` %", "wrong, tied %",
          "unattributed %", "made worse %", "s", "most s"]  # fmt: skip
@@ -340,7 +192,7 @@ def write(folder, rows, tiers):
     lines = ["# The loop on scans with rough edges", "", text, ""]
     if not whole:
         lines += ["**A part of the benchmark: not every tier of every seed is whole.**", ""]
-    lines += ["## What was asked, and what holds", "", *glance_lines(rows)]
+    lines += ["## What was asked, and what holds", "", *glance_lines(rows), "", *missed_figures_lines(rows, tiers)]
     lines += ["", "## Named", "", *naming_lines(rows, tiers), "", "Effect by effect, in class:", "", *effect_lines(rows)]
     lines += ["", "## Errors against truth, effects of the scanner", "", "Medians, µm.", "", *error_lines(rows, tiers)]
     lines += ["", "Distance of the true midline from what is reported, all effects; medians, µm.", "", *profile_lines(rows, tiers)]

@@ -1,0 +1,85 @@
+"""What a row of loop_rough.py's table says against what was there: claims, classes, floors, ranges."""
+
+import numpy as np
+
+from loop_scans_report import QUANTITIES, is_scanner, number
+
+SLACK = 1.02  # an error that grew by less has not
+BEYOND = 0.1  # of the median floor: what a change of an error must be to be more than noise
+
+
+def claims(row):
+    return row["verdict"] != "clean"
+
+
+def is_curve(row):
+    return "free." in row["wanted"] or row["wanted"].count("scan.column_step") > 1
+
+
+def right_place(row):
+    """A curve over the coordinate that it lives on; seams also by their row."""
+    if "scan.column_step" in row["wanted"]:
+        said = set(filter(None, row["claims"].split(" + ")))
+        return said == {"scan.column_step"} or (not said and row["unattributed"].startswith("scan.x"))
+    return bool(number(row, "right_coordinate"))
+
+
+def is_right(row):
+    if not row["wanted"]:
+        return not claims(row)
+    return right_place(row) if is_curve(row) else bool(number(row, "in_class"))
+
+
+def wrong(row, tied):
+    return bool(row["claims"]) and not is_right(row) and bool(number(row, "tied")) == tied
+
+
+def told(row):
+    """Named, and nothing is tied with it: the data tell."""
+    return number(row, "named") and not number(row, "tied") and not row["class"]
+
+
+def judged_by(row):
+    """The circles have one truth where nothing but the scanner is wrong; else there is the midline."""
+    return QUANTITIES if is_scanner(row) or not row["wanted"] else ("profile",)
+
+
+def with_floor(rows):
+    return [r for r in rows if r["R_floor_um"]]
+
+
+def floors(rows):
+    median = lambda q: float(np.median([number(r, q + "_floor_um") for r in with_floor(rows)]))
+    return {q: median(q) if with_floor(rows) else 0.0 for q in (*QUANTITIES, "profile")}
+
+
+def worse(row, least):
+    after, before = (lambda q: number(row, q + "_after_um")), (lambda q: number(row, q + "_before_um"))
+    return any(after(q) > max(SLACK * before(q), before(q) + BEYOND * least[q]) for q in judged_by(row))
+
+
+def corrected(row, quantities=QUANTITIES):
+    return any(row[q + "_after_um"] != row[q + "_before_um"] for q in quantities)
+
+
+def over_floor(rows, quantity):
+    """Of medians: one foil's R0 can be right by chance, with the effect and without it."""
+    after, floor = ([number(r, f"{quantity}_{side}_um") for r in with_floor(rows)] for side in ("after", "floor"))
+    return float(np.median(after) / max(np.median(floor), 1e-4)) if floor else None
+
+
+def mean_of(rows, name):
+    return 100 * float(np.mean([number(r, name) for r in rows])) if rows else None
+
+
+def ranges_held(rows):
+    stated, held = (sum(number(r, f"{q}_{side}") for r in rows for q in QUANTITIES) for side in ("ranges", "ranges_hold"))
+    return 100 * held / stated if stated else None
+
+
+def percent(rows, test):
+    return 100 * float(np.mean([bool(test(r)) for r in rows])) if rows else None
+
+
+def p_values(rows):
+    return sorted(number(r, "p_value") for r in rows if not r["wanted"] and r["p_value"] not in ("", "None"))
