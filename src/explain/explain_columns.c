@@ -234,23 +234,37 @@ double fg_explain_share_left(const fg_explain_columns *s, const fg_explain_term 
 
 /* ---- widths ---- */
 
+/* Rows that stay beside the processor while all terms pass. */
+enum { WIDTHS_BLOCK = 256 };
+
+/* The next widths from row `from` on without what terms move; returns how many. */
+static size_t widths_left(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
+                          const double *x, size_t from, double out[WIDTHS_BLOCK]) {
+  size_t rows = s->rows - from < WIDTHS_BLOCK ? s->rows - from : WIDTHS_BLOCK;
+  memcpy(out, s->width + from, rows * sizeof *out);
+  for (size_t t = 0; t < count; t++)
+    for (size_t k = 0; k < terms[t].count; k++) {
+      const double *strain = s->strain + terms[t].column[k] * s->rows + from;
+      double size = x[t] * terms[t].weight[k];
+      for (size_t i = 0; i < rows; i++)
+        out[i] -= size * strain[i];
+    }
+  return rows;
+}
+
 double fg_explain_width_sum(const fg_explain_columns *s, const fg_explain_term *terms, size_t count,
                             const double *x) {
-  double sum = 0, mean = 0, weight = 0;
-  for (size_t pass = 0; pass < 2; pass++)
-    for (size_t i = 0; i < s->rows; i++) {
-      double value = s->width[i], w = weight_of(s, i);
-      for (size_t t = 0; t < count; t++)
-        for (size_t k = 0; k < terms[t].count; k++)
-          value -= x[t] * terms[t].weight[k] * s->strain[terms[t].column[k] * s->rows + i];
-      if (pass == 0) {
-        mean += w * value;
-        weight += w * w;
-      } else {
-        sum += (value - w * mean / weight) * (value - w * mean / weight);
-      }
+  double left[WIDTHS_BLOCK], squares = 0, along = 0, weight = 0;
+  for (size_t from = 0; from < s->rows; from += WIDTHS_BLOCK) {
+    size_t rows = widths_left(s, terms, count, x, from, left);
+    for (size_t i = 0; i < rows; i++) {
+      double w = weight_of(s, from + i);
+      squares += left[i] * left[i];
+      along += w * left[i];
+      weight += w * w;
     }
-  return sum;
+  }
+  return squares - along * along / weight; /* about the mean */
 }
 
 /* Directions and places that an error of the edge model may follow: threshold, flare, shading and
