@@ -26,7 +26,7 @@ says middle.out "all((max(abs(v) for x, v in curve['shape'] if abs(x - n) < 0.45
 says middle.out "all(abs(off[n] - (3.66 if n % 3 == 0 else 0)) < 0.6 for n in true)"
 
 # The whole of it: that is another bump for the geometry, and the bumps are held against each other.
-render_foil whole 32 -61 '{"id":"free.bump.index","form":"whole","amplitude_um":4,"every":3}' 4800
+render_foil whole 32 -61 '{"id":"free.bump.index","form":"whole","amplitude_um":4,"every":3}' 2400
 "$program" loop whole.png -o whole.out --html whole.html || fail "loop on bumps that are raised"
 says whole.out "r['verdict'] == 'unattributed' and not claims and curve['coordinate'] == 'bump.index'"
 says whole.out "[n for n, v in curve['shape'] if abs(v) > 0.1] == [3, 6, 9] and curve['moves'] == 'bump_angle_deg'"

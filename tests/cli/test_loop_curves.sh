@@ -3,8 +3,11 @@
 # what the data cannot tell: on which side of a bump a step lies, and the scale beside a lens.
 . tests/support/loop.sh
 
-# render NAME SEED ROTATION EFFECTS X,Y: the foil's centre in mm
-render() { render_foil "$1" "$2" "$3" "$4" 4800 '"width_px":8400,"height_px":8400,' "\"centre_mm\":[$5],"; }
+# render NAME SEED ROTATION EFFECTS X,Y [DPI]: the foil's centre in mm on 44 x 44 mm
+render() {
+  local dpi=${6-2400}
+  render_foil "$1" "$2" "$3" "$4" "$dpi" "\"width_px\":$((dpi * 7 / 4)),\"height_px\":$((dpi * 7 / 4))," "\"centre_mm\":[$5],"
+}
 
 # says REPORT EXPRESSION: of a report r; e(side, name) is the rms error of R (um) or R0 on a side, within() the
 # share of the corrected radii that lie within U of the truth.
@@ -69,7 +72,7 @@ says phi.out "curve['coordinate'] == 'bump.phi' and not claims and r['after']['r
 four='{"id":"scan.scale_y","value":-0.0009},{"id":"scan.shear","value":0.0007},
 {"id":"scan.carriage_ripple","amplitude_um":6,"period_mm":2.6,"phase_deg":70},
 {"id":"scan.row_step","amplitude_um":14,"y_mm":24.3}'
-render four 15 10 "$four" 6,20
+render four 15 10 "$four" 6,20 4800
 "$program" loop four.png -o four.out || fail "loop on four effects"
 says four.out "sorted(claims) == ['scan.carriage_ripple', 'scan.row_step', 'scan.scale_y', 'scan.shear']"
 says four.out "e('after', 'R') < e('before', 'R') / 10 and e('after', 'R0') < e('before', 'R0') / 10"
@@ -87,8 +90,8 @@ fi
 
 # A lens and a scale of the carriage leave the same edges as a lens elsewhere on a larger foil.
 lens='{"id":"scan.optical_quadratic","amplitude_um":9,"centre_mm":18},{"id":"scan.scale_y","value":0.0008}'
-render lens_a 16 -75 "$lens" 21,22
-render lens_b 17 15 "$lens" 22,21
+render lens_a 16 -75 "$lens" 21,22 4800
+render lens_b 17 15 "$lens" 22,21 4800
 "$program" loop --same-foil lens_a.png lens_b.png -o lens.out --html lens.html || fail "loop on a lens and a scale"
 says lens.out "claims['part.stretch']['verdict'] == 'tied' and 'scan.optical_quadratic + scan.scale_y' in claims['part.stretch']['alias_class']"
 says lens.out "foil('after')['overall']['radius_range_mm'][0] <= 20.95 <= foil('after')['overall']['radius_range_mm'][1]"

@@ -7,7 +7,7 @@
 render() { render_foil "$1" "$2" "$3" "$5" "$4"; }
 
 render clean 1 -70 2400 ''
-render ripple 2 -60 4800 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
+render ripple 2 -60 2400 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
 render a 3 -75 2400 '{"id":"scan.scale_y","value":0.001}'
 render b 4 15 2400 '{"id":"scan.scale_y","value":0.001}'
 render faint 5 -75 4800 '{"id":"scan.scale_y","value":0.00013}'
@@ -68,12 +68,11 @@ sed -i 's/"radius_mm":\[[^]]*\]/"radius_mm":[3.60,3.50,3.45,3.43,3.42,3.415,3.41
 "$renderer" render decay.json -o decay.png || fail "render a decay"
 page decay.html decay.png
 holds decay.html '>explained<' part.lip_decay 'Over the bumps: a decay from the lip' 'uniform springback'
-page tie.html faint.png
+page tie.html faint.png -o tie.out
 holds tie.html 'tied: not named' 'What the data cannot tell apart' 'an oval foil' '--same-foil' '<th>range</th>'
 # What could be it agrees about R0 and h, which are moved, and not about R, which stays as measured: the page, the
 # terminal and the JSON say so, and the ranges hold what is reported.
 holds tie.html 'R stays as measured: these explanations would move' '<i>left</i>' 'R left as measured: the correction is' 'cannot tell apart' 'follow from R0, R and h'
-"$program" loop faint.png -o tie.out || fail "loop on a tie"
 python3 - <<'PYTHON' || fail "a tie moves what its explanations do not agree about, or does not say so"
 import json
 r = json.load(open("tie.out"))
@@ -90,7 +89,7 @@ for was, now in zip(before["bumps"], after["bumps"]):
     assert abs(now["height_mm"] - derived) < 1e-8
     assert now["radius_range_mm"][0] <= now["radius_mm"] <= now["radius_range_mm"][1]
 PYTHON
-if command -v script >/dev/null; then
+if [ -z "${FOILGAUGE_TEST_BRIEF-}" ] && command -v script >/dev/null; then
   script -qec "'$program' loop faint.png" tie.txt </dev/null >/dev/null
   holds tie.txt 'R left as measured: the correction is' ' um and differs between' 'R0 moved by what all explanations agree about'
 fi

@@ -9,9 +9,12 @@ loop() {
   local name=$1
   shift
   "$program" loop "$name.png" "$@" -o "$name.out" --html "$name.html" --model-out "$name.model" || fail "loop on $name"
-  # A terminal gets the text.
-  script -qec "'$program' loop '$name.png' $*" /dev/null </dev/null | tr -d '\r' >"$name.text"
   valid loop_scan.schema.json "$name.out"
+}
+# agree NAME: a terminal, which gets the text, the page and the JSON say the same.
+agree() {
+  local name=$1
+  script -qec "'$program' loop '$name.png'" /dev/null </dev/null | tr -d '\r' >"$name.text"
   python3 "$root/tests/support/loop_statements.py" "$name.out" "$name.html" "$name.text" || fail "$name says different things"
 }
 claims() { value "$1.out" "' '.join(c['id'] for c in r['claims'] if c['verdict'] == 'found')"; }
@@ -25,6 +28,7 @@ right() {
 
 render_foil thicker 3 25 "{\"id\":\"$id\",\"thickness_change_um\":6}" 2400
 loop thicker
+agree thicker
 [ "$(value thicker.out "r['verdict']") $(claims thicker)" = "explained $id" ] || fail "thicker: $(claims thicker)"
 right thicker 6
 near "half width before" "$(value thicker.out "r['before']['half_width']['rms']")" 0.87 0.1
@@ -43,6 +47,7 @@ grep -q "the strip is thinner towards the free end" thinner.html || fail "the pa
 [ "$(value thinner.model "' '.join(f['id'] for f in r['fields'])")" = scan.carriage_ripple ] || fail "model of thinner"
 
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+agree thinner
 
 # Clean, and rough: nothing is claimed, and what would have been seen is told.
 render_foil clean 5 60 "" 2400

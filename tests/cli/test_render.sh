@@ -24,11 +24,11 @@ for tier in $tiers; do
   grep -q '"foilgauge/truth/1"' "$folder/$tier.json" || fail "$tier: no truth"
 done
 
-# 160 million pixels: held whole, coverage alone would be 640 MB. Address space is what counts, and
+# 100 million pixels: held whole, coverage alone would be 400 MB. Address space is what counts, and
 # the shared libraries take most of what is allowed here. A sanitizer needs terabytes of it.
 cat >"$folder/wide.json" <<'END'
-{"schema":"foilgauge/render/1","width_px":40000,"height_px":4000,
- "foils":[{"repeat":4,"rotate_deg":-90}],"scanner":{"noise":0}}
+{"schema":"foilgauge/render/1","width_px":25000,"height_px":4000,
+ "foils":[{"repeat":2,"rotate_deg":-90}],"scanner":{"noise":0}}
 END
 if ! nm "$program" 2>/dev/null | grep -q __asan; then
   expect 0 '' bash -c "ulimit -v 250000; exec '$program' render '$folder/wide.json' -o /dev/null"

@@ -47,7 +47,7 @@ static void dust_does_not_move_a_bump(void **state) {
       "\"radius_px\":4.4,\"contrast\":52},\"specks\":{\"count\":17,\"radius_px\":8,\"contrast\":"
       "100}",
   };
-  for (size_t i = 0; i < sizeof scanners / sizeof scanners[0]; i++) {
+  for (size_t i = 0; i < sizeof scanners / sizeof scanners[0]; i += test_step(2)) {
     char members[100];
     snprintf(members, sizeof members, ",\"rotate_deg\":%zu", 31 + 77 * i);
     measured m = measure_foil(members, scanners[i]);
@@ -76,7 +76,7 @@ static fg_point place_of(const fg_render_spec *spec, int i) {
 static void lost_rows_are_seen(void **state) {
   (void)state;
   for (int at = -1; at < 5; at += 1 + (at > 0))
-    for (int rows = 1; rows <= 5; rows += 2 * (int)test_step(2)) {
+    for (int rows = 1; rows <= 5; rows += 2 * (int)test_step(3)) {
       char json[4096];
       small_foil(json, sizeof json, 9, "", "\"dpi\":2400,\"background\":30");
       rendered picture = render_open(json);
@@ -96,7 +96,7 @@ static void lost_rows_are_seen(void **state) {
 /* A gap that parts the picture of a strip does not make two foils of it. */
 static void a_parted_strip_is_one_foil(void **state) {
   (void)state;
-  for (int rows = 8; rows <= 12; rows += 2 * (int)test_step(2)) {
+  for (int rows = 8; rows <= 12; rows += 2 * (int)test_step(3)) {
     char json[4096];
     small_foil(json, sizeof json, 9, "", "\"dpi\":2400,\"background\":30");
     rendered picture = render_open(json);
@@ -129,11 +129,11 @@ static void overlapping_foils_flag_their_bumps(void **state) {
   static const struct {
     double x_mm, y_mm, rotate_deg;
   } others[] = {{30, 24, -90}, {20, 21, -60}, {16, 25.5, -95}, {18, 27, -120}, {14.6, 24.2, -88}};
-  size_t silent = 0, touched = 0, sound_bumps = 0;
+  size_t silent = 0, touched = 0, sound_bumps = 0, step = test_step(2);
   fg_design design;
   fg_design_default(&design);
   design.bump_count = 4;
-  for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
+  for (size_t i = 0; i < sizeof others / sizeof others[0]; i += step) {
     char json[1024];
     snprintf(json, sizeof json,
              "{\"schema\":\"foilgauge/render/1\",\"seed\":1,\"width_px\":3900,\"height_px\":2600,"
@@ -159,8 +159,8 @@ static void overlapping_foils_flag_their_bumps(void **state) {
     measured_free(&m);
   }
   assert_int_equal(silent, 0);
-  assert_true(touched > 4);
-  assert_true(sound_bumps > 8);
+  assert_true(touched * step > 4);
+  assert_true(sound_bumps * step > 8);
 }
 
 int main(void) {

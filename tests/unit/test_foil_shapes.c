@@ -1,5 +1,6 @@
 /* Whole foils of every shape through the measuring chain: which bump is which, flags, and every
  * radius within its uncertainty of the truth. */
+#include "support/brief.h"
 #include "support/measured_render.h"
 
 /* A single value of many may lie this many standard uncertainties off: 1 in 150,000. */
@@ -78,7 +79,7 @@ static void any_number_of_bumps(void **state) {
 /* Every 15 degrees, both hands: the numbers start at the lip, the hand and direction are found. */
 static void any_rotation_and_either_hand(void **state) {
   (void)state;
-  for (int i = 0; i < 24; i++) {
+  for (int i = 0; i < 24; i += (int)test_step(5)) {
     char members[100];
     bool mirror = i / 2 % 2;
     snprintf(members, sizeof members, ",\"rotate_deg\":%d,\"mirror\":%s", 15 * i,
@@ -96,7 +97,7 @@ static void lips_of_every_kind(void **state) {
   (void)state;
   const char *lips[] = {"{\"side\":\"inwards\"}", "{\"length_mm\":0.3}", "{\"bend_radius_mm\":0.2}",
                         "{\"bend_radius_mm\":0.8}", "{\"length_mm\":4}"};
-  for (size_t i = 0; i < 5; i++)
+  for (size_t i = 0; i < 5; i += test_step(2))
     for (int mirror = 0; mirror < 2; mirror++) {
       char members[200];
       snprintf(members, sizeof members, ",\"lip\":%s,\"mirror\":%s", lips[i],
@@ -131,7 +132,7 @@ static void sinusoidal_form(void **state) {
 static void missing_bumps_leave_their_numbers_out(void **state) {
   (void)state;
   static const char *cases[] = {"[3]", "[2,3]", "[5]", "[1]", "[1,5]", "[1,2,4]", "[2,3,4]"};
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i += test_step(3)) {
     char members[100];
     snprintf(members, sizeof members, ",\"missing\":%s", cases[i]);
     measured m = check_foil(5, members, "\"dpi\":2400", FG_FOIL_BUMP_COUNT | FG_FOIL_MISSING_BUMP);
@@ -144,7 +145,7 @@ static void missing_bumps_leave_their_numbers_out(void **state) {
 static void crushed_bumps_are_flagged(void **state) {
   (void)state;
   for (int bumps = 3; bumps <= 5; bumps += 2)
-    for (int crushed = 1; crushed <= bumps; crushed++) {
+    for (int crushed = 1; crushed <= bumps; crushed += (int)test_step(2)) {
       char members[100];
       snprintf(members, sizeof members, ",\"crushed\":[{\"bump\":%d,\"height_factor\":0.5}]",
                crushed);
@@ -255,7 +256,7 @@ static measured measure_coarse(int dpi, const char *members) {
 static void coarse_scans_are_not_biased(void **state) {
   (void)state;
   const int dpi[] = {600, 700, 800};
-  for (size_t i = 0; i < 3; i++) {
+  for (size_t i = 0; i < 3; i += test_step(2)) {
     double sum = 0, count = 0;
     for (int turn = 0; turn < 3; turn++) {
       char members[100];

@@ -1,5 +1,6 @@
 /* Edges: every station against the true midline, the standard deviations against the scatter, and
  * what is found out about the scanner on the way. */
+#include "support/brief.h"
 #include "support/measured_render.h"
 
 typedef struct line_error {
@@ -96,7 +97,7 @@ static void edges_are_on_the_truth(void **state) {
       {"\"noise\":1,\"gamma\":2.2", 1.2, 2.2, 0.3},
       {"\"noise\":1,\"gamma\":0.45", 1.2, 0.45, 0.3},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i += test_step(3)) {
     measured m = measure_scanner(cases[i].scanner);
     const fg_strip *strip = &m.result.foils[0].strip;
     line_error e = compare_line(&m);
@@ -132,7 +133,7 @@ static void standard_deviations_are_the_scatter(void **state) {
       {"\"noise\":2,\"blur_px\":3", 2, 175, 3, 1.2},
       {"\"noise\":2,\"contrast\":-175,\"background\":230", 2, 175, 1.2, 1.15},
   };
-  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i += test_step(3)) {
     measured m = measure_scanner(cases[i].scanner);
     line_error e = compare_line(&m);
     double noise = sqrt(cases[i].noise * cases[i].noise + 1.0 / 12), step_px = 2;
