@@ -106,6 +106,11 @@ typedef struct fg_split_plot {
  * there are runs. Free with fg_split_plot_free. */
 fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg_formula *formula,
                                 const char *response, const char *plot, fg_split_plot *result);
+/* Lowers the freedom of the error by `freedom` parameters that were estimated from these runs and
+ * taken out of the response (`taken`, by row): that of the whole plots where what was taken out is
+ * the same within each, else of the runs. FG_ERR_DATA when none is left. */
+fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *plot,
+                            size_t freedom, const double *taken, fg_split_plot *result);
 void fg_split_plot_free(fg_split_plot *result);
 
 #ifdef __cplusplus

@@ -35,6 +35,16 @@ typedef enum fg_experiment_sign {
   FG_SIGN_MAGNITUDE,
 } fg_experiment_sign;
 
+/* An effect of a loop's model that was taken out of the response before the analysis. */
+typedef struct fg_experiment_taken {
+  char id[64], words[400]; /* "table.linear", "a trend with humidity" */
+  double amplitude,
+      u_amplitude;   /* half its range where it was found, and the standard uncertainty */
+  size_t parameters; /* that were estimated for it */
+  double low, high;  /* of what was taken out of these runs */
+  bool applied;      /* false: it concerns rows of the table it was found in, and stays */
+} fg_experiment_taken;
+
 typedef struct fg_experiment_options {
   const char *response; /* NULL: the formula's left side */
   const char *formula;
@@ -50,6 +60,9 @@ typedef struct fg_experiment_options {
   double target;                 /* FG_GOAL_TARGET: the response wanted */
   const char *const *constraint; /* "temperature_C <= 700", "2*a + b >= 3", in real units */
   size_t constraints;
+  const fg_experiment_taken *taken; /* what is out of the response already */
+  size_t takens;
+  const double *taken_out; /* rows: the sum of it; NULL without `taken` */
 } fg_experiment_options;
 
 /* A numeric factor of the model. */
@@ -89,6 +102,21 @@ typedef struct fg_ridge_point {
   bool inside; /* the region of the data and the constraints */
 } fg_ridge_point;
 
+/* What the residuals show over the order of the runs, beside the model. Each test is told at
+ * FG_ORDER_LEVEL, which is 5 % over the three. NaN: it cannot be told. */
+#define FG_ORDER_LEVEL (0.05 / 3)
+typedef struct fg_order_check {
+  const char *column;    /* of the table that orders the runs: run, order ...; NULL: their rows */
+  const double *value;   /* rows: where in the order a run stands */
+  double drift, u_drift; /* change of the response from the first run to the last */
+  double drift_p;        /* Student's t of the slope, fitted beside the model */
+  double neighbours;     /* correlation of a residual with the next */
+  double durbin_watson;
+  double neighbours_p;           /* two-sided: independent normal errors through the same model */
+  size_t farthest;               /* row of the largest externally studentised residual, from 0 */
+  double farthest_t, farthest_p; /* p over all runs (Bonferroni) */
+} fg_order_check;
+
 typedef struct fg_experiment {
   fg_table table;           /* as analysed: coded, sign applied */
   char *response, *formula; /* canonical, blocks included */
@@ -106,6 +134,9 @@ typedef struct fg_experiment {
   double u_rms;      /* NaN: not known */
   double *weight;    /* rows: 1 / (process² + u²) over the typical; NULL: all equal */
   double process_sd; /* scatter beside the measurement's; NaN: not separated */
+  fg_experiment_taken *taken;
+  size_t takens, freedom_taken; /* parameters that the residual freedom has paid */
+  double *taken_out;            /* rows; NULL: nothing */
 
   bool has_lenth, has_box_cox, has_curvature, has_split_plot, has_surface, has_optimum;
   fg_lenth lenth; /* of fg_experiment_effect.contrast */
@@ -115,6 +146,9 @@ typedef struct fg_experiment {
   fg_surface surface;
   bool stationary_inside;   /* the region */
   fg_prediction stationary; /* at the stationary point */
+  bool has_order;
+  fg_order_check order;
+  double *order_value;
   fg_goal goal;
   double target;
   fg_region region;  /* box and ball of the runs, and the constraints */
@@ -159,6 +193,9 @@ typedef struct fg_experiment_report {
   const fg_experiment_scan *scan;
   size_t scans;
   const size_t *row; /* of the run sheet (from 1), for every run that was analysed; NULL: all */
+  const char *scans_column;              /* of the run sheet; NULL: the response was typed */
+  const char *design_path;               /* NULL: the default */
+  const char *model_path, *model_sha256; /* of the loop's model; NULL: none */
 } fg_experiment_report;
 
 /* JSON, "schema": "foilgauge/doe/1" (reports/schema/doe.schema.json); a table for the terminal; one

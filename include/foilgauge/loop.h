@@ -374,6 +374,26 @@ fg_status fg_loop_model_load(fg_context *ctx, const char *path, fg_loop_model **
  * of the table they were found in and are not applied. A value outside the range the model was
  * found in, or a level it has not seen, is FG_ERR_DATA with its row. */
 fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_table *table);
+
+/* What a model took out of a table. */
+typedef struct fg_loop_taken {
+  char id[FG_LOOP_NAME], words[4 * FG_LOOP_NAME]; /* "a trend with humidity" */
+  double amplitude, u_amplitude; /* as it was found, standard uncertainty; NaN: not known */
+  size_t parameters;             /* that were estimated for it */
+  double low, high;              /* of what was taken out of the rows */
+  bool applied;                  /* false: it concerns rows of the table it was found in */
+} fg_loop_taken;
+
+typedef struct fg_loop_takings {
+  fg_loop_taken *one;
+  size_t count;
+  double *change; /* rows: the sum that was taken out */
+} fg_loop_takings;
+
+/* As fg_loop_model_apply, and says what it took. Free with fg_loop_takings_free. */
+fg_status fg_loop_model_take(fg_context *ctx, const fg_loop_model *model, fg_table *table,
+                             fg_loop_takings *takings);
+void fg_loop_takings_free(fg_loop_takings *takings);
 const char *fg_loop_model_response(const fg_loop_model *model);
 const char *fg_loop_model_formula(const fg_loop_model *model);
 void fg_loop_model_free(fg_loop_model *model);

@@ -27,6 +27,12 @@ typedef struct fg_regression_options {
   double alias_tolerance; /* a column is aliased when less than this share of its length is left
                              after the earlier columns are taken out; 0 means 1e-13 */
   const double *weights;  /* one per row, positive, 1 / variance up to a factor; NULL: all 1 */
+  /* What was estimated from these rows and taken out of the response beforehand: so many
+   * parameters, which the residual freedom, where there is any, pays; FG_ERR_DATA when nothing is
+   * left. `taken` is what was taken out of each row: where it differs between repeated runs, their
+   * pure error pays, else the lack of fit. */
+  size_t freedom_taken;
+  const double *taken;
 } fg_regression_options;
 
 typedef struct fg_coefficient {

@@ -8,6 +8,8 @@
 #include "cli/commands.h"
 #include "cli/doe_plan.h"
 #include "cli/runs.h"
+#include "core/memory.h"
+#include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
 
@@ -22,7 +24,7 @@ static report_writer *const writers[OUT_COUNT] = {
     [OUT_TABLE] = fg_experiment_write_table,
 };
 
-enum { CODINGS = FG_FORMULA_VARIABLES };
+enum { CODINGS = FG_FORMULA_VARIABLES, MODEL_BYTES_MAX = 1 << 24 };
 
 typedef struct doe_arguments {
   const char *data, *scans, *design_path;
@@ -37,7 +39,10 @@ typedef struct doe_run {
   fg_loop_model *loop_model; /* NULL: --model is a formula */
   doe_arguments arguments;
   fg_output_set outputs;
-  char sha256[65];
+  const char *model_path;
+  char sha256[65], model_sha256[65];
+  fg_loop_takings takings;
+  fg_experiment_taken *taken;
   fg_table sheet;
   fg_run_sheet measured;
   char *u_name;
@@ -261,6 +266,10 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
   const fg_experiment_report report = {.experiment = &run->experiment,
                                        .path = run->arguments.data,
                                        .sha256 = run->sha256,
+                                       .scans_column = run->arguments.scans,
+                                       .design_path = run->arguments.design_path,
+                                       .model_path = run->loop_model ? run->model_path : NULL,
+                                       .model_sha256 = run->model_sha256,
                                        .scan = run->measured.scan,
                                        .scans = run->measured.scans,
                                        .row = run->measured.row};
@@ -273,19 +282,50 @@ static void choose_standard_output(fg_output_set *set) {
   set->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
 }
 
+static fg_status describe_taken(fg_context *ctx, doe_run *run) {
+  const fg_loop_takings *takings = &run->takings;
+  fg_experiment_options *how = &run->arguments.options;
+  FG_TRY(fg_memory_allocate(ctx, takings->count, sizeof *run->taken, (void **)&run->taken));
+  for (size_t i = 0; i < takings->count; i++) {
+    const fg_loop_taken *from = &takings->one[i];
+    fg_experiment_taken *to = &run->taken[i];
+    *to = (fg_experiment_taken){.amplitude = from->amplitude,
+                                .u_amplitude = from->u_amplitude,
+                                .parameters = from->parameters,
+                                .low = from->low,
+                                .high = from->high,
+                                .applied = from->applied};
+    fg_text_clip(to->id, sizeof to->id, "%s", from->id);
+    fg_text_clip(to->words, sizeof to->words, "%s", from->words);
+  }
+  how->taken = run->taken;
+  how->takens = takings->count;
+  how->taken_out = takings->change;
+  return FG_OK;
+}
+
+static fg_status sum_model(fg_context *ctx, doe_run *run) {
+  char *text = NULL;
+  FG_TRY(fg_file_read_text(ctx, run->model_path, MODEL_BYTES_MAX, &text));
+  fg_sha256_text(text, run->model_sha256);
+  free(text);
+  return FG_OK;
+}
+
 /* The effects of a model file are taken out of the response, and its formula is the one to analyse.
  */
 static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
-  const char *name = run->arguments.options.formula;
+  const char *name = run->model_path = run->arguments.options.formula;
   if (!is_model_file(name)) return FG_OK;
   FG_TRY(fg_loop_model_load(ctx, name, &run->loop_model));
+  FG_TRY(sum_model(ctx, run));
   const char *response = fg_loop_model_response(run->loop_model);
   if (run->arguments.options.response && strcmp(run->arguments.options.response, response) != 0)
     return fg_fail(ctx, FG_ERR_DATA, "%s: a model of the response '%s', not of '%s'", name,
                    response, run->arguments.options.response);
-  FG_TRY(fg_loop_model_apply(ctx, run->loop_model, table));
+  FG_TRY(fg_loop_model_take(ctx, run->loop_model, table, &run->takings));
   run->arguments.options.formula = fg_loop_model_formula(run->loop_model);
-  return FG_OK;
+  return describe_taken(ctx, run);
 }
 
 static fg_status analyse(fg_context *ctx, doe_run *run) {
@@ -308,6 +348,8 @@ static void free_run(doe_run *run) {
   fg_experiment_free(&run->experiment);
   fg_run_sheet_free(&run->measured);
   fg_loop_model_free(run->loop_model);
+  fg_loop_takings_free(&run->takings);
+  free(run->taken);
   fg_table_free(&run->sheet);
   free(run->u_name);
 }

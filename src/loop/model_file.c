@@ -252,24 +252,116 @@ static fg_status apply_curve(fg_context *ctx, const fg_loop_model *model, const 
   return status;
 }
 
-fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_table *table) {
-  double *change = NULL;
-  const fg_extended *response;
-  const cJSON *claim;
-  fg_status status = FG_OK;
-  FG_TRY(fg_table_numbers(ctx, table, model->response, &response));
-  FG_TRY(fg_memory_allocate(ctx, table->rows + 1, sizeof *change, (void **)&change));
-  cJSON_ArrayForEach(claim, cJSON_GetObjectItemCaseSensitive(model->json, "claims"))
-      FG_TRY_EXIT(apply_claim(ctx, model, claim, table, change));
+static double number_or(const cJSON *json, const char *name, double otherwise) {
+  const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, name);
+  return cJSON_IsNumber(item) ? item->valuedouble : otherwise;
+}
+
+/* "a trend with humidity"; what the table of effects does not know concerns single rows. */
+static void describe(const cJSON *json, fg_loop_taken *taken) {
+  const cJSON *at = cJSON_GetObjectItemCaseSensitive(json, "coordinates");
+  const cJSON *id = cJSON_GetObjectItemCaseSensitive(json, "id");
+  const cJSON *name = cJSON_GetObjectItemCaseSensitive(json, "name");
+  const fg_loop_effect *effect = fg_loop_table_effects();
+  const char *names[2] = {"", ""};
+  for (int k = 0; k < 2; k++) {
+    const cJSON *one = cJSON_GetObjectItemCaseSensitive(cJSON_GetArrayItem(at, k), "name");
+    if (cJSON_IsString(one)) names[k] = one->valuestring;
+  }
+  fg_text_clip(taken->id, sizeof taken->id, "%s", cJSON_IsString(id) ? id->valuestring : "");
+  while (effect->id && strcmp(effect->id, taken->id))
+    effect++;
+  taken->applied = effect->id != NULL;
+  if (taken->applied)
+    fg_text_clip(taken->words, sizeof taken->words, "%s %s%s%s", effect->words, names[0],
+                 effect->pair ? " and " : "", effect->pair ? names[1] : "");
+  else
+    fg_text_clip(taken->words, sizeof taken->words, "%s",
+                 cJSON_IsString(name) ? name->valuestring : taken->id);
+  const cJSON *coefficients = cJSON_GetObjectItemCaseSensitive(json, "coefficients");
+  taken->parameters =
+      (size_t)cJSON_GetArraySize(coefficients) + (taken->applied ? effect->shapes : 0);
+  taken->amplitude = number_or(json, "amplitude", NAN);
+  taken->u_amplitude = number_or(json, "u_amplitude", NAN);
+}
+
+/* A penalised curve has as many parameters as its effective freedom; its uncertainty is that of so
+ * many estimated from so many rows. */
+static void describe_curve(const fg_loop_model *model, const cJSON *json, size_t rows,
+                           fg_loop_taken *taken) {
+  const cJSON *name = cJSON_GetObjectItemCaseSensitive(json, "coordinate");
+  const cJSON *shape = cJSON_GetObjectItemCaseSensitive(json, "shape");
+  double freedom = number_or(json, "freedom", (double)cJSON_GetArraySize(shape));
+  fg_text_clip(taken->id, sizeof taken->id, "unattributed");
+  fg_text_clip(taken->words, sizeof taken->words, "a smooth curve over %s",
+               cJSON_IsString(name) ? name->valuestring : "");
+  taken->applied = true;
+  taken->parameters = (size_t)ceil(freedom);
+  taken->amplitude = NAN;
+  taken->u_amplitude = number_or(model->json, "noise_sd", NAN) * sqrt(freedom / (double)rows);
+}
+
+/* What the last step added to the change, which `before` still lacks. */
+static void measure_step(const double *change, double *before, size_t rows, fg_loop_taken *taken) {
+  for (size_t i = 0; i < rows; i++) {
+    double step = change[i] - before[i];
+    taken->low = i ? fmin(taken->low, step) : step;
+    taken->high = i ? fmax(taken->high, step) : step;
+    before[i] = change[i];
+  }
+  if (isnan(taken->amplitude)) taken->amplitude = (taken->high - taken->low) / 2;
+}
+
+static fg_status take_all(fg_context *ctx, const fg_loop_model *model, const fg_table *table,
+                          fg_loop_takings *out) {
+  const cJSON *claims = cJSON_GetObjectItemCaseSensitive(model->json, "claims"), *claim;
   const cJSON *curve = cJSON_GetObjectItemCaseSensitive(model->json, "unattributed");
-  if (cJSON_IsObject(curve)) FG_TRY_EXIT(apply_curve(ctx, model, curve, table, change));
-  for (size_t c = 0; c < table->columns; c++)
+  size_t rows = table->rows, most = (size_t)cJSON_GetArraySize(claims) + 1;
+  double *before = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, rows + 1, sizeof *out->change, (void **)&out->change));
+  FG_TRY(fg_memory_allocate(ctx, most, sizeof *out->one, (void **)&out->one));
+  FG_TRY(fg_memory_allocate(ctx, rows + 1, sizeof *before, (void **)&before));
+  cJSON_ArrayForEach(claim, claims) {
+    FG_TRY_EXIT(apply_claim(ctx, model, claim, table, out->change));
+    describe(claim, &out->one[out->count]);
+    measure_step(out->change, before, rows, &out->one[out->count++]);
+  }
+  if (cJSON_IsObject(curve)) {
+    FG_TRY_EXIT(apply_curve(ctx, model, curve, table, out->change));
+    describe_curve(model, curve, rows, &out->one[out->count]);
+    measure_step(out->change, before, rows, &out->one[out->count++]);
+  }
+exit:
+  free(before);
+  return status;
+}
+
+fg_status fg_loop_model_take(fg_context *ctx, const fg_loop_model *model, fg_table *table,
+                             fg_loop_takings *takings) {
+  const fg_extended *response;
+  *takings = (fg_loop_takings){0};
+  FG_TRY(fg_table_numbers(ctx, table, model->response, &response));
+  fg_status status = take_all(ctx, model, table, takings);
+  for (size_t c = 0; status == FG_OK && c < table->columns; c++)
     for (size_t i = 0; !strcmp(table->column[c].name, model->response) && i < table->rows; i++) {
       fg_extended *number = &table->column[c].number[i];
-      number->value = number->value + number->tail - change[i];
+      number->value = number->value + number->tail - takings->change[i];
       number->tail = 0;
     }
-exit:
-  free(change);
+  if (status != FG_OK) fg_loop_takings_free(takings);
   return status;
+}
+
+void fg_loop_takings_free(fg_loop_takings *takings) {
+  free(takings->one);
+  free(takings->change);
+  *takings = (fg_loop_takings){0};
+}
+
+fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_table *table) {
+  fg_loop_takings takings;
+  FG_TRY(fg_loop_model_take(ctx, model, table, &takings));
+  fg_loop_takings_free(&takings);
+  return FG_OK;
 }

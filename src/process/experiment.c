@@ -230,7 +230,8 @@ static fg_status read_uncertainty(fg_context *ctx, const fg_experiment_options *
 }
 
 static fg_status fit(fg_context *ctx, fg_experiment *e) {
-  const fg_regression_options options = {.confidence = e->confidence};
+  const fg_regression_options options = {
+      .confidence = e->confidence, .freedom_taken = e->freedom_taken, .taken = e->taken_out};
   const fg_extended *y = NULL;
   FG_TRY(fg_table_numbers(ctx, &e->table, e->response, &y));
   FG_TRY(fg_regression_fit(ctx, &e->model, y, &options, &e->regression));
@@ -258,10 +259,25 @@ static fg_status note_forgotten(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
+static fg_status copy_taken(fg_context *ctx, const fg_experiment_options *options,
+                            fg_experiment *e) {
+  size_t rows = e->table.rows;
+  if (!options->takens) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, options->takens, sizeof *e->taken, (void **)&e->taken));
+  FG_TRY(fg_memory_allocate(ctx, rows, sizeof *e->taken_out, (void **)&e->taken_out));
+  memcpy(e->taken, options->taken, options->takens * sizeof *e->taken);
+  memcpy(e->taken_out, options->taken_out, rows * sizeof *e->taken_out);
+  e->takens = options->takens;
+  for (size_t i = 0; i < e->takens; i++)
+    if (e->taken[i].applied) e->freedom_taken += e->taken[i].parameters;
+  return FG_OK;
+}
+
 static fg_status analyse(fg_context *ctx, const fg_table *runs,
                          const fg_experiment_options *options, fg_experiment *e) {
   FG_TRY(read_options(ctx, options, e));
   FG_TRY(fg_table_copy(ctx, runs, &e->table));
+  FG_TRY(copy_taken(ctx, options, e));
   FG_TRY(apply_sign(ctx, options, e));
   FG_TRY(code_factors(ctx, options, e));
   FG_TRY(build_model(ctx, e));
@@ -270,6 +286,7 @@ static fg_status analyse(fg_context *ctx, const fg_table *runs,
   FG_TRY(fit(ctx, e));
   FG_TRY(note_forgotten(ctx, e));
   FG_TRY(fg_experiment_effects(ctx, e));
+  FG_TRY(fg_experiment_check_order(ctx, e));
   return fg_experiment_surface(ctx, options, e);
 }
 

@@ -126,6 +126,9 @@ static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
   fg_formula_free(&formula);
   FG_TRY(status);
   e->has_split_plot = true;
+  if (e->freedom_taken)
+    FG_TRY(fg_split_plot_pay(ctx, &e->table, e->whole_plot, e->freedom_taken, e->taken_out,
+                             &e->split_plot));
   if (!e->split_plot.plot_freedom)
     FG_TRY(fg_experiment_note(ctx, e,
                               "%zu whole plots leave no freedom for their error: what is constant "

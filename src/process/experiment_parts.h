@@ -14,6 +14,9 @@ fg_status fg_experiment_weigh(fg_context *ctx, fg_experiment *experiment,
 /* Split plots, coefficients by stratum, Lenth, Box-Cox, curvature, what the measurement adds. */
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
 
+/* What the residuals show over the order of the runs. */
+fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *experiment);
+
 /* Surface, region, stationary point, optimum, ridge. */
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
                                 fg_experiment *experiment);

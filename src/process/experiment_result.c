@@ -31,6 +31,9 @@ void fg_experiment_free(fg_experiment *e) {
   free(e->setting);
   free(e->u);
   free(e->weight);
+  free(e->taken);
+  free(e->taken_out);
+  free(e->order_value);
   free(e->response);
   free(e->formula);
   free(e->block);

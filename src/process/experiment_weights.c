@@ -23,7 +23,10 @@ static fg_status median_u(fg_context *ctx, const fg_experiment *e, double *media
 /* Fits with weights (s² + m²) / (s² + u²), so that a run with the middle uncertainty m weighs 1. */
 static fg_status fit_with(fg_context *ctx, fg_experiment *e, const fg_extended *response,
                           double process_sd, double median, fg_regression *fit) {
-  const fg_regression_options options = {.confidence = e->confidence, .weights = e->weight};
+  const fg_regression_options options = {.confidence = e->confidence,
+                                         .weights = e->weight,
+                                         .freedom_taken = e->freedom_taken,
+                                         .taken = e->taken_out};
   double typical = process_sd * process_sd + median * median;
   for (size_t i = 0; i < e->model.rows; i++)
     e->weight[i] = typical / (process_sd * process_sd + e->u[i] * e->u[i]);

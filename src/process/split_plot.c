@@ -84,14 +84,55 @@ static fg_status join(fg_context *ctx, strata *s) {
 
 static fg_status add_term(fg_context *ctx, const fg_anova_row *from, bool whole,
                           fg_split_plot *result) {
-  double error = whole ? result->plot_ms : result->run_ms;
-  size_t freedom = whole ? result->plot_freedom : result->run_freedom;
   fg_split_plot_term *to = &result->term[result->terms++];
   *to = (fg_split_plot_term){.row = *from, .whole_plot = whole};
   to->row.name = NULL;
-  to->row.f = from->mean_square / error;
-  to->row.p_value = fg_distribution_f_upper(to->row.f, (double)from->freedom, (double)freedom);
   return fg_text_print(ctx, &to->row.name, "%s", from->name);
+}
+
+static void judge_terms(fg_split_plot *result) {
+  for (size_t t = 0; t < result->terms; t++) {
+    fg_split_plot_term *term = &result->term[t];
+    double error = term->whole_plot ? result->plot_ms : result->run_ms;
+    size_t freedom = term->whole_plot ? result->plot_freedom : result->run_freedom;
+    term->row.f = term->row.mean_square / error;
+    term->row.p_value =
+        fg_distribution_f_upper(term->row.f, (double)term->row.freedom, (double)freedom);
+  }
+}
+
+static void find_variance(size_t rows, fg_split_plot *result) {
+  double runs_per_plot = (double)rows / (double)result->plots;
+  double excess = result->plot_ms - result->run_ms;
+  result->plot_variance = isnan(excess) ? NAN : fmax(0, excess / runs_per_plot);
+}
+
+fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *plot,
+                            size_t freedom, const double *taken, fg_split_plot *result) {
+  fg_levels plots = {0};
+  double *first = NULL;
+  bool whole = true;
+  FG_TRY(fg_table_levels(ctx, table, plot, true, &plots));
+  fg_status status = fg_memory_allocate(ctx, plots.count, sizeof *first, (void **)&first);
+  for (size_t i = 0; status == FG_OK && i < table->rows; i++)
+    first[plots.index[i]] = taken[i];
+  for (size_t i = 0; status == FG_OK && i < table->rows; i++)
+    whole = whole && taken[i] == first[plots.index[i]];
+  free(first);
+  fg_levels_free(&plots);
+  FG_TRY(status);
+  size_t *left = whole ? &result->plot_freedom : &result->run_freedom;
+  if (*left && *left <= freedom)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%zu parameters were taken out before, and the error of the %s has %zu degrees "
+                   "of freedom: none is left to judge by; add runs",
+                   freedom, whole ? "whole plots" : "runs", *left);
+  if (*left) *left -= freedom;
+  if (result->plot_freedom) result->plot_ms = result->plot_ss / (double)result->plot_freedom;
+  if (result->run_freedom) result->run_ms = result->run_ss / (double)result->run_freedom;
+  find_variance(table->rows, result);
+  judge_terms(result);
+  return FG_OK;
 }
 
 static fg_status read_strata(fg_context *ctx, const strata *s, const fg_regression *reg,
@@ -105,13 +146,12 @@ static fg_status read_strata(fg_context *ctx, const strata *s, const fg_regressi
   result->run_freedom = reg->residual_freedom;
   result->run_ss = reg->residual_ss;
   result->run_ms = reg->residual_sd * reg->residual_sd;
-  double runs_per_plot = (double)reg->rows / (double)result->plots;
-  result->plot_variance = fmax(0, (result->plot_ms - result->run_ms) / runs_per_plot);
-  if (isnan(result->plot_ms - result->run_ms)) result->plot_variance = NAN;
+  find_variance(reg->rows, result);
   FG_TRY(fg_memory_allocate(ctx, terms, sizeof *result->term, (void **)&result->term));
   for (int whole = 1; whole >= 0; whole--)
     for (size_t t = 0; t < terms; t++)
       if (s->whole[t] == whole) FG_TRY(add_term(ctx, &reg->sequential[t + 1], whole, result));
+  judge_terms(result);
   return FG_OK;
 }
 

@@ -77,7 +77,10 @@ static const char plot_style[] =
     ".plot .best{fill:var(--bad);stroke:#fff;stroke-width:1.5}"
     ".contour{stroke:#33414e;stroke-width:1}.plot .level{font-size:12px;paint-order:stroke;"
     "stroke:#fff;stroke-width:3px;stroke-opacity:.8}\n"
-    "ul.words{margin:0 0 14px;padding-left:20px}ul.words li{margin:3px 0;max-width:90ch}"
+    "ul.words{margin:0 0 14px;padding-left:20px}ul.words li{margin:3px 0;max-width:90ch}ul.words "
+    "li.command{list-style:none;margin:6px 0 10px}"
+    "ul.words code{padding:4px "
+    "8px;background:#eef2f5;border-radius:6px;overflow-wrap:anywhere;user-select:all}"
     "tr.on td{font-weight:600}tr.total td{border-top:2px solid var(--line)}\n"
     "@media(max-width:600px){.panels .plot{font-size:14px}}\n"
     "@media print{.panels{grid-template-columns:1fr 1fr}}\n";

@@ -114,6 +114,18 @@ static fg_status solve(fg_context *ctx, fg_fit *fit, double tolerance) {
   return status;
 }
 
+static fg_status pay_freedom(fg_context *ctx, const fg_regression_options *options,
+                             fg_regression *regression) {
+  size_t freedom = regression->rows - regression->rank, taken = options->freedom_taken;
+  if (taken && freedom && taken >= freedom)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%zu runs, %zu coefficients and %zu parameters of what was taken out before: no "
+                   "freedom is left to judge anything by; leave terms out, or add runs",
+                   regression->rows, regression->rank, taken);
+  regression->residual_freedom = freedom ? freedom - taken : 0;
+  return FG_OK;
+}
+
 fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_extended *response,
                             const fg_regression_options *options, fg_regression *regression) {
   const fg_regression_options defaults = {0};
@@ -127,7 +139,7 @@ fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_ext
   FG_TRY_EXIT(check_input(ctx, model, response, options->weights));
   FG_TRY_EXIT(solve(ctx, &fit, options->alias_tolerance));
   regression->rank = fit.solution.rank;
-  regression->residual_freedom = regression->rows - regression->rank;
+  FG_TRY_EXIT(pay_freedom(ctx, options, regression));
   sum_squares(&fit, regression);
   summarise(regression);
   FG_TRY_EXIT(note_limits(ctx, regression));
@@ -135,7 +147,7 @@ fg_status fg_regression_fit(fg_context *ctx, const fg_model *model, const fg_ext
   FG_TRY_EXIT(fg_regression_aliases(ctx, &fit, regression));
   FG_TRY_EXIT(fg_regression_condition(ctx, &fit, regression));
   FG_TRY_EXIT(fg_regression_anova(ctx, &fit, regression));
-  FG_TRY_EXIT(fg_regression_lack_of_fit(ctx, &fit, regression));
+  FG_TRY_EXIT(fg_regression_lack_of_fit(ctx, &fit, options, regression));
   FG_TRY_EXIT(fg_regression_diagnostics(ctx, &fit, regression));
 exit:
   fg_orthogonal_free(&fit.solution);

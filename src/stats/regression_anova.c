@@ -138,7 +138,25 @@ static fg_extended pure_error(const fg_fit *fit, const size_t *order, size_t row
   return pure;
 }
 
-fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit, fg_regression *reg) {
+/* Whether what was taken out differs between repeated runs. */
+static bool differs_within(const fg_fit *fit, const size_t *order, size_t rows,
+                           const double *taken) {
+  void *model = (void *)(size_t)fit->model;
+  for (size_t i = 1; taken && i < rows; i++)
+    if (taken[order[i]] != taken[order[i - 1]] &&
+        compare_runs(&order[i - 1], &order[i], model) == 0)
+      return true;
+  return false;
+}
+
+/* Pure error and lack of fit share the residual freedom, which has paid for what was taken out. */
+static void pay_pure(size_t paid, bool within, fg_regression *reg) {
+  if (within) reg->pure_freedom = reg->pure_freedom > paid ? reg->pure_freedom - paid : 0;
+  if (reg->pure_freedom > reg->residual_freedom) reg->pure_freedom = reg->residual_freedom;
+}
+
+fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit,
+                                    const fg_regression_options *options, fg_regression *reg) {
   size_t *order = NULL, rows = reg->rows;
   reg->lack_ss = reg->pure_ss = reg->lack_f = reg->lack_p_value = NAN;
   FG_TRY(fg_memory_allocate(ctx, rows, sizeof *order, (void **)&order));
@@ -146,6 +164,7 @@ fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit, fg_regre
     order[i] = i;
   qsort_r(order, rows, sizeof *order, compare_runs, (void *)(size_t)fit->model);
   fg_extended pure = pure_error(fit, order, rows, &reg->pure_freedom);
+  pay_pure(options->freedom_taken, differs_within(fit, order, rows, options->taken), reg);
   free(order);
   if (!reg->pure_freedom) return FG_OK;
   const fg_extended *e = fit->solution.residual;

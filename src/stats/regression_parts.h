@@ -20,7 +20,9 @@ fg_status fg_regression_coefficients(fg_context *ctx, const fg_fit *fit, fg_regr
 fg_status fg_regression_aliases(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
 fg_status fg_regression_condition(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
 fg_status fg_regression_anova(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
-fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
+fg_status fg_regression_lack_of_fit(fg_context *ctx, const fg_fit *fit,
+                                    const fg_regression_options *options,
+                                    fg_regression *regression);
 fg_status fg_regression_diagnostics(fg_context *ctx, const fg_fit *fit, fg_regression *regression);
 
 #endif

@@ -22,6 +22,61 @@ assert abs(slope(after)["estimate"] - 0.01) < 3 * slope(after)["standard_error"]
 assert after["runs"][0]["response"] != before["runs"][0]["response"]
 P
 
+# What was taken out is said, with its uncertainty, and the residual pays for it.
+python3 - <<'P' || fail "what was taken out is not said or not paid for"
+import json
+before, after, model = (json.load(open(name + ".json")) for name in ("before", "after", "better"))
+claim = model["claims"][0]
+assert before["taken_out"] is None
+taken = after["taken_out"]
+assert taken["freedom"] == 1 and len(taken["effects"]) == 1, taken
+effect = taken["effects"][0]
+assert effect["id"] == "table.linear" and effect["words"] == "a trend with humidity" and effect["taken_out"]
+assert effect["parameters"] == 1
+for name in ("amplitude", "u_amplitude"):
+    assert abs(effect[name] / claim[name] - 1) < 1e-8, (effect, claim)
+assert abs(effect["range"][1] - effect["amplitude"]) < 1e-6 * effect["amplitude"], effect
+assert before["fit"]["residual_freedom"] == 30 and after["fit"]["residual_freedom"] == 29
+assert before["coefficients"][0]["freedom"] == 30 and after["coefficients"][0]["freedom"] == 29
+error = {row["term"]: row["freedom"] for row in after["anova"]["error"]}
+assert error["residual"] == error["lack of fit"] + error["pure error"] == 29, error
+assert [i["path"] for i in after["inputs"]] == ["runs.csv", "better.json"], after["inputs"]
+words = " ".join(after["conclusions"])
+assert "Taken out before the analysis: a trend with humidity (amplitude" in words and "±" in words, words
+assert "29 degrees of freedom instead of 30" in words, words
+P
+valid doe.schema.json before.json after.json
+grep -q "$(sha256sum better.json | cut -d' ' -f1)" after.json || fail "the sum of the model is not said"
+expect 0 '' "$program" doe runs.csv --response y --model better.json --code none --html after.html -o after.json
+grep -q 'Taken out before the analysis: a trend with humidity' after.html || fail "the page does not say what was taken out"
+if command -v script >/dev/null; then
+  script -qec "'$program' doe runs.csv --response y --model better.json --code none" typed >/dev/null
+  grep -q 'Taken out before the analysis: a trend with humidity' typed || fail "the terminal does not say what was taken out"
+fi
+# A wrong row of the loop's own table is not taken out of another, and that is said; a curve has its freedom.
+python3 - <<'P'
+import json
+model = json.load(open("better.json"))
+model["claims"].append({"id": "table.outlier", "name": "table.outlier(7)", "coordinates": [], "coefficients": [1.5],
+                        "shape": [], "amplitude": 1.5, "u_amplitude": 0.1})
+model["unattributed"] = {"coordinate": "run", "freedom": 3.4, "shape": [[1, 0.1], [16, -0.1], [32, 0.1]]}
+json.dump(model, open("more.json", "w"))
+P
+expect 0 '' "$program" doe runs.csv --response y --model more.json --code none -o more.out.json
+python3 - <<'P' || fail "a lone row, a curve"
+import json
+report = json.load(open("more.out.json"))
+lone, curve = report["taken_out"]["effects"][1:]
+assert not lone["taken_out"] and report["taken_out"]["freedom"] == 5, report["taken_out"]
+assert curve["words"] == "a smooth curve over run" and curve["parameters"] == 4 and curve["u_amplitude"] > 0, curve
+assert report["fit"]["residual_freedom"] == 25
+assert any("Not taken out: table.outlier(7)" in text for text in report["conclusions"]), report["conclusions"]
+P
+valid doe.schema.json more.out.json
+# No more parameters than the runs can pay for.
+head -5 runs.csv >few.csv
+expect 65 'no freedom is left' "$program" doe few.csv --response y --model more.json --code none -o never.json
+
 # The same rows without the column, under another name, beyond what the model has seen.
 cut -d, -f1,2,4,5 runs.csv >without.csv
 sed '1s/humidity/damp/' runs.csv >renamed.csv

@@ -35,9 +35,10 @@ static void put_list(FILE *out, const char *style, char *const *text, size_t cou
   if (!count) return;
   fprintf(out, "<ul class=\"%s\">\n", style);
   for (size_t i = 0; i < count; i++) {
-    fputs("<li>", out);
+    bool command = fg_sentence_is_command(text[i]);
+    fputs(command ? "<li class=\"command\"><code>" : "<li>", out);
     fg_html_text(out, text[i]);
-    fputs("</li>\n", out);
+    fputs(command ? "</code></li>\n" : "</li>\n", out);
   }
   fputs("</ul>\n", out);
 }
@@ -288,7 +289,7 @@ fg_status fg_experiment_write_html(fg_context *ctx, const fg_experiment_report *
   char *response = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_experiment_response_words(ctx, report->experiment, &response));
-  FG_TRY_EXIT(fg_experiment_conclusions(ctx, report->experiment, &conclusions));
+  FG_TRY_EXIT(fg_experiment_conclusions(ctx, report, &conclusions));
   FG_TRY_EXIT(put_page(ctx, out, report, &conclusions, response));
   FG_TRY_EXIT(fg_stream_finish(ctx, out, "the page"));
 exit:

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "report/doe/doe_json_parts.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_json.h"
 #include "report/words.h"
@@ -17,6 +18,12 @@ static void put_inputs(fg_json *json, const fg_experiment_report *report) {
   fg_json_string(json, "path", report->path);
   fg_json_string(json, "sha256", report->sha256);
   fg_json_object_end(json);
+  if (report->model_path) {
+    fg_json_object(json, NULL);
+    fg_json_string(json, "path", report->model_path);
+    fg_json_string(json, "sha256", report->model_sha256);
+    fg_json_object_end(json);
+  }
   for (size_t i = 0; i < report->scans; i++) {
     const fg_experiment_scan *scan = &report->scan[i];
     fg_json_object(json, NULL);
@@ -158,7 +165,7 @@ static void put_aliases(fg_json *json, const fg_regression *r) {
 }
 
 /* A null stands for what could not be made. */
-static bool begin_part(fg_json *json, const char *name, bool has) {
+bool fg_doe_json_begin_part(fg_json *json, const char *name, bool has) {
   if (has)
     fg_json_object(json, name);
   else
@@ -167,19 +174,19 @@ static bool begin_part(fg_json *json, const char *name, bool has) {
 }
 
 static void put_tests(fg_json *json, const fg_experiment *e) {
-  if (begin_part(json, "lenth", e->has_lenth)) {
+  if (fg_doe_json_begin_part(json, "lenth", e->has_lenth)) {
     fg_json_number(json, "pseudo_standard_error", e->lenth.pseudo_standard_error);
     fg_json_number(json, "margin", e->lenth.margin);
     fg_json_number(json, "simultaneous_margin", e->lenth.simultaneous_margin);
     fg_json_number(json, "freedom", e->lenth.freedom);
     fg_json_object_end(json);
   }
-  if (begin_part(json, "box_cox", e->has_box_cox)) {
+  if (fg_doe_json_begin_part(json, "box_cox", e->has_box_cox)) {
     fg_json_number(json, "lambda", e->box_cox.lambda);
     put_interval(json, "interval", e->box_cox.low, e->box_cox.high);
     fg_json_object_end(json);
   }
-  if (begin_part(json, "curvature", e->has_curvature)) {
+  if (fg_doe_json_begin_part(json, "curvature", e->has_curvature)) {
     fg_json_integer(json, "corners", (int64_t)e->curvature.corners);
     fg_json_integer(json, "centres", (int64_t)e->curvature.centres);
     fg_json_number(json, "corner_mean", e->curvature.corner_mean);
@@ -194,7 +201,7 @@ static void put_tests(fg_json *json, const fg_experiment *e) {
 
 static void put_split_plot(fg_json *json, const fg_experiment *e) {
   const fg_split_plot *s = &e->split_plot;
-  if (!begin_part(json, "split_plot", e->has_split_plot)) return;
+  if (!fg_doe_json_begin_part(json, "split_plot", e->has_split_plot)) return;
   fg_json_string(json, "column", e->whole_plot);
   fg_json_integer(json, "whole_plots", (int64_t)s->plots);
   fg_json_bool(json, "balanced", s->balanced != 0);
@@ -241,7 +248,7 @@ static void put_stationary(fg_json *json, const fg_experiment *e) {
   for (size_t k = 0; k < s->factors; k++)
     fg_json_numbers(json, NULL, s->eigenvector[k], s->factors);
   fg_json_array_end(json);
-  if (!begin_part(json, "stationary", s->has_stationary)) return;
+  if (!fg_doe_json_begin_part(json, "stationary", s->has_stationary)) return;
   put_point(json, e, s->stationary);
   fg_json_bool(json, "inside_region", e->stationary_inside);
   put_prediction(json, &e->stationary);
@@ -286,7 +293,7 @@ static void put_ridge(fg_json *json, const fg_experiment *e) {
 }
 
 static void put_surface(fg_json *json, const fg_experiment *e) {
-  if (!begin_part(json, "surface", e->has_surface)) return;
+  if (!fg_doe_json_begin_part(json, "surface", e->has_surface)) return;
   put_stationary(json, e);
   if (e->has_optimum) put_optimum(json, e);
   put_ridge(json, e);
@@ -324,7 +331,7 @@ static void put_texts(fg_json *json, const char *name, char *const *text, size_t
 
 static void put_measurement(fg_json *json, const fg_experiment *e) {
   double sd = e->regression.residual_sd;
-  if (!begin_part(json, "measurement", e->u != NULL)) return;
+  if (!fg_doe_json_begin_part(json, "measurement", e->u != NULL)) return;
   fg_json_number(json, "u_rms", e->u_rms);
   fg_json_bool(json, "weighted", e->weight != NULL);
   fg_json_number(json, "process_sd", e->process_sd);
@@ -332,8 +339,8 @@ static void put_measurement(fg_json *json, const fg_experiment *e) {
   fg_json_object_end(json);
 }
 
-static void put_report(fg_json *json, const fg_experiment_report *report,
-                       const fg_sentences *conclusions) {
+static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_report *report,
+                            const fg_sentences *conclusions) {
   const fg_experiment *e = report->experiment;
   fg_json_head(json, "foilgauge/doe/1");
   put_inputs(json, report);
@@ -344,6 +351,7 @@ static void put_report(fg_json *json, const fg_experiment_report *report,
   fg_json_number(json, "confidence", e->confidence);
   put_texts(json, "conclusions", conclusions->text, conclusions->count);
   put_texts(json, "notes", e->note, e->notes);
+  fg_doe_json_taken(json, e);
   put_factors(json, e);
   put_coefficients(json, e);
   put_anova(json, &e->regression);
@@ -352,19 +360,22 @@ static void put_report(fg_json *json, const fg_experiment_report *report,
   put_aliases(json, &e->regression);
   put_tests(json, e);
   put_split_plot(json, e);
+  FG_TRY(fg_doe_json_order(ctx, json, report));
   put_surface(json, e);
   put_runs(json, report);
+  return FG_OK;
 }
 
 fg_status fg_experiment_write_json(fg_context *ctx, const fg_experiment_report *report, FILE *out) {
   fg_sentences conclusions;
   fg_json json;
-  FG_TRY(fg_experiment_conclusions(ctx, report->experiment, &conclusions));
+  FG_TRY(fg_experiment_conclusions(ctx, report, &conclusions));
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
-  put_report(&json, report, &conclusions);
+  fg_status status = put_report(ctx, &json, report, &conclusions);
   fg_json_object_end(&json);
   fg_json_end(&json);
   fg_sentences_free(&conclusions);
+  FG_TRY(status);
   return fg_stream_finish(ctx, out, "the JSON report");
 }

@@ -76,9 +76,43 @@ static void put_pareto(FILE *out, const fg_experiment *e, const bar *bars, size_
           e->has_split_plot ? "Each is judged by its own stratum." : "Red: the limit.");
 }
 
+/* Of the points (by size), those of effects that are not told from nothing. Returns how many. */
+static size_t keep_untold(const fg_experiment *e, const bar *bars, const fg_half_normal *points,
+                          size_t count, fg_half_normal *small) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; i++)
+    if (isfinite(fg_experiment_p_value(e, bars[points[i].effect].column)) &&
+        !is_on(e, bars[points[i].effect].column))
+      small[kept++] = points[i];
+  return kept;
+}
+
+/* As Lenth (1989) trims the effects that his error is taken from. */
+static const double TRIM = 2.5;
+
+/* The line of the small effects: magnitude = slope × quantile. What is told from nothing, by its
+ * own error or Lenth's, is not small, nor what lies far right of a line through the smaller half of
+ * the others. They fill the lower quantiles among all effects, so the line is fitted where they are
+ * plotted. Leaves the small ones in `small`; 0: there are none, or they are nothing at all. */
+static double small_slope(fg_half_normal *small, size_t *count) {
+  size_t half = (*count + 1) / 2, kept = 0;
+  double products = 0, squares = 0, first = 0;
+  for (size_t i = 0; i < half; i++)
+    first = fmax(first, small[i].magnitude / small[i].quantile);
+  for (size_t i = 0; i < *count; i++) {
+    if (i >= half && small[i].magnitude > TRIM * first * small[i].quantile) break;
+    products += small[i].magnitude * small[i].quantile;
+    squares += small[i].quantile * small[i].quantile;
+    kept++;
+  }
+  *count = kept;
+  return squares > 0 ? products / squares : 0;
+}
+
 static fg_status put_half_normal(fg_context *ctx, FILE *out, const fg_experiment *e,
                                  const bar *bars, size_t count, fg_half_normal *points,
                                  double *contrast) {
+  fg_half_normal *line = points + count;
   double x[2] = {0, 0}, y[2] = {0, 0};
   for (size_t i = 0; i < count; i++)
     contrast[i] = e->effect[bars[i].column].contrast;
@@ -91,8 +125,10 @@ static fg_status put_half_normal(fg_context *ctx, FILE *out, const fg_experiment
   fg_plot_y_axis(&at, "half-normal quantile");
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, "|effect|, coefficient of ±1");
-  double sd = e->lenth.pseudo_standard_error;
-  if (e->has_lenth) fg_axes_line(&at, "hint", 0, 0, fmin(x[1], sd * y[1]), fmin(x[1] / sd, y[1]));
+  size_t small = keep_untold(e, bars, points, count, line);
+  double slope = small_slope(line, &small);
+  if (slope > 0)
+    fg_axes_line(&at, "hint", 0, 0, fmin(x[1], slope * y[1]), fmin(x[1] / slope, y[1]));
   for (size_t i = 0; i < count; i++) {
     size_t column = bars[points[i].effect].column;
     fg_axes_dot(&at, is_on(e, column) ? "s1" : "s2", points[i].magnitude, points[i].quantile, 5);
@@ -101,9 +137,15 @@ static fg_status put_half_normal(fg_context *ctx, FILE *out, const fg_experiment
                    e->regression.coefficient[column].name);
   }
   fg_plot_end(&at);
-  fputs("<figcaption>Effects that are nothing lie along the dashed line; what matters lies to its "
-        "right.</figcaption></figure>\n",
-        out);
+  if (slope > 0)
+    fprintf(out,
+            "<figcaption>The dashed line belongs to the %zu small effect%s, which cannot be told "
+            "from nothing; what matters lies to its right.</figcaption></figure>\n",
+            small, small == 1 ? "" : "s");
+  else
+    fputs("<figcaption>No effect is small enough to draw the line of those that are "
+          "nothing.</figcaption></figure>\n",
+          out);
   return FG_OK;
 }
 
@@ -114,7 +156,7 @@ fg_status fg_doe_plot_effects(fg_context *ctx, FILE *out, const fg_experiment *e
   fg_half_normal *points = NULL;
   double *contrast = NULL;
   FG_TRY_EXIT(fg_memory_allocate(ctx, columns, sizeof *bars, (void **)&bars));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, columns, sizeof *points, (void **)&points));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 2 * columns, sizeof *points, (void **)&points));
   FG_TRY_EXIT(fg_memory_allocate(ctx, columns, sizeof *contrast, (void **)&contrast));
   size_t count = collect_bars(e, bars);
   if (!count || !(bars[0].size > 0)) goto exit;

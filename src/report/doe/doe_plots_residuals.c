@@ -56,7 +56,14 @@ fg_status fg_doe_plot_residuals(fg_context *ctx, FILE *out, const fg_experiment_
               true);
   for (size_t i = 0; i < rows; i++)
     x[i] = (double)(report->row ? report->row[i] : i + 1);
-  put_scatter(out, &(scatter){"Residual in the order of the sheet", "row", name, x, y, rows}, true);
+  if (e->has_order && e->order.column)
+    put_scatter(out,
+                &(scatter){"Residual over the order of the runs", e->order.column, name,
+                           e->order.value, y, rows},
+                true);
+  else
+    put_scatter(out, &(scatter){"Residual in the order of the sheet", "row", name, x, y, rows},
+                true);
   put_scatter(
       out,
       &(scatter){"Influence of the runs", "row", "Cook's distance", x, e->regression.cook, rows},

@@ -133,14 +133,17 @@ fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report 
   char *response = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_experiment_response_words(ctx, e, &response));
-  FG_TRY_EXIT(fg_experiment_conclusions(ctx, e, &conclusions));
+  FG_TRY_EXIT(fg_experiment_conclusions(ctx, report, &conclusions));
   put_head(out, report, response);
   put_coefficients(out, e);
   put_anova(out, e);
   put_quality(out, e);
   fputc('\n', out);
   for (size_t i = 0; i < conclusions.count; i++)
-    put_wrapped(out, "* ", conclusions.text[i]);
+    if (fg_sentence_is_command(conclusions.text[i]))
+      fprintf(out, "    %s\n", conclusions.text[i]);
+    else
+      put_wrapped(out, "* ", conclusions.text[i]);
   for (size_t i = 0; i < e->notes; i++)
     put_wrapped(out, "! ", e->note[i]);
   FG_TRY_EXIT(fg_stream_finish(ctx, out, "the table"));

@@ -59,11 +59,8 @@ fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *e, 
                        e->sign_chosen ? " (as in the thesis; --sign as-is keeps the sign)" : "");
 }
 
-static fg_status say(fg_context *ctx, fg_sentences *s, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
-static fg_status say(fg_context *ctx, fg_sentences *s, const char *format, ...) {
-  char text[2048];
+fg_status fg_sentences_say(fg_context *ctx, fg_sentences *s, const char *format, ...) {
+  char text[4096];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(text, sizeof text, format, arguments);
@@ -103,11 +100,12 @@ static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, f
     snprintf(interval, sizeof interval, ", %g %% interval %.3g to %.3g", 100 * e->confidence,
              change < 0 ? -high : low, change < 0 ? -low : high);
   if (factor)
-    return say(ctx, s, "%s matters: from %.6g to %.6g it %s the response by %.3g%s (p %s%s).",
-               factor->name, fg_factor_real(factor, -1), fg_factor_real(factor, 1),
-               change < 0 ? "lowers" : "raises", fabs(change), interval, equals, p_value);
-  return say(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate, equals,
-             p_value);
+    return fg_sentences_say(
+        ctx, s, "%s matters: from %.6g to %.6g it %s the response by %.3g%s (p %s%s).",
+        factor->name, fg_factor_real(factor, -1), fg_factor_real(factor, 1),
+        change < 0 ? "lowers" : "raises", fabs(change), interval, equals, p_value);
+  return fg_sentences_say(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate,
+                          equals, p_value);
 }
 
 static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
@@ -126,64 +124,72 @@ static fg_status say_effects(fg_context *ctx, const fg_experiment *e, fg_sentenc
     }
   }
   if (!judged)
-    return say(ctx, s,
-               "No effect can be judged: there is no error to compare it with. Repeat runs "
-               "or leave terms out.");
+    return fg_sentences_say(
+        ctx, s,
+        "No effect can be judged: there is no error to compare it with. Repeat runs "
+        "or leave terms out.");
   if (!found)
-    return say(ctx, s, "No effect can be told from the scatter at %g %%: %s.", 100 * e->confidence,
-               rest);
+    return fg_sentences_say(ctx, s, "No effect can be told from the scatter at %g %%: %s.",
+                            100 * e->confidence, rest);
   if (*rest)
-    return say(ctx, s, "Not told from the scatter at %g %%: %s.", 100 * e->confidence, rest);
+    return fg_sentences_say(ctx, s, "Not told from the scatter at %g %%: %s.", 100 * e->confidence,
+                            rest);
   return FG_OK;
 }
 
 static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_regression *r = &e->regression;
   if (!r->residual_freedom) return FG_OK;
-  FG_TRY(
-      say(ctx, s,
-          "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
-          "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
-          "deviation of %.3g (%zu degrees of freedom).",
-          100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
-          r->residual_freedom));
+  FG_TRY(fg_sentences_say(
+      ctx, s,
+      "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
+      "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
+      "deviation of %.3g (%zu degrees of freedom).",
+      100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
+      r->residual_freedom));
   if (e->has_split_plot)
-    FG_TRY(say(ctx, s,
-               "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
-               "them by %.3g.",
-               sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_ms)));
+    FG_TRY(fg_sentences_say(
+        ctx, s,
+        "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
+        "them by %.3g.",
+        sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_ms)));
   if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)
-    FG_TRY(say(ctx, s,
-               r->lack_p_value < 1 - e->confidence
-                   ? "The model does not fit: beside the scatter of repeated runs the lack "
-                     "of fit is significant (p = %.4f). Add terms or transform."
-                   : "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
-               r->lack_p_value));
+    FG_TRY(fg_sentences_say(
+        ctx, s,
+        r->lack_p_value < 1 - e->confidence
+            ? "The model does not fit: beside the scatter of repeated runs the lack "
+              "of fit is significant (p = %.4f). Add terms or transform."
+            : "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
+        r->lack_p_value));
   if (e->has_box_cox && (e->box_cox.low > 1 || e->box_cox.high < 1))
-    FG_TRY(say(ctx, s,
-               "A power of the response would suit the model better: lambda %.2g (%.2g to %.2g); "
-               "0 is the logarithm.",
-               e->box_cox.lambda, e->box_cox.low, e->box_cox.high));
+    FG_TRY(fg_sentences_say(
+        ctx, s,
+        "A power of the response would suit the model better: lambda %.2g (%.2g to %.2g); "
+        "0 is the logarithm.",
+        e->box_cox.lambda, e->box_cox.low, e->box_cox.high));
   return FG_OK;
 }
 
 static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   if (!e->has_curvature || !isfinite(e->curvature.p_value)) return FG_OK;
   if (e->curvature.p_value < 1 - e->confidence)
-    return say(ctx, s,
-               "The centre runs lie off the plane of the corners (p = %.4f): the response is "
-               "curved; axial runs would tell in which factor.",
-               e->curvature.p_value);
-  return say(ctx, s, "The centre runs show no curvature (p = %.4f).", e->curvature.p_value);
+    return fg_sentences_say(
+        ctx, s,
+        "The centre runs lie off the plane of the corners (p = %.4f): the response is "
+        "curved; axial runs would tell in which factor.",
+        e->curvature.p_value);
+  return fg_sentences_say(ctx, s, "The centre runs show no curvature (p = %.4f).",
+                          e->curvature.p_value);
 }
 
 static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   double sd = e->regression.residual_sd;
   if (!e->u || e->weight || !e->regression.residual_freedom || !(sd > 0)) return FG_OK;
-  return say(ctx, s,
-             "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "
-             "rest is the process.",
-             e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
+  return fg_sentences_say(
+      ctx, s,
+      "Measurement: standard uncertainty %.3g, %.2g %% of the variance between runs; the "
+      "rest is the process.",
+      e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
 }
 
 static void setting_text(const fg_experiment *e, const double *x, char *text, size_t size) {
@@ -206,9 +212,9 @@ static void setting_text(const fg_experiment *e, const double *x, char *text, si
 static fg_status say_stationary(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char setting[700];
   setting_text(e, e->surface.stationary, setting, sizeof setting);
-  return say(ctx, s, "The surface is stationary at %s: a %s of %.4g, %s the region.", setting,
-             fg_surface_kind_word(e->surface.kind), e->surface.stationary_value,
-             e->stationary_inside ? "inside" : "outside");
+  return fg_sentences_say(ctx, s, "The surface is stationary at %s: a %s of %.4g, %s the region.",
+                          setting, fg_surface_kind_word(e->surface.kind),
+                          e->surface.stationary_value, e->stationary_inside ? "inside" : "outside");
 }
 
 static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
@@ -218,37 +224,44 @@ static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentenc
   if (e->surface.has_stationary) FG_TRY(say_stationary(ctx, e, s));
   setting_text(e, e->optimum.x, setting, sizeof setting);
   if (isfinite(p->low))
-    FG_TRY(say(ctx, s,
-               "Best setting in the region of the data%s (%s): %s. Expected response %.4g (%g %% "
-               "interval %.3g to %.3g); one confirmation run should fall between %.3g and %.3g.",
-               e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting,
-               p->mean, 100 * e->confidence, p->low, p->high, p->run_low, p->run_high));
+    FG_TRY(fg_sentences_say(
+        ctx, s,
+        "Best setting in the region of the data%s (%s): %s. Expected response %.4g (%g %% "
+        "interval %.3g to %.3g); one confirmation run should fall between %.3g and %.3g.",
+        e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting, p->mean,
+        100 * e->confidence, p->low, p->high, p->run_low, p->run_high));
   else
-    FG_TRY(say(ctx, s, "Best setting in the region of the data%s (%s): %s. Expected response %.4g.",
-               e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting,
-               p->mean));
+    FG_TRY(fg_sentences_say(
+        ctx, s, "Best setting in the region of the data%s (%s): %s. Expected response %.4g.",
+        e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting, p->mean));
   if (e->magnitude && isfinite(p->run_low) && p->run_low < 0)
-    FG_TRY(
-        say(ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
+    FG_TRY(fg_sentences_say(
+        ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
   if (e->optimum.on_border)
-    FG_TRY(say(ctx, s,
-               "It lies on the border of the region: the best may lie beyond, where there "
-               "are no runs."));
+    FG_TRY(fg_sentences_say(
+        ctx, s,
+        "It lies on the border of the region: the best may lie beyond, where there "
+        "are no runs."));
   if (e->regression.model_p_value > 1 - e->confidence)
-    return say(ctx, s,
-               "Beware: the model as a whole is not told from the mean (p = %.3f), so the best "
-               "setting is a suggestion to test, not a finding.",
-               e->regression.model_p_value);
+    return fg_sentences_say(
+        ctx, s,
+        "Beware: the model as a whole is not told from the mean (p = %.3f), so the best "
+        "setting is a suggestion to test, not a finding.",
+        e->regression.model_p_value);
   return FG_OK;
 }
 
-fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report *report,
+                                    fg_sentences *s) {
+  const fg_experiment *e = report->experiment;
   *s = (fg_sentences){0};
   fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_experiment_say_taken(ctx, report, s));
   FG_TRY_EXIT(say_effects(ctx, e, s));
   FG_TRY_EXIT(say_quality(ctx, e, s));
   FG_TRY_EXIT(say_curvature(ctx, e, s));
   FG_TRY_EXIT(say_measurement(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_say_order(ctx, report, s));
   FG_TRY_EXIT(say_optimum(ctx, e, s));
 exit:
   if (status != FG_OK) fg_sentences_free(s);

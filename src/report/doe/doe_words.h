@@ -10,9 +10,28 @@ typedef struct fg_sentences {
 } fg_sentences;
 
 /* Free with fg_sentences_free. */
-fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment *experiment,
+fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report *report,
                                     fg_sentences *sentences);
 void fg_sentences_free(fg_sentences *sentences);
+fg_status fg_sentences_say(fg_context *ctx, fg_sentences *sentences, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* Whether a sentence is a command, to be shown as it is typed. */
+bool fg_sentence_is_command(const char *text);
+
+/* Parts of the conclusions: what was taken out before the analysis; what shows over the order. */
+fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *report,
+                                  fg_sentences *sentences);
+fg_status fg_experiment_say_order(fg_context *ctx, const fg_experiment_report *report,
+                                  fg_sentences *sentences);
+
+/* Whether a test of the order is told, and whether any is. */
+bool fg_order_shows(double p_value);
+bool fg_order_seen(const fg_order_check *order);
+
+/* The loop on tables for the same data and model, to be typed. The caller frees it. */
+fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report *report,
+                                     char **command);
 
 /* How the response is modelled: "the magnitude of ...". The caller frees it. */
 fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *experiment,
