@@ -51,6 +51,8 @@ def is_one(name, accepted):
     if " + " in name:
         return all(is_one(part, accepted) for part in name.split(" + "))
     own = normal(name)
+    if own.startswith("table.outlier(") and len(member(own)[1]) > 1:  # several at once: one that is known is enough
+        return any(is_one(f"table.outlier({row})", accepted) for row in member(own)[1])
     return any(fnmatch.fnmatchcase(own, a if "*" in a else normal(a)) or
                (own.startswith("table.serial_correlation") and a.startswith("table.serial_correlation")) for a in accepted)
 

@@ -1,5 +1,5 @@
 """loop_power.py PROGRAM [--kinds K,K] [--sizes 4,6] [--designs D,D] [--tables N] [--clean N] [--clean-kinds K]
-                       [--seed N] [--jobs N] [--out FOLDER] [--fresh] [--report-only] [--no-peer]
+                       [--seed N] [--jobs N] [--out FOLDER] [--fresh] [--report-only] [--no-peer] [--keep FOLDER]
 
 Power of `foilgauge loop --table` against an oracle that knows every effect's form and the noise
 (loop_power_tables.py), and claims on clean tables. Writes loop_power.csv, which a second run continues, and
@@ -14,11 +14,10 @@ import csv
 import json
 import multiprocessing
 import os
+import shlex
 import subprocess
 import tempfile
 import time
-
-import numpy as np
 
 import loop_power_peer as peer
 import loop_power_tables as tables
@@ -39,16 +38,30 @@ def write_table(path, design, y):
             writer.writerow([v if isinstance(v, str) else repr(float(v)) for v in row])
 
 
-def ask(program, design, y, more=()):
+def command_of(program, design, path):
+    command = [program, "loop", "--table", path, "--response", "response", "--model", design.model, "-o", "-"]
+    if design.group:
+        command += ["--group", design.group]
+    if design.name != "lot":  # of a lot the bump's number is one by itself
+        command += ["--order", design.order[0]]
+    return command
+
+
+def keep(job, design, y, truth):
+    """The table as a file, and its truth and command in a list, for a closer look."""
+    path = os.path.join(job["keep"], f"{job['design']}_{job['kind']}_{job['size']}_{job['table']}.csv")
+    write_table(path, design, y)
+    words = "clean" if truth is None else describe(truth)
+    with open(os.path.join(job["keep"], "commands.txt"), "a", encoding="utf-8") as file:
+        file.write(f"# {words}\n{shlex.join(command_of(job['program'], design, path))}\n")
+
+
+def ask(program, design, y):
     """The program's report, or None where it failed, and the seconds it took."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "t.csv")
         write_table(path, design, y)
-        command = [program, "loop", "--table", path, "--response", "response", "--model", design.model, "-o", "-", *more]
-        if design.group:
-            command += ["--group", design.group]
-        if design.name != "lot":  # of a lot the bump's number is one by itself
-            command += ["--order", design.order[0]]
+        command = command_of(program, design, path)
         start = time.monotonic()
         try:
             done = subprocess.run(command, capture_output=True, timeout=SECONDS_AT_MOST)
@@ -168,6 +181,8 @@ def run(job):
         if made is None:
             return None
         design, truth, y = made
+    if job["keep"]:
+        keep(job, design, y, truth)
     report, seconds = ask(job["program"], design, y)
     row = {k: job[k] for k in ("design", "kind", "size", "table", "seed")}
     row.update(blank() if report is None else judge_clean(report, job["kind"]) if clean else judge(report, truth))
@@ -180,7 +195,8 @@ def jobs(a):
     effects = [(d, k, s, t) for t in range(a.tables) for s in a.sizes for d in a.designs for k in a.kinds]
     clean = [(d, k, 0, t) for t in range(a.clean) for d in a.designs for k in a.clean_kinds]
     for d, k, s, t in clean + effects:
-        yield {"design": d, "kind": k, "size": s, "table": t, "seed": a.seed, "program": a.program, "no_peer": a.no_peer}
+        yield {"design": d, "kind": k, "size": s, "table": t, "seed": a.seed, "program": a.program, "no_peer": a.no_peer,
+               "keep": a.keep}
 
 
 def key(row):
@@ -227,12 +243,14 @@ def options():
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--report-only", action="store_true")
     parser.add_argument("--no-peer", action="store_true")
+    parser.add_argument("--keep", help="a folder for the tables and their commands")
     return parser.parse_args()
 
 
 def main():
     a = options()
-    os.makedirs(a.out, exist_ok=True)
+    for folder in filter(None, (a.out, a.keep)):
+        os.makedirs(folder, exist_ok=True)
     path = os.path.join(a.out, "loop_power.csv")
     if a.fresh and os.path.exists(path):
         os.remove(path)

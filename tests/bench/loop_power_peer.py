@@ -39,7 +39,7 @@ def over_order(name, x):
     levels = len(np.unique(x))
     for length in levels * np.geomspace(0.05, 0.5, 6):
         yield "table.order_transient", [name], np.exp(-(x - x.min()) / length)[:, None]
-    for frequency in np.linspace(1, 0.46 * levels, 2 * GRID) / levels:
+    for frequency in np.linspace(1, 0.46 * levels, min(max(2 * GRID, levels), 200)) / levels:
         t = 2 * math.pi * frequency * x
         yield "table.periodic", [name], np.column_stack([np.sin(t), np.cos(t)])
 

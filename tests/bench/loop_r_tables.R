@@ -69,7 +69,7 @@ case("hills", frame(race = seq_len(nrow(hills)), dist = hills$dist, climb = hill
   "time ~ dist + climb", "Knock Hill (row 18) recorded an hour wrong", "Atkinson 1986; Venables and Ripley 2002, 6.3",
   lone(18), rows_wrong(18))
 case("newcomb", series(newcomb, "deviation"), "deviation ~ 1", "two wild readings, -44 and -2 (rows 2 and 54)",
-  "Newcomb 1891; Stigler 1977", lone(which(newcomb < 0)), rows_wrong(which(newcomb < 0)), order_of("reading"))
+  "Newcomb 1891; Stigler 1977", lone(which(newcomb < 0)), as.list(rows_wrong(which(newcomb < 0))), order_of("reading"))
 case("forbes", frame(point = seq_len(nrow(forbes)), bp = forbes$bp, log_pres = 100 * log10(forbes$pres)),
   "log_pres ~ bp", "row 12 is wrong", "Forbes 1857; Weisberg 1980", lone(12), rows_wrong(12))
 case("phones", frame(year = phones$year, calls = phones$calls), "calls ~ year",
