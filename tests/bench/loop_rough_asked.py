@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from loop_rough_judged import (claims, corrected, floors, is_curve, is_right, mean_of, over_floor, p_values, percent,
-                               ranges_held, told, worse, wrong)
+                               ranges_held, told, worse, worse_than_noise, wrong)
 from loop_rough_plot import kolmogorov_smirnov
 from loop_scans_report import QUANTITIES, is_scanner, markdown, number
 
@@ -37,6 +37,7 @@ def measures(rows):
         "turned pairs: exactly named, %": ("exact", percent(pairs, lambda r: number(r, "named")), len(pairs)),
         "unlisted curves, seams, single bumps: right place, %": ("curves", percent(curves, is_right), len(curves)),
         "made worse, %": ("worse", percent(rows, lambda r: worse(r, zero)), len(rows)),
+        "made worse beyond its noise, %": ("worse", percent(rows, lambda r: worse_than_noise(r, zero)), len(rows)),
     }  # fmt: skip
     for q in QUANTITIES:
         result[f"{q} after / floor (medians), where the data tell"] = ("floor", over_floor(sure, q), len(sure))

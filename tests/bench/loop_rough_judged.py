@@ -5,6 +5,7 @@ import numpy as np
 from loop_scans_report import QUANTITIES, is_scanner, number
 
 SLACK = 1.02  # an error that grew by less has not
+NOISE_TIMES = 1.2  # of the floor: what is as good as it
 BEYOND = 0.1  # of the median floor: what a change of an error must be to be more than noise
 
 
@@ -40,8 +41,10 @@ def told(row):
 
 
 def judged_by(row):
-    """The circles have one truth where nothing but the scanner is wrong; else there is the midline."""
-    return QUANTITIES if is_scanner(row) or not row["wanted"] else ("profile",)
+    """What a report states: the circles that everything else stands on. Where it says of the part what deviates from them, that
+    is one statement with them, the midline; in a tie it says nothing of the kind."""
+    said = not is_scanner(row) and row["wanted"] and not number(row, "tied")
+    return ("profile",) if said else QUANTITIES
 
 
 def with_floor(rows):
@@ -53,9 +56,20 @@ def floors(rows):
     return {q: median(q) if with_floor(rows) else 0.0 for q in (*QUANTITIES, "profile")}
 
 
+def grew(row, quantity, least):
+    before, after = (number(row, f"{quantity}_{side}_um") for side in ("before", "after"))
+    return after > max(SLACK * before, before + BEYOND * least[quantity])
+
+
 def worse(row, least):
-    after, before = (lambda q: number(row, q + "_after_um")), (lambda q: number(row, q + "_before_um"))
-    return any(after(q) > max(SLACK * before(q), before(q) + BEYOND * least[q]) for q in judged_by(row))
+    return any(grew(row, q, least) for q in judged_by(row))
+
+
+def worse_than_noise(row, least):
+    """And larger than the same scatter makes it where no effect is: an error may be small by chance, and grow to what it is
+    without an effect."""
+    beyond = lambda q: not row[q + "_floor_um"] or number(row, q + "_after_um") > NOISE_TIMES * number(row, q + "_floor_um")
+    return any(grew(row, q, least) and beyond(q) for q in judged_by(row))
 
 
 def corrected(row, quantities=QUANTITIES):

@@ -179,8 +179,9 @@ the thickness: 10 µm).
 
 In class: what is there was named, or is one of the explanations that the report says it cannot tell apart. Wrong: something
 is claimed, and what is there is not among the explanations. Told: exactly named, and nothing is tied with it. Floor: the same foils
-and scatter without the effect, measured. Worse: an error (R, h, R0; where the part deviates, that of the midline) is larger after than
-before, by more than 2 % and a tenth of the tier's median floor. Curves: `unattributed` over the right coordinate; seams also as their row.
+and scatter without the effect, measured. Worse: an error (R, h, R0; where the report says how the part
+deviates from its circles, that of the midline) is larger after than before, by more than 2 % and a tenth of the tier's median floor;
+beyond its noise: and larger than 1.2 times its floor. Curves: `unattributed` over the right coordinate; seams also as their row.
 Seconds are those of a machine that renders and judges other inputs beside, unless `--threads 1`."""
 
 
