@@ -108,7 +108,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   spec.hold_out = take_line(&rest);
   if (!spec.response || !spec.model) return 0;
   if (fg_table_parse(&ctx, "table.csv", rest, strlen(rest), &table) != FG_OK) return 0;
-  if (table.rows <= ROWS && table.columns <= COLUMNS) run_loop(&spec, &table, check);
+  char *said = NULL; /* every other input as the loop takes what the program itself measured */
+  bool own = table.rows % 2 == 0;
+  if (own && fg_table_count_words(&ctx, &table, 3, &said) != FG_OK) table.rows = 0;
+  free(said);
+  if (table.rows && table.rows <= ROWS && table.columns <= COLUMNS) run_loop(&spec, &table, check);
   fg_table_free(&table);
   return 0;
 }
