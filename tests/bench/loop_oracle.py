@@ -107,9 +107,20 @@ def pieces_of(midline):
     return np.split(np.arange(len(midline.bump)), cut)
 
 
-def standard_errors(case, effects, unlisted=False):
-    """The effects as they stand in the case, together: in standard errors of their common size. Unlisted ones are seen by
-    what smooth listed effects cannot take up (of one scan)."""
+def shift_um(midline, at, normal, middle_mm, effects):
+    """Along the normal, what effects move together."""
+    shape = midline.part_shift_um(effects)
+    for effect in effects:
+        shape = shape + np.sum(scanner_shift_um(effect, at, middle_mm) * normal, axis=1)
+        if effect["id"] == "free.edge.normal":  # both edges, which face opposite ways
+            degrees = np.degrees(np.arctan2(normal[:, 1], normal[:, 0]))
+            faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]
+            shape = shape + (faces[0] - faces[1]) / 2
+    return shape
+
+
+def seen(case, sets, unlisted=False):
+    """A column for each set of effects: what geometry and poses leave of it, in standard errors of a row."""
     parts, blocks, scans = {}, [], 0
     for k, spec in enumerate(case["specs"]):
         for f, foil in enumerate(spec["foils"]):
@@ -121,28 +132,65 @@ def standard_errors(case, effects, unlisted=False):
             key = f if case["same_foil"] else (k, f)
             first = key not in parts
             parts.setdefault(key, len(parts))
-            shape = midline.part_shift_um(effects)
-            for effect in effects:
-                shape = shape + np.sum(scanner_shift_um(effect, at, middle) * normal, axis=1)
-                if effect["id"] == "free.edge.normal":  # both edges, which face opposite ways
-                    degrees = np.degrees(np.arctan2(normal[:, 1], normal[:, 0]))
-                    faces = [natural_spline(effect["knots"], degrees + turn, 360.0) for turn in (0, 180)]
-                    shape = shape + (faces[0] - faces[1]) / 2
+            shapes = [shift_um(midline, at, normal, middle, effects) for effects in sets]
             part, own = geometry_columns(midline, normal, first)
             if unlisted:
                 own = np.column_stack([own, smooth_listed(midline, at, normal)])
-            white = whiten(midline, spec["scanner"], np.column_stack([shape, part, own]))
+            white = whiten(midline, spec["scanner"], np.column_stack([*shapes, part, own]))
             blocks.append((parts[key], part.shape[1], white))
             scans += own.shape[1]
-    width = max(p for _, p, _ in blocks)
+    width, count = max(p for _, p, _ in blocks), len(sets)
     geometry = np.zeros((sum(len(w) for *_, w in blocks), width * len(parts) + scans))
-    signal, row, column = np.empty(len(geometry)), 0, width * len(parts)
-    for part, count, white in blocks:
+    signal, row, column = np.empty((len(geometry), count)), 0, width * len(parts)
+    for part, numbers, white in blocks:
         rows = slice(row, row + len(white))
-        signal[rows] = white[:, 0]
-        geometry[rows, part * width : part * width + count] = white[:, 1 : 1 + count]
-        own = white.shape[1] - 1 - count
-        geometry[rows, column : column + own] = white[:, 1 + count :]
+        signal[rows] = white[:, :count]
+        geometry[rows, part * width : part * width + numbers] = white[:, count : count + numbers]
+        own = white.shape[1] - count - numbers
+        geometry[rows, column : column + own] = white[:, count + numbers :]
         row, column = row + len(white), column + own
-    left = signal - geometry @ np.linalg.lstsq(geometry, signal, rcond=None)[0]
-    return float(np.linalg.norm(left))
+    return signal - geometry @ np.linalg.lstsq(geometry, signal, rcond=None)[0]
+
+
+def standard_errors(case, effects, unlisted=False):
+    """The effects as they stand in the case, together: in standard errors of their common size. Unlisted ones are seen by
+    what smooth listed effects cannot take up (of one scan)."""
+    return float(np.linalg.norm(seen(case, [effects], unlisted)))
+
+
+# --- effects against each other -----------------------------------------------------------------
+
+
+def listed(size_mm):
+    """(name, effects of any size) for every listed effect of the midline, over places, middles, lengths and periods."""
+    bent = lambda name, middle: {"id": name, "amplitude_um": 10.0, "half_width_mm": 18.0, "centre_mm": float(middle)}
+    for name in ("scan.scale_y", "scan.shear"):
+        yield name, [{"id": name, "value": 1e-3}]
+    for name in ("scan.optical_quadratic", "scan.optical_cubic", "scan.carriage_quadratic"):
+        yield from ((name, [bent(name, middle)]) for middle in np.arange(0, size_mm, 2))
+    for length in (1.5, 3, 6, 10):
+        yield "scan.carriage_start", [{"id": "scan.carriage_start", "amplitude_um": 10.0, "length_mm": length}]
+    for place in np.arange(2, size_mm, 0.7):
+        for name, axis in (("scan.row_step", "y_mm"), ("scan.column_step", "x_mm")):
+            yield name, [{"id": name, "amplitude_um": 10.0, axis: float(place)}]
+    for period in np.geomspace(1.2, 40, 24):
+        yield "scan.carriage_ripple", [{"id": "scan.carriage_ripple", "amplitude_um": 10.0, "period_mm": float(period),
+                                        "phase_deg": phase} for phase in (0.0, 90.0)]  # fmt: skip
+    yield "part.ovality", [{"id": "part.ovality", "amplitude_um": 10.0, "phase_deg": phase} for phase in (0, 45)]
+    for name in ("part.spiral", "part.bump_crown", "part.bump_skew"):
+        yield name, [{"id": name, "amplitude_um": 10.0}]
+
+
+def standard_errors_apart(case):
+    """(how many, which): standard errors that lie between the case's effect and the nearest other listed one."""
+    wanted = [e["id"] for e in case["effects"]]
+    size = MM_PER_PX * max(case["specs"][0][side] for side in ("width_px", "height_px"))
+    others = [(name, effects) for name, effects in listed(size) if name not in wanted]
+    columns = seen(case, [case["effects"], *([e] for _, effects in others for e in effects)])
+    signal, at, best = columns[:, 0], 1, (math.inf, "")
+    for name, effects in others:
+        other = columns[:, at : at + len(effects)]
+        at += len(effects)
+        left = signal - other @ np.linalg.lstsq(other, signal, rcond=None)[0]
+        best = min(best, (float(np.linalg.norm(left)), name))
+    return best

@@ -2,7 +2,7 @@
 strip, one-sided blur, halo, the part's wall beside an edge, JPEG; and on scans of a second renderer (other_scanner.py).
 
 Usage: loop_rough.py PROGRAM [--cases N] [--tier NAME]... [--seed S]... [--all] [--threads N] [--fresh] [--report-only]
-       [--pictures DIR]
+       [--pictures DIR] [--busy]
 
 Seeds 11 and 12 are for whoever works on the loop; 13 runs only with --all, and nobody looks at it while limits are set.
 Inputs that the CSV holds are not run again (--fresh: all are), so that a run can be broken off and taken up, or be
@@ -23,7 +23,7 @@ import numpy as np
 
 import loop_rough_report
 from loop_cases import CURVES, PART_EFFECTS, SCANNER_EFFECTS, draw_case, log_uniform
-from loop_oracle import standard_errors
+from loop_oracle import standard_errors, standard_errors_apart
 from loop_run import Results, add_options, errors_um, judge, kept, measured_foils, pair_foils, profile_um, render, run_loop
 from loop_scans_report import is_scanner
 from other_scanner import draw_other, render_other
@@ -108,9 +108,12 @@ def draw_odd(rng, kind, case):
     return [effect]
 
 
+def for_oracle(case):
+    return {**case, "specs": [{**s, "scanner": as_rough(s["scanner"])} for s in case["specs"]]} if case["other"] else case
+
+
 def size_by_oracle(case, unlisted):
-    seen = {**case, "specs": [{**s, "scanner": as_rough(s["scanner"])} for s in case["specs"]]} if case["other"] else case
-    factor = STANDARD_ERRORS / max(standard_errors(seen, case["effects"], unlisted), 1e-9)
+    factor = STANDARD_ERRORS / max(standard_errors(for_oracle(case), case["effects"], unlisted), 1e-9)
     for effect in case["effects"]:
         for member in ("amplitude_um", "value"):
             if member in effect:
@@ -139,6 +142,12 @@ def make_case(name, index, seed):
     if case["effects"]:
         size_by_oracle(case, unlisted=tier.kinds in (CURVES, ODD))
     return layout, case
+
+
+def apart(row):
+    """How far the oracle holds a row's effect from the nearest other one: (standard errors, which)."""
+    _, case = make_case(row["tier"], int(row["index"]), int(row["seed"]))
+    return standard_errors_apart(for_oracle(case))
 
 
 def render_others(program, folder, specs):
@@ -177,6 +186,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--cases", type=int, help="at most so many of every tier and seed")
+    parser.add_argument("--busy", action="store_true", help="other work ran beside: times by the clock are not judged")
     add_options(parser, TIERS, os.path.join(ROOT, "reports"))
     options = parser.parse_args()
     program = os.path.abspath(options.program)
@@ -190,7 +200,7 @@ def main():
         jobs += [{"tier": name, "seed": seed, "index": k} for seed in seeds for k in range(count)]
     if not options.report_only:
         results.run(jobs, lambda key: work_on(program, key, options.pictures), options.threads)
-    loop_rough_report.write(options.out, results.rows, TIERS)
+    loop_rough_report.write(options.out, results.rows, TIERS, apart, options.busy)
 
 
 if __name__ == "__main__":

@@ -19,15 +19,15 @@ OF_INPUTS = {"claims", "class", "wrong", "exact", "curves", "worse"}  # shares o
 UNITS = {"floor": "", "p": "", "one": "s ", "pair": "s "}
 
 
-def measures(rows):
-    """{what: (key in ASKED, value, of how many)} of one renderer's rows."""
+def measures(rows, busy):
+    """{what: (key in ASKED, value, of how many)} of one renderer's rows; busy: seconds are not judged."""
     of = lambda *kinds: [r for r in rows if r["tier"].replace("other-", "") in kinds]
     clean, named, pairs, curves = of("clean"), of("single", "pair"), of("pair"), of("curve", "odd")
     fixed = [r for r in rows if r["wanted"] and is_scanner(r) and corrected(r)]
     sure = [r for r in fixed if told(r) and not is_curve(r)]
     zero = floors(rows) if rows else {}
     chance = p_values(rows)
-    seconds = lambda own: float(np.percentile([number(r, "seconds") for r in own], 95)) if own else None
+    seconds = lambda own: float(np.percentile([number(r, "seconds") for r in own], 95)) if own and not busy else None
     result = {
         "clean inputs with a claim, %": ("claims", percent(clean, claims), len(clean)),
         "p-values of clean inputs uniform: Kolmogorov-Smirnov's p": (
@@ -94,9 +94,9 @@ def chance_of_share(value, count):
     return [100 * float(np.clip((middle + s * half) / (1 + z2 / count), 0, 1)) for s in (-1, 1)]
 
 
-def glance_lines(rows):
+def glance_lines(rows, busy):
     other = lambda r: r["tier"].startswith("other-")
-    own, second = measures([r for r in rows if not other(r)]), measures([r for r in rows if other(r)])
+    own, second = (measures([r for r in rows if other(r) == which], busy) for which in (False, True))
     table = []
     for what, (key, value, count) in own.items():
         cells = [what, asked(key)]
@@ -106,16 +106,16 @@ def glance_lines(rows):
     return markdown(["what", "asked", "this renderer", "holds", "second renderer", "holds"], table)
 
 
-def figures_by_tier(rows, tiers):
+def figures_by_tier(rows, tiers, busy):
     """(title, what, key, value, of how many) of every figure that is asked of a tier."""
     for name, tier in tiers.items():
-        for what, (key, value, count) in measures([r for r in rows if r["tier"] == name]).items():
+        for what, (key, value, count) in measures([r for r in rows if r["tier"] == name], busy).items():
             if value is not None:
                 yield tier.title, what, key, value, count
 
 
-def missed_figures_lines(rows, tiers):
-    figures = list(figures_by_tier(rows, tiers))
+def missed_figures_lines(rows, tiers, busy):
+    figures = list(figures_by_tier(rows, tiers, busy))
     missed, table = [f for f in figures if not reached(f[2], f[3])], []
     for title, what, key, value, count in missed:
         likely = "{:.1f} to {:.1f}".format(*chance_of_share(value, count)) if key in OF_INPUTS else ""

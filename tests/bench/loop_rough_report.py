@@ -66,6 +66,26 @@ def effect_lines(rows):
     return markdown(["effect", "one scan", "pair", "second renderer, one scan", "pair"], table)
 
 
+# Standard errors between two effects that an oracle can tell apart: 1 in 700 by chance.
+APART = 3.0
+
+
+def apart_lines(rows, apart):
+    """Turned pairs by whether the data tell their effect from every other one."""
+    pairs = [r for r in rows if r["tier"].endswith("pair") and "thickness" not in r["wanted"]]
+    known = {id(r): apart(r) for r in pairs}
+    table, missed = [], []
+    for title, test in ((f"at least {APART:g}", lambda a: a >= APART), ("less", lambda a: a < APART)):
+        own = [r for r in pairs if test(known[id(r)][0])]
+        table.append([title, len(own), share(own, lambda r: number(r, "named")), share(own, told), share(own, is_right)])
+        missed += [r for r in own if not number(r, "named")]
+    said = [[r["tier"], r["seed"], r["index"], r["wanted"], r["claims"] or r["unattributed"] or r["verdict"],
+             f"{known[id(r)][0]:.1f}", known[id(r)][1]] for r in missed]  # fmt: skip
+    return [*markdown(["standard errors to the nearest other effect", "pairs", "exactly named %", "and nothing tied %", "in class %"], table),
+            "", "Pairs that were not exactly named:", "",
+            *markdown(["tier", "seed", "case", "there", "said", "standard errors apart", "nearest"], said)]  # fmt: skip
+
+
 def error_cells(rows, q):
     median = lambda side: np.median([number(r, f"{q}_{side}_um") for r in rows])
     return f"{median('before'):.3g} → {median('after'):.3g}, {median('floor'):.3g}"
@@ -182,19 +202,24 @@ is claimed, and what is there is not among the explanations. Told: exactly named
 and scatter without the effect, measured. Worse: an error (R, h, R0; where the report says how the part
 deviates from its circles, that of the midline) is larger after than before, by more than 2 % and a tenth of the tier's median floor;
 beyond its noise: and larger than 1.2 times its floor. Curves: `unattributed` over the right coordinate; seams also as their row.
-Seconds are those of a machine that renders and judges other inputs beside, unless `--threads 1`."""
+Seconds are {seconds}."""
+
+QUIET = "the clock's, or the processor's where those are less: other inputs are rendered and judged beside"
+BUSY = "the clock's while other work ran beside, so that they are not judged (`--busy`)"
 
 
-def write(folder, rows, tiers):
+def write(folder, rows, tiers, apart, busy=False):
     seeds = sorted({r["seed"] for r in rows})
     whole = all(sum(r["tier"] == n and r["seed"] == s for r in rows) >= t.count for n, t in tiers.items() for s in seeds)
     options = " --all" if "13" in seeds else ""
-    text = TEXT.format(options=options, count=len(rows), seeds=", ".join(seeds))
+    text = TEXT.format(options=options, count=len(rows), seeds=", ".join(seeds), seconds=BUSY if busy else QUIET)
     lines = ["# The loop on scans with rough edges", "", text, ""]
     if not whole:
         lines += ["**A part of the benchmark: not every tier of every seed is whole.**", ""]
-    lines += ["## What was asked, and what holds", "", *glance_lines(rows), "", *missed_figures_lines(rows, tiers)]
+    lines += ["## What was asked, and what holds", "", *glance_lines(rows, busy), "", *missed_figures_lines(rows, tiers, busy)]
     lines += ["", "## Named", "", *naming_lines(rows, tiers), "", "Effect by effect, in class:", "", *effect_lines(rows)]
+    lines += ["", "Turned pairs, by how far an oracle, which knows every form and the noise's covariance, can hold the effect from the nearest",
+              "other listed one of any size, place, middle, length or period (loop_oracle.py):", "", *apart_lines(rows, apart)]  # fmt: skip
     lines += ["", "## Errors against truth, effects of the scanner", "", "Medians, µm.", "", *error_lines(rows, tiers)]
     lines += ["", "Distance of the true midline from what is reported, all effects; medians, µm.", "", *profile_lines(rows, tiers)]
     lines += ["", "## Intervals", "", "Inputs with an effect of the scanner where the dimension was corrected: values within U = 2 u of the",

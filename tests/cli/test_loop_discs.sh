@@ -41,8 +41,10 @@ PYTHON
 }
 
 plate clean 1 ''
+if [ -z "${FOILGAUGE_TEST_BRIEF-}" ]; then
 "$program" loop clean.png --form discs -o clean.out || fail "loop on a clean plate"
 [ "$(value clean.out "r['verdict'], len(r['claims'])")" = "('clean', 0)" ] || fail "a clean plate is $(value clean.out "r['verdict']")"
+fi
 
 plate all 2 "$effects"
 "$program" loop all.png --form discs -o all.out --model-out scanner.json || fail "loop on a plate"
@@ -113,9 +115,9 @@ plate ring 3 '{"id":"scan.scale_y","value":0.001}'
   fail "the ring's range does not hold its radius"
 
 # Pins that are oval, each in its own direction, are no scanner.
-reports="clean all known ring"
+reports="all known ring"
 if [ -z "${FOILGAUGE_TEST_BRIEF-}" ]; then
-reports="$reports oval"
+reports="$reports clean oval"
 pins='[1.2,1.6,1],[5.0,2.2,1.5],[10.1,2.9,2],[16.2,3.2,2.5],[23.1,3.6,3],[29.8,2.9,2.25],[2.1,9.4,1.25],[7.2,10.1,2.75],[13.9,11.3,3],[20.8,12.0,2.5],[26.9,12.9,1.75],[6.2,16.9,1.5]'
 plate oval 5 '' 3
 "$program" loop oval.png --form discs -o oval.out || fail "loop on oval pins"
