@@ -22,7 +22,7 @@ static const char style[] =
     "margin:0 0 16px}.tiles div{background:var(--ground);border-radius:8px;padding:9px 13px}"
     ".tiles dt{font-size:12.5px;color:var(--soft)}.tiles dd{margin:0;font-size:18px;"
     "font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}"
-    ".tiles small{display:block;font-size:12.5px;font-weight:400;color:var(--soft)}\n"
+    ".tiles small{display:block;font-size:12.5px;font-weight:400;color:var(--soft);white-space:normal}\n"
     "figure{margin:0}figcaption{font-size:13px;color:var(--soft);margin-top:6px}\n"
     ".picture{display:block;width:auto;max-width:100%;height:auto;max-height:600px;margin:0 "
     "auto;border-radius:8px;background:#"
