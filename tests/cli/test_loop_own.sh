@@ -115,6 +115,8 @@ near "the shelf's amplitude" "$(value runs.json 'r["claims"][0]["amplitude"]')" 
 sed 's/,r3.png/,lost.png/' runs.csv >scans/lost.csv
 expect 2 'row 3: scans/lost.png: cannot be opened' "$program" loop --doe scans/lost.csv --response radius_mm --model T_C \
   --design four.json -o lost.json
+valid loop.schema.json lost.json
+grep -q '"scans/lost.png", "sha256": null' lost.json || fail "a scan that cannot be read has a sum"
 grep -q '"left out: 0 runs without a scan, 1 scans that could not be measured"' lost.json || fail "what is left out is not said"
 expect 64 "which column was measured" "$program" loop --doe runs.csv --model T_C
 expect 64 "belongs to --doe" "$program" loop --lot lot --scans scans

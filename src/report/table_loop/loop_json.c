@@ -178,7 +178,7 @@ static void write_inputs(fg_json *json, const fg_loop_report *report) {
     fg_json_object(json, NULL);
     fg_json_line(json);
     fg_json_string(json, "path", report->input[i].path);
-    fg_json_string(json, "sha256", report->input[i].sha256);
+    fg_json_string(json, "sha256", *report->input[i].sha256 ? report->input[i].sha256 : NULL);
     fg_json_line_end(json);
     fg_json_object_end(json);
   }
