@@ -7,8 +7,8 @@ libopencv-core-dev libopencv-imgproc-dev libcmocka-dev"
 # Only the comparisons need these: what a user would write in Python instead.
 FOILGAUGE_BENCH_PACKAGES="python3 python3-numpy python3-scipy python3-skimage python3-opencv"
 
-# Only the long tests need it: regression is compared with R's.
-FOILGAUGE_R_PACKAGES="r-base-core"
+# Only the long tests need them: regression is compared with R's, and the loop is tried on tables that come with R.
+FOILGAUGE_R_PACKAGES="r-base-core r-cran-mass r-cran-lattice r-cran-boot r-cran-nlme"
 
 # step TEXT COMMAND...: one line per step; what the command says is shown only when it fails.
 step() {

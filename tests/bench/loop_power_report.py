@@ -85,8 +85,10 @@ def summary(rows, tables):
     effects, unlike = [r for r in rows if r["size"] != "0"], [r for r in rows if r["size"] == "0"]
     failed = sum(r["verdict"] == "failed" for r in rows)
     seconds = [float(r["seconds"]) for r in rows]
+    tables_a_cell, clean_a_cell = (1 + max((int(r["table"]) for r in part), default=-1) for part in (effects, unlike))
     out = ["# Power of the loop on tables, against an oracle", "",
-           f"{len(effects)} tables with one effect, {len(unlike)} clean ones. `python3 tests/bench/loop_power.py build/foilgauge` "
+           f"{len(effects)} tables with one effect, {len(unlike)} clean ones. `/usr/bin/python3 tests/bench/loop_power.py build/foilgauge "
+           f"--tables {tables_a_cell} --clean {clean_a_cell}` "
            f"(seeds {', '.join(sorted({r['seed'] for r in rows}, key=int))}; "
            f"{np.median(seconds) if seconds else 0:.2f} s a table, {max(seconds, default=0):.1f} s at most; the program failed on {failed}).",
            "", "Designs: an experiment of 24 runs (`1 + T + D + T:D`), a lot of 14 foils of 9 bumps (`1`, `--group foil`), a series of "
