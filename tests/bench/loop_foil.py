@@ -117,7 +117,7 @@ class Midline:
         total, unsigned = np.zeros(len(self.xy)), []
         said = [(c["id"], c.get("form"), c["parameters"], c.get("shape")) for c in report["claims"]]
         curve = report["unattributed"]
-        if curve and curve["coordinate"] in ("foil.s", "bump.phi"):
+        if curve and curve["coordinate"] in ("foil.s", "bump.phi", "bump.index"):
             form = "radial" if curve.get("moves") == "along the radius" else None
             said.append((curve["coordinate"], form, {}, curve.get("shape")))
         for name, form, p, shape in said:
@@ -130,6 +130,8 @@ class Midline:
             elif name == "foil.s" and shape:
                 middle, reach = 0.5 * (psi.max() + psi.min()), 0.5 * np.ptp(psi)
                 total += np.interp((psi - middle) / reach, *np.array(shape).T) * share
+            elif name == "bump.index" and shape and curve["moves"] == "along the normal":
+                total += np.where(on, np.interp(self.along_bumps(sense), *np.array(shape).T), 0)
             elif name in ("bump.phi", "part.bump_crown", "part.bump_skew") and shape:
                 total += np.where(on, np.interp(u, *np.array(shape).T), 0)
             elif name == "part.bump_crown":
@@ -137,6 +139,20 @@ class Midline:
             elif name == "part.bump_skew":
                 unsigned.append(np.where(on, p["amplitude_um"] * (5 * u**3 - 3 * u) / 2, 0))
         return total, unsigned
+
+    def along_bumps(self, sense):
+        """As a report counts: a bump's number at its middle, nearly half a number to either end of its arc."""
+        number = self.bump + 1 if sense > 0 else self.count - self.bump
+        return number + 0.45 * sense * np.nan_to_num(self.u)
+
+    def beside_circles(self, columns, left):
+        """What circles that were fitted to it leave of a deviation: those of the bumps, of the lands, that are `left`."""
+        columns = np.array(columns)
+        for index in [i for i in range(self.count) if "bumps" in left] + [-1] * ("lands" in left):
+            on = self.bump == index
+            circle = np.column_stack([np.ones(on.sum()), self.normal[on]])
+            columns[..., on] -= (circle @ np.linalg.lstsq(circle, columns[..., on].T, rcond=None)[0]).T
+        return columns
 
     def to_scan(self, points):
         """Directions, or places about O, turned as the foil lies on the scan."""
@@ -148,7 +164,7 @@ class Midline:
 def profile_error_um(midline, centre_mm, shift_um, foil, report):
     """rms distance of the true midline (its arcs moved by shift_um) from the circles of a measured foil
     and what a report (or None) claims to deviate from them; the foil's place and direction are left
-    free."""
+    free. A circle that was left as measured holds what circles take of the deviation already."""
     normal = midline.to_scan(midline.normal)
     points = midline.to_scan(midline.xy) + centre_mm + normal * shift_um[:, None] / 1000
     distance = np.full(len(points), np.nan)
@@ -165,7 +181,13 @@ def profile_error_um(midline, centre_mm, shift_um, foil, report):
     turn = offset[:, 0] * normal[:, 1] - offset[:, 1] * normal[:, 0]
     rigid = np.stack([normal[:, 0], normal[:, 1], turn], axis=1)
     sense = 1 if own[0]["number"] <= own[midline.count - 1]["number"] else -1
-    claimed, unsigned = midline.claimed_shift_um(report, sense) if report else (0, [])
+    claimed, unsigned = 0, []
+    if report:
+        total, unsigned = midline.claimed_shift_um(report, sense)
+        moved = {c["quantity"]: c["moved"] for c in foil.get("corrections", [])}
+        names = {"bumps": "radius_mm", "lands": "overall_radius_mm"}
+        left = [which for which, name in names.items() if not moved.get(name, True)]
+        claimed, *unsigned = midline.beside_circles([total, *unsigned], left)
     best = np.inf
     for signs in range(2 ** len(unsigned)):
         rest = distance * 1000 - claimed

@@ -15,7 +15,8 @@ ASKED = {
     "worse": ("≤", 2.0), "floor": ("≤", 1.2), "within": ("between", (93.0, 97.0)), "ranges": ("≥", 95.0),
     "p": ("≥", 0.01), "one": ("≤", 3.0), "pair": ("≤", 8.0),
 }  # fmt: skip
-OF_INPUTS = {"claims", "class", "wrong", "exact", "curves", "worse"}  # shares of inputs; others are of values, or no shares
+OF_INPUTS = {"claims", "class", "wrong", "exact", "curves", "worse"}  # shares of inputs
+OF_VALUES = {"within", "ranges"}  # of the values of inputs, which go together
 UNITS = {"floor": "", "p": "", "one": "s ", "pair": "s "}
 
 
@@ -118,7 +119,7 @@ def missed_figures_lines(rows, tiers, busy):
     figures = list(figures_by_tier(rows, tiers, busy))
     missed, table = [f for f in figures if not reached(f[2], f[3])], []
     for title, what, key, value, count in missed:
-        likely = "{:.1f} to {:.1f}".format(*chance_of_share(value, count)) if key in OF_INPUTS else ""
+        likely = "{:.1f} to {:.1f}".format(*chance_of_share(value, count)) if key in OF_INPUTS | OF_VALUES else ""
         table.append([title, what, asked(key), f"{value:.3g} (of {count})", likely, short_by(key, value, count)])
     text = f"Held tier by tier, {len(figures) - len(missed)} of {len(figures)} figures are reached. These are not:"
     header = ["tier", "what", "asked", "is", "what so many inputs leave open, %", "missed by"]

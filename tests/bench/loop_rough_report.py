@@ -201,7 +201,8 @@ In class: what is there was named, or is one of the explanations that the report
 is claimed, and what is there is not among the explanations. Told: exactly named, and nothing is tied with it. Floor: the same foils
 and scatter without the effect, measured. Worse: an error (R, h, R0; where the report says how the part
 deviates from its circles, that of the midline) is larger after than before, by more than 2 % and a tenth of the tier's median floor;
-beyond its noise: and larger than 1.2 times its floor. Curves: `unattributed` over the right coordinate; seams also as their row.
+beyond its noise: and larger than 1.2 times its floor. The midline: circles and what is said to deviate from them; a circle that was left
+as measured holds what circles take of the deviation already. Curves: `unattributed` over the right coordinate; seams also as their row.
 Seconds are {seconds}."""
 
 QUIET = "the clock's, or the processor's where those are less: other inputs are rendered and judged beside"
