@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/numerics.h"
 #include "core/text.h"
 #include "process/experiment_parts.h"
 
@@ -292,6 +293,7 @@ static fg_status analyse(fg_context *ctx, const fg_table *runs,
 
 fg_status fg_experiment_analyse(fg_context *ctx, const fg_table *runs,
                                 const fg_experiment_options *options, fg_experiment *experiment) {
+  fg_numerics_start();
   *experiment = (fg_experiment){0};
   fg_status status = analyse(ctx, runs, options, experiment);
   if (status != FG_OK) fg_experiment_free(experiment);

@@ -1,7 +1,6 @@
 #include "foilgauge/surface.h"
 
 #include <gsl/gsl_eigen.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -154,10 +153,41 @@ fg_status fg_surface_make(fg_context *ctx, const fg_model *model, const fg_regre
 /* Which bound each factor is held at on a face of the box. */
 typedef enum hold { HOLD_FREE, HOLD_LOW, HOLD_HIGH, HOLDS } hold;
 
+/* Elimination with row pivoting, the solution in `right`; false when singular. (GSL's asks for
+ * memory and does not look whether it got it.) */
+static bool eliminate(double *matrix, double *right, size_t n) {
+  for (size_t k = 0; k < n; k++) {
+    size_t pivot = k;
+    for (size_t i = k + 1; i < n; i++)
+      if (fabs(matrix[i * n + k]) > fabs(matrix[pivot * n + k])) pivot = i;
+    if (matrix[pivot * n + k] == 0) return false;
+    for (size_t j = 0; j < n; j++) {
+      double held = matrix[k * n + j];
+      matrix[k * n + j] = matrix[pivot * n + j];
+      matrix[pivot * n + j] = held;
+    }
+    double held = right[k];
+    right[k] = right[pivot];
+    right[pivot] = held;
+    for (size_t i = k + 1; i < n; i++) {
+      double factor = matrix[i * n + k] / matrix[k * n + k];
+      for (size_t j = k; j < n; j++)
+        matrix[i * n + j] -= factor * matrix[k * n + j];
+      right[i] -= factor * right[k];
+    }
+  }
+  for (size_t k = n; k-- > 0;) {
+    for (size_t j = k + 1; j < n; j++)
+      right[k] -= matrix[k * n + j] * right[j];
+    right[k] /= matrix[k * n + k];
+  }
+  return true;
+}
+
 /* The stationary point over the free factors, the others held; false when singular. */
 static bool face_point(const fg_surface *s, const hold *holds, const double *low,
                        const double *high, double *x) {
-  double matrix[MOST * MOST], right[MOST], solution[MOST];
+  double matrix[MOST * MOST], right[MOST];
   size_t free_factor[MOST], n = 0;
   for (size_t i = 0; i < s->factors; i++) {
     if (holds[i] == HOLD_FREE)
@@ -174,17 +204,9 @@ static bool face_point(const fg_surface *s, const hold *holds, const double *low
     for (size_t b = 0; b < n; b++)
       matrix[a * n + b] = 2 * s->quadratic[i][free_factor[b]];
   }
-  size_t order[MOST];
-  int sign = 0;
-  gsl_matrix_view m = gsl_matrix_view_array(matrix, n, n);
-  gsl_vector_view r = gsl_vector_view_array(right, n), out = gsl_vector_view_array(solution, n);
-  gsl_permutation permutation = {n, order};
-  if (gsl_linalg_LU_decomp(&m.matrix, &permutation, &sign) != 0) return false;
+  if (!eliminate(matrix, right, n)) return false;
   for (size_t a = 0; a < n; a++)
-    if (matrix[a * n + a] == 0) return false;
-  if (gsl_linalg_LU_solve(&m.matrix, &permutation, &r.vector, &out.vector) != 0) return false;
-  for (size_t a = 0; a < n; a++)
-    x[free_factor[a]] = solution[a];
+    x[free_factor[a]] = right[a];
   return true;
 }
 
@@ -312,4 +334,3 @@ fg_status fg_surface_ridge_path(fg_context *ctx, const fg_surface *s, bool highe
   }
   return FG_OK;
 }
-
