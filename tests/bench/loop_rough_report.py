@@ -182,7 +182,7 @@ def missed_lines(rows, tiers):
             if is_right(r):
                 continue
             said = " + ".join(filter(None, [r["claims"], r["unattributed"] and "unattributed " + r["unattributed"]]))
-            tie = f" ({r['class']})" if r["class"] else ""
+            tie = f" ({r['class'].replace(' | ', '; ')})" if r["class"] else ""
             change = ", ".join(f"{r[q + '_before_um']} → {r[q + '_after_um']}" for q in QUANTITIES)
             table.append([name, r["seed"], r["index"], r["layout"], r["wanted"] or "nothing",
                           (said or r["verdict"]) + tie, change])  # fmt: skip
