@@ -8,27 +8,25 @@
  *               parameters with their start values; a new effect is a new row;
  *   a candidate is an effect on given coordinates of a problem.
  *
- * Method (score tests with the noise re-estimated under every candidate; max-T: Westfall and Young
- * 1993; sign flips of score contributions: Hemerik, Goeman and Finos 2020; residual likelihood:
- * Patterson and Thompson 1971):
+ * Method:
  *
- *   1  Rows that are kept aside take no part in any choice.
- *   2  Noise: variance, correlation rho along a series (first order), and where groups share a
- *      level the ratio lambda of its variance to the rows'; all from the data, at every step.
- *   3  A candidate is scored by the residual sum that it takes away, whitened and with every
- *      parameter of the declared model projected out.
- *   4  Its p-value is the larger of two: flips of the groups' signs (right under unequal variance
- *      and outliers) and simulation of the null with its correlation (right in small tables and
- *      for effects over the order). Both are max-T over all candidates.
- *   5  Accepted at p < 0.01, with a gain above one standard error in grouped cross-validation.
- *   6  Its alias class: every candidate beside which the winner explains nothing more that the data
- *      can show, and every sum of two such.
- *   7  Refit of all together, swaps, drops; at most five effects.
- *   8  What no candidate explains: a smooth curve over one coordinate (unattributed).
- *
- * Lone rows are judged apart: flips keep an outlier an outlier, so `table.outlier` and
- * `table.exchanged_runs` must stand out from simulated noise with heavy tails (Student's t, 4
- * degrees of freedom).
+ *   1  Noise is independent until a finding says otherwise: serial correlation (first order, along
+ * a series) and unequal spread are candidates like effects of the mean, and are in force from their
+ * claim on. Where groups share a level, the ratio lambda of its variance to the rows' is estimated
+ * anew beside every candidate (residual likelihood: Patterson and Thompson 1971). 2  A candidate of
+ * the mean is scored by the residual sum that it takes away, whitened and with every parameter of
+ * the declared model projected out; correlation by the product of neighbours, spread by the
+ * likelihood of the residuals' sizes. 3  One null for all: residuals in another order (Freedman and
+ * Lane 1983), scored in the same way; each score on the scale of its own draws, p-values from the
+ * largest of all (Westfall and Young 1993). The draws are the same in every run: no verdict depends
+ * on a seed. 4  Wrong rows are judged apart, against the tails that the other rows show. 5  An
+ * effect that a series could be mistaken for is searched again beside correlation: it is claimed,
+ * or correlation is, or they tie. 6  Accepted at p < 0.01, with a gain above one standard error in
+ * grouped cross-validation. 7  Its alias class: every candidate beside which the winner explains
+ * nothing more that the data can show, and every sum of two such. 8  Refit of all together, swaps,
+ * drops; at most six claims. 9  What no candidate explains: a smooth curve over one coordinate
+ * (unattributed). 10  Errors of rows that took no part: the whole search again without each fold of
+ * groups.
  */
 #ifndef FOILGAUGE_LOOP_H
 #define FOILGAUGE_LOOP_H
@@ -47,11 +45,12 @@ extern "C" {
 #endif
 
 enum {
-  FG_LOOP_SHAPES = 2,   /* non-linear parameters of an effect, at most */
-  FG_LOOP_COLUMNS = 12, /* linear columns of an effect, at most */
-  FG_LOOP_CLAIMS = 5,   /* effects in one report, at most */
-  FG_LOOP_STARTS = 256, /* start values of an effect's shape, at most */
-  FG_LOOP_ALIASES = 12, /* members of an alias class that are reported, at most */
+  FG_LOOP_SHAPES = 2,    /* non-linear parameters of an effect, at most */
+  FG_LOOP_COLUMNS = 32,  /* linear columns of an effect, at most */
+  FG_LOOP_CLAIMS = 6,    /* effects in one report, at most */
+  FG_LOOP_STARTS = 1024, /* start values of an effect's shape, at most */
+  FG_LOOP_LONE_ROWS = 8, /* wrong rows in one claim, at most */
+  FG_LOOP_ALIASES = 12,  /* members of an alias class that are reported, at most */
   FG_LOOP_NAME = 96,
 };
 
@@ -64,14 +63,16 @@ typedef enum fg_loop_role {
   FG_LOOP_DURATION = 16,    /* a time of treatment */
   FG_LOOP_SENSITIVITY = 32, /* a basis by itself: the response's change by one unit of a part's
                                parameter */
+  FG_LOOP_LEVEL = 64,       /* what the declared model says of the response itself */
 } fg_loop_role;
 
 typedef struct fg_loop_coordinate {
   char name[FG_LOOP_NAME];
-  double *value;                        /* rows; the level's index for words */
-  size_t levels;                        /* words: how many; numbers: 0 */
-  char **level_name;                    /* levels */
-  size_t distinct;                      /* different values */
+  double *value;     /* rows; the level's index for words */
+  size_t levels;     /* words: how many; numbers: 0 */
+  char **level_name; /* levels */
+  size_t distinct;   /* different values */
+  bool coded;        /* numbers: words of another column say the same; levels are left to it */
   double few[FG_LOOP_COLUMNS + 1];      /* numbers: the lowest of them, ascending */
   double quantile[FG_LOOP_COLUMNS + 1]; /* of the rows, 0 to 1 in equal steps: knots of curves */
   unsigned roles;
@@ -103,6 +104,9 @@ typedef struct fg_loop_problem {
   bool few; /* too few groups for flips or curves to tell: listed effects only, by simulation alone;
                whoever built the problem tests the claims by other means */
   double *response; /* rows, for exchanged runs: the measured response */
+  double origin;    /* taken from every residual; the constant of the declared model, of value 1, is
+                       so much larger */
+  size_t constant;  /* parameter; only where the origin is not 0 */
   fg_loop_coordinate *coordinate;
   size_t coordinates;
   void *self;                 /* for the effects of a level */
@@ -114,8 +118,9 @@ struct fg_loop_effect;
 
 typedef struct fg_loop_candidate {
   const struct fg_loop_effect *effect;
-  size_t a, b;   /* coordinates; b = a where there is one */
-  size_t row[2]; /* outlier, exchanged runs */
+  size_t a, b; /* coordinates; b = a where there is one */
+  size_t rows; /* of wrong or exchanged responses */
+  size_t row[FG_LOOP_LONE_ROWS];
 } fg_loop_candidate;
 
 typedef bool fg_loop_accepts(const fg_loop_problem *problem, size_t a, size_t b);
@@ -134,6 +139,13 @@ typedef enum fg_loop_lone {
   FG_LOOP_WRONG_ROW,      /* one response is wrong */
   FG_LOOP_EXCHANGED_ROWS, /* two changed places */
 } fg_loop_lone;
+
+/* What concerns the scatter about the mean. */
+typedef enum fg_loop_scatter {
+  FG_LOOP_OF_THE_MEAN,
+  FG_LOOP_SERIAL, /* neighbours along the order are alike */
+  FG_LOOP_SPREAD, /* its size changes; the basis is of the logarithm of the standard deviation */
+} fg_loop_scatter;
 
 /* What the loop on scans looks for over the bumps of its foils, in this order. */
 typedef enum fg_loop_over_bumps {
@@ -162,6 +174,7 @@ typedef struct fg_loop_effect {
   bool slope;      /* its coefficient is half the change over its coordinate's range */
   bool unattributed; /* a curve of what no listed effect explains */
   fg_loop_lone lone;
+  fg_loop_scatter scatter;
   fg_loop_over_bumps over_bumps;
   const char *bump_words; /* "a decay from the lip" */
 } fg_loop_effect;
@@ -208,14 +221,15 @@ typedef struct fg_loop_claim {
   size_t columns;
   double shape[FG_LOOP_SHAPES], shape_u[FG_LOOP_SHAPES];
   double coefficient[FG_LOOP_COLUMNS], coefficient_u[FG_LOOP_COLUMNS];
-  double amplitude;           /* half the range of the effect over the rows, response's unit */
-  double amplitude_u;         /* standard uncertainty */
-  double interval[2];         /* 95 % */
-  double p_value;             /* max-T */
-  double p_flip, p_simulated; /* NaN where not used */
-  double retained_share;      /* |M W f|² / |W f|² */
-  double cv_gain, cv_gain_se; /* NaN for lone rows */
-  int held_out;               /* +1 confirmed, 0 not contradicted, -1 none kept aside */
+  double amplitude;   /* half the range of the effect over the rows, response's unit */
+  double amplitude_u; /* standard uncertainty */
+  double interval[2]; /* 95 % */
+  double p_value;     /* max-T */
+  double noise_value, noise_value_u; /* of the scatter: correlation of neighbours; largest over
+                                        smallest sd of a row */
+  double retained_share;             /* |M W f|² / |W f|² */
+  double cv_gain, cv_gain_se;        /* NaN for lone rows */
+  int held_out;                      /* +1 confirmed, 0 not contradicted, -1 none kept aside */
   fg_loop_alias alias[FG_LOOP_ALIASES];
   size_t aliases, aliases_unlisted;
 } fg_loop_claim;
@@ -269,7 +283,7 @@ typedef struct fg_loop_result {
   fg_loop_outcome verdict;
   fg_loop_noise noise;
   double noise_floor;
-  double smallest_p; /* that flips of this many groups can give */
+  double family_p; /* smallest p-value of all that was looked for first: uniform where nothing is */
   fg_loop_error before, after;
   double ratio_rms, ratio_held_out, ratio_interval[2]; /* after / before; 95 % block bootstrap */
   fg_loop_claim claim[FG_LOOP_CLAIMS];
@@ -360,6 +374,8 @@ fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE
 fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE *out);
 /* One sentence for a process engineer; the caller frees it. */
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text);
+/* What is assumed of the rows' scatter, in words. */
+const char *fg_loop_noise_form(const fg_loop_result *result);
 
 /* ---- the model file: declared model plus what was found ---- */
 

@@ -40,8 +40,8 @@ void fg_loop_form_quadratic_basis(const fg_loop_problem *problem,
 /* Numbers with numbers; the difference in slope where one is a factor of few levels. */
 bool fg_loop_form_accepts_interaction(const fg_loop_problem *problem, size_t a, size_t b) {
   const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
-  if (a >= b || fg_loop_form_is_sequence(x) || fg_loop_form_is_sequence(y)) return false;
-  if (x->levels && y->levels) return false;
+  if (a >= b || (x->roles | y->roles) & FG_LOOP_ORDER) return false;
+  if (x->levels && y->levels) return (x->levels - 1) * (y->levels - 1) <= FG_LOOP_COLUMNS;
   if (x->levels) return fg_loop_form_is_number(y) && x->levels <= 4;
   if (y->levels) return fg_loop_form_is_number(x) && y->levels <= 4;
   return fg_loop_form_is_number(x) && fg_loop_form_is_number(y);
@@ -49,9 +49,22 @@ bool fg_loop_form_accepts_interaction(const fg_loop_problem *problem, size_t a, 
 
 size_t fg_loop_form_interaction_columns(const fg_loop_problem *problem,
                                         const fg_loop_candidate *candidate) {
-  size_t levels =
-      problem->coordinate[candidate->a].levels + problem->coordinate[candidate->b].levels;
-  return levels ? levels - 1 : 1;
+  size_t a = problem->coordinate[candidate->a].levels, b = problem->coordinate[candidate->b].levels;
+  return (a ? a - 1 : 1) * (b ? b - 1 : 1);
+}
+
+/* Level k of a factor against its last: the levels of a column add to nothing. */
+static double contrast(const fg_loop_coordinate *at, size_t row, size_t k) {
+  size_t level = (size_t)at->value[row];
+  return level == k ? 1 : level + 1 == at->levels ? -1 : 0;
+}
+
+static void cross_factors(const fg_loop_problem *problem, const fg_loop_coordinate *x,
+                          const fg_loop_coordinate *y, double *columns) {
+  for (size_t j = 0; j + 1 < x->levels; j++)
+    for (size_t k = 0; k + 1 < y->levels; k++, columns += problem->rows)
+      for (size_t i = 0; i < problem->rows; i++)
+        columns[i] = contrast(x, i, j) * contrast(y, i, k);
 }
 
 void fg_loop_form_interaction_basis(const fg_loop_problem *problem,
@@ -61,13 +74,14 @@ void fg_loop_form_interaction_basis(const fg_loop_problem *problem,
   const fg_loop_coordinate *y = &problem->coordinate[candidate->b];
   const fg_loop_coordinate *factor = x->levels ? x : y, *number = x->levels ? y : x;
   (void)shape;
+  if (x->levels && y->levels) {
+    cross_factors(problem, x, y, columns);
+    return;
+  }
   for (size_t i = 0; i < problem->rows; i++) {
-    if (!factor->levels) {
-      columns[i] = scaled(x, i) * scaled(y, i);
-      continue;
-    }
-    for (size_t k = 1; k < factor->levels; k++)
-      columns[(k - 1) * problem->rows + i] = factor->value[i] == (double)k ? scaled(number, i) : 0;
+    if (!factor->levels) columns[i] = scaled(x, i) * scaled(y, i);
+    for (size_t k = 0; k + 1 < factor->levels; k++)
+      columns[k * problem->rows + i] = contrast(factor, i, k) * scaled(number, i);
   }
 }
 
@@ -76,8 +90,8 @@ bool fg_loop_form_accepts_factor(const fg_loop_problem *problem, size_t a, size_
   const fg_loop_coordinate *at = &problem->coordinate[a];
   (void)b;
   if (at->levels) return at->levels >= 2 && at->levels <= FG_LOOP_COLUMNS;
-  return fg_loop_form_is_number(at) && at->distinct >= 3 && at->distinct <= 10 &&
-         problem->rows >= 4 * at->distinct;
+  return fg_loop_form_is_number(at) && !at->coded && at->distinct >= 3 &&
+         at->distinct <= FG_LOOP_COLUMNS && problem->rows >= 4 * at->distinct;
 }
 
 size_t fg_loop_form_factor_columns(const fg_loop_problem *problem,
@@ -86,17 +100,20 @@ size_t fg_loop_form_factor_columns(const fg_loop_problem *problem,
   return (at->levels ? at->levels : at->distinct) - 1;
 }
 
-void fg_loop_form_factor_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
-                               const double *shape, double *columns) {
-  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+void fg_loop_form_level_columns(const fg_loop_problem *problem, const fg_loop_coordinate *at,
+                                double *columns) {
   size_t count = at->levels ? at->levels : at->distinct;
-  (void)shape;
-  memset(columns, 0,
-         fg_loop_form_factor_columns(problem, candidate) * problem->rows * sizeof *columns);
+  memset(columns, 0, (count - 1) * problem->rows * sizeof *columns);
   for (size_t i = 0; i < problem->rows; i++)
     for (size_t k = 1; k < count; k++)
       if (at->value[i] == (at->levels ? (double)k : at->few[k]))
         columns[(k - 1) * problem->rows + i] = 1;
+}
+
+void fg_loop_form_factor_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                               const double *shape, double *columns) {
+  (void)shape;
+  fg_loop_form_level_columns(problem, fg_loop_form_first(problem, candidate), columns);
 }
 
 bool fg_loop_form_accepts_threshold(const fg_loop_problem *problem, size_t a, size_t b) {
@@ -116,7 +133,7 @@ void fg_loop_form_threshold_basis(const fg_loop_problem *problem,
     columns[i] = at->value[i] > shape[0] ? 1 : -1;
 }
 
-enum { THRESHOLDS = 23 };
+enum { THRESHOLDS = 59 };
 
 static bool sides_hold(const fg_loop_problem *problem, const fg_loop_coordinate *at, double place) {
   size_t above = 0;

@@ -1,7 +1,8 @@
 #include "effect/forms.h"
 
 bool fg_loop_form_is_number(const fg_loop_coordinate *at) {
-  return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 2;
+  return at->levels == 0 && !(at->roles & (FG_LOOP_SENSITIVITY | FG_LOOP_LEVEL)) &&
+         at->distinct >= 2;
 }
 
 bool fg_loop_form_is_sequence(const fg_loop_coordinate *at) {

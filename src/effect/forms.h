@@ -13,6 +13,10 @@ bool fg_loop_form_is_sequence(const fg_loop_coordinate *at);
 const fg_loop_coordinate *fg_loop_form_first(const fg_loop_problem *problem,
                                              const fg_loop_candidate *candidate);
 
+/* An indicator of every level but the first: levels - 1 columns. */
+void fg_loop_form_level_columns(const fg_loop_problem *problem, const fg_loop_coordinate *at,
+                                double *columns);
+
 /* Of a column. column_forms.c */
 fg_loop_accepts fg_loop_form_accepts_linear, fg_loop_form_accepts_quadratic,
     fg_loop_form_accepts_interaction, fg_loop_form_accepts_factor, fg_loop_form_accepts_threshold,

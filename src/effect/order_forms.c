@@ -60,13 +60,13 @@ void fg_loop_form_periodic_basis(const fg_loop_problem *problem, const fg_loop_c
   }
 }
 
-/* From one cycle over the order to a period of 2.2 steps, half a cycle apart. */
+/* From one cycle over the order to a period of two steps, half a cycle apart. */
 size_t fg_loop_form_periodic_starts(const fg_loop_problem *problem,
                                     const fg_loop_candidate *candidate,
                                     double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
   const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
   double range = at->high - at->low;
-  double most = fmin(20, ((double)at->distinct - 1) / 2.2);
+  double most = ((double)at->distinct - 1) / 2;
   size_t count = 0;
   for (double cycles = 1; cycles <= most && count < FG_LOOP_STARTS; cycles += 0.5)
     starts[count++][0] = range / cycles;

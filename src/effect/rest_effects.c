@@ -2,21 +2,27 @@
 #include <math.h>
 #include <string.h>
 
+#include "effect/forms.h"
 #include "effect/table_effects.h"
 
 static const double two_pi = 6.28318530717958647692;
 
-static size_t one_column(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
-  (void)problem, (void)candidate;
-  return 1;
+static size_t lone_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem;
+  return candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS ? 1 : candidate->rows;
 }
 
 static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                        const double *shape, double *columns) {
   (void)shape;
-  memset(columns, 0, problem->rows * sizeof *columns);
-  columns[candidate->row[0]] = 1;
-  if (candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS) columns[candidate->row[1]] = -1;
+  memset(columns, 0, lone_columns(problem, candidate) * problem->rows * sizeof *columns);
+  if (candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS) {
+    columns[candidate->row[0]] = 1;
+    columns[candidate->row[1]] = -1;
+    return;
+  }
+  for (size_t k = 0; k < candidate->rows; k++)
+    columns[k * problem->rows + candidate->row[k]] = 1;
 }
 
 static const fg_loop_effect lone_effects[] = {
@@ -24,15 +30,15 @@ static const fg_loop_effect lone_effects[] = {
      .lone = FG_LOOP_WRONG_ROW,
      .level = "runs",
      .frame = "row",
-     .words = "one wrong response",
-     .columns = one_column,
+     .words = "wrong responses",
+     .columns = lone_columns,
      .basis = lone_basis},
     {.id = "table.exchanged_runs",
      .lone = FG_LOOP_EXCHANGED_ROWS,
      .level = "runs",
      .frame = "row",
      .words = "two responses that changed places",
-     .columns = one_column,
+     .columns = lone_columns,
      .basis = lone_basis},
 };
 
@@ -45,7 +51,7 @@ const fg_loop_effect *fg_loop_lone_effects(void) {
 static bool smooth(const fg_loop_problem *problem, size_t a, size_t b) {
   (void)b;
   const fg_loop_coordinate *at = &problem->coordinate[a];
-  return at->levels == 0 && !(at->roles & FG_LOOP_SENSITIVITY) && at->distinct >= 8;
+  return fg_loop_form_is_number(at) && at->distinct >= 8;
 }
 
 static bool smooth_many(const fg_loop_problem *problem, size_t a, size_t b) {
@@ -126,14 +132,52 @@ static void wave_basis(const fg_loop_problem *problem, const fg_loop_candidate *
   }
 }
 
+/* Over a coordinate that is no order, where nobody looks for long runs of cycles. */
+enum { WAVES = 20 };
+
 static size_t wave_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                           double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
   const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
-  double range = at->high - at->low, most = fmin(10, (double)at->distinct / 3);
+  double range = at->high - at->low, most = fmin(WAVES, ((double)at->distinct - 1) / 2);
   size_t count = 0;
   for (double cycles = 1.5; cycles <= most && count < FG_LOOP_STARTS; cycles += 0.5)
     starts[count++][0] = range / cycles;
   return count;
+}
+
+/* A hump by itself: its middle and its width are looked for. */
+static void hump_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                       const double *shape, double *columns) {
+  const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
+  double half = shape[1] / 2;
+  for (size_t i = 0; i < problem->rows; i++) {
+    double x = (at->value[i] - shape[0]) / half;
+    columns[i] = fabs(x) < 1 ? (1 - x * x) * (1 - x * x) : 0;
+  }
+}
+
+static size_t hump_starts(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                          double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  enum { MIDDLES = 9 };
+  static const double widths[] = {0.3, 0.6};
+  const fg_loop_coordinate *at = &problem->coordinate[candidate->a];
+  double range = at->high - at->low;
+  size_t count = 0;
+  for (size_t w = 0; w < sizeof widths / sizeof *widths; w++)
+    for (size_t m = 0; m < MIDDLES; m++) {
+      starts[count][0] = at->low + range * (0.1 + 0.8 * (double)m / (MIDDLES - 1));
+      starts[count++][1] = widths[w] * range;
+    }
+  return count;
+}
+
+static size_t one_column(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 1;
+}
+
+static bool humped(const fg_loop_problem *problem, size_t a, size_t b) {
+  return smooth(problem, a, b) && problem->coordinate[a].distinct >= 12;
 }
 
 static const fg_loop_effect curve_effects[] = {
@@ -161,6 +205,18 @@ static const fg_loop_effect curve_effects[] = {
      .accepts = smooth_most,
      .columns = most_columns,
      .basis = spline_basis},
+    {.id = "unattributed.hump",
+     .unattributed = true,
+     .level = "any",
+     .frame = "coordinate",
+     .words = "a hump over",
+     .shapes = 2,
+     .shape_name = {"middle", "width"},
+     .accepts = humped,
+     .columns = one_column,
+     .basis = hump_basis,
+     .starts = hump_starts,
+     .stepwise = true},
     {.id = "unattributed.wave",
      .unattributed = true,
      .level = "any",

@@ -2,6 +2,10 @@
 #include <math.h>
 #include <string.h>
 
+#include <gsl/gsl_cdf.h>
+
+#include "loop/noise_scores.h"
+#include "loop/serial.h"
 #include "loop/step.h"
 
 /* What comes after a first claim must be so many times as sure: its null leans on the first. */
@@ -13,71 +17,100 @@ enum { LATER_CLAIMS = 2 };
  * milder than a claim, for the outlier has taken some of it. */
 #define HINGE_P 0.02
 
+/* Two wrong rows have two numbers of their own: an exchange may leave so much more. */
+#define EXCHANGE_SLACK 1.1
+
+typedef enum family {
+  LISTED,
+  CURVES,
+  NOISE,
+} family;
+
 static double bar(const fg_engine_run *run) {
   return run->options.accept_p / (run->set.count ? LATER_CLAIMS : 1);
 }
 
+static family family_of(const fg_loop_candidate *candidate) {
+  if (fg_engine_is_noise(candidate)) return NOISE;
+  return fg_engine_is_curve(candidate) ? CURVES : LISTED;
+}
+
+static bool in_set(const fg_engine_run *run, const fg_loop_candidate *candidate) {
+  for (size_t m = 0; m < run->set.count; m++)
+    if (fg_engine_same_candidate(&run->set.candidate[m], candidate)) return true;
+  return false;
+}
+
 /* The best of a family that passes; candidates that are in the set already are none. */
-static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, bool curves,
+static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, family which,
                          size_t *best) {
   bool found = false;
   for (size_t c = 0; c < run->candidates; c++) {
-    const fg_engine_score *score = &step->judgement.score[c];
-    if (fg_engine_is_curve(&run->candidate[c]) != curves || !isfinite(score->z)) continue;
-    if (!(fg_engine_total_p(&step->judgement, c) < bar(run))) continue;
-    if (found && score->z <= step->judgement.score[*best].z) continue;
+    double z = step->stand[c].z;
+    if (family_of(&run->candidate[c]) != which || !isfinite(z)) continue;
+    if (which == NOISE && in_set(run, &run->candidate[c])) continue;
+    if (!(fg_engine_stand_p(run, step, c) < bar(run))) continue;
+    if (found && z <= step->stand[*best].z) continue;
     *best = c;
     found = true;
   }
   return found;
 }
 
-/* Nothing is judged at the noise that flatters the winner. */
-static fg_engine_noise step_noise(const fg_engine_step *step) {
-  return step->bench.noise[step->judgement.cautious_noise];
-}
-
 static void extend_set(const fg_engine_run *run, const fg_engine_stand *stand, fg_engine_set *set) {
   *set = run->set;
+  size_t at = set->count++;
   if (run->has_curve) { /* the curve stays last */
-    set->candidate[set->count] = set->candidate[set->count - 1];
-    memcpy(set->shape[set->count], set->shape[set->count - 1], sizeof set->shape[0]);
-    set->candidate[set->count - 1] = stand->candidate;
-    memcpy(set->shape[set->count - 1], stand->shape, sizeof stand->shape);
-  } else {
-    set->candidate[set->count] = stand->candidate;
-    memcpy(set->shape[set->count], stand->shape, sizeof stand->shape);
+    set->candidate[at] = set->candidate[at - 1];
+    memcpy(set->shape[at], set->shape[at - 1], sizeof set->shape[0]);
+    at--;
   }
-  set->count++;
+  set->candidate[at] = stand->candidate;
+  memcpy(set->shape[at], stand->shape, sizeof stand->shape);
+}
+
+/* The noise as it is beside a stand. */
+static fg_status noise_beside(fg_context *ctx, const fg_engine_run *run,
+                              const fg_engine_stand *stand, fg_engine_noise *noise) {
+  fg_engine_set with;
+  extend_set(run, stand, &with);
+  *noise = (fg_engine_noise){0};
+  return fg_engine_fit_set(ctx, run->problem, run->train, &with, true, noise, NULL, NULL, NULL);
 }
 
 /* Moves a stand's shape off the grid of its start values. */
-static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_step *step,
-                         size_t stand) {
+static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
+                         fg_engine_stand *stand) {
   fg_engine_set with;
-  extend_set(run, &step->stand[stand], &with);
-  FG_TRY(fg_engine_refine(ctx, run->problem, run->train, step_noise(step), &with));
-  memcpy(step->stand[stand].shape, with.shape[with.count - 1 - run->has_curve],
-         sizeof step->stand[stand].shape);
+  extend_set(run, stand, &with);
+  FG_TRY(fg_engine_refine(ctx, run->problem, run->train, noise, &with));
+  memcpy(stand->shape, with.shape[with.count - 1 - run->has_curve], sizeof stand->shape);
   return FG_OK;
 }
+
+/* A curve that passes, and the listed effect that would be taken. */
+typedef struct form_choice {
+  size_t winner, curve;
+  bool wrong; /* the winner's form is not in the table: the curve is right */
+  fg_engine_noise noise;
+} form_choice;
 
 /* Unless another listed effect leaves the curve nothing to explain: levels of a die in turn look
  * like a wave over the foils. */
 static fg_status right_form(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
-                            size_t curve, size_t *winner, bool *wrong) {
+                            form_choice *choice) {
   double best = -INFINITY;
-  for (size_t c = 0; c < run->candidates; c++) {
+  for (size_t c = 0; c < run->means; c++) {
     double p;
     if (fg_engine_is_curve(&run->candidate[c]) || !isfinite(step->stand[c].z) ||
-        !(fg_engine_total_p(&step->judgement, c) < bar(run)) || step->stand[c].z <= best)
+        !(fg_engine_stand_p(run, step, c) < bar(run)) || step->stand[c].z <= best)
       continue;
-    FG_TRY(fg_engine_beside(ctx, &step->training, fg_engine_step_noises(step).at, &step->stand[c],
-                            &step->stand[curve], &p));
+    FG_TRY(fg_engine_beside(ctx, &step->training, choice->noise, &step->stand[c],
+                            &step->stand[choice->curve], &p));
     if (p <= BESIDE_P) continue;
     best = step->stand[c].z;
-    *winner = c;
-    *wrong = false;
+    choice->winner = c;
+    choice->wrong = false;
   }
   return FG_OK;
 }
@@ -85,85 +118,85 @@ static fg_status right_form(fg_context *ctx, const fg_engine_run *run, const fg_
 /* The best curve over the winner's coordinate explains what the winner does not: the form is not in
  * the table, whatever its nearest relative. */
 static fg_status wrong_form(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
-                            size_t *winner, size_t *curve, bool *wrong) {
-  const fg_loop_candidate *candidate = &step->stand[*winner].candidate;
-  *wrong = false;
-  if (candidate->effect->pair || run->has_curve) return FG_OK;
+                            form_choice *choice) {
+  const fg_engine_stand *winner = &step->stand[choice->winner];
+  choice->wrong = false;
+  if (winner->candidate.effect->pair || run->has_curve) return FG_OK;
   double best = -INFINITY;
-  for (size_t c = 0; c < run->candidates; c++) {
+  for (size_t c = 0; c < run->means; c++) {
     double p;
-    if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != candidate->a) continue;
+    if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != winner->candidate.a)
+      continue;
     if (!isfinite(step->stand[c].z)) continue;
-    FG_TRY(fg_engine_beside(ctx, &step->training, fg_engine_step_noises(step).at,
-                            &step->stand[*winner], &step->stand[c], &p));
-    if (p > BESIDE_P || !(fg_engine_total_p(&step->judgement, c) < run->options.accept_p)) continue;
+    FG_TRY(fg_engine_beside(ctx, &step->training, choice->noise, winner, &step->stand[c], &p));
+    if (p > BESIDE_P || !(fg_engine_stand_p(run, step, c) < run->options.accept_p)) continue;
     if (step->stand[c].z > best) {
       best = step->stand[c].z;
-      *curve = c;
-      *wrong = true;
+      choice->curve = c;
+      choice->wrong = true;
     }
   }
-  return *wrong ? right_form(ctx, run, step, *curve, winner, wrong) : FG_OK;
+  return choice->wrong ? right_form(ctx, run, step, choice) : FG_OK;
 }
 
 static fg_status gate(fg_context *ctx, const fg_engine_run *run, const fg_engine_set *with,
-                      fg_engine_noise noise, double *gain, double *se, bool *passes) {
-  FG_TRY(fg_engine_cross_validated_gain(ctx, run->problem, run->train, &run->set, with, noise, gain,
-                                        se));
-  *passes = *gain > *se;
+                      fg_engine_noise noise, fg_loop_claim *claim, bool *passes) {
+  FG_TRY(fg_engine_cross_validated_gain(ctx, run->problem, run->train, &run->set, with, noise,
+                                        &claim->cv_gain, &claim->cv_gain_se));
+  *passes = claim->cv_gain > claim->cv_gain_se;
   return FG_OK;
 }
 
-/* What hinges on one row is that row's doing: beside the best outlier it must still show. In groups
- * the flips see to that. */
+/* What hinges on one row is that row's doing: beside the row that stands out most it must still
+ * show. */
 static fg_status hinges_on_a_row(fg_context *ctx, const fg_engine_run *run,
-                                 const fg_engine_step *step, size_t stand, bool *hinges) {
+                                 const fg_engine_step *step, fg_engine_noise noise, size_t stand,
+                                 bool *hinges) {
+  double p;
   *hinges = false;
-  if (run->problem->group_level) return FG_OK;
-  for (size_t s = run->candidates; s < step->stands && !*hinges; s++) {
-    double p;
-    if (fg_engine_is_exchange(&step->stand[s].candidate)) continue;
-    FG_TRY(fg_engine_beside(ctx, &step->training, fg_engine_step_noises(step).at, &step->stand[s],
-                            &step->stand[stand], &p));
-    *hinges = p > HINGE_P;
-  }
+  if (run->problem->group_level || !step->lone.known) return FG_OK;
+  const fg_engine_stand row = {.candidate = step->lone.first};
+  FG_TRY(fg_engine_beside(ctx, &step->training, noise, &row, &step->stand[stand], &p));
+  *hinges = p > HINGE_P;
   return FG_OK;
 }
 
-static fg_status take_curve(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
-                            size_t curve, bool *accepted) {
+static fg_status take_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step, size_t curve,
+                            bool *accepted) {
   fg_engine_set with;
-  double gain, se;
+  fg_engine_noise noise;
+  fg_loop_claim unused = {0};
   bool hinges;
-  if (run->has_curve) return FG_OK;
-  FG_TRY(hinges_on_a_row(ctx, run, step, curve, &hinges));
+  if (run->has_curve || run->set.count > FG_LOOP_CLAIMS) return FG_OK;
+  FG_TRY(noise_beside(ctx, run, &step->stand[curve], &noise));
+  FG_TRY(hinges_on_a_row(ctx, run, step, noise, curve, &hinges));
   if (hinges) return FG_OK;
+  FG_TRY(sharpen(ctx, run, noise, &step->stand[curve]));
   extend_set(run, &step->stand[curve], &with);
-  FG_TRY(fg_engine_refine(ctx, run->problem, run->train, step_noise(step), &with));
-  FG_TRY(gate(ctx, run, &with, step_noise(step), &gain, &se, accepted));
+  FG_TRY(gate(ctx, run, &with, noise, &unused, accepted));
   if (!*accepted) return FG_OK;
   run->set = with;
   run->has_curve = true;
   run->curve_at = step->stand[curve].candidate.a;
-  run->curve_p = fg_engine_total_p(&step->judgement, curve);
+  run->curve_p = fg_engine_stand_p(run, step, curve);
   return FG_OK;
 }
 
 /* The curve given, then the next best over the same coordinate: knots are chosen by what predicts.
  */
-static fg_status take_best_curve(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
+static fg_status take_best_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
                                  size_t curve, bool *accepted) {
   double below = step->stand[curve].z;
   size_t coordinate = step->stand[curve].candidate.a, next = curve;
-  while (next < run->candidates) {
+  while (next < run->means) {
     FG_TRY(take_curve(ctx, run, step, next, accepted));
     if (*accepted) return FG_OK;
     double best = -INFINITY;
-    next = run->candidates;
-    for (size_t c = 0; c < run->candidates; c++) {
+    next = run->means;
+    for (size_t c = 0; c < run->means; c++) {
       double z = step->stand[c].z;
       if (!fg_engine_is_curve(&run->candidate[c]) || run->candidate[c].a != coordinate ||
-          !(z < below) || !(z > best) || !(fg_engine_total_p(&step->judgement, c) < bar(run)))
+          !(z < below) || !(z > best) || !(fg_engine_stand_p(run, step, c) < bar(run)))
         continue;
       best = z;
       next = c;
@@ -173,63 +206,142 @@ static fg_status take_best_curve(fg_context *ctx, fg_engine_run *run, const fg_e
   return FG_OK;
 }
 
-static void describe(const fg_engine_run *run, const fg_engine_step *step, size_t winner,
+static void describe(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
                      fg_loop_claim *claim) {
   const fg_engine_judgement *judgement = &step->judgement;
-  claim->candidate = step->stand[winner].candidate;
+  *claim = (fg_loop_claim){.candidate = step->stand[stand].candidate, .retained_share = 1};
   fg_engine_candidate_name(run->problem, &claim->candidate, claim->name);
-  claim->p_flip = claim->p_simulated = claim->cv_gain = claim->cv_gain_se = NAN;
-  if (winner < run->candidates) {
-    const fg_engine_version *version = &step->bench.version[judgement->score[winner].version];
-    claim->p_value = fg_engine_total_p(judgement, winner);
-    claim->p_flip = judgement->p_flip[winner];
-    claim->p_simulated = judgement->p_simulated[winner];
-    claim->retained_share = version->share;
-    return;
-  }
-  const fg_engine_lone *lone = &step->lone[fg_engine_is_exchange(&claim->candidate)];
-  claim->p_value = claim->p_simulated = lone->p_value;
-  claim->retained_share = fmin(lone->length, 1);
+  claim->cv_gain = claim->cv_gain_se = NAN;
+  claim->p_value = fg_engine_stand_p(run, step, stand);
+  if (stand == fg_engine_exchanged_rows(run))
+    claim->p_value = fmin(claim->p_value, step->lone.p_value);
+  if (stand < run->means)
+    claim->retained_share = step->bench.version[judgement->score[stand].version].share;
+  else if (stand >= run->candidates)
+    claim->retained_share = fmin(step->lone.length, 1);
+}
+
+static void take(fg_engine_run *run, const fg_engine_stand *stand, fg_loop_claim *claim) {
+  fg_engine_set with;
+  extend_set(run, stand, &with);
+  claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
+  run->set = with;
+  run->result->claim[run->result->claims++] = *claim;
 }
 
 static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
-                            size_t winner, bool *accepted) {
-  fg_loop_claim claim = {0};
+                            size_t winner, bool or_correlation, bool *accepted) {
+  fg_loop_claim claim;
   fg_engine_set with;
-  fg_engine_noise noise = step_noise(step);
+  fg_engine_noise noise;
+  fg_engine_stand refined = step->stand[winner];
   describe(run, step, winner, &claim);
-  extend_set(run, &step->stand[winner], &with);
-  FG_TRY(fg_engine_refine(ctx, run->problem, run->train, noise, &with));
+  FG_TRY(noise_beside(ctx, run, &refined, &noise));
+  FG_TRY(sharpen(ctx, run, noise, &refined));
   if (!fg_engine_is_lone(&claim.candidate)) {
     bool passes, hinges;
-    FG_TRY(hinges_on_a_row(ctx, run, step, winner, &hinges));
+    FG_TRY(hinges_on_a_row(ctx, run, step, noise, winner, &hinges));
     if (hinges) return FG_OK;
-    FG_TRY(gate(ctx, run, &with, noise, &claim.cv_gain, &claim.cv_gain_se, &passes));
+    extend_set(run, &refined, &with);
+    FG_TRY(gate(ctx, run, &with, noise, &claim, &passes));
     if (!passes) return FG_OK;
   }
-  fg_engine_stand refined = step->stand[winner];
-  memcpy(refined.shape, with.shape[with.count - 1 - run->has_curve], sizeof refined.shape);
-  FG_TRY(fg_engine_alias_class(ctx, &step->training, fg_engine_step_noises(step).at, step->stand,
-                               step->stands, &refined, &claim));
-  claim.verdict = claim.aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
-  run->set = with;
-  run->result->claim[run->result->claims++] = claim;
+  if (or_correlation)
+    fg_engine_add_alias(run->problem, &run->candidate[fg_engine_serial_candidate(run)], NAN, NAN,
+                        &claim);
+  FG_TRY(fg_engine_alias_class(ctx, &step->training, noise, step->stand, step->stands, &refined,
+                               &claim));
+  take(run, &refined, &claim);
   *accepted = true;
   return FG_OK;
+}
+
+/* Effects of the mean beside which the correlation is not needed: as many as a class has room for,
+ * the best first. */
+static fg_status tie_correlation(fg_context *ctx, const fg_engine_run *run,
+                                 const fg_engine_step *step, fg_loop_claim *claim) {
+  enum { TRIED = 2 * FG_LOOP_ALIASES };
+  double below = INFINITY;
+  for (size_t tried = 0; tried < TRIED; tried++) {
+    size_t best = run->means;
+    for (size_t c = 0; c < run->means; c++)
+      if (step->stand[c].z < below && !fg_engine_is_curve(&run->candidate[c]) &&
+          (best == run->means || step->stand[c].z > step->stand[best].z))
+        best = c;
+    if (best == run->means || !(fg_engine_stand_p(run, step, best) < FG_ENGINE_ALIAS_P)) break;
+    below = step->stand[best].z;
+    fg_engine_set with;
+    double gain;
+    extend_set(run, &step->stand[best], &with);
+    FG_TRY(fg_engine_serial_gain(ctx, run, &with, &gain));
+    if (gain < FG_ENGINE_SERIAL_NEEDED)
+      fg_engine_add_alias(run->problem, &run->candidate[best], NAN, NAN, claim);
+  }
+  return FG_OK;
+}
+
+/* Other ways in which the scatter may change, beside which the winner's is not needed. */
+static fg_status tie_spread(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
+                            size_t winner, fg_loop_claim *claim) {
+  for (size_t c = run->means; c < run->candidates; c++) {
+    fg_engine_set with;
+    double z;
+    if (c == winner || fg_engine_is_serial(&run->candidate[c]) || in_set(run, &run->candidate[c]) ||
+        !(fg_engine_stand_p(run, step, c) < FG_ENGINE_ALIAS_P))
+      continue;
+    extend_set(run, &step->stand[c], &with);
+    FG_TRY(fg_engine_spread_beside(ctx, run, &with, &run->candidate[winner], &z));
+    double columns = (double)fg_engine_candidate_columns(run->problem, &run->candidate[winner]);
+    if (gsl_cdf_chisq_Q(z * z, columns) > FG_LOOP_ACCEPT_P)
+      fg_engine_add_alias(run->problem, &run->candidate[c], NAN, NAN, claim);
+  }
+  return FG_OK;
+}
+
+/* Correlation or unequal spread: a finding about the noise, which everything after it has. It may
+ * show by an effect that it stands for: `p_value` is that one's, or 1. */
+static fg_status take_noise(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
+                            size_t winner, double p_value, bool *accepted) {
+  fg_loop_claim claim;
+  describe(run, step, winner, &claim);
+  claim.p_value = fmin(claim.p_value, p_value);
+  if (fg_engine_is_serial(&claim.candidate))
+    FG_TRY(tie_correlation(ctx, run, step, &claim));
+  else
+    FG_TRY(tie_spread(ctx, run, step, winner, &claim));
+  take(run, &step->stand[winner], &claim);
+  *accepted = true;
+  return FG_OK;
+}
+
+/* The wrong rows are two that changed places, or one of them: the exchange explains as much with
+ * nothing to estimate. */
+static bool is_of_exchange(const fg_engine_run *run, const fg_engine_step *step) {
+  const fg_loop_candidate *wrong = &step->lone.candidate;
+  const fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
+  if (!isfinite(exchange->z) || wrong->rows > 2) return false;
+  for (size_t k = 0; k < wrong->rows; k++)
+    if (wrong->row[k] != exchange->candidate.row[0] && wrong->row[k] != exchange->candidate.row[1])
+      return false;
+  double slack = wrong->rows == 2 ? EXCHANGE_SLACK : 1;
+  return step->judgement.exchange_ratio <= slack * step->lone.ratio;
 }
 
 /* Lone rows that pass, when they explain at least as much as the best candidate. */
 static bool lone_first(const fg_engine_run *run, const fg_engine_step *step, bool listed,
                        size_t best, size_t *winner) {
   double ratio = listed ? step->judgement.score[best].ratio : 1;
+  size_t wrong = fg_engine_wrong_rows(run), exchange = fg_engine_exchanged_rows(run);
   bool found = false;
-  for (size_t s = run->candidates; s < step->stands; s++) {
-    const fg_engine_lone *lone = &step->lone[fg_engine_is_exchange(&step->stand[s].candidate)];
-    if (lone->p_value < bar(run) && lone->ratio <= ratio) {
-      ratio = lone->ratio;
-      *winner = s;
-      found = true;
-    }
+  if (isfinite(step->stand[wrong].z) && step->lone.p_value < bar(run) &&
+      step->lone.ratio <= ratio) {
+    *winner = is_of_exchange(run, step) ? exchange : wrong;
+    return true;
+  }
+  if (isfinite(step->stand[exchange].z) && fg_engine_stand_p(run, step, exchange) < bar(run) &&
+      step->judgement.exchange_ratio <= ratio) {
+    *winner = exchange;
+    found = true;
   }
   return found;
 }
@@ -239,24 +351,25 @@ static bool lone_first(const fg_engine_run *run, const fg_engine_step *step, boo
 static fg_status second_form(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
                              size_t winner, bool *accepted) {
   const fg_loop_candidate *candidate = &step->stand[winner].candidate;
-  size_t m = 0, best = run->candidates;
+  size_t m = 0, best = run->means;
   if (candidate->effect->pair || run->has_curve) return FG_OK;
   while (m < run->result->claims &&
          (run->set.candidate[m].effect->pair || fg_engine_is_lone(&run->set.candidate[m]) ||
-          run->set.candidate[m].a != candidate->a))
+          fg_engine_is_noise(&run->set.candidate[m]) || run->set.candidate[m].a != candidate->a ||
+          run->set.candidate[m].effect == candidate->effect))
     m++;
   if (m == run->result->claims) return FG_OK;
   fg_engine_run without = *run;
   fg_engine_step other;
   fg_engine_set_remove(&without.set, m);
   FG_TRY(fg_engine_step_open(ctx, &without, &without.set, true, &other));
-  for (size_t c = 0; c < run->candidates; c++)
+  for (size_t c = 0; c < run->means; c++)
     if (fg_engine_is_curve(&run->candidate[c]) && run->candidate[c].a == candidate->a &&
-        fg_engine_total_p(&other.judgement, c) < run->options.accept_p &&
-        (best == run->candidates || other.stand[c].z > other.stand[best].z))
+        fg_engine_stand_p(run, &other, c) < run->options.accept_p &&
+        (best == run->means || other.stand[c].z > other.stand[best].z))
       best = c;
   fg_status status = FG_OK;
-  if (best < run->candidates) status = take_best_curve(ctx, &without, &other, best, accepted);
+  if (best < run->means) status = take_best_curve(ctx, &without, &other, best, accepted);
   if (status == FG_OK && *accepted) {
     fg_engine_drop_claim(run, m);
     *run = without;
@@ -265,24 +378,83 @@ static fg_status second_form(fg_context *ctx, fg_engine_run *run, const fg_engin
   return status;
 }
 
-static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *step, bool *accepted) {
-  size_t winner = 0, curve = 0;
-  bool listed = best_passing(run, step, false, &winner), wrong = false;
-  if (lone_first(run, step, listed, winner, &winner))
-    return take_claim(ctx, run, step, winner, accepted);
-  if (listed) {
-    FG_TRY(sharpen(ctx, run, step, winner));
-    FG_TRY(wrong_form(ctx, run, step, &winner, &curve, &wrong));
-    if (wrong) FG_TRY(take_best_curve(ctx, run, step, curve, accepted));
-    if (wrong && *accepted) return FG_OK;
-    FG_TRY(fg_engine_simplify(ctx, &step->training, fg_engine_step_noises(step).at, step->stand,
-                              run->candidates, winner, &winner));
-    FG_TRY(second_form(ctx, run, step, winner, accepted));
-    if (!*accepted) FG_TRY(take_claim(ctx, run, step, winner, accepted));
-    if (*accepted) return FG_OK;
+/* A form whose place or period was searched for, over an order that any table has, gives way to a
+ * recorded column without such freedom that does as well. */
+static fg_status prefer_recorded(fg_context *ctx, const fg_engine_run *run,
+                                 const fg_engine_step *step, fg_engine_noise noise,
+                                 size_t *winner) {
+  const fg_engine_stand *searched = &step->stand[*winner];
+  size_t recorded = run->means;
+  double best = -INFINITY;
+  if (!searched->candidate.effect->shapes) return FG_OK;
+  for (size_t c = 0; c < run->means; c++) {
+    const fg_loop_effect *effect = run->candidate[c].effect;
+    double p;
+    if (effect->shapes || effect->unattributed || !strcmp(effect->frame, "order") ||
+        !(step->stand[c].z > best) || !(fg_engine_stand_p(run, step, c) < bar(run)))
+      continue;
+    FG_TRY(fg_engine_beside(ctx, &step->training, noise, &step->stand[c], searched, &p));
+    if (p < FG_ENGINE_SHOWS && !fg_engine_nearly(run, step, c, *winner)) continue;
+    best = step->stand[c].z;
+    recorded = c;
   }
-  if (best_passing(run, step, true, &curve))
-    return take_best_curve(ctx, run, step, curve, accepted);
+  if (recorded < run->means) *winner = recorded;
+  return FG_OK;
+}
+
+/* The listed winner, or what it stands for. */
+static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
+                               size_t winner, bool *accepted) {
+  form_choice choice = {.winner = winner};
+  FG_TRY(noise_beside(ctx, run, &step->stand[winner], &choice.noise));
+  FG_TRY(sharpen(ctx, run, choice.noise, &step->stand[winner]));
+  FG_TRY(prefer_recorded(ctx, run, step, choice.noise, &choice.winner));
+  FG_TRY(wrong_form(ctx, run, step, &choice));
+  size_t stand = choice.wrong ? choice.curve : choice.winner;
+  fg_engine_serial_word word;
+  FG_TRY(fg_engine_weigh_serial(ctx, run, &step->stand[stand], stand, &word));
+  size_t serial = fg_engine_serial_candidate(run);
+  if (word == FG_ENGINE_EITHER) {
+    bool effect;
+    FG_TRY(fg_engine_likelier(ctx, run, &step->stand[stand], &effect));
+    bool shows = fg_engine_stand_p(run, step, serial) < bar(run);
+    if (shows && (!effect || choice.wrong)) word = FG_ENGINE_CORRELATION;
+  }
+  if (word == FG_ENGINE_CORRELATION)
+    return take_noise(ctx, run, step, serial, fg_engine_stand_p(run, step, stand), accepted);
+  if (choice.wrong) FG_TRY(take_best_curve(ctx, run, step, choice.curve, accepted));
+  if (choice.wrong && *accepted) return FG_OK;
+  FG_TRY(fg_engine_simplify(ctx, &step->training, choice.noise, step->stand, run->means,
+                            choice.winner, &choice.winner));
+  FG_TRY(second_form(ctx, run, step, choice.winner, accepted));
+  if (*accepted) return FG_OK;
+  return take_claim(ctx, run, step, choice.winner, word == FG_ENGINE_EITHER, accepted);
+}
+
+static fg_status decide_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step *step,
+                              size_t curve, bool *accepted) {
+  fg_engine_serial_word word;
+  FG_TRY(fg_engine_weigh_serial(ctx, run, &step->stand[curve], curve, &word));
+  if (word != FG_ENGINE_EFFECT)
+    return take_noise(ctx, run, step, fg_engine_serial_candidate(run),
+                      fg_engine_stand_p(run, step, curve), accepted);
+  return take_best_curve(ctx, run, step, curve, accepted);
+}
+
+static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *step, bool *accepted) {
+  size_t winner = 0, curve = 0, noise = 0, lone = 0;
+  bool listed = best_passing(run, step, LISTED, &winner);
+  bool scatter = best_passing(run, step, NOISE, &noise);
+  bool spread = scatter && !fg_engine_is_serial(&run->candidate[noise]);
+  if (lone_first(run, step, listed, winner, &lone) &&
+      !(scatter && step->judgement.p[noise] < fg_engine_stand_p(run, step, lone)))
+    return take_claim(ctx, run, step, lone, false, accepted);
+  if (spread && (!listed || step->stand[noise].z > step->stand[winner].z))
+    return take_noise(ctx, run, step, noise, 1, accepted);
+  if (listed) FG_TRY(decide_listed(ctx, run, step, winner, accepted));
+  if (!*accepted && best_passing(run, step, CURVES, &curve))
+    FG_TRY(decide_curve(ctx, run, step, curve, accepted));
+  if (!*accepted && scatter) FG_TRY(take_noise(ctx, run, step, noise, 1, accepted));
   return FG_OK;
 }
 
@@ -290,7 +462,12 @@ fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accept
   fg_engine_step step;
   *accepted = false;
   FG_TRY(fg_engine_step_open(ctx, run, &run->set, true, &step));
-  run->result->smallest_p = step.judgement.smallest_p;
+  if (run->set.count == 0) {
+    run->result->family_p = 1;
+    for (size_t s = 0; s < step.stands; s++)
+      if (isfinite(step.stand[s].z))
+        run->result->family_p = fmin(run->result->family_p, fg_engine_stand_p(run, &step, s));
+  }
   fg_status status = decide(ctx, run, &step, accepted);
   *last = !*accepted;
   fg_engine_step_close(&step);

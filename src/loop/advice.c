@@ -185,6 +185,17 @@ static void say_repeats(const fg_loop_claim *claim, fg_loop_advice *advice) {
   advice->runs = 2;
 }
 
+/* The settings of the first runs, again at the end: what lasts moves them, what only makes
+ * neighbours alike does not. */
+static void say_order(const fg_loop_claim *claim, fg_loop_advice *advice) {
+  enum { REPEATS = 4 };
+  fg_text_clip(advice->text, sizeof advice->text,
+               "Repeat the settings of %d of the first rows at the end, some time apart: %s and %s "
+               "part there.",
+               REPEATS, claim->name, claim->alias[0].name);
+  advice->runs = REPEATS;
+}
+
 static void say_sum(const fg_loop_claim *claim, fg_loop_advice *advice) {
   fg_text_clip(advice->text, sizeof advice->text,
                "Measure rows in which what %s is made of does not move together as it does here: "
@@ -243,6 +254,8 @@ static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
   if (fg_engine_is_lone(&claim->candidate) ||
       (!nearest->sum && fg_engine_is_lone(&nearest->candidate)))
     say_repeats(claim, advice);
+  else if (fg_engine_is_noise(&claim->candidate) || fg_engine_is_noise(&nearest->candidate))
+    say_order(claim, advice);
   else if (nearest->sum)
     say_sum(claim, advice);
   else

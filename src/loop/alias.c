@@ -15,7 +15,11 @@
 /* Where the winner explains more than a simpler one at this level, it stays. */
 #define SIMPLER_P FG_LOOP_ACCEPT_P
 
-static const double shows = 0.002;   /* the winner's surplus shows below this */
+/* A member of a class explains at least this share of what the winner does. */
+#define LEAST_SHARE 0.4
+/* What a larger form has more is suggested below this. */
+#define SUGGESTED_P 0.1
+
 static const double pair_loss = 0.1; /* a sum of two must explain all but this */
 enum { PAIR_POOL = 10 };
 
@@ -29,17 +33,16 @@ typedef struct alias_bench {
   bool between; /* the columns added last */
 } alias_bench;
 
-enum { ROOM = 3 * FG_LOOP_COLUMNS };
-
-static fg_status open_one(fg_context *ctx, const fg_engine_training *training,
-                          fg_engine_noise noise, alias_bench *bench) {
+static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
+                            fg_engine_noise noise, alias_bench *bench) {
   size_t n = training->n;
   *bench = (alias_bench){.training = training, .noise = noise, .n = n};
-  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + ROOM) * sizeof *bench->basis,
+  FG_TRY(fg_memory_allocate(ctx, n,
+                            (training->columns + 3 * FG_LOOP_COLUMNS) * sizeof *bench->basis,
                             (void **)&bench->basis));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
-  FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->columns));
-  FG_TRY(fg_memory_allocate(ctx, n, ROOM * sizeof *bench->y, (void **)&bench->unit));
+  FG_TRY(fg_memory_allocate(ctx, n, FG_LOOP_COLUMNS * sizeof *bench->y, (void **)&bench->columns));
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->unit));
   bench->rank = fg_engine_null_basis(training, noise, bench->basis);
   memcpy(bench->y, training->y, n * sizeof *bench->y);
   fg_engine_whiten(training, noise, bench->y);
@@ -48,20 +51,11 @@ static fg_status open_one(fg_context *ctx, const fg_engine_training *training,
   return FG_OK;
 }
 
-static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
-                            const fg_engine_noise noise[2], alias_bench bench[2]) {
-  bench[1] = (alias_bench){0};
-  FG_TRY(open_one(ctx, training, noise[0], &bench[0]));
-  return open_one(ctx, training, noise[1], &bench[1]);
-}
-
-static void close_bench(alias_bench bench[2]) {
-  for (size_t k = 0; k < 2; k++) {
-    free(bench[k].basis);
-    free(bench[k].y);
-    free(bench[k].columns);
-    free(bench[k].unit);
-  }
+static void close_bench(alias_bench *bench) {
+  free(bench->basis);
+  free(bench->y);
+  free(bench->columns);
+  free(bench->unit);
 }
 
 /* Constant in every group that shares a level: judged between groups, with their freedom. */
@@ -127,9 +121,10 @@ typedef struct alias_test {
   double correlation;
 } alias_test;
 
-static fg_status compare_one(fg_context *ctx, alias_bench *bench, const fg_engine_stand *winner,
-                             const fg_engine_stand *rival, const fg_engine_stand *second,
-                             const double *winner_fit, alias_test *test) {
+/* The winner beside one rival, or a sum of two. */
+static fg_status compare(fg_context *ctx, alias_bench *bench, const fg_engine_stand *winner,
+                         const fg_engine_stand *rival, const fg_engine_stand *second,
+                         const double *winner_fit, alias_test *test) {
   size_t more = 0;
   double shapes = (double)rival->candidate.effect->shapes;
   FG_TRY(extend(ctx, bench, rival, bench->rank, &test->rank));
@@ -155,47 +150,38 @@ static fg_status compare_one(fg_context *ctx, alias_bench *bench, const fg_engin
   return FG_OK;
 }
 
-/* The winner beside one rival, or a sum of two. */
-static fg_status compare(fg_context *ctx, alias_bench bench[2], const fg_engine_stand *winner,
-                         const fg_engine_stand *rival, const fg_engine_stand *second,
-                         const double *winner_fit, alias_test *test) {
-  alias_test other;
-  FG_TRY(compare_one(ctx, &bench[0], winner, rival, second, winner_fit, test));
-  FG_TRY(compare_one(ctx, &bench[1], winner, rival, second, NULL, &other));
-  test->p_value = fmax(test->p_value, other.p_value);
-  return FG_OK;
-}
-
 fg_status fg_engine_beside(fg_context *ctx, const fg_engine_training *training,
-                           const fg_engine_noise noise[2], const fg_engine_stand *base,
+                           fg_engine_noise noise, const fg_engine_stand *base,
                            const fg_engine_stand *other, double *p_value) {
-  alias_bench bench[2] = {0};
+  alias_bench bench = {0};
   alias_test test = {0};
-  fg_status status = open_bench(ctx, training, noise, bench);
-  if (status == FG_OK) status = compare(ctx, bench, other, base, NULL, NULL, &test);
+  fg_status status = open_bench(ctx, training, noise, &bench);
+  if (status == FG_OK) status = compare(ctx, &bench, other, base, NULL, NULL, &test);
   *p_value = test.p_value;
-  close_bench(bench);
+  close_bench(&bench);
   return status;
 }
 
 fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training,
-                             const fg_engine_noise noise[2], const fg_engine_stand *stand,
-                             size_t count, size_t winner, size_t *simplest) {
-  alias_bench bench[2] = {0};
+                             fg_engine_noise noise, const fg_engine_stand *stand, size_t count,
+                             size_t winner, size_t *simplest) {
+  alias_bench bench = {0};
   size_t rank = 0, inside;
   double best = -INFINITY;
   fg_status status = FG_OK;
   *simplest = winner;
-  FG_TRY_EXIT(open_bench(ctx, training, noise, bench));
-  FG_TRY_EXIT(extend(ctx, bench, &stand[winner], bench->rank, &rank));
+  FG_TRY_EXIT(open_bench(ctx, training, noise, &bench));
+  FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
   size_t whole = rank + stand[winner].candidate.effect->shapes;
   for (size_t c = 0; c < count; c++) {
     alias_test test;
-    if (c == winner || fg_engine_is_curve(&stand[c].candidate)) continue;
-    FG_TRY_EXIT(extend(ctx, bench, &stand[winner], bench->rank, &rank));
-    FG_TRY_EXIT(extend(ctx, bench, &stand[c], bench->rank + rank, &inside));
+    if (c == winner || !isfinite(stand[c].z) || fg_engine_is_curve(&stand[c].candidate) ||
+        fg_engine_is_noise(&stand[c].candidate))
+      continue;
+    FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
+    FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.rank + rank, &inside));
     if (inside > 0) continue;
-    FG_TRY_EXIT(compare(ctx, bench, &stand[winner], &stand[c], NULL, NULL, &test));
+    FG_TRY_EXIT(compare(ctx, &bench, &stand[winner], &stand[c], NULL, NULL, &test));
     if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < SIMPLER_P)
       continue;
     if (stand[c].z > best) {
@@ -204,7 +190,7 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training
     }
   }
 exit:
-  close_bench(bench);
+  close_bench(&bench);
   return status;
 }
 
@@ -230,6 +216,13 @@ static void add_alias(const fg_loop_problem *problem, const fg_engine_stand *riv
   alias->loss = winner_gain > 0 ? 1 - test->gain / winner_gain : 0;
 }
 
+void fg_engine_add_alias(const fg_loop_problem *problem, const fg_loop_candidate *rival,
+                         double correlation, double loss, fg_loop_claim *claim) {
+  const fg_engine_stand stand = {.candidate = *rival};
+  const alias_test test = {.correlation = correlation, .gain = 1 - loss};
+  add_alias(problem, &stand, NULL, &test, 1, claim);
+}
+
 static int by_gain(const void *a, const void *b) {
   const fg_engine_stand *x = *(const fg_engine_stand *const *)a,
                         *y = *(const fg_engine_stand *const *)b;
@@ -245,44 +238,57 @@ static fg_status find_pairs(fg_context *ctx, alias_bench *bench, const fg_engine
       alias_test test;
       FG_TRY(compare(ctx, bench, winner, pool[k], pool[i], winner_fit, &test));
       bool contains = test.more == 0 && test.rank > winner_rank;
-      if (contains || test.p_value < shows || test.gain < (1 - pair_loss) * gain) continue;
+      if (contains || test.p_value < FG_ENGINE_SHOWS || test.gain < (1 - pair_loss) * gain)
+        continue;
       add_alias(bench->training->problem, pool[k], pool[i], &test, gain, claim);
     }
   return FG_OK;
 }
 
+/* A form that holds the winner's and more is no rival, unless the data suggest what it has more. */
+static fg_status suggests_more(fg_context *ctx, alias_bench *bench, const fg_engine_stand *rival,
+                               const fg_engine_stand *winner, bool *contains) {
+  alias_test test;
+  FG_TRY(compare(ctx, bench, rival, winner, NULL, NULL, &test));
+  *contains = test.p_value > SUGGESTED_P;
+  return FG_OK;
+}
+
 fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *training,
-                                const fg_engine_noise noise[2], const fg_engine_stand *stand,
-                                size_t count, const fg_engine_stand *winner, fg_loop_claim *claim) {
-  alias_bench bench[2] = {0};
+                                fg_engine_noise noise, const fg_engine_stand *stand, size_t count,
+                                const fg_engine_stand *winner, fg_loop_claim *claim) {
+  alias_bench bench = {0};
   const fg_engine_stand **pool = NULL;
   double *winner_fit = NULL;
   size_t rank = 0, pooled = 0, listed = 0;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_bench(ctx, training, noise, bench));
+  FG_TRY_EXIT(open_bench(ctx, training, noise, &bench));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof *pool, (void **)&pool));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, bench->n, sizeof *winner_fit, (void **)&winner_fit));
-  FG_TRY_EXIT(extend(ctx, bench, winner, bench->rank, &rank));
-  double gain = explained(bench, bench->rank, rank);
-  fitted(bench, bench->rank, rank, winner_fit);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bench.n, sizeof *winner_fit, (void **)&winner_fit));
+  FG_TRY_EXIT(extend(ctx, &bench, winner, bench.rank, &rank));
+  double gain = explained(&bench, bench.rank, rank);
+  fitted(&bench, bench.rank, rank, winner_fit);
   for (size_t c = 0; c < count; c++)
     if (isfinite(stand[c].z) && !fg_engine_is_curve(&stand[c].candidate) &&
+        !fg_engine_is_noise(&stand[c].candidate) &&
         !fg_engine_same_candidate(&stand[c].candidate, &winner->candidate))
       pool[listed++] = &stand[c];
   qsort(pool, listed, sizeof *pool, by_gain);
   for (size_t c = 0; c < listed; c++) {
     alias_test test;
-    FG_TRY_EXIT(compare(ctx, bench, winner, pool[c], NULL, winner_fit, &test));
+    FG_TRY_EXIT(compare(ctx, &bench, winner, pool[c], NULL, winner_fit, &test));
     bool contains = test.more == 0 && test.rank > rank;
-    if (!contains && test.p_value >= shows)
+    if (contains) FG_TRY_EXIT(suggests_more(ctx, &bench, pool[c], winner, &contains));
+    if (test.gain < LEAST_SHARE * gain) continue;
+    if (!contains && test.p_value >= FG_ENGINE_SHOWS)
       add_alias(training->problem, pool[c], NULL, &test, gain, claim);
     else if (!contains && !fg_engine_is_lone(&pool[c]->candidate) && test.rank <= 2)
       pool[pooled++] = pool[c];
   }
-  FG_TRY_EXIT(find_pairs(ctx, bench, pool, pooled, winner, winner_fit, gain, rank, claim));
+  FG_TRY_EXIT(find_pairs(ctx, &bench, pool, pooled, winner, winner_fit, gain, rank, claim));
 exit:
   free(pool);
   free(winner_fit);
-  close_bench(bench);
+  close_bench(&bench);
   return status;
 }

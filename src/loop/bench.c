@@ -29,8 +29,22 @@ static fg_status list_versions(fg_context *ctx, fg_engine_bench *bench) {
       memcpy(bench->shape[bench->versions++], starts[s], sizeof starts[s]);
       bench->columns += columns;
     }
+    if (columns > bench->widest) bench->widest = columns;
   }
   return FG_OK;
+}
+
+/* An effect takes correlation away more than it adds: the models around the null's best, then in
+ * steps down to none. */
+static void thin_noises(fg_engine_bench *bench, size_t best) {
+  size_t kept = 0;
+  for (size_t j = 0; j < bench->noises; j++) {
+    bool near = j + 1 >= best && j <= best + 1, below = j + 1 < best && (best - j) % 2 == 1;
+    if (!near && !below && bench->noise[j].rho != 0) continue;
+    bench->noise[kept] = bench->noise[j];
+    bench->weight[kept++] = bench->weight[j];
+  }
+  bench->noises = kept;
 }
 
 /* Weights of the noise models by residual likelihood: with S the residual sum and f the freedom,
@@ -52,10 +66,13 @@ static fg_status weigh_noises(fg_context *ctx, fg_engine_bench *bench) {
     best = fmin(best, terms[j]);
   for (size_t j = 0; j < bench->noises; j++)
     bench->weight[j] = exp((terms[j] - best) / freedom);
-  if (training->n <= FG_ENGINE_SMALL_ROWS) return FG_OK;
   size_t chosen = 0;
   for (size_t j = 1; j < bench->noises; j++)
     if (sums[j] * bench->weight[j] < sums[chosen] * bench->weight[chosen]) chosen = j;
+  if (training->n <= FG_ENGINE_SMALL_ROWS) {
+    if (training->serial && !training->levels) thin_noises(bench, chosen);
+    return FG_OK;
+  }
   bench->noise[0] = bench->noise[chosen];
   bench->weight[0] = 1;
   bench->noises = 1;
@@ -72,8 +89,8 @@ static fg_status null_basis(fg_context *ctx, const fg_engine_training *training,
   return FG_OK;
 }
 
-/* The version's columns, whitened, orthonormal beside the null: at most FG_LOOP_COLUMNS × n. */
-static fg_status version_basis(fg_context *ctx, fg_engine_bench *bench, size_t v,
+/* The version's columns, whitened, orthonormal beside the null: at most bench->widest × n. */
+static fg_status version_basis(fg_context *ctx, const fg_engine_bench *bench, size_t v,
                                fg_engine_noise noise, const double *null, double *columns,
                                double *unit) {
   const fg_engine_training *training = bench->training;
@@ -95,31 +112,54 @@ static fg_status version_basis(fg_context *ctx, fg_engine_bench *bench, size_t v
   return FG_OK;
 }
 
+/* Draws are scored in single precision. */
 static void put_rows(size_t n, size_t width, size_t first, const double *columns, size_t count,
-                     double *rows) {
+                     float *rows) {
   for (size_t k = 0; k < count; k++)
     for (size_t i = 0; i < n; i++)
-      rows[i * width + first + k] = columns[k * n + i];
+      rows[i * width + first + k] = (float)columns[k * n + i];
+}
+
+static double explained(size_t n, const double *unit, size_t count, const double *residual) {
+  double gain = 0;
+  for (size_t k = 0; k < count; k++) {
+    double along = 0;
+    for (size_t i = 0; i < n; i++)
+      along += unit[k * n + i] * residual[i];
+    gain += along * along;
+  }
+  return gain;
 }
 
 static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
   const fg_engine_training *training = bench->training;
-  size_t n = training->n, width = training->columns + bench->columns;
+  size_t n = training->n, width = training->columns + bench->columns, each = n * bench->widest;
+  bool few = n <= FG_ENGINE_SMALL_ROWS;
   fg_status status = FG_OK;
-  double *null = NULL, *work = NULL;
-  size_t each = n * FG_LOOP_COLUMNS;
+  double *null = NULL, *work = NULL, *residual = NULL;
   FG_TRY_EXIT(null_basis(ctx, training, bench->noise[j], &null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, width * sizeof *work, (void **)&bench->rows[j]));
-  put_rows(n, width, 0, null, training->columns, bench->rows[j]);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
+  memcpy(residual, training->y, n * sizeof *residual);
+  fg_engine_whiten(training, bench->noise[j], residual);
+  bench->rss[j] = fg_engine_project_out(n, null, training->columns, residual);
+  if (few)
+    FG_TRY_EXIT(
+        fg_memory_allocate(ctx, n, width * sizeof *bench->rows[j] + 1, (void **)&bench->rows[j]));
+  if (few) put_rows(n, width, 0, null, training->columns, bench->rows[j]);
   for (size_t v = 0; v < bench->versions; v++) {
+    const fg_engine_version *version = &bench->version[v];
+    if (!few) fg_engine_bench_tell(bench, v, bench->versions);
     FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[j], null, work, work + each));
-    put_rows(n, width, training->columns + bench->version[v].first, work + each,
-             bench->version[v].rank, bench->rows[j]);
+    bench->gain[j * bench->versions + v] = explained(n, work + each, version->rank, residual);
+    if (few)
+      put_rows(n, width, training->columns + version->first, work + each, version->rank,
+               bench->rows[j]);
   }
 exit:
   free(null);
   free(work);
+  free(residual);
   return status;
 }
 
@@ -127,27 +167,24 @@ fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_training *train
                                 const fg_loop_candidate *candidate, size_t candidates,
                                 fg_engine_bench *bench) {
   fg_status status = FG_OK;
-  *bench =
-      (fg_engine_bench){.training = training, .candidate = candidate, .candidates = candidates};
+  const fg_engine_watch watch = bench->watch;
+  *bench = (fg_engine_bench){
+      .training = training, .candidate = candidate, .candidates = candidates, .watch = watch};
   bench->rank = training->columns;
   FG_TRY_EXIT(list_versions(ctx, bench));
   FG_TRY_EXIT(weigh_noises(ctx, bench));
-  size_t width = training->columns + bench->columns;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, width + bench->versions + training->n + 1,
-                                 sizeof *bench->scratch, (void **)&bench->scratch));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, training->flips + 1, width * sizeof *bench->flip_scores + 1,
-                                 (void **)&bench->flip_scores));
-  for (size_t j = bench->noises; training->n <= FG_ENGINE_SMALL_ROWS && j-- > 0;)
+  FG_TRY_EXIT(fg_memory_allocate(ctx, bench->noises, (bench->versions + 1) * sizeof *bench->gain,
+                                 (void **)&bench->gain));
+  for (size_t j = bench->noises; j-- > 0;)
     FG_TRY_EXIT(fill_noise(ctx, bench, j));
 exit:
   if (status != FG_OK) fg_engine_bench_free(bench);
   return status;
 }
 
-void fg_engine_bench_tell(const fg_engine_bench *bench, size_t half, size_t done, size_t all) {
+void fg_engine_bench_tell(const fg_engine_bench *bench, size_t done, size_t all) {
   const fg_engine_watch *watch = &bench->watch;
-  if (watch->show && all)
-    watch->show(watch->user, watch->found, 0.5 * (double)half + 0.5 * (double)done / (double)all);
+  if (watch->show && all) watch->show(watch->user, watch->found, (double)done / (double)all);
 }
 
 void fg_engine_bench_free(fg_engine_bench *bench) {
@@ -155,8 +192,7 @@ void fg_engine_bench_free(fg_engine_bench *bench) {
     free(bench->rows[j]);
   free(bench->version);
   free(bench->shape);
-  free(bench->flip_scores);
-  free(bench->scratch);
+  free(bench->gain);
   *bench = (fg_engine_bench){0};
 }
 
@@ -186,40 +222,15 @@ double fg_engine_deviate_to_f(double z, double k, double nu) {
   return high < 0.99e9 ? high : INFINITY;
 }
 
-static void products(size_t n, size_t width, const double *rows, const double *y, double *sums) {
-  memset(sums, 0, width * sizeof *sums);
-  for (size_t i = 0; i < n; i++) {
-    const double *row = rows + i * width;
-    double value = y[i];
-    for (size_t k = 0; k < width; k++)
-      sums[k] += row[k] * value;
-  }
-}
-
-static double sum_of_squares(const double *v, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += v[i] * v[i];
-  return sum;
-}
-
-/* Takes in the residual sums at one noise model: the smallest weighted ones win. */
-static void collect(const fg_engine_bench *bench, size_t j, double rss, const double *sums,
-                    fg_engine_score *score) {
-  for (size_t v = 0; v < bench->versions; v++) {
-    const fg_engine_version *version = &bench->version[v];
-    fg_engine_score *best = &score[version->candidate];
-    if (version->rank == 0 ||
-        fg_engine_version_freedom(bench, version) + 2 > (double)bench->freedom)
-      continue;
-    double left = rss - sum_of_squares(sums + version->first, version->rank);
-    double weighted = fmax(left, FG_ENGINE_RATIO_LEAST * rss) * bench->weight[j];
-    if (weighted < best->ratio) {
-      best->ratio = weighted;
-      best->version = v;
-      best->noise = j;
-    }
-  }
+static void take_ratio(const fg_engine_bench *bench, size_t v, size_t j, double weighted,
+                       fg_engine_score *score) {
+  const fg_engine_version *version = &bench->version[v];
+  fg_engine_score *best = &score[version->candidate];
+  if (version->rank == 0 ||
+      fg_engine_version_freedom(bench, version) + 2 > (double)bench->freedom ||
+      !(weighted < best->ratio))
+    return;
+  *best = (fg_engine_score){.ratio = weighted, .version = v, .noise = j};
 }
 
 static void finish_scores(const fg_engine_bench *bench, double null, fg_engine_score *score) {
@@ -234,99 +245,122 @@ static void finish_scores(const fg_engine_bench *bench, double null, fg_engine_s
   }
 }
 
-static void clear_scores(const fg_engine_bench *bench, fg_engine_score *score) {
-  for (size_t c = 0; c < bench->candidates; c++)
+static void clear_scores(size_t count, fg_engine_score *score) {
+  for (size_t c = 0; c < count; c++)
     score[c] = (fg_engine_score){.ratio = INFINITY, .z = NAN};
 }
 
-void fg_engine_bench_score(const fg_engine_bench *bench, const double *y, fg_engine_score *score,
-                           size_t *null) {
-  size_t n = bench->training->n, width = bench->rank + bench->columns;
-  double *sums = bench->scratch, *white = bench->scratch + width, lowest = INFINITY;
-  clear_scores(bench, score);
+void fg_engine_bench_score_data(const fg_engine_bench *bench, fg_engine_score *score,
+                                size_t *null) {
+  *null = 0;
+  clear_scores(bench->candidates, score);
   for (size_t j = 0; j < bench->noises; j++) {
-    memcpy(white, y, n * sizeof *white);
-    fg_engine_whiten(bench->training, bench->noise[j], white);
-    products(n, width, bench->rows[j], white, sums);
-    double rss = sum_of_squares(white, n) - sum_of_squares(sums, bench->rank);
-    if (rss * bench->weight[j] < lowest) {
-      lowest = rss * bench->weight[j];
-      if (null) *null = j;
+    const double *gain = bench->gain + j * bench->versions;
+    if (bench->rss[j] * bench->weight[j] < bench->rss[*null] * bench->weight[*null]) *null = j;
+    for (size_t v = 0; v < bench->versions; v++) {
+      double left = fmax(bench->rss[j] - gain[v], FG_ENGINE_RATIO_LEAST * bench->rss[j]);
+      take_ratio(bench, v, j, left * bench->weight[j], score);
     }
-    collect(bench, j, rss, sums + bench->rank, score);
   }
-  finish_scores(bench, lowest, score);
+  finish_scores(bench, bench->rss[*null] * bench->weight[*null], score);
 }
 
-/* Adds u × residual to the sums of each flip group. */
-static void add_scores(const fg_engine_bench *bench, const double *unit, size_t count, size_t first,
-                       const double *residual) {
-  const fg_engine_training *training = bench->training;
+/* Responses of a batch interleaved, so that every column of the bench is read once for all. */
+typedef struct response_batch {
+  size_t count;
+  float *white; /* n × FG_ENGINE_BATCH */
+  float *sums;  /* (rank + columns) × FG_ENGINE_BATCH */
+  double *one;  /* n */
+  double rss[FG_ENGINE_BATCH], lowest[FG_ENGINE_BATCH];
+} response_batch;
+
+static void whiten_batch(const fg_engine_bench *bench, fg_engine_noise noise, const double *y,
+                         response_batch *batch) {
+  size_t n = bench->training->n;
+  for (size_t b = 0; b < FG_ENGINE_BATCH; b++) {
+    bool used = b < batch->count;
+    batch->rss[b] = 0;
+    if (used) {
+      memcpy(batch->one, y + b * n, n * sizeof *batch->one);
+      fg_engine_whiten(bench->training, noise, batch->one);
+    }
+    for (size_t i = 0; i < n; i++) {
+      batch->white[i * FG_ENGINE_BATCH + b] = used ? (float)batch->one[i] : 0;
+      batch->rss[b] += used ? batch->one[i] * batch->one[i] : 0;
+    }
+  }
+}
+
+/* Columns in blocks whose sums stay in the nearest cache. */
+enum { BLOCK = 64 };
+
+/* One value of every response of a batch. */
+typedef float batch_lane __attribute__((vector_size(FG_ENGINE_BATCH * sizeof(float)), aligned(4)));
+
+/* Four rows at a time, so that a sum is loaded and stored once for all four. */
+__attribute__((target_clones("avx2", "default"))) static void
+products(size_t n, size_t width, const float *rows, const float *white, float *sums) {
+  const batch_lane *at = (const batch_lane *)white;
+  batch_lane *sum = (batch_lane *)sums;
+  memset(sums, 0, width * sizeof *sum);
+  for (size_t from = 0; from < width; from += BLOCK) {
+    size_t to = from + BLOCK < width ? from + BLOCK : width, i = 0;
+    for (; i + 4 <= n; i += 4) {
+      const float *row = rows + i * width;
+      batch_lane a = at[i], b = at[i + 1], c = at[i + 2], d = at[i + 3];
+      for (size_t k = from; k < to; k++)
+        sum[k] += row[k] * a + row[width + k] * b + row[2 * width + k] * c + row[3 * width + k] * d;
+    }
+    for (; i < n; i++)
+      for (size_t k = from; k < to; k++)
+        sum[k] += rows[i * width + k] * at[i];
+  }
+}
+
+static double sum_of_squares(const float *v, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += (double)v[i * FG_ENGINE_BATCH] * v[i * FG_ENGINE_BATCH];
+  return sum;
+}
+
+static void score_at(const fg_engine_bench *bench, size_t j, const double *y, response_batch *batch,
+                     fg_engine_score *score) {
   size_t width = bench->rank + bench->columns;
-  for (size_t k = 0; k < count; k++)
-    for (size_t i = 0; i < training->n; i++)
-      bench->flip_scores[training->flip[i] * width + first + k] +=
-          unit[k * training->n + i] * residual[i];
+  whiten_batch(bench, bench->noise[j], y, batch);
+  products(bench->training->n, width, bench->rows[j], batch->white, batch->sums);
+  for (size_t b = 0; b < batch->count; b++) {
+    double rss = batch->rss[b] - sum_of_squares(batch->sums + b, bench->rank);
+    const float *sums = batch->sums + bench->rank * FG_ENGINE_BATCH + b;
+    if (rss * bench->weight[j] < batch->lowest[b]) batch->lowest[b] = rss * bench->weight[j];
+    for (size_t v = 0; v < bench->versions; v++) {
+      const fg_engine_version *version = &bench->version[v];
+      double left = rss - sum_of_squares(sums + version->first * FG_ENGINE_BATCH, version->rank);
+      take_ratio(bench, v, j, fmax(left, FG_ENGINE_RATIO_LEAST * rss) * bench->weight[j],
+                 score + b * bench->candidates);
+    }
+  }
 }
 
-static void total_scores(const fg_engine_bench *bench, fg_engine_score *score) {
-  size_t width = bench->rank + bench->columns;
-  double *sums = bench->scratch;
-  memset(sums, 0, width * sizeof *sums);
-  for (size_t g = 0; g < bench->training->flips; g++)
-    for (size_t k = 0; k < width; k++)
-      sums[k] += bench->flip_scores[g * width + k];
-  clear_scores(bench, score);
-  collect(bench, 0, bench->flip_rss, sums + bench->rank, score);
-  finish_scores(bench, bench->flip_rss * bench->weight[0], score);
-}
-
-fg_status fg_engine_bench_prepare_flips(fg_context *ctx, fg_engine_bench *bench, size_t noise,
-                                        fg_engine_score *score) {
-  const fg_engine_training *training = bench->training;
-  size_t n = training->n, width = bench->rank + bench->columns, each = n * FG_LOOP_COLUMNS;
+fg_status fg_engine_bench_score(fg_context *ctx, const fg_engine_bench *bench, size_t count,
+                                const double *y, fg_engine_score *score) {
+  size_t n = bench->training->n, width = bench->rank + bench->columns;
   fg_status status = FG_OK;
-  double *null = NULL, *work = NULL, *residual = NULL;
-  FG_TRY_EXIT(null_basis(ctx, training, bench->noise[noise], &null));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
-  memcpy(residual, training->y, n * sizeof *residual);
-  fg_engine_whiten(training, bench->noise[noise], residual);
-  bench->flip_rss = fg_engine_project_out(n, null, training->columns, residual);
-  memset(bench->flip_scores, 0, training->flips * width * sizeof *bench->flip_scores);
-  add_scores(bench, null, training->columns, 0, residual);
-  for (size_t v = 0; v < bench->versions; v++) {
-    fg_engine_bench_tell(bench, 0, v, bench->versions);
-    FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[noise], null, work, work + each));
-    add_scores(bench, work + each, bench->version[v].rank, bench->rank + bench->version[v].first,
-               residual);
-  }
-  if (score) total_scores(bench, score);
+  response_batch batch = {.count = count};
+  clear_scores(count * bench->candidates, score);
+  size_t block = FG_ENGINE_BATCH * sizeof *batch.white;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, block, (void **)&batch.white));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, width, block, (void **)&batch.sums));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *batch.one, (void **)&batch.one));
+  for (size_t b = 0; b < count; b++)
+    batch.lowest[b] = INFINITY;
+  for (size_t j = 0; j < bench->noises; j++)
+    score_at(bench, j, y, &batch, score);
+  for (size_t b = 0; b < count; b++)
+    finish_scores(bench, batch.lowest[b], score + b * bench->candidates);
 exit:
-  free(null);
-  free(work);
-  free(residual);
+  free(batch.white);
+  free(batch.sums);
+  free(batch.one);
   return status;
-}
-
-/* A flipped residual is projected again: |D r|² less what falls into the null's span. */
-void fg_engine_bench_flip(const fg_engine_bench *bench, const signed char *sign, double *z) {
-  size_t width = bench->rank + bench->columns;
-  double *sums = bench->scratch;
-  memset(sums, 0, width * sizeof *sums);
-  for (size_t g = 0; g < bench->training->flips; g++)
-    for (size_t k = 0; k < width; k++)
-      sums[k] += sign[g] * bench->flip_scores[g * width + k];
-  double rss = bench->flip_rss - sum_of_squares(sums, bench->rank);
-  for (size_t c = 0; c < bench->candidates; c++)
-    z[c] = -INFINITY;
-  for (size_t v = 0; v < bench->versions; v++) {
-    const fg_engine_version *version = &bench->version[v];
-    double k = fg_engine_version_freedom(bench, version);
-    if (version->rank == 0 || k + 2 > (double)bench->freedom) continue;
-    double left = rss - sum_of_squares(sums + bench->rank + version->first, version->rank);
-    double one =
-        fg_engine_deviate(fmax(left / rss, FG_ENGINE_RATIO_LEAST), k, (double)bench->freedom);
-    z[version->candidate] = fmax(z[version->candidate], one);
-  }
 }

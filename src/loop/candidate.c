@@ -1,4 +1,7 @@
 /* What the engine asks of a candidate. */
+#include <stdio.h>
+#include <string.h>
+
 #include "core/text.h"
 #include "loop/engine.h"
 
@@ -8,6 +11,14 @@ bool fg_engine_is_lone(const fg_loop_candidate *candidate) {
 
 bool fg_engine_is_exchange(const fg_loop_candidate *candidate) {
   return candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
+}
+
+bool fg_engine_is_noise(const fg_loop_candidate *candidate) {
+  return candidate->effect->scatter != FG_LOOP_OF_THE_MEAN;
+}
+
+bool fg_engine_is_serial(const fg_loop_candidate *candidate) {
+  return candidate->effect->scatter == FG_LOOP_SERIAL;
 }
 
 bool fg_engine_is_curve(const fg_loop_candidate *candidate) {
@@ -20,8 +31,15 @@ size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
 }
 
 bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b) {
-  return a->effect == b->effect && a->a == b->a && a->b == b->b && a->row[0] == b->row[0] &&
-         a->row[1] == b->row[1];
+  if (a->effect != b->effect || a->a != b->a || a->b != b->b || a->rows != b->rows) return false;
+  return !a->rows || !memcmp(a->row, b->row, a->rows * sizeof *a->row);
+}
+
+static void name_rows(const fg_loop_candidate *candidate, char name[FG_LOOP_NAME]) {
+  size_t used = (size_t)snprintf(name, FG_LOOP_NAME, "%s", candidate->effect->id);
+  for (size_t k = 0; k < candidate->rows && used < FG_LOOP_NAME; k++, used = strlen(name))
+    fg_text_clip(name + used, FG_LOOP_NAME - used, "%s%zu%s", k ? ", " : "(", candidate->row[k] + 1,
+                 k + 1 == candidate->rows ? ")" : "");
 }
 
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
@@ -31,7 +49,7 @@ void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_cand
     fg_text_clip(name, FG_LOOP_NAME, "%s(%zu, %zu)", id, candidate->row[0] + 1,
                  candidate->row[1] + 1);
   else if (fg_engine_is_lone(candidate))
-    fg_text_clip(name, FG_LOOP_NAME, "%s(%zu)", id, candidate->row[0] + 1);
+    name_rows(candidate, name);
   else if (candidate->effect->pair)
     fg_text_clip(name, FG_LOOP_NAME, "%s(%s, %s)", id, problem->coordinate[candidate->a].name,
                  problem->coordinate[candidate->b].name);

@@ -48,7 +48,7 @@ static fg_status append_slopes(fg_context *ctx, fg_engine_training *training,
     for (size_t d = 0; d < effect->shapes && !effect->stepwise; d++)
       FG_TRY(shape_slope(ctx, training, &set->candidate[m], set->shape[m], d, fit->beta + first,
                          x + n * training->columns++));
-    if (!fg_engine_is_exchange(&set->candidate[m]))
+    if (!fg_engine_is_exchange(&set->candidate[m]) && !fg_engine_is_noise(&set->candidate[m]))
       first += fg_engine_candidate_columns(training->problem, &set->candidate[m]);
   }
   return FG_OK;
@@ -80,6 +80,12 @@ static void amplitude(const fg_engine_training *training, const fg_engine_fit *f
   claim->amplitude_u = sqrt(fmax(sum, 0) * variance);
 }
 
+/* The noise as it was estimated, and a row's sd. */
+typedef struct noise_fit {
+  fg_engine_noise at;
+  double sd;
+} noise_fit;
+
 /* Columns that are constant in groups are judged between groups: so many fewer degrees of freedom.
  */
 static double freedom_of(const fg_engine_training *training, size_t first, size_t count,
@@ -93,9 +99,30 @@ static double freedom_of(const fg_engine_training *training, size_t first, size_
   return fmax((double)training->groups - 1 - (double)count, 1);
 }
 
+/* The correlation, or how far the sizes of the rows' scatter are apart; the amplitude is half that
+ * in the response's unit. Uncertainties are those of large samples. */
+static void describe_noise(const fg_engine_training *training, const noise_fit *noise,
+                           fg_loop_claim *claim) {
+  double n = (double)training->n, low = INFINITY, high = 0;
+  claim->interval[0] = claim->interval[1] = claim->amplitude = claim->amplitude_u = NAN;
+  if (fg_engine_is_serial(&claim->candidate)) {
+    claim->noise_value = noise->at.rho;
+    claim->noise_value_u = sqrt((1 - noise->at.rho * noise->at.rho) / n);
+    return;
+  }
+  for (size_t i = 0; i < training->n; i++) {
+    low = fmin(low, training->scale[i]);
+    high = fmax(high, training->scale[i]);
+  }
+  claim->noise_value = high / low;
+  claim->noise_value_u = claim->noise_value * sqrt(2 / n);
+  claim->amplitude = noise->sd * (high - low) / 2;
+}
+
 static void describe(const fg_engine_training *training, const fg_engine_fit *fit,
-                     const fg_engine_fit *wide, const fg_engine_set *set, double variance,
+                     const fg_engine_fit *wide, const fg_engine_set *set, const noise_fit *noise,
                      double freedom, fg_loop_claim *claim) {
+  double variance = noise->sd * noise->sd;
   size_t first = training->problem->parameters, slope = fit->columns;
   for (size_t m = 0; m < set->count; m++) {
     const fg_loop_candidate *candidate = &set->candidate[m];
@@ -107,6 +134,10 @@ static void describe(const fg_engine_training *training, const fg_engine_fit *fi
     double t = gsl_cdf_tdist_Qinv(0.025, own);
     memcpy(claim[m].shape, set->shape[m], sizeof claim[m].shape);
     claim[m].candidate = *candidate;
+    if (fg_engine_is_noise(candidate)) {
+      describe_noise(training, noise, &claim[m]);
+      continue;
+    }
     claim[m].columns = count;
     if (fg_engine_is_exchange(candidate)) {
       const double *response = training->problem->response;
@@ -147,10 +178,11 @@ fg_status fg_engine_fit_claims(fg_context *ctx, const fg_loop_problem *problem, 
   FG_TRY_EXIT(append_slopes(ctx, &training, set, &fit));
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, noise, &wide));
   /* The correlation was estimated too. */
-  size_t used = wide.rank + problem->correlated;
+  size_t used = wide.rank + training.serial;
   double freedom = training.n > used ? (double)(training.n - used) : NAN;
   double variance = fit.rss / freedom;
-  describe(&training, &fit, &wide, set, variance, freedom, claim);
+  const noise_fit row = {noise, sqrt(variance)};
+  describe(&training, &fit, &wide, set, &row, freedom, claim);
   for (size_t k = 0; k < problem->parameters; k++) {
     parameter[k] = fit.beta[k];
     parameter_u[k] = sqrt(variance * wide.inverse[k * wide.columns + k]);

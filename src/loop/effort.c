@@ -4,7 +4,7 @@
  * row and per cell. */
 static const double per_product = 6e-10, per_projected = 1e-9, per_row = 2400, per_cell = 26;
 
-enum { DRAWS = 1999, FLIP_DRAWS = 999, NOISES = 5, LEVEL_NOISES = 24, STEPS = 7, FITS = 160 };
+enum { DRAWS = 1999, LEVEL_NOISES = 6, CORRELATED = 5, STEPS = 8, FOLDS = 5, FITS = 60 };
 
 static double count_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                             size_t candidates) {
@@ -17,24 +17,25 @@ static double count_columns(const fg_loop_problem *problem, const fg_loop_candid
   return columns;
 }
 
-/* Few rows: every candidate is scored in every draw at every noise model. */
+/* Few rows: every candidate is scored in every draw at every noise model; beside correlation, in
+ * fewer draws, at more of them. The search is made again without each fold. */
 static void estimate_small(const fg_loop_problem *problem, double rows, double columns,
                            fg_engine_effort *effort) {
-  double noises = problem->group_level ? LEVEL_NOISES : problem->correlated ? NOISES : 1;
-  effort->seconds = STEPS * DRAWS * noises * rows * columns * per_product;
-  effort->bytes = 8 * (noises * rows * columns + DRAWS * (double)effort->candidates);
+  double noises = problem->group_level ? LEVEL_NOISES : 1;
+  double looks = problem->correlated ? 1 + CORRELATED : 1;
+  effort->seconds = (1 + FOLDS) * STEPS * DRAWS * noises * looks * rows * columns * per_product;
+  effort->bytes = 8 * (noises * looks * rows * columns + DRAWS * (double)effort->candidates);
 }
 
-/* Large ones: it is projected beside the null, and its scores are flipped by groups. The null is
- * fitted at every noise model, and again wherever the shapes of what was found are refined. */
+/* Large ones: it is projected beside the null, once a step. The null is fitted again wherever the
+ * shapes of what was found are refined. */
 static void estimate_large(const fg_loop_problem *problem, double rows, double columns,
                            fg_engine_effort *effort) {
   double null = (double)problem->parameters + 2 * FG_LOOP_CLAIMS;
-  double projected = rows * columns * (60 + 4 * null);
+  double projected = rows * columns * (30 + 2 * null);
   double fitted = FITS * rows * null * null * 4;
-  double flipped = (double)FLIP_DRAWS * FG_ENGINE_FLIP_GROUPS * columns;
-  effort->seconds = STEPS * ((projected + fitted) * per_projected + flipped * per_product);
-  effort->bytes = 8 * FG_ENGINE_FLIP_GROUPS * columns;
+  effort->seconds = STEPS * (projected + fitted) * per_projected;
+  effort->bytes = 8 * rows * 5 * FG_LOOP_COLUMNS;
 }
 
 void fg_engine_effort_estimate(const fg_loop_problem *problem, const fg_loop_candidate *candidate,

@@ -10,9 +10,9 @@
 #include "foilgauge/loop.h"
 
 enum {
-  FG_ENGINE_SMALL_ROWS = 600,  /* up to here: all noise models, simulation, all lone rows */
-  FG_ENGINE_FLIP_GROUPS = 400, /* more groups are flipped together, in order */
+  FG_ENGINE_SMALL_ROWS = 600, /* up to here: all noise models, a drawn null, exact lone rows */
   FG_ENGINE_NOISES = 32,
+  FG_ENGINE_BATCH = 8, /* draws that are scored together */
 };
 
 /* Of residual sums, with a candidate over without: what an exact fit leaves is rounding. */
@@ -33,10 +33,11 @@ typedef struct fg_engine_training {
   const fg_loop_problem *problem;
   size_t n, *row;              /* rows of the problem */
   size_t *group, groups;       /* renumbered */
-  size_t *flip, flips;         /* units of sign flips */
   size_t *start, blocks;       /* series: first row of each, and n at the end */
   size_t *level_start, levels; /* the same of groups that share a level */
   double *y;                   /* n, exchanged runs put back */
+  double *scale;               /* n: a row's sd over the rms of all; NULL: one size everywhere */
+  bool serial;                 /* neighbours may be correlated */
   size_t columns;
   double *x; /* columns × n */
 } fg_engine_training;
@@ -52,6 +53,9 @@ size_t fg_engine_candidate_columns(const fg_loop_problem *problem,
 bool fg_engine_is_lone(const fg_loop_candidate *candidate);
 bool fg_engine_is_exchange(const fg_loop_candidate *candidate);
 bool fg_engine_is_curve(const fg_loop_candidate *candidate);
+/* Of the scatter, not of the mean. */
+bool fg_engine_is_noise(const fg_loop_candidate *candidate);
+bool fg_engine_is_serial(const fg_loop_candidate *candidate);
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               char name[FG_LOOP_NAME]);
 bool fg_engine_same_candidate(const fg_loop_candidate *a, const fg_loop_candidate *b);
@@ -60,8 +64,12 @@ fg_status fg_engine_gather(fg_context *ctx, const fg_engine_training *training,
                            const fg_loop_candidate *candidate, const double *shape,
                            double *columns);
 
-/* y := W y. W'W is the inverse of the rows' covariance in units of their variance: series with
- * correlation rho^|i - j|, and lambda more where rows share a group. */
+/* The scale of every row by the set's effects of the spread; none: NULL. scale.c */
+fg_status fg_engine_estimate_scale(fg_context *ctx, fg_engine_training *training,
+                                   const fg_engine_set *set);
+
+/* y := W y. W'W is the inverse of the rows' covariance in units of their mean variance: the rows'
+ * scale, series with correlation rho^|i - j|, and lambda more where rows share a group. */
 void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y);
 /* y := W^-1 y: draws of that covariance from white numbers. */
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y);
@@ -111,14 +119,13 @@ typedef struct fg_engine_bench {
   size_t candidates;
   double (*shape)[FG_LOOP_SHAPES]; /* versions */
   fg_engine_version *version;
-  size_t versions, columns, rank, freedom;
+  size_t versions, columns, rank, freedom, widest; /* columns of one version, at most */
   fg_engine_noise noise[FG_ENGINE_NOISES];
   double weight[FG_ENGINE_NOISES]; /* exp(log terms / freedom): noises compare by rss × weight */
   size_t noises;
-  double *rows[FG_ENGINE_NOISES]; /* n × (rank + columns), row by row; only where rows are few */
-  double *flip_scores;            /* flips × (rank + columns), at the flips' noise */
-  double flip_rss;                /* |r|² there */
-  double *scratch;                /* for one scoring */
+  double rss[FG_ENGINE_NOISES];  /* of the training's y without any candidate, whitened */
+  double *gain;                  /* noises × versions: what each takes away from it */
+  float *rows[FG_ENGINE_NOISES]; /* n × (rank + columns), row by row; only where rows are few */
   fg_engine_watch watch;
 } fg_engine_bench;
 
@@ -128,21 +135,19 @@ typedef struct fg_engine_score {
   size_t version, noise;
 } fg_engine_score;
 
+/* The bench's watch is the caller's; all else is made. */
 fg_status fg_engine_bench_build(fg_context *ctx, const fg_engine_training *training,
                                 const fg_loop_candidate *candidate, size_t candidates,
                                 fg_engine_bench *bench);
-/* `done` of `all` in one half of the step. */
-void fg_engine_bench_tell(const fg_engine_bench *bench, size_t half, size_t done, size_t all);
+/* `done` of `all` in one step. */
+void fg_engine_bench_tell(const fg_engine_bench *bench, size_t done, size_t all);
 void fg_engine_bench_free(fg_engine_bench *bench);
-/* Scores `y` (not whitened). `null` is the best noise without any candidate. */
-void fg_engine_bench_score(const fg_engine_bench *bench, const double *y, fg_engine_score *score,
-                           size_t *null);
-/* Makes flip_scores at a noise from the training's y; where rows are many also the observed scores.
- */
-fg_status fg_engine_bench_prepare_flips(fg_context *ctx, fg_engine_bench *bench, size_t noise,
-                                        fg_engine_score *score);
-/* The largest z of each family over the candidates for one draw of signs. */
-void fg_engine_bench_flip(const fg_engine_bench *bench, const signed char *sign, double *z);
+/* Scores the training's own y; `null` is the best noise without any candidate. */
+void fg_engine_bench_score_data(const fg_engine_bench *bench, fg_engine_score *score, size_t *null);
+/* Scores `count` vectors of responses (not whitened, one after the other; at most FG_ENGINE_BATCH)
+ * where rows are few: candidates × count scores, those of one vector together. */
+fg_status fg_engine_bench_score(fg_context *ctx, const fg_engine_bench *bench, size_t count,
+                                const double *y, fg_engine_score *score);
 double fg_engine_deviate(double ratio, double k, double freedom);
 double fg_engine_deviate_to_f(double z, double k, double nu);
 /* Extra freedom of a candidate: rank and shapes. */

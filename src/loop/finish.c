@@ -14,6 +14,8 @@
 /* Strong correlation makes the sd of a row larger than what these rows show: the noise floor that
  * is said is at the most so many times their rms. */
 #define FLOOR_OVER_RMS 1.25
+/* An error that falls by less than this is the same error. */
+#define SAME_ERROR 0.995
 
 static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
                          fg_loop_error *error) {
@@ -174,6 +176,21 @@ exit:
   return status;
 }
 
+/* Where neighbours are alike, a row's error is what the one before it does not say. */
+static fg_status innovations(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise) {
+  fg_engine_training all;
+  double *residual = run->result->after_fit;
+  if (noise.rho == 0) return FG_OK;
+  FG_TRY(fg_engine_training_build(ctx, run->problem, NULL, &run->set, &all));
+  for (size_t b = 0; b < all.blocks; b++)
+    for (size_t i = all.start[b + 1] - 1; i > all.start[b]; i--) {
+      double share = all.scale ? all.scale[i] / all.scale[i - 1] : 1;
+      residual[i] -= noise.rho * share * residual[i - 1];
+    }
+  fg_engine_training_free(&all);
+  return FG_OK;
+}
+
 static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *noise) {
   fg_loop_result *result = run->result;
   fg_engine_set none = {0};
@@ -182,6 +199,7 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
                            NULL, NULL));
   FG_TRY(fg_engine_fit_set(ctx, run->problem, run->train, &run->set, true, noise, result->after_fit,
                            result->effect_fit, &result->noise.sd));
+  FG_TRY(innovations(ctx, run, *noise));
   if (run->set.count == 0) /* nothing found: the same fit, before and after */
     memcpy(result->after_fit, result->before_fit, run->problem->rows * sizeof(double));
   result->noise.rho = noise->rho;
@@ -192,6 +210,11 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   FG_TRY(cross_validated(ctx, run, &none, first, &result->before.cross_validated_rms));
   FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
                          &result->after.cross_validated_rms));
+  if (isnan(result->before.held_out_rms) && run->set.count)
+    FG_TRY(
+        fg_engine_cross_fit(ctx, run, &result->before.held_out_rms, &result->after.held_out_rms));
+  else if (isnan(result->before.held_out_rms))
+    result->before.held_out_rms = result->after.held_out_rms = result->before.cross_validated_rms;
   double before = result->before.rms;
   result->ratio_rms = before > 0 ? result->after.rms / before : 1;
   result->ratio_held_out = result->before.held_out_rms > 0
@@ -216,8 +239,33 @@ static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise
     claim->amplitude = fit[m].amplitude;
     claim->amplitude_u = fit[m].amplitude_u;
     memcpy(claim->interval, fit[m].interval, sizeof fit[m].interval);
+    claim->noise_value = fit[m].noise_value;
+    claim->noise_value_u = fit[m].noise_value_u;
   }
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
+}
+
+static bool error_fell(const fg_loop_result *result) {
+  double ratio = result->ratio_held_out;
+  return result->ratio_rms < SAME_ERROR && (isnan(ratio) || ratio < SAME_ERROR);
+}
+
+/* What was found without an error that fell. */
+static fg_status note_verdict(fg_context *ctx, const fg_engine_run *run) {
+  fg_loop_result *result = run->result;
+  bool of_mean = false;
+  for (size_t m = 0; m < result->claims; m++)
+    of_mean |= !fg_engine_is_noise(&result->claim[m].candidate);
+  if (!result->claims || result->verdict == FG_LOOP_EXPLAINED || run->has_curve) return FG_OK;
+  if (!of_mean)
+    return fg_engine_note(ctx, result,
+                          "What was found is about the scatter, not about the mean: there is no "
+                          "error to take out. Limits and uncertainties have to follow it.");
+  return fg_engine_note(ctx, result,
+                        "What was found does not lower the error of rows that took no part "
+                        "(%.3g before, %.3g after): it is there, but it predicts nothing.",
+                        ldexp(result->before.held_out_rms, run->units->response),
+                        ldexp(result->after.held_out_rms, run->units->response));
 }
 
 fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
@@ -234,13 +282,16 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
     run->set.count = 0;
     FG_TRY(errors(ctx, run, &noise));
   }
+  if (confirmed == -1 && isfinite(result->ratio_held_out) && run->set.count)
+    confirmed = result->ratio_held_out < SAME_ERROR;
   for (size_t m = 0; m < result->claims; m++)
     result->claim[m].held_out = confirmed;
   FG_TRY(parameters(ctx, run, noise));
   run->noise = noise;
   run->sd = result->noise.sd;
-  result->verdict = run->has_curve   ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
-                    : result->claims ? FG_LOOP_EXPLAINED
-                                     : FG_LOOP_CLEAN;
-  return FG_OK;
+  result->verdict = run->has_curve       ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
+                    : !result->claims    ? FG_LOOP_CLEAN
+                    : error_fell(result) ? FG_LOOP_EXPLAINED
+                                         : FG_LOOP_PARTLY;
+  return note_verdict(ctx, run);
 }

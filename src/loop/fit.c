@@ -16,20 +16,22 @@ static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
   return FG_OK;
 }
 
+#define RHO_MOST 0.985
+
 /* Between the points of the grid: steps that shrink, in rho and in the logarithm of lambda. */
 static fg_status polish(fg_context *ctx, const fg_engine_training *training, double best,
                         fg_engine_noise *noise) {
   double rho_step = 0.1, lambda_step = 0.4;
   for (int round = 0; round < 4; round++) {
     const fg_engine_noise tries[] = {
-        {fmin(noise->rho + rho_step, 0.98), noise->lambda},
-        {fmax(noise->rho - rho_step, 0), noise->lambda},
+        {fmin(noise->rho + rho_step, RHO_MOST), noise->lambda},
+        {fmax(noise->rho - rho_step, -RHO_MOST), noise->lambda},
         {noise->rho, noise->lambda * exp(lambda_step)},
         {noise->rho, noise->lambda * exp(-lambda_step)},
     };
     for (size_t i = 0; i < 4; i++) {
       double value;
-      if (i < 2 ? !training->problem->correlated : !training->levels) continue;
+      if (i < 2 ? !training->serial : !training->levels) continue;
       FG_TRY(criterion(ctx, training, tries[i], &value));
       if (!(value < best)) continue;
       best = value;
@@ -42,8 +44,8 @@ static fg_status polish(fg_context *ctx, const fg_engine_training *training, dou
 }
 
 /* The noise model with the largest residual likelihood. */
-static fg_status choose_noise(fg_context *ctx, const fg_engine_training *training,
-                              fg_engine_noise *noise) {
+fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_training *training,
+                                 fg_engine_noise *noise) {
   fg_engine_noise grid[FG_ENGINE_NOISES];
   double best = INFINITY, value;
   size_t count = fg_engine_noise_grid(training, grid);
@@ -54,7 +56,7 @@ static fg_status choose_noise(fg_context *ctx, const fg_engine_training *trainin
     best = value;
     *noise = grid[j];
   }
-  return training->n <= FG_ENGINE_SMALL_ROWS ? polish(ctx, training, best, noise) : FG_OK;
+  return training->serial || training->levels ? polish(ctx, training, best, noise) : FG_OK;
 }
 
 static fg_status residual_sum(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,
@@ -227,7 +229,7 @@ fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, con
   fg_engine_fit fit = {0};
   FG_TRY_EXIT(fg_engine_training_build(ctx, problem, keep, set, &training));
   FG_TRY_EXIT(fg_engine_training_build(ctx, problem, NULL, set, &all));
-  if (choose) FG_TRY_EXIT(choose_noise(ctx, &training, noise));
+  if (choose) FG_TRY_EXIT(fg_engine_choose_noise(ctx, &training, noise));
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, *noise, &fit));
   if (residual) subtract_fit(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);

@@ -4,6 +4,10 @@
 
 #include "loop/engine.h"
 
+/* The noise with the largest residual likelihood. */
+fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_training *training,
+                                 fg_engine_noise *noise);
+
 /* Moves the shapes of the set to the least residual sum, one after the other, each between its
  * neighbours in the effect's start values. */
 fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, const bool *keep,

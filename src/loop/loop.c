@@ -19,7 +19,8 @@ static fg_status add_candidates(fg_context *ctx, fg_engine_run *run, const fg_lo
         if (!effect->accepts(problem, a, b)) continue;
         fg_loop_candidate candidate = {.effect = effect, .a = a, .b = b};
         size_t columns = fg_engine_candidate_columns(problem, &candidate);
-        if (columns == 0 || columns > FG_LOOP_COLUMNS) continue;
+        bool none = columns == 0 && effect->scatter != FG_LOOP_SERIAL;
+        if (none || columns > FG_LOOP_COLUMNS) continue;
         FG_TRY(fg_memory_reserve(ctx, run->candidates + 1, sizeof *run->candidate, capacity,
                                  (void **)&run->candidate));
         run->candidate[run->candidates++] = candidate;
@@ -40,6 +41,8 @@ static fg_status open_run(fg_context *ctx, const fg_engine_units *units,
     run->train[i] = !problem->aside || !problem->aside[i];
   FG_TRY(add_candidates(ctx, run, options->effects, &capacity));
   if (!problem->few) FG_TRY(add_candidates(ctx, run, fg_loop_curve_effects(), &capacity));
+  run->means = run->candidates;
+  if (!problem->few) FG_TRY(add_candidates(ctx, run, fg_loop_noise_effects(), &capacity));
   fg_engine_effort effort;
   fg_engine_effort_estimate(problem, run->candidate, run->candidates, &effort);
   FG_TRY(fg_engine_effort_check(ctx, &effort, options->minutes, options->mebibytes));
@@ -69,14 +72,6 @@ static fg_status note_aliased(fg_context *ctx, fg_engine_run *run, const fg_engi
   return status;
 }
 
-/* So many that flips of their signs can give a p-value below it: a sign and all others make one. */
-static size_t groups_needed(double accept_p) {
-  size_t groups = 1;
-  while (groups < 64 && ldexp(1, 1 - (int)groups) >= accept_p)
-    groups++;
-  return groups;
-}
-
 /* Enough rows, and a residual that is more than rounding? */
 static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
   fg_engine_training training;
@@ -91,7 +86,8 @@ static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
                      training.n, fit.rank, training.n - fit.rank);
   if (status == FG_OK) status = note_aliased(ctx, run, &fit);
   for (size_t i = 0; i < training.n; i++) {
-    double value = run->problem->response ? run->problem->response[training.row[i]] : training.y[i];
+    bool whole = run->problem->response && run->problem->origin == 0;
+    double value = whole ? run->problem->response[training.row[i]] : training.y[i];
     size += value * value;
   }
   *worth = status == FG_OK && fit.rss > 1e-20 * size;
@@ -100,19 +96,12 @@ static fg_status check(fg_context *ctx, fg_engine_run *run, bool *worth) {
         fg_engine_note(ctx, run->result,
                        "The declared model fits every row to the last digit: no residual is left "
                        "to look into.");
-  size_t least = groups_needed(run->options.accept_p);
-  if (status == FG_OK && training.groups < least && !run->problem->few)
-    status = fg_engine_note(
-        ctx, run->result,
-        "%zu groups take part: flipping their signs can give no p-value below "
-        "%.3g, so nothing can be claimed at p < %g. Measure %zu groups or more.",
-        training.groups, ldexp(1, 1 - (int)training.groups), run->options.accept_p, least);
   fg_engine_fit_free(&fit);
   fg_engine_training_free(&training);
   return status;
 }
 
-static fg_status search(fg_context *ctx, fg_engine_run *run) {
+fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run) {
   bool accepted = true, last = false;
   while (!last && run->result->claims < FG_LOOP_CLAIMS) {
     FG_TRY(fg_engine_accept_one(ctx, run, &accepted, &last));
@@ -123,24 +112,6 @@ static fg_status search(fg_context *ctx, fg_engine_run *run) {
   return fg_engine_swap(ctx, run);
 }
 
-/* Nothing claimed over an order along which the residual is correlated: say what that leaves open.
- */
-static fg_status note_correlation(fg_context *ctx, const fg_engine_run *run) {
-  enum { SHARE_PCT = 50 };
-  fg_loop_result *result = run->result;
-  const fg_loop_rejected *nearest = NULL;
-  if (result->verdict != FG_LOOP_CLEAN || 100 * result->noise.rho < SHARE_PCT) return FG_OK;
-  for (size_t i = 0; i < result->rejects; i++)
-    if (!nearest || result->rejected[i].p_value < nearest->p_value) nearest = &result->rejected[i];
-  if (!nearest) return FG_OK;
-  return fg_engine_note(
-      ctx, result,
-      "The residual is not white: neighbours correlate at %.2f along the order. In %zu "
-      "rows a slow change and correlated noise look alike; the nearest effect is %s "
-      "(p = %.2g). Repeating the first settings at the end would tell.",
-      result->noise.rho, run->problem->rows, nearest->name, nearest->p_value);
-}
-
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result) {
   fg_status status = FG_OK;
@@ -148,15 +119,13 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
   fg_engine_units units = {0};
   bool worth = false;
   memset(result, 0, sizeof *result);
-  result->smallest_p = NAN;
   FG_TRY_EXIT(fg_engine_units_open(ctx, problem, &units));
   FG_TRY_EXIT(open_run(ctx, &units, options, result, &run));
   FG_TRY_EXIT(check(ctx, &run, &worth));
-  if (worth) FG_TRY_EXIT(search(ctx, &run));
+  if (worth) FG_TRY_EXIT(fg_engine_search(ctx, &run));
   FG_TRY_EXIT(fg_engine_finish(ctx, &run));
   if (worth) FG_TRY_EXIT(fg_engine_list_rejected(ctx, &run));
   if (worth) FG_TRY_EXIT(fg_engine_advise(ctx, &run));
-  if (worth) FG_TRY_EXIT(note_correlation(ctx, &run));
   fg_engine_units_restore(&units, result);
 exit:
   fg_engine_units_close(&units);

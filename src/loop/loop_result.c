@@ -44,6 +44,7 @@ fg_status fg_loop_claim_evaluate(fg_context *ctx, const fg_loop_problem *problem
   double *columns = NULL;
   size_t rows = problem->rows;
   memset(effect, 0, rows * sizeof *effect);
+  if (claim->columns == 0) return FG_OK; /* of the scatter */
   FG_TRY(fg_memory_allocate(ctx, rows, (claim->columns + 1) * sizeof *columns, (void **)&columns));
   claim->candidate.effect->basis(problem, &claim->candidate, claim->shape, columns);
   for (size_t k = 0; k < claim->columns; k++)

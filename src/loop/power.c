@@ -6,7 +6,7 @@
 
 #include "core/memory.h"
 #include "loop/engine_random.h"
-#include "loop/permute.h"
+#include "loop/judge.h"
 
 enum { DRAWS = 60, HALVINGS = 14 };
 static const double wanted = 0.8;
@@ -52,7 +52,7 @@ static void products(const power_bench *power, size_t j, const double *white, do
   const fg_engine_bench *bench = power->bench;
   memset(sums, 0, (power->width + 1) * sizeof *sums);
   for (size_t i = 0; i < bench->training->n; i++) {
-    const double *row = bench->rows[j] + i * power->width;
+    const float *row = bench->rows[j] + i * power->width;
     for (size_t k = 0; k < power->width; k++)
       sums[k] += row[k] * white[i];
     sums[power->width] += white[i] * white[i];
@@ -181,7 +181,7 @@ fg_status fg_engine_smallest_amplitudes(fg_context *ctx, const fg_engine_bench *
   power_bench power;
   fg_status status = FG_OK;
   FG_TRY_EXIT(open_power(ctx, bench, &power));
-  draw_noise(&power, bench->noise[judgement->cautious_noise], seed);
+  draw_noise(&power, bench->noise[judgement->noise], seed);
   for (size_t c = 0; c < bench->candidates; c++)
     FG_TRY_EXIT(one_amplitude(ctx, &power, c, judgement->z_critical[c], &amplitude[c]));
 exit:

@@ -43,41 +43,66 @@ static fg_loop_verdict judge_rejected(const fg_engine_run *run, const fg_loop_re
   return FG_LOOP_INCONCLUSIVE;
 }
 
-static void describe(const fg_engine_run *run, const fg_engine_step *step, size_t c,
-                     double sd_white, const double *amplitude, fg_loop_rejected *one) {
+static void describe(const fg_engine_step *step, size_t c, double sd_white, const double *amplitude,
+                     fg_loop_rejected *one) {
   const fg_engine_judgement *judgement = &step->judgement;
   const fg_engine_version *version = &step->bench.version[judgement->score[c].version];
-  *one = (fg_loop_rejected){.candidate = run->candidate[c], .smallest_detectable = NAN};
-  fg_engine_candidate_name(run->problem, &one->candidate, one->name);
   if (isfinite(judgement->score[c].z)) {
     double k = fg_engine_version_freedom(&step->bench, version);
     one->would_explain = 1 - judgement->score[c].ratio;
-    one->p_value = fmax(judgement->p_flip[c],
-                        isfinite(judgement->p_simulated[c]) ? judgement->p_simulated[c] : 0);
     one->retained_share = version->share;
-    if (step->judgement.smallest_p >= run->options.accept_p)
-      one->smallest_detectable = NAN;
-    else if (amplitude)
-      one->smallest_detectable = amplitude[c] * sd_white;
-    else
-      one->smallest_detectable = detectable(judgement->f_critical[c], k, sd_white, version->length);
+    one->smallest_detectable =
+        amplitude ? amplitude[c] * sd_white
+                  : detectable(judgement->f_critical[c], k, sd_white, version->length);
   } else {
-    one->p_value = 1;
     for (size_t v = 0; v < step->bench.versions; v++)
       if (step->bench.version[v].candidate == c)
         one->retained_share = fmax(one->retained_share, step->bench.version[v].share);
   }
-  one->verdict = judge_rejected(run, one);
 }
 
-static void describe_lone(const fg_engine_run *run, const fg_engine_lone *lone, double sd_white,
-                          fg_loop_rejected *one) {
-  *one = (fg_loop_rejected){.candidate = lone->candidate, .retained_share = fmin(lone->length, 1)};
-  fg_engine_candidate_name(run->problem, &one->candidate, one->name);
-  one->would_explain = 1 - fmin(lone->ratio, 1);
-  one->p_value = lone->p_value;
-  one->smallest_detectable = detectable(lone->f_critical, 1, sd_white, lone->length);
-  if (fg_engine_is_exchange(&lone->candidate)) one->smallest_detectable /= sqrt(2.0);
+/* Rows by themselves; of the scatter no amplitude is told. */
+static void describe_rest(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
+                          double sd_white, fg_loop_rejected *one) {
+  one->would_explain = stand < run->candidates ? NAN : 0;
+  one->retained_share = 1;
+  if (stand < run->candidates) return;
+  one->retained_share = fmin(step->lone.length, 1);
+  one->smallest_detectable = detectable(step->lone.f_critical, 1, sd_white, step->lone.length);
+  if (stand == fg_engine_wrong_rows(run)) {
+    one->would_explain = 1 - fmin(step->lone.ratio, 1);
+    return;
+  }
+  one->would_explain = 1 - step->judgement.exchange_ratio;
+  one->smallest_detectable /= sqrt(2.0);
+}
+
+static double null_sd(const fg_engine_step *step) {
+  const fg_engine_judgement *judgement = &step->judgement;
+  double sum = 0, freedom = (double)step->bench.freedom;
+  fg_context ignored = {0};
+  fg_engine_fit fit;
+  if (fg_engine_least_squares(&ignored, &step->training, step->bench.noise[judgement->noise],
+                              &fit) != FG_OK)
+    return NAN;
+  sum = fit.rss;
+  fg_engine_fit_free(&fit);
+  return sqrt(sum / freedom);
+}
+
+static void list_one(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
+                     double sd_white, const double *amplitude) {
+  const fg_loop_candidate *candidate = &step->stand[stand].candidate;
+  if (fg_engine_is_curve(candidate) || is_claimed(run, candidate)) return;
+  if (stand >= run->candidates && !isfinite(step->stand[stand].z)) return;
+  fg_loop_rejected *one = &run->result->rejected[run->result->rejects++];
+  *one = (fg_loop_rejected){.candidate = *candidate, .smallest_detectable = NAN};
+  fg_engine_candidate_name(run->problem, candidate, one->name);
+  one->p_value = fg_engine_stand_p(run, step, stand);
+  if (stand < run->means)
+    describe(step, stand, sd_white, amplitude, one);
+  else
+    describe_rest(run, step, stand, sd_white, one);
   one->verdict = judge_rejected(run, one);
 }
 
@@ -85,22 +110,17 @@ fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   fg_loop_result *result = run->result;
   fg_engine_step step;
   FG_TRY(fg_engine_step_open(ctx, run, &run->set, true, &step));
-  fg_status status = fg_memory_allocate(ctx, run->candidates + 2, sizeof *result->rejected,
-                                        (void **)&result->rejected);
-  double sd_white = sqrt(step.bench.flip_rss / (double)step.bench.freedom), *amplitude = NULL;
+  fg_status status =
+      fg_memory_allocate(ctx, step.stands, sizeof *result->rejected, (void **)&result->rejected);
+  double sd_white = null_sd(&step), *amplitude = NULL;
   if (status == FG_OK && step.training.n <= FG_ENGINE_SMALL_ROWS) {
-    status = fg_memory_allocate(ctx, run->candidates, sizeof *amplitude, (void **)&amplitude);
+    status = fg_memory_allocate(ctx, run->means, sizeof *amplitude, (void **)&amplitude);
     if (status == FG_OK)
       status = fg_engine_smallest_amplitudes(ctx, &step.bench, &step.judgement,
                                              run->options.seed + 2, amplitude);
   }
-  result->smallest_p = step.judgement.smallest_p;
-  for (size_t c = 0; status == FG_OK && c < run->candidates; c++)
-    if (!fg_engine_is_curve(&run->candidate[c]) && !is_claimed(run, &run->candidate[c]))
-      describe(run, &step, c, sd_white, amplitude, &result->rejected[result->rejects++]);
-  for (size_t k = 0; status == FG_OK && k < 2; k++)
-    if (step.lone[k].known)
-      describe_lone(run, &step.lone[k], sd_white, &result->rejected[result->rejects++]);
+  for (size_t s = 0; status == FG_OK && s < step.stands; s++)
+    list_one(run, &step, s, sd_white, amplitude);
   free(amplitude);
   fg_engine_step_close(&step);
   return status;

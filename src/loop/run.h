@@ -4,7 +4,7 @@
 
 #include "loop/alias.h"
 #include "loop/fit.h"
-#include "loop/permute.h"
+#include "loop/judge.h"
 #include "loop/units.h"
 
 typedef struct fg_engine_run {
@@ -13,9 +13,9 @@ typedef struct fg_engine_run {
   fg_loop_options options;
   fg_loop_result *result;
   bool *train;
-  fg_loop_candidate *candidate; /* listed effects first, then curves */
-  size_t candidates;
-  fg_engine_set set; /* claims in the order of result->claim; the curve, if any, last */
+  fg_loop_candidate *candidate; /* listed effects first, then curves, then those of the noise */
+  size_t means, candidates;     /* without those of the noise; all */
+  fg_engine_set set;            /* claims in the order of result->claim; the curve, if any, last */
   bool has_curve;
   double curve_p;
   size_t curve_at; /* coordinate */
@@ -23,6 +23,11 @@ typedef struct fg_engine_run {
   double sd; /* of the null at this step, whitened rows */
 } fg_engine_run;
 
+/* Accepts what passes, one after the other, and looks at all again at the end. */
+fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run);
+/* Errors of rows that took no part: before, and with what the search without them finds. */
+fg_status fg_engine_cross_fit(fg_context *ctx, const fg_engine_run *run, double *before_rms,
+                              double *after_rms);
 /* Tries to accept one effect; *accepted says whether there was one. */
 fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accepted, bool *last);
 /* With the others fitted, would another candidate serve better in a claim's place? */

@@ -4,27 +4,51 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "effect/table_effects.h"
 #include "loop/step.h"
 
-/* Draws of a simulated null: p-values down to 1 / (draws + 1). A step that is not judged needs
- * none, but the bench's choice of noise a few. */
-enum { DRAWS_SMALL = 1999, DRAWS = 999, DRAWS_UNJUDGED = 20 };
+/* A candidate explains nearly what another does from this share on. */
+#define NEARLY 0.8
+
+/* The null is drawn from the same numbers in every run: no verdict depends on a seed. */
+#define FIXED_SEED 1
+
+/* Draws of the null; beside correlation, where each costs as many times as there are noise models,
+ * and where a step is not judged, fewer. */
+enum { DRAWS = 1999, DRAWS_CORRELATED = 799, DRAWS_UNJUDGED = 399 };
+
+size_t fg_engine_wrong_rows(const fg_engine_run *run) {
+  return run->candidates;
+}
+
+size_t fg_engine_exchanged_rows(const fg_engine_run *run) {
+  return run->candidates + 1;
+}
 
 static fg_status fill_stands(fg_context *ctx, const fg_engine_run *run, fg_engine_step *step) {
-  FG_TRY(fg_memory_allocate(ctx, run->candidates + 2, sizeof *step->stand, (void **)&step->stand));
+  const fg_engine_judgement *judgement = &step->judgement;
+  step->stands = run->candidates + 2;
+  FG_TRY(fg_memory_allocate(ctx, step->stands, sizeof *step->stand, (void **)&step->stand));
   for (size_t c = 0; c < run->candidates; c++) {
-    const fg_engine_score *score = &step->judgement.score[c];
-    fg_engine_stand *stand = &step->stand[step->stands++];
+    fg_engine_stand *stand = &step->stand[c];
     stand->candidate = run->candidate[c];
-    stand->z = score->z;
-    memcpy(stand->shape, step->bench.shape[score->version], sizeof stand->shape);
+    stand->z = judgement->z[c];
+    if (c < run->means && isfinite(stand->z))
+      memcpy(stand->shape, step->bench.shape[judgement->score[c].version], sizeof stand->shape);
   }
-  for (size_t k = 0; k < 2; k++) {
-    if (!step->lone[k].known || !(step->lone[k].ratio < 1)) continue;
-    fg_engine_stand *stand = &step->stand[step->stands++];
-    stand->candidate = step->lone[k].candidate;
-    stand->z = fg_engine_deviate(step->lone[k].ratio, 1, (double)step->bench.freedom);
-  }
+  fg_engine_stand *wrong = &step->stand[fg_engine_wrong_rows(run)];
+  fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
+  wrong->z = exchange->z = NAN;
+  wrong->candidate = step->lone.candidate;
+  exchange->candidate.effect = &fg_loop_lone_effects()[1];
+  if (step->lone.known && step->lone.ratio < 1)
+    wrong->z = fg_engine_deviate(step->lone.ratio, (double)step->lone.candidate.rows,
+                                 (double)step->bench.freedom);
+  if (!judgement->has_exchange) return FG_OK;
+  exchange->z = judgement->z[run->candidates];
+  exchange->candidate.rows = 2;
+  for (size_t k = 0; k < 2; k++)
+    exchange->candidate.row[k] = step->training.row[judgement->exchanged[k]];
   return FG_OK;
 }
 
@@ -34,17 +58,18 @@ fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engi
   fg_status status = FG_OK;
   memset(step, 0, sizeof *step);
   FG_TRY_EXIT(fg_engine_training_build(ctx, run->problem, run->train, set, &step->training));
-  if (!draws) draws = step->training.n <= FG_ENGINE_SMALL_ROWS ? DRAWS_SMALL : DRAWS;
-  if (!judged) draws = DRAWS_UNJUDGED;
-  FG_TRY_EXIT(
-      fg_engine_bench_build(ctx, &step->training, run->candidate, run->candidates, &step->bench));
+  if (!draws) draws = step->training.serial ? DRAWS_CORRELATED : DRAWS;
+  if (!judged && draws > DRAWS_UNJUDGED) draws = DRAWS_UNJUDGED;
   step->bench.watch =
       (fg_engine_watch){run->options.progress, run->options.progress_user, run->result->claims};
-  fg_engine_null null = {draws, run->options.seed, run->options.accept_p};
-  FG_TRY_EXIT(fg_engine_permute(ctx, &step->bench, &null, &step->judgement));
-  fg_engine_noise noise = step->bench.noise[step->judgement.null_noise];
-  null.seed++;
-  if (judged) FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise, &null, step->lone));
+  FG_TRY_EXIT(
+      fg_engine_bench_build(ctx, &step->training, run->candidate, run->means, &step->bench));
+  const fg_engine_null null = {draws, FIXED_SEED, run->options.accept_p};
+  FG_TRY_EXIT(fg_engine_judge(ctx, &step->bench, run->candidate + run->means,
+                              run->candidates - run->means, &null, &step->judgement));
+  fg_engine_noise noise = step->bench.noise[step->judgement.noise];
+  if (judged)
+    FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise, null.accept_p, &step->lone));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) fg_engine_step_close(step);
@@ -59,9 +84,19 @@ void fg_engine_step_close(fg_engine_step *step) {
   step->stand = NULL;
 }
 
-double fg_engine_total_p(const fg_engine_judgement *judgement, size_t c) {
-  double simulated = judgement->p_simulated[c];
-  return isfinite(simulated) ? fmax(simulated, judgement->p_flip[c]) : judgement->p_flip[c];
+double fg_engine_stand_p(const fg_engine_run *run, const fg_engine_step *step, size_t stand) {
+  if (stand == fg_engine_wrong_rows(run)) return step->lone.p_value;
+  return step->judgement.p[stand < run->candidates ? stand : run->candidates];
+}
+
+bool fg_engine_nearly(const fg_engine_run *run, const fg_engine_step *step, size_t c,
+                      size_t other) {
+  const fg_engine_score *score = step->judgement.score;
+  const fg_engine_version *version = step->bench.version;
+  if (fg_engine_version_freedom(&step->bench, &version[score[c].version]) >
+      fg_engine_version_freedom(&step->bench, &version[score[other].version]))
+    return false;
+  return c < run->means && 1 - score[c].ratio > NEARLY * (1 - score[other].ratio);
 }
 
 void fg_engine_set_remove(fg_engine_set *set, size_t member) {
@@ -78,10 +113,4 @@ void fg_engine_drop_claim(fg_engine_run *run, size_t m) {
   for (size_t k = m + 1; k < result->claims; k++)
     result->claim[k - 1] = result->claim[k];
   result->claims--;
-}
-
-fg_engine_noise_pair fg_engine_step_noises(const fg_engine_step *step) {
-  const fg_engine_judgement *judgement = &step->judgement;
-  return (fg_engine_noise_pair){
-      {step->bench.noise[judgement->cautious_noise], step->bench.noise[judgement->best_noise]}};
 }

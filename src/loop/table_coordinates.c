@@ -71,8 +71,8 @@ static void give_roles(fg_loop_coordinate *at) {
     at->roles |= FG_LOOP_DURATION;
 }
 
-static fg_status leave_out(fg_context *ctx, const fg_loop_table_state *build, const char *name,
-                           const char *why) {
+fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *build,
+                                  const char *name, const char *why) {
   char **text = &build->out->excluded;
   return fg_text_append(ctx, text, "%s%s: %s", *text ? "; " : "", name, why);
 }
@@ -122,19 +122,21 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   bool words = column->word_count > 0;
   if (!strcmp(column->name, spec->response)) return FG_OK;
   if (fg_quantity_is_result(column->name)) return FG_OK;
-  if (column->missing_count) return leave_out(ctx, build, column->name, "cells are missing");
+  if (column->missing_count)
+    return fg_loop_table_leave_out(ctx, build, column->name, "cells are missing");
   if (column->doubt || (words && column->number_count))
     return names_are_meant(spec, column->name)
-               ? leave_out(ctx, build, column->name, "words among numbers")
+               ? fg_loop_table_leave_out(ctx, build, column->name, "words among numbers")
                : fg_table_check(ctx, build->table, column->name);
   if (!words && !is_in_range(build->table, column))
-    return leave_out(ctx, build, column->name,
-                     "numbers too large or too small to compute with; give it in another unit");
+    return fg_loop_table_leave_out(
+        ctx, build, column->name,
+        "numbers too large or too small to compute with; give it in another unit");
   if (spec->group && !strcmp(column->name, spec->group)) roles = FG_LOOP_ORDER;
   if (build->order && !strcmp(column->name, build->order))
     roles = spec->group ? FG_LOOP_BUMP : FG_LOOP_ORDER;
   if (words && column->word_count > FG_LOOP_COLUMNS && !roles)
-    return leave_out(ctx, build, column->name, "more levels than an effect may have");
+    return fg_loop_table_leave_out(ctx, build, column->name, "more levels than an effect may have");
   FG_TRY(fg_loop_table_add_coordinate(ctx, build, column->name, roles, &at));
   for (size_t i = 0; i < problem->rows && !words; i++)
     at->value[i] = column->number[build->out->row[i]].value;
@@ -144,12 +146,8 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   fg_loop_table_finish_coordinate(problem, at);
   give_roles(at);
   if (at->distinct >= 2) return FG_OK;
-  FG_TRY(leave_out(ctx, build, column->name, "the same in every row"));
-  for (size_t i = 0; i < at->levels; i++)
-    free(at->level_name[i]);
-  free(at->level_name);
-  free(at->value);
-  problem->coordinates--;
+  FG_TRY(fg_loop_table_leave_out(ctx, build, column->name, "the same in every row"));
+  fg_loop_table_drop(problem, problem->coordinates - 1);
   return FG_OK;
 }
 

@@ -7,12 +7,6 @@
 #include "loop/engine_random.h"
 #include "loop/table_parts.h"
 
-static size_t default_count(const fg_loop_problem *problem) {
-  size_t groups = problem->groups;
-  if (groups < (problem->group_level ? 10 : 20)) return 0;
-  return groups < 40 ? groups / 8 + (groups % 8 >= 4) : groups / 5;
-}
-
 /* Aside goes every row of a group that is chosen. */
 static void put_aside(fg_loop_problem *problem, const bool *chosen) {
   for (size_t i = 0; i < problem->rows; i++)
@@ -74,7 +68,7 @@ static fg_status keep_value(fg_context *ctx, const fg_loop_table_state *build, c
 fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   const char *text = build->spec->hold_out;
-  if (!text) return keep_share(ctx, build, default_count(problem));
+  if (!text) return FG_OK; /* every row takes part */
   if (strchr(text, '=')) return keep_value(ctx, build, text);
   char *end;
   double share = strtod(text, &end);

@@ -26,6 +26,13 @@ fg_status fg_loop_table_add_coordinate(fg_context *ctx, const fg_loop_table_stat
                                        fg_loop_coordinate **added);
 void fg_loop_table_finish_coordinate(const fg_loop_problem *problem, fg_loop_coordinate *at);
 fg_loop_coordinate *fg_loop_table_coordinate(const fg_loop_problem *problem, const char *name);
+/* A column that is no candidate, and why: for the report. */
+fg_status fg_loop_table_leave_out(fg_context *ctx, const fg_loop_table_state *build,
+                                  const char *name, const char *why);
+/* table_codes.c */
+void fg_loop_table_drop(fg_loop_problem *problem, size_t coordinate);
+/* Of columns that say the same one stays; rows without an order of their own take a column's. */
+fg_status fg_loop_table_merge_codes(fg_context *ctx, const fg_loop_table_state *build);
 /* table_hold_out.c */
 fg_status fg_loop_table_hold_out(fg_context *ctx, const fg_loop_table_state *build);
 

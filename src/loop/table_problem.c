@@ -3,8 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/extended.h"
 #include "core/memory.h"
 #include "core/text.h"
+#include "loop/engine.h"
 #include "loop/table_parts.h"
 
 static const char *const order_names[] = {"run", "order", "run_order", "experiment", "sequence"};
@@ -115,6 +117,51 @@ static fg_status fill_response(fg_context *ctx, const fg_loop_table_state *build
                  largest > 1 ? "large" : "small");
 }
 
+/* Where the declared model has a constant, residuals are told from the first response, with all the
+ * digits that the table has: the constant takes up the rest. */
+static fg_status take_origin(fg_context *ctx, const fg_loop_table_state *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  const fg_extended *response;
+  size_t k = 0, rows = problem->rows;
+  for (; k < problem->parameters; k++) {
+    size_t i = 0;
+    while (i < rows && problem->jacobian[k * rows + i] == 1)
+      i++;
+    if (i == rows) break;
+  }
+  if (k == problem->parameters) return FG_OK;
+  FG_TRY(fg_table_numbers(ctx, build->table, build->spec->response, &response));
+  fg_extended first = response[build->out->row[0]];
+  for (size_t i = 0; i < rows; i++)
+    problem->residual[i] =
+        fg_extended_add(response[build->out->row[i]], fg_extended_negate(first)).value;
+  problem->origin = first.value;
+  problem->constant = k;
+  return FG_OK;
+}
+
+/* What the declared model says of the response, as far as no column says the same: the scatter may
+ * follow it. */
+static fg_status add_level(fg_context *ctx, const fg_loop_table_state *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  fg_engine_training training;
+  fg_engine_fit fit = {0};
+  fg_loop_coordinate *at = NULL;
+  char name[FG_LOOP_NAME];
+  if (problem->parameters < 3) return FG_OK; /* a constant and one column: the column says it */
+  fg_text_clip(name, sizeof name, "the level of %s", build->spec->response);
+  FG_TRY(fg_loop_table_add_coordinate(ctx, build, name, FG_LOOP_LEVEL, &at));
+  FG_TRY(fg_engine_training_build(ctx, problem, NULL, NULL, &training));
+  fg_status status = fg_engine_least_squares(ctx, &training, (fg_engine_noise){0}, &fit);
+  for (size_t i = 0; status == FG_OK && i < problem->rows; i++)
+    for (size_t k = 0; k < problem->parameters; k++)
+      at->value[i] += fit.beta[k] * problem->jacobian[k * problem->rows + i];
+  fg_engine_fit_free(&fit);
+  fg_engine_training_free(&training);
+  fg_loop_table_finish_coordinate(problem, at);
+  return status;
+}
+
 static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
   fg_loop_problem *problem = &build->out->problem;
   size_t rows = build->table->rows;
@@ -128,11 +175,14 @@ static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
     FG_TRY(fg_loop_table_fill_arc_length(ctx, build));
   else
     FG_TRY(fg_loop_table_fill_model(ctx, build));
+  if (!fg_loop_table_is_arc_length(build->spec)) FG_TRY(take_origin(ctx, build));
+  FG_TRY(fg_loop_table_merge_codes(ctx, build));
   bool grouped = build->spec->group != NULL;
   problem->level = grouped ? "bumps" : "runs";
   problem->group_level = grouped && rows >= 2 * problem->groups;
   problem->correlated = grouped ? rows >= 4 * problem->groups : rows >= 8;
   problem->exchangeable = true;
+  FG_TRY(add_level(ctx, build));
   return fg_loop_table_hold_out(ctx, build);
 }
 

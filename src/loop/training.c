@@ -9,7 +9,7 @@
 static size_t set_columns(const fg_loop_problem *problem, const fg_engine_set *set) {
   size_t count = 0;
   for (size_t i = 0; set && i < set->count; i++)
-    if (!fg_engine_is_exchange(&set->candidate[i]))
+    if (!fg_engine_is_exchange(&set->candidate[i]) && !fg_engine_is_noise(&set->candidate[i]))
       count += fg_engine_candidate_columns(problem, &set->candidate[i]);
   return count;
 }
@@ -20,7 +20,6 @@ static fg_status allocate(fg_context *ctx, fg_engine_training *training, const f
   size_t n = training->n;
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *training->row, (void **)&training->row));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *training->group, (void **)&training->group));
-  FG_TRY(fg_memory_allocate(ctx, n, sizeof *training->flip, (void **)&training->flip));
   FG_TRY(fg_memory_allocate(ctx, n + 1, sizeof *training->start, (void **)&training->start));
   FG_TRY(fg_memory_allocate(ctx, n + 1, sizeof *training->start, (void **)&training->level_start));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *training->y, (void **)&training->y));
@@ -45,10 +44,6 @@ static fg_status number_rows(fg_context *ctx, fg_engine_training *training) {
   }
   training->start[training->blocks] = training->n;
   training->level_start[training->levels] = training->n;
-  training->flips =
-      training->groups < FG_ENGINE_FLIP_GROUPS ? training->groups : FG_ENGINE_FLIP_GROUPS;
-  for (size_t i = 0; i < training->n; i++)
-    training->flip[i] = training->group[i] * training->flips / training->groups;
   free(number);
   return FG_OK;
 }
@@ -72,6 +67,8 @@ static fg_status fill_columns(fg_context *ctx, fg_engine_training *training,
   for (size_t i = 0; i < training->n; i++)
     training->y[i] = problem->residual[training->row[i]];
   for (size_t c = 0; set && c < set->count; c++) {
+    training->serial |= fg_engine_is_serial(&set->candidate[c]);
+    if (fg_engine_is_noise(&set->candidate[c])) continue;
     if (fg_engine_is_exchange(&set->candidate[c])) {
       put_back(training, &set->candidate[c]);
       continue;
@@ -94,6 +91,7 @@ fg_status fg_engine_training_build(fg_context *ctx, const fg_loop_problem *probl
     if (!keep || keep[i]) training->row[k++] = i;
   FG_TRY_EXIT(number_rows(ctx, training));
   FG_TRY_EXIT(fill_columns(ctx, training, set));
+  FG_TRY_EXIT(fg_engine_estimate_scale(ctx, training, set));
 exit:
   if (status != FG_OK) fg_engine_training_free(training);
   return status;
@@ -102,7 +100,7 @@ exit:
 void fg_engine_training_free(fg_engine_training *training) {
   free(training->row);
   free(training->group);
-  free(training->flip);
+  free(training->scale);
   free(training->start);
   free(training->level_start);
   free(training->y);
@@ -125,7 +123,7 @@ fg_status fg_engine_gather(fg_context *ctx, const fg_engine_training *training,
   const fg_loop_problem *problem = training->problem;
   size_t count = fg_engine_candidate_columns(problem, candidate);
   double *all = NULL;
-  FG_TRY(fg_memory_allocate(ctx, problem->rows, count * sizeof *all, (void **)&all));
+  FG_TRY(fg_memory_allocate(ctx, problem->rows, (count + 1) * sizeof *all, (void **)&all));
   candidate->effect->basis(problem, candidate, shape, all);
   refuse_overflow(all, problem->rows * count);
   for (size_t k = 0; k < count; k++)

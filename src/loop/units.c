@@ -29,7 +29,8 @@ static fg_status scale_response(fg_context *ctx, const fg_loop_problem *problem,
   double largest = 0;
   const double *response = problem->response;
   if (!largest_exponent(problem->residual, problem->rows, &largest, &units->response) ||
-      (response && !largest_exponent(response, problem->rows, &largest, &units->response)))
+      (response && problem->origin == 0 &&
+       !largest_exponent(response, problem->rows, &largest, &units->response)))
     return fg_fail(ctx, FG_ERR_DATA, "the response less the declared model is not finite");
   FG_TRY(scaled_copy(ctx, problem->residual, problem->rows, units->response,
                      &units->problem.residual));
@@ -123,6 +124,8 @@ void fg_engine_units_restore(const fg_engine_units *units, fg_loop_result *resul
     restore(&result->parameter[k], 1, exponent - units->column[k]);
     restore(&result->parameter_u[k], 1, exponent - units->column[k]);
   }
+  if (units->problem.origin != 0 && result->parameter)
+    result->parameter[units->problem.constant] += units->problem.origin;
   restore(result->before_fit, rows, exponent);
   restore(result->after_fit, rows, exponent);
   restore(result->effect_fit, rows, exponent);

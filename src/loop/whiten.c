@@ -1,4 +1,5 @@
-/* Whitening: first-order correlation along series, then a level shared in groups.
+/* Whitening: the rows' own scale, first-order correlation along series, then a level shared in
+ * groups.
  *
  * A series of unit variance has covariance R with R_ij = rho^|i-j|. L = (v_t - rho v_t-1) /
  * sqrt(1 - rho²) makes it white. A shared level adds lambda 1 1'; with c = L 1 the covariance is
@@ -8,35 +9,47 @@
 
 #include "loop/engine.h"
 
-static double level_size(double rho, size_t count) {
-  return 1 + (double)(count - 1) * (1 - rho) / (1 + rho);
+/* c at one row of a group that begins at `first`. */
+static double level_weight(const fg_engine_training *training, double rho, size_t first, size_t i) {
+  const double *scale = training->scale;
+  double own = scale ? 1 / scale[i] : 1;
+  if (i == first) return own;
+  return (own - rho * (scale ? 1 / scale[i - 1] : 1)) / sqrt(1 - rho * rho);
 }
 
-static double level_weight(double rho, size_t i) {
-  return i == 0 ? 1 : sqrt((1 - rho) / (1 + rho));
+static double level_size(const fg_engine_training *training, double rho, size_t block) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  double sum = 0;
+  if (!training->scale) return 1 + (double)(end - first - 1) * (1 - rho) / (1 + rho);
+  for (size_t i = first; i < end; i++)
+    sum += pow(level_weight(training, rho, first, i), 2);
+  return sum;
 }
 
-/* v += factor × (part of v along c), for one group. */
-static void scale_level(double *v, size_t count, double rho, double factor) {
-  double size = level_size(rho, count), along = 0;
-  for (size_t i = 0; i < count; i++)
-    along += level_weight(rho, i) * v[i];
-  for (size_t i = 0; i < count; i++)
-    v[i] += factor * along / size * level_weight(rho, i);
+/* y += factor × (part of y along c), for one group. */
+static void scale_level(const fg_engine_training *training, double rho, size_t block, double factor,
+                        double *y) {
+  size_t first = training->level_start[block], end = training->level_start[block + 1];
+  double size = level_size(training, rho, block), along = 0;
+  for (size_t i = first; i < end; i++)
+    along += level_weight(training, rho, first, i) * y[i];
+  for (size_t i = first; i < end; i++)
+    y[i] += factor * along / size * level_weight(training, rho, first, i);
 }
 
 static void scale_levels(const fg_engine_training *training, fg_engine_noise noise, double *y,
                          bool inverse) {
   for (size_t b = 0; b < training->levels; b++) {
-    size_t from = training->level_start[b], count = training->level_start[b + 1] - from;
-    double root = sqrt(1 + noise.lambda * level_size(noise.rho, count));
-    scale_level(y + from, count, noise.rho, (inverse ? root : 1 / root) - 1);
+    double root = sqrt(1 + noise.lambda * level_size(training, noise.rho, b));
+    scale_level(training, noise.rho, b, (inverse ? root : 1 / root) - 1, y);
   }
 }
 
 void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise, double *y) {
   double root = sqrt(1 - noise.rho * noise.rho);
-  if (noise.rho > 0)
+  for (size_t i = 0; training->scale && i < training->n; i++)
+    y[i] /= training->scale[i];
+  if (noise.rho != 0)
     for (size_t b = 0; b < training->blocks; b++)
       for (size_t i = training->start[b + 1] - 1; i > training->start[b]; i--)
         y[i] = (y[i] - noise.rho * y[i - 1]) / root;
@@ -46,41 +59,41 @@ void fg_engine_whiten(const fg_engine_training *training, fg_engine_noise noise,
 void fg_engine_colour(const fg_engine_training *training, fg_engine_noise noise, double *y) {
   double root = sqrt(1 - noise.rho * noise.rho);
   if (noise.lambda > 0) scale_levels(training, noise, y, true);
-  if (noise.rho > 0)
+  if (noise.rho != 0)
     for (size_t b = 0; b < training->blocks; b++)
       for (size_t i = training->start[b] + 1; i < training->start[b + 1]; i++)
         y[i] = noise.rho * y[i - 1] + root * y[i];
+  for (size_t i = 0; training->scale && i < training->n; i++)
+    y[i] *= training->scale[i];
 }
 
 double fg_engine_log_det(const fg_engine_training *training, fg_engine_noise noise) {
   double sum = 0;
-  for (size_t b = 0; noise.rho > 0 && b < training->blocks; b++)
+  for (size_t i = 0; training->scale && i < training->n; i++)
+    sum += 2 * log(training->scale[i]);
+  for (size_t b = 0; noise.rho != 0 && b < training->blocks; b++)
     sum +=
         (double)(training->start[b + 1] - training->start[b] - 1) * log1p(-noise.rho * noise.rho);
   for (size_t b = 0; noise.lambda > 0 && b < training->levels; b++) {
-    size_t count = training->level_start[b + 1] - training->level_start[b];
-    sum += log1p(noise.lambda * level_size(noise.rho, count));
+    sum += log1p(noise.lambda * level_size(training, noise.rho, b));
   }
   return sum;
 }
 
-/* Finer where rows are many: then the estimate is sharp. */
+/* Correlation only where it is in force: it is a finding like others. Coarser where a level is
+ * estimated beside it. */
 size_t fg_engine_noise_grid(const fg_engine_training *training,
                             fg_engine_noise grid[FG_ENGINE_NOISES]) {
-  static const double small_rho[] = {0, 0.25, 0.5, 0.7, 0.85}, lot_rho[] = {0, 0.3, 0.6, 0.85};
-  static const double large_rho[] = {0,   0.05, 0.1,  0.15, 0.2,  0.3,  0.4,  0.5,   0.6,
-                                     0.7, 0.8,  0.85, 0.9,  0.93, 0.95, 0.97, 0.985, 0.995};
+  static const double alone[] = {-0.6, -0.3, 0, 0.2, 0.4, 0.55, 0.7, 0.8, 0.88, 0.94, 0.98};
+  static const double beside_level[] = {-0.3, 0, 0.3, 0.6, 0.85}, none[] = {0};
   static const double lambda[] = {0, 0.1, 0.3, 1, 3, 10};
-  const double *rho = small_rho;
-  size_t rhos = sizeof small_rho / sizeof *small_rho, lambdas = training->levels ? 6 : 1, count = 0;
-  if (training->levels) {
-    rho = lot_rho;
-    rhos = 4;
-  } else if (training->n > FG_ENGINE_SMALL_ROWS) {
-    rho = large_rho;
-    rhos = sizeof large_rho / sizeof *large_rho;
+  const double *rho = none;
+  size_t rhos = 1, lambdas = training->levels ? sizeof lambda / sizeof *lambda : 1, count = 0;
+  if (training->serial) {
+    rho = training->levels ? beside_level : alone;
+    rhos = training->levels ? sizeof beside_level / sizeof *beside_level
+                            : sizeof alone / sizeof *alone;
   }
-  if (!training->problem->correlated) rhos = 1;
   for (size_t i = 0; i < rhos; i++)
     for (size_t j = 0; j < lambdas; j++)
       grid[count++] = (fg_engine_noise){rho[i], lambda[j]};

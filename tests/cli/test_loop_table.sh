@@ -15,11 +15,10 @@ head -8 t.csv >few.csv
 head -1 t.csv >header.csv
 model=(--response y --model "1 + T")
 
-expect 0 '"name": "table.linear\(copy\)"' "$program" loop --table t.csv "${model[@]}" -o - # a tie, not a winner
-grep -q '"verdict": "tied"' stdout || fail "copies of a column do not tie"
+expect 0 "copy: says the same as" "$program" loop --table t.csv "${model[@]}" -o - # one candidate
 expect 0 "fits every row" "$program" loop --table exact.csv "${model[@]}" -o -
 expect 0 '"verdict": "clean"' "$program" loop --table constant.csv --response y --model 1 -o -
-expect 0 "can give no p-value below 0.0156" "$program" loop --table few.csv "${model[@]}" -o -
+expect 0 '"verdict": "clean"' "$program" loop --table few.csv "${model[@]}" -o -
 expect 65 "no rows" "$program" loop --table header.csv "${model[@]}"
 expect 65 "row 3" "$program" loop --table word.csv "${model[@]}" -o never.json
 expect 65 "row 3" "$program" loop --table hole.csv "${model[@]}" -o never.json
@@ -69,8 +68,11 @@ expect 64 "above 0" "$program" loop --table t.csv "${model[@]}" --minutes 0
 
 # A bar where standard error is a terminal, and only there.
 if [ -z "${FOILGAUGE_TEST_BRIEF:-}" ] && command -v script >/dev/null; then
-  awk 'BEGIN { srand(5); print "run,T,a,b,c,y"
-    for (i = 1; i <= 400; i++) { T = rand(); print i "," T "," rand() "," rand() "," rand() "," T + rand() + rand() } }' >slow.csv
+  awk 'BEGIN { srand(5); print "run,T,a,b,c,d,e,f,g,y"
+    for (i = 1; i <= 590; i++) {
+      printf "%d", i
+      for (k = 0; k < 8; k++) printf ",%s", rand()
+      print "," rand() + rand() } }' >slow.csv
   script -qec "'$program' loop --table slow.csv --response y --model '1 + T' -o bar.json" typed >/dev/null
   grep -q "0 found, next \[" typed || fail "no bar on a terminal"
 fi
@@ -80,7 +82,7 @@ expect 0 '"verdict"' "$program" loop --table t.csv "${model[@]}" -o -
 # Units: numbers far from 1 give the same verdict; squares that are no numbers are refused.
 for power in -300 300; do
   awk -F, -v OFS=, -v power=$power 'NR > 1 { $6 = $6 "e" power } { print }' t.csv >far.csv
-  expect 0 '"name": "table.linear\(copy\)"' "$program" loop --table far.csv "${model[@]}" --html far.html -o -
+  expect 0 '"name": "table.linear\(humidity\)"' "$program" loop --table far.csv "${model[@]}" --html far.html -o -
   grep -qE "nan|inf[^a-z]" stdout far.html && fail "1e$power: numbers that are none"
   "$program" doe far.csv --response y --model "1 + T" >out 2>err
   [ $? = 65 ] || fail "doe takes responses of 1e$power"

@@ -49,12 +49,19 @@ static void write_parameters(fg_json *json, const fg_loop_report *report,
   }
   for (size_t d = 0; d < effect->shapes; d++)
     fg_json_number(json, effect->shape_name[d], shape[d]);
+  if (effect->scatter != FG_LOOP_OF_THE_MEAN)
+    fg_json_number(json, effect->scatter == FG_LOOP_SERIAL ? "correlation" : "sd_ratio",
+                   uncertainty ? claim->noise_value_u : claim->noise_value);
   double unit = natural_unit(report, claim);
   if (isfinite(unit))
     fg_json_number(json, effect->from_zero ? "stretch" : "slope_per_unit", unit * coefficient[0]);
   if (!uncertainty && is_lone(claim)) {
     bool pair = effect->lone == FG_LOOP_EXCHANGED_ROWS;
     fg_json_integer(json, "row", (int64_t)report->problem->row[claim->candidate.row[0]] + 1);
+    for (size_t k = 1; !pair && k < claim->candidate.rows; k++) {
+      snprintf(name, sizeof name, "row_%zu", k + 1);
+      fg_json_integer(json, name, (int64_t)report->problem->row[claim->candidate.row[k]] + 1);
+    }
     if (pair)
       fg_json_integer(json, "second_row",
                       (int64_t)report->problem->row[claim->candidate.row[1]] + 1);
@@ -87,6 +94,12 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
     if (claim->candidate.effect->pair) fg_json_string(json, NULL, at[claim->candidate.b].name);
   }
   fg_json_array_end(json);
+  if (is_lone(claim)) {
+    fg_json_array(json, "rows");
+    for (size_t k = 0; k < claim->candidate.rows; k++)
+      fg_json_integer(json, NULL, (int64_t)report->problem->row[claim->candidate.row[k]] + 1);
+    fg_json_array_end(json);
+  }
   write_parameters(json, report, claim, false);
   write_parameters(json, report, claim, true);
   write_row_names(json, report, claim);
@@ -94,8 +107,6 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   fg_json_number(json, "u_amplitude", claim->amplitude_u);
   fg_json_numbers(json, "amplitude_interval_95", claim->interval, 2);
   fg_json_number(json, "p_value", claim->p_value);
-  fg_json_number(json, "p_sign_flips", claim->p_flip);
-  fg_json_number(json, "p_simulated", claim->p_simulated);
   fg_json_number(json, "retained_share", claim->retained_share);
   fg_json_number(json, "cross_validated_gain", claim->cv_gain);
   fg_json_number(json, "u_cross_validated_gain", claim->cv_gain_se);
@@ -239,6 +250,11 @@ static void write_findings(fg_json *json, const fg_loop_report *report) {
   fg_json_array_end(json);
 }
 
+/* Rows after which a correlation has fallen to 1/e. */
+static double range_of(double rho) {
+  return rho > 0 ? -1 / log(rho) : 0;
+}
+
 fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE *out) {
   const fg_loop_result *result = report->result;
   char *sentence = NULL;
@@ -253,11 +269,13 @@ fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE
   fg_json_string(&json, "summary", sentence);
   write_inputs(&json, report);
   fg_json_number(&json, "noise_floor", result->noise_floor);
+  fg_json_number(&json, "family_p_value", result->family_p);
   fg_json_object(&json, "noise");
   fg_json_number(&json, "sd", result->noise.sd);
   fg_json_number(&json, "correlation", result->noise.rho);
   fg_json_number(&json, "group_to_row_variance", result->noise.lambda);
-  fg_json_number(&json, "smallest_p", result->smallest_p);
+  fg_json_string(&json, "form", fg_loop_noise_form(result));
+  fg_json_number(&json, "range_rows", range_of(result->noise.rho));
   fg_json_object_end(&json);
   write_findings(&json, report);
   fg_json_string(&json, "not_candidates", report->problem->excluded);

@@ -22,6 +22,20 @@ static number_text number(const char *format, double value) {
   return out;
 }
 
+static void wrong_rows(const fg_loop_report *report, const fg_loop_claim *claim, char *text,
+                       size_t size) {
+  fg_text_clip(text, size, "the responses of rows");
+  for (size_t k = 0, count = claim->candidate.rows; k < count; k++) {
+    size_t used = strlen(text);
+    fg_text_clip(text + used, size - used, "%s %zu%s",
+                 k + 1 == count ? " and"
+                 : k            ? ","
+                                : "",
+                 report->problem->row[claim->candidate.row[k]] + 1,
+                 k + 1 == count ? " are wrong" : "");
+  }
+}
+
 static void row_words(const fg_loop_report *report, const fg_loop_claim *claim, char *text,
                       size_t size) {
   const size_t *row = report->problem->row;
@@ -34,8 +48,10 @@ static void row_words(const fg_loop_report *report, const fg_loop_claim *claim, 
   else if (claim->candidate.effect->lone == FG_LOOP_EXCHANGED_ROWS)
     fg_text_clip(text, size, "the responses of rows %zu and %zu changed places", first,
                  report->problem->row[claim->candidate.row[1]] + 1);
-  else
+  else if (claim->candidate.rows < 2)
     fg_text_clip(text, size, "the response of row %zu is wrong", first);
+  else
+    wrong_rows(report, claim, text, size);
 }
 
 static void claim_words(const fg_loop_report *report, const fg_loop_claim *claim, char *text,
@@ -49,6 +65,19 @@ static void claim_words(const fg_loop_report *report, const fg_loop_claim *claim
                  at[claim->candidate.b].name);
   else
     fg_text_clip(text, size, "%s %s", effect->words, at[claim->candidate.a].name);
+}
+
+const char *fg_loop_noise_form(const fg_loop_result *result) {
+  bool serial = false, spread = false;
+  for (size_t i = 0; i < result->claims; i++) {
+    fg_loop_scatter scatter = result->claim[i].candidate.effect->scatter;
+    serial |= scatter == FG_LOOP_SERIAL;
+    spread |= scatter == FG_LOOP_SPREAD;
+  }
+  return serial && spread ? "correlated along the order, of unequal size"
+         : serial         ? "correlated along the order"
+         : spread         ? "independent, of unequal size"
+                          : "independent";
 }
 
 static fg_status say_claim(fg_context *ctx, const fg_loop_report *report, size_t i, char **text) {

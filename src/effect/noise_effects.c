@@ -1,0 +1,89 @@
+/* What the declared noise may lack: independence of neighbours, and one size everywhere. */
+#include <math.h>
+#include <string.h>
+
+#include "effect/forms.h"
+#include "effect/table_effects.h"
+
+/* Fewer rows than this in a series say nothing of their neighbours. */
+enum { SERIES_ROWS = 8 };
+
+/* A level of its own for the spread needs so many rows. */
+enum { ROWS_A_LEVEL = 4 };
+
+static bool accepts_serial(const fg_loop_problem *problem, size_t a, size_t b) {
+  unsigned roles = problem->coordinate[a].roles;
+  (void)b;
+  if (!problem->correlated || problem->rows < SERIES_ROWS) return false;
+  return roles & (problem->group_level ? FG_LOOP_BUMP : FG_LOOP_ORDER);
+}
+
+static size_t no_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  (void)problem, (void)candidate;
+  return 0;
+}
+
+static void no_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                     const double *shape, double *columns) {
+  (void)problem, (void)candidate, (void)shape, (void)columns;
+}
+
+/* Levels of the spread: words, and whole groups. */
+static bool by_levels(const fg_loop_problem *problem, const fg_loop_coordinate *at) {
+  return at->levels ||
+         (problem->group_level && at->roles & FG_LOOP_ORDER && at->distinct <= FG_LOOP_COLUMNS);
+}
+
+static bool accepts_spread(const fg_loop_problem *problem, size_t a, size_t b) {
+  const fg_loop_coordinate *at = &problem->coordinate[a];
+  (void)b;
+  if (at->roles & FG_LOOP_LEVEL) return at->distinct >= 3;
+  if (by_levels(problem, at)) {
+    size_t levels = at->levels ? at->levels : at->distinct;
+    return levels >= 2 && levels <= FG_LOOP_COLUMNS && problem->rows >= ROWS_A_LEVEL * levels;
+  }
+  return fg_loop_form_is_number(at) && problem->rows >= 2 * SERIES_ROWS;
+}
+
+bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  return by_levels(problem, fg_loop_form_first(problem, candidate));
+}
+
+static size_t spread_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  return by_levels(problem, at) ? (at->levels ? at->levels : at->distinct) - 1 : 1;
+}
+
+static void spread_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                         const double *shape, double *columns) {
+  const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
+  if (by_levels(problem, at))
+    fg_loop_form_level_columns(problem, at, columns);
+  else
+    fg_loop_form_linear_basis(problem, candidate, shape, columns);
+}
+
+static const fg_loop_effect noise_effects[] = {
+    {.id = "table.serial_correlation",
+     .scatter = FG_LOOP_SERIAL,
+     .level = "runs",
+     .frame = "order",
+     .words = "neighbours that are alike along",
+     .accepts = accepts_serial,
+     .columns = no_columns,
+     .basis = no_basis},
+    {.id = "table.spread",
+     .scatter = FG_LOOP_SPREAD,
+     .level = "runs",
+     .frame = "column",
+     .words = "a scatter that changes with",
+     .accepts = accepts_spread,
+     .columns = spread_columns,
+     .basis = spread_basis,
+     .own_levels = true},
+    {0},
+};
+
+const fg_loop_effect *fg_loop_noise_effects(void) {
+  return noise_effects;
+}
