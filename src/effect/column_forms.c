@@ -37,13 +37,20 @@ void fg_loop_form_quadratic_basis(const fg_loop_problem *problem,
   }
 }
 
+/* Levels with a slope of their own: few, and so many rows each. */
+enum { SLOPES = 8, ROWS_A_SLOPE = 5 };
+
+static bool slopes_hold(const fg_loop_problem *problem, size_t levels) {
+  return levels <= SLOPES && (levels <= 4 || problem->rows >= ROWS_A_SLOPE * levels);
+}
+
 /* Numbers with numbers; the difference in slope where one is a factor of few levels. */
 bool fg_loop_form_accepts_interaction(const fg_loop_problem *problem, size_t a, size_t b) {
   const fg_loop_coordinate *x = &problem->coordinate[a], *y = &problem->coordinate[b];
   if (a >= b || (x->roles | y->roles) & FG_LOOP_ORDER) return false;
   if (x->levels && y->levels) return (x->levels - 1) * (y->levels - 1) <= FG_LOOP_COLUMNS;
-  if (x->levels) return fg_loop_form_is_number(y) && x->levels <= 4;
-  if (y->levels) return fg_loop_form_is_number(x) && y->levels <= 4;
+  if (x->levels) return fg_loop_form_is_number(y) && slopes_hold(problem, x->levels);
+  if (y->levels) return fg_loop_form_is_number(x) && slopes_hold(problem, y->levels);
   return fg_loop_form_is_number(x) && fg_loop_form_is_number(y);
 }
 

@@ -352,11 +352,12 @@ static fg_status second_form(fg_context *ctx, fg_engine_run *run, const fg_engin
                              size_t winner, bool *accepted) {
   const fg_loop_candidate *candidate = &step->stand[winner].candidate;
   size_t m = 0, best = run->means;
-  if (candidate->effect->pair || run->has_curve) return FG_OK;
+  if (candidate->effect->pair || run->has_curve || !strcmp(candidate->effect->frame, "order"))
+    return FG_OK;
   while (m < run->result->claims &&
          (run->set.candidate[m].effect->pair || fg_engine_is_lone(&run->set.candidate[m]) ||
           fg_engine_is_noise(&run->set.candidate[m]) || run->set.candidate[m].a != candidate->a ||
-          run->set.candidate[m].effect == candidate->effect))
+          !strcmp(run->set.candidate[m].effect->frame, "order")))
     m++;
   if (m == run->result->claims) return FG_OK;
   fg_engine_run without = *run;

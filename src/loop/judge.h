@@ -4,9 +4,11 @@
 
 #include "loop/engine.h"
 
-/* Of what may be claimed by chance at all, the candidates have one part and lone rows the other. */
-#define FG_ENGINE_SHARE_OF_CANDIDATES 0.65
-#define FG_ENGINE_SHARE_OF_ROWS       0.35
+/* Of what may be claimed by chance at all, the candidates have this part. Lone rows are judged
+ * against tails that normal noise does not have: of normal noise they claim a third of what their
+ * own part says (reports/loop_power.md). */
+#define FG_ENGINE_SHARE_OF_CANDIDATES 0.75
+#define FG_ENGINE_SHARE_OF_ROWS       0.9
 
 /* How the null is drawn, and the level at which an effect would be accepted. */
 typedef struct fg_engine_null {

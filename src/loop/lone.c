@@ -29,7 +29,7 @@ enum { ONE_IN = 6 };
  * and what it claims of heavy tails is in reports/loop_power.md). The last is normal. */
 enum { TAILS = 5 };
 static const double tail_freedom[TAILS] = {3, 4, 6, 10, INFINITY};
-static const double tail_before[TAILS] = {0.1, 0.2, 0.2, 0.2, 0.3};
+static const double tail_before[TAILS] = {0.01, 0.03, 0.08, 0.18, 0.7};
 
 typedef struct lone_rows {
   const fg_engine_training *training;

@@ -176,12 +176,12 @@ static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
   else
     FG_TRY(fg_loop_table_fill_model(ctx, build));
   if (!fg_loop_table_is_arc_length(build->spec)) FG_TRY(take_origin(ctx, build));
-  FG_TRY(fg_loop_table_merge_codes(ctx, build));
   bool grouped = build->spec->group != NULL;
   problem->level = grouped ? "bumps" : "runs";
   problem->group_level = grouped && rows >= 2 * problem->groups;
   problem->correlated = grouped ? rows >= 4 * problem->groups : rows >= 8;
   problem->exchangeable = true;
+  FG_TRY(fg_loop_table_merge_codes(ctx, build));
   FG_TRY(add_level(ctx, build));
   return fg_loop_table_hold_out(ctx, build);
 }
