@@ -88,13 +88,19 @@ static const struct argp_option options[] = {
     {"declared", OPTION_DECLARED, "FILE", 0,
      "JSON with response, model, group and design; options win over it", 0},
     {"hold-out", OPTION_HOLD_OUT, "SHARE", 0,
-     "Whole groups kept aside: a share, 0, or COLUMN=VALUE", 0},
+     "Whole groups that only confirm: a share or COLUMN=VALUE (default: every row takes part, and "
+     "the "
+     "search is repeated without each part of the rows in turn)",
+     0},
     {"matters", OPTION_MATTERS, "AMPLITUDE", 0,
      "An effect this small does not matter, in the response's unit (default: one noise sd)", 0},
     {"minutes", OPTION_MINUTES, "N", 0,
      "Refuse a table whose search may take longer by estimate (default 10)", 0},
     {"memory", OPTION_MEMORY, "MIB", 0, "Refuse one that may take more memory (default 512)", 0},
-    {"seed", OPTION_SEED, "N", 0, "Of every random step (default 1)", 0},
+    {"seed", OPTION_SEED, "N", 0,
+     "Of the interval of the error ratio and of the smallest amplitudes; no verdict depends on it "
+     "(default 1)",
+     0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "Declared model and what was found, as JSON", 0},
     {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},

@@ -37,7 +37,7 @@ expect 74 "none.csv" "$program" loop --table none.csv "${model[@]}"
 expect 74 "no/such" "$program" loop --table t.csv "${model[@]}" -o no/such/out.json
 [ -e never.json ] && fail "a refused table leaves an output file"
 
-# The same input gives the same bytes; another seed keeps other rows aside.
+# The same input gives the same bytes; another seed moves an interval.
 "$program" loop --table t.csv "${model[@]}" -o a.json --html a.html --model-out a.model.json
 "$program" loop --table t.csv "${model[@]}" -o b.json
 cmp -s a.json b.json || fail "two runs differ"
@@ -46,6 +46,33 @@ cmp -s a.json c.json && fail "the seed changes nothing"
 expect 0 '"rows_kept_aside": 12' "$program" loop --table t.csv "${model[@]}" --hold-out shelf=S1 -o -
 grep -q "trend with humidity" a.html || fail "the page does not say what was found"
 grep -qE "nan|inf[^a-z]" a.html && fail "the page holds numbers that are none"
+
+# Plain words: what is said of each kind of finding, and of none.
+awk 'BEGIN { srand(3); print "run,x,y"
+  for (i = 1; i <= 60; i++) { e = rand() + rand() + rand() - 1.5
+    printf "%d,%.3f,%.4f\n", i, 15 + 45 * rand(), 3 + e + (i == 2) * 20 - (i == 54) * 15 } }' >wrong.csv
+awk 'BEGIN { srand(4); print "run,x,y"
+  for (i = 1; i <= 90; i++) { x = (i * 37) % 90; e = rand() + rand() + rand() - 1.5
+    printf "%d,%d,%.4f\n", i, x, 3 + e * exp(x / 25) } }' >spread.csv
+awk 'BEGIN { srand(6); print "run,y"
+  for (i = 1; i <= 80; i++) { r = 0.8 * r + rand() + rand() + rand() - 1.5; printf "%d,%.4f\n", i, 3 + r } }' >alike.csv
+awk 'BEGIN { srand(8); print "run,x,y"
+  for (i = 1; i <= 40; i++) printf "%d,%.3f,%.4f\n", i, rand(), rand() + rand() + rand() }' >clean.csv
+says() { # says FILE WORDS...: in the summary and on the page, without ids and without numbers that are none
+  local file=$1 words
+  shift
+  "$program" loop --table $file.csv --response y --model 1 -o $file.json --html $file.html || fail "$file: exit code"
+  grep '"summary"' $file.json >summary.txt
+  for words in "$@"; do
+    grep -qF -- "$words" summary.txt || fail "$file does not say '$words': $(cat summary.txt)"
+  done
+  grep -qE "table\.|nan|falls from ([^ ]*) to \1[;.]" summary.txt && fail "$file: ids or none: $(cat summary.txt)"
+  sed 's/<style>.*<\/style>//' $file.html | grep -qE "[^a-z](nan|inf)[^a-z]" && fail "$file: the page holds numbers that are none"
+}
+says wrong "Rows 2 and 54 are wrong (off by " "on rows that took no part in the search"
+says spread "The scatter grows with x: " " times from the smallest to the largest" "No mean changes"
+says alike "eighbouring runs are alike (correlation 0."
+says clean "Nothing is claimed: in 40 rows" "steps" "cycles down to two rows" "lone wrong values"
 grep -q "table.linear" a.model.json || fail "the model file lacks the effect"
 
 echo '{"response": "y", "model": "1 + T"}' >declared.json
@@ -90,7 +117,7 @@ for power in -300 300; do
 done
 
 /usr/bin/env python3 "$root/tests/support/validate_schema.py" "$root/reports/schema" \
-  loop.schema.json a.json b.json c.json
+  loop.schema.json a.json b.json c.json wrong.json spread.json alike.json clean.json
 code=$?
 [ "$code" = 0 ] || [ "$code" = 77 ] || fail "the report does not validate"
 

@@ -1,0 +1,177 @@
+/* Candidates, claims and alias classes of the loop on tables, in words for people. */
+#include "report/table_loop/loop_words.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "effect/table_effects.h"
+
+fg_loop_number fg_loop_number_text(const char *format, double value) {
+  fg_loop_number out;
+  if (isfinite(value))
+    snprintf(out.text, sizeof out.text, format, value);
+  else
+    snprintf(out.text, sizeof out.text, "-");
+  return out;
+}
+
+/* "the runs" for a column `run`; others by their name. */
+static const char *coordinate_words(const fg_loop_coordinate *at) {
+  static const char *const plural[][2] = {
+      {"run", "the runs"}, {"row", "the rows"}, {"bump", "the bumps"}};
+  for (size_t i = 0; i < sizeof plural / sizeof *plural; i++)
+    if (!strcmp(at->name, plural[i][0]) && at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP))
+      return plural[i][1];
+  return at->name;
+}
+
+static void append(char *text, const char *words) {
+  size_t used = strlen(text);
+  fg_text_clip(text + used, FG_LOOP_WORDS - used, "%s", words);
+}
+
+/* "row 3", "rows 2, 5 and 54", or what the rows are called. */
+static void list_rows(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                      char text[FG_LOOP_WORDS]) {
+  size_t count = candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS ? 2 : candidate->rows;
+  for (size_t k = 0; k < count; k++) {
+    size_t row = report->problem->row[candidate->row[k]];
+    char number[32];
+    if (k) append(text, k + 1 == count ? " and " : ", ");
+    if (!k && !report->row_name) append(text, count > 1 ? "rows " : "row ");
+    snprintf(number, sizeof number, "%zu", row + 1);
+    append(text, report->row_name ? report->row_name[row] : number);
+  }
+}
+
+static void lone_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                       char text[FG_LOOP_WORDS]) {
+  bool exchange = candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS;
+  if (!exchange && !candidate->rows) {
+    append(text, candidate->effect->words);
+    return;
+  }
+  append(text, exchange              ? "an exchange of "
+               : candidate->rows > 1 ? "wrong responses in "
+                                     : "a wrong response in ");
+  list_rows(report, candidate, text);
+}
+
+void fg_loop_candidate_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                             char text[FG_LOOP_WORDS]) {
+  const fg_loop_coordinate *at = report->problem->problem.coordinate;
+  *text = 0;
+  if (!candidate->effect->accepts) {
+    lone_words(report, candidate, text);
+    return;
+  }
+  append(text, candidate->effect->words);
+  append(text, " ");
+  append(text, coordinate_words(&at[candidate->a]));
+  if (!candidate->effect->pair) return;
+  append(text, " and ");
+  append(text, coordinate_words(&at[candidate->b]));
+}
+
+void fg_loop_alias_words(const fg_loop_report *report, const fg_loop_alias *alias,
+                         char text[2 * FG_LOOP_WORDS]) {
+  char second[FG_LOOP_WORDS];
+  fg_loop_candidate_words(report, &alias->candidate, text);
+  if (!alias->sum) return;
+  fg_loop_candidate_words(report, &alias->second, second);
+  size_t used = strlen(text);
+  fg_text_clip(text + used, 2 * FG_LOOP_WORDS - used, " together with %s", second);
+}
+
+static void lone_statement(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                           char text[FG_LOOP_WORDS]) {
+  list_rows(report, candidate, text);
+  append(text, candidate->effect->lone == FG_LOOP_EXCHANGED_ROWS ? " changed places"
+               : candidate->rows > 1                             ? " are wrong"
+                                                                 : " is wrong");
+}
+
+static const char *neighbours(const fg_loop_coordinate *at) {
+  return !strcmp(at->name, "run") ? "runs" : at->roles & FG_LOOP_BUMP ? "bumps" : "rows";
+}
+
+/* By how the logarithm of what is left goes with the coordinate: lone large rows do not decide. */
+int fg_loop_spread_direction(const fg_loop_report *report, const fg_loop_claim *claim) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  const fg_loop_coordinate *at = &problem->coordinate[claim->candidate.a];
+  const double *residual = report->result->after_fit;
+  double floor = 0.1 * report->result->after.rms;
+  double rows = (double)problem->rows, mean = 0, sum = 0;
+  if (fg_loop_spread_by_levels(problem, &claim->candidate)) return 0;
+  for (size_t i = 0; i < problem->rows; i++)
+    mean += at->value[i] / rows;
+  for (size_t i = 0; i < problem->rows; i++)
+    sum += (at->value[i] - mean) * log(fabs(residual[i]) + floor);
+  return sum < 0 ? -1 : 1;
+}
+
+static void spread_statement(const fg_loop_report *report, const fg_loop_claim *claim,
+                             char text[FG_LOOP_WORDS]) {
+  const char *name = coordinate_words(&report->problem->problem.coordinate[claim->candidate.a]);
+  fg_loop_number times = fg_loop_number_text("%.2g", claim->noise_value);
+  int direction = fg_loop_spread_direction(report, claim);
+  if (direction)
+    fg_text_clip(text, FG_LOOP_WORDS,
+                 "the scatter %s with %s: %s times from the smallest to the largest",
+                 direction > 0 ? "grows" : "falls", name, times.text);
+  else
+    fg_text_clip(text, FG_LOOP_WORDS,
+                 "the scatter differs over %s: the largest is %s times the smallest", name,
+                 times.text);
+}
+
+void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *claim,
+                         char text[FG_LOOP_WORDS]) {
+  const fg_loop_effect *effect = claim->candidate.effect;
+  const fg_loop_coordinate *at = &report->problem->problem.coordinate[claim->candidate.a];
+  *text = 0;
+  if (!effect->accepts)
+    lone_statement(report, &claim->candidate, text);
+  else if (effect->scatter == FG_LOOP_SERIAL)
+    fg_text_clip(text, FG_LOOP_WORDS, "neighbouring %s are alike", neighbours(at));
+  else if (effect->scatter == FG_LOOP_SPREAD)
+    spread_statement(report, claim, text);
+  else
+    fg_loop_candidate_words(report, &claim->candidate, text);
+}
+
+/* Every wrong row has a size of its own. */
+static void rows_size(const fg_loop_claim *claim, char text[FG_LOOP_NAME]) {
+  fg_text_clip(text, FG_LOOP_NAME, "off by ");
+  for (size_t k = 0, used; k < claim->columns; k++) {
+    used = strlen(text);
+    fg_text_clip(text + used, FG_LOOP_NAME - used, "%s%.3g",
+                 !k                        ? ""
+                 : k + 1 == claim->columns ? " and "
+                                           : ", ",
+                 claim->coefficient[k]);
+  }
+}
+
+void fg_loop_claim_size(const fg_loop_claim *claim, char text[FG_LOOP_NAME]) {
+  const fg_loop_effect *effect = claim->candidate.effect;
+  bool of_mean = effect->scatter == FG_LOOP_OF_THE_MEAN;
+  double value = of_mean ? claim->amplitude : claim->noise_value;
+  double u = of_mean ? claim->amplitude_u : claim->noise_value_u;
+  if (effect->lone == FG_LOOP_WRONG_ROW)
+    rows_size(claim, text);
+  else
+    fg_text_clip(text, FG_LOOP_NAME, "%s %s",
+                 of_mean                             ? "amplitude"
+                 : effect->scatter == FG_LOOP_SERIAL ? "correlation"
+                                                     : "ratio of the sd",
+                 fg_loop_number_text("%.3g", value).text);
+  size_t used = strlen(text);
+  if (isfinite(u)) fg_text_clip(text + used, FG_LOOP_NAME - used, " ± %.2g", 2 * u);
+}
+
+const char *fg_loop_rejected_word(const fg_loop_rejected *rejected) {
+  return rejected->verdict == FG_LOOP_ABSORBED ? "in the model already"
+                                               : fg_loop_verdict_word(rejected->verdict);
+}

@@ -1,0 +1,35 @@
+/* What the loop on tables looked for and found, in words for people. */
+#ifndef FG_REPORT_TABLE_LOOP_LOOP_WORDS_H
+#define FG_REPORT_TABLE_LOOP_LOOP_WORDS_H
+
+#include "foilgauge/loop.h"
+
+enum { FG_LOOP_WORDS = 480 };
+
+/* A number for a sentence or a cell; one that is none is a dash. */
+typedef struct fg_loop_number {
+  char text[32];
+} fg_loop_number;
+
+fg_loop_number fg_loop_number_text(const char *format, double value);
+
+/* "a drift over the runs", "neighbours that are alike along the runs", "a wrong response in row 3".
+ */
+void fg_loop_candidate_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                             char text[FG_LOOP_WORDS]);
+/* The same of a member of an alias class, which may be a sum of two. */
+void fg_loop_alias_words(const fg_loop_report *report, const fg_loop_alias *alias,
+                         char text[2 * FG_LOOP_WORDS]);
+/* A claim as a statement: "neighbouring runs are alike", "rows 2 and 54 are wrong"; of the mean as
+ * its candidate's words. */
+void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *claim,
+                         char text[FG_LOOP_WORDS]);
+/* "amplitude 0.31 ± 0.08", "correlation 0.94 ± 0.03", "ratio of the sd 4.1 ± 0.9", "off by 9 and
+ * -6 ± 0.6". */
+void fg_loop_claim_size(const fg_loop_claim *claim, char text[FG_LOOP_NAME]);
+/* The verdict on a candidate that is not claimed. */
+const char *fg_loop_rejected_word(const fg_loop_rejected *rejected);
+/* +1: the scatter grows with the coordinate of a spread, -1: it falls, 0: it has levels. */
+int fg_loop_spread_direction(const fg_loop_report *report, const fg_loop_claim *claim);
+
+#endif
