@@ -17,9 +17,6 @@ enum { LATER_CLAIMS = 2 };
  * milder than a claim, for the outlier has taken some of it. */
 #define HINGE_P 0.02
 
-/* Two wrong rows have two numbers of their own: an exchange may leave so much more. */
-#define EXCHANGE_SLACK 1.1
-
 typedef enum family {
   LISTED,
   CURVES,
@@ -323,7 +320,10 @@ static bool is_of_exchange(const fg_engine_run *run, const fg_engine_step *step)
   for (size_t k = 0; k < wrong->rows; k++)
     if (wrong->row[k] != exchange->candidate.row[0] && wrong->row[k] != exchange->candidate.row[1])
       return false;
-  double slack = wrong->rows == 2 ? EXCHANGE_SLACK : 1;
+  double freedom = fmax((double)step->bench.freedom - 2, 1);
+  /* Two wrong rows have two numbers of their own. */
+  double slack = 1 + 2 * gsl_cdf_fdist_Qinv(BESIDE_P, 2, freedom) / freedom;
+  if (wrong->rows < 2) slack = 1;
   return step->judgement.exchange_ratio <= slack * step->lone.ratio;
 }
 

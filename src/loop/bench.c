@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "loop/engine.h"
 
 static size_t candidate_versions(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
@@ -131,14 +132,46 @@ static double explained(size_t n, const double *unit, size_t count, const double
   return gain;
 }
 
-static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
+typedef struct filling {
+  fg_engine_bench *bench;
+  size_t noise;
+  const double *null, *residual;
+} filling;
+
+/* Versions that one thread makes at a time. */
+enum { VERSIONS_AT_ONCE = 16 };
+
+static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
+  const filling *f = shared;
+  fg_engine_bench *bench = f->bench;
   const fg_engine_training *training = bench->training;
   size_t n = training->n, width = training->columns + bench->columns, each = n * bench->widest;
+  size_t from = item * VERSIONS_AT_ONCE, to = from + VERSIONS_AT_ONCE;
+  double *work = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
+  for (size_t v = from; status == FG_OK && v < to && v < bench->versions; v++) {
+    const fg_engine_version *version = &bench->version[v];
+    status = version_basis(ctx, bench, v, bench->noise[f->noise], f->null, work, work + each);
+    if (status != FG_OK) break;
+    bench->gain[f->noise * bench->versions + v] =
+        explained(n, work + each, version->rank, f->residual);
+    if (bench->rows[f->noise])
+      put_rows(n, width, training->columns + version->first, work + each, version->rank,
+               bench->rows[f->noise]);
+  }
+  free(work);
+  return status;
+}
+
+static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
+  const fg_engine_training *training = bench->training;
+  size_t n = training->n, width = training->columns + bench->columns;
+  size_t items = (bench->versions + VERSIONS_AT_ONCE - 1) / VERSIONS_AT_ONCE;
   bool few = n <= FG_ENGINE_SMALL_ROWS;
   fg_status status = FG_OK;
-  double *null = NULL, *work = NULL, *residual = NULL;
+  double *null = NULL, *residual = NULL;
   FG_TRY_EXIT(null_basis(ctx, training, bench->noise[j], &null));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
   memcpy(residual, training->y, n * sizeof *residual);
   fg_engine_whiten(training, bench->noise[j], residual);
@@ -147,18 +180,11 @@ static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
     FG_TRY_EXIT(
         fg_memory_allocate(ctx, n, width * sizeof *bench->rows[j] + 1, (void **)&bench->rows[j]));
   if (few) put_rows(n, width, 0, null, training->columns, bench->rows[j]);
-  for (size_t v = 0; v < bench->versions; v++) {
-    const fg_engine_version *version = &bench->version[v];
-    if (!few) fg_engine_bench_tell(bench, v, bench->versions);
-    FG_TRY_EXIT(version_basis(ctx, bench, v, bench->noise[j], null, work, work + each));
-    bench->gain[j * bench->versions + v] = explained(n, work + each, version->rank, residual);
-    if (few)
-      put_rows(n, width, training->columns + version->first, work + each, version->rank,
-               bench->rows[j]);
-  }
+  fg_engine_bench_tell(bench, j, bench->noises + 1);
+  filling f = {bench, j, null, residual};
+  FG_TRY_EXIT(fg_parallel_run(ctx, 0, items, fill_versions, &f));
 exit:
   free(null);
-  free(work);
   free(residual);
   return status;
 }

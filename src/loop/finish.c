@@ -14,8 +14,6 @@
 /* Strong correlation makes the sd of a row larger than what these rows show: the noise floor that
  * is said is at the most so many times their rms. */
 #define FLOOR_OVER_RMS 1.25
-/* An error that falls by less than this is the same error. */
-#define SAME_ERROR 0.995
 
 static fg_status measure(fg_context *ctx, const fg_engine_run *run, const double *residual,
                          fg_loop_error *error) {
@@ -211,8 +209,8 @@ static fg_status errors(fg_context *ctx, fg_engine_run *run, fg_engine_noise *no
   FG_TRY(cross_validated(ctx, run, &run->set, run->set.count ? *noise : first,
                          &result->after.cross_validated_rms));
   if (isnan(result->before.held_out_rms) && run->set.count)
-    FG_TRY(
-        fg_engine_cross_fit(ctx, run, &result->before.held_out_rms, &result->after.held_out_rms));
+    FG_TRY(fg_engine_cross_fit(ctx, run, &result->before.held_out_rms, &result->after.held_out_rms,
+                               &run->fell));
   else if (isnan(result->before.held_out_rms))
     result->before.held_out_rms = result->after.held_out_rms = result->before.cross_validated_rms;
   double before = result->before.rms;
@@ -245,9 +243,9 @@ static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
 }
 
-static bool error_fell(const fg_loop_result *result) {
-  double ratio = result->ratio_held_out;
-  return result->ratio_rms < SAME_ERROR && (isnan(ratio) || ratio < SAME_ERROR);
+static bool error_fell(const fg_engine_run *run) {
+  const fg_loop_result *result = run->result;
+  return result->ratio_rms < 1 && run->fell;
 }
 
 /* What was found without an error that fell. */
@@ -283,15 +281,18 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
     FG_TRY(errors(ctx, run, &noise));
   }
   if (confirmed == -1 && isfinite(result->ratio_held_out) && run->set.count)
-    confirmed = result->ratio_held_out < SAME_ERROR;
+    confirmed = run->fell;
+  else if (confirmed >= 0)
+    run->fell = confirmed == 1;
+
   for (size_t m = 0; m < result->claims; m++)
     result->claim[m].held_out = confirmed;
   FG_TRY(parameters(ctx, run, noise));
   run->noise = noise;
   run->sd = result->noise.sd;
-  result->verdict = run->has_curve       ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
-                    : !result->claims    ? FG_LOOP_CLEAN
-                    : error_fell(result) ? FG_LOOP_EXPLAINED
-                                         : FG_LOOP_PARTLY;
+  result->verdict = run->has_curve    ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
+                    : !result->claims ? FG_LOOP_CLEAN
+                    : error_fell(run) ? FG_LOOP_EXPLAINED
+                                      : FG_LOOP_PARTLY;
   return note_verdict(ctx, run);
 }

@@ -112,6 +112,23 @@ fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run) {
   return fg_engine_swap(ctx, run);
 }
 
+/* Where rows are many the shortest cycles are left out. */
+static fg_status note_cycles(fg_context *ctx, const fg_engine_run *run) {
+  for (size_t c = 0; c < run->means; c++) {
+    const fg_loop_candidate *candidate = &run->candidate[c];
+    const fg_loop_coordinate *at = &run->problem->coordinate[candidate->a];
+    double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES];
+    bool cycles =
+        candidate->effect->shapes == 1 && !strcmp(candidate->effect->shape_name[0], "period");
+    if (!cycles || at->distinct <= FG_LOOP_STARTS) continue;
+    size_t count = candidate->effect->starts(run->problem, candidate, starts);
+    return fg_engine_note(ctx, run->result,
+                          "Cycles over %s that are shorter than %.3g were not looked for.",
+                          at->name, starts[count - 1][0]);
+  }
+  return FG_OK;
+}
+
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result) {
   fg_status status = FG_OK;
@@ -122,6 +139,7 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
   FG_TRY_EXIT(fg_engine_units_open(ctx, problem, &units));
   FG_TRY_EXIT(open_run(ctx, &units, options, result, &run));
   FG_TRY_EXIT(check(ctx, &run, &worth));
+  if (worth) FG_TRY_EXIT(note_cycles(ctx, &run));
   if (worth) FG_TRY_EXIT(fg_engine_search(ctx, &run));
   FG_TRY_EXIT(fg_engine_finish(ctx, &run));
   if (worth) FG_TRY_EXIT(fg_engine_list_rejected(ctx, &run));

@@ -20,14 +20,16 @@ typedef struct fg_engine_run {
   double curve_p;
   size_t curve_at; /* coordinate */
   fg_engine_noise noise;
+  bool fell; /* the error of rows that took no part */
   double sd; /* of the null at this step, whitened rows */
 } fg_engine_run;
 
 /* Accepts what passes, one after the other, and looks at all again at the end. */
 fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run);
-/* Errors of rows that took no part: before, and with what the search without them finds. */
+/* Errors of rows that took no part: before, and with what the search without them finds; whether it
+ * fell by more than a standard error. */
 fg_status fg_engine_cross_fit(fg_context *ctx, const fg_engine_run *run, double *before_rms,
-                              double *after_rms);
+                              double *after_rms, bool *fell);
 /* Tries to accept one effect; *accepted says whether there was one. */
 fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accepted, bool *last);
 /* With the others fitted, would another candidate serve better in a claim's place? */
