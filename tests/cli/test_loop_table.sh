@@ -73,6 +73,13 @@ says wrong "Rows 2 and 54 are wrong (off by " "on rows that took no part in the 
 says spread "The scatter grows with x: " " times from the smallest to the largest" "No mean changes"
 says alike "eighbouring runs are alike (correlation 0."
 says clean "Nothing is claimed: in 40 rows" "steps" "cycles down to two rows" "lone wrong values"
+# The page draws each as what it is: a band, joined neighbours, rows with their numbers, a line.
+grep -q '>row 54</text>' wrong.html || fail "a wrong row has no number on the page"
+[ "$(grep -c 'class="mark"' wrong.html)" = 2 ] || fail "not both wrong rows are marked"
+grep -q 'class="band"' spread.html || fail "the spread is not drawn as a band"
+grep -q 'class="joined"' alike.html || fail "neighbours are not joined"
+[ "$(grep -o 'class="effect" d="[^"]*' a.html | tr -cd L | wc -c)" -gt 100 ] || fail "a trend is not drawn as a line"
+grep -qE 'class="(effect|band|mark)"' clean.html && fail "something is drawn where nothing was found"
 grep -q "table.linear" a.model.json || fail "the model file lacks the effect"
 
 echo '{"response": "y", "model": "1 + T"}' >declared.json

@@ -77,7 +77,7 @@ static fg_status say_errors(fg_context *ctx, const fg_loop_result *result, char 
                           " No mean changes, so there is no error to take out: limits and "
                           "uncertainties have to follow the scatter.");
   FG_TRY(fg_text_append(ctx, text,
-                        serial ? " With each row told from the one before it, the error "
+                        serial ? " With each row predicted from the one before it, the error "
                                : " The error "));
   FG_TRY(say_change(ctx, result->before.rms, result->after.rms, text));
   if (isfinite(result->ratio_held_out)) {
