@@ -177,6 +177,7 @@ typedef struct fg_loop_effect {
   fg_loop_scatter scatter;
   fg_loop_over_bumps over_bumps;
   const char *bump_words; /* "a decay from the lip" */
+  const char *sought;     /* "trends", for what was looked for in vain; NULL: not told */
 } fg_loop_effect;
 
 /* An effect is accepted below this probability of noise alone, over everything that was tried. */
@@ -307,6 +308,9 @@ typedef struct fg_loop_result {
 fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
                       const fg_loop_options *options, fg_loop_result *result);
 void fg_loop_result_free(fg_loop_result *result);
+
+/* A spread with a size of its own for every level, rather than a slope. */
+bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
 
 const char *fg_loop_verdict_word(fg_loop_verdict verdict);
 const char *fg_loop_outcome_word(fg_loop_outcome outcome);

@@ -65,6 +65,7 @@ static void spread_basis(const fg_loop_problem *problem, const fg_loop_candidate
 
 static const fg_loop_effect noise_effects[] = {
     {.id = "table.serial_correlation",
+     .sought = "neighbours that are alike",
      .scatter = FG_LOOP_SERIAL,
      .level = "runs",
      .frame = "order",
@@ -73,6 +74,7 @@ static const fg_loop_effect noise_effects[] = {
      .columns = no_columns,
      .basis = no_basis},
     {.id = "table.spread",
+     .sought = "scatter that changes",
      .scatter = FG_LOOP_SPREAD,
      .level = "runs",
      .frame = "column",

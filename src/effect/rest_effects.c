@@ -27,6 +27,7 @@ static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *
 
 static const fg_loop_effect lone_effects[] = {
     {.id = "table.outlier",
+     .sought = "lone wrong values",
      .lone = FG_LOOP_WRONG_ROW,
      .level = "runs",
      .frame = "row",

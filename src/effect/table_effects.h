@@ -10,8 +10,6 @@ const fg_loop_effect *fg_loop_lone_effects(void);
 
 /* What noise may lack: serial correlation, unequal spread; ends with id NULL. */
 const fg_loop_effect *fg_loop_noise_effects(void);
-/* A spread with a size of its own for every level, rather than a slope. */
-bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_candidate *candidate);
 
 /* The curves of what no listed effect explains; ends with id NULL. */
 const fg_loop_effect *fg_loop_curve_effects(void);

@@ -87,33 +87,29 @@ static fg_status say_errors(fg_context *ctx, const fg_loop_result *result, char 
   return fg_text_append(ctx, text, ".");
 }
 
-static bool was_sought(const fg_loop_result *result, const char *id) {
-  for (size_t i = 0; i < result->rejects; i++)
-    if (!strcmp(result->rejected[i].candidate.effect->id, id)) return true;
-  return false;
+/* The first of those looked for in vain that have its words. */
+static bool is_first(const fg_loop_result *result, size_t i) {
+  const char *words = result->rejected[i].candidate.effect->sought;
+  if (!words) return false;
+  for (size_t k = 0; k < i; k++) {
+    const char *other = result->rejected[k].candidate.effect->sought;
+    if (other && !strcmp(other, words)) return false;
+  }
+  return true;
 }
 
 /* What was looked for where nothing was found: only that of which there was a candidate. */
 static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
-  static const struct {
-    const char *id, *words;
-  } sought[] = {{"table.linear", "trends"},
-                {"table.order_drift", "drifts"},
-                {"table.factor", "levels"},
-                {"table.threshold", "steps"},
-                {"table.periodic", "cycles down to two rows"},
-                {"table.serial_correlation", "neighbours that are alike"},
-                {"table.spread", "scatter that changes"},
-                {"table.outlier", "lone wrong values"}};
-  const fg_loop_problem *problem = &report->problem->problem;
+  const fg_loop_result *result = report->result;
   size_t said = 0;
   FG_TRY(fg_text_append(ctx, text,
                         "Nothing is claimed: in %zu rows the residual (%.3g rms) is noise as far "
                         "as these data can tell.",
-                        problem->rows, report->result->before.rms));
-  for (size_t i = 0; i < sizeof sought / sizeof *sought; i++)
-    if (was_sought(report->result, sought[i].id))
-      FG_TRY(fg_text_append(ctx, text, "%s%s", said++ ? ", " : " Looked for: ", sought[i].words));
+                        report->problem->problem.rows, result->before.rms));
+  for (size_t i = 0; i < result->rejects; i++)
+    if (is_first(result, i))
+      FG_TRY(fg_text_append(ctx, text, "%s%s", said++ ? ", " : " Looked for: ",
+                            result->rejected[i].candidate.effect->sought));
   return said ? fg_text_append(ctx, text, ".") : FG_OK;
 }
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "effect/table_effects.h"
 
 fg_loop_number fg_loop_number_text(const char *format, double value) {
   fg_loop_number out;
