@@ -318,6 +318,13 @@ const char *fg_loop_outcome_word(fg_loop_outcome outcome);
 /* The effect of a claim at the rows of a problem (rows numbers). */
 fg_status fg_loop_claim_evaluate(fg_context *ctx, const fg_loop_problem *problem,
                                  const fg_loop_claim *claim, double *effect);
+/* The same of a claim on one coordinate, at values of that. */
+fg_status fg_loop_claim_curve(fg_context *ctx, const fg_loop_problem *problem,
+                              const fg_loop_claim *claim, const double *value, size_t count,
+                              double *effect);
+/* "a drift over the runs"; of single rows without their numbers. */
+void fg_loop_effect_words(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                          char *text, size_t size);
 /* The curve at a value of its coordinate; constant beyond its ends. */
 double fg_loop_curve_at(const fg_loop_curve *curve, double value);
 

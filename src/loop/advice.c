@@ -37,30 +37,50 @@ static fg_status fit_whole(fg_context *ctx, const fg_engine_run *run, size_t m,
                               whole->parameter_u);
 }
 
-/* The coordinates of both, each in as many steps as there are values to set: every level of words,
- * the values that were measured where an effect gives each its own level, seven elsewhere. */
+/* The coordinates of both, each in the values that can be set: every level of words, the values
+ * that were measured where these are few or an effect gives each its own level, elsewhere the
+ * measured ones that lie nearest to seven equal steps. More runs come at the end of an order. */
 enum { AXES = 4, STEPS = 7 };
+
+/* At either setting a user makes so many more runs, or half as many as the table has. */
+enum { RUNS_MOST = 50 };
+
+static bool is_order(const fg_loop_coordinate *at) {
+  return at->roles & FG_LOOP_ORDER;
+}
 
 typedef struct setting_axes {
   size_t coordinate[AXES], steps[AXES], count;
   double value[AXES][FG_LOOP_COLUMNS + 1];
 } setting_axes;
 
+static double nearest_measured(const fg_loop_problem *problem, const fg_loop_coordinate *at,
+                               double value) {
+  double best = at->value[0];
+  for (size_t i = 1; i < problem->rows; i++)
+    if (fabs(at->value[i] - value) < fabs(best - value)) best = at->value[i];
+  return best;
+}
+
 static void add_axis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                      size_t coordinate, setting_axes *axes) {
   const fg_loop_coordinate *at = &problem->coordinate[coordinate];
-  bool measured = candidate->effect->own_levels && at->distinct <= FG_LOOP_COLUMNS + 1;
+  size_t most = candidate->effect->own_levels ? FG_LOOP_COLUMNS + 1 : STEPS;
+  bool measured = at->distinct <= most, last = is_order(at);
   size_t k = 0;
   while (k < axes->count && axes->coordinate[k] != coordinate)
     k++;
-  if (k < axes->count && !measured) return;
+  if (k < axes->count && (!measured || last)) return;
   if (k == axes->count) axes->count++;
   axes->coordinate[k] = coordinate;
-  axes->steps[k] = at->levels ? at->levels : measured ? at->distinct : STEPS;
-  for (size_t i = 0; i < axes->steps[k]; i++)
-    axes->value[k][i] = at->levels ? (double)i
-                        : measured ? at->few[i]
-                                   : at->low + (at->high - at->low) * (double)i / (STEPS - 1);
+  axes->steps[k] = last ? 1 : at->levels ? at->levels : measured ? at->distinct : STEPS;
+  for (size_t i = 0; i < axes->steps[k]; i++) {
+    double step = at->low + (at->high - at->low) * (double)i / (STEPS - 1);
+    axes->value[k][i] = last         ? at->high
+                        : at->levels ? (double)i
+                        : measured   ? at->few[i]
+                                     : nearest_measured(problem, at, step);
+  }
 }
 
 static void list_axes(const fg_loop_problem *problem, const fg_loop_candidate *winner,
@@ -165,10 +185,13 @@ exit:
 
 static void describe_setting(const fg_loop_problem *problem, const setting_axes *axes,
                              size_t setting, char *text, size_t size) {
-  for (size_t k = 0, used = 0; k < axes->count; k++, used = strlen(text)) {
+  *text = 0;
+  for (size_t k = 0; k < axes->count; k++) {
     const fg_loop_coordinate *at = &problem->coordinate[axes->coordinate[k]];
     double value = axis_value(axes, k, setting);
-    const char *with = k ? " with " : "";
+    size_t used = strlen(text);
+    const char *with = used ? " with " : "";
+    if (is_order(at)) continue;
     if (at->levels)
       fg_text_clip(text + used, size - used, "%s%s = %s", with, at->name,
                    at->level_name[(size_t)value]);
@@ -177,53 +200,99 @@ static void describe_setting(const fg_loop_problem *problem, const setting_axes 
   }
 }
 
-static void say_repeats(const fg_loop_claim *claim, fg_loop_advice *advice) {
+/* A claim and its nearest rival in words. */
+typedef struct pair_words {
+  char claim[4 * FG_LOOP_NAME], rival[8 * FG_LOOP_NAME];
+} pair_words;
+
+static void say_pair(const fg_loop_problem *problem, const fg_loop_claim *claim, const char *and,
+                     pair_words *words) {
+  const fg_loop_alias *nearest = &claim->alias[0];
+  fg_loop_effect_words(problem, &claim->candidate, words->claim, sizeof words->claim);
+  fg_loop_effect_words(problem, &nearest->candidate, words->rival, sizeof words->rival);
+  if (!nearest->sum) return;
+  size_t used = strlen(words->rival);
+  fg_text_clip(words->rival + used, sizeof words->rival - used, "%s", and);
+  used = strlen(words->rival);
+  fg_loop_effect_words(problem, &nearest->second, words->rival + used, sizeof words->rival - used);
+}
+
+static void say_repeats(const fg_loop_problem *problem, const fg_loop_claim *claim,
+                        fg_loop_advice *advice) {
+  bool lone = fg_engine_is_lone(&claim->candidate),
+       rival = fg_engine_is_lone(&claim->alias[0].candidate);
+  pair_words words;
+  say_pair(problem, claim, " together with ", &words);
   fg_text_clip(advice->text, sizeof advice->text,
-               "Repeat the rows that %s rests on: a repeat tells a wrong or exchanged response "
-               "from %s.",
-               claim->name, claim->alias[0].name);
+               "Repeat the rows that are named: a repeat tells a wrong or exchanged response from "
+               "%s.",
+               lone && rival ? "a right one"
+               : lone        ? words.rival
+                             : words.claim);
   advice->runs = 2;
 }
 
 /* The settings of the first runs, again at the end: what lasts moves them, what only makes
  * neighbours alike does not. */
-static void say_order(const fg_loop_claim *claim, fg_loop_advice *advice) {
+static void say_order(const fg_loop_problem *problem, const fg_loop_claim *claim,
+                      fg_loop_advice *advice) {
   enum { REPEATS = 4 };
+  pair_words words;
+  say_pair(problem, claim, " together with ", &words);
   fg_text_clip(advice->text, sizeof advice->text,
                "Repeat the settings of %d of the first rows at the end, some time apart: %s and %s "
                "part there.",
-               REPEATS, claim->name, claim->alias[0].name);
+               REPEATS, words.claim, words.rival);
   advice->runs = REPEATS;
 }
 
-static void say_sum(const fg_loop_claim *claim, fg_loop_advice *advice) {
+static void say_sum(const fg_loop_problem *problem, const fg_loop_claim *claim,
+                    fg_loop_advice *advice) {
+  pair_words words;
+  say_pair(problem, claim, " and ", &words);
   fg_text_clip(advice->text, sizeof advice->text,
-               "Measure rows in which what %s is made of does not move together as it does here: "
-               "they part %s from it.",
-               claim->alias[0].name, claim->name);
+               "Measure rows in which %s do not go together as they do here: that parts them from "
+               "%s.",
+               words.rival, words.claim);
   advice->runs = NAN;
+}
+
+static bool over_order(const fg_loop_problem *problem, const setting_axes *axes) {
+  for (size_t k = 0; k < axes->count; k++)
+    if (is_order(&problem->coordinate[axes->coordinate[k]])) return true;
+  return false;
+}
+
+static bool can_be_set(const fg_loop_problem *problem, const setting_axes *axes) {
+  for (size_t k = 0; k < axes->count; k++)
+    if (!is_order(&problem->coordinate[axes->coordinate[k]])) return true;
+  return false;
 }
 
 /* n rows at either setting: their means differ by `apart` with a variance of 2 sd² / n. */
 static void say_settings(const fg_engine_run *run, const fg_loop_claim *claim,
                          const setting_axes *axes, const size_t best[2], double apart,
                          fg_loop_advice *advice) {
+  double most = fmax(RUNS_MOST, (double)run->problem->rows / 2);
   double needed = apart > 0 ? ceil(2 * pow((surplus + power_80) * run->sd / apart, 2)) : INFINITY;
   char first[400], second[400];
-  advice->runs = needed < 1e6 ? fmax(needed, 2) : NAN;
-  if (!(advice->runs > 0)) {
-    fg_text_clip(advice->text, sizeof advice->text,
-                 "No setting inside the measured range parts %s from %s: measure outside it.",
-                 claim->name, claim->alias[0].name);
-    return;
-  }
+  pair_words words;
+  say_pair(run->problem, claim, " together with ", &words);
   describe_setting(run->problem, axes, best[0], first, sizeof first);
   describe_setting(run->problem, axes, best[1], second, sizeof second);
-  fg_text_clip(advice->text, sizeof advice->text,
-               "%.0f %s at %s and as many at %s part %s from %s (from one to the other these "
-               "differ by %.3g; power 80 %%).",
-               advice->runs, run->problem->group_level ? "more rows" : "more runs", first, second,
-               claim->name, claim->alias[0].name, ldexp(apart, run->units->response));
+  advice->runs = needed <= most ? fmax(needed, 2) : NAN;
+  if (advice->runs > 0)
+    fg_text_clip(advice->text, sizeof advice->text,
+                 "%s%.0f %s at %s and as many at %s part %s from %s (from one to the other these "
+                 "differ by %.3g; power 80 %%).",
+                 over_order(run->problem, axes) ? "At the end, " : "", advice->runs,
+                 run->problem->group_level ? "more rows" : "more runs", first, second, words.claim,
+                 words.rival, ldexp(apart, run->units->response));
+  else
+    fg_text_clip(advice->text, sizeof advice->text,
+                 "No number of runs that one would make parts %s from %s inside the measured range "
+                 "(at most they differ by %.2g times the scatter of a row): measure outside it.",
+                 words.claim, words.rival, run->sd > 0 ? apart / run->sd : 0);
 }
 
 static fg_status advise_settings(fg_context *ctx, const fg_engine_run *run, size_t m,
@@ -240,7 +309,10 @@ static fg_status advise_settings(fg_context *ctx, const fg_engine_run *run, size
   FG_TRY_EXIT(fit_whole(ctx, run, m, rival, starts[count / 2], &other));
   list_axes(problem, winner, rival, &axes);
   FG_TRY_EXIT(best_settings(ctx, run, &axes, &with, &other, best, &apart));
-  say_settings(run, &run->result->claim[m], &axes, best, apart, advice);
+  if (can_be_set(problem, &axes))
+    say_settings(run, &run->result->claim[m], &axes, best, apart, advice);
+  else
+    say_order(problem, &run->result->claim[m], advice);
 exit:
   free(with.parameter);
   free(other.parameter);
@@ -253,11 +325,11 @@ static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
   const fg_loop_alias *nearest = &claim->alias[0];
   if (fg_engine_is_lone(&claim->candidate) ||
       (!nearest->sum && fg_engine_is_lone(&nearest->candidate)))
-    say_repeats(claim, advice);
+    say_repeats(run->problem, claim, advice);
   else if (fg_engine_is_noise(&claim->candidate) || fg_engine_is_noise(&nearest->candidate))
-    say_order(claim, advice);
+    say_order(run->problem, claim, advice);
   else if (nearest->sum)
-    say_sum(claim, advice);
+    say_sum(run->problem, claim, advice);
   else
     return advise_settings(ctx, run, m, &nearest->candidate, advice);
   return FG_OK;

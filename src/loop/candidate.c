@@ -42,6 +42,29 @@ static void name_rows(const fg_loop_candidate *candidate, char name[FG_LOOP_NAME
                  k + 1 == candidate->rows ? ")" : "");
 }
 
+/* "the runs" for a column `run`; others by their name. */
+static const char *coordinate_words(const fg_loop_coordinate *at) {
+  static const char *const plural[][2] = {
+      {"run", "the runs"}, {"row", "the rows"}, {"bump", "the bumps"}};
+  for (size_t i = 0; i < sizeof plural / sizeof *plural; i++)
+    if (!strcmp(at->name, plural[i][0]) && at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP))
+      return plural[i][1];
+  return at->name;
+}
+
+void fg_loop_effect_words(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
+                          char *text, size_t size) {
+  const fg_loop_effect *effect = candidate->effect;
+  const fg_loop_coordinate *at = problem->coordinate;
+  if (!effect->accepts)
+    fg_text_clip(text, size, "%s", effect->words);
+  else if (effect->pair)
+    fg_text_clip(text, size, "%s %s and %s", effect->words, coordinate_words(&at[candidate->a]),
+                 coordinate_words(&at[candidate->b]));
+  else
+    fg_text_clip(text, size, "%s %s", effect->words, coordinate_words(&at[candidate->a]));
+}
+
 void fg_engine_candidate_name(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                               char name[FG_LOOP_NAME]) {
   const char *id = candidate->effect->id;

@@ -55,3 +55,18 @@ void fg_engine_grid_close(fg_loop_problem *grid) {
   free(grid->coordinate);
   *grid = (fg_loop_problem){0};
 }
+
+fg_status fg_loop_claim_curve(fg_context *ctx, const fg_loop_problem *problem,
+                              const fg_loop_claim *claim, const double *value, size_t count,
+                              double *effect) {
+  fg_loop_problem grid = {0};
+  double *axis = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_engine_grid_open(ctx, problem, count, &grid));
+  FG_TRY_EXIT(fg_engine_grid_axis(ctx, &grid, claim->candidate.a, &axis));
+  memcpy(axis, value, count * sizeof *axis);
+  FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, &grid, claim, effect));
+exit:
+  fg_engine_grid_close(&grid);
+  return status;
+}

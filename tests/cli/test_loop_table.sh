@@ -73,6 +73,22 @@ says wrong "Rows 2 and 54 are wrong (off by " "on rows that took no part in the 
 says spread "The scatter grows with x: " " times from the smallest to the largest" "No mean changes"
 says alike "eighbouring runs are alike (correlation 0."
 says clean "Nothing is claimed: in 40 rows" "steps" "cycles down to two rows" "lone wrong values"
+# Advice that can be carried out: settings that were used, runs at the end of an order, or that no number helps.
+awk 'BEGIN { srand(3); print "run,humidity,y"
+  for (i = 1; i <= 24; i++)
+    printf "%d,%.1f,%.4f\n", i, 15 + 2 * i + 1.5 * rand(), 3 + 0.1 * i + 0.6 * (rand() + rand() + rand() - 1.5) }' >drift.csv
+awk 'BEGIN { srand(9); print "temperature_C,y"
+  for (i = 1; i <= 60; i++) { T = 500 + 5 * ((i * 7) % 12)
+    printf "%d,%.4f\n", T, T / 20 + rand() + rand() + rand() } }' >bent.csv
+says drift "a trend with humidity" "which these data cannot tell from: " "a drift over the runs"
+advice=$(grep -o '"advice": "[^"]*"' drift.json)
+[[ $advice =~ 'At the end, '([0-9]+)' more runs at humidity = '([0-9.]+)' and as many at humidity = '([0-9.]+)' part ' ]] || fail "no advice: $advice"
+for value in "${BASH_REMATCH[2]}" "${BASH_REMATCH[3]}"; do
+  grep -q ",$value," drift.csv || fail "advice for a humidity that nobody set: $value"
+done
+says bent "a trend with temperature_C"
+grep -q '"advice": "No number of runs that one would make parts ' bent.json || fail "advice that cannot be carried out: $(grep advice bent.json)"
+
 # The page draws each as what it is: a band, joined neighbours, rows with their numbers, a line.
 grep -q '>row 54</text>' wrong.html || fail "a wrong row has no number on the page"
 [ "$(grep -c 'class="mark"' wrong.html)" = 2 ] || fail "not both wrong rows are marked"

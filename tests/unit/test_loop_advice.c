@@ -90,6 +90,14 @@ static double predict(const char *name, const rows_data *data, const double *bet
   return sum;
 }
 
+/* The measured value that lies nearest to a step of the range: only such can be set. */
+static double settable(const double *column, double low, double high, size_t step) {
+  double at = low + (high - low) * (double)step / (STEPS - 1), best = column[0];
+  for (size_t i = 1; i < ROWS; i++)
+    if (fabs(column[i] - at) < fabs(best - at)) best = column[i];
+  return best;
+}
+
 /* The largest change of the difference between two settings in the measured range. */
 static double largest_step(const char *winner, const char *rival, const rows_data *data) {
   double of_winner[COLUMNS], of_rival[COLUMNS], low = INFINITY, high = -INFINITY;
@@ -102,8 +110,8 @@ static double largest_step(const char *winner, const char *rival, const rows_dat
   fit(rival, data, of_rival);
   for (size_t i = 0; i < STEPS; i++)
     for (size_t k = 0; k < STEPS; k++) {
-      double a = a_low + (a_high - a_low) * (double)i / (STEPS - 1);
-      double b = b_low + (b_high - b_low) * (double)k / (STEPS - 1);
+      double a = settable(data->a, a_low, a_high, i);
+      double b = settable(data->b, b_low, b_high, k);
       double apart = predict(winner, data, of_winner, a, b) - predict(rival, data, of_rival, a, b);
       low = fmin(low, apart);
       high = fmax(high, apart);

@@ -7,7 +7,6 @@
 
 #include "core/memory.h"
 #include "core/text.h"
-#include "loop/grid.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/table_loop/loop_panel.h"
 #include "report/table_loop/loop_words.h"
@@ -59,22 +58,20 @@ static bool is_curve(const fg_loop_problem *problem, const fg_loop_claim *claim)
 static fg_status draw_curve(fg_context *ctx, const fg_loop_problem *problem,
                             const fg_loop_claim *claim, double mean, fg_loop_panel *panel) {
   const fg_loop_coordinate *at = panel->at;
-  fg_loop_problem grid = {0};
   double *value = NULL, *effect = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, CURVE_POINTS, sizeof *effect, (void **)&effect));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, CURVE_POINTS, sizeof *value, (void **)&value));
   FG_TRY_EXIT(fg_memory_allocate(ctx, CURVE_POINTS, sizeof *panel->line, (void **)&panel->line));
-  FG_TRY_EXIT(fg_engine_grid_open(ctx, problem, CURVE_POINTS, &grid));
-  FG_TRY_EXIT(fg_engine_grid_axis(ctx, &grid, claim->candidate.a, &value));
   for (size_t i = 0; i < CURVE_POINTS; i++)
     value[i] = at->low + (at->high - at->low) * (double)i / (CURVE_POINTS - 1);
-  FG_TRY_EXIT(fg_loop_claim_evaluate(ctx, &grid, claim, effect));
+  FG_TRY_EXIT(fg_loop_claim_curve(ctx, problem, claim, value, CURVE_POINTS, effect));
   for (size_t i = 0; i < CURVE_POINTS; i++)
     if (isfinite(effect[i]))
       panel->line[panel->points++] = (fg_loop_point){value[i], effect[i] - mean};
 exit:
   free(effect);
-  fg_engine_grid_close(&grid);
+  free(value);
   return status;
 }
 

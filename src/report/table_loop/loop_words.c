@@ -15,16 +15,6 @@ fg_loop_number fg_loop_number_text(const char *format, double value) {
   return out;
 }
 
-/* "the runs" for a column `run`; others by their name. */
-static const char *coordinate_words(const fg_loop_coordinate *at) {
-  static const char *const plural[][2] = {
-      {"run", "the runs"}, {"row", "the rows"}, {"bump", "the bumps"}};
-  for (size_t i = 0; i < sizeof plural / sizeof *plural; i++)
-    if (!strcmp(at->name, plural[i][0]) && at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP))
-      return plural[i][1];
-  return at->name;
-}
-
 static void append(char *text, const char *words) {
   size_t used = strlen(text);
   fg_text_clip(text + used, FG_LOOP_WORDS - used, "%s", words);
@@ -59,18 +49,11 @@ static void lone_words(const fg_loop_report *report, const fg_loop_candidate *ca
 
 void fg_loop_candidate_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
                              char text[FG_LOOP_WORDS]) {
-  const fg_loop_coordinate *at = report->problem->problem.coordinate;
   *text = 0;
-  if (!candidate->effect->accepts) {
+  if (candidate->effect->accepts)
+    fg_loop_effect_words(&report->problem->problem, candidate, text, FG_LOOP_WORDS);
+  else
     lone_words(report, candidate, text);
-    return;
-  }
-  append(text, candidate->effect->words);
-  append(text, " ");
-  append(text, coordinate_words(&at[candidate->a]));
-  if (!candidate->effect->pair) return;
-  append(text, " and ");
-  append(text, coordinate_words(&at[candidate->b]));
 }
 
 void fg_loop_alias_words(const fg_loop_report *report, const fg_loop_alias *alias,
@@ -112,7 +95,7 @@ int fg_loop_spread_direction(const fg_loop_report *report, const fg_loop_claim *
 
 static void spread_statement(const fg_loop_report *report, const fg_loop_claim *claim,
                              char text[FG_LOOP_WORDS]) {
-  const char *name = coordinate_words(&report->problem->problem.coordinate[claim->candidate.a]);
+  const char *name = report->problem->problem.coordinate[claim->candidate.a].name;
   fg_loop_number times = fg_loop_number_text("%.2g", claim->noise_value);
   int direction = fg_loop_spread_direction(report, claim);
   if (direction)
