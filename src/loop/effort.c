@@ -2,7 +2,7 @@
 
 /* Measured (reports/loop_limits.md): seconds of one core per product of what dominates, bytes per
  * row and per cell. */
-static const double per_product = 6e-10, per_projected = 1e-9, per_row = 2400, per_cell = 26;
+static const double per_product = 1e-10, per_projected = 1e-9, per_row = 2400, per_cell = 26;
 
 enum { DRAWS = 1999, LEVEL_NOISES = 6, CORRELATED = 5, STEPS = 8, FOLDS = 5, FITS = 60 };
 

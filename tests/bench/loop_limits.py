@@ -20,7 +20,7 @@ HEAD = """# What the loop takes on a large table
 `1 + x0`, or that holds a trend, a wave, a step, a decay and a cycle. Seconds are those of the processor, one core, with
 other work beside it; memory is the largest resident. The estimate is for the worst case (five effects, each refined);
 `foilgauge loop --table` refuses what it puts above 10 minutes or 512 MiB (`--minutes`, `--memory`) before it starts. Up to
-600 rows every candidate is scored in 1,999 draws of noise; from there on it is flipped by groups, which costs less a row.
+600 rows every candidate is scored in up to 1,999 draws of the null; from there on once, against a count of the looks.
 
 | rows | columns | what is in it | seconds | MiB | estimate, s | estimate, MiB |
 |---:|---:|---|---:|---:|---:|---:|

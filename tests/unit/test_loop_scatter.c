@@ -1,0 +1,172 @@
+/* The loop on tables about what is no mean: neighbours that are alike, a scatter that changes,
+ * wrong rows that hide each other; and which order rows have. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "foilgauge/loop.h"
+#include "support/random.h"
+
+enum { ROWS = 120 };
+
+typedef struct series {
+  double reading[ROWS], pressure[ROWS], y[ROWS];
+} series;
+
+typedef struct outcome {
+  fg_context ctx;
+  fg_table table;
+  fg_loop_table_problem problem;
+  fg_loop_result result;
+} outcome;
+
+static void make_noise(uint64_t seed, series *data) {
+  for (size_t i = 0; i < ROWS; i++) {
+    data->reading[i] = (double)i + 1;
+    data->pressure[i] = 3 + 4 * random_uniform(&seed);
+    data->y[i] = random_gaussian(&seed);
+  }
+}
+
+static void search(const series *data, uint64_t seed, outcome *out) {
+  const fg_loop_options options = {.effects = fg_loop_table_effects(), .seed = seed};
+  const fg_loop_table_spec spec = {.response = "y", .model = "1", .seed = seed};
+  *out = (outcome){0};
+  fg_table *table = &out->table;
+  assert_int_equal(fg_table_add_numbers(&out->ctx, table, "reading", data->reading, ROWS), FG_OK);
+  assert_int_equal(fg_table_add_numbers(&out->ctx, table, "pressure", data->pressure, ROWS), FG_OK);
+  assert_int_equal(fg_table_add_numbers(&out->ctx, table, "y", data->y, ROWS), FG_OK);
+  assert_int_equal(fg_loop_table_problem_build(&out->ctx, table, &spec, &out->problem), FG_OK);
+  assert_int_equal(fg_loop_run(&out->ctx, &out->problem.problem, &options, &out->result), FG_OK);
+}
+
+static void clear(outcome *out) {
+  fg_loop_result_free(&out->result);
+  fg_loop_table_problem_free(&out->problem);
+  fg_table_free(&out->table);
+}
+
+static void neighbours_that_are_alike_are_said(void **state) {
+  series data;
+  outcome out;
+  (void)state;
+  make_noise(11, &data);
+  for (size_t i = 1; i < ROWS; i++)
+    data.y[i] += 0.7 * data.y[i - 1];
+  search(&data, 1, &out);
+  assert_int_equal(out.result.claims, 1);
+  assert_string_equal(out.result.claim[0].name, "table.serial_correlation(reading)");
+  assert_true(fabs(out.result.claim[0].noise_value - 0.7) <
+              4 * out.result.claim[0].noise_value_u + 0.1);
+  assert_true(out.result.after.rms < 0.9 * out.result.before.rms);
+  assert_true(out.result.after.held_out_rms < out.result.before.held_out_rms);
+  assert_int_equal(out.result.verdict, FG_LOOP_EXPLAINED);
+  clear(&out);
+}
+
+static void a_scatter_that_grows_is_said_and_is_no_error_that_fell(void **state) {
+  series data;
+  outcome out;
+  (void)state;
+  make_noise(22, &data);
+  for (size_t i = 0; i < ROWS; i++)
+    data.y[i] *= exp(0.5 * (data.pressure[i] - 5));
+  search(&data, 1, &out);
+  assert_int_equal(out.result.claims, 1);
+  assert_string_equal(out.result.claim[0].name, "table.spread(pressure)");
+  assert_true(out.result.claim[0].noise_value > 3 && out.result.claim[0].noise_value < 16);
+  assert_int_equal(out.result.verdict, FG_LOOP_PARTLY);
+  clear(&out);
+}
+
+static void wrong_rows_do_not_hide_each_other(void **state) {
+  series data;
+  outcome out;
+  (void)state;
+  make_noise(13, &data);
+  data.y[7] += 12;
+  data.y[80] -= 11;
+  data.y[99] += 13;
+  search(&data, 1, &out);
+  assert_int_equal(out.result.claims, 1);
+  assert_string_equal(out.result.claim[0].name, "table.outlier(8, 81, 100)");
+  clear(&out);
+}
+
+static void a_cycle_of_three_rows_is_found(void **state) {
+  series data;
+  outcome out;
+  (void)state;
+  make_noise(14, &data);
+  for (size_t i = 0; i < ROWS; i++)
+    data.y[i] += 1.2 * sin(2 * M_PI * (double)i / 3.3);
+  search(&data, 1, &out);
+  assert_int_equal(out.result.claims, 1);
+  assert_string_equal(out.result.claim[0].name, "table.periodic(reading)");
+  assert_true(fabs(out.result.claim[0].shape[0] - 3.3) < 0.05);
+  clear(&out);
+}
+
+/* The same claims, whatever the seed, and with the response told from far away and in another unit.
+ */
+static void no_verdict_hangs_on_seed_origin_or_unit(void **state) {
+  series data, far;
+  outcome first, other;
+  (void)state;
+  make_noise(15, &data);
+  for (size_t i = 0; i < ROWS; i++)
+    data.y[i] += 0.6 * data.pressure[i];
+  search(&data, 1, &first);
+  assert_int_equal(first.result.claims, 1);
+  for (int change = 0; change < 3; change++) {
+    far = data;
+    for (size_t i = 0; i < ROWS; i++)
+      far.y[i] = change == 0 ? data.y[i] : change == 1 ? data.y[i] + 1e8 : 1e-12 * data.y[i];
+    search(&far, change == 0 ? 77 : 1, &other);
+    assert_int_equal(other.result.claims, 1);
+    assert_string_equal(other.result.claim[0].name, first.result.claim[0].name);
+    assert_int_equal(other.result.verdict, first.result.verdict);
+    if (change == 1)
+      assert_true(fabs(other.result.parameter[0] - first.result.parameter[0] - 1e8) < 1e-6);
+    clear(&other);
+  }
+  clear(&first);
+}
+
+/* Rows that were sorted by a column: neighbours mean nothing, and no effect lives on their number.
+ */
+static void sorted_rows_have_no_order(void **state) {
+  series data;
+  outcome out;
+  (void)state;
+  make_noise(16, &data);
+  for (size_t i = 0; i < ROWS; i++) {
+    data.pressure[i] = floor((double)i / 20);
+    data.reading[i] = fmod((double)i * 7, 20);
+    data.y[i] += data.pressure[i];
+  }
+  search(&data, 1, &out);
+  assert_false(out.problem.problem.correlated);
+  for (size_t c = 0; c < out.problem.problem.coordinates; c++)
+    assert_string_not_equal(out.problem.problem.coordinate[c].name, "row");
+  assert_true(out.result.claims >= 1);
+  assert_non_null(strstr(out.result.claim[0].name, "pressure"));
+  clear(&out);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(neighbours_that_are_alike_are_said),
+      cmocka_unit_test(a_scatter_that_grows_is_said_and_is_no_error_that_fell),
+      cmocka_unit_test(wrong_rows_do_not_hide_each_other),
+      cmocka_unit_test(a_cycle_of_three_rows_is_found),
+      cmocka_unit_test(no_verdict_hangs_on_seed_origin_or_unit),
+      cmocka_unit_test(sorted_rows_have_no_order),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
