@@ -101,7 +101,7 @@ typedef struct fg_loop_problem {
   bool correlated;   /* estimate that correlation */
   bool *aside;       /* rows kept aside, whole groups; NULL: none */
   bool exchangeable; /* rows are single responses: one may be wrong, two may be exchanged */
-  bool few; /* too few groups for flips or curves to tell: listed effects only, by simulation alone;
+  bool few; /* too few groups for curves or the scatter to tell: listed effects of the mean only;
                whoever built the problem tests the claims by other means */
   double *response; /* rows, for exchanged runs: the measured response */
   double origin;    /* taken from every residual; the constant of the declared model, of value 1, is
@@ -259,7 +259,7 @@ typedef struct fg_loop_curve {
 /* Errors over a set of rows. */
 typedef struct fg_loop_error {
   double rms, robust_sd, p95, maximum;
-  double held_out_rms;        /* rows kept aside; NaN without */
+  double held_out_rms; /* rows kept aside; without, every fold of groups in turn, searched anew */
   double cross_validated_rms; /* whole groups left out in turn */
 } fg_loop_error;
 
@@ -338,8 +338,7 @@ typedef struct fg_loop_table_spec {
   const char *model;       /* a formula, or "arc_length" */
   const char *group;       /* column, or NULL */
   const char *order;       /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
-  const char *hold_out;    /* "0.2", "COLUMN=VALUE", "0"; NULL: a fifth where there are 20 groups or
-                              more, or 10 foils */
+  const char *hold_out;    /* "0.2", "COLUMN=VALUE"; "0" or NULL: every row takes part */
   const fg_design *design; /* arc_length only */
   uint64_t seed;
 } fg_loop_table_spec;
