@@ -320,6 +320,7 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_engine_bench *bench,
     FG_TRY_EXIT(judge_in_turns(ctx, &d, judgement));
   else
     judge_by_count(bench, null, judgement);
+  fg_engine_bench_tell(bench, 3, 3);
   for (size_t c = 0; c <= judgement->candidates; c++)
     judgement->p[c] = over_all(judgement->z[c], judgement->tests);
 exit:
