@@ -104,12 +104,12 @@ bool fg_loop_form_accepts_factor(const fg_loop_problem *problem, size_t a, size_
 size_t fg_loop_form_factor_columns(const fg_loop_problem *problem,
                                    const fg_loop_candidate *candidate) {
   const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
-  return (at->levels ? at->levels : at->distinct) - 1;
+  return fg_loop_form_level_count(at) - 1;
 }
 
 void fg_loop_form_level_columns(const fg_loop_problem *problem, const fg_loop_coordinate *at,
                                 double *columns) {
-  size_t count = at->levels ? at->levels : at->distinct;
+  size_t count = fg_loop_form_level_count(at);
   memset(columns, 0, (count - 1) * problem->rows * sizeof *columns);
   for (size_t i = 0; i < problem->rows; i++)
     for (size_t k = 1; k < count; k++)

@@ -9,6 +9,10 @@ bool fg_loop_form_is_sequence(const fg_loop_coordinate *at) {
   return (at->roles & (FG_LOOP_ORDER | FG_LOOP_BUMP)) != 0;
 }
 
+size_t fg_loop_form_level_count(const fg_loop_coordinate *at) {
+  return at->levels ? at->levels : at->distinct;
+}
+
 const fg_loop_coordinate *fg_loop_form_first(const fg_loop_problem *problem,
                                              const fg_loop_candidate *candidate) {
   return &problem->coordinate[candidate->a];

@@ -13,6 +13,8 @@ bool fg_loop_form_is_sequence(const fg_loop_coordinate *at);
 const fg_loop_coordinate *fg_loop_form_first(const fg_loop_problem *problem,
                                              const fg_loop_candidate *candidate);
 
+/* Words have levels; numbers as many as they have values. */
+size_t fg_loop_form_level_count(const fg_loop_coordinate *at);
 /* An indicator of every level but the first: levels - 1 columns. */
 void fg_loop_form_level_columns(const fg_loop_problem *problem, const fg_loop_coordinate *at,
                                 double *columns);

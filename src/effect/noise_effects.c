@@ -39,7 +39,7 @@ static bool accepts_spread(const fg_loop_problem *problem, size_t a, size_t b) {
   (void)b;
   if (at->roles & FG_LOOP_LEVEL) return at->distinct >= 3;
   if (by_levels(problem, at)) {
-    size_t levels = at->levels ? at->levels : at->distinct;
+    size_t levels = fg_loop_form_level_count(at);
     return levels >= 2 && levels <= FG_LOOP_COLUMNS && problem->rows >= ROWS_A_LEVEL * levels;
   }
   return fg_loop_form_is_number(at) && problem->rows >= 2 * SERIES_ROWS;
@@ -51,7 +51,7 @@ bool fg_loop_spread_by_levels(const fg_loop_problem *problem, const fg_loop_cand
 
 static size_t spread_columns(const fg_loop_problem *problem, const fg_loop_candidate *candidate) {
   const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
-  return by_levels(problem, at) ? (at->levels ? at->levels : at->distinct) - 1 : 1;
+  return by_levels(problem, at) ? fg_loop_form_level_count(at) - 1 : 1;
 }
 
 static void spread_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,

@@ -54,23 +54,11 @@ static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, f
   return found;
 }
 
-static void extend_set(const fg_engine_run *run, const fg_engine_stand *stand, fg_engine_set *set) {
-  *set = run->set;
-  size_t at = set->count++;
-  if (run->has_curve) { /* the curve stays last */
-    set->candidate[at] = set->candidate[at - 1];
-    memcpy(set->shape[at], set->shape[at - 1], sizeof set->shape[0]);
-    at--;
-  }
-  set->candidate[at] = stand->candidate;
-  memcpy(set->shape[at], stand->shape, sizeof stand->shape);
-}
-
 /* The noise as it is beside a stand. */
 static fg_status noise_beside(fg_context *ctx, const fg_engine_run *run,
                               const fg_engine_stand *stand, fg_engine_noise *noise) {
   fg_engine_set with;
-  extend_set(run, stand, &with);
+  fg_engine_set_extend(run, stand, &with);
   *noise = (fg_engine_noise){0};
   return fg_engine_fit_set(ctx, run->problem, run->train, &with, true, noise, NULL, NULL, NULL);
 }
@@ -79,7 +67,7 @@ static fg_status noise_beside(fg_context *ctx, const fg_engine_run *run,
 static fg_status sharpen(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise,
                          fg_engine_stand *stand) {
   fg_engine_set with;
-  extend_set(run, stand, &with);
+  fg_engine_set_extend(run, stand, &with);
   FG_TRY(fg_engine_refine(ctx, run->problem, run->train, noise, &with));
   memcpy(stand->shape, with.shape[with.count - 1 - run->has_curve], sizeof stand->shape);
   return FG_OK;
@@ -169,7 +157,7 @@ static fg_status take_curve(fg_context *ctx, fg_engine_run *run, fg_engine_step 
   FG_TRY(hinges_on_a_row(ctx, run, step, noise, curve, &hinges));
   if (hinges) return FG_OK;
   FG_TRY(sharpen(ctx, run, noise, &step->stand[curve]));
-  extend_set(run, &step->stand[curve], &with);
+  fg_engine_set_extend(run, &step->stand[curve], &with);
   FG_TRY(gate(ctx, run, &with, noise, &unused, accepted));
   if (!*accepted) return FG_OK;
   run->set = with;
@@ -220,7 +208,7 @@ static void describe(const fg_engine_run *run, const fg_engine_step *step, size_
 
 static void take(fg_engine_run *run, const fg_engine_stand *stand, fg_loop_claim *claim) {
   fg_engine_set with;
-  extend_set(run, stand, &with);
+  fg_engine_set_extend(run, stand, &with);
   claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
   run->set = with;
   run->result->claim[run->result->claims++] = *claim;
@@ -239,7 +227,7 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
     bool passes, hinges;
     FG_TRY(hinges_on_a_row(ctx, run, step, noise, winner, &hinges));
     if (hinges) return FG_OK;
-    extend_set(run, &refined, &with);
+    fg_engine_set_extend(run, &refined, &with);
     FG_TRY(gate(ctx, run, &with, noise, &claim, &passes));
     if (!passes) return FG_OK;
   }
@@ -269,7 +257,7 @@ static fg_status tie_correlation(fg_context *ctx, const fg_engine_run *run,
     below = step->stand[best].z;
     fg_engine_set with;
     double gain;
-    extend_set(run, &step->stand[best], &with);
+    fg_engine_set_extend(run, &step->stand[best], &with);
     FG_TRY(fg_engine_serial_gain(ctx, run, &with, &gain));
     if (gain < FG_ENGINE_SERIAL_NEEDED)
       fg_engine_add_alias(run->problem, &run->candidate[best], NAN, NAN, claim);
@@ -286,7 +274,7 @@ static fg_status tie_spread(fg_context *ctx, const fg_engine_run *run, const fg_
     if (c == winner || fg_engine_is_serial(&run->candidate[c]) || in_set(run, &run->candidate[c]) ||
         !(fg_engine_stand_p(run, step, c) < FG_ENGINE_ALIAS_P))
       continue;
-    extend_set(run, &step->stand[c], &with);
+    fg_engine_set_extend(run, &step->stand[c], &with);
     FG_TRY(fg_engine_spread_beside(ctx, run, &with, &run->candidate[winner], &z));
     double columns = (double)fg_engine_candidate_columns(run->problem, &run->candidate[winner]);
     if (gsl_cdf_chisq_Q(z * z, columns) > FG_LOOP_ACCEPT_P)

@@ -99,7 +99,12 @@ typedef struct fg_engine_fit {
 } fg_engine_fit;
 fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_training *training,
                                   fg_engine_noise noise, fg_engine_fit *fit);
+/* What a fit leaves of a training's y, not whitened: n numbers. */
+void fg_engine_fit_residual(const fg_engine_training *training, const fg_engine_fit *fit,
+                            double *residual);
 void fg_engine_fit_free(fg_engine_fit *fit);
+/* What was measured at row i of a training; exchanged responses are back in their places. */
+double fg_engine_response(const fg_engine_training *training, size_t i);
 
 typedef struct fg_engine_version {
   size_t candidate, start, first, rank; /* columns of the bench */

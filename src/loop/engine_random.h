@@ -22,12 +22,4 @@ static inline double fg_engine_random_normal(uint64_t *state) {
   return radius * cos(6.28318530717958647692 * fg_engine_random_uniform(state));
 }
 
-/* Student's t with 4 degrees of freedom by its inverse distribution function (Shaw 2006), scaled to
- * variance 1 (its own is 2). */
-static inline double fg_engine_random_heavy(uint64_t *state) {
-  double u = fg_engine_random_uniform(state), a = 4 * u * (1 - u);
-  double q = cos(acos(sqrt(a)) / 3) / sqrt(a);
-  return (u < 0.5 ? -1 : 1) * 2 * sqrt(fmax(q - 1, 0)) / sqrt(2.0);
-}
-
 #endif

@@ -44,14 +44,9 @@ static fg_status fill_mean(fg_context *ctx, fg_engine_exchange *exchange) {
   const fg_engine_training *training = exchange->training;
   fg_engine_fit fit;
   FG_TRY(fg_engine_least_squares(ctx, training, exchange->noise, &fit));
-  for (size_t i = 0; i < training->n; i++) {
-    double residual = training->y[i];
-    for (size_t k = 0; k < training->columns; k++)
-      residual -= fit.beta[k] * training->x[k * training->n + i];
-    size_t row = training->row[i];
-    exchange->mean[i] = training->y[i] - training->problem->residual[row] +
-                        training->problem->response[row] - residual;
-  }
+  fg_engine_fit_residual(training, &fit, exchange->mean);
+  for (size_t i = 0; i < training->n; i++)
+    exchange->mean[i] = fg_engine_response(training, i) - exchange->mean[i];
   fg_engine_fit_free(&fit);
   return FG_OK;
 }

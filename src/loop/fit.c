@@ -134,21 +134,13 @@ fg_status fg_engine_refine(fg_context *ctx, const fg_loop_problem *problem, cons
   return FG_OK;
 }
 
-static void subtract_fit(const fg_engine_training *training, const fg_engine_fit *fit,
-                         double *residual) {
-  memcpy(residual, training->y, training->n * sizeof *residual);
-  for (size_t k = 0; k < training->columns; k++)
-    for (size_t i = 0; i < training->n; i++)
-      residual[i] -= fit->beta[k] * training->x[k * training->n + i];
-}
-
 static fg_status fit_fold(fg_context *ctx, const fg_engine_training *whole, const bool *keep,
                           const fg_engine_set *set, fg_engine_noise noise, double *residual) {
   fg_engine_training training;
   fg_engine_fit fit = {0};
   FG_TRY(fg_engine_training_build(ctx, whole->problem, keep, set, &training));
   fg_status status = fg_engine_least_squares(ctx, &training, noise, &fit);
-  if (status == FG_OK) subtract_fit(whole, &fit, residual);
+  if (status == FG_OK) fg_engine_fit_residual(whole, &fit, residual);
   fg_engine_fit_free(&fit);
   fg_engine_training_free(&training);
   return status;
@@ -231,7 +223,7 @@ fg_status fg_engine_fit_set(fg_context *ctx, const fg_loop_problem *problem, con
   FG_TRY_EXIT(fg_engine_training_build(ctx, problem, NULL, set, &all));
   if (choose) FG_TRY_EXIT(fg_engine_choose_noise(ctx, &training, noise));
   FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, *noise, &fit));
-  if (residual) subtract_fit(&all, &fit, residual);
+  if (residual) fg_engine_fit_residual(&all, &fit, residual);
   if (effect) add_effects(&all, &fit, effect);
   double freedom = training.n > fit.rank ? (double)(training.n - fit.rank) : NAN;
   if (sd) *sd = sqrt(fit.rss / freedom * (1 + noise->lambda));

@@ -280,8 +280,7 @@ static fg_status score_data(fg_context *ctx, const fg_engine_bench *bench,
   fg_engine_noise_scores_of(noise_scores, training->y, work, judgement->z + judgement->means);
   if (exchange) {
     for (size_t i = 0; i < n; i++)
-      work[3 * n + i] = training->y[i] - training->problem->residual[training->row[i]] +
-                        training->problem->response[training->row[i]];
+      work[3 * n + i] = fg_engine_response(training, i);
     double ratio =
         fg_engine_exchange_best(exchange, training->y, work + 3 * n, work, judgement->exchanged);
     judgement->has_exchange = isfinite(ratio);

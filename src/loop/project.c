@@ -164,6 +164,14 @@ exit:
   return status;
 }
 
+void fg_engine_fit_residual(const fg_engine_training *training, const fg_engine_fit *fit,
+                            double *residual) {
+  memcpy(residual, training->y, training->n * sizeof *residual);
+  for (size_t k = 0; k < training->columns; k++)
+    for (size_t i = 0; i < training->n; i++)
+      residual[i] -= fit->beta[k] * training->x[k * training->n + i];
+}
+
 void fg_engine_fit_free(fg_engine_fit *fit) {
   free(fit->beta);
   free(fit->inverse);

@@ -77,19 +77,6 @@ static void describe_rest(const fg_engine_run *run, const fg_engine_step *step, 
   one->smallest_detectable /= sqrt(2.0);
 }
 
-static double null_sd(const fg_engine_step *step) {
-  const fg_engine_judgement *judgement = &step->judgement;
-  double sum = 0, freedom = (double)step->bench.freedom;
-  fg_context ignored = {0};
-  fg_engine_fit fit;
-  if (fg_engine_least_squares(&ignored, &step->training, step->bench.noise[judgement->noise],
-                              &fit) != FG_OK)
-    return NAN;
-  sum = fit.rss;
-  fg_engine_fit_free(&fit);
-  return sqrt(sum / freedom);
-}
-
 static void list_one(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
                      double sd_white, const double *amplitude) {
   const fg_loop_candidate *candidate = &step->stand[stand].candidate;
@@ -112,7 +99,8 @@ fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   FG_TRY(fg_engine_step_open(ctx, run, &run->set, true, &step));
   fg_status status =
       fg_memory_allocate(ctx, step.stands, sizeof *result->rejected, (void **)&result->rejected);
-  double sd_white = null_sd(&step), *amplitude = NULL;
+  double sd_white = sqrt(step.bench.rss[step.judgement.noise] / (double)step.bench.freedom);
+  double *amplitude = NULL;
   if (status == FG_OK && step.training.n <= FG_ENGINE_SMALL_ROWS) {
     status = fg_memory_allocate(ctx, run->means, sizeof *amplitude, (void **)&amplitude);
     if (status == FG_OK)

@@ -67,11 +67,7 @@ static fg_status fill_squares(fg_context *ctx, scale_bench *bench) {
   fg_engine_fit fit;
   double sum = 0;
   FG_TRY(fg_engine_least_squares(ctx, t, (fg_engine_noise){0}, &fit));
-  for (size_t i = 0; i < t->n; i++) {
-    bench->work[i] = t->y[i];
-    for (size_t k = 0; k < t->columns; k++)
-      bench->work[i] -= fit.beta[k] * t->x[k * t->n + i];
-  }
+  fg_engine_fit_residual(t, &fit, bench->work);
   fg_engine_fit_free(&fit);
   for (size_t b = 0; b < t->levels; b++) {
     double mean = 0, count = (double)(t->level_start[b + 1] - t->level_start[b]);

@@ -16,13 +16,6 @@ size_t fg_engine_serial_candidate(const fg_engine_run *run) {
   return c;
 }
 
-static void add(fg_engine_set *set, const fg_loop_candidate *candidate, const double *shape) {
-  set->candidate[set->count] = *candidate;
-  memset(set->shape[set->count], 0, sizeof set->shape[0]);
-  if (shape) memcpy(set->shape[set->count], shape, sizeof set->shape[0]);
-  set->count++;
-}
-
 /* -2 log likelihood, restricted or not, at the noise that is best by the restricted one. */
 static fg_status likelihood(fg_context *ctx, const fg_engine_run *run, const fg_engine_set *set,
                             bool correlated, bool restricted, double *value) {
@@ -80,10 +73,11 @@ fg_status fg_engine_weigh_serial(fg_context *ctx, fg_engine_run *run, const fg_e
   if (serial == run->candidates || run->set.count >= FG_LOOP_CLAIMS) return FG_OK;
   FG_TRY(fg_engine_serial_gain(ctx, run, &run->set, &alone));
   if (alone < 1) return FG_OK; /* nothing in the order to be mistaken */
-  fg_engine_set with = run->set, correlated = run->set;
+  const fg_engine_stand correlation = {.candidate = run->candidate[serial]};
+  fg_engine_set with, correlated;
   fg_engine_step step;
-  add(&with, &effect->candidate, effect->shape);
-  add(&correlated, &run->candidate[serial], NULL);
+  fg_engine_set_extend(run, effect, &with);
+  fg_engine_set_extend(run, &correlation, &correlated);
   FG_TRY(fg_engine_serial_gain(ctx, run, &with, &beside));
   FG_TRY(fg_engine_step_open(ctx, run, &correlated, false, &step));
   double p = fg_engine_stand_p(run, &step, candidate);
@@ -96,8 +90,8 @@ fg_status fg_engine_weigh_serial(fg_context *ctx, fg_engine_run *run, const fg_e
 fg_status fg_engine_likelier(fg_context *ctx, const fg_engine_run *run,
                              const fg_engine_stand *effect, bool *likelier) {
   double one, other;
-  fg_engine_set with = run->set;
-  add(&with, &effect->candidate, effect->shape);
+  fg_engine_set with;
+  fg_engine_set_extend(run, effect, &with);
   FG_TRY(likelihood(ctx, run, &with, false, false, &one));
   FG_TRY(likelihood(ctx, run, &run->set, true, false, &other));
   double columns = (double)fg_engine_candidate_columns(run->problem, &effect->candidate);

@@ -99,6 +99,19 @@ bool fg_engine_nearly(const fg_engine_run *run, const fg_engine_step *step, size
   return c < run->means && 1 - score[c].ratio > NEARLY * (1 - score[other].ratio);
 }
 
+void fg_engine_set_extend(const fg_engine_run *run, const fg_engine_stand *stand,
+                          fg_engine_set *set) {
+  *set = run->set;
+  size_t at = set->count++;
+  if (run->has_curve) { /* the curve stays last */
+    set->candidate[at] = set->candidate[at - 1];
+    memcpy(set->shape[at], set->shape[at - 1], sizeof set->shape[0]);
+    at--;
+  }
+  set->candidate[at] = stand->candidate;
+  memcpy(set->shape[at], stand->shape, sizeof stand->shape);
+}
+
 void fg_engine_set_remove(fg_engine_set *set, size_t member) {
   for (size_t k = member + 1; k < set->count; k++) {
     set->candidate[k - 1] = set->candidate[k];

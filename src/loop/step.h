@@ -28,6 +28,9 @@ bool fg_engine_nearly(const fg_engine_run *run, const fg_engine_step *step, size
 /* P-value of a stand over everything that the step looked for. */
 double fg_engine_stand_p(const fg_engine_run *run, const fg_engine_step *step, size_t stand);
 
+/* The run's set with one more; its curve, if any, stays last. */
+void fg_engine_set_extend(const fg_engine_run *run, const fg_engine_stand *stand,
+                          fg_engine_set *set);
 void fg_engine_set_remove(fg_engine_set *set, size_t member);
 /* Takes a claim out of the run's set and its result. */
 void fg_engine_drop_claim(fg_engine_run *run, size_t claim);

@@ -108,6 +108,12 @@ void fg_engine_training_free(fg_engine_training *training) {
   *training = (fg_engine_training){0};
 }
 
+double fg_engine_response(const fg_engine_training *training, size_t i) {
+  const fg_loop_problem *problem = training->problem;
+  size_t row = training->row[i];
+  return training->y[i] - problem->residual[row] + problem->response[row];
+}
+
 /* A form that overflows at some row is no candidate: columns of zeros explain nothing. */
 static void refuse_overflow(double *columns, size_t count) {
   for (size_t i = 0; i < count; i++)
