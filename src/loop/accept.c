@@ -4,9 +4,9 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "loop/noise_scores.h"
 #include "loop/serial.h"
 #include "loop/step.h"
+#include "loop/take.h"
 
 /* What comes after a first claim must be so many times as sure: its null leans on the first. */
 enum { LATER_CLAIMS = 2 };
@@ -32,12 +32,6 @@ static family family_of(const fg_loop_candidate *candidate) {
   return fg_engine_is_curve(candidate) ? CURVES : LISTED;
 }
 
-static bool in_set(const fg_engine_run *run, const fg_loop_candidate *candidate) {
-  for (size_t m = 0; m < run->set.count; m++)
-    if (fg_engine_same_candidate(&run->set.candidate[m], candidate)) return true;
-  return false;
-}
-
 /* The best of a family that passes; candidates that are in the set already are none. */
 static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, family which,
                          size_t *best) {
@@ -45,7 +39,7 @@ static bool best_passing(const fg_engine_run *run, const fg_engine_step *step, f
   for (size_t c = 0; c < run->candidates; c++) {
     double z = step->stand[c].z;
     if (family_of(&run->candidate[c]) != which || !isfinite(z)) continue;
-    if (which == NOISE && in_set(run, &run->candidate[c])) continue;
+    if (which == NOISE && fg_engine_set_holds(&run->set, &run->candidate[c])) continue;
     if (!(fg_engine_stand_p(run, step, c) < bar(run))) continue;
     if (found && z <= step->stand[*best].z) continue;
     *best = c;
@@ -191,36 +185,13 @@ static fg_status take_best_curve(fg_context *ctx, fg_engine_run *run, fg_engine_
   return FG_OK;
 }
 
-static void describe(const fg_engine_run *run, const fg_engine_step *step, size_t stand,
-                     fg_loop_claim *claim) {
-  const fg_engine_judgement *judgement = &step->judgement;
-  *claim = (fg_loop_claim){.candidate = step->stand[stand].candidate, .retained_share = 1};
-  fg_engine_candidate_name(run->problem, &claim->candidate, claim->name);
-  claim->cv_gain = claim->cv_gain_se = NAN;
-  claim->p_value = fg_engine_stand_p(run, step, stand);
-  if (stand == fg_engine_exchanged_rows(run))
-    claim->p_value = fmin(claim->p_value, step->lone.p_value);
-  if (stand < run->means)
-    claim->retained_share = step->bench.version[judgement->score[stand].version].share;
-  else if (stand >= run->candidates)
-    claim->retained_share = fmin(step->lone.length, 1);
-}
-
-static void take(fg_engine_run *run, const fg_engine_stand *stand, fg_loop_claim *claim) {
-  fg_engine_set with;
-  fg_engine_set_extend(run, stand, &with);
-  claim->verdict = claim->aliases ? FG_LOOP_TIED : FG_LOOP_FOUND;
-  run->set = with;
-  run->result->claim[run->result->claims++] = *claim;
-}
-
 static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
                             size_t winner, bool or_correlation, bool *accepted) {
   fg_loop_claim claim;
   fg_engine_set with;
   fg_engine_noise noise;
   fg_engine_stand refined = step->stand[winner];
-  describe(run, step, winner, &claim);
+  fg_engine_describe_claim(run, step, winner, &claim);
   FG_TRY(noise_beside(ctx, run, &refined, &noise));
   FG_TRY(sharpen(ctx, run, noise, &refined));
   if (!fg_engine_is_lone(&claim.candidate)) {
@@ -236,65 +207,7 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
                         &claim);
   FG_TRY(fg_engine_alias_class(ctx, &step->training, noise, step->stand, step->stands, &refined,
                                &claim));
-  take(run, &refined, &claim);
-  *accepted = true;
-  return FG_OK;
-}
-
-/* Effects of the mean beside which the correlation is not needed: as many as a class has room for,
- * the best first. */
-static fg_status tie_correlation(fg_context *ctx, const fg_engine_run *run,
-                                 const fg_engine_step *step, fg_loop_claim *claim) {
-  enum { TRIED = 2 * FG_LOOP_ALIASES };
-  double below = INFINITY;
-  for (size_t tried = 0; tried < TRIED; tried++) {
-    size_t best = run->means;
-    for (size_t c = 0; c < run->means; c++)
-      if (step->stand[c].z < below && !fg_engine_is_curve(&run->candidate[c]) &&
-          (best == run->means || step->stand[c].z > step->stand[best].z))
-        best = c;
-    if (best == run->means || !(fg_engine_stand_p(run, step, best) < FG_ENGINE_ALIAS_P)) break;
-    below = step->stand[best].z;
-    fg_engine_set with;
-    double gain;
-    fg_engine_set_extend(run, &step->stand[best], &with);
-    FG_TRY(fg_engine_serial_gain(ctx, run, &with, &gain));
-    if (gain < FG_ENGINE_SERIAL_NEEDED)
-      fg_engine_add_alias(run->problem, &run->candidate[best], NAN, NAN, claim);
-  }
-  return FG_OK;
-}
-
-/* Other ways in which the scatter may change, beside which the winner's is not needed. */
-static fg_status tie_spread(fg_context *ctx, const fg_engine_run *run, const fg_engine_step *step,
-                            size_t winner, fg_loop_claim *claim) {
-  for (size_t c = run->means; c < run->candidates; c++) {
-    fg_engine_set with;
-    double z;
-    if (c == winner || fg_engine_is_serial(&run->candidate[c]) || in_set(run, &run->candidate[c]) ||
-        !(fg_engine_stand_p(run, step, c) < FG_ENGINE_ALIAS_P))
-      continue;
-    fg_engine_set_extend(run, &step->stand[c], &with);
-    FG_TRY(fg_engine_spread_beside(ctx, run, &with, &run->candidate[winner], &z));
-    double columns = (double)fg_engine_candidate_columns(run->problem, &run->candidate[winner]);
-    if (gsl_cdf_chisq_Q(z * z, columns) > FG_LOOP_ACCEPT_P)
-      fg_engine_add_alias(run->problem, &run->candidate[c], NAN, NAN, claim);
-  }
-  return FG_OK;
-}
-
-/* Correlation or unequal spread: a finding about the noise, which everything after it has. It may
- * show by an effect that it stands for: `p_value` is that one's, or 1. */
-static fg_status take_noise(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step,
-                            size_t winner, double p_value, bool *accepted) {
-  fg_loop_claim claim;
-  describe(run, step, winner, &claim);
-  claim.p_value = fmin(claim.p_value, p_value);
-  if (fg_engine_is_serial(&claim.candidate))
-    FG_TRY(tie_correlation(ctx, run, step, &claim));
-  else
-    FG_TRY(tie_spread(ctx, run, step, winner, &claim));
-  take(run, &step->stand[winner], &claim);
+  fg_engine_take(run, &refined, &claim);
   *accepted = true;
   return FG_OK;
 }
@@ -410,7 +323,8 @@ static fg_status decide_listed(fg_context *ctx, fg_engine_run *run, fg_engine_st
     if (shows && (!effect || choice.wrong)) word = FG_ENGINE_CORRELATION;
   }
   if (word == FG_ENGINE_CORRELATION)
-    return take_noise(ctx, run, step, serial, fg_engine_stand_p(run, step, stand), accepted);
+    return fg_engine_take_noise(ctx, run, step, serial, fg_engine_stand_p(run, step, stand),
+                                accepted);
   if (choice.wrong) FG_TRY(take_best_curve(ctx, run, step, choice.curve, accepted));
   if (choice.wrong && *accepted) return FG_OK;
   FG_TRY(fg_engine_simplify(ctx, &step->training, choice.noise, step->stand, run->means,
@@ -425,8 +339,8 @@ static fg_status decide_curve(fg_context *ctx, fg_engine_run *run, fg_engine_ste
   fg_engine_serial_word word;
   FG_TRY(fg_engine_weigh_serial(ctx, run, &step->stand[curve], curve, &word));
   if (word != FG_ENGINE_EFFECT)
-    return take_noise(ctx, run, step, fg_engine_serial_candidate(run),
-                      fg_engine_stand_p(run, step, curve), accepted);
+    return fg_engine_take_noise(ctx, run, step, fg_engine_serial_candidate(run),
+                                fg_engine_stand_p(run, step, curve), accepted);
   return take_best_curve(ctx, run, step, curve, accepted);
 }
 
@@ -439,11 +353,11 @@ static fg_status decide(fg_context *ctx, fg_engine_run *run, fg_engine_step *ste
       !(scatter && step->judgement.p[noise] < fg_engine_stand_p(run, step, lone)))
     return take_claim(ctx, run, step, lone, false, accepted);
   if (spread && (!listed || step->stand[noise].z > step->stand[winner].z))
-    return take_noise(ctx, run, step, noise, 1, accepted);
+    return fg_engine_take_noise(ctx, run, step, noise, 1, accepted);
   if (listed) FG_TRY(decide_listed(ctx, run, step, winner, accepted));
   if (!*accepted && best_passing(run, step, CURVES, &curve))
     FG_TRY(decide_curve(ctx, run, step, curve, accepted));
-  if (!*accepted && scatter) FG_TRY(take_noise(ctx, run, step, noise, 1, accepted));
+  if (!*accepted && scatter) FG_TRY(fg_engine_take_noise(ctx, run, step, noise, 1, accepted));
   return FG_OK;
 }
 

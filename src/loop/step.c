@@ -93,10 +93,17 @@ bool fg_engine_nearly(const fg_engine_run *run, const fg_engine_step *step, size
                       size_t other) {
   const fg_engine_score *score = step->judgement.score;
   const fg_engine_version *version = step->bench.version;
+  if (c >= run->means) return false;
   if (fg_engine_version_freedom(&step->bench, &version[score[c].version]) >
       fg_engine_version_freedom(&step->bench, &version[score[other].version]))
     return false;
-  return c < run->means && 1 - score[c].ratio > NEARLY * (1 - score[other].ratio);
+  return 1 - score[c].ratio > NEARLY * (1 - score[other].ratio);
+}
+
+bool fg_engine_set_holds(const fg_engine_set *set, const fg_loop_candidate *candidate) {
+  for (size_t m = 0; m < set->count; m++)
+    if (fg_engine_same_candidate(&set->candidate[m], candidate)) return true;
+  return false;
 }
 
 void fg_engine_set_extend(const fg_engine_run *run, const fg_engine_stand *stand,

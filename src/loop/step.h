@@ -28,6 +28,7 @@ bool fg_engine_nearly(const fg_engine_run *run, const fg_engine_step *step, size
 /* P-value of a stand over everything that the step looked for. */
 double fg_engine_stand_p(const fg_engine_run *run, const fg_engine_step *step, size_t stand);
 
+bool fg_engine_set_holds(const fg_engine_set *set, const fg_loop_candidate *candidate);
 /* The run's set with one more; its curve, if any, stays last. */
 void fg_engine_set_extend(const fg_engine_run *run, const fg_engine_stand *stand,
                           fg_engine_set *set);
