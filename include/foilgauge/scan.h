@@ -46,6 +46,7 @@ typedef struct fg_scan_options {
   bool allow_lossy;    /* take a TIFF whose compression has moved edges (JPEG) */
   bool only_file;      /* refuse pipes and devices, which may never end */
   bool unsummed;       /* the SHA-256 will not be asked for */
+  unsigned threads;    /* 1: nothing runs beside the caller; 0: what is of use does */
   char *failed_sha256; /* 65 bytes or NULL: that of a regular file which could be read, but is no
                           scan; else "" */
 } fg_scan_options;
@@ -83,6 +84,9 @@ const fg_scan_info *fg_scan_get_info(const fg_scan *scan);
  * FG_ERR_USAGE. After the last row everything up to the end of the file is read and checked. */
 fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                             int64_t stride_bytes);
+
+/* As it was opened. */
+unsigned fg_scan_get_threads(const fg_scan *scan);
 
 /* Whether it is read from a regular file (a pipe that was stored counts; a pipe or device does
  * not). */

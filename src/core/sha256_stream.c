@@ -92,5 +92,7 @@ void fg_sha256_stream_feed(fg_sha256_stream *s, const void *bytes, size_t count)
 void fg_sha256_stream_finish(fg_sha256_stream *s, char hex[65]) {
   if (s->ring) end_thread(s);
   fg_sha256_finish(&s->sum, hex);
+  const bool alone = s->alone;
   fg_sha256_stream_begin(s);
+  s->alone = alone;
 }

@@ -1,5 +1,5 @@
 /* The SHA-256 of bytes as they come by. A long stream is summed on a thread of its own, beside
- * whoever feeds it; a short one, or where no thread is to be had, as it is fed. */
+ * whoever feeds it; a short one, or where no thread is to be had or wanted, as it is fed. */
 #ifndef FG_CORE_SHA256_STREAM_H
 #define FG_CORE_SHA256_STREAM_H
 
@@ -16,7 +16,7 @@ typedef struct fg_sha256_stream {
   struct sha256_ctx sum; /* of the thread, while there is one */
   uint8_t *ring;         /* NULL: no thread */
   uint64_t filled, taken;
-  bool ended, alone; /* alone: no thread is to be had */
+  bool ended, alone; /* alone: no thread is to be had, or (set after begin) wanted */
   fg_thread thread;
   pthread_mutex_t lock;
   pthread_cond_t changed;

@@ -98,6 +98,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
                                         .channel = options->channel,
                                         .allow_lossy = options->allow_lossy,
                                         .only_file = options->only_file,
+                                        .threads = options->threads,
                                         .failed_sha256 = options->sum_failed ? m->sha256 : NULL};
   FG_TRY(fg_scan_open(ctx, path, &scan_options, scan));
   const fg_scan_info *info = fg_scan_get_info(*scan);

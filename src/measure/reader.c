@@ -85,10 +85,11 @@ static fg_status consume(fg_context *ctx, ring *r, bool threaded) {
   return status == FG_OK ? r->visit(ctx, r->tiles, r->data) : status;
 }
 
-/* Runs both sides. Where no second thread is to be had, it is one after the other. */
+/* Runs both sides. Where no second thread is to be had or wanted, it is one after the other. */
 static fg_status run_ring(fg_context *ctx, ring *r) {
   fg_thread decoder;
-  bool threaded = fg_thread_start(&decoder, decode, r) == FG_OK;
+  bool threaded =
+      fg_scan_get_threads(r->scan) != 1 && fg_thread_start(&decoder, decode, r) == FG_OK;
   fg_status status = consume(ctx, r, threaded);
   if (threaded) fg_thread_join(&decoder);
   return status;
@@ -113,7 +114,8 @@ static void *run_digest(void *argument) {
 static fg_status run_with_digest(fg_context *ctx, ring *r, char sha256[65]) {
   digest d = {.scan = r->scan, .hex = sha256};
   fg_thread digester;
-  bool beside = fg_scan_sums_apart(r->scan) && fg_thread_start(&digester, run_digest, &d) == FG_OK;
+  bool beside = fg_scan_sums_apart(r->scan) && fg_scan_get_threads(r->scan) != 1 &&
+                fg_thread_start(&digester, run_digest, &d) == FG_OK;
   fg_status status = run_ring(ctx, r);
   if (beside)
     fg_thread_join(&digester);

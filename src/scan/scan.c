@@ -23,6 +23,7 @@ struct fg_scan {
   fg_gray gray;
   void *samples; /* room for a row of samples; NULL where they need no conversion */
   fg_scan_info info;
+  unsigned threads;
   int64_t rows_read;
   bool broken; /* an error ended it */
   bool ended;  /* all was read and checked, to the end of the file */
@@ -138,6 +139,8 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_scan_opti
   if (options->dpi != 0) FG_TRY(fg_scan_check_dpi(ctx, options->dpi));
   FG_TRY(fg_source_open(ctx, path, options->only_file, &scan->source));
   scan->source.unsummed = options->unsummed;
+  scan->source.sum.alone = options->threads == 1;
+  scan->threads = options->threads;
   FG_TRY(find_format(ctx, options, scan));
   FG_TRY(open_format(ctx, options, scan));
   fill_info(scan);
@@ -227,6 +230,10 @@ fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *
   fg_status status = read_rows(ctx, scan, rows, out, stride_bytes);
   scan->broken = status != FG_OK;
   return status;
+}
+
+unsigned fg_scan_get_threads(const fg_scan *scan) {
+  return scan->threads;
 }
 
 bool fg_scan_is_file(const fg_scan *scan) {
