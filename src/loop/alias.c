@@ -23,12 +23,13 @@
 static const double pair_loss = 0.1; /* a sum of two must explain all but this */
 enum { PAIR_POOL = 10 };
 
-/* Whitened residual and columns of a training at one noise; `basis` has room for more columns. */
+/* Whitened residual and columns of a training at one noise. */
 typedef struct alias_bench {
   const fg_engine_training *training;
   fg_engine_noise noise;
-  size_t n, rank;
-  double *basis, *y, *columns, *unit;
+  size_t n;
+  fg_engine_span null; /* with room for more columns */
+  double *y, *columns, *unit;
   double rss, freedom;
   bool between; /* the columns added last */
 } alias_bench;
@@ -37,22 +38,19 @@ static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
                             fg_engine_noise noise, alias_bench *bench) {
   size_t n = training->n;
   *bench = (alias_bench){.training = training, .noise = noise, .n = n};
-  FG_TRY(fg_memory_allocate(ctx, n,
-                            (training->columns + 3 * FG_LOOP_COLUMNS) * sizeof *bench->basis,
-                            (void **)&bench->basis));
+  FG_TRY(fg_engine_span_open(ctx, training, noise, 3 * FG_LOOP_COLUMNS, &bench->null));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
   FG_TRY(fg_memory_allocate(ctx, n, FG_LOOP_COLUMNS * sizeof *bench->y, (void **)&bench->columns));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->unit));
-  bench->rank = fg_engine_null_basis(training, noise, bench->basis);
   memcpy(bench->y, training->y, n * sizeof *bench->y);
   fg_engine_whiten(training, noise, bench->y);
-  bench->rss = fg_engine_project_out(n, bench->basis, bench->rank, bench->y);
-  bench->freedom = (double)n - (double)bench->rank;
+  bench->rss = fg_engine_project_out(n, bench->null.basis, bench->null.rank, bench->y);
+  bench->freedom = (double)n - (double)bench->null.rank;
   return FG_OK;
 }
 
 static void close_bench(alias_bench *bench) {
-  free(bench->basis);
+  fg_engine_span_close(&bench->null);
   free(bench->y);
   free(bench->columns);
   free(bench->unit);
@@ -78,8 +76,8 @@ static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_sta
   bench->between = between_groups(bench->training, bench->columns, count);
   for (size_t k = 0; k < count; k++)
     fg_engine_whiten(bench->training, bench->noise, bench->columns + k * bench->n);
-  *added = fg_engine_orthonormal(bench->n, bench->basis, rank, bench->columns, count,
-                                 bench->basis + rank * bench->n, NULL);
+  *added = fg_engine_orthonormal(bench->n, bench->null.basis, rank, bench->columns, count,
+                                 bench->null.basis + rank * bench->n, NULL);
   return FG_OK;
 }
 
@@ -88,7 +86,7 @@ static double explained(const alias_bench *bench, size_t from, size_t count) {
   for (size_t k = from; k < from + count; k++) {
     double along = 0;
     for (size_t i = 0; i < bench->n; i++)
-      along += bench->basis[k * bench->n + i] * bench->y[i];
+      along += bench->null.basis[k * bench->n + i] * bench->y[i];
     gain += along * along;
   }
   return gain;
@@ -99,9 +97,9 @@ static void fitted(const alias_bench *bench, size_t from, size_t count, double *
   for (size_t k = from; k < from + count; k++) {
     double along = 0;
     for (size_t i = 0; i < bench->n; i++)
-      along += bench->basis[k * bench->n + i] * bench->y[i];
+      along += bench->null.basis[k * bench->n + i] * bench->y[i];
     for (size_t i = 0; i < bench->n; i++)
-      fit[i] += along * bench->basis[k * bench->n + i];
+      fit[i] += along * bench->null.basis[k * bench->n + i];
   }
 }
 
@@ -127,17 +125,17 @@ static fg_status compare(fg_context *ctx, alias_bench *bench, const fg_engine_st
                          const double *winner_fit, alias_test *test) {
   size_t more = 0;
   double shapes = (double)rival->candidate.effect->shapes;
-  FG_TRY(extend(ctx, bench, rival, bench->rank, &test->rank));
+  FG_TRY(extend(ctx, bench, rival, bench->null.rank, &test->rank));
   if (second) {
-    FG_TRY(extend(ctx, bench, second, bench->rank + test->rank, &more));
+    FG_TRY(extend(ctx, bench, second, bench->null.rank + test->rank, &more));
     test->rank += more;
     shapes += (double)second->candidate.effect->shapes;
   }
-  test->gain = explained(bench, bench->rank, test->rank);
-  fitted(bench, bench->rank, test->rank, bench->unit);
+  test->gain = explained(bench, bench->null.rank, test->rank);
+  fitted(bench, bench->null.rank, test->rank, bench->unit);
   test->correlation = winner_fit ? cosine(bench->n, winner_fit, bench->unit) : 0;
-  FG_TRY(extend(ctx, bench, winner, bench->rank + test->rank, &test->more));
-  double surplus = explained(bench, bench->rank + test->rank, test->more);
+  FG_TRY(extend(ctx, bench, winner, bench->null.rank + test->rank, &test->more));
+  double surplus = explained(bench, bench->null.rank + test->rank, test->more);
   double k = (double)test->more + (double)winner->candidate.effect->shapes;
   double left = bench->rss - test->gain - surplus;
   double freedom = bench->between ? (double)bench->training->groups - 1 : bench->freedom;
@@ -171,15 +169,15 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training
   fg_status status = FG_OK;
   *simplest = winner;
   FG_TRY_EXIT(open_bench(ctx, training, noise, &bench));
-  FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
+  FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.null.rank, &rank));
   size_t whole = rank + stand[winner].candidate.effect->shapes;
   for (size_t c = 0; c < count; c++) {
     alias_test test;
     if (c == winner || !isfinite(stand[c].z) || fg_engine_is_curve(&stand[c].candidate) ||
         fg_engine_is_noise(&stand[c].candidate))
       continue;
-    FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.rank, &rank));
-    FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.rank + rank, &inside));
+    FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.null.rank, &rank));
+    FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.null.rank + rank, &inside));
     if (inside > 0) continue;
     FG_TRY_EXIT(compare(ctx, &bench, &stand[winner], &stand[c], NULL, NULL, &test));
     if (test.rank + stand[c].candidate.effect->shapes >= whole || test.p_value < SIMPLER_P)
@@ -265,9 +263,9 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
   FG_TRY_EXIT(open_bench(ctx, training, noise, &bench));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count + 1, sizeof *pool, (void **)&pool));
   FG_TRY_EXIT(fg_memory_allocate(ctx, bench.n, sizeof *winner_fit, (void **)&winner_fit));
-  FG_TRY_EXIT(extend(ctx, &bench, winner, bench.rank, &rank));
-  double gain = explained(&bench, bench.rank, rank);
-  fitted(&bench, bench.rank, rank, winner_fit);
+  FG_TRY_EXIT(extend(ctx, &bench, winner, bench.null.rank, &rank));
+  double gain = explained(&bench, bench.null.rank, rank);
+  fitted(&bench, bench.null.rank, rank, winner_fit);
   for (size_t c = 0; c < count; c++)
     if (isfinite(stand[c].z) && !fg_engine_is_curve(&stand[c].candidate) &&
         !fg_engine_is_noise(&stand[c].candidate) &&

@@ -80,20 +80,9 @@ static fg_status weigh_noises(fg_context *ctx, fg_engine_bench *bench) {
   return FG_OK;
 }
 
-/* Orthonormal columns of the null, whitened; those that are aliased stay zero. */
-static fg_status null_basis(fg_context *ctx, const fg_engine_training *training,
-                            fg_engine_noise noise, double **basis) {
-  size_t n = training->n;
-  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + 1) * sizeof **basis, (void **)basis));
-  size_t rank = fg_engine_null_basis(training, noise, *basis);
-  memset(*basis + rank * n, 0, n * (training->columns + 1 - rank) * sizeof **basis);
-  return FG_OK;
-}
-
 /* The version's columns, whitened, orthonormal beside the null: at most bench->widest × n. */
-static fg_status version_basis(fg_context *ctx, const fg_engine_bench *bench, size_t v,
-                               fg_engine_noise noise, const double *null, double *columns,
-                               double *unit) {
+static fg_status version_basis(fg_context *ctx, const fg_engine_bench *bench, size_t v, size_t j,
+                               double *columns, double *unit) {
   const fg_engine_training *training = bench->training;
   fg_engine_version *version = &bench->version[v];
   const fg_loop_candidate *candidate = &bench->candidate[version->candidate];
@@ -101,11 +90,12 @@ static fg_status version_basis(fg_context *ctx, const fg_engine_bench *bench, si
   double lengths[FG_LOOP_COLUMNS], whole = 0;
   FG_TRY(fg_engine_gather(ctx, training, candidate, bench->shape[v], columns));
   for (size_t k = 0; k < count; k++) {
-    fg_engine_whiten(training, noise, columns + k * n);
+    fg_engine_whiten(training, bench->noise[j], columns + k * n);
     for (size_t i = 0; i < n; i++)
       whole += columns[k * n + i] * columns[k * n + i];
   }
-  version->rank = fg_engine_orthonormal(n, null, training->columns, columns, count, unit, lengths);
+  version->rank = fg_engine_orthonormal(n, bench->null[j].basis, bench->null[j].rank, columns,
+                                        count, unit, lengths);
   version->length = 0;
   for (size_t k = 0; k < count; k++)
     version->length += lengths[k] / (double)count;
@@ -135,7 +125,7 @@ static double explained(size_t n, const double *unit, size_t count, const double
 typedef struct filling {
   fg_engine_bench *bench;
   size_t noise;
-  const double *null, *residual;
+  const double *residual;
 } filling;
 
 /* Versions that one thread makes at a time. */
@@ -152,7 +142,7 @@ static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
   FG_TRY(fg_memory_allocate(ctx, each, 2 * sizeof *work, (void **)&work));
   for (size_t v = from; status == FG_OK && v < to && v < bench->versions; v++) {
     const fg_engine_version *version = &bench->version[v];
-    status = version_basis(ctx, bench, v, bench->noise[f->noise], f->null, work, work + each);
+    status = version_basis(ctx, bench, v, f->noise, work, work + each);
     if (status != FG_OK) break;
     bench->gain[f->noise * bench->versions + v] =
         explained(n, work + each, version->rank, f->residual);
@@ -170,21 +160,21 @@ static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
   size_t items = (bench->versions + VERSIONS_AT_ONCE - 1) / VERSIONS_AT_ONCE;
   bool few = n <= FG_ENGINE_SMALL_ROWS;
   fg_status status = FG_OK;
-  double *null = NULL, *residual = NULL;
-  FG_TRY_EXIT(null_basis(ctx, training, bench->noise[j], &null));
+  double *residual = NULL;
+  fg_engine_span *null = &bench->null[j];
+  FG_TRY_EXIT(fg_engine_span_open(ctx, training, bench->noise[j], 0, null));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
   memcpy(residual, training->y, n * sizeof *residual);
   fg_engine_whiten(training, bench->noise[j], residual);
-  bench->rss[j] = fg_engine_project_out(n, null, training->columns, residual);
+  bench->rss[j] = fg_engine_project_out(n, null->basis, null->rank, residual);
   if (few)
     FG_TRY_EXIT(
         fg_memory_allocate(ctx, n, width * sizeof *bench->rows[j] + 1, (void **)&bench->rows[j]));
-  if (few) put_rows(n, width, 0, null, training->columns, bench->rows[j]);
+  if (few) put_rows(n, width, 0, null->basis, training->columns, bench->rows[j]);
   fg_engine_bench_tell(bench, j, bench->noises + 1);
-  filling f = {bench, j, null, residual};
+  filling f = {bench, j, residual};
   FG_TRY_EXIT(fg_parallel_run(ctx, 0, items, fill_versions, &f));
 exit:
-  free(null);
   free(residual);
   return status;
 }
@@ -214,8 +204,10 @@ void fg_engine_bench_tell(const fg_engine_bench *bench, size_t done, size_t all)
 }
 
 void fg_engine_bench_free(fg_engine_bench *bench) {
-  for (size_t j = 0; j < FG_ENGINE_NOISES; j++)
+  for (size_t j = 0; j < FG_ENGINE_NOISES; j++) {
     free(bench->rows[j]);
+    fg_engine_span_close(&bench->null[j]);
+  }
   free(bench->version);
   free(bench->shape);
   free(bench->gain);

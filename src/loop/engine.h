@@ -85,10 +85,18 @@ double fg_engine_project_out(size_t n, const double *basis, size_t rank, double 
 size_t fg_engine_orthonormal(size_t n, const double *basis, size_t rank, const double *columns,
                              size_t count, double *out, double *lengths);
 
-/* Orthonormal whitened columns of the null: room for training->columns × n; returns their number.
- */
-size_t fg_engine_null_basis(const fg_engine_training *training, fg_engine_noise noise,
-                            double *basis);
+/* What the null's columns span at one noise model. */
+typedef struct fg_engine_span {
+  size_t n, rank;
+  double *basis; /* orthonormal, whitened: rank × n, with room for all columns and `more`; the rest
+                    is 0 */
+  double *kept;  /* n: share of a whitened row's variance that its residual keeps, 1 - leverage */
+} fg_engine_span;
+fg_status fg_engine_span_open(fg_context *ctx, const fg_engine_training *training,
+                              fg_engine_noise noise, size_t more, fg_engine_span *span);
+void fg_engine_span_close(fg_engine_span *span);
+/* The sd that a row's residual keeps of its own error, as a divisor. */
+double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i);
 
 typedef struct fg_engine_fit {
   size_t columns, rank;
@@ -128,8 +136,9 @@ typedef struct fg_engine_bench {
   fg_engine_noise noise[FG_ENGINE_NOISES];
   double weight[FG_ENGINE_NOISES]; /* exp(log terms / freedom): noises compare by rss × weight */
   size_t noises;
-  double rss[FG_ENGINE_NOISES];  /* of the training's y without any candidate, whitened */
-  double *gain;                  /* noises × versions: what each takes away from it */
+  double rss[FG_ENGINE_NOISES]; /* of the training's y without any candidate, whitened */
+  double *gain;                 /* noises × versions: what each takes away from it */
+  fg_engine_span null[FG_ENGINE_NOISES];
   float *rows[FG_ENGINE_NOISES]; /* n × (rank + columns), row by row; only where rows are few */
   fg_engine_watch watch;
 } fg_engine_bench;

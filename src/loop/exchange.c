@@ -15,16 +15,13 @@ enum { TRIED = 16 };
 static fg_status fill_products(fg_context *ctx, fg_engine_exchange *exchange) {
   const fg_engine_training *training = exchange->training;
   size_t n = exchange->n;
-  fg_status status = FG_OK;
-  double *null = NULL, *work = NULL;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, (training->columns + 1) * sizeof *null, (void **)&null));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, n * sizeof *work, (void **)&work));
-  size_t rank = fg_engine_null_basis(training, exchange->noise, null);
+  double *work = NULL;
+  FG_TRY(fg_memory_allocate(ctx, n, n * sizeof *work, (void **)&work));
   for (size_t i = 0; i < n; i++) {
     double *v = work + i * n;
     v[i] = 1;
     fg_engine_whiten(training, exchange->noise, v);
-    fg_engine_project_out(n, null, rank, v);
+    fg_engine_project_out(n, exchange->null->basis, exchange->null->rank, v);
   }
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j <= i; j++) {
@@ -33,10 +30,8 @@ static fg_status fill_products(fg_context *ctx, fg_engine_exchange *exchange) {
         sum += work[i * n + k] * work[j * n + k];
       exchange->a[i * n + j] = exchange->a[j * n + i] = sum;
     }
-exit:
-  free(null);
   free(work);
-  return status;
+  return FG_OK;
 }
 
 /* The response that the null expects: what was measured less the residual. */
@@ -52,18 +47,15 @@ static fg_status fill_mean(fg_context *ctx, fg_engine_exchange *exchange) {
 }
 
 fg_status fg_engine_exchange_open(fg_context *ctx, const fg_engine_training *training,
-                                  fg_engine_noise noise, fg_engine_exchange *exchange) {
+                                  fg_engine_noise noise, const fg_engine_span *null,
+                                  fg_engine_exchange *exchange) {
   size_t n = training->n;
   fg_status status = FG_OK;
-  *exchange = (fg_engine_exchange){.training = training, .noise = noise, .n = n};
+  *exchange = (fg_engine_exchange){.training = training, .noise = noise, .null = null, .n = n};
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *exchange->a, (void **)&exchange->mean));
   if (noise.rho != 0 || noise.lambda > 0) {
     FG_TRY_EXIT(fg_memory_allocate(ctx, n, n * sizeof *exchange->a, (void **)&exchange->a));
     FG_TRY_EXIT(fill_products(ctx, exchange));
-  } else {
-    FG_TRY_EXIT(fg_memory_allocate(ctx, n, (training->columns + 1) * sizeof *exchange->basis,
-                                   (void **)&exchange->basis));
-    exchange->rank = fg_engine_null_basis(training, noise, exchange->basis);
   }
   FG_TRY_EXIT(fill_mean(ctx, exchange));
 exit:
@@ -73,7 +65,6 @@ exit:
 
 void fg_engine_exchange_close(fg_engine_exchange *exchange) {
   free(exchange->a);
-  free(exchange->basis);
   free(exchange->mean);
   *exchange = (fg_engine_exchange){0};
 }
@@ -87,8 +78,8 @@ static double product(const fg_engine_exchange *exchange, size_t i, size_t j) {
   size_t n = exchange->n;
   if (exchange->a) return exchange->a[i * n + j];
   double sum = i == j;
-  for (size_t k = 0; k < exchange->rank; k++)
-    sum -= exchange->basis[k * n + i] * exchange->basis[k * n + j];
+  for (size_t k = 0; k < exchange->null->rank; k++)
+    sum -= exchange->null->basis[k * n + i] * exchange->null->basis[k * n + j];
   return sum / (scale_of(exchange, i) * scale_of(exchange, j));
 }
 
@@ -96,7 +87,7 @@ static double apply_independent(const fg_engine_exchange *exchange, const double
   size_t n = exchange->n;
   for (size_t i = 0; i < n; i++)
     ay[i] = y[i] / scale_of(exchange, i);
-  double sum = fg_engine_project_out(n, exchange->basis, exchange->rank, ay);
+  double sum = fg_engine_project_out(n, exchange->null->basis, exchange->null->rank, ay);
   for (size_t i = 0; i < n; i++)
     ay[i] /= scale_of(exchange, i);
   return sum;

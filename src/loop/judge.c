@@ -220,23 +220,14 @@ static void judge_by_count(const fg_engine_bench *bench, const fg_engine_null *n
 }
 
 /* The null's residual, whitened, each over what its own row keeps of it. */
-static fg_status null_residual(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, double *white) {
+static void null_residual(const fg_engine_training *training, fg_engine_noise noise,
+                          const fg_engine_span *null, double *white) {
   size_t n = training->n;
-  double *basis = NULL;
-  FG_TRY(fg_memory_allocate(ctx, n, (training->columns + 1) * sizeof *basis, (void **)&basis));
-  size_t rank = fg_engine_null_basis(training, noise, basis);
   memcpy(white, training->y, n * sizeof *white);
   fg_engine_whiten(training, noise, white);
-  fg_engine_project_out(n, basis, rank, white);
-  for (size_t i = 0; i < n; i++) {
-    double kept = 1;
-    for (size_t k = 0; k < rank; k++)
-      kept -= basis[k * n + i] * basis[k * n + i];
-    white[i] /= sqrt(fmax(kept, 1e-3));
-  }
-  free(basis);
-  return FG_OK;
+  fg_engine_project_out(n, null->basis, null->rank, white);
+  for (size_t i = 0; i < n; i++)
+    white[i] /= fg_engine_span_kept_sd(null, i);
 }
 
 static fg_status allocate(fg_context *ctx, size_t means, size_t noises,
@@ -306,11 +297,12 @@ fg_status fg_engine_judge(fg_context *ctx, const fg_engine_bench *bench,
   if (bench->freedom < 2) goto exit;
   fg_engine_bench_score_data(bench, judgement->score, &judgement->noise);
   fg_engine_noise at = bench->noise[judgement->noise];
-  FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, training, at, noise, noises, &noise_scores));
-  if (exchanges) FG_TRY_EXIT(fg_engine_exchange_open(ctx, training, at, &exchange));
+  const fg_engine_span *span = &bench->null[judgement->noise];
+  FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, training, at, span, noise, noises, &noise_scores));
+  if (exchanges) FG_TRY_EXIT(fg_engine_exchange_open(ctx, training, at, span, &exchange));
   FG_TRY_EXIT(score_data(ctx, bench, &noise_scores, exchanges ? &exchange : NULL, judgement));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training->n, sizeof *white, (void **)&white));
-  FG_TRY_EXIT(null_residual(ctx, training, at, white));
+  null_residual(training, at, span, white);
   drawing d = {
       bench, &noise_scores, exchanges ? &exchange : NULL,       null,
       at,    white,         bench->freedom >= PERMUTED_FREEDOM, judgement->candidates + exchanges,

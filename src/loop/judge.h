@@ -55,22 +55,24 @@ typedef struct fg_engine_lone {
   double length;     /* mean |M W e|² of a row */
 } fg_engine_lone;
 
+/* `null` is the training's at that noise. */
 fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, double accept_p, fg_engine_lone *lone);
+                               fg_engine_noise noise, const fg_engine_span *null, double accept_p,
+                               fg_engine_lone *lone);
 
 /* Two responses that changed places. exchange.c */
 typedef struct fg_engine_exchange {
   const fg_engine_training *training;
   fg_engine_noise noise;
+  const fg_engine_span *null;
   size_t n;
-  double *a;     /* n × n: the residual sum is y'Ay; NULL where rows are independent */
-  double *basis; /* rank × n: of the null, whitened; where rows are independent */
-  size_t rank;
+  double *a;    /* n × n: the residual sum is y'Ay; NULL where rows are independent */
   double *mean; /* what the null expects of the response */
 } fg_engine_exchange;
 
 fg_status fg_engine_exchange_open(fg_context *ctx, const fg_engine_training *training,
-                                  fg_engine_noise noise, fg_engine_exchange *exchange);
+                                  fg_engine_noise noise, const fg_engine_span *null,
+                                  fg_engine_exchange *exchange);
 void fg_engine_exchange_close(fg_engine_exchange *exchange);
 /* The exchange that leaves least: residual sum after over before, infinity where none changes
  * anything. `y` is the response less the null's start; work has room for 3 n. */

@@ -45,8 +45,8 @@ typedef struct lone_rows {
 } lone_rows;
 
 static fg_status open_rows(fg_context *ctx, const fg_engine_training *training,
-                           fg_engine_noise noise, lone_rows *rows) {
-  size_t n = training->n, columns = training->columns + FG_LOOP_LONE_ROWS + 1;
+                           fg_engine_noise noise, const fg_engine_span *null, lone_rows *rows) {
+  size_t n = training->n, columns = null->rank + FG_LOOP_LONE_ROWS + 1;
   *rows = (lone_rows){.training = training, .noise = noise, .n = n};
   FG_TRY(fg_memory_allocate(ctx, n, columns * sizeof *rows->basis, (void **)&rows->basis));
   FG_TRY(fg_memory_allocate(ctx, n, 4 * sizeof *rows->white, (void **)&rows->white));
@@ -54,7 +54,9 @@ static fg_status open_rows(fg_context *ctx, const fg_engine_training *training,
   rows->unit = rows->white + n;
   rows->t = rows->white + 2 * n;
   rows->kept = rows->white + 3 * n;
-  rows->rank = fg_engine_null_basis(training, noise, rows->basis);
+  rows->rank = null->rank;
+  memcpy(rows->basis, null->basis, n * null->rank * sizeof *rows->basis);
+  memcpy(rows->kept, null->kept, n * sizeof *rows->kept);
   memcpy(rows->white, training->y, n * sizeof *rows->white);
   fg_engine_whiten(training, noise, rows->white);
   rows->rss = fg_engine_project_out(n, rows->basis, rows->rank, rows->white);
@@ -77,30 +79,30 @@ static void fill_unit(const lone_rows *rows, size_t i) {
   if (whole_covariance(rows)) fg_engine_whiten(rows->training, rows->noise, rows->unit);
 }
 
+/* A row beside all others: what is left of its response along its own whitened indicator. */
+static double judge_correlated(lone_rows *rows, size_t i) {
+  size_t n = rows->n;
+  double along = 0, kept = 0;
+  fill_unit(rows, i);
+  for (size_t m = 0; m < n; m++) {
+    along += rows->unit[m] * rows->white[m];
+    kept += rows->unit[m] * rows->unit[m];
+  }
+  for (size_t k = 0; k < rows->rank; k++) {
+    double part = 0;
+    for (size_t m = 0; m < n; m++)
+      part += rows->unit[m] * rows->basis[k * n + m];
+    kept -= part * part;
+  }
+  rows->kept[i] = kept;
+  return along;
+}
+
 /* Where rows are many and correlated a row is judged by its innovation alone. */
 static void judge_rows(lone_rows *rows) {
-  size_t n = rows->n;
-  for (size_t i = 0; i < n; i++) {
-    double along = rows->white[i], kept = 1;
-    if (whole_covariance(rows)) {
-      along = kept = 0;
-      fill_unit(rows, i);
-      for (size_t m = 0; m < n; m++) {
-        along += rows->unit[m] * rows->white[m];
-        kept += rows->unit[m] * rows->unit[m];
-      }
-    }
-    for (size_t k = 0; k < rows->rank; k++) {
-      double part = rows->basis[k * n + i];
-      if (whole_covariance(rows)) {
-        part = 0;
-        for (size_t m = 0; m < n; m++)
-          part += rows->unit[m] * rows->basis[k * n + m];
-      }
-      kept -= part * part;
-    }
-    rows->kept[i] = kept;
-    rows->t[i] = kept > HELD_ALONE ? along / sqrt(kept) : 0;
+  for (size_t i = 0; i < rows->n; i++) {
+    double along = whole_covariance(rows) ? judge_correlated(rows, i) : rows->white[i];
+    rows->t[i] = rows->kept[i] > HELD_ALONE ? along / sqrt(rows->kept[i]) : 0;
   }
 }
 
@@ -119,8 +121,10 @@ static void take_out(lone_rows *rows, size_t i) {
   double left = fg_engine_project_out(n, rows->basis, rows->rank, column);
   rows->out[i] = true;
   if (!(left > HELD_ALONE)) return;
-  for (size_t m = 0; m < n; m++)
+  for (size_t m = 0; m < n; m++) {
     column[m] /= sqrt(left);
+    if (!whole_covariance(rows)) rows->kept[m] -= column[m] * column[m];
+  }
   rows->rank++;
   rows->rss = fg_engine_project_out(n, column, 1, rows->white);
 }
@@ -227,14 +231,15 @@ static void search(lone_rows *rows, double level, fg_engine_lone *lone) {
 }
 
 fg_status fg_engine_judge_lone(fg_context *ctx, const fg_engine_training *training,
-                               fg_engine_noise noise, double accept_p, fg_engine_lone *lone) {
+                               fg_engine_noise noise, const fg_engine_span *null, double accept_p,
+                               fg_engine_lone *lone) {
   lone_rows rows = {0};
   double sum = 0, level = accept_p * FG_ENGINE_SHARE_OF_ROWS;
   fg_status status = FG_OK;
   *lone = (fg_engine_lone){.ratio = 1, .p_value = 1, .f_critical = INFINITY};
   lone->candidate.effect = &fg_loop_lone_effects()[0];
   if (!training->problem->exchangeable || training->n < training->columns + 5) return FG_OK;
-  FG_TRY_EXIT(open_rows(ctx, training, noise, &rows));
+  FG_TRY_EXIT(open_rows(ctx, training, noise, null, &rows));
   if (!(rows.rss > 0)) goto exit;
   judge_rows(&rows);
   for (size_t i = 0; i < rows.n; i++)

@@ -7,8 +7,6 @@
 #include "core/memory.h"
 #include "effect/table_effects.h"
 
-/* A residual keeps at least this of its row's sd, or the row says nothing of the scatter. */
-#define KEPT_LEAST 0.05
 /* A normal residual's size has this variance over its squared mean (pi / 2 - 1); an exponential one
  * has 1. */
 #define SIZE_DISPERSION 0.5707963267948966
@@ -41,23 +39,14 @@ exit:
 }
 
 fg_status fg_engine_noise_scores_open(fg_context *ctx, const fg_engine_training *training,
-                                      fg_engine_noise noise, const fg_loop_candidate *candidate,
-                                      size_t candidates, fg_engine_noise_scores *scores) {
-  size_t n = training->n;
+                                      fg_engine_noise noise, const fg_engine_span *null,
+                                      const fg_loop_candidate *candidate, size_t candidates,
+                                      fg_engine_noise_scores *scores) {
   fg_status status = FG_OK;
-  *scores = (fg_engine_noise_scores){.training = training, .noise = noise, .count = candidates};
-  size_t columns = training->columns + 1;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, columns * sizeof(double), (void **)&scores->basis));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof(double), (void **)&scores->kept));
+  *scores = (fg_engine_noise_scores){
+      .training = training, .noise = noise, .null = null, .count = candidates};
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, candidates + 1, sizeof *scores->spread, (void **)&scores->spread));
-  scores->rank = fg_engine_null_basis(training, noise, scores->basis);
-  for (size_t i = 0; i < n; i++) {
-    double kept = 1;
-    for (size_t k = 0; k < scores->rank; k++)
-      kept -= scores->basis[k * n + i] * scores->basis[k * n + i];
-    scores->kept[i] = sqrt(fmax(kept, KEPT_LEAST * KEPT_LEAST));
-  }
   for (size_t c = 0; c < candidates; c++)
     FG_TRY_EXIT(open_spread(ctx, training, &candidate[c], &scores->spread[c]));
 exit:
@@ -71,8 +60,6 @@ void fg_engine_noise_scores_close(fg_engine_noise_scores *scores) {
     free(scores->spread[c].level);
   }
   free(scores->spread);
-  free(scores->basis);
-  free(scores->kept);
   *scores = (fg_engine_noise_scores){0};
 }
 
@@ -145,9 +132,9 @@ void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const doubl
   if (scores->count == 0) return;
   memcpy(white, y, n * sizeof *white);
   fg_engine_whiten(training, scores->noise, white);
-  fg_engine_project_out(n, scores->basis, scores->rank, white);
+  fg_engine_project_out(n, scores->null->basis, scores->null->rank, white);
   for (size_t i = 0; i < n; i++)
-    size[i] = fabs(white[i]) / scores->kept[i];
+    size[i] = fabs(white[i]) / fg_engine_span_kept_sd(scores->null, i);
   for (size_t i = 0; i < n; i++)
     mean += size[i] / (double)n;
   for (size_t i = 0; mean > 0 && i < n; i++)

@@ -14,15 +14,15 @@ typedef struct fg_engine_spread {
 typedef struct fg_engine_noise_scores {
   const fg_engine_training *training;
   fg_engine_noise noise;
-  size_t count, rank;
+  const fg_engine_span *null;
+  size_t count;
   fg_engine_spread *spread; /* count */
-  double *basis;            /* of the null, whitened: rank × n */
-  double *kept;             /* n: sd that a row's residual keeps */
 } fg_engine_noise_scores;
 
 fg_status fg_engine_noise_scores_open(fg_context *ctx, const fg_engine_training *training,
-                                      fg_engine_noise noise, const fg_loop_candidate *candidate,
-                                      size_t candidates, fg_engine_noise_scores *scores);
+                                      fg_engine_noise noise, const fg_engine_span *null,
+                                      const fg_loop_candidate *candidate, size_t candidates,
+                                      fg_engine_noise_scores *scores);
 void fg_engine_noise_scores_close(fg_engine_noise_scores *scores);
 /* A normal deviate of each for one response (not whitened); work has room for 2 n. */
 void fg_engine_noise_scores_of(const fg_engine_noise_scores *scores, const double *y, double *work,

@@ -10,6 +10,9 @@
  * the declared model has only what is there twice, since with an origin far away (a temperature
  * of 10^6) its columns are nearly parallel; of effects also what is too much alike to matter. */
 static const double same_span = 1e-9, declared_span = 1e-24;
+/* A row that the null's columns hold alone has a residual of rounding: what is divided by the share
+ * that it keeps divides by this at the least, a sd of 0.05. */
+static const double kept_least = 0.05 * 0.05;
 
 static double dot(size_t n, const double *a, const double *b) {
   double sum[4] = {0};
@@ -50,8 +53,7 @@ size_t fg_engine_orthonormal(size_t n, const double *basis, size_t rank, const d
   return added;
 }
 
-size_t fg_engine_null_basis(const fg_engine_training *training, fg_engine_noise noise,
-                            double *basis) {
+static size_t null_basis(const fg_engine_training *training, fg_engine_noise noise, double *basis) {
   size_t n = training->n, rank = 0;
   memcpy(basis, training->x, n * training->columns * sizeof *basis);
   for (size_t k = 0; k < training->columns; k++) {
@@ -65,6 +67,35 @@ size_t fg_engine_null_basis(const fg_engine_training *training, fg_engine_noise 
     rank++;
   }
   return rank;
+}
+
+fg_status fg_engine_span_open(fg_context *ctx, const fg_engine_training *training,
+                              fg_engine_noise noise, size_t more, fg_engine_span *span) {
+  size_t n = training->n, room = training->columns + more + 1;
+  fg_status status = FG_OK;
+  *span = (fg_engine_span){.n = n};
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, room * sizeof *span->basis, (void **)&span->basis));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *span->kept, (void **)&span->kept));
+  span->rank = null_basis(training, noise, span->basis);
+  memset(span->basis + span->rank * n, 0, n * (room - span->rank) * sizeof *span->basis);
+  for (size_t i = 0; i < n; i++)
+    span->kept[i] = 1;
+  for (size_t k = 0; k < span->rank; k++)
+    for (size_t i = 0; i < n; i++)
+      span->kept[i] -= span->basis[k * n + i] * span->basis[k * n + i];
+exit:
+  if (status != FG_OK) fg_engine_span_close(span);
+  return status;
+}
+
+void fg_engine_span_close(fg_engine_span *span) {
+  free(span->basis);
+  free(span->kept);
+  *span = (fg_engine_span){0};
+}
+
+double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i) {
+  return sqrt(fmax(span->kept[i], kept_least));
 }
 
 /* X = Q R column by column; coefficients and (X'X)^-1 from R. */

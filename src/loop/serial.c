@@ -50,17 +50,20 @@ fg_status fg_engine_spread_beside(fg_context *ctx, const fg_engine_run *run,
                                   double *z) {
   fg_engine_training training;
   fg_engine_noise_scores scores = {0};
+  fg_engine_span null = {0};
   fg_engine_noise noise = {0};
   double *work = NULL;
   fg_status status = FG_OK;
   FG_TRY(fg_engine_training_build(ctx, run->problem, run->train, set, &training));
   FG_TRY_EXIT(fg_engine_choose_noise(ctx, &training, &noise));
-  FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, &training, noise, spread, 1, &scores));
+  FG_TRY_EXIT(fg_engine_span_open(ctx, &training, noise, 0, &null));
+  FG_TRY_EXIT(fg_engine_noise_scores_open(ctx, &training, noise, &null, spread, 1, &scores));
   FG_TRY_EXIT(fg_memory_allocate(ctx, training.n, 2 * sizeof *work, (void **)&work));
   fg_engine_noise_scores_of(&scores, training.y, work, z);
 exit:
   free(work);
   fg_engine_noise_scores_close(&scores);
+  fg_engine_span_close(&null);
   fg_engine_training_free(&training);
   return status;
 }

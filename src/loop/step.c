@@ -69,7 +69,9 @@ fg_status fg_engine_step_open(fg_context *ctx, fg_engine_run *run, const fg_engi
                               run->candidates - run->means, &null, &step->judgement));
   fg_engine_noise noise = step->bench.noise[step->judgement.noise];
   if (judged)
-    FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise, null.accept_p, &step->lone));
+    FG_TRY_EXIT(fg_engine_judge_lone(ctx, &step->training, noise,
+                                     &step->bench.null[step->judgement.noise], null.accept_p,
+                                     &step->lone));
   FG_TRY_EXIT(fill_stands(ctx, run, step));
 exit:
   if (status != FG_OK) fg_engine_step_close(step);
