@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "scan/png_image.h"
 
 /* Larger pieces of IDAT save calls, smaller ones stay in the processor's cache. */
 enum { IDAT_PIECE_BYTES = 1 << 16 };
@@ -16,6 +17,10 @@ struct fg_png {
   png_infop info;
   fg_source *source;
   fg_png_header header;
+  bool by_libpng;      /* all of it */
+  fg_png_image *image; /* reads the rows in libpng's stead; NULL: it reads them itself */
+  uint8_t head[FG_PNG_CHUNK_HEAD_BYTES]; /* of the last chunk */
+  bool head_waits;                       /* for libpng to read it */
   bool in_image;
   uint64_t rows_read;
   bool cut_off;
@@ -38,9 +43,20 @@ static void on_warning(png_structp png, png_const_charp words) {
   if (in_image && !strstr(words, "Extra compressed data")) png_error(png, words);
 }
 
+/* A chunk's head is what libpng reads in one piece of its size; it is kept for whoever reads the
+ * image, who gives back the head that follows it. */
 static void on_read(png_structp png, png_bytep out, size_t wanted) {
   fg_png *reader = png_get_io_ptr(png);
-  if (fg_source_read(reader->source, out, wanted) == wanted) return;
+  bool waited = reader->head_waits && wanted == sizeof reader->head;
+  if (waited) {
+    memcpy(out, reader->head, wanted);
+    reader->head_waits = false;
+    return;
+  }
+  if (fg_source_read(reader->source, out, wanted) == wanted) {
+    if (wanted == sizeof reader->head) memcpy(reader->head, out, wanted);
+    return;
+  }
   reader->cut_off = true;
   png_error(png, "cut off");
 }
@@ -165,11 +181,12 @@ static fg_status create(fg_context *ctx, fg_png *reader) {
   return FG_OK;
 }
 
-fg_status fg_png_open(fg_context *ctx, fg_source *source, fg_png **png) {
+static fg_status open_png(fg_context *ctx, fg_source *source, bool by_libpng, fg_png **png) {
   fg_png *reader = NULL;
   *png = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *reader, (void **)&reader));
   reader->source = source;
+  reader->by_libpng = by_libpng;
   fg_status status = create(ctx, reader);
   if (status == FG_OK && !run(reader, read_header, NULL)) status = fail(ctx, reader);
   if (status != FG_OK) {
@@ -181,22 +198,77 @@ fg_status fg_png_open(fg_context *ctx, fg_source *source, fg_png **png) {
   return FG_OK;
 }
 
+fg_status fg_png_open(fg_context *ctx, fg_source *source, fg_png **png) {
+  return open_png(ctx, source, false, png);
+}
+
+fg_status fg_png_open_reference(fg_context *ctx, fg_source *source, fg_png **png) {
+  return open_png(ctx, source, true, png);
+}
+
 const fg_png_header *fg_png_get_header(const fg_png *png) {
   return &png->header;
+}
+
+static bool is_little_endian(void) {
+  const uint16_t one = 1;
+  return *(const uint8_t *)&one == 1;
 }
 
 static void start(fg_png *reader, void *unused) {
   (void)unused;
   if (reader->header.bit_depth < 8) png_set_packing(reader->png);
-  const uint16_t one = 1;
-  bool little_endian = *(const uint8_t *)&one == 1;
-  if (reader->header.bit_depth == 16 && little_endian) png_set_swap(reader->png);
+  if (reader->header.bit_depth == 16 && is_little_endian()) png_set_swap(reader->png);
   png_start_read_image(reader->png);
+}
+
+/* The kinds that scanners write. */
+static bool is_common(const fg_png_header *header) {
+  return !header->interlaced && !header->has_palette && header->bit_depth >= 8;
+}
+
+static fg_status start_image(fg_context *ctx, fg_png *png) {
+  const fg_png_header *header = &png->header;
+  size_t pixel_bytes = (size_t)(header->channels * header->bit_depth / 8);
+  fg_png_image_layout layout = {.height_px = header->height_px,
+                                .pixel_bytes = pixel_bytes,
+                                .row_bytes = header->width_px * pixel_bytes};
+  return fg_png_image_create(ctx, png->source, png->head, &layout, &png->image);
 }
 
 fg_status fg_png_start(fg_context *ctx, fg_png *png) {
   png->in_image = true;
+  if (is_common(&png->header) && !png->by_libpng) return start_image(ctx, png);
   return run(png, start, NULL) ? FG_OK : fail(ctx, png);
+}
+
+/* An error of the image in libpng's words, as libpng's own. */
+static fg_status fail_image(fg_context *ctx, fg_png *png) {
+  const char *words = fg_png_image_problem(png->image);
+  png->cut_off = !words;
+  snprintf(png->words, sizeof png->words, "%s", words ? words : "cut off");
+  return fail(ctx, png);
+}
+
+static void copy_samples(const fg_png_header *header, const uint8_t *row, void *samples) {
+  size_t count = (size_t)header->width_px * (size_t)header->channels;
+  if (header->bit_depth == 8) {
+    memcpy(samples, row, count);
+    return;
+  }
+  uint8_t *out = samples;
+  for (size_t i = 0; i < count; i++) {
+    uint16_t value = (uint16_t)(row[2 * i] << 8 | row[2 * i + 1]);
+    memcpy(out + 2 * i, &value, 2);
+  }
+}
+
+static fg_status read_image_row(fg_context *ctx, fg_png *png, void *samples) {
+  const uint8_t *row = fg_png_image_next(png->image);
+  if (!row) return fail_image(ctx, png);
+  copy_samples(&png->header, row, samples);
+  png->rows_read++;
+  return FG_OK;
 }
 
 static void read_row(fg_png *reader, void *row) {
@@ -205,7 +277,17 @@ static void read_row(fg_png *reader, void *row) {
 }
 
 fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples) {
+  if (png->image) return read_image_row(ctx, png, samples);
   return run(png, read_row, samples) ? FG_OK : fail(ctx, png);
+}
+
+/* libpng goes on behind the image as if it had skipped it. */
+static fg_status finish_image(fg_context *ctx, fg_png *png) {
+  static const png_byte idat[] = "IDAT";
+  if (!fg_png_image_finish(png->image, png->head)) return fail_image(ctx, png);
+  png->head_waits = true;
+  png_set_keep_unknown_chunks(png->png, PNG_HANDLE_CHUNK_NEVER, idat, 1);
+  return FG_OK;
 }
 
 static void finish(fg_png *reader, void *unused) {
@@ -214,11 +296,13 @@ static void finish(fg_png *reader, void *unused) {
 }
 
 fg_status fg_png_finish(fg_context *ctx, fg_png *png) {
+  if (png->image) FG_TRY(finish_image(ctx, png));
   return run(png, finish, NULL) ? FG_OK : fail(ctx, png);
 }
 
 void fg_png_close(fg_png *png) {
   if (!png) return;
+  fg_png_image_free(png->image);
   png_destroy_read_struct(&png->png, &png->info, NULL);
   free(png);
 }

@@ -1,4 +1,5 @@
-/* One PNG, read from front to back through libpng. libpng's setjmp stays behind this header.
+/* One PNG, read from front to back: the image of the common kinds by png_image.h, everything else
+ * by libpng. libpng's setjmp stays behind this header.
  *
  * Order of calls: open, start, one read for each row (and, when interlaced, of each pass), finish.
  * After an error only close is left. */
@@ -31,6 +32,10 @@ typedef struct fg_png fg_png;
  * reader. FG_ERR_DATA: not a PNG, damaged; FG_ERR_IO, FG_ERR_MEMORY. */
 fg_status fg_png_open(fg_context *ctx, fg_source *source, fg_png **png);
 const fg_png_header *fg_png_get_header(const fg_png *png);
+
+/* The same, with every image read by libpng: what the reading of the common kinds is held against.
+ */
+fg_status fg_png_open_reference(fg_context *ctx, fg_source *source, fg_png **png);
 
 /* Makes ready for rows; separate from opening, so that the caller can refuse a size before memory
  * for it is taken. */
