@@ -15,7 +15,8 @@
  * claim on. Where groups share a level, the ratio lambda of its variance to the rows' is estimated
  * anew beside every candidate (residual likelihood: Patterson and Thompson 1971). 2  A candidate of
  * the mean is scored by the residual sum that it takes away, whitened and with every parameter of
- * the declared model projected out; correlation by the product of neighbours, spread by the
+ * the declared model projected out, what is constant in groups that share a level by what groups
+ * differ by; correlation by the product of neighbours, spread by the
  * likelihood of the residuals' sizes. 3  One null for all: residuals in another order (Freedman and
  * Lane 1983), scored in the same way; each score on the scale of its own draws, p-values from the
  * largest of all (Westfall and Young 1993). The draws are the same in every run: no verdict depends

@@ -11,6 +11,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "loop/between.h"
 
 /* Where the winner explains more than a simpler one at this level, it stays. */
 #define SIMPLER_P FG_LOOP_ACCEPT_P
@@ -31,8 +32,23 @@ typedef struct alias_bench {
   fg_engine_span null; /* with room for more columns */
   double *y, *columns, *unit;
   double rss, freedom;
-  bool between; /* the columns added last */
+  double *between; /* what groups may differ by beside the null: groups × n */
+  size_t groups;
+  double groups_rss;
+  bool constant; /* in groups: the columns added last */
 } alias_bench;
+
+/* Squared length of y's part in the span of orthonormal columns. */
+static double along(size_t n, const double *unit, size_t count, const double *y) {
+  double sum = 0;
+  for (size_t k = 0; k < count; k++) {
+    double one = 0;
+    for (size_t i = 0; i < n; i++)
+      one += unit[k * n + i] * y[i];
+    sum += one * one;
+  }
+  return sum;
+}
 
 static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
                             fg_engine_noise noise, alias_bench *bench) {
@@ -40,12 +56,16 @@ static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
   *bench = (alias_bench){.training = training, .noise = noise, .n = n};
   FG_TRY(fg_engine_span_open(ctx, training, noise, 3 * FG_LOOP_COLUMNS, &bench->null));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->y));
-  FG_TRY(fg_memory_allocate(ctx, n, FG_LOOP_COLUMNS * sizeof *bench->y, (void **)&bench->columns));
+  FG_TRY(
+      fg_memory_allocate(ctx, n, 2 * FG_LOOP_COLUMNS * sizeof *bench->y, (void **)&bench->columns));
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *bench->y, (void **)&bench->unit));
   memcpy(bench->y, training->y, n * sizeof *bench->y);
   fg_engine_whiten(training, noise, bench->y);
   bench->rss = fg_engine_project_out(n, bench->null.basis, bench->null.rank, bench->y);
   bench->freedom = (double)n - (double)bench->null.rank;
+  FG_TRY(
+      fg_engine_between_basis(ctx, training, noise, &bench->null, &bench->between, &bench->groups));
+  bench->groups_rss = along(n, bench->between, bench->groups, bench->y);
   return FG_OK;
 }
 
@@ -54,17 +74,7 @@ static void close_bench(alias_bench *bench) {
   free(bench->y);
   free(bench->columns);
   free(bench->unit);
-}
-
-/* Constant in every group that shares a level: judged between groups, with their freedom. */
-static bool between_groups(const fg_engine_training *training, const double *columns,
-                           size_t count) {
-  for (size_t k = 0; k < count; k++)
-    for (size_t i = 1; i < training->n; i++)
-      if (training->group[i] == training->group[i - 1] &&
-          columns[k * training->n + i] != columns[k * training->n + i - 1])
-        return false;
-  return training->levels > 0;
+  free(bench->between);
 }
 
 /* Adds the candidate's columns behind those already there; returns how many are new. */
@@ -73,7 +83,8 @@ static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_sta
   const fg_loop_problem *problem = bench->training->problem;
   size_t count = fg_engine_candidate_columns(problem, &stand->candidate);
   FG_TRY(fg_engine_gather(ctx, bench->training, &stand->candidate, stand->shape, bench->columns));
-  bench->between = between_groups(bench->training, bench->columns, count);
+  bench->constant =
+      bench->groups > 0 && fg_engine_constant_in_levels(bench->training, bench->columns, count);
   for (size_t k = 0; k < count; k++)
     fg_engine_whiten(bench->training, bench->noise, bench->columns + k * bench->n);
   *added = fg_engine_orthonormal(bench->n, bench->null.basis, rank, bench->columns, count,
@@ -82,14 +93,7 @@ static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_sta
 }
 
 static double explained(const alias_bench *bench, size_t from, size_t count) {
-  double gain = 0;
-  for (size_t k = from; k < from + count; k++) {
-    double along = 0;
-    for (size_t i = 0; i < bench->n; i++)
-      along += bench->null.basis[k * bench->n + i] * bench->y[i];
-    gain += along * along;
-  }
-  return gain;
+  return along(bench->n, bench->null.basis + from * bench->n, count, bench->y);
 }
 
 static void fitted(const alias_bench *bench, size_t from, size_t count, double *fit) {
@@ -119,6 +123,21 @@ typedef struct alias_test {
   double correlation;
 } alias_test;
 
+/* What is left beside the null and `count` columns behind it, before the winner: residual sum and
+ * freedom. Of a winner that is constant in groups those of the groups: of the columns only what
+ * lies between groups takes from them. */
+static void error_beside(const alias_bench *bench, size_t count, double gain, double *unit,
+                         double *left, double *freedom) {
+  *left = bench->rss - gain;
+  *freedom = bench->freedom - (double)count;
+  if (!bench->constant) return;
+  size_t within =
+      fg_engine_orthonormal(bench->n, bench->between, bench->groups,
+                            bench->null.basis + bench->null.rank * bench->n, count, unit, NULL);
+  *left = bench->groups_rss + along(bench->n, unit, within, bench->y) - gain;
+  *freedom = (double)(bench->groups + within) - (double)count;
+}
+
 /* The winner beside one rival, or a sum of two. */
 static fg_status compare(fg_context *ctx, alias_bench *bench, const fg_engine_stand *winner,
                          const fg_engine_stand *rival, const fg_engine_stand *second,
@@ -137,9 +156,10 @@ static fg_status compare(fg_context *ctx, alias_bench *bench, const fg_engine_st
   FG_TRY(extend(ctx, bench, winner, bench->null.rank + test->rank, &test->more));
   double surplus = explained(bench, bench->null.rank + test->rank, test->more);
   double k = (double)test->more + (double)winner->candidate.effect->shapes;
-  double left = bench->rss - test->gain - surplus;
-  double freedom = bench->between ? (double)bench->training->groups - 1 : bench->freedom;
-  freedom -= (double)test->rank + shapes + k;
+  double left, freedom;
+  error_beside(bench, test->rank, test->gain, bench->columns, &left, &freedom);
+  left -= surplus;
+  freedom -= shapes + k;
   test->p_value = 1;
   if (test->more > 0 && freedom >= 1 && left > 0)
     test->p_value = gsl_cdf_fdist_Q(surplus / k / (left / freedom), k, freedom);

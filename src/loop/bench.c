@@ -5,7 +5,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
-#include "loop/engine.h"
+#include "loop/between.h"
 
 static size_t candidate_versions(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
                                  double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
@@ -89,6 +89,8 @@ static fg_status version_basis(fg_context *ctx, const fg_engine_bench *bench, si
   size_t n = training->n, count = fg_engine_candidate_columns(training->problem, candidate);
   double lengths[FG_LOOP_COLUMNS], whole = 0;
   FG_TRY(fg_engine_gather(ctx, training, candidate, bench->shape[v], columns));
+  version->between =
+      bench->between_rank > 0 && fg_engine_constant_in_levels(training, columns, count);
   for (size_t k = 0; k < count; k++) {
     fg_engine_whiten(training, bench->noise[j], columns + k * n);
     for (size_t i = 0; i < n; i++)
@@ -135,7 +137,8 @@ static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
   const filling *f = shared;
   fg_engine_bench *bench = f->bench;
   const fg_engine_training *training = bench->training;
-  size_t n = training->n, width = training->columns + bench->columns, each = n * bench->widest;
+  size_t n = training->n, each = n * bench->widest;
+  size_t width = training->columns + bench->columns + bench->between_rank;
   size_t from = item * VERSIONS_AT_ONCE, to = from + VERSIONS_AT_ONCE;
   double *work = NULL;
   fg_status status = FG_OK;
@@ -156,25 +159,31 @@ static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
 
 static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
   const fg_engine_training *training = bench->training;
-  size_t n = training->n, width = training->columns + bench->columns;
-  size_t items = (bench->versions + VERSIONS_AT_ONCE - 1) / VERSIONS_AT_ONCE;
+  size_t n = training->n, rank = training->columns,
+         items = (bench->versions + VERSIONS_AT_ONCE - 1) / VERSIONS_AT_ONCE;
   bool few = n <= FG_ENGINE_SMALL_ROWS;
   fg_status status = FG_OK;
-  double *residual = NULL;
+  double *between = NULL, *residual = NULL;
   fg_engine_span *null = &bench->null[j];
   FG_TRY_EXIT(fg_engine_span_open(ctx, training, bench->noise[j], 0, null));
+  FG_TRY_EXIT(fg_engine_between_basis(ctx, training, bench->noise[j], null, &between,
+                                      &bench->between_rank));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *residual, (void **)&residual));
   memcpy(residual, training->y, n * sizeof *residual);
   fg_engine_whiten(training, bench->noise[j], residual);
   bench->rss[j] = fg_engine_project_out(n, null->basis, null->rank, residual);
+  bench->between_rss[j] = explained(n, between, bench->between_rank, residual);
+  size_t behind = rank + bench->columns, width = behind + bench->between_rank;
   if (few)
     FG_TRY_EXIT(
         fg_memory_allocate(ctx, n, width * sizeof *bench->rows[j] + 1, (void **)&bench->rows[j]));
-  if (few) put_rows(n, width, 0, null->basis, training->columns, bench->rows[j]);
+  if (few) put_rows(n, width, 0, null->basis, rank, bench->rows[j]);
+  if (few) put_rows(n, width, behind, between, bench->between_rank, bench->rows[j]);
   fg_engine_bench_tell(bench, j, bench->noises + 1);
   filling f = {bench, j, residual};
   FG_TRY_EXIT(fg_parallel_run(ctx, 0, items, fill_versions, &f));
 exit:
+  free(between);
   free(residual);
   return status;
 }
@@ -212,173 +221,4 @@ void fg_engine_bench_free(fg_engine_bench *bench) {
   free(bench->shape);
   free(bench->gain);
   *bench = (fg_engine_bench){0};
-}
-
-double fg_engine_version_freedom(const fg_engine_bench *bench, const fg_engine_version *version) {
-  const fg_loop_effect *effect = bench->candidate[version->candidate].effect;
-  return (double)version->rank + (double)effect->shapes;
-}
-
-/* Wilson and Hilferty's normal deviate of an F ratio: close enough to compare candidates of
- * different freedom, and monotone, so p-values from simulation stay exact. */
-double fg_engine_deviate(double ratio, double k, double freedom) {
-  double nu = freedom - k, f = (1 / ratio - 1) * nu / k;
-  double root = cbrt(f), a = 2 / (9 * nu), b = 2 / (9 * k);
-  return ((1 - a) * root - (1 - b)) / sqrt(a * root * root + b);
-}
-
-double fg_engine_deviate_to_f(double z, double k, double nu) {
-  double low = 0, high = 1e9;
-  for (int i = 0; i < 100; i++) {
-    double f = sqrt((low + 1e-6) * high);
-    double ratio = 1 / (1 + f * k / nu);
-    if (fg_engine_deviate(ratio, k, nu + k) < z)
-      low = f;
-    else
-      high = f;
-  }
-  return high < 0.99e9 ? high : INFINITY;
-}
-
-static void take_ratio(const fg_engine_bench *bench, size_t v, size_t j, double weighted,
-                       fg_engine_score *score) {
-  const fg_engine_version *version = &bench->version[v];
-  fg_engine_score *best = &score[version->candidate];
-  if (version->rank == 0 ||
-      fg_engine_version_freedom(bench, version) + 2 > (double)bench->freedom ||
-      !(weighted < best->ratio))
-    return;
-  *best = (fg_engine_score){.ratio = weighted, .version = v, .noise = j};
-}
-
-static void finish_scores(const fg_engine_bench *bench, double null, fg_engine_score *score) {
-  for (size_t c = 0; c < bench->candidates; c++) {
-    if (!isfinite(score[c].ratio)) {
-      score[c].z = NAN;
-      continue;
-    }
-    double k = fg_engine_version_freedom(bench, &bench->version[score[c].version]);
-    score[c].ratio = fmin(score[c].ratio / null, 1);
-    score[c].z = fg_engine_deviate(score[c].ratio, k, (double)bench->freedom);
-  }
-}
-
-static void clear_scores(size_t count, fg_engine_score *score) {
-  for (size_t c = 0; c < count; c++)
-    score[c] = (fg_engine_score){.ratio = INFINITY, .z = NAN};
-}
-
-void fg_engine_bench_score_data(const fg_engine_bench *bench, fg_engine_score *score,
-                                size_t *null) {
-  *null = 0;
-  clear_scores(bench->candidates, score);
-  for (size_t j = 0; j < bench->noises; j++) {
-    const double *gain = bench->gain + j * bench->versions;
-    if (bench->rss[j] * bench->weight[j] < bench->rss[*null] * bench->weight[*null]) *null = j;
-    for (size_t v = 0; v < bench->versions; v++) {
-      double left = fmax(bench->rss[j] - gain[v], FG_ENGINE_RATIO_LEAST * bench->rss[j]);
-      take_ratio(bench, v, j, left * bench->weight[j], score);
-    }
-  }
-  finish_scores(bench, bench->rss[*null] * bench->weight[*null], score);
-}
-
-/* Responses of a batch interleaved, so that every column of the bench is read once for all. */
-typedef struct response_batch {
-  size_t count;
-  float *white; /* n × FG_ENGINE_BATCH */
-  float *sums;  /* (rank + columns) × FG_ENGINE_BATCH */
-  double *one;  /* n */
-  double rss[FG_ENGINE_BATCH], lowest[FG_ENGINE_BATCH];
-} response_batch;
-
-static void whiten_batch(const fg_engine_bench *bench, fg_engine_noise noise, const double *y,
-                         response_batch *batch) {
-  size_t n = bench->training->n;
-  for (size_t b = 0; b < FG_ENGINE_BATCH; b++) {
-    bool used = b < batch->count;
-    batch->rss[b] = 0;
-    if (used) {
-      memcpy(batch->one, y + b * n, n * sizeof *batch->one);
-      fg_engine_whiten(bench->training, noise, batch->one);
-    }
-    for (size_t i = 0; i < n; i++) {
-      batch->white[i * FG_ENGINE_BATCH + b] = used ? (float)batch->one[i] : 0;
-      batch->rss[b] += used ? batch->one[i] * batch->one[i] : 0;
-    }
-  }
-}
-
-/* Columns in blocks whose sums stay in the nearest cache. */
-enum { BLOCK = 64 };
-
-/* One value of every response of a batch. */
-typedef float batch_lane __attribute__((vector_size(FG_ENGINE_BATCH * sizeof(float)), aligned(4)));
-
-/* Four rows at a time, so that a sum is loaded and stored once for all four. */
-__attribute__((target_clones("avx2", "default"))) static void
-products(size_t n, size_t width, const float *rows, const float *white, float *sums) {
-  const batch_lane *at = (const batch_lane *)white;
-  batch_lane *sum = (batch_lane *)sums;
-  memset(sums, 0, width * sizeof *sum);
-  for (size_t from = 0; from < width; from += BLOCK) {
-    size_t to = from + BLOCK < width ? from + BLOCK : width, i = 0;
-    for (; i + 4 <= n; i += 4) {
-      const float *row = rows + i * width;
-      batch_lane a = at[i], b = at[i + 1], c = at[i + 2], d = at[i + 3];
-      for (size_t k = from; k < to; k++)
-        sum[k] += row[k] * a + row[width + k] * b + row[2 * width + k] * c + row[3 * width + k] * d;
-    }
-    for (; i < n; i++)
-      for (size_t k = from; k < to; k++)
-        sum[k] += rows[i * width + k] * at[i];
-  }
-}
-
-static double sum_of_squares(const float *v, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += (double)v[i * FG_ENGINE_BATCH] * v[i * FG_ENGINE_BATCH];
-  return sum;
-}
-
-static void score_at(const fg_engine_bench *bench, size_t j, const double *y, response_batch *batch,
-                     fg_engine_score *score) {
-  size_t width = bench->rank + bench->columns;
-  whiten_batch(bench, bench->noise[j], y, batch);
-  products(bench->training->n, width, bench->rows[j], batch->white, batch->sums);
-  for (size_t b = 0; b < batch->count; b++) {
-    double rss = batch->rss[b] - sum_of_squares(batch->sums + b, bench->rank);
-    const float *sums = batch->sums + bench->rank * FG_ENGINE_BATCH + b;
-    if (rss * bench->weight[j] < batch->lowest[b]) batch->lowest[b] = rss * bench->weight[j];
-    for (size_t v = 0; v < bench->versions; v++) {
-      const fg_engine_version *version = &bench->version[v];
-      double left = rss - sum_of_squares(sums + version->first * FG_ENGINE_BATCH, version->rank);
-      take_ratio(bench, v, j, fmax(left, FG_ENGINE_RATIO_LEAST * rss) * bench->weight[j],
-                 score + b * bench->candidates);
-    }
-  }
-}
-
-fg_status fg_engine_bench_score(fg_context *ctx, const fg_engine_bench *bench, size_t count,
-                                const double *y, fg_engine_score *score) {
-  size_t n = bench->training->n, width = bench->rank + bench->columns;
-  fg_status status = FG_OK;
-  response_batch batch = {.count = count};
-  clear_scores(count * bench->candidates, score);
-  size_t block = FG_ENGINE_BATCH * sizeof *batch.white;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, block, (void **)&batch.white));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, width, block, (void **)&batch.sums));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *batch.one, (void **)&batch.one));
-  for (size_t b = 0; b < count; b++)
-    batch.lowest[b] = INFINITY;
-  for (size_t j = 0; j < bench->noises; j++)
-    score_at(bench, j, y, &batch, score);
-  for (size_t b = 0; b < count; b++)
-    finish_scores(bench, batch.lowest[b], score + b * bench->candidates);
-exit:
-  free(batch.white);
-  free(batch.sums);
-  free(batch.one);
-  return status;
 }

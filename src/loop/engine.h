@@ -116,6 +116,7 @@ double fg_engine_response(const fg_engine_training *training, size_t i);
 
 typedef struct fg_engine_version {
   size_t candidate, start, first, rank; /* columns of the bench */
+  bool between;                         /* constant in groups: judged between them */
   double share, length;                 /* |MWf|²/|Wf|² and mean |MWf|², at the null's noise */
 } fg_engine_version;
 
@@ -133,18 +134,22 @@ typedef struct fg_engine_bench {
   double (*shape)[FG_LOOP_SHAPES]; /* versions */
   fg_engine_version *version;
   size_t versions, columns, rank, freedom, widest; /* columns of one version, at most */
+  size_t between_rank;                             /* what groups may differ by */
   fg_engine_noise noise[FG_ENGINE_NOISES];
   double weight[FG_ENGINE_NOISES]; /* exp(log terms / freedom): noises compare by rss × weight */
   size_t noises;
-  double rss[FG_ENGINE_NOISES]; /* of the training's y without any candidate, whitened */
-  double *gain;                 /* noises × versions: what each takes away from it */
+  double rss[FG_ENGINE_NOISES];         /* of the training's y without any candidate, whitened */
+  double between_rss[FG_ENGINE_NOISES]; /* of that, what groups differ by */
+  double *gain;                         /* noises × versions: what each takes away from it */
   fg_engine_span null[FG_ENGINE_NOISES];
-  float *rows[FG_ENGINE_NOISES]; /* n × (rank + columns), row by row; only where rows are few */
+  /* n × (rank + columns + between_rank), row by row; only where rows are few */
+  float *rows[FG_ENGINE_NOISES];
   fg_engine_watch watch;
 } fg_engine_bench;
 
 typedef struct fg_engine_score {
   double ratio; /* residual sum with the candidate / without, each at its best noise */
+  double own;   /* the same of what its F ratio is made of: between groups, or all rows */
   double z;     /* a normal deviate of it, or NaN where it cannot be scored */
   size_t version, noise;
 } fg_engine_score;
@@ -166,5 +171,7 @@ double fg_engine_deviate(double ratio, double k, double freedom);
 double fg_engine_deviate_to_f(double z, double k, double nu);
 /* Extra freedom of a candidate: rank and shapes. */
 double fg_engine_version_freedom(const fg_engine_bench *bench, const fg_engine_version *version);
+/* Freedom without the candidate: of the groups, or of the rows. */
+double fg_engine_version_whole(const fg_engine_bench *bench, const fg_engine_version *version);
 
 #endif

@@ -150,10 +150,11 @@ static void take_critical(const fg_engine_bench *bench, const fg_engine_null *nu
   double edge = critical_deviate(null->accept_p, judgement->tests);
   for (size_t c = 0; c < judgement->means; c++) {
     if (!isfinite(judgement->z[c])) continue;
-    double k = fg_engine_version_freedom(bench, &bench->version[judgement->score[c].version]);
+    const fg_engine_version *version = &bench->version[judgement->score[c].version];
+    double k = fg_engine_version_freedom(bench, version);
     judgement->z_critical[c] = scale ? scale[c].middle + edge * scale[c].spread : edge;
-    judgement->f_critical[c] =
-        fg_engine_deviate_to_f(judgement->z_critical[c], k, (double)bench->freedom - k);
+    judgement->f_critical[c] = fg_engine_deviate_to_f(judgement->z_critical[c], k,
+                                                      fg_engine_version_whole(bench, version) - k);
   }
 }
 

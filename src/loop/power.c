@@ -24,7 +24,8 @@ typedef struct power_bench {
 
 static fg_status open_power(fg_context *ctx, const fg_engine_bench *bench, power_bench *power) {
   size_t n = bench->training->n;
-  *power = (power_bench){.bench = bench, .width = bench->rank + bench->columns};
+  *power =
+      (power_bench){.bench = bench, .width = bench->rank + bench->columns + bench->between_rank};
   size_t row = (power->width + 1) * sizeof(double);
   for (size_t j = 0; j < bench->noises; j++) {
     FG_TRY(fg_memory_allocate(ctx, DRAWS, row, (void **)&power->noise[j]));
@@ -110,40 +111,50 @@ static fg_status set_effect(fg_context *ctx, power_bench *power, size_t version)
   return FG_OK;
 }
 
-/* Residual sums of noise + a f at one noise model: without the candidate, and with its best
- * version. */
-static void residual_sums(const power_bench *power, size_t c, size_t b, size_t j, double a,
-                          double *null, double *with) {
+typedef struct draw_sums {
+  double null, with; /* weighted residual sums: without the candidate, with its best version */
+  double own;        /* with over without, between groups */
+} draw_sums;
+
+static double squares(const double *e, const double *f, double a, size_t from, size_t count) {
+  double sum = 0;
+  for (size_t k = from; k < from + count; k++)
+    sum += (e[k] + a * f[k]) * (e[k] + a * f[k]);
+  return sum;
+}
+
+/* Of noise + a f at one noise model. */
+static draw_sums residual_sums(const power_bench *power, size_t c, size_t b, size_t j, double a) {
   const fg_engine_bench *bench = power->bench;
   const double *e = power->noise[j] + b * (power->width + 1), *f = power->effect[j];
   double rss = e[power->width] + 2 * a * power->cross[j][b] + a * a * f[power->width], gain = 0;
-  for (size_t k = 0; k < bench->rank; k++)
-    rss -= (e[k] + a * f[k]) * (e[k] + a * f[k]);
+  rss -= squares(e, f, a, 0, bench->rank);
   for (size_t v = 0; v < bench->versions; v++) {
     const fg_engine_version *version = &bench->version[v];
-    double sum = 0;
-    if (version->candidate != c) continue;
-    for (size_t k = bench->rank + version->first; k < bench->rank + version->first + version->rank;
-         k++)
-      sum += (e[k] + a * f[k]) * (e[k] + a * f[k]);
-    gain = fmax(gain, sum);
+    if (version->candidate == c)
+      gain = fmax(gain, squares(e, f, a, bench->rank + version->first, version->rank));
   }
-  *null = rss * bench->weight[j];
-  *with = fmax(rss - gain, 1e-12 * rss) * bench->weight[j];
+  double between = squares(e, f, a, bench->rank + bench->columns, bench->between_rank);
+  return (draw_sums){rss * bench->weight[j], fmax(rss - gain, 1e-12 * rss) * bench->weight[j],
+                     between > 0 ? fmax(1 - gain / between, 1e-12) : 1};
 }
 
-static double share_found(const power_bench *power, size_t c, double k, double critical, double a) {
+static double share_found(const power_bench *power, size_t c, const fg_engine_version *version,
+                          double critical, double a) {
   const fg_engine_bench *bench = power->bench;
+  double k = fg_engine_version_freedom(bench, version);
   size_t found = 0;
   for (size_t b = 0; b < DRAWS; b++) {
-    double null = INFINITY, with = INFINITY;
+    draw_sums best = {INFINITY, INFINITY, 1};
     for (size_t j = 0; j < bench->noises; j++) {
-      double one_null, one_with;
-      residual_sums(power, c, b, j, a, &one_null, &one_with);
-      null = fmin(null, one_null);
-      with = fmin(with, one_with);
+      draw_sums one = residual_sums(power, c, b, j, a);
+      best.null = fmin(best.null, one.null);
+      if (!(one.with < best.with)) continue;
+      best.with = one.with;
+      best.own = one.own;
     }
-    found += fg_engine_deviate(with / null, k, (double)bench->freedom) >= critical;
+    double ratio = version->between ? best.own : best.with / best.null;
+    found += fg_engine_deviate(ratio, k, fg_engine_version_whole(bench, version)) >= critical;
   }
   return (double)found / DRAWS;
 }
@@ -159,14 +170,15 @@ static fg_status one_amplitude(fg_context *ctx, power_bench *power, size_t c, do
   size_t middle = first + count / 2;
   *amplitude = NAN;
   if (count == 0) return FG_OK;
-  double k = fg_engine_version_freedom(bench, &bench->version[middle]);
-  if (bench->version[middle].rank == 0 || k + 2 > (double)bench->freedom) return FG_OK;
+  const fg_engine_version *version = &bench->version[middle];
+  double k = fg_engine_version_freedom(bench, version);
+  if (version->rank == 0 || k + 2 > fg_engine_version_whole(bench, version)) return FG_OK;
   FG_TRY(set_effect(ctx, power, middle));
   double low = 1e-3, high = 1e3;
-  if (share_found(power, c, k, critical, high) < wanted) return FG_OK;
+  if (share_found(power, c, version, critical, high) < wanted) return FG_OK;
   for (int i = 0; i < HALVINGS; i++) {
     double between = sqrt(low * high);
-    if (share_found(power, c, k, critical, between) < wanted)
+    if (share_found(power, c, version, critical, between) < wanted)
       low = between;
     else
       high = between;

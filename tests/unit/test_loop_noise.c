@@ -9,6 +9,7 @@
 #include <cmocka.h>
 #include <gsl/gsl_linalg.h>
 
+#include "effect/table_effects.h"
 #include "loop/engine.h"
 #include "support/near.h"
 #include "support/random.h"
@@ -142,6 +143,64 @@ static void deviates_and_ratios_agree(void **state) {
       }
 }
 
+enum { LEVELS = 6, EACH = 4 };
+
+/* 1 - r² of the groups' means against a column that is constant in groups. */
+static double left_of_means(const double *y, const double *of_group) {
+  double mean[LEVELS] = {0}, xx = 0, xy = 0, yy = 0, x0 = 0, y0 = 0;
+  for (size_t i = 0; i < LEVELS * EACH; i++)
+    mean[i / EACH] += y[i] / EACH;
+  for (size_t g = 0; g < LEVELS; g++) {
+    x0 += of_group[g] / LEVELS;
+    y0 += mean[g] / LEVELS;
+  }
+  for (size_t g = 0; g < LEVELS; g++) {
+    xx += (of_group[g] - x0) * (of_group[g] - x0);
+    xy += (of_group[g] - x0) * (mean[g] - y0);
+    yy += (mean[g] - y0) * (mean[g] - y0);
+  }
+  return 1 - xy * xy / (xx * yy);
+}
+
+/* However many rows a group has: its F ratio is that of the means, with the groups' freedom. */
+static void what_is_constant_in_groups_is_judged_between_them(void **state) {
+  (void)state;
+  double y[LEVELS * EACH], one[LEVELS * EACH], value[LEVELS * EACH], of_group[LEVELS];
+  size_t in_group[LEVELS * EACH];
+  uint64_t seed = 11;
+  for (size_t i = 0; i < LEVELS * EACH; i++) {
+    if (i % EACH == 0) of_group[i / EACH] = random_gaussian(&seed);
+    value[i] = of_group[i / EACH];
+    y[i] = 2 * value[i] + random_gaussian(&seed);
+    one[i] = 1;
+    in_group[i] = i / EACH;
+  }
+  fg_loop_coordinate column = {
+      .name = "x", .value = value, .distinct = LEVELS, .low = -3, .high = 3};
+  fg_loop_problem problem = {.rows = LEVELS * EACH,
+                             .parameters = 1,
+                             .residual = y,
+                             .jacobian = one,
+                             .group = in_group,
+                             .groups = LEVELS,
+                             .group_level = true,
+                             .series = in_group,
+                             .coordinate = &column,
+                             .coordinates = 1};
+  const fg_loop_candidate trend = {.effect = fg_loop_table_effects()};
+  fg_engine_training training;
+  fg_engine_bench bench = {0};
+  fg_engine_score score;
+  size_t null;
+  assert_int_equal(fg_engine_training_build(NULL, &problem, NULL, NULL, &training), FG_OK);
+  assert_int_equal(fg_engine_bench_build(NULL, &training, &trend, 1, &bench), FG_OK);
+  fg_engine_bench_score_data(&bench, &score, &null);
+  assert_near(score.own, left_of_means(y, of_group), 1e-9);
+  assert_near(score.z, fg_engine_deviate(score.own, 1, LEVELS - 1), 1e-9);
+  fg_engine_bench_free(&bench);
+  fg_engine_training_free(&training);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(whitening_undoes_the_covariance),
@@ -149,6 +208,7 @@ int main(void) {
       cmocka_unit_test(the_determinant_is_the_covariance_s),
       cmocka_unit_test(least_squares_solves_the_normal_equations),
       cmocka_unit_test(deviates_and_ratios_agree),
+      cmocka_unit_test(what_is_constant_in_groups_is_judged_between_them),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
