@@ -11,7 +11,7 @@
 
 #include "scan/png_reader.h"
 
-enum { PAIR_PIXELS_MOST = 1 << 22, PAIR_FILTER_MIXED = 5 };
+enum { PAIR_PIXELS_MOST = 1 << 19, PAIR_FILTER_MIXED = 5 };
 
 typedef struct recipe {
   uint32_t width, height;
