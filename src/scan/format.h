@@ -25,6 +25,9 @@ typedef struct fg_format {
   fg_status (*read_row)(fg_context *ctx, void *reader, void *samples);
   /* Reads and checks what is left of the file. */
   fg_status (*finish)(fg_context *ctx, void *reader);
+  /* Ends what reads the source beside the caller; after that only close is left. NULL: nothing
+   * does. */
+  void (*stop)(void *reader);
   void (*close)(void *reader); /* NULL is fine */
 } fg_format;
 

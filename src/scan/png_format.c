@@ -18,6 +18,7 @@
 typedef struct png_reader {
   fg_png *png;
   const char *name;
+  bool beside;      /* a thread may help */
   size_t row_bytes; /* of samples */
   uint8_t *image;   /* of an interlaced one, once it is decoded */
   size_t rows_read;
@@ -61,9 +62,9 @@ static void fill_header(const fg_png_header *png, fg_scan_header *header) {
 
 static fg_status open_png(fg_context *ctx, fg_source *source, const fg_scan_options *options,
                           void **out, fg_scan_header *header) {
-  (void)options;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(png_reader), out));
   png_reader *reader = *out;
+  reader->beside = options->threads != 1;
   reader->name = source->name;
   FG_TRY(fg_png_open(ctx, source, &reader->png));
   const fg_png_header *png = fg_png_get_header(reader->png);
@@ -80,7 +81,8 @@ static fg_status open_png(fg_context *ctx, fg_source *source, const fg_scan_opti
 }
 
 static fg_status start(fg_context *ctx, void *r) {
-  return fg_png_start(ctx, ((png_reader *)r)->png);
+  png_reader *reader = r;
+  return fg_png_start(ctx, reader->png, reader->beside);
 }
 
 static fg_status decode_whole(fg_context *ctx, png_reader *reader) {
@@ -108,6 +110,10 @@ static fg_status finish(fg_context *ctx, void *r) {
   return fg_png_finish(ctx, ((png_reader *)r)->png);
 }
 
+static void stop(void *r) {
+  fg_png_stop(((png_reader *)r)->png);
+}
+
 static void close_png(void *r) {
   png_reader *reader = r;
   if (!reader) return;
@@ -126,4 +132,5 @@ const fg_format fg_format_png = {.name = "PNG",
                                  .start = start,
                                  .read_row = read_row,
                                  .finish = finish,
+                                 .stop = stop,
                                  .close = close_png};

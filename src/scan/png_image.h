@@ -1,19 +1,10 @@
-/* The image of a common PNG (whole samples, not interlaced) without libpng: the IDAT chunks through
- * ISA-L's inflate, which takes a third of the time that zlib takes, and our own filters. Memory is
- * a block of rows, whatever the height.
- *
- * What is wrong is told in the words that libpng has for it. */
+/* The image of a common PNG (whole samples, not interlaced) without libpng: its stream
+ * (png_stream.h) and our own filters. Memory is a few blocks of rows, whatever the height; a large
+ * image is decompressed on a thread of its own, ahead of the rows that are taken. */
 #ifndef FG_SCAN_PNG_IMAGE_H
 #define FG_SCAN_PNG_IMAGE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "foilgauge/status.h"
-#include "scan/source.h"
-
-enum { FG_PNG_CHUNK_HEAD_BYTES = 8 };
+#include "scan/png_stream.h"
 
 typedef struct fg_png_image_layout {
   uint32_t height_px;
@@ -23,21 +14,24 @@ typedef struct fg_png_image_layout {
 
 typedef struct fg_png_image fg_png_image;
 
-/* The source stands behind the head of the first IDAT chunk, which is `head`. FG_ERR_MEMORY. */
+/* The source is as fg_png_stream_open wants it; until the image is stopped, nobody else may read
+ * it. `beside`: a thread may help. FG_ERR_MEMORY. */
 fg_status fg_png_image_create(fg_context *ctx, fg_source *source,
                               const uint8_t head[FG_PNG_CHUNK_HEAD_BYTES],
-                              const fg_png_image_layout *layout, fg_png_image **image);
+                              const fg_png_image_layout *layout, bool beside, fg_png_image **image);
+
+/* Ends the thread; after that only fg_png_image_free is left, unless all rows were taken. */
+void fg_png_image_stop(fg_png_image *image);
 void fg_png_image_free(fg_png_image *image); /* NULL is fine */
 
 /* The next row, as the file's samples are (16 bit: big-endian); good until the next call. NULL: an
- * error. */
+ * error, and the image is stopped. */
 const uint8_t *fg_png_image_next(fg_png_image *image);
 
-/* After the last row: checks that the data end there, and goes to the first chunk that is no IDAT,
- * whose head goes to `head`. False: an error. */
+/* After the last row: as fg_png_stream_finish. */
 bool fg_png_image_finish(fg_png_image *image, uint8_t head[FG_PNG_CHUNK_HEAD_BYTES]);
 
-/* What is wrong, in libpng's words. NULL: the file ends too early, or cannot be read on. */
+/* As fg_png_stream_problem, of the rows too. */
 const char *fg_png_image_problem(const fg_png_image *image);
 
 #endif

@@ -227,18 +227,18 @@ static bool is_common(const fg_png_header *header) {
   return !header->interlaced && !header->has_palette && header->bit_depth >= 8;
 }
 
-static fg_status start_image(fg_context *ctx, fg_png *png) {
+static fg_status start_image(fg_context *ctx, fg_png *png, bool beside) {
   const fg_png_header *header = &png->header;
   size_t pixel_bytes = (size_t)(header->channels * header->bit_depth / 8);
   fg_png_image_layout layout = {.height_px = header->height_px,
                                 .pixel_bytes = pixel_bytes,
                                 .row_bytes = header->width_px * pixel_bytes};
-  return fg_png_image_create(ctx, png->source, png->head, &layout, &png->image);
+  return fg_png_image_create(ctx, png->source, png->head, &layout, beside, &png->image);
 }
 
-fg_status fg_png_start(fg_context *ctx, fg_png *png) {
+fg_status fg_png_start(fg_context *ctx, fg_png *png, bool beside) {
   png->in_image = true;
-  if (is_common(&png->header) && !png->by_libpng) return start_image(ctx, png);
+  if (is_common(&png->header) && !png->by_libpng) return start_image(ctx, png, beside);
   return run(png, start, NULL) ? FG_OK : fail(ctx, png);
 }
 
@@ -298,6 +298,10 @@ static void finish(fg_png *reader, void *unused) {
 fg_status fg_png_finish(fg_context *ctx, fg_png *png) {
   if (png->image) FG_TRY(finish_image(ctx, png));
   return run(png, finish, NULL) ? FG_OK : fail(ctx, png);
+}
+
+void fg_png_stop(fg_png *png) {
+  if (png->image) fg_png_image_stop(png->image);
 }
 
 void fg_png_close(fg_png *png) {

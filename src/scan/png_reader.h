@@ -38,8 +38,8 @@ const fg_png_header *fg_png_get_header(const fg_png *png);
 fg_status fg_png_open_reference(fg_context *ctx, fg_source *source, fg_png **png);
 
 /* Makes ready for rows; separate from opening, so that the caller can refuse a size before memory
- * for it is taken. */
-fg_status fg_png_start(fg_context *ctx, fg_png *png);
+ * for it is taken. `beside`: a thread may decompress beside the caller, and reads the source. */
+fg_status fg_png_start(fg_context *ctx, fg_png *png, bool beside);
 
 /* The next row's samples, all channels: one to a byte (up to 8 bits), one to a uint16_t in host
  * order (16 bits). `samples` holds the full width of the image even where a pass has fewer
@@ -48,6 +48,9 @@ fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples);
 
 /* Reads and checks everything from the last row to the end of the PNG. */
 fg_status fg_png_finish(fg_context *ctx, fg_png *png);
+
+/* Ends what reads the source beside the caller; after that only close is left. */
+void fg_png_stop(fg_png *png);
 
 void fg_png_close(fg_png *png); /* NULL is fine */
 

@@ -255,7 +255,10 @@ fg_status fg_scan_sha256(fg_context *ctx, fg_scan *scan, char hex[65]) {
   if (!source->regular && !scan->ended)
     return fg_fail(ctx, FG_ERR_USAGE, "%s: its SHA-256 is known after the last row only",
                    source->name);
-  if (!source->jumps && !scan->ended) scan->broken = true;
+  if (!source->jumps && !scan->ended) {
+    scan->broken = true;
+    if (scan->format->stop) scan->format->stop(scan->reader);
+  }
   return fg_source_sha256(ctx, source, hex);
 }
 

@@ -11,7 +11,7 @@
 
 #include "scan/png_reader.h"
 
-enum { PAIR_PIXELS_MOST = 1 << 19, PAIR_FILTER_MIXED = 5 };
+enum { PAIR_PIXELS_MOST = 1 << 21, PAIR_FILTER_MIXED = 5 };
 
 typedef struct recipe {
   uint32_t width, height;
@@ -155,7 +155,7 @@ static inline fg_status read_image(fg_png *png, reading *out) {
   out->size = row * h->height_px;
   out->rows = calloc(1, out->size);
   if (!out->rows) abort();
-  FG_TRY(fg_png_start(&out->context, png));
+  FG_TRY(fg_png_start(&out->context, png, true));
   for (uint32_t y = 0; y < h->height_px; y++)
     FG_TRY(fg_png_read_row(&out->context, png, out->rows + y * row));
   return fg_png_finish(&out->context, png);
