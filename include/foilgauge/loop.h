@@ -169,6 +169,7 @@ typedef struct fg_loop_effect {
   fg_loop_starts *starts;
   /* The shape is a place between rows: it cannot be refined by small steps. */
   bool stepwise;
+  bool cycle;      /* its shape is a period, its columns are sine and cosine */
   bool from_zero;  /* the amplitude is the largest size, not half the range */
   bool own_levels; /* each value that was measured has a level of its own: nothing is known between
                     */

@@ -228,7 +228,8 @@ static const fg_loop_effect curve_effects[] = {
      .accepts = smooth,
      .columns = two_columns,
      .basis = wave_basis,
-     .starts = wave_starts},
+     .starts = wave_starts,
+     .cycle = true},
     {0},
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "loop/bench_many.h"
 #include "loop/between.h"
 
 static size_t candidate_versions(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
@@ -16,14 +17,13 @@ static size_t candidate_versions(const fg_loop_problem *problem, const fg_loop_c
 static fg_status list_versions(fg_context *ctx, fg_engine_bench *bench) {
   const fg_loop_problem *problem = bench->training->problem;
   double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES];
-  size_t count = 0;
-  for (size_t c = 0; c < bench->candidates; c++)
-    count += candidate_versions(problem, &bench->candidate[c], starts);
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *bench->version, (void **)&bench->version));
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *bench->shape, (void **)&bench->shape));
+  size_t room[2] = {0};
   for (size_t c = 0; c < bench->candidates; c++) {
     size_t here = candidate_versions(problem, &bench->candidate[c], starts);
     size_t columns = fg_engine_candidate_columns(problem, &bench->candidate[c]);
+    size_t all = bench->versions + here;
+    FG_TRY(fg_memory_reserve(ctx, all, sizeof *bench->version, &room[0], (void **)&bench->version));
+    FG_TRY(fg_memory_reserve(ctx, all, sizeof *bench->shape, &room[1], (void **)&bench->shape));
     for (size_t s = 0; s < here; s++) {
       bench->version[bench->versions] = (fg_engine_version){.candidate = c, .start = s};
       bench->version[bench->versions].first = bench->columns;
@@ -149,9 +149,8 @@ static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
     if (status != FG_OK) break;
     bench->gain[f->noise * bench->versions + v] =
         explained(n, work + each, version->rank, f->residual);
-    if (bench->rows[f->noise])
-      put_rows(n, width, training->columns + version->first, work + each, version->rank,
-               bench->rows[f->noise]);
+    put_rows(n, width, training->columns + version->first, work + each, version->rank,
+             bench->rows[f->noise]);
   }
   free(work);
   return status;
@@ -181,7 +180,10 @@ static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
   if (few) put_rows(n, width, behind, between, bench->between_rank, bench->rows[j]);
   fg_engine_bench_tell(bench, j, bench->noises + 1);
   filling f = {bench, j, residual};
-  FG_TRY_EXIT(fg_parallel_run(ctx, 0, items, fill_versions, &f));
+  if (few)
+    FG_TRY_EXIT(fg_parallel_run(ctx, 0, items, fill_versions, &f));
+  else
+    FG_TRY_EXIT(fg_engine_bench_fill_many(ctx, bench, residual));
 exit:
   free(between);
   free(residual);

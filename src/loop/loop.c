@@ -118,9 +118,7 @@ static fg_status note_cycles(fg_context *ctx, const fg_engine_run *run) {
     const fg_loop_candidate *candidate = &run->candidate[c];
     const fg_loop_coordinate *at = &run->problem->coordinate[candidate->a];
     double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES];
-    bool cycles =
-        candidate->effect->shapes == 1 && !strcmp(candidate->effect->shape_name[0], "period");
-    if (!cycles || at->distinct <= FG_LOOP_STARTS) continue;
+    if (!candidate->effect->cycle || at->distinct <= FG_LOOP_STARTS) continue;
     size_t count = candidate->effect->starts(run->problem, candidate, starts);
     return fg_engine_note(ctx, run->result,
                           "Cycles over %s that are shorter than %.3g were not looked for.",

@@ -129,6 +129,11 @@ fg_status fg_engine_gather(fg_context *ctx, const fg_engine_training *training,
   const fg_loop_problem *problem = training->problem;
   size_t count = fg_engine_candidate_columns(problem, candidate);
   double *all = NULL;
+  if (training->n == problem->rows) {
+    candidate->effect->basis(problem, candidate, shape, columns);
+    refuse_overflow(columns, problem->rows * count);
+    return FG_OK;
+  }
   FG_TRY(fg_memory_allocate(ctx, problem->rows, (count + 1) * sizeof *all, (void **)&all));
   candidate->effect->basis(problem, candidate, shape, all);
   refuse_overflow(all, problem->rows * count);
