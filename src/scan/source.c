@@ -14,7 +14,6 @@
 /* What is stored of one at most: the largest scan that is read, of four channels. */
 #define STORE_BYTES ((uint64_t)32 << 30)
 enum { BUFFER_BYTES = FG_LEDGER_BLOCK_BYTES };
-#define NO_BLOCK UINT64_MAX
 
 static fg_status examine(fg_context *ctx, fg_source *source) {
   struct stat entry;
@@ -174,7 +173,7 @@ fg_status fg_source_store(fg_context *ctx, fg_source *source) {
 
 fg_status fg_source_jump(fg_context *ctx, fg_source *source) {
   source->jumps = true;
-  source->held = NO_BLOCK;
+  source->window = (fg_source_window){.buffer = source->buffer};
   if (source->stored || source->unsummed || source->ledger.mark) return FG_OK;
   return fg_ledger_open(ctx, source->size, &source->ledger);
 }
@@ -197,28 +196,45 @@ static ssize_t read_block(const fg_source *source, uint64_t block, uint8_t *out)
   return (ssize_t)done;
 }
 
-static bool hold_block(fg_source *source, uint64_t block) {
-  if (source->held == block) return true;
-  ssize_t got = read_block(source, block, source->buffer);
-  source->held = got < 0 ? NO_BLOCK : block;
-  source->end = got < 0 ? 0 : (size_t)got;
-  if (got < 0) source->error = errno;
-  if (got >= 0) fg_ledger_note(&source->ledger, block, source->buffer, source->end);
+static bool hold_block(fg_source *source, fg_source_window *window, uint64_t block) {
+  if (window->length > 0 && window->block == block) return true;
+  ssize_t got = read_block(source, block, window->buffer);
+  window->block = block;
+  window->length = got < 0 ? 0 : (size_t)got;
+  if (got < 0) window->error = errno;
+  if (got >= 0) fg_ledger_note(&source->ledger, block, window->buffer, window->length);
   return got >= 0;
 }
 
-ssize_t fg_source_read_at(fg_source *source, void *out, size_t wanted, uint64_t offset) {
+fg_status fg_source_window_open(fg_context *ctx, fg_source_window *window) {
+  *window = (fg_source_window){.buffer = NULL};
+  return fg_memory_allocate(ctx, FG_LEDGER_BLOCK_BYTES, 1, (void **)&window->buffer);
+}
+
+void fg_source_window_close(fg_source_window *window) {
+  free(window->buffer);
+  window->buffer = NULL;
+}
+
+ssize_t fg_source_read_window(fg_source *source, fg_source_window *window, void *out, size_t wanted,
+                              uint64_t offset) {
   size_t done = 0;
   while (done < wanted) {
-    if (!hold_block(source, (offset + done) / FG_LEDGER_BLOCK_BYTES)) return -1;
+    if (!hold_block(source, window, (offset + done) / FG_LEDGER_BLOCK_BYTES)) return -1;
     size_t from = (size_t)((offset + done) % FG_LEDGER_BLOCK_BYTES);
-    size_t taken = from < source->end ? source->end - from : 0;
+    size_t taken = from < window->length ? window->length - from : 0;
     if (taken == 0) break;
     if (taken > wanted - done) taken = wanted - done;
-    memcpy((uint8_t *)out + done, source->buffer + from, taken);
+    memcpy((uint8_t *)out + done, window->buffer + from, taken);
     done += taken;
   }
   return (ssize_t)done;
+}
+
+ssize_t fg_source_read_at(fg_source *source, void *out, size_t wanted, uint64_t offset) {
+  ssize_t got = fg_source_read_window(source, &source->window, out, wanted, offset);
+  if (got < 0) source->error = source->window.error;
+  return got;
 }
 
 fg_status fg_source_rewind(fg_context *ctx, fg_source *source) {

@@ -13,6 +13,14 @@
 #include "foilgauge/status.h"
 #include "scan/ledger.h"
 
+/* A block of a file that is read by jumps, for one reader of it. */
+typedef struct fg_source_window {
+  uint8_t *buffer; /* FG_LEDGER_BLOCK_BYTES */
+  uint64_t block;
+  size_t length; /* what the file has of it; 0: none is held */
+  int error;     /* errno of a failed read */
+} fg_source_window;
+
 typedef struct fg_source {
   char *name;      /* for error texts */
   int descriptor;  /* -1: none */
@@ -31,7 +39,7 @@ typedef struct fg_source {
   fg_sha256_stream sum; /* over all bytes received */
   char sha256[65];      /* "": not known yet */
   fg_ledger ledger;
-  uint64_t held; /* jumping: the block in the buffer, of which `end` bytes are there */
+  fg_source_window window; /* jumping */
 } fg_source;
 
 /* "-" is standard input. FG_ERR_IO: missing, a folder, no permission; with `only_file`: a pipe or a
@@ -55,6 +63,12 @@ fg_status fg_source_jump(fg_context *ctx, fg_source *source);
 
 /* At most `wanted` bytes from `offset` of a regular file; 0 at its end; -1: source->error. */
 ssize_t fg_source_read_at(fg_source *source, void *out, size_t wanted, uint64_t offset);
+
+/* The same through a window of one's own, whose errors it holds: from any thread. */
+fg_status fg_source_window_open(fg_context *ctx, fg_source_window *window);
+void fg_source_window_close(fg_source_window *window);
+ssize_t fg_source_read_window(fg_source *source, fg_source_window *window, void *out, size_t wanted,
+                              uint64_t offset);
 
 /* Back to the first byte of a regular file. */
 fg_status fg_source_rewind(fg_context *ctx, fg_source *source);

@@ -1,5 +1,4 @@
 /* TIFF and BigTIFF as one of the formats: what the tags say. */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,9 +7,6 @@
 #include "core/memory.h"
 #include "scan/format.h"
 #include "scan/tiff_reader.h"
-
-/* The most that libtiff may allocate at once. */
-#define ALLOCATION_MOST ((tmsize_t)1 << 30)
 
 /* ratio: the most that a byte can become; 0: not known. */
 static const struct {
@@ -47,57 +43,6 @@ static bool has_colour(const uint8_t *head, size_t length) {
   return false;
 }
 
-static tmsize_t on_read(thandle_t handle, void *out, tmsize_t wanted) {
-  fg_tiff *r = handle;
-  ssize_t got = fg_source_read_at(r->source, out, (size_t)wanted, r->position);
-  if (got > 0) r->position += (uint64_t)got;
-  return got;
-}
-
-static tmsize_t on_write(thandle_t handle, void *bytes, tmsize_t size) {
-  (void)handle;
-  (void)bytes;
-  (void)size;
-  return -1;
-}
-
-static toff_t on_seek(thandle_t handle, toff_t offset, int whence) {
-  fg_tiff *r = handle;
-  uint64_t base = whence == SEEK_CUR ? r->position : whence == SEEK_END ? r->source->size : 0;
-  if (base + offset > INT64_MAX) return (toff_t)-1;
-  r->position = base + offset;
-  return r->position;
-}
-
-static int on_close(thandle_t handle) {
-  (void)handle;
-  return 0;
-}
-
-static toff_t on_size(thandle_t handle) {
-  return ((fg_tiff *)handle)->source->size;
-}
-
-static int on_error(TIFF *tiff, void *user, const char *module, const char *format,
-                    va_list values) {
-  (void)tiff;
-  (void)module;
-  fg_tiff *r = user;
-  if (r->complained) return 1; /* the first one tells */
-  vsnprintf(r->words, sizeof r->words, format, values);
-  for (char *c = r->words; *c; c++)
-    if (!isprint((unsigned char)*c)) *c = '?';
-  r->complained = true;
-  return 1;
-}
-
-static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
-                      va_list values) {
-  fg_tiff *r = user;
-  if (strstr(format, "StripByteCounts")) r->counts_replaced = true;
-  return r->strict && r->in_image ? on_error(tiff, user, module, format, values) : 1;
-}
-
 static fg_status refuse(fg_context *ctx, const fg_tiff *r, const char *what, unsigned value) {
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: has %s (%u), which is not read; "
@@ -107,21 +52,15 @@ static fg_status refuse(fg_context *ctx, const fg_tiff *r, const char *what, uns
 }
 
 static fg_status open_tiff(fg_context *ctx, fg_tiff *r) {
-  TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-  if (!options) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: libtiff's reader");
-  TIFFOpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MOST);
-  TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, r);
-  TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, r);
-  /* m: no mapping; c: strips as they are. */
-  r->tiff = TIFFClientOpenExt(r->source->name, "rmc", r, on_read, on_write, on_seek, on_close,
-                              on_size, NULL, NULL, options);
-  TIFFOpenOptionsFree(options);
-  return r->tiff ? FG_OK : fg_tiff_fail(ctx, r, r->words);
+  r->main.source = r->source;
+  if (fg_tiff_handle_open(&r->main)) return FG_OK;
+  if (!r->main.words[0]) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: libtiff's reader");
+  return fg_tiff_fail(ctx, r, r->main.words);
 }
 
 static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_options *options,
                                    double *ratio) {
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_COMPRESSION, &r->compression);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_COMPRESSION, &r->compression);
   for (size_t i = 0; i < sizeof compressions / sizeof compressions[0]; i++) {
     if (compressions[i].code != r->compression) continue;
     if (compressions[i].lossy && !options->allow_lossy)
@@ -130,7 +69,7 @@ static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_op
                      "take it as it is with --allow-lossy",
                      r->source->name, compressions[i].name);
     *ratio = compressions[i].ratio;
-    r->strict = compressions[i].strict;
+    r->main.strict = compressions[i].strict;
     if (TIFFIsCODECConfigured(r->compression)) return FG_OK;
   }
   return refuse(ctx, r, "an unknown compression", r->compression);
@@ -139,12 +78,12 @@ static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_op
 static fg_status check_samples(fg_context *ctx, fg_tiff *r) {
   uint16_t bits = 1, channels = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG;
   uint32_t width = 0, height = 0;
-  TIFFGetField(r->tiff, TIFFTAG_IMAGEWIDTH, &width);
-  TIFFGetField(r->tiff, TIFFTAG_IMAGELENGTH, &height);
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_BITSPERSAMPLE, &bits);
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_SAMPLESPERPIXEL, &channels);
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_SAMPLEFORMAT, &format);
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_PLANARCONFIG, &planar);
+  TIFFGetField(r->main.tiff, TIFFTAG_IMAGEWIDTH, &width);
+  TIFFGetField(r->main.tiff, TIFFTAG_IMAGELENGTH, &height);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_SAMPLESPERPIXEL, &channels);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_SAMPLEFORMAT, &format);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_PLANARCONFIG, &planar);
   if (width == 0 || height == 0) return fg_tiff_fail(ctx, r, "its width or height is zero");
   if (bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 16)
     return refuse(ctx, r, "samples of odd size", bits);
@@ -163,7 +102,7 @@ static fg_status check_samples(fg_context *ctx, fg_tiff *r) {
 static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint16_t *red, *green, *blue;
   if (r->bits > 8 || r->channels > 1 ||
-      !TIFFGetField(r->tiff, TIFFTAG_COLORMAP, &red, &green, &blue))
+      !TIFFGetField(r->main.tiff, TIFFTAG_COLORMAP, &red, &green, &blue))
     return fg_tiff_fail(ctx, r, "its palette is missing");
   header->has_palette = true;
   header->palette_size = (size_t)1 << r->bits;
@@ -175,7 +114,7 @@ static fg_status copy_palette(fg_context *ctx, fg_tiff *r, fg_scan_header *heade
 
 static fg_status check_colours(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint16_t photometric = PHOTOMETRIC_MINISBLACK;
-  if (!TIFFGetField(r->tiff, TIFFTAG_PHOTOMETRIC, &photometric))
+  if (!TIFFGetField(r->main.tiff, TIFFTAG_PHOTOMETRIC, &photometric))
     photometric = r->channels >= 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK;
   switch (photometric) {
   case PHOTOMETRIC_MINISWHITE:
@@ -187,7 +126,7 @@ static fg_status check_colours(fg_context *ctx, fg_tiff *r, fg_scan_header *head
     return copy_palette(ctx, r, header);
   case PHOTOMETRIC_YCBCR:
     if (r->compression != COMPRESSION_JPEG) break;
-    TIFFSetField(r->tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+    TIFFSetField(r->main.tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
     header->colour = true;
     return FG_OK;
   case PHOTOMETRIC_RGB:
@@ -209,10 +148,10 @@ static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
   uint16_t unit = RESUNIT_INCH;
   header->dpi[0] = header->dpi[1] = NAN;
   header->no_dpi = "no XResolution and YResolution";
-  if (!TIFFGetField(r->tiff, TIFFTAG_XRESOLUTION, &x) ||
-      !TIFFGetField(r->tiff, TIFFTAG_YRESOLUTION, &y))
+  if (!TIFFGetField(r->main.tiff, TIFFTAG_XRESOLUTION, &x) ||
+      !TIFFGetField(r->main.tiff, TIFFTAG_YRESOLUTION, &y))
     return;
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
   header->no_dpi = "its ResolutionUnit is none";
   if (unit != RESUNIT_INCH && unit != RESUNIT_CENTIMETER) return;
   header->no_dpi = NULL;
@@ -224,12 +163,12 @@ static void fill_resolution(const fg_tiff *r, fg_scan_header *header) {
 
 static void note_oddities(const fg_tiff *r, fg_scan_header *header) {
   uint16_t orientation = ORIENTATION_TOPLEFT;
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_ORIENTATION, &orientation);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_ORIENTATION, &orientation);
   if (orientation != ORIENTATION_TOPLEFT)
     snprintf(header->warning, sizeof header->warning,
              "its orientation tag (%u) is left alone: positions are those of the rows as stored",
              orientation);
-  else if (!TIFFLastDirectory(r->tiff))
+  else if (!TIFFLastDirectory(r->main.tiff))
     snprintf(header->warning, sizeof header->warning,
              "it holds more than one image: only the first is read");
 }
@@ -258,6 +197,7 @@ static fg_status open_format(fg_context *ctx, fg_source *source, const fg_scan_o
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(fg_tiff), out));
   fg_tiff *r = *out;
   r->source = source;
+  r->threads = options->threads;
   FG_TRY(read_tags(ctx, r, options, header));
   note_oddities(r, header);
   /* Rows are planned when the size has been agreed to, and for that no row may be too wide. */
@@ -282,7 +222,7 @@ static fg_status finish(fg_context *ctx, void *reader) {
 static void close_format(void *reader) {
   fg_tiff *r = reader;
   if (!r) return;
-  if (r->tiff) TIFFClose(r->tiff);
+  fg_tiff_handle_close(&r->main);
   fg_tiff_free_rows(r);
   free(r);
 }

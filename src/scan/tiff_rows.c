@@ -1,6 +1,7 @@
 /* Rows of a TIFF. Uncompressed strips are read directly, by their offsets: a row at a time, however
  * long the strip is, and whatever its byte count says (in files beyond 4 GiB the 32-bit count has
- * wrapped round). Compressed strips go through TIFFReadScanline, tiles through a row of tiles. */
+ * wrapped round). Compressed strips and tiles are decoded in batches (tiff_batch.c); long strips,
+ * and those of odd codecs, go through TIFFReadScanline. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,9 +36,9 @@ static fg_status read_plane_row(fg_context *ctx, fg_tiff *r, uint64_t plane, uin
   size_t bytes = plane_row_bytes(r);
   uint16_t fill_order = FILLORDER_MSB2LSB;
   FG_TRY(read_at(ctx, r, row_offset(r, plane, r->row), out, bytes));
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_FILLORDER, &fill_order);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_FILLORDER, &fill_order);
   if (fill_order == FILLORDER_LSB2MSB) TIFFReverseBits(out, (tmsize_t)bytes);
-  if (r->bits == 16 && TIFFIsByteSwapped(r->tiff))
+  if (r->bits == 16 && TIFFIsByteSwapped(r->main.tiff))
     TIFFSwabArrayOfShort((uint16_t *)(void *)out, (tmsize_t)(bytes / 2));
   return FG_OK;
 }
@@ -54,45 +55,24 @@ static fg_status fetch_direct(fg_context *ctx, fg_tiff *r, uint8_t *row) {
 }
 
 static fg_status fetch_scanline(fg_context *ctx, fg_tiff *r, uint8_t *row) {
-  if (TIFFReadScanline(r->tiff, row, (uint32_t)r->row, 0) == 1 && !r->complained) return FG_OK;
-  return fg_tiff_fail(ctx, r, r->words);
-}
-
-/* Decodes the tiles that hold the row, and puts their rows side by side. */
-static fg_status load_tiles(fg_context *ctx, fg_tiff *r) {
-  size_t pixel_bits = (size_t)(r->bits * r->channels);
-  size_t tile_row = r->tile_width * pixel_bits / 8;
-  for (uint64_t x = 0; x < r->width; x += r->tile_width) {
-    tmsize_t got = TIFFReadTile(r->tiff, r->tile, (uint32_t)x, (uint32_t)r->row, 0, 0);
-    if (got < 0 || (size_t)got < r->tile_bytes || r->complained)
-      return fg_tiff_fail(ctx, r, r->words);
-    size_t from = (size_t)x * pixel_bits / 8, bytes = tile_row;
-    if (from + bytes > r->row_bytes) bytes = r->row_bytes - from;
-    for (size_t y = 0; y < r->tile_height; y++)
-      memcpy(r->tile_rows + y * r->row_bytes + from, r->tile + y * tile_row, bytes);
-  }
-  return FG_OK;
-}
-
-static fg_status fetch_from_tiles(fg_context *ctx, fg_tiff *r, uint8_t *row) {
-  size_t y = (size_t)(r->row % r->tile_height);
-  if (y == 0) FG_TRY(load_tiles(ctx, r));
-  memcpy(row, r->tile_rows + y * r->row_bytes, r->row_bytes);
-  return FG_OK;
+  if (TIFFReadScanline(r->main.tiff, row, (uint32_t)r->row, 0) == 1 && !r->main.complained)
+    return FG_OK;
+  return fg_tiff_fail(ctx, r, r->main.words);
 }
 
 static fg_status plan_tiles(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
-  TIFFGetField(r->tiff, TIFFTAG_TILEWIDTH, &r->tile_width);
-  TIFFGetField(r->tiff, TIFFTAG_TILELENGTH, &r->tile_height);
-  uint64_t size = TIFFTileSize64(r->tiff), pixel_bits = (uint64_t)(r->bits * r->channels);
+  TIFFGetField(r->main.tiff, TIFFTAG_TILEWIDTH, &r->tile_width);
+  TIFFGetField(r->main.tiff, TIFFTAG_TILELENGTH, &r->tile_height);
+  uint64_t size = TIFFTileSize64(r->main.tiff), pixel_bits = (uint64_t)(r->bits * r->channels);
   if (r->separate) return fg_tiff_fail(ctx, r, "its colours lie in separate tiles");
   if (r->tile_width == 0 || r->tile_height == 0 || r->tile_width % 8 || size == 0 ||
       size > TILE_BYTES_MOST || r->tile_width > TILE_BYTES_MOST ||
       r->tile_height > TILE_BYTES_MOST || size != r->tile_width * pixel_bits / 8 * r->tile_height)
     return fg_tiff_fail(ctx, r, "its tiles have no sensible size");
   r->tile_bytes = (size_t)size;
-  header->memory_bytes = size + (uint64_t)r->row_bytes * r->tile_height;
-  r->fetch = fetch_from_tiles;
+  fg_tiff_plan_tiles(r);
+  header->memory_bytes = fg_tiff_batch_memory(r);
+  r->fetch = fg_tiff_fetch_batch;
   return FG_OK;
 }
 
@@ -112,7 +92,7 @@ static fg_status check_offsets(fg_context *ctx, const fg_tiff *r, uint64_t plane
 
 /* Says it when byte counts are wrong; the offsets are what counts. */
 static void note_counts(const fg_tiff *r, const uint64_t *counts, fg_scan_header *header) {
-  bool wrong = r->counts_replaced;
+  bool wrong = r->main.counts_replaced;
   for (uint64_t strip = 0; strip < r->strip_count && !wrong; strip++) {
     uint64_t first = strip * r->rows_per_strip % r->height, rows = r->height - first;
     if (rows > r->rows_per_strip) rows = r->rows_per_strip;
@@ -127,12 +107,12 @@ static void note_counts(const fg_tiff *r, const uint64_t *counts, fg_scan_header
 static fg_status plan_direct(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint64_t planes = r->separate ? (uint64_t)r->channels : 1, *counts = NULL;
   uint64_t strips = (r->height + r->rows_per_strip - 1) / r->rows_per_strip * planes;
-  r->strip_count = TIFFNumberOfStrips(r->tiff);
-  if (strips != r->strip_count || !TIFFGetField(r->tiff, TIFFTAG_STRIPOFFSETS, &r->offsets) ||
+  r->strip_count = TIFFNumberOfStrips(r->main.tiff);
+  if (strips != r->strip_count || !TIFFGetField(r->main.tiff, TIFFTAG_STRIPOFFSETS, &r->offsets) ||
       !r->offsets)
     return fg_tiff_fail(ctx, r, "its strips have no usable offsets");
   FG_TRY(check_offsets(ctx, r, planes));
-  if (!r->separate && TIFFGetField(r->tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) && counts)
+  if (!r->separate && TIFFGetField(r->main.tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) && counts)
     note_counts(r, counts, header);
   r->fetch = fetch_direct;
   return FG_OK;
@@ -141,22 +121,24 @@ static fg_status plan_direct(fg_context *ctx, fg_tiff *r, fg_scan_header *header
 static fg_status plan_scanlines(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint64_t *counts = NULL, largest = 0;
   if (r->separate) return fg_tiff_fail(ctx, r, "its colours lie in separate compressed planes");
-  if (TIFFScanlineSize64(r->tiff) != r->row_bytes)
+  if (TIFFScanlineSize64(r->main.tiff) != r->row_bytes)
     return fg_tiff_fail(ctx, r, "its rows have no sensible size");
-  if (!TIFFGetField(r->tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) || !counts)
+  if (!TIFFGetField(r->main.tiff, TIFFTAG_STRIPBYTECOUNTS, &counts) || !counts)
     return fg_tiff_fail(ctx, r, "its strips have no usable byte counts");
-  for (uint32_t strip = 0; strip < TIFFNumberOfStrips(r->tiff); strip++)
+  for (uint32_t strip = 0; strip < TIFFNumberOfStrips(r->main.tiff); strip++)
     if (counts[strip] > largest) largest = counts[strip];
-  header->memory_bytes = largest < r->source->size ? largest : r->source->size;
-  r->fetch = fetch_scanline;
+  if (largest > r->source->size) largest = r->source->size;
+  bool together = fg_tiff_plan_strips(r);
+  header->memory_bytes = together ? largest * r->threads + fg_tiff_batch_memory(r) : largest;
+  r->fetch = together ? fg_tiff_fetch_batch : fetch_scanline;
   return FG_OK;
 }
 
 fg_status fg_tiff_plan_rows(fg_context *ctx, fg_tiff *r, fg_scan_header *header) {
   uint32_t rows_per_strip = 0;
   r->row_bytes = ((size_t)r->width * (size_t)(r->bits * r->channels) + 7) / 8;
-  if (TIFFIsTiled(r->tiff)) return plan_tiles(ctx, r, header);
-  TIFFGetFieldDefaulted(r->tiff, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
+  if (TIFFIsTiled(r->main.tiff)) return plan_tiles(ctx, r, header);
+  TIFFGetFieldDefaulted(r->main.tiff, TIFFTAG_ROWSPERSTRIP, &rows_per_strip);
   r->rows_per_strip = rows_per_strip < r->height ? rows_per_strip : r->height;
   if (rows_per_strip == 0) return fg_tiff_fail(ctx, r, "its strips have no rows");
   return r->compression == COMPRESSION_NONE ? plan_direct(ctx, r, header)
@@ -164,12 +146,10 @@ fg_status fg_tiff_plan_rows(fg_context *ctx, fg_tiff *r, fg_scan_header *header)
 }
 
 fg_status fg_tiff_start_rows(fg_context *ctx, fg_tiff *r) {
-  r->in_image = true;
-  r->complained = false;
+  r->main.in_image = true;
+  r->main.complained = false;
   FG_TRY(fg_memory_allocate(ctx, r->row_bytes, 1, (void **)&r->packed));
-  if (r->tile_bytes == 0) return FG_OK;
-  FG_TRY(fg_memory_allocate(ctx, r->tile_bytes, 1, (void **)&r->tile));
-  return fg_memory_allocate(ctx, r->row_bytes, r->tile_height, (void **)&r->tile_rows);
+  return r->batch_rows ? fg_tiff_start_batch(ctx, r) : FG_OK;
 }
 
 fg_status fg_tiff_read_row(fg_context *ctx, fg_tiff *r, void *samples) {
@@ -186,6 +166,5 @@ fg_status fg_tiff_read_row(fg_context *ctx, fg_tiff *r, void *samples) {
 
 void fg_tiff_free_rows(fg_tiff *r) {
   free(r->packed);
-  free(r->tile);
-  free(r->tile_rows);
+  fg_tiff_free_batch(r);
 }

@@ -5,7 +5,7 @@
 
 fg_status fg_tiff_fail(fg_context *ctx, const fg_tiff *r, const char *what) {
   char place[64] = "";
-  if (r->in_image)
+  if (r->main.in_image)
     snprintf(place, sizeof place, " (row %llu of %llu)", (unsigned long long)r->row + 1,
              (unsigned long long)r->height);
   if (r->source->error)

@@ -245,6 +245,95 @@ static void loss_is_refused_unless_allowed(void **state) {
   free(path);
 }
 
+enum { WIDE = 1501, HIGH = 1400, STRIP = 16, WIDE_TILE = 256 };
+
+static uint8_t wide_at(size_t x, size_t y) {
+  return (uint8_t)(x / 7 + y * 3 + (x * 31 + y * 17) % 5);
+}
+
+static char *write_wide(uint16_t compression, bool tiled) {
+  char *path = save_bytes(NULL, 0);
+  TIFF *tiff = TIFFOpen(path, "wl");
+  static uint8_t part[WIDE_TILE * WIDE_TILE];
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, WIDE);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, HIGH);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
+  if (!tiled) TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, STRIP);
+  if (tiled) TIFFSetField(tiff, TIFFTAG_TILEWIDTH, WIDE_TILE);
+  if (tiled) TIFFSetField(tiff, TIFFTAG_TILELENGTH, WIDE_TILE);
+  for (size_t y = 0; y < HIGH; y += tiled ? WIDE_TILE : 1)
+    for (size_t x = 0; x < (tiled ? WIDE : 1); x += WIDE_TILE) {
+      for (size_t i = 0; i < (tiled ? sizeof part : WIDE); i++)
+        part[i] = tiled ? wide_at(x + i % WIDE_TILE, y + i / WIDE_TILE) : wide_at(i, y);
+      if (tiled)
+        assert_true(TIFFWriteTile(tiff, part, (uint32_t)x, (uint32_t)y, 0, 0) > 0);
+      else
+        assert_int_equal(TIFFWriteScanline(tiff, part, (uint32_t)y, 0), 1);
+    }
+  TIFFClose(tiff);
+  return path;
+}
+
+static fg_status read_wide(fg_context *ctx, const char *path, unsigned threads, uint8_t *rows) {
+  fg_scan *scan = NULL;
+  FG_TRY(fg_scan_open(ctx, path, &(fg_scan_options){.dpi = 600, .threads = threads}, &scan));
+  fg_status status = fg_scan_read_rows(ctx, scan, HIGH, rows, WIDE);
+  fg_scan_close(scan);
+  return status;
+}
+
+/* Strips and tiles by the hundred, by as many threads as there are, more, and one. */
+static void threads_change_nothing(void **state) {
+  (void)state;
+  static const uint16_t compressions[] = {COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
+                                          COMPRESSION_PACKBITS};
+  uint8_t *rows = malloc(WIDE * HIGH);
+  for (int c = 0; c < 3; c++)
+    for (int tiled = 0; tiled < 2; tiled++) {
+      char *path = write_wide(compressions[c], tiled);
+      for (unsigned threads = 0; threads < 6; threads++) {
+        fg_context ctx = {0};
+        memset(rows, 0, WIDE * HIGH);
+        if (read_wide(&ctx, path, threads, rows) != FG_OK) fail_msg("%s", ctx.message);
+        for (size_t i = 0; i < WIDE * HIGH; i++)
+          if (rows[i] != wide_at(i % WIDE, i / WIDE))
+            fail_msg("%d, tiled %d, %u threads: pixel %zu", compressions[c], tiled, threads, i);
+      }
+      unlink(path);
+      free(path);
+    }
+  free(rows);
+}
+
+/* Two strips are damaged: the first of them is named, whichever thread had it. */
+static void damaged_strips_are_told_alike(void **state) {
+  (void)state;
+  fg_context ctx[2] = {0};
+  char *path = write_wide(COMPRESSION_ADOBE_DEFLATE, false);
+  uint8_t *rows = malloc(WIDE * HIGH);
+  TIFF *tiff = TIFFOpen(path, "r");
+  const uint64_t places[] = {TIFFGetStrileOffset(tiff, 40), TIFFGetStrileOffset(tiff, 43)};
+  TIFFClose(tiff);
+  FILE *file = fopen(path, "r+b");
+  for (int i = 0; i < 2; i++) {
+    fseek(file, (long)places[i] + 20, SEEK_SET);
+    for (int k = 0; k < 40; k++)
+      fputc(0xff, file);
+  }
+  fclose(file);
+  for (int round = 0; round < 20; round++) {
+    assert_int_equal(read_wide(&ctx[0], path, 1, rows), FG_ERR_DATA);
+    assert_int_equal(read_wide(&ctx[1], path, 4, rows), FG_ERR_DATA);
+    assert_string_equal(ctx[0].message, ctx[1].message);
+    if (!strstr(ctx[0].message, "row 641 of 1400")) fail_msg("%s", ctx[0].message);
+  }
+  free(rows);
+  unlink(path);
+  free(path);
+}
+
 /* scanimage writes one strip whose 32-bit count has wrapped; the test's file is small, so the count
  * is plainly wrong: the rows are read all the same, and it is said. */
 static void wrapped_byte_counts_are_said_and_read(void **state) {
@@ -377,6 +466,8 @@ int main(void) {
       cmocka_unit_test(separate_planes_are_read),
       cmocka_unit_test(resolution_is_in_inch_or_cm),
       cmocka_unit_test(loss_is_refused_unless_allowed),
+      cmocka_unit_test(threads_change_nothing),
+      cmocka_unit_test(damaged_strips_are_told_alike),
       cmocka_unit_test(wrapped_byte_counts_are_said_and_read),
       cmocka_unit_test(beyond_4_gib_the_last_rows_are_there),
       cmocka_unit_test(pnm_of_every_kind),

@@ -1,0 +1,81 @@
+/* What libtiff reads through, and where its complaints go. */
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scan/tiff_reader.h"
+
+/* The most that libtiff may allocate at once. */
+#define ALLOCATION_MOST ((tmsize_t)1 << 30)
+
+static tmsize_t on_read(thandle_t handle, void *out, tmsize_t wanted) {
+  fg_tiff_handle *h = handle;
+  ssize_t got = h->window
+                    ? fg_source_read_window(h->source, h->window, out, (size_t)wanted, h->position)
+                    : fg_source_read_at(h->source, out, (size_t)wanted, h->position);
+  if (got > 0) h->position += (uint64_t)got;
+  return got;
+}
+
+static tmsize_t on_write(thandle_t handle, void *bytes, tmsize_t size) {
+  (void)handle;
+  (void)bytes;
+  (void)size;
+  return -1;
+}
+
+static toff_t on_seek(thandle_t handle, toff_t offset, int whence) {
+  fg_tiff_handle *h = handle;
+  uint64_t base = whence == SEEK_CUR ? h->position : whence == SEEK_END ? h->source->size : 0;
+  if (base + offset > INT64_MAX) return (toff_t)-1;
+  h->position = base + offset;
+  return h->position;
+}
+
+static int on_close(thandle_t handle) {
+  (void)handle;
+  return 0;
+}
+
+static toff_t on_size(thandle_t handle) {
+  return ((fg_tiff_handle *)handle)->source->size;
+}
+
+static int on_error(TIFF *tiff, void *user, const char *module, const char *format,
+                    va_list values) {
+  (void)tiff;
+  (void)module;
+  fg_tiff_handle *h = user;
+  if (h->complained) return 1; /* the first one tells */
+  vsnprintf(h->words, sizeof h->words, format, values);
+  for (char *c = h->words; *c; c++)
+    if (!isprint((unsigned char)*c)) *c = '?';
+  h->complained = true;
+  return 1;
+}
+
+static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
+                      va_list values) {
+  fg_tiff_handle *h = user;
+  if (strstr(format, "StripByteCounts")) h->counts_replaced = true;
+  return h->strict && h->in_image ? on_error(tiff, user, module, format, values) : 1;
+}
+
+bool fg_tiff_handle_open(fg_tiff_handle *h) {
+  TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+  if (!options) return false;
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options, ALLOCATION_MOST);
+  TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, h);
+  TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, h);
+  /* m: no mapping; c: strips as they are. */
+  h->tiff = TIFFClientOpenExt(h->source->name, "rmc", h, on_read, on_write, on_seek, on_close,
+                              on_size, NULL, NULL, options);
+  TIFFOpenOptionsFree(options);
+  if (!h->tiff && !h->words[0]) snprintf(h->words, sizeof h->words, "it cannot be decoded");
+  return h->tiff;
+}
+
+void fg_tiff_handle_close(fg_tiff_handle *h) {
+  if (h->tiff) TIFFClose(h->tiff);
+  h->tiff = NULL;
+}
