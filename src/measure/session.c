@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "measure/place.h"
+#include "vision/anchor.h"
 #include "vision/edges.h"
 #include "vision/segment.h"
 #include "vision/trace.h"
@@ -18,6 +19,9 @@ enum { WORKERS_MAX = 63 };
 /* A strip without bumps is a foil that failed when its width is the design's within this factor,
  * and some other thing (a scratch, a hair) when it is not. */
 #define WIDTH_FACTOR 1.6
+
+/* A foil that lies so many strip widths from the scan's border may be cut by it. */
+#define BORDER_WIDTHS 2.0
 
 /* The reader helps when islands wait with more than this: workers that fall behind would otherwise
  * fill the memory with tiles. */
@@ -138,8 +142,31 @@ static double least_object_px(const fg_measurement *m) {
   return OBJECT_LEAST * m->design.bump_radius_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
-static fg_status measure_island(fg_context *ctx, fg_session *s, const job *j) {
+static void free_job(job *j) {
+  fg_tiles_free(&j->view);
+  fg_island_free(&j->island);
+}
+
+/* Puts the island on tiles of its own. */
+static fg_status anchor(fg_context *ctx, fg_session *s, job *j) {
+  const fg_anchor_options options = {.least_px = least_object_px(s->measurement),
+                                     .border_px =
+                                         BORDER_WIDTHS * expected_width_px(s->measurement)};
+  fg_anchored a;
+  FG_TRY(fg_anchor_island(ctx, &j->view, &j->island, &options, &a));
+  if (!a.anchored) return FG_OK;
+  free_job(j);
+  j->view = a.view;
+  j->island = a.island;
+  for (int k = 0; k < 2; k++)
+    j->origin_px[k] += a.corner_px[k];
+  count_specks(s, a.specks);
+  return FG_OK;
+}
+
+static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   fg_segmentation seg;
+  FG_TRY(anchor(ctx, s, j));
   FG_TRY(fg_segment(ctx, &j->view, &j->island, least_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
   pthread_mutex_lock(&s->lock);
@@ -148,11 +175,6 @@ static fg_status measure_island(fg_context *ctx, fg_session *s, const job *j) {
   fg_status status = measure_objects(ctx, s, j, &seg);
   fg_segmentation_free(&seg);
   return status;
-}
-
-static void free_job(job *j) {
-  fg_tiles_free(&j->view);
-  fg_island_free(&j->island);
 }
 
 /* About what a job's pixels take, the tiles around the island with them. */

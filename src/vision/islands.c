@@ -67,6 +67,17 @@ static void widen(fg_island *island, int32_t x, int32_t y, int32_t width, int32_
   island->height = low - island->y;
 }
 
+fg_status fg_island_append(fg_context *ctx, fg_island *island, int32_t columns, int32_t column,
+                           int32_t row) {
+  FG_TRY(append_tile(ctx, island, row * columns + column));
+  if (island->count == 1) {
+    island->x = column;
+    island->y = row;
+  }
+  widen(island, column, row, 1, 1);
+  return FG_OK;
+}
+
 /* The larger of two groups takes in the other. */
 static fg_status merge(fg_context *ctx, fg_islands *islands, size_t a, size_t b, size_t *into) {
   a = find(islands, a);

@@ -32,6 +32,10 @@ fg_status fg_islands_advance(fg_context *ctx, fg_islands *islands);
 bool fg_islands_next(fg_islands *islands, fg_island *island);
 
 void fg_islands_free(fg_islands *islands);
+
+/* Adds a tile to an island in an area of `columns` tiles across. FG_ERR_MEMORY. */
+fg_status fg_island_append(fg_context *ctx, fg_island *island, int32_t columns, int32_t column,
+                           int32_t row);
 void fg_island_free(fg_island *island);
 
 /* Cuts an island out of the scan: `view` shows its tiles and what lies around them, in coordinates

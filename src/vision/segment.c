@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
-#include "vision/cv_bridge.h"
+#include "vision/grid.h"
 
 /* A block belongs to an object when its excess is above this share of the typical contrast and
  * this many standard deviations of the background. */
@@ -41,10 +41,10 @@ static fg_status find_background(fg_context *ctx, const fg_island *island, fg_se
            tiles->medians + (size_t)(y + out->grid_y) * (size_t)tiles->columns +
                (size_t)out->grid_x,
            width * sizeof *out->grid);
-  return fg_cv_median(ctx, out->grid, out->grid_columns, out->grid_rows);
+  return fg_grid_median(ctx, out->grid, out->grid_columns, out->grid_rows);
 }
 
-/* Calls for every block inside the scan of one tile. */
+/* Calls for every block inside the scan of one tile; the excess is NaN where it is not known. */
 typedef void visit_block(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data);
 
 static void visit_tile(fg_segmentation *out, int32_t column, int32_t row, visit_block *visit,
@@ -70,7 +70,7 @@ typedef struct sample {
 static void take_sample(fg_segmentation *out, int32_t x, int32_t y, float excess, void *data) {
   (void)out;
   sample *s = data;
-  if ((x + y) % 3 == 0) s->values[s->count++] = fabsf(excess);
+  if ((x + y) % 3 == 0 && !isnan(excess)) s->values[s->count++] = fabsf(excess);
 }
 
 /* Robust sd of the background: the median of |excess| over the tiles around the island that are not
@@ -185,7 +185,8 @@ static fg_status label_objects(fg_context *ctx, const fg_island *island, double 
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, 1, (void **)&m.cells));
   if (out->contrast >= CONTRAST_LEAST) visit_island(out, island, mark_block, &m);
-  FG_TRY_EXIT(fg_cv_label(ctx, m.cells, out->width, out->height, out->labels, &blobs, &blob_count));
+  FG_TRY_EXIT(
+      fg_grid_label(ctx, m.cells, out->width, out->height, out->labels, &blobs, &blob_count));
   FG_TRY_EXIT(collect_objects(ctx, blobs, blob_count, least_px, out));
 exit:
   free(m.cells);

@@ -178,23 +178,29 @@ static size_t tile_bytes(const fg_tiles *tiles) {
   return sizeof(fg_tile) + FG_TILE_PX * FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
 }
 
-static fg_status keep_tile(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t strip) {
-  size_t width = FG_TILE_PX * (size_t)tiles->bytes_per_pixel;
-  size_t from = (size_t)column * width, size = tile_bytes(tiles);
-  const uint8_t *source = fg_tiles_strip(tiles, strip);
-  fg_tile *tile = NULL;
+fg_status fg_tiles_add(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t row,
+                       fg_tile **tile) {
+  size_t size = tile_bytes(tiles);
   FG_TRY(fg_budget_take(ctx, tiles->budget, size));
-  fg_status status = fg_memory_allocate(ctx, 1, size, (void **)&tile);
+  fg_status status = fg_memory_allocate(ctx, 1, size, (void **)tile);
   if (status != FG_OK) {
     fg_budget_give(tiles->budget, size);
     return status;
   }
-  atomic_init(&tile->holders, 1);
+  atomic_init(&(*tile)->holders, 1);
+  tiles->tiles[(size_t)row * (size_t)tiles->columns + (size_t)column] = *tile;
+  return FG_OK;
+}
+
+static fg_status keep_tile(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t strip) {
+  size_t width = FG_TILE_PX * (size_t)tiles->bytes_per_pixel, from = (size_t)column * width;
+  const uint8_t *source = fg_tiles_strip(tiles, strip);
+  fg_tile *tile = NULL;
+  FG_TRY(fg_tiles_add(ctx, tiles, column, strip, &tile));
   size_t valid = from + width > row_bytes(tiles) ? row_bytes(tiles) - from : width;
   for (int64_t y = 0; y < fg_tiles_strip_rows(tiles, strip); y++)
     memcpy(tile->pixels + (size_t)y * width, source + (size_t)y * row_bytes(tiles) + from, valid);
   copy_blocks(tiles, column, strip, tile->blocks);
-  tiles->tiles[(size_t)strip * (size_t)tiles->columns + (size_t)column] = tile;
   return FG_OK;
 }
 

@@ -11,6 +11,7 @@
 
 #include <math.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -73,6 +74,10 @@ fg_status fg_tiles_add_strip(fg_context *ctx, fg_tiles *tiles, const void *rows,
 
 /* After the last strip. */
 fg_status fg_tiles_finish(fg_context *ctx, fg_tiles *tiles);
+
+/* Makes a tile of zeros where there is none. FG_ERR_MEMORY; FG_ERR_DATA: beyond the budget. */
+fg_status fg_tiles_add(fg_context *ctx, fg_tiles *tiles, int32_t column, int32_t row,
+                       fg_tile **tile);
 
 /* Lets one tile go. Its memory is free when nobody else shows it. */
 void fg_tiles_drop(fg_tiles *tiles, int32_t column, int32_t row);

@@ -1,0 +1,359 @@
+#include "vision/anchor.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "vision/grid.h"
+#include "vision/levels.h"
+#include "vision/sheet.h"
+
+enum {
+  BLOCKS = FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE,
+  MARGIN_TILES = 4, /* around what is hot: the view's border is not the scan's */
+  /* Blocks around a hot one that are kept. The scan keeps a tile around each that it wants, so that
+   * 64 pixels around every one of a wanted tile are there; a strip's corner may reach some pixels
+   * into a tile that is not wanted. */
+  REACH_BLOCKS = 6,
+  PIECE_BLOCKS = 8, /* a part of fewer hot blocks is dust, not a piece of a strip */
+  ROUNDS_MOST = 6,
+};
+typedef struct work {
+  const fg_tiles *tiles;
+  const fg_island *island;
+  const fg_anchor_options *options;
+  uint8_t *own; /* of each of `tiles`: it is the island's */
+  int64_t corner_px[2];
+  fg_sheet sheet;
+  int32_t width, height; /* of the sheet, in blocks */
+  uint8_t *hot, *near;   /* of each block: holds a hot pixel; lies around one of a kept part */
+  int32_t *labels;       /* of the hot blocks */
+  fg_blob *parts;
+  bool *kept; /* of each part */
+  int32_t part_count;
+} work;
+
+static fg_levels find_own_levels(const work *w) {
+  size_t histogram[FG_LEVEL_COUNTS] = {0};
+  for (size_t i = 0; i < w->island->count; i++) {
+    const fg_tile *tile = w->tiles->tiles[w->island->tiles[i]];
+    if (tile) fg_levels_count(tile, w->tiles->bytes_per_pixel, UINT64_MAX, histogram);
+  }
+  return fg_levels_find(histogram);
+}
+
+/* The leftmost and the uppermost hot pixel of one tile, where they are beyond those known. */
+static void reach_out(const fg_tile *tile, int bytes_per_pixel, const fg_levels *l,
+                      const int64_t first_px[2], int64_t low_px[2]) {
+  if (first_px[0] >= low_px[0] && first_px[1] >= low_px[1]) return;
+  for (int64_t y = 0; y < FG_TILE_PX; y++)
+    for (int64_t x = 0; x < FG_TILE_PX; x++) {
+      if (first_px[0] + x >= low_px[0] && first_px[1] + y >= low_px[1]) continue;
+      if (!fg_levels_is_hot(l, fg_tile_count(tile, bytes_per_pixel, (size_t)(y * FG_TILE_PX + x))))
+        continue;
+      low_px[0] = first_px[0] + x < low_px[0] ? first_px[0] + x : low_px[0];
+      low_px[1] = first_px[1] + y < low_px[1] ? first_px[1] + y : low_px[1];
+    }
+}
+
+/* Where to begin: at the island's outermost hot pixels, those of dust as well. */
+static void guess_corner(const work *w, const fg_levels *l, int64_t low_px[2]) {
+  low_px[0] = w->tiles->width_px - 1;
+  low_px[1] = w->tiles->height_px - 1;
+  for (size_t i = 0; i < w->island->count; i++) {
+    const fg_tile *tile = w->tiles->tiles[w->island->tiles[i]];
+    const int64_t first_px[2] = {(int64_t)(w->island->tiles[i] % w->tiles->columns) * FG_TILE_PX,
+                                 (int64_t)(w->island->tiles[i] / w->tiles->columns) * FG_TILE_PX};
+    if (tile) reach_out(tile, w->tiles->bytes_per_pixel, l, first_px, low_px);
+  }
+}
+
+static void free_sheet(work *w) {
+  fg_sheet_free(&w->sheet);
+  free(w->hot);
+  free(w->near);
+  free(w->labels);
+  w->hot = w->near = NULL;
+  w->labels = NULL;
+}
+
+/* Up to the island's end, and as much around it as what is hot needs. */
+static fg_status cut_sheet(fg_context *ctx, work *w, const int64_t low_px[2]) {
+  int32_t size[2];
+  const int32_t end[2] = {w->island->x + w->island->width, w->island->y + w->island->height};
+  free_sheet(w);
+  for (int k = 0; k < 2; k++) {
+    w->corner_px[k] = low_px[k] - MARGIN_TILES * FG_TILE_PX;
+    int64_t length_px = (int64_t)end[k] * FG_TILE_PX - low_px[k];
+    size[k] = (int32_t)(length_px / FG_TILE_PX) + 2 + 2 * MARGIN_TILES;
+  }
+  FG_TRY(fg_sheet_cut(ctx, w->tiles, w->corner_px, size[0], size[1], &w->sheet));
+  w->width = size[0] * FG_BLOCKS_PER_TILE;
+  w->height = size[1] * FG_BLOCKS_PER_TILE;
+  size_t count = (size_t)w->width * (size_t)w->height;
+  FG_TRY(fg_memory_allocate(ctx, count, 1, (void **)&w->hot));
+  FG_TRY(fg_memory_allocate(ctx, count, 1, (void **)&w->near));
+  return fg_memory_allocate(ctx, count, sizeof *w->labels, (void **)&w->labels);
+}
+
+static size_t block_at(const work *w, int32_t x, int32_t y) {
+  return (size_t)y * (size_t)w->width + (size_t)x;
+}
+
+/* The tile that a block of the sheet lies on, and the block's first pixel in it. */
+static const fg_tile *tile_of(const work *w, int32_t x, int32_t y, size_t *first) {
+  *first = (size_t)(y % FG_BLOCKS_PER_TILE * FG_BLOCK_PX * FG_TILE_PX +
+                    x % FG_BLOCKS_PER_TILE * FG_BLOCK_PX);
+  return fg_tiles_at(&w->sheet.tiles, x / FG_BLOCKS_PER_TILE, y / FG_BLOCKS_PER_TILE);
+}
+
+static bool holds_hot(const fg_tile *tile, int bytes_per_pixel, size_t first, const fg_levels *l) {
+  for (size_t y = 0; y < FG_BLOCK_PX; y++)
+    for (size_t x = 0; x < FG_BLOCK_PX; x++)
+      if (fg_levels_is_hot(l, fg_tile_count(tile, bytes_per_pixel, first + y * FG_TILE_PX + x)))
+        return true;
+  return false;
+}
+
+static void mark_hot(work *w, const fg_levels *l) {
+  size_t first;
+  for (int32_t y = 0; y < w->height; y++)
+    for (int32_t x = 0; x < w->width; x++) {
+      const fg_tile *tile = tile_of(w, x, y, &first);
+      w->hot[block_at(w, x, y)] = tile && fg_sheet_is_whole(&w->sheet, x, y) &&
+                                  holds_hot(tile, w->tiles->bytes_per_pixel, first, l);
+    }
+}
+
+/* Whether a block's middle lies on a tile of the island: what lies on none is another's. */
+static bool is_own(const work *w, int32_t x, int32_t y) {
+  int64_t px = w->corner_px[0] + (int64_t)x * FG_BLOCK_PX + FG_BLOCK_PX / 2;
+  int64_t py = w->corner_px[1] + (int64_t)y * FG_BLOCK_PX + FG_BLOCK_PX / 2;
+  if (px < 0 || py < 0 || px >= w->tiles->width_px || py >= w->tiles->height_px) return false;
+  return w->own[(size_t)(py / FG_TILE_PX) * (size_t)w->tiles->columns + (size_t)(px / FG_TILE_PX)];
+}
+
+static fg_status find_parts(fg_context *ctx, work *w, size_t *specks, bool *large) {
+  free(w->parts);
+  free(w->kept);
+  w->parts = NULL;
+  w->kept = NULL;
+  FG_TRY(fg_grid_label(ctx, w->hot, w->width, w->height, w->labels, &w->parts, &w->part_count));
+  FG_TRY(fg_memory_allocate(ctx, (size_t)w->part_count, sizeof *w->kept, (void **)&w->kept));
+  for (int32_t y = 0; y < w->height; y++)
+    for (int32_t x = 0; x < w->width; x++) {
+      int32_t label = w->labels[block_at(w, x, y)];
+      if (label && !w->kept[label - 1]) w->kept[label - 1] = is_own(w, x, y);
+    }
+  *specks = 0;
+  *large = false;
+  for (int32_t i = 0; i < w->part_count; i++) {
+    const fg_blob *part = &w->parts[i];
+    bool piece = part->area >= PIECE_BLOCKS;
+    *specks += w->kept[i] && !piece;
+    w->kept[i] = w->kept[i] && piece;
+    *large |= w->kept[i] && hypot((double)part->width, (double)part->height) * FG_BLOCK_PX >=
+                                w->options->least_px;
+  }
+  return FG_OK;
+}
+
+static bool is_kept(const work *w, int32_t x, int32_t y) {
+  int32_t label = w->labels[block_at(w, x, y)];
+  return label && w->kept[label - 1];
+}
+
+/* Marks what lies around the kept parts. False: not all of it is there. */
+static bool mark_near(work *w) {
+  memset(w->near, 0, (size_t)w->width * (size_t)w->height);
+  for (int32_t y = 0; y < w->height; y++)
+    for (int32_t x = 0; x < w->width; x++) {
+      if (!is_kept(w, x, y)) continue;
+      if (x < REACH_BLOCKS || y < REACH_BLOCKS || x + REACH_BLOCKS >= w->width ||
+          y + REACH_BLOCKS >= w->height)
+        return false;
+      for (int32_t v = y - REACH_BLOCKS; v <= y + REACH_BLOCKS; v++)
+        memset(w->near + block_at(w, x - REACH_BLOCKS, v), 1, 2 * REACH_BLOCKS + 1);
+    }
+  for (int32_t y = 0; y < w->height; y++)
+    for (int32_t x = 0; x < w->width; x++)
+      if (w->near[block_at(w, x, y)] && !fg_sheet_is_whole(&w->sheet, x, y)) return false;
+  return true;
+}
+
+/* Of the kept parts; the first and last of their pixels. */
+static void find_low(const work *w, const fg_levels *l, int64_t low_px[2]) {
+  size_t first;
+  low_px[0] = w->sheet.tiles.width_px;
+  low_px[1] = w->sheet.tiles.height_px;
+  for (int32_t y = 0; y < w->height; y++)
+    for (int32_t x = 0; x < w->width; x++) {
+      const int64_t first_px[2] = {(int64_t)x * FG_BLOCK_PX, (int64_t)y * FG_BLOCK_PX};
+      if ((first_px[0] >= low_px[0] && first_px[1] >= low_px[1]) || !is_kept(w, x, y)) continue;
+      const fg_tile *tile = tile_of(w, x, y, &first);
+      for (int64_t i = 0; i < FG_BLOCK_PX * FG_BLOCK_PX; i++) {
+        int64_t px = i % FG_BLOCK_PX, py = i / FG_BLOCK_PX;
+        if (!fg_levels_is_hot(l, fg_tile_count(tile, w->tiles->bytes_per_pixel,
+                                               first + (size_t)(py * FG_TILE_PX + px))))
+          continue;
+        low_px[0] = first_px[0] + px < low_px[0] ? first_px[0] + px : low_px[0];
+        low_px[1] = first_px[1] + py < low_px[1] ? first_px[1] + py : low_px[1];
+      }
+    }
+  for (int k = 0; k < 2; k++)
+    low_px[k] += w->corner_px[k];
+}
+
+/* Bits of a tile's blocks in a mask of blocks. */
+static uint64_t bits_of(const work *w, const uint8_t *mask, int32_t column, int32_t row) {
+  uint64_t bits = 0;
+  for (int b = 0; b < BLOCKS; b++)
+    if (mask[block_at(w, column * FG_BLOCKS_PER_TILE + b % FG_BLOCKS_PER_TILE,
+                      row * FG_BLOCKS_PER_TILE + b / FG_BLOCKS_PER_TILE)])
+      bits |= (uint64_t)1 << b;
+  return bits;
+}
+
+static fg_levels find_near_levels(const work *w) {
+  size_t histogram[FG_LEVEL_COUNTS] = {0};
+  for (int32_t row = 0; row < w->sheet.tiles.rows; row++)
+    for (int32_t column = 0; column < w->sheet.tiles.columns; column++) {
+      const fg_tile *tile = fg_tiles_at(&w->sheet.tiles, column, row);
+      if (tile)
+        fg_levels_count(tile, w->tiles->bytes_per_pixel, bits_of(w, w->near, column, row),
+                        histogram);
+    }
+  return fg_levels_find(histogram);
+}
+
+/* Whether the kept parts lie clear of the scan's border. */
+static bool is_inside(const work *w) {
+  double margin = w->options->border_px;
+  for (int32_t i = 0; i < w->part_count; i++) {
+    const fg_blob *p = &w->parts[i];
+    double x = (double)(w->corner_px[0] + (int64_t)p->x * FG_BLOCK_PX);
+    double y = (double)(w->corner_px[1] + (int64_t)p->y * FG_BLOCK_PX);
+    if (w->kept[i] && (x < margin || y < margin ||
+                       x + p->width * FG_BLOCK_PX > (double)w->tiles->width_px - margin ||
+                       y + p->height * FG_BLOCK_PX > (double)w->tiles->height_px - margin))
+      return false;
+  }
+  return true;
+}
+
+/* Repeats until corner and levels stand. False: they do not, or the island cannot be cut anew. */
+static fg_status settle(fg_context *ctx, work *w, size_t *specks, bool *settled) {
+  int64_t low_px[2], found_px[2];
+  bool large, moved = true;
+  fg_levels l = find_own_levels(w);
+  *settled = false;
+  if (!l.found) return FG_OK;
+  guess_corner(w, &l, low_px);
+  for (int round = 0; round < ROUNDS_MOST && !*settled; round++) {
+    if (moved) FG_TRY(cut_sheet(ctx, w, low_px));
+    mark_hot(w, &l);
+    FG_TRY(find_parts(ctx, w, specks, &large));
+    if (!large || !is_inside(w) || !mark_near(w)) return FG_OK;
+    find_low(w, &l, found_px);
+    fg_levels next = find_near_levels(w);
+    moved = found_px[0] != low_px[0] || found_px[1] != low_px[1];
+    *settled = !moved && next.limit == l.limit && next.light == l.light;
+    memcpy(low_px, found_px, sizeof low_px);
+    l = next;
+  }
+  return FG_OK;
+}
+
+/* The median of a tile's blocks that are near, those without a hot pixel if there are any. */
+static float tile_median(const fg_tile *tile, uint64_t near, uint64_t hot) {
+  float values[BLOCKS];
+  size_t count = 0;
+  uint64_t taken = near & ~hot ? near & ~hot : near;
+  for (int b = 0; b < BLOCKS; b++)
+    if (taken >> b & 1) values[count++] = tile->blocks[b];
+  return fg_select_float(values, count, count / 2);
+}
+
+/* What is not near is not known; its pixels are background to whoever looks across. */
+static void forget_far(fg_tile *tile, int bytes_per_pixel, uint64_t near, float median) {
+  for (size_t b = 0; b < BLOCKS; b++) {
+    if (near >> b & 1) continue;
+    size_t first =
+        b / FG_BLOCKS_PER_TILE * FG_BLOCK_PX * FG_TILE_PX + b % FG_BLOCKS_PER_TILE * FG_BLOCK_PX;
+    tile->blocks[b] = NAN;
+    for (size_t y = 0; y < FG_BLOCK_PX; y++)
+      for (size_t x = 0; x < FG_BLOCK_PX; x++) {
+        size_t at = first + y * FG_TILE_PX + x;
+        if (bytes_per_pixel == 1)
+          tile->pixels[at] = (uint8_t)lroundf(median);
+        else
+          ((uint16_t *)(void *)tile->pixels)[at] = (uint16_t)lroundf(median * 257.0f);
+      }
+  }
+}
+
+static bool holds_kept(const work *w, int32_t column, int32_t row) {
+  for (int b = 0; b < BLOCKS; b++)
+    if (is_kept(w, column * FG_BLOCKS_PER_TILE + b % FG_BLOCKS_PER_TILE,
+                row * FG_BLOCKS_PER_TILE + b / FG_BLOCKS_PER_TILE))
+      return true;
+  return false;
+}
+
+static fg_status finish_tile(fg_context *ctx, work *w, int32_t column, int32_t row,
+                             fg_island *island) {
+  fg_tiles *view = &w->sheet.tiles;
+  size_t at = (size_t)row * (size_t)view->columns + (size_t)column;
+  uint64_t near = bits_of(w, w->near, column, row);
+  view->medians[at] = NAN;
+  if (!near) {
+    fg_tiles_drop(view, column, row);
+    return FG_OK;
+  }
+  view->medians[at] = tile_median(view->tiles[at], near, bits_of(w, w->hot, column, row));
+  forget_far(view->tiles[at], view->bytes_per_pixel, near, view->medians[at]);
+  view->wanted[at] = holds_kept(w, column, row);
+  return view->wanted[at] ? fg_island_append(ctx, island, view->columns, column, row) : FG_OK;
+}
+
+static fg_status finish(fg_context *ctx, work *w, fg_anchored *out) {
+  fg_island island = {0};
+  fg_status status = FG_OK;
+  for (int32_t row = 0; row < w->sheet.tiles.rows && status == FG_OK; row++)
+    for (int32_t column = 0; column < w->sheet.tiles.columns && status == FG_OK; column++)
+      status = finish_tile(ctx, w, column, row, &island);
+  if (status != FG_OK) {
+    fg_island_free(&island);
+    return status;
+  }
+  out->anchored = true;
+  out->view = w->sheet.tiles;
+  out->island = island;
+  memcpy(out->corner_px, w->corner_px, sizeof w->corner_px);
+  memset(&w->sheet.tiles, 0, sizeof w->sheet.tiles);
+  return FG_OK;
+}
+
+static void free_work(work *w) {
+  free_sheet(w);
+  free(w->own);
+  free(w->parts);
+  free(w->kept);
+}
+
+fg_status fg_anchor_island(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
+                           const fg_anchor_options *options, fg_anchored *out) {
+  work w = {.tiles = tiles, .island = island, .options = options};
+  fg_context inner = {.message = ""};
+  bool settled = false;
+  memset(out, 0, sizeof *out);
+  FG_TRY(fg_memory_allocate(ctx, (size_t)tiles->columns * (size_t)tiles->rows, 1, (void **)&w.own));
+  for (size_t i = 0; i < island->count; i++)
+    w.own[island->tiles[i]] = 1;
+  fg_status status = settle(&inner, &w, &out->specks, &settled);
+  if (status == FG_OK && settled) status = finish(&inner, &w, out);
+  free_work(&w);
+  if (status == FG_ERR_DATA) return FG_OK; /* the budget does not hold both */
+  return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s", inner.message);
+}

@@ -1,0 +1,138 @@
+#include "vision/sheet.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* A tile of the sheet lies on up to four tiles of the scan: two spans along each axis. */
+typedef struct span {
+  int32_t source; /* column or row of the scan's tile */
+  int from, to;   /* pixels of the sheet's tile, from ≤ i < to */
+  int at;         /* where the first of them lies in the scan's tile */
+} span;
+
+/* What lies outside the scan belongs to no span. */
+static int find_spans(int64_t first_px, int64_t limit_px, span spans[2]) {
+  int count = 0;
+  for (int from = 0; from < FG_TILE_PX;) {
+    int64_t px = first_px + from;
+    if (px >= limit_px) break;
+    if (px < 0) {
+      from = px > -FG_TILE_PX ? (int)(from - px) : FG_TILE_PX;
+      continue;
+    }
+    int at = (int)(px % FG_TILE_PX), length = FG_TILE_PX - at;
+    if (length > FG_TILE_PX - from) length = FG_TILE_PX - from;
+    if (length > limit_px - px) length = (int)(limit_px - px);
+    spans[count++] = (span){(int32_t)(px / FG_TILE_PX), from, from + length, at};
+    from += length;
+  }
+  return count;
+}
+
+/* Bits of the blocks of one row or column that lie in the spans; spans[i] counts where bit i of
+ * `there` is set. */
+static unsigned whole_blocks(const span *spans, int count, unsigned there) {
+  unsigned bits = 0;
+  for (int b = 0; b < FG_BLOCKS_PER_TILE; b++) {
+    int covered = 0;
+    for (int i = 0; i < count; i++) {
+      int from = b * FG_BLOCK_PX, to = from + FG_BLOCK_PX;
+      if (spans[i].from > from) from = spans[i].from;
+      if (spans[i].to < to) to = spans[i].to;
+      if (there >> i & 1 && to > from) covered += to - from;
+    }
+    if (covered == FG_BLOCK_PX) bits |= 1u << b;
+  }
+  return bits;
+}
+
+/* A block is whole when each span of columns it lies on is there in each span of rows it lies on.
+ */
+static uint64_t find_whole(const span *across, int columns, const span *down, int rows,
+                           const unsigned there[2]) {
+  uint64_t whole = 0;
+  for (int b = 0; b < FG_BLOCKS_PER_TILE; b++) {
+    int covered = 0;
+    unsigned bits = 0xff;
+    for (int i = 0; i < rows; i++) {
+      int from = b * FG_BLOCK_PX, to = from + FG_BLOCK_PX;
+      if (down[i].from > from) from = down[i].from;
+      if (down[i].to < to) to = down[i].to;
+      if (to <= from) continue;
+      covered += to - from;
+      bits &= whole_blocks(across, columns, there[i]);
+    }
+    if (covered == FG_BLOCK_PX) whole |= (uint64_t)bits << (b * FG_BLOCKS_PER_TILE);
+  }
+  return whole;
+}
+
+static void copy_part(const fg_tile *from, const span *x, const span *y, size_t pixel_bytes,
+                      fg_tile *to) {
+  size_t bytes = (size_t)(x->to - x->from) * pixel_bytes;
+  for (int i = y->from; i < y->to; i++) {
+    size_t source = (size_t)(y->at + i - y->from) * FG_TILE_PX + (size_t)x->at;
+    size_t target = (size_t)i * FG_TILE_PX + (size_t)x->from;
+    memcpy(to->pixels + target * pixel_bytes, from->pixels + source * pixel_bytes, bytes);
+  }
+}
+
+static float block_mean(const fg_tile *tile, int bytes_per_pixel, int block) {
+  size_t first = (size_t)(block / FG_BLOCKS_PER_TILE * FG_BLOCK_PX * FG_TILE_PX +
+                          block % FG_BLOCKS_PER_TILE * FG_BLOCK_PX);
+  uint32_t sum = 0;
+  for (size_t y = 0; y < FG_BLOCK_PX; y++)
+    for (size_t x = 0; x < FG_BLOCK_PX; x++) {
+      size_t at = first + y * FG_TILE_PX + x;
+      sum += bytes_per_pixel == 1 ? tile->pixels[at]
+                                  : ((const uint16_t *)(const void *)tile->pixels)[at];
+    }
+  return (float)sum * (bytes_per_pixel == 1 ? 1.0f : 1.0f / 257.0f) / (FG_BLOCK_PX * FG_BLOCK_PX);
+}
+
+static fg_status cut_tile(fg_context *ctx, const fg_tiles *from, const int64_t corner_px[2],
+                          int32_t column, int32_t row, fg_sheet *sheet) {
+  span across[2], down[2];
+  int columns = find_spans(corner_px[0] + (int64_t)column * FG_TILE_PX, from->width_px, across);
+  int rows = find_spans(corner_px[1] + (int64_t)row * FG_TILE_PX, from->height_px, down);
+  unsigned there[2] = {0, 0};
+  for (int i = 0; i < rows; i++)
+    for (int k = 0; k < columns; k++)
+      if (fg_tiles_at(from, across[k].source, down[i].source)) there[i] |= 1u << k;
+  uint64_t whole = find_whole(across, columns, down, rows, there);
+  if (!whole) return FG_OK;
+  fg_tile *tile;
+  FG_TRY(fg_tiles_add(ctx, &sheet->tiles, column, row, &tile));
+  for (int i = 0; i < rows; i++)
+    for (int k = 0; k < columns; k++)
+      if (there[i] >> k & 1)
+        copy_part(fg_tiles_at(from, across[k].source, down[i].source), &across[k], &down[i],
+                  (size_t)from->bytes_per_pixel, tile);
+  for (int b = 0; b < FG_BLOCKS_PER_TILE * FG_BLOCKS_PER_TILE; b++)
+    tile->blocks[b] = whole >> b & 1 ? block_mean(tile, from->bytes_per_pixel, b) : NAN;
+  sheet->whole[(size_t)row * (size_t)sheet->tiles.columns + (size_t)column] = whole;
+  return FG_OK;
+}
+
+fg_status fg_sheet_cut(fg_context *ctx, const fg_tiles *from, const int64_t corner_px[2],
+                       int32_t columns, int32_t rows, fg_sheet *sheet) {
+  *sheet = (fg_sheet){.tiles = {.budget = from->budget,
+                                .width_px = (int64_t)columns * FG_TILE_PX,
+                                .height_px = (int64_t)rows * FG_TILE_PX,
+                                .bytes_per_pixel = from->bytes_per_pixel}};
+  FG_TRY(fg_tiles_allocate(ctx, &sheet->tiles));
+  FG_TRY(fg_memory_allocate(ctx, (size_t)columns * (size_t)rows, sizeof *sheet->whole,
+                            (void **)&sheet->whole));
+  for (int32_t row = 0; row < rows; row++)
+    for (int32_t column = 0; column < columns; column++)
+      FG_TRY(cut_tile(ctx, from, corner_px, column, row, sheet));
+  return FG_OK;
+}
+
+void fg_sheet_free(fg_sheet *sheet) {
+  fg_tiles_free(&sheet->tiles);
+  free(sheet->whole);
+  sheet->whole = NULL;
+}
