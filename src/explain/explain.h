@@ -84,6 +84,7 @@ typedef struct fg_explain_request {
   const fg_explain_bars *barred; /* NULL: none */
   bool look;                     /* for further shaped effects */
   bool two_curves;               /* where one is not enough and there are several views */
+  bool hopeless; /* sets whose shapes are not fitted yet had their chance: a right curve stands */
 } fg_explain_request;
 
 fg_status fg_explain_find(fg_context *ctx, const fg_points *points,

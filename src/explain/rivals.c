@@ -9,6 +9,9 @@
 #define FOLLOWER_GAIN 10.0
 /* It follows an effect of which it leaves no more than this share. */
 #define FOLLOWED_SHARE 0.05
+/* A curve that Schwarz's criterion prefers another one to by less could be it (Kass and Raftery
+ * 1995, section 3.2: "positive" below 6, "very strong" from 10). */
+#define CURVE_LOSS 6.0
 /* A smooth curve is there when chance gains as much less often than this: of some ten curves of
  * five sizes each, 1 in 2000. */
 #define CURVE_P 1e-5
@@ -72,6 +75,28 @@ static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yar
   return best;
 }
 
+/* One bump alone that stands out, whose number is sought; of those that are right. `score` becomes
+ * Schwarz's criterion of it. */
+static fg_explanation lone_bump(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
+                                double *score) {
+  const fg_candidate *curve = &s->out->candidates[e];
+  fg_explanation best = {.excess = INFINITY};
+  for (size_t k = 0; k < curve->columns; k++) {
+    const fg_explain_term term = {.count = 1, .column = {curve->column[k]}, .weight = {1}};
+    size_t rank;
+    double x, sum = fg_explain_solve(&s->columns, &term, 1, &x, NULL, &rank);
+    fg_explanation m = {.mask = 1u << e,
+                        .excess = fmax(0, sum - y->full) / y->unit,
+                        .freedom = y->freedom - (double)rank};
+    if (rank == 0 || m.excess >= best.excess || !fg_explain_is_right(s, y, &m)) continue;
+    best = m;
+    if (s->columns.has_width) best.width = fg_explain_width_sum(&s->columns, &term, 1, &x);
+  }
+  *score = isfinite(best.excess) ? fg_explain_schwarz(s, &best) + 2 * log((double)curve->columns)
+                                 : INFINITY;
+  return best;
+}
+
 /* Whether a curve can follow every effect of a set. */
 static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsigned mask) {
   fg_explain_term term[FG_EFFECT_COLUMNS_MAX];
@@ -126,22 +151,35 @@ static double listed_score(const fg_explain_search *s, const fg_explanation *m) 
   return score;
 }
 
+void fg_explain_add_curves(fg_explain_search *s, const fg_explain_yardstick *y, double score) {
+  unsigned first = s->out->each[0].mask;
+  for (size_t e = 0; e < s->out->candidate_count; e++) {
+    if ((first >> e & 1) || !is_smooth(s->out->candidates[e].kind)) continue;
+    fg_explanation rival = smoothest(s, y, e, true);
+    if (isfinite(rival.excess) && fg_explain_schwarz(s, &rival) < score + CURVE_LOSS)
+      fg_explain_keep(s->out, &rival);
+  }
+}
+
 void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y) {
   fg_explanations *out = s->out;
   const fg_explanation *best = &out->each[0];
   for (size_t m = 1; m < out->count; m++)
     if (listed_score(s, &out->each[m]) < listed_score(s, best)) best = &out->each[m];
   unsigned listed = best->mask;
-  double score = listed_score(s, best);
+  double score = listed_score(s, best) + fg_explain_causes(listed);
   bool one = fg_explain_bits(listed) == 1; /* several that make one curve are none the likelier */
   for (size_t e = 0; listed && e < out->candidate_count; e++) {
     const fg_candidate *curve = &out->candidates[e];
-    if (!is_smooth(curve->kind)) continue;
+    if (!fg_effect_is_free(curve->kind)) continue;
     if (curve->kind->bends && (listed & y->bends))
       continue; /* told from a curve by what leads it */
-    fg_explanation rival = smoothest(s, y, e, true);
+    double own = INFINITY;
+    fg_explanation rival =
+        is_smooth(curve->kind) ? smoothest(s, y, e, true) : lone_bump(s, y, e, &own);
     if (!isfinite(rival.excess)) continue;
-    double gain = score - fg_explain_schwarz(s, &rival);
+    if (is_smooth(curve->kind)) own = fg_explain_schwarz(s, &rival);
+    double gain = score - own - fg_explain_causes(rival.mask);
     if (gain >= (one && follows(s, curve, listed) ? FOLLOWER_GAIN : 0))
       fg_explain_keep(out, &rival);
   }

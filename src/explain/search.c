@@ -92,7 +92,8 @@ fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
                          .given_up = request->given_up,
                          .given_up_count = request->given_up_count,
                          .tried = request->tried,
-                         .two_curves = request->two_curves};
+                         .two_curves = request->two_curves,
+                         .hopeless = request->hopeless};
   fg_status status = FG_OK;
   FG_TRY(fg_explain_columns_open(ctx, points, request->residual_um, request->jacobian, &s.columns));
   FG_TRY_EXIT(add_smooth(ctx, &s, request->known));

@@ -12,6 +12,7 @@ typedef struct fg_explain_search {
   bool two_curves;               /* may stand in */
   const fg_effect_set *given_up; /* no fit of these holds */
   size_t given_up_count;
+  bool hopeless;              /* sets whose shapes are not fitted yet had their chance */
   const fg_effect_set *tried; /* was fitted and is not right, or NULL */
   double full;                /* residual sum beside everything */
   size_t freedom;             /* columns that took it */
@@ -52,6 +53,13 @@ static inline double fg_explain_akaike(const fg_explanation *m) {
 /* Shapes nearer to each other than this are one: over a foil's 40 mm a ripple of 2 mm turns by as
  * much as a wave then. */
 #define FG_EXPLAIN_TWIN_SHARE 0.05
+
+/* What causes cost beside Schwarz's criterion: each is there in one part or scan of 20 (-2 ln). One
+ * unlisted cause is likelier than several listed ones that happen to make its curve. */
+#define FG_EXPLAIN_CAUSE 6.0
+static inline double fg_explain_causes(unsigned mask) {
+  return FG_EXPLAIN_CAUSE * (double)fg_explain_bits(mask);
+}
 
 /* ---- noise.c ---- */
 
@@ -118,6 +126,9 @@ bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yar
 
 /* Adds free curves that do as well as the best listed explanation, smooth ones of few numbers. */
 void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y);
+/* Adds smooth curves over other coordinates that could take the place of the one curve in the list,
+ * whose score by Schwarz's criterion is given. */
+void fg_explain_add_curves(fg_explain_search *s, const fg_explain_yardstick *y, double score);
 /* Whether a smooth free curve beside a set gains more than chance, and more than `known_to`. */
 bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
                             unsigned mask, double known_to);

@@ -169,6 +169,10 @@ static void drop_worse(const fg_explain_search *s, const fg_explain_yardstick *y
   out->count = kept;
 }
 
+static double likelihood(const fg_explanation *m) {
+  return fg_explain_akaike(m) + m->width + fg_explain_causes(m->mask);
+}
+
 /* The width of the strip puts those that stay in order. Its noise is what the best of them leaves
  * of it. */
 static void order_by_width(const fg_explain_search *s) {
@@ -179,9 +183,7 @@ static void order_by_width(const fg_explain_search *s) {
   for (size_t m = 0; m < out->count; m++)
     out->each[m].width = width > 0 ? (out->each[m].width / width - 1) * (double)s->columns.rows : 0;
   for (size_t m = 1; m < out->count; m++)
-    for (size_t k = m; k > 0 && fg_explain_akaike(&out->each[k]) + out->each[k].width <
-                                    fg_explain_akaike(&out->each[k - 1]) + out->each[k - 1].width;
-         k--) {
+    for (size_t k = m; k > 0 && likelihood(&out->each[k]) < likelihood(&out->each[k - 1]); k--) {
       fg_explanation swap = out->each[k];
       out->each[k] = out->each[k - 1];
       out->each[k - 1] = swap;
@@ -280,13 +282,17 @@ static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_exp
   fg_explanation curve = try_free(s, y, best);
   if (s->policy->has_rivals) {
     fg_explanation smooth = fg_explain_best_smooth(s, y);
-    bool better = fg_explain_schwarz(s, &smooth) < fg_explain_schwarz(s, &curve);
-    if (isfinite(smooth.excess) && better) curve = smooth;
+    double gain = fg_explain_schwarz(s, &curve) + fg_explain_causes(curve.mask) -
+                  fg_explain_schwarz(s, &smooth) - fg_explain_causes(smooth.mask);
+    if (isfinite(smooth.excess) && gain > 0) curve = smooth;
   }
-  bool hope = s->policy->is_worth_fitting(s, y, &best, &curve);
+  bool hope = !s->hopeless && s->policy->is_worth_fitting(s, y, &best, &curve);
   if (!hope) curve = try_two_free(s, y, curve);
   s->out->right = !hope && fg_explain_is_right(s, y, &curve);
   fg_explain_keep(s->out, hope ? &best : &curve);
+  bool one_curve = fg_explain_bits(curve.mask & fg_explain_mask_of(s->out, true)) == 1;
+  if (s->policy->has_rivals && s->out->right && one_curve && fg_explain_bits(curve.mask) == 1)
+    fg_explain_add_curves(s, y, fg_explain_schwarz(s, &curve));
 }
 
 void fg_explain_try_sets(fg_explain_search *s, const fg_explain_yardstick *y) {

@@ -161,6 +161,29 @@ static bool rests(const fg_explain_policy *policy, double before, double left) {
   return !(left <= (1 - policy->rest_share) * before);
 }
 
+/* What a round came to. */
+typedef struct round_end {
+  fg_effect_set set;
+  double left; /* sum of squares */
+  bool right;
+} round_end;
+
+/* Two explanations that lead to each other would take turns for ever: that of fewer effects stands,
+ * of as many the one that leaves less. */
+static bool comes_again(const round_end *end, int round) {
+  if (round < 2 || !same_effects(&end[round].set, &end[round - 2].set)) return false;
+  const round_end *now = &end[round], *other = &end[round - 1];
+  if (now->set.count != other->set.count) return now->set.count < other->set.count;
+  return now->left <= other->left;
+}
+
+/* What was right, was left in the hope of a better set, and is come to again. */
+static bool was_right_before(const round_end *end, int round) {
+  for (int r = 0; r + 1 < round && end[round].right; r++)
+    if (end[r].right && same_effects(&end[r].set, &end[round].set)) return true;
+  return false;
+}
+
 /* Search and fit in turns from a start without effects. */
 static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_manner how,
                              settling *at) {
@@ -170,6 +193,8 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
   memset(&at->set, 0, sizeof at->set);
   FG_TRY(fg_joint_fit(ctx, points, &at->set, at->residual_um));
   double none = square_of(points, at->residual_um);
+  round_end end[ROUNDS];
+  bool hopeless = false;
   for (int round = 0; round < (points->coarse ? COARSE_ROUNDS : ROUNDS); round++) {
     fg_effect_set next;
     const fg_explain_request request = {.policy = policy,
@@ -182,7 +207,8 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
                                             policy->drops_nothings ? at->given_up_count : 0,
                                         .barred = at->barred,
                                         .look = how.eager || round > 0,
-                                        .two_curves = how.two_curves};
+                                        .two_curves = how.two_curves,
+                                        .hopeless = hopeless};
     if (policy->scatters) FG_TRY(fg_points_find_scatter(ctx, points, at->residual_um));
     FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
     FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
@@ -200,6 +226,9 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
     double before = left;
     left = square_of(points, at->residual_um);
     if (same && round > 0 && (at->explanations.right || rests(policy, before, left))) break;
+    end[round] = (round_end){at->set, left, at->explanations.right};
+    if (at->explanations.right && comes_again(end, round)) break;
+    hopeless = hopeless || was_right_before(end, round);
     if (policy->drops_nothings) drop_nothings(&at->set);
   }
   return FG_OK;

@@ -1,5 +1,7 @@
 #include "scan_loop/bump_pattern.h"
 
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_sf_gamma.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -136,11 +138,22 @@ static void find_p(const fg_bump_values *at, uint64_t seed, const double gain[FO
     p[form] = (double)beyond[form] / (DRAWS + 1);
 }
 
+/* Bonferroni's bound for the best few of all that could be the best: what draws cannot resolve. */
+static double bound_of_apart(const fg_bump_values *at, double gain) {
+  size_t most = (size_t)(largest_share * (double)at->n);
+  double subsets = 0;
+  for (size_t k = 1; k <= most; k++)
+    subsets += gsl_sf_choose((unsigned)at->n, (unsigned)k);
+  double freedom = (double)at->n - 2 + at->noise_freedom;
+  return fmin(1, subsets * gsl_cdf_fdist_Q(gain, 1, freedom));
+}
+
 fg_bump_pattern fg_bump_pattern_find(const fg_bump_values *at, uint64_t seed, double *p_value) {
   const fg_bump_pattern found[FORMS] = {find_apart(at), find_cycle(at)};
   const double gain[FORMS] = {found[0].gain, found[1].gain};
   double p[FORMS];
   find_p(at, seed, gain, p);
+  p[0] = fmin(p[0], bound_of_apart(at, gain[0]));
   int best = p[1] < p[0] || (p[1] == p[0] && gain[1] > gain[0]);
   *p_value = fmin(1, FORMS * p[best]);
   return found[best];

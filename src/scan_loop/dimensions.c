@@ -80,8 +80,17 @@ static void add_disc_noise(const fg_points_part *part, const fg_joint_fit_part *
   add_scaled(pay, disc, noise, scale);
 }
 
+static bool holds_curve(const fg_explanations *explanations, size_t explanation) {
+  if (explanation >= explanations->count) return false;
+  for (size_t e = 0; e < explanations->candidate_count; e++)
+    if ((explanations->each[explanation].mask >> e & 1) &&
+        fg_effect_is_free(explanations->candidates[e].kind))
+      return true;
+  return false;
+}
+
 static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_t view,
-                       double scale) {
+                       double scale, bool curve) {
   const fg_points_view *one = &fit->points->views[view];
   const fg_points_part *part = &fit->points->parts[one->part];
   const fg_joint_fit_part *adds = &fit->parts[one->part];
@@ -91,6 +100,7 @@ static void take_noise(fg_scan_loop *loop, const fg_joint_fit_result *fit, size_
     fg_pay *pay = &pays->foil[one->foil - before->foils];
     add_foil_noise(part, adds, one->foil, scale, pay);
     pay->misfit = pay->misfit || scale > 1;
+    pay->curve = pay->curve || curve;
   } else {
     add_disc_noise(part, adds, (size_t)(one->disc - before->discs), scale, &pays->discs);
   }
@@ -106,7 +116,7 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
     loop->pays[i].discs.noises++;
   }
   for (size_t v = 0; v < fit->points->view_count; v++)
-    take_noise(loop, fit, v, scale);
+    take_noise(loop, fit, v, scale, holds_curve(&loop->explanations, explanation));
   return FG_OK;
 }
 

@@ -11,6 +11,9 @@
 #define SMALL_SHARE 0.1
 /* m² > 2 u² (see the header). */
 #define PAYS_RATIO 2.0
+/* A free curve is there beyond doubt, but what it does to a dimension is another sum of its many
+ * numbers than what showed it: that must be more than chance by itself (chi² of 1, 1 in 100). */
+#define CURVE_PAYS_RATIO 6.63
 /* Explanations that agree about less than that of their mean move agree about nothing: moving by it
  * would gain 6 % of what the mean is worth. */
 #define AGREED_SHARE 0.25
@@ -171,6 +174,7 @@ void fg_pays_add_step(fg_pays *pays, const fg_measurement *corrected,
  * of their noise and of the values' own u². */
 typedef struct sums {
   double items, noise, own;
+  bool curve; /* an explanation is a free curve */
   double product[FG_PAYS_EXPLANATIONS_MAX][FG_PAYS_EXPLANATIONS_MAX];
   size_t explanations;
 } sums;
@@ -187,6 +191,7 @@ static bool is_known(const fg_pay *pay, size_t item, int k) {
 
 static void sum_up(const fg_pay *pay, int k, sums *s) {
   if (pay->explanations > s->explanations) s->explanations = pay->explanations;
+  s->curve = s->curve || pay->curve;
   for (size_t i = 0; i < pay->items; i++) {
     const fg_pay_item *item = &pay->item[i];
     if (!is_known(pay, i, k)) continue;
@@ -283,7 +288,8 @@ static fg_correction_reason judge(const sums *s, double *part) {
   double mean = size_of(s, part), scatter = scatter_about(s, part);
   if (mean + s->noise + scatter <= SMALL_SHARE * SMALL_SHARE * s->own) return FG_CORRECTION_SMALL;
   double gain = put_agreed(s, agreed);
-  if (!(gain > PAYS_RATIO * s->noise) || !(gain >= AGREED_SHARE * AGREED_SHARE * mean))
+  double ratio = s->curve ? CURVE_PAYS_RATIO : PAYS_RATIO;
+  if (!(gain > ratio * s->noise) || !(gain >= AGREED_SHARE * AGREED_SHARE * mean))
     return scatter > s->noise ? FG_CORRECTION_TIED : FG_CORRECTION_DOUBTFUL;
   memcpy(part, agreed, sizeof agreed);
   return FG_CORRECTION_PAYS;

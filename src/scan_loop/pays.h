@@ -8,8 +8,8 @@
  * t between the m_i (of their convex hull, Wolfe 1976): there t·m_i >= |t|², so that it gains |t|²
  * at least, whichever is true. That is what the explanations agree about; where they pull apart it
  * is nothing. Their mean is best on average: t goes from the shortest one towards it as far as each
- * keeps half of that gain. u² is then the mean of the u_i², and what is reported holds how far the m_i lie from
- * t as well.
+ * keeps half of that gain. u² is then the mean of the u_i², and what is reported holds how far the
+ * m_i lie from t as well.
  *
  * One dimension of all bumps of a foil, or of all discs of a scan, is decided as one, by sums of
  * squares: neighbours stay comparable. Scans of one foil are decided together.
@@ -46,6 +46,7 @@ typedef struct fg_pay {
   size_t explanations;                       /* that could be measured; the first is in force */
   double noises;                             /* sums in `noise` */
   bool misfit; /* the explanation in force leaves more than noise: the fit's own u is too small */
+  bool curve;  /* an explanation holds a free curve */
   bool lost;   /* the explanation in force does not show the same bumps: nothing is known */
 } fg_pay;
 

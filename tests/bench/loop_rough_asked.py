@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from loop_rough_judged import (claims, corrected, floors, is_curve, is_right, mean_of, over_floor, p_values, percent,
-                               ranges_held, told, worse, worse_than_noise, wrong)
+from loop_rough_judged import (claims, corrected, floors, is_curve, is_right, mean_of, over_floor, own_row, p_values,
+                               percent, ranges_held, told, worse, worse_than_noise, wrong)
 from loop_rough_plot import kolmogorov_smirnov
 from loop_scans_report import QUANTITIES, is_scanner, markdown, number
 
@@ -36,7 +36,8 @@ def measures(rows, busy):
         "one effect: in class, %": ("class", percent(named, is_right), len(named)),
         "one effect: a wrong cause, called `found`, %": ("wrong", percent(named, lambda r: wrong(r, False)), len(named)),
         "turned pairs: exactly named, %": ("exact", percent(pairs, lambda r: number(r, "named")), len(pairs)),
-        "unlisted curves, seams, single bumps: right place, %": ("curves", percent(curves, is_right), len(curves)),
+        "unlisted curves, seams, single bumps: `unattributed` or their own row, %": ("curves", percent(curves, own_row), len(curves)),
+        "the same in the right place, %": ("curves", percent(curves, is_right), len(curves)),
         "made worse, %": ("worse", percent(rows, lambda r: worse(r, zero)), len(rows)),
         "made worse beyond its noise, %": ("worse", percent(rows, lambda r: worse_than_noise(r, zero)), len(rows)),
     }  # fmt: skip

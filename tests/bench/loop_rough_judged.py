@@ -18,11 +18,17 @@ def is_curve(row):
 
 
 def right_place(row):
-    """A curve over the coordinate that it lives on; seams also by their row."""
+    """A curve over the coordinate that it lives on, or over one that is told to do as well; seams also by their row."""
     if "scan.column_step" in row["wanted"]:
         said = set(filter(None, row["claims"].split(" + ")))
         return said == {"scan.column_step"} or (not said and row["unattributed"].startswith("scan.x"))
     return bool(number(row, "right_coordinate"))
+
+
+def own_row(row):
+    """What no single row explains is called that, or has its own row (seams)."""
+    said = set(filter(None, row["claims"].split(" + ")))
+    return bool(row["unattributed"]) and not said or ("scan.column_step" in row["wanted"] and said == {"scan.column_step"})
 
 
 def is_right(row):

@@ -202,7 +202,7 @@ is claimed, and what is there is not among the explanations. Told: exactly named
 and scatter without the effect, measured. Worse: an error (R, h, R0; where the report says how the part
 deviates from its circles, that of the midline) is larger after than before, by more than 2 % and a tenth of the tier's median floor;
 beyond its noise: and larger than 1.2 times its floor. The midline: circles and what is said to deviate from them; a circle that was left
-as measured holds what circles take of the deviation already. Curves: `unattributed` over the right coordinate; seams also as their row.
+as measured holds what circles take of the deviation already. Right place of curves: `unattributed` over the right coordinate, or over one that it is told to be as good as; seams also as their row.
 Seconds are {seconds}."""
 
 QUIET = "the clock's, or the processor's where those are less: other inputs are rendered and judged beside"

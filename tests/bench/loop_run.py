@@ -196,9 +196,11 @@ def judge_names(report, wanted):
     curve = report["unattributed"]
     said = sorted(claims + (["free." + curve["coordinate"]] if curve else []))
     named = said == wanted
-    classes = {frozenset(member.split(" + ")) for c in report["claims"] for member in c.get("alias_class", [])}
+    tied = [*report["claims"], *([curve] if curve else [])]
+    classes = {frozenset(member.split(" + ")) for c in tied for member in c.get("alias_class", [])}
     curves = [curve, *curve.get("others", [])] if curve else []
-    right = any("free." + c["coordinate"] in wanted for c in curves)
+    places = ["free." + c["coordinate"] for c in curves] + [m for c in classes if curve and len(c) == 1 for m in c]
+    right = any(place.startswith(w) for place in places for w in wanted if w.startswith("free."))
     return {
         "claims": " + ".join(claims),
         "class": " | ".join(sorted(" + ".join(sorted(m)) for m in classes)),

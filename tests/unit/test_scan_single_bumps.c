@@ -41,6 +41,19 @@ static void known_noise_tells_few(void **state) {
   }
 }
 
+/* Two of six that lie far off are told, though draws alone cannot resolve so small a chance. */
+static void two_of_six_are_told(void **state) {
+  (void)state;
+  uint64_t draw = 3;
+  double p_value;
+  fg_bump_values at = scatter(6, 0, &draw);
+  at.value[1] -= 60;
+  at.value[5] -= 60;
+  fg_bump_pattern found = fg_bump_pattern_find(&at, 1, &p_value);
+  assert_true(found.count == 2 && found.apart[1] && found.apart[5]);
+  assert_true(p_value < FG_BUMP_PATTERN_P / 10);
+}
+
 /* P-values of scatter: as many below a tenth as there should be, or fewer (of two forms both). */
 static void scatter_is_not_told(void **state) {
   (void)state;
@@ -65,6 +78,7 @@ static void scatter_is_not_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(known_noise_tells_few),
+      cmocka_unit_test(two_of_six_are_told),
       cmocka_unit_test(scatter_is_not_told),
   };
   return cmocka_run_group_tests_name("single bumps", tests, NULL, NULL);

@@ -79,6 +79,7 @@ static void write_unattributed(fg_json *json, const fg_scan_result *result) {
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
+  if (!result->curve->sure) write_explanations(json, result);
   fg_json_number(json, "rms", result->before.rms);
   fg_json_number(json, "p_value", result->p_value);
   fg_json_array(json, "nearest");

@@ -42,8 +42,10 @@ static fg_status say_explanations(fg_context *ctx, const fg_scan_result *result,
   size_t named = total <= NAMED ? count : NAMED - 1;
   if (result->named) return FG_OK;
   FG_TRY(fg_text_append(ctx, text, "%s",
-                        *text ? "; beside it the data cannot tell which it is: "
-                              : "Found, but the data cannot tell which it is: "));
+                        *text           ? "; beside it the data cannot tell which it is: "
+                        : result->curve ? "No one listed effect explains what is there, and the "
+                                          "data cannot tell which it is: "
+                                        : "Found, but the data cannot tell which it is: "));
   for (size_t m = 0; m < named; m++)
     FG_TRY(fg_text_append(ctx, text, "%s%s",
                           m == 0           ? ""
