@@ -3,38 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "loop/dots.h"
+
 /* Rows that are read while a block of the columns stays in the nearest cache. */
-enum { BLOCK = 512, TOGETHER = 4 };
-
-typedef double lane __attribute__((vector_size(32), aligned(8)));
-
-static double total(lane v) {
-  return (v[0] + v[1]) + (v[2] + v[3]);
-}
-
-/* sums[k] += a'v_k for `count` vectors that are `stride` apart. */
-__attribute__((target_clones("avx2", "default"))) static void
-add_dots(size_t n, const double *a, const double *v, size_t stride, size_t count, double *sums) {
-  size_t whole = n / 4 * 4;
-  for (size_t k = 0; k < count; k += TOGETHER) {
-    size_t here = count - k < TOGETHER ? count - k : TOGETHER;
-    const double *at[TOGETHER];
-    lane sum[TOGETHER] = {{0}};
-    for (size_t m = 0; m < TOGETHER; m++)
-      at[m] = v + (k + (m < here ? m : 0)) * stride;
-    for (size_t i = 0; i < whole; i += 4) {
-      lane x = *(const lane *)(a + i);
-      for (size_t m = 0; m < TOGETHER; m++)
-        sum[m] += x * *(const lane *)(at[m] + i);
-    }
-    for (size_t m = 0; m < here; m++) {
-      double rest = total(sum[m]);
-      for (size_t i = whole; i < n; i++)
-        rest += a[i] * at[m][i];
-      sums[k + m] += rest;
-    }
-  }
-}
+enum { BLOCK = 512 };
 
 void fg_engine_gram_take(size_t n, const double *columns, size_t count, const double *weight,
                          const double *vectors, size_t rank, fg_engine_gram *gram) {
@@ -47,13 +19,13 @@ void fg_engine_gram_take(size_t n, const double *columns, size_t count, const do
     size_t rows = n - from < BLOCK ? n - from : BLOCK;
     for (size_t k = 0; k < count; k++) {
       const double *own = columns + k * n + from, *a = own;
-      add_dots(rows, own, vectors + from, n, rank + 1, gram->cross + k * (rank + 1));
+      fg_engine_add_dots(rows, own, vectors + from, n, rank + 1, gram->cross + k * (rank + 1));
       if (weight) {
         for (size_t i = 0; i < rows; i++)
           weighted[i] = own[i] * weight[from + i];
         a = weighted;
       }
-      add_dots(rows, a, columns + from, n, k + 1, gram->own + k * FG_LOOP_COLUMNS);
+      fg_engine_add_dots(rows, a, columns + from, n, k + 1, gram->own + k * FG_LOOP_COLUMNS);
     }
   }
 }

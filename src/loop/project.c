@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "loop/dots.h"
 #include "loop/engine.h"
 
 /* A column of which less than this share of its squared length is left lies in the span: of what
@@ -25,7 +26,27 @@ static double dot(size_t n, const double *a, const double *b) {
   return sum[0] + sum[1] + sum[2] + sum[3];
 }
 
+/* Vectors of a basis that are taken out together where rows are many. */
+enum { TOGETHER = 64 };
+
+/* The same of many rows: so many vectors together, so that v is read and written a few times only.
+ * Twice is enough for this order of the sums as well (Giraud and others 2005). `along` (or NULL)
+ * gathers how much of each was taken out. */
+static double project_many(size_t n, const double *basis, size_t rank, double *v, double *along) {
+  double here[TOGETHER];
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t from = 0; from < rank; from += TOGETHER) {
+      size_t count = rank - from < TOGETHER ? rank - from : TOGETHER;
+      fg_engine_dots(n, basis + from * n, count, v, here);
+      fg_engine_subtract(n, basis + from * n, count, here, v);
+      for (size_t k = 0; along && k < count; k++)
+        along[from + k] += here[k];
+    }
+  return dot(n, v, v);
+}
+
 double fg_engine_project_out(size_t n, const double *basis, size_t rank, double *v) {
+  if (n > FG_ENGINE_SMALL_ROWS) return project_many(n, basis, rank, v, NULL);
   for (int pass = 0; pass < 2; pass++)
     for (size_t k = 0; k < rank; k++) {
       double along = dot(n, basis + k * n, v);
@@ -77,7 +98,7 @@ fg_status fg_engine_span_open(fg_context *ctx, const fg_engine_training *trainin
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, room * sizeof *span->basis, (void **)&span->basis));
   FG_TRY_EXIT(fg_memory_allocate(ctx, n, sizeof *span->kept, (void **)&span->kept));
   span->rank = null_basis(training, noise, span->basis);
-  memset(span->basis + span->rank * n, 0, n * (room - span->rank) * sizeof *span->basis);
+  memset(span->basis + span->rank * n, 0, n * (training->columns - span->rank) * sizeof(double));
   for (size_t i = 0; i < n; i++)
     span->kept[i] = 1;
   for (size_t k = 0; k < span->rank; k++)
@@ -106,25 +127,30 @@ typedef struct triangle {
   double *r;     /* columns × columns, r[i * columns + j]: row i of kept column j */
 } triangle;
 
-static void decompose(size_t n, const double *x, triangle *t) {
-  for (size_t k = 0; k < t->columns; k++) {
-    double *v = t->basis + t->rank * n, *r = t->r;
-    memcpy(v, x + k * n, n * sizeof *v);
-    double whole = dot(n, v, v);
-    for (int pass = 0; pass < 2; pass++)
-      for (size_t i = 0; i < t->rank; i++) {
-        double along = dot(n, t->basis + i * n, v);
-        r[i * t->columns + t->rank] += along;
-        for (size_t m = 0; m < n; m++)
-          v[m] -= along * t->basis[i * n + m];
-      }
-    double left = dot(n, v, v);
-    if (!(left > (k < t->declared ? declared_span : same_span) * whole)) {
-      for (size_t i = 0; i < t->rank; i++)
-        r[i * t->columns + t->rank] = 0;
-      continue;
+/* Takes the columns kept so far out of v; along[k] is what each had of it. */
+static double take_kept(size_t n, const triangle *t, double *v, double *along) {
+  memset(along, 0, t->rank * sizeof *along);
+  if (n > FG_ENGINE_SMALL_ROWS) return project_many(n, t->basis, t->rank, v, along);
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t i = 0; i < t->rank; i++) {
+      double part = dot(n, t->basis + i * n, v);
+      along[i] += part;
+      for (size_t m = 0; m < n; m++)
+        v[m] -= part * t->basis[i * n + m];
     }
-    r[t->rank * t->columns + t->rank] = sqrt(left);
+  return dot(n, v, v);
+}
+
+/* `along` has room for the columns. */
+static void decompose(size_t n, const double *x, double *along, triangle *t) {
+  for (size_t k = 0; k < t->columns; k++) {
+    double *v = t->basis + t->rank * n;
+    memcpy(v, x + k * n, n * sizeof *v);
+    double whole = dot(n, v, v), left = take_kept(n, t, v, along);
+    if (!(left > (k < t->declared ? declared_span : same_span) * whole)) continue;
+    for (size_t i = 0; i < t->rank; i++)
+      t->r[i * t->columns + t->rank] = along[i];
+    t->r[t->rank * t->columns + t->rank] = sqrt(left);
     for (size_t m = 0; m < n; m++)
       v[m] /= sqrt(left);
     t->kept[t->rank++] = k;
@@ -178,7 +204,7 @@ fg_status fg_engine_least_squares(fg_context *ctx, const fg_engine_training *tra
   for (size_t k = 0; k < columns; k++)
     fg_engine_whiten(training, noise, x + k * n);
   fg_engine_whiten(training, noise, y);
-  decompose(n, x, &t);
+  decompose(n, x, small, &t);
   for (size_t k = 0; k < t.rank; k++)
     small[k] = dot(n, t.basis + k * n, y);
   solve(&t, small, small + columns, fit);
