@@ -180,6 +180,7 @@ typedef struct fg_loop_effect {
   fg_loop_over_bumps over_bumps;
   const char *bump_words; /* "a decay from the lip" */
   const char *sought;     /* "trends", for what was looked for in vain; NULL: not told */
+  const char *term; /* of a formula, {a} and {b} for its columns, beside them; NULL: none has it */
 } fg_loop_effect;
 
 /* An effect is accepted below this probability of noise alone, over everything that was tried. */
@@ -275,6 +276,29 @@ typedef struct fg_loop_advice {
   double runs; /* at either setting, needed for a power of 80 %; NaN: no number helps */
 } fg_loop_advice;
 
+/* Tests of the whole residual, beside everything that is looked for by name: `clean` needs that it
+ * passes them. */
+typedef enum fg_loop_check {
+  FG_LOOP_CHECK_REPEATS,  /* rows of the same declared settings, more alike than the model fits
+                             their means: lack of fit */
+  FG_LOOP_CHECK_SETTINGS, /* the same of rows that agree in every recorded column */
+  FG_LOOP_CHECK_LAGS,     /* rows 2 to `lag` apart, all together */
+  FG_LOOP_CHECK_ONE_LAG,  /* rows `lag` apart, the most alike or unlike */
+  FG_LOOP_CHECKS
+} fg_loop_check;
+
+typedef struct fg_loop_checked {
+  bool done, failed; /* not done: nothing repeats, or rows have no order or are too few */
+  double statistic;  /* F ratio; sum of squares of normal deviates; the largest of them */
+  double freedom[2]; /* of an F ratio; of a sum, the first */
+  double p_value, level;
+  size_t lag;
+  double correlation; /* at one lag */
+  double rms;         /* of what it shows, in the response's unit */
+  size_t worst[3];    /* rows of the settings that are missed most, one of each */
+  size_t worst_count;
+} fg_loop_checked;
+
 typedef enum fg_loop_outcome {
   FG_LOOP_CLEAN,
   FG_LOOP_EXPLAINED,
@@ -293,6 +317,10 @@ typedef struct fg_loop_result {
   size_t claims;
   bool has_curve;
   fg_loop_curve curve;
+  fg_loop_checked check[FG_LOOP_CHECKS];
+  bool fails; /* one of them, beside all that was found; the clearest is */
+  fg_loop_check failed;
+  size_t *setting; /* rows: which settings, from 1, where those failed (0: kept aside); or NULL */
   fg_loop_rejected *rejected;
   size_t rejects;
   fg_loop_advice advice[FG_LOOP_CLAIMS];

@@ -251,17 +251,14 @@ static bool error_fell(const fg_engine_run *run) {
 /* What was found without an error that fell. */
 static fg_status note_verdict(fg_context *ctx, const fg_engine_run *run) {
   fg_loop_result *result = run->result;
-  bool of_mean = false;
+  bool lowers = false; /* what is of the spread alone has no error to lower */
   for (size_t m = 0; m < result->claims; m++)
-    of_mean |= !fg_engine_is_noise(&result->claim[m].candidate);
-  if (!result->claims || result->verdict == FG_LOOP_EXPLAINED || run->has_curve) return FG_OK;
-  if (!of_mean)
-    return fg_engine_note(ctx, result,
-                          "What was found is about the scatter, not about the mean: there is no "
-                          "error to take out. Limits and uncertainties have to follow it.");
+    lowers |= result->claim[m].candidate.effect->scatter != FG_LOOP_SPREAD;
+  if (!lowers || error_fell(run) || run->has_curve) return FG_OK;
   return fg_engine_note(ctx, result,
                         "What was found does not lower the error of rows that took no part "
-                        "(%.3g before, %.3g after): it is there, but it predicts nothing.",
+                        "beyond chance (%.3g before, %.3g after): it is there, but do not predict "
+                        "by it.",
                         ldexp(result->before.held_out_rms, run->units->response),
                         ldexp(result->after.held_out_rms, run->units->response));
 }
@@ -290,7 +287,9 @@ fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run) {
   FG_TRY(parameters(ctx, run, noise));
   run->noise = noise;
   run->sd = result->noise.sd;
-  result->verdict = run->has_curve    ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
+  FG_TRY(fg_engine_check(ctx, run, noise));
+  bool more = run->has_curve || result->fails; /* than the claims */
+  result->verdict = more              ? result->claims ? FG_LOOP_PARTLY : FG_LOOP_UNATTRIBUTED
                     : !result->claims ? FG_LOOP_CLEAN
                     : error_fell(run) ? FG_LOOP_EXPLAINED
                                       : FG_LOOP_PARTLY;

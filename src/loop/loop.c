@@ -132,16 +132,15 @@ fg_status fg_loop_run(fg_context *ctx, const fg_loop_problem *problem,
   fg_status status = FG_OK;
   fg_engine_run run = {0};
   fg_engine_units units = {0};
-  bool worth = false;
   memset(result, 0, sizeof *result);
   FG_TRY_EXIT(fg_engine_units_open(ctx, problem, &units));
   FG_TRY_EXIT(open_run(ctx, &units, options, result, &run));
-  FG_TRY_EXIT(check(ctx, &run, &worth));
-  if (worth) FG_TRY_EXIT(note_cycles(ctx, &run));
-  if (worth) FG_TRY_EXIT(fg_engine_search(ctx, &run));
+  FG_TRY_EXIT(check(ctx, &run, &run.worth));
+  if (run.worth) FG_TRY_EXIT(note_cycles(ctx, &run));
+  if (run.worth) FG_TRY_EXIT(fg_engine_search(ctx, &run));
   FG_TRY_EXIT(fg_engine_finish(ctx, &run));
-  if (worth) FG_TRY_EXIT(fg_engine_list_rejected(ctx, &run));
-  if (worth) FG_TRY_EXIT(fg_engine_advise(ctx, &run));
+  if (run.worth) FG_TRY_EXIT(fg_engine_list_rejected(ctx, &run));
+  if (run.worth) FG_TRY_EXIT(fg_engine_advise(ctx, &run));
   fg_engine_units_restore(&units, result);
 exit:
   fg_engine_units_close(&units);

@@ -30,6 +30,7 @@ fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *fo
 void fg_loop_result_free(fg_loop_result *result) {
   fg_notes_free(result->note, result->notes);
   free(result->curve.shape);
+  free(result->setting);
   free(result->rejected);
   free(result->parameter);
   free(result->parameter_u);

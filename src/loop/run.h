@@ -20,8 +20,9 @@ typedef struct fg_engine_run {
   double curve_p;
   size_t curve_at; /* coordinate */
   fg_engine_noise noise;
-  bool fell; /* the error of rows that took no part */
-  double sd; /* of the null at this step, whitened rows */
+  bool fell;  /* the error of rows that took no part */
+  double sd;  /* of the null at this step, whitened rows */
+  bool worth; /* the residual is more than rounding */
 } fg_engine_run;
 
 /* Accepts what passes, one after the other, and looks at all again at the end. */
@@ -36,6 +37,8 @@ fg_status fg_engine_accept_one(fg_context *ctx, fg_engine_run *run, bool *accept
 fg_status fg_engine_swap(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_advise(fg_context *ctx, fg_engine_run *run);
+/* Fills the result's checks, beside everything in the set. battery.c */
+fg_status fg_engine_check(fg_context *ctx, const fg_engine_run *run, fg_engine_noise noise);
 fg_status fg_engine_finish(fg_context *ctx, fg_engine_run *run);
 fg_status fg_engine_note(fg_context *ctx, fg_loop_result *result, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

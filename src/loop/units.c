@@ -118,6 +118,8 @@ void fg_engine_units_restore(const fg_engine_units *units, fg_loop_result *resul
   for (size_t i = 0; i < result->curve.count; i++)
     restore(&result->curve.shape[i][1], 1, exponent);
   restore(&result->curve.rms, 1, exponent);
+  for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
+    restore(&result->check[k].rms, 1, exponent);
   for (size_t i = 0; i < result->rejects; i++)
     restore(&result->rejected[i].smallest_detectable, 1, exponent);
   for (size_t k = 0; k < units->problem.parameters; k++) {

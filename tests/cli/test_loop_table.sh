@@ -69,6 +69,10 @@ says() { # says FILE WORDS...: in the summary and on the page, without ids and w
   grep -qE "table\.|nan|falls from ([^ ]*) to \1[;.]" summary.txt && fail "$file: ids or none: $(cat summary.txt)"
   sed 's/<style>.*<\/style>//' $file.html | grep -qE "[^a-z](nan|inf)[^a-z]" && fail "$file: the page holds numbers that are none"
 }
+# What is advised can be done, and helps.
+grep -qF "Declare a trend with humidity: --model &#39;1 + T + humidity&#39;" a.html || fail "the page does not say what to do next"
+grep -qF '"verdict": "explained"' a.json || fail "what is found is not explained"
+expect 0 '"verdict": "clean"' "$program" loop --table t.csv --response y --model "1 + T + humidity" -o -
 says wrong "Rows 2 and 54 are wrong (off by " "on rows that took no part in the search"
 says spread "The scatter grows with x: " " times from the smallest to the largest" "No mean changes"
 says alike "eighbouring runs are alike (correlation 0."

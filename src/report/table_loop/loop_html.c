@@ -9,6 +9,8 @@
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/table_loop/loop_checks.h"
+#include "report/table_loop/loop_next.h"
 #include "report/table_loop/loop_plots.h"
 #include "report/table_loop/loop_words.h"
 
@@ -21,9 +23,13 @@ static const char style[] =
     "section{background:#fff;border:1px solid var(--line);border-radius:12px;padding:22px 24px;"
     "margin-bottom:24px}h1{font-size:24px;margin:0 0 4px}h2{font-size:17px;margin:0 0 10px}"
     ".verdict{display:inline-block;font-weight:650;padding:4px 14px;border-radius:99px;"
-    "color:#fff;background:var(--soft)}.clean{background:var(--good)}.explained{background:"
-    "var(--blue)}.partly,.unattributed{background:var(--open)}"
-    ".say{font-size:18px;max-width:80ch;margin:14px 0 4px}.soft{color:var(--soft);font-size:13.5px}"
+    "color:#fff;background:var(--soft)}.clean{background:var(--good)}.explained,.partly{background:"
+    "var(--open)}.unattributed{background:var(--bad)}.mean{font-weight:650;font-size:18px;"
+    "margin:0 0 0 10px}.say{font-size:17px;max-width:84ch;margin:14px 0 0}.next{margin-top:14px;"
+    "border-left:4px solid var(--line);padding:0 0 0 14px;max-width:84ch}.next b{display:block}"
+    ".next ul{margin:2px 0 "
+    "0;padding-left:18px}.no{color:var(--bad);font-weight:650}.soft{color:var(--soft);font-size:13."
+    "5px}"
     ".pair{display:grid;grid-template-columns:repeat(auto-fit,minmax(300px,1fr));gap:14px}"
     "figure{margin:0;max-width:540px}figcaption{font-size:13px;color:var(--soft)}"
     ".plot{display:block;width:100%;height:auto;font-size:13px}.plot text{fill:var(--ink)}"
@@ -37,50 +43,75 @@ static const char style[] =
     ".scroll{overflow-x:auto}table{border-collapse:collapse;width:100%;font-size:13.5px;"
     "font-variant-numeric:tabular-nums}th,td{padding:5px 10px;text-align:right;"
     "border-bottom:1px solid var(--line)}th{color:var(--soft);font-weight:600}"
-    "th:first-child,td:first-child,th.w,td.w{text-align:left}td:first-child{overflow-wrap:anywhere}"
+    "th:first-child,td:first-child,th.w,td.w{text-align:left}td.n{white-space:nowrap}"
+    "td small{display:block;overflow-wrap:anywhere}td:first-child{min-width:13em}"
     "ul{margin:6px 0 0;padding-left:22px}@media(max-width:600px){main{padding:8px}section{padding:"
     "14px}.pair{grid-template-columns:1fr}.plot{font-size:16px}}"
-    "@media print{body{background:#fff}main{padding:0}section{border:0;padding:6px 0;margin:0 0 "
-    "8px;"
-    "break-inside:avoid}section.long{break-inside:auto}tr,figure{break-inside:avoid}}";
+    "section>:last-child{margin-bottom:0}"
+    "@media print{body{background:#fff;font-size:13px}main{padding:0}section{border:0;padding:4px "
+    "0;margin:0 0 6px;break-inside:avoid}section.long{break-inside:auto}tr,figure,li,p{"
+    "break-inside:avoid}h2,thead,.key,.long tr:nth-child(-n+3){break-after:avoid}.long "
+    "tr:nth-last-child(-n+2){break-before:avoid}.scroll{overflow:visible}table{font-size:12px}"
+    "td,th{padding:2px 6px}.say,.mean{font-size:15px}.soft{font-size:12px}.plot{font-size:14px}"
+    "*{print-color-adjust:exact;-webkit-print-color-adjust:exact}}";
 
-/* A number, or a dash where there is none. */
-static void put_number(FILE *out, const char *format, double value) {
-  if (isfinite(value))
-    fprintf(out, format, value);
-  else
-    fputs("–", out);
-}
-
-static void put_error(FILE *out, const char *name, double before, double after) {
-  if (!isfinite(before)) return;
-  fprintf(out, "<tr><td>%s</td><td>%.4g</td><td>", name, before);
-  put_number(out, "%.4g", after);
-  fputs("</td><td>", out);
-  put_number(out, "%.3f", after / before);
-  fputs("</td></tr>\n", out);
-}
-
-static void put_errors(FILE *out, const fg_loop_result *result) {
-  const fg_loop_error *before = &result->before, *after = &result->after;
-  fputs("<section><h2>Error before and after</h2><div class=\"scroll\"><table><tr><th>error</th>"
-        "<th>before</th><th>after</th><th>ratio</th></tr>\n",
-        out);
-  put_error(out, "rms", before->rms, after->rms);
-  put_error(out, "robust sd", before->robust_sd, after->robust_sd);
-  put_error(out, "95th percentile", before->p95, after->p95);
-  put_error(out, "maximum", before->maximum, after->maximum);
-  put_error(out, "rows that took no part in the search, rms", before->held_out_rms,
-            after->held_out_rms);
-  put_error(out, "each group predicted from the others, rms", before->cross_validated_rms,
-            after->cross_validated_rms);
-  fputs("</table></div><p class=\"soft\">Noise floor ", out);
-  put_number(out, "%.4g", result->noise_floor);
-  if (result->noise.rho > 0) fprintf(out, ", correlation along the order %.2f", result->noise.rho);
+static void put_errors(FILE *out, const fg_loop_report *report) {
+  const fg_loop_result *result = report->result;
+  fg_loop_error_row row[FG_LOOP_ERROR_ROWS];
+  size_t rows = fg_loop_error_rows(report, row);
+  bool after = fg_loop_has_after(result);
+  fprintf(out,
+          "<section><h2>%s</h2><div class=\"scroll\"><table><thead><tr><th>error</th><th>%s</th>%s"
+          "</tr></thead><tbody>\n",
+          after ? "Error before and after" : "Error of the declared model",
+          after ? "before" : "size", after ? "<th>after</th><th>ratio</th>" : "");
+  for (size_t i = 0; i < rows; i++) {
+    fprintf(out, "<tr><td>%s</td><td>%.4g</td>", row[i].name, row[i].before);
+    if (after)
+      fprintf(out, "<td>%s</td><td>%s</td>", fg_loop_number_text("%.4g", row[i].after).text,
+              fg_loop_number_text("%.3f", row[i].after / row[i].before).text);
+    fputs("</tr>\n", out);
+  }
+  fputs("</tbody></table></div><p class=\"soft\">", out);
+  if (fg_loop_claims_scatter(result, FG_LOOP_SERIAL))
+    fputs("After: each row predicted from the one before it. ", out);
+  fprintf(out, "The noise of one row has a standard deviation of %s",
+          fg_loop_number_text("%.4g", result->noise_floor).text);
+  if (result->noise.rho > 0) fprintf(out, "; neighbours correlate by %.2f", result->noise.rho);
   if (result->noise.lambda > 0)
-    fprintf(out, ", variance between groups %.2g times that within", result->noise.lambda);
-  fprintf(out, ". 95 %% interval of the ratio: %.3f to %.3f.</p></section>\n",
-          result->ratio_interval[0], result->ratio_interval[1]);
+    fprintf(out, "; between groups the variance is %.2g times that within", result->noise.lambda);
+  if (after)
+    fprintf(out, ". With 95 %% confidence the ratio of the rms lies between %.3f and %.3f",
+            result->ratio_interval[0], result->ratio_interval[1]);
+  fputs(".</p></section>\n", out);
+}
+
+/* The tests of the whole residual. */
+static void put_battery(FILE *out, const fg_loop_report *report) {
+  const fg_loop_checked *check = report->result->check;
+  char words[FG_LOOP_WORDS];
+  double level = 0;
+  for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
+    level = fmax(level, check[k].done ? check[k].level : 0);
+  if (!(level > 0)) return;
+  fputs("<section><h2>Is what is left only noise?</h2><div class=\"scroll\"><table><thead><tr>"
+        "<th>test of all that is left</th><th class=\"w\">answer</th><th>p</th></tr></thead>"
+        "<tbody>\n",
+        out);
+  for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
+    if (!check[k].done) continue;
+    fg_loop_check_words(report, (fg_loop_check)k, words);
+    fputs("<tr><td>", out);
+    fg_html_text(out, words);
+    fprintf(out, "</td><td class=\"w\">%s</td><td class=\"n\">%s</td></tr>\n",
+            check[k].failed ? "<span class=\"no\">no</span>" : "yes",
+            fg_loop_p_cell(check[k].p_value).text);
+  }
+  fprintf(out,
+          "</tbody></table></div><p class=\"soft\">No: p below %.2g. What was looked for by name "
+          "(neighbours that are alike, cycles, scatter that changes, lone values and more) is "
+          "listed below.</p></section>\n",
+          level);
 }
 
 /* Words first, the id small. */
@@ -91,54 +122,62 @@ static void put_name(FILE *out, const char *words, const char *id) {
   fputs("</small>", out);
 }
 
-static void put_claim_row(FILE *out, const fg_loop_report *report, const fg_loop_claim *claim) {
+static bool any_alias(const fg_loop_result *result) {
+  for (size_t i = 0; i < result->claims; i++)
+    if (result->claim[i].aliases) return true;
+  return false;
+}
+
+static void put_claim_row(FILE *out, const fg_loop_report *report, const fg_loop_claim *claim,
+                          bool aliases) {
   char words[2 * FG_LOOP_WORDS], size[FG_LOOP_NAME];
   fg_loop_claim_words(report, claim, words);
   fg_loop_claim_size(claim, size);
   fputs("<tr><td>", out);
   put_name(out, words, claim->name);
-  fprintf(out, "</td><td class=\"w\"><b>%s</b></td><td>%s</td><td>%.2g</td><td class=\"w\">",
-          fg_loop_verdict_word(claim->verdict), size, claim->p_value);
+  fprintf(out, "</td><td class=\"w\"><b>%s</b></td><td>%s</td><td class=\"n\">%s</td>",
+          fg_loop_verdict_word(claim->verdict), size, fg_loop_p_cell(claim->p_value).text);
+  if (aliases) fputs("<td class=\"w\">", out);
   for (size_t k = 0; k < claim->aliases; k++) {
-    fputs(k ? ";<br>" : "", out);
     fg_loop_alias_words(report, &claim->alias[k], words);
     put_name(out, words, claim->alias[k].name);
   }
-  fputs("</td></tr>\n", out);
+  fputs(aliases ? "</td></tr>\n" : "</tr>\n", out);
+}
+
+static void put_rejected_row(FILE *out, const fg_loop_report *report, const fg_loop_rejected *one,
+                             bool aliases) {
+  char words[FG_LOOP_WORDS];
+  fg_loop_candidate_words(report, &one->candidate, words);
+  fputs("<tr><td>", out);
+  put_name(out, words, one->name);
+  fprintf(out, "</td><td class=\"w\">%s</td><td>%s</td><td class=\"n\">%s</td>%s</tr>\n",
+          fg_loop_rejected_word(one), fg_loop_number_text("≥ %.3g", one->smallest_detectable).text,
+          fg_loop_p_cell(one->p_value).text, aliases ? "<td></td>" : "");
 }
 
 static void put_candidates(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
-  char words[FG_LOOP_WORDS];
-  fputs("<section class=\"long\"><h2>All that was looked for</h2><div class=\"scroll\"><table><tr>"
-        "<th>effect</th><th class=\"w\">verdict</th><th>size, or what would have shown</th>"
-        "<th>p</th><th class=\"w\">could also be</th></tr>\n",
-        out);
+  bool aliases = any_alias(result);
+  if (!result->claims && !result->rejects) return;
+  fprintf(out,
+          "<section class=\"long\"><h2>All that was looked for</h2><p class=\"soft key\">Absent: "
+          "it would have shown at the size that matters. Inconclusive: only a larger one would "
+          "have. In the model already: the declared model takes it up.</p><div class=\"scroll\">"
+          "<table><thead><tr><th>effect</th><th class=\"w\">verdict</th><th>size, or what would "
+          "have shown</th><th>p</th>%s</tr></thead><tbody>\n",
+          aliases ? "<th class=\"w\">could also be</th>" : "");
   for (size_t i = 0; i < result->claims; i++)
-    put_claim_row(out, report, &result->claim[i]);
-  for (size_t i = 0; i < result->rejects; i++) {
-    const fg_loop_rejected *one = &result->rejected[i];
-    fg_loop_candidate_words(report, &one->candidate, words);
-    fputs("<tr><td>", out);
-    put_name(out, words, one->name);
-    fprintf(out, "</td><td class=\"w\">%s</td><td>", fg_loop_rejected_word(one));
-    put_number(out, "≥ %.3g", one->smallest_detectable);
-    fputs("</td><td>", out);
-    put_number(out, "%.2g", one->p_value);
-    fputs("</td><td></td></tr>\n", out);
-  }
-  fputs("</table></div></section>\n", out);
+    put_claim_row(out, report, &result->claim[i], aliases);
+  for (size_t i = 0; i < result->rejects; i++)
+    put_rejected_row(out, report, &result->rejected[i], aliases);
+  fputs("</tbody></table></div></section>\n", out);
 }
 
-static void put_advice(FILE *out, const fg_loop_report *report) {
+static void put_notes(FILE *out, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
-  if (!result->advices && !result->notes && !report->problem->excluded && !report->said) return;
-  fputs("<section><h2>What to know, and to do next</h2><ul>\n", out);
-  for (size_t i = 0; i < result->advices; i++) {
-    fputs("<li>", out);
-    fg_html_text(out, result->advice[i].text);
-    fputs("</li>\n", out);
-  }
+  if (!result->notes && !report->problem->excluded && !report->said) return;
+  fputs("<section><h2>What else to know</h2><ul>\n", out);
   if (report->said) {
     fputs("<li>", out);
     fg_html_text(out, report->said);
@@ -157,6 +196,18 @@ static void put_advice(FILE *out, const fg_loop_report *report) {
   fputs("</ul></section>\n", out);
 }
 
+static void put_next(FILE *out, const fg_loop_report *report) {
+  char step[FG_LOOP_STEP];
+  fputs("<div class=\"next\"><b>What to do next</b><ul>\n", out);
+  for (size_t i = 0; i < fg_loop_next_count(report); i++) {
+    fg_loop_next_step(report, i, step);
+    fputs("<li>", out);
+    fg_html_text(out, step);
+    fputs("</li>\n", out);
+  }
+  fputs("</ul></div>", out);
+}
+
 static void put_head(FILE *out, const fg_loop_report *report, const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fg_html_head(out, "Closing the loop");
@@ -165,11 +216,20 @@ static void put_head(FILE *out, const fg_loop_report *report, const char *senten
   fputs("</h1><p class=\"soft\">", out);
   fg_html_text(out, report->path);
   fputs(", declared model: ", out);
+  if (!strchr(report->spec->model, '~') && strcmp(report->spec->model, "arc_length") != 0) {
+    fg_html_text(out, report->spec->response);
+    fputs(" ~ ", out);
+  }
   fg_html_text(out, report->spec->model);
-  fprintf(out, "</p><span class=\"verdict %s\">%s</span><p class=\"say\">",
-          classes[report->result->verdict], fg_loop_outcome_word(report->result->verdict));
+  fprintf(out,
+          "; %zu rows</p><span class=\"verdict %s\">%s</span><span class=\"mean\">%s</span><p "
+          "class=\"say\">",
+          report->problem->problem.rows, classes[report->result->verdict],
+          fg_loop_outcome_word(report->result->verdict), fg_loop_outcome_meaning(report->result));
   fg_html_text(out, sentence);
-  fputs("</p></section>\n", out);
+  fputs("</p>", out);
+  put_next(out, report);
+  fputs("</section>\n", out);
 }
 
 fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE *out) {
@@ -178,8 +238,9 @@ fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE
   put_head(out, report, sentence);
   free(sentence);
   FG_TRY(fg_loop_plots_put(ctx, out, report));
-  put_errors(out, report->result);
-  put_advice(out, report);
+  put_errors(out, report);
+  put_battery(out, report);
+  put_notes(out, report);
   put_candidates(out, report);
   fputs("</main></body></html>\n", out);
   return fg_stream_finish(ctx, out, "the loop's page");

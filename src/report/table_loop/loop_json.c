@@ -7,6 +7,8 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "foilgauge/loop.h"
+#include "report/table_loop/loop_checks.h"
+#include "report/table_loop/loop_next.h"
 #include "report/words.h"
 
 static void write_error(fg_json *json, const char *name, const fg_loop_error *error) {
@@ -128,6 +130,55 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   fg_json_object_end(json);
 }
 
+static void write_row(fg_json *json, const fg_loop_report *report, size_t row) {
+  fg_json_integer(json, NULL, (int64_t)report->problem->row[row] + 1);
+}
+
+/* The tests of the whole residual; those that the table offers none of are not there. */
+static void write_battery(fg_json *json, const fg_loop_report *report) {
+  char words[FG_LOOP_WORDS];
+  fg_json_array(json, "battery");
+  for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
+    const fg_loop_checked *check = &report->result->check[k];
+    if (!check->done) continue;
+    fg_loop_check_words(report, (fg_loop_check)k, words);
+    fg_json_object(json, NULL);
+    fg_json_string(json, "test", fg_loop_check_id((fg_loop_check)k));
+    fg_json_string(json, "asks", words);
+    fg_json_number(json, "statistic", check->statistic);
+    if (k < FG_LOOP_CHECK_LAGS)
+      fg_json_numbers(json, "degrees_of_freedom", check->freedom, 2);
+    else
+      fg_json_integer(json, "lag", (int64_t)check->lag);
+    if (k == FG_LOOP_CHECK_ONE_LAG) fg_json_number(json, "correlation", check->correlation);
+    fg_json_number(json, "p_value", check->p_value);
+    fg_json_number(json, "level", check->level);
+    fg_json_bool(json, "passed", !check->failed);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+/* What is left by a test that fails, where no curve says it. */
+static void write_failed(fg_json *json, const fg_loop_report *report) {
+  const fg_loop_result *result = report->result;
+  const fg_loop_checked *failed = &result->check[result->failed];
+  char names[FG_LOOP_WORDS];
+  fg_loop_failed_coordinate(report, names);
+  fg_json_object(json, "unattributed");
+  fg_json_string(json, "kind", fg_loop_check_id(result->failed));
+  fg_json_string(json, "coordinate", names);
+  fg_json_array(json, "shape");
+  fg_json_array_end(json);
+  fg_json_number(json, "rms", failed->rms);
+  fg_json_number(json, "p_value", failed->p_value);
+  fg_json_array(json, "nearest");
+  for (size_t i = 0; i < failed->worst_count; i++)
+    write_row(json, report, failed->worst[i]);
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
 static void write_curve(fg_json *json, const fg_loop_report *report) {
   const fg_loop_result *result = report->result;
   const fg_loop_curve *curve = &result->curve;
@@ -136,6 +187,7 @@ static void write_curve(fg_json *json, const fg_loop_report *report) {
     return;
   }
   fg_json_object(json, "unattributed");
+  fg_json_string(json, "kind", "curve");
   fg_json_string(json, "coordinate", curve->name);
   fg_json_array(json, "shape");
   for (size_t i = 0; i < curve->count; i++)
@@ -145,7 +197,7 @@ static void write_curve(fg_json *json, const fg_loop_report *report) {
   fg_json_number(json, "p_value", curve->p_value);
   fg_json_array(json, "nearest");
   for (size_t i = 0; i < curve->nearest_count; i++)
-    fg_json_integer(json, NULL, (int64_t)report->problem->row[curve->nearest[i]] + 1);
+    write_row(json, report, curve->nearest[i]);
   fg_json_array_end(json);
   fg_json_object_end(json);
 }
@@ -225,7 +277,11 @@ static void write_findings(fg_json *json, const fg_loop_report *report) {
   for (size_t i = 0; i < result->claims; i++)
     write_claim(json, report, &result->claim[i]);
   fg_json_array_end(json);
-  write_curve(json, report);
+  if (result->fails && !result->has_curve)
+    write_failed(json, report);
+  else
+    write_curve(json, report);
+  write_battery(json, report);
   write_error(json, "after", &result->after);
   fg_json_object(json, "error_ratio");
   fg_json_number(json, "rms", result->ratio_rms);
@@ -246,6 +302,16 @@ static void write_findings(fg_json *json, const fg_loop_report *report) {
     fg_json_string(json, "advice", result->advice[i].text);
     fg_json_number(json, "runs", result->advice[i].runs);
     fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static void write_next(fg_json *json, const fg_loop_report *report) {
+  char step[FG_LOOP_STEP];
+  fg_json_array(json, "next_steps");
+  for (size_t i = 0; i < fg_loop_next_count(report); i++) {
+    fg_loop_next_step(report, i, step);
+    fg_json_string(json, NULL, step);
   }
   fg_json_array_end(json);
 }
@@ -278,6 +344,7 @@ fg_status fg_loop_write_json(fg_context *ctx, const fg_loop_report *report, FILE
   fg_json_number(&json, "range_rows", range_of(result->noise.rho));
   fg_json_object_end(&json);
   write_findings(&json, report);
+  write_next(&json, report);
   fg_json_string(&json, "not_candidates", report->problem->excluded);
   fg_json_array(&json, "notes");
   if (report->said) fg_json_string(&json, NULL, report->said);

@@ -97,7 +97,7 @@ static void put_points(const loop_plot *at, const fg_loop_problem *problem,
   size_t stride = problem->rows / POINTS_MOST + 1;
   for (int held = 0; held < 2; held++)
     for (size_t i = 0; i < problem->rows; i += stride) {
-      if ((problem->aside && problem->aside[i]) != held) continue;
+      if ((problem->aside && problem->aside[i]) != held || !isfinite(panel->at->value[i])) continue;
       fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n",
               held ? "held" : "fit", at_x(at, place_of(panel->at, i)), clip(at, panel->residual[i]),
               problem->rows > 400   ? 1.6

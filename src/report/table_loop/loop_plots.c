@@ -20,19 +20,14 @@ static size_t order_coordinate(const fg_loop_problem *problem) {
   return 0;
 }
 
-static bool has_scatter(const fg_loop_result *result, fg_loop_scatter scatter) {
-  for (size_t m = 0; m < result->claims; m++)
-    if (result->claim[m].candidate.effect->scatter == scatter) return true;
-  return false;
-}
-
 /* What is left beside the mean: where neighbours are alike the result holds what the row before
  * does not say, from which it is summed up again. Beside unequal spread that is not known; then
  * that itself is shown. */
 static void left_over(const fg_loop_report *report, double *left) {
   const fg_loop_problem *problem = &report->problem->problem;
   const fg_loop_result *result = report->result;
-  bool sum = has_scatter(result, FG_LOOP_SERIAL) && !has_scatter(result, FG_LOOP_SPREAD);
+  bool sum = fg_loop_claims_scatter(result, FG_LOOP_SERIAL) &&
+             !fg_loop_claims_scatter(result, FG_LOOP_SPREAD);
   for (size_t i = 0; i < problem->rows; i++) {
     bool follows = sum && i > 0 && problem->series[i] == problem->series[i - 1];
     left[i] = result->after_fit[i] + (follows ? result->noise.rho * left[i - 1] : 0);
@@ -85,12 +80,14 @@ static fg_status draw_levels(fg_context *ctx, const fg_loop_problem *problem, co
                              double mean, fg_loop_panel *panel) {
   fg_loop_point *line = NULL;
   FG_TRY(fg_memory_allocate(ctx, problem->rows, sizeof *line, (void **)&line));
+  size_t rows = 0;
   for (size_t i = 0; i < problem->rows; i++)
-    line[i] = (fg_loop_point){panel->at->value[i], effect[i] - mean};
-  qsort(line, problem->rows, sizeof *line, by_x);
-  for (size_t i = 0, next; i < problem->rows; i = next) {
+    if (isfinite(panel->at->value[i]))
+      line[rows++] = (fg_loop_point){panel->at->value[i], effect[i] - mean};
+  qsort(line, rows, sizeof *line, by_x);
+  for (size_t i = 0, next; i < rows; i = next) {
     double x = line[i].x, sum = 0;
-    for (next = i; next < problem->rows && line[next].x == x; next++)
+    for (next = i; next < rows && line[next].x == x; next++)
       sum += line[next].y;
     line[panel->points++] = (fg_loop_point){x, sum / (double)(next - i)};
   }
@@ -261,6 +258,65 @@ static fg_status put_unattributed(fg_context *ctx, FILE *out, const fg_loop_repo
   return status;
 }
 
+/* What the battery finds: the settings with their means; the order, and rows against those so many
+ * before. */
+static fg_status put_settings(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                              const double *left, double *work) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  fg_loop_coordinate settings = {.value = work, .low = 1};
+  fg_loop_panel panel = {
+      .at = &settings, .residual = left, .caption = "What is left; dashes: the mean of a setting"};
+  fg_text_clip(settings.name, sizeof settings.name, "settings, in the order of their columns");
+  for (size_t i = 0; i < problem->rows; i++) {
+    size_t own = report->result->setting[i];
+    work[i] = own ? (double)own : NAN;
+    settings.high = fmax(settings.high, (double)own);
+  }
+  FG_TRY(draw_levels(ctx, problem, left, 0, &panel));
+  set_limit(problem, &panel);
+  fg_status status = fg_loop_panel_put(ctx, out, report, &panel);
+  free(panel.line);
+  return status;
+}
+
+static fg_status put_lag(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                         const double *left, double *work) {
+  const fg_loop_problem *problem = &report->problem->problem;
+  size_t lag = report->result->check[FG_LOOP_CHECK_ONE_LAG].lag;
+  fg_loop_coordinate before = {.value = work};
+  fg_loop_panel panel = {.at = &problem->coordinate[order_coordinate(problem)],
+                         .residual = left,
+                         .joined = true,
+                         .caption = "What is left, over the order"};
+  set_limit(problem, &panel);
+  FG_TRY(fg_loop_panel_put(ctx, out, report, &panel));
+  for (size_t i = 0; i < problem->rows; i++) {
+    bool same = i >= lag && problem->series[i] == problem->series[i - lag];
+    work[i] = same ? left[i - lag] : NAN;
+  }
+  before.low = -panel.limit;
+  before.high = panel.limit;
+  fg_text_clip(before.name, sizeof before.name, "the same, %zu %s before", lag,
+               fg_loop_row_words(panel.at));
+  panel.at = &before;
+  panel.joined = false;
+  panel.caption = "Each against the one so far before it: noise alone would show no direction";
+  return fg_loop_panel_put(ctx, out, report, &panel);
+}
+
+static fg_status put_failed(fg_context *ctx, FILE *out, const fg_loop_report *report,
+                            const double *left, double *work) {
+  bool settings = report->result->failed < FG_LOOP_CHECK_LAGS;
+  open_section(out,
+               settings ? "What repeats is not met by the model"
+                        : "A pattern over the order that no listed effect explains",
+               "unattributed");
+  fg_status status =
+      settings ? put_settings(ctx, out, report, left, work) : put_lag(ctx, out, report, left, work);
+  close_section(report, out);
+  return status;
+}
+
 static fg_status put_nothing(fg_context *ctx, FILE *out, const fg_loop_report *report) {
   const fg_loop_problem *problem = &report->problem->problem;
   fg_loop_panel panel = {.at = &problem->coordinate[order_coordinate(problem)],
@@ -285,7 +341,8 @@ fg_status fg_loop_plots_put(fg_context *ctx, FILE *out, const fg_loop_report *re
     FG_TRY_EXIT(put_claim(ctx, out, report, &result->claim[m], left, left + problem->rows));
   if (result->has_curve)
     FG_TRY_EXIT(put_unattributed(ctx, out, report, left, left + problem->rows));
-  if (!result->claims && !result->has_curve) FG_TRY_EXIT(put_nothing(ctx, out, report));
+  if (result->fails) FG_TRY_EXIT(put_failed(ctx, out, report, left, left + problem->rows));
+  if (result->verdict == FG_LOOP_CLEAN) FG_TRY_EXIT(put_nothing(ctx, out, report));
 exit:
   free(left);
   return status;

@@ -6,15 +6,13 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
+#include "report/table_loop/loop_checks.h"
+#include "report/table_loop/loop_next.h"
 #include "report/table_loop/loop_words.h"
 
 const char *fg_loop_noise_form(const fg_loop_result *result) {
-  bool serial = false, spread = false;
-  for (size_t i = 0; i < result->claims; i++) {
-    fg_loop_scatter scatter = result->claim[i].candidate.effect->scatter;
-    serial |= scatter == FG_LOOP_SERIAL;
-    spread |= scatter == FG_LOOP_SPREAD;
-  }
+  bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
+  bool spread = fg_loop_claims_scatter(result, FG_LOOP_SPREAD);
   return serial && spread ? "correlated along the order, of unequal size"
          : serial         ? "correlated along the order"
          : spread         ? "independent, of unequal size"
@@ -46,11 +44,11 @@ static fg_status say_claim(fg_context *ctx, const fg_loop_report *report, size_t
   fg_loop_claim_words(report, claim, words);
   fg_loop_claim_size(claim, size);
   if (!lacks && *words >= 'a' && *words <= 'z') *words = (char)(*words - 'a' + 'A');
-  FG_TRY(fg_text_append(ctx, text, "%s%s%s (%s, p = %.2g)", i ? " " : "",
+  FG_TRY(fg_text_append(ctx, text, "%s%s%s (%s, %s)", i ? " " : "",
                         !lacks ? ""
                         : i    ? "The model also lacks "
                                : "The declared model lacks ",
-                        words, size, claim->p_value));
+                        words, size, fg_loop_p_text(claim->p_value).text));
   FG_TRY(say_aliases(ctx, report, claim, text));
   return fg_text_append(ctx, text, ".");
 }
@@ -64,15 +62,9 @@ static fg_status say_change(fg_context *ctx, double before, double after, char *
                         first.text, second.text);
 }
 
-static bool any_scatter(const fg_loop_result *result, fg_loop_scatter scatter) {
-  for (size_t i = 0; i < result->claims; i++)
-    if (result->claim[i].candidate.effect->scatter == scatter) return true;
-  return false;
-}
-
 static fg_status say_errors(fg_context *ctx, const fg_loop_result *result, char **text) {
-  bool serial = any_scatter(result, FG_LOOP_SERIAL);
-  if (!result->has_curve && !serial && !any_scatter(result, FG_LOOP_OF_THE_MEAN))
+  bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
+  if (!fg_loop_has_after(result))
     return fg_text_append(ctx, text,
                           " No mean changes, so there is no error to take out: limits and "
                           "uncertainties have to follow the scatter.");
@@ -110,7 +102,25 @@ static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char *
     if (is_first(result, i))
       FG_TRY(fg_text_append(ctx, text, "%s%s", said++ ? ", " : " Looked for: ",
                             result->rejected[i].candidate.effect->sought));
+  bool repeats = result->check[FG_LOOP_CHECK_REPEATS].done;
+  if (said && (repeats || result->check[FG_LOOP_CHECK_SETTINGS].done))
+    FG_TRY(fg_text_append(ctx, text, ", lack of fit where settings repeat"));
+  if (said && result->check[FG_LOOP_CHECK_LAGS].done)
+    FG_TRY(fg_text_append(ctx, text, ", rows further apart that are alike"));
   return said ? fg_text_append(ctx, text, ".") : FG_OK;
+}
+
+/* What the battery says of what is left. */
+static fg_status say_failed(fg_context *ctx, const fg_loop_report *report, char **text) {
+  const fg_loop_result *result = report->result;
+  char words[FG_LOOP_WORDS];
+  fg_loop_failed_words(report, words);
+  if (result->claims || result->has_curve)
+    return fg_text_append(ctx, text, " What is left is not noise alone: %s.", words);
+  return fg_text_append(ctx, text,
+                        "The declared model lacks something that no listed effect explains: %s. "
+                        "Nothing is taken out: the error stays at %.3g rms.",
+                        words, result->before.rms);
 }
 
 fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char **text) {
@@ -122,33 +132,72 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
   if (result->has_curve)
     FG_TRY(fg_text_append(ctx, text,
                           "%s lacks something over %s that no listed effect explains (%.3g rms, "
-                          "p = %.2g).",
+                          "%s).",
                           result->claims ? " The model also" : "The declared model",
-                          result->curve.name, result->curve.rms, result->curve.p_value));
-  return say_errors(ctx, result, text);
+                          result->curve.name, result->curve.rms,
+                          fg_loop_p_text(result->curve.p_value).text));
+  if (result->fails) FG_TRY(say_failed(ctx, report, text));
+  bool nothing = !result->claims && !result->has_curve;
+  return nothing ? FG_OK : say_errors(ctx, result, text);
 }
 
-static void write_errors(const fg_loop_result *result, FILE *out) {
-  static const char *const names[] = {"rms",
-                                      "robust sd",
-                                      "95th percentile",
-                                      "maximum",
-                                      "rows that took no part, rms",
-                                      "cross-validated, rms"};
-  const double before[] = {result->before.rms,          result->before.robust_sd,
-                           result->before.p95,          result->before.maximum,
-                           result->before.held_out_rms, result->before.cross_validated_rms};
-  const double after[] = {result->after.rms,          result->after.robust_sd,
-                          result->after.p95,          result->after.maximum,
-                          result->after.held_out_rms, result->after.cross_validated_rms};
-  fprintf(out, "\n%-28s %12s %12s %8s\n", "error", "before", "after", "ratio");
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    if (isfinite(before[i]))
-      fprintf(out, "%-28s %12.5g %12s %8s\n", names[i], before[i],
-              fg_loop_number_text("%.5g", after[i]).text,
-              fg_loop_number_text("%.3f", after[i] / before[i]).text);
-  fprintf(out, "%-28s %12s %12s\n", "noise floor", "",
+/* Lines of a terminal that is not too narrow; words longer than that stand alone. */
+enum { LINE = 100 };
+
+static void write_wrapped(const char *first, const char *indent, const char *text, FILE *out) {
+  size_t column = strlen(first);
+  fputs(first, out);
+  for (bool begin = true; *text; begin = false) {
+    size_t length = strcspn(text, " ");
+    bool fits = column + 1 + length <= LINE;
+    if (!begin) fputs(fits ? " " : "\n", out);
+    if (!begin && !fits) fputs(indent, out);
+    column = begin ? column + length : (fits ? column + 1 : strlen(indent)) + length;
+    fwrite(text, 1, length, out);
+    text += length + (text[length] == ' ');
+  }
+  fputc('\n', out);
+}
+
+static void write_errors(const fg_loop_report *report, FILE *out) {
+  const fg_loop_result *result = report->result;
+  fg_loop_error_row row[FG_LOOP_ERROR_ROWS];
+  size_t rows = fg_loop_error_rows(report, row);
+  bool after = fg_loop_has_after(result);
+  fprintf(out, after ? "\n%-44s %12s %12s %8s\n" : "\n%-44s %12s\n", "error", after ? "before" : "",
+          "after", "ratio");
+  for (size_t i = 0; i < rows; i++) {
+    fprintf(out, "%-44s %12.5g", row[i].name, row[i].before);
+    if (after)
+      fprintf(out, " %12s %8s", fg_loop_number_text("%.5g", row[i].after).text,
+              fg_loop_number_text("%.3f", row[i].after / row[i].before).text);
+    fputc('\n', out);
+  }
+  fprintf(out, after ? "%-44s %12s %12s\n" : "%-44s%s %12s\n", "noise of one row (sd)", "",
           fg_loop_number_text("%.5g", result->noise_floor).text);
+}
+
+static void write_battery(const fg_loop_report *report, FILE *out) {
+  char words[FG_LOOP_WORDS];
+  bool any = false;
+  for (size_t k = 0; k < FG_LOOP_CHECKS; k++) {
+    const fg_loop_checked *check = &report->result->check[k];
+    if (!check->done) continue;
+    if (!any) fputs("\nis what is left only noise?\n", out);
+    any = true;
+    fg_loop_check_words(report, (fg_loop_check)k, words);
+    fprintf(out, "  %-4s %s (%s)\n", check->failed ? "NO" : "yes", words,
+            fg_loop_p_text(check->p_value).text);
+  }
+}
+
+static void write_next(const fg_loop_report *report, FILE *out) {
+  char step[FG_LOOP_STEP];
+  fputs("\nwhat to do next\n", out);
+  for (size_t i = 0; i < fg_loop_next_count(report); i++) {
+    fg_loop_next_step(report, i, step);
+    write_wrapped("  - ", "    ", step, out);
+  }
 }
 
 static int by_p(const void *a, const void *b) {
@@ -171,7 +220,7 @@ static void write_rejected(const fg_loop_report *report, FILE *out) {
   for (size_t i = 0; i < result->rejects && i < SHOWN; i++) {
     fg_loop_candidate_words(report, &list[i]->candidate, words);
     fprintf(out, "%-52s %-20s %7s %9s\n", words, fg_loop_rejected_word(list[i]),
-            fg_loop_number_text("%.2g", list[i]->p_value).text,
+            fg_loop_p_cell(list[i]->p_value).text,
             fg_loop_number_text("%.3g", list[i]->smallest_detectable).text);
   }
   if (result->rejects > SHOWN) fprintf(out, "and %zu more\n", result->rejects - SHOWN);
@@ -180,33 +229,45 @@ static void write_rejected(const fg_loop_report *report, FILE *out) {
 
 /* What it is first, its id in brackets behind it. */
 static void write_claim(const fg_loop_report *report, const fg_loop_claim *claim, FILE *out) {
-  char words[2 * FG_LOOP_WORDS];
+  char words[2 * FG_LOOP_WORDS], closeness[FG_LOOP_WORDS];
   fg_loop_claim_words(report, claim, words);
-  fprintf(out, "\n%s: %s [%s]\n", words, fg_loop_verdict_word(claim->verdict), claim->name);
+  fprintf(out, "  %s: %s [%s]\n", words, fg_loop_verdict_word(claim->verdict), claim->name);
   for (size_t k = 0; k < claim->aliases; k++) {
     const fg_loop_alias *alias = &claim->alias[k];
     fg_loop_alias_words(report, alias, words);
-    fprintf(out, "  or %s (correlation %s, loss %s %%) [%s]\n", words,
-            fg_loop_number_text("%.3f", alias->correlation).text,
-            fg_loop_number_text("%.1f", 100 * alias->loss).text, alias->name);
+    fg_loop_closeness_words(alias, closeness);
+    fprintf(out, "    or %s%s%s%s [%s]\n", words, *closeness ? " (" : "", closeness,
+            *closeness ? ")" : "", alias->name);
   }
+}
+
+static void write_notes(const fg_loop_report *report, FILE *out) {
+  const fg_loop_result *result = report->result;
+  if (!report->problem->excluded && !report->said && !result->notes) return;
+  fputc('\n', out);
+  if (report->said) write_wrapped("note: ", "      ", report->said, out);
+  for (size_t i = 0; i < result->notes; i++)
+    write_wrapped("note: ", "      ", result->note[i], out);
+  if (report->problem->excluded)
+    write_wrapped("no candidates: ", "      ", report->problem->excluded, out);
 }
 
 fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE *out) {
   const fg_loop_result *result = report->result;
   char *sentence = NULL;
   FG_TRY(fg_loop_sentence(ctx, report, &sentence));
-  fprintf(out, "%s: %s\n%s\n", report->path, fg_loop_outcome_word(result->verdict), sentence);
+  fprintf(out, "%s: %s\n", report->path, fg_loop_outcome_word(result->verdict));
+  if (result->verdict != FG_LOOP_CLEAN) fprintf(out, "%s\n", fg_loop_outcome_meaning(result));
+  fputc('\n', out);
+  write_wrapped("", "", sentence, out);
   free(sentence);
+  write_next(report, out);
+  if (result->claims) fputs("\nwhat was found\n", out);
   for (size_t i = 0; i < result->claims; i++)
     write_claim(report, &result->claim[i], out);
-  for (size_t i = 0; i < result->advices; i++)
-    fprintf(out, "\n%s\n", result->advice[i].text);
-  write_errors(result, out);
+  write_errors(report, out);
+  write_battery(report, out);
   write_rejected(report, out);
-  if (report->problem->excluded) fprintf(out, "\nleft out: %s\n", report->problem->excluded);
-  if (report->said) fprintf(out, "note: %s\n", report->said);
-  for (size_t i = 0; i < result->notes; i++)
-    fprintf(out, "note: %s\n", result->note[i]);
+  write_notes(report, out);
   return fg_stream_finish(ctx, out, "the loop's report");
 }

@@ -15,6 +15,18 @@ fg_loop_number fg_loop_number_text(const char *format, double value) {
   return out;
 }
 
+/* Below this a p-value says only that it is no chance. */
+#define P_LEAST 1e-12
+
+fg_loop_number fg_loop_p_cell(double p) {
+  if (p < P_LEAST) return fg_loop_number_text("< %.0e", P_LEAST);
+  return fg_loop_number_text("%.2g", p);
+}
+
+fg_loop_number fg_loop_p_text(double p) {
+  return fg_loop_number_text(p < P_LEAST ? "p < %.0e" : "p = %.2g", fmax(p, P_LEAST));
+}
+
 static void append(char *text, const char *words) {
   size_t used = strlen(text);
   fg_text_clip(text + used, FG_LOOP_WORDS - used, "%s", words);
@@ -32,6 +44,12 @@ static void list_rows(const fg_loop_report *report, const fg_loop_candidate *can
     snprintf(number, sizeof number, "%zu", row + 1);
     append(text, report->row_name ? report->row_name[row] : number);
   }
+}
+
+void fg_loop_rows_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
+                        char text[FG_LOOP_WORDS]) {
+  *text = 0;
+  list_rows(report, candidate, text);
 }
 
 static void lone_words(const fg_loop_report *report, const fg_loop_candidate *candidate,
@@ -66,6 +84,17 @@ void fg_loop_alias_words(const fg_loop_report *report, const fg_loop_alias *alia
   fg_text_clip(text + used, 2 * FG_LOOP_WORDS - used, " together with %s", second);
 }
 
+void fg_loop_closeness_words(const fg_loop_alias *alias, char text[FG_LOOP_WORDS]) {
+  double percent = 100 * fabs(alias->loss);
+  *text = 0;
+  if (!isfinite(alias->loss)) return;
+  if (percent < 0.5)
+    fg_text_clip(text, FG_LOOP_WORDS, "explains as much");
+  else
+    fg_text_clip(text, FG_LOOP_WORDS, "explains %.0f %% %s", percent,
+                 alias->loss > 0 ? "less" : "more");
+}
+
 static void lone_statement(const fg_loop_report *report, const fg_loop_candidate *candidate,
                            char text[FG_LOOP_WORDS]) {
   list_rows(report, candidate, text);
@@ -74,7 +103,8 @@ static void lone_statement(const fg_loop_report *report, const fg_loop_candidate
                                                                  : " is wrong");
 }
 
-static const char *neighbours(const fg_loop_coordinate *at) {
+const char *fg_loop_row_words(const fg_loop_coordinate *at) {
+  if (!at) return "rows";
   return !strcmp(at->name, "run") ? "runs" : at->roles & FG_LOOP_BUMP ? "bumps" : "rows";
 }
 
@@ -116,7 +146,7 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
   if (!effect->accepts)
     lone_statement(report, &claim->candidate, text);
   else if (effect->scatter == FG_LOOP_SERIAL)
-    fg_text_clip(text, FG_LOOP_WORDS, "neighbouring %s are alike", neighbours(at));
+    fg_text_clip(text, FG_LOOP_WORDS, "neighbouring %s are alike", fg_loop_row_words(at));
   else if (effect->scatter == FG_LOOP_SPREAD)
     spread_statement(report, claim, text);
   else
@@ -156,4 +186,48 @@ void fg_loop_claim_size(const fg_loop_claim *claim, char text[FG_LOOP_NAME]) {
 const char *fg_loop_rejected_word(const fg_loop_rejected *rejected) {
   return rejected->verdict == FG_LOOP_ABSORBED ? "in the model already"
                                                : fg_loop_verdict_word(rejected->verdict);
+}
+
+bool fg_loop_claims_scatter(const fg_loop_result *result, fg_loop_scatter scatter) {
+  for (size_t i = 0; i < result->claims; i++)
+    if (result->claim[i].candidate.effect->scatter == scatter) return true;
+  return false;
+}
+
+bool fg_loop_has_after(const fg_loop_result *result) {
+  return result->has_curve || fg_loop_claims_scatter(result, FG_LOOP_OF_THE_MEAN) ||
+         fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
+}
+
+/* A wrong row tells nothing of itself where it is left out, nor a neighbour where all are: then
+ * what was found cannot be judged by leaving groups out with the finding as it is. */
+static bool left_out_tells(const fg_loop_result *result) {
+  bool tells = fg_loop_has_after(result) && !fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
+  for (size_t i = 0; i < result->claims; i++)
+    tells = tells && result->claim[i].candidate.effect->lone == FG_LOOP_NOT_LONE;
+  return tells;
+}
+
+size_t fg_loop_error_rows(const fg_loop_report *report,
+                          fg_loop_error_row rows[FG_LOOP_ERROR_ROWS]) {
+  const fg_loop_result *result = report->result;
+  const fg_loop_problem *problem = &report->problem->problem;
+  const fg_loop_error *before = &result->before, *after = &result->after;
+  bool grouped = problem->groups < problem->rows;
+  const fg_loop_error_row all[FG_LOOP_ERROR_ROWS] = {
+      {"rms", before->rms, after->rms},
+      {"robust sd", before->robust_sd, after->robust_sd},
+      {"95th percentile", before->p95, after->p95},
+      {"maximum", before->maximum, after->maximum},
+      {fg_loop_has_after(result) ? "rows that took no part in the search, rms"
+       : grouped                 ? "each group predicted from the others, rms"
+                                 : "each row predicted from the others, rms",
+       before->held_out_rms, after->held_out_rms},
+      {grouped ? "each group predicted from the others, rms"
+               : "each row predicted from the others, rms",
+       left_out_tells(result) ? before->cross_validated_rms : NAN, after->cross_validated_rms}};
+  size_t count = 0;
+  for (size_t i = 0; i < FG_LOOP_ERROR_ROWS; i++)
+    if (isfinite(all[i].before)) rows[count++] = all[i];
+  return count;
 }
