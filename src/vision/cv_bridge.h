@@ -1,4 +1,5 @@
-/* The only door to OpenCV (core and imgproc): plain C in, plain C out, no exception escapes. */
+/* The only door to OpenCV (core and imgproc): plain C in, plain C out, no exception escapes.
+ * Whatever comes through it first loads OpenCV; FG_ERR_IO when that fails. */
 #ifndef FG_VISION_CV_BRIDGE_H
 #define FG_VISION_CV_BRIDGE_H
 

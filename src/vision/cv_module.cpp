@@ -1,4 +1,4 @@
-#include "vision/cv_bridge.h"
+#include "vision/cv_module.h"
 
 #include <cstdlib>
 #include <exception>
@@ -15,7 +15,9 @@ static fg_status copy_contours(fg_context *ctx, const std::vector<std::vector<cv
   out->xy = static_cast<int32_t *>(std::calloc(points + 1, 2 * sizeof(int32_t)));
   out->starts = static_cast<size_t *>(std::calloc(found.size() + 1, sizeof(size_t)));
   if (!out->xy || !out->starts) {
-    fg_contours_free(out);
+    std::free(out->xy);
+    std::free(out->starts);
+    *out = {};
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %zu points of contours", points);
   }
   int32_t *to = out->xy;
@@ -29,8 +31,8 @@ static fg_status copy_contours(fg_context *ctx, const std::vector<std::vector<cv
   return FG_OK;
 }
 
-fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
-                         double level, int32_t least, fg_contours *out) {
+static fg_status contours(fg_context *ctx, const uint8_t *picture, int32_t width, int32_t height,
+                          double level, int32_t least, fg_contours *out) {
   *out = {};
   try {
     cv::setNumThreads(0);
@@ -48,19 +50,12 @@ fg_status fg_cv_contours(fg_context *ctx, const uint8_t *picture, int32_t width,
   }
 }
 
-void fg_contours_free(fg_contours *contours) {
-  if (!contours) return;
-  std::free(contours->xy);
-  std::free(contours->starts);
-  *contours = {};
-}
-
 static cv::Scalar colour_of(uint32_t colour) {
   return cv::Scalar(colour >> 16 & 255, colour >> 8 & 255, colour & 255);
 }
 
-fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
-                          uint32_t colour, int32_t thickness_px) {
+static fg_status draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, size_t count,
+                           uint32_t colour, int32_t thickness_px) {
   try {
     const int shift = 4; /* sixteenths of a pixel */
     cv::Mat image(rgb->height, rgb->width, CV_8UC3, rgb->pixels);
@@ -76,8 +71,8 @@ fg_status fg_cv_draw_line(fg_context *ctx, fg_rgb *rgb, const double *xy_px, siz
   }
 }
 
-fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
-                          const fg_text_style *style) {
+static fg_status draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const double at_px[2],
+                           const fg_text_style *style) {
   try {
     const int font = cv::FONT_HERSHEY_SIMPLEX, thickness = style->thickness_px;
     cv::Mat image(rgb->height, rgb->width, CV_8UC3, rgb->pixels);
@@ -95,3 +90,7 @@ fg_status fg_cv_draw_text(fg_context *ctx, fg_rgb *rgb, const char *text, const 
     return fg_fail(ctx, FG_ERR_MEMORY, "OpenCV: %s", error.what());
   }
 }
+
+/* The one symbol that is seen from outside. */
+extern "C" __attribute__((visibility("default")))
+const fg_cv_functions fg_cv_module = {FOILGAUGE_VERSION, contours, draw_line, draw_text};
