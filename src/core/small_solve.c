@@ -11,14 +11,30 @@ void fg_normal_clear(fg_normal_equations *system, size_t unknowns) {
     memset(system->matrix[i], 0, unknowns * sizeof *system->matrix[i]);
 }
 
-void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
-  for (size_t i = 0; i < system->unknowns; i++) {
+static inline __attribute__((always_inline)) void
+add(fg_normal_equations *system, const double *row, double value, double weight, size_t unknowns) {
+  for (size_t i = 0; i < unknowns; i++) {
     double scaled = weight * row[i];
     for (size_t j = 0; j <= i; j++)
       system->matrix[i][j] += scaled * row[j];
     system->right[i] += scaled * value;
   }
   system->sum_squares += weight * value * value;
+}
+
+/* The compiler unrolls the loops where it knows the number: of a profile's fit, the innermost loop
+ * of all that is measured, and of a parabola's. */
+void fg_normal_add(fg_normal_equations *system, const double *row, double value, double weight) {
+  switch (system->unknowns) {
+  case 3:
+    add(system, row, value, weight, 3);
+    break;
+  case 9:
+    add(system, row, value, weight, 9);
+    break;
+  default:
+    add(system, row, value, weight, system->unknowns);
+  }
 }
 
 /* Lower Cholesky factor of the damped matrix. */

@@ -281,10 +281,13 @@ fg_status fg_png_read_row(fg_context *ctx, fg_png *png, void *samples) {
   return run(png, read_row, samples) ? FG_OK : fail(ctx, png);
 }
 
-/* libpng goes on behind the image as if it had skipped it. */
+/* libpng goes on behind the image as if it had skipped it. What the image took is free for what is
+ * done with its rows. */
 static fg_status finish_image(fg_context *ctx, fg_png *png) {
   static const png_byte idat[] = "IDAT";
   if (!fg_png_image_finish(png->image, png->head)) return fail_image(ctx, png);
+  fg_png_image_free(png->image);
+  png->image = NULL;
   png->head_waits = true;
   png_set_keep_unknown_chunks(png->png, PNG_HANDLE_CHUNK_NEVER, idat, 1);
   return FG_OK;

@@ -10,19 +10,32 @@
 #define OUTLIER_SIGMAS 6.0
 #define OUTLIER_SHARE  0.25
 
+/* Of a station, what every pixel of it asks for. */
+typedef struct held {
+  float edge_px[2], blur_inverse[2], plateau, step[2], slope[2], slope_blur[2];
+} held;
+
+static held hold(const fg_edge_station *s) {
+  return (held){.edge_px = {s->edge_px[0], s->edge_px[1]},
+                .blur_inverse = {1.0f / s->blur_px[0], 1.0f / s->blur_px[1]},
+                .plateau = s->plateau,
+                .step = {s->step[0], s->step[1]},
+                .slope = {s->slope[0], s->slope[1]},
+                .slope_blur = {s->slope[0] * s->blur_px[0], s->slope[1] * s->blur_px[1]}};
+}
+
 /* Adds one pixel to its station. */
-static inline void add_pixel(const fg_edge_tables *tables, fg_edge_station *s, float across,
-                             float value, float limit) {
-  float d1 = s->edge_px[0] - across, d2 = across - s->edge_px[1];
-  float i1 = 1.0f / s->blur_px[0], i2 = 1.0f / s->blur_px[1];
+static inline void add_pixel(const fg_edge_tables *tables, const held *h, fg_edge_station *s,
+                             float across, float value, float limit) {
+  float d1 = h->edge_px[0] - across, d2 = across - h->edge_px[1];
+  float i1 = h->blur_inverse[0], i2 = h->blur_inverse[1];
   float t1 = d1 * i1, t2 = d2 * i2;
   if (t1 > (float)FG_REACH_BLURS || t2 > (float)FG_REACH_BLURS) return;
   float p1, c1, p2, c2;
   fg_edge_normal(tables, t1, &p1, &c1);
   fg_edge_normal(tables, t2, &p2, &c2);
-  float light = s->plateau + (s->step[0] + s->slope[0] * d1) * c1 +
-                s->slope[0] * s->blur_px[0] * p1 + (s->step[1] + s->slope[1] * d2) * c2 +
-                s->slope[1] * s->blur_px[1] * p2;
+  float light = h->plateau + (h->step[0] + h->slope[0] * d1) * c1 + h->slope_blur[0] * p1 +
+                (h->step[1] + h->slope[1] * d2) * c2 + h->slope_blur[1] * p2;
   float model, rate;
   fg_edge_tone(tables, light, &model, &rate);
   s->seen++;
@@ -30,7 +43,7 @@ static inline void add_pixel(const fg_edge_tables *tables, fg_edge_station *s, f
   float residual = value - model;
   if (fabsf(residual) > limit) return;
   /* The filters leave the slopes out: a slope is the least certain part of the shape. */
-  float f1 = rate * s->step[0] * p1 * i1, f2 = -rate * s->step[1] * p2 * i2;
+  float f1 = rate * h->step[0] * p1 * i1, f2 = -rate * h->step[1] * p2 * i2;
   s->m11 += f1 * f1;
   s->m12 += f1 * f2;
   s->m22 += f2 * f2;
@@ -87,15 +100,20 @@ static fg_status solve_task(fg_context *ctx, void *shared, size_t chunk) {
   fg_edge_work *work = shared;
   size_t first, last;
   fg_edges_chunk(work, chunk, &first, &last);
-  for (size_t i = first; i <= last; i++)
+  held holds[FG_CHUNK_STATIONS];
+  for (size_t i = first; i <= last; i++) {
     clear_sums(&work->stations[i]);
+    holds[i - first] = hold(&work->stations[i]);
+  }
   float limit =
       (float)(work->round == 0 ? 1e9
                                : OUTLIER_SIGMAS * work->noise + OUTLIER_SHARE * work->contrast);
   const fg_pixel_band *band = &work->bands[chunk];
   for (size_t i = 0; i < band->count; i++) {
     const fg_band_pixel *p = &band->pixels[i];
-    add_pixel(work->tables, &work->stations[p->station], p->across_px, p->value, limit);
+    size_t station = (size_t)p->station;
+    add_pixel(work->tables, &holds[station - first], &work->stations[station], p->across_px,
+              p->value, limit);
   }
   for (size_t i = first; i <= last; i++)
     move_edges(&work->stations[i]);

@@ -102,7 +102,7 @@ static growing make(const uint8_t *data, size_t size) {
   uint8_t *raw = malloc(wanted);
   if (!raw) abort();
   for (size_t i = 0; i < wanted; i++)
-    raw[i] = left ? (uint8_t)(data[RECIPE_BYTES + i % left] + i / left * data[12]) : data[13];
+    raw[i] = (uint8_t)(left ? data[RECIPE_BYTES + i % left] + i / left * data[12] : data[13]);
   growing file = make_pair_png(&r, raw);
   free(raw);
   return file;
