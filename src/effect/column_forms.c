@@ -111,10 +111,13 @@ void fg_loop_form_level_columns(const fg_loop_problem *problem, const fg_loop_co
                                 double *columns) {
   size_t count = fg_loop_form_level_count(at);
   memset(columns, 0, (count - 1) * problem->rows * sizeof *columns);
-  for (size_t i = 0; i < problem->rows; i++)
+  for (size_t i = 0; at->levels && i < problem->rows; i++) {
+    size_t k = at->value[i] > 0 ? (size_t)at->value[i] : 0;
+    if (k > 0 && k < count && at->value[i] == (double)k) columns[(k - 1) * problem->rows + i] = 1;
+  }
+  for (size_t i = 0; !at->levels && i < problem->rows; i++)
     for (size_t k = 1; k < count; k++)
-      if (at->value[i] == (at->levels ? (double)k : at->few[k]))
-        columns[(k - 1) * problem->rows + i] = 1;
+      if (at->value[i] == at->few[k]) columns[(k - 1) * problem->rows + i] = 1;
 }
 
 void fg_loop_form_factor_basis(const fg_loop_problem *problem, const fg_loop_candidate *candidate,
@@ -142,12 +145,28 @@ void fg_loop_form_threshold_basis(const fg_loop_problem *problem,
 
 enum { THRESHOLDS = 59 };
 
-static bool sides_hold(const fg_loop_problem *problem, const fg_loop_coordinate *at, double place) {
-  size_t above = 0;
-  for (size_t i = 0; i < problem->rows; i++)
-    above += at->value[i] > place;
+/* Those of the places, ascending, that have rows on both sides. */
+static size_t keep_places(const fg_loop_problem *problem, const fg_loop_coordinate *at,
+                          const double *place, size_t places,
+                          double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
+  size_t rows[THRESHOLDS + 1] = {0}, below = 0, count = 0; /* rows: with so many places below */
+  for (size_t i = 0; i < problem->rows; i++) {
+    size_t low = 0, high = places;
+    while (low < high) {
+      size_t middle = (low + high) / 2;
+      if (at->value[i] > place[middle])
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    rows[low]++;
+  }
   size_t least = problem->rows / 8 > SIDE_ROWS ? problem->rows / 8 : SIDE_ROWS;
-  return above >= least && problem->rows - above >= least;
+  for (size_t k = 0; k < places; k++) {
+    below += rows[k];
+    if (below >= least && problem->rows - below >= least) starts[count++][0] = place[k];
+  }
+  return count;
 }
 
 /* Between neighbouring values; where there are many, spread over the range. */
@@ -155,18 +174,15 @@ size_t fg_loop_form_threshold_starts(const fg_loop_problem *problem,
                                      const fg_loop_candidate *candidate,
                                      double starts[FG_LOOP_STARTS][FG_LOOP_SHAPES]) {
   const fg_loop_coordinate *at = fg_loop_form_first(problem, candidate);
-  size_t count = 0;
-  if (at->distinct <= FG_LOOP_COLUMNS + 1) {
+  double place[THRESHOLDS];
+  size_t places = 0;
+  if (at->distinct <= FG_LOOP_COLUMNS + 1)
     for (size_t i = 1; i < at->distinct; i++)
-      if (sides_hold(problem, at, (at->few[i - 1] + at->few[i]) / 2))
-        starts[count++][0] = (at->few[i - 1] + at->few[i]) / 2;
-    return count;
-  }
-  for (size_t i = 1; i <= THRESHOLDS; i++) {
-    double place = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
-    if (sides_hold(problem, at, place)) starts[count++][0] = place;
-  }
-  return count;
+      place[places++] = (at->few[i - 1] + at->few[i]) / 2;
+  else
+    for (size_t i = 1; i <= THRESHOLDS; i++)
+      place[places++] = at->low + (at->high - at->low) * (double)i / (THRESHOLDS + 1);
+  return keep_places(problem, at, place, places, starts);
 }
 
 bool fg_loop_form_accepts_sensitivity(const fg_loop_problem *problem, size_t a, size_t b) {

@@ -21,6 +21,16 @@
 /* What a larger form has more is suggested below this. */
 #define SUGGESTED_P 0.1
 
+/* Where rows are many, what explained less than this share of what the winner does is not tried
+ * beside it: it would not come up to LEAST_SHARE, and what it leaves to the winner would show. */
+#define TRIED_SHARE 0.2
+
+static bool far_behind(const fg_engine_training *training, const fg_engine_stand *winner,
+                       const fg_engine_stand *rival) {
+  return training->n > FG_ENGINE_SMALL_ROWS && rival->share > 0 &&
+         rival->share < TRIED_SHARE * winner->share;
+}
+
 static const double pair_loss = 0.1; /* a sum of two must explain all but this */
 enum { PAIR_POOL = 10 };
 
@@ -194,7 +204,7 @@ fg_status fg_engine_simplify(fg_context *ctx, const fg_engine_training *training
   for (size_t c = 0; c < count; c++) {
     alias_test test;
     if (c == winner || !isfinite(stand[c].z) || fg_engine_is_curve(&stand[c].candidate) ||
-        fg_engine_is_noise(&stand[c].candidate))
+        fg_engine_is_noise(&stand[c].candidate) || far_behind(training, &stand[winner], &stand[c]))
       continue;
     FG_TRY_EXIT(extend(ctx, &bench, &stand[winner], bench.null.rank, &rank));
     FG_TRY_EXIT(extend(ctx, &bench, &stand[c], bench.null.rank + rank, &inside));
@@ -288,7 +298,7 @@ fg_status fg_engine_alias_class(fg_context *ctx, const fg_engine_training *train
   fitted(&bench, bench.null.rank, rank, winner_fit);
   for (size_t c = 0; c < count; c++)
     if (isfinite(stand[c].z) && !fg_engine_is_curve(&stand[c].candidate) &&
-        !fg_engine_is_noise(&stand[c].candidate) &&
+        !fg_engine_is_noise(&stand[c].candidate) && !far_behind(training, winner, &stand[c]) &&
         !fg_engine_same_candidate(&stand[c].candidate, &winner->candidate))
       pool[listed++] = &stand[c];
   qsort(pool, listed, sizeof *pool, by_gain);

@@ -11,6 +11,7 @@ typedef struct fg_engine_stand {
   fg_loop_candidate candidate;
   double shape[FG_LOOP_SHAPES];
   double z;
+  double share; /* of the null's residual sum that it explains; 0: not known */
 } fg_engine_stand;
 
 /* A simpler candidate in the winner's span beside which the winner explains nothing more, or the

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 #include "loop/run.h"
 
 /* Folds of whole groups, in turn over their order, and draws of their nulls: a fold's search
@@ -87,53 +88,71 @@ static bool beyond_chance(const double *gain, size_t groups) {
   return sum > sqrt(squares / (count - 1) * count);
 }
 
+typedef struct folding {
+  const fg_engine_run *run;
+  size_t folds;
+  double *residual; /* folds × 2 × rows: before and after */
+} folding;
+
+/* The whole search without one fold. */
+static fg_status fit_fold(fg_context *ctx, void *shared, size_t f) {
+  const folding *all = shared;
+  const fg_loop_problem *problem = all->run->problem;
+  size_t rows = problem->rows;
+  double *residual = all->residual + f * 2 * rows;
+  fg_engine_run fold = *all->run;
+  fg_loop_result *found = NULL;
+  bool *train = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *train, (void **)&train));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *found, (void **)&found));
+  fold.result = found;
+  fold.train = train;
+  fold.set.count = 0;
+  fold.has_curve = false;
+  fold.options.progress = NULL;
+  fold.options.simulations = DRAWS;
+  for (size_t i = 0; i < rows; i++)
+    train[i] = problem->group[i] % all->folds != f;
+  FG_TRY_EXIT(predict(ctx, &fold, residual, residual + rows));
+  correct_lone(all->run, residual + rows);
+exit:
+  free(train);
+  free(found);
+  return status;
+}
+
 fg_status fg_engine_cross_fit(fg_context *ctx, const fg_engine_run *run, double *before_rms,
                               double *after_rms, bool *fell) {
   const fg_loop_problem *problem = run->problem;
   size_t rows = problem->rows, folds = rows > MANY_ROWS ? FOLDS_OF_MANY : FOLDS;
   double *residual = NULL, *gain = NULL, sum[2] = {0};
-  fg_loop_result *found = NULL;
-  bool *train = NULL;
   size_t right = 0;
   fg_status status = FG_OK;
   *before_rms = *after_rms = NAN;
   *fell = false;
   if (folds > problem->groups) folds = problem->groups;
   if (folds < 2) return FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, 2 * sizeof *residual, (void **)&residual));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, 2 * folds * sizeof *residual, (void **)&residual));
   FG_TRY_EXIT(fg_memory_allocate(ctx, problem->groups, sizeof *gain, (void **)&gain));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *train, (void **)&train));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *found, (void **)&found));
-  for (size_t f = 0; f < folds; f++) {
-    fg_engine_run fold = *run;
-    memset(found, 0, sizeof *found);
-    fold.result = found;
-    fold.train = train;
-    fold.set.count = 0;
-    fold.has_curve = false;
-    fold.options.progress = NULL;
-    fold.options.simulations = DRAWS;
-    for (size_t i = 0; i < rows; i++)
-      train[i] = problem->group[i] % folds != f;
-    FG_TRY_EXIT(predict(ctx, &fold, residual, residual + rows));
-    correct_lone(run, residual + rows);
+  folding all = {run, folds, residual};
+  FG_TRY_EXIT(fg_parallel_run(ctx, 0, folds, fit_fold, &all));
+  for (size_t f = 0; f < folds; f++)
     for (size_t i = 0; i < rows; i++) {
-      if (train[i]) continue;
-      double before = residual[i] * residual[i], after = residual[rows + i] * residual[rows + i];
+      if (problem->group[i] % folds != f) continue;
+      const double *own = residual + f * 2 * rows + i;
+      double before = own[0] * own[0], after = own[rows] * own[rows];
       gain[problem->group[i]] += before - (isnan(after) ? 0 : after);
       sum[0] += before;
-      if (isnan(residual[rows + i])) continue;
+      if (isnan(after)) continue;
       sum[1] += after;
       right++;
     }
-  }
   *before_rms = sqrt(sum[0] / (double)rows);
   *after_rms = sqrt(sum[1] / (double)right);
   *fell = beyond_chance(gain, problem->groups);
 exit:
   free(residual);
   free(gain);
-  free(train);
-  free(found);
   return status;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/parallel.h"
 
 static fg_status criterion(fg_context *ctx, const fg_engine_training *training,
                            fg_engine_noise noise, double *value) {
@@ -59,13 +60,35 @@ fg_status fg_engine_choose_noise(fg_context *ctx, const fg_engine_training *trai
   return training->serial || training->levels ? polish(ctx, training, best, noise) : FG_OK;
 }
 
-static fg_status fit_fold(fg_context *ctx, const fg_engine_training *whole, const bool *keep,
-                          const fg_engine_set *set, fg_engine_noise noise, double *residual) {
-  fg_engine_training training;
+typedef struct folding {
+  const fg_engine_training *whole;
+  const fg_engine_set *set;
+  fg_engine_noise noise;
+  size_t folds;
+  double *residual;
+} folding;
+
+/* Fitted without a fold; the residuals of the fold. */
+static fg_status fit_fold(fg_context *ctx, void *shared, size_t fold) {
+  const folding *all = shared;
+  const fg_engine_training *whole = all->whole;
+  fg_engine_training training = {0};
   fg_engine_fit fit = {0};
-  FG_TRY(fg_engine_training_build(ctx, whole->problem, keep, set, &training));
-  fg_status status = fg_engine_least_squares(ctx, &training, noise, &fit);
-  if (status == FG_OK) fg_engine_fit_residual(whole, &fit, residual);
+  bool *keep = NULL;
+  double *residual = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, whole->problem->rows, sizeof *keep, (void **)&keep));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, whole->n, sizeof *residual, (void **)&residual));
+  for (size_t i = 0; i < whole->n; i++)
+    keep[whole->row[i]] = whole->group[i] % all->folds != fold;
+  FG_TRY_EXIT(fg_engine_training_build(ctx, whole->problem, keep, all->set, &training));
+  FG_TRY_EXIT(fg_engine_least_squares(ctx, &training, all->noise, &fit));
+  fg_engine_fit_residual(whole, &fit, residual);
+  for (size_t i = 0; i < whole->n; i++)
+    if (whole->group[i] % all->folds == fold) all->residual[i] = residual[i];
+exit:
+  free(keep);
+  free(residual);
   fg_engine_fit_free(&fit);
   fg_engine_training_free(&training);
   return status;
@@ -74,24 +97,11 @@ static fg_status fit_fold(fg_context *ctx, const fg_engine_training *whole, cons
 fg_status fg_engine_cross_validate(fg_context *ctx, const fg_loop_problem *problem,
                                    const bool *keep, const fg_engine_set *set,
                                    fg_engine_noise noise, double *residual) {
-  fg_status status = FG_OK;
   fg_engine_training training;
-  bool *fold_keep = NULL;
-  double *all = NULL;
   FG_TRY(fg_engine_training_build(ctx, problem, keep, set, &training));
-  size_t folds = training.groups <= 30 ? training.groups : 10;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, problem->rows, sizeof *fold_keep, (void **)&fold_keep));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, training.n, sizeof *all, (void **)&all));
-  for (size_t fold = 0; fold < folds; fold++) {
-    for (size_t i = 0; i < training.n; i++)
-      fold_keep[training.row[i]] = training.group[i] % folds != fold;
-    FG_TRY_EXIT(fit_fold(ctx, &training, fold_keep, set, noise, all));
-    for (size_t i = 0; i < training.n; i++)
-      if (training.group[i] % folds == fold) residual[i] = all[i];
-  }
-exit:
-  free(fold_keep);
-  free(all);
+  folding all = {&training, set, noise, training.groups <= 30 ? training.groups : 10, residual};
+  unsigned threads = training.n > FG_ENGINE_SMALL_ROWS ? 0 : 1; /* few rows are done sooner */
+  fg_status status = fg_parallel_run(ctx, threads, all.folds, fit_fold, &all);
   fg_engine_training_free(&training);
   return status;
 }

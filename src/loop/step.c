@@ -33,8 +33,9 @@ static fg_status fill_stands(fg_context *ctx, const fg_engine_run *run, fg_engin
     fg_engine_stand *stand = &step->stand[c];
     stand->candidate = run->candidate[c];
     stand->z = judgement->z[c];
-    if (c < run->means && isfinite(stand->z))
-      memcpy(stand->shape, step->bench.shape[judgement->score[c].version], sizeof stand->shape);
+    if (c >= run->means || !isfinite(stand->z)) continue;
+    stand->share = 1 - judgement->score[c].ratio;
+    memcpy(stand->shape, step->bench.shape[judgement->score[c].version], sizeof stand->shape);
   }
   fg_engine_stand *wrong = &step->stand[fg_engine_wrong_rows(run)];
   fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
