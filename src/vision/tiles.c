@@ -66,22 +66,43 @@ int64_t fg_tiles_strip_rows(const fg_tiles *tiles, int32_t strip) {
   return left < FG_TILE_PX ? left : FG_TILE_PX;
 }
 
-/* Adds `count` rows of pixels, column by column, into sums. */
-static void add_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count, uint32_t *sums) {
+/* Sums of FG_BLOCK_PX rows, column by column: all rows of a column at once, so that nothing but the
+ * sum is stored. */
+#define SUM_ROWS(type, narrow, name)                                                               \
+  __attribute__((target_clones("avx2", "default"))) static void name(                              \
+      const type *restrict r, size_t width, uint32_t *restrict sums) {                             \
+    const type *r1 = r + width, *r2 = r1 + width, *r3 = r2 + width, *r4 = r3 + width,              \
+               *r5 = r4 + width, *r6 = r5 + width, *r7 = r6 + width;                               \
+    for (size_t x = 0; x < width; x++) {                                                           \
+      narrow upper = (narrow)(r[x] + r1[x] + r2[x] + r3[x]);                                       \
+      narrow lower = (narrow)(r4[x] + r5[x] + r6[x] + r7[x]);                                      \
+      sums[x] = (narrow)(upper + lower);                                                           \
+    }                                                                                              \
+  }
+
+SUM_ROWS(uint8_t, uint16_t, sum_rows_8)
+SUM_ROWS(uint16_t, uint32_t, sum_rows_16)
+
+/* The same for fewer rows, at the end of the scan. */
+static void sum_last_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count,
+                          uint32_t *sums) {
   size_t width = (size_t)tiles->width_px;
   memset(sums, 0, width * sizeof *sums);
   for (int64_t y = 0; y < count; y++) {
-    const void *row = rows + (size_t)y * row_bytes(tiles);
-    if (tiles->bytes_per_pixel == 1) {
-      const uint8_t *values = row;
-      for (size_t x = 0; x < width; x++)
-        sums[x] += values[x];
-    } else {
-      const uint16_t *values = row;
-      for (size_t x = 0; x < width; x++)
-        sums[x] += values[x];
-    }
+    const uint8_t *row = rows + (size_t)y * row_bytes(tiles);
+    const uint16_t *wide = (const uint16_t *)(const void *)row;
+    for (size_t x = 0; x < width; x++)
+      sums[x] += tiles->bytes_per_pixel == 1 ? row[x] : wide[x];
   }
+}
+
+static void sum_rows(const fg_tiles *tiles, const uint8_t *rows, int64_t count, uint32_t *sums) {
+  if (count < FG_BLOCK_PX)
+    sum_last_rows(tiles, rows, count, sums);
+  else if (tiles->bytes_per_pixel == 1)
+    sum_rows_8(rows, (size_t)tiles->width_px, sums);
+  else
+    sum_rows_16((const uint16_t *)(const void *)rows, (size_t)tiles->width_px, sums);
 }
 
 /* Block means of one row of blocks; blocks outside the scan repeat the last one inside. */
@@ -115,7 +136,7 @@ static fg_status reduce_strip(fg_context *ctx, fg_tiles *tiles, int32_t strip) {
       continue;
     }
     int64_t count = rows - from < FG_BLOCK_PX ? rows - from : FG_BLOCK_PX;
-    add_rows(tiles, pixels + (size_t)from * row_bytes(tiles), count, sums);
+    sum_rows(tiles, pixels + (size_t)from * row_bytes(tiles), count, sums);
     average_blocks(tiles, sums, count, out);
   }
   free(sums);

@@ -242,6 +242,32 @@ static void no_cut_is_taken(void **state) {
   free(png.data);
 }
 
+/* Repeats from a row above, in streams that declare windows of every size: of those that are too
+ * small, libpng refuses what reaches beyond. */
+static void a_reach_beyond_the_window_is_refused(void **state) {
+  (void)state;
+  recipe r = plain;
+  r.width = 3000;
+  r.level = 9;
+  uint8_t *raw = make_raw(&r, 4);
+  for (uint32_t y = 1; y < r.height; y++)
+    memcpy(raw + y * r.width, raw, r.width);
+  for (uint8_t bits = 8; bits <= 15; bits++) {
+    growing png = make_pair_png(&r, raw);
+    bytes view = {png.data, png.size};
+    uint8_t *head = png.data + 33 + 8;
+    head[0] = (uint8_t)((bits - 8) << 4 | 8);
+    head[1] = (uint8_t)(31 - head[0] * 256 % 31);
+    seal_chunk(&view, 33);
+    pair p = read_bytes(&png);
+    assert_int_equal(p.libpng.status, bits < 12 ? FG_ERR_DATA : FG_OK);
+    assert_int_equal(p.ours.status, p.libpng.status);
+    free_pair(&p);
+    free(png.data);
+  }
+  free(raw);
+}
+
 /* A stream that is sound up to its end, with rows missing, rows too many, or no such filter. */
 static void wrong_rows_are_refused(void **state) {
   (void)state;
@@ -286,6 +312,7 @@ int main(void) {
       cmocka_unit_test(damage_of_a_large_image_is_told),
       cmocka_unit_test(a_large_image_may_be_left),
       cmocka_unit_test(no_cut_is_taken),
+      cmocka_unit_test(a_reach_beyond_the_window_is_refused),
       cmocka_unit_test(wrong_rows_are_refused),
   };
   return cmocka_run_group_tests_name("png_differential", tests, NULL, NULL);
