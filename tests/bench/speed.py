@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Time, memory and accuracy of foilgauge, of reading alone and of both peers: one run, interleaved."""
+"""Time, memory and accuracy of foilgauge on all cores and on one, of reading alone and of both peers: one run,
+interleaved."""
 
 import argparse
 import csv
@@ -18,9 +19,12 @@ TOOLS = os.path.join(benchlib.ROOT, "build", "bench")
 NAMES = {
     "read": "libpng alone",
     "foilgauge": "foilgauge measure",
+    "one_core": "the same with --threads 1",
     "skimage": "scikit-image + SciPy",
     "opencv": "OpenCV + SciPy",
 }
+PEERS = ("skimage", "opencv")
+PEER_REPETITIONS = 5  # of a second each: they need no more to be told apart
 
 
 def commands(scan, design, out):
@@ -28,6 +32,7 @@ def commands(scan, design, out):
     return {
         "read": [os.path.join(TOOLS, "read_png"), scan],
         "foilgauge": [benchlib.FOILGAUGE, "measure", scan, "--design", design, "-o", out],
+        "one_core": [benchlib.FOILGAUGE, "measure", scan, "--design", design, "-o", out, "--threads", "1"],
         "skimage": [python, os.path.join(HERE, "peer_skimage.py"), scan, "--design", design],
         "opencv": [python, os.path.join(HERE, "peer_opencv.py"), scan, "--design", design],
     }
@@ -49,7 +54,7 @@ def run_once(command, folder):
 
 
 def report_of(name, folder, out):
-    path = out if name == "foilgauge" else os.path.join(folder, "stdout")
+    path = out if name in ("foilgauge", "one_core") else os.path.join(folder, "stdout")
     try:
         foils = benchlib.load(path)["foils"]
         return foils[0] if len(foils) == 1 else None
@@ -58,7 +63,7 @@ def report_of(name, folder, out):
 
 
 def measure_scan(scan, repetitions, folder):
-    """All four on one scan, in turn, each repetition in the other order. The first round warms the
+    """All of them on one scan, in turn, each repetition in the other order. The first round warms the
     page cache and is not counted."""
     truth = benchlib.load_truth(scan[: -len(".png")] + ".truth.json")
     design, out = os.path.join(folder, "design.json"), os.path.join(folder, "report.json")
@@ -68,9 +73,11 @@ def measure_scan(scan, repetitions, folder):
     foils = {}
     for repetition in range(repetitions + 1):
         for name in list(todo)[:: 1 if repetition % 2 else -1]:
+            if name in PEERS and repetition > PEER_REPETITIONS:
+                continue
             cost = run_once(todo[name], folder)
             # 1 of foilgauge says `out of tolerance`: a measurement like any other.
-            if cost[3] > (1 if name == "foilgauge" else 0):
+            if cost[3] > (1 if name in ("foilgauge", "one_core") else 0):
                 sys.exit(f"speed.py: {NAMES[name]} failed on {scan} (exit code {cost[3]})")
             if repetition:
                 costs[name].append(cost)
@@ -100,13 +107,13 @@ def time_rows(results):
                 f"{statistics.median(c[1] for c in costs):.3f}",
                 f"{max(c[2] for c in costs):.1f}",
                 spread(pair_ratios(result, name, "read"), 2),
-                "" if name == "foilgauge" else spread(pair_ratios(result, name, "foilgauge"), 1),
+                "" if name in ("foilgauge", "one_core") else spread(pair_ratios(result, name, "foilgauge"), 1),
             ]
 
 
 def accuracy_rows(results):
     for result in results:
-        for name in list(NAMES)[1:]:
+        for name in ("foilgauge", *PEERS):
             wrong = result["errors"].get(name)
             cells = ["not measured"] * 5
             if wrong:
@@ -130,20 +137,21 @@ def error_ratio(results, name):
 def write_markdown(path, results, repetitions, command):
     ratios = {
         name: [r for result in results for r in pair_ratios(result, name, "foilgauge")]
-        for name in ("skimage", "opencv")
+        for name in PEERS
     }
-    reading = [r for result in results for r in pair_ratios(result, "foilgauge", "read")]
+    reading, one_core = ([r for result in results for r in pair_ratios(result, name, "read")]
+                         for name in ("foilgauge", "one_core"))
     peak = max(c[2] for result in results for c in result["costs"]["foilgauge"])
     with open(path, "w", encoding="utf-8") as out:
         out.write(
             "# Speed, memory and accuracy in one run\n\n"
             f"Made by `{command}` with {benchlib.program_version()} on {benchlib.machine()}.\n"
-            f"Every scan is measured {repetitions} times by each in turn, in alternating order, after one\n"
-            "round that warms the page cache. Each run is a process of its own, start-up included;\n"
+            f"Every scan is measured {repetitions} times by each in turn ({PEER_REPETITIONS} times by the peers), in\n"
+            "alternating order, after one round that warms the page cache. Each run is a process of its own, start-up included;\n"
             "foilgauge writes its JSON report, reading alone keeps nothing. Ratios are formed pair by\n"
             "pair within a repetition. Median (lowest–highest).\n\n"
-            f"- foilgauge against reading alone: median {statistics.median(reading):.2f} × the wall time; "
-            f"peak memory {peak:.0f} MiB\n"
+            f"- foilgauge against reading alone: median {statistics.median(reading):.2f} × the wall time, on one core "
+            f"{statistics.median(one_core):.2f} ×; peak memory {peak:.0f} MiB\n"
             + "".join(
                 f"- {NAMES[name]}: median {statistics.median(values):.1f} × foilgauge's wall time, "
                 f"{error_ratio(results, name):.2f} × its rms error in R (geometric mean over the scans "
@@ -188,7 +196,7 @@ def default_scans():
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scans", nargs="*", help="PNGs with *.truth.json beside them")
-    parser.add_argument("--repetitions", type=int, default=11)
+    parser.add_argument("--repetitions", type=int, default=9)
     parser.add_argument("-o", "--out", default=os.path.join(benchlib.ROOT, "reports"))
     options = parser.parse_args()
     scans = options.scans or default_scans()

@@ -1,0 +1,149 @@
+#!/usr/bin/python3
+"""Scans a second of a lot, on one job and on two: see lot_speed.sh."""
+
+import argparse
+import csv
+import json
+import os
+import shutil
+import statistics
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+import benchlib
+
+TOOLS = os.path.join(benchlib.ROOT, "build", "bench")
+RENDERS = 100  # different foils; every further scan is one of them with a note of its own in the file
+PAIR_SCANS = 100  # of a lot that is measured again and again, turn and turn about
+ROUNDS = 3
+
+
+def render(folder, count):
+    """Different foils, two renders at a time."""
+    with open(os.path.join(benchlib.ROOT, "samples", "render", "clean.json"), encoding="utf-8") as file:
+        spec = json.load(file)
+    for i in range(count):
+        with open(f"{folder}/{i}.json", "w", encoding="utf-8") as file:
+            json.dump({**spec, "seed": i + 1}, file)
+    for i in range(0, count, 2):
+        running = [subprocess.Popen([benchlib.FOILGAUGE, "render", f"{folder}/{k}.json", "-o", f"{folder}/{k}.png"])
+                   for k in range(i, min(i + 2, count))]
+        if any(process.wait() for process in running):
+            sys.exit("lot_speed.py: a render failed")
+
+
+def with_note(png, text):
+    """The same picture in a file that differs: a tEXt chunk before its end."""
+    body = b"tEXt" + b"Comment\0" + text.encode()
+    return png[:-12] + struct.pack(">I", len(body) - 4) + body + struct.pack(">I", zlib.crc32(body)) + png[-12:]
+
+
+def make_scans(folder, count):
+    renders = min(count, RENDERS)
+    render(folder, renders)
+    os.mkdir(f"{folder}/scans")
+    for i in range(count):
+        with open(f"{folder}/{i % renders}.png", "rb") as file:
+            png = file.read()
+        with open(f"{folder}/scans/foil{i:06d}.png", "wb") as file:
+            file.write(with_note(png, f"scan {i}"))
+    for i in range(renders):
+        os.remove(f"{folder}/{i}.png")
+
+
+def measure_lot(program, paths, jobs, folder):
+    """Wall (s), CPU (s), peak (MiB); the lot's results are left."""
+    out, result, listed = f"{folder}/lot", f"{folder}/cost", f"{folder}/list.txt"
+    shutil.rmtree(out, ignore_errors=True)
+    with open(listed, "w", encoding="utf-8") as file:
+        file.write("\n".join(paths) + "\n")
+    subprocess.run([os.path.join(TOOLS, "run_timed"), result, program, "lot", listed, "-o", out, "--jobs", str(jobs)],
+                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+    with open(result, encoding="ascii") as file:
+        wall, user, system, peak, code = file.read().split()
+    with open(f"{out}/results.jsonl", encoding="utf-8") as file:
+        records = sum(1 for _ in file) - 1
+    if int(code) > 3 or records != len(paths):
+        sys.exit(f"lot_speed.py: exit code {code}, {records} records of {len(paths)}")
+    return float(wall), float(user) + float(system), float(peak) / 1024
+
+
+def pair_ratio(a, b):
+    """Ratio of the times a to b, round by round: median, lowest, highest."""
+    ratios = sorted(x[0] / y[0] for x, y in zip(a, b))
+    return f"{statistics.median(ratios):.2f} × ({ratios[0]:.2f}–{ratios[-1]:.2f})"
+
+
+def measure_pairs(programs, paths, folder):
+    """Every program on one job and on two, in turn; (name, jobs) -> costs."""
+    todo = [(name, jobs) for name in programs for jobs in (1, 2)]
+    costs = {key: [] for key in todo}
+    for k in range(ROUNDS):
+        for name, jobs in todo[:: 1 if k % 2 else -1]:
+            costs[name, jobs].append(measure_lot(programs[name], paths, jobs, folder))
+            print(name, jobs, costs[name, jobs][-1], flush=True)
+    return costs
+
+
+def write_markdown(path, whole, pairs, scans, before):
+    in_turn = min(scans, PAIR_SCANS)
+
+    def row(words, count, cost):
+        return [words, count, f"{cost[0]:.1f}", f"{count / cost[0]:.2f}", f"{cost[1] / count * 1e3:.0f}", f"{cost[2]:.0f}"]
+
+    def middle(costs):
+        return tuple(statistics.median(c[i] for c in costs) if i < 2 else max(c[2] for c in costs) for i in range(3))
+
+    lines = [
+        "# Speed of a lot\n",
+        f"Made by `tests/bench/lot_speed.sh` with {benchlib.program_version()} on {benchlib.machine()}.",
+        f"The lot is {scans} files of {min(scans, RENDERS)} rendered foils (nine bumps, 4800 dpi, 18 Mpx each); a file that shows a foil",
+        "again has a note of its own, so that no two files or sums are the same. Wall time holds everything: reading,",
+        "SHA-256, measuring, keeping every record, statistics and the lot's page. They lie in the page cache.\n",
+        f"- two jobs against one, {scans} scans: {whole[1][0] / whole[2][0]:.2f} × the scans a second",
+        f"- two jobs against one, {in_turn} scans, {ROUNDS} rounds in turn: {pair_ratio(pairs['now', 1], pairs['now', 2])}",
+    ]
+    if before:
+        lines += [f"- against {before} (the same compiler and settings), {ROUNDS} rounds in turn: on one job "
+                  f"{pair_ratio(pairs['before', 1], pairs['now', 1])}, on two "
+                  f"{pair_ratio(pairs['before', 2], pairs['now', 2])}"]
+    table = [row(f"lot --jobs {jobs}", scans, whole[jobs]) for jobs in (1, 2)]
+    table += [row(f"lot --jobs {jobs}" + ("" if name == "now" else f", {before}"), in_turn, middle(costs))
+              for (name, jobs), costs in pairs.items()]
+    lines += ["", benchlib.table(["how", "scans", "seconds", "scans a second", "CPU ms a scan", "peak memory, MiB"], table)]
+    with open(path, "w", encoding="utf-8") as out:
+        out.write("\n".join(lines))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("scans", nargs="?", type=int, default=1000)
+    parser.add_argument("--before", help="another build of the program, to compare with")
+    parser.add_argument("--before-name", default="the program before")
+    parser.add_argument("-o", "--out", default=os.path.join(benchlib.ROOT, "reports"))
+    options = parser.parse_args()
+    programs = {"now": benchlib.FOILGAUGE}
+    if options.before:
+        programs["before"] = options.before
+    with tempfile.TemporaryDirectory() as folder:
+        make_scans(folder, options.scans)
+        paths = sorted(f"{folder}/scans/{name}" for name in os.listdir(f"{folder}/scans"))
+        pairs = measure_pairs(programs, paths[:PAIR_SCANS], folder)
+        whole = {}
+        for jobs in (1, 2):
+            whole[jobs] = measure_lot(programs["now"], paths, jobs, folder)
+            print("whole", jobs, whole[jobs], flush=True)
+    rows = [("now", jobs, len(paths), 0, *whole[jobs]) for jobs in (1, 2)]
+    rows += [(name, jobs, len(paths[:PAIR_SCANS]), k + 1, *cost) for (name, jobs), costs in pairs.items() for k, cost in enumerate(costs)]
+    with open(os.path.join(options.out, "lot_speed.csv"), "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["program", "jobs", "scans", "round", "wall_s", "cpu_s", "peak_mib"])
+        writer.writerows([[f"{v:.6g}" if isinstance(v, float) else v for v in row] for row in rows])
+    write_markdown(os.path.join(options.out, "lot_speed.md"), whole, pairs, len(paths), options.before and options.before_name)
+
+
+if __name__ == "__main__":
+    main()
