@@ -146,8 +146,9 @@ static fg_status allocate(fg_context *ctx, fg_png_image *image) {
   image->block_rows = BLOCK_BYTES / line > 0 ? BLOCK_BYTES / line : 1;
   if (image->block_rows > image->layout.height_px) image->block_rows = image->layout.height_px;
   for (size_t i = 0; i < image->block_count; i++)
-    FG_TRY(fg_memory_allocate(ctx, image->block_rows, line, (void **)&image->blocks[i].lines));
-  return fg_memory_allocate(ctx, line, 1, (void **)&image->above);
+    FG_TRY(fg_memory_allocate(ctx, image->block_rows * line + FG_PNG_ROW_SLACK, 1,
+                              (void **)&image->blocks[i].lines));
+  return fg_memory_allocate(ctx, line + FG_PNG_ROW_SLACK, 1, (void **)&image->above);
 }
 
 fg_status fg_png_image_create(fg_context *ctx, fg_source *source,

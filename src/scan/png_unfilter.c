@@ -60,16 +60,25 @@ INLINE void undo_sub(uint8_t *row, size_t size, size_t pixel_bytes) {
   undo_sub_bytewise(row, i, size, pixel_bytes);
 }
 
+/* Bytes beyond the pixel come along: FG_PNG_ROW_SLACK. */
 INLINE words_8 load_pixel(const uint8_t *from, size_t pixel_bytes) {
-  bytes_8 bytes = {0};
-  memcpy(&bytes, from, pixel_bytes);
+  uint64_t wide = 0;
+  bytes_8 bytes;
+  memcpy(&wide, from, pixel_bytes <= 4 ? 4 : 8);
+  memcpy(&bytes, &wide, 8);
   return __builtin_convertvector(bytes, words_8);
 }
 
-/* Modulo 256, as the filters count; returns what was stored. */
+/* Modulo 256, as the filters count; returns what was stored. In the sizes that a processor stores.
+ */
 INLINE words_8 store_pixel(uint8_t *to, words_8 value, size_t pixel_bytes) {
   bytes_8 bytes = __builtin_convertvector(value, bytes_8);
-  memcpy(to, &bytes, pixel_bytes);
+  uint64_t wide;
+  memcpy(&wide, &bytes, 8);
+  size_t whole = pixel_bytes == 3 ? 2 : pixel_bytes == 6 ? 4 : pixel_bytes;
+  memcpy(to, &wide, whole);
+  for (size_t i = whole; i < pixel_bytes; i++)
+    to[i] = bytes[i];
   return __builtin_convertvector(bytes, words_8);
 }
 
@@ -89,6 +98,12 @@ INLINE words_8 predict_pixel(words_8 left, words_8 above, words_8 corner) {
           far_above = magnitude(to_above);
   words_8 right = choose(far_above <= far_corner, above, corner);
   return choose((far_left <= far_above) & (far_left <= far_corner), left, right);
+}
+
+INLINE void undo_sub_pixels(uint8_t *row, size_t size, size_t pixel_bytes) {
+  words_8 left = {0};
+  for (size_t i = 0; i + pixel_bytes <= size; i += pixel_bytes)
+    left = store_pixel(row + i, load_pixel(row + i, pixel_bytes) + left, pixel_bytes);
 }
 
 INLINE void undo_average_pixels(const uint8_t *above, uint8_t *row, size_t size,
@@ -157,9 +172,9 @@ INLINE void undo_paeth_bytes(const uint8_t *above, uint8_t *row, size_t size, si
 
 FOR_PIXELS(1, undo_sub(row, size, 1), undo_average_bytes, undo_paeth_bytes)
 FOR_PIXELS(2, undo_sub(row, size, 2), undo_average_bytes, undo_paeth_bytes)
-FOR_PIXELS(3, undo_sub_bytewise(row, 0, size, 3), undo_average_pixels, undo_paeth_pixels)
+FOR_PIXELS(3, undo_sub_pixels(row, size, 3), undo_average_pixels, undo_paeth_pixels)
 FOR_PIXELS(4, undo_sub(row, size, 4), undo_average_pixels, undo_paeth_pixels)
-FOR_PIXELS(6, undo_sub_bytewise(row, 0, size, 6), undo_average_pixels, undo_paeth_pixels)
+FOR_PIXELS(6, undo_sub_pixels(row, size, 6), undo_average_pixels, undo_paeth_pixels)
 FOR_PIXELS(8, undo_sub(row, size, 8), undo_average_pixels, undo_paeth_pixels)
 
 bool fg_png_unfilter(unsigned filter, size_t pixel_bytes, const uint8_t *above, uint8_t *row,
