@@ -20,7 +20,8 @@
  * likelihood of the residuals' sizes. 3  One null for all: residuals in another order (Freedman and
  * Lane 1983), scored in the same way; each score on the scale of its own draws, p-values from the
  * largest of all (Westfall and Young 1993). The draws are the same in every run: no verdict depends
- * on a seed. 4  Wrong rows are judged apart, against the tails that the other rows show. 5  An
+ * on a seed. 4  Wrong rows are judged apart, against the tails that the other rows show, and against one
+ * heavy tail of all. 5  An
  * effect that a series could be mistaken for is searched again beside correlation: it is claimed,
  * or correlation is, or they tie. 6  Accepted at p < 0.01, with a gain above one standard error in
  * grouped cross-validation. 7  Its alias class: every candidate beside which the winner explains

@@ -213,7 +213,7 @@ static fg_status take_claim(fg_context *ctx, fg_engine_run *run, const fg_engine
 }
 
 /* The wrong rows are two that changed places, or one of them: the exchange explains as much with
- * nothing to estimate. */
+ * nothing to estimate. No heavy tail has them fit in each other's places. */
 static bool is_of_exchange(const fg_engine_run *run, const fg_engine_step *step) {
   const fg_loop_candidate *wrong = &step->lone.candidate;
   const fg_engine_stand *exchange = &step->stand[fg_engine_exchanged_rows(run)];
@@ -234,10 +234,10 @@ static bool lone_first(const fg_engine_run *run, const fg_engine_step *step, boo
   double ratio = listed ? step->judgement.score[best].ratio : 1;
   size_t wrong = fg_engine_wrong_rows(run), exchange = fg_engine_exchanged_rows(run);
   bool found = false;
-  if (isfinite(step->stand[wrong].z) && step->lone.p_value < bar(run) &&
-      step->lone.ratio <= ratio) {
-    *winner = is_of_exchange(run, step) ? exchange : wrong;
-    return true;
+  if (isfinite(step->stand[wrong].z) && step->lone.ratio <= ratio) {
+    bool of_exchange = step->lone.apart_p < bar(run) && is_of_exchange(run, step);
+    *winner = of_exchange ? exchange : wrong;
+    if (of_exchange || step->lone.p_value < bar(run)) return true;
   }
   if (isfinite(step->stand[exchange].z) && fg_engine_stand_p(run, step, exchange) < bar(run) &&
       step->judgement.exchange_ratio <= ratio) {

@@ -5,9 +5,9 @@
 #include "loop/engine.h"
 
 /* Of what may be claimed by chance at all, the candidates have this part. Lone rows are judged
- * against tails that normal noise does not have: of normal noise they claim a third of what their
- * own part says (reports/loop_power.md). */
-#define FG_ENGINE_SHARE_OF_CANDIDATES 0.75
+ * against tails that normal noise does not have: of normal noise they claim next to nothing
+ * (reports/loop_power.md). */
+#define FG_ENGINE_SHARE_OF_CANDIDATES 0.95
 #define FG_ENGINE_SHARE_OF_ROWS       0.9
 
 /* How the null is drawn, and the level at which an effect would be accepted. */
@@ -49,10 +49,12 @@ typedef struct fg_engine_lone {
   fg_loop_candidate candidate,
       first; /* all that are wrong (one where none is); the first of them */
   bool known;
-  double ratio;      /* residual sum after / before, of the candidate */
-  double p_value;    /* over all rows, against the tails that the other rows show */
-  double f_critical; /* of one row; one freedom */
-  double length;     /* mean |M W e|² of a row */
+  double ratio;          /* residual sum after / before, of the candidate */
+  double p_value;        /* over all rows, against the tails that the other rows show, and of all */
+  double apart_p;        /* against those of the other rows alone */
+  double size, normal_p; /* of the first: in sd of the others, and its p-value were noise normal */
+  double f_critical;     /* of one row; one freedom */
+  double length;         /* mean |M W e|² of a row */
 } fg_engine_lone;
 
 /* `null` is the training's at that noise. */

@@ -93,6 +93,19 @@ static void list_one(const fg_engine_run *run, const fg_engine_step *step, size_
   one->verdict = judge_rejected(run, one);
 }
 
+/* A row that normal noise does not reach, and that the others do not show to be wrong. */
+static fg_status note_tail(fg_context *ctx, fg_engine_run *run, const fg_engine_step *step) {
+  const fg_engine_lone *lone = &step->lone;
+  double level = run->options.accept_p;
+  if (!lone->known || !(lone->normal_p < level) || lone->p_value < level) return FG_OK;
+  return fg_engine_note(ctx, run->result,
+                        "Row %zu lies %.1f standard deviations of the others from where they have "
+                        "it: more than normal noise reaches. These rows cannot tell a wrong value "
+                        "from a scatter with heavy tails, so none is claimed; look at how that row "
+                        "was measured.",
+                        lone->first.row[0] + 1, lone->size);
+}
+
 fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   fg_loop_result *result = run->result;
   fg_engine_step step;
@@ -109,6 +122,7 @@ fg_status fg_engine_list_rejected(fg_context *ctx, fg_engine_run *run) {
   }
   for (size_t s = 0; status == FG_OK && s < step.stands; s++)
     list_one(run, &step, s, sd_white, amplitude);
+  if (status == FG_OK) status = note_tail(ctx, run, &step);
   free(amplitude);
   fg_engine_step_close(&step);
   return status;

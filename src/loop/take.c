@@ -16,7 +16,7 @@ void fg_engine_describe_claim(const fg_engine_run *run, const fg_engine_step *st
   claim->cv_gain = claim->cv_gain_se = NAN;
   claim->p_value = fg_engine_stand_p(run, step, stand);
   if (stand == fg_engine_exchanged_rows(run))
-    claim->p_value = fmin(claim->p_value, step->lone.p_value);
+    claim->p_value = fmin(claim->p_value, step->lone.apart_p);
   if (stand < run->means)
     claim->retained_share = step->bench.version[judgement->score[stand].version].share;
   else if (stand >= run->candidates)

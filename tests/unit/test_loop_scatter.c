@@ -8,8 +8,10 @@
 #include <string.h>
 
 #include <cmocka.h>
+#include <gsl/gsl_cdf.h>
 
 #include "foilgauge/loop.h"
+#include "loop/tails.h"
 #include "support/random.h"
 
 enum { ROWS = 120 };
@@ -98,6 +100,44 @@ static void wrong_rows_do_not_hide_each_other(void **state) {
   clear(&out);
 }
 
+/* Quantiles of Student's t with three degrees of freedom, in an order that means nothing. */
+static void heavy_tails_are_noted_and_no_row_is_called_wrong(void **state) {
+  series data;
+  outcome out;
+  (void)state;
+  make_noise(16, &data);
+  for (size_t i = 0; i < ROWS; i++)
+    data.y[i] = gsl_cdf_tdist_Pinv(((double)i + 0.5) / ROWS, 3);
+  uint64_t seed = 16;
+  for (size_t i = ROWS; i > 1; i--) {
+    size_t k = (size_t)(random_uniform(&seed) * (double)i);
+    double other = data.y[k];
+    data.y[k] = data.y[i - 1];
+    data.y[i - 1] = other;
+  }
+  search(&data, 1, &out);
+  assert_int_equal(out.result.claims, 0);
+  assert_int_equal(out.result.notes, 1);
+  assert_non_null(strstr(out.result.note[0], "heavy tails"));
+  clear(&out);
+}
+
+/* Beside normal scores one value of so many sd, and two. */
+static void wrong_values_are_likelier_than_a_tail_where_they_are_far_out(void **state) {
+  enum { REST = 23 };
+  double rest[REST];
+  (void)state;
+  for (size_t i = 0; i < REST; i++)
+    rest[i] = gsl_cdf_ugaussian_Pinv(((double)i + 0.5) / REST);
+  double near[] = {4, -4}, far[] = {10, -10};
+  assert_true(fg_engine_wrong_over_tail(REST, rest, 1, near) < 3);
+  assert_true(fg_engine_wrong_over_tail(REST, rest, 1, far) > 5);
+  assert_true(fg_engine_wrong_over_tail(REST, rest, 2, far) > 6);
+  for (size_t i = 0; i < REST; i++)
+    rest[i] = gsl_cdf_tdist_Pinv(((double)i + 1) / (REST + 2), 2.5);
+  assert_true(fg_engine_wrong_over_tail(REST, rest, 1, near) < 2);
+}
+
 static void a_cycle_of_three_rows_is_found(void **state) {
   series data;
   outcome out;
@@ -164,6 +204,8 @@ int main(void) {
       cmocka_unit_test(neighbours_that_are_alike_are_said),
       cmocka_unit_test(a_scatter_that_grows_is_said_and_is_no_error_that_fell),
       cmocka_unit_test(wrong_rows_do_not_hide_each_other),
+      cmocka_unit_test(heavy_tails_are_noted_and_no_row_is_called_wrong),
+      cmocka_unit_test(wrong_values_are_likelier_than_a_tail_where_they_are_far_out),
       cmocka_unit_test(a_cycle_of_three_rows_is_found),
       cmocka_unit_test(no_verdict_hangs_on_seed_origin_or_unit),
       cmocka_unit_test(sorted_rows_have_no_order),
