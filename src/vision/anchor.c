@@ -19,6 +19,10 @@ enum {
   PIECE_BLOCKS = 8, /* a part of fewer hot blocks is dust, not a piece of a strip */
   ROUNDS_MOST = 6,
 };
+typedef struct hot_block {
+  int32_t x, y;
+} hot_block;
+
 typedef struct work {
   const fg_tiles *tiles;
   const fg_island *island;
@@ -28,7 +32,9 @@ typedef struct work {
   fg_sheet sheet;
   int32_t width, height; /* of the sheet, in blocks */
   uint8_t *hot, *near;   /* of each block: holds a hot pixel; lies around one of a kept part */
-  int32_t *labels;       /* of the hot blocks */
+  hot_block *blocks;     /* the hot ones, tile by tile */
+  size_t block_count, block_capacity;
+  int32_t *labels; /* of the hot blocks */
   fg_blob *parts;
   bool *kept; /* of each part */
   int32_t part_count;
@@ -108,22 +114,33 @@ static const fg_tile *tile_of(const work *w, int32_t x, int32_t y, size_t *first
   return fg_tiles_at(&w->sheet.tiles, x / FG_BLOCKS_PER_TILE, y / FG_BLOCKS_PER_TILE);
 }
 
-static bool holds_hot(const fg_tile *tile, int bytes_per_pixel, size_t first, const fg_levels *l) {
-  for (size_t y = 0; y < FG_BLOCK_PX; y++)
-    for (size_t x = 0; x < FG_BLOCK_PX; x++)
-      if (fg_levels_is_hot(l, fg_tile_count(tile, bytes_per_pixel, first + y * FG_TILE_PX + x)))
-        return true;
-  return false;
+static bool is_hot_block(const fg_levels *l, fg_range range) {
+  return fg_levels_is_hot(l, l->light ? range.high : range.low);
 }
 
-static void mark_hot(work *w, const fg_levels *l) {
-  size_t first;
-  for (int32_t y = 0; y < w->height; y++)
-    for (int32_t x = 0; x < w->width; x++) {
-      const fg_tile *tile = tile_of(w, x, y, &first);
-      w->hot[block_at(w, x, y)] = tile && fg_sheet_is_whole(&w->sheet, x, y) &&
-                                  holds_hot(tile, w->tiles->bytes_per_pixel, first, l);
-    }
+static fg_status mark_tile(fg_context *ctx, work *w, const fg_levels *l, int32_t column,
+                           int32_t row) {
+  size_t at = (size_t)row * (size_t)w->sheet.tiles.columns + (size_t)column;
+  for (int b = 0; b < BLOCKS; b++) {
+    if (!(w->sheet.whole[at] >> b & 1)) continue;
+    if (!is_hot_block(l, w->sheet.ranges[at * BLOCKS + (size_t)b])) continue;
+    hot_block block = {column * FG_BLOCKS_PER_TILE + b % FG_BLOCKS_PER_TILE,
+                       row * FG_BLOCKS_PER_TILE + b / FG_BLOCKS_PER_TILE};
+    FG_TRY(fg_memory_reserve(ctx, w->block_count + 1, sizeof block, &w->block_capacity,
+                             (void **)&w->blocks));
+    w->blocks[w->block_count++] = block;
+    w->hot[block_at(w, block.x, block.y)] = 1;
+  }
+  return FG_OK;
+}
+
+static fg_status mark_hot(fg_context *ctx, work *w, const fg_levels *l) {
+  memset(w->hot, 0, (size_t)w->width * (size_t)w->height);
+  w->block_count = 0;
+  for (int32_t row = 0; row < w->sheet.tiles.rows; row++)
+    for (int32_t column = 0; column < w->sheet.tiles.columns; column++)
+      if (fg_tiles_at(&w->sheet.tiles, column, row)) FG_TRY(mark_tile(ctx, w, l, column, row));
+  return FG_OK;
 }
 
 /* Whether a block's middle lies on a tile of the island: what lies on none is another's. */
@@ -141,11 +158,11 @@ static fg_status find_parts(fg_context *ctx, work *w, size_t *specks, bool *larg
   w->kept = NULL;
   FG_TRY(fg_grid_label(ctx, w->hot, w->width, w->height, w->labels, &w->parts, &w->part_count));
   FG_TRY(fg_memory_allocate(ctx, (size_t)w->part_count, sizeof *w->kept, (void **)&w->kept));
-  for (int32_t y = 0; y < w->height; y++)
-    for (int32_t x = 0; x < w->width; x++) {
-      int32_t label = w->labels[block_at(w, x, y)];
-      if (label && !w->kept[label - 1]) w->kept[label - 1] = is_own(w, x, y);
-    }
+  for (size_t i = 0; i < w->block_count; i++) {
+    const hot_block *b = &w->blocks[i];
+    bool *kept = &w->kept[w->labels[block_at(w, b->x, b->y)] - 1];
+    if (!*kept) *kept = is_own(w, b->x, b->y);
+  }
   *specks = 0;
   *large = false;
   for (int32_t i = 0; i < w->part_count; i++) {
@@ -164,67 +181,70 @@ static bool is_kept(const work *w, int32_t x, int32_t y) {
   return label && w->kept[label - 1];
 }
 
-/* Marks what lies around the kept parts. False: not all of it is there. */
+/* Marks what lies around the kept parts. False: it reaches beyond the sheet. */
 static bool mark_near(work *w) {
   memset(w->near, 0, (size_t)w->width * (size_t)w->height);
-  for (int32_t y = 0; y < w->height; y++)
-    for (int32_t x = 0; x < w->width; x++) {
-      if (!is_kept(w, x, y)) continue;
-      if (x < REACH_BLOCKS || y < REACH_BLOCKS || x + REACH_BLOCKS >= w->width ||
-          y + REACH_BLOCKS >= w->height)
-        return false;
-      for (int32_t v = y - REACH_BLOCKS; v <= y + REACH_BLOCKS; v++)
-        memset(w->near + block_at(w, x - REACH_BLOCKS, v), 1, 2 * REACH_BLOCKS + 1);
-    }
-  for (int32_t y = 0; y < w->height; y++)
-    for (int32_t x = 0; x < w->width; x++)
-      if (w->near[block_at(w, x, y)] && !fg_sheet_is_whole(&w->sheet, x, y)) return false;
+  for (size_t i = 0; i < w->block_count; i++) {
+    int32_t x = w->blocks[i].x, y = w->blocks[i].y;
+    if (!is_kept(w, x, y)) continue;
+    if (x < REACH_BLOCKS || y < REACH_BLOCKS || x + REACH_BLOCKS >= w->width ||
+        y + REACH_BLOCKS >= w->height)
+      return false;
+    for (int32_t v = y - REACH_BLOCKS; v <= y + REACH_BLOCKS; v++)
+      memset(w->near + block_at(w, x - REACH_BLOCKS, v), 1, 2 * REACH_BLOCKS + 1);
+  }
   return true;
 }
 
-/* Of the kept parts; the first and last of their pixels. */
+/* The leftmost and the uppermost hot pixel of the kept parts. */
 static void find_low(const work *w, const fg_levels *l, int64_t low_px[2]) {
   size_t first;
   low_px[0] = w->sheet.tiles.width_px;
   low_px[1] = w->sheet.tiles.height_px;
-  for (int32_t y = 0; y < w->height; y++)
-    for (int32_t x = 0; x < w->width; x++) {
-      const int64_t first_px[2] = {(int64_t)x * FG_BLOCK_PX, (int64_t)y * FG_BLOCK_PX};
-      if ((first_px[0] >= low_px[0] && first_px[1] >= low_px[1]) || !is_kept(w, x, y)) continue;
-      const fg_tile *tile = tile_of(w, x, y, &first);
-      for (int64_t i = 0; i < FG_BLOCK_PX * FG_BLOCK_PX; i++) {
-        int64_t px = i % FG_BLOCK_PX, py = i / FG_BLOCK_PX;
-        if (!fg_levels_is_hot(l, fg_tile_count(tile, w->tiles->bytes_per_pixel,
-                                               first + (size_t)(py * FG_TILE_PX + px))))
-          continue;
-        low_px[0] = first_px[0] + px < low_px[0] ? first_px[0] + px : low_px[0];
-        low_px[1] = first_px[1] + py < low_px[1] ? first_px[1] + py : low_px[1];
-      }
+  for (size_t i = 0; i < w->block_count; i++) {
+    int32_t x = w->blocks[i].x, y = w->blocks[i].y;
+    const int64_t first_px[2] = {(int64_t)x * FG_BLOCK_PX, (int64_t)y * FG_BLOCK_PX};
+    if ((first_px[0] >= low_px[0] && first_px[1] >= low_px[1]) || !is_kept(w, x, y)) continue;
+    const fg_tile *tile = tile_of(w, x, y, &first);
+    for (int64_t k = 0; k < FG_BLOCK_PX * FG_BLOCK_PX; k++) {
+      int64_t px = k % FG_BLOCK_PX, py = k / FG_BLOCK_PX;
+      size_t at = first + (size_t)(py * FG_TILE_PX + px);
+      if (!fg_levels_is_hot(l, fg_tile_count(tile, w->tiles->bytes_per_pixel, at))) continue;
+      low_px[0] = first_px[0] + px < low_px[0] ? first_px[0] + px : low_px[0];
+      low_px[1] = first_px[1] + py < low_px[1] ? first_px[1] + py : low_px[1];
     }
+  }
   for (int k = 0; k < 2; k++)
     low_px[k] += w->corner_px[k];
 }
 
-/* Bits of a tile's blocks in a mask of blocks. */
+/* Bits of a tile's blocks in a mask of blocks, which is 0 or 1 everywhere. */
 static uint64_t bits_of(const work *w, const uint8_t *mask, int32_t column, int32_t row) {
+  static const uint8_t none[FG_BLOCKS_PER_TILE];
   uint64_t bits = 0;
-  for (int b = 0; b < BLOCKS; b++)
-    if (mask[block_at(w, column * FG_BLOCKS_PER_TILE + b % FG_BLOCKS_PER_TILE,
-                      row * FG_BLOCKS_PER_TILE + b / FG_BLOCKS_PER_TILE)])
-      bits |= (uint64_t)1 << b;
+  for (int y = 0; y < FG_BLOCKS_PER_TILE; y++) {
+    const uint8_t *cells =
+        mask + block_at(w, column * FG_BLOCKS_PER_TILE, row * FG_BLOCKS_PER_TILE + y);
+    if (!memcmp(cells, none, sizeof none)) continue;
+    for (int x = 0; x < FG_BLOCKS_PER_TILE; x++)
+      bits |= (uint64_t)cells[x] << (y * FG_BLOCKS_PER_TILE + x);
+  }
   return bits;
 }
 
-static fg_levels find_near_levels(const work *w) {
+/* False: not all that is near is there. */
+static bool find_near_levels(const work *w, fg_levels *l) {
   size_t histogram[FG_LEVEL_COUNTS] = {0};
   for (int32_t row = 0; row < w->sheet.tiles.rows; row++)
     for (int32_t column = 0; column < w->sheet.tiles.columns; column++) {
-      const fg_tile *tile = fg_tiles_at(&w->sheet.tiles, column, row);
-      if (tile)
-        fg_levels_count(tile, w->tiles->bytes_per_pixel, bits_of(w, w->near, column, row),
-                        histogram);
+      size_t at = (size_t)row * (size_t)w->sheet.tiles.columns + (size_t)column;
+      uint64_t near = bits_of(w, w->near, column, row);
+      if (near & ~w->sheet.whole[at]) return false;
+      if (near)
+        fg_levels_count(w->sheet.tiles.tiles[at], w->tiles->bytes_per_pixel, near, histogram);
     }
-  return fg_levels_find(histogram);
+  *l = fg_levels_find(histogram);
+  return true;
 }
 
 /* Whether the kept parts lie clear of the scan's border. */
@@ -252,11 +272,11 @@ static fg_status settle(fg_context *ctx, work *w, size_t *specks, bool *settled)
   guess_corner(w, &l, low_px);
   for (int round = 0; round < ROUNDS_MOST && !*settled; round++) {
     if (moved) FG_TRY(cut_sheet(ctx, w, low_px));
-    mark_hot(w, &l);
+    FG_TRY(mark_hot(ctx, w, &l));
     FG_TRY(find_parts(ctx, w, specks, &large));
-    if (!large || !is_inside(w) || !mark_near(w)) return FG_OK;
+    fg_levels next;
+    if (!large || !is_inside(w) || !mark_near(w) || !find_near_levels(w, &next)) return FG_OK;
     find_low(w, &l, found_px);
-    fg_levels next = find_near_levels(w);
     moved = found_px[0] != low_px[0] || found_px[1] != low_px[1];
     *settled = !moved && next.limit == l.limit && next.light == l.light;
     memcpy(low_px, found_px, sizeof low_px);
@@ -338,6 +358,7 @@ static fg_status finish(fg_context *ctx, work *w, fg_anchored *out) {
 static void free_work(work *w) {
   free_sheet(w);
   free(w->own);
+  free(w->blocks);
   free(w->parts);
   free(w->kept);
 }
