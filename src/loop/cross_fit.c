@@ -122,10 +122,14 @@ exit:
   return status;
 }
 
+size_t fg_engine_folds(size_t rows) {
+  return rows > MANY_ROWS ? FOLDS_OF_MANY : FOLDS;
+}
+
 fg_status fg_engine_cross_fit(fg_context *ctx, const fg_engine_run *run, double *before_rms,
                               double *after_rms, bool *fell) {
   const fg_loop_problem *problem = run->problem;
-  size_t rows = problem->rows, folds = rows > MANY_ROWS ? FOLDS_OF_MANY : FOLDS;
+  size_t rows = problem->rows, folds = fg_engine_folds(rows);
   double *residual = NULL, *gain = NULL, sum[2] = {0};
   size_t right = 0;
   fg_status status = FG_OK;

@@ -27,6 +27,8 @@ typedef struct fg_engine_run {
 
 /* Accepts what passes, one after the other, and looks at all again at the end. */
 fg_status fg_engine_search(fg_context *ctx, fg_engine_run *run);
+/* How many folds the search is made again without. */
+size_t fg_engine_folds(size_t rows);
 /* Errors of rows that took no part: before, and with what the search without them finds; whether it
  * fell by more than a standard error. */
 fg_status fg_engine_cross_fit(fg_context *ctx, const fg_engine_run *run, double *before_rms,

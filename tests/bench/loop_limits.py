@@ -1,72 +1,99 @@
-"""reports/loop_limits.md: what the loop takes on tables of many rows and columns, beside its estimate.
+"""reports/loop_limits.md: what the loop takes on tables of many rows and columns, beside its estimate, and whether
+what was put into them is found.
 
 Usage: python3 tests/bench/loop_limits.py build/foilgauge [ROWSxCOLUMNS...]
 """
 
-import math
+import json
 import os
 import pathlib
-import random
 import re
 import subprocess
 import sys
 import tempfile
+import time
 
-SIZES = ("100x3", "100x10", "500x3", "500x10", "600x10", "1000x10", "10000x3", "10000x10", "100000x3", "100000x10",
-         "1000000x3")
+import numpy as np
+
+from loop_names import classes, member
+
+SIZES = ("1000x3", "1000x10", "10000x3", "10000x10", "100000x3", "100000x10")
+EFFECTS = (0, 1, 5)
 HEAD = """# What the loop takes on a large table
 
-`python3 tests/bench/loop_limits.py build/foilgauge`: random columns and a response that is noise beside the declared
-`1 + x0`, or that holds a trend, a wave, a step, a decay and a cycle. Seconds are those of the processor, one core, with
-other work beside it; memory is the largest resident. The estimate is for the worst case (five effects, each refined);
+`python3 tests/bench/loop_limits.py build/foilgauge`: columns of random numbers, one of words, and a response that is noise
+beside the declared `1 + x0`, with nothing else in it, a step over the last column, or five effects: that step, a hump over
+a column, levels of the words, a cycle over the rows and one wrong row, each far beyond the noise. Right: each effect is
+claimed, stands in a claim's class or is the curve that is drawn, and nothing else is claimed. Processor seconds are those
+of all cores together, with other work beside them, as the wall time has; memory is the largest resident. The estimate is
+for the worst case, five effects and a curve, which cannot be known beforehand: with fewer it takes a third or a tenth.
 `foilgauge loop --table` refuses what it puts above 10 minutes or 512 MiB (`--minutes`, `--memory`) before it starts. Up to
-600 rows every candidate is scored in up to 1,999 draws of the null; from there on once, against a count of the looks.
+600 rows every candidate is scored in up to 1,999 draws of the null; from there on once, against a count of the looks, and
+start values of shapes are compared over sums in steps of their column before the best is scored on all rows.
 
-| rows | columns | what is in it | seconds | MiB | estimate, s | estimate, MiB |
-|---:|---:|---|---:|---:|---:|---:|
+| rows | columns | effects | wall, s | processor, s | MiB | estimate, s | estimate, MiB | right |
+|---:|---:|---:|---:|---:|---:|---:|---:|---|
 """
 
 
-def response(row, rows, x, found):
-    y = random.gauss(0, 1) + x[0]
-    if found:
-        y += 0.5 * x[1] + 0.5 * math.sin(20 * x[2]) + 0.3 * (x[-1] > 0.5) + 0.3 * math.exp(-5 * row / rows)
-        y += 0.4 * math.sin(60 * row / rows)
-    return y
+def planted(rows, columns, count):
+    """The table's columns, the response, and of each effect what a claim or a curve may call it."""
+    rng = np.random.default_rng([rows, columns, count])
+    x, w = rng.random((rows, columns)), rng.integers(0, 4, rows)
+    y = 1 + x[:, 0] + rng.normal(size=rows)
+    size, order, wrong, last = 20 / np.sqrt(rows), np.arange(rows) / rows, rows // 3, f"x{columns - 1}"
+    effects = [
+        (("table.threshold", last), 2 * size * (x[:, -1] > 0.5)),
+        (("unattributed", "x1"), 2 * size * np.exp(-(((x[:, 1] - 0.6) / 0.15) ** 2))),
+        (("table.factor", "w"), size * np.array([1.5, -1, 0.5, -1])[w]),
+        (("table.periodic", "row"), 1.5 * size * np.sin(2 * np.pi * 9.3 * order)),
+        (("table.outlier", str(wrong + 1)), np.where(np.arange(rows) == wrong, 12.0, 0.0)),
+    ][:count]
+    return x, w, y + sum(form for _, form in effects), [name for name, _ in effects]
 
 
-def write_table(path, rows, columns, found):
-    random.seed(1)
+def write_table(path, x, w, y):
     with open(path, "w", encoding="utf-8") as out:
-        out.write("y," + ",".join(f"x{i}" for i in range(columns)) + "\n")
-        for row in range(rows):
-            x = [random.random() for _ in range(columns)]
-            out.write(f"{response(row, rows, x, found):.5f}," + ",".join(f"{v:.5f}" for v in x) + "\n")
+        out.write("y," + ",".join(f"x{i}" for i in range(x.shape[1])) + ",w\n")
+        for row, number in enumerate(y):
+            out.write(f"{number:.6f}," + ",".join(f"{v:.6f}" for v in x[row]) + f",{'abcd'[w[row]]}\n")
+
+
+def right(report, names):
+    """Every effect found, and every claim one of them."""
+    said = [{member(name) for name in members} for members in classes(report)]
+    known = {(identity, frozenset([where])) for identity, where in names}
+    return known <= set().union(*said) and all(claim & known for claim in said)
 
 
 def run(command):
-    """Exit code, message, processor seconds, MiB."""
+    """Exit code, message, wall and processor seconds, MiB."""
     with tempfile.TemporaryFile("w+") as errors:
+        start = time.monotonic()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=errors)
         _, status, usage = os.wait4(process.pid, 0)
+        wall = time.monotonic() - start
         process.returncode = os.waitstatus_to_exitcode(status)
         errors.seek(0)
-        return process.returncode, errors.read(), usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+        return process.returncode, errors.read(), wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
-def measure(program, folder, size, found):
+def measure(program, folder, size, count):
     rows, columns = (int(part) for part in size.split("x"))
-    path = pathlib.Path(folder) / "table.csv"
-    write_table(path, rows, columns, found)
-    command = [program, "loop", "--table", str(path), "--response", "y", "--model", "1 + x0", "-o", "/dev/null"]
+    table, answer = pathlib.Path(folder) / "table.csv", pathlib.Path(folder) / "answer.json"
+    x, w, y, names = planted(rows, columns, count)
+    write_table(table, x, w, y)
+    command = [program, "loop", "--table", str(table), "--response", "y", "--model", "1 + x0", "-o", str(answer)]
     refusal = run(command + ["--minutes", "1e-9"])[1]
     minutes, memory = re.search(r"may take (\S+) minutes and (\S+) MiB", refusal).groups()
-    code, message, seconds, mebibytes = run(command)
+    code, message, wall, seconds, mebibytes = run(command)
     if code not in (0, 65):
         sys.exit(message)
-    taken = f"{seconds:.3g} | {mebibytes:.0f}" if code == 0 else "refused | "
-    what = "effects" if found else "noise"
-    return f"| {rows:,} | {columns} | {what} | {taken} | {60 * float(minutes):.3g} | {float(memory):.0f} |\n"
+    taken, said = "refused | | ", ""
+    if code == 0:
+        said = "yes" if right(json.loads(answer.read_text(encoding="utf-8")), names) else "no"
+        taken = f"{wall:.3g} | {seconds:.3g} | {mebibytes:.0f}"
+    return f"| {rows:,} | {columns} | {count} | {taken} | {60 * float(minutes):.3g} | {float(memory):.0f} | {said} |\n"
 
 
 def main(program, *sizes):
@@ -74,8 +101,8 @@ def main(program, *sizes):
     text = HEAD
     with tempfile.TemporaryDirectory() as folder:
         for size in sizes or SIZES:
-            for found in (False, True):
-                line = measure(program, folder, size, found)
+            for count in EFFECTS:
+                line = measure(program, folder, size, count)
                 print(line, end="", flush=True)
                 text += line
     report.write_text(text, encoding="utf-8")
