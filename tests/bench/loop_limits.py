@@ -5,6 +5,7 @@ Usage: python3 tests/bench/loop_limits.py build/foilgauge [ROWSxCOLUMNS...]
 """
 
 import json
+import multiprocessing
 import os
 import pathlib
 import re
@@ -12,8 +13,6 @@ import subprocess
 import sys
 import tempfile
 import time
-
-import numpy as np
 
 from loop_names import classes, member
 
@@ -36,20 +35,24 @@ start values of shapes are compared over sums in steps of their column before th
 """
 
 
-def planted(rows, columns, count):
-    """The table's columns, the response, and of each effect what a claim or a curve may call it."""
+def planted(rows, columns):
+    """What a claim may call each of the effects."""
+    return [("table.threshold", f"x{columns - 1}"), ("unattributed", "x1"), ("table.factor", "w"), ("table.periodic", "row"),
+            ("table.outlier", str(rows // 3 + 1))]
+
+
+def make_table(path, rows, columns, count):
+    import numpy as np  # in a process of its own: who starts the program lends it the size of its memory
+
     rng = np.random.default_rng([rows, columns, count])
     x, w = rng.random((rows, columns)), rng.integers(0, 4, rows)
-    y = 1 + x[:, 0] + rng.normal(size=rows)
-    size, order, wrong, last = 20 / np.sqrt(rows), np.arange(rows) / rows, rows // 3, f"x{columns - 1}"
-    effects = [
-        (("table.threshold", last), 2 * size * (x[:, -1] > 0.5)),
-        (("unattributed", "x1"), 2 * size * np.exp(-(((x[:, 1] - 0.6) / 0.15) ** 2))),
-        (("table.factor", "w"), size * np.array([1.5, -1, 0.5, -1])[w]),
-        (("table.periodic", "row"), 1.5 * size * np.sin(2 * np.pi * 9.3 * order)),
-        (("table.outlier", str(wrong + 1)), np.where(np.arange(rows) == wrong, 12.0, 0.0)),
-    ][:count]
-    return x, w, y + sum(form for _, form in effects), [name for name, _ in effects]
+    size, order = 20 / np.sqrt(rows), np.arange(rows) / rows
+    effects = [2 * size * (x[:, -1] > 0.5),
+               2 * size * np.exp(-(((x[:, 1] - 0.6) / 0.15) ** 2)),
+               size * np.array([1.5, -1, 0.5, -1])[w],
+               1.5 * size * np.sin(2 * np.pi * 9.3 * order),
+               np.where(np.arange(rows) == rows // 3, 12.0, 0.0)]
+    write_table(path, x, w, 1 + x[:, 0] + rng.normal(size=rows) + sum(effects[:count]))
 
 
 def write_table(path, x, w, y):
@@ -81,8 +84,10 @@ def run(command):
 def measure(program, folder, size, count):
     rows, columns = (int(part) for part in size.split("x"))
     table, answer = pathlib.Path(folder) / "table.csv", pathlib.Path(folder) / "answer.json"
-    x, w, y, names = planted(rows, columns, count)
-    write_table(table, x, w, y)
+    making = multiprocessing.Process(target=make_table, args=(table, rows, columns, count))
+    making.start()
+    making.join()
+    names = planted(rows, columns)[:count]
     command = [program, "loop", "--table", str(table), "--response", "y", "--model", "1 + x0", "-o", str(answer)]
     refusal = run(command + ["--minutes", "1e-9"])[1]
     minutes, memory = re.search(r"may take (\S+) minutes and (\S+) MiB", refusal).groups()
