@@ -114,7 +114,7 @@ expect 65 "design.bump_radius" "$program" loop --table t.csv "${model[@]}" --dec
 expect 74 "none.json" "$program" loop --table t.csv "${model[@]}" --declared none.json
 
 # What would take too long is refused before it starts, with the limit and the way out.
-awk 'BEGIN { print "x,y"; for (i = 0; i < 250000; i++) print i % 97 "," i % 89 }' >long.csv
+awk 'BEGIN { print "x,y"; for (i = 0; i < 300000; i++) print i % 97 "," i % 89 }' >long.csv
 expect 65 "512 MiB. Leave out columns" "$program" loop --table long.csv --response y --model 1 -o never.json
 expect 65 "the limit is 0.001 minutes" "$program" loop --table t.csv "${model[@]}" --minutes 0.001 -o never.json
 expect 64 "above 0" "$program" loop --table t.csv "${model[@]}" --minutes 0
