@@ -89,8 +89,7 @@ static const struct argp_option options[] = {
      "JSON with response, model, group and design; options win over it", 0},
     {"hold-out", OPTION_HOLD_OUT, "SHARE", 0,
      "Whole groups that only confirm: a share or COLUMN=VALUE (default: every row takes part, and "
-     "the "
-     "search is repeated without each part of the rows in turn)",
+     "the search is repeated without each part of the rows in turn)",
      0},
     {"matters", OPTION_MATTERS, "AMPLITUDE", 0,
      "An effect this small does not matter, in the response's unit (default: one noise sd)", 0},
@@ -102,14 +101,19 @@ static const struct argp_option options[] = {
      "(default 1)",
      0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
-    {"model-out", OPTION_MODEL_OUT, "FILE", 0, "Declared model and what was found, as JSON", 0},
-    {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},
+    {"model-out", OPTION_MODEL_OUT, "FILE", 0,
+     "Declared model and what was found, as JSON, for `doe --model`", 0},
+    {"html", OPTION_HTML, "FILE", 0, "The report as a page, with every finding drawn", 0},
     {0},
 };
 
 static const char doc[] =
     "Find what the residual of a declared model holds: which effect the model lacks, how sure that "
     "is, what it could be confused with, which measurement would tell.\v"
+    "Verdicts: clean (the model is enough, as far as the data can tell), explained (it is not; "
+    "what it lacks was found and lowers the error), partly explained (more is left, or no error "
+    "falls), unattributed (it is not, and what it lacks has no name here). Each comes with what to "
+    "do next.\n\n"
     "Columns that the model does not use are candidates, and so are the order of the runs and the "
     "bump's number. DATA.csv has commas, semicolons or tabs between the cells, decimal points or "
     "(not between commas) decimal commas. Without -o a table is printed on a terminal and JSON "

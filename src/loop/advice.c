@@ -257,6 +257,18 @@ static void say_sum(const fg_loop_problem *problem, const fg_loop_claim *claim,
   advice->runs = NAN;
 }
 
+/* Two columns that the scatter may follow. */
+static void say_spread(const fg_loop_problem *problem, const fg_loop_claim *claim,
+                       fg_loop_advice *advice) {
+  pair_words words;
+  say_pair(problem, claim, " together with ", &words);
+  fg_text_clip(advice->text, sizeof advice->text,
+               "Measure several rows at each of some settings at which the two do not go together "
+               "as they do here: that parts %s from %s.",
+               words.claim, words.rival);
+  advice->runs = NAN;
+}
+
 static bool over_order(const fg_loop_problem *problem, const setting_axes *axes) {
   for (size_t k = 0; k < axes->count; k++)
     if (is_order(&problem->coordinate[axes->coordinate[k]])) return true;
@@ -326,6 +338,8 @@ static fg_status advise_one(fg_context *ctx, const fg_engine_run *run, size_t m,
   if (fg_engine_is_lone(&claim->candidate) ||
       (!nearest->sum && fg_engine_is_lone(&nearest->candidate)))
     say_repeats(run->problem, claim, advice);
+  else if (claim->candidate.effect->scatter == FG_LOOP_SPREAD)
+    say_spread(run->problem, claim, advice);
   else if (fg_engine_is_noise(&claim->candidate) || fg_engine_is_noise(&nearest->candidate))
     say_order(run->problem, claim, advice);
   else if (nearest->sum)

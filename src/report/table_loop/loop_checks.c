@@ -126,6 +126,13 @@ void fg_loop_failed_advice(const fg_loop_report *report, char text[FG_LOOP_WORDS
                  "Declare a richer model over %s (a square, an interaction, levels by "
                  "factor(…)) and run again; look first at the settings that are named.",
                  names);
+  else if (result->failed == FG_LOOP_CHECK_ONE_LAG && failed->correlation < 0)
+    fg_text_clip(
+        text, FG_LOOP_WORDS,
+        "Find out what drives %s %zu apart in opposite directions (a control that corrects "
+        "too much, a swing of about %zu), give it as a column, and run again. Until then "
+        "uncertainties from this table are wrong.",
+        rows, failed->lag, 2 * failed->lag);
   else if (result->failed == FG_LOOP_CHECK_ONE_LAG)
     fg_text_clip(text, FG_LOOP_WORDS,
                  "Find out what returns every %zu %s (a shift, a place in the furnace, a coil, a "

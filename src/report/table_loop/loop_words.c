@@ -138,6 +138,20 @@ static void spread_statement(const fg_loop_report *report, const fg_loop_claim *
                  times.text);
 }
 
+/* With where it is, or how often it returns: several may live on one coordinate. */
+static void mean_statement(const fg_loop_report *report, const fg_loop_claim *claim,
+                           char text[FG_LOOP_WORDS]) {
+  const fg_loop_effect *effect = claim->candidate.effect;
+  char place[FG_LOOP_NAME];
+  fg_loop_candidate_words(report, &claim->candidate, text);
+  bool period = effect->shapes == 1 && !strcmp(effect->shape_name[0], "period");
+  bool at = effect->shapes == 1 && !strcmp(effect->shape_name[0], "at");
+  if (!period && !at) return;
+  fg_text_clip(place, sizeof place, period ? " that returns every %.3g" : " at %.6g",
+               claim->shape[0]);
+  append(text, place);
+}
+
 void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *claim,
                          char text[FG_LOOP_WORDS]) {
   const fg_loop_effect *effect = claim->candidate.effect;
@@ -150,7 +164,7 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
   else if (effect->scatter == FG_LOOP_SPREAD)
     spread_statement(report, claim, text);
   else
-    fg_loop_candidate_words(report, &claim->candidate, text);
+    mean_statement(report, claim, text);
 }
 
 /* Every wrong row has a size of its own. */
