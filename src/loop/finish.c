@@ -262,18 +262,23 @@ static fg_status parameters(fg_context *ctx, fg_engine_run *run, fg_engine_noise
   return run->has_curve ? draw_curve(ctx, run, &fit[run->set.count - 1]) : FG_OK;
 }
 
+/* What is of the spread alone has no error to lower. */
+static bool may_lower(const fg_loop_result *result) {
+  bool lowers = false;
+  for (size_t m = 0; m < result->claims; m++)
+    lowers |= result->claim[m].candidate.effect->scatter != FG_LOOP_SPREAD;
+  return lowers;
+}
+
 static bool error_fell(const fg_engine_run *run) {
   const fg_loop_result *result = run->result;
-  return result->ratio_rms < 1 && run->fell;
+  return may_lower(result) && result->ratio_rms < 1 && run->fell;
 }
 
 /* What was found without an error that fell. */
 static fg_status note_verdict(fg_context *ctx, const fg_engine_run *run) {
   fg_loop_result *result = run->result;
-  bool lowers = false; /* what is of the spread alone has no error to lower */
-  for (size_t m = 0; m < result->claims; m++)
-    lowers |= result->claim[m].candidate.effect->scatter != FG_LOOP_SPREAD;
-  if (!lowers || error_fell(run) || run->has_curve) return FG_OK;
+  if (!may_lower(result) || error_fell(run) || run->has_curve) return FG_OK;
   return fg_engine_note(ctx, result,
                         "What was found does not lower the error of rows that took no part "
                         "beyond chance (%.3g before, %.3g after): it is there, but do not predict "
