@@ -17,7 +17,7 @@ import benchlib
 
 TOOLS = os.path.join(benchlib.ROOT, "build", "bench")
 RENDERS = 100  # different foils; every further scan is one of them with a note of its own in the file
-PAIR_SCANS = 100  # of a lot that is measured again and again, turn and turn about
+PAIR_SCANS = 60  # of a lot that is measured again and again, turn and turn about
 ROUNDS = 3
 
 

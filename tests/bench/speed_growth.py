@@ -31,9 +31,9 @@ PROFILED_RUNS = 12
 SERIES = [
     ("pixels", "Mpx", [(round(FOIL_PX[0] * FOIL_PX[1] * k * k / 1e6), FOIL_PX[0] * k, FOIL_PX[1] * k, 1, 1, r)
                        for k, r in ((1, 9), (2, 7), (3, 5), (4, 3))]),
-    ("foils", "foils", [(n, *WIDE_PX, n, 1, 3) for n in (1, 2, 4, 8)]),
+    ("foils", "foils", [(n, *WIDE_PX, n, 1, 2) for n in (1, 2, 4, 8)]),
     ("noise", "counts", [(n, *FOIL_PX, 1, n, 7) for n in (0, 0.5, 1, 2, 4, 8)]),
-    ("bed", "foils", [(24, *A4_PX, 24, 1.5, 3)]),
+    ("bed", "foils", [(24, *A4_PX, 24, 1.5, 2)]),
 ]
 
 # Which stage a symbol or a library belongs to: the first that fits.
@@ -41,7 +41,7 @@ STAGES = [
     ("inflate", r"libisal.*(inflate|decode_huffman|decode_next|make_inflate|huff)|libz\.so"),
     ("checksums of the PNG", r"crc32|adler"),
     ("SHA-256 of the file", r"nettle|sha256"),
-    ("undoing the PNG's filters", r"unfilter|undo_|paeth|png_read_filter|libpng"),
+    ("undoing the PNG's filters", r"unfilter|undo_|paeth|_average|_up\b|_sub\b|libpng"),
     ("reducing rows to tiles", r"fg_tiles_|reduce_strip|add_rows|mark_wanted|keep_tile|average_blocks|memmove|memcpy"),
     ("finding the foil", r"anchor|sheet|mark_hot|mark_near|find_low|fg_grid|fg_segment|fg_levels|cut_tile|forget_far"
                          r"|trace|cut_across|excess_over|walk|fg_island"),
@@ -159,16 +159,23 @@ def copy_gb_per_second():
     return source.nbytes / best / 1e9
 
 
+def nice_step(least):
+    """The next larger of 1, 2, 2.5, 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(least))
+    return next(m * power for m in (1, 2, 2.5, 5, 10) if m * power >= least)
+
+
 def panel(out, left, top, rows, title, unit, x_key):
     width, height = 250, 180
     xs = [r[x_key] for r in rows]
     x_max = max(xs)
-    y_max = 1.1 * max(r[f"{what}_s"] for r in rows for what in WHAT)
+    step = nice_step(max(r[f"{what}_s"] for r in rows for what in WHAT) / 4)
+    y_max = 4 * step
     out.append(f'<text x="{left}" y="{top - 30}" font-weight="bold">{title}</text>')
     out.append(f'<path d="M{left} {top}V{top + height}H{left + width}" fill="none" stroke="#444"/>')
     for k in range(5):
         y = top + height * (1 - k / 4)
-        out.append(f'<text x="{left - 5}" y="{y + 4:.0f}" text-anchor="end">{y_max * k / 4:.2g}</text>')
+        out.append(f'<text x="{left - 5}" y="{y + 4:.0f}" text-anchor="end">{step * k:g}</text>')
         out.append(f'<path d="M{left} {y:.0f}H{left + width}" stroke="#ddd"/>')
     for k, x in enumerate(xs):
         if len(xs) < 6 or k != 1:  # 0 and 0.5 of noise lie too close
@@ -187,7 +194,9 @@ def plot(rows):
     for k, (name, title, unit) in enumerate([("pixels", "one foil on a growing scan", "Mpx"),
                                              ("foils", "foils on 293 Mpx", "foils"),
                                              ("noise", "noise of one foil's scan (18 Mpx)", "sd of the noise, 8-bit counts")]):
-        panel(out, 50 + 315 * k, 60, [r for r in rows if r["series"] == name], f"seconds: {title}", unit, "value")
+        shown = [r for r in rows if r["series"] == name]
+        if shown:
+            panel(out, 50 + 315 * k, 60, shown, f"seconds: {title}", unit, "value")
     for k, what in enumerate(WHAT):
         out.append(f'<path d="M{280 + 150 * k} 306h20" stroke="{COLOURS[what]}" stroke-width="3"/>')
         out.append(f'<text x="{305 + 150 * k}" y="310">{WORDS[what]}</text>')
@@ -215,7 +224,7 @@ def slope_words(rows):
     pixels = [r for r in rows if r["series"] == "pixels"]
     foils = [r for r in rows if r["series"] == "foils"]
     words = []
-    for what in WHAT:
+    for what in WHAT if pixels and foils else ():
         per_mpx = np.polyfit([r["mpx"] for r in pixels], [r[f"{what}_s"] for r in pixels], 1)[0] * 1e3
         per_foil = np.polyfit([r["foils"] for r in foils], [r[f"{what}_s"] for r in foils], 1)[0] * 1e3
         words.append(f"- {WORDS[what]}: {per_mpx:.2f} ms for each further million of pixels, "
@@ -232,13 +241,14 @@ def write_markdown(path, rows, shares, copy):
                   "and JSON report included; ratios are formed pair by pair: median (lowest–highest).\n\n"
                   "![seconds over pixels, foils and noise](speed_growth.svg)\n\n" + slope_words(rows))
         for name, title in TITLES.items():
-            out.write(f"\n## {title}\n\n")
-            out.write(benchlib.table(HEADER, table_rows([r for r in rows if r["series"] == name])))
+            shown = [r for r in rows if r["series"] == name]
+            if shown:
+                out.write(f"\n## {title}\n\n" + benchlib.table(HEADER, table_rows(shown)))
         write_limit(out, rows, shares, copy)
 
 
 def write_limit(out, rows, shares, copy):
-    one = next(r for r in rows if r["series"] == "pixels")
+    one = max(rows, key=lambda r: r["mpx"] / r["foils"])
     out.write("\n## Where the limit is\n\n")
     if not shares:
         out.write("No profile: `perf` is missing here, or may not look.\n")
@@ -253,13 +263,14 @@ def write_limit(out, rows, shares, copy):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-o", "--out", default=os.path.join(benchlib.ROOT, "reports"))
-    parser.add_argument("--only", nargs="*", help="of these series only, to try it")
+    parser.add_argument("--only", nargs="*", default=[name for name, _, _ in SERIES], help="of these series only")
+    parser.add_argument("--rounds", type=int, default=99, help="at most, to try it")
     options = parser.parse_args()
     rows, shares = [], {}
     with tempfile.TemporaryDirectory() as folder:
         for name, _, sizes in SERIES:
-            if not options.only or name in options.only:
-                rows += [measure_size(name, size, folder) for size in sizes]
+            if name in options.only:
+                rows += [measure_size(name, (*size[:-1], min(size[-1], options.rounds)), folder) for size in sizes]
         for noise in (1, 4):
             shares[f"18 Mpx, noise {noise}"] = profile(render(folder, *FOIL_PX, 1, noise), folder)
         shares["73 Mpx, noise 1"] = profile(render(folder, 2 * FOIL_PX[0], 2 * FOIL_PX[1], 1, 1), folder)
@@ -269,10 +280,9 @@ def main():
         writer = csv.DictWriter(file, rows[0].keys())
         writer.writeheader()
         writer.writerows({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()} for row in rows)
-    if not options.only:
-        with open(os.path.join(options.out, "speed_growth.svg"), "w", encoding="utf-8") as file:
-            file.write(plot(rows))
-        write_markdown(os.path.join(options.out, "speed_growth.md"), rows, shares, copy)
+    with open(os.path.join(options.out, "speed_growth.svg"), "w", encoding="utf-8") as file:
+        file.write(plot(rows))
+    write_markdown(os.path.join(options.out, "speed_growth.md"), rows, shares, copy)
     print(shares, f"{copy:.1f} GB/s")
 
 
