@@ -14,7 +14,7 @@ A4 = (39685, 56125)
 MIB = 1 << 20
 LIMIT_MIB = {8: 256, 16: 512}
 ROUNDS = 3
-SAME_MM = 1e-7  # R of a foil cut out at tiles, against the bed
+SAME_MM = 1e-7  # R of a foil that is cut out, against the bed
 TILE = 64
 MARGIN = 7 * TILE  # around a foil that is cut out: its background reaches 4 tiles, its box is rounded
 
@@ -234,11 +234,9 @@ to the same foil on the bed:
 
 {piece_lines(pieces)}
 
-Cut at multiples of {TILE} px, a foil's numbers are the same to the last digit, or (foils with dust beside them) within
-thousandths of a nanometre, for a reason that is not yet found: a foil is measured in coordinates of its own, and little that
-lies further away than 256 px plays a part. Cut anywhere else, the grid of tiles lies differently over the foil, the walk along the
-strip starts elsewhere, and the stations fall between the former ones: another sample of the same edges. So the numbers are then
-not identical; the difference stays below the standard uncertainty (R about 120 nm).
+A foil's tiles have their corner at the foil, and what lies further away than some 50 px plays no part: wherever it is cut, its
+numbers are the same to the last digit. A foil that lies nearer than that to the scan's border is measured on the scan's own
+tiles, and then differs by some ten nanometres, less than its standard uncertainty (R about 120 nm).
 
 Wall times are of a machine that other jobs may have shared; the CPU times are steadier.
 """)
@@ -256,8 +254,8 @@ def main():
                           for x, y in ((0, 0), (5, 3), (37, 50))]
         deep = measure_bed(folder, DEEP)[0]
     write_report([done[b] for b in BY_SIZE], [done[b] for b in BY_COUNT], deep, pieces)
-    if pieces[0][1][2][".bumps.radius_mm"] > SAME_MM:
-        raise SystemExit("a foil cut out at tiles differs from itself on the bed")
+    if any(worst[".bumps.radius_mm"] > SAME_MM for _, (_, _, worst) in pieces):
+        raise SystemExit("a foil that is cut out differs from itself on the bed")
     print("reports/bed.md, bed.csv, bed.svg")
 
 
