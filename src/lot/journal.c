@@ -312,28 +312,32 @@ static bool write_whole(const fg_journal *journal, const char *line, size_t leng
 }
 
 /* Every record would cost a disk's turn; a second's worth is what a power cut may take. */
-static bool sync_now_and_then(fg_journal *journal) {
+static bool is_sync_due(fg_journal *journal) {
   struct timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);
-  if (++journal->unsynced < SYNC_RECORDS && now.tv_sec <= journal->synced.tv_sec) return true;
+  if (++journal->unsynced < SYNC_RECORDS && now.tv_sec <= journal->synced.tv_sec) return false;
   journal->unsynced = 0;
   journal->synced = now;
-  return fdatasync(journal->descriptor) == 0;
+  return true;
 }
 
 fg_status fg_journal_append(fg_context *ctx, fg_journal *journal, const char *line, size_t length,
                             fg_journal_entry *entry) {
   fg_status status = FG_OK;
+  bool due = false;
   pthread_mutex_lock(&journal->mutex);
   if (write_whole(journal, line, length)) {
     *entry = (fg_journal_entry){journal->end, length};
     journal->end += (off_t)length;
-    if (!sync_now_and_then(journal)) status = fail_errno(ctx, journal->path, "written");
+    due = is_sync_due(journal);
   } else {
     status = fail_errno(ctx, journal->path, "written");
     if (ftruncate(journal->descriptor, journal->end) != 0) entry->length = 0;
   }
   pthread_mutex_unlock(&journal->mutex);
+  /* Nobody else waits for the disk. */
+  if (due && fdatasync(journal->descriptor) != 0)
+    status = fail_errno(ctx, journal->path, "written");
   return status;
 }
 
