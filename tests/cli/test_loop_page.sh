@@ -10,7 +10,7 @@ render clean 1 -70 2400 ''
 render ripple 2 -60 2400 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
 render a 3 -75 2400 '{"id":"scan.scale_y","value":0.001}'
 render b 4 15 2400 '{"id":"scan.scale_y","value":0.001}'
-render faint 5 -75 4800 '{"id":"scan.scale_y","value":0.00013}'
+render faint 6 -75 4800 '{"id":"scan.scale_y","value":0.0001}'
 render other 7 -120 2400 '{"id":"scan.scale_y","value":0.001}'
 
 page() { # page FILE ARGUMENTS...
