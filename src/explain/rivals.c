@@ -75,10 +75,10 @@ static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yar
   return best;
 }
 
-/* One bump alone that stands out, whose number is sought; of those that are right. `score` becomes
- * Schwarz's criterion of it. */
+/* One bump alone that stands out, whose number is sought. `score` becomes Schwarz's criterion of
+ * it. */
 static fg_explanation lone_bump(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
-                                double *score) {
+                                bool right, double *score) {
   const fg_candidate *curve = &s->out->candidates[e];
   fg_explanation best = {.excess = INFINITY};
   for (size_t k = 0; k < curve->columns; k++) {
@@ -88,7 +88,7 @@ static fg_explanation lone_bump(const fg_explain_search *s, const fg_explain_yar
     fg_explanation m = {.mask = 1u << e,
                         .excess = fmax(0, sum - y->full) / y->unit,
                         .freedom = y->freedom - (double)rank};
-    if (rank == 0 || m.excess >= best.excess || !fg_explain_is_right(s, y, &m)) continue;
+    if (rank == 0 || m.excess >= best.excess || (right && !fg_explain_is_right(s, y, &m))) continue;
     best = m;
     if (s->columns.has_width) best.width = fg_explain_width_sum(&s->columns, &term, 1, &x);
   }
@@ -113,14 +113,26 @@ static bool follows(const fg_explain_search *s, const fg_candidate *curve, unsig
   return true;
 }
 
-fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y) {
+/* A free curve of few numbers, or one bump, and its score. */
+static fg_explanation simplest(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
+                               bool right, double *score) {
+  if (!is_smooth(s->out->candidates[e].kind)) return lone_bump(s, y, e, right, score);
+  fg_explanation m = smoothest(s, y, e, right);
+  *score = isfinite(m.excess) ? fg_explain_schwarz(s, &m) : INFINITY;
+  return m;
+}
+
+fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                      double *score) {
   fg_explanation best = {.excess = INFINITY};
+  *score = INFINITY;
   for (size_t e = 0; e < s->out->candidate_count; e++) {
-    if (!is_smooth(s->out->candidates[e].kind)) continue;
-    fg_explanation m = smoothest(s, y, e, false);
-    if (!isfinite(m.excess)) continue;
-    if (!isfinite(best.excess) || fg_explain_schwarz(s, &m) < fg_explain_schwarz(s, &best))
-      best = m;
+    double own;
+    if (!fg_effect_is_free(s->out->candidates[e].kind)) continue;
+    fg_explanation m = simplest(s, y, e, false, &own);
+    if (!(own < *score)) continue;
+    *score = own;
+    best = m;
   }
   return best;
 }
@@ -174,11 +186,9 @@ void fg_explain_add_rivals(fg_explain_search *s, const fg_explain_yardstick *y) 
     if (!fg_effect_is_free(curve->kind)) continue;
     if (curve->kind->bends && (listed & y->bends))
       continue; /* told from a curve by what leads it */
-    double own = INFINITY;
-    fg_explanation rival =
-        is_smooth(curve->kind) ? smoothest(s, y, e, true) : lone_bump(s, y, e, &own);
+    double own;
+    fg_explanation rival = simplest(s, y, e, true, &own);
     if (!isfinite(rival.excess)) continue;
-    if (is_smooth(curve->kind)) own = fg_explain_schwarz(s, &rival);
     double gain = score - own - fg_explain_causes(rival.mask);
     if (gain >= (one && follows(s, curve, listed) ? FOLLOWER_GAIN : 0))
       fg_explain_keep(out, &rival);

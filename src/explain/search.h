@@ -132,8 +132,10 @@ void fg_explain_add_curves(fg_explain_search *s, const fg_explain_yardstick *y, 
 /* Whether a smooth free curve beside a set gains more than chance, and more than `known_to`. */
 bool fg_explain_curve_helps(const fg_explain_search *s, const fg_explain_yardstick *y,
                             unsigned mask, double known_to);
-/* The smooth free curve that Schwarz's criterion prefers, whether it is right or not. */
-fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y);
+/* The smooth free curve, or the one bump, that Schwarz's criterion prefers, whether it is right or
+ * not, and that criterion. */
+fg_explanation fg_explain_best_smooth(const fg_explain_search *s, const fg_explain_yardstick *y,
+                                      double *score);
 
 /* ---- describe.c ---- */
 

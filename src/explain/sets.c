@@ -281,9 +281,10 @@ bool fg_explain_hopes_for_shape(const fg_explain_search *s, const fg_explain_yar
 static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_explanation best) {
   fg_explanation curve = try_free(s, y, best);
   if (s->policy->has_rivals) {
-    fg_explanation smooth = fg_explain_best_smooth(s, y);
-    double gain = fg_explain_schwarz(s, &curve) + fg_explain_causes(curve.mask) -
-                  fg_explain_schwarz(s, &smooth) - fg_explain_causes(smooth.mask);
+    double score;
+    fg_explanation smooth = fg_explain_best_smooth(s, y, &score);
+    double gain = fg_explain_schwarz(s, &curve) + fg_explain_causes(curve.mask) - score -
+                  fg_explain_causes(smooth.mask);
     if (isfinite(smooth.excess) && gain > 0) curve = smooth;
   }
   bool hope = !s->hopeless && s->policy->is_worth_fitting(s, y, &best, &curve);

@@ -4,7 +4,7 @@
 
 # found NAME ID EFFECT: renders it, and the loop names it alone.
 found() {
-  render_foil "$1" 11 -70 "{\"id\":\"$2\",$3}" 2400
+  render_foil "$1" 22 -70 "{\"id\":\"$2\",$3}" 2400
   "$program" loop "$1.png" -o "$1.out" --html "$1.html" --model-out "$1.model" || fail "loop on $1"
   [ "$(value "$1.out" "[c['id'] + ' ' + c['verdict'] for c in r['claims']]")" = "['$2 found']" ] ||
     fail "$1: $(value "$1.out" "r['verdict'], [c['id'] + ' ' + c['verdict'] for c in r['claims']]")"

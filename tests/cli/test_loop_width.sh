@@ -26,7 +26,7 @@ right() {
   near "its U" "$(taper "$1" "['uncertainty']['thickness_change_um'] * 2")" 0.25 0.25
 }
 
-render_foil thicker 3 25 "{\"id\":\"$id\",\"thickness_change_um\":6}" 2400
+render_foil thicker 21 25 "{\"id\":\"$id\",\"thickness_change_um\":6}" 2400
 loop thicker
 agree thicker
 [ "$(value thicker.out "r['verdict']") $(claims thicker)" = "explained $id" ] || fail "thicker: $(claims thicker)"
