@@ -9,7 +9,7 @@ cat >"$work/spec.json" <<'SPEC'
   {"rotate_deg": -90, "centre_mm": [26, 60]}, {"rotate_deg": 90, "centre_mm": [75, 30]}],
  "scanner": {"dpi": 1200}}
 SPEC
-"$program" render "$work/spec.json" -o "$work/bed.png" || fail "render"
+"$renderer" render "$work/spec.json" -o "$work/bed.png" || fail "render"
 expect 2 "" "$program" measure "$work/bed.png" -o "$work/bed.json" --csv "$work/bed.csv"
 python3 - "$work/bed.json" <<'CHECK' || fail "the report is wrong"
 import json, sys

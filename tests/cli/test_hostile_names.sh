@@ -5,7 +5,7 @@ mkdir scans
 cat >spec.json <<'SPEC'
 {"schema": "foilgauge/render/1", "seed": 3, "foils": [{}], "scanner": {"dpi": 1200}}
 SPEC
-"$program" render spec.json -o plain.png || fail "render"
+"$renderer" render spec.json -o plain.png || fail "render"
 red=$'\e[31m\x9b2J\x07red\xc2\x9b5m\x7f\r.png'
 cp plain.png "scans/$red"
 cp plain.png scans/=cmd.png

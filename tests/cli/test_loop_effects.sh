@@ -20,6 +20,8 @@ near "the seam" "$(number seam amplitude_um)" 15 0.3
 near "place of the seam" "$(number seam x_mm)" 12.3 0.1
 grep -q "a seam between two chips" seam.html || fail "the page does not say what a seam is"
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
 found start scan.carriage_start '"amplitude_um":20,"length_mm":5'
 near "the start" "$(number start amplitude_um)" 20 0.5
 near "its length" "$(number start length_mm)" 5 0.1

@@ -37,6 +37,8 @@ near "R after it" "$(value thicker.out "r['after']['foils'][0]['bumps'][3]['radi
 grep -q "the strip is thicker towards the free end" thicker.html || fail "the page does not say which end is thicker"
 [ "$(value thicker.model "len(r['fields'])")" = 0 ] || fail "a part's thickness is in the scanner's model"
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
 # The other way round, mirrored, beside a scanner that is wrong as well.
 render_foil thinner 4 -120 "{\"id\":\"$id\",\"thickness_change_um\":-4},{\"id\":\"scan.carriage_ripple\",\"amplitude_um\":8,\"period_mm\":2.2}" \
   2400 '' '"mirror":true,'
@@ -46,7 +48,6 @@ right thinner -4
 grep -q "the strip is thinner towards the free end" thinner.html || fail "the page does not say which end is thinner"
 [ "$(value thinner.model "' '.join(f['id'] for f in r['fields'])")" = scan.carriage_ripple ] || fail "model of thinner"
 
-[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
 agree thinner
 
 # Clean, and rough: nothing is claimed, and what would have been seen is told.

@@ -9,7 +9,7 @@ mkdir scans
 render() {
   printf '{"schema":"foilgauge/render/1","seed":%d,"foils":[{"design":{"bump_count":3},"overall_radius_mm":20.9,
 "radius_springback":{"mean":0.05,"sd":0.05},"rotate_deg":-90}],"scanner":{"dpi":1200,"blur_px":1.0,"noise":1}}' "$1" >spec.json
-  "$program" render spec.json -o "$2" || fail "render $2"
+  "$renderer" render spec.json -o "$2" || fail "render $2"
 }
 for i in 1 2 3 4 5 6 7 8 9 10; do render "$i" "scans/foil$i.png"; done
 strange=$'scans/<script>alert("1")</script>\'& \u00e4\u6f22.png'

@@ -7,7 +7,7 @@ mkdir scans
 for i in 1 2 3; do
   printf '{"schema":"foilgauge/render/1","seed":%d,"foils":[{"design":{"bump_count":3},"overall_radius_mm":20.9,
 "radius_springback":{"mean":0.05,"sd":0.05},"rotate_deg":-90}],"scanner":{"dpi":1200,"blur_px":1.0,"noise":1}}' "$i" >spec.json
-  "$program" render spec.json -o "scans/foil$i.png" || fail "render $i"
+  "$renderer" render spec.json -o "scans/foil$i.png" || fail "render $i"
 done
 cat >recipe.json <<'R'
 {"schema": "foilgauge/recipe/1", "resamples": 500, "design": {"schema": "foilgauge/design/1", "bump_count": 3}}

@@ -7,7 +7,7 @@ readelf -d "$program" | grep -q 'NEEDED.*opencv' && fail "the program itself nee
 cat >"$work/spec.json" <<'SPEC'
 {"schema": "foilgauge/render/1", "seed": 5, "foils": [{"rotate_deg": -90}], "scanner": {"dpi": 1200}}
 SPEC
-"$program" render "$work/spec.json" -o "$work/foil.png" || fail "render"
+"$renderer" render "$work/spec.json" -o "$work/foil.png" || fail "render"
 
 # As it is installed: the module in ../lib/foilgauge. One that is broken is named, and harms nobody else.
 mkdir -p "$work/bin" "$work/lib/foilgauge"

@@ -6,7 +6,7 @@ mkdir -p out scans
 cat >spec.json <<'SPEC'
 {"schema": "foilgauge/render/1", "seed": 3, "foils": [{}], "scanner": {"dpi": 1200}}
 SPEC
-"$program" render spec.json -o scans/a.png || fail "render"
+"$renderer" render spec.json -o scans/a.png || fail "render"
 cp scans/a.png scans/b.png
 printf 'T,D,y\n' >runs.csv
 for i in 1 2 3 4 5 6 7 8 9 10; do echo "$((i % 3)),$((i % 2)),$((i * i % 7)).$i" >>runs.csv; done

@@ -10,7 +10,7 @@ fi
 
 render() { # NAME FOIL
   echo "{\"schema\":\"foilgauge/render/1\",\"seed\":4,\"foils\":[$2],\"scanner\":{\"dpi\":1200,\"noise\":2}}" >spec.json
-  "$program" render spec.json -o "$1.png" || fail "render $1"
+  "$renderer" render spec.json -o "$1.png" || fail "render $1"
 }
 render three '{"design":{"bump_count":3},"radius_springback":{"mean":0.03,"sd":0.01}}'
 render gap '{"design":{"bump_count":5},"missing":[3]}'

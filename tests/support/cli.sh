@@ -3,6 +3,9 @@
 set -u
 program=$(realpath "$1")
 root=$PWD
+# Draws what the tests look at: a build that is not slowed down by sanitizers, where there is one.
+renderer=${FOILGAUGE_RENDERER-}
+[ -x "$renderer" ] || renderer=$program
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

@@ -1,8 +1,5 @@
 # What the scripts that render and measure share beside cli.sh; sourced with the program's path.
 . "${BASH_SOURCE[0]%/*}/cli.sh"
-# Draws what the tests look at: a build that is not slowed down by sanitizers, where there is one.
-renderer=${FOILGAUGE_RENDERER-}
-[ -x "$renderer" ] || renderer=$program
 
 # render_foil NAME SEED ROTATION EFFECTS DPI [MEMBERS OF THE SPEC] [MEMBERS OF THE FOIL], each with a comma behind it
 render_foil() {
