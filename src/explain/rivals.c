@@ -54,6 +54,14 @@ static size_t list_terms(const fg_explain_search *s, const fg_candidate *curve, 
   return count;
 }
 
+/* What the columns of one candidate come to, which left `sum`. */
+static fg_explanation of_candidate(const fg_explain_yardstick *y, size_t e, double sum,
+                                   size_t rank) {
+  return (fg_explanation){.mask = 1u << e,
+                          .excess = fmax(0, sum - y->full) / y->unit,
+                          .freedom = y->freedom - (double)rank};
+}
+
 /* The curve of as many numbers as Schwarz's criterion says; of those that are right. */
 static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yardstick *y, size_t e,
                                 bool right) {
@@ -63,9 +71,7 @@ static fg_explanation smoothest(const fg_explain_search *s, const fg_explain_yar
   for (size_t numbers = 1; numbers <= NUMBERS_MOST; numbers++) {
     size_t count = list_terms(s, &s->out->candidates[e], numbers, term), rank;
     double sum = fg_explain_solve(&s->columns, term, count, x, NULL, &rank);
-    fg_explanation m = {.mask = 1u << e,
-                        .excess = fmax(0, sum - y->full) / y->unit,
-                        .freedom = y->freedom - (double)rank};
+    fg_explanation m = of_candidate(y, e, sum, rank);
     if (rank == 0 || (right && !fg_explain_is_right(s, y, &m))) continue;
     if (isfinite(best.excess) && fg_explain_schwarz(s, &m) >= fg_explain_schwarz(s, &best))
       continue;
@@ -85,9 +91,7 @@ static fg_explanation lone_bump(const fg_explain_search *s, const fg_explain_yar
     const fg_explain_term term = {.count = 1, .column = {curve->column[k]}, .weight = {1}};
     size_t rank;
     double x, sum = fg_explain_solve(&s->columns, &term, 1, &x, NULL, &rank);
-    fg_explanation m = {.mask = 1u << e,
-                        .excess = fmax(0, sum - y->full) / y->unit,
-                        .freedom = y->freedom - (double)rank};
+    fg_explanation m = of_candidate(y, e, sum, rank);
     if (rank == 0 || m.excess >= best.excess || (right && !fg_explain_is_right(s, y, &m))) continue;
     best = m;
     if (s->columns.has_width) best.width = fg_explain_width_sum(&s->columns, &term, 1, &x);

@@ -291,8 +291,9 @@ static void stand_in(fg_explain_search *s, const fg_explain_yardstick *y, fg_exp
   if (!hope) curve = try_two_free(s, y, curve);
   s->out->right = !hope && fg_explain_is_right(s, y, &curve);
   fg_explain_keep(s->out, hope ? &best : &curve);
-  bool one_curve = fg_explain_bits(curve.mask & fg_explain_mask_of(s->out, true)) == 1;
-  if (s->policy->has_rivals && s->out->right && one_curve && fg_explain_bits(curve.mask) == 1)
+  bool one_curve =
+      fg_explain_bits(curve.mask) == 1 && (curve.mask & fg_explain_mask_of(s->out, true));
+  if (s->policy->has_rivals && s->out->right && one_curve)
     fg_explain_add_curves(s, y, fg_explain_schwarz(s, &curve));
 }
 

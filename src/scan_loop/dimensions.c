@@ -115,8 +115,9 @@ fg_status fg_scan_loop_take_moves(fg_context *ctx, fg_scan_loop *loop, size_t ex
     fg_pays_add(&loop->pays[i], &loop->before[i], &corrected[i]);
     loop->pays[i].discs.noises++;
   }
+  bool curve = holds_curve(&loop->explanations, explanation);
   for (size_t v = 0; v < fit->points->view_count; v++)
-    take_noise(loop, fit, v, scale, holds_curve(&loop->explanations, explanation));
+    take_noise(loop, fit, v, scale, curve);
   return FG_OK;
 }
 
