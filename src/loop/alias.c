@@ -48,18 +48,6 @@ typedef struct alias_bench {
   bool constant; /* in groups: the columns added last */
 } alias_bench;
 
-/* Squared length of y's part in the span of orthonormal columns. */
-static double along(size_t n, const double *unit, size_t count, const double *y) {
-  double sum = 0;
-  for (size_t k = 0; k < count; k++) {
-    double one = 0;
-    for (size_t i = 0; i < n; i++)
-      one += unit[k * n + i] * y[i];
-    sum += one * one;
-  }
-  return sum;
-}
-
 static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
                             fg_engine_noise noise, alias_bench *bench) {
   size_t n = training->n;
@@ -75,7 +63,7 @@ static fg_status open_bench(fg_context *ctx, const fg_engine_training *training,
   bench->freedom = (double)n - (double)bench->null.rank;
   FG_TRY(
       fg_engine_between_basis(ctx, training, noise, &bench->null, &bench->between, &bench->groups));
-  bench->groups_rss = along(n, bench->between, bench->groups, bench->y);
+  bench->groups_rss = fg_engine_along(n, bench->between, bench->groups, bench->y);
   return FG_OK;
 }
 
@@ -103,7 +91,7 @@ static fg_status extend(fg_context *ctx, alias_bench *bench, const fg_engine_sta
 }
 
 static double explained(const alias_bench *bench, size_t from, size_t count) {
-  return along(bench->n, bench->null.basis + from * bench->n, count, bench->y);
+  return fg_engine_along(bench->n, bench->null.basis + from * bench->n, count, bench->y);
 }
 
 static void fitted(const alias_bench *bench, size_t from, size_t count, double *fit) {
@@ -144,7 +132,7 @@ static void error_beside(const alias_bench *bench, size_t count, double gain, do
   size_t within =
       fg_engine_orthonormal(bench->n, bench->between, bench->groups,
                             bench->null.basis + bench->null.rank * bench->n, count, unit, NULL);
-  *left = bench->groups_rss + along(bench->n, unit, within, bench->y) - gain;
+  *left = bench->groups_rss + fg_engine_along(bench->n, unit, within, bench->y) - gain;
   *freedom = (double)(bench->groups + within) - (double)count;
 }
 

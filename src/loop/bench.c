@@ -113,17 +113,6 @@ static void put_rows(size_t n, size_t width, size_t first, const double *columns
       rows[i * width + first + k] = (float)columns[k * n + i];
 }
 
-static double explained(size_t n, const double *unit, size_t count, const double *residual) {
-  double gain = 0;
-  for (size_t k = 0; k < count; k++) {
-    double along = 0;
-    for (size_t i = 0; i < n; i++)
-      along += unit[k * n + i] * residual[i];
-    gain += along * along;
-  }
-  return gain;
-}
-
 typedef struct filling {
   fg_engine_bench *bench;
   size_t noise;
@@ -148,7 +137,7 @@ static fg_status fill_versions(fg_context *ctx, void *shared, size_t item) {
     status = version_basis(ctx, bench, v, f->noise, work, work + each);
     if (status != FG_OK) break;
     bench->gain[f->noise * bench->versions + v] =
-        explained(n, work + each, version->rank, f->residual);
+        fg_engine_along(n, work + each, version->rank, f->residual);
     put_rows(n, width, training->columns + version->first, work + each, version->rank,
              bench->rows[f->noise]);
   }
@@ -171,7 +160,7 @@ static fg_status fill_noise(fg_context *ctx, fg_engine_bench *bench, size_t j) {
   memcpy(residual, training->y, n * sizeof *residual);
   fg_engine_whiten(training, bench->noise[j], residual);
   bench->rss[j] = fg_engine_project_out(n, null->basis, null->rank, residual);
-  bench->between_rss[j] = explained(n, between, bench->between_rank, residual);
+  bench->between_rss[j] = fg_engine_along(n, between, bench->between_rank, residual);
   size_t behind = rank + bench->columns, width = behind + bench->between_rank;
   if (few)
     FG_TRY_EXIT(

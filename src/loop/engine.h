@@ -97,6 +97,8 @@ fg_status fg_engine_span_open(fg_context *ctx, const fg_engine_training *trainin
 void fg_engine_span_close(fg_engine_span *span);
 /* The sd that a row's residual keeps of its own error, as a divisor. */
 double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i);
+/* Squared length of y's part in the span of so many orthonormal columns of n values. */
+double fg_engine_along(size_t n, const double *unit, size_t count, const double *y);
 
 typedef struct fg_engine_fit {
   size_t columns, rank;

@@ -115,6 +115,17 @@ void fg_engine_span_close(fg_engine_span *span) {
   *span = (fg_engine_span){0};
 }
 
+double fg_engine_along(size_t n, const double *unit, size_t count, const double *y) {
+  double sum = 0;
+  for (size_t k = 0; k < count; k++) {
+    double one = 0;
+    for (size_t i = 0; i < n; i++)
+      one += unit[k * n + i] * y[i];
+    sum += one * one;
+  }
+  return sum;
+}
+
 double fg_engine_span_kept_sd(const fg_engine_span *span, size_t i) {
   return sqrt(fmax(span->kept[i], kept_least));
 }
