@@ -15,6 +15,7 @@ static const fg_command commands[] = {
     {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
     {"lot", fg_cmd_lot, "measure and report a production lot; resume it, shard it"},
     {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
+    {"station", fg_cmd_station, "watch a folder of scans, keep results, show them in a browser"},
     {NULL, NULL, NULL},
 };
 

@@ -237,7 +237,9 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
       FG_TRY(read_member(ctx, row, value, settings));
     else if (!strcmp(value->string, "design"))
       FG_TRY(read_design(ctx, path, value, &settings->design));
-    else if (value != schema && strcmp(value->string, "version") != 0)
+    else if (value != schema && strcmp(value->string, "version") != 0 &&
+             strcmp(value->string, "station") !=
+                 0) /* the inspection station's: station/settings.c */
       return fg_fail(ctx, FG_ERR_DATA,
                      "unknown member '%.60s'; `foilgauge lot --print-recipe` shows them all",
                      value->string);

@@ -172,10 +172,15 @@ void fg_html_head(FILE *out, const char *title) {
   fputs(" – foilgauge</title>\n", out);
 }
 
+void fg_html_style(FILE *out) {
+  fprintf(out, "%s%s%s%s", style, plot_style, lot_style, loop_style);
+}
+
 void fg_html_begin(FILE *out, const char *title) {
   fg_html_head(out, title);
-  fprintf(out, "<style>\n%s%s%s%s</style>\n</head>\n<body>\n<main>\n", style, plot_style, lot_style,
-          loop_style);
+  fputs("<style>\n", out);
+  fg_html_style(out);
+  fputs("</style>\n</head>\n<body>\n<main>\n", out);
 }
 
 void fg_html_end(FILE *out) {

@@ -1,0 +1,124 @@
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "foilgauge/station.h"
+
+enum {
+  OPTION_RECIPE = 256,
+  OPTION_ONCE,
+  OPTION_EXPORT,
+  OPTION_POLL,
+  OPTION_LISTEN,
+  OPTION_PORT,
+  OPTION_TOKEN
+};
+
+typedef struct station_arguments {
+  const char *recipe, *design;
+  fg_station_request request;
+} station_arguments;
+
+static const struct argp_option options[] = {
+    {"recipe", OPTION_RECIPE, "FILE", 0,
+     "As of `foilgauge lot`, with a member `station`: file_name, scan_command, check", 0},
+    {"design", 'd', "FILE", 0, "What the part should be, with tolerances", 0},
+    {"once", OPTION_ONCE, NULL, 0, "Measure what is new, and end", 1},
+    {"export", OPTION_EXPORT, "DIR", 0,
+     "Write every lot of the database as a folder, as `foilgauge lot` makes them, and end", 1},
+    {"poll", OPTION_POLL, "S", 0,
+     "Look into the folder every so many seconds (network folders, of whose files nobody tells)",
+     2},
+    {"port", OPTION_PORT, "N", 0, "Of the pages (default: 8317; 0: one that is free)", 2},
+    {"listen", OPTION_LISTEN, "ADDRESS", 0,
+     "Serve the pages to other machines; needs --token (default: this machine alone)", 2},
+    {"token", OPTION_TOKEN, "TEXT", 0, "What a browser must know; at least 16 characters", 2},
+    {0},
+};
+
+static const char doc[] =
+    "Watch a folder: every scan that appears is measured, judged, kept in a database in that "
+    "folder "
+    "and shown in the browser."
+    "\vThe address is printed when the pages can be had. The database is "
+    "FOLDER/" FG_STATION_DATABASE ". Scans are never changed.\n\n"
+    "Exit code: 130 when it was interrupted, which is how it ends; with --once as of `measure`: 0 "
+    "all within tolerance, 1 a limit is exceeded, 2 something could not be measured, 3 cannot "
+    "tell; "
+    "64 usage; 65 bad data; 74 input or output, another station is at work in the folder.";
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  station_arguments *arguments = state->input;
+  fg_station_request *request = &arguments->request;
+  switch (key) {
+  case 'd':
+    arguments->design = text;
+    break;
+  case OPTION_RECIPE:
+    arguments->recipe = text;
+    break;
+  case OPTION_ONCE:
+    request->once = true;
+    break;
+  case OPTION_EXPORT:
+    request->export_path = text;
+    break;
+  case OPTION_POLL:
+    request->poll_s = fg_cli_number(state, "poll", text, 0.1, 3600);
+    break;
+  case OPTION_PORT:
+    request->port = (unsigned)fg_cli_number(state, "port", text, 0, 65535);
+    break;
+  case OPTION_LISTEN:
+    request->listen = text;
+    break;
+  case OPTION_TOKEN:
+    request->token = text;
+    break;
+  case ARGP_KEY_ARG:
+    if (request->folder) argp_error(state, "one FOLDER is watched");
+    request->folder = text;
+    break;
+  case ARGP_KEY_END:
+    if (!request->folder) argp_error(state, "no FOLDER was given");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static void say_address(void *user, const char *address) {
+  (void)user;
+  printf("%s\n", address);
+  fflush(stdout);
+}
+
+static void say_file(void *user, const char *file, const char *words) {
+  (void)user;
+  fprintf(stderr, "foilgauge: %s%s%s\n", file, words[0] ? " " : "", words);
+}
+
+int fg_cmd_station(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "FOLDER", doc, NULL, NULL, NULL};
+  static fg_station_settings settings;
+  fg_context ctx = {0};
+  station_arguments arguments = {.request = {.port = 8317}};
+  fg_station_outcome outcome;
+  argv[0] = (char[]){"foilgauge station"};
+  fg_status status = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  status = fg_station_settings_load(&ctx, arguments.recipe, arguments.design, &settings);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  arguments.request.settings = &settings;
+  arguments.request.ready = say_address;
+  arguments.request.looked_at = say_file;
+  status = fg_station_run(&ctx, &arguments.request, &outcome);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  if (!arguments.request.once) return 0;
+  fprintf(stderr, "foilgauge: %zu measured, %zu known, %zu refused\n", outcome.measured,
+          outcome.known, outcome.refused);
+  return fg_outcome_exit_code(&outcome.judged);
+}

@@ -1,0 +1,221 @@
+/* Who may ask, and what: every request passes here. */
+#include "station/answer.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/text.h"
+#include "report/measure/measure_page_parts.h"
+#include "station/actions.h"
+#include "station/pages.h"
+
+typedef struct route {
+  const char *path;
+  fg_page_writer *write;
+  const char *type;
+  bool own_style;
+} route;
+
+#define HTML "text/html; charset=utf-8"
+
+static const route pages[] = {
+    {"/", fg_page_now, HTML, false},          {"/history", fg_page_history, HTML, false},
+    {"/foil", fg_page_foil, HTML, false},     {"/report", fg_page_report, HTML, true},
+    {"/trends", fg_page_trends, HTML, false}, {"/scanner", fg_page_scanner, HTML, false},
+    {"/lots", fg_page_lots, HTML, false},
+};
+
+static const struct {
+  const char *path;
+  fg_action *act;
+} actions[] = {
+    {"/correct", fg_action_correct},
+    {"/scan", fg_action_scan},
+    {"/close", fg_action_close},
+    {"/download", fg_action_download},
+};
+
+enum { PAGES = sizeof pages / sizeof *pages, ACTIONS = sizeof actions / sizeof *actions };
+
+/* A page of its own for what went wrong, in the answer. */
+static void say(fg_answer *answer, int code, const char *words) {
+  free(answer->body);
+  *answer = (fg_answer){.code = code, .type = HTML};
+  FILE *out = open_memstream(&answer->body, &answer->size);
+  if (!out) return;
+  fputs("<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>foilgauge</title>"
+        "<link rel=\"stylesheet\" href=\"/style.css\"><main><section><h1>",
+        out);
+  fg_html_text(out, words);
+  fputs("</h1><p><a href=\"/\">Back to the newest result</a></p></section></main></html>\n", out);
+  fclose(out);
+}
+
+static int code_of(fg_status status) {
+  switch (status) {
+  case FG_ERR_USAGE:
+    return 404;
+  case FG_ERR_DATA:
+    return 422;
+  default:
+    return 500;
+  }
+}
+
+/* Takes as long for a wrong one as for the right one. */
+static bool same_secret(const char *given, const char *secret) {
+  size_t length = strlen(secret), other = strlen(given);
+  unsigned differs = length != other;
+  for (size_t i = 0; i < length; i++)
+    differs |= (unsigned char)secret[i] ^ (unsigned char)given[other ? i % other : 0];
+  return !differs;
+}
+
+static bool has_cookie(const fg_request *request, const char *token) {
+  static const char name[] = "foilgauge=";
+  const char *at = request->cookie ? strstr(request->cookie, name) : NULL;
+  char value[128];
+  if (!at) return false;
+  at += sizeof name - 1;
+  size_t length = strcspn(at, "; ");
+  if (length >= sizeof value) return false;
+  memcpy(value, at, length);
+  value[length] = '\0';
+  return same_secret(value, token);
+}
+
+/* Another name for this machine would be another site's: its pages could read ours (DNS
+ * rebinding). */
+static bool is_our_host(const fg_inspection *station, const char *host) {
+  char local[64];
+  const char *port = strrchr(station->host, ':');
+  if (!host) return false;
+  if (!strcmp(host, station->host)) return true;
+  snprintf(local, sizeof local, "localhost%s", port ? port : "");
+  return !station->request->token && !strcmp(host, local);
+}
+
+static bool is_our_form(const fg_inspection *station, const fg_request *request) {
+  char own[160];
+  snprintf(own, sizeof own, "http://%s", request->host);
+  if (request->origin && strcmp(request->origin, own) != 0) return false;
+  if (request->site && strcmp(request->site, "same-origin") != 0 &&
+      strcmp(request->site, "none") != 0)
+    return false;
+  return same_secret(fg_request_get(request, "form"), station->form_token);
+}
+
+/* False with the answer when the request goes no further. */
+static bool may_ask(const fg_inspection *station, const fg_request *request, fg_answer *answer) {
+  const char *token = station->request->token;
+  if (!is_our_host(station, request->host)) {
+    say(answer, 421, "This address is not the station's: use the one that it printed.");
+    return false;
+  }
+  if (token && !has_cookie(request, token)) {
+    if (!request->post && same_secret(fg_request_get(request, "token"), token)) {
+      say(answer, 303, "");
+      snprintf(answer->location, sizeof answer->location, "%.200s", request->path);
+      snprintf(answer->cookie, sizeof answer->cookie,
+               "foilgauge=%.80s; HttpOnly; SameSite=Strict; Path=/", token);
+      return false;
+    }
+    say(answer, 401, "Open the address that the station printed: it carries the token.");
+    return false;
+  }
+  if (request->post && !is_our_form(station, request)) {
+    say(answer, 403,
+        "This form is not from this station as it runs now: go back and load the page again.");
+    return false;
+  }
+  return true;
+}
+
+static void write_page(fg_inspection *station, const fg_request *request, const route *page,
+                       fg_answer *answer) {
+  fg_context ctx = {.message = ""};
+  FILE *out = open_memstream(&answer->body, &answer->size);
+  if (!out) {
+    say(answer, 500, "out of memory");
+    return;
+  }
+  pthread_mutex_lock(&station->database.reading);
+  fg_status status = page->write(&ctx, station, station->database.reader, request, out);
+  pthread_mutex_unlock(&station->database.reading);
+  if (fclose(out) != 0 && status == FG_OK) status = fg_fail(&ctx, FG_ERR_MEMORY, "out of memory");
+  *answer = (fg_answer){.code = 200,
+                        .type = page->type,
+                        .own_style = page->own_style,
+                        .body = answer->body,
+                        .size = answer->size};
+  if (status != FG_OK) say(answer, code_of(status), ctx.message);
+}
+
+static void give_text(fg_answer *answer, const char *type, const char *text) {
+  answer->code = 200;
+  answer->type = type;
+  answer->body = strdup(text);
+  answer->size = answer->body ? strlen(text) : 0;
+}
+
+static void act(fg_inspection *station, const fg_request *request, fg_action *action,
+                fg_answer *answer) {
+  fg_context ctx = {.message = ""};
+  *answer = (fg_answer){.code = 303, .type = HTML};
+  fg_status status = action(&ctx, station, request, answer);
+  if (status != FG_OK) say(answer, code_of(status), ctx.message);
+}
+
+/* The number of the newest card, for pages that wait for the next. The reply ends the connection:
+ * the browser asks again by itself. */
+static void tell_events(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+  fg_query query;
+  fg_context ctx;
+  long long newest = 0;
+  pthread_mutex_lock(&station->database.reading);
+  fg_query_begin(
+      station->database.reader,
+      "SELECT coalesce((SELECT max(id) FROM arrivals), 0) * 2 + (SELECT count(*) FROM "
+      "(SELECT 1 FROM pictures JOIN foils ON foils.id = foil WHERE scan = (SELECT max(id) "
+      "FROM scans) LIMIT 1))",
+      &query);
+  if (fg_query_row(&query)) newest = fg_query_get_integer(&query, 0);
+  fg_query_end(&ctx, &query, "reading the cards");
+  pthread_mutex_unlock(&station->database.reading);
+  *answer = (fg_answer){.code = 200, .type = "text/event-stream"};
+  answer->wait = newest == request->last_event;
+  FILE *out = open_memstream(&answer->body, &answer->size);
+  if (!out) return;
+  fprintf(out, "retry: 250\nid: %lld\ndata: %s\n\n", newest,
+          answer->wait || request->last_event < 0 ? "same" : "new");
+  fclose(out);
+}
+
+static bool give_fixed(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+  if (!strcmp(request->path, "/style.css"))
+    give_text(answer, "text/css; charset=utf-8", fg_station_style_text());
+  else if (!strcmp(request->path, "/script.js"))
+    give_text(answer, "text/javascript; charset=utf-8", fg_station_script);
+  else if (!strcmp(request->path, "/events"))
+    tell_events(station, request, answer);
+  else
+    return false;
+  return true;
+}
+
+void fg_station_answer(fg_inspection *station, const fg_request *request, fg_answer *answer) {
+  *answer = (fg_answer){0};
+  if (!may_ask(station, request, answer)) return;
+  if (!request->post && give_fixed(station, request, answer)) return;
+  for (size_t i = 0; i < PAGES && !request->post; i++)
+    if (!strcmp(request->path, pages[i].path)) {
+      write_page(station, request, &pages[i], answer);
+      return;
+    }
+  for (size_t i = 0; i < ACTIONS && request->post; i++)
+    if (!strcmp(request->path, actions[i].path)) {
+      act(station, request, actions[i].act, answer);
+      return;
+    }
+  say(answer, 404, "There is no such page.");
+}

@@ -1,0 +1,24 @@
+/* What a plate of known diameters says of a scanner's two axes. */
+#ifndef FG_STATION_CHECK_FIT_H
+#define FG_STATION_CHECK_FIT_H
+
+#include "foilgauge/foil.h"
+
+/* A disc of the diameter d shows as an ellipse: its radius in the direction a is
+ *   d/2 (1 + scale_x cos² a + scale_y sin² a + shear sin a cos a). */
+typedef struct fg_check_fit {
+  size_t discs;
+  double scale[2], u_scale[2]; /* measured over true, less 1; x, y */
+  double shear, u_shear;       /* rad */
+  bool passes;
+} fg_check_fit;
+
+/* Least squares over the edges of all discs that have a known diameter. FG_ERR_NOT_MEASURED: there
+ * is none. */
+fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
+                             const fg_measurement *measurement, fg_check_fit *fit);
+
+/* Against the largest deviation of a scale that is allowed; `words` say what it came to. */
+void fg_check_fit_judge(fg_check_fit *fit, double scale_max_ppm, char *words, size_t size);
+
+#endif

@@ -1,0 +1,152 @@
+#include "station/database.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+#include "core/text.h"
+#include "foilgauge/station.h"
+
+/* Each step takes a database from one version to the next; a step that was ever released is never
+ * changed. */
+static const char *const migrations[] = {
+    /* What scans were measured and judged with. */
+    "CREATE TABLE setups (id INTEGER PRIMARY KEY, sha256 TEXT NOT NULL UNIQUE, program TEXT NOT "
+    "NULL,"
+    " recipe TEXT NOT NULL, model TEXT, model_sha256 TEXT, first_at INTEGER NOT NULL);"
+    /* Every scan that was measured, or read and found not to be measurable. */
+    "CREATE TABLE scans (id INTEGER PRIMARY KEY AUTOINCREMENT, sha256 TEXT NOT NULL UNIQUE,"
+    " setup INTEGER NOT NULL REFERENCES setups, path TEXT NOT NULL, source TEXT NOT NULL,"
+    " at INTEGER NOT NULL, dpi_x REAL, dpi_y REAL, width_px INTEGER, height_px INTEGER,"
+    " verdict TEXT NOT NULL, withheld TEXT, error TEXT, record TEXT, seconds REAL);"
+    "CREATE TABLE foils (id INTEGER PRIMARY KEY AUTOINCREMENT, scan INTEGER NOT NULL REFERENCES "
+    "scans,"
+    " number INTEGER NOT NULL, serial TEXT NOT NULL, lot TEXT NOT NULL, die TEXT NOT NULL,"
+    " operator TEXT NOT NULL, verdict TEXT NOT NULL, reasons TEXT NOT NULL, UNIQUE (scan, number));"
+    "CREATE INDEX foils_by_serial ON foils (serial);"
+    "CREATE INDEX foils_by_lot ON foils (lot);"
+    "CREATE INDEX foils_by_die ON foils (die);"
+    "CREATE TABLE bumps (foil INTEGER NOT NULL REFERENCES foils, number INTEGER NOT NULL,"
+    " verdict TEXT NOT NULL, flags TEXT NOT NULL, PRIMARY KEY (foil, number)) WITHOUT ROWID;"
+    "CREATE TABLE quantities (id INTEGER PRIMARY KEY, owner TEXT NOT NULL, name TEXT NOT NULL,"
+    " unit TEXT NOT NULL, UNIQUE (owner, name));"
+    /* bump 0: the whole foil. */
+    "CREATE TABLE measured (quantity INTEGER NOT NULL REFERENCES quantities,"
+    " foil INTEGER NOT NULL REFERENCES foils, bump INTEGER NOT NULL, value REAL, u REAL,"
+    " PRIMARY KEY (quantity, foil, bump)) WITHOUT ROWID;"
+    /* The values that decided, the worst first. */
+    "CREATE TABLE deciding (foil INTEGER NOT NULL REFERENCES foils, rank INTEGER NOT NULL,"
+    " quantity INTEGER NOT NULL REFERENCES quantities, bump INTEGER NOT NULL, value REAL, u REAL,"
+    " lower REAL, upper REAL, verdict TEXT NOT NULL, PRIMARY KEY (foil, rank)) WITHOUT ROWID;"
+    /* Pictures of the newest foils, as they stand in pages. */
+    "CREATE TABLE pictures (foil INTEGER PRIMARY KEY REFERENCES foils, html TEXT NOT NULL);"
+    /* A card for every file that was looked at; the newest of a path is what the file is. */
+    "CREATE TABLE arrivals (id INTEGER PRIMARY KEY AUTOINCREMENT, at INTEGER NOT NULL,"
+    " path TEXT NOT NULL, kind TEXT NOT NULL, message TEXT NOT NULL, scan INTEGER REFERENCES scans,"
+    " superseded INTEGER NOT NULL DEFAULT 0);"
+    "CREATE TABLE files (path TEXT PRIMARY KEY, bytes INTEGER NOT NULL, modified_ns INTEGER NOT "
+    "NULL,"
+    " arrival INTEGER NOT NULL REFERENCES arrivals) WITHOUT ROWID;"
+    /* Who changed what of a foil, and when. */
+    "CREATE TABLE corrections (id INTEGER PRIMARY KEY AUTOINCREMENT, foil INTEGER NOT NULL "
+    "REFERENCES"
+    " foils, field TEXT NOT NULL, before TEXT NOT NULL, after TEXT NOT NULL, by TEXT NOT NULL,"
+    " at INTEGER NOT NULL);"
+    "CREATE INDEX corrections_by_foil ON corrections (foil);"
+    /* The scanner against a plate or ring of known diameters: scale_x and scale_y are measured over
+     * true, less 1; shear is the angle between the axes, less 90 degrees, in radians. */
+    "CREATE TABLE checks (id INTEGER PRIMARY KEY AUTOINCREMENT, at INTEGER NOT NULL, path TEXT NOT "
+    "NULL,"
+    " sha256 TEXT NOT NULL UNIQUE, discs INTEGER NOT NULL, scale_x REAL, u_scale_x REAL, scale_y "
+    "REAL,"
+    " u_scale_y REAL, shear REAL, u_shear REAL, verdict TEXT NOT NULL, words TEXT NOT NULL);"
+    "CREATE TABLE lots (name TEXT PRIMARY KEY, closed_at INTEGER NOT NULL, by TEXT NOT NULL,"
+    " folder TEXT NOT NULL, verdict TEXT NOT NULL, summary TEXT NOT NULL) WITHOUT ROWID;",
+};
+
+enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000 };
+
+int fg_station_database_version(void) {
+  return VERSION;
+}
+
+int64_t fg_station_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_REALTIME, &now);
+  return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+static fg_status open_connection(fg_context *ctx, const char *path, bool write,
+                                 sqlite3 **connection) {
+  int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
+  if (sqlite3_open_v2(path, connection, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK)
+    return fg_sql_fail(ctx, *connection, path);
+  sqlite3_busy_timeout(*connection, BUSY_MS);
+  return fg_sql_run(ctx, *connection,
+                    write ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+                            "PRAGMA foreign_keys = ON;"
+                          : "PRAGMA query_only = ON;");
+}
+
+static fg_status read_version(fg_context *ctx, const fg_station_database *database, int *version) {
+  fg_query query;
+  fg_query_begin(database->writer, "PRAGMA user_version", &query);
+  *version = fg_query_row(&query) ? (int)fg_query_get_integer(&query, 0) : 0;
+  return fg_query_end(ctx, &query, database->path);
+}
+
+static fg_status migrate(fg_context *ctx, fg_station_database *database) {
+  int version;
+  char *step = NULL;
+  FG_TRY(read_version(ctx, database, &version));
+  if (version > VERSION)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: the database has version %d, of a later program; this one knows version %d",
+                   database->path, version, VERSION);
+  for (; version < VERSION; version++) {
+    FG_TRY(fg_text_print(ctx, &step, "BEGIN IMMEDIATE;%s PRAGMA user_version = %d; COMMIT;",
+                         migrations[version], version + 1));
+    fg_status status = fg_sql_run(ctx, database->writer, step);
+    free(step);
+    if (status != FG_OK) return status;
+  }
+  return FG_OK;
+}
+
+fg_status fg_station_database_open(fg_context *ctx, const char *folder,
+                                   fg_station_database *database) {
+  *database = (fg_station_database){0};
+  pthread_mutex_init(&database->writing, NULL);
+  pthread_mutex_init(&database->reading, NULL);
+  fg_status status = fg_text_print(ctx, &database->path, "%s/%s", folder, FG_STATION_DATABASE);
+  if (status == FG_OK) status = open_connection(ctx, database->path, true, &database->writer);
+  if (status == FG_OK) status = migrate(ctx, database);
+  if (status == FG_OK) status = open_connection(ctx, database->path, false, &database->reader);
+  if (status != FG_OK) fg_station_database_close(database);
+  return status;
+}
+
+void fg_station_database_close(fg_station_database *database) {
+  sqlite3_close_v2(database->reader);
+  sqlite3_close_v2(database->writer);
+  database->reader = database->writer = NULL;
+  free(database->path);
+  database->path = NULL;
+}
+
+fg_status fg_station_database_begin(fg_context *ctx, fg_station_database *database) {
+  pthread_mutex_lock(&database->writing);
+  fg_status status = fg_sql_run(ctx, database->writer, "BEGIN IMMEDIATE");
+  if (status != FG_OK) pthread_mutex_unlock(&database->writing);
+  return status;
+}
+
+fg_status fg_station_database_end(fg_context *ctx, fg_station_database *database,
+                                  fg_status status) {
+  fg_context inner;
+  if (status == FG_OK) status = fg_sql_run(ctx, database->writer, "COMMIT");
+  /* An error may have taken everything back already. */
+  if (status != FG_OK && !sqlite3_get_autocommit(database->writer))
+    fg_sql_run(&inner, database->writer, "ROLLBACK");
+  pthread_mutex_unlock(&database->writing);
+  return status;
+}

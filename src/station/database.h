@@ -1,0 +1,36 @@
+/* The station's database: one file in the folder, in WAL mode, with a version.
+ *
+ * One connection writes (under a lock, in transactions), another reads; both belong to the
+ * process that holds the folder's lock. Times are milliseconds since 1970, UTC, as the clock was:
+ * what came after what is told by `id`, which no clock turns back. */
+#ifndef FG_STATION_DATABASE_H
+#define FG_STATION_DATABASE_H
+
+#include <pthread.h>
+
+#include "station/sql.h"
+
+/* PRAGMA user_version of what this program writes: the number of steps in migrations. */
+int fg_station_database_version(void);
+
+typedef struct fg_station_database {
+  sqlite3 *writer, *reader;
+  pthread_mutex_t writing, reading;
+  char *path;
+} fg_station_database;
+
+/* Opens or makes folder/FG_STATION_DATABASE and brings it up to date. FG_ERR_DATA: damaged, no
+ * database, or of a later program. */
+fg_status fg_station_database_open(fg_context *ctx, const char *folder,
+                                   fg_station_database *database);
+void fg_station_database_close(fg_station_database *database); /* of an all-zero one, too */
+
+/* A transaction: between the two the caller has the writer alone. Commits when `status` is FG_OK,
+ * else takes everything back, and returns `status`, or why it could not be committed. */
+fg_status fg_station_database_begin(fg_context *ctx, fg_station_database *database);
+fg_status fg_station_database_end(fg_context *ctx, fg_station_database *database, fg_status status);
+
+/* Now, as times are kept. */
+int64_t fg_station_now(void);
+
+#endif

@@ -1,0 +1,86 @@
+/* What every page of a station has around it. */
+#include <string.h>
+#include <time.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "station/check.h"
+#include "station/pages.h"
+
+static const struct {
+  fg_tab tab;
+  const char *path, *name;
+} tabs[] = {
+    {FG_TAB_NOW, "/", "Now"},
+    {FG_TAB_HISTORY, "/history", "History"},
+    {FG_TAB_TRENDS, "/trends", "Trends"},
+    {FG_TAB_SCANNER, "/scanner", "Scanner"},
+    {FG_TAB_LOTS, "/lots", "Lots"},
+};
+
+void fg_page_time(FILE *out, int64_t at) {
+  time_t seconds = (time_t)(at / 1000);
+  struct tm local;
+  char text[32];
+  if (!localtime_r(&seconds, &local) || !strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S", &local))
+    strcpy(text, "?");
+  fputs(text, out);
+}
+
+void fg_page_form_token(const fg_inspection *station, FILE *out) {
+  fprintf(out, "<input type=\"hidden\" name=\"form\" value=\"%s\">", station->form_token);
+}
+
+const char *fg_page_verdict_words(const char *verdict, bool withheld) {
+  if (withheld) return "NO VERDICT";
+  if (!strcmp(verdict, "pass")) return "PASS";
+  if (!strcmp(verdict, "fail")) return "FAIL";
+  if (!strcmp(verdict, "no_tolerance")) return "MEASURED";
+  return "SCAN AGAIN";
+}
+
+const char *fg_page_verdict_class(const char *verdict, bool withheld) {
+  if (withheld) return "again";
+  if (!strcmp(verdict, "pass")) return "pass";
+  if (!strcmp(verdict, "fail")) return "fail";
+  if (!strcmp(verdict, "no_tolerance")) return "none";
+  return "again";
+}
+
+static void write_tabs(FILE *out, fg_tab here) {
+  fputs("<nav>", out);
+  for (size_t i = 0; i < sizeof tabs / sizeof *tabs; i++)
+    fprintf(out, "<a href=\"%s\"%s accesskey=\"%zu\">%s</a>", tabs[i].path,
+            tabs[i].tab == here ? " aria-current=\"page\"" : "", i + 1, tabs[i].name);
+  fputs("</nav>\n", out);
+}
+
+static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                              FILE *out) {
+  fg_station_health health;
+  const fg_station_check *check = &station->settings->check;
+  FG_TRY(fg_station_check_health(ctx, reader, check, &health));
+  if (!health.asked || (!health.due && !health.failed)) return FG_OK;
+  fprintf(out,
+          "<p class=\"banner\" role=\"alert\"><b>%s</b> %s <a href=\"/scanner\">Scanner</a></p>\n",
+          health.failed ? "The scanner failed its last check." : "The scanner's check is due.",
+          check->withhold ? "No foil gets a verdict until it has passed." : "");
+  return FG_OK;
+}
+
+fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader, FILE *out,
+                        fg_tab tab, const char *title) {
+  fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+        "name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
+        out);
+  fg_html_text(out, title);
+  fputs(" – foilgauge station</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n<script "
+        "src=\"/script.js\" defer></script>\n</head>\n<body>\n",
+        out);
+  write_tabs(out, tab);
+  fputs("<main>\n", out);
+  return write_banner(ctx, station, reader, out);
+}
+
+void fg_page_end(FILE *out) {
+  fputs("</main>\n</body>\n</html>\n", out);
+}

@@ -1,0 +1,212 @@
+#include "station/intake.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "core/text.h"
+#include "foilgauge/measure.h"
+#include "scan/format.h"
+#include "station/check.h"
+#include "station/keep.h"
+#include "station/picture.h"
+
+enum { HEAD_BYTES = 64, TAIL_BYTES = 12, WORDS = 1000 };
+
+/* A file under examination. */
+typedef struct intake {
+  fg_inspection *station;
+  char *path;
+  fg_station_file file;
+  fg_named named;
+  struct timespec arrived;
+  char words[WORDS]; /* of its card */
+} intake;
+
+static bool read_ends(const char *path, uint8_t head[HEAD_BYTES], size_t *length,
+                      uint8_t tail[TAIL_BYTES]) {
+  int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return false;
+  ssize_t got = pread(file, head, HEAD_BYTES, 0);
+  off_t end = lseek(file, 0, SEEK_END);
+  bool whole = got >= 0 &&
+               (end < TAIL_BYTES || pread(file, tail, TAIL_BYTES, end - TAIL_BYTES) == TAIL_BYTES);
+  *length = got > 0 ? (size_t)got : 0;
+  int error = errno;
+  close(file);
+  errno = error;
+  return whole;
+}
+
+/* A PNG ends with an IEND chunk. Other formats are found to be cut off when they are read. */
+static bool is_cut_off(const fg_format *format, const uint8_t tail[TAIL_BYTES], int64_t bytes) {
+  static const uint8_t end[TAIL_BYTES] = {0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xAE, 0x42, 0x60, 0x82};
+  return format == &fg_format_png && (bytes < TAIL_BYTES || memcmp(tail, end, TAIL_BYTES) != 0);
+}
+
+/* What a look at its ends says; FG_CARD_MEASURED: a scan that seems whole. */
+static fg_card look(intake *at) {
+  uint8_t head[HEAD_BYTES], tail[TAIL_BYTES] = {0};
+  size_t length;
+  if (!read_ends(at->path, head, &length, tail)) {
+    fg_text_clip(at->words, WORDS, "cannot be read: %s", strerror(errno));
+    return FG_CARD_UNREADABLE;
+  }
+  if (!length) {
+    fg_text_clip(at->words, WORDS, "is empty so far: it is looked at again when it changes");
+    return FG_CARD_UNFINISHED;
+  }
+  const fg_format *format = fg_format_find(head, length);
+  if (!format) {
+    fg_format_problem(head, length, at->words, WORDS);
+    return FG_CARD_FOREIGN;
+  }
+  if (!is_cut_off(format, tail, at->file.bytes)) return FG_CARD_MEASURED;
+  fg_text_clip(at->words, WORDS,
+               "is not whole: its end is missing; it is looked at again when it changes, else scan "
+               "or copy it again");
+  return FG_CARD_UNFINISHED;
+}
+
+/* What cannot be read today may be readable tomorrow without any change to the file itself. */
+static fg_status refuse(fg_context *ctx, intake *at, fg_card card, bool try_again) {
+  fg_station_file file = at->file;
+  if (try_again) file.modified_ns = -1;
+  FG_TRY(fg_station_keep_card(ctx, &at->station->database, &file, card, at->words, 0));
+  at->station->outcome->refused++;
+  at->station->outcome->judged.not_measured += card != FG_CARD_FOREIGN;
+  return FG_OK;
+}
+
+/* The words without the file's path, which the card names. */
+static void take_words(intake *at, const char *message) {
+  size_t length = strlen(at->path);
+  bool named = !strncmp(message, at->path, length) && !strncmp(message + length, ": ", 2);
+  fg_text_clip(at->words, WORDS, "%s", named ? message + length + 2 : message);
+}
+
+static double seconds_since(const struct timespec *start) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
+}
+
+static fg_status keep_known(fg_context *ctx, intake *at, int64_t scan) {
+  fg_query query;
+  fg_station_database *database = &at->station->database;
+  pthread_mutex_lock(&database->writing);
+  fg_query_begin(database->writer, "SELECT path FROM scans WHERE id = ?", &query);
+  fg_query_integer(&query, scan);
+  if (fg_query_row(&query))
+    fg_text_clip(at->words, WORDS, "is the scan that was measured before as %s",
+                 fg_query_get_text(&query, 0));
+  fg_status status = fg_query_end(ctx, &query, "reading the scans");
+  pthread_mutex_unlock(&database->writing);
+  if (status == FG_OK)
+    status = fg_station_keep_card(ctx, database, &at->file, FG_CARD_KNOWN, at->words, scan);
+  at->station->outcome->known += status == FG_OK;
+  return status;
+}
+
+static void wake(fg_inspection *station) {
+  if (station->wake) station->wake(station->server);
+}
+
+static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *measurement) {
+  fg_inspection *station = at->station;
+  fg_report_outcome outcome;
+  int64_t scan;
+  char why[WORDS];
+  bool withheld = fg_station_check_withholds(station, why, sizeof why);
+  const fg_station_scan kept = {.file = at->file,
+                                .source = "folder",
+                                .named = &at->named,
+                                .settings = &station->settings->lot,
+                                .setup = station->setup,
+                                .measurement = measurement,
+                                .seconds = seconds_since(&at->arrived),
+                                .withheld = withheld ? why : NULL};
+  FG_TRY(fg_station_keep_scan(ctx, &station->database, &kept, &scan, &outcome));
+  fg_outcome_add(&station->outcome->judged, &outcome);
+  station->outcome->measured++;
+  wake(station); /* the verdict first, the picture when it is drawn */
+  return fg_station_keep_pictures(ctx, &station->database, scan, measurement);
+}
+
+static fg_status take_measurement(fg_context *ctx, intake *at, const fg_measurement *measurement) {
+  int64_t known;
+  FG_TRY(fg_station_find_scan(ctx, &at->station->database, measurement->sha256, &known));
+  if (known) return keep_known(ctx, at, known);
+  return keep_new(ctx, at, measurement);
+}
+
+/* By the scanner's model, where there is one. */
+static fg_status correct(fg_context *ctx, const fg_inspection *station,
+                         fg_measurement *measurement) {
+  char warning[200];
+  if (!station->model) return FG_OK;
+  fg_status status = fg_scanner_model_apply(ctx, station->model, measurement, 0, warning);
+  if (status != FG_OK) fg_measurement_free(measurement);
+  return status;
+}
+
+/* Memory that ran out is the station's trouble, not the scan's. */
+static fg_status measure(fg_context *ctx, intake *at) {
+  const fg_lot_settings *settings = &at->station->settings->lot;
+  const fg_measure_options options = {.dpi = settings->dpi, .only_file = true};
+  fg_context inner = {.message = ""};
+  fg_measurement measurement;
+  fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);
+  if (failure == FG_OK) failure = correct(&inner, at->station, &measurement);
+  if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
+  if (failure != FG_OK) {
+    take_words(at, inner.message);
+    return refuse(ctx, at, FG_CARD_UNREADABLE, failure == FG_ERR_IO);
+  }
+  fg_status status = take_measurement(ctx, at, &measurement);
+  fg_measurement_free(&measurement);
+  return status;
+}
+
+static fg_status take(fg_context *ctx, intake *at, bool final, bool *later) {
+  fg_inspection *station = at->station;
+  struct stat now;
+  bool done;
+  if (stat(at->path, &now) != 0 || !S_ISREG(now.st_mode)) return FG_OK; /* gone, or no file */
+  at->file.bytes = now.st_size;
+  at->file.modified_ns = (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec;
+  FG_TRY(fg_station_file_is_done(ctx, &station->database, &at->file, &done));
+  if (done) return FG_OK;
+  fg_card card = look(at);
+  if (card == FG_CARD_UNFINISHED && !final) {
+    *later = true;
+    return FG_OK;
+  }
+  bool fits = fg_naming_take(station->settings->file_name, at->file.name, &at->named);
+  fg_status status;
+  if (card != FG_CARD_MEASURED)
+    status = refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
+  else if (fits && at->named.check[0])
+    status = fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
+  else
+    status = measure(ctx, at);
+  if (status == FG_OK && station->request->looked_at)
+    station->request->looked_at(station->request->user, at->file.name, at->words);
+  wake(station);
+  return status;
+}
+
+fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
+                               bool final, bool *later) {
+  intake at = {.station = station, .file.name = name};
+  *later = false;
+  clock_gettime(CLOCK_MONOTONIC, &at.arrived);
+  FG_TRY(fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name));
+  fg_status status = take(ctx, &at, final, later);
+  free(at.path);
+  return status;
+}

@@ -1,0 +1,160 @@
+/* What is known of files, and with what scans are measured. */
+#include "station/keep.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "lot/lot_report.h"
+#include "station/keep_parts.h"
+
+const char *fg_card_word(fg_card card) {
+  static const char *const words[] = {"measured", "known",      "unfinished",
+                                      "foreign",  "unreadable", "check"};
+  return words[card];
+}
+
+static fg_status find_setup(fg_context *ctx, fg_station_database *database, const char *sum,
+                            int64_t *setup) {
+  fg_query query;
+  fg_query_begin(database->writer, "SELECT id FROM setups WHERE sha256 = ?", &query);
+  fg_query_text(&query, sum);
+  *setup = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  return fg_query_end(ctx, &query, "reading the setups");
+}
+
+static fg_status insert_setup(fg_context *ctx, fg_station_database *database,
+                              const fg_lot_settings *settings, const char *sum, const char *recipe,
+                              const char *model, int64_t *setup) {
+  fg_query query;
+  fg_query_begin(database->writer,
+                 "INSERT INTO setups (sha256, program, recipe, model, model_sha256, first_at)"
+                 " VALUES (?, ?, ?, ?, ?, ?)",
+                 &query);
+  fg_query_text(&query, sum);
+  fg_query_text(&query, FOILGAUGE_VERSION);
+  fg_query_text(&query, recipe);
+  fg_query_text(&query, model);
+  fg_query_text(&query, model ? settings->model_sha256 : NULL);
+  fg_query_integer(&query, fg_station_now());
+  fg_query_row(&query);
+  FG_TRY(fg_query_end(ctx, &query, "keeping the setup"));
+  *setup = sqlite3_last_insert_rowid(database->writer);
+  return FG_OK;
+}
+
+fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
+                                const fg_lot_settings *settings, int64_t *setup) {
+  char sum[65], *recipe = NULL, *model = NULL, *whole = NULL;
+  size_t size;
+  fg_status status = fg_lot_settings_format(ctx, settings, false, &recipe);
+  if (status == FG_OK && settings->model[0])
+    status = fg_file_read_text(ctx, settings->model, FG_LOT_MODEL_BYTES_MAX, &model);
+  FILE *out = status == FG_OK ? open_memstream(&whole, &size) : NULL;
+  if (out) {
+    fprintf(out, "%s\n%s\n%s", FOILGAUGE_VERSION, recipe, model ? model : "");
+    if (fclose(out) != 0) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a setup");
+  } else if (status == FG_OK) {
+    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a setup");
+  }
+  if (status == FG_OK) {
+    fg_lot_sum_text(whole, sum);
+    status = fg_station_database_begin(ctx, database);
+    if (status == FG_OK) {
+      status = find_setup(ctx, database, sum, setup);
+      if (status == FG_OK && !*setup)
+        status = insert_setup(ctx, database, settings, sum, recipe, model, setup);
+      status = fg_station_database_end(ctx, database, status);
+    }
+  }
+  free(whole);
+  free(model);
+  free(recipe);
+  return status;
+}
+
+fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
+                                  const fg_station_file *file, bool *done) {
+  fg_query query;
+  pthread_mutex_lock(&database->writing);
+  fg_query_begin(database->writer,
+                 "SELECT 1 FROM files JOIN arrivals ON arrivals.id = files.arrival"
+                 " WHERE files.path = ? AND bytes = ? AND modified_ns = ?",
+                 &query);
+  fg_query_text(&query, file->name);
+  fg_query_integer(&query, file->bytes);
+  fg_query_integer(&query, file->modified_ns);
+  *done = fg_query_row(&query);
+  fg_status status = fg_query_end(ctx, &query, "reading what is known of files");
+  pthread_mutex_unlock(&database->writing);
+  return status;
+}
+
+fg_status fg_station_find_scan(fg_context *ctx, fg_station_database *database, const char *sha256,
+                               int64_t *scan) {
+  fg_query query;
+  pthread_mutex_lock(&database->writing);
+  fg_query_begin(database->writer, "SELECT id FROM scans WHERE sha256 = ?", &query);
+  fg_query_text(&query, sha256);
+  *scan = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  fg_status status = fg_query_end(ctx, &query, "reading the scans");
+  pthread_mutex_unlock(&database->writing);
+  return status;
+}
+
+/* The cards before it of the same file say what is no longer so, unless a scan was measured. */
+static fg_status supersede(fg_context *ctx, fg_station_database *database, const char *path) {
+  fg_query query;
+  fg_query_begin(database->writer,
+                 "UPDATE arrivals SET superseded = 1 WHERE path = ? AND superseded = 0"
+                 " AND kind IN ('unfinished', 'unreadable', 'foreign')",
+                 &query);
+  fg_query_text(&query, path);
+  fg_query_row(&query);
+  return fg_query_end(ctx, &query, "keeping a card");
+}
+
+static fg_status insert_card(fg_context *ctx, fg_station_database *database, const char *path,
+                             fg_card card, const char *message, int64_t scan) {
+  fg_query query;
+  fg_query_begin(database->writer,
+                 "INSERT INTO arrivals (at, path, kind, message, scan) VALUES (?, ?, ?, ?, ?)",
+                 &query);
+  fg_query_integer(&query, fg_station_now());
+  fg_query_text(&query, path);
+  fg_query_text(&query, fg_card_word(card));
+  fg_query_text(&query, message);
+  if (scan)
+    fg_query_integer(&query, scan);
+  else
+    fg_query_text(&query, NULL);
+  fg_query_row(&query);
+  return fg_query_end(ctx, &query, "keeping a card");
+}
+
+fg_status fg_station_insert_card(fg_context *ctx, fg_station_database *database,
+                                 const fg_station_file *file, fg_card card, const char *message,
+                                 int64_t scan) {
+  fg_query query;
+  FG_TRY(supersede(ctx, database, file->name));
+  FG_TRY(insert_card(ctx, database, file->name, card, message, scan));
+  fg_query_begin(database->writer,
+                 "INSERT INTO files (path, bytes, modified_ns, arrival) VALUES (?, ?, ?, ?)"
+                 " ON CONFLICT (path) DO UPDATE SET bytes = excluded.bytes,"
+                 " modified_ns = excluded.modified_ns, arrival = excluded.arrival",
+                 &query);
+  fg_query_text(&query, file->name);
+  fg_query_integer(&query, file->bytes);
+  fg_query_integer(&query, file->modified_ns);
+  fg_query_integer(&query, sqlite3_last_insert_rowid(database->writer));
+  fg_query_row(&query);
+  return fg_query_end(ctx, &query, "keeping what is known of a file");
+}
+
+fg_status fg_station_keep_card(fg_context *ctx, fg_station_database *database,
+                               const fg_station_file *file, fg_card card, const char *message,
+                               int64_t scan) {
+  FG_TRY(fg_station_database_begin(ctx, database));
+  return fg_station_database_end(ctx, database,
+                                 fg_station_insert_card(ctx, database, file, card, message, scan));
+}

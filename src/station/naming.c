@@ -1,0 +1,87 @@
+#include "station/naming.h"
+
+#include <stddef.h>
+#include <string.h>
+
+static const struct {
+  const char *name;
+  size_t offset;
+} fields[] = {
+    {"serial", offsetof(fg_named, serial)}, {"lot", offsetof(fg_named, lot)},
+    {"die", offsetof(fg_named, die)},       {"operator", offsetof(fg_named, operator_name)},
+    {"check", offsetof(fg_named, check)},
+};
+
+enum { FIELDS = sizeof fields / sizeof *fields };
+
+/* The field that begins at an opening brace; FIELDS when it is none. *end: behind its brace. */
+static size_t find_field(const char *at, const char **end) {
+  const char *close = strchr(at, '}');
+  for (size_t i = 0; close && i < FIELDS; i++)
+    if (strlen(fields[i].name) == (size_t)(close - at - 1) &&
+        !strncmp(at + 1, fields[i].name, strlen(fields[i].name))) {
+      *end = close + 1;
+      return i;
+    }
+  return FIELDS;
+}
+
+fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
+  bool seen[FIELDS] = {false}, open = false; /* open: what stands before ends anywhere */
+  for (const char *at = pattern; *at;) {
+    const char *end = at + 1;
+    if (*at == '{') {
+      size_t field = find_field(at, &end);
+      if (field == FIELDS)
+        return fg_fail(ctx, FG_ERR_DATA,
+                       "file_name: '%.40s' begins no field; there are {serial}, {lot}, {die}, "
+                       "{operator}, {check}",
+                       at);
+      if (seen[field])
+        return fg_fail(ctx, FG_ERR_DATA, "file_name: {%s} is there twice", fields[field].name);
+      seen[field] = true;
+    }
+    bool opens = *at == '{' || *at == '*';
+    if (opens && open)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "file_name: '%.40s' has no text before it that would end the field", at);
+    open = opens;
+    at = end;
+  }
+  return pattern[0] ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "file_name is empty");
+}
+
+static void keep(fg_named *named, size_t field, const char *text, size_t length) {
+  char *to = (char *)named + fields[field].offset;
+  if (length >= FG_NAMED_TEXT) length = FG_NAMED_TEXT - 1;
+  memcpy(to, text, length);
+  to[length] = '\0';
+}
+
+/* Whether `name` up to `last` is as the pattern says. Patterns are short and names too: trying
+ * every length of every field is at most fields × length steps, as none follows another. */
+static bool match(const char *pattern, const char *name, const char *last, fg_named *named) {
+  while (*pattern && *pattern != '{' && *pattern != '*') {
+    if (name == last || *name != *pattern) return false;
+    pattern++;
+    name++;
+  }
+  if (!*pattern) return name == last;
+  const char *next = pattern + 1;
+  size_t field = *pattern == '{' ? find_field(pattern, &next) : FIELDS;
+  for (const char *end = name + (field < FIELDS); end <= last; end++) {
+    if (!match(next, end, last, named)) continue;
+    if (field < FIELDS) keep(named, field, name, (size_t)(end - name));
+    return true;
+  }
+  return false;
+}
+
+bool fg_naming_take(const char *pattern, const char *file, fg_named *named) {
+  const char *dot = strrchr(file, '.'), *last = dot && dot > file ? dot : file + strlen(file);
+  *named = (fg_named){0};
+  if (match(pattern, file, last, named)) return true;
+  *named = (fg_named){0};
+  keep(named, 0, file, (size_t)(last - file));
+  return false;
+}

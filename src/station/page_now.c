@@ -1,0 +1,193 @@
+/* The newest card, in letters that are read from two metres; what to do next; those before it. */
+#include <math.h>
+#include <string.h>
+
+#include "quantity/quantity_rows.h"
+#include "report/measure/measure_page_parts.h"
+#include "station/pages.h"
+#include "station/values.h"
+
+enum { CARDS = 12, WORDS = 700 };
+
+/* The newest arrival. */
+typedef struct card {
+  int64_t id, at, scan;
+  char path[512], kind[24], message[WORDS], verdict[24], withheld[WORDS];
+} card;
+
+static void copy(const fg_query *query, int column, char *text, size_t size) {
+  snprintf(text, size, "%s", fg_query_get_text(query, column));
+}
+
+static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
+  fg_query query;
+  *newest = (card){0};
+  fg_query_begin(
+      reader,
+      "SELECT arrivals.id, arrivals.at, arrivals.path, kind, message, scan, scans.verdict,"
+      " scans.withheld FROM arrivals LEFT JOIN scans ON scans.id = scan"
+      " WHERE superseded = 0 ORDER BY arrivals.id DESC LIMIT 1",
+      &query);
+  if (fg_query_row(&query)) {
+    newest->id = fg_query_get_integer(&query, 0);
+    newest->at = fg_query_get_integer(&query, 1);
+    copy(&query, 2, newest->path, sizeof newest->path);
+    copy(&query, 3, newest->kind, sizeof newest->kind);
+    copy(&query, 4, newest->message, sizeof newest->message);
+    newest->scan = fg_query_get_integer(&query, 5);
+    copy(&query, 6, newest->verdict, sizeof newest->verdict);
+    copy(&query, 7, newest->withheld, sizeof newest->withheld);
+  }
+  return fg_query_end(ctx, &query, "reading the cards");
+}
+
+static const char *next_step(const card *newest) {
+  bool scan = newest->scan != 0;
+  if (!strcmp(newest->kind, "unfinished")) return "Wait until the scanner is done, or scan again.";
+  if (!strcmp(newest->kind, "foreign"))
+    return "Scan to PNG or TIFF into this folder; take this file out of it.";
+  if (!strcmp(newest->kind, "unreadable")) return "Look at the foil and the glass, and scan again.";
+  if (!strcmp(newest->kind, "check")) return "Go on with foils.";
+  if (!scan) return "";
+  if (newest->withheld[0]) return newest->withheld;
+  if (!strcmp(newest->verdict, "pass"))
+    return "Put the foil with the good ones, and the next one on the glass.";
+  if (!strcmp(newest->verdict, "fail"))
+    return "Put the foil aside; the values beyond their limits are below.";
+  if (!strcmp(newest->verdict, "cannot_tell"))
+    return "A limit lies within the uncertainty of a value: clean glass and foil, turn the foil by "
+           "90 degrees, and scan again.";
+  if (!strcmp(newest->verdict, "not_measured"))
+    return "Something of the foil could not be measured: clean glass and foil, and scan again.";
+  return "The design states no tolerances, so nothing was judged.";
+}
+
+static void write_call(FILE *out, const card *newest) {
+  bool withheld = newest->withheld[0] != '\0', scan = newest->scan != 0;
+  const char *words = scan ? fg_page_verdict_words(newest->verdict, withheld)
+                      : !strcmp(newest->kind, "check")   ? "CHECKED"
+                      : !strcmp(newest->kind, "foreign") ? "NO SCAN"
+                                                         : "SCAN AGAIN";
+  const char *style = scan ? fg_page_verdict_class(newest->verdict, withheld)
+                      : !strcmp(newest->kind, "check") ? "none"
+                                                       : "again";
+  fprintf(out, "<div class=\"call %s\" role=\"status\"><b>%s</b><span>", style, words);
+  fg_html_text(out, newest->path);
+  fputs("<br>", out);
+  fg_page_time(out, newest->at);
+  fputs("</span></div>\n<p class=\"next\">", out);
+  if (newest->message[0]) {
+    fg_html_text(out, newest->path);
+    fputc(' ', out);
+    fg_html_text(out, newest->message);
+    fputs(". ", out);
+  }
+  fg_html_text(out, next_step(newest));
+  fputs("</p>\n", out);
+}
+
+static fg_status write_picture(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader, "SELECT html FROM pictures WHERE foil = ?", &query);
+  fg_query_integer(&query, foil);
+  if (fg_query_row(&query)) fputs(fg_query_get_text(&query, 0), out);
+  return fg_query_end(ctx, &query, "reading a picture");
+}
+
+static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                            const fg_query *foil, bool focus, FILE *out) {
+  int64_t id = fg_query_get_integer(foil, 0);
+  fprintf(out, "<h2>Foil <a href=\"/foil?id=%lld\">", (long long)id);
+  fg_html_text(out, fg_query_get_text(foil, 1));
+  fprintf(out, "</a> <span class=\"tag %s\">%s</span></h2>\n",
+          fg_page_verdict_class(fg_query_get_text(foil, 5), false),
+          fg_page_verdict_words(fg_query_get_text(foil, 5), false));
+  if (fg_query_get_text(foil, 6)[0]) {
+    fputs("<p class=\"next\">", out);
+    fg_html_text(out, fg_query_get_text(foil, 6));
+    fputs("</p>\n", out);
+  }
+  FG_TRY(fg_page_deciding(ctx, reader, id, out));
+  fg_page_foil_form(station, foil, "/", focus, out);
+  return write_picture(ctx, reader, id, out);
+}
+
+static fg_status write_foils(fg_context *ctx, fg_inspection *station, sqlite3 *reader, int64_t scan,
+                             FILE *out) {
+  fg_query foils;
+  fg_status status = FG_OK;
+  bool first = true;
+  fg_query_begin(reader,
+                 "SELECT id, serial, lot, die, operator, verdict, reasons FROM foils WHERE scan = ?"
+                 " ORDER BY number",
+                 &foils);
+  fg_query_integer(&foils, scan);
+  while (status == FG_OK && fg_query_row(&foils)) {
+    status = write_foil(ctx, station, reader, &foils, first, out);
+    first = false;
+  }
+  fg_status ended = fg_query_end(ctx, &foils, "reading the foils");
+  return status == FG_OK ? ended : status;
+}
+
+static void write_scan_button(const fg_inspection *station, FILE *out) {
+  if (!station->settings->scan_command[0]) return;
+  fputs("<form class=\"fields\" method=\"post\" action=\"/scan\">", out);
+  fg_page_form_token(station, out);
+  fprintf(out, "<button class=\"big\"%s>%s</button></form>\n",
+          atomic_load(&station->scanning) ? " disabled" : "",
+          atomic_load(&station->scanning) ? "Scanning …" : "Scan");
+}
+
+static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader,
+                 "SELECT arrivals.at, arrivals.path, kind, message, scans.verdict, scans.withheld,"
+                 " (SELECT min(id) FROM foils WHERE foils.scan = arrivals.scan) FROM arrivals"
+                 " LEFT JOIN scans ON scans.id = scan WHERE superseded = 0 AND arrivals.id < ?"
+                 " ORDER BY arrivals.id DESC LIMIT ?",
+                 &query);
+  fg_query_integer(&query, newest);
+  fg_query_integer(&query, CARDS);
+  fputs("<section><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
+  while (fg_query_row(&query)) {
+    bool scan = !fg_query_is_null(&query, 4), withheld = !fg_query_is_null(&query, 5);
+    const char *verdict = fg_query_get_text(&query, 4);
+    fprintf(out, "<li><span class=\"tag %s\">%s</span><span>",
+            scan ? fg_page_verdict_class(verdict, withheld) : "card",
+            scan ? fg_page_verdict_words(verdict, withheld) : fg_query_get_text(&query, 2));
+    if (!fg_query_is_null(&query, 6))
+      fprintf(out, "<a href=\"/foil?id=%lld\">", (long long)fg_query_get_integer(&query, 6));
+    fg_html_text(out, fg_query_get_text(&query, 1));
+    fputs(fg_query_is_null(&query, 6) ? " " : "</a> ", out);
+    fg_html_text(out, fg_query_get_text(&query, 3));
+    fputs("</span><span class=\"note\">", out);
+    fg_page_time(out, fg_query_get_integer(&query, 0));
+    fputs("</span></li>\n", out);
+  }
+  fputs("</ul></section>\n", out);
+  return fg_query_end(ctx, &query, "reading the cards");
+}
+
+fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                      const fg_request *request, FILE *out) {
+  card newest;
+  (void)request;
+  FG_TRY(read_newest(ctx, reader, &newest));
+  FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_NOW, "Now"));
+  fputs("<section data-live>\n", out);
+  write_scan_button(station, out);
+  if (newest.id) {
+    write_call(out, &newest);
+    if (newest.scan) FG_TRY(write_foils(ctx, station, reader, newest.scan, out));
+  } else {
+    fputs("<div class=\"call none\"><b>READY</b><span>Put a foil on the glass and scan it into ",
+          out);
+    fg_html_text(out, station->request->folder);
+    fputs("</span></div>\n", out);
+  }
+  fputs("</section>\n", out);
+  if (newest.id) FG_TRY(write_cards(ctx, reader, newest.id, out));
+  fg_page_end(out);
+  return FG_OK;
+}

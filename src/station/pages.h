@@ -1,0 +1,38 @@
+/* The pages of a station, and what they share. */
+#ifndef FG_STATION_PAGES_H
+#define FG_STATION_PAGES_H
+
+#include "station/answer.h"
+
+typedef enum fg_tab {
+  FG_TAB_NOW,
+  FG_TAB_HISTORY,
+  FG_TAB_TRENDS,
+  FG_TAB_SCANNER,
+  FG_TAB_LOTS
+} fg_tab;
+
+fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg_page_lots;
+fg_page_writer fg_page_foil;   /* one foil: its values, its trail, its form */
+fg_page_writer fg_page_report; /* its whole report, measured again from the scan */
+
+/* From the doctype to <main>, with the tabs and, where it is due, the scanner's banner. */
+fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader, FILE *out,
+                        fg_tab tab, const char *title);
+void fg_page_end(FILE *out);
+
+/* "2026-03-01 14:02:33", local time. */
+void fg_page_time(FILE *out, int64_t at);
+
+/* The hidden field that every form carries. */
+void fg_page_form_token(const fg_inspection *station, FILE *out);
+
+/* PASS, FAIL, SCAN AGAIN, MEASURED; and the CSS class that goes with it. */
+const char *fg_page_verdict_words(const char *verdict, bool withheld);
+const char *fg_page_verdict_class(const char *verdict, bool withheld);
+
+/* The styles of the reports and the station's own; the one script. */
+const char *fg_station_style_text(void);
+extern const char fg_station_script[];
+
+#endif

@@ -1,0 +1,66 @@
+/* Fields of a query or a form. */
+#include <string.h>
+
+#include "core/utf8.h"
+#include "station/answer.h"
+
+static int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  c |= 0x20;
+  return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+}
+
+/* One byte of text from its encoding; -1: it is none. */
+static int decode(const char **at, const char *end) {
+  char c = *(*at)++;
+  if (c == '+') return ' ';
+  if (c != '%') return (unsigned char)c;
+  if (end - *at < 2) return -1;
+  int high = hex_digit((*at)[0]), low = hex_digit((*at)[1]);
+  *at += 2;
+  return high < 0 || low < 0 ? -1 : high << 4 | low;
+}
+
+static bool is_clean(const char *text) {
+  while (*text) {
+    size_t length = fg_utf8_length(text);
+    if (!length || (unsigned char)*text < ' ' || *text == 0x7f) return false;
+    text += length;
+  }
+  return true;
+}
+
+/* Up to `stop` or the end; false: too long, or not as it should be. */
+static bool read_part(const char **at, const char *end, char stop, char *text, size_t size) {
+  size_t length = 0;
+  while (*at < end && **at != stop && **at != '&') {
+    int byte = decode(at, end);
+    if (byte <= 0 || length + 1 >= size) return false;
+    text[length++] = (char)byte;
+  }
+  text[length] = '\0';
+  return is_clean(text);
+}
+
+bool fg_request_read_fields(fg_request *request, const char *text, size_t length) {
+  const char *end = text + length;
+  while (text < end) {
+    if (request->fields == FG_FIELDS_MAX) return false;
+    fg_field *field = &request->field[request->fields];
+    field->value[0] = '\0';
+    if (!read_part(&text, end, '=', field->name, sizeof field->name)) return false;
+    if (text < end && *text == '=') {
+      text++;
+      if (!read_part(&text, end, '&', field->value, sizeof field->value)) return false;
+    }
+    request->fields += field->name[0] != '\0';
+    if (text < end) text++;
+  }
+  return true;
+}
+
+const char *fg_request_get(const fg_request *request, const char *name) {
+  for (size_t i = 0; i < request->fields; i++)
+    if (!strcmp(request->field[i].name, name)) return request->field[i].value;
+  return "";
+}

@@ -1,0 +1,263 @@
+#include "station/server.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <microhttpd.h>
+#include <netinet/in.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+
+#include "core/memory.h"
+#include "station/answer.h"
+
+/* A browser opens six connections, one of which waits for news. */
+enum { CONNECTIONS = 64, OF_ONE = 24, WAITING_MAX = 48, SECONDS = 15, HEADER_BYTES = 16384 };
+
+typedef struct server {
+  fg_inspection *station;
+  struct MHD_Daemon *daemon;
+  pthread_mutex_t mutex;
+  struct MHD_Connection *waiting[WAITING_MAX];
+  size_t waiters;
+  bool closing;
+} server;
+
+/* One request on its way. */
+typedef struct call {
+  fg_request request;
+  char *body;
+  size_t size;
+  bool too_much, broken, waited;
+} call;
+
+static enum MHD_Result take_query(void *user, enum MHD_ValueKind kind, const char *name,
+                                  const char *value) {
+  call *at = user;
+  fg_request *request = &at->request;
+  (void)kind;
+  if (request->fields == FG_FIELDS_MAX || strlen(name) >= sizeof request->field->name ||
+      (value && strlen(value) >= FG_FIELD_BYTES)) {
+    at->broken = true;
+    return MHD_NO;
+  }
+  strcpy(request->field[request->fields].name, name);
+  strcpy(request->field[request->fields++].value, value ? value : "");
+  return MHD_YES;
+}
+
+static long long read_number(const char *text) {
+  char *end;
+  long long number = text ? strtoll(text, &end, 10) : -1;
+  return text && end != text && !*end && number >= 0 ? number : -1;
+}
+
+static call *begin_call(struct MHD_Connection *connection, const char *method) {
+  call *at = calloc(1, sizeof *at);
+  if (!at) return NULL;
+  fg_request *request = &at->request;
+  request->post = !strcmp(method, "POST");
+  request->host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
+  request->origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
+  request->site = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Sec-Fetch-Site");
+  request->cookie = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Cookie");
+  request->last_event =
+      read_number(MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Last-Event-ID"));
+  MHD_get_connection_values(connection, MHD_GET_ARGUMENT_KIND, take_query, at);
+  return at;
+}
+
+static void take_body(call *at, const char *bytes, size_t size) {
+  if (at->too_much || at->size + size > FG_BODY_MAX) {
+    at->too_much = true;
+    return;
+  }
+  char *grown = realloc(at->body, at->size + size);
+  if (!grown) {
+    at->too_much = true;
+    return;
+  }
+  memcpy(grown + at->size, bytes, size);
+  at->body = grown;
+  at->size += size;
+}
+
+static void add_headers(struct MHD_Response *response, const fg_answer *answer) {
+  /* What a report brings with it is its own style; nothing on any page runs but the station's one
+   * script, and nothing is fetched from elsewhere. */
+  const char *policy =
+      answer->own_style
+          ? "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+            "form-action 'none'; frame-ancestors 'none'"
+          : "default-src 'none'; style-src 'self'; script-src 'self'; connect-src 'self'; "
+            "img-src 'self' data:; form-action 'self'; base-uri 'none'; frame-ancestors 'none'";
+  char saved[200];
+  MHD_add_response_header(response, "Content-Security-Policy", policy);
+  MHD_add_response_header(response, "X-Content-Type-Options", "nosniff");
+  MHD_add_response_header(response, "Referrer-Policy", "same-origin");
+  MHD_add_response_header(response, "Cache-Control", "no-store");
+  if (answer->type) MHD_add_response_header(response, "Content-Type", answer->type);
+  if (answer->location[0]) MHD_add_response_header(response, "Location", answer->location);
+  if (answer->cookie[0]) MHD_add_response_header(response, "Set-Cookie", answer->cookie);
+  if (!answer->download[0]) return;
+  snprintf(saved, sizeof saved, "attachment; filename=\"%s\"", answer->download);
+  MHD_add_response_header(response, "Content-Disposition", saved);
+}
+
+static enum MHD_Result send_answer(struct MHD_Connection *connection, fg_answer *answer) {
+  struct MHD_Response *response = MHD_create_response_from_buffer(
+      answer->body ? answer->size : 0, answer->body ? answer->body : "",
+      answer->body ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
+  if (!response) {
+    free(answer->body);
+    return MHD_NO;
+  }
+  add_headers(response, answer);
+  enum MHD_Result result =
+      MHD_queue_response(connection, (unsigned)(answer->code ? answer->code : 500), response);
+  MHD_destroy_response(response);
+  return result;
+}
+
+static enum MHD_Result refuse(struct MHD_Connection *connection, int code, const char *words) {
+  fg_answer answer = {.code = code, .type = "text/plain; charset=utf-8", .body = strdup(words)};
+  answer.size = answer.body ? strlen(words) : 0;
+  return send_answer(connection, &answer);
+}
+
+/* Until a card is added, or the next round of the watch. False: too many wait already. */
+static bool wait_for_news(server *at, struct MHD_Connection *connection) {
+  pthread_mutex_lock(&at->mutex);
+  bool room = at->waiters < WAITING_MAX && !at->closing;
+  if (room) {
+    MHD_suspend_connection(connection);
+    at->waiting[at->waiters++] = connection;
+  }
+  pthread_mutex_unlock(&at->mutex);
+  return room;
+}
+
+static void resume_all(void *user) {
+  server *at = user;
+  pthread_mutex_lock(&at->mutex);
+  for (size_t i = 0; i < at->waiters; i++)
+    MHD_resume_connection(at->waiting[i]);
+  at->waiters = 0;
+  pthread_mutex_unlock(&at->mutex);
+}
+
+static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection, call *asked) {
+  fg_answer answer;
+  if (asked->too_much) return refuse(connection, 413, "The form is too long.\n");
+  if (asked->request.post && !fg_request_read_fields(&asked->request, asked->body, asked->size))
+    asked->broken = true;
+  if (asked->broken) return refuse(connection, 400, "The fields cannot be read.\n");
+  fg_station_answer(at->station, &asked->request, &answer);
+  if (answer.wait && !asked->waited && wait_for_news(at, connection)) {
+    asked->waited = true;
+    free(answer.body);
+    return MHD_YES;
+  }
+  return send_answer(connection, &answer);
+}
+
+static enum MHD_Result handle(void *user, struct MHD_Connection *connection, const char *path,
+                              const char *method, const char *version, const char *bytes,
+                              size_t *size, void **place) {
+  server *at = user;
+  call *asked = *place;
+  (void)version;
+  if (!asked) {
+    *place = begin_call(connection, method);
+    return *place ? MHD_YES : MHD_NO;
+  }
+  if (*size) {
+    take_body(asked, bytes, *size);
+    *size = 0;
+    return MHD_YES;
+  }
+  if (!asked->request.post && strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
+    return refuse(connection, 405, "GET and POST are answered.\n");
+  asked->request.path = path;
+  return answer_call(at, connection, asked);
+}
+
+static void end_call(void *user, struct MHD_Connection *connection, void **place,
+                     enum MHD_RequestTerminationCode code) {
+  call *asked = *place;
+  (void)user;
+  (void)connection;
+  (void)code;
+  if (asked) free(asked->body);
+  free(asked);
+  *place = NULL;
+}
+
+static fg_status find_address(fg_context *ctx, const fg_station_request *request,
+                              struct sockaddr_in *address) {
+  const char *text = request->listen ? request->listen : "127.0.0.1";
+  *address =
+      (struct sockaddr_in){.sin_family = AF_INET, .sin_port = htons((uint16_t)request->port)};
+  if (inet_pton(AF_INET, text, &address->sin_addr) != 1)
+    return fg_fail(ctx, FG_ERR_USAGE, "--listen: '%.60s' is no IPv4 address, as 192.168.1.20",
+                   text);
+  bool local = ntohl(address->sin_addr.s_addr) >> 24 == 127;
+  if (!local && (!request->token || strlen(request->token) < 16))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--listen %s: others can reach this address: give --token with at least 16 "
+                   "characters",
+                   text);
+  return FG_OK;
+}
+
+static fg_status start(fg_context *ctx, server *at, const struct sockaddr_in *address) {
+  unsigned flags = MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME;
+  errno = 0;
+  at->daemon = MHD_start_daemon(
+      flags, 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED,
+      end_call, NULL, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS,
+      MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT,
+      (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADER_BYTES, MHD_OPTION_END);
+  if (at->daemon) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s:%u: pages cannot be served there: %s; choose another --port",
+                 inet_ntoa(address->sin_addr), ntohs(address->sin_port),
+                 errno ? strerror(errno) : "the address is taken or not this machine's");
+}
+
+fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
+  struct sockaddr_in address;
+  char url[400];
+  void *block;
+  const fg_station_request *request = station->request;
+  FG_TRY(find_address(ctx, request, &address));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof(server), &block));
+  server *at = block;
+  at->station = station;
+  pthread_mutex_init(&at->mutex, NULL);
+  fg_status status = start(ctx, at, &address);
+  if (status != FG_OK) {
+    free(at);
+    return status;
+  }
+  const union MHD_DaemonInfo *info = MHD_get_daemon_info(at->daemon, MHD_DAEMON_INFO_BIND_PORT);
+  snprintf(station->host, sizeof station->host, "%s:%u", inet_ntoa(address.sin_addr),
+           info ? info->port : request->port);
+  station->server = at;
+  station->wake = resume_all;
+  snprintf(url, sizeof url, "http://%s/%s%s", station->host, request->token ? "?token=" : "",
+           request->token ? request->token : "");
+  if (request->ready) request->ready(request->user, url);
+  return FG_OK;
+}
+
+void fg_station_server_stop(fg_inspection *station) {
+  server *at = station->server;
+  pthread_mutex_lock(&at->mutex);
+  at->closing = true;
+  pthread_mutex_unlock(&at->mutex);
+  resume_all(at);
+  MHD_stop_daemon(at->daemon);
+  station->wake = NULL;
+  station->server = NULL;
+  free(at);
+}

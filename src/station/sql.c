@@ -1,0 +1,109 @@
+#include "station/sql.h"
+
+#include <math.h>
+#include <string.h>
+
+fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what) {
+  int code = connection ? sqlite3_extended_errcode(connection) : SQLITE_NOMEM;
+  const char *words = connection ? sqlite3_errmsg(connection) : "out of memory";
+  switch (code & 0xFF) {
+  case SQLITE_NOMEM:
+    return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %s", what);
+  case SQLITE_FULL:
+    return fg_fail(ctx, FG_ERR_IO,
+                   "%s: the disk is full: what was kept stays valid; free some space", what);
+  case SQLITE_CORRUPT:
+  case SQLITE_NOTADB:
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: the database is damaged or none (%s): put it aside, and take it from a backup, "
+        "or measure the folder's scans again",
+        what, words);
+  default:
+    return fg_fail(ctx, FG_ERR_IO, "%s: %s", what, words);
+  }
+}
+
+fg_status fg_sql_run(fg_context *ctx, sqlite3 *connection, const char *sql) {
+  if (sqlite3_exec(connection, sql, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
+  return fg_sql_fail(ctx, connection, "the database");
+}
+
+void fg_query_begin(sqlite3 *connection, const char *sql, fg_query *query) {
+  *query = (fg_query){.connection = connection};
+  query->error = sqlite3_prepare_v2(connection, sql, -1, &query->statement, NULL);
+}
+
+static void note(fg_query *query, int code) {
+  if (query->error == SQLITE_OK && code != SQLITE_OK) query->error = code;
+}
+
+void fg_query_text(fg_query *query, const char *text) {
+  query->bound++;
+  if (query->error == SQLITE_OK)
+    note(query, text ? sqlite3_bind_text(query->statement, query->bound, text, -1, SQLITE_TRANSIENT)
+                     : sqlite3_bind_null(query->statement, query->bound));
+}
+
+void fg_query_integer(fg_query *query, int64_t value) {
+  query->bound++;
+  if (query->error == SQLITE_OK)
+    note(query, sqlite3_bind_int64(query->statement, query->bound, value));
+}
+
+void fg_query_number(fg_query *query, double value) {
+  query->bound++;
+  if (query->error == SQLITE_OK)
+    note(query, isfinite(value) ? sqlite3_bind_double(query->statement, query->bound, value)
+                                : sqlite3_bind_null(query->statement, query->bound));
+}
+
+void fg_query_bytes(fg_query *query, const void *bytes, size_t size) {
+  query->bound++;
+  if (query->error == SQLITE_OK)
+    note(query, sqlite3_bind_blob64(query->statement, query->bound, bytes, size, SQLITE_TRANSIENT));
+}
+
+bool fg_query_row(fg_query *query) {
+  if (query->error != SQLITE_OK) return false;
+  int code = sqlite3_step(query->statement);
+  if (code == SQLITE_ROW) return true;
+  if (code != SQLITE_DONE) note(query, code);
+  return false;
+}
+
+const char *fg_query_get_text(const fg_query *query, int column) {
+  const unsigned char *text = sqlite3_column_text(query->statement, column);
+  return text ? (const char *)text : "";
+}
+
+int64_t fg_query_get_integer(const fg_query *query, int column) {
+  return sqlite3_column_int64(query->statement, column);
+}
+
+double fg_query_get_number(const fg_query *query, int column) {
+  return fg_query_is_null(query, column) ? NAN : sqlite3_column_double(query->statement, column);
+}
+
+bool fg_query_is_null(const fg_query *query, int column) {
+  return sqlite3_column_type(query->statement, column) == SQLITE_NULL;
+}
+
+void fg_query_again(fg_query *query) {
+  query->bound = 0;
+  if (query->statement) sqlite3_reset(query->statement);
+}
+
+/* The connection's words are those of the last call: an error of an earlier one is told by its
+ * code. */
+fg_status fg_query_end(fg_context *ctx, fg_query *query, const char *what) {
+  fg_status status = FG_OK;
+  if (query->error != SQLITE_OK) {
+    bool last = sqlite3_errcode(query->connection) == (query->error & 0xFF);
+    status = last ? fg_sql_fail(ctx, query->connection, what)
+                  : fg_fail(ctx, FG_ERR_IO, "%s: %s", what, sqlite3_errstr(query->error));
+  }
+  sqlite3_finalize(query->statement);
+  query->statement = NULL;
+  return status;
+}

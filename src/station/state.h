@@ -1,0 +1,30 @@
+/* What a running station holds. */
+#ifndef FG_STATION_STATE_H
+#define FG_STATION_STATE_H
+
+#include <stdatomic.h>
+
+#include "foilgauge/scan_loop.h"
+#include "foilgauge/station.h"
+#include "station/database.h"
+
+enum { FG_FORM_TOKEN = 33 };
+
+typedef struct fg_inspection {
+  const fg_station_request *request;
+  const fg_station_settings *settings;
+  fg_station_outcome *outcome;
+  fg_station_database database;
+  fg_scanner_model *model; /* that corrects every scan; NULL: none */
+  fg_design check_design;  /* of the plate or ring; check_design_known says whether there is one */
+  bool check_design_known;
+  int64_t setup;
+  int lock;
+  char form_token[FG_FORM_TOKEN]; /* what a form of this station's pages carries */
+  char host[128];                 /* "127.0.0.1:8317": what requests must be for */
+  atomic_bool scanning;           /* the scan command runs */
+  void (*wake)(void *server);     /* a card was added; NULL: nobody waits */
+  void *server;
+} fg_inspection;
+
+#endif

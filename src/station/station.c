@@ -1,0 +1,71 @@
+/* A station from its start to its end. */
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include "lot/journal.h"
+#include "station/export.h"
+#include "station/keep.h"
+#include "station/server.h"
+#include "station/watch.h"
+
+static fg_status load_model(fg_context *ctx, fg_inspection *station) {
+  const char *path = station->settings->lot.model;
+  if (!path[0]) return FG_OK;
+  return fg_scanner_model_load(ctx, path, &station->model);
+}
+
+static fg_status load_check(fg_context *ctx, fg_inspection *station) {
+  const char *path = station->settings->check.design;
+  if (!path[0]) return FG_OK;
+  fg_design_default(&station->check_design);
+  FG_TRY(fg_design_load(ctx, path, &station->check_design));
+  if (station->check_design.form != FG_FORM_DISCS || !station->check_design.diameter_count)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%.300s: a check needs a design of the form \"discs\" with diameters_mm", path);
+  station->check_design_known = true;
+  return FG_OK;
+}
+
+static fg_status make_form_token(fg_context *ctx, fg_inspection *station) {
+  unsigned char bytes[(FG_FORM_TOKEN - 1) / 2];
+  if (getrandom(bytes, sizeof bytes, 0) != (ssize_t)sizeof bytes)
+    return fg_fail(ctx, FG_ERR_IO, "the system gives no random numbers");
+  for (size_t i = 0; i < sizeof bytes; i++)
+    snprintf(station->form_token + 2 * i, 3, "%02x", bytes[i]);
+  return FG_OK;
+}
+
+static fg_status work(fg_context *ctx, fg_inspection *station) {
+  const fg_station_request *request = station->request;
+  FG_TRY(load_model(ctx, station));
+  FG_TRY(load_check(ctx, station));
+  FG_TRY(fg_folder_lock(ctx, request->folder, &station->lock));
+  FG_TRY(fg_station_database_open(ctx, request->folder, &station->database));
+  if (request->export_path) return fg_station_export(ctx, station, request->export_path);
+  FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
+  if (request->once) return fg_station_watch(ctx, station, true);
+  FG_TRY(make_form_token(ctx, station));
+  FG_TRY(fg_station_server_start(ctx, station));
+  fg_status status = fg_station_watch(ctx, station, false);
+  fg_station_server_stop(station);
+  return status;
+}
+
+fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
+                         fg_station_outcome *outcome) {
+  *outcome = (fg_station_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
+  fg_inspection *station = calloc(1, sizeof *station);
+  if (!station) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a station");
+  station->request = request;
+  station->settings = request->settings;
+  station->outcome = outcome;
+  station->lock = -1;
+  fg_status status = work(ctx, station);
+  fg_station_database_close(&station->database);
+  if (station->model) fg_scanner_model_free(station->model);
+  if (station->lock >= 0) close(station->lock);
+  free(station);
+  return status;
+}

@@ -1,0 +1,84 @@
+/* The station's style, after that of the reports, and its one script. */
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "station/pages.h"
+
+static const char own[] =
+    "nav{display:flex;flex-wrap:wrap;gap:4px;background:#16202a;padding:0 "
+    "16px;position:sticky;top:0;"
+    "z-index:2}nav a{color:#dfe4e9;text-decoration:none;padding:13px 20px;font-weight:600}"
+    "nav a[aria-current]{background:var(--ground);color:var(--ink)}nav a:focus-visible{outline:3px "
+    "solid #fff;outline-offset:-3px}\n"
+    ".banner{background:#fff0d6;border:1px solid #e0b25c;border-radius:10px;padding:10px "
+    "16px;margin:0 "
+    "0 16px}\n"
+    ".call{display:flex;flex-wrap:wrap;align-items:center;gap:12px "
+    "28px;border-radius:10px;padding:14px "
+    "24px;margin:0 0 16px;color:#fff;background:var(--soft)}.call "
+    "b{font-size:clamp(54px,11vw,124px);"
+    "line-height:1;letter-spacing:.01em}.call "
+    "span{font-size:22px;font-weight:600}.call.pass{background"
+    ":var(--good)}.call.fail{background:var(--bad)}.call.again{background:var(--open)}.call.none{"
+    "background:#3c5a78}\n"
+    ".next{font-size:18px;margin:0 0 14px}.decided{list-style:none;padding:0;margin:0 0 "
+    "16px;display:"
+    "grid;grid-template-columns:repeat(auto-fit,minmax(260px,1fr));gap:10px}.decided li{background:"
+    "var(--ground);border-left:6px solid var(--soft);border-radius:6px;padding:8px 14px}.decided "
+    "li.pass{border-color:var(--good)}.decided li.fail{border-color:var(--bad)}.decided "
+    "li.cannot_tell,.decided li.not_measured{border-color:var(--open)}.decided "
+    "strong{display:block;"
+    "font-size:20px;font-variant-numeric:tabular-nums}.decided "
+    "small{color:var(--soft);font-size:14px}\n"
+    "form.fields{display:flex;flex-wrap:wrap;gap:8px 14px;align-items:end;margin:0 0 "
+    "16px}form.fields "
+    "label{font-size:13px;color:var(--soft);display:grid;gap:2px}input,select,button{font:inherit;"
+    "padding:8px 12px;border:1px solid #b9c2cb;border-radius:8px;background:#fff;min-height:42px}"
+    "button{background:var(--blue);border-color:var(--blue);color:#fff;font-weight:600;cursor:"
+    "pointer}"
+    "button.big{font-size:20px;padding:10px 30px}input:focus-visible,select:focus-visible,"
+    "button:focus-visible,a:focus-visible{outline:3px solid #1f6fd0;outline-offset:1px}\n"
+    "ul.cards{list-style:none;padding:0;margin:0;display:grid;gap:6px}ul.cards li{display:flex;"
+    "flex-wrap:wrap;gap:4px 16px;align-items:baseline;padding:7px 12px;background:var(--ground);"
+    "border-radius:8px;overflow-wrap:anywhere}.tag.pass{background:#d9f0e3;color:#0b5c34}.tag.fail{"
+    "background:#fbdcdc;color:#9c1c1c}.tag.again,.tag.card{background:#fff0d6;color:#7a4a00}"
+    ".tag.none{background:#e1e9f2;color:#2b4561}\n"
+    "@media print{nav,form,.noprint,button{display:none}.call b{font-size:46pt}.call{color:#000;"
+    "background:#fff!important;border:3px solid #000}section{break-after:auto}}\n";
+
+/* New cards take the page's place, unless somebody is typing. Fields keep the focus for a barcode
+ * reader, which ends with Enter. */
+const char fg_station_script[] =
+    "'use strict';\n"
+    "(function(){\n"
+    "var live=document.querySelector('[data-live]');\n"
+    "function busy(){var a=document.activeElement;return "
+    "a&&a.tagName==='INPUT'&&a.value!==a.defaultValue;}\n"
+    "function load(){fetch(location.href,{credentials:'same-origin'}).then(function(r){return "
+    "r.text();})"
+    ".then(function(t){if(busy())return;var d=new DOMParser().parseFromString(t,'text/html'),"
+    "n=d.querySelector('main'),m=document.querySelector('main');if(!n||!m)return;m.replaceWith(n);"
+    "var f=document.querySelector('[data-focus]');if(f)f.focus();});}\n"
+    "if(live&&window.EventSource){var e=new EventSource('/events');"
+    "e.onmessage=function(m){if(m.data==='new')load();};}\n"
+    "var f=document.querySelector('[data-focus]');if(f)f.focus();\n"
+    "})();\n";
+
+static char *whole;
+
+static void join(void) {
+  size_t size;
+  FILE *out = open_memstream(&whole, &size);
+  if (!out) return;
+  fg_html_style(out);
+  fputs(own, out);
+  fclose(out);
+}
+
+const char *fg_station_style_text(void) {
+  static pthread_once_t once = PTHREAD_ONCE_INIT;
+  pthread_once(&once, join);
+  return whole ? whole : own;
+}
