@@ -14,15 +14,19 @@ typedef struct route {
   fg_page_writer *write;
   const char *type;
   bool own_style;
+  bool slow; /* takes the reader itself, for as long as it reads: others go on meanwhile */
 } route;
 
 #define HTML "text/html; charset=utf-8"
 
 static const route pages[] = {
-    {"/", fg_page_now, HTML, false},          {"/history", fg_page_history, HTML, false},
-    {"/foil", fg_page_foil, HTML, false},     {"/report", fg_page_report, HTML, true},
-    {"/trends", fg_page_trends, HTML, false}, {"/scanner", fg_page_scanner, HTML, false},
-    {"/lots", fg_page_lots, HTML, false},
+    {"/", fg_page_now, HTML, false, false},
+    {"/history", fg_page_history, HTML, false, false},
+    {"/foil", fg_page_foil, HTML, false, false},
+    {"/report", fg_page_report, HTML, true, true},
+    {"/trends", fg_page_trends, HTML, false, false},
+    {"/scanner", fg_page_scanner, HTML, false, false},
+    {"/lots", fg_page_lots, HTML, false, false},
 };
 
 static const struct {
@@ -57,6 +61,8 @@ static int code_of(fg_status status) {
     return 404;
   case FG_ERR_DATA:
     return 422;
+  case FG_ERR_INTERRUPTED:
+    return 503;
   default:
     return 500;
   }
@@ -139,9 +145,9 @@ static void write_page(fg_inspection *station, const fg_request *request, const 
     say(answer, 500, "out of memory");
     return;
   }
-  pthread_mutex_lock(&station->database.reading);
+  if (!page->slow) pthread_mutex_lock(&station->database.reading);
   fg_status status = page->write(&ctx, station, station->database.reader, request, out);
-  pthread_mutex_unlock(&station->database.reading);
+  if (!page->slow) pthread_mutex_unlock(&station->database.reading);
   if (fclose(out) != 0 && status == FG_OK) status = fg_fail(&ctx, FG_ERR_MEMORY, "out of memory");
   *answer = (fg_answer){.code = 200,
                         .type = page->type,
@@ -166,7 +172,8 @@ static void act(fg_inspection *station, const fg_request *request, fg_action *ac
   if (status != FG_OK) say(answer, code_of(status), ctx.message);
 }
 
-/* The number of the newest card, for pages that wait for the next. The reply ends the connection:
+/* What is there: the newest card, whether its picture is, whether the scanner is at work; for pages
+ * that wait for something new. The reply ends the connection:
  * the browser asks again by itself. */
 static void tell_events(fg_inspection *station, const fg_request *request, fg_answer *answer) {
   fg_query query;
@@ -175,11 +182,12 @@ static void tell_events(fg_inspection *station, const fg_request *request, fg_an
   pthread_mutex_lock(&station->database.reading);
   fg_query_begin(
       station->database.reader,
-      "SELECT coalesce((SELECT max(id) FROM arrivals), 0) * 2 + (SELECT count(*) FROM "
+      "SELECT coalesce((SELECT max(id) FROM arrivals), 0) * 4 + (SELECT count(*) FROM "
       "(SELECT 1 FROM pictures JOIN foils ON foils.id = foil WHERE scan = (SELECT max(id) "
       "FROM scans) LIMIT 1))",
       &query);
   if (fg_query_row(&query)) newest = fg_query_get_integer(&query, 0);
+  newest += 2 * atomic_load(&station->scanning);
   fg_query_end(&ctx, &query, "reading the cards");
   pthread_mutex_unlock(&station->database.reading);
   *answer = (fg_answer){.code = 200, .type = "text/event-stream"};

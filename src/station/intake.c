@@ -14,6 +14,7 @@
 #include "station/check.h"
 #include "station/keep.h"
 #include "station/picture.h"
+#include "station/scan_command.h"
 
 enum { HEAD_BYTES = 64, TAIL_BYTES = 12, WORDS = 1000 };
 
@@ -123,7 +124,8 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   char why[WORDS];
   bool withheld = fg_station_check_withholds(station, why, sizeof why);
   const fg_station_scan kept = {.file = at->file,
-                                .source = "folder",
+                                .source =
+                                    fg_station_is_scanned(at->file.name) ? "scanner" : "folder",
                                 .named = &at->named,
                                 .settings = &station->settings->lot,
                                 .setup = station->setup,

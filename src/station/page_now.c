@@ -108,7 +108,8 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
     fputs("</p>\n", out);
   }
   FG_TRY(fg_page_deciding(ctx, reader, id, out));
-  fg_page_foil_form(station, foil, "/", focus, out);
+  const fg_foil_form form = {.back = "/", .focus = focus};
+  fg_page_foil_form(station, foil, &form, out);
   return write_picture(ctx, reader, id, out);
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/memory.h"
 #include "station/answer.h"
+#include "station/scan_command.h"
 
 /* A browser opens six connections, one of which waits for news. */
 enum { CONNECTIONS = 64, OF_ONE = 24, WAITING_MAX = 48, SECONDS = 15, HEADER_BYTES = 16384 };
@@ -257,6 +258,7 @@ void fg_station_server_stop(fg_inspection *station) {
   pthread_mutex_unlock(&at->mutex);
   resume_all(at);
   MHD_stop_daemon(at->daemon);
+  fg_station_scan_stop(station);
   station->wake = NULL;
   station->server = NULL;
   free(at);

@@ -20,10 +20,11 @@ typedef struct fg_inspection {
   bool check_design_known;
   int64_t setup;
   int lock;
-  char form_token[FG_FORM_TOKEN]; /* what a form of this station's pages carries */
-  char host[128];                 /* "127.0.0.1:8317": what requests must be for */
-  atomic_bool scanning;           /* the scan command runs */
-  void (*wake)(void *server);     /* a card was added; NULL: nobody waits */
+  char form_token[FG_FORM_TOKEN];     /* what a form of this station's pages carries */
+  char host[128];                     /* "127.0.0.1:8317": what requests must be for */
+  atomic_bool scanning;               /* the scan command runs */
+  struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
+  void (*wake)(void *server);         /* a card was added; NULL: nobody waits */
   void *server;
 } fg_inspection;
 

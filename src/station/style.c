@@ -19,7 +19,7 @@ static const char own[] =
     "28px;border-radius:10px;padding:14px "
     "24px;margin:0 0 16px;color:#fff;background:var(--soft)}.call "
     "b{font-size:clamp(54px,11vw,124px);"
-    "line-height:1;letter-spacing:.01em}.call "
+    "line-height:1;letter-spacing:.01em}.call.small b{font-size:clamp(34px,6vw,52px)}.call "
     "span{font-size:22px;font-weight:600}.call.pass{background"
     ":var(--good)}.call.fail{background:var(--bad)}.call.again{background:var(--open)}.call.none{"
     "background:#3c5a78}\n"
@@ -45,25 +45,42 @@ static const char own[] =
     "border-radius:8px;overflow-wrap:anywhere}.tag.pass{background:#d9f0e3;color:#0b5c34}.tag.fail{"
     "background:#fbdcdc;color:#9c1c1c}.tag.again,.tag.card{background:#fff0d6;color:#7a4a00}"
     ".tag.none{background:#e1e9f2;color:#2b4561}\n"
-    "@media print{nav,form,.noprint,button{display:none}.call b{font-size:46pt}.call{color:#000;"
+    "a.button{display:inline-block;padding:9px 16px;border:1px solid "
+    "var(--blue);border-radius:8px;"
+    "color:var(--blue);text-decoration:none;font-weight:600}table.left th,table.left "
+    "td{text-align:left}table.left .tag{white-space:nowrap}.paging{display:flex;gap:14px;"
+    "align-items:center;margin:14px 0 0}\n"
+    "form.fields input{width:150px}form.fields input[type=date]{width:140px}\n"
+    "@media(max-width:600px){.wide{display:none}nav{padding:0 4px}nav a{padding:12px "
+    "9px}.call{padding:12px 16px}form.fields input,form.fields "
+    "input[type=date]{width:calc(50vw - 35px)}}\n"
+    "@media print{main{padding:0}.paging{display:none}.picture{max-height:70mm}h2{margin:10px 0 "
+    "4px}.call{padding:6px 16px;margin:0 0 8px}.call.small b{font-size:26pt}.decided{gap:6px;"
+    "margin:0 0 8px}td,th{line-height:1.25}nav,form,.noprint,button{display:none}.call "
+    "b{font-size:46pt}.call{color:#000;"
     "background:#fff!important;border:3px solid #000}section{break-after:auto}}\n";
 
-/* New cards take the page's place, unless somebody is typing. Fields keep the focus for a barcode
- * reader, which ends with Enter. */
+/* New cards take the page's place, unless somebody is typing. The first field has the focus, and
+ * what stands in it is marked, so that a barcode reader, which ends with Enter, writes over it.
+ * The arrow keys turn pages. */
 const char fg_station_script[] =
     "'use strict';\n"
     "(function(){\n"
     "var live=document.querySelector('[data-live]');\n"
+    "function focus(){var f=document.querySelector('[data-focus]');if(f){f.focus();f.select();}}\n"
     "function busy(){var a=document.activeElement;return "
     "a&&a.tagName==='INPUT'&&a.value!==a.defaultValue;}\n"
     "function load(){fetch(location.href,{credentials:'same-origin'}).then(function(r){return "
     "r.text();})"
     ".then(function(t){if(busy())return;var d=new DOMParser().parseFromString(t,'text/html'),"
     "n=d.querySelector('main'),m=document.querySelector('main');if(!n||!m)return;m.replaceWith(n);"
-    "var f=document.querySelector('[data-focus]');if(f)f.focus();});}\n"
+    "focus();});}\n"
     "if(live&&window.EventSource){var e=new EventSource('/events');"
     "e.onmessage=function(m){if(m.data==='new')load();};}\n"
-    "var f=document.querySelector('[data-focus]');if(f)f.focus();\n"
+    "focus();\n"
+    "document.addEventListener('keydown',function(k){var r=k.key==='ArrowLeft'?'prev':k.key==="
+    "'ArrowRight'?'next':'',t=k.target.tagName,l=r&&document.querySelector('a[rel='+r+']');"
+    "if(l&&!k.altKey&&!k.ctrlKey&&!k.metaKey&&t!=='INPUT'&&t!=='SELECT')l.click();});\n"
     "})();\n";
 
 static char *whole;

@@ -10,9 +10,6 @@
     fg_page_end(out);                                                                              \
     return FG_OK;                                                                                  \
   }
-PAGE(fg_page_history)
-PAGE(fg_page_foil)
-PAGE(fg_page_report)
 PAGE(fg_page_trends)
 PAGE(fg_page_scanner)
 PAGE(fg_page_lots)
@@ -24,8 +21,6 @@ PAGE(fg_page_lots)
     (void)answer;                                                                                  \
     return fg_fail(ctx, FG_ERR_DATA, "not yet");                                                   \
   }
-ACTION(fg_action_correct)
-ACTION(fg_action_scan)
 ACTION(fg_action_close)
 ACTION(fg_action_download)
 fg_status fg_station_export(fg_context *ctx, fg_inspection *station, const char *folder) {

@@ -7,9 +7,18 @@
 /* The values that decided, each with its limits. */
 fg_status fg_page_deciding(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
 
-/* The form for serial, lot, die and operator; `foil` is a row of id, serial, lot, die, operator.
- * `back`: the page to return to. `focus`: for the barcode reader. */
-void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const char *back,
-                       bool focus, FILE *out);
+/* One of them in few words, with the limit that it is nearest to. Nine columns of a row from
+ * `column` on: name, owner, unit, bump, value, u, lower, upper, verdict. */
+void fg_page_decided_line(const fg_query *at, int column, FILE *out);
+
+typedef struct fg_foil_form {
+  const char *back; /* the page to return to: "/", else the foil's own */
+  bool focus;       /* for the barcode reader */
+  bool who;         /* asks who corrects */
+} fg_foil_form;
+
+/* The form for serial, lot, die and operator; `foil` is a row of id, serial, lot, die, operator. */
+void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const fg_foil_form *form,
+                       FILE *out);
 
 #endif

@@ -1,0 +1,127 @@
+/* One foil: what was said of it and why, its picture, its values with their limits, its form, and
+ * who changed what. */
+#include <string.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "station/pages.h"
+#include "station/past.h"
+#include "station/values.h"
+
+static void write_fact(FILE *out, const char *title, const char *text) {
+  if (!text || !text[0]) return;
+  fprintf(out, "<dt>%s</dt><dd>", title);
+  fg_html_text(out, text);
+  fputs("</dd>\n", out);
+}
+
+static void write_call(const fg_past *past, FILE *out) {
+  bool withheld = past->withheld != NULL;
+  fprintf(out, "<div class=\"call small %s\"><b>%s</b><span>",
+          fg_page_verdict_class(past->verdict, withheld),
+          fg_page_verdict_words(past->verdict, withheld));
+  fg_html_text(out, past->serial);
+  fputs("<br>", out);
+  fg_page_time(out, past->at);
+  fputs("</span></div>\n", out);
+  const char *words = withheld ? past->withheld : past->reasons;
+  if (!words[0]) return;
+  fputs("<p class=\"next\">", out);
+  fg_html_text(out, words);
+  fputs("</p>\n", out);
+}
+
+static fg_status write_picture(fg_context *ctx, sqlite3 *reader, const fg_past *past, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader, "SELECT html FROM pictures WHERE foil = ?", &query);
+  fg_query_integer(&query, past->id);
+  if (fg_query_row(&query))
+    fprintf(out, "<figure>%s</figure>\n", fg_query_get_text(&query, 0));
+  else
+    fputs("<p class=\"note\">Its picture is in the whole report.</p>\n", out);
+  return fg_query_end(ctx, &query, "reading a picture");
+}
+
+static void write_facts(const fg_past *past, FILE *out) {
+  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n", out);
+  write_fact(out, "Scan", past->path);
+  write_fact(out, "From", !strcmp(past->source, "scanner") ? "the Scan button" : "the folder");
+  write_fact(out, "Lot", past->lot);
+  write_fact(out, "Die", past->die);
+  write_fact(out, "Operator", past->operator_name);
+  if (past->readable) write_fact(out, "Design", past->settings.design.name);
+  if (past->model) write_fact(out, "Scanner", "corrected by the model of the recipe of then");
+  write_fact(out, "SHA-256", past->sha256);
+  write_fact(out, "Program", past->program);
+  fputs("</dl>\n", out);
+}
+
+static void write_change(FILE *out, const fg_query *at) {
+  fputs("<tr><td>", out);
+  fg_page_time(out, fg_query_get_integer(at, 0));
+  for (int i = 1; i < 5; i++) {
+    const char *text = fg_query_get_text(at, i);
+    fputs("</td><td class=\"words\">", out);
+    fg_html_text(out, text[0] ? text : i == 1 ? "no name given" : "–");
+  }
+  fputs("</td></tr>\n", out);
+}
+
+static fg_status write_trail(fg_context *ctx, sqlite3 *reader, const fg_past *past, FILE *out) {
+  fg_query query;
+  bool any = false;
+  fg_query_begin(reader,
+                 "SELECT at, by, field, before, after FROM corrections WHERE foil = ? ORDER BY id",
+                 &query);
+  fg_query_integer(&query, past->id);
+  fputs("<h2>Corrections</h2>\n", out);
+  while (fg_query_row(&query)) {
+    if (!any)
+      fputs("<div class=\"scroll\"><table class=\"left\"><thead><tr><th>When</th><th>Who</th>"
+            "<th>What</th><th>Before</th><th>After</th></tr></thead>\n<tbody>\n",
+            out);
+    any = true;
+    write_change(out, &query);
+  }
+  fputs(any ? "</tbody></table></div>\n" : "<p class=\"note\">None.</p>\n", out);
+  return fg_query_end(ctx, &query, "reading the corrections");
+}
+
+static fg_status write_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                            const fg_past *past, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader, "SELECT id, serial, lot, die, operator FROM foils WHERE id = ?", &query);
+  fg_query_integer(&query, past->id);
+  const fg_foil_form form = {.back = "/foil", .who = true};
+  if (fg_query_row(&query)) fg_page_foil_form(station, &query, &form, out);
+  return fg_query_end(ctx, &query, "reading a foil");
+}
+
+static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                            const fg_past *past, FILE *out) {
+  FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, past->serial));
+  fputs("<section>\n", out);
+  write_call(past, out);
+  FG_TRY(fg_page_deciding(ctx, reader, past->id, out));
+  FG_TRY(write_picture(ctx, reader, past, out));
+  fprintf(out,
+          "<p class=\"noprint\"><a class=\"button\" href=\"/report?foil=%lld\">The whole "
+          "report</a></p>\n",
+          (long long)past->id);
+  fg_past_write_tables(past, out);
+  fputs("<h2 class=\"noprint\">Correct what is said of it</h2>\n", out);
+  FG_TRY(write_form(ctx, station, reader, past, out));
+  FG_TRY(write_trail(ctx, reader, past, out));
+  write_facts(past, out);
+  fputs("</section>\n", out);
+  fg_page_end(out);
+  return FG_OK;
+}
+
+fg_status fg_page_foil(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                       const fg_request *request, FILE *out) {
+  fg_past *past;
+  FG_TRY(fg_past_load(ctx, reader, fg_request_get(request, "id"), &past));
+  fg_status status = write_foil(ctx, station, reader, past, out);
+  fg_past_free(past);
+  return status;
+}

@@ -1,0 +1,249 @@
+/* Every foil that was measured, the newest first: found by serial number, lot, die, date, verdict.
+ */
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "station/pages.h"
+#include "station/values.h"
+
+/* PAGE_FOILS: what one sheet of paper holds. SUGGESTED: lots and dies that a field proposes. */
+enum { PAGE_FOILS = 40, PAGES_MAX = 1000000, SUGGESTED = 200, WHERE_BYTES = 1024 };
+
+static const struct {
+  const char *word, *name;
+} verdicts[] = {
+    {"pass", "PASS"},
+    {"fail", "FAIL"},
+    {"cannot_tell", "SCAN AGAIN: cannot tell"},
+    {"not_measured", "SCAN AGAIN: not measured"},
+    {"no_tolerance", "MEASURED"},
+};
+
+enum { VERDICTS = sizeof verdicts / sizeof *verdicts };
+
+/* What is sought. Texts belong to the request. */
+typedef struct search {
+  const char *serial, *lot, *die, *from, *to, *verdict;
+  int64_t from_ms, to_ms; /* -1: open */
+  long page;              /* from 1 */
+  char where[WHERE_BYTES];
+} search;
+
+/* The beginning of a day of the local calendar, `days` later; -1: no date. */
+static int64_t read_day(const char *text, int days) {
+  int year, month, day, length = 0;
+  if (strspn(text, "0123456789-") != 10 ||
+      sscanf(text, "%4d-%2d-%2d%n", &year, &month, &day, &length) != 3 || text[length])
+    return -1;
+  if (year < 1970 || month < 1 || month > 12 || day < 1 || day > 31) return -1;
+  struct tm local = {
+      .tm_year = year - 1900, .tm_mon = month - 1, .tm_mday = day + days, .tm_isdst = -1};
+  time_t at = mktime(&local);
+  return at < 0 ? -1 : (int64_t)at * 1000;
+}
+
+static void add(search *at, const char *condition) {
+  size_t length = strlen(at->where);
+  snprintf(at->where + length, sizeof at->where - length, "%s%s", length ? " AND " : " WHERE ",
+           condition);
+}
+
+static bool is_verdict(const char *word) {
+  for (size_t i = 0; i < VERDICTS; i++)
+    if (!strcmp(verdicts[i].word, word)) return true;
+  return false;
+}
+
+/* What is no date, no verdict or no page is as if it were not there. */
+static void read_search(const fg_request *request, search *at) {
+  char *end;
+  *at = (search){.serial = fg_request_get(request, "serial"),
+                 .lot = fg_request_get(request, "lot"),
+                 .die = fg_request_get(request, "die"),
+                 .from = fg_request_get(request, "from"),
+                 .to = fg_request_get(request, "to"),
+                 .verdict = fg_request_get(request, "verdict"),
+                 .page = strtol(fg_request_get(request, "page"), &end, 10)};
+  at->from_ms = read_day(at->from, 0);
+  at->to_ms = read_day(at->to, 1);
+  if (*end || at->page < 1 || at->page > PAGES_MAX) at->page = 1;
+  if (!is_verdict(at->verdict)) at->verdict = "";
+  if (at->serial[0]) add(at, "instr(lower(serial), lower(?))");
+  if (at->lot[0]) add(at, "lot = ? COLLATE NOCASE");
+  if (at->die[0]) add(at, "die = ? COLLATE NOCASE");
+  if (at->from_ms >= 0) add(at, "at >= ?");
+  if (at->to_ms >= 0) add(at, "at < ?");
+  if (at->verdict[0]) add(at, "foils.verdict = ?");
+}
+
+/* The values of the conditions, in their order. */
+static void bind(const search *at, fg_query *query) {
+  if (at->serial[0]) fg_query_text(query, at->serial);
+  if (at->lot[0]) fg_query_text(query, at->lot);
+  if (at->die[0]) fg_query_text(query, at->die);
+  if (at->from_ms >= 0) fg_query_integer(query, at->from_ms);
+  if (at->to_ms >= 0) fg_query_integer(query, at->to_ms);
+  if (at->verdict[0]) fg_query_text(query, at->verdict);
+}
+
+static fg_status count_found(fg_context *ctx, sqlite3 *reader, const search *at, int64_t *count) {
+  fg_query query;
+  char sql[WHERE_BYTES + 200];
+  snprintf(sql, sizeof sql, "SELECT count(*) FROM foils JOIN scans ON scans.id = scan%s",
+           at->where);
+  fg_query_begin(reader, sql, &query);
+  bind(at, &query);
+  *count = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  return fg_query_end(ctx, &query, "searching foils");
+}
+
+static void write_input(FILE *out, const char *label, const char *name, const char *more,
+                        const char *value) {
+  fprintf(out, "<label>%s<input name=\"%s\"%s value=\"", label, name, more);
+  fg_html_text(out, value);
+  fputs("\"></label>", out);
+}
+
+/* What there is, newest first, for a field that proposes it. */
+static fg_status write_suggestions(fg_context *ctx, sqlite3 *reader, const char *id,
+                                   const char *sql, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader, sql, &query);
+  fg_query_integer(&query, SUGGESTED);
+  fprintf(out, "<datalist id=\"%s\">", id);
+  while (fg_query_row(&query)) {
+    fputs("<option value=\"", out);
+    fg_html_text(out, fg_query_get_text(&query, 0));
+    fputs("\">", out);
+  }
+  fputs("</datalist>\n", out);
+  return fg_query_end(ctx, &query, "reading the lots");
+}
+
+static fg_status write_form(fg_context *ctx, sqlite3 *reader, const search *at, FILE *out) {
+  fputs("<form class=\"fields\" method=\"get\" action=\"/history\">", out);
+  write_input(out, "Serial", "serial",
+              " type=\"search\" maxlength=\"127\" autocomplete=\"off\" autofocus data-focus",
+              at->serial);
+  write_input(out, "Lot", "lot", " maxlength=\"127\" autocomplete=\"off\" list=\"lots\"", at->lot);
+  write_input(out, "Die", "die", " maxlength=\"127\" autocomplete=\"off\" list=\"dies\"", at->die);
+  write_input(out, "From", "from", " type=\"date\"", at->from_ms >= 0 ? at->from : "");
+  write_input(out, "To", "to", " type=\"date\"", at->to_ms >= 0 ? at->to : "");
+  fputs("<label>Verdict<select name=\"verdict\"><option value=\"\">any</option>", out);
+  for (size_t i = 0; i < VERDICTS; i++)
+    fprintf(out, "<option value=\"%s\"%s>%s</option>", verdicts[i].word,
+            strcmp(verdicts[i].word, at->verdict) ? "" : " selected", verdicts[i].name);
+  fputs("</select></label><button>Search</button><a href=\"/history\">All</a></form>\n", out);
+  FG_TRY(write_suggestions(ctx, reader, "lots",
+                           "SELECT lot FROM foils WHERE lot <> '' GROUP BY lot"
+                           " ORDER BY max(id) DESC LIMIT ?",
+                           out));
+  return write_suggestions(ctx, reader, "dies",
+                           "SELECT die FROM foils WHERE die <> '' GROUP BY die"
+                           " ORDER BY max(id) DESC LIMIT ?",
+                           out);
+}
+
+static void write_cell(FILE *out, const char *style, const char *text) {
+  fprintf(out, "<td class=\"words%s\">", style);
+  fg_html_text(out, text);
+  fputs("</td>", out);
+}
+
+static void write_row(const fg_query *at, FILE *out) {
+  long long id = (long long)fg_query_get_integer(at, 0);
+  const char *verdict = fg_query_get_text(at, 6);
+  bool withheld = !fg_query_is_null(at, 7);
+  fprintf(out, "<tr><td><a href=\"/foil?id=%lld\">", id);
+  fg_html_text(out, fg_query_get_text(at, 1));
+  fprintf(out, "</a></td><td><span class=\"tag %s\">%s</span></td><td>",
+          fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
+  fg_page_time(out, fg_query_get_integer(at, 5));
+  fputs("</td>", out);
+  write_cell(out, "", fg_query_get_text(at, 2));
+  write_cell(out, "", fg_query_get_text(at, 3));
+  write_cell(out, " wide", fg_query_get_text(at, 4));
+  fputs("<td class=\"wide\">", out);
+  if (!fg_query_is_null(at, 9)) fg_page_decided_line(at, 9, out);
+  fputs("</td></tr>\n", out);
+}
+
+static fg_status write_rows(fg_context *ctx, sqlite3 *reader, const search *at, FILE *out) {
+  fg_query query;
+  char sql[WHERE_BYTES + 800];
+  snprintf(sql, sizeof sql,
+           "SELECT foils.id, serial, lot, die, operator, at, foils.verdict, withheld, reasons,"
+           " quantities.name, owner, unit, bump, value, u, lower, upper, deciding.verdict"
+           " FROM foils JOIN scans ON scans.id = scan"
+           " LEFT JOIN deciding ON deciding.foil = foils.id AND rank = 0"
+           " LEFT JOIN quantities ON quantities.id = quantity%s"
+           " ORDER BY foils.id DESC LIMIT ? OFFSET ?",
+           at->where);
+  fg_query_begin(reader, sql, &query);
+  bind(at, &query);
+  fg_query_integer(&query, PAGE_FOILS);
+  fg_query_integer(&query, (at->page - 1) * PAGE_FOILS);
+  fputs("<div class=\"scroll\"><table class=\"left found\"><thead><tr><th>Serial</th><th>Verdict"
+        "</th><th>When</th><th>Lot</th><th>Die</th><th class=\"wide\">Operator</th>"
+        "<th class=\"wide\">Nearest its limit</th></tr></thead>\n<tbody>\n",
+        out);
+  while (fg_query_row(&query))
+    write_row(&query, out);
+  fputs("</tbody></table></div>\n", out);
+  return fg_query_end(ctx, &query, "searching foils");
+}
+
+/* As part of an address. */
+static void write_encoded(FILE *out, const char *name, const char *value) {
+  fprintf(out, "%s=", name);
+  for (; *value; value++) {
+    unsigned char c = (unsigned char)*value;
+    bool plain = (c >= '0' && c <= '9') || ((c | 0x20) >= 'a' && (c | 0x20) <= 'z') || c == '-';
+    fprintf(out, plain ? "%c" : "%%%02X", c);
+  }
+  fputs("&amp;", out);
+}
+
+static void write_link(const search *at, long page, const char *relation, const char *words,
+                       FILE *out) {
+  fprintf(out, "<a class=\"button\" rel=\"%s\" href=\"/history?", relation);
+  write_encoded(out, "serial", at->serial);
+  write_encoded(out, "lot", at->lot);
+  write_encoded(out, "die", at->die);
+  write_encoded(out, "from", at->from_ms >= 0 ? at->from : "");
+  write_encoded(out, "to", at->to_ms >= 0 ? at->to : "");
+  write_encoded(out, "verdict", at->verdict);
+  fprintf(out, "page=%ld\">%s</a>", page, words);
+}
+
+static void write_paging(const search *at, int64_t found, FILE *out) {
+  long pages = (long)((found + PAGE_FOILS - 1) / PAGE_FOILS);
+  fprintf(out, "<p class=\"paging\">");
+  if (at->page > 1 && at->page <= pages) write_link(at, at->page - 1, "prev", "← Newer", out);
+  if (pages > 1)
+    fprintf(out, "<span>page %ld of %ld</span>", at->page < pages ? at->page : pages, pages);
+  if (at->page < pages) write_link(at, at->page + 1, "next", "Older →", out);
+  fputs("</p>\n", out);
+}
+
+fg_status fg_page_history(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                          const fg_request *request, FILE *out) {
+  search at;
+  int64_t found;
+  read_search(request, &at);
+  FG_TRY(count_found(ctx, reader, &at, &found));
+  long pages = (long)((found + PAGE_FOILS - 1) / PAGE_FOILS);
+  if (at.page > pages) at.page = pages > 0 ? pages : 1;
+  FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, "History"));
+  fputs("<section>\n", out);
+  FG_TRY(write_form(ctx, reader, &at, out));
+  fprintf(out, "<p class=\"note\">%lld %s%s</p>\n", (long long)found, found == 1 ? "foil" : "foils",
+          at.where[0] ? " found" : "");
+  if (found) FG_TRY(write_rows(ctx, reader, &at, out));
+  write_paging(&at, found, out);
+  fputs("</section>\n", out);
+  fg_page_end(out);
+  return FG_OK;
+}

@@ -1,0 +1,146 @@
+/* A foil's whole report: measured again from its scan with the design and the model of then, or,
+ * where the scan is gone or is another by now, what the record of then holds. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/sha256.h"
+#include "core/text.h"
+#include "foilgauge/measure.h"
+#include "foilgauge/scan_loop.h"
+#include "report/measure/measure_page_parts.h"
+#include "station/pages.h"
+#include "station/past.h"
+
+/* One at a time: each takes all cores for a second, and new scans come first. */
+static pthread_mutex_t measuring = PTHREAD_MUTEX_INITIALIZER;
+
+enum { WHY_BYTES = 400 };
+
+static fg_status apply_model(fg_context *ctx, const fg_past *past, fg_scanner_model **model,
+                             fg_measurement *measurement) {
+  char warning[200];
+  if (!past->model) return FG_OK;
+  FG_TRY(fg_scanner_model_parse(ctx, "the scanner's model of then", past->model, model));
+  return fg_scanner_model_apply(ctx, *model, measurement, 0, warning);
+}
+
+/* The one foil of the scan; false when the program finds another number of them than then. */
+static bool leave_one(fg_measurement *shown, const fg_measurement *measurement, int number) {
+  *shown = *measurement;
+  for (size_t i = 0; i < measurement->foil_count; i++) {
+    if (measurement->foils[i].number != number) continue;
+    shown->foils = &measurement->foils[i];
+    shown->foil_count = 1;
+    return true;
+  }
+  return false;
+}
+
+static fg_status write_measured(fg_context *ctx, const fg_past *past,
+                                const fg_measurement *measurement, FILE *out) {
+  fg_measurement shown;
+  if (!leave_one(&shown, measurement, past->number))
+    return fg_fail(ctx, FG_ERR_DATA, "the foil was not found in it again");
+  const fg_report_scan scan = {.path = shown.scan, .measurement = &shown};
+  const fg_report report = {
+      .design = &past->settings.design, .nominal = &shown.nominal, .scans = &scan, .scan_count = 1};
+  return fg_report_write_html(ctx, &report, out);
+}
+
+/* FG_ERR_DATA, FG_ERR_IO: the scan is no longer what was measured, and why. */
+static fg_status measure_again(fg_context *ctx, const char *folder, const fg_past *past,
+                               FILE *out) {
+  char *path = NULL, sum[65];
+  fg_scanner_model *model = NULL;
+  fg_measurement measurement;
+  const fg_measure_options options = {.dpi = past->settings.dpi, .only_file = true};
+  FG_TRY(fg_text_print(ctx, &path, "%s/%s", folder, past->path));
+  fg_status status = fg_sha256_file(ctx, path, sum);
+  if (status == FG_OK && strcmp(sum, past->sha256) != 0)
+    status = fg_fail(ctx, FG_ERR_DATA, "%s is another file now", past->path);
+  if (status == FG_OK)
+    status = fg_measure_scan(ctx, path, &past->settings.design, &options, &measurement);
+  free(path);
+  if (status != FG_OK) return status;
+  status = apply_model(ctx, past, &model, &measurement);
+  if (status == FG_OK) status = write_measured(ctx, past, &measurement, out);
+  fg_measurement_free(&measurement);
+  if (model) fg_scanner_model_free(model);
+  return status;
+}
+
+static void write_facts(const fg_past *past, FILE *out) {
+  fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
+  fg_html_text(out, past->path);
+  fputs("</dd>\n<dt>Measured</dt><dd>", out);
+  fg_page_time(out, past->at);
+  fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
+  fg_html_text(out, past->sha256);
+  fputs("</dd>\n<dt>Design</dt><dd>", out);
+  fg_html_text(out, past->settings.design.name);
+  fputs("</dd>\n<dt>Program</dt><dd>foilgauge ", out);
+  fg_html_text(out, past->program);
+  fputs("</dd>\n</dl>\n", out);
+}
+
+static fg_status write_record(fg_context *ctx, const fg_past *past, const char *why, FILE *out) {
+  fg_html_begin(out, past->serial);
+  fputs("<section>\n<header><h1>Foil ", out);
+  fg_html_text(out, past->serial);
+  fputs("</h1>", out);
+  if (past->foil) FG_TRY(fg_past_write_verdict(ctx, past, out));
+  fputs("</header>\n<p class=\"corrected\"><b>From the record.</b> It cannot be measured again: ",
+        out);
+  fg_html_text(out, why);
+  fputs(". The values are those that were kept when it was measured; the picture and the residuals "
+        "are not kept.</p>\n",
+        out);
+  fg_past_write_tables(past, out);
+  write_facts(past, out);
+  fputs("</section>\n", out);
+  fg_html_end(out);
+  return FG_OK;
+}
+
+/* Into memory first: what fails half-way is not shown. */
+static fg_status try_again(fg_context *ctx, const char *folder, const fg_past *past, FILE *out,
+                           char why[WHY_BYTES]) {
+  char *page = NULL;
+  size_t size = 0;
+  FILE *into = open_memstream(&page, &size);
+  if (!into) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
+  fg_status status = measure_again(ctx, folder, past, into);
+  if (fclose(into) != 0 && status == FG_OK)
+    status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a report");
+  if (status == FG_OK)
+    fwrite(page, 1, size, out);
+  else
+    fg_text_clip(why, WHY_BYTES, "%s", ctx->message);
+  free(page);
+  return status;
+}
+
+static fg_status write_report(fg_context *ctx, const char *folder, const fg_past *past, FILE *out) {
+  char why[WHY_BYTES];
+  if (pthread_mutex_trylock(&measuring) != 0)
+    return fg_fail(ctx, FG_ERR_INTERRUPTED,
+                   "Another report is being measured: load this page again in a moment.");
+  fg_status status = past->readable ? try_again(ctx, folder, past, out, why)
+                                    : fg_fail(ctx, FG_ERR_DATA, "%s", past->problem);
+  pthread_mutex_unlock(&measuring);
+  if (status == FG_OK || status == FG_ERR_MEMORY) return status;
+  if (!past->readable) fg_text_clip(why, WHY_BYTES, "%s", past->problem);
+  return write_record(ctx, past, why, out);
+}
+
+fg_status fg_page_report(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                         const fg_request *request, FILE *out) {
+  fg_past *past;
+  pthread_mutex_lock(&station->database.reading);
+  fg_status status = fg_past_load(ctx, reader, fg_request_get(request, "foil"), &past);
+  pthread_mutex_unlock(&station->database.reading);
+  if (status != FG_OK) return status;
+  status = write_report(ctx, station->request->folder, past, out);
+  fg_past_free(past);
+  return status;
+}

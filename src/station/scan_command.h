@@ -1,0 +1,16 @@
+/* The recipe's scan_command: one at a time, beside the pages. */
+#ifndef FG_STATION_SCAN_COMMAND_H
+#define FG_STATION_SCAN_COMMAND_H
+
+#include "station/state.h"
+
+/* Begins a scan, unless one is running. */
+fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station);
+
+/* Ends the command that runs, if any, and waits for it. */
+void fg_station_scan_stop(fg_inspection *station);
+
+/* Whether a file of the folder was written by the command: its name says so. */
+bool fg_station_is_scanned(const char *name);
+
+#endif
