@@ -44,8 +44,9 @@ static const char doc[] =
     "and shown in the browser."
     "\vThe address is printed when the pages can be had. The database is "
     "FOLDER/" FG_STATION_DATABASE ". Scans are never changed.\n\n"
-    "Exit code: 130 when it was interrupted, which is how it ends; with --once as of `measure`: 0 "
-    "all within tolerance, 1 a limit is exceeded, 2 something could not be measured, 3 cannot "
+    "Exit code: 130 when it was interrupted, which is how it ends; with --once and --export as of "
+    "`measure`: 0 all within tolerance, 1 a limit is exceeded, 2 something could not be measured, "
+    "3 cannot "
     "tell; "
     "64 usage; 65 bad data; 74 input or output, another station is at work in the folder.";
 
@@ -117,6 +118,7 @@ int fg_cmd_station(int argc, char **argv) {
   arguments.request.looked_at = say_file;
   status = fg_station_run(&ctx, &arguments.request, &outcome);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  if (arguments.request.export_path) return fg_outcome_exit_code(&outcome.judged);
   if (!arguments.request.once) return 0;
   fprintf(stderr, "foilgauge: %zu measured, %zu known, %zu refused\n", outcome.measured,
           outcome.known, outcome.refused);

@@ -289,6 +289,21 @@ fg_status fg_journal_rewrite(fg_context *ctx, const char *to, const fg_journal_h
   return fg_output_end(ctx, &output, status);
 }
 
+fg_status fg_journal_write(fg_context *ctx, const char *to, const fg_journal_head *head,
+                           fg_journal_source *source, void *user) {
+  fg_output output;
+  FG_TRY(fg_output_open(ctx, to, &output));
+  fg_status status = write_head(ctx, output.stream, head);
+  for (size_t i = 0; i < head->items && status == FG_OK; i++) {
+    char *line = NULL;
+    size_t length = 0;
+    status = source(ctx, user, i, &line, &length);
+    if (status == FG_OK) fwrite(line, 1, length, output.stream);
+    free(line);
+  }
+  return fg_output_end(ctx, &output, status);
+}
+
 fg_status fg_journal_open(fg_context *ctx, const char *path, fg_journal *journal) {
   *journal = (fg_journal){.descriptor = open(path, O_WRONLY | O_CLOEXEC)};
   if (journal->descriptor < 0) return fail_errno(ctx, path, "opened");

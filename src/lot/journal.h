@@ -60,6 +60,14 @@ fg_status fg_journal_rewrite(fg_context *ctx, const char *to, const fg_journal_h
                              const char *const *from, const size_t *from_of,
                              const fg_journal_entry *entries, size_t count);
 
+/* The record of an item as a line (fg_record_format), from malloc. */
+typedef fg_status fg_journal_source(fg_context *ctx, void *user, size_t item, char **line,
+                                    size_t *length);
+
+/* A new file `to` of the head and a record for each of its items; there only when it is whole. */
+fg_status fg_journal_write(fg_context *ctx, const char *to, const fg_journal_head *head,
+                           fg_journal_source *source, void *user);
+
 typedef struct fg_journal {
   char *path;
   int descriptor;

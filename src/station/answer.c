@@ -27,6 +27,7 @@ static const route pages[] = {
     {"/trends", fg_page_trends, HTML, false, false},
     {"/scanner", fg_page_scanner, HTML, false, false},
     {"/lots", fg_page_lots, HTML, false, false},
+    {"/lot", fg_page_lot, HTML, true, false},
 };
 
 static const struct {

@@ -59,8 +59,11 @@ static const char *const migrations[] = {
     " sha256 TEXT NOT NULL UNIQUE, discs INTEGER NOT NULL, scale_x REAL, u_scale_x REAL, scale_y "
     "REAL,"
     " u_scale_y REAL, shear REAL, u_shear REAL, verdict TEXT NOT NULL, words TEXT NOT NULL);"
-    "CREATE TABLE lots (name TEXT PRIMARY KEY, closed_at INTEGER NOT NULL, by TEXT NOT NULL,"
-    " folder TEXT NOT NULL, verdict TEXT NOT NULL, summary TEXT NOT NULL) WITHOUT ROWID;",
+    /* Every time that a lot was closed: the newest of a name is in force. */
+    "CREATE TABLE lots (id INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT NOT NULL,"
+    " closed_at INTEGER NOT NULL, by TEXT NOT NULL, folder TEXT NOT NULL, verdict TEXT NOT NULL,"
+    " withheld INTEGER NOT NULL, summary TEXT NOT NULL, state TEXT NOT NULL);"
+    "CREATE INDEX lots_by_name ON lots (name);",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000 };

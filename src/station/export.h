@@ -1,14 +1,27 @@
-/* Lots of the database as folders that `foilgauge lot` could have made. */
+/* Lots of the database as folders that `foilgauge lot` could have made: --resume, `merge`,
+ * `lot --index` and `loop --lot` go on with them. */
 #ifndef FG_STATION_EXPORT_H
 #define FG_STATION_EXPORT_H
 
 #include "station/state.h"
 
-/* Every lot ("" is "without_lot") below `folder`. */
+/* What became of a lot. */
+typedef struct fg_exported_lot {
+  fg_lot_outcome outcome;
+  size_t replaced, withheld; /* foils: as of fg_lot_content */
+  size_t again; /* scans that were measured again: their records are of another setup or program */
+  size_t lost;  /* scans of which that could not be done: they count as not measured */
+  char state[64];  /* of the lot as it was read */
+  char words[600]; /* all of it, as people read it */
+} fg_exported_lot;
+
+/* Every lot ("" is "without_lot") below `folder`, which is made. Says each through the request's
+ * `looked_at`. FG_ERR_USAGE: a lot's folder holds results already. */
 fg_status fg_station_export(fg_context *ctx, fg_inspection *station, const char *folder);
 
-/* One lot into folder, with its report. */
+/* One lot into `folder`, which is there, with its report: judged by the setup in which its newest
+ * scan was measured. Results that are there are replaced. Any thread. FG_ERR_USAGE: no such lot. */
 fg_status fg_station_export_lot(fg_context *ctx, fg_inspection *station, const char *lot,
-                                const char *folder, fg_lot_outcome *outcome);
+                                const char *folder, fg_exported_lot *exported);
 
 #endif

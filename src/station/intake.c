@@ -12,6 +12,7 @@
 #include "foilgauge/measure.h"
 #include "scan/format.h"
 #include "station/check.h"
+#include "station/close.h"
 #include "station/keep.h"
 #include "station/picture.h"
 #include "station/scan_command.h"
@@ -123,6 +124,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   int64_t scan;
   char why[WORDS];
   bool withheld = fg_station_check_withholds(station, why, sizeof why);
+  FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
   const fg_station_scan kept = {.file = at->file,
                                 .source =
                                     fg_station_is_scanned(at->file.name) ? "scanner" : "folder",
@@ -131,7 +133,8 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
                                 .setup = station->setup,
                                 .measurement = measurement,
                                 .seconds = seconds_since(&at->arrived),
-                                .withheld = withheld ? why : NULL};
+                                .withheld = withheld ? why : NULL,
+                                .note = at->words};
   FG_TRY(fg_station_keep_scan(ctx, &station->database, &kept, &scan, &outcome));
   fg_outcome_add(&station->outcome->judged, &outcome);
   station->outcome->measured++;

@@ -49,6 +49,7 @@ typedef struct fg_station_scan {
   const fg_measurement *measurement;
   double seconds;       /* from the file's arrival */
   const char *withheld; /* why there is no verdict; NULL: there is one */
+  const char *note;     /* what its card says beside the verdict, or "" */
 } fg_station_scan;
 
 /* All of a measured scan and its card, or nothing of it. `scan` is its number. */

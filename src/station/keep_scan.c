@@ -238,7 +238,7 @@ static fg_status keep_rows(fg_context *ctx, fg_station_database *database,
   *scan = sqlite3_last_insert_rowid(writer);
   for (size_t i = 0; i < kept->measurement->foil_count; i++)
     FG_TRY(keep_foil(ctx, writer, kept, &kept->measurement->foils[i], *scan));
-  return fg_station_insert_card(ctx, database, &kept->file, FG_CARD_MEASURED, "", *scan);
+  return fg_station_insert_card(ctx, database, &kept->file, FG_CARD_MEASURED, kept->note, *scan);
 }
 
 fg_status fg_station_keep_scan(fg_context *ctx, fg_station_database *database,

@@ -3,6 +3,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "core/utf8.h"
+
 static const struct {
   const char *name;
   size_t offset;
@@ -51,11 +53,21 @@ fg_status fg_naming_check(fg_context *ctx, const char *pattern) {
   return pattern[0] ? FG_OK : fg_fail(ctx, FG_ERR_DATA, "file_name is empty");
 }
 
+/* The name of a file is any bytes, that of a foil is a text that people read, type and search. */
 static void keep(fg_named *named, size_t field, const char *text, size_t length) {
+  static const char unknown[] = "\xEF\xBF\xBD";
   char *to = (char *)named + fields[field].offset;
-  if (length >= FG_NAMED_TEXT) length = FG_NAMED_TEXT - 1;
-  memcpy(to, text, length);
-  to[length] = '\0';
+  size_t kept = 0;
+  for (const char *at = text, *end = text + length; at < end;) {
+    size_t bytes = fg_utf8_length(at);
+    bool plain = bytes && at + bytes <= end && (unsigned char)*at >= ' ' && *at != 0x7f;
+    size_t needed = plain ? bytes : sizeof unknown - 1;
+    if (kept + needed >= FG_NAMED_TEXT) break;
+    memcpy(to + kept, plain ? at : unknown, needed);
+    kept += needed;
+    at += plain ? bytes : 1;
+  }
+  to[kept] = '\0';
 }
 
 /* Whether `name` up to `last` is as the pattern says. Patterns are short and names too: trying

@@ -17,7 +17,8 @@ typedef struct fg_named {
  * between them, a field twice. */
 fg_status fg_naming_check(fg_context *ctx, const char *pattern);
 
-/* Takes a file's name (without folder) apart. Its ending (from the last dot) does not count. A
+/* Takes a file's name (without folder) apart; bytes that are no UTF-8 or a control character become
+ * U+FFFD. Its ending (from the last dot) does not count. A
  * field takes as little as it can, and at least one byte. False, and the whole name as the serial
  * number, when the name is not as the pattern says. */
 bool fg_naming_take(const char *pattern, const char *file, fg_named *named);

@@ -15,6 +15,7 @@ typedef enum fg_tab {
 fg_page_writer fg_page_now, fg_page_history, fg_page_trends, fg_page_scanner, fg_page_lots;
 fg_page_writer fg_page_foil;   /* one foil: its values, its trail, its form */
 fg_page_writer fg_page_report; /* its whole report, measured again from the scan */
+fg_page_writer fg_page_lot;    /* the report of a closed lot, as it lies in its folder */
 
 /* From the doctype to <main>, with the tabs and, where it is due, the scanner's banner. */
 fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader, FILE *out,

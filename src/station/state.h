@@ -10,6 +10,15 @@
 
 enum { FG_FORM_TOKEN = 33 };
 
+/* A lot that is being closed, in a thread of its own: scans may have to be measured again. */
+typedef struct fg_closing {
+  pthread_mutex_t mutex;
+  pthread_t thread;
+  bool started, running; /* started: there is a thread to join */
+  char lot[1024], by[128];
+  char error[1024]; /* of the last that could not be closed; "": none */
+} fg_closing;
+
 typedef struct fg_inspection {
   const fg_station_request *request;
   const fg_station_settings *settings;
@@ -24,6 +33,7 @@ typedef struct fg_inspection {
   char host[128];                     /* "127.0.0.1:8317": what requests must be for */
   atomic_bool scanning;               /* the scan command runs */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
+  fg_closing closing;
   void (*wake)(void *server);         /* a card was added; NULL: nobody waits */
   void *server;
 } fg_inspection;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "lot/journal.h"
+#include "station/close.h"
 #include "station/export.h"
 #include "station/keep.h"
 #include "station/server.h"
@@ -62,7 +63,9 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   station->settings = request->settings;
   station->outcome = outcome;
   station->lock = -1;
+  pthread_mutex_init(&station->closing.mutex, NULL);
   fg_status status = work(ctx, station);
+  fg_closing_end(&station->closing);
   fg_station_database_close(&station->database);
   if (station->model) fg_scanner_model_free(station->model);
   if (station->lock >= 0) close(station->lock);

@@ -1,5 +1,3 @@
-#include "station/actions.h"
-#include "station/export.h"
 #include "station/pages.h"
 
 #define PAGE(name)                                                                                 \
@@ -12,19 +10,3 @@
   }
 PAGE(fg_page_trends)
 PAGE(fg_page_scanner)
-PAGE(fg_page_lots)
-#define ACTION(name)                                                                               \
-  fg_status name(fg_context *ctx, fg_inspection *station, const fg_request *request,               \
-                 fg_answer *answer) {                                                              \
-    (void)station;                                                                                 \
-    (void)request;                                                                                 \
-    (void)answer;                                                                                  \
-    return fg_fail(ctx, FG_ERR_DATA, "not yet");                                                   \
-  }
-ACTION(fg_action_close)
-ACTION(fg_action_download)
-fg_status fg_station_export(fg_context *ctx, fg_inspection *station, const char *folder) {
-  (void)station;
-  (void)folder;
-  return fg_fail(ctx, FG_ERR_DATA, "not yet");
-}

@@ -1,0 +1,15 @@
+/* Closing a lot: its folder and report are written, and who did it is kept. */
+#ifndef FG_STATION_CLOSE_H
+#define FG_STATION_CLOSE_H
+
+#include "station/state.h"
+
+/* Waits for a lot that is being closed. */
+void fg_closing_end(fg_closing *closing);
+
+/* What a foil of that lot has to say when it comes after the lot was closed; "" when it has not
+ * been. */
+fg_status fg_station_lot_note(fg_context *ctx, fg_station_database *database, const char *lot,
+                              char *words, size_t size);
+
+#endif

@@ -1,0 +1,333 @@
+#include "station/export.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/measure.h"
+#include "lot/lot_report.h"
+#include "lot/manifest_build.h"
+#include "station/lot_content.h"
+#include "station/lot_folder.h"
+
+/* A lot on its way to its folder. */
+typedef struct export {
+  fg_inspection *station;
+  const char *folder; /* of the lot */
+  fg_exported_lot *exported;
+  fg_lot_content content;
+  fg_manifest manifest;
+  fg_lot_settings settings; /* with which its newest scan was measured */
+  char *recipe_text, *manifest_text;
+  char *model_text; /* NULL: none */
+  fg_scanner_model *model;
+  fg_journal_head head;
+  int lock;
+}
+export;
+
+static fg_status read_setup(fg_context *ctx, export *at, char **recipe) {
+  fg_query query;
+  fg_status status = FG_OK;
+  fg_query_begin(at->station->database.reader, "SELECT recipe, model FROM setups WHERE id = ?",
+                 &query);
+  fg_query_integer(&query, at->content.setup);
+  if (fg_query_row(&query)) {
+    status = fg_text_print(ctx, recipe, "%s", fg_query_get_text(&query, 0));
+    if (status == FG_OK && !fg_query_is_null(&query, 1))
+      status = fg_text_print(ctx, &at->model_text, "%s", fg_query_get_text(&query, 1));
+  }
+  fg_status ended = fg_query_end(ctx, &query, "reading the lot's setup");
+  return status == FG_OK ? ended : status;
+}
+
+static fg_status read_database(fg_context *ctx, export *at, const char *lot, char **recipe) {
+  fg_station_database *database = &at->station->database;
+  pthread_mutex_lock(&database->reading);
+  fg_status status = fg_lot_content_read(ctx, database->reader, lot, &at->content);
+  if (status == FG_OK) status = read_setup(ctx, at, recipe);
+  pthread_mutex_unlock(&database->reading);
+  if (status == FG_OK && !*recipe)
+    status = fg_fail(ctx, FG_ERR_DATA, "the database has no setup for the lot '%.127s'", lot);
+  return status;
+}
+
+/* A recipe may name columns that only somebody's manifest has. */
+static void keep_column(const export *at, char *column, const char *usual) {
+  if (fg_manifest_column(&at->manifest, column) == FG_NO_COLUMN) strcpy(column, usual);
+}
+
+static void keep_columns(export *at) {
+  fg_lot_settings usual;
+  fg_lot_settings_default(&usual);
+  keep_column(at, at->settings.group_column, usual.group_column);
+  keep_column(at, at->settings.part_column, usual.part_column);
+  keep_column(at, at->settings.operator_column, usual.operator_column);
+  keep_column(at, at->settings.bearing_column, usual.bearing_column);
+  keep_column(at, at->settings.pad_column, usual.pad_column);
+}
+
+static fg_status take_setup(fg_context *ctx, export *at, const char *lot, const char *recipe) {
+  fg_lot_settings_default(&at->settings);
+  FG_TRY(fg_lot_settings_parse(ctx, "the setup in the database", recipe, &at->settings));
+  if (*lot) fg_text_clip(at->settings.name, sizeof at->settings.name, "%s", lot);
+  keep_columns(at);
+  if (!at->model_text) return FG_OK;
+  strcpy(at->settings.model, FG_LOT_MODEL_FILE);
+  return fg_scanner_model_parse(ctx, FG_LOT_MODEL_FILE, at->model_text, &at->model);
+}
+
+enum { SCAN, FOIL, LOT, DIE, OPERATOR, COLUMNS, OF_SCAN = COLUMNS };
+
+static fg_status name_columns(fg_context *ctx, fg_manifest *manifest, bool split) {
+  static const char *const names[] = {"scan", "foil", "lot", "die", "operator", "foils_of_scan"};
+  size_t column;
+  for (size_t i = 0; i < COLUMNS + (split ? 1 : 0); i++)
+    FG_TRY(fg_manifest_add_column(ctx, manifest, names[i], strlen(names[i]), &column));
+  return FG_OK;
+}
+
+/* "1 3 of 4": a bed with foils of several lots. */
+static fg_status list_numbers(fg_context *ctx, const fg_lot_scan *scan, char **text) {
+  for (size_t i = 0; i < scan->count; i++)
+    FG_TRY(fg_text_append(ctx, text, "%d ", scan->numbers[i]));
+  return fg_text_append(ctx, text, "of %zu", scan->of);
+}
+
+/* A bed is called as its foils are without their numbers, unless somebody gave them names. */
+static fg_status name_scan(fg_context *ctx, const fg_lot_scan *scan, char **name) {
+  char *all = NULL;
+  const char *end = strchr(scan->serial, ' '),
+             *dot = memrchr(scan->serial, '.', end ? (size_t)(end - scan->serial) : 0);
+  int base = (int)(dot ? dot - scan->serial : 0);
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < scan->count && base && status == FG_OK; i++)
+    status =
+        fg_text_append(ctx, &all, "%s%.*s.%d", i ? " " : "", base, scan->serial, scan->numbers[i]);
+  bool usual = all && !strcmp(all, scan->serial);
+  free(all);
+  FG_TRY(status);
+  return usual ? fg_text_print(ctx, name, "%.*s", base, scan->serial)
+               : fg_text_print(ctx, name, "%s", scan->serial);
+}
+
+static fg_status add_row(fg_context *ctx, export *at, const char *folder, const char *lot,
+                         const fg_lot_scan *scan) {
+  char **row;
+  FG_TRY(fg_manifest_add_item(ctx, &at->manifest, &row));
+  FG_TRY(fg_text_print(ctx, &row[SCAN], "%s/%s", folder, scan->path));
+  FG_TRY(name_scan(ctx, scan, &row[FOIL]));
+  FG_TRY(fg_text_print(ctx, &row[LOT], "%s", lot));
+  FG_TRY(fg_text_print(ctx, &row[DIE], "%s", scan->die));
+  FG_TRY(fg_text_print(ctx, &row[OPERATOR], "%s", scan->operator_name));
+  return at->manifest.columns > COLUMNS ? list_numbers(ctx, scan, &row[OF_SCAN]) : FG_OK;
+}
+
+/* Scans by their whole path: the lot's folder may go elsewhere. */
+static fg_status make_manifest(fg_context *ctx, export *at, const char *lot) {
+  const char *folder = at->station->request->folder;
+  bool split = false;
+  for (size_t i = 0; i < at->content.count; i++)
+    split = split || at->content.scans[i].count < at->content.scans[i].of;
+  char *whole = realpath(folder, NULL);
+  if (!whole)
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", folder, strerror(errno));
+  fg_status status = name_columns(ctx, &at->manifest, split);
+  for (size_t i = 0; i < at->content.count && status == FG_OK; i++)
+    status = add_row(ctx, at, whole, lot, &at->content.scans[i]);
+  free(whole);
+  if (status == FG_OK) status = fg_manifest_format(ctx, &at->manifest, &at->manifest_text);
+  return status;
+}
+
+static fg_status make_head(fg_context *ctx, export *at) {
+  at->head =
+      (fg_journal_head){.version = FOILGAUGE_VERSION, .shard = {1, 1}, .items = at->manifest.items};
+  FG_TRY(fg_lot_settings_format(ctx, &at->settings, false, &at->recipe_text));
+  fg_lot_sum_text(at->manifest_text, at->head.manifest_sha256);
+  fg_lot_sum_text(at->recipe_text, at->head.recipe_sha256);
+  return fg_lot_sum_settings(ctx, &at->settings, at->head.measured_with);
+}
+
+/* Of the lot's foils alone. */
+static fg_status format(fg_context *ctx, const export *at, size_t item, const fg_foil *foils,
+                        size_t foil_count, char **line, size_t *length) {
+  const fg_lot_scan *scan = &at->content.scans[item];
+  fg_measurement own = {0};
+  fg_record record = {.scan = (char *)(uintptr_t)fg_manifest_scan(&at->manifest, item)};
+  void *block;
+  strcpy(record.sha256, scan->sha256);
+  strcpy(record.measured_with, at->head.measured_with);
+  FG_TRY(fg_memory_allocate(ctx, scan->count, sizeof *own.foils, &block));
+  own.foils = block;
+  for (size_t i = 0; i < foil_count; i++)
+    for (size_t k = 0; k < scan->count; k++)
+      if (foils[i].number == scan->numbers[k]) own.foils[own.foil_count++] = foils[i];
+  fg_status status = fg_record_format(ctx, &record, &own, line, length);
+  free(own.foils);
+  return status;
+}
+
+/* Without a sum it is never kept: --resume tries again. */
+static fg_status format_lost(fg_context *ctx, export *at, size_t item, const char *why, char **line,
+                             size_t *length) {
+  fg_record record = {.scan = (char *)(uintptr_t)fg_manifest_scan(&at->manifest, item)};
+  fg_status status = fg_text_print(ctx, &record.error,
+                                   "the record is of another setup or program, and the scan cannot "
+                                   "be measured again: %.500s",
+                                   why);
+  strcpy(record.measured_with, at->head.measured_with);
+  at->exported->lost++;
+  if (status == FG_OK) status = fg_record_format(ctx, &record, NULL, line, length);
+  free(record.error);
+  return status;
+}
+
+static fg_status correct(fg_context *ctx, const export *at, fg_measurement *measurement) {
+  char warning[200];
+  if (!at->model) return FG_OK;
+  fg_status status = fg_scanner_model_apply(ctx, at->model, measurement, 1, warning);
+  if (status != FG_OK) fg_measurement_free(measurement);
+  return status;
+}
+
+/* The record is not of the lot's setup: the scan is, when it is what it was. */
+static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **line,
+                               size_t *length) {
+  const fg_lot_scan *scan = &at->content.scans[item];
+  const fg_measure_options options = {.dpi = at->settings.dpi, .threads = 1, .only_file = true};
+  fg_context inner = {.message = ""};
+  fg_measurement measurement;
+  fg_status status = fg_measure_scan(&inner, fg_manifest_scan(&at->manifest, item),
+                                     &at->settings.design, &options, &measurement);
+  if (status == FG_OK) status = correct(&inner, at, &measurement);
+  if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);
+  if (status != FG_OK) return format_lost(ctx, at, item, inner.message, line, length);
+  if (strcmp(measurement.sha256, scan->sha256) != 0)
+    status = format_lost(ctx, at, item, "the file holds another scan now", line, length);
+  else if (measurement.foil_count != scan->of)
+    status = format_lost(ctx, at, item, "other foils are found in it now", line, length);
+  else
+    status = format(ctx, at, item, measurement.foils, measurement.foil_count, line, length);
+  at->exported->again++;
+  fg_measurement_free(&measurement);
+  return status;
+}
+
+static fg_status read_record(fg_context *ctx, const export *at, int64_t scan, fg_record *record) {
+  fg_query query;
+  fg_context inner;
+  fg_station_database *database = &at->station->database;
+  *record = (fg_record){0};
+  pthread_mutex_lock(&database->reading);
+  fg_query_begin(database->reader, "SELECT record FROM scans WHERE id = ?", &query);
+  fg_query_integer(&query, scan);
+  fg_status status = FG_OK;
+  /* One of another program may have other quantities: it is as if there were none. */
+  if (fg_query_row(&query)) status = fg_record_parse(&inner, fg_query_get_text(&query, 0), record);
+  fg_status ended = fg_query_end(ctx, &query, "reading a record");
+  pthread_mutex_unlock(&database->reading);
+  if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);
+  return ended;
+}
+
+static fg_status write_record(fg_context *ctx, void *user, size_t item, char **line,
+                              size_t *length) {
+  export *at = user;
+  fg_record record;
+  FG_TRY(read_record(ctx, at, at->content.scans[item].id, &record));
+  bool valid = record.scan && !strcmp(record.measured_with, at->head.measured_with);
+  fg_status status = valid ? format(ctx, at, item, record.foils, record.foil_count, line, length)
+                           : measure_again(ctx, at, item, line, length);
+  fg_record_free(&record);
+  return status;
+}
+
+static fg_status write_report(fg_context *ctx, export *at) {
+  fg_lot lot = {.manifest = at->manifest};
+  at->manifest = (fg_manifest){0};
+  fg_lot_settings_default(&lot.settings); /* as `lot` and `merge` read them */
+  fg_status status = fg_lot_settings_parse(ctx, "recipe.json", at->recipe_text, &lot.settings);
+  if (status == FG_OK) status = fg_lot_load(ctx, at->folder, &lot);
+  if (status == FG_OK) status = fg_lot_write_report(ctx, at->folder, &lot, &at->exported->outcome);
+  fg_lot_free(&lot);
+  return status;
+}
+
+static fg_status write_folder(fg_context *ctx, export *at) {
+  char *results;
+  FG_TRY(fg_folder_lock(ctx, at->folder, &at->lock));
+  FG_TRY(fg_lot_remove_report(ctx, at->folder));
+  FG_TRY(fg_lot_write_text(ctx, at->folder, "recipe.json", at->recipe_text));
+  FG_TRY(fg_lot_write_text(ctx, at->folder, "manifest.csv", at->manifest_text));
+  FG_TRY(fg_lot_write_model(ctx, at->folder, at->model_text));
+  FG_TRY(fg_lot_path(ctx, at->folder, "results.jsonl", &results));
+  fg_status status = fg_journal_write(ctx, results, &at->head, write_record, at);
+  free(results);
+  FG_TRY(status);
+  return write_report(ctx, at);
+}
+
+static void append(char *words, size_t size, size_t count, const char *one, const char *many) {
+  size_t length = strlen(words);
+  if (count)
+    fg_text_clip(words + length, size - length, "; %zu %s", count, count == 1 ? one : many);
+}
+
+static void find_words(fg_exported_lot *exported) {
+  const fg_lot_outcome *outcome = &exported->outcome;
+  const size_t *by = outcome->foils_by_verdict, size = sizeof exported->words;
+  char *words = exported->words;
+  fg_text_clip(words, size, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told",
+               outcome->foils, outcome->scans, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
+               by[FG_VERDICT_UNDECIDED]);
+  append(words, size, by[FG_VERDICT_NONE], "without tolerances", "without tolerances");
+  append(words, size, by[FG_VERDICT_NOT_MEASURED], "foil not measured", "foils not measured");
+  append(words, size, exported->replaced, "foil counts with its later scan",
+         "foils count with their later scans");
+  append(words, size, exported->withheld, "foil has no verdict: the scanner's check was due",
+         "foils have no verdict: the scanner's check was due");
+  append(words, size, exported->again, "scan was measured again with the lot's newest setup",
+         "scans were measured again with the lot's newest setup");
+  append(words, size, exported->lost,
+         "scan is of another setup and cannot be measured again: not measured",
+         "scans are of another setup and cannot be measured again: not measured");
+}
+
+static fg_status work(fg_context *ctx, export *at, const char *lot) {
+  char *recipe = NULL;
+  fg_status status = read_database(ctx, at, lot, &recipe);
+  if (status == FG_OK) status = make_manifest(ctx, at, lot);
+  if (status == FG_OK) status = take_setup(ctx, at, lot, recipe);
+  free(recipe);
+  FG_TRY(status);
+  at->exported->replaced = at->content.replaced;
+  at->exported->withheld = at->content.withheld;
+  strcpy(at->exported->state, at->content.state);
+  fg_context ignored; /* more groups than are compared: the lot goes without */
+  if (fg_lot_check_columns(&ignored, &at->settings, &at->manifest) != FG_OK)
+    at->settings.group_column[0] = '\0';
+  FG_TRY(make_head(ctx, at));
+  FG_TRY(write_folder(ctx, at));
+  find_words(at->exported);
+  return FG_OK;
+}
+
+fg_status fg_station_export_lot(fg_context *ctx, fg_inspection *station, const char *lot,
+                                const char *folder, fg_exported_lot *exported) {
+  export at = {.station = station, .folder = folder, .exported = exported, .lock = -1};
+  *exported = (fg_exported_lot){.outcome.judged.verdict = FG_VERDICT_NONE};
+  fg_status status = work(ctx, &at, lot);
+  if (at.lock >= 0) close(at.lock);
+  if (at.model) fg_scanner_model_free(at.model);
+  fg_lot_content_free(&at.content);
+  fg_manifest_free(&at.manifest);
+  free(at.recipe_text);
+  free(at.manifest_text);
+  free(at.model_text);
+  return status;
+}

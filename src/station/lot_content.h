@@ -1,0 +1,46 @@
+/* What the database says of a lot: which foils of which scans belong to it. */
+#ifndef FG_STATION_LOT_CONTENT_H
+#define FG_STATION_LOT_CONTENT_H
+
+#include "station/database.h"
+
+/* A scan with foils of the lot: of a bed, maybe not all. */
+typedef struct fg_lot_scan {
+  int64_t id;
+  char *path; /* below the station's folder */
+  char sha256[65];
+  size_t of; /* foils of the scan, whatever lot they belong to */
+  int *numbers;
+  size_t count, capacity; /* of the lot's foils among them */
+  char *serial, *die, *operator_name;
+} fg_lot_scan;
+
+/* A foil that had to be scanned again (it could not be told, measured, or given a verdict) counts
+ * with its later scans of the same serial number; one that fails stays. */
+typedef struct fg_lot_content {
+  fg_lot_scan *scans;
+  size_t count, capacity;
+  size_t replaced; /* foils that count with a later scan */
+  size_t withheld; /* foils that count, and have no verdict while the scanner's check was due */
+  int64_t setup;   /* with which the newest of its scans was measured */
+  char state[64];  /* changes with every foil that comes, goes or is corrected (FG_LOT_STATE) */
+} fg_lot_content;
+
+/* Foils `f` of scans `s` that count in their lot, as SQL. */
+#define FG_LOT_REPLACED                                                                            \
+  "((f.verdict IN ('cannot_tell', 'not_measured') OR s.withheld IS NOT NULL) AND f.serial <> ''"   \
+  " AND EXISTS (SELECT 1 FROM foils AS g WHERE g.serial = f.serial AND g.lot = f.lot"              \
+  " AND g.scan > f.scan))"
+
+/* What a lot holds, as a word; `name` is SQL. */
+#define FG_LOT_STATE(name)                                                                         \
+  "(SELECT count(*) || ' ' || total(h.id) FROM foils AS h WHERE h.lot = " name ") || ' ' ||"       \
+  " (SELECT coalesce(max(c.id), 0) FROM foils AS h JOIN corrections AS c ON c.foil = h.id"         \
+  " WHERE h.lot = " name ")"
+
+/* FG_ERR_USAGE: there is no such lot. `reader`: nobody else uses it meanwhile. */
+fg_status fg_lot_content_read(fg_context *ctx, sqlite3 *reader, const char *lot,
+                              fg_lot_content *content);
+void fg_lot_content_free(fg_lot_content *content);
+
+#endif

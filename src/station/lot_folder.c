@@ -1,0 +1,69 @@
+#include "station/lot_folder.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "core/sha256.h"
+#include "core/text.h"
+#include "core/utf8.h"
+
+#define WITHOUT_LOT "without_lot"
+
+/* LONGEST leaves room in the 255 bytes of a name for the sum of what is cut off. */
+enum { LONGEST = 200, SUM_DIGITS = 16 };
+
+/* What file systems of any kind take as it is, not at the edges of a name where some cut it off. */
+static bool is_plain(const char *at, bool edge) {
+  unsigned char c = (unsigned char)*at;
+  if (c < ' ' || c == 0x7f || strchr("%/\\:*?\"<>|", c)) return false;
+  return !edge || (c != '.' && c != ' ');
+}
+
+static size_t put(char *name, const char *at, size_t bytes, bool plain) {
+  size_t length = 0;
+  for (size_t i = 0; i < bytes; i++)
+    length += (size_t)snprintf(name + length, 4, plain ? "%c" : "%%%02X", (unsigned char)at[i]);
+  return length;
+}
+
+void fg_lot_folder_name(const char *lot, char name[FG_LOT_FOLDER_NAME]) {
+  char sum[65];
+  size_t length = 0;
+  const char *at = lot;
+  name[0] = '\0';
+  while (*at && length < LONGEST) {
+    size_t valid = fg_utf8_length(at), bytes = valid ? valid : 1;
+    bool edge = at == lot || !at[bytes];
+    bool reserved = at == lot && !strcmp(lot, WITHOUT_LOT);
+    length += put(name + length, at, bytes, valid && !reserved && is_plain(at, edge));
+    at += bytes;
+  }
+  if (!*lot) strcpy(name, WITHOUT_LOT);
+  if (!*at) return;
+  fg_sha256_text(lot, sum);
+  snprintf(name + length, FG_LOT_FOLDER_NAME - length, "-%.*s", SUM_DIGITS, sum);
+}
+
+static fg_status check_step(fg_context *ctx, const char *path, bool make) {
+  struct stat info;
+  if (make && mkdir(path, 0777) != 0 && errno != EEXIST)
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", path, strerror(errno));
+  if (lstat(path, &info) == 0 && S_ISDIR(info.st_mode)) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s: is no folder of this station", path);
+}
+
+fg_status fg_lot_folder_find(fg_context *ctx, const char *folder, const char *lot, bool make,
+                             char **path) {
+  char name[FG_LOT_FOLDER_NAME];
+  fg_lot_folder_name(lot, name);
+  FG_TRY(fg_text_print(ctx, path, "%s/" FG_LOTS_FOLDER, folder));
+  fg_status status = check_step(ctx, *path, make);
+  if (status == FG_OK) status = fg_text_append(ctx, path, "/%s", name);
+  if (status == FG_OK) status = check_step(ctx, *path, make);
+  if (status == FG_OK) return FG_OK;
+  free(*path);
+  *path = NULL;
+  return status;
+}

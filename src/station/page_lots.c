@@ -1,0 +1,226 @@
+/* Lots that are open and lots that are closed. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "station/lot_content.h"
+#include "station/pages.h"
+
+enum { LOTS_SHOWN = 40 };
+
+static void write_name(FILE *out, const char *lot) {
+  fg_html_text(out, *lot ? lot : "without lot");
+}
+
+/* As a value in a link. */
+static void write_encoded(FILE *out, const char *text) {
+  for (; *text; text++) {
+    bool plain = (*text >= '0' && *text <= '9') || (*text >= 'A' && *text <= 'Z') ||
+                 (*text >= 'a' && *text <= 'z') || *text == '-' || *text == '_' || *text == '.';
+    fprintf(out, plain ? "%c" : "%%%02X", (unsigned char)*text);
+  }
+}
+
+static void write_link(FILE *out, const char *page, const char *lot, const char *words) {
+  fprintf(out, "<a href=\"%s", page);
+  write_encoded(out, lot);
+  fprintf(out, "\">%s</a>", words);
+}
+
+/* Counts of a row: foils, pass, fail, again, withheld. */
+#define COUNTS                                                                                     \
+  "count(*), total(f.verdict = 'pass' AND s.withheld IS NULL),"                                    \
+  " total(f.verdict = 'fail' AND s.withheld IS NULL),"                                             \
+  " total(f.verdict IN ('cannot_tell', 'not_measured') AND s.withheld IS NULL),"                   \
+  " total(s.withheld IS NOT NULL)"
+
+static void write_counts(FILE *out, const fg_query *row, int from) {
+  static const char *const words[] = {"PASS", "FAIL", "SCAN AGAIN", "NO VERDICT"};
+  static const char *const styles[] = {"pass", "fail", "again", "again"};
+  long long foils = fg_query_get_integer(row, from);
+  fprintf(out, "<td>%lld</td><td>", foils);
+  for (int i = 0; i < 4; i++) {
+    long long count = fg_query_get_integer(row, from + 1 + i);
+    if (count) fprintf(out, "<span class=\"tag %s\">%lld %s</span> ", styles[i], count, words[i]);
+  }
+  fputs("</td>", out);
+}
+
+static fg_status write_open(fg_context *ctx, sqlite3 *reader, FILE *out) {
+  fg_query query;
+  size_t count = 0;
+  fg_query_begin(reader,
+                 "SELECT f.lot, max(s.at), " COUNTS
+                 " FROM foils AS f JOIN scans AS s ON s.id = f.scan"
+                 " WHERE f.lot NOT IN (SELECT name FROM lots) AND NOT " FG_LOT_REPLACED
+                 " GROUP BY f.lot ORDER BY max(s.id) DESC LIMIT ?",
+                 &query);
+  fg_query_integer(&query, LOTS_SHOWN);
+  fputs("<section><h2 class=\"first\">Open lots</h2>\n", out);
+  while (fg_query_row(&query)) {
+    const char *lot = fg_query_get_text(&query, 0);
+    if (!count++)
+      fputs("<table><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
+            "<th class=\"noprint\"></th></tr></thead><tbody>\n",
+            out);
+    fputs("<tr><td><a href=\"/history?lot=", out);
+    write_encoded(out, lot);
+    fputs("\">", out);
+    write_name(out, lot);
+    fputs("</a></td>", out);
+    write_counts(out, &query, 2);
+    fputs("<td>", out);
+    fg_page_time(out, fg_query_get_integer(&query, 1));
+    fputs("</td><td class=\"noprint\">", out);
+    write_link(out, "/lots?close=1&amp;lot=", lot, "Close …");
+    fputs("</td></tr>\n", out);
+  }
+  fputs(count ? "</tbody></table>\n" : "<p>No lot is open.</p>\n", out);
+  fputs("</section>\n", out);
+  return fg_query_end(ctx, &query, "reading the open lots");
+}
+
+static void write_downloads(const fg_inspection *station, FILE *out, const char *lot) {
+  static const char *const files[][2] = {{"foils.csv", "Foils (CSV)"},
+                                         {"bumps.csv", "Bumps (CSV)"},
+                                         {"results.qif", "QIF"},
+                                         {"results.dfq", "DFQ"}};
+  fputs("<form class=\"fields noprint\" method=\"post\" action=\"/download\">", out);
+  fg_page_form_token(station, out);
+  fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
+  fg_html_text(out, lot);
+  fputs("\">", out);
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+    fprintf(out, "<button name=\"file\" value=\"%s\">%s</button>", files[i][0], files[i][1]);
+  fputs("</form>", out);
+}
+
+enum { CLOSED_NAME, CLOSED_AT, CLOSED_BY, CLOSED_VERDICT, CLOSED_WITHHELD, CLOSED_SUMMARY };
+enum { CLOSED_BEFORE = CLOSED_SUMMARY + 1, CLOSED_CHANGED };
+
+static void write_closed_lot(const fg_inspection *station, FILE *out, const fg_query *row) {
+  const char *lot = fg_query_get_text(row, CLOSED_NAME);
+  const char *verdict = fg_query_get_text(row, CLOSED_VERDICT);
+  long long before = fg_query_get_integer(row, CLOSED_BEFORE);
+  bool withheld = fg_query_get_integer(row, CLOSED_WITHHELD) && strcmp(verdict, "fail") != 0;
+  fprintf(out, "<tr><td><span class=\"tag %s\">%s</span> <a href=\"/history?lot=",
+          fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
+  write_encoded(out, lot);
+  fputs("\">", out);
+  write_name(out, lot);
+  fputs("</a><br>", out);
+  write_link(out, "/lot?name=", lot, "Report");
+  fputs("</td><td>", out);
+  fg_html_text(out, fg_query_get_text(row, CLOSED_SUMMARY));
+  if (fg_query_get_integer(row, CLOSED_CHANGED)) {
+    fputs("<br><b>Foils have come, gone or been corrected since.</b> ", out);
+    write_link(out, "/lots?close=1&amp;lot=", lot, "Close again …");
+  }
+  write_downloads(station, out, lot);
+  fputs("</td><td>", out);
+  fg_page_time(out, fg_query_get_integer(row, CLOSED_AT));
+  fputs(" by ", out);
+  fg_html_text(out, fg_query_get_text(row, CLOSED_BY));
+  if (before) fprintf(out, "<br>closed %lld times before", before);
+  fputs("</td></tr>\n", out);
+}
+
+static fg_status write_closed(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                              FILE *out) {
+  fg_query query;
+  size_t count = 0;
+  fg_query_begin(
+      reader,
+      "SELECT l.name, l.closed_at, l.by, l.verdict, l.withheld, l.summary,"
+      " (SELECT count(*) FROM lots AS e WHERE e.name = l.name) - 1,"
+      " l.state <> " FG_LOT_STATE(
+          "l.name") " FROM lots AS l"
+                    " WHERE l.id = (SELECT max(e.id) FROM lots AS e WHERE e.name = l.name)"
+                    " ORDER BY l.id DESC LIMIT ?",
+      &query);
+  fg_query_integer(&query, LOTS_SHOWN);
+  while (fg_query_row(&query)) {
+    if (!count++)
+      fputs("<section><h2 class=\"first\">Closed lots</h2>\n<table><thead><tr><th>Lot</th><th>"
+            "Report</th><th>Closed</th></tr></thead><tbody>\n",
+            out);
+    write_closed_lot(station, out, &query);
+  }
+  if (count) fputs("</tbody></table></section>\n", out);
+  return fg_query_end(ctx, &query, "reading the closed lots");
+}
+
+/* What was found wrong with files of the folder that gave no scan: whose lot they are, nobody
+ * knows. */
+static fg_status write_refused(fg_context *ctx, sqlite3 *reader, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader,
+                 "SELECT count(*) FROM arrivals WHERE superseded = 0"
+                 " AND kind IN ('unfinished', 'unreadable')",
+                 &query);
+  long long count = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  if (count)
+    fprintf(out,
+            "<p>%lld file%s of the folder could not be read or measured and %s in no lot: see "
+            "<a href=\"/\">Now</a>.</p>\n",
+            count, count == 1 ? "" : "s", count == 1 ? "is" : "are");
+  return fg_query_end(ctx, &query, "reading the cards");
+}
+
+static fg_status write_question(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                                const char *lot, FILE *out) {
+  fg_query query;
+  fg_query_begin(reader,
+                 "SELECT " COUNTS " FROM foils AS f JOIN scans AS s ON s.id = f.scan"
+                 " WHERE f.lot = ? AND NOT " FG_LOT_REPLACED,
+                 &query);
+  fg_query_text(&query, lot);
+  fputs("<section><h2 class=\"first\">Close the lot ", out);
+  write_name(out, lot);
+  fputs("?</h2>\n<table><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>", out);
+  if (fg_query_row(&query)) write_counts(out, &query, 0);
+  fputs("</tr></tbody></table>\n<p>Its report is written into the folder lots of the station. "
+        "Foils can be corrected, and the lot closed again, later.</p>\n",
+        out);
+  FG_TRY(fg_query_end(ctx, &query, "reading the lot"));
+  FG_TRY(write_refused(ctx, reader, out));
+  fputs("<form class=\"fields\" method=\"post\" action=\"/close\">", out);
+  fg_page_form_token(station, out);
+  fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
+  fg_html_text(out, lot);
+  fputs("\"><label>Closed by<input name=\"by\" maxlength=\"127\" autocomplete=\"off\" required "
+        "data-focus></label><button>Close the lot</button> <a href=\"/lots\">Not yet</a></form>\n"
+        "</section>\n",
+        out);
+  return FG_OK;
+}
+
+/* The one that is being closed, or what was in the way of the last. */
+static void write_closing(fg_inspection *station, FILE *out) {
+  fg_closing *closing = &station->closing;
+  pthread_mutex_lock(&closing->mutex);
+  if (closing->running)
+    fputs("<meta http-equiv=\"refresh\" content=\"2\"><p class=\"banner\" role=\"status\">The lot ",
+          out);
+  else if (closing->error[0])
+    fputs("<p class=\"banner\" role=\"alert\">The lot ", out);
+  if (closing->running || closing->error[0]) {
+    write_name(out, closing->lot);
+    fputs(closing->running ? " is being closed." : " could not be closed: ", out);
+    if (!closing->running) fg_html_text(out, closing->error);
+    fputs("</p>\n", out);
+  }
+  pthread_mutex_unlock(&closing->mutex);
+}
+
+fg_status fg_page_lots(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                       const fg_request *request, FILE *out) {
+  FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_LOTS, "Lots"));
+  write_closing(station, out);
+  if (fg_request_get(request, "close")[0])
+    FG_TRY(write_question(ctx, station, reader, fg_request_get(request, "lot"), out));
+  FG_TRY(write_open(ctx, reader, out));
+  FG_TRY(write_closed(ctx, station, reader, out));
+  fg_page_end(out);
+  return FG_OK;
+}
