@@ -24,6 +24,7 @@ extern "C" {
  * of the form discs). */
 typedef struct fg_station_check {
   char design[1024];    /* path, relative to the recipe; "": no check is asked for */
+  char file_name[256];  /* as that of foils; what is called so is a check. "check*" */
   double every_h;       /* 0: whenever somebody likes */
   double scale_max_ppm; /* a scale further from 1 fails */
   bool withhold;        /* past due, or failed: no verdict */
@@ -39,7 +40,7 @@ typedef struct fg_station_settings {
 } fg_station_settings;
 
 /* A recipe of lots with a member `station` {"file_name", "scan_command", "check": {"design",
- * "every_h", "scale_max_ppm", "withhold"}}; NULL: no recipe. FG_ERR_DATA names the member. */
+ * "file_name", "every_h", "scale_max_ppm", "withhold"}}; NULL: no recipe. FG_ERR_DATA names the member. */
 fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const char *design,
                                    fg_station_settings *settings);
 

@@ -161,6 +161,11 @@ fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis);
 
 /* Parts of the analysis, each in its own file. */
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);
+/* Of a quantity whose values and sizes are known: its charts, whether it is stable; and, where it
+ * has a tolerance and a chart, its capability. The second asks for `sd`. */
+fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
+                                fg_lot_quantity *quantity);
+fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity);
 fg_status fg_lot_analyse_correlation(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis);

@@ -142,14 +142,14 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
 }
 
 /* The mean of each foil's values, foils without any left out. */
-static fg_status foil_means(fg_context *ctx, const fg_lot_analysis *analysis,
-                            const fg_lot_quantity *quantity, double **means, size_t *count) {
+static fg_status foil_means(fg_context *ctx, const fg_lot_quantity *quantity, size_t foils,
+                            double **means, size_t *count) {
   void *block;
   size_t at = 0;
-  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof **means, &block));
+  FG_TRY(fg_memory_allocate(ctx, foils, sizeof **means, &block));
   *means = block;
   *count = 0;
-  for (size_t i = 0; i < analysis->foil_count; i++) {
+  for (size_t i = 0; i < foils; i++) {
     double sum = 0;
     for (size_t k = 0; k < quantity->size[i]; k++)
       sum += quantity->value[at + k];
@@ -159,12 +159,11 @@ static fg_status foil_means(fg_context *ctx, const fg_lot_analysis *analysis,
   return FG_OK;
 }
 
-static fg_status chart(fg_context *ctx, const fg_lot_analysis *analysis,
-                       fg_lot_quantity *quantity) {
-  unsigned rules = analysis->lot->settings.run_rules;
+fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
+                                fg_lot_quantity *quantity) {
   double *means;
   size_t count;
-  FG_TRY(foil_means(ctx, analysis, quantity, &means, &count));
+  FG_TRY(foil_means(ctx, quantity, foils, &means, &count));
   fg_status status = FG_OK;
   quantity->has_chart = count >= 2;
   if (quantity->has_chart)
@@ -175,9 +174,8 @@ static fg_status chart(fg_context *ctx, const fg_lot_analysis *analysis,
   fg_context unused;
   quantity->has_subgroups =
       quantity->owner == FG_QUANTITY_OF_BUMP &&
-      fg_chart_subgroups(&unused, quantity->value, quantity->size, analysis->foil_count,
-                         FG_SIGMA_FROM_SD, rules, &quantity->means, &quantity->deviations,
-                         &quantity->within_sigma) == FG_OK;
+      fg_chart_subgroups(&unused, quantity->value, quantity->size, foils, FG_SIGMA_FROM_SD, rules,
+                         &quantity->means, &quantity->deviations, &quantity->within_sigma) == FG_OK;
   quantity->stable = quantity->has_chart && quantity->chart.signals == 0 &&
                      (!quantity->has_subgroups || quantity->deviations.signals == 0);
   return FG_OK;
@@ -195,8 +193,7 @@ static double process_sigma(const fg_lot_quantity *quantity) {
   return sqrt(fmax(between, 0) + within);
 }
 
-static fg_status judge_capability(fg_context *ctx, const fg_lot_settings *settings,
-                                  fg_lot_quantity *quantity) {
+fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity) {
   if (!quantity->tolerance || !quantity->has_chart || !(quantity->sd > 0)) return FG_OK;
   const fg_capability_input input = {.values = quantity->value,
                                      .count = quantity->count,
@@ -205,7 +202,7 @@ static fg_status judge_capability(fg_context *ctx, const fg_lot_settings *settin
                                      .sigma = process_sigma(quantity),
                                      .sigma_freedom = 0.62 * (double)(quantity->chart.count - 1),
                                      .stable = quantity->stable,
-                                     .confidence = settings->confidence,
+                                     .confidence = confidence,
                                      .density = quantity->has_density ? &quantity->density : NULL};
   quantity->has_capability = isfinite(input.lower) || isfinite(input.upper);
   if (!quantity->has_capability) return FG_OK;
@@ -219,8 +216,9 @@ fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis) 
     FG_TRY(collect(ctx, analysis, quantity));
     FG_TRY(describe(ctx, &analysis->lot->settings, quantity));
     FG_TRY(describe_places(ctx, analysis, quantity));
-    FG_TRY(chart(ctx, analysis, quantity));
-    FG_TRY(judge_capability(ctx, &analysis->lot->settings, quantity));
+    FG_TRY(fg_lot_chart_quantity(ctx, analysis->lot->settings.run_rules, analysis->foil_count,
+                                 quantity));
+    FG_TRY(fg_lot_judge_capability(ctx, analysis->lot->settings.confidence, quantity));
   }
   return FG_OK;
 }

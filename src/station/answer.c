@@ -8,6 +8,7 @@
 #include "report/measure/measure_page_parts.h"
 #include "station/actions.h"
 #include "station/pages.h"
+#include "station/trend.h"
 
 typedef struct route {
   const char *path;
@@ -205,6 +206,8 @@ static bool give_fixed(fg_inspection *station, const fg_request *request, fg_ans
     give_text(answer, "text/css; charset=utf-8", fg_station_style_text());
   else if (!strcmp(request->path, "/script.js"))
     give_text(answer, "text/javascript; charset=utf-8", fg_station_script);
+  else if (!strcmp(request->path, "/trends.js"))
+    give_text(answer, "text/javascript; charset=utf-8", fg_trend_script);
   else if (!strcmp(request->path, "/events"))
     tell_events(station, request, answer);
   else

@@ -177,6 +177,16 @@ static fg_status measure(fg_context *ctx, intake *at) {
   return status;
 }
 
+/* By its name, as either pattern has it; fills what else the name says. */
+static bool is_check(const fg_inspection *station, intake *at) {
+  const fg_station_settings *settings = station->settings;
+  fg_named as_check;
+  bool called = settings->check.design[0] &&
+                fg_naming_take(settings->check.file_name, at->file.name, &as_check);
+  bool fits = fg_naming_take(settings->file_name, at->file.name, &at->named);
+  return called || (fits && at->named.check[0]);
+}
+
 static fg_status take(fg_context *ctx, intake *at, bool final, bool *later) {
   fg_inspection *station = at->station;
   struct stat now;
@@ -191,11 +201,11 @@ static fg_status take(fg_context *ctx, intake *at, bool final, bool *later) {
     *later = true;
     return FG_OK;
   }
-  bool fits = fg_naming_take(station->settings->file_name, at->file.name, &at->named);
+  bool check = is_check(station, at);
   fg_status status;
   if (card != FG_CARD_MEASURED)
     status = refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
-  else if (fits && at->named.check[0])
+  else if (check)
     status = fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
   else
     status = measure(ctx, at);

@@ -32,13 +32,16 @@ static fg_status read_number(fg_context *ctx, const cJSON *value, double highest
 static fg_status read_check_member(fg_context *ctx, const cJSON *value, fg_station_check *check) {
   if (!strcmp(value->string, "design"))
     return read_text(ctx, value, check->design, sizeof check->design);
+  if (!strcmp(value->string, "file_name"))
+    return read_text(ctx, value, check->file_name, sizeof check->file_name);
   if (!strcmp(value->string, "every_h")) return read_number(ctx, value, 1e5, &check->every_h);
   if (!strcmp(value->string, "scale_max_ppm"))
     return read_number(ctx, value, 1e6, &check->scale_max_ppm);
   if (strcmp(value->string, "withhold") != 0)
-    return fg_fail(ctx, FG_ERR_DATA,
-                   "unknown member '%.60s'; there are design, every_h, scale_max_ppm, withhold",
-                   value->string);
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "unknown member '%.60s'; there are design, file_name, every_h, scale_max_ppm, withhold",
+        value->string);
   if (!cJSON_IsBool(value)) return fg_fail(ctx, FG_ERR_DATA, "withhold must be true or false");
   check->withhold = cJSON_IsTrue(value);
   return FG_OK;
@@ -50,7 +53,7 @@ static fg_status read_check(fg_context *ctx, const cJSON *object, fg_station_che
   cJSON_ArrayForEach(value, object) FG_TRY(read_check_member(ctx, value, check));
   if (!check->design[0])
     return fg_fail(ctx, FG_ERR_DATA, "check needs the design of the plate or ring (form discs)");
-  return FG_OK;
+  return fg_naming_check(ctx, check->file_name);
 }
 
 static fg_status read_station(fg_context *ctx, const cJSON *object, fg_station_settings *settings) {
@@ -101,7 +104,8 @@ static fg_status load_station(fg_context *ctx, const char *recipe, fg_station_se
 
 fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const char *design,
                                    fg_station_settings *settings) {
-  *settings = (fg_station_settings){.file_name = "{serial}", .check.scale_max_ppm = 500};
+  *settings = (fg_station_settings){.file_name = "{serial}",
+                                    .check = {.file_name = "check*", .scale_max_ppm = 500}};
   fg_lot_settings_default(&settings->lot);
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));

@@ -5,6 +5,7 @@
 
 #include "report/measure/measure_page_parts.h"
 #include "station/pages.h"
+#include "station/trend.h"
 
 static const char own[] =
     "nav{display:flex;flex-wrap:wrap;gap:4px;background:#16202a;padding:0 "
@@ -91,6 +92,7 @@ static void join(void) {
   if (!out) return;
   fg_html_style(out);
   fputs(own, out);
+  fputs(fg_trend_style, out);
   fclose(out);
 }
 

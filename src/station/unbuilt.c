@@ -8,5 +8,4 @@
     fg_page_end(out);                                                                              \
     return FG_OK;                                                                                  \
   }
-PAGE(fg_page_trends)
 PAGE(fg_page_scanner)

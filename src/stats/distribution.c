@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "core/extended.h"
+#include "core/numerics.h"
 
 double fg_distribution_t_two_sided(double t, double freedom) {
   if (!(freedom > 0) || isnan(t)) return NAN;
@@ -26,12 +27,19 @@ double fg_distribution_f_upper(double f, double freedom_1, double freedom_2) {
 
 double fg_distribution_f_quantile(double probability, double freedom_1, double freedom_2) {
   if (!(freedom_1 > 0 && freedom_2 > 0) || !(probability > 0 && probability < 1)) return NAN;
+  fg_numerics_start();
   return gsl_cdf_fdist_Pinv(probability, freedom_1, freedom_2);
 }
 
 double fg_distribution_chi2_quantile(double probability, double freedom) {
   if (!(freedom > 0) || !(probability > 0 && probability < 1)) return NAN;
-  return gsl_cdf_chisq_Pinv(probability, freedom);
+  fg_numerics_start();
+  double quantile = gsl_cdf_chisq_Pinv(probability, freedom);
+  if (isfinite(quantile)) return quantile;
+  /* GSL's iteration may not end where the degrees of freedom are thousands; there the cube root is
+   * normal (Wilson and Hilferty 1931). */
+  double share = 2 / (9 * freedom);
+  return freedom * pow(1 - share + sqrt(share) * gsl_cdf_ugaussian_Pinv(probability), 3);
 }
 
 double fg_distribution_normal_quantile(double probability) {

@@ -1,0 +1,298 @@
+/* Trends: how the process runs, over foils or lots. */
+#include <math.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "station/trend.h"
+
+enum { NAME_BYTES = 140, NARROWEST = 10 };
+/* Points that a chart needs before its silence says that a process is stable (AIAG, Statistical
+ * Process Control, 2005: 25 subgroups). */
+enum { STABLE_LEAST = 25 };
+
+typedef struct page {
+  FILE *out;
+  sqlite3 *reader;
+  const fg_inspection *station;
+  const fg_trend *trend;
+  const fg_trend_choice *choice;
+} page;
+
+static const char *things(const fg_trend_choice *choice) {
+  return choice->by_lots ? "lots" : "foils";
+}
+
+static void write_window(const page *p, size_t newest) {
+  fg_trend_choice other = *p->choice;
+  other.newest = newest;
+  other.of_the_drawn = false;
+  fputs("<a href=\"", p->out);
+  fg_trend_write_link(p->out, &other, 0, 0);
+  fprintf(p->out, "\"%s>", newest == p->choice->newest ? " aria-current=\"true\"" : "");
+  if (newest)
+    fprintf(p->out, "newest %zu</a>\n", newest);
+  else
+    fprintf(p->out, "all</a>\n");
+}
+
+static void write_step(const page *p, const char *key, const char *words, size_t from, size_t to) {
+  fprintf(p->out, "<a data-key=\"%s\" href=\"", key);
+  fg_trend_write_link(p->out, p->choice, from, to);
+  fprintf(p->out, "\">%s</a>\n", words);
+}
+
+/* Links that move what is drawn: what dragging does for those who drag. */
+static void write_steps(const page *p) {
+  const fg_trend *trend = p->trend;
+  size_t from = fg_trend_number(trend, trend->first), to = fg_trend_number(trend, trend->last);
+  size_t low = trend->before + 1, high = trend->before + trend->count, span = to - from + 1;
+  if (p->choice->of_the_drawn) low = 1, high = trend->total;
+  size_t half = span / 2, quarter = span / 4;
+  if (from > low)
+    write_step(p, "ArrowLeft", "« earlier", from - low > half ? from - half : low,
+               from - low > half ? to - half : low + span - 1);
+  if (to < high)
+    write_step(p, "ArrowRight", "later »", high - to > half ? from + half : high - span + 1,
+               high - to > half ? to + half : high);
+  if (span > NARROWEST) write_step(p, "+", "closer", from + quarter, to - quarter);
+  if (from > low || to < high) {
+    write_step(p, "-", "wider", from - low > half ? from - half : low,
+               high - to > half ? to + half : high);
+    write_step(p, "0", "whole chart", 0, 0);
+  }
+}
+
+static void write_range_form(const page *p) {
+  const fg_trend_choice *choice = p->choice;
+  const fg_trend *trend = p->trend;
+  FILE *out = p->out;
+  fputs("<form class=\"fields range\" method=\"get\" action=\"/trends\"><input type=\"hidden\" "
+        "name=\"q\" value=\"",
+        out);
+  fg_trend_write_name(out, choice->owner, choice->row);
+  fputs("\">", out);
+  if (choice->bump)
+    fprintf(out, "<input type=\"hidden\" name=\"bump\" value=\"%d\">", choice->bump);
+  fputs("<input type=\"hidden\" name=\"lot\" value=\"", out);
+  fg_html_text(out, choice->lot);
+  fputs("\"><input type=\"hidden\" name=\"die\" value=\"", out);
+  fg_html_text(out, choice->die);
+  fprintf(out, "\"><input type=\"hidden\" name=\"by\" value=\"%s\">",
+          choice->by_lots ? "lots" : "");
+  if (choice->newest)
+    fprintf(out, "<input type=\"hidden\" name=\"newest\" value=\"%zu\">", choice->newest);
+  else
+    fputs("<input type=\"hidden\" name=\"newest\" value=\"all\">", out);
+  fprintf(out,
+          "<label>From no.<input type=\"number\" name=\"from\" min=\"1\" max=\"%zu\" value=\"%zu\">"
+          "</label><label>to no.<input type=\"number\" name=\"to\" min=\"1\" max=\"%zu\" "
+          "value=\"%zu\"></label><label class=\"tick\"><input type=\"checkbox\" name=\"limits\" "
+          "value=\"drawn\"%s> limits from these alone</label><button>Zoom</button></form>\n",
+          trend->total, fg_trend_number(trend, trend->first), trend->total,
+          fg_trend_number(trend, trend->last), choice->of_the_drawn ? " checked" : "");
+}
+
+static void write_controls(const page *p) {
+  fputs("<div class=\"steps noprint\">", p->out);
+  write_window(p, 50);
+  write_window(p, 200);
+  write_window(p, 0);
+  fputs("<span></span>\n", p->out);
+  write_steps(p);
+  fputs("</div>\n", p->out);
+}
+
+/* Of a foil: when it was measured. */
+static int64_t time_of(const page *p, size_t point) {
+  fg_query query;
+  fg_context unused;
+  fg_query_begin(p->reader,
+                 "SELECT at FROM scans JOIN foils ON scans.id = foils.scan WHERE foils.id = ?",
+                 &query);
+  fg_query_integer(&query, p->trend->foil[point]);
+  int64_t at = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  fg_query_end(&unused, &query, "reading a time");
+  return at;
+}
+
+static void write_point(const page *p, size_t point) {
+  char name[NAME_BYTES];
+  fg_trend_name(p->reader, p->trend, point, name, sizeof name);
+  if (!p->choice->by_lots)
+    fprintf(p->out, "<a href=\"/foil?id=%lld\">", (long long)p->trend->foil[point]);
+  fg_html_text(p->out, name);
+  fprintf(p->out, "%s (no. %zu)", p->choice->by_lots ? "" : "</a>",
+          fg_trend_number(p->trend, point));
+}
+
+static void write_caption(const page *p) {
+  const fg_trend *trend = p->trend;
+  const fg_tolerance *tolerance = trend->quantity.tolerance;
+  fprintf(p->out, "<p class=\"note\">%zu %s, from ", trend->count, things(p->choice));
+  write_point(p, 0);
+  fputs(", ", p->out);
+  fg_page_time(p->out, time_of(p, 0));
+  fputs(", to ", p->out);
+  write_point(p, trend->count - 1);
+  fputs(", ", p->out);
+  fg_page_time(p->out, time_of(p, trend->count - 1));
+  if (p->choice->by_lots)
+    fprintf(p->out,
+            ". Dashed blue: the chart's limits, three sigma of a lot's mean from the mean, by what "
+            "foils vary within lots (σ %.4g).",
+            trend->quantity.within_sigma);
+  else
+    fprintf(p->out,
+            ". Dashed blue: the chart's limits, three sigma from the mean, by what varies from one "
+            "foil to the next (σ %.4g).",
+            trend->quantity.chart_sigma);
+  if (tolerance)
+    fprintf(p->out, " Red: beyond the tolerance of the design (%s).",
+            p->choice->owner == FG_QUANTITY_OF_BUMP && !p->choice->bump
+                ? "which each bump must keep; the chart is of means"
+                : "a limit that is far off is not drawn");
+  else
+    fputs(" The design states no tolerance for it.", p->out);
+  fputs("</p>\n", p->out);
+}
+
+/* "nine in a row on one side of the centre: since 0123 (no. 17)". */
+static void write_run(const page *p, const fg_trend_run *run) {
+  bool lasts = run->last + 1 == p->trend->count, single = run->first == run->last;
+  fprintf(p->out, "<li value=\"%zu\"><b>%s</b>: ", run->mark, fg_run_rule_words(run->rule));
+  fputs(single ? "" : lasts ? "since " : "from ", p->out);
+  write_point(p, run->first);
+  if (!single && !lasts) {
+    fputs(" to ", p->out);
+    write_point(p, run->last);
+  }
+  fputs("</li>\n", p->out);
+}
+
+static void write_runs(const page *p, const fg_trend_run *runs, size_t count, size_t all) {
+  fputs("<h2>Signals</h2>\n", p->out);
+  if (!count) {
+    fprintf(p->out, "<p class=\"next\">None: these %s vary as they would by chance alone.</p>\n",
+            things(p->choice));
+    return;
+  }
+  fprintf(p->out,
+          "<p class=\"next\">Something changed: look for what was new then (die, coil, press, "
+          "operator, scanner).</p>\n<ol class=\"runs\">");
+  for (size_t i = 0; i < count; i++)
+    write_run(p, &runs[i]);
+  fputs("</ol>\n", p->out);
+  if (all > count) fprintf(p->out, "<p class=\"note\">and %zu earlier ones</p>\n", all - count);
+}
+
+static void write_ratio(FILE *out, const char *name, const fg_ratio *ratio, const char *words) {
+  if (!isfinite(ratio->value)) return;
+  fprintf(out, "<div><dt>%s</dt><dd>%.2f<small>%.2f to %.2f</small><small>%s</small></dd></div>\n",
+          name, ratio->value, ratio->low, ratio->high, words);
+}
+
+static void write_why_not(const page *p) {
+  const fg_lot_quantity *quantity = &p->trend->quantity;
+  FILE *out = p->out;
+  fputs("<p class=\"next\">Not stated: ", out);
+  if (!quantity->tolerance)
+    fputs("the design has no tolerance for this quantity.", out);
+  else if (p->choice->by_lots)
+    fputs("it is a matter of single foils: choose \"Over: foils\".", out);
+  else if (p->trend->count < STABLE_LEAST)
+    fprintf(out, "%zu foils are too few to say that the process is stable; it takes %d.",
+            p->trend->count, STABLE_LEAST);
+  else if (quantity->chart.signals)
+    fprintf(out,
+            "the chart is not stable (%zu %s with a signal). What a process will do can be said "
+            "when it is stable; find the causes of the signals first, or choose a range after the "
+            "last of them with limits of its own.",
+            quantity->chart.signals, quantity->chart.signals == 1 ? "point" : "points");
+  else if (!quantity->stable)
+    fprintf(out,
+            "the spread within foils is not stable: it leaves its limits at %zu foils, while their "
+            "means do not.",
+            quantity->deviations.signals);
+  else
+    fputs("the values do not differ.", out);
+  fputs("</p>\n", out);
+}
+
+static void write_capability(const page *p) {
+  const fg_lot_quantity *quantity = &p->trend->quantity;
+  const fg_capability *capability = &quantity->capability;
+  FILE *out = p->out;
+  fputs("<h2>Capability</h2>\n", out);
+  if (p->choice->by_lots || !quantity->has_capability || !quantity->stable ||
+      p->trend->count < STABLE_LEAST) {
+    write_why_not(p);
+    return;
+  }
+  fputs("<dl class=\"tiles\">", out);
+  write_ratio(out, "Cpk", &capability->ck, "what the process will do");
+  write_ratio(out, "Cp", &capability->c, "if it were centred");
+  write_ratio(out, "Ppk", &capability->pk, "what it did");
+  fprintf(out,
+          "</dl>\n<p class=\"note\">Intervals at %.4g %%; of %zu values of %zu foils against %.6g "
+          "to %.6g.%s</p>\n",
+          100 * p->station->settings->lot.confidence, capability->count, p->trend->count,
+          quantity->tolerance->lower, quantity->tolerance->upper,
+          capability->normal ? ""
+                             : " The values are not normally distributed: Cp and Cpk say less "
+                               "of how many will be beyond.");
+}
+
+static void write_chart(const page *p) {
+  fg_trend_run runs[FG_TREND_RUNS];
+  size_t all, count = fg_trend_runs(p->trend, runs, &all);
+  write_controls(p);
+  for (int narrow = 0; narrow < 2; narrow++)
+    fg_trend_plot(p->out, p->reader, p->trend, runs, count, narrow);
+  write_range_form(p);
+  write_caption(p);
+  write_runs(p, runs, count, all);
+  write_capability(p);
+}
+
+static void write_title(const page *p) {
+  const fg_trend_choice *choice = p->choice;
+  fputs("<h1>", p->out);
+  if (choice->bump) fprintf(p->out, "Bump %d: ", choice->bump);
+  fg_html_text(p->out, choice->row->words);
+  if (choice->lot[0]) fg_html_text((fputs(", lot ", p->out), p->out), choice->lot);
+  if (choice->die[0]) fg_html_text((fputs(", die ", p->out), p->out), choice->die);
+  fputs("</h1>\n", p->out);
+}
+
+static fg_status write_trend(fg_context *ctx, const page *p) {
+  write_title(p);
+  FG_TRY(fg_trend_write_form(ctx, p->station, p->reader, p->trend, p->out));
+  if (p->trend->quantity.has_chart)
+    write_chart(p);
+  else if (p->choice->by_lots)
+    fprintf(p->out,
+            "<p class=\"next\">%zu %s: a chart of lots needs two, one of them with two foils at "
+            "least.</p>\n",
+            p->trend->total, p->trend->total == 1 ? "lot" : "lots");
+  else
+    fprintf(p->out, "<p class=\"next\">%zu %s with this quantity: a chart needs two.</p>\n",
+            p->trend->total, p->trend->total == 1 ? "foil" : "foils");
+  return FG_OK;
+}
+
+fg_status fg_page_trends(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                         const fg_request *request, FILE *out) {
+  fg_trend_choice choice;
+  fg_trend trend;
+  FG_TRY(fg_trend_choose(ctx, station, request, &choice));
+  FG_TRY(fg_trend_read(ctx, station, reader, &choice, &trend));
+  const page p = {out, reader, station, &trend, &choice};
+  fg_status status = fg_page_begin(ctx, station, reader, out, FG_TAB_TRENDS, "Trends");
+  if (status == FG_OK) {
+    fputs("<script src=\"/trends.js\" defer></script>\n<section>\n", out);
+    status = write_trend(ctx, &p);
+    fputs("</section>\n", out);
+    fg_page_end(out);
+  }
+  fg_trend_free(&trend);
+  return status;
+}

@@ -1,0 +1,243 @@
+#include "station/trend.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* Values as they are read: one more of the point before, or the first of another. */
+typedef struct filling {
+  size_t values, value_room, points, size_room, foil_room;
+  int64_t last_point;
+} filling;
+
+static fg_status add_value(fg_context *ctx, fg_trend *trend, filling *at, int64_t point,
+                           int64_t foil, double value) {
+  fg_lot_quantity *quantity = &trend->quantity;
+  void *block = quantity->value;
+  FG_TRY(fg_memory_reserve(ctx, at->values + 1, sizeof value, &at->value_room, &block));
+  quantity->value = block;
+  quantity->value[at->values++] = value;
+  if (at->points && at->last_point == point) {
+    quantity->size[at->points - 1]++;
+    return FG_OK;
+  }
+  at->last_point = point;
+  block = quantity->size;
+  FG_TRY(fg_memory_reserve(ctx, at->points + 1, sizeof *quantity->size, &at->size_room, &block));
+  quantity->size = block;
+  block = trend->foil;
+  FG_TRY(fg_memory_reserve(ctx, at->points + 1, sizeof foil, &at->foil_room, &block));
+  trend->foil = block;
+  quantity->size[at->points] = 1;
+  trend->foil[at->points++] = foil;
+  return FG_OK;
+}
+
+static void bind(fg_query *query, int64_t quantity, const fg_trend_choice *choice) {
+  fg_query_integer(query, quantity);
+  fg_query_integer(query, choice->bump);
+  fg_query_text(query, choice->lot);
+  fg_query_text(query, choice->die);
+}
+
+/* Values of a quantity, foil by foil. A crushed bump says what became of it, not what the process
+ * makes: it is in no chart, as in a lot's statistics. */
+#define CHOSEN                                                                                     \
+  " quantity = ?1 AND value IS NOT NULL AND (?2 = 0 OR bump = ?2) AND (measured.foil, bump) NOT "  \
+  "IN (SELECT foil, number FROM bumps WHERE flags <> '' AND instr(flags, 'crushed'))"
+#define NAMED " (?3 = '' OR foils.lot = ?3) AND (?4 = '' OR foils.die = ?4)"
+
+static const char of_all[] = "SELECT measured.foil, measured.foil, value FROM measured WHERE" CHOSEN
+                             " AND ?3 = '' AND ?4 = '' ORDER BY measured.foil, bump";
+static const char of_named[] =
+    "SELECT measured.foil, measured.foil, value FROM measured JOIN foils ON foils.id ="
+    " measured.foil WHERE" CHOSEN " AND" NAMED " ORDER BY measured.foil, bump";
+/* A lot's values are the means of its foils; lots come in the order of their first foil. */
+static const char of_lots[] =
+    "WITH mean AS (SELECT measured.foil AS foil, avg(value) AS value FROM measured WHERE" CHOSEN
+    " GROUP BY measured.foil), first AS (SELECT lot, min(id) AS id FROM foils GROUP BY lot)"
+    " SELECT first.id, first.id, mean.value FROM mean JOIN foils ON foils.id = mean.foil"
+    " JOIN first ON first.lot = foils.lot WHERE" NAMED " ORDER BY first.id, mean.foil";
+
+static fg_status find_quantity(fg_context *ctx, sqlite3 *reader, const fg_trend_choice *choice,
+                               int64_t *id) {
+  fg_query query;
+  fg_query_begin(reader, "SELECT id FROM quantities WHERE owner = ? AND name = ?", &query);
+  fg_query_text(&query, choice->owner == FG_QUANTITY_OF_BUMP ? "bump" : "foil");
+  fg_query_text(&query, choice->row->name);
+  *id = fg_query_row(&query) ? fg_query_get_integer(&query, 0) : 0;
+  return fg_query_end(ctx, &query, "reading the quantities");
+}
+
+static fg_status read_values(fg_context *ctx, sqlite3 *reader, fg_trend *trend) {
+  const fg_trend_choice *choice = trend->choice;
+  filling at = {0};
+  fg_query query;
+  int64_t quantity;
+  fg_status status = FG_OK;
+  FG_TRY(find_quantity(ctx, reader, choice, &quantity));
+  bool all = !choice->lot[0] && !choice->die[0];
+  fg_query_begin(reader, choice->by_lots ? of_lots : all ? of_all : of_named, &query);
+  bind(&query, quantity, choice);
+  while (status == FG_OK && fg_query_row(&query))
+    status = add_value(ctx, trend, &at, fg_query_get_integer(&query, 0),
+                       fg_query_get_integer(&query, 1), fg_query_get_number(&query, 2));
+  fg_status ended = fg_query_end(ctx, &query, "reading the values");
+  trend->quantity.count = at.values;
+  trend->count = trend->total = at.points;
+  return status == FG_OK ? ended : status;
+}
+
+/* Keeps points [first, last] alone. */
+static void cut(fg_trend *trend, size_t first, size_t last) {
+  fg_lot_quantity *quantity = &trend->quantity;
+  size_t before = 0, kept = 0;
+  for (size_t i = 0; i <= last; i++)
+    *(i < first ? &before : &kept) += quantity->size[i];
+  memmove(quantity->value, quantity->value + before, kept * sizeof *quantity->value);
+  trend->before = first;
+  trend->count = last + 1 - first;
+  memmove(quantity->size, quantity->size + first, trend->count * sizeof *quantity->size);
+  memmove(trend->foil, trend->foil + first, trend->count * sizeof *trend->foil);
+  quantity->count = kept;
+}
+
+/* Which points make the chart, and which of them are drawn: those of a range that begins before
+ * the newest are in the chart, too. */
+static void choose_points(fg_trend *trend) {
+  const fg_trend_choice *choice = trend->choice;
+  size_t total = trend->total, first = 0;
+  if (!total) return;
+  if (choice->newest && choice->newest < total) first = total - choice->newest;
+  size_t from = choice->from ? choice->from - 1 : first;
+  size_t to = choice->to && choice->to <= total ? choice->to - 1 : total - 1;
+  if (from > to) from = to;
+  if (from < first) first = from;
+  if (choice->of_the_drawn)
+    cut(trend, from, to);
+  else
+    cut(trend, first, total - 1);
+  trend->first = from - trend->before;
+  trend->last = to - trend->before;
+}
+
+static void find_spread(fg_lot_quantity *quantity) {
+  double squares = 0;
+  quantity->mean = 0;
+  for (size_t i = 0; i < quantity->count; i++)
+    quantity->mean += quantity->value[i] / (double)quantity->count;
+  for (size_t i = 0; i < quantity->count; i++)
+    squares += pow(quantity->value[i] - quantity->mean, 2);
+  quantity->sd = quantity->count > 1 ? sqrt(squares / (double)(quantity->count - 1)) : NAN;
+}
+
+static fg_status chart_lots(unsigned rules, fg_trend *trend) {
+  fg_context unused;
+  fg_lot_quantity *quantity = &trend->quantity;
+  quantity->has_chart =
+      trend->count >= 2 &&
+      fg_chart_subgroups(&unused, quantity->value, quantity->size, trend->count, FG_SIGMA_FROM_SD,
+                         rules, &quantity->means, NULL, &quantity->within_sigma) == FG_OK;
+  quantity->stable = quantity->has_chart && !quantity->means.signals;
+  return FG_OK;
+}
+
+static const fg_tolerance *find_tolerance(const fg_design *design, const fg_quantity *row) {
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (!strcmp(design->tolerances[i].quantity, row->name)) return &design->tolerances[i];
+  return NULL;
+}
+
+/* Of too few values it comes to nothing, which is no error. */
+static void judge(const fg_lot_settings *settings, fg_lot_quantity *quantity) {
+  fg_context unused;
+  if (fg_lot_judge_capability(&unused, settings->confidence, quantity) != FG_OK)
+    quantity->has_capability = false;
+}
+
+static fg_status read_and_chart(fg_context *ctx, const fg_lot_settings *settings, sqlite3 *reader,
+                                fg_trend *trend) {
+  FG_TRY(read_values(ctx, reader, trend));
+  choose_points(trend);
+  find_spread(&trend->quantity);
+  if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);
+  if (!trend->count) return FG_OK;
+  FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, trend->count, &trend->quantity));
+  judge(settings, &trend->quantity);
+  return FG_OK;
+}
+
+fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                        const fg_trend_choice *choice, fg_trend *trend) {
+  const fg_lot_settings *settings = &station->settings->lot;
+  *trend = (fg_trend){.choice = choice,
+                      .quantity = {.row = choice->row,
+                                   .owner = choice->owner,
+                                   .tolerance = find_tolerance(&settings->design, choice->row)}};
+  fg_status status = read_and_chart(ctx, settings, reader, trend);
+  if (status != FG_OK) fg_trend_free(trend);
+  return status;
+}
+
+void fg_trend_free(fg_trend *trend) {
+  fg_lot_quantity *quantity = &trend->quantity;
+  free(quantity->value);
+  free(quantity->size);
+  fg_chart_free(&quantity->chart);
+  fg_chart_free(&quantity->means);
+  fg_chart_free(&quantity->deviations);
+  free(trend->foil);
+  *trend = (fg_trend){0};
+}
+
+const fg_chart *fg_trend_chart(const fg_trend *trend) {
+  return trend->choice->by_lots ? &trend->quantity.means : &trend->quantity.chart;
+}
+
+size_t fg_trend_number(const fg_trend *trend, size_t point) {
+  return trend->before + point + 1;
+}
+
+void fg_trend_name(sqlite3 *reader, const fg_trend *trend, size_t point, char *name, size_t size) {
+  fg_query query;
+  fg_context unused;
+  fg_query_begin(reader, "SELECT serial, lot FROM foils WHERE id = ?", &query);
+  fg_query_integer(&query, trend->foil[point]);
+  const char *text =
+      fg_query_row(&query) ? fg_query_get_text(&query, trend->choice->by_lots ? 1 : 0) : "?";
+  snprintf(name, size, "%s", text[0] ? text : "without a lot");
+  fg_query_end(&unused, &query, "reading a name");
+}
+
+/* Of how many points each rule speaks (control.h). */
+static size_t rule_length(unsigned rule) {
+  static const size_t lengths[FG_RUN_RULES] = {1, 9, 6, 14, 3, 5, 15, 8};
+  return lengths[rule - 1];
+}
+
+static void add_run(fg_trend_run runs[FG_TREND_RUNS], size_t *all, fg_trend_run run) {
+  if (*all < FG_TREND_RUNS) runs[*all] = run;
+  ++*all;
+}
+
+/* Points are gone through from the newest; where a rule ends at points in a row, that is one run.
+ */
+size_t fg_trend_runs(const fg_trend *trend, fg_trend_run runs[FG_TREND_RUNS], size_t *all) {
+  const fg_chart *chart = fg_trend_chart(trend);
+  *all = 0;
+  for (size_t i = chart->count; i-- > 0;)
+    for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++) {
+      unsigned bit = 1u << (rule - 1);
+      if (!(chart->point[i].rules & bit)) continue;
+      if (i + 1 < chart->count && chart->point[i + 1].rules & bit) continue;
+      size_t begin = i;
+      while (begin > 0 && chart->point[begin - 1].rules & bit)
+        begin--;
+      size_t length = rule_length(rule);
+      add_run(runs, all,
+              (fg_trend_run){rule, begin + 1 > length ? begin + 1 - length : 0, i, *all + 1});
+    }
+  return *all < FG_TREND_RUNS ? *all : FG_TREND_RUNS;
+}

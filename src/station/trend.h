@@ -1,0 +1,73 @@
+/* One quantity over the foils of a station, or over its lots: what is asked for, and the chart. */
+#ifndef FG_STATION_TREND_H
+#define FG_STATION_TREND_H
+
+#include "lot/analysis.h"
+#include "station/naming.h"
+#include "station/pages.h"
+
+/* What the form of the page asks for. Points are counted from the first of the selection, from 1:
+ * such a number stays when new foils come. */
+typedef struct fg_trend_choice {
+  fg_quantity_owner owner;
+  const fg_quantity *row;
+  int bump; /* 0: the mean over a foil's bumps, or the whole foil */
+  char lot[FG_NAMED_TEXT], die[FG_NAMED_TEXT]; /* "": any */
+  bool by_lots;
+  size_t newest;     /* the chart is of so many points; 0: of all */
+  size_t from, to;   /* that are drawn; 0: not said */
+  bool of_the_drawn; /* the chart's limits come from what is drawn alone */
+} fg_trend_choice;
+
+/* FG_ERR_USAGE: there is no such quantity. */
+fg_status fg_trend_choose(fg_context *ctx, const fg_inspection *station, const fg_request *request,
+                          fg_trend_choice *choice);
+
+/* The choice as a query, "?q=...", HTML-safe; with other points drawn, unless both are 0. */
+void fg_trend_write_link(FILE *out, const fg_trend_choice *choice, size_t from, size_t to);
+
+/* "bump:height_mm", as the query has it. */
+void fg_trend_write_name(FILE *out, fg_quantity_owner owner, const fg_quantity *row);
+
+/* The chart is of `count` points, behind `before` others, of `total`; [first, last] of them are
+ * drawn. */
+typedef struct fg_trend {
+  const fg_trend_choice *choice;
+  fg_lot_quantity quantity; /* values and chart; `size` is that of each point */
+  int64_t *foil;            /* of each point: the foil, or the lot's first; owned */
+  size_t before, count, total, first, last;
+} fg_trend;
+
+/* FG_OK also where there is nothing, or too little for a chart: quantity.has_chart says so. */
+fg_status fg_trend_read(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                        const fg_trend_choice *choice, fg_trend *trend);
+void fg_trend_free(fg_trend *trend);
+
+/* The fields to choose by. */
+fg_status fg_trend_write_form(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
+                              const fg_trend *trend, FILE *out);
+
+/* The chart in force: of individuals, or of the lots' means. */
+const fg_chart *fg_trend_chart(const fg_trend *trend);
+/* A point's number, as people count it. */
+size_t fg_trend_number(const fg_trend *trend, size_t point);
+/* Its serial number or lot. */
+void fg_trend_name(sqlite3 *reader, const fg_trend *trend, size_t point, char *name, size_t size);
+
+/* Points in a row at whose ends the same rule held. */
+typedef struct fg_trend_run {
+  unsigned rule;
+  size_t first, last; /* from the first point that the rule speaks of */
+  size_t mark;        /* from 1, the newest first */
+} fg_trend_run;
+enum { FG_TREND_RUNS = 8 }; /* so that a page is one sheet of paper */
+/* The newest FG_TREND_RUNS of them; *all says how many there are. */
+size_t fg_trend_runs(const fg_trend *trend, fg_trend_run runs[FG_TREND_RUNS], size_t *all);
+
+/* The chart as SVG: for wide pages and paper, or for narrow ones. */
+void fg_trend_plot(FILE *out, sqlite3 *reader, const fg_trend *trend, const fg_trend_run *runs,
+                   size_t run_count, bool narrow);
+
+extern const char fg_trend_style[], fg_trend_script[];
+
+#endif

@@ -1,0 +1,285 @@
+/* The control chart of a trend. Tolerances are broad red ground beyond a solid line, control limits
+ * are dashed blue lines: they answer different questions, and are not to be taken for each other.
+ */
+#include <math.h>
+#include <stdlib.h>
+
+#include "report/measure/measure_page_parts.h"
+#include "report/plot_marks.h"
+#include "station/trend.h"
+
+enum { DOTS_MOST = 120, COLUMNS_MOST = 450, NAME_BYTES = 140, LABELS = 5, CLASS_BYTES = 24 };
+/* A tolerance is drawn while the plot grows by it to so many times what the values need. */
+#define GROWTH_MOST  4.0
+#define SIGNAL_PX    6.0
+#define DOT_PX       4.0
+#define LABEL_GAP_PX 18.0
+
+typedef struct drawing {
+  fg_plot at;
+  sqlite3 *reader;
+  const fg_trend *trend;
+  const fg_chart *chart;
+  int decimals, height;
+  double upper, lower; /* tolerances that are drawn; NaN */
+} drawing;
+
+typedef struct label {
+  double y;
+  char text[64], style[CLASS_BYTES];
+} label;
+
+static double place(const drawing *d, size_t point) {
+  return (double)fg_trend_number(d->trend, point);
+}
+
+static void include(double value, double *low, double *high) {
+  if (!isfinite(value)) return;
+  *low = fmin(*low, value);
+  *high = fmax(*high, value);
+}
+
+static void find_span(const drawing *d, double *low, double *high) {
+  *low = INFINITY;
+  *high = -INFINITY;
+  for (size_t i = d->trend->first; i <= d->trend->last; i++) {
+    const fg_chart_point *point = &d->chart->point[i];
+    include(point->value, low, high);
+    include(point->lower, low, high);
+    include(point->upper, low, high);
+  }
+  if (!(*high > *low)) {
+    double room = fmax(fabs(*low) * 1e-6, 1e-9);
+    *low -= room;
+    *high += room;
+  }
+}
+
+/* The tolerance's limits, as far as they are near enough not to press the values flat. */
+static void take_tolerance(drawing *d, double *low, double *high) {
+  const fg_tolerance *tolerance = d->trend->quantity.tolerance;
+  double span = *high - *low;
+  d->upper = d->lower = NAN;
+  if (!tolerance) return;
+  if (fmax(tolerance->upper, *high) - *low <= GROWTH_MOST * span) d->upper = tolerance->upper;
+  if (*high - fmin(tolerance->lower, *low) <= GROWTH_MOST * span) d->lower = tolerance->lower;
+  include(d->upper, low, high);
+  include(d->lower, low, high);
+}
+
+static void set_axes(drawing *d) {
+  double low, high;
+  find_span(d, &low, &high);
+  take_tolerance(d, &low, &high);
+  double room = 0.07 * (high - low);
+  d->at.y_low = low - room;
+  d->at.y_high = high + room;
+  d->at.x_low = place(d, d->trend->first) - 0.5;
+  d->at.x_high = place(d, d->trend->last) + 0.5;
+  double step = fg_plot_nice_step(d->at.y_high - d->at.y_low);
+  d->decimals = step < 1 ? (int)ceil(-log10(step) - 1e-9) : 0;
+}
+
+static void draw_y_axis(const drawing *d) {
+  const fg_plot *at = &d->at;
+  const fg_quantity *row = d->trend->choice->row;
+  double step = fg_plot_nice_step(at->y_high - at->y_low);
+  char title[160];
+  for (double y = ceil(at->y_low / step) * step; y <= at->y_high; y += step)
+    fprintf(at->out,
+            "<path class=\"grid\" d=\"M%.1f %.1fH%.1f\"/><text class=\"y\" x=\"%.1f\" y=\"%.1f\">"
+            "%.*f</text>\n",
+            at->left, fg_plot_y(at, y), at->right, at->left - 8, fg_plot_y(at, y) + 5, d->decimals,
+            fabs(y) < step * 1e-6 ? 0 : y);
+  snprintf(title, sizeof title, "%s%s%s", row->words, row->unit[0] ? ", " : "", row->unit);
+  fprintf(at->out, "<text class=\"start\" x=\"4\" y=\"16\">");
+  fg_html_text(at->out, title);
+  fputs("</text>\n", at->out);
+}
+
+static void draw_x_axis(const drawing *d) {
+  const fg_plot *at = &d->at;
+  double step = fmax(1, fg_plot_nice_step(at->x_high - at->x_low));
+  char text[32];
+  for (double x = ceil(at->x_low / step) * step; x <= at->x_high; x += step) {
+    snprintf(text, sizeof text, "%.0f", x);
+    if (x > 0) fg_plot_x_label(at, fg_plot_x(at, x), text);
+  }
+  fg_plot_x_title(at, d->trend->choice->by_lots ? "lot, in the order of their first foils"
+                                                : "foil, in the order of measuring");
+}
+
+static void draw_zone(const drawing *d, double limit, bool above) {
+  const fg_plot *at = &d->at;
+  if (!isfinite(limit)) return;
+  double y = fg_plot_y(at, limit), top = above ? at->top : y;
+  fprintf(at->out, "<rect class=\"zone\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          at->left, top, at->right - at->left, (above ? y : at->bottom) - top);
+  fprintf(at->out, "<path class=\"tolerance\" d=\"M%.1f %.1fH%.1f\"/>\n", at->left, y, at->right);
+}
+
+/* Steps where the limits follow the sizes of lots; where points are many, one in each column. */
+static void draw_limit(const drawing *d, bool upper) {
+  const fg_trend *trend = d->trend;
+  double before = NAN;
+  fprintf(d->at.out, "<path class=\"control\" d=\"");
+  for (size_t i = trend->first; i <= trend->last; i++) {
+    double limit = upper ? d->chart->point[i].upper : d->chart->point[i].lower;
+    double y = fg_plot_y(&d->at, limit), x = fg_plot_x(&d->at, place(d, i) - 0.5);
+    bool differs = !(fabs(y - before) < 0.05);
+    if (isnan(before))
+      fprintf(d->at.out, "M%.1f %.1f", x, y);
+    else if (differs)
+      fprintf(d->at.out, "H%.1fV%.1f", x, y);
+    if (differs) before = y;
+  }
+  fprintf(d->at.out, "H%.1f\"/>\n", d->at.right);
+}
+
+/* Of many points the lowest and the highest of each column: what stands out is seen, whatever the
+ * number. */
+static void draw_course(const drawing *d) {
+  const fg_trend *trend = d->trend;
+  size_t count = trend->last - trend->first + 1, share = count / COLUMNS_MOST + 1;
+  char letter = 'M';
+  fputs("<path class=\"curve\" d=\"", d->at.out);
+  for (size_t i = trend->first; i <= trend->last; i += share) {
+    size_t least = i, most = i;
+    for (size_t k = i; k <= trend->last && k < i + share; k++) {
+      if (d->chart->point[k].value < d->chart->point[least].value) least = k;
+      if (d->chart->point[k].value > d->chart->point[most].value) most = k;
+    }
+    const size_t ends[] = {least < most ? least : most, least < most ? most : least};
+    for (int e = ends[0] == ends[1]; e < 2; e++, letter = 'L')
+      fprintf(d->at.out, "%c%.1f %.1f", letter, fg_plot_x(&d->at, place(d, ends[e])),
+              fg_plot_y(&d->at, d->chart->point[ends[e]].value));
+  }
+  fputs("\"/>\n", d->at.out);
+}
+
+static void draw_dot(const drawing *d, size_t i) {
+  const fg_chart_point *point = &d->chart->point[i];
+  char name[NAME_BYTES];
+  fg_trend_name(d->reader, d->trend, i, name, sizeof name);
+  if (!d->trend->choice->by_lots)
+    fprintf(d->at.out, "<a href=\"/foil?id=%lld\"%s>", (long long)d->trend->foil[i],
+            point->rules ? "" : " tabindex=\"-1\"");
+  fprintf(d->at.out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.3g\"><title>",
+          point->rules ? "signal" : "s2", fg_plot_x(&d->at, place(d, i)),
+          fg_plot_y(&d->at, point->value), point->rules ? SIGNAL_PX : DOT_PX);
+  fg_html_text(d->at.out, name);
+  fprintf(d->at.out, " (no. %zu): %.*f ", fg_trend_number(d->trend, i), d->decimals + 1,
+          point->value);
+  fg_html_text(d->at.out, d->trend->choice->row->unit);
+  for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
+    if (point->rules & (1u << (rule - 1))) fprintf(d->at.out, "; %s", fg_run_rule_words(rule));
+  fprintf(d->at.out, "</title></circle>%s\n", d->trend->choice->by_lots ? "" : "</a>");
+}
+
+/* All points where they are few, else the signals, no two on the same spot. */
+static void draw_dots(const drawing *d) {
+  const fg_trend *trend = d->trend;
+  bool few = trend->last - trend->first < DOTS_MOST;
+  double x_before = -INFINITY, y_before = 0;
+  for (size_t i = trend->first; i <= trend->last; i++) {
+    const fg_chart_point *point = &d->chart->point[i];
+    double x = fg_plot_x(&d->at, place(d, i)), y = fg_plot_y(&d->at, point->value);
+    if (few) {
+      draw_dot(d, i);
+    } else if (point->rules && hypot(x - x_before, y - y_before) >= SIGNAL_PX) {
+      fprintf(d->at.out, "<circle class=\"signal\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.3g\"/>\n", x, y,
+              DOT_PX);
+      x_before = x;
+      y_before = y;
+    }
+  }
+}
+
+/* The number under which the words below the chart speak of it, over the end of the run. Of several
+ * on one spot the newest has it. */
+static void draw_runs(const drawing *d, const fg_trend_run *runs, size_t count) {
+  const fg_trend *trend = d->trend;
+  double drawn[FG_TREND_RUNS];
+  size_t marks = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (runs[i].last < trend->first || runs[i].last > trend->last) continue;
+    const fg_chart_point *point = &d->chart->point[runs[i].last];
+    double x = fg_plot_x(&d->at, place(d, runs[i].last)), nearest = INFINITY;
+    for (size_t k = 0; k < marks; k++)
+      nearest = fmin(nearest, fabs(drawn[k] - x));
+    if (nearest < LABEL_GAP_PX) continue;
+    drawn[marks++] = x;
+    double y = fg_plot_y(&d->at, point->value) + (point->value >= d->chart->centre ? -11 : 24);
+    fprintf(d->at.out, "<text class=\"mark\" x=\"%.1f\" y=\"%.1f\">%zu</text>\n", x, y,
+            runs[i].mark);
+  }
+}
+
+static int by_height(const void *a, const void *b) {
+  const label *one = a, *other = b;
+  return (one->y > other->y) - (one->y < other->y);
+}
+
+static size_t add_label(const drawing *d, label labels[LABELS], size_t count, double value,
+                        const char *words, const char *style) {
+  if (!isfinite(value)) return count;
+  label *to = &labels[count];
+  to->y = fg_plot_y(&d->at, value) + 5;
+  snprintf(to->text, sizeof to->text, "%s %.*f", words, d->decimals + 1, value);
+  snprintf(to->style, sizeof to->style, "%s", style);
+  return count + 1;
+}
+
+/* Beside the plot, none over the other. */
+static void draw_labels(const drawing *d) {
+  label labels[LABELS];
+  size_t count = 0;
+  const fg_chart_point *last = &d->chart->point[d->trend->last];
+  count = add_label(d, labels, count, d->upper, "max", "start tolerance");
+  count = add_label(d, labels, count, last->upper, "+3σ", "start control");
+  count = add_label(d, labels, count, d->chart->centre, "mean", "start");
+  count = add_label(d, labels, count, last->lower, "−3σ", "start control");
+  count = add_label(d, labels, count, d->lower, "min", "start tolerance");
+  qsort(labels, count, sizeof *labels, by_height);
+  for (size_t i = 1; i < count; i++)
+    labels[i].y = fmax(labels[i].y, labels[i - 1].y + LABEL_GAP_PX);
+  for (size_t i = 0; i < count; i++)
+    fprintf(d->at.out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", labels[i].style,
+            d->at.right + 6, labels[i].y, labels[i].text);
+}
+
+static void draw(const drawing *d, const fg_trend_run *runs, size_t run_count) {
+  fg_plot_begin(&d->at, d->height, "Control chart; its limits and signals are told below it");
+  draw_zone(d, d->upper, true);
+  draw_zone(d, d->lower, false);
+  draw_y_axis(d);
+  draw_x_axis(d);
+  fg_plot_segment(&d->at, d->at.x_low, d->chart->centre, d->at.x_high, d->chart->centre, "thin");
+  draw_limit(d, true);
+  draw_limit(d, false);
+  draw_course(d);
+  draw_dots(d);
+  draw_runs(d, runs, run_count);
+  draw_labels(d);
+  fg_plot_end(&d->at);
+}
+
+void fg_trend_plot(FILE *out, sqlite3 *reader, const fg_trend *trend, const fg_trend_run *runs,
+                   size_t run_count, bool narrow) {
+  drawing d = {.reader = reader, .trend = trend, .chart = fg_trend_chart(trend)};
+  if (narrow) {
+    d.at = (fg_plot){.out = out, .width = 480, .left = 64, .right = 380, .top = 26, .bottom = 330};
+    d.height = 380;
+  } else {
+    d.at = (fg_plot){.out = out, .width = 1080, .left = 78, .right = 960, .top = 26, .bottom = 380};
+    d.height = 430;
+  }
+  set_axes(&d);
+  fprintf(out,
+          "<figure class=\"zoom %s\" data-left=\"%.4f\" data-right=\"%.4f\" data-from=\"%zu\" "
+          "data-to=\"%zu\">\n",
+          narrow ? "narrow" : "wide", d.at.left / d.at.width, d.at.right / d.at.width,
+          fg_trend_number(trend, trend->first), fg_trend_number(trend, trend->last));
+  draw(&d, runs, run_count);
+  fputs("</figure>\n", out);
+}
