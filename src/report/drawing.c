@@ -206,25 +206,21 @@ static fg_status draw_disc(fg_context *ctx, fg_canvas *canvas, const fg_disc *di
   return fg_canvas_text(ctx, canvas, disc->centre_mm, 12, 0.5, FG_COLOUR_TEXT, number);
 }
 
-/* The scale's box in a corner of the canvas, mm: corner 0 is the lower left, 1 the lower right, 2
- * the upper left, 3 the upper right. */
-typedef struct box_mm {
-  fg_point low, high;
-} box_mm;
-
-static box_mm scale_box(const fg_canvas *canvas, int corner) {
+/* In a corner of the canvas: 0 is the lower left, 1 the lower right, 2 the upper left, 3 the upper
+ * right. */
+static fg_drawing_box scale_box(const fg_canvas *canvas, int corner) {
   const double size_px[2] = {30 * canvas->unit_px + canvas->px_per_mm[0] + 420 * canvas->unit_px,
                              56 * canvas->unit_px};
   double x = corner % 2 ? fmax(0, canvas->width_px - size_px[0]) : 0;
   double y = corner < 2 ? canvas->height_px - size_px[1] : 0;
   fg_point low = {(x - canvas->origin_px[0]) / canvas->px_per_mm[0],
                   (y - canvas->origin_px[1]) / canvas->px_per_mm[1]};
-  return (box_mm){
+  return (fg_drawing_box){
       low, {low.x + size_px[0] / canvas->px_per_mm[0], low.y + size_px[1] / canvas->px_per_mm[1]}};
 }
 
 /* How much of the strips, and of their residuals beside them, lies in a box. */
-static size_t crowd(const fg_measurement *measurement, box_mm box) {
+static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
   size_t inside = 0;
   double margin = baseline_mm + whisker_mm;
   for (size_t i = 0; i < measurement->foil_count; i++)
@@ -236,11 +232,11 @@ static size_t crowd(const fg_measurement *measurement, box_mm box) {
   return inside;
 }
 
-static box_mm emptiest_corner(const fg_canvas *canvas, const fg_measurement *measurement) {
-  box_mm best = scale_box(canvas, 0);
+fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measurement *measurement) {
+  fg_drawing_box best = scale_box(canvas, 0);
   size_t least = crowd(measurement, best);
   for (int corner = 1; corner < 4; corner++) {
-    box_mm box = scale_box(canvas, corner);
+    fg_drawing_box box = scale_box(canvas, corner);
     size_t inside = crowd(measurement, box);
     if (inside >= least) continue;
     least = inside;
@@ -253,7 +249,7 @@ static box_mm emptiest_corner(const fg_canvas *canvas, const fg_measurement *mea
 static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
                             double magnification) {
   double unit_mm = canvas->unit_px / canvas->px_per_mm[0];
-  box_mm box = emptiest_corner(canvas, measurement);
+  fg_drawing_box box = fg_drawing_scale_box(canvas, measurement);
   fg_point left = {box.low.x + 30 * unit_mm, (box.low.y + box.high.y) / 2};
   fg_point right = {left.x + 1, left.y}, text_at = {right.x + 12 * unit_mm, left.y};
   const fg_point bar[3][2] = {{left, right},

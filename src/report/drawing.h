@@ -12,6 +12,13 @@ enum {
   FG_COLOUR_TEXT = 0xffffff,
 };
 
+/* The emptiest corner of the canvas, where the residuals' scale is drawn: its lowest and highest x
+ * and y, mm. */
+typedef struct fg_drawing_box {
+  fg_point low, high;
+} fg_drawing_box;
+fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measurement *measurement);
+
 /* Draws every foil and disc, and the residuals' scale in the emptiest corner. */
 fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
                               const fg_measurement *measurement);

@@ -35,7 +35,7 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, const fg_past *
   fg_query_begin(reader, "SELECT html FROM pictures WHERE foil = ?", &query);
   fg_query_integer(&query, past->id);
   if (fg_query_row(&query))
-    fprintf(out, "<figure>%s</figure>\n", fg_query_get_text(&query, 0));
+    fprintf(out, "<figure class=\"scroll\">%s</figure>\n", fg_query_get_text(&query, 0));
   else
     fputs("<p class=\"note\">Its picture is in the whole report.</p>\n", out);
   return fg_query_end(ctx, &query, "reading a picture");

@@ -147,7 +147,7 @@ static fg_status write_form(fg_context *ctx, sqlite3 *reader, const search *at, 
 }
 
 static void write_cell(FILE *out, const char *style, const char *text) {
-  fprintf(out, "<td class=\"words%s\">", style);
+  fprintf(out, "<td class=\"text%s\">", style);
   fg_html_text(out, text);
   fputs("</td>", out);
 }

@@ -5,13 +5,14 @@
 #include "quantity/quantity_rows.h"
 #include "report/measure/measure_page_parts.h"
 #include "station/pages.h"
+#include "station/scan_command.h"
 #include "station/values.h"
 
 enum { CARDS = 12, WORDS = 700 };
 
 /* The newest arrival. */
 typedef struct card {
-  int64_t id, at, scan;
+  int64_t id, at, scan, foils;
   char path[512], kind[24], message[WORDS], verdict[24], withheld[WORDS];
 } card;
 
@@ -25,7 +26,8 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
   fg_query_begin(
       reader,
       "SELECT arrivals.id, arrivals.at, arrivals.path, kind, message, scan, scans.verdict,"
-      " scans.withheld FROM arrivals LEFT JOIN scans ON scans.id = scan"
+      " scans.withheld, (SELECT count(*) FROM foils WHERE foils.scan = arrivals.scan)"
+      " FROM arrivals LEFT JOIN scans ON scans.id = scan"
       " WHERE superseded = 0 ORDER BY arrivals.id DESC LIMIT 1",
       &query);
   if (fg_query_row(&query)) {
@@ -37,6 +39,7 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
     newest->scan = fg_query_get_integer(&query, 5);
     copy(&query, 6, newest->verdict, sizeof newest->verdict);
     copy(&query, 7, newest->withheld, sizeof newest->withheld);
+    newest->foils = fg_query_get_integer(&query, 8);
   }
   return fg_query_end(ctx, &query, "reading the cards");
 }
@@ -46,14 +49,20 @@ static const char *next_step(const card *newest) {
   if (!strcmp(newest->kind, "unfinished")) return "Wait until the scanner is done, or scan again.";
   if (!strcmp(newest->kind, "foreign"))
     return "Scan to PNG or TIFF into this folder; take this file out of it.";
+  if (!strcmp(newest->kind, "unreadable") && fg_station_is_scanned(newest->path))
+    return "See to the scanner, the glass and the foil, and scan again.";
   if (!strcmp(newest->kind, "unreadable")) return "Look at the foil and the glass, and scan again.";
   if (!strcmp(newest->kind, "check")) return "Go on with foils.";
   if (!scan) return "";
   if (newest->withheld[0]) return newest->withheld;
+  if (!strcmp(newest->verdict, "pass") && newest->foils > 1)
+    return "Put the foils with the good ones, and the next ones on the glass.";
   if (!strcmp(newest->verdict, "pass"))
     return "Put the foil with the good ones, and the next one on the glass.";
   if (!strcmp(newest->verdict, "fail"))
-    return "Put the foil aside; the values beyond their limits are below.";
+    return newest->foils > 1
+               ? "Put the foils that failed aside; the values beyond their limits are below."
+               : "Put the foil aside; the values beyond their limits are below.";
   if (!strcmp(newest->verdict, "cannot_tell"))
     return "A limit lies within the uncertainty of a value: clean glass and foil, turn the foil by "
            "90 degrees, and scan again.";
@@ -90,14 +99,15 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, int64_t foil, F
   fg_query query;
   fg_query_begin(reader, "SELECT html FROM pictures WHERE foil = ?", &query);
   fg_query_integer(&query, foil);
-  if (fg_query_row(&query)) fputs(fg_query_get_text(&query, 0), out);
+  if (fg_query_row(&query))
+    fprintf(out, "<figure class=\"scroll\">%s</figure>\n", fg_query_get_text(&query, 0));
   return fg_query_end(ctx, &query, "reading a picture");
 }
 
 static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                             const fg_query *foil, bool focus, FILE *out) {
   int64_t id = fg_query_get_integer(foil, 0);
-  fprintf(out, "<h2>Foil <a href=\"/foil?id=%lld\">", (long long)id);
+  fprintf(out, "<h2 id=\"foil%lld\">Foil <a href=\"/foil?id=%lld\">", (long long)id, (long long)id);
   fg_html_text(out, fg_query_get_text(foil, 1));
   fprintf(out, "</a> <span class=\"tag %s\">%s</span></h2>\n",
           fg_page_verdict_class(fg_query_get_text(foil, 5), false),
@@ -111,6 +121,26 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   const fg_foil_form form = {.back = "/", .focus = focus};
   fg_page_foil_form(station, foil, &form, out);
   return write_picture(ctx, reader, id, out);
+}
+
+/* Of a bed: every foil with its verdict, and where it is on the page. */
+static fg_status write_overview(fg_context *ctx, sqlite3 *reader, const card *newest, FILE *out) {
+  fg_query foils;
+  if (newest->foils < 2) return FG_OK;
+  fg_query_begin(reader, "SELECT id, serial, verdict FROM foils WHERE scan = ? ORDER BY number",
+                 &foils);
+  fg_query_integer(&foils, newest->scan);
+  fputs("<p class=\"bed\">", out);
+  while (fg_query_row(&foils)) {
+    bool withheld = newest->withheld[0] != '\0';
+    const char *verdict = fg_query_get_text(&foils, 2);
+    fprintf(out, "<a class=\"tag %s\" href=\"#foil%lld\">",
+            fg_page_verdict_class(verdict, withheld), (long long)fg_query_get_integer(&foils, 0));
+    fg_html_text(out, fg_query_get_text(&foils, 1));
+    fprintf(out, " %s</a> ", fg_page_verdict_words(verdict, withheld));
+  }
+  fputs("</p>\n", out);
+  return fg_query_end(ctx, &foils, "reading the foils");
 }
 
 static fg_status write_foils(fg_context *ctx, fg_inspection *station, sqlite3 *reader, int64_t scan,
@@ -150,7 +180,7 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
                  &query);
   fg_query_integer(&query, newest);
   fg_query_integer(&query, CARDS);
-  fputs("<section><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
+  fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
   while (fg_query_row(&query)) {
     bool scan = !fg_query_is_null(&query, 4), withheld = !fg_query_is_null(&query, 5);
     const char *verdict = fg_query_get_text(&query, 4);
@@ -176,10 +206,11 @@ fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   (void)request;
   FG_TRY(read_newest(ctx, reader, &newest));
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_NOW, "Now"));
-  fputs("<section data-live>\n", out);
+  fputs(newest.foils > 1 ? "<section class=\"many\" data-live>\n" : "<section data-live>\n", out);
   write_scan_button(station, out);
   if (newest.id) {
     write_call(out, &newest);
+    if (newest.scan) FG_TRY(write_overview(ctx, reader, &newest, out));
     if (newest.scan) FG_TRY(write_foils(ctx, station, reader, newest.scan, out));
   } else {
     fputs("<div class=\"call none\"><b>READY</b><span>Put a foil on the glass and scan it into ",

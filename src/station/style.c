@@ -45,21 +45,32 @@ static const char own[] =
     "flex-wrap:wrap;gap:4px 16px;align-items:baseline;padding:7px 12px;background:var(--ground);"
     "border-radius:8px;overflow-wrap:anywhere}.tag.pass{background:#d9f0e3;color:#0b5c34}.tag.fail{"
     "background:#fbdcdc;color:#9c1c1c}.tag.again,.tag.card{background:#fff0d6;color:#7a4a00}"
-    ".tag.none{background:#e1e9f2;color:#2b4561}\n"
-    "a.button{display:inline-block;padding:9px 16px;border:1px solid "
-    "var(--blue);border-radius:8px;"
-    "color:var(--blue);text-decoration:none;font-weight:600}table.left th,table.left "
-    "td{text-align:left}table.left .tag{white-space:nowrap}.paging{display:flex;gap:14px;"
-    "align-items:center;margin:14px 0 0}\n"
-    "form.fields input{width:150px}form.fields input[type=date]{width:140px}\n"
-    "@media(max-width:600px){.wide{display:none}nav{padding:0 4px}nav a{padding:12px "
-    "9px}.call{padding:12px 16px}form.fields input,form.fields "
-    "input[type=date]{width:calc(50vw - 35px)}}\n"
-    "@media print{main{padding:0}.paging{display:none}.picture{max-height:70mm}h2{margin:10px 0 "
-    "4px}.call{padding:6px 16px;margin:0 0 8px}.call.small b{font-size:26pt}.decided{gap:6px;"
-    "margin:0 0 8px}td,th{line-height:1.25}nav,form,.noprint,button{display:none}.call "
-    "b{font-size:46pt}.call{color:#000;"
-    "background:#fff!important;border:3px solid #000}section{break-after:auto}}\n";
+    ".tag.none{background:#e1e9f2;color:#2b4561}\n";
+
+/* Fields, pages of foils. */
+static const char fields[] =
+    "a.button{display:inline-block;padding:9px 16px;border:1px solid var(--blue);"
+    "border-radius:8px;color:var(--blue);text-decoration:none;font-weight:600}\n"
+    "table.left th,table.left td{text-align:left}table.left .tag{white-space:nowrap}"
+    "td.text{max-width:180px;overflow-wrap:anywhere;white-space:normal}\n"
+    ".paging{display:flex;gap:14px;align-items:center;margin:14px 0 0}"
+    ".bed .tag{font-size:15px;text-decoration:none;display:inline-block;margin:0 6px 6px 0}\n"
+    "form.fields input,form.fields select{width:136px}\n";
+
+static const char narrow[] =
+    "@media(max-width:600px){.wide{display:none}nav{padding:0 4px}nav a{padding:12px 9px}"
+    ".call{padding:12px 16px}form.fields input,form.fields select{width:calc(50vw - 35px)}"
+    ".scroll>.picture{max-width:none;width:720px}}\n";
+
+static const char print[] =
+    "@media print{main{padding:0}nav,form,form.fields,.paging,.noprint,button{display:none}"
+    "section{break-after:auto}h2{margin:10px 0 4px}td,th{line-height:1.25}"
+    ".call{color:#000;background:#fff!important;border:3px solid #000;padding:6px 16px;"
+    "margin:0 0 8px}.call b{font-size:46pt}.call.small b{font-size:26pt}"
+    ".decided{grid-template-columns:1fr 1fr 1fr;gap:6px;margin:0 0 8px}"
+    "dl.facts{grid-template-columns:max-content 1fr max-content "
+    "1fr;font-size:8.5pt}th,td{padding:2px 4px}"
+    ".decided strong{font-size:12pt}.picture{max-height:56mm}.many .picture{max-height:36mm}}\n";
 
 /* New cards take the page's place, unless somebody is typing. The first field has the focus, and
  * what stands in it is marked, so that a barcode reader, which ends with Enter, writes over it.
@@ -92,6 +103,9 @@ static void join(void) {
   if (!out) return;
   fg_html_style(out);
   fputs(own, out);
+  fputs(fields, out);
+  fputs(narrow, out);
+  fputs(print, out);
   fputs(fg_trend_style, out);
   fclose(out);
 }

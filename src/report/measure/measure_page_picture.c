@@ -4,6 +4,7 @@
 
 #include "report/drawing.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/measure/picture_marks.h"
 
 enum { WIDTH_MAX = 1600, FOILS_MAX = 6 };
 static const double pixels_max = 4e6;
@@ -78,6 +79,7 @@ static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *pictu
   canvas.unit_px = fmax(picture->width / SHOWN_WIDTH, picture->height / SHOWN_HEIGHT);
   fputs("<g fill=\"none\" stroke-linejoin=\"round\" class=\"drawing\">\n", out);
   FG_TRY(fg_draw_measurement(ctx, &canvas, &shown));
+  if (foil) FG_TRY(fg_draw_verdicts(ctx, &canvas, &shown));
   fputs("</g>\n", out);
   return FG_OK;
 }

@@ -1,0 +1,274 @@
+#include "report/measure/picture_marks.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "report/drawing.h"
+#include "report/words.h"
+
+enum { COLOUR_FAIL = 0xff5252, COLOUR_OPEN = 0xffb833, MARKS_MAX = 40, TEXT_BYTES = 160 };
+
+/* In units of the canvas. A capital's height; the width of a bold letter of that height, which is
+ * 0.65 of its font's size, and that 1 / 0.7 of the height; what is left free around a text. */
+static const double letter_units = 12, width_per_height = 0.65 / 0.7, gap_units = 7;
+/* Cells in which the picture is taken to be free or not, and the steps of places that are tried. */
+static const double cell_units = 6;
+/* A ring's radius over half the bump's chord; where residuals and the bump's number are drawn
+ * (drawing.c) over the ring's centre, mm. */
+static const double ring_over_chord = 1.08, number_mm = 2.1, band_mm = 0.9;
+
+/* What is wrong at one place. */
+typedef struct mark {
+  const fg_judgement *worst;
+  fg_point at; /* mm: of the ring's centre, or of the overall circle's where there is no ring */
+  double ring_mm;
+  char text[TEXT_BYTES];
+  double width_px, height_px; /* of the text, with its gap */
+} mark;
+
+/* Which cells of the picture something stands in. */
+typedef struct cells {
+  unsigned char *taken;
+  int columns, rows;
+  double size_px;
+} cells;
+
+typedef struct marks {
+  fg_canvas *canvas;
+  const fg_measurement *measurement;
+  const fg_foil *foil; /* its one */
+  mark list[MARKS_MAX];
+  size_t count;
+  cells cells;
+} marks;
+
+static fg_point to_px(const fg_canvas *canvas, fg_point mm) {
+  return (fg_point){canvas->origin_px[0] + mm.x * canvas->px_per_mm[0],
+                    canvas->origin_px[1] + mm.y * canvas->px_per_mm[1]};
+}
+
+static fg_point to_mm(const fg_canvas *canvas, fg_point px) {
+  return (fg_point){(px.x - canvas->origin_px[0]) / canvas->px_per_mm[0],
+                    (px.y - canvas->origin_px[1]) / canvas->px_per_mm[1]};
+}
+
+static void take_box(cells *at, double left, double top, double right, double bottom) {
+  int from = (int)fmax(0, floor(left / at->size_px)), to = (int)floor(right / at->size_px);
+  int low = (int)fmax(0, floor(top / at->size_px)), high = (int)floor(bottom / at->size_px);
+  for (int row = low; row <= high && row < at->rows; row++)
+    for (int column = from; column <= to && column < at->columns; column++)
+      at->taken[row * at->columns + column] = 1;
+}
+
+static bool is_free(const cells *at, double left, double top, double right, double bottom) {
+  if (left < 0 || top < 0 || right >= at->columns * at->size_px || bottom >= at->rows * at->size_px)
+    return false;
+  for (int row = (int)(top / at->size_px); row <= (int)(bottom / at->size_px); row++)
+    for (int column = (int)(left / at->size_px); column <= (int)(right / at->size_px); column++)
+      if (at->taken[row * at->columns + column]) return false;
+  return true;
+}
+
+/* How far beyond its limit, in U or in shares of the limit: what the eye is led to. */
+static double excess(const fg_judgement *judgement) {
+  const fg_tolerance *limit = judgement->tolerance;
+  double beyond = fmax(judgement->value - limit->upper, limit->lower - judgement->value);
+  double width = limit->upper - limit->lower;
+  return beyond / (isfinite(width) && width > 0 ? width : fabs(judgement->value));
+}
+
+static bool is_worse(const fg_judgement *one, const fg_judgement *other) {
+  bool fails = one->verdict == FG_VERDICT_FAIL;
+  if (!other) return true;
+  if (fails != (other->verdict == FG_VERDICT_FAIL)) return fails;
+  return excess(one) > excess(other);
+}
+
+static const fg_judgement *find_worst(const fg_decision *decision, int number) {
+  const fg_judgement *worst = NULL;
+  for (size_t i = 0; i < decision->count; i++) {
+    const fg_judgement *one = &decision->judgements[i];
+    bool told = one->verdict == FG_VERDICT_FAIL || one->verdict == FG_VERDICT_UNDECIDED;
+    if (one->number == number && told && isfinite(one->value) && is_worse(one, worst)) worst = one;
+  }
+  return worst;
+}
+
+/* "3: R 3.454 mm, max 3.408". */
+static void write_text(mark *at) {
+  const fg_judgement *worst = at->worst;
+  const fg_tolerance *limit = worst->tolerance;
+  int decimals =
+      worst->row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(worst->row, worst->u);
+  bool high = !(worst->value - limit->lower < limit->upper - worst->value);
+  char number[16] = "";
+  if (worst->number) snprintf(number, sizeof number, "%d: ", worst->number);
+  snprintf(at->text, sizeof at->text, "%s%s %s%.*f %s, %s %.7g%s", number, worst->row->symbol,
+           worst->value < 0 ? "−" : "", decimals, fabs(worst->value), worst->row->unit,
+           high ? "max" : "min", high ? limit->upper : limit->lower,
+           worst->verdict == FG_VERDICT_FAIL ? "" : " ?");
+}
+
+static void add_mark(marks *at, const fg_judgement *worst, fg_point where, double ring_mm) {
+  if (!worst || at->count == MARKS_MAX || !isfinite(where.x + where.y + ring_mm)) return;
+  mark *added = &at->list[at->count++];
+  *added = (mark){.worst = worst, .at = where, .ring_mm = ring_mm};
+  write_text(added);
+  size_t letters = 0;
+  for (const char *c = added->text; *c; c++)
+    letters += ((unsigned char)*c & 0xC0) != 0x80;
+  double unit = at->canvas->unit_px;
+  added->width_px = ((double)letters * letter_units * width_per_height + 2 * gap_units) * unit;
+  added->height_px = (letter_units + 2 * gap_units) * unit;
+}
+
+/* Around the middle of the bump's chord. */
+static void add_bump(marks *at, const fg_decision *decision, const fg_bump *bump) {
+  static const double half_turn_deg = 180, pi = 3.14159265358979323846, usual_rad = 0.55;
+  fg_point centre = at->foil->overall.centre_mm;
+  double away = hypot(centre.x - bump->centre_mm.x, centre.y - bump->centre_mm.y);
+  double half = bump->bump_angle_deg / 2 * pi / half_turn_deg;
+  if (!isfinite(half) || half > pi / 2) half = usual_rad;
+  double share = bump->radius_mm * cos(half) / away;
+  fg_point middle = {bump->centre_mm.x + share * (centre.x - bump->centre_mm.x),
+                     bump->centre_mm.y + share * (centre.y - bump->centre_mm.y)};
+  add_mark(at, find_worst(decision, bump->number), middle,
+           ring_over_chord * bump->radius_mm * sin(half));
+}
+
+static void take_strip(marks *at) {
+  const fg_canvas *canvas = at->canvas;
+  double band_px = band_mm * canvas->px_per_mm[0];
+  for (size_t i = 0; i < at->foil->strip.count; i++) {
+    const fg_station *station = &at->foil->strip.stations[i];
+    fg_point px = to_px(canvas, (fg_point){(station->left.x + station->right.x) / 2,
+                                           (station->left.y + station->right.y) / 2});
+    take_box(&at->cells, px.x - band_px, px.y - band_px, px.x + band_px, px.y + band_px);
+  }
+}
+
+static void take_numbers(marks *at) {
+  const fg_canvas *canvas = at->canvas;
+  double unit = canvas->unit_px;
+  for (size_t i = 0; i < at->foil->bump_count; i++) {
+    const fg_bump *bump = &at->foil->bumps[i];
+    fg_point centre = at->foil->overall.centre_mm;
+    double away = hypot(centre.x - bump->centre_mm.x, centre.y - bump->centre_mm.y);
+    double share = (bump->radius_mm + number_mm) / away;
+    if (!isfinite(share)) continue;
+    fg_point px =
+        to_px(canvas, (fg_point){bump->centre_mm.x + share * (centre.x - bump->centre_mm.x),
+                                 bump->centre_mm.y + share * (centre.y - bump->centre_mm.y)});
+    take_box(&at->cells, px.x - 14 * unit, px.y - 10 * unit, px.x + 14 * unit, px.y + 10 * unit);
+  }
+}
+
+/* What is drawn already. */
+static void take_drawing(marks *at) {
+  const fg_canvas *canvas = at->canvas;
+  fg_drawing_box scale = fg_drawing_scale_box(canvas, at->measurement);
+  fg_point low = to_px(canvas, scale.low), high = to_px(canvas, scale.high);
+  take_box(&at->cells, low.x, low.y, high.x, high.y);
+  fg_point centre = to_px(canvas, at->foil->overall.centre_mm);
+  double around = 40 * canvas->unit_px;
+  if (isfinite(centre.x + centre.y))
+    take_box(&at->cells, centre.x - around, centre.y - around, centre.x + around,
+             centre.y + around);
+  take_strip(at);
+  take_numbers(at);
+  for (size_t i = 0; i < at->count; i++) {
+    double ring_px = at->list[i].ring_mm * canvas->px_per_mm[0];
+    fg_point px = to_px(canvas, at->list[i].at);
+    take_box(&at->cells, px.x - ring_px, px.y - ring_px, px.x + ring_px, px.y + ring_px);
+  }
+}
+
+/* The free place whose middle is nearest; false: there is none. */
+static bool find_place(const marks *at, const mark *one, fg_point *middle) {
+  fg_point anchor = to_px(at->canvas, one->at);
+  double best = INFINITY, step = at->cells.size_px;
+  double half[2] = {one->width_px / 2, one->height_px / 2};
+  for (double y = half[1]; y < at->canvas->height_px - half[1]; y += step)
+    for (double x = half[0]; x < at->canvas->width_px - half[0]; x += step) {
+      /* A text is wide: what is above or below it is nearer than what is beside it. */
+      double distance = hypot(fmax(0, fabs(x - anchor.x) - half[0] / 2), y - anchor.y);
+      if (distance >= best ||
+          !is_free(&at->cells, x - half[0], y - half[1], x + half[0], y + half[1]))
+        continue;
+      best = distance;
+      *middle = (fg_point){x, y};
+    }
+  return isfinite(best);
+}
+
+/* From the ring to the text's edge, straight. */
+static fg_status draw_leader(fg_context *ctx, fg_canvas *canvas, const mark *one, fg_point middle,
+                             fg_pen pen) {
+  fg_point ring = to_px(canvas, one->at);
+  double ring_px = one->ring_mm * canvas->px_per_mm[0];
+  double half[2] = {one->width_px / 2, letter_units * canvas->unit_px};
+  fg_point to = {fmax(middle.x - half[0], fmin(ring.x, middle.x + half[0])),
+                 middle.y + (ring.y > middle.y ? half[1] : -half[1])};
+  double away = hypot(to.x - ring.x, to.y - ring.y);
+  if (!(away > ring_px)) return FG_OK;
+  fg_point from = {ring.x + (to.x - ring.x) * ring_px / away,
+                   ring.y + (to.y - ring.y) * ring_px / away};
+  const fg_point line[1][2] = {{to_mm(canvas, from), to_mm(canvas, to)}};
+  return fg_canvas_segments(ctx, canvas, line, 1, pen);
+}
+
+static fg_status draw_mark(fg_context *ctx, marks *at, const mark *one) {
+  static const double full_turn_rad = 6.283185307179586;
+  uint32_t colour = one->worst->verdict == FG_VERDICT_FAIL ? COLOUR_FAIL : COLOUR_OPEN;
+  const fg_circle ring = {one->at.x, one->at.y, one->ring_mm};
+  fg_point middle = {0, 0};
+  if (one->ring_mm > 0)
+    FG_TRY(fg_canvas_arc(ctx, at->canvas, &ring, 0, full_turn_rad, (fg_pen){colour, 3, 0}));
+  if (!find_place(at, one, &middle)) return FG_OK;
+  take_box(&at->cells, middle.x - one->width_px / 2, middle.y - one->height_px / 2,
+           middle.x + one->width_px / 2, middle.y + one->height_px / 2);
+  if (one->ring_mm > 0) FG_TRY(draw_leader(ctx, at->canvas, one, middle, (fg_pen){colour, 1.4, 0}));
+  return fg_canvas_text(ctx, at->canvas, to_mm(at->canvas, middle), letter_units, 0.5, colour,
+                        one->text);
+}
+
+/* The worst first: they get the nearest places. */
+static int by_excess(const void *a, const void *b) {
+  const mark *one = a, *other = b;
+  return is_worse(one->worst, other->worst) ? -1 : is_worse(other->worst, one->worst) ? 1 : 0;
+}
+
+static fg_status draw_marks(fg_context *ctx, marks *at) {
+  const fg_canvas *canvas = at->canvas;
+  void *block;
+  at->cells.size_px = cell_units * canvas->unit_px;
+  at->cells.columns = (int)(canvas->width_px / at->cells.size_px) + 1;
+  at->cells.rows = (int)(canvas->height_px / at->cells.size_px) + 1;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)at->cells.columns, (size_t)at->cells.rows, &block));
+  at->cells.taken = block;
+  memset(block, 0, (size_t)at->cells.columns * (size_t)at->cells.rows);
+  take_drawing(at);
+  qsort(at->list, at->count, sizeof *at->list, by_excess);
+  fg_status status = FG_OK;
+  for (size_t i = 0; i < at->count && status == FG_OK; i++)
+    status = draw_mark(ctx, at, &at->list[i]);
+  free(block);
+  return status;
+}
+
+fg_status fg_draw_verdicts(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement) {
+  fg_decision decision;
+  const fg_foil *foil = measurement->foils;
+  marks at = {.canvas = canvas, .measurement = measurement, .foil = foil};
+  FG_TRY(fg_foil_decide(ctx, &measurement->design, foil, &decision));
+  for (size_t i = 0; i < foil->bump_count; i++)
+    add_bump(&at, &decision, &foil->bumps[i]);
+  fg_point whole = foil->overall.centre_mm, px = to_px(canvas, whole);
+  px = (fg_point){fmin(fmax(px.x, 0), canvas->width_px), fmin(fmax(px.y, 0), canvas->height_px)};
+  add_mark(&at, find_worst(&decision, 0), to_mm(canvas, px), 0);
+  fg_status status = at.count ? draw_marks(ctx, &at) : FG_OK;
+  fg_decision_free(&decision);
+  return status;
+}
