@@ -93,9 +93,9 @@ fg_status fg_station_check_health(fg_context *ctx, sqlite3 *connection,
   if (check->every_h > 0 && health->last_at)
     health->due_at = health->last_at + (int64_t)(check->every_h * (double)MS_PER_HOUR);
   int64_t now = fg_station_now();
-  /* A clock that was set back says nothing about how old a check is. */
-  health->due = !health->last_at ||
-                (health->due_at && (now > health->due_at || now < health->last_at - MS_PER_HOUR));
+  health->clock_back = health->last_at && now < health->last_at - MS_PER_HOUR;
+  health->due =
+      !health->last_at || (health->due_at && (now > health->due_at || health->clock_back));
   return FG_OK;
 }
 
@@ -108,10 +108,14 @@ bool fg_station_check_withholds(fg_inspection *station, char *why, size_t size) 
   fg_status status = fg_station_check_health(&inner, station->database.writer, check, &health);
   pthread_mutex_unlock(&station->database.writing);
   if (status == FG_OK && !health.due && !health.failed) return false;
-  fg_text_clip(why, size, "%s",
-               status != FG_OK ? inner.message
-               : health.failed ? "the last check of the scanner failed: check it again, or have it "
-                                 "seen to"
-                               : "the scanner's check is due: scan the plate first");
+  fg_text_clip(
+      why, size, "%s",
+      status != FG_OK ? inner.message
+      : health.failed ? "The last check of the scanner failed: check it again, or have it "
+                        "seen to, and then scan this foil again."
+      : health.clock_back
+          ? "The clock was set back, so the scanner's check may be too old: set the clock, "
+            "scan the plate, and then this foil again."
+          : "The scanner's check is due: scan the plate, and then this foil again.");
   return true;
 }

@@ -10,11 +10,16 @@
 #define SAME_DIAMETER  0.03
 #define COVERAGE_LEAST 300.0 /* degrees: an arc says little of two axes */
 
-enum { SCALE_X, SCALE_Y, SHEAR, CENTRE_X, CENTRE_Y, UNKNOWNS, OF_SCANNER = SHEAR + 1 };
+/* Stretches of an edge, and the fewest points that are enough for as many. */
+enum { BLOCKS = 24, POINTS_LEAST = 4 * BLOCKS };
+/* Scale of x and y as their mean and half their difference: around a whole circle the five are
+ * independent of each other, and the level of the edge moves the mean alone. */
+enum { MEAN, DIFFERENCE, SHEAR, CENTRE_X, CENTRE_Y, UNKNOWNS, OF_SCANNER = SHEAR + 1 };
 
-/* What one disc says, and with what variance. */
+/* What one disc says, with the variance of its own noise; how far the mean scale moves with the
+ * level at which edges are taken, per mm of the edge; and how many mm are in doubt. */
 typedef struct says {
-  double value[OF_SCANNER], variance[OF_SCANNER];
+  double value[OF_SCANNER], variance[OF_SCANNER], level, doubt_mm;
 } says;
 
 static double known_diameter(const fg_design *design, const fg_disc *disc) {
@@ -27,34 +32,63 @@ static double known_diameter(const fg_design *design, const fg_disc *disc) {
   return best;
 }
 
+/* The radius of an edge point less the known one is row · unknowns, in mm. */
+static double fill_row(const fg_disc *disc, size_t i, double radius_mm, double row[UNKNOWNS]) {
+  double dx = disc->edge[i].x - disc->centre_mm.x, dy = disc->edge[i].y - disc->centre_mm.y;
+  double r = hypot(dx, dy), c = dx / r, s = dy / r;
+  row[MEAN] = radius_mm;
+  row[DIFFERENCE] = radius_mm * (c * c - s * s);
+  row[SHEAR] = radius_mm * s * c;
+  row[CENTRE_X] = c;
+  row[CENTRE_Y] = s;
+  return r - radius_mm;
+}
+
+/* Neighbouring points of an edge err together, and holes are not quite round: what counts is the
+ * variance that means of whole stretches of the edge have, taken to a point. */
+static double slow_variance(const fg_disc *disc, double radius_mm, const double *x) {
+  double sums[BLOCKS] = {0}, counts[BLOCKS] = {0}, squares = 0, total = 0;
+  for (size_t i = 0; i < disc->points; i++) {
+    double row[UNKNOWNS], residual = fill_row(disc, i, radius_mm, row);
+    size_t block = i * BLOCKS / disc->points;
+    for (int k = 0; k < UNKNOWNS; k++)
+      residual -= row[k] * x[k];
+    squares += residual * residual;
+    sums[block] += residual;
+    counts[block]++;
+  }
+  for (int b = 0; b < BLOCKS; b++)
+    total += sums[b] * sums[b] / counts[b];
+  return fmax(squares / (double)(disc->points - UNKNOWNS), total / (BLOCKS - UNKNOWNS));
+}
+
 /* The edge points of one disc against its known radius; its centre is fitted along. */
 static bool fit_disc(const fg_disc *disc, double radius_mm, says *result) {
   fg_normal_equations system;
-  double x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX], squares = 0;
+  double row[UNKNOWNS], x[UNKNOWNS], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
+  if (disc->points < POINTS_LEAST) return false;
   fg_normal_clear(&system, UNKNOWNS);
   for (size_t i = 0; i < disc->points; i++) {
-    double dx = disc->edge[i].x - disc->centre_mm.x, dy = disc->edge[i].y - disc->centre_mm.y;
-    double r = hypot(dx, dy), c = dx / r, s = dy / r;
-    const double row[UNKNOWNS] = {radius_mm * c * c, radius_mm * s * s, radius_mm * s * c, c, s};
-    fg_normal_add(&system, row, r - radius_mm, 1);
+    double value = fill_row(disc, i, radius_mm, row);
+    fg_normal_add(&system, row, value, 1);
   }
-  if (disc->points <= UNKNOWNS || !fg_normal_solve(&system, 0, x, inverse)) return false;
-  squares = system.sum_squares;
-  for (int k = 0; k < UNKNOWNS; k++)
-    squares -= x[k] * system.right[k];
-  double noise = fmax(squares, 0) / (double)(disc->points - UNKNOWNS);
-  /* The edge's noise is correlated, and its level in doubt: what the disc's own fit says of that
-   * is the least that is left. */
-  double own = pow(disc->u_radius_mm / radius_mm, 2) + pow(disc->level_doubt_mm / radius_mm, 2);
+  if (!fg_normal_solve(&system, 0, x, inverse)) return false;
+  double variance = slow_variance(disc, radius_mm, x);
   for (int k = 0; k < OF_SCANNER; k++) {
     result->value[k] = x[k];
-    result->variance[k] = fmax(noise * inverse[k][k], own);
+    result->variance[k] = variance * inverse[k][k];
   }
+  result->level = (disc->bright ? 1 : -1) / radius_mm;
+  result->doubt_mm = disc->level_doubt_mm;
   return true;
 }
 
-/* Weighted mean; where discs differ by more than they say, by that (Birge's ratio). */
-static void combine(const says *discs, size_t count, int k, double *value, double *u) {
+/* Where discs differ by more than they say, their variances grow by that (Birge's ratio). */
+static double birge(double chi2, size_t count) {
+  return count > 1 ? fmax(1, chi2 / (double)(count - 1)) : 1;
+}
+
+static void combine(const says *discs, size_t count, int k, double *value, double *variance) {
   double weights = 0, sum = 0, chi2 = 0;
   for (size_t i = 0; i < count; i++) {
     weights += 1 / discs[i].variance[k];
@@ -63,8 +97,44 @@ static void combine(const says *discs, size_t count, int k, double *value, doubl
   *value = sum / weights;
   for (size_t i = 0; i < count; i++)
     chi2 += pow(discs[i].value[k] - *value, 2) / discs[i].variance[k];
-  double birge = count > 1 ? fmax(1, chi2 / (double)(count - 1)) : 1;
-  *u = sqrt(birge / weights);
+  *variance = birge(chi2, count) / weights;
+}
+
+/* The mean scale m, and with it the level's error c, which all discs of a scan share and which is 0
+ * within its doubt: disc i says m + level_i c. Discs of different sizes tell the two apart; of a
+ * single ring the doubt stays in m. */
+static void combine_mean(const says *discs, size_t count, double *value, double *variance) {
+  double doubt = 0, ww = 0, wl = 0, wv = 0, lv = 0, chi2;
+  for (size_t i = 0; i < count; i++)
+    doubt += discs[i].doubt_mm / (double)count;
+  double prior = 1 / fmax(doubt * doubt, 1e-18), ll = prior;
+  for (size_t i = 0; i < count; i++) {
+    const says *disc = &discs[i];
+    double weight = 1 / disc->variance[MEAN];
+    ww += weight;
+    wl += weight * disc->level;
+    ll += weight * disc->level * disc->level;
+    wv += weight * disc->value[MEAN];
+    lv += weight * disc->level * disc->value[MEAN];
+  }
+  double determinant = ww * ll - wl * wl, level = (ww * lv - wl * wv) / determinant;
+  *value = (ll * wv - wl * lv) / determinant;
+  chi2 = level * level * prior;
+  for (size_t i = 0; i < count; i++)
+    chi2 +=
+        pow(discs[i].value[MEAN] - *value - level * discs[i].level, 2) / discs[i].variance[MEAN];
+  *variance = birge(chi2, count) * ll / determinant;
+}
+
+static void conclude(const says *discs, fg_check_fit *fit) {
+  double mean, difference, of_mean, of_difference, of_shear;
+  combine_mean(discs, fit->discs, &mean, &of_mean);
+  combine(discs, fit->discs, DIFFERENCE, &difference, &of_difference);
+  combine(discs, fit->discs, SHEAR, &fit->shear, &of_shear);
+  fit->scale[0] = mean + difference;
+  fit->scale[1] = mean - difference;
+  fit->u_scale[0] = fit->u_scale[1] = sqrt(of_mean + of_difference);
+  fit->u_shear = sqrt(of_shear);
 }
 
 fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
@@ -82,9 +152,7 @@ fg_status fg_check_fit_plate(fg_context *ctx, const fg_design *design,
     return fg_fail(ctx, FG_ERR_NOT_MEASURED,
                    "none of %zu discs in the scan has one of the %zu known diameters",
                    measurement->disc_count, design->diameter_count);
-  for (int k = 0; k < 2; k++)
-    combine(discs, fit->discs, k, &fit->scale[k], &fit->u_scale[k]);
-  combine(discs, fit->discs, SHEAR, &fit->shear, &fit->u_shear);
+  conclude(discs, fit);
   return FG_OK;
 }
 

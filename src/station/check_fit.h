@@ -9,7 +9,7 @@
 typedef struct fg_check_fit {
   size_t discs;
   double scale[2], u_scale[2]; /* measured over true, less 1; x, y */
-  double shear, u_shear;       /* rad */
+  double shear, u_shear;       /* rad; a right angle between +x and +y shows as so much less */
   bool passes;
 } fg_check_fit;
 

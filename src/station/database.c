@@ -55,7 +55,8 @@ static const char *const migrations[] = {
     " at INTEGER NOT NULL);"
     "CREATE INDEX corrections_by_foil ON corrections (foil);"
     /* The scanner against a plate or ring of known diameters: scale_x and scale_y are measured over
-     * true, less 1; shear is the angle between the axes, less 90 degrees, in radians. */
+     * true, less 1; shear is by how much the scanner shows a right angle between +x and +y too
+     * small, in radians. */
     "CREATE TABLE checks (id INTEGER PRIMARY KEY AUTOINCREMENT, at INTEGER NOT NULL, path TEXT NOT "
     "NULL,"
     " sha256 TEXT NOT NULL UNIQUE, discs INTEGER NOT NULL, scale_x REAL, u_scale_x REAL, scale_y "

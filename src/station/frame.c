@@ -62,8 +62,11 @@ static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sql
   if (!health.asked || (!health.due && !health.failed)) return FG_OK;
   fprintf(out,
           "<p class=\"banner\" role=\"alert\"><b>%s</b> %s <a href=\"/scanner\">Scanner</a></p>\n",
-          health.failed ? "The scanner failed its last check." : "The scanner's check is due.",
-          check->withhold ? "No foil gets a verdict until it has passed." : "");
+          health.failed       ? "The scanner failed its last check."
+          : health.clock_back ? "The clock was set back: the scanner's check may be too old."
+          : health.last_at    ? "The scanner's check is due."
+                              : "The scanner was never checked.",
+          check->withhold ? "No foil gets a verdict until a check has passed." : "");
   return FG_OK;
 }
 

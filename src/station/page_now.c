@@ -107,17 +107,21 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, int64_t foil, F
 static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                             const fg_query *foil, bool focus, FILE *out) {
   int64_t id = fg_query_get_integer(foil, 0);
+  bool withheld = !fg_query_is_null(foil, 7);
   fprintf(out, "<h2 id=\"foil%lld\">Foil <a href=\"/foil?id=%lld\">", (long long)id, (long long)id);
   fg_html_text(out, fg_query_get_text(foil, 1));
   fprintf(out, "</a> <span class=\"tag %s\">%s</span></h2>\n",
-          fg_page_verdict_class(fg_query_get_text(foil, 5), false),
-          fg_page_verdict_words(fg_query_get_text(foil, 5), false));
+          fg_page_verdict_class(fg_query_get_text(foil, 5), withheld),
+          fg_page_verdict_words(fg_query_get_text(foil, 5), withheld));
   if (fg_query_get_text(foil, 6)[0]) {
     fputs("<p class=\"next\">", out);
     fg_html_text(out, fg_query_get_text(foil, 6));
     fputs("</p>\n", out);
   }
+  /* Without a verdict no colour of one, either. */
+  fputs(withheld ? "<div class=\"withheld\">" : "<div>", out);
   FG_TRY(fg_page_deciding(ctx, reader, id, out));
+  fputs("</div>\n", out);
   const fg_foil_form form = {.back = "/", .focus = focus};
   fg_page_foil_form(station, foil, &form, out);
   return write_picture(ctx, reader, id, out);
@@ -148,10 +152,11 @@ static fg_status write_foils(fg_context *ctx, fg_inspection *station, sqlite3 *r
   fg_query foils;
   fg_status status = FG_OK;
   bool first = true;
-  fg_query_begin(reader,
-                 "SELECT id, serial, lot, die, operator, verdict, reasons FROM foils WHERE scan = ?"
-                 " ORDER BY number",
-                 &foils);
+  fg_query_begin(
+      reader,
+      "SELECT foils.id, serial, lot, die, operator, foils.verdict, reasons, withheld FROM foils"
+      " JOIN scans ON scans.id = scan WHERE scan = ? ORDER BY number",
+      &foils);
   fg_query_integer(&foils, scan);
   while (status == FG_OK && fg_query_row(&foils)) {
     status = write_foil(ctx, station, reader, &foils, first, out);

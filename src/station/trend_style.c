@@ -17,12 +17,14 @@ const char fg_trend_style[] =
     "form.fields input{width:9.5em}form.range{margin:10px 0}form.range "
     "input[type=number]{width:8em}label.tick{display:flex!"
     "important;align-items:center;gap:8px!important;min-height:42px;color:var(--ink)!important}"
-    "label.tick input{min-height:0;width:20px;height:20px}ol.runs{margin:0 0 14px;padding-left:"
+    ".withheld .decided li{border-color:var(--soft)!important}label.tick "
+    "input{min-height:0;width:20px;height:20px}ol.runs{margin:0 0 14px;padding-left:"
     "30px}ol.runs li{margin:4px 0;overflow-wrap:anywhere}select{max-width:min(340px,88vw)}\n"
     "@media(max-width:600px){.wide{display:none}.narrow{display:block}.narrow .plot{font-size:14px}"
     ".steps a{padding:8px 10px}}\n"
     "@media print{.wide{display:block}.narrow,form.fields,.steps{display:none}.tiles{break-inside:"
-    "avoid}ol.runs li{margin:1px 0}h2{margin:12px 0 4px}.next{font-size:11pt;margin:0 0 6px}"
+    "avoid}ol.runs li{margin:1px 0}ul.checks li:nth-child(n+4){display:none}h2{margin:12px 0 "
+    "4px}.next{font-size:11pt;margin:0 0 6px}"
     "section .note{max-width:none;font-size:9.5pt}}\n";
 
 /* A range that is dragged over the chart becomes the page's from and to; arrows, +, - and 0 are the

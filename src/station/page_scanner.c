@@ -1,0 +1,255 @@
+/* The scanner's own health: what its last check came to, when the next is due, what it did over
+ * time. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "core/memory.h"
+#include "report/measure/measure_page_parts.h"
+#include "report/plot_marks.h"
+#include "station/check.h"
+#include "station/trend.h"
+
+/* Checks that are drawn: those of a month, at two a day. */
+enum { DRAWN = 60, LISTED = 10, HISTORY_MAX = 400, WORDS = 300 };
+
+typedef struct check_row {
+  int64_t at;
+  double value[3], u[3]; /* scale x, scale y, shear; ppm and µrad */
+  bool passed;
+  char path[160], words[WORDS];
+} check_row;
+
+typedef struct history {
+  check_row row[HISTORY_MAX]; /* the newest first */
+  size_t count;
+} history;
+
+static const struct {
+  const char *title, *short_title, *unit;
+} axes[] = {
+    {"Scale along x (across the carriage's way)", "scale x", "ppm"},
+    {"Scale along y (the carriage's way)", "scale y", "ppm"},
+    {"Shear: how far the axes are from 90°", "shear", "µrad"},
+};
+enum { AXES = sizeof axes / sizeof *axes };
+
+static fg_status read_history(fg_context *ctx, sqlite3 *reader, size_t most, history *all) {
+  fg_query query;
+  all->count = 0;
+  fg_query_begin(reader,
+                 "SELECT at, scale_x, u_scale_x, scale_y, u_scale_y, shear, u_shear, verdict, path,"
+                 " words FROM checks ORDER BY id DESC LIMIT ?",
+                 &query);
+  fg_query_integer(&query, (int64_t)most);
+  while (all->count < most && fg_query_row(&query)) {
+    check_row *row = &all->row[all->count++];
+    row->at = fg_query_get_integer(&query, 0);
+    for (int k = 0; k < AXES; k++) {
+      row->value[k] = 1e6 * fg_query_get_number(&query, 1 + 2 * k);
+      row->u[k] = 1e6 * fg_query_get_number(&query, 2 + 2 * k);
+    }
+    row->passed = !strcmp(fg_query_get_text(&query, 7), "pass");
+    snprintf(row->path, sizeof row->path, "%s", fg_query_get_text(&query, 8));
+    snprintf(row->words, sizeof row->words, "%s", fg_query_get_text(&query, 9));
+  }
+  return fg_query_end(ctx, &query, "reading the checks");
+}
+
+static const char *call_words(const fg_station_health *health) {
+  return health->failed                    ? "OUT OF ORDER"
+         : health->due && !health->last_at ? "NOT CHECKED"
+         : health->due                     ? "CHECK DUE"
+                                           : "IN ORDER";
+}
+
+static void write_call(FILE *out, const fg_station_health *health) {
+  fprintf(out, "<div class=\"call %s\" role=\"status\"><b>%s</b><span>",
+          health->failed ? "fail"
+          : health->due  ? "again"
+                         : "pass",
+          call_words(health));
+  if (health->last_at) {
+    fputs("last check ", out);
+    fg_page_time(out, health->last_at);
+  }
+  if (health->due_at && !health->clock_back) {
+    fprintf(out, "<br>%s ", health->due ? "was due" : "next due");
+    fg_page_time(out, health->due_at);
+  }
+  fputs("</span></div>\n", out);
+}
+
+static void write_next(FILE *out, const fg_station_check *check, const fg_station_health *health) {
+  fputs("<p class=\"next\">", out);
+  if (health->clock_back)
+    fputs("The clock of this machine stands before the last check: it was set back, so nobody can "
+          "say how old that check is. Set the clock, and check the scanner. ",
+          out);
+  if (health->failed)
+    fputs("Clean the glass and the plate, let the scanner warm up, and check it again. If it fails "
+          "again, have it seen to, or measure a model of it anew. ",
+          out);
+  else if (health->due)
+    fputs("Put the plate on the glass and scan it into the folder, under a name as ", out);
+  else
+    fputs("Go on with foils. The next check: put the plate on the glass and scan it into the "
+          "folder, under a name as ",
+          out);
+  if (!health->failed) {
+    fputs("<b>", out);
+    fg_html_text(out, check->file_name);
+    fputs("</b>. ", out);
+  }
+  if (check->withhold)
+    fputs(health->due || health->failed
+              ? "Until a check has passed foils are measured, but get no verdict: scan them again "
+                "then."
+              : "Past due, or when a check fails, foils get no verdict.",
+          out);
+  fputs("</p>\n", out);
+}
+
+/* What the newest says of each axis, against the first that is drawn. */
+static void write_tiles(FILE *out, const history *all, double allowed) {
+  const check_row *last = &all->row[0], *first = &all->row[all->count - 1];
+  fputs("<dl class=\"tiles\">", out);
+  for (int k = 0; k < AXES; k++) {
+    fprintf(out, "<div><dt>%s</dt><dd>%+.0f ± %.0f %s<small>allowed ± %.0f</small>",
+            axes[k].short_title, last->value[k], 2 * last->u[k], axes[k].unit, allowed);
+    if (all->count > 1)
+      fprintf(out, "<small>%+.0f ± %.0f since the first that is drawn</small>",
+              last->value[k] - first->value[k], 2 * hypot(last->u[k], first->u[k]));
+    fputs("</dd></div>\n", out);
+  }
+  fputs("</dl>\n", out);
+}
+
+/* From the oldest, at 1. */
+static const check_row *in_order(const history *all, size_t i) {
+  return &all->row[all->count - 1 - i];
+}
+
+static void find_span(const history *all, int axis, double allowed, fg_plot *at) {
+  double reach = allowed;
+  for (size_t i = 0; i < all->count; i++) {
+    const check_row *row = &all->row[i];
+    if (isfinite(row->value[axis])) reach = fmax(reach, fabs(row->value[axis]) + 2 * row->u[axis]);
+  }
+  at->y_high = 1.12 * reach;
+  at->y_low = -at->y_high;
+}
+
+static void draw_day(const fg_plot *at, const history *all, size_t i, const char *anchor) {
+  char text[32];
+  time_t seconds = (time_t)(in_order(all, i)->at / 1000);
+  struct tm local;
+  if (!localtime_r(&seconds, &local) || !strftime(text, sizeof text, "%Y-%m-%d", &local)) return;
+  fprintf(at->out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", anchor,
+          fg_plot_x(at, (double)i + 1), at->bottom + 20, text);
+}
+
+static void draw_check(const fg_plot *at, const check_row *row, double x, int axis) {
+  double value = row->value[axis], reach = 2 * row->u[axis];
+  if (!isfinite(value)) return;
+  fg_plot_segment(at, x, value - reach, x, value + reach, "whisker");
+  fprintf(at->out, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%d\"><title>",
+          row->passed ? "s2" : "signal", fg_plot_x(at, x), fg_plot_y(at, value),
+          row->passed ? 4 : 6);
+  fg_html_text(at->out, row->path);
+  fputs(", ", at->out);
+  fg_page_time(at->out, row->at);
+  fprintf(at->out, ": %+.0f ± %.0f %s</title></circle>\n", value, reach, axes[axis].unit);
+}
+
+static void draw_history(FILE *out, const history *all, int axis, double allowed) {
+  fg_plot at = {.out = out, .width = 560, .left = 66, .right = 545, .top = 10, .bottom = 190};
+  at.x_low = 0.5;
+  at.x_high = (double)all->count + 0.5;
+  find_span(all, axis, allowed, &at);
+  fprintf(out, "<figure><h3>%s, %s</h3>\n", axes[axis].title, axes[axis].unit);
+  fg_plot_begin(&at, 220, axes[axis].title);
+  fprintf(out, "<rect class=\"allowed\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          at.left, fg_plot_y(&at, allowed), at.right - at.left,
+          fg_plot_y(&at, -allowed) - fg_plot_y(&at, allowed));
+  fg_plot_y_axis(&at, "");
+  for (int side = -1; side <= 1; side += 2)
+    fg_plot_segment(&at, at.x_low, side * allowed, at.x_high, side * allowed, "tolerance");
+  for (size_t i = 0; i < all->count; i++)
+    draw_check(&at, in_order(all, i), (double)i + 1, axis);
+  draw_day(&at, all, 0, "start");
+  if (all->count > 1) draw_day(&at, all, all->count - 1, "end");
+  fg_plot_end(&at);
+  fputs("</figure>\n", out);
+}
+
+static void write_list(FILE *out, const history *all) {
+  fputs("<h2>The newest</h2>\n<ul class=\"cards checks\">", out);
+  for (size_t i = 0; i < all->count && i < LISTED; i++) {
+    const check_row *row = &all->row[i];
+    fprintf(out, "<li><span class=\"tag %s\">%s</span><span>", row->passed ? "pass" : "fail",
+            row->passed ? "PASSED" : "FAILED");
+    fg_html_text(out, row->path);
+    fputs("</span><span class=\"note\">", out);
+    fg_page_time(out, row->at);
+    fputs("</span><span class=\"note\">", out);
+    fg_html_text(out, row->words);
+    fputs("</span></li>\n", out);
+  }
+  fputs("</ul>\n", out);
+}
+
+static void write_history(FILE *out, const history *all, double allowed) {
+  if (!all->count) {
+    fputs("<p class=\"note\">There was no check so far.</p>\n", out);
+    return;
+  }
+  write_tiles(out, all, allowed);
+  fputs("<div class=\"panels\">", out);
+  for (int k = 0; k < AXES; k++)
+    draw_history(out, all, k, allowed);
+  fprintf(
+      out,
+      "</div>\n<p class=\"note noprint\">Measured over true, less 1, with ± 2 u; green: what is "
+      "allowed. The newest %zu checks, in the order in which they were made. "
+      "<a href=\"/scanner?newest=all\">all</a></p>\n",
+      all->count);
+  write_list(out, all);
+}
+
+static fg_status write_checks(fg_context *ctx, const fg_station_check *check, sqlite3 *reader,
+                              size_t most, FILE *out) {
+  void *block;
+  fg_station_health health;
+  FG_TRY(fg_station_check_health(ctx, reader, check, &health));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof(history), &block));
+  history *all = block;
+  fg_status status = read_history(ctx, reader, most, all);
+  if (status == FG_OK) {
+    write_call(out, &health);
+    write_next(out, check, &health);
+    write_history(out, all, check->scale_max_ppm);
+  }
+  free(all);
+  return status;
+}
+
+fg_status fg_page_scanner(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                          const fg_request *request, FILE *out) {
+  const fg_station_check *check = &station->settings->check;
+  bool all = !strcmp(fg_request_get(request, "newest"), "all");
+  FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_SCANNER, "Scanner"));
+  fputs("<section data-live>\n<h1>Scanner</h1>\n", out);
+  if (!check->design[0])
+    fputs("<p class=\"next\">The recipe asks for no checks. With a plate or a ring of known "
+          "diameters the station shows how far the scanner's scale and its axes are off, reminds "
+          "of it, and withholds verdicts where it must: <code>station.check</code> in the recipe "
+          "(README).</p>\n",
+          out);
+  else
+    FG_TRY(write_checks(ctx, check, reader, all ? HISTORY_MAX : DRAWN, out));
+  fputs("</section>\n", out);
+  fg_page_end(out);
+  return FG_OK;
+}

@@ -1,0 +1,182 @@
+/* What a check says of a scanner, on plates of known diameters under scanners of known scale and
+ * shear. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "foilgauge/measure.h"
+#include "foilgauge/render.h"
+#include "station/check_fit.h"
+#include "support/brief.h"
+
+#define NOMINAL_DPI 4800.0
+
+/* Measured over true, less 1; rad. */
+typedef struct scanner {
+  double scale_x, scale_y, shear;
+} scanner;
+
+static const double radii_mm[] = {0.4, 0.6, 0.8};
+enum { DISCS = sizeof radii_mm / sizeof *radii_mm };
+
+/* A scanner with more pixels to the mm than it says sees everything larger along x; the effects say
+ * where a pixel truly is, so they have the other sign. */
+static void write_spec(char *json, size_t size, const scanner *is, unsigned seed,
+                       const char *picture) {
+  snprintf(
+      json, size,
+      "{\"schema\":\"foilgauge/render/1\",\"seed\":%u,\"discs\":["
+      "{\"centre_mm\":[0.61,0.7],\"radius_mm\":%g},{\"centre_mm\":[1.91,0.9],\"radius_mm\":%g},"
+      "{\"centre_mm\":[3.6013,1.1027],\"radius_mm\":%g}],\"scanner\":{\"dpi\":[%.9g,%.9g],%s},"
+      "\"effects\":[{\"id\":\"scan.scale_y\",\"value\":%.9g},{\"id\":\"scan.shear\","
+      "\"value\":%.9g}]}",
+      seed, radii_mm[0], radii_mm[1], radii_mm[2], NOMINAL_DPI * (1 + is->scale_x), NOMINAL_DPI,
+      picture, -is->scale_y, -is->shear);
+}
+
+static void design_plate(fg_design *design) {
+  fg_design_default(design);
+  design->form = FG_FORM_DISCS;
+  design->diameter_count = DISCS;
+  for (size_t i = 0; i < DISCS; i++)
+    design->diameters_mm[i] = 2 * radii_mm[i];
+}
+
+static fg_check_fit check(const scanner *is, unsigned seed, const char *picture) {
+  char json[2048], path[] = "/tmp/foilgauge_check_XXXXXX";
+  fg_context ctx = {0};
+  fg_render_spec *spec = NULL;
+  fg_design design;
+  fg_measurement measurement;
+  fg_check_fit fit;
+  const fg_measure_options options = {.dpi = NOMINAL_DPI};
+  close(mkstemp(path));
+  write_spec(json, sizeof json, is, seed, picture);
+  if (fg_render_parse(&ctx, "plate.json", json, &spec) != FG_OK) fail_msg("%s", ctx.message);
+  assert_int_equal(fg_render_scan(&ctx, spec, path, NULL), FG_OK);
+  design_plate(&design);
+  if (fg_measure_scan(&ctx, path, &design, &options, &measurement) != FG_OK)
+    fail_msg("%s", ctx.message);
+  if (fg_check_fit_plate(&ctx, &design, &measurement, &fit) != FG_OK) fail_msg("%s", ctx.message);
+  fg_measurement_free(&measurement);
+  fg_render_free(spec);
+  unlink(path);
+  return fit;
+}
+
+/* Deviations from the truth in u, and in ppm. */
+static void compare(const fg_check_fit *fit, const scanner *is, double in_u[3], double ppm[3]) {
+  const double error[3] = {fit->scale[0] - is->scale_x, fit->scale[1] - is->scale_y,
+                           fit->shear - is->shear};
+  const double u[3] = {fit->u_scale[0], fit->u_scale[1], fit->u_shear};
+  for (int k = 0; k < 3; k++) {
+    in_u[k] = error[k] / u[k];
+    ppm[k] = 1e6 * error[k];
+  }
+}
+
+/* Over seeds: none further off than 4 u, the mean square of deviation / u about 1, and no larger
+ * errors than `most_ppm`. Over 60 seeds the root of that mean square is 0.8 to 1.1. */
+static void check_coverage(const char *picture, const scanner *is, double least, double most,
+                           double most_ppm) {
+#ifndef SEEDS
+  const unsigned seeds = 4 / test_step(4);
+#else
+  const unsigned seeds = SEEDS;
+#endif
+  double squares[3] = {0}, square_ppm[3] = {0}, worst = 0;
+  for (unsigned seed = 1; seed <= seeds; seed++) {
+    double in_u[3], ppm[3];
+    fg_check_fit fit = check(is, seed, picture);
+    assert_int_equal(fit.discs, DISCS);
+    compare(&fit, is, in_u, ppm);
+    for (int k = 0; k < 3; k++) {
+      squares[k] += in_u[k] * in_u[k] / seeds;
+      square_ppm[k] += ppm[k] * ppm[k] / seeds;
+      worst = fmax(worst, fabs(in_u[k]));
+    }
+  }
+  double all = sqrt((squares[0] + squares[1] + squares[2]) / 3);
+  printf("%s: deviation / u %.2f %.2f %.2f, worst %.1f; ppm %.1f %.1f %.1f\n", picture,
+         sqrt(squares[0]), sqrt(squares[1]), sqrt(squares[2]), worst, sqrt(square_ppm[0]),
+         sqrt(square_ppm[1]), sqrt(square_ppm[2]));
+#ifndef SEEDS
+  assert_true(worst < 4);
+  assert_true(all > least && all < most);
+  for (int k = 0; k < 3; k++)
+    assert_true(sqrt(square_ppm[k]) < most_ppm);
+#else
+  (void)all, (void)least, (void)most, (void)most_ppm;
+#endif
+}
+
+static void scale_and_shear_are_found(void **state) {
+  (void)state;
+  check_coverage("\"noise\":2", &(scanner){400e-6, -700e-6, 300e-6}, 0.4, 1.8, 15);
+}
+
+static void a_good_scanner_is_not_blamed(void **state) {
+  (void)state;
+  check_coverage("\"noise\":3,\"noise_correlation\":0.5", &(scanner){0, 0, 0}, 0.4, 1.8, 150);
+}
+
+static void a_tone_curve_is_in_the_uncertainty(void **state) {
+  (void)state;
+  check_coverage("\"noise\":2,\"gamma\":1.8,\"bits\":16", &(scanner){100e-6, 100e-6, -50e-6}, 0,
+                 1.8, 60);
+}
+
+static void rough_edges_are_in_the_uncertainty(void **state) {
+  (void)state;
+  check_coverage("\"noise\":2,\"rough\":{\"edge_roughness_um\":1,\"correlation_um\":50}",
+                 &(scanner){0, 300e-6, 0}, 0.3, 1.8, 400);
+}
+
+/* A limit is held against the value and its uncertainty. */
+static void the_judge_counts_the_uncertainty(void **state) {
+  (void)state;
+  char words[300];
+  fg_check_fit fit = {.discs = 3, .scale = {250e-6, 0}, .u_scale = {20e-6, 20e-6}, .u_shear = 1e-6};
+  fg_check_fit_judge(&fit, 300, words, sizeof words);
+  assert_true(fit.passes);
+  assert_non_null(strstr(words, "in order"));
+  assert_non_null(strstr(words, "x +250 ± 40 ppm"));
+  fg_check_fit_judge(&fit, 280, words, sizeof words);
+  assert_false(fit.passes);
+  assert_non_null(strstr(words, "out of order"));
+  fit = (fg_check_fit){.discs = 3, .shear = -400e-6, .u_shear = 1e-6};
+  fg_check_fit_judge(&fit, 300, words, sizeof words);
+  assert_false(fit.passes);
+}
+
+static void a_plate_of_other_diameters_is_refused(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  fg_design design;
+  fg_check_fit fit;
+  fg_disc disc = {.diameter_mm = 7, .coverage_deg = 360};
+  const fg_measurement measurement = {.discs = &disc, .disc_count = 1};
+  design_plate(&design);
+  assert_int_equal(fg_check_fit_plate(&ctx, &design, &measurement, &fit), FG_ERR_NOT_MEASURED);
+  assert_non_null(strstr(ctx.message, "none of 1 discs"));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(scale_and_shear_are_found),
+      cmocka_unit_test(a_good_scanner_is_not_blamed),
+      cmocka_unit_test(a_tone_curve_is_in_the_uncertainty),
+      cmocka_unit_test(rough_edges_are_in_the_uncertainty),
+      cmocka_unit_test(the_judge_counts_the_uncertainty),
+      cmocka_unit_test(a_plate_of_other_diameters_is_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
