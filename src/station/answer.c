@@ -9,6 +9,7 @@
 #include "station/actions.h"
 #include "station/pages.h"
 #include "station/trend.h"
+#include "station/trouble.h"
 
 typedef struct route {
   const char *path;
@@ -190,6 +191,7 @@ static void tell_events(fg_inspection *station, const fg_request *request, fg_an
       &query);
   if (fg_query_row(&query)) newest = fg_query_get_integer(&query, 0);
   newest += 2 * atomic_load(&station->scanning);
+  newest = newest * 16 + fg_station_trouble_changes(station) % 16;
   fg_query_end(&ctx, &query, "reading the cards");
   pthread_mutex_unlock(&station->database.reading);
   *answer = (fg_answer){.code = 200, .type = "text/event-stream"};

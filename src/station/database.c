@@ -1,6 +1,7 @@
 #include "station/database.h"
 
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include "core/text.h"
@@ -81,16 +82,19 @@ int64_t fg_station_now(void) {
   return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
+/* journal_size_limit: what a large transaction or a slow reader made of the journal is given back.
+ */
 static fg_status open_connection(fg_context *ctx, const char *path, bool write,
                                  sqlite3 **connection) {
   int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READWRITE;
+  const char *settings = write ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+                                 "PRAGMA foreign_keys = ON; PRAGMA journal_size_limit = 8388608;"
+                               : "PRAGMA query_only = ON;";
   if (sqlite3_open_v2(path, connection, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK)
     return fg_sql_fail(ctx, *connection, path);
   sqlite3_busy_timeout(*connection, BUSY_MS);
-  return fg_sql_run(ctx, *connection,
-                    write ? "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-                            "PRAGMA foreign_keys = ON;"
-                          : "PRAGMA query_only = ON;");
+  if (sqlite3_exec(*connection, settings, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
+  return fg_sql_fail(ctx, *connection, path);
 }
 
 static fg_status read_version(fg_context *ctx, const fg_station_database *database, int *version) {
@@ -98,6 +102,17 @@ static fg_status read_version(fg_context *ctx, const fg_station_database *databa
   fg_query_begin(database->writer, "PRAGMA user_version", &query);
   *version = fg_query_row(&query) ? (int)fg_query_get_integer(&query, 0) : 0;
   return fg_query_end(ctx, &query, database->path);
+}
+
+/* A database of version 0 with tables is another program's: it only has our name. */
+static fg_status check_empty(fg_context *ctx, const fg_station_database *database) {
+  fg_query query;
+  fg_query_begin(database->writer, "SELECT 1 FROM sqlite_schema LIMIT 1", &query);
+  bool used = fg_query_row(&query);
+  FG_TRY(fg_query_end(ctx, &query, database->path));
+  if (!used) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA, "%s: is the database of another program: put it elsewhere",
+                 database->path);
 }
 
 static fg_status migrate(fg_context *ctx, fg_station_database *database) {
@@ -108,14 +123,32 @@ static fg_status migrate(fg_context *ctx, fg_station_database *database) {
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: the database has version %d, of a later program; this one knows version %d",
                    database->path, version, VERSION);
+  if (version == 0) FG_TRY(check_empty(ctx, database));
   for (; version < VERSION; version++) {
     FG_TRY(fg_text_print(ctx, &step, "BEGIN IMMEDIATE;%s PRAGMA user_version = %d; COMMIT;",
                          migrations[version], version + 1));
-    fg_status status = fg_sql_run(ctx, database->writer, step);
+    bool done = sqlite3_exec(database->writer, step, NULL, NULL, NULL) == SQLITE_OK;
     free(step);
-    if (status != FG_OK) return status;
+    if (!done) return fg_sql_fail(ctx, database->writer, database->path);
   }
   return FG_OK;
+}
+
+static fg_status find_file(fg_context *ctx, fg_station_database *database) {
+  struct stat file;
+  if (stat(database->path, &file) != 0)
+    return fg_fail(ctx, FG_ERR_IO, "%s: is gone again", database->path);
+  database->device = file.st_dev;
+  database->inode = file.st_ino;
+  return FG_OK;
+}
+
+static fg_status open_both(fg_context *ctx, const char *folder, fg_station_database *database) {
+  FG_TRY(fg_text_print(ctx, &database->path, "%s/%s", folder, FG_STATION_DATABASE));
+  FG_TRY(open_connection(ctx, database->path, true, &database->writer));
+  FG_TRY(migrate(ctx, database));
+  FG_TRY(open_connection(ctx, database->path, false, &database->reader));
+  return find_file(ctx, database);
 }
 
 fg_status fg_station_database_open(fg_context *ctx, const char *folder,
@@ -123,15 +156,31 @@ fg_status fg_station_database_open(fg_context *ctx, const char *folder,
   *database = (fg_station_database){0};
   pthread_mutex_init(&database->writing, NULL);
   pthread_mutex_init(&database->reading, NULL);
-  fg_status status = fg_text_print(ctx, &database->path, "%s/%s", folder, FG_STATION_DATABASE);
-  if (status == FG_OK) status = open_connection(ctx, database->path, true, &database->writer);
-  if (status == FG_OK) status = migrate(ctx, database);
-  if (status == FG_OK) status = open_connection(ctx, database->path, false, &database->reader);
+  fg_status status = open_both(ctx, folder, database);
   if (status != FG_OK) fg_station_database_close(database);
   return status;
 }
 
+bool fg_station_database_is_there(const fg_station_database *database) {
+  struct stat file;
+  return stat(database->path, &file) == 0 && file.st_dev == database->device &&
+         file.st_ino == database->inode;
+}
+
+/* Where the file has gone from its name, a journal of that name is another database's: SQLite,
+ * which removes journals by name, must leave it. */
+static void leave_journal(sqlite3 *connection) {
+  int persist = 1;
+  if (!connection) return;
+  sqlite3_db_config(connection, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL);
+  sqlite3_file_control(connection, "main", SQLITE_FCNTL_PERSIST_WAL, &persist);
+}
+
 void fg_station_database_close(fg_station_database *database) {
+  if (database->inode && !fg_station_database_is_there(database)) {
+    leave_journal(database->reader);
+    leave_journal(database->writer);
+  }
   sqlite3_close_v2(database->reader);
   sqlite3_close_v2(database->writer);
   database->reader = database->writer = NULL;
@@ -139,9 +188,33 @@ void fg_station_database_close(fg_station_database *database) {
   database->path = NULL;
 }
 
+fg_status fg_station_database_reopen(fg_context *ctx, const char *folder,
+                                     fg_station_database *database) {
+  fg_station_database other = {0};
+  fg_status status = open_both(ctx, folder, &other);
+  if (status == FG_OK) {
+    pthread_mutex_lock(&database->reading);
+    pthread_mutex_lock(&database->writing);
+    fg_station_database before = *database;
+    database->reader = other.reader;
+    database->writer = other.writer;
+    database->path = other.path;
+    database->device = other.device;
+    database->inode = other.inode;
+    pthread_mutex_unlock(&database->writing);
+    pthread_mutex_unlock(&database->reading);
+    other = before;
+  }
+  fg_station_database_close(&other);
+  return status;
+}
+
 fg_status fg_station_database_begin(fg_context *ctx, fg_station_database *database) {
   pthread_mutex_lock(&database->writing);
-  fg_status status = fg_sql_run(ctx, database->writer, "BEGIN IMMEDIATE");
+  fg_status status =
+      fg_station_database_is_there(database)
+          ? fg_sql_run(ctx, database->writer, "BEGIN IMMEDIATE")
+          : fg_fail(ctx, FG_ERR_IO, "%s: is not in its folder any more", database->path);
   if (status != FG_OK) pthread_mutex_unlock(&database->writing);
   return status;
 }

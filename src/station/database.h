@@ -7,6 +7,8 @@
 #define FG_STATION_DATABASE_H
 
 #include <pthread.h>
+#include <stdbool.h>
+#include <sys/types.h>
 
 #include "station/sql.h"
 
@@ -17,6 +19,8 @@ typedef struct fg_station_database {
   sqlite3 *writer, *reader;
   pthread_mutex_t writing, reading;
   char *path;
+  dev_t device; /* which file it is: another one may come under its name */
+  ino_t inode;
 } fg_station_database;
 
 /* Opens or makes folder/FG_STATION_DATABASE and brings it up to date. FG_ERR_DATA: damaged, no
@@ -25,8 +29,17 @@ fg_status fg_station_database_open(fg_context *ctx, const char *folder,
                                    fg_station_database *database);
 void fg_station_database_close(fg_station_database *database); /* of an all-zero one, too */
 
-/* A transaction: between the two the caller has the writer alone. Commits when `status` is FG_OK,
- * else takes everything back, and returns `status`, or why it could not be committed. */
+/* Whether the file that is open still lies under its name. */
+bool fg_station_database_is_there(const fg_station_database *database);
+
+/* What lies in the folder now takes the place of what is open, which is left as it is where that
+ * fails. Any thread, with neither lock. */
+fg_status fg_station_database_reopen(fg_context *ctx, const char *folder,
+                                     fg_station_database *database);
+
+/* A transaction: between the two the caller has the writer alone. It does not begin in a file that
+ * no longer lies in the folder (FG_ERR_IO): what it keeps would be lost. Commits when `status` is
+ * FG_OK, else takes everything back, and returns `status`, or why it could not be committed. */
 fg_status fg_station_database_begin(fg_context *ctx, fg_station_database *database);
 fg_status fg_station_database_end(fg_context *ctx, fg_station_database *database, fg_status status);
 

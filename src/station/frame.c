@@ -54,6 +54,18 @@ static void write_tabs(FILE *out, fg_tab here) {
   fputs("</nav>\n", out);
 }
 
+static void write_trouble(fg_inspection *station, FILE *out) {
+  fg_trouble *trouble = &station->trouble;
+  pthread_mutex_lock(&trouble->mutex);
+  if (trouble->words[0]) {
+    fputs("<p class=\"banner\" role=\"alert\"><b>Nothing is kept now; it is tried again.</b> ",
+          out);
+    fg_html_text(out, trouble->words);
+    fputs("</p>\n", out);
+  }
+  pthread_mutex_unlock(&trouble->mutex);
+}
+
 static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
                               FILE *out) {
   fg_station_health health;
@@ -81,6 +93,7 @@ fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader
         out);
   write_tabs(out, tab);
   fputs("<main>\n", out);
+  write_trouble(station, out);
   return write_banner(ctx, station, reader, out);
 }
 

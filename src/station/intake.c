@@ -27,6 +27,8 @@ typedef struct intake {
   fg_named named;
   struct timespec arrived;
   char words[WORDS]; /* of its card */
+  bool later;        /* it has to be looked at again */
+  bool silent;       /* nothing is new: no card */
 } intake;
 
 static bool read_ends(const char *path, uint8_t head[HEAD_BYTES], size_t *length,
@@ -50,10 +52,11 @@ static bool is_cut_off(const fg_format *format, const uint8_t tail[TAIL_BYTES], 
   return format == &fg_format_png && (bytes < TAIL_BYTES || memcmp(tail, end, TAIL_BYTES) != 0);
 }
 
-/* What a look at its ends says; FG_CARD_MEASURED: a scan that seems whole. */
-static fg_card look(intake *at) {
+/* What a look at its ends says; FG_CARD_MEASURED: a scan that seems whole, and is if `sure`. */
+static fg_card look(intake *at, bool *sure) {
   uint8_t head[HEAD_BYTES], tail[TAIL_BYTES] = {0};
   size_t length;
+  *sure = false;
   if (!read_ends(at->path, head, &length, tail)) {
     fg_text_clip(at->words, WORDS, "cannot be read: %s", strerror(errno));
     return FG_CARD_UNREADABLE;
@@ -67,6 +70,7 @@ static fg_card look(intake *at) {
     fg_format_problem(head, length, at->words, WORDS);
     return FG_CARD_FOREIGN;
   }
+  *sure = format == &fg_format_png;
   if (!is_cut_off(format, tail, at->file.bytes)) return FG_CARD_MEASURED;
   fg_text_clip(at->words, WORDS,
                "is not whole: its end is missing; it is looked at again when it changes, else scan "
@@ -78,7 +82,11 @@ static fg_card look(intake *at) {
 static fg_status refuse(fg_context *ctx, intake *at, fg_card card, bool try_again) {
   fg_station_file file = at->file;
   if (try_again) file.modified_ns = -1;
-  FG_TRY(fg_station_keep_card(ctx, &at->station->database, &file, card, at->words, 0));
+  if (try_again)
+    FG_TRY(
+        fg_station_card_stands(ctx, &at->station->database, &file, card, at->words, &at->silent));
+  if (!at->silent)
+    FG_TRY(fg_station_keep_card(ctx, &at->station->database, &file, card, at->words, 0));
   at->station->outcome->refused++;
   at->station->outcome->judged.not_measured += card != FG_CARD_FOREIGN;
   return FG_OK;
@@ -112,6 +120,14 @@ static fg_status keep_known(fg_context *ctx, intake *at, int64_t scan) {
     status = fg_station_keep_card(ctx, database, &at->file, FG_CARD_KNOWN, at->words, scan);
   at->station->outcome->known += status == FG_OK;
   return status;
+}
+
+/* Whether the file is still as it was when the look at it began; else what was read is no one
+ * scan. */
+static bool is_unchanged(const intake *at) {
+  struct stat now;
+  return stat(at->path, &now) == 0 && now.st_size == at->file.bytes &&
+         (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec == at->file.modified_ns;
 }
 
 static void wake(fg_inspection *station) {
@@ -168,6 +184,11 @@ static fg_status measure(fg_context *ctx, intake *at) {
   fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);
   if (failure == FG_OK) failure = correct(&inner, at->station, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
+  at->later = !is_unchanged(at);
+  if (at->later) {
+    if (failure == FG_OK) fg_measurement_free(&measurement);
+    return FG_OK;
+  }
   if (failure != FG_OK) {
     take_words(at, inner.message);
     return refuse(ctx, at, FG_CARD_UNREADABLE, failure == FG_ERR_IO);
@@ -187,41 +208,56 @@ static bool is_check(const fg_inspection *station, intake *at) {
   return called || (fits && at->named.check[0]);
 }
 
-static fg_status take(fg_context *ctx, intake *at, bool final, bool *later) {
+static void say(const intake *at) {
+  const fg_station_request *request = at->station->request;
+  if (request->looked_at) request->looked_at(request->user, at->file.name, at->words);
+  wake(at->station);
+}
+
+/* Somebody writes to it. */
+static fg_status leave(intake *at) {
+  at->later = true;
+  if (!at->station->request->once) return FG_OK;
+  fg_text_clip(at->words, WORDS, "is being written: it is left for the next time");
+  at->station->outcome->refused++;
+  at->station->outcome->judged.not_measured++;
+  say(at);
+  return FG_OK;
+}
+
+static fg_status take_card(fg_context *ctx, intake *at, fg_card card) {
   fg_inspection *station = at->station;
+  bool check = is_check(station, at);
+  if (card != FG_CARD_MEASURED) return refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
+  if (check)
+    return fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
+  return measure(ctx, at);
+}
+
+static fg_status take(fg_context *ctx, intake *at, bool final) {
   struct stat now;
-  bool done;
+  bool done, sure;
   if (stat(at->path, &now) != 0 || !S_ISREG(now.st_mode)) return FG_OK; /* gone, or no file */
   at->file.bytes = now.st_size;
   at->file.modified_ns = (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec;
-  FG_TRY(fg_station_file_is_done(ctx, &station->database, &at->file, &done));
+  FG_TRY(fg_station_file_is_done(ctx, &at->station->database, &at->file, &done));
   if (done) return FG_OK;
-  fg_card card = look(at);
-  if (card == FG_CARD_UNFINISHED && !final) {
-    *later = true;
-    return FG_OK;
-  }
-  bool check = is_check(station, at);
-  fg_status status;
-  if (card != FG_CARD_MEASURED)
-    status = refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
-  else if (check)
-    status = fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
-  else
-    status = measure(ctx, at);
-  if (status == FG_OK && station->request->looked_at)
-    station->request->looked_at(station->request->user, at->file.name, at->words);
-  wake(station);
-  return status;
+  fg_card card = look(at, &sure);
+  at->later = !final && !(sure && card == FG_CARD_MEASURED);
+  if (at->later) return FG_OK;
+  FG_TRY(take_card(ctx, at, card));
+  if (at->later) return leave(at);
+  if (!at->silent || at->station->request->once) say(at);
+  return FG_OK;
 }
 
 fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
                                bool final, bool *later) {
   intake at = {.station = station, .file.name = name};
-  *later = false;
   clock_gettime(CLOCK_MONOTONIC, &at.arrived);
   FG_TRY(fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name));
-  fg_status status = take(ctx, &at, final, later);
+  fg_status status = take(ctx, &at, final);
+  *later = at.later;
   free(at.path);
   return status;
 }

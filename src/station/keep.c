@@ -90,6 +90,27 @@ fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database
   return status;
 }
 
+fg_status fg_station_card_stands(fg_context *ctx, fg_station_database *database,
+                                 const fg_station_file *file, fg_card card, const char *message,
+                                 bool *stands) {
+  fg_query query;
+  pthread_mutex_lock(&database->writing);
+  fg_query_begin(database->writer,
+                 "SELECT 1 FROM files JOIN arrivals ON arrivals.id = files.arrival"
+                 " WHERE files.path = ? AND bytes = ? AND modified_ns = ? AND kind = ?"
+                 " AND message = ?",
+                 &query);
+  fg_query_text(&query, file->name);
+  fg_query_integer(&query, file->bytes);
+  fg_query_integer(&query, file->modified_ns);
+  fg_query_text(&query, fg_card_word(card));
+  fg_query_text(&query, message);
+  *stands = fg_query_row(&query);
+  fg_status status = fg_query_end(ctx, &query, "reading the cards");
+  pthread_mutex_unlock(&database->writing);
+  return status;
+}
+
 fg_status fg_station_find_scan(fg_context *ctx, fg_station_database *database, const char *sha256,
                                int64_t *scan) {
   fg_query query;

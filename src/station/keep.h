@@ -31,6 +31,11 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
 fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
                                   const fg_station_file *file, bool *done);
 
+/* Whether that is what the file's newest card says of it already. */
+fg_status fg_station_card_stands(fg_context *ctx, fg_station_database *database,
+                                 const fg_station_file *file, fg_card card, const char *message,
+                                 bool *stands);
+
 /* The scan with that sum: its number, 0 when there is none. */
 fg_status fg_station_find_scan(fg_context *ctx, fg_station_database *database, const char *sha256,
                                int64_t *scan);

@@ -136,8 +136,10 @@ static fg_status write_report(fg_context *ctx, const char *folder, const fg_past
 fg_status fg_page_report(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                          const fg_request *request, FILE *out) {
   fg_past *past;
+  (void)reader; /* may be another one by the time that it is ours */
   pthread_mutex_lock(&station->database.reading);
-  fg_status status = fg_past_load(ctx, reader, fg_request_get(request, "foil"), &past);
+  fg_status status =
+      fg_past_load(ctx, station->database.reader, fg_request_get(request, "foil"), &past);
   pthread_mutex_unlock(&station->database.reading);
   if (status != FG_OK) return status;
   status = write_report(ctx, station->request->folder, past, out);

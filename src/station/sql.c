@@ -3,9 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what) {
-  int code = connection ? sqlite3_extended_errcode(connection) : SQLITE_NOMEM;
-  const char *words = connection ? sqlite3_errmsg(connection) : "out of memory";
+static fg_status fail_code(fg_context *ctx, int code, const char *what, const char *words) {
   switch (code & 0xFF) {
   case SQLITE_NOMEM:
     return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: %s", what);
@@ -19,9 +17,20 @@ fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what) {
         "%s: the database is damaged or none (%s): put it aside, and take it from a backup, "
         "or measure the folder's scans again",
         what, words);
+  case SQLITE_READONLY:
+  case SQLITE_CANTOPEN:
+    return fg_fail(ctx, FG_ERR_IO,
+                   "%s: %s: the station writes into its folder; check whose it is and what may be "
+                   "written there",
+                   what, words);
   default:
     return fg_fail(ctx, FG_ERR_IO, "%s: %s", what, words);
   }
+}
+
+fg_status fg_sql_fail(fg_context *ctx, sqlite3 *connection, const char *what) {
+  int code = connection ? sqlite3_extended_errcode(connection) : SQLITE_NOMEM;
+  return fail_code(ctx, code, what, connection ? sqlite3_errmsg(connection) : "out of memory");
 }
 
 fg_status fg_sql_run(fg_context *ctx, sqlite3 *connection, const char *sql) {
@@ -99,9 +108,9 @@ void fg_query_again(fg_query *query) {
 fg_status fg_query_end(fg_context *ctx, fg_query *query, const char *what) {
   fg_status status = FG_OK;
   if (query->error != SQLITE_OK) {
-    bool last = sqlite3_errcode(query->connection) == (query->error & 0xFF);
-    status = last ? fg_sql_fail(ctx, query->connection, what)
-                  : fg_fail(ctx, FG_ERR_IO, "%s: %s", what, sqlite3_errstr(query->error));
+    bool last = (sqlite3_errcode(query->connection) & 0xFF) == (query->error & 0xFF);
+    status = fail_code(ctx, query->error, what,
+                       last ? sqlite3_errmsg(query->connection) : sqlite3_errstr(query->error));
   }
   sqlite3_finalize(query->statement);
   query->statement = NULL;

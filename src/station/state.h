@@ -19,6 +19,13 @@ typedef struct fg_closing {
   char error[1024]; /* of the last that could not be closed; "": none */
 } fg_closing;
 
+/* What the station cannot do now and tries again: pages say it. */
+typedef struct fg_trouble {
+  pthread_mutex_t mutex;
+  char words[1000]; /* "": all is well */
+  unsigned changes;
+} fg_trouble;
+
 typedef struct fg_inspection {
   const fg_station_request *request;
   const fg_station_settings *settings;
@@ -34,7 +41,8 @@ typedef struct fg_inspection {
   atomic_bool scanning;               /* the scan command runs */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
-  void (*wake)(void *server);         /* a card was added; NULL: nobody waits */
+  fg_trouble trouble;
+  void (*wake)(void *server); /* a card was added; NULL: nobody waits */
   void *server;
 } fg_inspection;
 

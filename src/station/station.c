@@ -64,6 +64,7 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   station->outcome = outcome;
   station->lock = -1;
   pthread_mutex_init(&station->closing.mutex, NULL);
+  pthread_mutex_init(&station->trouble.mutex, NULL);
   fg_status status = work(ctx, station);
   fg_closing_end(&station->closing);
   fg_station_database_close(&station->database);

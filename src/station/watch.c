@@ -1,6 +1,9 @@
 /* A file is whole when its writer has closed or renamed it (inotify), or, where the system does
  * not tell (network folders, files that were there before), when it has been at rest for a while.
- * Whatever inotify says, the folder is listed now and then: what was missed is found. */
+ * Whatever inotify says, the folder is listed now and then: what was missed is found.
+ *
+ * What the station cannot do now (a full disk, a folder that is gone) is its trouble: pages say so,
+ * and it is tried again. */
 #include "station/watch.h"
 
 #include <dirent.h>
@@ -17,13 +20,14 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "station/intake.h"
+#include "station/rest.h"
+#include "station/trouble.h"
 
-enum { NAMES_MAX = 100000, LIST_EVERY_MS = 10000, LIST_SOON_MS = 500, EVENT_BYTES = 1 << 16 };
-#define AT_REST_NS 2000000000LL /* as long as a slow scanner pauses between rows */
+enum { NAMES_MAX = 100000, LIST_EVERY_MS = 30000, LIST_SOON_MS = 500, EVENT_BYTES = 1 << 16 };
 
 typedef struct found {
   char *name;
-  int64_t modified_ns;
+  int64_t bytes, modified_ns;
 } found;
 
 typedef struct watch {
@@ -31,13 +35,14 @@ typedef struct watch {
   int inotify, descriptor; /* -1: none */
   found *files;
   size_t count, capacity;
-  bool pending; /* a file was not whole yet */
-  bool gone;    /* the folder */
+  fg_rest rest;
+  int64_t listed_ns; /* when the folder was, by the steady clock; 0: not yet */
+  bool pending;      /* a file was not whole yet */
 } watch;
 
-static int64_t now_ns(void) {
+static int64_t now_ns(clockid_t clock) {
   struct timespec now;
-  clock_gettime(CLOCK_REALTIME, &now);
+  clock_gettime(clock, &now);
   return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
@@ -54,12 +59,14 @@ static bool is_ignored(const char *name) {
   return false;
 }
 
-static fg_status add(fg_context *ctx, watch *at, const char *name, int64_t modified_ns) {
+static fg_status add(fg_context *ctx, watch *at, const char *name, const struct stat *file) {
   void *block = at->files;
   FG_TRY(fg_memory_reserve(ctx, at->count + 1, sizeof *at->files, &at->capacity, &block));
   at->files = block;
   FG_TRY(fg_text_print(ctx, &at->files[at->count].name, "%s", name));
-  at->files[at->count++].modified_ns = modified_ns;
+  at->files[at->count].bytes = file->st_size;
+  at->files[at->count++].modified_ns =
+      (int64_t)file->st_mtim.tv_sec * 1000000000 + file->st_mtim.tv_nsec;
   return FG_OK;
 }
 
@@ -82,8 +89,8 @@ static fg_status list(fg_context *ctx, watch *at) {
   fg_status status = FG_OK;
   DIR *open = opendir(folder);
   clear(at);
-  at->gone = !open;
-  if (!open) return FG_OK;
+  if (!open)
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", folder, strerror(errno));
   for (struct dirent *entry; status == FG_OK && (entry = readdir(open));) {
     struct stat file;
     if (is_ignored(entry->d_name) || fstatat(dirfd(open), entry->d_name, &file, 0) != 0 ||
@@ -93,8 +100,7 @@ static fg_status list(fg_context *ctx, watch *at) {
       status = fg_fail(ctx, FG_ERR_DATA, "%s: more than %d files; move old ones elsewhere", folder,
                        NAMES_MAX);
     else
-      status = add(ctx, at, entry->d_name,
-                   (int64_t)file.st_mtim.tv_sec * 1000000000 + file.st_mtim.tv_nsec);
+      status = add(ctx, at, entry->d_name, &file);
   }
   closedir(open);
   if (at->count) qsort(at->files, at->count, sizeof *at->files, by_arrival);
@@ -108,18 +114,41 @@ static fg_status take(fg_context *ctx, watch *at, const char *name, bool closed)
   return FG_OK;
 }
 
-/* Everything that is there; `once` does not wait for anybody. A time in the future is no reason to
- * wait: clocks differ. */
+/* What was there long before the station began, by this machine's clock, nobody writes to; of files
+ * of other machines it says nothing. */
+static bool is_old(const watch *at, const found *file) {
+  return !at->listed_ns && at->station->request->poll_s <= 0 &&
+         now_ns(CLOCK_REALTIME) - file->modified_ns > FG_REST_NS;
+}
+
+static fg_status take_listed(fg_context *ctx, watch *at, const found *file, bool once) {
+  bool later, at_rest = once || is_old(at, file);
+  FG_TRY(fg_station_take_file(ctx, at->station, file->name, at_rest, &later));
+  if (!later) return FG_OK;
+  FG_TRY(fg_rest_look(ctx, &at->rest, file->name, file->bytes, file->modified_ns,
+                      now_ns(CLOCK_MONOTONIC), &at_rest));
+  if (at_rest && !once) FG_TRY(fg_station_take_file(ctx, at->station, file->name, true, &later));
+  at->pending = at->pending || later;
+  return FG_OK;
+}
+
+/* Everything that is there; `once` does not wait for anybody. One scan that takes more memory than
+ * there is does not hold up the others. */
 static fg_status take_all(fg_context *ctx, watch *at, bool once) {
+  fg_status short_of_memory = FG_OK;
+  fg_context inner = {.message = ""};
   at->pending = false;
   FG_TRY(list(ctx, at));
   for (size_t i = 0; i < at->count; i++) {
-    int64_t age = now_ns() - at->files[i].modified_ns;
-    bool at_rest = once || age > AT_REST_NS || age < 0;
-    FG_TRY(take(ctx, at, at->files[i].name, at_rest));
-    at->pending = at->pending || !at_rest;
+    fg_status status = take_listed(&inner, at, &at->files[i], once);
+    if (status == FG_ERR_MEMORY)
+      short_of_memory = fg_fail(ctx, status, "%s: %.900s", at->files[i].name, inner.message);
+    else if (status != FG_OK)
+      return fg_fail(ctx, status, "%s", inner.message);
   }
-  return FG_OK;
+  fg_rest_end_round(&at->rest);
+  at->listed_ns = now_ns(CLOCK_MONOTONIC);
+  return short_of_memory;
 }
 
 static void stop_listening(watch *at) {
@@ -127,7 +156,8 @@ static void stop_listening(watch *at) {
   at->inotify = at->descriptor = -1;
 }
 
-/* Where the system cannot tell, the folder is listed. */
+/* Where the system cannot tell, the folder is listed. IN_ATTRIB: what could not be read may be
+ * readable now. */
 static void listen_to(watch *at) {
   stop_listening(at);
   if (at->station->request->poll_s > 0) return;
@@ -135,14 +165,15 @@ static void listen_to(watch *at) {
   if (at->inotify < 0) return;
   at->descriptor = inotify_add_watch(at->inotify, at->station->request->folder,
                                      IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_MODIFY |
-                                         IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR);
+                                         IN_ATTRIB | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR);
   if (at->descriptor < 0) stop_listening(at);
 }
 
 static fg_status take_event(fg_context *ctx, watch *at, const struct inotify_event *event) {
   if (event->mask & (IN_DELETE_SELF | IN_MOVE_SELF | IN_IGNORED | IN_UNMOUNT | IN_Q_OVERFLOW)) {
-    at->gone = !(event->mask & IN_Q_OVERFLOW);
     at->pending = true;
+    /* Listening ends with the folder; what comes under its name is another one. */
+    if (!(event->mask & IN_Q_OVERFLOW)) stop_listening(at);
     return FG_OK;
   }
   if (!event->len || is_ignored(event->name)) return FG_OK;
@@ -151,41 +182,63 @@ static fg_status take_event(fg_context *ctx, watch *at, const struct inotify_eve
   return FG_OK;
 }
 
-/* Waits for the next thing to do: events that came, or the time to list. */
-static fg_status wait_and_take(fg_context *ctx, watch *at, int64_t *listed) {
+/* Of events that come behind one that could not be handled the list tells. */
+static fg_status take_events(fg_context *ctx, watch *at) {
   _Alignas(struct inotify_event) char bytes[EVENT_BYTES];
-  double poll_s = at->station->request->poll_s;
-  int wait = at->pending || at->gone ? LIST_SOON_MS
-             : poll_s > 0            ? (int)(1000 * poll_s)
-                                     : LIST_EVERY_MS;
-  struct pollfd descriptor = {.fd = at->inotify, .events = POLLIN};
-  poll(&descriptor, 1, wait);
   ssize_t got = at->inotify >= 0 ? read(at->inotify, bytes, sizeof bytes) : -1;
   for (ssize_t i = 0; i < got;) {
     const struct inotify_event *event = (const void *)(bytes + i);
     FG_TRY(take_event(ctx, at, event));
     i += (ssize_t)sizeof *event + event->len;
   }
-  if (now_ns() - *listed < (int64_t)wait * 1000000 && got > 0) return FG_OK;
-  bool was_gone = at->gone;
-  FG_TRY(take_all(ctx, at, false));
-  if (was_gone || at->inotify < 0) listen_to(at);
-  *listed = now_ns();
   return FG_OK;
+}
+
+static int list_after_ms(const watch *at) {
+  double poll_s = at->station->request->poll_s;
+  int wait = poll_s > 0 ? (int)(1000 * poll_s) : LIST_EVERY_MS;
+  bool soon = at->pending || (poll_s <= 0 && at->inotify < 0);
+  return soon && wait > LIST_SOON_MS ? LIST_SOON_MS : wait;
+}
+
+/* Waits for the next thing to do: events that came, or the time to list. */
+static fg_status wait_and_take(fg_context *ctx, watch *at) {
+  struct pollfd descriptor = {.fd = at->inotify, .events = POLLIN};
+  poll(&descriptor, 1, list_after_ms(at));
+  FG_TRY(fg_station_look_after_folder(ctx, at->station));
+  FG_TRY(take_events(ctx, at));
+  if (at->inotify < 0) listen_to(at);
+  int64_t since_ns = now_ns(CLOCK_MONOTONIC) - at->listed_ns;
+  if (since_ns < (int64_t)list_after_ms(at) * 1000000) return FG_OK;
+  return take_all(ctx, at, false);
+}
+
+/* False: the station cannot go on. */
+static bool can_wait(fg_status status) {
+  return status == FG_ERR_IO || status == FG_ERR_MEMORY;
+}
+
+static fg_status run(fg_context *ctx, watch *at) {
+  const struct timespec pause = {.tv_sec = 1};
+  fg_context inner = {.message = ""};
+  fg_status status;
+  listen_to(at);
+  status = take_all(&inner, at, false);
+  while (status == FG_OK || can_wait(status)) {
+    fg_station_set_trouble(at->station, status == FG_OK ? "" : inner.message);
+    at->pending = at->pending || status != FG_OK;
+    if (status != FG_OK) nanosleep(&pause, NULL);
+    status = wait_and_take(&inner, at);
+  }
+  return fg_fail(ctx, status, "%s", inner.message);
 }
 
 fg_status fg_station_watch(fg_context *ctx, fg_inspection *station, bool once) {
   watch at = {.station = station, .inotify = -1, .descriptor = -1};
-  int64_t listed = now_ns();
-  if (!once) listen_to(&at);
-  fg_status status = take_all(ctx, &at, once);
-  if (status == FG_OK && once && at.gone)
-    status = fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", station->request->folder,
-                     strerror(errno));
-  while (status == FG_OK && !once)
-    status = wait_and_take(ctx, &at, &listed);
+  fg_status status = once ? take_all(ctx, &at, true) : run(ctx, &at);
   stop_listening(&at);
   clear(&at);
   free(at.files);
+  fg_rest_free(&at.rest);
   return status;
 }

@@ -1,0 +1,38 @@
+/* Files at rest: nobody has written to them for a while, as this machine's steady clock tells.
+ *
+ * The time of a file is its file system's, on the network another machine's: it only has to stay
+ * the same. */
+#ifndef FG_STATION_REST_H
+#define FG_STATION_REST_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "foilgauge/status.h"
+
+/* As long as a slow scanner pauses between rows. */
+#define FG_REST_NS INT64_C(2000000000)
+
+/* A file as it was first seen so. */
+typedef struct fg_resting {
+  char *name;
+  int64_t bytes, modified_ns, since_ns;
+  bool seen; /* in this round */
+} fg_resting;
+
+typedef struct fg_rest {
+  fg_resting *files;
+  size_t count, capacity;
+} fg_rest;
+
+/* Whether the file has been as it is for FG_REST_NS at the time `now_ns` of a clock that nobody
+ * sets; it is remembered from its first look on. */
+fg_status fg_rest_look(fg_context *ctx, fg_rest *rest, const char *name, int64_t bytes,
+                       int64_t modified_ns, int64_t now_ns, bool *at_rest);
+
+/* The end of a round: files that were not looked at in it are forgotten. */
+void fg_rest_end_round(fg_rest *rest);
+void fg_rest_free(fg_rest *rest);
+
+#endif

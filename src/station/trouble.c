@@ -1,0 +1,66 @@
+#include "station/trouble.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "core/text.h"
+#include "lot/journal.h"
+#include "station/keep.h"
+
+void fg_station_set_trouble(fg_inspection *station, const char *words) {
+  fg_trouble *trouble = &station->trouble;
+  const fg_station_request *request = station->request;
+  pthread_mutex_lock(&trouble->mutex);
+  bool changed = strncmp(trouble->words, words, sizeof trouble->words - 1) != 0;
+  if (changed) {
+    fg_text_clip(trouble->words, sizeof trouble->words, "%s", words);
+    trouble->changes++;
+  }
+  pthread_mutex_unlock(&trouble->mutex);
+  if (!changed) return;
+  if (request->looked_at)
+    request->looked_at(request->user, *words ? words : "the station goes on:",
+                       *words ? "(it is tried again)" : "what was in its way is over");
+  if (station->wake) station->wake(station->server);
+}
+
+unsigned fg_station_trouble_changes(fg_inspection *station) {
+  pthread_mutex_lock(&station->trouble.mutex);
+  unsigned changes = station->trouble.changes;
+  pthread_mutex_unlock(&station->trouble.mutex);
+  return changes;
+}
+
+static bool has_lock(const fg_inspection *station) {
+  char *path;
+  struct stat file, own;
+  if (fg_text_print(NULL, &path, "%s/.lock", station->request->folder) != FG_OK) return true;
+  bool same = stat(path, &file) == 0 && fstat(station->lock, &own) == 0 &&
+              file.st_dev == own.st_dev && file.st_ino == own.st_ino;
+  free(path);
+  return same;
+}
+
+/* The old lock is given back last: its folder is not another station's before this one has left. */
+static fg_status take_lock(fg_context *ctx, fg_inspection *station) {
+  int lock;
+  FG_TRY(fg_folder_lock(ctx, station->request->folder, &lock));
+  close(station->lock);
+  station->lock = lock;
+  return FG_OK;
+}
+
+fg_status fg_station_look_after_folder(fg_context *ctx, fg_inspection *station) {
+  struct stat info;
+  const char *folder = station->request->folder;
+  fg_station_database *database = &station->database;
+  if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder is gone", folder);
+  if (!has_lock(station)) FG_TRY(take_lock(ctx, station));
+  if (fg_station_database_is_there(database)) return FG_OK;
+  FG_TRY(fg_station_database_reopen(ctx, folder, database));
+  return fg_station_keep_setup(ctx, database, &station->settings->lot, &station->setup);
+}

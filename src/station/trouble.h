@@ -1,0 +1,18 @@
+/* What a running station gets over: a folder that goes and comes back, a disk that is full. */
+#ifndef FG_STATION_TROUBLE_H
+#define FG_STATION_TROUBLE_H
+
+#include "station/state.h"
+
+/* "": it is over. Says a change to the request's `looked_at`, too. */
+void fg_station_set_trouble(fg_inspection *station, const char *words);
+
+/* A number that changes with the trouble. */
+unsigned fg_station_trouble_changes(fg_inspection *station);
+
+/* Sees that lock and database are those that lie in the folder: where another folder has come in
+ * its place, or one of them was taken away, they are opened again. FG_ERR_IO: the folder is gone,
+ * or another station is at work in it. */
+fg_status fg_station_look_after_folder(fg_context *ctx, fg_inspection *station);
+
+#endif

@@ -1,0 +1,305 @@
+#!/bin/bash
+# A station that is killed, whose disk is full, whose folder goes: nothing lost, nothing twice.
+# Usage: test_station_robust.sh PROGRAM [KILLS [FAILURES]]
+set -euo pipefail
+program=$1
+kills=${2:-4}
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || kills=1
+failures=${3:-12}
+renderer=${FOILGAUGE_RENDERER:-$program}
+shim=$(dirname "$program")/tests/libfailing_malloc.so
+work=$(mktemp -d)
+station=
+end() {
+  [ -z "$station" ] || kill -9 "$station" 2>/dev/null || true
+  ! mountpoint -q "$work/full" || umount -l "$work/full"
+  rm -rf "$work"
+}
+trap end EXIT
+
+fail() {
+  echo "test_station_robust: $*" >&2
+  [ ! -s "$work/said" ] || sed 's/^/  said: /' "$work/said" >&2
+  exit 1
+}
+# expect CODE WORDS COMMAND...: its exit code, and what it says.
+expect() {
+  local code=0 expected=$1 words=$2
+  shift 2
+  "$@" >/dev/null 2>"$work/said" || code=$?
+  [ $code -eq "$expected" ] || fail "exit code $code, expected $expected: $*"
+  grep -qF -- "$words" "$work/said" || fail "no word of '$words': $*"
+}
+once() {
+  local folder=$1
+  shift
+  "$program" station "$folder" --once "$@"
+}
+# check FOLDER SCANS...: the database is whole, with so many scans, each once, with its foils and card.
+check() {
+  python3 - "$@" <<'PY' || fail "the database of $1"
+import sqlite3, sys
+for folder, scans in zip(sys.argv[1::2], sys.argv[2::2]):
+    database = sqlite3.connect(folder + "/foilgauge.sqlite")
+    ask = lambda text: database.execute(text).fetchall()
+    assert ask("PRAGMA integrity_check") == [("ok",)], (folder, ask("PRAGMA integrity_check"))
+    assert not ask("PRAGMA foreign_key_check"), folder
+    counts = ask("SELECT count(*), count(DISTINCT sha256) FROM scans")[0]
+    assert counts == (int(scans),) * 2, (folder, counts)
+    assert not ask("SELECT path FROM scans WHERE id NOT IN (SELECT scan FROM foils)"), folder
+    assert not ask("SELECT id FROM foils WHERE id NOT IN (SELECT foil FROM measured)"), folder
+    assert not ask("SELECT id FROM foils WHERE id NOT IN (SELECT foil FROM bumps)"), folder
+    cards = sorted(card[0] for card in ask("SELECT scan FROM arrivals WHERE kind = 'measured'"))
+    assert cards == [scan[0] for scan in ask("SELECT id FROM scans ORDER BY id")], (folder, cards)
+PY
+}
+# start FOLDER [OPTION...]: a station in the background; its number in $station.
+start() {
+  local folder=$1
+  shift
+  : >"$work/address"
+  "$program" station "$folder" --port 0 "$@" >"$work/address" 2>>"$work/said" &
+  station=$!
+  for ((i = 0; i < 500; i++)); do
+    [ ! -s "$work/address" ] || return 0
+    sleep 0.02
+  done
+  fail "no address"
+}
+stop() {
+  kill -9 "$station" && wait "$station" 2>/dev/null || true
+  station=
+}
+# wait_for SECONDS COMMAND...
+wait_for() {
+  local end=$((SECONDS + $1))
+  shift
+  while ! "$@" >/dev/null 2>&1; do
+    [ $SECONDS -lt $end ] || fail "waited in vain: $*"
+    sleep 0.05
+  done
+}
+measured() { # FOLDER COUNT
+  [ "$(python3 -c 'import sqlite3, sys
+print(sqlite3.connect(f"file:{sys.argv[1]}/foilgauge.sqlite?mode=ro", uri=True)
+      .execute("SELECT count(*) FROM scans").fetchone()[0])' "$1")" -eq "$2" ]
+}
+
+mkdir "$work/scans"
+for seed in 1 2 3 4 5 6; do
+  printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200},
+    "foils": [{"rotate_deg": -90, "design": {"bump_count": 2}}]}' $seed >"$work/spec.json"
+  "$renderer" render "$work/spec.json" -o "$work/scans/$seed.png"
+done
+cat >"$work/recipe.json" <<'R'
+{"schema": "foilgauge/recipe/1", "design": {"schema": "foilgauge/design/1", "bump_count": 2}}
+R
+recipe="--recipe $work/recipe.json"
+tiff() { # FROM TO: a TIFF of strips, its pixels at the end
+  python3 - "$1" "$2" <<'PY'
+import struct, sys, zlib
+data, at, pixels = open(sys.argv[1], "rb").read(), 8, b""
+while at < len(data):
+    length, kind = struct.unpack(">I4s", data[at:at + 8])
+    body = data[at + 8:at + 8 + length]
+    if kind == b"IHDR": width, height, depth, colour = struct.unpack(">IIBB", body[:10])
+    if kind == b"IDAT": pixels += body
+    at += length + 12
+raw, channels = zlib.decompress(pixels), {0: 1, 2: 3}[colour]
+stride, rows, last = width * channels, [], bytes(width * channels)
+for y in range(height):
+    kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+    for i in range(stride):
+        a = line[i - channels] if i >= channels else 0
+        b, c = last[i], last[i - channels] if i >= channels else 0
+        p = a + b - c
+        paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+        line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[kind]) & 255
+    last = bytes(line)
+    rows.append(last[::channels])
+tags = [(256, 3, 1, width), (257, 3, 1, height), (258, 3, 1, 8), (259, 3, 1, 1), (262, 3, 1, 1),
+        (273, 4, 1, 200), (277, 3, 1, 1), (278, 3, 1, height), (279, 4, 1, width * height),
+        (282, 5, 1, 180), (283, 5, 1, 180), (296, 3, 1, 2)]
+head = struct.pack("<2sHIH", b"II", 42, 8, len(tags))
+head += b"".join(struct.pack("<HHII", *tag) for tag in tags) + bytes(4)
+open(sys.argv[2], "wb").write((head.ljust(180, b"\0") + struct.pack("<II", 600, 1)).ljust(200, b"\0")
+                              + b"".join(rows))
+PY
+}
+
+# What is there, once and again.
+mkdir "$work/in"
+cp "$work"/scans/[12].png "$work/in"
+head -c 20000 "$work/scans/3.png" >"$work/in/half.png"
+echo hello >"$work/in/notes.txt"
+cp "$work/scans/1.png" "$work/in/copy.png"
+head -c 3000 "$work/scans/4.png" >"$work/in/broken.png"
+tail -c 12 "$work/scans/4.png" >>"$work/in/broken.png"
+expect 2 "2 measured, 1 known, 3 refused" once "$work/in" $recipe
+grep -q "half.png is not whole" "$work/said" || fail "half.png"
+grep -q "notes.txt .*not" "$work/said" || fail "notes.txt"
+expect 0 "0 measured, 0 known, 0 refused" once "$work/in" $recipe
+cp "$work/scans/3.png" "$work/in/half.png"
+expect 0 "1 measured, 0 known, 0 refused" once "$work/in" $recipe
+check "$work/in" 3
+
+# Databases that are none of ours, and folders that are another's.
+broken() { # WORDS STATEMENT: a database made by it
+  mkdir -p "$work/other"
+  rm -f "$work"/other/foilgauge.sqlite*
+  python3 -c 'import sqlite3, sys
+d = sqlite3.connect(sys.argv[1]); d.executescript(sys.argv[2])' "$work/other/foilgauge.sqlite" "$2"
+  expect 65 "$1" once "$work/other"
+}
+broken "of a later program" "PRAGMA user_version = 9999"
+broken "of another program" "CREATE TABLE theirs (a)"
+rm -f "$work"/other/foilgauge.sqlite*
+cp "$work/scans/1.png" "$work/other/foilgauge.sqlite"
+expect 65 "foilgauge.sqlite: the database is damaged" once "$work/other"
+expect 74 "nowhere" once "$work/nowhere"
+if [ "$(id -u)" -eq 0 ]; then
+  chmod 755 "$work" "$work/other"
+  rm -f "$work"/other/foilgauge.sqlite*
+  expect 74 "cannot be opened: Permission denied" setpriv --reuid 65534 --clear-groups \
+    "$(realpath "$program")" station "$work/other" --once
+fi
+
+# Two stations: the second is turned away.
+start "$work/in" $recipe
+expect 74 "another" once "$work/in" $recipe
+expect 74 "another" "$program" station "$work/in" --port 0
+stop
+
+# Killed at any moment, while scans arrive.
+mkdir "$work/killed" "$work/many"
+python3 - "$work" $((2 * kills)) <<'PY'
+import struct, sys, zlib
+for i in range(int(sys.argv[2])): # the same picture with another comment is another scan
+    data = open("%s/scans/%d.png" % (sys.argv[1], i % 6 + 1), "rb").read()
+    text = b"tEXtComment\0%d" % i
+    chunk = struct.pack(">I", len(text) - 4) + text + struct.pack(">I", zlib.crc32(text))
+    open("%s/many/%d.png" % (sys.argv[1], i), "wb").write(data[:-12] + chunk + data[-12:])
+PY
+arrived=0
+for ((kill = 0; kill < kills; kill++)); do
+  start "$work/killed" $recipe
+  for k in 1 2; do
+    mv "$work/many/$arrived.png" "$work/killed"
+    arrived=$((arrived + 1))
+  done
+  sleep "0.$((RANDOM % 150 + 100))"
+  stop
+done
+once "$work/killed" $recipe 2>/dev/null || true
+check "$work/killed" $arrived
+
+# Disk full, at every few KiB of the database and its journal.
+all=()
+for ((kib = 2; kib < 400; kib += kib < 12 ? 5 : 75)); do
+  limit=$work/limit$kib
+  mkdir "$limit"
+  cp "$work"/scans/[12].png "$limit"
+  code=0
+  (ulimit -f $kib && exec "$program" station "$limit" $recipe --once 2>&1 >/dev/null) | cat >"$work/said" || code=$?
+  case $code in
+    0) ;;
+    74) grep -q '^foilgauge: .' "$work/said" || fail "$kib KiB without words" ;;
+    *) fail "disk full at $kib KiB: exit code $code" ;;
+  esac
+  once "$limit" $recipe 2>/dev/null
+  all+=("$limit" 2)
+done
+check "${all[@]}"
+echo "disk full: $((${#all[@]} / 2)) places; killed: $kills times, $arrived scans"
+
+# A station that runs gets over a full disk.
+if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=1m tmpfs "$work/full" 2>/dev/null; then
+  start "$work/full" $recipe
+  cp "$work/scans/1.png" "$work/full/.1"
+  dd if=/dev/zero of="$work/full/.fill" bs=4k 2>/dev/null || true
+  mv "$work/full/.1" "$work/full/1.png"
+  wait_for 20 grep -q "(it is tried again)" "$work/said"
+  python3 -c 'import sys, urllib.request
+page = urllib.request.urlopen(open(sys.argv[1]).read().strip()).read().decode()
+assert "Nothing is kept now" in page, page' "$work/address" || fail "the page does not say that the disk is full"
+  rm "$work/full/.fill"
+  wait_for 20 measured "$work/full" 1
+  wait_for 20 grep -q "the station goes on" "$work/said"
+  stop
+  check "$work/full" 1
+  umount -l "$work/full"
+fi
+
+# The folder goes and comes back; another comes in its place; the database is taken away.
+: >"$work/said"
+mkdir "$work/moves"
+start "$work/moves" $recipe
+cp "$work/scans/1.png" "$work/moves/1.png"
+wait_for 20 measured "$work/moves" 1
+mv "$work/moves" "$work/away"
+wait_for 20 grep -q "the folder is gone" "$work/said"
+cp "$work/scans/2.png" "$work/away/2.png"
+mv "$work/away" "$work/moves"
+wait_for 20 measured "$work/moves" 2
+mv "$work/moves" "$work/first"
+mkdir "$work/moves"
+cp "$work/scans/3.png" "$work/moves/3.png"
+wait_for 20 measured "$work/moves" 1
+rm "$work"/moves/foilgauge.sqlite*
+cp "$work/scans/4.png" "$work/moves/4.png"
+wait_for 20 measured "$work/moves" 2
+check "$work/first" 2
+expect 0 "0 measured" once "$work/first" $recipe
+mv "$work/moves" "$work/second"
+mv "$work/first" "$work/moves"
+cp "$work/scans/5.png" "$work/moves/5.png"
+wait_for 20 measured "$work/moves" 3
+stop
+check "$work/moves" 3
+check "$work/second" 2
+
+# Told of nothing: files are taken when they are at rest, and no card comes before.
+mkdir "$work/poll"
+sed 's/1200/600/' "$work/spec.json" >"$work/small.json"
+"$renderer" render "$work/small.json" -o "$work/small.png"
+tiff "$work/small.png" "$work/whole.tif"
+start "$work/poll" $recipe --poll 0.2
+cp "$work/scans/2.png" "$work/poll/b.png"
+half=$(($(stat -c %s "$work/whole.tif") / 2))
+head -c $half "$work/whole.tif" >"$work/poll/a.tif"
+wait_for 20 measured "$work/poll" 1
+sleep 0.5
+tail -c +$((half + 1)) "$work/whole.tif" >>"$work/poll/a.tif"
+wait_for 20 measured "$work/poll" 2
+stop
+check "$work/poll" 2
+python3 -c 'import sqlite3, sys
+cards = sqlite3.connect(sys.argv[1]).execute("SELECT path, kind FROM arrivals").fetchall()
+assert sorted(cards) == [("a.tif", "measured"), ("b.png", "measured")], cards' \
+  "$work/poll/foilgauge.sqlite" || fail "a card before the scan was whole"
+
+# Memory that runs out.
+if ldd "$program" | grep -q libasan || [ ! -e "$shim" ]; then
+  exit 0
+fi
+failing() { # AT FOLDER
+  mkdir "$2"
+  cp "$work/scans/1.png" "$2"
+  code=0
+  LD_PRELOAD=$shim FOILGAUGE_FAIL_AT=$1 "$program" station "$2" $recipe --once \
+    >/dev/null 2>"$work/said" || code=$?
+}
+failing 0 "$work/memory"
+total=$(sed -n 's/^allocations: //p' "$work/said")
+all=()
+for ((at = 1; at <= total; at += total / failures + 1)); do
+  failing $at "$work/memory$at"
+  case $code in
+    0 | 2 | 65 | 74) ;;
+    *) fail "allocation $at of $total: exit code $code" ;;
+  esac
+  once "$work/memory$at" $recipe 2>/dev/null || true
+  all+=("$work/memory$at" 1)
+done
+check "${all[@]}"
+echo "allocations: $((${#all[@]} / 2)) failures over $total"
