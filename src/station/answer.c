@@ -82,15 +82,17 @@ static bool same_secret(const char *given, const char *secret) {
 
 static bool has_cookie(const fg_request *request, const char *token) {
   static const char name[] = "foilgauge=";
-  const char *at = request->cookie ? strstr(request->cookie, name) : NULL;
-  char value[128];
-  if (!at) return false;
-  at += sizeof name - 1;
-  size_t length = strcspn(at, "; ");
-  if (length >= sizeof value) return false;
-  memcpy(value, at, length);
-  value[length] = '\0';
-  return same_secret(value, token);
+  const char *at = request->cookie ? request->cookie : "";
+  while (*at) {
+    at += strspn(at, "; ");
+    size_t length = strcspn(at, ";");
+    char value[FG_TOKEN_MAX + 1] = "";
+    if (!strncmp(at, name, sizeof name - 1) && length - (sizeof name - 1) <= FG_TOKEN_MAX)
+      memcpy(value, at + sizeof name - 1, length - (sizeof name - 1));
+    if (value[0] && same_secret(value, token)) return true;
+    at += length;
+  }
+  return false;
 }
 
 /* Another name for this machine would be another site's: its pages could read ours (DNS
@@ -114,6 +116,12 @@ static bool is_our_form(const fg_inspection *station, const fg_request *request)
   return same_secret(fg_request_get(request, "form"), station->form_token);
 }
 
+static bool is_page(const char *path) {
+  for (size_t i = 0; i < PAGES; i++)
+    if (!strcmp(path, pages[i].path)) return true;
+  return false;
+}
+
 /* False with the answer when the request goes no further. */
 static bool may_ask(const fg_inspection *station, const fg_request *request, fg_answer *answer) {
   const char *token = station->request->token;
@@ -124,9 +132,10 @@ static bool may_ask(const fg_inspection *station, const fg_request *request, fg_
   if (token && !has_cookie(request, token)) {
     if (!request->post && same_secret(fg_request_get(request, "token"), token)) {
       say(answer, 303, "");
-      snprintf(answer->location, sizeof answer->location, "%.200s", request->path);
+      /* To a page of our own: what else the address holds may lead anywhere ("//elsewhere"). */
+      strcpy(answer->location, is_page(request->path) ? request->path : "/");
       snprintf(answer->cookie, sizeof answer->cookie,
-               "foilgauge=%.80s; HttpOnly; SameSite=Strict; Path=/", token);
+               "foilgauge=%s; HttpOnly; SameSite=Strict; Path=/", token);
       return false;
     }
     say(answer, 401, "Open the address that the station printed: it carries the token.");

@@ -7,6 +7,8 @@
 
 #include "station/state.h"
 
+/* FG_TOKEN_MAX: of --token; it fits into a cookie. */
+enum { FG_TOKEN_MIN = 16, FG_TOKEN_MAX = 64 };
 enum { FG_FIELDS_MAX = 32, FG_FIELD_BYTES = 1024, FG_BODY_MAX = 1 << 16 };
 
 /* A name and its value, from a query or a form; decoded, valid UTF-8, without control characters.
@@ -18,7 +20,7 @@ typedef struct fg_field {
 
 typedef struct fg_request {
   bool post;        /* else GET */
-  const char *path; /* decoded by nobody: routes are plain ASCII */
+  const char *path; /* as it was sent: routes are plain ASCII, nothing in them is encoded */
   fg_field field[FG_FIELDS_MAX];
   size_t fields;
   const char *host, *origin, *site, *cookie; /* headers; NULL: absent. site: Sec-Fetch-Site */
@@ -36,6 +38,9 @@ typedef struct fg_answer {
   char *body;
   size_t size;
 } fg_answer;
+
+/* One field more, name and value (NULL: "") still encoded as in an address. False as below. */
+bool fg_request_add_field(fg_request *request, const char *name, const char *value);
 
 /* Fields of a query or a form body. False: too many, too long, or not encoded as it should be. */
 bool fg_request_read_fields(fg_request *request, const char *text, size_t length);

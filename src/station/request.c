@@ -30,16 +30,39 @@ static bool is_clean(const char *text) {
   return true;
 }
 
-/* Up to `stop` or the end; false: too long, or not as it should be. */
-static bool read_part(const char **at, const char *end, char stop, char *text, size_t size) {
+/* All of it decoded; false: too long, or not as it should be. */
+static bool read_all(const char *at, const char *end, char *text, size_t size) {
   size_t length = 0;
-  while (*at < end && **at != stop && **at != '&') {
-    int byte = decode(at, end);
+  while (at < end) {
+    int byte = decode(&at, end);
     if (byte <= 0 || length + 1 >= size) return false;
     text[length++] = (char)byte;
   }
   text[length] = '\0';
   return is_clean(text);
+}
+
+static bool read_text(const char *encoded, char *text, size_t size) {
+  return read_all(encoded, encoded + strlen(encoded), text, size);
+}
+
+/* Up to `stop` or the next field. */
+static bool read_part(const char **at, const char *end, char stop, char *text, size_t size) {
+  const char *from = *at;
+  while (*at < end && **at != stop && **at != '&')
+    (*at)++;
+  return read_all(from, *at, text, size);
+}
+
+bool fg_request_add_field(fg_request *request, const char *name, const char *value) {
+  if (request->fields == FG_FIELDS_MAX) return false;
+  fg_field *field = &request->field[request->fields];
+  /* Nothing ends either: their separators are gone already, and what looks like one is text. */
+  if (!read_text(name, field->name, sizeof field->name) ||
+      !read_text(value ? value : "", field->value, sizeof field->value))
+    return false;
+  request->fields += field->name[0] != '\0';
+  return true;
 }
 
 bool fg_request_read_fields(fg_request *request, const char *text, size_t length) {

@@ -7,13 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <time.h>
 
 #include "core/memory.h"
 #include "station/answer.h"
 #include "station/scan_command.h"
 
-/* A browser opens six connections, one of which waits for news. */
-enum { CONNECTIONS = 64, OF_ONE = 24, WAITING_MAX = 48, SECONDS = 15, HEADER_BYTES = 16384 };
+/* A browser opens six connections, one of which waits for news; a page that was left is told apart
+ * from one that waits only when there is news: what waits must leave room for others.
+ * THREADS: a report that is measured again keeps one of them for a second. */
+enum {
+  THREADS = 4,
+  CONNECTIONS = 96,
+  OF_ONE = 48,
+  WAITING_MAX = 16,
+  SECONDS = 15,
+  HEADER_BYTES = 16384
+};
 
 typedef struct server {
   fg_inspection *station;
@@ -21,6 +31,7 @@ typedef struct server {
   pthread_mutex_t mutex;
   struct MHD_Connection *waiting[WAITING_MAX];
   size_t waiters;
+  unsigned long news; /* how often there were any */
   bool closing;
 } server;
 
@@ -29,22 +40,29 @@ typedef struct call {
   fg_request request;
   char *body;
   size_t size;
-  bool too_much, broken, waited;
+  time_t until; /* when all of it must have come */
+  bool broken, waited;
 } call;
+
+static time_t seconds_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec;
+}
+
+/* The library decodes nothing, so that one decoder looks at every field. */
+static size_t leave_encoded(void *user, struct MHD_Connection *connection, char *text) {
+  (void)user;
+  (void)connection;
+  return strlen(text);
+}
 
 static enum MHD_Result take_query(void *user, enum MHD_ValueKind kind, const char *name,
                                   const char *value) {
   call *at = user;
-  fg_request *request = &at->request;
   (void)kind;
-  if (request->fields == FG_FIELDS_MAX || strlen(name) >= sizeof request->field->name ||
-      (value && strlen(value) >= FG_FIELD_BYTES)) {
-    at->broken = true;
-    return MHD_NO;
-  }
-  strcpy(request->field[request->fields].name, name);
-  strcpy(request->field[request->fields++].value, value ? value : "");
-  return MHD_YES;
+  if (!at->broken && !fg_request_add_field(&at->request, name, value)) at->broken = true;
+  return at->broken ? MHD_NO : MHD_YES;
 }
 
 static long long read_number(const char *text) {
@@ -57,6 +75,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   call *at = calloc(1, sizeof *at);
   if (!at) return NULL;
   fg_request *request = &at->request;
+  at->until = seconds_now() + SECONDS;
   request->post = !strcmp(method, "POST");
   request->host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
   request->origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
@@ -68,19 +87,15 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   return at;
 }
 
-static void take_body(call *at, const char *bytes, size_t size) {
-  if (at->too_much || at->size + size > FG_BODY_MAX) {
-    at->too_much = true;
-    return;
-  }
+/* False: too much, or for too long. */
+static bool take_body(call *at, const char *bytes, size_t size) {
+  if (at->size + size > FG_BODY_MAX || seconds_now() > at->until) return false;
   char *grown = realloc(at->body, at->size + size);
-  if (!grown) {
-    at->too_much = true;
-    return;
-  }
+  if (!grown) return false;
   memcpy(grown + at->size, bytes, size);
   at->body = grown;
   at->size += size;
+  return true;
 }
 
 static void add_headers(struct MHD_Response *response, const fg_answer *answer) {
@@ -126,40 +141,73 @@ static enum MHD_Result refuse(struct MHD_Connection *connection, int code, const
   return send_answer(connection, &answer);
 }
 
-/* Until a card is added, or the next round of the watch. False: too many wait already. */
-static bool wait_for_news(server *at, struct MHD_Connection *connection) {
+typedef enum waiting { WAITS, NEWS_CAME, CLOSING } waiting;
+
+/* Until there is news. Those that `seen` does not count came after the answer was made: then there
+ * is another answer already. Who has waited longest makes room: it asks again. */
+static waiting wait_for_news(server *at, struct MHD_Connection *connection, unsigned long seen) {
+  waiting result = WAITS;
   pthread_mutex_lock(&at->mutex);
-  bool room = at->waiters < WAITING_MAX && !at->closing;
-  if (room) {
+  if (at->closing) {
+    result = CLOSING;
+  } else if (at->news != seen) {
+    result = NEWS_CAME;
+  } else {
+    if (at->waiters == WAITING_MAX) {
+      MHD_resume_connection(at->waiting[0]);
+      memmove(at->waiting, at->waiting + 1, --at->waiters * sizeof *at->waiting);
+    }
     MHD_suspend_connection(connection);
     at->waiting[at->waiters++] = connection;
   }
   pthread_mutex_unlock(&at->mutex);
-  return room;
+  return result;
 }
 
 static void resume_all(void *user) {
   server *at = user;
   pthread_mutex_lock(&at->mutex);
+  at->news++;
   for (size_t i = 0; i < at->waiters; i++)
     MHD_resume_connection(at->waiting[i]);
   at->waiters = 0;
   pthread_mutex_unlock(&at->mutex);
 }
 
+static unsigned long count_news(server *at) {
+  pthread_mutex_lock(&at->mutex);
+  unsigned long news = at->news;
+  pthread_mutex_unlock(&at->mutex);
+  return news;
+}
+
 static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection, call *asked) {
   fg_answer answer;
-  if (asked->too_much) return refuse(connection, 413, "The form is too long.\n");
   if (asked->request.post && !fg_request_read_fields(&asked->request, asked->body, asked->size))
     asked->broken = true;
   if (asked->broken) return refuse(connection, 400, "The fields cannot be read.\n");
+  unsigned long seen = count_news(at);
   fg_station_answer(at->station, &asked->request, &answer);
-  if (answer.wait && !asked->waited && wait_for_news(at, connection)) {
+  if (answer.wait && !asked->waited) {
+    waiting result = wait_for_news(at, connection, seen);
     asked->waited = true;
-    free(answer.body);
-    return MHD_YES;
+    if (result != CLOSING) free(answer.body);
+    if (result == WAITS) return MHD_YES;
+    if (result == NEWS_CAME) fg_station_answer(at->station, &asked->request, &answer);
   }
   return send_answer(connection, &answer);
+}
+
+/* What can be said before the body has come. */
+static enum MHD_Result begin(struct MHD_Connection *connection, const char *method, void **place) {
+  const char *length =
+      MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
+  if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0 && strcmp(method, "POST") != 0)
+    return refuse(connection, 405, "GET and POST are answered.\n");
+  if (length && (strlen(length) > 9 || read_number(length) > FG_BODY_MAX))
+    return refuse(connection, 413, "The form is too long.\n");
+  *place = begin_call(connection, method);
+  return *place ? MHD_YES : MHD_NO;
 }
 
 static enum MHD_Result handle(void *user, struct MHD_Connection *connection, const char *path,
@@ -168,17 +216,12 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *connection, con
   server *at = user;
   call *asked = *place;
   (void)version;
-  if (!asked) {
-    *place = begin_call(connection, method);
-    return *place ? MHD_YES : MHD_NO;
-  }
+  if (!asked) return begin(connection, method, place);
   if (*size) {
-    take_body(asked, bytes, *size);
+    bool taken = take_body(asked, bytes, *size);
     *size = 0;
-    return MHD_YES;
+    return taken ? MHD_YES : MHD_NO;
   }
-  if (!asked->request.post && strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0)
-    return refuse(connection, 405, "GET and POST are answered.\n");
   asked->request.path = path;
   return answer_call(at, connection, asked);
 }
@@ -194,6 +237,17 @@ static void end_call(void *user, struct MHD_Connection *connection, void **place
   *place = NULL;
 }
 
+/* It stands in an address and in a cookie. */
+static fg_status check_token(fg_context *ctx, const char *token) {
+  static const char allowed[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.~";
+  size_t length = strlen(token);
+  if (length >= FG_TOKEN_MIN && length <= FG_TOKEN_MAX && strspn(token, allowed) == length)
+    return FG_OK;
+  return fg_fail(ctx, FG_ERR_USAGE, "--token needs %d to %d of the characters A-Z a-z 0-9 - _ . ~",
+                 FG_TOKEN_MIN, FG_TOKEN_MAX);
+}
+
 static fg_status find_address(fg_context *ctx, const fg_station_request *request,
                               struct sockaddr_in *address) {
   const char *text = request->listen ? request->listen : "127.0.0.1";
@@ -203,12 +257,12 @@ static fg_status find_address(fg_context *ctx, const fg_station_request *request
     return fg_fail(ctx, FG_ERR_USAGE, "--listen: '%.60s' is no IPv4 address, as 192.168.1.20",
                    text);
   bool local = ntohl(address->sin_addr.s_addr) >> 24 == 127;
-  if (!local && (!request->token || strlen(request->token) < 16))
+  if (!local && !request->token)
     return fg_fail(ctx, FG_ERR_USAGE,
-                   "--listen %s: others can reach this address: give --token with at least 16 "
+                   "--listen %s: others can reach this address: give --token with at least %d "
                    "characters",
-                   text);
-  return FG_OK;
+                   text, FG_TOKEN_MIN);
+  return request->token ? check_token(ctx, request->token) : FG_OK;
 }
 
 static fg_status start(fg_context *ctx, server *at, const struct sockaddr_in *address) {
@@ -216,9 +270,11 @@ static fg_status start(fg_context *ctx, server *at, const struct sockaddr_in *ad
   errno = 0;
   at->daemon = MHD_start_daemon(
       flags, 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED,
-      end_call, NULL, MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS,
-      MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT,
-      (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADER_BYTES, MHD_OPTION_END);
+      end_call, NULL, MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL,
+      MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
+      (unsigned)CONNECTIONS, MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)OF_ONE,
+      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+      (size_t)HEADER_BYTES, MHD_OPTION_END);
   if (at->daemon) return FG_OK;
   return fg_fail(ctx, FG_ERR_IO, "%s:%u: pages cannot be served there: %s; choose another --port",
                  inet_ntoa(address->sin_addr), ntohs(address->sin_port),
