@@ -14,7 +14,7 @@ step "configuring fuzz in build-fuzz/" cmake --preset fuzz
 step "building fuzz" cmake --build --preset fuzz -j"$(nproc)"
 kept=$root/build-fuzz/found
 mkdir -p "$kept"
-for target in png png_differential tiff design measure loop_scan loop_table; do
+for target in png png_differential tiff design measure loop_scan loop_table station; do
   grown=$(mktemp -d)
   log=$kept/$target.log
   code=0
