@@ -229,8 +229,7 @@ static fg_status take_card(fg_context *ctx, intake *at, fg_card card) {
   fg_inspection *station = at->station;
   bool check = is_check(station, at);
   if (card != FG_CARD_MEASURED) return refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
-  if (check)
-    return fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
+  if (check) return fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
   return measure(ctx, at);
 }
 

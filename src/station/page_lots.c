@@ -6,7 +6,7 @@
 #include "station/lot_content.h"
 #include "station/pages.h"
 
-enum { LOTS_SHOWN = 40 };
+enum { LOTS_SHOWN = 25, LOTS_MAX = 1000000 };
 
 static void write_name(FILE *out, const char *lot) {
   fg_html_text(out, *lot ? lot : "without lot");
@@ -46,36 +46,47 @@ static void write_counts(FILE *out, const fg_query *row, int from) {
   fputs("</td>", out);
 }
 
-static fg_status write_open(fg_context *ctx, sqlite3 *reader, FILE *out) {
+/* The newest first, LOTS_SHOWN on a page: which these are, the index of the lots alone tells. */
+static const char open_lots[] =
+    "WITH newest AS (SELECT lot, max(id) AS last FROM foils WHERE lot NOT IN (SELECT name FROM "
+    "lots)"
+    " GROUP BY lot ORDER BY last DESC LIMIT ? OFFSET ?) SELECT f.lot, max(s.at), " COUNTS
+    " FROM newest CROSS JOIN foils AS f ON f.lot = newest.lot JOIN scans AS s ON s.id = f.scan"
+    " WHERE NOT " FG_LOT_REPLACED " GROUP BY f.lot ORDER BY newest.last DESC";
+
+static void write_open_lot(FILE *out, const fg_query *row) {
+  const char *lot = fg_query_get_text(row, 0);
+  fputs("<tr><td><a href=\"/history?lot=", out);
+  write_encoded(out, lot);
+  fputs("\">", out);
+  write_name(out, lot);
+  fputs("</a></td>", out);
+  write_counts(out, row, 2);
+  fputs("<td>", out);
+  fg_page_time(out, fg_query_get_integer(row, 1));
+  fputs("</td><td class=\"noprint\">", out);
+  write_link(out, "/lots?close=1&amp;lot=", lot, "Close …");
+  fputs("</td></tr>\n", out);
+}
+
+static fg_status write_open(fg_context *ctx, sqlite3 *reader, int64_t from, FILE *out) {
   fg_query query;
-  size_t count = 0;
-  fg_query_begin(reader,
-                 "SELECT f.lot, max(s.at), " COUNTS
-                 " FROM foils AS f JOIN scans AS s ON s.id = f.scan"
-                 " WHERE f.lot NOT IN (SELECT name FROM lots) AND NOT " FG_LOT_REPLACED
-                 " GROUP BY f.lot ORDER BY max(s.id) DESC LIMIT ?",
-                 &query);
-  fg_query_integer(&query, LOTS_SHOWN);
+  int64_t count = 0;
+  fg_query_begin(reader, open_lots, &query);
+  fg_query_integer(&query, LOTS_SHOWN + 1);
+  fg_query_integer(&query, from);
   fputs("<section><h2 class=\"first\">Open lots</h2>\n", out);
-  while (fg_query_row(&query)) {
-    const char *lot = fg_query_get_text(&query, 0);
-    if (!count++)
+  for (; fg_query_row(&query) && count <= LOTS_SHOWN; count++) {
+    if (!count)
       fputs("<table><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
             "<th class=\"noprint\"></th></tr></thead><tbody>\n",
             out);
-    fputs("<tr><td><a href=\"/history?lot=", out);
-    write_encoded(out, lot);
-    fputs("\">", out);
-    write_name(out, lot);
-    fputs("</a></td>", out);
-    write_counts(out, &query, 2);
-    fputs("<td>", out);
-    fg_page_time(out, fg_query_get_integer(&query, 1));
-    fputs("</td><td class=\"noprint\">", out);
-    write_link(out, "/lots?close=1&amp;lot=", lot, "Close …");
-    fputs("</td></tr>\n", out);
+    if (count < LOTS_SHOWN) write_open_lot(out, &query);
   }
   fputs(count ? "</tbody></table>\n" : "<p>No lot is open.</p>\n", out);
+  if (count > LOTS_SHOWN)
+    fprintf(out, "<p class=\"noprint\"><a href=\"/lots?from=%lld\">Older</a></p>\n",
+            (long long)from + LOTS_SHOWN);
   fputs("</section>\n", out);
   return fg_query_end(ctx, &query, "reading the open lots");
 }
@@ -219,7 +230,8 @@ fg_status fg_page_lots(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
   write_closing(station, out);
   if (fg_request_get(request, "close")[0])
     FG_TRY(write_question(ctx, station, reader, fg_request_get(request, "lot"), out));
-  FG_TRY(write_open(ctx, reader, out));
+  long from = strtol(fg_request_get(request, "from"), NULL, 10);
+  FG_TRY(write_open(ctx, reader, from > 0 && from < LOTS_MAX ? from : 0, out));
   FG_TRY(write_closed(ctx, station, reader, out));
   fg_page_end(out);
   return FG_OK;
