@@ -209,9 +209,9 @@ static void write_why_not(const page *p) {
             quantity->chart.signals, quantity->chart.signals == 1 ? "point" : "points");
   else if (!quantity->stable)
     fprintf(out,
-            "the spread within foils is not stable: it leaves its limits at %zu foils, while their "
-            "means do not.",
-            quantity->deviations.signals);
+            "the spread within foils is not stable: it leaves its limits at %zu %s, while the "
+            "foils' means do not.",
+            quantity->deviations.signals, quantity->deviations.signals == 1 ? "foil" : "foils");
   else
     fputs("the values do not differ.", out);
   fputs("</p>\n", out);

@@ -1,0 +1,334 @@
+/* Trends and the scanner's health, from rows of a database to the words on the page. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "station/answer.h"
+#include "station/check.h"
+
+enum { BUMPS = 3 };
+#define HOUR_MS INT64_C(3600000)
+
+typedef struct fixture {
+  char folder[64];
+  fg_station_settings settings;
+  fg_station_request request;
+  fg_inspection station;
+  double drawn;
+} fixture;
+
+static void run_sql(fixture *f, const char *format, ...) {
+  char *sql;
+  fg_context ctx;
+  va_list arguments;
+  va_start(arguments, format);
+  assert_true(vasprintf(&sql, format, arguments) > 0);
+  va_end(arguments);
+  if (fg_sql_run(&ctx, f->station.database.writer, sql) != FG_OK) fail_msg("%s", ctx.message);
+  free(sql);
+}
+
+static int start(void **state) {
+  fg_context ctx = {0};
+  fixture *f = calloc(1, sizeof *f);
+  strcpy(f->folder, "/tmp/foilgauge_trend_XXXXXX");
+  assert_non_null(mkdtemp(f->folder));
+  assert_int_equal(fg_station_settings_load(&ctx, NULL, NULL, &f->settings), FG_OK);
+  f->settings.lot.design.tolerance_count = 1;
+  f->settings.lot.design.tolerances[0] = (fg_tolerance){"radius_mm", 3.3, 3.5};
+  f->request = (fg_station_request){.folder = f->folder, .settings = &f->settings};
+  f->station.request = &f->request;
+  f->station.settings = &f->settings;
+  strcpy(f->station.host, "127.0.0.1:1");
+  if (fg_station_database_open(&ctx, f->folder, &f->station.database) != FG_OK)
+    fail_msg("%s", ctx.message);
+  run_sql(f, "INSERT INTO setups VALUES (1, 'x', 'v', '{}', NULL, NULL, 1);"
+             "INSERT INTO quantities VALUES (1, 'bump', 'radius_mm', 'mm'), (2, 'foil', "
+             "'thickness_mm', 'mm')");
+  *state = f;
+  return 0;
+}
+
+static int stop(void **state) {
+  static const char *const files[] = {"foilgauge.sqlite", "foilgauge.sqlite-wal",
+                                      "foilgauge.sqlite-shm"};
+  fixture *f = *state;
+  char path[128];
+  fg_station_database_close(&f->station.database);
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+    snprintf(path, sizeof path, "%s/%s", f->folder, files[i]);
+    unlink(path);
+  }
+  rmdir(f->folder);
+  free(f);
+  return 0;
+}
+
+/* Scatter without the signals that chance has, too: mean 0, sd 1, never beyond 1.5, no runs. */
+static double draw(fixture *f) {
+  return M_SQRT2 * sin(f->drawn++);
+}
+
+static void add_foil(fixture *f, int id, const char *lot, const char *die, double radius,
+                     double scatter) {
+  run_sql(f,
+          "INSERT INTO scans (id, sha256, setup, path, source, at, verdict) VALUES (%d, '%d', 1, "
+          "'%d.png', 'folder', %d, 'pass');"
+          "INSERT INTO foils VALUES (%d, %d, 1, 'S%04d', '%s', '%s', '', 'pass', '')",
+          id, id, id, id, id, id, id, lot, die);
+  for (int bump = 1; bump <= BUMPS; bump++)
+    run_sql(f,
+            "INSERT INTO bumps VALUES (%d, %d, 'pass', '');"
+            "INSERT INTO measured VALUES (1, %d, %d, %.9g, 0.0001)",
+            id, bump, id, bump, radius + scatter * draw(f));
+}
+
+static void add_foils(fixture *f, int from, int to, const char *lot, double radius) {
+  run_sql(f, "BEGIN");
+  for (int id = from; id <= to; id++)
+    add_foil(f, id, lot, id % 2 ? "A" : "B", radius + 0.004 * draw(f), 0.004);
+  run_sql(f, "COMMIT");
+}
+
+/* The page, in a buffer that the next call writes over. */
+static const char *get(fixture *f, const char *path, const char *query, int code) {
+  static char text[1 << 20];
+  fg_answer answer;
+  fg_request request = {.path = path, .host = "127.0.0.1:1", .last_event = -1};
+  assert_true(fg_request_read_fields(&request, query, strlen(query)));
+  fg_station_answer(&f->station, &request, &answer);
+  assert_int_equal(answer.code, code);
+  assert_true(answer.size < sizeof text);
+  memcpy(text, answer.body, answer.size);
+  text[answer.size] = '\0';
+  free(answer.body);
+  return text;
+}
+
+/* Of a page that is not as it should be the words are enough. */
+static const char *words_of(const char *page) {
+  const char *words = strstr(page, "<p class=\"note\">");
+  return words ? words : page;
+}
+
+#define assert_has(text, part)                                                                     \
+  do {                                                                                             \
+    const char *text_ = (text);                                                                    \
+    if (!strstr(text_, part)) fail_msg("'%s' is not in: %.700s", part, words_of(text_));           \
+  } while (0)
+#define assert_has_not(text, part)                                                                 \
+  do {                                                                                             \
+    const char *text_ = (text);                                                                    \
+    if (strstr(text_, part)) fail_msg("'%s' is in: %.700s", part, words_of(text_));                \
+  } while (0)
+
+static size_t count(const char *text, const char *part) {
+  size_t found = 0;
+  for (const char *at = text; (at = strstr(at, part)); at++)
+    found++;
+  return found;
+}
+
+static void a_stable_process_has_a_capability(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 40, "L1", 3.4);
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "<h1>bump radius</h1>");
+  assert_has(page, "40 foils, from ");
+  assert_has(page, "<p class=\"next\">None: these foils vary as they would by chance alone.");
+  assert_has(page, "<dt>Cpk</dt>");
+  assert_has(page, "of 120 values of 40 foils against 3.3 to 3.5");
+  assert_has(page, ">max 3.500</text>");
+  assert_has(page, ">+3σ ");
+  assert_int_equal(count(page, "class=\"zone\""), 4); /* beyond either limit, wide and narrow */
+}
+
+static void too_few_foils_have_none(void **state) {
+  fixture *f = *state;
+  assert_has(get(f, "/trends", "", 200), "0 foils with this quantity: a chart needs two");
+  add_foils(f, 1, 20, "L1", 3.4);
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "20 foils are too few to say that the process is stable; it takes 25.");
+  assert_has_not(page, "<dt>Cpk</dt>");
+}
+
+static void a_shift_is_told_since_its_first_foil(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 40, "L1", 3.4);
+  for (int id = 41; id <= 52; id++)
+    add_foil(f, id, "L1", "A", 3.43, 0);
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "<b>nine in a row on one side of the centre</b>: since <a href=\"/foil?id=41\">"
+                   "S0041</a> (no. 41)</li>");
+  assert_has(page, "Not stated: the chart is not stable (");
+  assert_has_not(page, "<dt>Cpk</dt>");
+  for (int id = 53; id <= 80; id++)
+    add_foil(f, id, "L1", "A", 3.4, 0.001);
+  assert_has(
+      get(f, "/trends", "", 200),
+      "<b>nine in a row on one side of the centre</b>: from <a href=\"/foil?id=41\">S0041</a>"
+      " (no. 41) to <a href=\"/foil?id=52\">S0052</a> (no. 52)</li>");
+}
+
+static void a_crushed_bump_is_in_no_chart(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 30, "L1", 3.4);
+  run_sql(f, "UPDATE bumps SET flags = 'poor_fit crushed' WHERE foil = 7 AND number = 2;"
+             "UPDATE measured SET value = 9 WHERE foil = 7 AND bump = 2");
+  const char *page = get(f, "/trends", "", 200);
+  assert_has(page, "of 89 values of 30 foils");
+  assert_has_not(page, "one point beyond");
+  run_sql(f, "UPDATE bumps SET flags = 'poor_fit' WHERE foil = 7 AND number = 2");
+  assert_has(get(f, "/trends", "", 200), "<b>one point beyond three sigma</b>: <a "
+                                         "href=\"/foil?id=7\">S0007</a> (no. 7)</li>");
+}
+
+static void zooming_moves_no_limit_unless_asked_to(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 100, "L1", 3.4);
+  const char *page = get(f, "/trends", "newest=all&from=31&to=45", 200);
+  assert_has(page, "data-from=\"31\" data-to=\"45\"");
+  assert_has(page, "100 foils, from ");
+  assert_int_equal(count(page, "<circle"), 2 * 15);
+  assert_has(page, "from=24&amp;to=38\">« earlier</a>");
+  page = get(f, "/trends", "newest=all&from=31&to=45&limits=drawn", 200);
+  assert_has(page, "15 foils, from <a href=\"/foil?id=31\">S0031</a> (no. 31)");
+  page = get(f, "/trends", "newest=50", 200);
+  assert_has(page, "50 foils, from <a href=\"/foil?id=51\">S0051</a> (no. 51)");
+  page = get(f, "/trends", "newest=50&from=99999999999999999999&to=-3", 200);
+  assert_has(page, "data-from=\"51\" data-to=\"100\"");
+  page = get(f, "/trends", "from=90&to=20", 200);
+  assert_has(page, "data-from=\"20\" data-to=\"20\"");
+}
+
+static void many_points_are_thinned_out_and_none_that_stands_out(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 1200, "L1", 3.4);
+  size_t size = strlen(get(f, "/trends", "newest=all", 200));
+  run_sql(f, "UPDATE measured SET value = 3.47 WHERE foil = 601");
+  const char *page = get(f, "/trends", "newest=all", 200);
+  assert_has(page, "<b>one point beyond three sigma</b>: <a href=\"/foil?id=601\">");
+  assert_true(count(page, "class=\"signal\"") >= 2);
+  assert_true(size < 60000);
+}
+
+static void lots_dies_and_single_bumps_are_chosen(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 20, "L1", 3.4);
+  add_foils(f, 21, 40, "L2", 3.4);
+  add_foils(f, 41, 60, "L0", 3.4); /* lots are in the order of their foils */
+  add_foils(f, 61, 80, "L4", 3.4);
+  add_foils(f, 81, 100, "L3", 3.408);
+  const char *page = get(f, "/trends", "by=lots", 200);
+  assert_has(page, "5 lots, from L1 (no. 1)");
+  assert_has(page, "<b>one point beyond three sigma</b>: L3 (no. 5)");
+  assert_has(page, "Not stated: it is a matter of single foils");
+  assert_has(get(f, "/trends", "lot=L2", 200), "20 foils, from <a href=\"/foil?id=21\">S0021</a> "
+                                               "(no. 1)");
+  assert_has(get(f, "/trends", "die=A&lot=L3", 200), "10 foils, from <a href=\"/foil?id=81\">");
+  assert_has(get(f, "/trends", "q=bump:radius_mm&bump=2&lot=L1", 200), "<h1>Bump 2: bump radius");
+  assert_has(get(f, "/trends", "q=foil:thickness_mm", 200), "0 foils with this quantity");
+  get(f, "/trends", "q=bump:nothing", 404);
+  get(f, "/trends", "q=bump:centre_mm", 404);
+}
+
+static void names_cannot_write_the_page(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 3, "<script>&\"", 3.4);
+  const char *page = get(f, "/trends", "by=lots&lot=%3Cscript%3E%26%22", 200);
+  assert_has_not(page, "<script>");
+  page = get(f, "/trends", "lot=%3Cscript%3E%26%22&die=%22%3E%3Cb%3E", 200);
+  assert_has_not(page, "<script>");
+  assert_has_not(page, "\"><b>");
+  page = get(f, "/trends", "lot=%3Cscript%3E%26%22", 200);
+  assert_has(page, "lot=%3Cscript%3E%26%22");
+}
+
+static void ask_for_checks(fixture *f, bool withhold) {
+  strcpy(f->settings.check.design, "plate.json");
+  f->settings.check.every_h = 12;
+  f->settings.check.scale_max_ppm = 300;
+  f->settings.check.withhold = withhold;
+}
+
+static void add_check(fixture *f, int number, int64_t at, double scale_y, const char *verdict) {
+  run_sql(f,
+          "INSERT INTO checks (at, path, sha256, discs, scale_x, u_scale_x, scale_y, u_scale_y,"
+          " shear, u_shear, verdict, words) VALUES (%lld, 'check_%d.png', '%d', 4, 4e-5, 5e-6,"
+          " %.9g, 1e-5, 2e-5, 1e-5, '%s', 'scanner <in> order')",
+          (long long)at, number, number, scale_y, verdict);
+}
+
+static void a_check_is_due_and_done_and_due_again(void **state) {
+  fixture *f = *state;
+  char why[400];
+  assert_has(get(f, "/scanner", "", 200), "The recipe asks for no checks.");
+  assert_has_not(get(f, "/", "", 200), "class=\"banner\"");
+  ask_for_checks(f, true);
+  assert_has(get(f, "/scanner", "", 200), "<b>NOT CHECKED</b>");
+  assert_has(get(f, "/", "", 200), "The scanner was never checked.</b> No foil gets a verdict");
+  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  add_check(f, 1, fg_station_now() - HOUR_MS, 1e-4, "pass");
+  assert_has(get(f, "/scanner", "", 200), "<b>IN ORDER</b>");
+  assert_has_not(get(f, "/", "", 200), "class=\"banner\"");
+  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+  run_sql(f, "UPDATE checks SET at = %lld", (long long)(fg_station_now() - 13 * HOUR_MS));
+  assert_has(get(f, "/scanner", "", 200), "<b>CHECK DUE</b>");
+  for (int i = 0; i < 5; i++) {
+    static const char *const paths[] = {"/", "/history", "/trends", "/scanner", "/lots"};
+    assert_has(get(f, paths[i], "", 200), "<b>The scanner's check is due.</b>");
+  }
+  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_has(why, "scan the plate, and then this foil again");
+  f->settings.check.withhold = false;
+  assert_false(fg_station_check_withholds(&f->station, why, sizeof why));
+}
+
+static void a_failed_check_and_a_clock_set_back_withhold(void **state) {
+  fixture *f = *state;
+  char why[400];
+  ask_for_checks(f, true);
+  add_check(f, 1, fg_station_now() - 2 * HOUR_MS, 1e-4, "pass");
+  add_check(f, 2, fg_station_now() - HOUR_MS, 4e-4, "fail");
+  const char *page = get(f, "/scanner", "", 200);
+  assert_has(page, "<b>OUT OF ORDER</b>");
+  assert_has(page, "<dd>+400 ± 20 ppm<small>allowed ± 300</small>");
+  assert_has(page, "<small>+300 ± 28 since the first that is drawn</small>");
+  assert_int_equal(count(page, "class=\"signal\""), 3);
+  assert_has_not(page, "<in>");
+  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_has(why, "The last check of the scanner failed");
+  add_check(f, 3, fg_station_now() + 48 * HOUR_MS, 1e-4, "pass");
+  page = get(f, "/scanner", "", 200);
+  assert_has(page, "<b>CHECK DUE</b>");
+  assert_has(page, "it was set back, so nobody can say how old that check is");
+  assert_has(get(f, "/", "", 200), "The clock was set back");
+  assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
+  assert_has(why, "The clock was set back");
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      TEST(a_stable_process_has_a_capability),
+      TEST(too_few_foils_have_none),
+      TEST(a_shift_is_told_since_its_first_foil),
+      TEST(a_crushed_bump_is_in_no_chart),
+      TEST(zooming_moves_no_limit_unless_asked_to),
+      TEST(many_points_are_thinned_out_and_none_that_stands_out),
+      TEST(lots_dies_and_single_bumps_are_chosen),
+      TEST(names_cannot_write_the_page),
+      TEST(a_check_is_due_and_done_and_due_again),
+      TEST(a_failed_check_and_a_clock_set_back_withhold),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
