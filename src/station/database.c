@@ -23,7 +23,7 @@ static const char *const migrations[] = {
     "scans,"
     " number INTEGER NOT NULL, serial TEXT NOT NULL, lot TEXT NOT NULL, die TEXT NOT NULL,"
     " operator TEXT NOT NULL, verdict TEXT NOT NULL, reasons TEXT NOT NULL, UNIQUE (scan, number));"
-    "CREATE INDEX foils_by_serial ON foils (serial);"
+    "CREATE INDEX foils_by_serial ON foils (serial, lot, scan);"
     "CREATE INDEX foils_by_lot ON foils (lot);"
     "CREATE INDEX foils_by_die ON foils (die);"
     "CREATE TABLE bumps (foil INTEGER NOT NULL REFERENCES foils, number INTEGER NOT NULL,"

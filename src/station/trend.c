@@ -165,7 +165,7 @@ static fg_status read_and_chart(fg_context *ctx, const fg_lot_settings *settings
   if (trend->choice->by_lots) return chart_lots(settings->run_rules, trend);
   if (!trend->count) return FG_OK;
   FG_TRY(fg_lot_chart_quantity(ctx, settings->run_rules, trend->count, &trend->quantity));
-  judge(settings, &trend->quantity);
+  if (trend->quantity.stable) judge(settings, &trend->quantity);
   return FG_OK;
 }
 
