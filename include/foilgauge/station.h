@@ -35,7 +35,10 @@ typedef struct fg_station_settings {
   /* How files are called: text, `*` for anything, and {serial}, {lot}, {die}, {operator}, {check};
    * without its ending. "{serial}" unless the recipe says otherwise. */
   char file_name[256];
-  char scan_command[1024]; /* run by /bin/sh in the folder; {file} is the scan to write. "": none */
+  /* Run by /bin/sh in the folder when somebody presses Scan; {file} is the scan to write. It is
+   * hidden until the command has ended well, then called station-DATE-TIME.png (.tif, .pnm where
+   * the command names that). "": none. */
+  char scan_command[1024];
   fg_station_check check;
 } fg_station_settings;
 
