@@ -203,7 +203,8 @@ static bool is_check(const fg_inspection *station, intake *at) {
   const fg_station_settings *settings = station->settings;
   fg_named as_check;
   bool called = settings->check.design[0] &&
-                fg_naming_take(settings->check.file_name, at->file.name, &as_check);
+                (fg_station_is_scanned_check(at->file.name) ||
+                 fg_naming_take(settings->check.file_name, at->file.name, &as_check));
   bool fits = fg_naming_take(settings->file_name, at->file.name, &at->named);
   return called || (fits && at->named.check[0]);
 }

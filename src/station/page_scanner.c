@@ -218,6 +218,17 @@ static void write_history(FILE *out, const history *all, double allowed) {
   write_list(out, all);
 }
 
+static void write_button(const fg_inspection *station, FILE *out) {
+  bool scanning = atomic_load(&station->scanning);
+  if (!station->settings->scan_command[0] || !station->check_design_known) return;
+  fputs("<form class=\"fields\" method=\"post\" action=\"/scan\">", out);
+  fg_page_form_token(station, out);
+  fprintf(out,
+          "<input type=\"hidden\" name=\"check\" value=\"1\"><button class=\"big\"%s>%s"
+          "</button></form>\n",
+          scanning ? " disabled" : "", scanning ? "Scanning …" : "Scan the plate");
+}
+
 static fg_status write_checks(fg_context *ctx, const fg_station_check *check, sqlite3 *reader,
                               size_t most, FILE *out) {
   void *block;
@@ -241,6 +252,7 @@ fg_status fg_page_scanner(fg_context *ctx, fg_inspection *station, sqlite3 *read
   bool all = !strcmp(fg_request_get(request, "newest"), "all");
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_SCANNER, "Scanner"));
   fputs("<section data-live>\n<h1>Scanner</h1>\n", out);
+  write_button(station, out);
   if (!check->design[0])
     fputs("<p class=\"next\">The recipe asks for no checks. With a plate or a ring of known "
           "diameters the station shows how far the scanner's scale and its axes are off, reminds "

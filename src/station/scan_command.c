@@ -24,12 +24,14 @@ extern char **environ;
  * command's words are looked at; SAID_BYTES go on the card. */
 enum { SCAN_SECONDS = 900, TAIL_BYTES = 4096, SAID_BYTES = 400, TURN_MS = 250, NAME_BYTES = 64 };
 
-#define PREFIX "station-"
+#define PREFIX       "station-"
+#define CHECK_PREFIX "station-check-"
 
 typedef struct fg_station_scanner {
   fg_inspection *station;
   pthread_t thread;
   atomic_bool stop;
+  bool check;                                 /* of the plate */
   char hidden[NAME_BYTES], final[NAME_BYTES]; /* below the folder */
 } scanner;
 
@@ -39,11 +41,19 @@ typedef struct words {
   size_t length;
 } words;
 
-bool fg_station_is_scanned(const char *name) {
-  static const char form[] = PREFIX "00000000-000000-000.";
-  for (const char *at = form; *at; at++, name++)
-    if (*at == '0' ? *name < '0' || *name > '9' : *name != *at) return false;
+/* A 0 of the form is any digit. */
+static bool has_form(const char *name, const char *form) {
+  for (; *form; form++, name++)
+    if (*form == '0' ? *name < '0' || *name > '9' : *name != *form) return false;
   return true;
+}
+
+bool fg_station_is_scanned_check(const char *name) {
+  return has_form(name, CHECK_PREFIX "00000000-000000-000.");
+}
+
+bool fg_station_is_scanned(const char *name) {
+  return has_form(name, PREFIX "00000000-000000-000.") || fg_station_is_scanned_check(name);
 }
 
 /* What a scanner's program asks of its file's ending. */
@@ -60,8 +70,8 @@ static void choose_names(scanner *at) {
   char stamp[40] = "";
   clock_gettime(CLOCK_REALTIME, &now);
   if (localtime_r(&now.tv_sec, &local)) strftime(stamp, 20, "%Y%m%d-%H%M%S", &local);
-  snprintf(at->final, sizeof at->final, PREFIX "%s-%03d.%s", stamp, (int)(now.tv_nsec / 1000000),
-           ending_for(at->station->settings->scan_command));
+  snprintf(at->final, sizeof at->final, "%s%s-%03d.%s", at->check ? CHECK_PREFIX : PREFIX, stamp,
+           (int)(now.tv_nsec / 1000000), ending_for(at->station->settings->scan_command));
   fg_text_clip(at->hidden, sizeof at->hidden, ".%s", at->final);
 }
 
@@ -261,7 +271,7 @@ static void forget(fg_inspection *station) {
   station->scanner = NULL;
 }
 
-fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station) {
+fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station, bool check) {
   void *block;
   if (atomic_exchange(&station->scanning, true)) return FG_OK;
   forget(station);
@@ -272,6 +282,7 @@ fg_status fg_station_scan_begin(fg_context *ctx, fg_inspection *station) {
   }
   scanner *at = block;
   *at = (scanner){.station = station};
+  at->check = check;
   choose_names(at);
   station->scanner = at;
   int error = pthread_create(&at->thread, NULL, scan, at);
@@ -289,10 +300,10 @@ void fg_station_scan_stop(fg_inspection *station) {
 
 fg_status fg_action_scan(fg_context *ctx, fg_inspection *station, const fg_request *request,
                          fg_answer *answer) {
-  (void)request;
+  bool check = fg_request_get(request, "check")[0] && station->check_design_known;
   if (!station->settings->scan_command[0])
     return fg_fail(ctx, FG_ERR_USAGE, "The recipe has no scan_command.");
-  FG_TRY(fg_station_scan_begin(ctx, station));
+  FG_TRY(fg_station_scan_begin(ctx, station, check));
   wake(station);
   strcpy(answer->location, "/");
   return FG_OK;

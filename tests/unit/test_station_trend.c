@@ -13,6 +13,7 @@
 
 #include "station/answer.h"
 #include "station/check.h"
+#include "station/scan_command.h"
 
 enum { BUMPS = 3 };
 #define HOUR_MS INT64_C(3600000)
@@ -274,6 +275,10 @@ static void a_check_is_due_and_done_and_due_again(void **state) {
   assert_has_not(get(f, "/", "", 200), "class=\"banner\"");
   ask_for_checks(f, true);
   assert_has(get(f, "/scanner", "", 200), "<b>NOT CHECKED</b>");
+  assert_has_not(get(f, "/scanner", "", 200), "Scan the plate</button>");
+  strcpy(f->settings.scan_command, "true {file}");
+  f->station.check_design_known = true;
+  assert_has(get(f, "/scanner", "", 200), "Scan the plate</button>");
   assert_has(get(f, "/", "", 200), "The scanner was never checked.</b> No foil gets a verdict");
   assert_true(fg_station_check_withholds(&f->station, why, sizeof why));
   add_check(f, 1, fg_station_now() - HOUR_MS, 1e-4, "pass");
@@ -315,6 +320,15 @@ static void a_failed_check_and_a_clock_set_back_withhold(void **state) {
   assert_has(why, "The clock was set back");
 }
 
+static void a_scan_of_the_plate_is_told_by_its_name(void **state) {
+  (void)state;
+  assert_true(fg_station_is_scanned_check("station-check-20261123-001605-310.png"));
+  assert_true(fg_station_is_scanned("station-check-20261123-001605-310.png"));
+  assert_true(fg_station_is_scanned("station-20261123-001605-310.png"));
+  assert_false(fg_station_is_scanned_check("station-20261123-001605-310.png"));
+  assert_false(fg_station_is_scanned_check("station-check-x.png"));
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, start, stop)
 
 int main(void) {
@@ -328,6 +342,7 @@ int main(void) {
       TEST(lots_dies_and_single_bumps_are_chosen),
       TEST(names_cannot_write_the_page),
       TEST(a_check_is_due_and_done_and_due_again),
+      cmocka_unit_test(a_scan_of_the_plate_is_told_by_its_name),
       TEST(a_failed_check_and_a_clock_set_back_withhold),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
