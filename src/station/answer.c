@@ -50,7 +50,8 @@ static void say(fg_answer *answer, int code, const char *words) {
   *answer = (fg_answer){.code = code, .type = HTML};
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) return;
-  fputs("<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>foilgauge</title>"
+  fputs("<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
+        "content=\"width=device-width,initial-scale=1\"><title>foilgauge</title>"
         "<link rel=\"stylesheet\" href=\"/style.css\"><main><section><h1>",
         out);
   fg_html_text(out, words);
