@@ -78,7 +78,8 @@ static fg_status write_open(fg_context *ctx, sqlite3 *reader, int64_t from, FILE
   fputs("<section><h2 class=\"first\">Open lots</h2>\n", out);
   for (; fg_query_row(&query) && count <= LOTS_SHOWN; count++) {
     if (!count)
-      fputs("<table><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
+      fputs("<table "
+            "class=\"left\"><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
             "<th class=\"noprint\"></th></tr></thead><tbody>\n",
             out);
     if (count < LOTS_SHOWN) write_open_lot(out, &query);
@@ -114,26 +115,27 @@ static void write_closed_lot(const fg_inspection *station, FILE *out, const fg_q
   const char *verdict = fg_query_get_text(row, CLOSED_VERDICT);
   long long before = fg_query_get_integer(row, CLOSED_BEFORE);
   bool withheld = fg_query_get_integer(row, CLOSED_WITHHELD) && strcmp(verdict, "fail") != 0;
-  fprintf(out, "<tr><td><span class=\"tag %s\">%s</span> <a href=\"/history?lot=",
+  fprintf(out, "<li><span class=\"tag %s\">%s</span> <a href=\"/history?lot=",
           fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
   write_encoded(out, lot);
   fputs("\">", out);
   write_name(out, lot);
-  fputs("</a><br>", out);
+  fputs("</a> ", out);
   write_link(out, "/lot?name=", lot, "Report");
-  fputs("</td><td>", out);
+  fputs("<span>", out);
   fg_html_text(out, fg_query_get_text(row, CLOSED_SUMMARY));
-  if (fg_query_get_integer(row, CLOSED_CHANGED)) {
-    fputs("<br><b>Foils have come, gone or been corrected since.</b> ", out);
-    write_link(out, "/lots?close=1&amp;lot=", lot, "Close again …");
-  }
-  write_downloads(station, out, lot);
-  fputs("</td><td>", out);
+  fputs("</span><span class=\"note\">closed ", out);
   fg_page_time(out, fg_query_get_integer(row, CLOSED_AT));
   fputs(" by ", out);
   fg_html_text(out, fg_query_get_text(row, CLOSED_BY));
-  if (before) fprintf(out, "<br>closed %lld times before", before);
-  fputs("</td></tr>\n", out);
+  if (before) fprintf(out, ", %lld times before", before);
+  fputs("</span>", out);
+  if (fg_query_get_integer(row, CLOSED_CHANGED)) {
+    fputs("<b>Foils have come, gone or been corrected since.</b> ", out);
+    write_link(out, "/lots?close=1&amp;lot=", lot, "Close again …");
+  }
+  write_downloads(station, out, lot);
+  fputs("</li>\n", out);
 }
 
 static fg_status write_closed(fg_context *ctx, const fg_inspection *station, sqlite3 *reader,
@@ -152,12 +154,10 @@ static fg_status write_closed(fg_context *ctx, const fg_inspection *station, sql
   fg_query_integer(&query, LOTS_SHOWN);
   while (fg_query_row(&query)) {
     if (!count++)
-      fputs("<section><h2 class=\"first\">Closed lots</h2>\n<table><thead><tr><th>Lot</th><th>"
-            "Report</th><th>Closed</th></tr></thead><tbody>\n",
-            out);
+      fputs("<section><h2 class=\"first\">Closed lots</h2>\n<ul class=\"cards\">\n", out);
     write_closed_lot(station, out, &query);
   }
-  if (count) fputs("</tbody></table></section>\n", out);
+  if (count) fputs("</ul></section>\n", out);
   return fg_query_end(ctx, &query, "reading the closed lots");
 }
 
@@ -188,7 +188,9 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
   fg_query_text(&query, lot);
   fputs("<section><h2 class=\"first\">Close the lot ", out);
   write_name(out, lot);
-  fputs("?</h2>\n<table><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>", out);
+  fputs("?</h2>\n<table "
+        "class=\"left\"><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>",
+        out);
   if (fg_query_row(&query)) write_counts(out, &query, 0);
   fputs("</tr></tbody></table>\n<p>Its report is written into the folder lots of the station. "
         "Foils can be corrected, and the lot closed again, later.</p>\n",
