@@ -49,16 +49,17 @@ typedef struct fg_design {
   char name[64];
   fg_form form;
   fg_datum datum;
-  size_t bump_count;        /* expected; 0: not stated */
-  double bump_radius_mm;    /* R_D */
-  double bump_angle_deg;    /* alpha_D */
-  double overall_radius_mm; /* of the foil as designed; also R0_design of eq e */
-  double sleeve_radius_mm;  /* R_sleeve; default: overall_radius_mm */
-  double pitch_deg;         /* angle from bump to bump about O; default 13 1/3 */
-  double fillet_radius_mm;  /* default 0.35 */
-  double thickness_mm;      /* t */
-  double rotor_diameter_mm; /* D */
-  size_t diameter_count;    /* discs only: known diameters, in any order */
+  size_t bump_count;            /* expected; 0: not stated */
+  double bump_radius_mm;        /* R_D */
+  double bump_angle_deg;        /* alpha_D */
+  double overall_radius_mm;     /* of the foil as designed; also R0_design of eq e */
+  double sleeve_radius_mm;      /* R_sleeve; default: overall_radius_mm */
+  double pitch_deg;             /* angle from bump to bump about O; default 13 1/3 */
+  double fillet_radius_mm;      /* default 0.35 */
+  double thickness_mm;          /* t */
+  double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
+  double rotor_diameter_mm;     /* D */
+  size_t diameter_count;        /* discs only: known diameters, in any order */
   double diameters_mm[FG_DIAMETERS_MAX];
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];
@@ -73,7 +74,7 @@ typedef struct fg_nominal {
   double intersection_angle_deg; /* theta_D */
   double height_mm;              /* h_D = R_D - (X_D - R_sleeve), eq 5.5 */
   double die_height_mm;          /* h_b = t + R - R cos(alpha/2), eq 5.1 */
-  double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8 */
+  double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8, less the top foil */
 } fg_nominal;
 
 /* What the declared springback model (thesis eq 5.6 and 5.7) predicts of a bump from its radius
@@ -98,7 +99,8 @@ fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 /* The derived nominal values; checks the design first. All NaN for form discs. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
-/* Clearance over a bump of this height: eq 5.8, mm, with the design's thickness. */
+/* Clearance over a bump of this height: eq 5.8 less the top foil's thickness, mm, with the design's
+ * thickness of the bump foil. */
 double fg_design_clearance(const fg_design *design, double height_mm);
 
 /* The same over a strip of another thickness. */

@@ -75,14 +75,16 @@ typedef struct fg_bump {
   double bump_angle_deg, u_bump_angle_deg;                 /* alpha */
   double intersection_angle_deg, u_intersection_angle_deg; /* theta */
   double height_mm, u_height_mm;                           /* h */
-  double clearance_mm, u_clearance_mm;                     /* C_local, eq 5.8 */
+  double clearance_mm, u_clearance_mm;                     /* C_local, eq 5.8, less the top foil */
   double clearance_error, u_clearance_error;               /* eq 5.9, a ratio */
   double height_fitted_mm, u_height_fitted_mm;             /* h in the sleeve, see below */
   double clearance_fitted_mm, u_clearance_fitted_mm;       /* eq 5.8 with it */
   double radius_error_pct, u_radius_error_pct;             /* e_R */
   double bump_angle_error_pct, u_bump_angle_error_pct;     /* e_alpha */
-  double height_model_mm, u_height_model_mm;               /* eq 5.6, 5.7 */
-  double bump_angle_model_deg, u_bump_angle_model_deg;     /* constant arc length */
+  /* 100 (theta - theta_D) / theta_D */
+  double intersection_angle_error_pct, u_intersection_angle_error_pct;
+  double height_model_mm, u_height_model_mm;           /* eq 5.6, 5.7 */
+  double bump_angle_model_deg, u_bump_angle_model_deg; /* constant arc length */
   double rms_um;                   /* of the datum line's orthogonal residuals */
   size_t points;                   /* datum points in the fit */
   double arc_start_mm, arc_end_mm; /* s of the arc that was used */

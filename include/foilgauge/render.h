@@ -60,8 +60,8 @@
  *     free.scan.x, free.scan.y: mm; moves "x" or "y" [the coordinate's]; at most 100 um per mm
  *     free.foil.s: radial, over psi / half span; free.bump.phi: away from C, over u; beyond u = -1
  *     and 1 the fillets fade it out
- *     free.bump.index: no knots, but single bumps by their number: amplitude_um with bumps [3, 5], or
- *     every 3 [first: every], or period_bumps with phase_deg [0] (amplitude sin(2 pi number / period
+ *     free.bump.index: no knots, but single bumps by their number: amplitude_um with bumps [3, 5],
+ * or every 3 [first: every], or period_bumps with phase_deg [0] (amplitude sin(2 pi number / period
  *     + phase)); or values_um [...] from bump 1. form "crown": the arc's middle rises by that much
  *     towards the bearing's middle and falls off as (1 - u²)², its ends and the circle of the truth
  *     stay; "whole": the circle moves there as it is, the fillets follow, and X, h, alpha and theta

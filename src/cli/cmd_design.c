@@ -85,6 +85,8 @@ static void write_stated(const fg_design *design, FILE *out) {
   write_row(out, "pitch", "", design->pitch_deg, "deg");
   write_row(out, "fillet radius", "", design->fillet_radius_mm, "mm");
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  if (design->top_foil_thickness_mm > 0)
+    write_row(out, "top foil thickness", "", design->top_foil_thickness_mm, "mm");
   write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
 }
 

@@ -112,6 +112,23 @@ static fg_status check_bearing(fg_context *ctx, const fg_design *design) {
   return FG_OK;
 }
 
+/* With a top foil a design must leave the rotor room: a relative clearance error over a nominal
+ * clearance of 0 or less says nothing. */
+static fg_status check_top_foil(fg_context *ctx, const fg_design *design) {
+  double top = design->top_foil_thickness_mm;
+  if (!isfinite(top) || top < 0)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "top_foil_thickness_mm is %g; it must be a number above 0, or 0 for none", top);
+  double height = design->bump_radius_mm - (centre_to_centre(design) - design->sleeve_radius_mm);
+  double clearance = fg_design_clearance(design, height);
+  if (top == 0 || clearance > 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "top_foil_thickness_mm is %g: between the bumps and rotor_diameter_mm %g are "
+                 "%.4g mm only, which leaves no clearance; the rotor must be below %.6g",
+                 top, design->rotor_diameter_mm, clearance + top,
+                 design->rotor_diameter_mm + 2 * clearance);
+}
+
 static fg_status check_discs(fg_context *ctx, const fg_design *design) {
   if (design->diameter_count > FG_DIAMETERS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm has %zu values; at most %d",
@@ -145,7 +162,8 @@ fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   FG_TRY(check_values(ctx, design));
   FG_TRY(check_bump(ctx, design));
   FG_TRY(check_pitch(ctx, design));
-  return check_bearing(ctx, design);
+  FG_TRY(check_bearing(ctx, design));
+  return check_top_foil(ctx, design);
 }
 
 static fg_nominal no_nominal(void) {
@@ -171,7 +189,8 @@ fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal 
 }
 
 double fg_design_clearance_over(const fg_design *design, double height_mm, double thickness_mm) {
-  return design->sleeve_radius_mm - height_mm - design->rotor_diameter_mm / 2 - thickness_mm;
+  return design->sleeve_radius_mm - height_mm - design->rotor_diameter_mm / 2 - thickness_mm -
+         design->top_foil_thickness_mm;
 }
 
 double fg_design_clearance(const fg_design *design, double height_mm) {

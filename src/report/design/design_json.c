@@ -177,6 +177,7 @@ static const member_row member_rows[] = {
     MEMBER(pitch_deg, read_number),
     MEMBER(fillet_radius_mm, read_number),
     MEMBER(thickness_mm, read_number),
+    MEMBER(top_foil_thickness_mm, read_number),
     MEMBER(rotor_diameter_mm, read_number),
     {"diameters_mm", read_diameters, 0},
     {"tolerances", read_tolerances, 0},

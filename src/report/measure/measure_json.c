@@ -45,6 +45,8 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
     fg_json_number(json, "pitch_deg", design->pitch_deg);
     fg_json_number(json, "fillet_radius_mm", design->fillet_radius_mm);
     fg_json_number(json, "thickness_mm", design->thickness_mm);
+    if (design->top_foil_thickness_mm > 0)
+      fg_json_number(json, "top_foil_thickness_mm", design->top_foil_thickness_mm);
     fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
   }
   write_tolerances(json, design);
