@@ -12,8 +12,8 @@
  * Castigliano: the displacement along load i is the derivative of the strain energy by it,
  *   u_i = sum over j of f_ij P_j,  f_ij = R³/D (∫ m_i m_j dpsi + e ∫ n_i n_j dpsi),
  *   e = D / (EA R²) = t² / (12 R²).
- * m and n are sums of 1, sin psi, cos psi, so every f_ij is a closed form in
- *   ∫ 1, sin, cos, sin², cos², sin cos.  Shear is left out: below e times three.
+ * m and n are sums of 1, sin psi, cos psi. Shear is left out: below e times three. What other
+ * models make of the same bump: foilgauge/stiffness.h.
  *
  * Free bump (both feet slide; W = 2 V, and half of the arc says all): the crown sinks by
  *   delta = f_VV V + f_VH H,   a foot moves outwards by   -(f_VH V + f_HH H).

@@ -6,6 +6,7 @@
 #include "foilgauge/comparison.h"
 #include "foilgauge/control.h"
 #include "foilgauge/density.h"
+#include "foilgauge/stiffness.h"
 #include "lot/lot_report.h"
 
 /* One foil of the lot. */
@@ -144,11 +145,6 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis);
  * the statistics, stiffness and clearances. It is judged as every other. So is a bump of what is no
  * foil of the design. */
 bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
-
-/* The arch of a bump: radii of design and measurement are those of the datum line, an arch bends
- * about its midline. */
-fg_arch fg_lot_arch(const fg_design *design, double thickness_mm, double radius_mm,
-                    double angle_deg);
 
 /* What the arch model leaves out of this lot's form; NULL: nothing. */
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);

@@ -5,12 +5,6 @@
 #include "core/memory.h"
 #include "lot/analysis.h"
 
-fg_arch fg_lot_arch(const fg_design *design, double thickness_mm, double radius_mm,
-                    double angle_deg) {
-  double shift = design->datum == FG_DATUM_INNER ? -0.5 : design->datum == FG_DATUM_OUTER ? 0.5 : 0;
-  return (fg_arch){radius_mm + shift * thickness_mm, angle_deg, thickness_mm};
-}
-
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis) {
   fg_lot_thickness *result = &analysis->thickness;
   for (size_t i = 0; i < analysis->foil_count; i++) {
@@ -31,7 +25,7 @@ static double stiffness_ratio(const fg_lot_settings *settings, const fg_lot_stif
                               double *foot) {
   fg_arch_stiffness stiffness;
   fg_context unused;
-  fg_arch arch = fg_lot_arch(&settings->design, thickness_mm, radius_mm, angle_deg);
+  fg_arch arch = fg_design_arch(&settings->design, thickness_mm, radius_mm, angle_deg);
   if (fg_arch_free(&unused, &arch, &settings->material, &stiffness) != FG_OK) return NAN;
   if (foot) *foot = stiffness.foot_n_mm2 / result->design_free.foot_n_mm2;
   return stiffness.stiffness_n_mm2 / result->design_free.stiffness_n_mm2;
@@ -41,7 +35,7 @@ static fg_status stiffness_of_design(fg_context *ctx, const fg_lot_settings *set
                                      fg_lot_stiffness *result) {
   const fg_design *design = &settings->design;
   fg_arch arch =
-      fg_lot_arch(design, design->thickness_mm, design->bump_radius_mm, design->bump_angle_deg);
+      fg_design_arch(design, design->thickness_mm, design->bump_radius_mm, design->bump_angle_deg);
   FG_TRY(fg_arch_free(ctx, &arch, &settings->material, &result->design_free));
   FG_TRY(fg_arch_welded(ctx, &arch, &settings->material, &result->design_welded));
   return fg_arch_sensitivities(ctx, &arch, &settings->material, &result->sensitivity);
@@ -171,7 +165,5 @@ exit:
 }
 
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis) {
-  if (analysis->lot->settings.design.form != FG_FORM_SINUSOIDAL) return NULL;
-  return "The model is the classical bump's: a circular arch on its two feet. The long fillets of "
-         "these sinusoidal foils bend too, and are not in it: these bumps are softer.";
+  return fg_stiffness_form_note(analysis->lot->settings.design.form);
 }

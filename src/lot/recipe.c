@@ -12,6 +12,7 @@
 #include "foilgauge/control.h"
 #include "foilgauge/lot.h"
 #include "foilgauge/scan_loop.h"
+#include "foilgauge/stiffness.h"
 #include "report/measure/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -76,7 +77,7 @@ void fg_lot_settings_default(fg_lot_settings *settings) {
       .bearing_column = "bearing",
       .pad_column = "pad",
       .layout = {.first_bump = 1},
-      .material = {.youngs_modulus_gpa = 200, .poisson_ratio = 0.3, .friction = 0.1},
+      .material = fg_arch_material_default(),
   };
   fg_design_default(&settings->design);
 }
