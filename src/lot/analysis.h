@@ -8,6 +8,7 @@
 #include "foilgauge/density.h"
 #include "foilgauge/stiffness.h"
 #include "lot/lot_report.h"
+#include "report/stiffness/stiffness_table.h"
 
 /* One foil of the lot. */
 typedef struct fg_lot_foil {
@@ -74,8 +75,37 @@ typedef struct fg_lot_thickness {
   bool differs; /* from the design's, by more than U */
 } fg_lot_thickness;
 
+/* One cause of the spread: d ln K = sensitivity × d ln of it. */
+typedef struct fg_lot_budget_term {
+  double spread_pct, sensitivity; /* relative sd over the bumps; NaN: not known */
+  double variance_pct2;           /* of the stiffness: their product, squared */
+} fg_lot_budget_term;
+
+/* Where the relative sd of the stiffness (arch) comes from, to first order about the lot's mean:
+ *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
+ *          + (s_t sigma_t)²,   s_t = 3 for slender bumps, r the correlation of R and arc length.
+ * All scans share the doubt about the thickness: it is in the mean (u_by_thickness), not here. */
+typedef struct fg_lot_budget {
+  bool known;
+  fg_lot_budget_term radius; /* at constant arc length */
+  fg_lot_budget_term arc_length, thickness;
+  double correlation, together_pct2; /* of radius and arc length; what that adds */
+  double sum_pct2;                   /* of what is known of the above */
+  double observed_pct;               /* rsd of the measured bumps */
+  double unexplained_pct2;           /* observed² - sum: curvature, what is not measured; may be
+                                        negative */
+  double measurement_pct;            /* of the observed, by the bumps' own uncertainties; NaN */
+  double parts_pct;                  /* what is left of the observed without it */
+} fg_lot_budget;
+
+enum { FG_LOT_CASE_DESIGN, FG_LOT_CASE_MEAN, FG_LOT_CASES };
+
 /* Stiffness of the bumps over that of the design's. */
 typedef struct fg_lot_stiffness {
+  fg_stiffness_case cases[FG_LOT_CASES];       /* by every model; the mean where there are bumps */
+  fg_lot_spread by_model[FG_STIFFNESS_MODELS]; /* measured, over the design's by that model; a count
+                                                  of 0: not known */
+  fg_lot_budget budget;
   fg_arch_stiffness design_free, design_welded;
   fg_arch_sensitivity sensitivity;
   double *normalised; /* by bump of the lot, foil after foil, thickness as measured; NaN; owned */

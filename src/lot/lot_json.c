@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "lot/json_parts.h"
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
@@ -185,7 +186,7 @@ static void write_correlation(fg_json *json, const fg_lot_correlation *correlati
   fg_json_object_end(json);
 }
 
-static void write_spread(fg_json *json, const char *name, const fg_lot_spread *spread) {
+void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread) {
   fg_json_object(json, name);
   fg_json_line(json);
   fg_json_integer(json, "count", (int64_t)spread->count);
@@ -199,18 +200,6 @@ static void write_spread(fg_json *json, const char *name, const fg_lot_spread *s
   fg_json_line_end(json);
 }
 
-static void write_arch(fg_json *json, const char *name, const fg_arch_stiffness *stiffness) {
-  fg_json_object(json, name);
-  fg_json_line(json);
-  fg_json_number(json, "stiffness_n_mm2", stiffness->stiffness_n_mm2);
-  fg_json_number(json, "unloading_n_mm2", stiffness->unloading_n_mm2);
-  fg_json_number(json, "foot_n_mm2", stiffness->foot_n_mm2);
-  fg_json_number(json, "foot_share", stiffness->foot_share);
-  fg_json_bool(json, "stuck", stiffness->stuck);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-}
-
 static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_lot_thickness *thickness = &analysis->thickness;
   fg_json_object(json, "thickness");
@@ -219,31 +208,6 @@ static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_number(json, "u_mean_mm", thickness->mean.u_mm);
   fg_json_number(json, "design_mm", analysis->lot->settings.design.thickness_mm);
   fg_json_bool(json, "differs", thickness->differs);
-  fg_json_object_end(json);
-}
-
-static void write_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
-  const fg_lot_stiffness *stiffness = &analysis->stiffness;
-  fg_json_object(json, "stiffness");
-  fg_json_string(json, "model", "classical");
-  fg_json_string(json, "note", fg_lot_stiffness_note(analysis));
-  write_arch(json, "design_free", &stiffness->design_free);
-  write_arch(json, "design_welded", &stiffness->design_welded);
-  fg_json_object(json, "sensitivity");
-  fg_json_line(json);
-  fg_json_number(json, "radius", stiffness->sensitivity.radius);
-  fg_json_number(json, "angle", stiffness->sensitivity.angle);
-  fg_json_number(json, "radius_at_arc_length", stiffness->sensitivity.radius_at_arc_length);
-  fg_json_number(json, "thickness", stiffness->sensitivity.thickness);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-  if (analysis->has_stiffness) {
-    write_spread(json, "normalised", &stiffness->measured);
-    fg_json_number(json, "u_normalised_by_thickness", stiffness->u_by_thickness);
-    write_spread(json, "normalised_at_design_thickness", &stiffness->at_design_thickness);
-    write_spread(json, "normalised_resampled", &stiffness->resampled);
-    write_spread(json, "normalised_foot", &stiffness->foot);
-  }
   fg_json_object_end(json);
 }
 
@@ -337,9 +301,10 @@ static void write_bearings(fg_json *json, const fg_lot_analysis *analysis) {
     write_bearing(json, analysis, &analysis->bearings[i]);
   fg_json_array_end(json);
   if (analysis->clearance_pct.count)
-    write_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);
+    fg_lot_json_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);
   if (analysis->clearance_fitted_pct.count)
-    write_spread(json, "clearance_fitted_relative_to_design_pct", &analysis->clearance_fitted_pct);
+    fg_lot_json_spread(json, "clearance_fitted_relative_to_design_pct",
+                       &analysis->clearance_fitted_pct);
 }
 
 fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
@@ -368,7 +333,8 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
   write_thickness(&json, analysis);
-  write_stiffness(&json, analysis);
+  if (fg_form_has_bumps(analysis->lot->settings.design.form))
+    fg_lot_json_stiffness(&json, analysis);
   write_bearings(&json, analysis);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)

@@ -235,7 +235,7 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity) {
 static void put_ratio(const fg_plot *at, const fg_bump *bump) {
   double x = 1 + bump->radius_error_pct / 100, y = 1 + bump->bump_angle_error_pct / 100;
   if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
-  fg_plot_dot(at, x, y, 4.5, "dot");
+  fg_plot_dot(at, x, y, 4.5, "mapped");
 }
 
 static void put_ratios(const fg_plot *at, const void *user) {

@@ -2,10 +2,6 @@
 
 #include "report/measure/measure_page_parts.h"
 
-bool fg_form_has_bumps(fg_form form) {
-  return form == FG_FORM_CLASSICAL || form == FG_FORM_SINUSOIDAL;
-}
-
 void fg_design_page_fill(const fg_design *design, const fg_nominal *nominal,
                          const fg_arch_material *material, fg_design_page *page) {
   *page = (fg_design_page){.design = design, .nominal = nominal, .material = material};

@@ -17,9 +17,6 @@ typedef struct fg_design_page {
 void fg_design_page_fill(const fg_design *design, const fg_nominal *nominal,
                          const fg_arch_material *material, fg_design_page *page);
 
-/* Bumps whose stiffness the models speak of. */
-bool fg_form_has_bumps(fg_form form);
-
 void fg_json_design_stiffness(fg_json *json, const fg_design_page *page);
 void fg_html_design_page(FILE *out, const fg_design_page *page);
 

@@ -64,7 +64,7 @@ static void put_row(FILE *out, const char *title, const fg_stiffness_case *bump,
 }
 
 static void put_sources(FILE *out, const fg_stiffness_case *bump) {
-  fputs("<dl class=\"facts\">\n", out);
+  fputs("<dl class=\"facts\" style=\"margin-top:14px\">\n", out);
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
     const fg_stiffness_model *model = &fg_stiffness_models()[i];
     fprintf(out, "<dt>%s</dt><dd>%s<br>%s.", model->title, model->formula, model->source);

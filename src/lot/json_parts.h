@@ -1,0 +1,11 @@
+/* What the files of a lot's JSON share. */
+#ifndef FG_LOT_JSON_PARTS_H
+#define FG_LOT_JSON_PARTS_H
+
+#include "core/json_writer.h"
+#include "lot/analysis.h"
+
+void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread);
+void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis);
+
+#endif
