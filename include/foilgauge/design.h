@@ -35,7 +35,9 @@ typedef enum fg_datum {
 
 /* A tolerance: lower <= value <= upper, in the unit of the quantity. Unset limits are -inf, +inf.
  * `quantity` is the JSON name of a reported quantity: of a bump ("height_mm"), or of the whole
- * foil ("overall.radius_mm", "thickness_mm"). In a design file:
+ * foil ("overall.radius_mm", "thickness_mm"), or of a lot's bearings ("circularity_mm",
+ * "clearance_min_mm", "clearance_centred_min_mm", "clearance_mean_mm", "clearance_max_mm"). In a
+ * design file:
  *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } }
  */
 typedef struct fg_tolerance {

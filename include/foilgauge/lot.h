@@ -6,7 +6,7 @@
  *   scanner_model.json   the scanner's model, where the lot is corrected by one
  *   results.jsonl   one line per measured scan, kept as it is made, with a checksum
  *                   of its own ("foilgauge/results/2")
- *   lot.json, foils.csv, bumps.csv, index.html, results.qif, results.dfq    the report
+ *   lot.json, foils.csv, bumps.csv, bearings.csv, index.html, results.qif, results.dfq   the report
  *
  * The report is a function of the first three alone: it is computed from the recorded values, never
  * from what happens to be in memory, so a lot that was killed and resumed, measured by any number
@@ -112,9 +112,11 @@ typedef struct fg_lot_request {
 } fg_lot_request;
 
 typedef struct fg_lot_outcome {
-  fg_report_outcome judged; /* of all foils and scans; fg_outcome_exit_code */
+  fg_report_outcome judged; /* of all foils, scans, bearings; fg_outcome_exit_code */
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
+  bool bearings_judged; /* the design states tolerances of a bearing */
+  size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];
   size_t exceeded;   /* foils with a value that fails */
   size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
   size_t torn;       /* lines of results.jsonl that were damaged or not whole, and measured again */

@@ -49,7 +49,10 @@ typedef enum fg_quantity_use {
 #define FG_NO_UNCERTAINTY ((size_t)-1)
 
 typedef struct fg_quantity {
-  const char *name;   /* JSON name, unit included */
+  const char *name; /* JSON name, unit included */
+  /* Of a bearing: the name that a design's tolerances have for it; NULL: it can have none. What is
+   * of a part has tolerances by its name. */
+  const char *tolerance;
   const char *unit;   /* for people: "mm", "°", "%", "µm", "" */
   const char *symbol; /* heading of a column, UTF-8 */
   const char *words;  /* what it is, for people */
@@ -76,6 +79,9 @@ const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count);
 
 /* The row of that name, or NULL. */
 const fg_quantity *fg_quantity_find(fg_quantity_owner owner, const char *name);
+
+/* The row of a bearing that a tolerance of that name is about, or NULL. */
+const fg_quantity *fg_quantity_of_bearing_for(const char *tolerance);
 
 /* A number or a count of the object (of its owner's type) as double; NaN for a pair. */
 double fg_quantity_value(const fg_quantity *quantity, const void *object);

@@ -56,9 +56,14 @@ static const char doc[] =
     "Measure a production lot and report it: which foils pass, how the process runs, what the "
     "deviations do to the bearing."
     "\vPATH is a folder of scans, a scan, a list (.txt, a path a line) or a manifest (.csv with a "
-    "column `scan` and any others: foil, pad, bearing, die, coil ...).\n\n"
+    "column `scan` and any others: foil, pad, bearing, die, coil ...). Tolerances of a bearing "
+    "(circularity_mm, clearance_min_mm, clearance_centred_min_mm) judge the bearings that the "
+    "columns `bearing` and `pad` say, or without them foils in a row; a foil whose cell is empty "
+    "is "
+    "in none.\n\n"
     "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
-    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
+    "more than U (of foils or of bearings), or a bump is missing; 2 something could not be "
+    "measured; 3 cannot tell: a limit "
     "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output. A "
     "shard is not judged: 0 or 2.";
 
@@ -185,6 +190,16 @@ static void show_progress(void *user, const fg_lot_progress *progress) {
           progress->done == progress->total ? "\n" : "");
 }
 
+static void say_bearings(const fg_lot_outcome *outcome) {
+  const size_t *by = outcome->bearings_by_verdict;
+  fprintf(stderr, "%zu bearings: %zu pass, %zu fail, %zu cannot be told, %zu not measured%s\n",
+          outcome->bearings, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED],
+          by[FG_VERDICT_NOT_MEASURED],
+          outcome->bearings ? ""
+                            : ": the design's tolerances of a bearing judge nothing, the foils "
+                              "make none");
+}
+
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   const size_t *by = outcome->foils_by_verdict;
   fprintf(stderr, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told", outcome->foils,
@@ -193,7 +208,9 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   if (by[FG_VERDICT_NOT_MEASURED] || outcome->failed)
     fprintf(stderr, "; not measured: %zu foils, %zu scans", by[FG_VERDICT_NOT_MEASURED],
             outcome->failed);
-  fprintf(stderr, "\n%s/index.html\n", folder);
+  fputc('\n', stderr);
+  if (outcome->bearings_judged) say_bearings(outcome);
+  fprintf(stderr, "%s/index.html\n", folder);
   return fg_outcome_exit_code(&outcome->judged);
 }
 

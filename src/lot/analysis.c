@@ -150,6 +150,8 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis) {
   }
   free(analysis->quantities);
   free(analysis->stiffness.normalised);
+  for (size_t i = 0; i < analysis->bearing_count; i++)
+    fg_decision_free(&analysis->bearings[i].decision);
   free(analysis->bearings);
   free(analysis->differences);
   free(analysis->gauges);

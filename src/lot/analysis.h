@@ -122,10 +122,19 @@ typedef struct fg_lot_bearing {
   const fg_lot_foil *pad[FG_BEARING_BUMPS_MAX]; /* layout.pads; NULL: missing */
   /* Of the foils fitted into the sleeve; NaN: no value, or a crushed bump's. */
   double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
+  double u_clearance_mm[FG_BEARING_BUMPS_MAX];
   size_t places;
   bool known;
   fg_bearing_clearance clearance;
+  fg_decision decision; /* fg_bearing_decide's; owned */
 } fg_lot_bearing;
+
+/* What of the foils is in no bearing, and why. */
+typedef struct fg_lot_unplaced {
+  size_t without;   /* the manifest names no bearing; of assumed ones: left over */
+  size_t displaced; /* the pad is taken, or the bearing has all its pads */
+  size_t bad_pads;  /* a pad that is no number from 1 to pads: the next free one was taken */
+} fg_lot_unplaced;
 
 /* Two groups of the lot (dies, coils) in one quantity. */
 typedef struct fg_lot_difference {
@@ -148,7 +157,7 @@ typedef struct fg_lot_analysis {
   size_t foil_count, failed_scans;
   size_t bumps, crushed; /* of measured foils; crushed ones are in no statistics */
   size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
-  fg_report_outcome outcome;                        /* of all foils and scans */
+  fg_report_outcome outcome;                        /* of all foils, scans and bearings */
   const fg_lot_foil *worst[3];
   fg_lot_quantity *quantities;
   size_t quantity_count;
@@ -160,6 +169,8 @@ typedef struct fg_lot_analysis {
   char layout_note[400];    /* what of it contradicts the design; "": nothing */
   fg_lot_bearing *bearings;
   size_t bearing_count, bearing_capacity;
+  fg_lot_unplaced unplaced;
+  size_t bearings_by_verdict[FG_VERDICT_NONE + 1];
   /* Of the local clearance relative to the design's, in percent: foils free, and fitted. */
   fg_lot_spread clearance_pct, clearance_fitted_pct;
   fg_lot_difference *differences;
@@ -175,6 +186,14 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis);
  * the statistics, stiffness and clearances. It is judged as every other. So is a bump of what is no
  * foil of the design. */
 bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
+
+/* Clearance over a bump of the foil fitted into the sleeve, NaN where there is none that counts; of
+ * its u what all foils share, and the rest. */
+typedef struct fg_lot_clearance {
+  double mm, u_shared_mm, u_own_mm;
+} fg_lot_clearance;
+fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_lot_foil *foil,
+                                     int number);
 
 /* What the arch model leaves out of this lot's form; NULL: nothing. */
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);

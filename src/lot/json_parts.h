@@ -8,4 +8,7 @@
 void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread);
 void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis);
 
+/* Where bumps lie around a bearing, every bearing, the clearances of all bumps. */
+void fg_lot_json_bearings(fg_json *json, const fg_lot_analysis *analysis);
+
 #endif

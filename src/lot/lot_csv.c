@@ -1,5 +1,7 @@
-/* foils.csv and bumps.csv: the manifest's columns first, so that any program can pivot by them. */
+/* foils.csv, bumps.csv, bearings.csv: the manifest's columns first, so that any program can pivot
+ * by them. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/csv.h"
@@ -117,4 +119,62 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
     }
   }
   return fg_stream_finish(ctx, out, "bumps.csv");
+}
+
+static void put_bearing_heading(FILE *out) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BEARING, &count);
+  fputs("bearing,pads,verdict,places", out);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < fg_quantity_width(&rows[i]); k++) {
+      char name[96];
+      fg_quantity_column(&rows[i], k, name, sizeof name);
+      fprintf(out, ",%s", name);
+    }
+  fputc('\n', out);
+}
+
+/* The foils' labels with a space between, "-" for a pad that is not there. */
+static fg_status put_pads(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis,
+                          const fg_lot_bearing *bearing) {
+  char *text = NULL;
+  size_t size;
+  FILE *words = open_memstream(&text, &size);
+  if (!words) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv");
+  for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
+    const fg_lot_foil *foil = bearing->pad[pad];
+    fprintf(words, "%s%s", pad ? " " : "",
+            foil ? fg_manifest_label(&analysis->lot->manifest, foil->item) : "-");
+    if (foil && analysis->lot->records[foil->item].foil_count > 1)
+      fprintf(words, "#%d", foil->foil->number);
+  }
+  bool broken = fclose(words) != 0;
+  if (!broken) put_text(out, text);
+  free(text);
+  return broken ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv") : FG_OK;
+}
+
+fg_status fg_lot_write_bearings_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  size_t rows;
+  const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_BEARING, &rows);
+  put_bearing_heading(out);
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
+    const fg_lot_bearing *bearing = &analysis->bearings[i];
+    if (bearing->name)
+      put_text(out, bearing->name);
+    else
+      fprintf(out, "%zu", bearing->number);
+    fputc(',', out);
+    FG_TRY(put_pads(ctx, out, analysis, bearing));
+    fprintf(out, ",%s,%zu", fg_verdict_word(bearing->decision.outcome.verdict), bearing->places);
+    for (size_t k = 0; k < rows; k++) {
+      double numbers[FG_QUANTITY_NUMBERS_MAX];
+      size_t width = fg_quantity_numbers(&row[k], &bearing->clearance, numbers);
+      bool count = row[k].kind == FG_QUANTITY_COUNT;
+      for (size_t n = 0; n < width; n++)
+        put_number(out, bearing->known || count ? numbers[n] : NAN);
+    }
+    fputc('\n', out);
+  }
+  return fg_stream_finish(ctx, out, "bearings.csv");
 }

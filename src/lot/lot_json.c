@@ -211,32 +211,6 @@ static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object_end(json);
 }
 
-static void write_pads(fg_json *json, const fg_lot_analysis *analysis,
-                       const fg_lot_bearing *bearing) {
-  fg_json_array(json, "pads");
-  fg_json_line(json);
-  for (size_t pad = 0; pad < analysis->layout.pads; pad++)
-    fg_json_string(json, NULL,
-                   bearing->pad[pad]
-                       ? fg_manifest_label(&analysis->lot->manifest, bearing->pad[pad]->item)
-                       : NULL);
-  fg_json_array_end(json);
-  fg_json_line_end(json);
-}
-
-static void write_bearing(fg_json *json, const fg_lot_analysis *analysis,
-                          const fg_lot_bearing *bearing) {
-  fg_json_object(json, NULL);
-  fg_json_string(json, "name", bearing->name);
-  fg_json_integer(json, "number", (int64_t)bearing->number);
-  write_pads(json, analysis, bearing);
-  fg_json_numbers(json, "angle_deg", bearing->angle_deg, bearing->places);
-  fg_json_numbers(json, "clearance_mm", bearing->clearance_mm, bearing->places);
-  if (bearing->known)
-    fg_json_quantities(json, FG_QUANTITY_OF_BEARING, "", &bearing->clearance, true);
-  fg_json_object_end(json);
-}
-
 static void write_difference(fg_json *json, const fg_lot_difference *difference) {
   const fg_comparison *comparison = &difference->comparison;
   fg_json_object(json, NULL);
@@ -279,34 +253,6 @@ static void write_gauge(fg_json *json, const fg_lot_gauge *gauge) {
   fg_json_line_end(json);
 }
 
-static void write_layout(fg_json *json, const fg_lot_analysis *analysis) {
-  const fg_bearing_layout *layout = &analysis->layout;
-  fg_json_object(json, "bearing_layout");
-  fg_json_integer(json, "pads", (int64_t)layout->pads);
-  fg_json_integer(json, "bumps_per_pad", (int64_t)layout->bumps_per_pad);
-  fg_json_integer(json, "first_bump", (int64_t)layout->first_bump);
-  fg_json_number(json, "bump_pitch_deg", fg_bearing_pitch_deg(layout));
-  fg_json_string(json, "note", analysis->layout_note[0] ? analysis->layout_note : NULL);
-  fg_json_object_end(json);
-}
-
-static void write_bearings(fg_json *json, const fg_lot_analysis *analysis) {
-  const fg_manifest *manifest = &analysis->lot->manifest;
-  bool assumed =
-      fg_manifest_column(manifest, analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
-  write_layout(json, analysis);
-  fg_json_bool(json, "bearings_assumed", assumed);
-  fg_json_array(json, "bearings");
-  for (size_t i = 0; i < analysis->bearing_count; i++)
-    write_bearing(json, analysis, &analysis->bearings[i]);
-  fg_json_array_end(json);
-  if (analysis->clearance_pct.count)
-    fg_lot_json_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);
-  if (analysis->clearance_fitted_pct.count)
-    fg_lot_json_spread(json, "clearance_fitted_relative_to_design_pct",
-                       &analysis->clearance_fitted_pct);
-}
-
 fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   fg_json json;
@@ -333,9 +279,8 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
   write_thickness(&json, analysis);
-  if (fg_form_has_bumps(analysis->lot->settings.design.form))
-    fg_lot_json_stiffness(&json, analysis);
-  write_bearings(&json, analysis);
+  fg_lot_json_stiffness(&json, analysis);
+  fg_lot_json_bearings(&json, analysis);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)
     write_difference(&json, &analysis->differences[i]);

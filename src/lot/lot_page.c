@@ -17,11 +17,21 @@ static void put_tiles(FILE *out, const fg_lot_analysis *analysis) {
   const size_t *by = analysis->by_verdict;
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, "Foils", analysis->foil_count);
-  bool judged = analysis->lot->settings.design.tolerance_count > 0;
+  const fg_design *design = &analysis->lot->settings.design;
+  size_t of_bearing = fg_report_of_bearing(design, NULL, 0);
+  bool judged = design->tolerance_count > of_bearing;
   if (judged) put_tile(out, "Pass", by[FG_VERDICT_PASS]);
   if (judged || by[FG_VERDICT_FAIL]) put_tile(out, "Fail", by[FG_VERDICT_FAIL]);
   if (judged) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
   put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED] + analysis->failed_scans);
+  if (of_bearing) {
+    by = analysis->bearings_by_verdict;
+    put_tile(out, "Bearings", analysis->bearing_count);
+    put_tile(out, "Bearings pass", by[FG_VERDICT_PASS]);
+    put_tile(out, "Bearings fail", by[FG_VERDICT_FAIL]);
+    if (by[FG_VERDICT_UNDECIDED]) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
+    if (by[FG_VERDICT_NOT_MEASURED]) put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED]);
+  }
   fputs("</dl>\n", out);
 }
 
@@ -199,11 +209,12 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *a
   FG_TRY(fg_html_model_facts(ctx, out, analysis->lot->model));
   fputs("</dl>\n<p class=\"note\">", out);
   fg_html_text(out, scale);
-  fputs(" A value passes when value ± U lies inside its tolerance "
-        "(U = 2 u, about 95 %), fails when it lies outside, and cannot be told when a limit runs "
-        "through it. All numbers: lot.json, foils.csv, bumps.csv; for quality systems "
-        "results.qif and results.dfq.</p>\n</section>\n",
-        out);
+  fputs(
+      " A value passes when value ± U lies inside its tolerance "
+      "(U = 2 u, about 95 %), fails when it lies outside, and cannot be told when a limit runs "
+      "through it. All numbers: lot.json, foils.csv, bumps.csv, bearings.csv; for quality systems "
+      "results.qif and results.dfq.</p>\n</section>\n",
+      out);
   return FG_OK;
 }
 

@@ -26,6 +26,14 @@ const fg_quantity *fg_quantity_find(fg_quantity_owner owner, const char *name) {
   return NULL;
 }
 
+const fg_quantity *fg_quantity_of_bearing_for(const char *tolerance) {
+  const fg_quantity_rows *bearing = &fg_quantities_of_bearing;
+  for (size_t i = 0; i < bearing->count; i++)
+    if (bearing->rows[i].tolerance && !strcmp(bearing->rows[i].tolerance, tolerance))
+      return &bearing->rows[i];
+  return NULL;
+}
+
 bool fg_quantity_has_u(const fg_quantity *quantity) {
   return quantity->u_offset != FG_NO_UNCERTAINTY;
 }

@@ -30,7 +30,7 @@ expect 0 '12 scans, 12 to measure, 0 kept' lot -o one --dry-run
 [ -e one ] && fail "a dry run made a folder"
 expect 2 '11 foils of 12 scans' lot -o one
 grep -q 'broken.png: is a text' stderr || fail "the bad scan is not named"
-for name in lot.json foils.csv bumps.csv index.html results.qif results.dfq results.jsonl recipe.json manifest.csv; do
+for name in lot.json foils.csv bumps.csv bearings.csv index.html results.qif results.dfq results.jsonl recipe.json manifest.csv; do
   [ -s "one/$name" ] || fail "no $name"
 done
 expect 2 '' lot -o jobs1 --jobs 1

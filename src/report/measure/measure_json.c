@@ -159,7 +159,7 @@ static void write_counts(fg_json *json, const fg_report_outcome *outcome) {
   fg_json_line_end(json);
 }
 
-static void write_judgements(fg_json *json, const fg_decision *decision, const char *owner) {
+void fg_json_judgements(fg_json *json, const fg_decision *decision, const char *owner) {
   fg_json_array(json, "judgements");
   for (size_t i = 0; i < decision->count; i++)
     write_judgement(json, &decision->judgements[i], owner);
@@ -210,7 +210,7 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_verdict(json, decision.outcome.verdict);
   fg_json_string(json, "defect", rejected ? defect : NULL);
-  if (fg_foil_is_measured(foil)) write_judgements(json, &decision, "bump");
+  if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, "bump");
   write_foil_values(json, design, foil);
   fg_json_object_end(json);
   fg_decision_free(&decision);
@@ -227,7 +227,7 @@ fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_bool(json, "hole", disc->hole);
   fg_json_bool(json, "bright", disc->bright);
   fg_json_verdict(json, decision.outcome.verdict);
-  write_judgements(json, &decision, "disc");
+  fg_json_judgements(json, &decision, "disc");
   fg_json_quantities(json, FG_QUANTITY_OF_DISC, "", disc, true);
   write_covariance(json, disc->covariance);
   write_range(json, "radius_range_mm", disc->radius_range_mm);
@@ -271,6 +271,18 @@ static fg_status write_scans(fg_context *ctx, fg_json *json, const fg_report *re
   return FG_OK;
 }
 
+/* Tolerances of a bearing, where the design states any: a scan has none. */
+static void write_not_judged(fg_json *json, const fg_design *design) {
+  if (!fg_report_of_bearing(design, NULL, 0)) return;
+  fg_json_array(json, "not_judged");
+  fg_json_line(json);
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (fg_quantity_of_bearing_for(design->tolerances[i].quantity))
+      fg_json_string(json, NULL, design->tolerances[i].quantity);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
 fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *out) {
   fg_report_outcome outcome;
   fg_json json;
@@ -280,6 +292,7 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
   fg_json_head(&json, "foilgauge/measure/1");
   fg_json_verdict(&json, outcome.verdict);
   write_counts(&json, &outcome);
+  write_not_judged(&json, report->design);
   fg_json_array(&json, "inputs");
   for (size_t i = 0; i < report->scan_count; i++)
     write_input(&json, &report->scans[i]);

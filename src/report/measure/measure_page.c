@@ -173,6 +173,15 @@ static void put_defect(FILE *out, const fg_design *design, const fg_foil *foil) 
     fprintf(out, "<p class=\"reasons\"><b>Rejected:</b> %s.</p>\n", words);
 }
 
+static void put_not_judged(FILE *out, const fg_design *design) {
+  char names[400];
+  if (fg_report_of_bearing(design, names, sizeof names))
+    fprintf(out,
+            "<p class=\"note\">Not judged here: %s: of a bearing; <code>foilgauge lot</code> "
+            "judges it.</p>\n",
+            names);
+}
+
 static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
                             const fg_measurement *measurement, const fg_foil *foil) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
@@ -191,6 +200,7 @@ static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
   put_defect(out, design, foil);
   for (size_t i = 0; i < sizeof told / sizeof *told; i++)
     put_reasons(out, &decision, told[i]);
+  put_not_judged(out, design);
   fg_decision_free(&decision);
   return FG_OK;
 }

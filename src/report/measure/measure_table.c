@@ -237,7 +237,8 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
 }
 
 /* A line per thing that keeps the whole from passing: the worst first. */
-static void put_outcome(FILE *out, const fg_report_outcome *outcome) {
+static void put_outcome(FILE *out, const fg_design *design, const fg_report_outcome *outcome) {
+  char names[400];
   if (outcome->exceeded)
     fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit.\n", outcome->exceeded);
   if (outcome->rejected)
@@ -249,8 +250,12 @@ static void put_outcome(FILE *out, const fg_report_outcome *outcome) {
             outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit" : "");
   if (outcome->verdict == FG_VERDICT_PASS)
     fputs("Within every tolerance, uncertainty included.\n", out);
+  size_t of_bearing = fg_report_of_bearing(design, names, sizeof names);
   if (outcome->verdict == FG_VERDICT_NONE)
-    fputs("The design states no tolerances: nothing is judged.\n", out);
+    fprintf(out, "The design states no tolerances%s: nothing is judged.\n",
+            of_bearing ? " of a foil" : "");
+  if (of_bearing)
+    fprintf(out, "Not judged here: %s: of a bearing; `foilgauge lot` judges it.\n", names);
 }
 
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out) {
@@ -261,7 +266,7 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
     FG_TRY(put_scan(ctx, out, report->design, &report->scans[i]));
   }
   fputc('\n', out);
-  put_outcome(out, &outcome);
+  put_outcome(out, report->design, &outcome);
   char scale[FG_SCALE_WORDS];
   fg_scale_words(fg_report_model(report), scale, sizeof scale);
   if (report->design->form != FG_FORM_DISCS)
