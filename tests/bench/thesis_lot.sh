@@ -1,7 +1,7 @@
 #!/bin/bash
 # The thesis's lot from end to end, twice: 14 foils of 9 bumps rendered with its distribution of radii (thesis_lot.py),
 # once with the arc length as designed, once with -3.8 ± 4.3 % of it; measured, and the figures set beside those that
-# chapter 5 prints. Writes reports/thesis/lot.md, lot.csv, lot.html and lot_arc_length.html.
+# chapter 5 prints. Writes reports/thesis/lot.md, lot.csv, lot.html, lot_arc_length.html and design.html.
 #   tests/bench/thesis_lot.sh [DPI]
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -29,4 +29,5 @@ make_lot constant "Thesis, chapter 5: arc length as designed"
 make_lot varied "Thesis, chapter 5: arc length -3.8 ± 4.3 %" -3.8 4.3
 cp constant/lot/index.html "$out/lot.html"
 cp varied/lot/index.html "$out/lot_arc_length.html"
+"$program" design --html "$out/design.html" >/dev/null
 python3 "$bench/thesis_lot_report.py" "$folder" "$out"
