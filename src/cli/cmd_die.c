@@ -10,7 +10,7 @@
 #include "foilgauge/die.h"
 #include "report/die/die_report.h"
 
-enum { OUT_JSON, OUT_TABLE, OUT_COUNT };
+enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT };
 
 typedef struct die_run {
   const char *design_path, *list_path;
@@ -35,6 +35,7 @@ enum {
   OPTION_U_TIP,
   OPTION_U_SCALE,
   OPTION_MAX_SLOPE,
+  OPTION_HTML,
   OPTION_TABLE,
 };
 
@@ -61,6 +62,7 @@ static const struct argp_option options[] = {
     {"max-slope", OPTION_MAX_SLOPE, "DEG", 0,
      "Steeper flanks take no part, where the tip's cone or the arm touches (default: 77)", 2},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 3},
     {"table", OPTION_TABLE, "FILE.txt", 0, "The table, as on a terminal", 3},
     {0},
 };
@@ -82,7 +84,7 @@ static const char doc[] =
     "Tolerances of the design that name radius_mm, radius_error_pct, bump_angle_deg, "
     "bump_angle_error_pct, centre_to_centre_mm, height_mm, intersection_angle_deg, place_error_deg "
     "or overall.radius_mm judge every bump of each half.\n\n"
-    "  foilgauge die concave_*.txt convex_*.txt --tip-um 2 --unit mm\n"
+    "  foilgauge die concave_*.txt convex_*.txt --tip-um 2 --unit mm --html die.html\n"
     "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
     "Exit code: 0 done and within tolerance, or none is stated; 1 a limit is exceeded by more than "
     "U; 2 bumps that limits ask for are in no trace; 3 cannot tell; 64 usage; 65 bad data; 74 "
@@ -135,6 +137,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case 'o':
     run->outputs.path[OUT_JSON] = text;
     break;
+  case OPTION_HTML:
+    run->outputs.path[OUT_HTML] = text;
+    break;
   case OPTION_TABLE:
     run->outputs.path[OUT_TABLE] = text;
     break;
@@ -159,7 +164,8 @@ static void choose_standard_output(fg_output_set *outputs) {
 
 static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const die_run *run = user;
-  return kind == OUT_JSON ? fg_die_write_json(ctx, &run->die, out)
+  if (kind == OUT_JSON) return fg_die_write_json(ctx, &run->die, out);
+  return kind == OUT_HTML ? fg_die_write_html(ctx, &run->die, out)
                           : fg_die_write_table(ctx, &run->die, out);
 }
 

@@ -104,6 +104,16 @@ expect 3 "with a limit within U" "$program" die convex_1.txt --design edge.json 
 design 0 mid '"thickness_mm": {"max": 0.2}' >of_a_foil.json
 expect 0 "no limit for a die" "$program" die convex_1.txt --design of_a_foil.json --table -
 
+# The page: one file, errors by half with the limit, a drawing and residuals of each half, whatever a file is called.
+cp convex_1.txt 'convex <b>&.txt'
+expect 1 "" "$program" die concave_1.txt concave_2.txt 'convex <b>&.txt' --design narrow.json --html page.html
+[ "$(grep -c '<svg' page.html)" = 6 ] || fail "the page has not its six plots"
+grep -q 'class="limit"' page.html || fail "the page does not show the limit"
+grep -q 'Out of tolerance' page.html || fail "the page does not show the verdict"
+grep -q 'convex &lt;b&gt;&amp;.txt' page.html || fail "a file's name is not made harmless"
+grep -qiE '<script|src=|href=|<b>&' page.html && fail "the page holds more than a page"
+python3 -c "import sys, html.parser; html.parser.HTMLParser().feed(open(sys.argv[1]).read())" page.html || fail "no HTML"
+
 expect 0 "named by its bumps" "$program" die --help
 expect 64 "no PROFILE" "$program" die
 expect 64 "--unit: 'inch'" "$program" die --unit inch bare.txt

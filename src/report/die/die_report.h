@@ -1,4 +1,4 @@
-/* The report of a die: JSON, a table for the terminal. */
+/* The report of a die: JSON, a table for the terminal, a page. */
 #ifndef FG_REPORT_DIE_DIE_REPORT_H
 #define FG_REPORT_DIE_DIE_REPORT_H
 
@@ -21,5 +21,8 @@ bool fg_die_unseen(const fg_die *die, fg_die_half half, char *words, size_t size
 /* "foilgauge/die/1", reports/schema/die.schema.json. */
 fg_status fg_die_write_json(fg_context *ctx, const fg_die *die, FILE *out);
 fg_status fg_die_write_table(fg_context *ctx, const fg_die *die, FILE *out);
+
+/* One self-contained page: errors by half, traces with circles, residuals, tables. */
+fg_status fg_die_write_html(fg_context *ctx, const fg_die *die, FILE *out);
 
 #endif
