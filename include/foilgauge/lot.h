@@ -4,8 +4,8 @@
  *   recipe.json     the settings in force (fg_lot_settings; without `jobs`)
  *   manifest.csv    every scan of the lot in its order, with the columns that it came with
  *   scanner_model.json   the scanner's model, where the lot is corrected by one
- *   results.jsonl   one line per measured scan, kept as it is made, with a checksum
- *                   of its own ("foilgauge/results/2")
+ *   results.jsonl   one line per measured scan, kept as it is made, with the date of its
+ *                   file and a checksum of its own ("foilgauge/results/2")
  *   lot.json, foils.csv, bumps.csv, bearings.csv, index.html, results.qif, results.dfq   the report
  *
  * The report is a function of the first three alone: it is computed from the recorded values, never
@@ -136,8 +136,26 @@ fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outc
 fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
                        const char *folder, fg_lot_outcome *outcome);
 
-/* One page over several lots, from their lot.json; links are relative to the page. */
-fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count, const char *page);
+/* Lots over time and against each other: from lot.json, foils.csv and bumps.csv of their folders.
+ */
+typedef struct fg_lot_index_request {
+  const char *const *folders;
+  size_t count;
+  const char *page;       /* links are relative to it */
+  const char *json, *csv; /* "foilgauge/lot_index/1", and a line per lot and quantity; NULL: none */
+} fg_lot_index_request;
+
+typedef struct fg_lot_index_outcome {
+  size_t lots, not_read; /* the page says why these are not on it */
+  size_t differing;      /* pairs of lots, in all quantities */
+  char *summary, *notes; /* lines; NULL: none */
+} fg_lot_index_outcome;
+
+/* FG_ERR_USAGE when an output would overwrite a report of a lot; FG_ERR_DATA when no lot can be
+ * read, with what is wrong with the first. */
+fg_status fg_lot_index(fg_context *ctx, const fg_lot_index_request *request,
+                       fg_lot_index_outcome *outcome);
+void fg_lot_index_outcome_free(fg_lot_index_outcome *outcome);
 
 #ifdef __cplusplus
 }

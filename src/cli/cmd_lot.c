@@ -20,11 +20,12 @@ enum {
   OPTION_SCANNER,
   OPTION_NAME,
   OPTION_GROUP,
-  OPTION_INDEX
+  OPTION_INDEX,
+  OPTION_CSV
 };
 
 typedef struct lot_arguments {
-  const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index;
+  const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index, *csv;
   double dpi;
   int jobs; /* -1: not given */
   bool print_recipe, resume, dry_run;
@@ -48,7 +49,11 @@ static const struct argp_option options[] = {
     {"dry-run", OPTION_DRY_RUN, NULL, 0, "Say what would be measured; touch nothing", 1},
     {"shard", OPTION_SHARD, "I/N", 0, "Only part I of N; `foilgauge merge` joins them", 1},
     {"print-recipe", OPTION_PRINT_RECIPE, NULL, 0, "Print every setting in force", 2},
-    {"index", OPTION_INDEX, "FILE.html", 0, "A page over lots: the arguments are their folders", 2},
+    {"index", OPTION_INDEX, "FILE.html", 0,
+     "Lots over time and against each other, on a page: the arguments are their folders; -o "
+     "FILE.json writes the numbers",
+     2},
+    {"csv", OPTION_CSV, "FILE.csv", 0, "With --index: a line per lot and quantity", 2},
     {0},
 };
 
@@ -56,7 +61,7 @@ static const char doc[] =
     "Measure a production lot and report it: which foils pass, how the process runs, what the "
     "deviations do to the bearing."
     "\vPATH is a folder of scans, a scan, a list (.txt, a path a line) or a manifest (.csv with a "
-    "column `scan` and any others: foil, pad, bearing, die, coil ...). Tolerances of a bearing "
+    "column `scan` and any others: foil, pad, bearing, die, coil, date ...). Tolerances of a bearing "
     "(circularity_mm, clearance_min_mm, clearance_centred_min_mm) judge the bearings that the "
     "columns `bearing` and `pad` say, or without them foils in a row; a foil whose cell is empty "
     "is "
@@ -121,6 +126,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_INDEX:
     arguments->index = text;
     break;
+  case OPTION_CSV:
+    arguments->csv = text;
+    break;
   case ARGP_KEY_ARGS:
     arguments->paths = state->argv + state->next;
     arguments->path_count = (size_t)(state->argc - state->next);
@@ -129,6 +137,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     if (!arguments->print_recipe && !arguments->path_count) argp_error(state, "no PATH was given");
     if (!arguments->print_recipe && !arguments->folder && !arguments->index)
       argp_error(state, "give the lot's folder with -o DIR");
+    if (arguments->csv && !arguments->index)
+      argp_error(state, "--csv belongs to --index; a lot's tables are in its folder");
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -234,12 +244,36 @@ static fg_status print_recipe(fg_context *ctx, const fg_lot_settings *settings) 
   return status;
 }
 
+static void say_lines(const char *words, const char *text) {
+  for (; text && *text; text += strcspn(text, "\n"), text += *text == '\n')
+    fprintf(stderr, "%s%.*s\n", words, (int)strcspn(text, "\n"), text);
+}
+
+/* Exit code 2: a lot could not be read. */
+static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int *code) {
+  fg_lot_index_outcome outcome;
+  const fg_lot_index_request request = {.folders = (const char *const *)arguments->paths,
+                                        .count = arguments->path_count,
+                                        .page = arguments->index,
+                                        .json = arguments->folder,
+                                        .csv = arguments->csv};
+  FG_TRY(fg_lot_index(ctx, &request, &outcome));
+  say_lines("foilgauge: note: ", outcome.notes);
+  say_lines("", outcome.summary);
+  fprintf(stderr, "%zu lots", outcome.lots);
+  if (outcome.not_read) fprintf(stderr, ", %zu could not be read", outcome.not_read);
+  fprintf(stderr, "\n%s\n", arguments->index);
+  *code = outcome.not_read ? 2 : 0;
+  fg_lot_index_outcome_free(&outcome);
+  return FG_OK;
+}
+
 static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code) {
   fg_lot_settings settings;
   fg_lot_outcome outcome;
   bool terminal = isatty(STDERR_FILENO);
   const char *const *paths = (const char *const *)arguments->paths;
-  if (arguments->index) return fg_lot_index(ctx, paths, arguments->path_count, arguments->index);
+  if (arguments->index) return make_index(ctx, arguments, code);
   FG_TRY(load_settings(ctx, arguments, &settings));
   if (arguments->print_recipe) return print_recipe(ctx, &settings);
   const fg_lot_request request = {.settings = &settings,

@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "lot/json_parts.h"
+#include "lot/lot_date.h"
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
@@ -260,6 +261,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/lot/1");
   fg_json_string(&json, "name", lot->settings.name);
+  fg_lot_date_write(&json, lot);
   fg_json_verdict(&json, analysis->outcome.verdict);
   write_counts(&json, analysis);
   fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);

@@ -93,6 +93,7 @@ static const char lot_style[] =
     ".plot .fit{stroke:var(--bump);stroke-width:2.5}.plot .curve{stroke:var(--blue);"
     "stroke-width:2.5}.plot .thin{stroke:#8a96a1}.plot .hypothesis{stroke:var(--soft);"
     "stroke-width:2;stroke-dasharray:7 5}.plot .key{fill:var(--soft)}"
+    ".lots th,.lots td{padding:4px 7px}.lots td.words:not(:empty){min-width:0}"
     ".plot .end{text-anchor:end;fill:var(--soft)}.pair{display:grid;grid-template-columns:repeat("
     "auto-fit,minmax(min(300px,100%),1fr));gap:18px}.polar{max-width:520px;margin:0 auto}"
     "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";
