@@ -11,8 +11,8 @@ static const double rad_per_deg = 3.14159265358979323846 / 180;
 /* What a model leaves out is said once it changes the stiffness by more than this. */
 static const double matters_share = 0.05;
 
-/* Shear and the curved section change an arc's bending by about (t / R)² and 3 (t / l)²: some
- * percent where the radius is ten times the thickness. */
+/* Shear makes a beam of length L that is loaded in its middle softer by 2.4 (1 + nu) (t / L)²: 3 %
+ * where it is ten times as long as thick. */
 static const double slender_ratio = 10;
 
 fg_arch_material fg_arch_material_default(void) {
@@ -52,13 +52,7 @@ static void arch_reserve(const fg_arch *arch, const fg_arch_material *material, 
   fg_arch_stiffness stiffness;
   fg_context unused;
   if (fg_arch_free(&unused, arch, material, &stiffness) != FG_OK) return;
-  if (arch->radius_mm < slender_ratio * arch->thickness_mm)
-    snprintf(words, size,
-             "The radius is only %.3g times the thickness: shear, which is left out, "
-             "makes such a bump softer.",
-             arch->radius_mm / arch->thickness_mm);
-  else if (stiffness.stuck)
-    snprintf(words, size, "Friction holds the feet: a two-hinged arch.");
+  if (stiffness.stuck) snprintf(words, size, "Friction holds the feet: a two-hinged arch.");
 }
 
 static fg_status heshmat_stiffness(fg_context *ctx, const fg_arch *arch,
@@ -85,11 +79,10 @@ static void put_against_arch(double stiffness_n_mm2, const fg_arch *arch,
 
 static void heshmat_reserve(const fg_arch *arch, const fg_arch_material *material, char *words,
                             size_t size) {
-  const fg_arch_material smooth = {material->youngs_modulus_gpa, material->poisson_ratio, 0};
   double stiffness;
   fg_context unused;
-  if (heshmat_stiffness(&unused, arch, &smooth, &stiffness) != FG_OK) return;
-  put_against_arch(stiffness, arch, &smooth,
+  if (heshmat_stiffness(&unused, arch, material, &stiffness) != FG_OK) return;
+  put_against_arch(stiffness, arch, material,
                    "A straight beam as long as the chord, and no friction", words, size);
 }
 
@@ -183,6 +176,18 @@ fg_status fg_arch_sensitivities(fg_context *ctx, const fg_arch *arch,
   return fg_stiffness_sensitivities(ctx, &models[0], arch, material, sensitivity);
 }
 
+/* What all models leave out; true: it counts. */
+static bool is_stout(const fg_arch *arch, char *words, size_t size) {
+  double ratio = 2 * fg_arch_half_angle(arch) * arch->radius_mm / arch->thickness_mm;
+  if (ratio >= slender_ratio) return false;
+  snprintf(
+      words, size,
+      "The arc is only %.2g times as long as thick: shear, which is left out, makes such a bump "
+      "softer.",
+      ratio);
+  return true;
+}
+
 void fg_stiffness_compare(const fg_arch *arch, const fg_arch_material *material,
                           fg_stiffness_line lines[FG_STIFFNESS_MODELS]) {
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
@@ -194,7 +199,8 @@ void fg_stiffness_compare(const fg_arch *arch, const fg_arch_material *material,
       snprintf(line->words, sizeof line->words, "%.*s", FG_STIFFNESS_WORDS - 1, why.message);
       continue;
     }
-    models[i].reserve(arch, material, line->words, sizeof line->words);
+    if (!is_stout(arch, line->words, sizeof line->words))
+      models[i].reserve(arch, material, line->words, sizeof line->words);
     if (fg_stiffness_sensitivities(&why, &models[i], arch, material, &line->sensitivity) != FG_OK)
       line->sensitivity = (fg_arch_sensitivity){NAN, NAN, NAN, NAN};
   }

@@ -53,10 +53,11 @@ static void put_sentence(FILE *out, const fg_lot_budget *budget) {
   size_t most = 0;
   for (size_t i = 1; i < sizeof causes / sizeof *causes; i++)
     if (causes[i].term->variance_pct2 > causes[most].term->variance_pct2) most = i;
-  fprintf(out,
-          "<p>From bump to bump stiffness varies by <b>%.3g %%</b> (one standard deviation). Most "
-          "of it is %s, which alone would give %.3g %%.</p>\n",
-          budget->observed_pct, causes[most].words, as_spread(causes[most].term->variance_pct2));
+  fprintf(
+      out,
+      "<p>From bump to bump stiffness varies by <b>%.3g&nbsp;%%</b> (one standard deviation). Most "
+      "of it is %s, which alone would give %.3g&nbsp;%%.</p>\n",
+      budget->observed_pct, causes[most].words, as_spread(causes[most].term->variance_pct2));
 }
 
 static void put_thickness_note(FILE *out, const fg_lot_analysis *analysis) {

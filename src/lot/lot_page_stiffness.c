@@ -51,11 +51,11 @@ static void put_spreads(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</tbody></table></div>\n", out);
 }
 
-static void put_models(FILE *out, const fg_lot_analysis *analysis) {
+static void put_models(FILE *out, const fg_lot_analysis *analysis, size_t cases) {
   const fg_arch_material *material = &analysis->lot->settings.material;
   double pitch_mm = fg_design_pitch_mm(&analysis->lot->settings.design);
   fputs("<h2>By model</h2>\n", out);
-  fg_html_stiffness_table(out, analysis->stiffness.cases, FG_LOT_CASES, pitch_mm);
+  fg_html_stiffness_table(out, analysis->stiffness.cases, cases, pitch_mm);
   fprintf(out,
           "<p class=\"note\">E %.4g GPa, Poisson's ratio %.3g, friction %.3g; pitch %.4g mm along "
           "the sleeve. An arch with one end welded, as designed: %.4g N/mm²%s.</p>\n",
@@ -64,11 +64,7 @@ static void put_models(FILE *out, const fg_lot_analysis *analysis) {
           analysis->stiffness.design_free.stuck ? "; friction holds the feet" : "");
 }
 
-void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
-  const char *note = fg_lot_stiffness_note(analysis);
-  if (!analysis->has_stiffness) return;
-  fputs("<section>\n<h1>Stiffness of the bumps</h1>\n", out);
-  if (note) fprintf(out, "<p>%s</p>\n", note);
+static void put_spread_parts(FILE *out, const fg_lot_analysis *analysis) {
   put_spreads(out, analysis);
   if (analysis->thickness.foils) put_thickness(out, analysis);
   fputs("<figure>", out);
@@ -78,6 +74,19 @@ void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
         "constant arc length. Each dot is a bump.</figcaption></figure>\n",
         out);
   fg_lot_put_stiffness_budget(out, analysis);
-  put_models(out, analysis);
+}
+
+void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
+  const char *note = fg_lot_stiffness_note(analysis);
+  if (!fg_form_has_bumps(analysis->lot->settings.design.form) || !analysis->bumps) return;
+  fputs("<section>\n<h1>Stiffness of the bumps</h1>\n", out);
+  if (note) fprintf(out, "<p>%s</p>\n", note);
+  if (analysis->has_stiffness)
+    put_spread_parts(out, analysis);
+  else
+    fputs("<p class=\"note\">How stiffness varies is not known: that takes two bumps with radius "
+          "and angle.</p>\n",
+          out);
+  put_models(out, analysis, analysis->has_stiffness ? FG_LOT_CASES : 1);
   fputs("</section>\n", out);
 }

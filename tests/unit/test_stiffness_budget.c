@@ -91,6 +91,28 @@ static void thickness_that_is_not_known_is_not_zero(void **state) {
   }
 }
 
+/* A single bump has a stiffness by every model, and no spread. */
+static void one_bump_has_no_spread(void **state) {
+  (void)state;
+  fg_design design;
+  fg_lot_analysis analysis;
+  fg_design_default(&design);
+  fg_lot lot = made_lot(&design, 1, 1, "", NULL);
+  made_bump(&lot, 0, 0, 3.4, 61);
+  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  assert_false(analysis.has_stiffness || analysis.stiffness.budget.known);
+  char *page = text_of(&analysis, fg_lot_write_page), *json = text_of(&analysis, fg_lot_write_json);
+  assert_non_null(strstr(page, "How stiffness varies is not known"));
+  assert_non_null(strstr(page, "as designed"));
+  assert_null(strstr(page, "the lot's mean"));
+  assert_non_null(strstr(json, "\"id\": \"link_spring\""));
+  assert_null(strstr(json, "\"budget\""));
+  free(page);
+  free(json);
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+}
+
 /* Circles drawn around a bump whose crown is known better than its radius, against the variance
  * that is worked out from the uncertainties alone. */
 static void measurement_is_what_drawing_gives(void **state) {
@@ -146,6 +168,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(causes_come_back),
       cmocka_unit_test(thickness_that_is_not_known_is_not_zero),
+      cmocka_unit_test(one_bump_has_no_spread),
       cmocka_unit_test(measurement_is_what_drawing_gives),
   };
   return cmocka_run_group_tests_name("budget of stiffness", tests, NULL, NULL);

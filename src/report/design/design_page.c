@@ -1,5 +1,7 @@
 #include "report/design/design_page.h"
 
+#include <math.h>
+
 #include "report/measure/measure_page_parts.h"
 
 void fg_design_page_fill(const fg_design *design, const fg_nominal *nominal,
@@ -44,8 +46,8 @@ void fg_json_design_stiffness(fg_json *json, const fg_design_page *page) {
 
 static void put_tile(FILE *out, const char *title, double value, const char *unit,
                      const char *where) {
-  fprintf(out, "<div><dt>%s</dt><dd>%.5g %s<small>%s</small></dd></div>\n", title, value, unit,
-          where);
+  fprintf(out, "<div><dt>%s</dt><dd>%s%.5g %s<small>%s</small></dd></div>\n", title,
+          value < 0 ? "−" : "", fabs(value), unit, where);
 }
 
 static void put_tiles(FILE *out, const fg_design_page *page) {
@@ -66,6 +68,7 @@ static void put_tiles(FILE *out, const fg_design_page *page) {
 void fg_html_design_page(FILE *out, const fg_design_page *page) {
   const fg_stiffness_map map = fg_stiffness_map_around(page->design, page->material);
   const char *note = fg_stiffness_form_note(page->design->form);
+  double along = page->bump.lines[0].sensitivity.radius_at_arc_length;
   fg_html_begin(out, page->design->name);
   fputs("<section>\n<header><h1>Design ", out);
   fg_html_text(out, page->design->name);
@@ -83,8 +86,11 @@ void fg_html_design_page(FILE *out, const fg_design_page *page) {
   fputs("</section>\n<section>\n<h1>What springback does to it</h1>\n<figure>", out);
   fg_stiffness_plot_map(out, &map, NULL, NULL);
   fputs("<figcaption>Stiffness of the arch over the design's: orange stiffer, blue softer; dashed: "
-        "as designed. The thick orange line is springback at constant arc length: it runs almost "
-        "along the dashed one.</figcaption></figure>\n</section>\n",
+        "as designed. The thick orange line is springback at constant arc length",
         out);
+  if (isfinite(along))
+    fprintf(out, ", along which a percent of radius is worth %s%.2g&nbsp;%% of stiffness at first",
+            along < 0 ? "−" : "+", fabs(along));
+  fputs(".</figcaption></figure>\n</section>\n", out);
   fg_html_end(out);
 }

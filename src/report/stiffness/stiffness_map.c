@@ -44,10 +44,11 @@ static unsigned colour_of(double ratio) {
 static void put_cells(const fg_plot *at, const fg_stiffness_map *map) {
   enum { COLUMNS = 44, ROWS = 26 };
   double dx = (at->x_high - at->x_low) / COLUMNS, dy = (at->y_high - at->y_low) / ROWS;
+  double design = stiffness_at(map, 1, 1);
   for (int i = 0; i < COLUMNS; i++)
     for (int k = 0; k < ROWS; k++) {
       double x = at->x_low + i * dx, y = at->y_low + k * dy;
-      double ratio = fg_stiffness_map_at(map, x + dx / 2, y + dy / 2);
+      double ratio = stiffness_at(map, x + dx / 2, y + dy / 2) / design;
       if (!isfinite(ratio)) continue;
       fprintf(at->out,
               "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#%06x\"/>\n",
@@ -56,17 +57,21 @@ static void put_cells(const fg_plot *at, const fg_stiffness_map *map) {
     }
 }
 
+/* Up to where a bump is one. */
+static const double half_circle_deg = 179.9;
+
 /* The angle where stiffness comes to `level` at this radius, by bisection (it falls as the angle
  * grows); NaN: not on the map. */
 static double angle_of(const fg_plot *at, const fg_stiffness_map *map, double radius,
                        double level) {
-  double low = at->y_low, high = at->y_high;
-  if (!(fg_stiffness_map_at(map, radius, low) > level &&
-        fg_stiffness_map_at(map, radius, high) < level))
+  enum { HALVINGS = 20 }; /* far finer than a pixel */
+  double low = at->y_low, high = fmin(at->y_high, half_circle_deg / map->design->bump_angle_deg);
+  double sought = level * stiffness_at(map, 1, 1);
+  if (!(stiffness_at(map, radius, low) > sought && stiffness_at(map, radius, high) < sought))
     return NAN;
-  for (int step = 0; step < 40; step++) {
+  for (int step = 0; step < HALVINGS; step++) {
     double middle = (low + high) / 2;
-    if (fg_stiffness_map_at(map, radius, middle) > level)
+    if (stiffness_at(map, radius, middle) > sought)
       low = middle;
     else
       high = middle;

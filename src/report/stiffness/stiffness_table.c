@@ -94,6 +94,15 @@ void fg_html_stiffness_table(FILE *out, const fg_stiffness_case *cases, size_t c
   put_sources(out, &cases[count - 1]);
 }
 
+static void put_text(FILE *out, int width, const char *format, double value)
+    __attribute__((format(printf, 3, 0)));
+
+static void put_text(FILE *out, int width, const char *format, double value) {
+  char number[32] = "-";
+  if (isfinite(value)) snprintf(number, sizeof number, format, value);
+  fprintf(out, " %*s", width, number);
+}
+
 void fg_text_stiffness_table(FILE *out, const fg_stiffness_case *bump, double pitch_mm) {
   fputs("\nstiffness of a bump, per mm of width; % per % of radius, angle, radius at constant arc "
         "length, thickness\n",
@@ -103,9 +112,14 @@ void fg_text_stiffness_table(FILE *out, const fg_stiffness_case *bump, double pi
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
     const fg_stiffness_line *line = &bump->lines[i];
     const fg_arch_sensitivity *slope = &line->sensitivity;
-    fprintf(out, "  %-26s %10.4g %10.4g %+8.2f %+8.2f %+8.2f %+8.2f\n",
-            fg_stiffness_models()[i].title, line->stiffness_n_mm2, line->stiffness_n_mm2 / pitch_mm,
-            slope->radius, slope->angle, slope->radius_at_arc_length, slope->thickness);
+    const double slopes[] = {slope->radius, slope->angle, slope->radius_at_arc_length,
+                             slope->thickness};
+    fprintf(out, "  %-26s", fg_stiffness_models()[i].title);
+    put_text(out, 10, "%.4g", line->stiffness_n_mm2);
+    put_text(out, 10, "%.4g", line->stiffness_n_mm2 / pitch_mm);
+    for (size_t k = 0; k < sizeof slopes / sizeof *slopes; k++)
+      put_text(out, 8, "%+.2f", slopes[k]);
+    fputs("\n", out);
     if (*line->words) fprintf(out, "    %s\n", line->words);
   }
 }
