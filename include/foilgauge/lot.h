@@ -33,6 +33,25 @@
 extern "C" {
 #endif
 
+/* What `foilgauge die` measured of a die that foils of a lot were pressed in: the mean of its
+ * halves, of the design's datum line. */
+enum { FG_LOT_DIES_MAX = 12, FG_LOT_DIE_BUMPS_MAX = 64 };
+
+typedef struct fg_lot_die_bump {
+  int number;
+  double radius_mm, u_radius_mm;
+} fg_lot_die_bump;
+
+typedef struct fg_lot_die {
+  char name[64]; /* as the manifest's column has it */
+  char sha256[65];
+  fg_datum datum; /* of the design that it was measured for */
+  double thickness_mm;
+  double radius_mm, u_radius_mm; /* mean of its bumps */
+  fg_lot_die_bump bump[FG_LOT_DIE_BUMPS_MAX];
+  size_t bump_count;
+} fg_lot_die;
+
 /* Every option of a lot: the members of a recipe file, "schema": "foilgauge/recipe/1". */
 typedef struct fg_lot_settings {
   char name[128];   /* of the lot, as the report shows it */
@@ -57,6 +76,11 @@ typedef struct fg_lot_settings {
    * and pitch, and as many pads as fit around; pads and bumps_per_pad without a pitch are equally
    * spaced. */
   fg_bearing_layout layout;
+  char die_column[64]; /* which of the dies a foil was pressed in */
+  /* "dies" in a recipe: an object of names and paths of reports of `foilgauge die`, whose numbers
+   * stand in the lot's own recipe. They are the reference of springback beside the design. */
+  fg_lot_die dies[FG_LOT_DIES_MAX];
+  size_t die_count;
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
 } fg_lot_settings;
 
@@ -68,6 +92,10 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
 /* Sets the model and its sum; the file must be one, and the scanner's of that name unless NULL. */
 fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
                                      fg_lot_settings *settings);
+
+/* Adds a die from its report, the JSON of `foilgauge die`. */
+fg_status fg_lot_settings_take_die(fg_context *ctx, const char *name, const char *path,
+                                   fg_lot_settings *settings);
 
 /* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. A
  * model that is not the one that the recipe states the sum of is FG_ERR_DATA; parsing alone does

@@ -20,6 +20,7 @@ enum {
   OPTION_SCANNER,
   OPTION_NAME,
   OPTION_GROUP,
+  OPTION_DIE,
   OPTION_INDEX,
   OPTION_CSV
 };
@@ -30,6 +31,8 @@ typedef struct lot_arguments {
   int jobs; /* -1: not given */
   bool print_recipe, resume, dry_run;
   fg_lot_shard shard;
+  const char *dies[FG_LOT_DIES_MAX];
+  size_t die_count;
   char **paths; /* of argv */
   size_t path_count;
 } lot_arguments;
@@ -44,6 +47,10 @@ static const struct argp_option options[] = {
     {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
+    {"die", OPTION_DIE, "NAME=FILE.json", 0,
+     "What `foilgauge die -o` measured of the die that the manifest's column `die` calls NAME: the "
+     "reference of springback beside the design; once for each die",
+     0},
     {"jobs", 'j', "N", 0, "Scans at a time (default: one per core)", 1},
     {"resume", OPTION_RESUME, NULL, 0, "Measure only what is missing or has changed", 1},
     {"dry-run", OPTION_DRY_RUN, NULL, 0, "Say what would be measured; touch nothing", 1},
@@ -61,7 +68,8 @@ static const char doc[] =
     "Measure a production lot and report it: which foils pass, how the process runs, what the "
     "deviations do to the bearing."
     "\vPATH is a folder of scans, a scan, a list (.txt, a path a line) or a manifest (.csv with a "
-    "column `scan` and any others: foil, pad, bearing, die, coil, date ...). Tolerances of a bearing "
+    "column `scan` and any others: foil, pad, bearing, die, coil, date ...). Tolerances of a "
+    "bearing "
     "(circularity_mm, clearance_min_mm, clearance_centred_min_mm) judge the bearings that the "
     "columns `bearing` and `pad` say, or without them foils in a row; a foil whose cell is empty "
     "is "
@@ -107,6 +115,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_GROUP:
     arguments->group = text;
+    break;
+  case OPTION_DIE:
+    if (!strchr(text, '=')) argp_error(state, "--die: '%s' is not NAME=FILE.json", text);
+    if (arguments->die_count == FG_LOT_DIES_MAX)
+      argp_error(state, "--die: at most %d", FG_LOT_DIES_MAX);
+    arguments->dies[arguments->die_count++] = text;
     break;
   case OPTION_DPI:
     arguments->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
@@ -155,6 +169,22 @@ static fg_status set_text(fg_context *ctx, const char *option, const char *text,
   return FG_OK;
 }
 
+static fg_status take_dies(fg_context *ctx, const lot_arguments *arguments,
+                           fg_lot_settings *settings) {
+  if (arguments->die_count) settings->die_count = 0; /* they overrule the recipe's */
+  for (size_t i = 0; i < arguments->die_count; i++) {
+    char name[sizeof settings->dies[0].name];
+    const char *equals = strchr(arguments->dies[i], '=');
+    size_t length = (size_t)(equals - arguments->dies[i]);
+    if (length >= sizeof name)
+      return fg_fail(ctx, FG_ERR_USAGE, "--die: the name has more than %zu bytes", sizeof name - 1);
+    memcpy(name, arguments->dies[i], length);
+    name[length] = '\0';
+    FG_TRY(fg_lot_settings_take_die(ctx, name, equals + 1, settings));
+  }
+  return FG_OK;
+}
+
 static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
                                fg_lot_settings *settings) {
   fg_lot_settings_default(settings);
@@ -168,6 +198,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
   if (arguments->model || arguments->scanner)
     FG_TRY(fg_lot_settings_take_model(ctx, model, arguments->scanner, settings));
+  FG_TRY(take_dies(ctx, arguments, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
   FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));

@@ -7,6 +7,7 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "lot/analysis_dies.h"
 #include "lot/writers.h"
 #include "quantity/quantity_rows.h"
 #include "report/words.h"
@@ -99,12 +100,23 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
   return fg_stream_finish(ctx, out, "foils.csv");
 }
 
+static void put_to_die(FILE *out, const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump) {
+  fg_lot_to_die to = fg_lot_bump_to_die(lot, foil, bump);
+  put_number(out, to.radius_mm);
+  put_number(out, to.error_pct);
+  put_number(out, to.u_error_pct);
+}
+
 fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   const fg_design *design = &analysis->lot->settings.design;
   const double *stiffness = analysis->stiffness.normalised;
   size_t at = 0;
-  put_heading(out, manifest, ",foil_number,bump,flags,normalised_stiffness,verdict",
+  bool dies = analysis->lot->settings.die_count > 0;
+  put_heading(out, manifest,
+              dies ? ",foil_number,bump,flags,normalised_stiffness,die_radius_mm,"
+                     "radius_error_to_die_pct,u_radius_error_to_die_pct,verdict"
+                   : ",foil_number,bump,flags,normalised_stiffness,verdict",
               FG_QUANTITY_OF_BUMP);
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
@@ -114,6 +126,7 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
       fprintf(out, ",%d,%d", foil->foil->number, bump->number);
       put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump));
       put_number(out, stiffness[at++]);
+      if (dies) put_to_die(out, analysis->lot, foil, bump);
       fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
       put_values(out, FG_QUANTITY_OF_BUMP, bump);
     }

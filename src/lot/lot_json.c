@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "lot/analysis_dies.h"
 #include "lot/json_parts.h"
 #include "lot/lot_date.h"
 #include "lot/writers.h"
@@ -283,6 +284,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   write_thickness(&json, analysis);
   fg_lot_json_stiffness(&json, analysis);
   fg_lot_json_bearings(&json, analysis);
+  fg_lot_json_dies(&json, analysis);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)
     write_difference(&json, &analysis->differences[i]);

@@ -1,6 +1,7 @@
 /* The lot's page: verdict, counts, the worst three and one chart first; then the details. */
 
 #include "core/file.h"
+#include "lot/analysis_dies.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "lot/writers.h"
@@ -224,6 +225,7 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   put_failed_scans(out, analysis);
   fg_lot_put_quantities(out, analysis);
   fg_lot_put_springback(out, analysis);
+  fg_lot_put_dies(out, analysis);
   fg_lot_put_stiffness(out, analysis);
   fg_lot_put_bearings(out, analysis);
   fg_lot_put_comparisons(out, analysis);

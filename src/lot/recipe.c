@@ -13,6 +13,7 @@
 #include "foilgauge/lot.h"
 #include "foilgauge/scan_loop.h"
 #include "foilgauge/stiffness.h"
+#include "lot/dies.h"
 #include "report/measure/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -49,6 +50,7 @@ static const member members[] = {
     TEXT("operator_column", operator_column),
     TEXT("bearing_column", bearing_column),
     TEXT("pad_column", pad_column),
+    TEXT("die_column", die_column),
     {"pads", COUNT, AT(layout.pads), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
     {"bumps_per_pad", COUNT, AT(layout.bumps_per_pad), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
     {"first_bump", COUNT, AT(layout.first_bump), 0, 1, 1000, false, false},
@@ -76,6 +78,7 @@ void fg_lot_settings_default(fg_lot_settings *settings) {
       .operator_column = "operator",
       .bearing_column = "bearing",
       .pad_column = "pad",
+      .die_column = "die",
       .layout = {.first_bump = 1},
       .material = fg_arch_material_default(),
   };
@@ -134,6 +137,7 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
   if (settings->design.form == FG_FORM_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
   FG_TRY(fg_design_check(ctx, &settings->design));
+  FG_TRY(fg_lot_dies_check(ctx, settings));
   return fg_report_check_tolerances(ctx, &settings->design);
 }
 
@@ -238,6 +242,8 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
       FG_TRY(read_member(ctx, row, value, settings));
     else if (!strcmp(value->string, "design"))
       FG_TRY(read_design(ctx, path, value, &settings->design));
+    else if (!strcmp(value->string, "dies"))
+      FG_TRY(fg_lot_dies_read(ctx, path, value, settings));
     else if (value != schema && strcmp(value->string, "version") != 0)
       return fg_fail(ctx, FG_ERR_DATA,
                      "unknown member '%.60s'; `foilgauge lot --print-recipe` shows them all",
@@ -323,9 +329,10 @@ static void write_member(fg_json *json, const member *row, const fg_lot_settings
   }
 }
 
-/* A lot that knows no model has a recipe that does not speak of one. */
+/* A lot that knows no model, no dies, has a recipe that does not speak of them. */
 static bool is_silent(const member *row, const fg_lot_settings *settings) {
   bool model = row->offset == AT(model) || row->offset == AT(model_sha256);
+  if (row->offset == AT(die_column)) return !settings->die_count;
   return model && !*(const char *)place_of(row, settings);
 }
 
@@ -342,6 +349,7 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   for (size_t i = 0; i < MEMBERS; i++)
     if (with_jobs || !(members[i].jobs || is_silent(&members[i], settings)))
       write_member(&writer, &members[i], settings);
+  fg_lot_dies_write(&writer, settings);
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);
