@@ -71,7 +71,7 @@ static void put_thickness_note(FILE *out, const fg_lot_analysis *analysis) {
 
 static void put_rest(FILE *out, const fg_lot_budget *budget) {
   double observed = pow(budget->observed_pct, 2);
-  fputs("<p class=\"note\">", out);
+  fputs("<p class=\"note\">It is the squares that add up; a minus takes away. ", out);
   if (fabs(budget->unexplained_pct2) > settled_share * observed)
     fprintf(out,
             "The causes add up to %.3g %% where %.3g %% is observed. Slopes hold for small "

@@ -15,6 +15,7 @@ THESIS = {
     "slope": -1.0,
     "clearance, mean": 50, "clearance, min": -50, "clearance, max": 150, "clearance, sd": 35,
     "stiffness, mean": 1.108, "stiffness, mode": 1.095, "stiffness, rsd": 12.4, "stiffness, min": 0.7, "stiffness, max": 1.6,
+    "samples, min": 0.8, "samples, max": 1.4,  # "-20 to 40 %" of its samples; 0.7 to 1.6 are of 100,000 drawn
 }
 
 
@@ -50,8 +51,10 @@ class Lot:
 def spread_rows(words, spread, what):
     """Rows of one distribution of stiffness; `what` of its members."""
     names = {"mean": "mean", "mode": "mode", "relative_sd_pct": "rel. s, %", "min": "min", "max": "max"}
-    keys = {"relative_sd_pct": "rsd"}
-    return [(f"{words}, {names[member]}", f"stiffness, {keys.get(member, member)}", spread[member], None) for member in what]
+    keys = {member: f"stiffness, {member}" for member in names} | {"relative_sd_pct": "stiffness, rsd"}
+    if words.endswith("bumps"):
+        keys |= {member: f"samples, {member}" for member in ("min", "max")}
+    return [(f"{words}, {names[member]}", keys[member], spread[member], None) for member in what]
 
 
 def rows_of(lot):
@@ -161,13 +164,14 @@ nearly with alpha⁻³, so where R alpha stays, K stays. The three models differ
 alpha to the power of {power_needed:.1f}. Something else varied, or the thesis's stiffness is another. What would give its figures:
 
 - **Arc lengths of {arc_mean:+.1f} ± {arc_sd:.1f} %**, with the arch as it is: mean {mean_varied:.3f}, relative standard deviation {rsd_varied:.1f} % over the bumps and
-  {rsd_drawn:.1f} % drawn, {least_varied:.2f} to {most_varied:.2f} over the bumps (thesis: 1.108, 12.4 %, 0.7 to 1.6). These two numbers were chosen to meet two of the thesis's: that they
-  exist is what this lot shows, not that they are the thesis's. Its mode of {mode_drawn:.3f} (thesis: 1.095) and its range were not chosen.
-- **Strips whose thickness varies by {thickness_sd:.1f} %**, and are {thickness_mean:.1f} % thicker than designed: K goes with t³. The thesis prints no thickness.
+  {rsd_drawn:.1f} % drawn (thesis: 1.108, 12.4 %). These two numbers were chosen to meet two of the thesis's: that they exist is what this lot
+  shows, not that they are the thesis's. Not chosen were the mode, {mode_drawn:.3f} drawn (thesis: 1.095), and the ranges: {least_varied:.2f} to {most_varied:.2f} over the bumps
+  (thesis: its samples 0.8 to 1.4), {least_drawn:.2f} to {most_drawn:.2f} drawn (0.7 to 1.6).
+- **Strips whose thickness varies by {thickness_sd:.1f} %**, and are {thickness_mean:.1f} % thicker than designed: K goes with t³. Its printed results name no measured thickness.
 - **Another stiffness.** That of the feet sideways, 1 / f_HH, goes with R⁻³ alpha⁻⁵, so with R² at constant arc length: mean {foot_mean:.3f}, relative standard
-  deviation {foot_rsd:.1f} %, with no free number. It comes near both as well, and its mode of {foot_mode:.3f} does not. Nothing in the thesis says that it means this one.
+  deviation {foot_rsd:.1f} %, with no free number. It comes near both as well, and its mode of {foot_mode:.3f} does not. Nothing in its printed results says that it means this one.
 
-Which of them the thesis's lot was, its printed figures do not tell: it prints neither its model nor its arc lengths or thicknesses. Its 5 % per percent
+Which of them the thesis's lot was, its printed results do not tell: they hold neither the model nor arc lengths or thicknesses. Its 5 % per percent
 is none of the slopes above taken alone; radius and angle together come nearest.
 
 ## Where the spread of each lot comes from
@@ -203,7 +207,7 @@ def main(folder, out):
         apart=100 * (1 - min(by_arch) / max(by_arch)),
         rsd_constant=rsd(constant, "arch"), rsd_constant_heshmat=rsd(constant, "heshmat"), rsd_constant_link=rsd(constant, "link_spring"),
         mean_varied=bumps["mean"], rsd_varied=bumps["relative_sd_pct"], least_varied=bumps["min"], most_varied=bumps["max"],
-        rsd_drawn=drawn["relative_sd_pct"], mode_drawn=drawn["mode"],
+        rsd_drawn=drawn["relative_sd_pct"], least_drawn=drawn["min"], most_drawn=drawn["max"], mode_drawn=drawn["mode"],
         power_needed=-3 - THESIS["stiffness, rsd"] / constant.stiffness["budget"]["radius_at_arc_length"]["relative_sd_pct"],
         thickness_sd=THESIS["stiffness, rsd"] / power,
         thickness_mean=100 * ((THESIS["stiffness, mean"] / constant.stiffness["normalised"]["mean"]) ** (1 / power) - 1),
