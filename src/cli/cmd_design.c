@@ -211,7 +211,7 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   const fg_input input = {arguments->design_path, "the design"};
   if (arguments->outputs.path[OUT_DATA])
     arguments->json = true;
-  else
+  else if (arguments->json || arguments->curve || !fg_output_set_has_standard(&arguments->outputs))
     arguments->outputs.path[OUT_DATA] = "-";
   FG_TRY(fg_output_set_check(ctx, &arguments->outputs, &input, 1));
   fg_design_default(&view.design);

@@ -27,6 +27,9 @@ expect 64 "it must be a number from 0 to 10" "$program" design --friction -1
 expect 64 "it must be a number from 0 to 0.499" "$program" design --poisson-ratio 0.3x
 expect 65 "has no bumps" "$program" design "$work/discs.json" --html "$work/never.html"
 [ -e "$work/never.html" ] && fail "a page of a design without bumps"
+expect 0 "<!doctype html>" "$program" design --html -
+expect 64 "two outputs cannot go to one file" "$program" design --html - --json
+expect 64 "two outputs cannot go to one file" "$program" design --html "$work/a" -o "$work/a"
 "$program" design --html "$work/page.html" -o "$work/stiff.json" || fail "design --html"
 "$program" design --youngs-modulus-gpa 100 -o "$work/soft.json" || fail "design --youngs-modulus-gpa"
 "$program" design "$work/discs.json" -o "$work/none.json" || fail "design of discs"
