@@ -19,7 +19,12 @@ typedef enum fg_form {
   FG_FORM_CLASSICAL,  /* bumps, lands between them, a lip at one end */
   FG_FORM_SINUSOIDAL, /* long fillets, short lands, no lip */
   FG_FORM_DISCS,      /* no foil: round holes and discs */
+  FG_FORM_ARC,        /* a plain strip, as a top foil: one circle from end to end, no bumps */
 } fg_form;
+
+static inline bool fg_form_has_bumps(fg_form form) {
+  return form == FG_FORM_CLASSICAL || form == FG_FORM_SINUSOIDAL;
+}
 
 /* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
  * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
@@ -61,6 +66,7 @@ typedef struct fg_design {
   double thickness_mm;          /* t */
   double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
   double rotor_diameter_mm;     /* D */
+  double subtended_angle_deg;   /* of an arc, from end to end about its centre; else 0 */
   size_t diameter_count;        /* discs only: known diameters, in any order */
   double diameters_mm[FG_DIAMETERS_MAX];
   size_t tolerance_count;
@@ -98,7 +104,8 @@ void fg_design_default(fg_design *design);
  * message names the member, its value and what would be right. */
 fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 
-/* The derived nominal values; checks the design first. All NaN for form discs. */
+/* The derived nominal values; checks the design first. All NaN for form discs; of an arc the arc
+ * length is that from end to end, and the others are NaN. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
 /* Clearance over a bump of this height: eq 5.8 less the top foil's thickness, mm, with the design's
@@ -115,7 +122,8 @@ void fg_design_springback(const fg_design *design, const fg_nominal *nominal, do
 /* Reads a design from JSON text; members that are absent keep the value `design` has on entry, so
  * fill it with fg_design_default first. Two exceptions guard against a half-written design: of
  * bump_radius_mm, bump_angle_deg, overall_radius_mm and thickness_mm a foil's file states all or
- * none, and sleeve_radius_mm follows an overall_radius_mm that comes without it. Unknown and
+ * none (of an arc overall_radius_mm, subtended_angle_deg and thickness_mm, all of them),
+ * and sleeve_radius_mm follows an overall_radius_mm that comes without it. Unknown and
  * duplicate members, wrong types, a missing or wrong schema and text after the end are FG_ERR_DATA.
  * `path` is for messages. Checks with fg_design_check; `design` changes on success only. */
 fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design);

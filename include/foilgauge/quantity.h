@@ -16,8 +16,9 @@ extern "C" {
 
 /* What a quantity belongs to: its offsets are into that struct. */
 typedef enum fg_quantity_owner {
-  FG_QUANTITY_OF_FOIL,    /* fg_foil; "overall.", "correction." are JSON objects; the second is
-                             there where a scanner's model corrected the foil */
+  FG_QUANTITY_OF_FOIL,    /* fg_foil; "overall.", "arc.", "correction." are JSON objects; the second
+                             is there of form arc, the third where a scanner's model corrected
+                             the foil */
   FG_QUANTITY_OF_BUMP,    /* fg_bump */
   FG_QUANTITY_OF_DISC,    /* fg_disc */
   FG_QUANTITY_OF_STRIP,   /* fg_strip */
@@ -44,6 +45,7 @@ typedef enum fg_quantity_use {
   /* The bump's own circle alone says it: its errors are independent from bump to bump, while all
    * that rests on the overall circle errs alike within a foil. */
   FG_QUANTITY_IS_OWN = 1u << 5,
+  FG_QUANTITY_OF_ARC = 1u << 6, /* of form arc alone */
 } fg_quantity_use;
 
 #define FG_NO_UNCERTAINTY ((size_t)-1)
@@ -76,6 +78,9 @@ typedef struct fg_quantity {
 
 /* The rows of one owner, in the order of the report. */
 const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count);
+
+/* Whether parts of that form have it: an arc has no bumps, and ends. */
+bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_form form);
 
 /* The row of that name, or NULL. */
 const fg_quantity *fg_quantity_find(fg_quantity_owner owner, const char *name);

@@ -18,8 +18,10 @@
  *   foils[] [one Gen II foil]:
  *     design {bump_radius_mm, bump_angle_deg, bump_count, overall_radius_mm, pitch_deg,
  *       fillet_radius_mm, thickness_mm ... as in a design file} [Gen II]; with "form": "sinusoidal"
- *       there is no lip unless one is given
+ *       there is no lip unless one is given; with "form": "arc" a plain strip of
+ *       overall_radius_mm, subtended_angle_deg [110] and thickness_mm, without one as well
  *     overall_radius_mm: R0 as it is [as designed]
+ *     subtended_angle_deg: of an arc as it is [its length as designed]
  *     radius_springback {mean [0], sd [0]}: R = R_D (1 + mean + sd × normal);
  *     radius_mm [...] per bump instead; bump_angle_deg [...] per bump [R alpha as designed]
  *     lip null or {length_mm [2], bend_radius_mm [0.4], side ["outwards"]}
@@ -104,6 +106,7 @@ typedef struct fg_render_foil {
   double overall_radius_mm;
   fg_point overall_centre_px;
   double thickness_mm;
+  double subtended_angle_deg; /* of an arc; 0: it has bumps */
   double rotate_deg; /* direction of the foil's middle seen from O, about the scan's x axis */
   bool mirror;       /* false: bump numbers rise clockwise as the scan is seen */
   const fg_render_bump *bumps; /* without the missing ones */

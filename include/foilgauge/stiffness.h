@@ -52,9 +52,6 @@ fg_arch fg_design_arch(const fg_design *design, double thickness_mm, double radi
 /* s: from bump to bump along the sleeve. */
 double fg_design_pitch_mm(const fg_design *design);
 
-/* Forms that have bumps, which these models speak of. */
-bool fg_form_has_bumps(fg_form form);
-
 /* What the models leave out of a form's bumps; NULL: nothing. */
 const char *fg_stiffness_form_note(fg_form form);
 

@@ -29,10 +29,6 @@ double fg_design_pitch_mm(const fg_design *design) {
   return design->pitch_deg * rad_per_deg * design->sleeve_radius_mm;
 }
 
-bool fg_form_has_bumps(fg_form form) {
-  return form == FG_FORM_CLASSICAL || form == FG_FORM_SINUSOIDAL;
-}
-
 const char *fg_stiffness_form_note(fg_form form) {
   if (form != FG_FORM_SINUSOIDAL) return NULL;
   return "The model is the classical bump's: a circular arch on its two feet. The long fillets of "

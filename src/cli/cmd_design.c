@@ -118,8 +118,13 @@ static void write_json(const design_view *view, FILE *out) {
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/nominal/1");
   fg_json_design(&json, "design", design);
-  if (design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", &view->nominal);
+  if (fg_form_has_bumps(design->form)) fg_json_nominal(&json, "nominal", &view->nominal);
   if (fg_form_has_bumps(design->form)) fg_json_design_stiffness(&json, &view->page);
+  if (design->form == FG_FORM_ARC) {
+    fg_json_object(&json, "nominal");
+    fg_json_number(&json, "arc_length_mm", view->nominal.arc_length_mm);
+    fg_json_object_end(&json);
+  }
   fg_json_object_end(&json);
   fg_json_end(&json);
 }
@@ -152,6 +157,15 @@ static void write_derived(const fg_nominal *nominal, FILE *out) {
   write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
 }
 
+static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+  fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
+  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
+  write_row(out, "subtended angle", "", design->subtended_angle_deg, "deg");
+  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  fputs("\nderived\n", out);
+  write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
+}
+
 static void write_table(const design_view *view, FILE *out) {
   const fg_design *design = &view->design;
   fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
@@ -159,6 +173,8 @@ static void write_table(const design_view *view, FILE *out) {
     fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
     for (size_t i = 0; i < design->diameter_count; i++)
       write_row(out, "diameter", "", design->diameters_mm[i], "mm");
+  } else if (design->form == FG_FORM_ARC) {
+    write_arc(design, &view->nominal, out);
   } else {
     fprintf(out, ", datum %s", fg_datum_word(design->datum));
     if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);
@@ -217,9 +233,9 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   fg_design_default(&view.design);
   if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &view.design));
   FG_TRY(fg_design_derive(ctx, &view.design, &view.nominal));
-  if (arguments->curve && view.design.form == FG_FORM_DISCS)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no bumps, so there is no curve",
-                   arguments->design_path);
+  if (arguments->curve && !fg_form_has_bumps(view.design.form))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no curve",
+                   arguments->design_path, fg_form_word(view.design.form));
   if (fg_form_has_bumps(view.design.form))
     fg_design_page_fill(&view.design, &view.nominal, &arguments->material, &view.page);
   else if (arguments->outputs.path[OUT_HTML])

@@ -141,6 +141,25 @@ static fg_status check_discs(fg_context *ctx, const fg_design *design) {
   return FG_OK;
 }
 
+static fg_status check_arc(fg_context *ctx, const fg_design *design) {
+  double radius = design->overall_radius_mm, angle = design->subtended_angle_deg;
+  FG_TRY(check_positive(ctx, "overall_radius_mm", radius));
+  FG_TRY(check_positive(ctx, "thickness_mm", design->thickness_mm));
+  FG_TRY(check_positive(ctx, "subtended_angle_deg", angle));
+  if (angle >= 360)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "subtended_angle_deg is %g; a strip with two ends has less than a full turn (360)", angle);
+  if (design->thickness_mm >= radius)
+    return fg_fail(ctx, FG_ERR_DATA, "thickness_mm is %g; it must be below overall_radius_mm %g",
+                   design->thickness_mm, radius);
+  if (design->top_foil_thickness_mm != 0)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "top_foil_thickness_mm belongs to a foil with bumps; this one's is thickness_mm");
+  return FG_OK;
+}
+
 static fg_status check_tolerances(fg_context *ctx, const fg_design *design) {
   if (design->tolerance_count > FG_TOLERANCES_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "tolerances has %zu entries; at most %d",
@@ -159,6 +178,9 @@ fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
   if (design->diameter_count != 0)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm belongs to form \"discs\" only");
+  if (design->form == FG_FORM_ARC) return check_arc(ctx, design);
+  if (design->subtended_angle_deg != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "subtended_angle_deg belongs to form \"arc\" only");
   FG_TRY(check_values(ctx, design));
   FG_TRY(check_bump(ctx, design));
   FG_TRY(check_pitch(ctx, design));
@@ -174,6 +196,10 @@ fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal 
   FG_TRY(fg_design_check(ctx, design));
   *nominal = no_nominal();
   if (design->form == FG_FORM_DISCS) return FG_OK;
+  if (design->form == FG_FORM_ARC) {
+    nominal->arc_length_mm = design->subtended_angle_deg * rad_per_deg * design->overall_radius_mm;
+    return FG_OK;
+  }
   double radius = design->bump_radius_mm, overall = design->overall_radius_mm;
   double alpha_rad = design->bump_angle_deg * rad_per_deg;
   double x = centre_to_centre(design);

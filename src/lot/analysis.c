@@ -120,12 +120,13 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   count_bumps(analysis);
   FG_TRY(judge_all(ctx, analysis));
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
-  FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
+  bool bumps = fg_form_has_bumps(analysis->lot->settings.design.form);
+  if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
   if (!analysis->lot->settings.design.tolerance_count) rank_by_spread(analysis);
   find_worst(analysis);
   fg_lot_analyse_thickness(analysis);
-  FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
-  FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
   FG_TRY(fg_lot_analyse_groups(ctx, analysis));
   return fg_lot_analyse_gauge(ctx, analysis);
 }

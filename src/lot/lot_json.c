@@ -273,7 +273,8 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_correction most = fg_lot_correction_largest(analysis);
   fg_json_correction(&json, &most);
   fg_json_design(&json, "design", &lot->settings.design);
-  fg_json_nominal(&json, "nominal", &lot->nominal);
+  bool bumps = fg_form_has_bumps(lot->settings.design.form);
+  if (bumps) fg_json_nominal(&json, "nominal", &lot->nominal);
   write_inputs(&json, lot);
   write_foils(&json, analysis);
   fg_json_object(&json, "quantities");
@@ -282,9 +283,9 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
   write_thickness(&json, analysis);
-  fg_lot_json_stiffness(&json, analysis);
-  fg_lot_json_bearings(&json, analysis);
-  fg_lot_json_dies(&json, analysis);
+  if (bumps) fg_lot_json_stiffness(&json, analysis);
+  if (bumps) fg_lot_json_bearings(&json, analysis);
+  if (bumps) fg_lot_json_dies(&json, analysis);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)
     write_difference(&json, &analysis->differences[i]);

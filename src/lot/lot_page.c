@@ -224,10 +224,14 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   FG_TRY(put_first_screen(ctx, out, analysis));
   put_failed_scans(out, analysis);
   fg_lot_put_quantities(out, analysis);
-  fg_lot_put_springback(out, analysis);
-  fg_lot_put_dies(out, analysis);
-  fg_lot_put_stiffness(out, analysis);
-  fg_lot_put_bearings(out, analysis);
+  if (fg_form_has_bumps(analysis->lot->settings.design.form)) {
+    fg_lot_put_springback(out, analysis);
+    fg_lot_put_dies(out, analysis);
+    fg_lot_put_stiffness(out, analysis);
+    fg_lot_put_bearings(out, analysis);
+  } else {
+    fg_lot_put_arcs(out, analysis);
+  }
   fg_lot_put_comparisons(out, analysis);
   fg_lot_put_gauge(out, analysis);
   put_foils(out, analysis);

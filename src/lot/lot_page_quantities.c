@@ -96,7 +96,8 @@ static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
 }
 
 static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
-  static const char *const shown[] = {"radius_error_pct", "height_mm", "overall.radius_mm"};
+  static const char *const shown[] = {"radius_error_pct", "height_mm", "overall.radius_mm",
+                                      "arc.subtended_angle_deg"};
   fputs("<h2>How the process runs</h2>\n", out);
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
     const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
@@ -146,6 +147,28 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
             ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
             "</figcaption></figure>\n",
             line->count, line->arc_length_mean_pct, line->arc_length_sd_pct);
+  }
+  fputs("</section>\n", out);
+}
+
+void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  const struct {
+    const char *name, *words;
+    double design;
+  } shown[] = {
+      {"overall.radius_mm", "radius over design", design->overall_radius_mm},
+      {"arc.subtended_angle_deg", "angle over design", design->subtended_angle_deg},
+  };
+  fputs("<section>\n<h1>Springback</h1>\n", out);
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i].name);
+    if (!quantity || !quantity->has_density) continue;
+    fputs("<figure>", out);
+    fg_lot_plot_density(out, quantity, 1 / shown[i].design, 0, shown[i].words);
+    fprintf(
+        out, "<figcaption>%s over the design's %g, %zu foils: mean %.5f.</figcaption></figure>\n",
+        quantity->row->words, shown[i].design, quantity->count, quantity->mean / shown[i].design);
   }
   fputs("</section>\n", out);
 }

@@ -35,6 +35,11 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_string(json, "form", fg_form_word(design->form));
   if (design->form == FG_FORM_DISCS) {
     fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
+  } else if (design->form == FG_FORM_ARC) {
+    fg_json_string(json, "datum", fg_datum_word(design->datum));
+    fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+    fg_json_number(json, "subtended_angle_deg", design->subtended_angle_deg);
+    fg_json_number(json, "thickness_mm", design->thickness_mm);
   } else {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
     fg_json_integer(json, "bump_count", (int64_t)design->bump_count);
@@ -177,8 +182,8 @@ static void write_strip(fg_json *json, const fg_strip *strip) {
 }
 
 static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
-  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  fg_json_string(json, "orientation", measured ? fg_orientation_word(foil->orientation) : NULL);
+  bool arc = design->form == FG_FORM_ARC, turns = !(foil->flags & FG_FOIL_NOT_MEASURED) && !arc;
+  fg_json_string(json, "orientation", turns ? fg_orientation_word(foil->orientation) : NULL);
   fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "", foil, true);
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_json_number(json, "thickness_design_mm", design->thickness_mm);
@@ -188,6 +193,11 @@ static void write_foil_values(fg_json *json, const fg_design *design, const fg_f
   write_covariance(json, foil->overall.covariance);
   write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
+  if (arc) {
+    fg_json_object(json, "arc");
+    fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "arc.", foil, true);
+    fg_json_object_end(json);
+  }
   fg_json_correction(json, &foil->correction);
   fg_json_choices(json, foil);
   write_strip(json, &foil->strip);
@@ -299,7 +309,7 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
   fg_json_array_end(&json);
   fg_json_scan_model(&json, "model", fg_report_model(report));
   fg_json_design(&json, "design", report->design);
-  if (report->design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", report->nominal);
+  if (fg_form_has_bumps(report->design->form)) fg_json_nominal(&json, "nominal", report->nominal);
   if (report->scan_count == 1 && report->scans[0].measurement)
     FG_TRY(write_scan(ctx, &json, report, report->scans[0].measurement));
   else

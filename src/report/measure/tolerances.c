@@ -345,9 +345,9 @@ fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_ou
   return FG_OK;
 }
 
-static bool has_quantity(fg_quantity_owner owner, const char *name) {
+static bool has_quantity(fg_quantity_owner owner, fg_form form, const char *name) {
   const fg_quantity *row = fg_quantity_find(owner, name);
-  return row && row->kind != FG_QUANTITY_PAIR;
+  return row && row->kind != FG_QUANTITY_PAIR && fg_quantity_applies(owner, row, form);
 }
 
 static void list_bearing(char *text, size_t size) {
@@ -371,15 +371,17 @@ size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size) {
 
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
   bool discs = design->form == FG_FORM_DISCS;
+  fg_quantity_owner part = discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP;
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const char *quantity = design->tolerances[i].quantity;
-    if (has_quantity(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, quantity)) continue;
-    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, quantity)) continue;
-    if (!discs && fg_quantity_of_bearing_for(quantity)) continue;
+    if (has_quantity(part, design->form, quantity)) continue;
+    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, design->form, quantity)) continue;
+    bool bumps = fg_form_has_bumps(design->form);
+    if (bumps && fg_quantity_of_bearing_for(quantity)) continue;
     char names[1000] = "";
-    fg_quantity_list(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, true, names, sizeof names);
-    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, true, names, sizeof names);
-    if (!discs) list_bearing(names, sizeof names);
+    fg_quantity_list(part, design->form, true, names, sizeof names);
+    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, design->form, true, names, sizeof names);
+    if (bumps) list_bearing(names, sizeof names);
     return fg_fail(ctx, FG_ERR_DATA, "tolerances.%s: no such quantity is reported; there are: %s",
                    quantity, names);
   }
