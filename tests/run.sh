@@ -25,6 +25,7 @@ if [ $long = yes ]; then
   tests/bench/accuracy.sh
   tests/bench/speed.sh
   tests/bench/thesis_lot.sh
+  tests/bench/thesis_lots.sh
   tests/bench/lot_speed.sh
   tests/bench/slurm_lot.sh || [ $? = 77 ]
   tests/bench/doe_end_to_end.sh

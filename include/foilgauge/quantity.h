@@ -69,8 +69,10 @@ typedef struct fg_quantity {
   unsigned uses; /* fg_quantity_use */
   int rank;      /* among those that people read, from 1; 0: behind them, in order of the rows */
   /* For quality systems, which know lengths and angles: QIF's name of the characteristic (NULL:
-   * not exported; ratios and percentages follow from the others) and what the design asks for. */
+   * not exported; ratios and percentages follow from the others). */
   const char *characteristic;
+  /* What the design asks for: quality systems state it, and lots of different designs are
+   * compared over it. NULL: nothing. */
   double (*nominal)(const fg_design *design, const fg_nominal *nominal);
   /* What the springback model of constant arc length makes of it; NULL: it says nothing. */
   double (*by_arc_length)(const fg_design *design, const fg_springback *springback);

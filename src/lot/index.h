@@ -189,6 +189,12 @@ fg_status fg_index_write_json(fg_context *ctx, const fg_index *index, FILE *out)
 fg_status fg_index_write_csv(fg_context *ctx, const fg_index *index, FILE *out);
 fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char *page, FILE *out);
 
+/* Sections of the page; a row's cells of a spread, which end the row, and their heads. */
+void fg_index_put_pairs(FILE *out, const fg_index *index);
+void fg_index_put_dies(FILE *out, const fg_index *index);
+void fg_index_put_spread(FILE *out, const fg_index_spread *spread);
+extern const char fg_index_spread_heads[];
+
 /* Figures of the page: densities of R / R_D of lots, or of dies; a quantity over the lots. */
 void fg_index_plot_lots(FILE *out, const fg_index *index);
 void fg_index_plot_dies(FILE *out, const fg_index *index);

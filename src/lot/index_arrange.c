@@ -33,6 +33,30 @@ static void number_designs(fg_index *index) {
   }
 }
 
+static int by_name(const void *left, const void *right) {
+  const fg_index_die *a = left, *b = right;
+  return strcmp(a->name, b->name);
+}
+
+/* Dies by name; the foils keep theirs. */
+static fg_status order_dies(fg_context *ctx, fg_index *index) {
+  size_t *place = NULL;
+  FG_TRY(fg_memory_allocate(ctx, index->die_count, sizeof *place, (void **)&place));
+  for (size_t i = 0; i < index->die_count; i++)
+    index->dies[i].foils = i; /* not counted yet: the place that it had */
+  qsort(index->dies, index->die_count, sizeof *index->dies, by_name);
+  for (size_t i = 0; i < index->die_count; i++) {
+    place[index->dies[i].foils] = i;
+    index->dies[i].foils = 0;
+  }
+  for (size_t i = 0; i < index->read; i++)
+    for (size_t k = 0; k < index->lots[i].foil_count; k++)
+      if (index->lots[i].die[k] != FG_INDEX_NONE)
+        index->lots[i].die[k] = place[index->lots[i].die[k]];
+  free(place);
+  return FG_OK;
+}
+
 static bool has_axis(const fg_index *index, const fg_quantity *row) {
   for (size_t i = 0; i < index->axis_count; i++)
     if (index->axes[i].row == row) return true;
@@ -164,6 +188,7 @@ fg_status fg_index_arrange(fg_context *ctx, fg_index *index) {
   while (index->read < index->count && !index->lots[index->read].problem)
     index->read++;
   number_designs(index);
+  if (index->die_count) FG_TRY(order_dies(ctx, index));
   FG_TRY(list_axes(ctx, index));
   for (size_t i = 0; i < index->axis_count; i++)
     scale_axis(index, &index->axes[i]);

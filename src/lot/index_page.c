@@ -8,7 +8,11 @@
 #include "lot/index.h"
 #include "report/measure/measure_page_parts.h"
 
-enum { PAIRS_SHOWN_MAX = 40, VALUE = 96 };
+enum {
+  LOTS_FIRST_MAX = 20,
+  LOTS_SPREAD_MIN = 3, /* of two, the pair says it all */
+  VALUE = 96,
+};
 
 static void put_path(FILE *out, const char *path) {
   static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./~";
@@ -58,6 +62,12 @@ static bool has_coils(const fg_index *index) {
   return false;
 }
 
+static void put_words(FILE *out, const char *words) {
+  fputs("<td class=\"words\">", out);
+  fg_html_text(out, words ? words : "–");
+  fputs("</td>", out);
+}
+
 static fg_status put_lot_row(fg_context *ctx, FILE *out, const fg_index *index,
                              const fg_index_lot *lot, const char *page) {
   char *dies;
@@ -78,18 +88,37 @@ static fg_status put_lot_row(fg_context *ctx, FILE *out, const fg_index *index,
   fputs("</td>", out);
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     fprintf(out, "<td>%zu</td>", counts[i]);
+  if (index->die_count) put_words(out, dies);
+  if (has_coils(index)) put_words(out, lot->coils);
   fputs("<td class=\"words\">", out);
-  fg_html_text(out, dies ? dies : "–");
-  if (has_coils(index)) {
-    fputs("</td><td class=\"words\">", out);
-    fg_html_text(out, lot->coils ? lot->coils : "–");
-  }
-  fputs("</td><td class=\"words\">", out);
   fg_html_text(out, lot->design.name);
   if (index->designs > 1) fprintf(out, "<i>design %zu</i>", lot->design_number);
   fputs("</td></tr>\n", out);
   free(dies);
   return FG_OK;
+}
+
+static fg_status put_lot_table(fg_context *ctx, FILE *out, const fg_index *index,
+                               const char *page) {
+  fputs(
+      "<div class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th><th>date"
+      "</th><th>verdict</th><th>foils</th><th>pass</th><th>fail</th><th>cannot<br>tell</th><th>not"
+      "<br>measured</th>",
+      out);
+  if (index->die_count) fputs("<th class=\"w\">die</th>", out);
+  if (has_coils(index)) fputs("<th class=\"w\">coil</th>", out);
+  fputs("<th class=\"w\">design</th></tr></thead>\n<tbody>\n", out);
+  for (size_t i = 0; i < index->read; i++)
+    FG_TRY(put_lot_row(ctx, out, index, &index->lots[i], page));
+  fputs("</tbody></table></div>\n<p class=\"note\">In order of date, by which every figure is "
+        "ordered and numbered. A lot is as good as its worst foil.</p>\n",
+        out);
+  return FG_OK;
+}
+
+/* So many that their table would push the figures out of sight. */
+static bool are_many(const fg_index *index) {
+  return index->read > LOTS_FIRST_MAX;
 }
 
 static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_index *index,
@@ -103,46 +132,17 @@ static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_index *in
     fg_html_text(out, index->sentences[i]);
     fputs("</li>\n", out);
   }
-  fputs(
-      "</ul>\n<div class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th><th>"
-      "date</th><th>verdict</th><th>foils</th><th>pass</th><th>fail</th><th>cannot<br>tell</th>"
-      "<th>not<br>measured</th><th class=\"w\">die</th>",
-      out);
-  if (has_coils(index)) fputs("<th class=\"w\">coil</th>", out);
-  fputs("<th class=\"w\">design</th></tr></thead>\n<tbody>\n", out);
-  for (size_t i = 0; i < index->read; i++)
-    FG_TRY(put_lot_row(ctx, out, index, &index->lots[i], page));
-  fputs("</tbody></table></div>\n", out);
+  fputs("</ul>\n", out);
   if (index->notes) put_lines(out, index->notes);
-  fputs("<p class=\"note\">In order of date, by which every figure below is ordered and numbered. "
-        "A lot is as good as its worst foil.</p>\n</section>\n",
-        out);
+  if (are_many(index))
+    fputs("<p class=\"note\">Which lot has which number, its date, folder and verdict: <a "
+          "href=\"#lots\">the lots</a>, behind the figures.</p>\n",
+          out);
+  else
+    FG_TRY(put_lot_table(ctx, out, index, page));
+  fputs("</section>\n", out);
   return FG_OK;
 }
-
-static void put_value(FILE *out, double value, const char *format) {
-  if (isfinite(value))
-    fprintf(out, format, value);
-  else
-    fputs("–", out);
-}
-
-static void put_spread(FILE *out, const fg_index_spread *spread) {
-  fprintf(out, "<td>%zu</td><td>", spread->count);
-  put_value(out, spread->mean, "%.4f");
-  fputs("</td><td>", out);
-  put_value(out, spread->mode, "%.4f");
-  fputs("</td><td>", out);
-  put_value(out, spread->relative_sd_pct, "%.2f %%");
-  fputs("</td><td>", out);
-  put_value(out, spread->least, "%.3f to ");
-  put_value(out, spread->most, "%.3f");
-  fputs("</td></tr>\n", out);
-}
-
-static const char spread_heads[] =
-    "<th>bumps</th><th>mean</th><th>mode</th><th>relative s</th><th>range</th></tr></thead>\n"
-    "<tbody>\n";
 
 static bool has_curves(const fg_index *index) {
   for (size_t i = 0; i < index->read; i++)
@@ -150,28 +150,46 @@ static bool has_curves(const fg_index *index) {
   return false;
 }
 
-static void put_densities(FILE *out, const fg_index *index) {
-  if (!has_curves(index)) return;
-  fputs("<section>\n<h1>Bump radius over design</h1>\n<figure>", out);
-  fg_index_plot_lots(out, index);
-  fputs("<figcaption>Kernel densities of R / R_D, each lot&#39;s radii over the radius of its own "
-        "design: 1 is a bump as designed, above 1 it has sprung open.</figcaption></figure>\n<div "
-        "class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th>",
-        out);
-  fputs(spread_heads, out);
+static void put_spreads(FILE *out, const fg_index *index) {
+  fputs("<div class=\"scroll lots\"><table><thead><tr><th>no.</th><th class=\"w\">lot</th>", out);
+  fputs(fg_index_spread_heads, out);
   for (size_t i = 0; i < index->read; i++) {
     fprintf(out, "<tr><td>%zu</td><td class=\"words\">", i + 1);
     fg_html_text(out, index->lots[i].name);
     fputs("</td>", out);
-    put_spread(out, &index->lots[i].spread);
+    fg_index_put_spread(out, &index->lots[i].spread);
   }
-  fputs("</tbody></table></div>\n</section>\n", out);
+  fputs("</tbody></table></div>\n", out);
+}
+
+static void put_densities(FILE *out, const fg_index *index) {
+  if (!has_curves(index)) return;
+  fputs("<section>\n<h1>Bump radius over design</h1>\n<figure>", out);
+  fg_index_plot_lots(out, index);
+  fputs(
+      "<figcaption>Kernel densities of R / R_D, each lot&#39;s radii over the radius of its own "
+      "design: 1 is a bump as designed, above 1 it has sprung open. Numbers at the curves are the "
+      "lots&#39;.</figcaption></figure>\n",
+      out);
+  if (!are_many(index)) put_spreads(out, index);
+  fputs("</section>\n", out);
+}
+
+/* The tables of many lots. */
+static fg_status put_behind(fg_context *ctx, FILE *out, const fg_index *index, const char *page) {
+  if (!are_many(index)) return FG_OK;
+  fputs("<section id=\"lots\">\n<h1>The lots</h1>\n", out);
+  FG_TRY(put_lot_table(ctx, out, index, page));
+  fputs("</section>\n<section>\n<h1>Bump radius over design, lot by lot</h1>\n", out);
+  put_spreads(out, index);
+  fputs("</section>\n", out);
+  return FG_OK;
 }
 
 /* What the lots' means scatter by, beyond their foils. */
 static void put_axis_words(FILE *out, const fg_index_axis *axis) {
   char a[VALUE], b[VALUE], p[16];
-  if (axis->lots < 2) return;
+  if (axis->lots < LOTS_SPREAD_MIN) return;
   fg_index_value(axis, axis->between.sd, a, sizeof a);
   fprintf(out, "From lot to lot s = %s", a);
   fg_index_value(axis, axis->between.sd_low, a, sizeof a);
@@ -264,101 +282,6 @@ static void put_table(FILE *out, const fg_index *index) {
         out);
 }
 
-static void put_pair(FILE *out, const fg_index *index, const fg_index_pair *pair, const char *a,
-                     const char *b, const char *more) {
-  const fg_index_axis *axis = &index->axes[pair->axis];
-  char difference[VALUE], p[16];
-  fg_index_difference(axis, pair, difference, sizeof difference);
-  fg_index_p(pair->p_holm, p, sizeof p);
-  fprintf(out, "<tr%s><td class=\"words\">%s%s</td><td class=\"words\">",
-          pair->p_holm < 1 - FG_INDEX_CONFIDENCE ? " class=\"on\"" : "", axis->row->words,
-          axis->scale == FG_INDEX_OVER_DESIGN ? ", over design" : "");
-  fg_html_text(out, a);
-  fputs("</td><td class=\"words\">", out);
-  fg_html_text(out, b);
-  fprintf(out, "</td><td>%s</td><td>%zu, %zu</td><td>%.1f</td><td>", difference, pair->foils_a,
-          pair->foils_b, pair->freedom);
-  fg_html_text(out, p);
-  fprintf(out, "</td>%s</tr>\n", more);
-}
-
-static void put_pairs(FILE *out, const fg_index *index) {
-  size_t shown = index->pair_count < PAIRS_SHOWN_MAX ? index->pair_count : PAIRS_SHOWN_MAX;
-  char name[2][VALUE];
-  if (!shown) return;
-  fputs("<section>\n<h1>Which lots differ</h1>\n<div class=\"scroll "
-        "lots\"><table><thead><tr><th>quantity"
-        "</th><th class=\"w\">larger in lot</th><th class=\"w\">than in</th><th>by (95 %)</th><th>"
-        "foils</th><th>degrees of<br>freedom</th><th>p, Holm</th></tr></thead>\n<tbody>\n",
-        out);
-  for (size_t i = 0; i < shown; i++) {
-    const fg_index_pair *pair = &index->pairs[i];
-    const size_t lots[2] = {pair->a, pair->b};
-    for (int k = 0; k < 2; k++)
-      fg_text_clip(name[k], VALUE, "%zu  %s", lots[k] + 1, index->lots[lots[k]].name);
-    put_pair(out, index, pair, name[0], name[1], "");
-  }
-  fprintf(out,
-          "</tbody></table></div>\n<p class=\"note\">Bold: differs beyond chance. %zu of %zu pairs "
-          "do%s. Welch&#39;s test of the means of foils: the error is what foils of one lot "
-          "scatter, not bumps, which one foil makes alike. All tests of this page are one family "
-          "(Holm 1979): the chance of even one false difference is 5 %% at most. What all scans "
-          "of a scanner have in common is in no interval.</p>\n</section>\n",
-          index->differing, index->pair_count,
-          shown < index->pair_count ? ", those that differ most are shown; more: the JSON report"
-                                    : "");
-}
-
-static void put_die_pairs(FILE *out, const fg_index *index) {
-  size_t shown = index->die_pair_count < PAIRS_SHOWN_MAX ? index->die_pair_count : PAIRS_SHOWN_MAX;
-  char more[120], words[80];
-  if (!shown) return;
-  fputs("<div class=\"scroll lots\"><table><thead><tr><th>quantity</th><th class=\"w\">larger of "
-        "die</th>"
-        "<th class=\"w\">than of</th><th>by (95 %)</th><th>foils</th><th>degrees of<br>freedom</th>"
-        "<th>p, Holm</th><th class=\"w\">by what</th></tr></thead>\n<tbody>\n",
-        out);
-  for (size_t i = 0; i < shown; i++) {
-    const fg_index_die_pair *of = &index->die_pairs[i];
-    if (of->basis == FG_INDEX_CONFOUNDED)
-      fg_text_clip(words, sizeof words, "not separable from the lots");
-    else
-      fg_text_clip(words, sizeof words, "%s %zu lot%s",
-                   of->basis == FG_INDEX_WITHIN_LOTS ? "within" : "between means of", of->lots,
-                   of->lots == 1 ? "" : "s");
-    fg_text_clip(more, sizeof more, "<td class=\"words\">%s</td>", words);
-    put_pair(out, index, &of->pair, index->dies[of->pair.a].name, index->dies[of->pair.b].name,
-             more);
-  }
-  fputs("</tbody></table></div>\n", out);
-}
-
-static void put_dies(FILE *out, const fg_index *index) {
-  if (index->die_count < 2) return;
-  fputs("<section>\n<h1>Dies</h1>\n<figure>", out);
-  fg_index_plot_dies(out, index);
-  fputs("<figcaption>Kernel densities of R / R_D of all foils of a die, whatever their lot."
-        "</figcaption></figure>\n<div class=\"scroll "
-        "lots\"><table><thead><tr><th>die</th><th>lots</th>"
-        "<th>foils</th>",
-        out);
-  fputs(spread_heads, out);
-  for (size_t i = 0; i < index->die_count; i++) {
-    fputs("<tr><td>", out);
-    fg_html_text(out, index->dies[i].name);
-    fprintf(out, "</td><td>%zu</td><td>%zu</td>", index->dies[i].lots, index->dies[i].foils);
-    put_spread(out, &index->dies[i].spread);
-  }
-  fputs("</tbody></table></div>\n<h2>Which dies differ</h2>\n", out);
-  put_die_pairs(out, index);
-  fputs(
-      "<p class=\"note\">Dies are held against each other within lots that have foils of both, so "
-      "that a lot&#39;s own difference falls out; else lot mean against lot mean. Where each die "
-      "stands in one lot only, a difference of dies cannot be told from one of lots."
-      "</p>\n</section>\n",
-      out);
-}
-
 static void put_unread(FILE *out, const fg_index *index) {
   if (index->read == index->count) return;
   fprintf(out, "<section>\n<h1>Not on this page: %zu</h1>\n<ul class=\"flags\">\n",
@@ -377,8 +300,9 @@ fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char
   put_unread(out, index);
   put_densities(out, index);
   put_axes(out, index);
-  put_pairs(out, index);
-  put_dies(out, index);
+  fg_index_put_pairs(out, index);
+  fg_index_put_dies(out, index);
+  FG_TRY(put_behind(ctx, out, index, page));
   put_table(out, index);
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page over lots");

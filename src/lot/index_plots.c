@@ -11,7 +11,8 @@
 enum {
   WIDTH = 1000,
   CURVE_POINTS = 300,
-  LINES_MAX = 8,    /* more curves than these cannot be told apart: the others are grey */
+  LINES_MAX = 8,    /* more curves than these cannot be told apart: most are grey, then, and */
+  MARKED = 4,       /* so many are not */
   NAMES_MAX = 6,    /* lots whose names have room under an axis */
   DATES_MAX = 10,   /* and their dates */
   NUMBERS_MAX = 40, /* and their numbers: else every second, third ... */
@@ -101,7 +102,7 @@ static void choose(curve *curves, size_t count) {
     curves[i].look = count <= LINES_MAX ? (int)i : -1;
   if (count <= LINES_MAX) return;
   curves[count - 1].look = (int)given++;
-  for (; given < LINES_MAX; given++) {
+  for (; given < MARKED; given++) {
     size_t best = count;
     double sign = given % 2 ? 1 : -1;
     for (size_t i = 0; i < count; i++)
@@ -141,7 +142,7 @@ static void plot_curves(FILE *out, curve *curves, size_t count, const char *labe
     }
   if (count > LINES_MAX) {
     char text[40];
-    snprintf(text, sizeof text, "grey: %zu more", count - LINES_MAX);
+    snprintf(text, sizeof text, "grey: %zu more", count - MARKED);
     fprintf(out, "<text class=\"soft\" x=\"%.0f\" y=\"%.1f\">%s</text>\n", at.right + 60,
             at.top + 14 + 22 * (double)row, text);
   }

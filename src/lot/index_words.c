@@ -159,6 +159,34 @@ static fg_status say_who(fg_context *ctx, fg_index *index) {
   return add(ctx, index, sentence);
 }
 
+/* Of many lots those that differ from half of the others or more, the worst first. */
+static fg_status say_odd(fg_context *ctx, fg_index *index) {
+  size_t *others = NULL;
+  char *sentence = NULL;
+  FG_TRY(fg_memory_allocate(ctx, index->read, sizeof *others, (void **)&others));
+  for (size_t a = 0; a < index->read; a++)
+    for (size_t b = 0; b < index->read; b++)
+      others[a] += differ(index, a, b);
+  fg_status status = FG_OK;
+  for (size_t said = 0; said < SAID_MAX && status == FG_OK; said++) {
+    size_t worst = 0;
+    for (size_t i = 1; i < index->read; i++)
+      if (others[i] > others[worst]) worst = i;
+    if (2 * others[worst] < index->read) break;
+    status = fg_text_append(ctx, &sentence, "%slot %zu (%s) from %zu",
+                            said ? ", " : "Differ from half of the others or more: ", worst + 1,
+                            index->lots[worst].name, others[worst]);
+    others[worst] = 0;
+  }
+  free(others);
+  if (!sentence || status != FG_OK) {
+    free(sentence);
+    return status;
+  }
+  FG_TRY(fg_text_append(ctx, &sentence, " of %zu.", index->read - 1));
+  return add(ctx, index, sentence);
+}
+
 /* How many of the lots are within tolerance. */
 static fg_status say_verdicts(fg_context *ctx, fg_index *index) {
   static const struct {
@@ -190,9 +218,10 @@ static bool differs(const fg_index *index, size_t axis) {
 }
 
 /* Most quantities follow from the first ones. */
-static fg_status say_more(fg_context *ctx, fg_index *index, size_t quantities, const char *where) {
+static fg_status say_more(fg_context *ctx, fg_index *index, size_t quantities, const char *what,
+                          const char *where) {
   char *sentence = NULL;
-  FG_TRY(fg_text_print(ctx, &sentence, "The same goes for %zu more quantit%s: see \"%s\".",
+  FG_TRY(fg_text_print(ctx, &sentence, "%s differ in %zu more quantit%s as well: see \"%s\".", what,
                        quantities, quantities == 1 ? "y" : "ies", where));
   return add(ctx, index, sentence);
 }
@@ -219,7 +248,10 @@ static fg_status say_pairs(fg_context *ctx, fg_index *index) {
                          count_tested(index), index->pair_count));
   }
   if (sentence) return add(ctx, index, sentence);
-  if (index->read > 2 && index->read <= LISTED_MAX) FG_TRY(say_who(ctx, index));
+  if (index->read > LISTED_MAX)
+    FG_TRY(say_odd(ctx, index));
+  else if (index->read > 2)
+    FG_TRY(say_who(ctx, index));
   size_t before = index->sentence_count;
   size_t axis = 0, more = 0;
   for (; axis < index->axis_count; axis++)
@@ -227,7 +259,7 @@ static fg_status say_pairs(fg_context *ctx, fg_index *index) {
       FG_TRY(say_axis(ctx, index, axis));
     else
       more += differs(index, axis);
-  return more ? say_more(ctx, index, more, "Which lots differ") : FG_OK;
+  return more ? say_more(ctx, index, more, "Lots", "Which lots differ") : FG_OK;
 }
 
 /* The lots that lie where the others do not, of one quantity. */
@@ -267,10 +299,39 @@ static fg_status say_die_pair(fg_context *ctx, fg_index *index, const fg_index_d
   return add(ctx, index, sentence);
 }
 
+/* How many pairs of dies were tested, and how many cannot be. */
+static fg_status say_no_die(fg_context *ctx, fg_index *index) {
+  size_t tests = 0, tested = 0, apart = 0;
+  char *sentence = NULL;
+  for (size_t i = 0; i < index->die_pair_count; i++)
+    tests += index->die_pairs[i].basis != FG_INDEX_CONFOUNDED;
+  for (size_t a = 0; a < index->die_count; a++)
+    for (size_t b = a + 1; b < index->die_count; b++) {
+      bool asked = false, told = false;
+      for (size_t i = 0; i < index->die_pair_count; i++) {
+        const fg_index_die_pair *of = &index->die_pairs[i];
+        bool these = (of->pair.a == a && of->pair.b == b) || (of->pair.a == b && of->pair.b == a);
+        asked = asked || these;
+        told = told || (these && of->basis != FG_INDEX_CONFOUNDED);
+      }
+      tested += told;
+      apart += asked && !told;
+    }
+  if (tested)
+    FG_TRY(fg_text_append(ctx, &sentence,
+                          "No two dies differ beyond chance, of %zu pair%s that can be compared "
+                          "(%zu tests).",
+                          tested, tested == 1 ? "" : "s", tests));
+  if (apart)
+    FG_TRY(fg_text_append(ctx, &sentence,
+                          "%s%zu pair%s of dies cannot be told from their lots: no lot has foils "
+                          "of both, and there are fewer than two lots of each.",
+                          sentence ? " " : "", apart, apart == 1 ? "" : "s"));
+  return sentence ? add(ctx, index, sentence) : FG_OK;
+}
+
 /* One sentence for each quantity in which dies differ; else that they do not, or why not. */
 static fg_status say_dies(fg_context *ctx, fg_index *index) {
-  char *sentence = NULL;
-  size_t tested = 0;
   if (index->die_count < 2 || index->die_count > FG_INDEX_DIES_MAX) return FG_OK;
   size_t said = 0;
   for (size_t axis = 0; axis < index->axis_count; axis++)
@@ -279,16 +340,8 @@ static fg_status say_dies(fg_context *ctx, fg_index *index) {
         if (said++ < SAID_MAX) FG_TRY(say_die_pair(ctx, index, &index->die_pairs[i]));
         break;
       }
-  if (said > SAID_MAX) return say_more(ctx, index, said - SAID_MAX, "Which dies differ");
-  if (said) return FG_OK;
-  for (size_t i = 0; i < index->die_pair_count; i++)
-    tested += isnan(index->die_pairs[i].pair.p) ? 0 : 1;
-  FG_TRY(fg_text_print(ctx, &sentence,
-                       tested ? "No two of %zu dies differ beyond chance (%zu tests)."
-                              : "The %zu dies cannot be told from their lots: no lot has foils of "
-                                "two of them, and there are fewer than two lots of each.",
-                       index->die_count, tested));
-  return add(ctx, index, sentence);
+  if (said > SAID_MAX) FG_TRY(say_more(ctx, index, said - SAID_MAX, "Dies", "Which dies differ"));
+  return said ? FG_OK : say_no_die(ctx, index);
 }
 
 static fg_status say_apart(fg_context *ctx, fg_index *index) {
