@@ -22,6 +22,7 @@ build_preset release build
 build_preset sanitize build-sanitize
 
 if [ $long = yes ]; then
+  export FOILGAUGE_TEST_LONG=1 # tests that have more to show where time is no matter
   tests/bench/accuracy.sh
   tests/bench/speed.sh
   tests/bench/thesis_lot.sh
