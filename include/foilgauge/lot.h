@@ -52,6 +52,20 @@ typedef struct fg_lot_die {
   size_t bump_count;
 } fg_lot_die;
 
+/* What a simulation or a die says of the errors of every bump, to be drawn beside a lot's. */
+enum { FG_LOT_CURVE_MAX = 64 };
+
+typedef struct fg_lot_curve_point {
+  int bump;
+  double radius_error_pct, angle_error_pct; /* the second of the intersection angle */
+} fg_lot_curve_point;
+
+typedef struct fg_lot_curve {
+  char name[64];                              /* of its file */
+  size_t count;                               /* 0: there is none */
+  fg_lot_curve_point point[FG_LOT_CURVE_MAX]; /* bumps ascending */
+} fg_lot_curve;
+
 /* Every option of a lot: the members of a recipe file, "schema": "foilgauge/recipe/1". */
 typedef struct fg_lot_settings {
   char name[128];   /* of the lot, as the report shows it */
@@ -81,6 +95,7 @@ typedef struct fg_lot_settings {
    * stand in the lot's own recipe. They are the reference of springback beside the design. */
   fg_lot_die dies[FG_LOT_DIES_MAX];
   size_t die_count;
+  fg_lot_curve curve;        /* "reference_curve" in a recipe: the path of a CSV */
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
 } fg_lot_settings;
 
@@ -96,6 +111,10 @@ fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const ch
 /* Adds a die from its report, the JSON of `foilgauge die`. */
 fg_status fg_lot_settings_take_die(fg_context *ctx, const char *name, const char *path,
                                    fg_lot_settings *settings);
+
+/* Sets the reference curve from a CSV with the columns bump, radius_error_pct and
+ * intersection_angle_error_pct. */
+fg_status fg_lot_settings_take_curve(fg_context *ctx, const char *path, fg_lot_settings *settings);
 
 /* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. A
  * model that is not the one that the recipe states the sum of is FG_ERR_DATA; parsing alone does

@@ -21,6 +21,7 @@ enum {
   OPTION_NAME,
   OPTION_GROUP,
   OPTION_DIE,
+  OPTION_CURVE,
   OPTION_INDEX,
   OPTION_CSV
 };
@@ -31,6 +32,7 @@ typedef struct lot_arguments {
   int jobs; /* -1: not given */
   bool print_recipe, resume, dry_run;
   fg_lot_shard shard;
+  const char *curve; /* reference curve; NULL: the recipe's */
   const char *dies[FG_LOT_DIES_MAX];
   size_t die_count;
   char **paths; /* of argv */
@@ -47,6 +49,10 @@ static const struct argp_option options[] = {
     {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
+    {"reference-curve", OPTION_CURVE, "FILE.csv", 0,
+     "Draw this over the errors per bump: what a simulation or a die says; columns bump, "
+     "radius_error_pct, intersection_angle_error_pct",
+     0},
     {"die", OPTION_DIE, "NAME=FILE.json", 0,
      "What `foilgauge die -o` measured of the die that the manifest's column `die` calls NAME: the "
      "reference of springback beside the design; once for each die",
@@ -115,6 +121,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_GROUP:
     arguments->group = text;
+    break;
+  case OPTION_CURVE:
+    arguments->curve = text;
     break;
   case OPTION_DIE:
     if (!strchr(text, '=')) argp_error(state, "--die: '%s' is not NAME=FILE.json", text);
@@ -199,6 +208,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
   if (arguments->model || arguments->scanner)
     FG_TRY(fg_lot_settings_take_model(ctx, model, arguments->scanner, settings));
   FG_TRY(take_dies(ctx, arguments, settings));
+  if (arguments->curve) FG_TRY(fg_lot_settings_take_curve(ctx, arguments->curve, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
   FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));

@@ -5,6 +5,7 @@
 #include "lot/analysis_dies.h"
 #include "lot/json_parts.h"
 #include "lot/lot_date.h"
+#include "lot/reference_curve.h"
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
@@ -286,6 +287,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   if (bumps) fg_lot_json_stiffness(&json, analysis);
   if (bumps) fg_lot_json_bearings(&json, analysis);
   if (bumps) fg_lot_json_dies(&json, analysis);
+  fg_reference_curve_write(&json, "reference_curve", &lot->settings);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)
     write_difference(&json, &analysis->differences[i]);

@@ -132,7 +132,7 @@ static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analy
   put_worst(out, analysis);
   if (leading) {
     fputs("<figure>", out);
-    fg_lot_plot_places(out, leading);
+    fg_lot_plot_places(out, leading, NULL);
     fprintf(out,
             "<figcaption>%s of each bump number: mean and two standard deviations over the "
             "foils%s.</figcaption></figure>\n",

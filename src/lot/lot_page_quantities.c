@@ -3,6 +3,7 @@
 
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
+#include "report/measure/measure_page_parts.h"
 
 static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<h1>Quantities</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>unit"
@@ -118,16 +119,56 @@ void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
+/* How far the lot's means lie from the curve, in words. */
+static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
+                              const fg_lot_curve *curve) {
+  double sum = 0, most = 0, value;
+  int bumps = 0, at = 0;
+  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++) {
+    size_t place = (size_t)curve->point[i].bump - 1;
+    if (place >= quantity->places || !quantity->place[place].count) continue;
+    double off = quantity->place[place].mean - value;
+    sum += off;
+    bumps++;
+    if (bumps > 1 && fabs(off) <= fabs(most)) continue;
+    most = off;
+    at = curve->point[i].bump;
+  }
+  if (!bumps) return;
+  fprintf(out, " %s: %+.3g %% on the mean of %d bumps, farthest %+.3g %% at bump %d.",
+          quantity->row->words, sum / bumps, bumps, most, at);
+}
+
+/* Figure 5.17 of the thesis: both errors by bump number, and what a simulation or a die says. */
+static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
+  static const char *const shown[] = {"radius_error_pct", "intersection_angle_error_pct",
+                                      "bump_angle_error_pct"};
+  const fg_lot_curve *curve = &analysis->lot->settings.curve;
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+    if (quantity) fg_lot_plot_places(out, quantity, curve);
+  }
+  fputs("<figcaption>Each bump number: mean and two standard deviations over the foils, of the "
+        "errors of the bump radius (e_R), the intersection angle θ (e_θ) and the bump angle α "
+        "(e_α).",
+        out);
+  if (curve->count) {
+    fputs(" Diamonds, dashed: the reference curve ", out);
+    fg_html_text(out, curve->name);
+    fputs(". The lot against it:", out);
+    for (size_t i = 0; i < 2; i++) {
+      const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+      if (quantity) put_against_curve(out, quantity, curve);
+    }
+  }
+  fputs("</figcaption></figure>\n", out);
+}
+
 void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_mm");
-  const fg_lot_quantity *errors = fg_lot_find_quantity(analysis, "radius_error_pct");
-  const fg_lot_quantity *angles = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
   fputs("<section>\n<h1>Springback</h1>\n<figure>", out);
-  fg_lot_plot_places(out, errors);
-  fg_lot_plot_places(out, angles);
-  fputs("<figcaption>Each bump number: mean and two standard deviations over the foils."
-        "</figcaption></figure>\n<h2>Radius over design</h2>\n<figure>",
-        out);
+  put_errors_by_bump(out, analysis);
+  fputs("<h2>Radius over design</h2>\n<figure>", out);
   fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bump_radius_mm, 0,
                       "radius over design");
   fputs("<figcaption>Histogram and kernel density.</figcaption></figure>\n", out);

@@ -41,7 +41,35 @@ static void axis_title(char *text, size_t size, const fg_quantity *row) {
            *row->unit ? ", " : "", row->unit);
 }
 
-void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
+bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i,
+                        double *value) {
+  bool radius = !strcmp(row->name, "radius_error_pct");
+  if (!curve || i >= curve->count) return false;
+  if (!radius && strcmp(row->name, "intersection_angle_error_pct") != 0) return false;
+  *value = radius ? curve->point[i].radius_error_pct : curve->point[i].angle_error_pct;
+  return true;
+}
+
+/* The reference curve: its points joined, a diamond each. */
+static void put_curve(const fg_plot *at, const fg_quantity *row, const fg_lot_curve *curve) {
+  double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
+  size_t count = 0;
+  while (fg_lot_curve_value(curve, row, count, &y[count])) {
+    x[count] = curve->point[count].bump;
+    count++;
+  }
+  if (!count) return;
+  fg_plot_line(at, x, y, count, "hypothesis");
+  for (size_t i = 0; i < count; i++) {
+    const double size = 6, px = fg_plot_x(at, x[i]), py = fg_plot_y(at, y[i]);
+    fprintf(at->out,
+            "<path class=\"hypothesis\" style=\"stroke-dasharray:none\" d=\"M%.1f %.1fl%g %gl%g "
+            "%gl%g %gz\"/>\n",
+            px, py - size, size, size, -size, size, -size, -size);
+  }
+}
+
+void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity, const fg_lot_curve *curve) {
   double low = INFINITY, high = -INFINITY;
   char title[160], number[24];
   for (size_t i = 0; i < quantity->places; i++) {
@@ -50,6 +78,9 @@ void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
     include(quantity->place[i].mean + reach, &low, &high);
   }
   if (!(high >= low)) return;
+  double value;
+  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
+    include(value, &low, &high);
   if (quantity->tolerance) {
     include(quantity->tolerance->lower, &low, &high);
     include(quantity->tolerance->upper, &low, &high);
@@ -71,6 +102,7 @@ void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
       fg_plot_segment(&at, x, place->mean - 2 * place->sd, x, place->mean + 2 * place->sd, "curve");
     fg_plot_dot(&at, x, place->mean, 6, "s1");
   }
+  put_curve(&at, quantity->row, curve);
   fg_plot_end(&at);
 }
 

@@ -6,8 +6,12 @@
 
 #include "lot/analysis.h"
 
-/* Mean ± 2 sd of each bump number, with the tolerance (thesis figure 5.17). */
-void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity);
+/* Mean ± 2 sd of each bump number, with the tolerance (thesis figure 5.17), and the reference curve
+ * where it speaks of this quantity; NULL: none. */
+void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity, const fg_lot_curve *curve);
+
+/* What the curve says of a quantity at its i-th point; false beyond its end, and of others. */
+bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i, double *value);
 
 /* Histogram and kernel density, with the mode (figure 5.11). `scale` and `shift` turn the values
  * into what the axis shows: scale × value + shift. */

@@ -14,6 +14,7 @@
 #include "foilgauge/scan_loop.h"
 #include "foilgauge/stiffness.h"
 #include "lot/dies.h"
+#include "lot/reference_curve.h"
 #include "report/measure/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -138,6 +139,7 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
     return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
   FG_TRY(fg_design_check(ctx, &settings->design));
   FG_TRY(fg_lot_dies_check(ctx, settings));
+  FG_TRY(fg_reference_curve_check(ctx, settings));
   return fg_report_check_tolerances(ctx, &settings->design);
 }
 
@@ -244,6 +246,8 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
       FG_TRY(read_design(ctx, path, value, &settings->design));
     else if (!strcmp(value->string, "dies"))
       FG_TRY(fg_lot_dies_read(ctx, path, value, settings));
+    else if (!strcmp(value->string, "reference_curve"))
+      FG_TRY(fg_reference_curve_read(ctx, path, value, settings));
     else if (value != schema && strcmp(value->string, "version") != 0)
       return fg_fail(ctx, FG_ERR_DATA,
                      "unknown member '%.60s'; `foilgauge lot --print-recipe` shows them all",
@@ -350,6 +354,9 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
     if (with_jobs || !(members[i].jobs || is_silent(&members[i], settings)))
       write_member(&writer, &members[i], settings);
   fg_lot_dies_write(&writer, settings);
+  writer.exact = true; /* what is read again gives the same report */
+  fg_reference_curve_write(&writer, "reference_curve", settings);
+  writer.exact = false;
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);
