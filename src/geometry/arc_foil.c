@@ -233,13 +233,34 @@ static void fill(const fg_design *design, const fg_layout *layout, fg_foil *foil
   foil->arc.u_subtended_angle_error_pct = 100 * foil->arc.u_subtended_angle_deg / design_deg;
 }
 
+/* What the intensity model shifts the line by along its normal it shifts by another amount
+ * elsewhere along the strip: a bend of that size from the middle to the ends is no residual, the
+ * circle takes it up. It changes R by the bend over 1 - cos of half the angle, and moves the centre
+ * away from the middle of the arc by as much (reports/accuracy_arcs.md). */
+static void widen_bend(fg_foil *foil) {
+  fg_overall *o = &foil->overall;
+  const fg_strip *strip = &foil->strip;
+  double blur_mm = fmax(strip->blur_left_um, strip->blur_right_um) / 1000;
+  double half_rad = 0.5 * strip->stations[strip->count - 1].s_mm / o->radius_mm;
+  double by_mm = FG_LINE_SHIFT_BLURS * blur_mm / (1 - cos(fmin(half_rad, M_PI / 2)));
+  double middle = foil->rotation_deg * M_PI / 180;
+  const double move[3] = {-by_mm * cos(middle), -by_mm * sin(middle), by_mm};
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++)
+      o->covariance[a][b] += move[a] * move[b];
+}
+
 /* The tone curve moves an edge that is the datum, and its circle with it, by half of what it does
  * to the thickness. */
 static void widen_edge_datum(const fg_design *design, fg_foil *foil) {
   fg_overall *o = &foil->overall;
   double shift = fg_foil_tone_doubt(foil) * foil->strip.tone_um / 2000;
-  if (design->datum == FG_DATUM_MID) return;
-  o->covariance[2][2] += shift * shift;
+  if (design->datum != FG_DATUM_MID) o->covariance[2][2] += shift * shift;
+}
+
+static void take_uncertainties(const fg_design *design, fg_overall *o) {
+  for (int i = 0; i < 2; i++)
+    o->u_centre_mm[i] = sqrt(o->covariance[i][i]);
   o->u_radius_mm = sqrt(o->covariance[2][2]);
   o->u_springback_error_pct = 100 * o->u_radius_mm / design->overall_radius_mm;
 }
@@ -256,7 +277,9 @@ void fg_arc_foil_derive(const fg_design *design, const fg_layout *layout, fg_foi
   }
   foil->rotation_deg = atan2(s, c) * 180 / M_PI;
   forget(&foil->arc);
+  widen_bend(foil);
   widen_edge_datum(design, foil);
+  take_uncertainties(design, &foil->overall);
   bool lip = layout->turning.lip_first || layout->turning.lip_last;
   for (int i = 0; i < 2; i++) {
     bool bent = i ? layout->turning.lip_last : layout->turning.lip_first;
