@@ -135,7 +135,7 @@ static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
     at = curve->point[i].bump;
   }
   if (!bumps) return;
-  fprintf(out, " %s: %+.3g %% on the mean of %d bumps, farthest %+.3g %% at bump %d.",
+  fprintf(out, " %s: %+.3g percentage points on the mean of %d bumps, farthest %+.3g at bump %d.",
           quantity->row->words, sum / bumps, bumps, most, at);
 }
 
