@@ -77,6 +77,15 @@ typedef struct fg_die_station {
   int bump;           /* number; 0: the lands', -1: neither */
 } fg_die_station;
 
+/* Noise along the bumps' arcs by restricted likelihood (src/die/form.h). */
+typedef struct fg_die_form {
+  double sd_mm;       /* of means over a small part of an arc */
+  double length_mm;   /* of its correlation: exp(-d/l), where it is `smooth` (1 + d/l + (d/l)²/3)
+                         exp(-d/l) */
+  double white_share; /* of the variance; the rest is correlated */
+  bool smooth;
+} fg_die_form;
+
 /* One trace measured; lengths of the design's datum line, centres of the trace (x, z, mm). */
 typedef struct fg_die_trace {
   const char *path; /* not owned */
@@ -93,7 +102,7 @@ typedef struct fg_die_trace {
   size_t lands, cut_bumps; /* cut: seen in part only, at an end or too steep */
   int last_number;         /* the highest number of the bumps whose crown is seen */
   double noise_um;         /* sd of the bumps' residuals */
-  double correlation_mm;   /* integral length of their correlation */
+  fg_die_form form;        /* what they are made of */
   double shift_mm;         /* what the tip and the datum add to a bump's traced radius */
   fg_overall overall;      /* springback_error_pct is the error with its sign turned round */
   fg_bump *bumps;          /* in order of number; owned */

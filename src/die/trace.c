@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "die/form.h"
 #include "die/plausible.h"
 #include "foilgauge/die.h"
 #include "geometry/bump_places.h"
@@ -90,20 +91,25 @@ static bool is_whole(const fg_layout *layout, size_t i, double angle_deg) {
   return length > WHOLE_SHARE * angle_deg * M_PI / 180 * arc->circle.radius;
 }
 
-static void find_covariances(fg_layout *layout, double angle_deg, fg_arc *work,
-                             fg_die_trace *trace) {
+static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double angle_deg,
+                                  fg_die_trace *trace) {
   fg_noise_model noise;
+  fg_arc **whole = NULL;
   size_t n = 0;
+  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *whole, (void **)&whole));
+  double square = 0;
   for (size_t i = 0; i < layout->turning.bump_count; i++)
-    if (is_whole(layout, i, angle_deg)) work[n++] = layout->bumps[i];
-  fg_noise_estimate(&layout->line, work, n, 0, &noise);
-  trace->noise_um = 1000 * sqrt(noise.covariance[0]);
-  trace->correlation_mm = noise.integral_stations * layout->line.strip->step_mm;
-  for (size_t i = 0; i < layout->turning.bump_count; i++)
-    if (layout->fitted[i]) fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
+    if (is_whole(layout, i, angle_deg)) {
+      whole[n++] = &layout->bumps[i];
+      square += layout->bumps[i].rms_mm * layout->bumps[i].rms_mm;
+    }
+  trace->noise_um = 1000 * sqrt(square / (double)n);
+  fg_status status = fg_die_form_find(ctx, &layout->line, whole, n, &trace->form);
+  free(whole);
   fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
   fg_arc_covariance(&layout->line, &noise, &layout->overall);
   fg_arc_cluster_covariance(&layout->line, LANDS_P, &layout->overall);
+  return status;
 }
 
 /* What is added to a bump's traced radius, and taken off that of the lands: the tip's radius, which
@@ -281,11 +287,8 @@ static void turn_up(fg_die_trace *trace) {
 static fg_status take_layout(fg_context *ctx, const fg_design *design, const fg_die_source *source,
                              const fg_die_profile *profile, fg_layout *layout,
                              fg_die_trace *trace) {
-  fg_arc *work = NULL;
   FG_TRY(fg_die_check_half(ctx, source->path, profile, layout));
-  FG_TRY(fg_memory_allocate(ctx, layout->turning.bump_count, sizeof *work, (void **)&work));
-  find_covariances(layout, design->bump_angle_deg, work, trace);
-  free(work);
+  FG_TRY(find_covariances(ctx, layout, design->bump_angle_deg, trace));
   FG_TRY(fill_stations(ctx, layout, trace));
   trace->lands = layout->land_count;
   trace->shift_mm = datum_shift(design, profile);
