@@ -36,7 +36,9 @@ expect 64 "two outputs cannot go to one file" "$program" design --html "$work/a"
 echo '{"schema": "foilgauge/design/1", "form": "sinusoidal"}' >"$work/sinus.json"
 "$program" design "$work/sinus.json" --friction 5 --html "$work/sinus.html" -o "$work/sinus-out.json" ||
   fail "a sinusoidal design"
-valid nominal.schema.json "$work/stiff.json" "$work/soft.json" "$work/none.json" "$work/sinus-out.json"
+"$program" design "$root/samples/top_foil_design.json" -o "$work/arc.json" || fail "design of a plain strip"
+expect 65 "has no bumps" "$program" design "$root/samples/top_foil_design.json" --html "$work/never.html"
+valid nominal.schema.json "$work/arc.json" "$work/stiff.json" "$work/soft.json" "$work/none.json" "$work/sinus-out.json"
 python3 - "$work" <<'END' || fail "the stiffness of a design"
 import json, sys
 one, soft, none, sinus = (json.load(open(f"{sys.argv[1]}/{name}.json")) for name in ("stiff", "soft", "none", "sinus-out"))
