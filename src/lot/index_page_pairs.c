@@ -6,7 +6,11 @@
 #include "lot/index.h"
 #include "report/measure/measure_page_parts.h"
 
-enum { PAIRS_SHOWN_MAX = 40, VALUE = 96 };
+enum {
+  PAIRS_SHOWN_MAX = 40,
+  PAIRS_ALIKE = 5, /* of those that do not differ, the nearest to it */
+  VALUE = 96,
+};
 
 static void put_value(FILE *out, double value, const char *format) {
   if (isfinite(value))
@@ -51,8 +55,10 @@ static void put_pair(FILE *out, const fg_index *index, const fg_index_pair *pair
 }
 
 void fg_index_put_pairs(FILE *out, const fg_index *index) {
-  size_t shown = index->pair_count < PAIRS_SHOWN_MAX ? index->pair_count : PAIRS_SHOWN_MAX;
+  size_t most = index->differing + PAIRS_ALIKE, pairs = index->pair_count;
+  size_t shown = most < PAIRS_SHOWN_MAX ? most : PAIRS_SHOWN_MAX;
   char name[2][VALUE];
+  shown = shown < pairs ? shown : pairs;
   if (!shown) return;
   fputs("<section>\n<h1>Which lots differ</h1>\n<div class=\"scroll "
         "lots\"><table><thead><tr><th>quantity"
@@ -66,15 +72,18 @@ void fg_index_put_pairs(FILE *out, const fg_index *index) {
       fg_text_clip(name[k], VALUE, "%zu  %s", lots[k] + 1, index->lots[lots[k]].name);
     put_pair(out, index, pair, name[0], name[1], "");
   }
-  fprintf(out,
-          "</tbody></table></div>\n<p class=\"note\">Bold: differs beyond chance. %zu of %zu pairs "
-          "do%s. Welch&#39;s test of the means of foils: the error is what foils of one lot "
-          "scatter, not bumps, which one foil makes alike. All tests of this page are one family "
-          "(Holm 1979): the chance of even one false difference is 5 %% at most. What all scans "
-          "of a scanner have in common is in no interval.</p>\n</section>\n",
-          index->differing, index->pair_count,
-          shown < index->pair_count ? ", those that differ most are shown; more: the JSON report"
-                                    : "");
+  fprintf(
+      out,
+      "</tbody></table></div>\n<p class=\"note\">Bold: differs beyond chance, %zu of %zu tests%s. "
+      "Welch&#39;s test of the means of foils: the error is what foils of one lot scatter, not "
+      "bumps, which one foil makes alike. All tests of lots are one family (Holm 1979): the "
+      "chance of even one false difference among them is 5 %% at most. Intervals are of each "
+      "pair by itself; what all scans of a scanner have in common is in none.</p>\n"
+      "</section>\n",
+      index->differing, pairs,
+      shown < pairs ? "; those that are surest to differ are shown, the others are in the JSON "
+                      "report"
+                    : "");
 }
 
 static void put_die_pairs(FILE *out, const fg_index *index) {

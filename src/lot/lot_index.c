@@ -77,14 +77,30 @@ static fg_status make(fg_context *ctx, const fg_lot_index_request *request, fg_i
   return fg_index_say(ctx, index);
 }
 
-static fg_status write_one(fg_context *ctx, const fg_index *index, int kind, const char *path) {
-  fg_output output;
-  if (!path) return FG_OK;
-  FG_TRY(fg_output_open(ctx, path, &output));
-  fg_status status = kind == PAGE   ? fg_index_write_page(ctx, index, path, output.stream)
-                     : kind == JSON ? fg_index_write_json(ctx, index, output.stream)
-                                    : fg_index_write_csv(ctx, index, output.stream);
-  return fg_output_end(ctx, &output, status);
+static fg_status write_kind(fg_context *ctx, const fg_index *index, int kind, const char *path,
+                            FILE *out) {
+  if (kind == PAGE) return fg_index_write_page(ctx, index, path, out);
+  return kind == JSON ? fg_index_write_json(ctx, index, out) : fg_index_write_csv(ctx, index, out);
+}
+
+/* All are written and flushed before one gets its name: none where one cannot be written. */
+static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *request,
+                               const fg_index *index) {
+  const char *const path[OUTPUTS] = {request->page, request->json, request->csv};
+  fg_output output[OUTPUTS];
+  int opened = 0;
+  fg_status status = FG_OK;
+  for (; opened < OUTPUTS && status == FG_OK; opened++)
+    if (path[opened]) status = fg_output_open(ctx, path[opened], &output[opened]);
+  if (status != FG_OK) opened--; /* the last one is not open */
+  for (int i = 0; i < OUTPUTS && status == FG_OK; i++)
+    if (path[i]) {
+      status = write_kind(ctx, index, i, path[i], output[i].stream);
+      status = fg_output_flush(ctx, &output[i], status);
+    }
+  for (int i = 0; i < opened; i++)
+    if (path[i]) status = fg_output_end(ctx, &output[i], status);
+  return status;
 }
 
 /* What was not read, and the notes, for whoever called. */
@@ -108,10 +124,8 @@ fg_status fg_lot_index(fg_context *ctx, const fg_lot_index_request *request,
   *outcome = (fg_lot_index_outcome){0};
   FG_TRY_EXIT(check_outputs(ctx, request));
   FG_TRY_EXIT(make(ctx, request, &index));
-  FG_TRY_EXIT(write_one(ctx, &index, TABLE, request->csv));
-  FG_TRY_EXIT(write_one(ctx, &index, JSON, request->json));
-  FG_TRY_EXIT(write_one(ctx, &index, PAGE, request->page));
   FG_TRY_EXIT(take_outcome(ctx, &index, outcome));
+  FG_TRY_EXIT(write_outputs(ctx, request, &index));
 exit:
   if (status != FG_OK) fg_lot_index_outcome_free(outcome);
   fg_index_free(&index);

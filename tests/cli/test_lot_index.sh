@@ -145,7 +145,16 @@ for file in lot.json foils.csv bumps.csv index.html; do
   expect 64 'would overwrite' "$program" lot --index i.html -o a/$file a b
 done
 expect 64 'belongs to --index' "$program" lot scans -o x --csv x.csv
-expect 74 '' "$program" lot --index nowhere/i.html a b
+expect 74 'cannot be' "$program" lot --index y.html -o y.json --csv nowhere/y.csv a b
+[ -e y.html ] || [ -e y.json ] && fail "outputs beside one that cannot be written"
+python3 - a/lot.json <<'P'
+import json, sys
+lot = json.load(open(sys.argv[1]))
+lot["name"] = "a\x1b[31m"
+json.dump(lot, open(sys.argv[1], "w"))
+P
+expect 0 'Lots? .*a.x1B.31m|a.x1B.31m' index b a
+grep -q $'\x1b' i.html i.json stderr && fail "a control character of a lot's name"
 valid lot_index.schema.json kept*.json i.json
 valid lot.schema.json model/lot.json dated/lot.json
 exit $failed
