@@ -96,6 +96,13 @@ typedef struct fg_lot_settings {
   fg_lot_die dies[FG_LOT_DIES_MAX];
   size_t die_count;
   fg_lot_curve curve;        /* "reference_curve" in a recipe: the path of a CSV */
+  /* Bearings drawn from the lot's foils, in a recipe "assembly": {"bearings", "seed",
+   * "design_deviation_pct"}. */
+  struct {
+    size_t bearings; /* 0: none are drawn */
+    uint64_t seed;
+    double design_deviation_pct; /* of the clearance: of the bearings of the design beside them */
+  } assembly;
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
 } fg_lot_settings;
 
@@ -164,7 +171,8 @@ typedef struct fg_lot_outcome {
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
   bool bearings_judged; /* the design states tolerances of a bearing */
   size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];
-  size_t exceeded;   /* foils with a value that fails */
+  char assembly[3][400]; /* what drawn bearings come to, in words; "": none were drawn */
+  size_t exceeded;       /* foils with a value that fails */
   size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
   size_t torn;       /* lines of results.jsonl that were damaged or not whole, and measured again */
   size_t first_torn; /* the first of them, from 1 */

@@ -261,6 +261,8 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
             outcome->failed);
   fputc('\n', stderr);
   if (outcome->bearings_judged) say_bearings(outcome);
+  for (size_t i = 0; i < sizeof outcome->assembly / sizeof *outcome->assembly; i++)
+    if (outcome->assembly[i][0]) fprintf(stderr, "%s\n", outcome->assembly[i]);
   fprintf(stderr, "%s/index.html\n", folder);
   return fg_outcome_exit_code(&outcome->judged);
 }

@@ -127,6 +127,7 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_analyse_thickness(analysis);
   if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
   if (bumps) FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_assembly(ctx, analysis));
   FG_TRY(fg_lot_analyse_groups(ctx, analysis));
   return fg_lot_analyse_gauge(ctx, analysis);
 }
@@ -154,6 +155,7 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->bearing_count; i++)
     fg_decision_free(&analysis->bearings[i].decision);
   free(analysis->bearings);
+  fg_lot_assembly_free(&analysis->assembly);
   free(analysis->differences);
   free(analysis->gauges);
   free(analysis->foils);

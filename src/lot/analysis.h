@@ -7,6 +7,7 @@
 #include "foilgauge/control.h"
 #include "foilgauge/density.h"
 #include "foilgauge/stiffness.h"
+#include "lot/assembly.h"
 #include "lot/lot_report.h"
 #include "report/stiffness/stiffness_table.h"
 
@@ -136,6 +137,46 @@ typedef struct fg_lot_unplaced {
   size_t bad_pads;  /* a pad that is no number from 1 to pads: the next free one was taken */
 } fg_lot_unplaced;
 
+/* Why a foil takes no part in the drawn bearings. */
+typedef enum fg_lot_left_out {
+  FG_LOT_IN_STOCK,
+  FG_LOT_NOT_MEASURED,
+  FG_LOT_DEFECT,        /* fg_foil_defect */
+  FG_LOT_FAILS,         /* its own tolerances */
+  FG_LOT_FLAGGED,       /* what is seen of it may not be the foil's */
+  FG_LOT_CRUSHED,       /* a bump of it is */
+  FG_LOT_NO_CLEARANCE,  /* at one of its places: fewer bumps than the layout asks, or no value */
+  FG_LOT_SCANNED_AGAIN, /* in a gauge study: its first scan counts */
+  FG_LOT_LEFT_OUT
+} fg_lot_left_out;
+
+/* For people: "crushed bump". */
+const char *fg_lot_left_out_words(fg_lot_left_out why);
+
+/* What would change the share of bearings that assemble: the same lot, changed in one thing. */
+typedef struct fg_lot_change {
+  const char *name;  /* in JSON */
+  const char *words; /* for people: "the mean bump radius at the design's" */
+  double share, gain;
+  bool clear; /* the gain is more than twice the scatter of the draws */
+} fg_lot_change;
+
+enum { FG_LOT_CHANGES_MAX = 4 };
+
+typedef struct fg_lot_assembly {
+  bool asked;    /* the recipe asks for bearings */
+  char why[200]; /* why nothing was drawn; "": it was */
+  size_t left_out[FG_LOT_LEFT_OUT];
+  fg_lot_left_out *reason; /* of each foil of the lot; owned */
+  fg_stock stock;          /* owned */
+  fg_assembly_plan plan;
+  bool centred; /* the crowns surround the rotor, so that it has a place of most room */
+  fg_assembly_result drawn, design;
+  fg_lot_change change[FG_LOT_CHANGES_MAX];
+  size_t changes, classes; /* boxes that sorted foils would lie in */
+  char statement[3][400];
+} fg_lot_assembly;
+
 /* Two groups of the lot (dies, coils) in one quantity. */
 typedef struct fg_lot_difference {
   const fg_lot_quantity *quantity;
@@ -171,6 +212,7 @@ typedef struct fg_lot_analysis {
   size_t bearing_count, bearing_capacity;
   fg_lot_unplaced unplaced;
   size_t bearings_by_verdict[FG_VERDICT_NONE + 1];
+  fg_lot_assembly assembly;
   /* Of the local clearance relative to the design's, in percent: foils free, and fitted. */
   fg_lot_spread clearance_pct, clearance_fitted_pct;
   fg_lot_difference *differences;
@@ -211,6 +253,9 @@ void fg_lot_analyse_thickness(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_find_layout(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis);
+fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis);
+void fg_lot_assembly_free(fg_lot_assembly *assembly);
+void fg_lot_say_assembly(fg_lot_analysis *analysis); /* the statements */
 fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 

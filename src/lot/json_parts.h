@@ -11,4 +11,7 @@ void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis);
 /* Where bumps lie around a bearing, every bearing, the clearances of all bumps. */
 void fg_lot_json_bearings(fg_json *json, const fg_lot_analysis *analysis);
 
+/* Bearings drawn from the lot's foils; nothing where the recipe asks for none. */
+void fg_lot_json_assembly(fg_json *json, const fg_lot_analysis *analysis);
+
 #endif

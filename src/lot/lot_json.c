@@ -288,6 +288,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   if (bumps) fg_lot_json_bearings(&json, analysis);
   if (bumps) fg_lot_json_dies(&json, analysis);
   fg_reference_curve_write(&json, "reference_curve", &lot->settings);
+  if (bumps) fg_lot_json_assembly(&json, analysis);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)
     write_difference(&json, &analysis->differences[i]);

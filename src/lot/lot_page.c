@@ -229,6 +229,7 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
     fg_lot_put_dies(out, analysis);
     fg_lot_put_stiffness(out, analysis);
     fg_lot_put_bearings(out, analysis);
+    fg_lot_put_assembly(out, analysis);
   } else {
     fg_lot_put_arcs(out, analysis);
   }

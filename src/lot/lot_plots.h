@@ -31,4 +31,8 @@ void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis);
 /* Clearance around one bearing (figure 6.3). */
 void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing);
 
+/* Densities of value `value` (fg_assembly_row) of the bearings drawn and of those of the design,
+ * with the limits on it; µm. */
+void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t value);
+
 #endif

@@ -1,5 +1,6 @@
 /* Writes the files of a report. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "lot/writers.h"
@@ -38,6 +39,7 @@ static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcom
     outcome->foils_by_verdict[i] = analysis->by_verdict[i];
   outcome->bearings = analysis->bearing_count;
   outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
+  memcpy(outcome->assembly, analysis->assembly.statement, sizeof outcome->assembly);
   for (int i = 0; i <= FG_VERDICT_NONE; i++)
     outcome->bearings_by_verdict[i] = analysis->bearings_by_verdict[i];
 }

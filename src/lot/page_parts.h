@@ -24,6 +24,7 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis); /* of plain strips instead */
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis);
 
