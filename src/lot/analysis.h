@@ -146,7 +146,7 @@ typedef enum fg_lot_left_out {
   FG_LOT_FLAGGED,       /* what is seen of it may not be the foil's */
   FG_LOT_CRUSHED,       /* a bump of it is */
   FG_LOT_NO_CLEARANCE,  /* at one of its places: fewer bumps than the layout asks, or no value */
-  FG_LOT_SCANNED_AGAIN, /* in a gauge study: its first scan counts */
+  FG_LOT_SCANNED_AGAIN, /* a part has several scans: the first that can be built in counts */
   FG_LOT_LEFT_OUT
 } fg_lot_left_out;
 
@@ -158,7 +158,7 @@ typedef struct fg_lot_change {
   const char *name;  /* in JSON */
   const char *words; /* for people: "the mean bump radius at the design's" */
   double share, gain;
-  bool clear; /* the gain is more than twice the scatter of the draws */
+  bool clear; /* more than twice the scatter of the draws, up or down */
 } fg_lot_change;
 
 enum { FG_LOT_CHANGES_MAX = 4 };
@@ -236,6 +236,9 @@ typedef struct fg_lot_clearance {
 } fg_lot_clearance;
 fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_lot_foil *foil,
                                      int number);
+
+/* owner[i]: the foil of the lot that foil i is a scan of, itself where no part is named. */
+fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, size_t *owner);
 
 /* What the arch model leaves out of this lot's form; NULL: nothing. */
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);

@@ -22,26 +22,9 @@ const char *fg_lot_left_out_words(fg_lot_left_out why) {
       [FG_LOT_FLAGGED] = "flagged: what is seen of it may not be its own",
       [FG_LOT_CRUSHED] = "crushed bump",
       [FG_LOT_NO_CLEARANCE] = "no clearance at one of its places",
-      [FG_LOT_SCANNED_AGAIN] = "scanned again: its first scan counts",
+      [FG_LOT_SCANNED_AGAIN] = "scanned again: one scan of it counts",
   };
   return words[why];
-}
-
-/* Repeated scans of a gauge study are one foil. */
-static bool is_scanned_again(const fg_lot_analysis *analysis, size_t at) {
-  const fg_manifest *manifest = &analysis->lot->manifest;
-  const fg_lot_settings *settings = &analysis->lot->settings;
-  size_t part = fg_manifest_column(manifest, settings->part_column);
-  size_t operator= fg_manifest_column(manifest, settings->operator_column);
-  const fg_lot_foil *foil = &analysis->foils[at];
-  if (part == FG_NO_COLUMN || operator== FG_NO_COLUMN) return false;
-  const char *name = fg_manifest_cell(manifest, foil->item, part);
-  for (size_t i = 0; *name && i < at; i++)
-    if (analysis->assembly.reason[i] == FG_LOT_IN_STOCK &&
-        analysis->foils[i].foil->number == foil->foil->number &&
-        !strcmp(fg_manifest_cell(manifest, analysis->foils[i].item, part), name))
-      return true;
-  return false;
 }
 
 static fg_lot_left_out reason_of(const fg_lot_analysis *analysis, size_t at) {
@@ -58,20 +41,33 @@ static fg_lot_left_out reason_of(const fg_lot_analysis *analysis, size_t at) {
   for (size_t k = 0; k < layout->bumps_per_pad; k++)
     if (!isfinite(fg_lot_clearance_of(analysis, foil, (int)(layout->first_bump + k)).mm))
       return FG_LOT_NO_CLEARANCE;
-  return is_scanned_again(analysis, at) ? FG_LOT_SCANNED_AGAIN : FG_LOT_IN_STOCK;
+  return FG_LOT_IN_STOCK;
+}
+
+static fg_status find_reasons(fg_context *ctx, fg_lot_analysis *analysis) {
+  fg_lot_assembly *assembly = &analysis->assembly;
+  size_t count = analysis->foil_count;
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *assembly->reason, &block));
+  assembly->reason = block;
+  FG_TRY(fg_memory_allocate(ctx, count, 2 * sizeof(size_t), &block));
+  size_t *owner = block, *scans = owner + count; /* scans: in stock, of the part that owns them */
+  fg_status status = fg_lot_find_owners(ctx, analysis, owner);
+  for (size_t i = 0; i < count && status == FG_OK; i++) {
+    fg_lot_left_out why = reason_of(analysis, i);
+    if (why == FG_LOT_IN_STOCK && scans[owner[i]]++) why = FG_LOT_SCANNED_AGAIN;
+    assembly->reason[i] = why;
+    assembly->left_out[why]++;
+  }
+  free(owner);
+  return status;
 }
 
 static fg_status take_stock(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   fg_stock *stock = &assembly->stock;
   size_t places = analysis->layout.bumps_per_pad, at = 0;
-  void *block;
-  FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *assembly->reason, &block));
-  assembly->reason = block;
-  for (size_t i = 0; i < analysis->foil_count; i++) {
-    assembly->reason[i] = reason_of(analysis, i);
-    assembly->left_out[assembly->reason[i]]++;
-  }
+  FG_TRY(find_reasons(ctx, analysis));
   FG_TRY(fg_stock_allocate(ctx, assembly->left_out[FG_LOT_IN_STOCK], places, stock));
   for (size_t i = 0; i < analysis->foil_count; i++)
     for (size_t k = 0; k < places && assembly->reason[i] == FG_LOT_IN_STOCK; k++) {
@@ -208,11 +204,12 @@ static void add_change(fg_lot_assembly *assembly, const char *name, const char *
   double share = (double)assembled / of;
   /* As if the draws were independent; the same draws twice scatter less. */
   double scatter = sqrt((before * (1 - before) + share * (1 - share)) / of);
-  assembly->change[assembly->changes++] = (fg_lot_change){.name = name,
-                                                          .words = words,
-                                                          .share = share,
-                                                          .gain = share - before,
-                                                          .clear = share - before > 2 * scatter};
+  assembly->change[assembly->changes++] =
+      (fg_lot_change){.name = name,
+                      .words = words,
+                      .share = share,
+                      .gain = share - before,
+                      .clear = fabs(share - before) > 2 * scatter};
 }
 
 /* The largest gain first; equal ones as they come. */

@@ -28,14 +28,14 @@ static void say_how_many(const fg_lot_assembly *assembly, char *text, size_t siz
   size_t foils = assembly->stock.foils, pads = assembly->plan.layout.pads;
   char now[16], low[16], high[16], sure[16], maybe[16];
   add(text, size,
-      "Of %zu bearings drawn from %zu foils %zu assemble (%s %%; the foils being few, %s to %s %%)",
-      assembly->plan.bearings, foils, share->count, percent(share->share, now),
+      "%zu of %zu bearings drawn from %zu foils assemble: %s %% (%s to %s %% as so few foils tell",
+      share->count, assembly->plan.bearings, foils, percent(share->share, now),
       percent(share->foils_low, low), percent(share->foils_high, high));
   if (share->surely < share->possibly)
-    add(text, size, "; surely %s %%, measurement considered, and at most %s %%",
-        percent(share->surely, sure), percent(share->possibly, maybe));
-  add(text, size, ": %.1f of the %zu that these foils make.", share->share * (double)(foils / pads),
-      foils / pads);
+    add(text, size, ", %s to %s %% as the measurement does", percent(share->surely, sure),
+        percent(share->possibly, maybe));
+  add(text, size, "). That is %.1f of the %zu bearings that these foils make.",
+      share->share * (double)(foils / pads), foils / pads);
 }
 
 static void put_limit(const fg_assembly_limit *limit, char *text, size_t size) {
@@ -78,7 +78,7 @@ static void say_what_would_help(const fg_lot_assembly *assembly, char *text, siz
     add(text, size, "No change is needed: every bearing drawn assembles.");
     return;
   }
-  if (!assembly->changes || !best->clear) {
+  if (!assembly->changes || !best->clear || best->gain <= 0) {
     add(text, size, "None of the changes tried makes more of them assemble than chance does.");
     return;
   }

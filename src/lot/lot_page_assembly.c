@@ -91,6 +91,11 @@ void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t val
     put_curve(&at, &design, "hypothesis");
     put_curve(&at, &drawn, "curve");
     put_limits(&at, plan, row);
+    double middle = UM_PER_MM * assembly->design.quantile[value][FG_ASSEMBLY_QUANTILES / 2];
+    bool right = middle > (at.x_low + at.x_high) / 2;
+    if (design.there)
+      fg_plot_text(&at, middle + (right ? -0.03 : 0.03) * (at.x_high - at.x_low), 0.8 * at.y_high,
+                   right ? "end" : "key", "at design");
     fg_plot_end(&at);
   }
   if (drawn.there) fg_density_free(&drawn.density);
