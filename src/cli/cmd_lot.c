@@ -78,12 +78,12 @@ static const char doc[] =
     "bearing "
     "(circularity_mm, clearance_min_mm, clearance_centred_min_mm) judge the bearings that the "
     "columns `bearing` and `pad` say, or without them foils in a row; a foil whose cell is empty "
-    "is "
-    "in none.\n\n"
+    "is in none. The recipe's \"assembly\": {\"bearings\": 1000, \"seed\": 1} says how many "
+    "bearings are drawn from the foils, to see how many would assemble; 0 draws none.\n\n"
     "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
     "more than U (of foils or of bearings), or a bump is missing; 2 something could not be "
-    "measured; 3 cannot tell: a limit "
-    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output. A "
+    "measured; 3 cannot tell: a limit lies within U of a value, none is exceeded; 64 usage; 65 bad "
+    "data; 74 input or output. A "
     "shard is not judged: 0 or 2.";
 
 static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
