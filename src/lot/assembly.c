@@ -23,41 +23,24 @@ const fg_quantity *fg_assembly_row(size_t value) {
   return fg_quantity_find(FG_QUANTITY_OF_BEARING, names[value]);
 }
 
-fg_status fg_stock_allocate(fg_context *ctx, size_t foils, size_t places, fg_stock *stock) {
-  double **const parts[] = {&stock->clearance_mm, &stock->shared_mm, &stock->own_mm};
-  *stock = (fg_stock){.foils = foils, .places = places};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    void *block;
-    fg_status status = fg_memory_allocate(ctx, foils * places, sizeof(double), &block);
-    if (status != FG_OK) {
-      fg_stock_free(stock);
-      return status;
-    }
-    *parts[i] = block;
+/* Where the beta distribution reaches a probability: by bisection, for GSL's own inverse does not
+ * always converge. */
+static double beta_quantile(double probability, double a, double b) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 60; i++) {
+    double middle = (low + high) / 2;
+    if (gsl_cdf_beta_P(middle, a, b) < probability)
+      low = middle;
+    else
+      high = middle;
   }
-  return FG_OK;
-}
-
-fg_status fg_stock_copy(fg_context *ctx, const fg_stock *stock, fg_stock *copy) {
-  size_t bytes = stock->foils * stock->places * sizeof(double);
-  FG_TRY(fg_stock_allocate(ctx, stock->foils, stock->places, copy));
-  memcpy(copy->clearance_mm, stock->clearance_mm, bytes);
-  memcpy(copy->shared_mm, stock->shared_mm, bytes);
-  memcpy(copy->own_mm, stock->own_mm, bytes);
-  return FG_OK;
-}
-
-void fg_stock_free(fg_stock *stock) {
-  free(stock->clearance_mm);
-  free(stock->shared_mm);
-  free(stock->own_mm);
-  *stock = (fg_stock){0};
+  return (low + high) / 2;
 }
 
 void fg_assembly_interval(double count, double of, double confidence, double *low, double *high) {
   double tail = (1 - confidence) / 2;
-  *low = count > 0 ? gsl_cdf_beta_Pinv(tail, count, of - count + 1) : 0;
-  *high = count < of ? gsl_cdf_beta_Qinv(tail, count + 1, of - count) : 1;
+  *low = count > 0 ? beta_quantile(tail, count, of - count + 1) : 0;
+  *high = count < of ? beta_quantile(1 - tail, count + 1, of - count) : 1;
 }
 
 /* A stream of its own for every purpose, draw by draw. */

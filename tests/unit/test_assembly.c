@@ -178,6 +178,12 @@ static void intervals_are_exact(void **state) {
   fg_assembly_interval(5, 10, 0.95, &low, &high);
   assert_near(low, 0.1871, 5e-5);
   assert_near(high, 0.8129, 5e-5);
+  /* Shares that are no whole number of bearings, as of few foils: always an interval about them. */
+  for (double of = 4.0 / 3; of < 40; of += 1.0 / 3)
+    for (double share = 0.001; share < 1; share += 0.0173) {
+      fg_assembly_interval(share * of, of, 0.95, &low, &high);
+      assert_true(low >= 0 && low <= share && high >= share && high <= 1);
+    }
 }
 
 /* Measurement's doubt: what lies within U of a limit is neither surely in nor surely out. */
