@@ -127,7 +127,7 @@ static void a_seed_is_a_result(void **state) {
   other.seed = 2;
   assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &a), FG_OK);
   assert_int_equal(fg_assembly_draw(&ctx, &stock, &plan, true, &b), FG_OK);
-  assert_int_equal(fg_assembly_draw(&ctx, &stock, &other, true, &c), FG_OK);
+  assert_int_equal(fg_assembly_draw(&ctx, &stock, &other, false, &c), FG_OK);
   assert_memory_equal(&a.assembled.share, &b.assembled.share, sizeof(double));
   assert_memory_equal(a.value[0], b.value[0], 1000 * sizeof(double));
   assert_memory_equal(&a.assembled.foils_low, &b.assembled.foils_low, sizeof(double));
