@@ -61,7 +61,7 @@ static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_f
   return FG_OK;
 }
 
-/* Without tolerances the farthest height from the lot's mean is the worst. */
+/* Without tolerances of foils the farthest height from the lot's mean is the worst. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
   const fg_lot_quantity *height = fg_lot_find_quantity(analysis, "height_mm");
   if (!height || !(height->sd > 0)) return;
@@ -122,7 +122,8 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
   bool bumps = fg_form_has_bumps(analysis->lot->settings.design.form);
   if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
-  if (!analysis->lot->settings.design.tolerance_count) rank_by_spread(analysis);
+  const fg_design *design = &analysis->lot->settings.design;
+  if (design->tolerance_count == fg_report_of_bearing(design, NULL, 0)) rank_by_spread(analysis);
   find_worst(analysis);
   fg_lot_analyse_thickness(analysis);
   if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));

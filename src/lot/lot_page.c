@@ -27,7 +27,9 @@ static void put_tiles(FILE *out, const fg_lot_analysis *analysis) {
   put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED] + analysis->failed_scans);
   if (of_bearing) {
     by = analysis->bearings_by_verdict;
-    put_tile(out, "Bearings", analysis->bearing_count);
+    bool assumed = fg_manifest_column(&analysis->lot->manifest,
+                                      analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
+    put_tile(out, assumed ? "Bearings, foils in a row" : "Bearings", analysis->bearing_count);
     put_tile(out, "Bearings pass", by[FG_VERDICT_PASS]);
     put_tile(out, "Bearings fail", by[FG_VERDICT_FAIL]);
     if (by[FG_VERDICT_UNDECIDED]) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
