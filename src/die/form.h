@@ -5,7 +5,7 @@
  * and shorter than it is. So size and length of the noise are found by restricted likelihood, which
  * knows what a circle takes up, over all bumps of a trace together: residuals in bins along the arc
  * are white noise beside noise with a correlation exp(-d/l) or, smooth, (1 + d/l + (d/l)²/3)
- * exp(-d/l). * On very smooth form that is on the safe side (reports/thesis/die.md).
+ * exp(-d/l). On very smooth form that is on the safe side (reports/thesis/die.md).
  */
 #ifndef FG_DIE_FORM_H
 #define FG_DIE_FORM_H

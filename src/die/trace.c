@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "die/form.h"
 #include "die/plausible.h"
 #include "foilgauge/die.h"
@@ -53,6 +54,11 @@ static fg_status make_strip(fg_context *ctx, const fg_die_profile *p, fg_strip *
   return FG_OK;
 }
 
+/* A bump's arc is no circle where it scatters by this factor more than the median one, and by more
+ * than a stylus' own noise. */
+#define POOR_SCATTER  4.0
+#define POOR_LEAST_MM 0.0002
+enum { BUMPS_MOST = 512 };
 /* A bump's crown is away from the lands by more than this share of its height. */
 #define CROWN_SHARE 0.5
 enum { CROWNS_MOST = 1000 };
@@ -89,6 +95,19 @@ static bool is_whole(const fg_layout *layout, size_t i, double angle_deg) {
     b--;
   double length = strip->stations[b].s_mm - strip->stations[a].s_mm;
   return length > WHOLE_SHARE * angle_deg * M_PI / 180 * arc->circle.radius;
+}
+
+/* Where the tip's cone or the arm touched, a flank goes on as a straight line, and the arc with it:
+ * such a bump stands out by its residuals. */
+static void drop_bent_arcs(double angle_deg, fg_layout *layout) {
+  double rms[BUMPS_MOST];
+  size_t n = 0;
+  for (size_t i = 0; i < layout->turning.bump_count && n < BUMPS_MOST; i++)
+    if (is_whole(layout, i, angle_deg)) rms[n++] = layout->bumps[i].rms_mm;
+  if (n < 3) return;
+  double limit = POOR_SCATTER * fg_select(rms, n, n / 2);
+  for (size_t i = 0; i < layout->turning.bump_count; i++)
+    if (layout->bumps[i].rms_mm > fmax(limit, POOR_LEAST_MM)) layout->fitted[i] = false;
 }
 
 static fg_status find_covariances(fg_context *ctx, fg_layout *layout, double angle_deg,
@@ -288,6 +307,7 @@ static fg_status take_layout(fg_context *ctx, const fg_design *design, const fg_
                              const fg_die_profile *profile, fg_layout *layout,
                              fg_die_trace *trace) {
   FG_TRY(fg_die_check_half(ctx, source->path, profile, layout));
+  drop_bent_arcs(design->bump_angle_deg, layout);
   FG_TRY(find_covariances(ctx, layout, design->bump_angle_deg, trace));
   FG_TRY(fill_stations(ctx, layout, trace));
   trace->lands = layout->land_count;

@@ -80,6 +80,19 @@ near "u of h" "$(value doubt.json 'r["halves"][0]["bumps"][0]["u_height_mm"]')" 
 near "the tip" "$(value corrected.json 'r["halves"][0]["mean"]["radius_mm"]')" \
   "$(value one.json 'r["halves"][0]["mean"]["radius_mm"] - 0.002')" 1e-8
 
+# A flank that the tip's cone made straight is no part of a bump: beyond 62 degrees the trace goes on as a line.
+awk 'BEGIN { k = 1.88 } { x[NR] = $1; z[NR] = $2 }
+  END { for (i = 2; i <= NR; i++) { low = z[i - 1] - k * (x[i] - x[i - 1]); if (z[i] < low) z[i] = low }
+        for (i = NR - 1; i >= 1; i--) { low = z[i + 1] - k * (x[i + 1] - x[i]); if (z[i] < low) z[i] = low }
+        for (i = 1; i <= NR; i++) printf "%.6f\t%.6f\n", x[i], z[i] }' bare.txt >flank.txt
+"$program" die $common --unit mm flank.txt -o flank.json || fail "a trace with straight flanks"
+python3 - flank.json one.json <<'END' || fail "straight flanks move radii"
+import json, sys
+cone, one = (json.load(open(n))["halves"][0]["bumps"] for n in sys.argv[1:])
+radii = {b["number"]: b["radius_mm"] for b in one}
+sys.exit(not (len(cone) >= 4 and all(abs(b["radius_mm"] - radii[b["number"]]) < 5 * b["u_radius_mm"] for b in cone)))
+END
+
 # The datum: the concave half touches the strip's inner side, the convex half its outer side.
 design() {
   printf '{"schema":"foilgauge/design/1","bump_count":%s,"datum":"%s","tolerances":{%s}}' "$@"

@@ -113,7 +113,7 @@ static void halves_are_named(void **state) {
   assert_null(fg_die_half_in("", 0));
 }
 
-enum { STATIONS = 366, BUMPS = 7, DIES = 16 };
+enum { STATIONS = 366, BUMPS = 7, DIES = 10 };
 #define RADIUS 3.32
 #define STEP   0.01
 
