@@ -22,9 +22,11 @@ build_preset release build
 build_preset sanitize build-sanitize
 
 if [ $long = yes ]; then
+  export FOILGAUGE_TEST_LONG=1 # tests that have more to show where time is no matter
   tests/bench/accuracy.sh
   tests/bench/speed.sh
   tests/bench/thesis_lot.sh
+  tests/bench/thesis_lots.sh
   tests/bench/lot_speed.sh
   tests/bench/slurm_lot.sh || [ $? = 77 ]
   tests/bench/doe_end_to_end.sh

@@ -12,8 +12,8 @@
  * Castigliano: the displacement along load i is the derivative of the strain energy by it,
  *   u_i = sum over j of f_ij P_j,  f_ij = R³/D (∫ m_i m_j dpsi + e ∫ n_i n_j dpsi),
  *   e = D / (EA R²) = t² / (12 R²).
- * m and n are sums of 1, sin psi, cos psi, so every f_ij is a closed form in
- *   ∫ 1, sin, cos, sin², cos², sin cos.  Shear is left out: below e times three.
+ * m and n are sums of 1, sin psi, cos psi. Shear is left out: below e times three. What other
+ * models make of the same bump: foilgauge/stiffness.h.
  *
  * Free bump (both feet slide; W = 2 V, and half of the arc says all): the crown sinks by
  *   delta = f_VV V + f_VH H,   a foot moves outwards by   -(f_VH V + f_HH H).
@@ -39,6 +39,13 @@
  * equally spaced, `bumps_per_pad` of each at the pitch of its bumps (Gen II: 3 × 9, 13 1/3
  * degrees; thesis figures 5.13 and 6.3: 3 × 7, 17.14 degrees). A rotor shifted by (a, b) changes
  * them by -(a cos + b sin), to first order (an error below shift² / D).
+ *
+ * DOUBT. Every result r of a bearing is a sum of clearances, sum of g_i c_i, as long as the same
+ * places stay least, highest or touched. What all places share (the strip's thickness: its doubt is
+ * the scanner's tone curve, the same in every scan) adds (sum g_i s_i)²: all of it to a clearance,
+ * nothing to a circularity. Of the rest of a clearance's u some is the bump's own and some that of
+ * its foil's overall circle; which is not kept apart, so the larger counts of independent places,
+ * sum (g_i u_i)², and of one error for all places of a pad, sum over pads of (sum g_i u_i)².
  */
 #ifndef FOILGAUGE_BEARING_H
 #define FOILGAUGE_BEARING_H
@@ -110,12 +117,25 @@ typedef struct fg_bearing_clearance {
   double centred_least_mm; /* the least clearance of a rotor where it is largest; NaN when
                               the crowns leave half of the bearing open */
   double centred_at_mm[2]; /* where that rotor's axis lies */
+  /* Standard uncertainties; NaN where no doubt was given. */
+  double u_mean_mm, u_least_mm, u_most_mm, u_circularity_mm, u_centred_least_mm;
 } fg_bearing_clearance;
+
+/* Standard uncertainty of every clearance: what all share, and the rest. */
+typedef struct fg_bearing_doubt {
+  const double *shared_mm, *own_mm; /* of each place; finite where the clearance is */
+  const size_t *pad;                /* which pad it is of, below FG_BEARING_BUMPS_MAX */
+} fg_bearing_doubt;
 
 /* `clearance_mm` at directions `angle_deg`; NaN is a place that is not known. FG_ERR_DATA for fewer
  * than three known places or more than FG_BEARING_BUMPS_MAX. */
 fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const double *clearance_mm,
                             size_t count, fg_bearing_clearance *result);
+
+/* The same with the uncertainties of what comes out; `doubt` NULL: none. */
+fg_status fg_bearing_assess_doubt(fg_context *ctx, const double *angle_deg,
+                                  const double *clearance_mm, size_t count,
+                                  const fg_bearing_doubt *doubt, fg_bearing_clearance *result);
 
 #ifdef __cplusplus
 }

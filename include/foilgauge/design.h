@@ -19,7 +19,12 @@ typedef enum fg_form {
   FG_FORM_CLASSICAL,  /* bumps, lands between them, a lip at one end */
   FG_FORM_SINUSOIDAL, /* long fillets, short lands, no lip */
   FG_FORM_DISCS,      /* no foil: round holes and discs */
+  FG_FORM_ARC,        /* a plain strip, as a top foil: one circle from end to end, no bumps */
 } fg_form;
+
+static inline bool fg_form_has_bumps(fg_form form) {
+  return form == FG_FORM_CLASSICAL || form == FG_FORM_SINUSOIDAL;
+}
 
 /* Which line of the strip the lengths belong to: R, R0 (and so alpha, theta) of the design and of
  * the fits are of this line. X and h do not depend on it: the edges are parallel to the midline, so
@@ -35,7 +40,9 @@ typedef enum fg_datum {
 
 /* A tolerance: lower <= value <= upper, in the unit of the quantity. Unset limits are -inf, +inf.
  * `quantity` is the JSON name of a reported quantity: of a bump ("height_mm"), or of the whole
- * foil ("overall.radius_mm", "thickness_mm"). In a design file:
+ * foil ("overall.radius_mm", "thickness_mm"), or of a lot's bearings ("circularity_mm",
+ * "clearance_min_mm", "clearance_centred_min_mm", "clearance_mean_mm", "clearance_max_mm"). In a
+ * design file:
  *   "tolerances": { "height_mm": { "min": 0.55, "max": 0.58 }, "radius_error_pct": { "max": 5 } }
  */
 typedef struct fg_tolerance {
@@ -49,16 +56,18 @@ typedef struct fg_design {
   char name[64];
   fg_form form;
   fg_datum datum;
-  size_t bump_count;        /* expected; 0: not stated */
-  double bump_radius_mm;    /* R_D */
-  double bump_angle_deg;    /* alpha_D */
-  double overall_radius_mm; /* of the foil as designed; also R0_design of eq e */
-  double sleeve_radius_mm;  /* R_sleeve; default: overall_radius_mm */
-  double pitch_deg;         /* angle from bump to bump about O; default 13 1/3 */
-  double fillet_radius_mm;  /* default 0.35 */
-  double thickness_mm;      /* t */
-  double rotor_diameter_mm; /* D */
-  size_t diameter_count;    /* discs only: known diameters, in any order */
+  size_t bump_count;            /* expected; 0: not stated */
+  double bump_radius_mm;        /* R_D */
+  double bump_angle_deg;        /* alpha_D */
+  double overall_radius_mm;     /* of the foil as designed; also R0_design of eq e */
+  double sleeve_radius_mm;      /* R_sleeve; default: overall_radius_mm */
+  double pitch_deg;             /* angle from bump to bump about O; default 13 1/3 */
+  double fillet_radius_mm;      /* default 0.35 */
+  double thickness_mm;          /* t */
+  double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
+  double rotor_diameter_mm;     /* D */
+  double subtended_angle_deg;   /* of an arc, from end to end about its centre; else 0 */
+  size_t diameter_count;        /* discs only: known diameters, in any order */
   double diameters_mm[FG_DIAMETERS_MAX];
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];
@@ -73,7 +82,7 @@ typedef struct fg_nominal {
   double intersection_angle_deg; /* theta_D */
   double height_mm;              /* h_D = R_D - (X_D - R_sleeve), eq 5.5 */
   double die_height_mm;          /* h_b = t + R - R cos(alpha/2), eq 5.1 */
-  double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8 */
+  double clearance_mm;           /* C_D = R_sleeve - h_D - D/2 - t, eq 5.8, less the top foil */
 } fg_nominal;
 
 /* What the declared springback model (thesis eq 5.6 and 5.7) predicts of a bump from its radius
@@ -95,10 +104,12 @@ void fg_design_default(fg_design *design);
  * message names the member, its value and what would be right. */
 fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 
-/* The derived nominal values; checks the design first. All NaN for form discs. */
+/* The derived nominal values; checks the design first. All NaN for form discs; of an arc the arc
+ * length is that from end to end, and the others are NaN. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
-/* Clearance over a bump of this height: eq 5.8, mm, with the design's thickness. */
+/* Clearance over a bump of this height: eq 5.8 less the top foil's thickness, mm, with the design's
+ * thickness of the bump foil. */
 double fg_design_clearance(const fg_design *design, double height_mm);
 
 /* The same over a strip of another thickness. */
@@ -111,7 +122,8 @@ void fg_design_springback(const fg_design *design, const fg_nominal *nominal, do
 /* Reads a design from JSON text; members that are absent keep the value `design` has on entry, so
  * fill it with fg_design_default first. Two exceptions guard against a half-written design: of
  * bump_radius_mm, bump_angle_deg, overall_radius_mm and thickness_mm a foil's file states all or
- * none, and sleeve_radius_mm follows an overall_radius_mm that comes without it. Unknown and
+ * none (of an arc overall_radius_mm, subtended_angle_deg and thickness_mm, all of them),
+ * and sleeve_radius_mm follows an overall_radius_mm that comes without it. Unknown and
  * duplicate members, wrong types, a missing or wrong schema and text after the end are FG_ERR_DATA.
  * `path` is for messages. Checks with fg_design_check; `design` changes on success only. */
 fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design);

@@ -39,6 +39,10 @@ typedef enum fg_foil_flag {
   /* "resolution_contradicts_file": the resolution that was given is not the file's */
   FG_FOIL_RESOLUTION_CONTRADICTS_FILE = 1u << 13,
   FG_FOIL_UNEQUAL_RESOLUTION = 1u << 14, /* "unequal_resolution": of x and y */
+  /* Of form arc: */
+  FG_FOIL_BUMPS_ON_ARC = 1u << 15, /* "bumps_on_arc": a bump or a dent in what should be plain */
+  FG_FOIL_LIP = 1u << 16,          /* "lip": an end is bent away: there is no angle between ends */
+  FG_FOIL_NO_END = 1u << 17,       /* "end_not_found": an end is hidden or torn: no angle */
   /* "beyond_model_region": it reaches beyond where the scanner's model was found */
   FG_FOIL_BEYOND_MODEL_REGION = 1u << 20,
   /* A correction that does not pay was left out, see `choice`. */
@@ -75,14 +79,16 @@ typedef struct fg_bump {
   double bump_angle_deg, u_bump_angle_deg;                 /* alpha */
   double intersection_angle_deg, u_intersection_angle_deg; /* theta */
   double height_mm, u_height_mm;                           /* h */
-  double clearance_mm, u_clearance_mm;                     /* C_local, eq 5.8 */
+  double clearance_mm, u_clearance_mm;                     /* C_local, eq 5.8, less the top foil */
   double clearance_error, u_clearance_error;               /* eq 5.9, a ratio */
   double height_fitted_mm, u_height_fitted_mm;             /* h in the sleeve, see below */
   double clearance_fitted_mm, u_clearance_fitted_mm;       /* eq 5.8 with it */
   double radius_error_pct, u_radius_error_pct;             /* e_R */
   double bump_angle_error_pct, u_bump_angle_error_pct;     /* e_alpha */
-  double height_model_mm, u_height_model_mm;               /* eq 5.6, 5.7 */
-  double bump_angle_model_deg, u_bump_angle_model_deg;     /* constant arc length */
+  /* 100 (theta - theta_D) / theta_D */
+  double intersection_angle_error_pct, u_intersection_angle_error_pct;
+  double height_model_mm, u_height_model_mm;           /* eq 5.6, 5.7 */
+  double bump_angle_model_deg, u_bump_angle_model_deg; /* constant arc length */
   double rms_um;                   /* of the datum line's orthogonal residuals */
   size_t points;                   /* datum points in the fit */
   double arc_start_mm, arc_end_mm; /* s of the arc that was used */
@@ -102,6 +108,14 @@ typedef struct fg_overall {
   size_t points;
   double covariance[3][3]; /* of (O_x, O_y, R0), mm² */
 } fg_overall;
+
+/* Of a plain strip, form arc; NaN where an end is not seen, and of other forms. Angle and length
+ * are between the cuts, on the datum line. An opened foil has an angle error below 0. */
+typedef struct fg_foil_arc {
+  double subtended_angle_deg, u_subtended_angle_deg;
+  double subtended_angle_error_pct, u_subtended_angle_error_pct; /* 100 (actual - design)/design */
+  double length_mm, u_length_mm;
+} fg_foil_arc;
 
 /* What a station belongs to. */
 typedef enum fg_arc_kind {
@@ -171,6 +185,7 @@ typedef struct fg_foil {
   double rotation_deg; /* direction of the foil's middle seen from O */
   double thickness_mm, u_thickness_mm;
   fg_overall overall;
+  fg_foil_arc arc;
   fg_bump *bumps; /* in order of number; owned */
   size_t bump_count;
   fg_strip strip;           /* the edges; owned */
@@ -178,6 +193,7 @@ typedef struct fg_foil {
   double noise_um;          /* sd of the midline residuals over all arcs */
   double correlation_mm;    /* integral length of their autocorrelation along the strip */
   double edge_model_um;     /* systematic part: what half-width variation says */
+  double edge_rough_um;     /* form arc: sd of one edge beyond its pixels' noise */
   fg_correction correction; /* by a scanner's model */
   /* By a scanner's model or a loop: what was moved, and what was left as measured. */
   fg_correction_choice choice[FG_CORRECTED];

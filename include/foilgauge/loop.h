@@ -20,15 +20,14 @@
  * likelihood of the residuals' sizes. 3  One null for all: residuals in another order (Freedman and
  * Lane 1983), scored in the same way; each score on the scale of its own draws, p-values from the
  * largest of all (Westfall and Young 1993). The draws are the same in every run: no verdict depends
- * on a seed. 4  Wrong rows are judged apart, against the tails that the other rows show, and against one
- * heavy tail of all. 5  An
- * effect that a series could be mistaken for is searched again beside correlation: it is claimed,
- * or correlation is, or they tie. 6  Accepted at p < 0.01, with a gain above one standard error in
- * grouped cross-validation. 7  Its alias class: every candidate beside which the winner explains
- * nothing more that the data can show, and every sum of two such. 8  Refit of all together, swaps,
- * drops; at most six claims. 9  What no candidate explains: a smooth curve over one coordinate
- * (unattributed). 10  Errors of rows that took no part: the whole search again without each fold of
- * groups.
+ * on a seed. 4  Wrong rows are judged apart, against the tails that the other rows show, and
+ * against one heavy tail of all. 5  An effect that a series could be mistaken for is searched again
+ * beside correlation: it is claimed, or correlation is, or they tie. 6  Accepted at p < 0.01, with
+ * a gain above one standard error in grouped cross-validation. 7  Its alias class: every candidate
+ * beside which the winner explains nothing more that the data can show, and every sum of two such.
+ * 8  Refit of all together, swaps, drops; at most six claims. 9  What no candidate explains: a
+ * smooth curve over one coordinate (unattributed). 10  Errors of rows that took no part: the whole
+ * search again without each fold of groups.
  */
 #ifndef FOILGAUGE_LOOP_H
 #define FOILGAUGE_LOOP_H

@@ -4,9 +4,9 @@
  *   recipe.json     the settings in force (fg_lot_settings; without `jobs`)
  *   manifest.csv    every scan of the lot in its order, with the columns that it came with
  *   scanner_model.json   the scanner's model, where the lot is corrected by one
- *   results.jsonl   one line per measured scan, kept as it is made, with a checksum
- *                   of its own ("foilgauge/results/2")
- *   lot.json, foils.csv, bumps.csv, index.html, results.qif, results.dfq    the report
+ *   results.jsonl   one line per measured scan, kept as it is made, with the date of its
+ *                   file and a checksum of its own ("foilgauge/results/2")
+ *   lot.json, foils.csv, bumps.csv, bearings.csv, index.html, results.qif, results.dfq   the report
  *
  * The report is a function of the first three alone: it is computed from the recorded values, never
  * from what happens to be in memory, so a lot that was killed and resumed, measured by any number
@@ -33,6 +33,39 @@
 extern "C" {
 #endif
 
+/* What `foilgauge die` measured of a die that foils of a lot were pressed in: the mean of its
+ * halves, of the design's datum line. */
+enum { FG_LOT_DIES_MAX = 12, FG_LOT_DIE_BUMPS_MAX = 64 };
+
+typedef struct fg_lot_die_bump {
+  int number;
+  double radius_mm, u_radius_mm;
+} fg_lot_die_bump;
+
+typedef struct fg_lot_die {
+  char name[64]; /* as the manifest's column has it */
+  char sha256[65];
+  fg_datum datum; /* of the design that it was measured for */
+  double thickness_mm;
+  double radius_mm, u_radius_mm; /* mean of its bumps */
+  fg_lot_die_bump bump[FG_LOT_DIE_BUMPS_MAX];
+  size_t bump_count;
+} fg_lot_die;
+
+/* What a simulation or a die says of the errors of every bump, to be drawn beside a lot's. */
+enum { FG_LOT_CURVE_MAX = 64 };
+
+typedef struct fg_lot_curve_point {
+  int bump;
+  double radius_error_pct, angle_error_pct; /* the second of the intersection angle */
+} fg_lot_curve_point;
+
+typedef struct fg_lot_curve {
+  char name[64];                              /* of its file */
+  size_t count;                               /* 0: there is none */
+  fg_lot_curve_point point[FG_LOT_CURVE_MAX]; /* bumps ascending */
+} fg_lot_curve;
+
 /* Every option of a lot: the members of a recipe file, "schema": "foilgauge/recipe/1". */
 typedef struct fg_lot_settings {
   char name[128];   /* of the lot, as the report shows it */
@@ -57,6 +90,19 @@ typedef struct fg_lot_settings {
    * and pitch, and as many pads as fit around; pads and bumps_per_pad without a pitch are equally
    * spaced. */
   fg_bearing_layout layout;
+  char die_column[64]; /* which of the dies a foil was pressed in */
+  /* "dies" in a recipe: an object of names and paths of reports of `foilgauge die`, whose numbers
+   * stand in the lot's own recipe. They are the reference of springback beside the design. */
+  fg_lot_die dies[FG_LOT_DIES_MAX];
+  size_t die_count;
+  fg_lot_curve curve;        /* "reference_curve" in a recipe: the path of a CSV */
+  /* Bearings drawn from the lot's foils, in a recipe "assembly": {"bearings", "seed",
+   * "design_deviation_pct"}. */
+  struct {
+    size_t bearings; /* 0: none are drawn */
+    uint64_t seed;
+    double design_deviation_pct; /* of the clearance: of the bearings of the design beside them */
+  } assembly;
   fg_arch_material material; /* youngs_modulus_gpa, poisson_ratio, friction */
 } fg_lot_settings;
 
@@ -68,6 +114,14 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
 /* Sets the model and its sum; the file must be one, and the scanner's of that name unless NULL. */
 fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
                                      fg_lot_settings *settings);
+
+/* Adds a die from its report, the JSON of `foilgauge die`. */
+fg_status fg_lot_settings_take_die(fg_context *ctx, const char *name, const char *path,
+                                   fg_lot_settings *settings);
+
+/* Sets the reference curve from a CSV with the columns bump, radius_error_pct and
+ * intersection_angle_error_pct. */
+fg_status fg_lot_settings_take_curve(fg_context *ctx, const char *path, fg_lot_settings *settings);
 
 /* Reads a recipe; members that are absent keep their value. Paths are relative to the recipe. A
  * model that is not the one that the recipe states the sum of is FG_ERR_DATA; parsing alone does
@@ -112,10 +166,13 @@ typedef struct fg_lot_request {
 } fg_lot_request;
 
 typedef struct fg_lot_outcome {
-  fg_report_outcome judged; /* of all foils and scans; fg_outcome_exit_code */
+  fg_report_outcome judged; /* of all foils, scans, bearings; fg_outcome_exit_code */
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
-  size_t exceeded;   /* foils with a value that fails */
+  bool bearings_judged; /* the design states tolerances of a bearing */
+  size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];
+  char assembly[3][400]; /* what drawn bearings come to, in words; "": none were drawn */
+  size_t exceeded;       /* foils with a value that fails */
   size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
   size_t torn;       /* lines of results.jsonl that were damaged or not whole, and measured again */
   size_t first_torn; /* the first of them, from 1 */
@@ -134,8 +191,26 @@ fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outc
 fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
                        const char *folder, fg_lot_outcome *outcome);
 
-/* One page over several lots, from their lot.json; links are relative to the page. */
-fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count, const char *page);
+/* Lots over time and against each other: from lot.json, foils.csv and bumps.csv of their folders.
+ */
+typedef struct fg_lot_index_request {
+  const char *const *folders;
+  size_t count;
+  const char *page;       /* links are relative to it */
+  const char *json, *csv; /* "foilgauge/lot_index/1", and a line per lot and quantity; NULL: none */
+} fg_lot_index_request;
+
+typedef struct fg_lot_index_outcome {
+  size_t lots, not_read; /* the page says why these are not on it */
+  size_t differing;      /* pairs of lots, in all quantities */
+  char *summary, *notes; /* lines; NULL: none */
+} fg_lot_index_outcome;
+
+/* FG_ERR_USAGE when an output would overwrite a report of a lot; FG_ERR_DATA when no lot can be
+ * read, with what is wrong with the first. */
+fg_status fg_lot_index(fg_context *ctx, const fg_lot_index_request *request,
+                       fg_lot_index_outcome *outcome);
+void fg_lot_index_outcome_free(fg_lot_index_outcome *outcome);
 
 #ifdef __cplusplus
 }

@@ -16,8 +16,9 @@ extern "C" {
 
 /* What a quantity belongs to: its offsets are into that struct. */
 typedef enum fg_quantity_owner {
-  FG_QUANTITY_OF_FOIL,    /* fg_foil; "overall.", "correction." are JSON objects; the second is
-                             there where a scanner's model corrected the foil */
+  FG_QUANTITY_OF_FOIL,    /* fg_foil; "overall.", "arc.", "correction." are JSON objects; the second
+                             is there of form arc, the third where a scanner's model corrected
+                             the foil */
   FG_QUANTITY_OF_BUMP,    /* fg_bump */
   FG_QUANTITY_OF_DISC,    /* fg_disc */
   FG_QUANTITY_OF_STRIP,   /* fg_strip */
@@ -44,12 +45,16 @@ typedef enum fg_quantity_use {
   /* The bump's own circle alone says it: its errors are independent from bump to bump, while all
    * that rests on the overall circle errs alike within a foil. */
   FG_QUANTITY_IS_OWN = 1u << 5,
+  FG_QUANTITY_OF_ARC = 1u << 6, /* of form arc alone */
 } fg_quantity_use;
 
 #define FG_NO_UNCERTAINTY ((size_t)-1)
 
 typedef struct fg_quantity {
-  const char *name;   /* JSON name, unit included */
+  const char *name; /* JSON name, unit included */
+  /* Of a bearing: the name that a design's tolerances have for it; NULL: it can have none. What is
+   * of a part has tolerances by its name. */
+  const char *tolerance;
   const char *unit;   /* for people: "mm", "°", "%", "µm", "" */
   const char *symbol; /* heading of a column, UTF-8 */
   const char *words;  /* what it is, for people */
@@ -64,8 +69,10 @@ typedef struct fg_quantity {
   unsigned uses; /* fg_quantity_use */
   int rank;      /* among those that people read, from 1; 0: behind them, in order of the rows */
   /* For quality systems, which know lengths and angles: QIF's name of the characteristic (NULL:
-   * not exported; ratios and percentages follow from the others) and what the design asks for. */
+   * not exported; ratios and percentages follow from the others). */
   const char *characteristic;
+  /* What the design asks for: quality systems state it, and lots of different designs are
+   * compared over it. NULL: nothing. */
   double (*nominal)(const fg_design *design, const fg_nominal *nominal);
   /* What the springback model of constant arc length makes of it; NULL: it says nothing. */
   double (*by_arc_length)(const fg_design *design, const fg_springback *springback);
@@ -74,8 +81,14 @@ typedef struct fg_quantity {
 /* The rows of one owner, in the order of the report. */
 const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count);
 
+/* Whether parts of that form have it: an arc has no bumps, and ends. */
+bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_form form);
+
 /* The row of that name, or NULL. */
 const fg_quantity *fg_quantity_find(fg_quantity_owner owner, const char *name);
+
+/* The row of a bearing that a tolerance of that name is about, or NULL. */
+const fg_quantity *fg_quantity_of_bearing_for(const char *tolerance);
 
 /* A number or a count of the object (of its owner's type) as double; NaN for a pair. */
 double fg_quantity_value(const fg_quantity *quantity, const void *object);

@@ -18,8 +18,10 @@
  *   foils[] [one Gen II foil]:
  *     design {bump_radius_mm, bump_angle_deg, bump_count, overall_radius_mm, pitch_deg,
  *       fillet_radius_mm, thickness_mm ... as in a design file} [Gen II]; with "form": "sinusoidal"
- *       there is no lip unless one is given
+ *       there is no lip unless one is given; with "form": "arc" a plain strip of
+ *       overall_radius_mm, subtended_angle_deg [110] and thickness_mm, without one as well
  *     overall_radius_mm: R0 as it is [as designed]
+ *     subtended_angle_deg: of an arc as it is [its length as designed]
  *     radius_springback {mean [0], sd [0]}: R = R_D (1 + mean + sd × normal);
  *     radius_mm [...] per bump instead; bump_angle_deg [...] per bump [R alpha as designed]
  *     lip null or {length_mm [2], bend_radius_mm [0.4], side ["outwards"]}
@@ -60,8 +62,8 @@
  *     free.scan.x, free.scan.y: mm; moves "x" or "y" [the coordinate's]; at most 100 um per mm
  *     free.foil.s: radial, over psi / half span; free.bump.phi: away from C, over u; beyond u = -1
  *     and 1 the fillets fade it out
- *     free.bump.index: no knots, but single bumps by their number: amplitude_um with bumps [3, 5], or
- *     every 3 [first: every], or period_bumps with phase_deg [0] (amplitude sin(2 pi number / period
+ *     free.bump.index: no knots, but single bumps by their number: amplitude_um with bumps [3, 5],
+ * or every 3 [first: every], or period_bumps with phase_deg [0] (amplitude sin(2 pi number / period
  *     + phase)); or values_um [...] from bump 1. form "crown": the arc's middle rises by that much
  *     towards the bearing's middle and falls off as (1 - u²)², its ends and the circle of the truth
  *     stay; "whole": the circle moves there as it is, the fillets follow, and X, h, alpha and theta
@@ -104,6 +106,7 @@ typedef struct fg_render_foil {
   double overall_radius_mm;
   fg_point overall_centre_px;
   double thickness_mm;
+  double subtended_angle_deg; /* of an arc; 0: it has bumps */
   double rotate_deg; /* direction of the foil's middle seen from O, about the scan's x axis */
   bool mirror;       /* false: bump numbers rise clockwise as the scan is seen */
   const fg_render_bump *bumps; /* without the missing ones */

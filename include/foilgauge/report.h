@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 
+#include "foilgauge/bearing.h"
 #include "foilgauge/foil.h"
 #include "foilgauge/quantity.h"
 
@@ -84,7 +85,18 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
                          fg_decision *decision);
 fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc *disc,
                          fg_decision *decision);
+
+/* A bearing of a lot, by the tolerances that name quantities of a bearing (quantity.h). NULL:
+ * nothing is known of it. One that is not `whole` has places without a clearance: it fails where
+ * what is known falls below a limit already, and is not measured otherwise. */
+fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
+                            const fg_bearing_clearance *clearance, bool whole,
+                            fg_decision *decision);
 void fg_decision_free(fg_decision *decision);
+
+/* How many of the design's tolerances are of a bearing, and which: a scan has none, they are judged
+ * in lots. `names` may be NULL. */
+size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size);
 
 /* True with `words` (may be NULL) for people: "bump 3 is missing (8 found, the design has 9)". A
  * place at the pitch that is seen to be empty rejects a foil under every design. Another number of
@@ -101,7 +113,7 @@ unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bu
 unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc);
 
 /* FG_ERR_DATA when a tolerance names a quantity that is not reported for this form of part; the
- * message lists the names that there are. */
+ * message lists the names that there are. Those of a bearing are right for foils. */
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design);
 
 /* One scan of a report: measured, or not and why. */

@@ -47,11 +47,22 @@ typedef struct fg_station {
   unsigned facts; /* fg_station_fact */
 } fg_station;
 
+/* The cut at one end of a strip. */
+typedef struct fg_strip_end {
+  bool found;           /* it is seen as a straight cut */
+  bool at_border;       /* the scan's border hides it */
+  fg_point left, right; /* where it meets the lines of the strip's edges, mm */
+  double u_um, u_skew;  /* standard deviation along the strip of its middle, and of its direction
+                           out of square (a ratio), from the pixels' misfit */
+  double blur_um;       /* sd of the blur across it */
+} fg_strip_end;
+
 typedef struct fg_strip {
   fg_station *stations; /* in order along the strip, from one end to the other; owned */
   size_t count;
-  double step_mm;      /* nominal distance of stations */
-  double thickness_mm; /* median distance of the edges */
+  fg_strip_end ends[2]; /* at the first station and at the last */
+  double step_mm;       /* nominal distance of stations */
+  double thickness_mm;  /* median distance of the edges */
   double
       u_thickness_mm; /* what it varies by along the strip; the tone curve's doubt is beside it: */
   double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */

@@ -1,7 +1,7 @@
 /* Stiffness of a bump as an arch; derived in foilgauge/bearing.h. */
 #include <math.h>
 
-#include "foilgauge/bearing.h"
+#include "bearing/arch.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
 static const double mpa_per_gpa = 1000;
@@ -17,35 +17,41 @@ typedef struct half_loads {
 
 typedef double flexibility[LOADS][LOADS];
 
-/* Integrals of the products of 1, sin, cos from `from` to `to`. */
-static void integrate_products(double from, double to, double product[3][3]) {
-  double s = sin(to) - sin(from), c = cos(from) - cos(to), length = to - from;
-  double twice = (sin(2 * to) - sin(2 * from)) / 4;
-  double mixed = (pow(sin(to), 2) - pow(sin(from), 2)) / 2;
-  const double rows[3][3] = {
-      {length, c, s}, {c, length / 2 - twice, mixed}, {s, mixed, length / 2 + twice}};
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++)
-      product[i][k] = rows[i][k];
+/* Gauss and Legendre's rule of ten points. What is integrated are products of sines and cosines
+ * over at most a quarter turn: exact to rounding, also for a flat arc, where closed forms are
+ * differences of like numbers. */
+enum { NODES = 10 };
+
+static const double half_node[NODES / 2] = {0.1488743389816312, 0.4333953941292472,
+                                            0.6794095682990244, 0.8650633666889845,
+                                            0.9739065285171717};
+static const double half_weight[NODES / 2] = {0.2955242247147529, 0.2692667193099963,
+                                              0.2190863625159820, 0.1494513491505806,
+                                              0.0666713443086881};
+
+static double value_of(const shape a, double sine, double cosine) {
+  return a[0] + a[1] * sine + a[2] * cosine;
 }
 
-static double bilinear(const shape a, double product[3][3], const shape b) {
-  double sum = 0;
-  for (int i = 0; i < 3; i++)
-    for (int k = 0; k < 3; k++)
-      sum += a[i] * product[i][k] * b[k];
-  return sum;
+static void add_node(const half_loads *loads, double psi, double slender, double weight,
+                     flexibility f) {
+  double sine = sin(psi), cosine = cos(psi), m[LOADS], n[LOADS];
+  for (int i = 0; i < LOADS; i++) {
+    m[i] = value_of(loads->moment[i], sine, cosine);
+    n[i] = value_of(loads->compression[i], sine, cosine);
+  }
+  for (int i = 0; i < LOADS; i++)
+    for (int k = 0; k < LOADS; k++)
+      f[i][k] += weight * (m[i] * m[k] + slender * n[i] * n[k]);
 }
 
 static void add_flexibility(const half_loads *loads, double from, double to, double slender,
                             double scale, flexibility f) {
-  double product[3][3];
-  integrate_products(from, to, product);
-  for (int i = 0; i < LOADS; i++)
-    for (int k = 0; k < LOADS; k++)
-      f[i][k] +=
-          scale * (bilinear(loads->moment[i], product, loads->moment[k]) +
-                   slender * bilinear(loads->compression[i], product, loads->compression[k]));
+  double middle = (from + to) / 2, half = (to - from) / 2;
+  for (int i = 0; i < NODES / 2; i++)
+    for (int side = -1; side <= 1; side += 2)
+      add_node(loads, middle + side * half * half_node[i], slender, scale * half * half_weight[i],
+               f);
 }
 
 static half_loads right_half(double phi) {
@@ -60,13 +66,19 @@ static half_loads left_half(double phi) {
   return loads;
 }
 
+double fg_arch_half_angle(const fg_arch *arch) {
+  return arch->bump_angle_deg * rad_per_deg / 2;
+}
+
+double fg_arch_bending(const fg_arch *arch, const fg_arch_material *material) {
+  double t = arch->thickness_mm, nu = material->poisson_ratio;
+  return material->youngs_modulus_gpa * mpa_per_gpa * t * t * t / (12 * (1 - nu) * (1 + nu));
+}
+
 static void compute_flexibility(const fg_arch *arch, const fg_arch_material *material, bool whole,
                                 flexibility f) {
-  double phi = arch->bump_angle_deg * rad_per_deg / 2, r = arch->radius_mm;
-  double t = arch->thickness_mm, nu = material->poisson_ratio;
-  double bending =
-      material->youngs_modulus_gpa * mpa_per_gpa * t * t * t / (12 * (1 - nu) * (1 + nu));
-  double slender = t * t / (12 * r * r), scale = r * r * r / bending;
+  double phi = fg_arch_half_angle(arch), r = arch->radius_mm, t = arch->thickness_mm;
+  double slender = t * t / (12 * r * r), scale = r * r * r / fg_arch_bending(arch, material);
   half_loads right = right_half(phi), left = left_half(phi);
   for (int i = 0; i < LOADS; i++)
     for (int k = 0; k < LOADS; k++)
@@ -75,8 +87,7 @@ static void compute_flexibility(const fg_arch *arch, const fg_arch_material *mat
   if (whole) add_flexibility(&left, -phi, 0, slender, scale, f);
 }
 
-static fg_status check_arch(fg_context *ctx, const fg_arch *arch,
-                            const fg_arch_material *material) {
+fg_status fg_arch_check(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material) {
   if (!(arch->radius_mm > 0 && arch->thickness_mm > 0 && arch->thickness_mm < arch->radius_mm &&
         isfinite(arch->radius_mm)))
     return fg_fail(ctx, FG_ERR_DATA, "an arch of radius %g mm and thickness %g mm has no stiffness",
@@ -96,7 +107,7 @@ static fg_status check_arch(fg_context *ctx, const fg_arch *arch,
 fg_status fg_arch_free(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material,
                        fg_arch_stiffness *stiffness) {
   flexibility f;
-  FG_TRY(check_arch(ctx, arch, material));
+  FG_TRY(fg_arch_check(ctx, arch, material));
   compute_flexibility(arch, material, false, f);
   double holding = -f[LOAD_V][LOAD_H] / f[LOAD_H][LOAD_H], mu = material->friction;
   bool stuck = mu >= holding;
@@ -122,7 +133,7 @@ static double welded_stiffness(flexibility f, double v, double h) {
 fg_status fg_arch_welded(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material,
                          fg_arch_stiffness *stiffness) {
   flexibility f;
-  FG_TRY(check_arch(ctx, arch, material));
+  FG_TRY(fg_arch_check(ctx, arch, material));
   compute_flexibility(arch, material, true, f);
   double mu = material->friction;
   double determinant =
@@ -145,32 +156,4 @@ fg_status fg_arch_welded(fg_context *ctx, const fg_arch *arch, const fg_arch_mat
                                    .foot_share = v,
                                    .stuck = stuck};
   return FG_OK;
-}
-
-/* d ln K / d ln x by a central difference over exp(± step). */
-static fg_status slope_of(fg_context *ctx, const fg_arch *arch, const fg_arch_material *material,
-                          const double power[3], double *slope) {
-  static const double step = 1e-4;
-  double logarithm[2];
-  for (int side = 0; side < 2; side++) {
-    double change = side ? step : -step;
-    fg_arch moved = {arch->radius_mm * exp(change * power[0]),
-                     arch->bump_angle_deg * exp(change * power[1]),
-                     arch->thickness_mm * exp(change * power[2])};
-    fg_arch_stiffness stiffness;
-    FG_TRY(fg_arch_free(ctx, &moved, material, &stiffness));
-    logarithm[side] = log(stiffness.stiffness_n_mm2);
-  }
-  *slope = (logarithm[1] - logarithm[0]) / (2 * step);
-  return FG_OK;
-}
-
-fg_status fg_arch_sensitivities(fg_context *ctx, const fg_arch *arch,
-                                const fg_arch_material *material,
-                                fg_arch_sensitivity *sensitivity) {
-  FG_TRY(slope_of(ctx, arch, material, (const double[]){1, 0, 0}, &sensitivity->radius));
-  FG_TRY(slope_of(ctx, arch, material, (const double[]){0, 1, 0}, &sensitivity->angle));
-  FG_TRY(slope_of(ctx, arch, material, (const double[]){1, -1, 0},
-                  &sensitivity->radius_at_arc_length));
-  return slope_of(ctx, arch, material, (const double[]){0, 0, 1}, &sensitivity->thickness);
 }

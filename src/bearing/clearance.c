@@ -1,16 +1,9 @@
 /* Clearance around a bearing; see foilgauge/bearing.h. */
 #include <math.h>
 
-#include "foilgauge/bearing.h"
+#include "bearing/places.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
-
-/* Known places: clearance and direction. */
-typedef struct places {
-  double clearance[FG_BEARING_BUMPS_MAX];
-  double x[FG_BEARING_BUMPS_MAX], y[FG_BEARING_BUMPS_MAX];
-  size_t count;
-} places;
 
 double fg_bearing_pitch_deg(const fg_bearing_layout *layout) {
   if (layout->pitch_deg > 0) return layout->pitch_deg;
@@ -21,8 +14,7 @@ double fg_bearing_angle_deg(const fg_bearing_layout *layout, size_t pad, size_t 
   return 360 * (double)pad / (double)layout->pads + (double)bump * fg_bearing_pitch_deg(layout);
 }
 
-/* Solves three equations by Cramer's rule; false when they say too little. */
-static bool solve_three(double a[3][3], const double b[3], double x[3]) {
+bool fg_places_solve(double a[3][3], const double b[3], double x[3]) {
   double minor[3] = {a[1][1] * a[2][2] - a[1][2] * a[2][1], a[1][2] * a[2][0] - a[1][0] * a[2][2],
                      a[1][0] * a[2][1] - a[1][1] * a[2][0]};
   double determinant = a[0][0] * minor[0] + a[0][1] * minor[1] + a[0][2] * minor[2];
@@ -40,33 +32,32 @@ static bool solve_three(double a[3][3], const double b[3], double x[3]) {
   return true;
 }
 
-static double shifted(const places *p, size_t i, double a, double b) {
-  return p->clearance[i] - a * p->x[i] - b * p->y[i];
-}
-
-static double least_shifted(const places *p, double a, double b) {
-  double least = INFINITY;
-  for (size_t i = 0; i < p->count; i++)
-    least = fmin(least, shifted(p, i, a, b));
-  return least;
-}
+/* By how much each of the results moves with the clearance of every known place. */
+typedef struct gradients {
+  double normal[3][3];                /* of the least-squares circle */
+  size_t least, most, low, high;      /* extremes, of the clearances and about the circle */
+  size_t touched[3];                  /* by the centred rotor */
+  double slope[FG_BEARING_BUMPS_MAX]; /* of the one that is looked at */
+} gradients;
 
 /* Least squares of c = mean + a cos + b sin (the limaçon of roundness measurement). */
-static void fit_circle(const places *p, fg_bearing_clearance *result) {
-  double normal[3][3] = {{0}}, right[3] = {0}, x[3];
+static void fit_circle(const fg_places *p, gradients *g, fg_bearing_clearance *result) {
+  double right[3] = {0}, x[3];
   for (size_t i = 0; i < p->count; i++) {
     const double row[3] = {1, p->x[i], p->y[i]};
     for (int j = 0; j < 3; j++) {
       for (int k = 0; k < 3; k++)
-        normal[j][k] += row[j] * row[k];
+        g->normal[j][k] += row[j] * row[k];
       right[j] += row[j] * p->clearance[i];
     }
   }
   result->circularity_mm = result->offset_mm[0] = result->offset_mm[1] = NAN;
-  if (!solve_three(normal, right, x)) return;
+  if (!fg_places_solve(g->normal, right, x)) return;
   double low = INFINITY, high = -INFINITY;
   for (size_t i = 0; i < p->count; i++) {
-    double left = shifted(p, i, x[1], x[2]);
+    double left = fg_places_shifted(p, i, x[1], x[2]);
+    if (left < low) g->low = i;
+    if (left > high) g->high = i;
     low = fmin(low, left);
     high = fmax(high, left);
   }
@@ -75,76 +66,99 @@ static void fit_circle(const places *p, fg_bearing_clearance *result) {
   result->circularity_mm = high - low;
 }
 
-/* Whether every half plane holds a crown: else a rotor could move away without end. */
-static bool surrounded(const places *p) {
-  for (size_t i = 0; i < p->count; i++) {
-    bool left = false, right = false;
-    for (size_t j = 0; j < p->count; j++) {
-      double cross = p->x[i] * p->y[j] - p->y[i] * p->x[j];
-      left = left || cross > 1e-9;
-      right = right || cross < -1e-9;
-    }
-    if (!left || !right) return false;
-  }
-  return true;
-}
-
-/* The largest m with m <= c_i - a x_i - b y_i for all i is reached where three of them are equal:
- * of the rotor positions that touch three crowns alike, the one with the most room. */
-static bool touch_three(const places *p, const size_t index[3], double x[3]) {
-  double a[3][3], b[3];
-  for (int i = 0; i < 3; i++) {
-    a[i][0] = 1;
-    a[i][1] = p->x[index[i]];
-    a[i][2] = p->y[index[i]];
-    b[i] = p->clearance[index[i]];
-  }
-  return solve_three(a, b, x);
-}
-
-static void consider(const places *p, const size_t index[3], fg_bearing_clearance *result) {
-  double x[3];
-  if (!touch_three(p, index, x)) return;
-  double least = least_shifted(p, x[1], x[2]);
-  if (isfinite(result->centred_least_mm) && least <= result->centred_least_mm) return;
-  result->centred_least_mm = least;
-  result->centred_at_mm[0] = x[1];
-  result->centred_at_mm[1] = x[2];
-}
-
-static void centre_rotor(const places *p, fg_bearing_clearance *result) {
-  result->centred_least_mm = result->centred_at_mm[0] = result->centred_at_mm[1] = NAN;
-  if (!surrounded(p)) return;
-  for (size_t i = 0; i < p->count; i++)
-    for (size_t j = i + 1; j < p->count; j++)
-      for (size_t k = j + 1; k < p->count; k++)
-        consider(p, (const size_t[]){i, j, k}, result);
-}
-
-static void find_extremes(const double *angle_deg, const double *clearance_mm, size_t count,
+static void find_extremes(const fg_places *p, const double *angle_deg, gradients *g,
                           fg_bearing_clearance *result) {
   result->least_mm = INFINITY;
   result->most_mm = -INFINITY;
-  for (size_t i = 0; i < count; i++) {
-    if (!isfinite(clearance_mm[i])) continue;
-    result->mean_mm += clearance_mm[i] / (double)result->count;
-    result->most_mm = fmax(result->most_mm, clearance_mm[i]);
-    if (!(clearance_mm[i] < result->least_mm)) continue;
-    result->least_mm = clearance_mm[i];
-    result->least_at_deg = angle_deg[i];
+  for (size_t i = 0; i < p->count; i++) {
+    result->mean_mm += p->clearance[i] / (double)p->count;
+    if (p->clearance[i] < result->least_mm) g->least = i;
+    if (p->clearance[i] > result->most_mm) g->most = i;
+    result->least_mm = p->clearance[g->least];
+    result->most_mm = p->clearance[g->most];
   }
+  result->least_at_deg = angle_deg[p->given[g->least]];
 }
 
-fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const double *clearance_mm,
-                            size_t count, fg_bearing_clearance *result) {
-  places p = {.count = 0};
-  *result = (fg_bearing_clearance){0};
+/* High minus low about the circle: the circle moves with every clearance, too. */
+static bool slope_of_circularity(const fg_places *p, gradients *g) {
+  const double apart[3] = {0, p->x[g->high] - p->x[g->low], p->y[g->high] - p->y[g->low]};
+  double y[3];
+  if (!fg_places_solve(g->normal, apart, y)) return false;
+  for (size_t i = 0; i < p->count; i++)
+    g->slope[i] = -(y[0] + y[1] * p->x[i] + y[2] * p->y[i]);
+  g->slope[g->high] += 1;
+  g->slope[g->low] -= 1;
+  return true;
+}
+
+static void slope_of_one(const fg_places *p, size_t at, gradients *g) {
+  for (size_t i = 0; i < p->count; i++)
+    g->slope[i] = i == at;
+}
+
+/* The weights of the three places that the rotor touches: they sum to 1, and balance. */
+static bool slope_of_centred(const fg_places *p, gradients *g) {
+  static const double axis[3] = {1, 0, 0};
+  double a[3][3], w[3];
+  for (int i = 0; i < 3; i++) {
+    a[0][i] = 1;
+    a[1][i] = p->x[g->touched[i]];
+    a[2][i] = p->y[g->touched[i]];
+  }
+  if (!fg_places_solve(a, axis, w)) return false;
+  for (size_t i = 0; i < p->count; i++)
+    g->slope[i] = 0;
+  for (int i = 0; i < 3; i++)
+    g->slope[g->touched[i]] += w[i];
+  return true;
+}
+
+static double propagate(const fg_places *p, const gradients *g, const fg_bearing_doubt *doubt) {
+  double shared = 0, apart = 0, together = 0, of_pad[FG_BEARING_BUMPS_MAX] = {0};
+  for (size_t i = 0; i < p->count; i++) {
+    size_t at = p->given[i];
+    double own = g->slope[i] * doubt->own_mm[at];
+    shared += g->slope[i] * doubt->shared_mm[at];
+    apart += own * own;
+    of_pad[doubt->pad[at]] += own;
+  }
+  for (size_t i = 0; i < FG_BEARING_BUMPS_MAX; i++)
+    together += of_pad[i] * of_pad[i];
+  return sqrt(shared * shared + fmax(apart, together));
+}
+
+static void doubt_all(const fg_places *p, gradients *g, bool centred, const fg_bearing_doubt *doubt,
+                      fg_bearing_clearance *result) {
+  slope_of_one(p, g->least, g);
+  result->u_least_mm = propagate(p, g, doubt);
+  slope_of_one(p, g->most, g);
+  result->u_most_mm = propagate(p, g, doubt);
+  for (size_t i = 0; i < p->count; i++)
+    g->slope[i] = 1 / (double)p->count;
+  result->u_mean_mm = propagate(p, g, doubt);
+  if (isfinite(result->circularity_mm) && slope_of_circularity(p, g))
+    result->u_circularity_mm = propagate(p, g, doubt);
+  if (centred && slope_of_centred(p, g)) result->u_centred_least_mm = propagate(p, g, doubt);
+}
+
+fg_status fg_bearing_assess_doubt(fg_context *ctx, const double *angle_deg,
+                                  const double *clearance_mm, size_t count,
+                                  const fg_bearing_doubt *doubt, fg_bearing_clearance *result) {
+  fg_places p = {.count = 0};
+  gradients g = {.least = 0};
+  *result = (fg_bearing_clearance){.u_mean_mm = NAN,
+                                   .u_least_mm = NAN,
+                                   .u_most_mm = NAN,
+                                   .u_circularity_mm = NAN,
+                                   .u_centred_least_mm = NAN};
   if (count > FG_BEARING_BUMPS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "%zu bumps around a bearing; at most %d", count,
                    FG_BEARING_BUMPS_MAX);
   for (size_t i = 0; i < count; i++) {
     if (!isfinite(clearance_mm[i])) continue;
     p.clearance[p.count] = clearance_mm[i];
+    p.given[p.count] = i;
     p.x[p.count] = cos(angle_deg[i] * rad_per_deg);
     p.y[p.count++] = sin(angle_deg[i] * rad_per_deg);
   }
@@ -152,8 +166,14 @@ fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const doub
     return fg_fail(ctx, FG_ERR_DATA, "%zu known clearances; a bearing needs three at least",
                    p.count);
   result->count = p.count;
-  find_extremes(angle_deg, clearance_mm, count, result);
-  fit_circle(&p, result);
-  centre_rotor(&p, result);
+  find_extremes(&p, angle_deg, &g, result);
+  fit_circle(&p, &g, result);
+  bool centred = fg_places_centre(&p, g.touched, result);
+  if (doubt) doubt_all(&p, &g, centred, doubt, result);
   return FG_OK;
+}
+
+fg_status fg_bearing_assess(fg_context *ctx, const double *angle_deg, const double *clearance_mm,
+                            size_t count, fg_bearing_clearance *result) {
+  return fg_bearing_assess_doubt(ctx, angle_deg, clearance_mm, count, NULL, result);
 }

@@ -1,10 +1,12 @@
 #include <argp.h>
 #include <stdbool.h>
+#include <stdlib.h>
 
 #include "cli/commands.h"
 #include "cli/output_set.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"
+#include "report/design/design_page.h"
 #include "report/measure/measure_json.h"
 #include "report/words.h"
 
@@ -12,9 +14,19 @@ typedef struct design_arguments {
   const char *design_path; /* NULL: built in */
   fg_output_set outputs;
   bool json, curve;
+  fg_arch_material material;
 } design_arguments;
 
-enum { OPTION_JSON = 256, OPTION_CURVE };
+enum {
+  OPTION_JSON = 256,
+  OPTION_CURVE,
+  OPTION_HTML,
+  OPTION_MODULUS,
+  OPTION_POISSON,
+  OPTION_FRICTION
+};
+
+enum { OUT_DATA, OUT_HTML, OUTPUTS };
 
 static const struct argp_option options[] = {
     {"json", OPTION_JSON, NULL, 0, "Write JSON (as -o does)", 0},
@@ -23,6 +35,13 @@ static const struct argp_option options[] = {
      "from "
      "-5 to +30 %",
      0},
+    {"html", OPTION_HTML, "FILE.html", 0,
+     "One page to read and print, with the stiffness of a bump by three models and its map over "
+     "radius and angle",
+     0},
+    {"youngs-modulus-gpa", OPTION_MODULUS, "E", 0, "Of the strip, for the stiffness: 200", 1},
+    {"poisson-ratio", OPTION_POISSON, "NU", 0, "Likewise: 0.3", 1},
+    {"friction", OPTION_FRICTION, "MU", 0, "Coulomb, of the bumps' feet: 0.1", 1},
     {"output", 'o', "FILE", 0, "Write here (-: standard output)", 0},
     {0},
 };
@@ -34,13 +53,26 @@ static const char doc[] =
     "The curve takes each bump radius through eq 5.6 and 5.7 (constant arc length, crown in place) "
     "to height and clearance. clearance_error is (C_D - C) / C_D (eq 5.9); clearance_change_pct is "
     "100 (C - C_D) / C_D, as the thesis plots it.\n\n"
+    "Stiffness is per bump and mm of width (N/mm2), and over the pitch per area (N/mm3), by three "
+    "models: the arch on sliding feet, Heshmat's formula and the link-spring. The page and the "
+    "JSON "
+    "say formula, source and what a model leaves out.\n\n"
     "Exit code: 0 done; 64 usage; 65 the design is wrong; 74 input or output.";
+
+static error_t parse_number(const char *name, const char *text, double low, double high,
+                            double *value, struct argp_state *state) {
+  char *end;
+  *value = strtod(text, &end);
+  if (end == text || *end || !(*value >= low && *value <= high))
+    argp_error(state, "--%s %s: it must be a number from %g to %g", name, text, low, high);
+  return 0;
+}
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   design_arguments *arguments = state->input;
   switch (key) {
   case 'o':
-    arguments->outputs.path[0] = text;
+    arguments->outputs.path[OUT_DATA] = text;
     break;
   case OPTION_JSON:
     arguments->json = true;
@@ -48,6 +80,17 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_CURVE:
     arguments->curve = true;
     break;
+  case OPTION_HTML:
+    arguments->outputs.path[OUT_HTML] = text;
+    break;
+  /* The bounds are those of a recipe. */
+  case OPTION_MODULUS:
+    return parse_number("youngs-modulus-gpa", text, 1e-3, 1e4,
+                        &arguments->material.youngs_modulus_gpa, state);
+  case OPTION_POISSON:
+    return parse_number("poisson-ratio", text, 0, 0.499, &arguments->material.poisson_ratio, state);
+  case OPTION_FRICTION:
+    return parse_number("friction", text, 0, 10, &arguments->material.friction, state);
   case ARGP_KEY_ARG:
     if (arguments->design_path) argp_error(state, "more than one DESIGN: %s", text);
     arguments->design_path = text;
@@ -61,13 +104,27 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static void write_json(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+typedef struct design_view {
+  const design_arguments *arguments;
+  fg_design design;
+  fg_nominal nominal;
+  fg_design_page page; /* of a form with bumps */
+} design_view;
+
+static void write_json(const design_view *view, FILE *out) {
+  const fg_design *design = &view->design;
   fg_json json;
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/nominal/1");
   fg_json_design(&json, "design", design);
-  if (design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", nominal);
+  if (fg_form_has_bumps(design->form)) fg_json_nominal(&json, "nominal", &view->nominal);
+  if (fg_form_has_bumps(design->form)) fg_json_design_stiffness(&json, &view->page);
+  if (design->form == FG_FORM_ARC) {
+    fg_json_object(&json, "nominal");
+    fg_json_number(&json, "arc_length_mm", view->nominal.arc_length_mm);
+    fg_json_object_end(&json);
+  }
   fg_json_object_end(&json);
   fg_json_end(&json);
 }
@@ -85,6 +142,8 @@ static void write_stated(const fg_design *design, FILE *out) {
   write_row(out, "pitch", "", design->pitch_deg, "deg");
   write_row(out, "fillet radius", "", design->fillet_radius_mm, "mm");
   write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  if (design->top_foil_thickness_mm > 0)
+    write_row(out, "top foil thickness", "", design->top_foil_thickness_mm, "mm");
   write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
 }
 
@@ -98,20 +157,34 @@ static void write_derived(const fg_nominal *nominal, FILE *out) {
   write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
 }
 
-static void write_table(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+  fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
+  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
+  write_row(out, "subtended angle", "", design->subtended_angle_deg, "deg");
+  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  fputs("\nderived\n", out);
+  write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
+}
+
+static void write_table(const design_view *view, FILE *out) {
+  const fg_design *design = &view->design;
   fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
   if (design->form == FG_FORM_DISCS) {
     fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
     for (size_t i = 0; i < design->diameter_count; i++)
       write_row(out, "diameter", "", design->diameters_mm[i], "mm");
+  } else if (design->form == FG_FORM_ARC) {
+    write_arc(design, &view->nominal, out);
   } else {
     fprintf(out, ", datum %s", fg_datum_word(design->datum));
     if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);
     fputs("\n\nstated\n", out);
     write_stated(design, out);
     fputs("\nderived\n", out);
-    write_derived(nominal, out);
+    write_derived(&view->nominal, out);
   }
+  if (fg_form_has_bumps(design->form))
+    fg_text_stiffness_table(out, &view->page.bump, fg_design_pitch_mm(design));
   for (size_t i = 0; i < design->tolerance_count; i++)
     fprintf(out, "%s  %-34s from %g to %g\n", i ? "" : "\ntolerances\n",
             design->tolerances[i].quantity, design->tolerances[i].lower,
@@ -135,39 +208,39 @@ static void write_curve(const fg_design *design, const fg_nominal *nominal, FILE
   }
 }
 
-typedef struct design_view {
-  const design_arguments *arguments;
-  fg_design design;
-  fg_nominal nominal;
-} design_view;
-
 static fg_status write_view(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const design_view *view = user;
   (void)ctx;
-  (void)kind;
-  if (view->arguments->curve)
+  if (kind == OUT_HTML)
+    fg_html_design_page(out, &view->page);
+  else if (view->arguments->curve)
     write_curve(&view->design, &view->nominal, out);
   else if (view->arguments->json)
-    write_json(&view->design, &view->nominal, out);
+    write_json(view, out);
   else
-    write_table(&view->design, &view->nominal, out);
+    write_table(view, out);
   return FG_OK;
 }
 
 static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   design_view view = {.arguments = arguments};
   const fg_input input = {arguments->design_path, "the design"};
-  if (arguments->outputs.path[0])
+  if (arguments->outputs.path[OUT_DATA])
     arguments->json = true;
-  else
-    arguments->outputs.path[0] = "-";
+  else if (arguments->json || arguments->curve || !fg_output_set_has_standard(&arguments->outputs))
+    arguments->outputs.path[OUT_DATA] = "-";
   FG_TRY(fg_output_set_check(ctx, &arguments->outputs, &input, 1));
   fg_design_default(&view.design);
   if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, &view.design));
   FG_TRY(fg_design_derive(ctx, &view.design, &view.nominal));
-  if (arguments->curve && view.design.form == FG_FORM_DISCS)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no bumps, so there is no curve",
-                   arguments->design_path);
+  if (arguments->curve && !fg_form_has_bumps(view.design.form))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no curve",
+                   arguments->design_path, fg_form_word(view.design.form));
+  if (fg_form_has_bumps(view.design.form))
+    fg_design_page_fill(&view.design, &view.nominal, &arguments->material, &view.page);
+  else if (arguments->outputs.path[OUT_HTML])
+    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no page of them",
+                   arguments->design_path, fg_form_word(view.design.form));
   FG_TRY(fg_output_set_open(ctx, &arguments->outputs));
   return fg_output_set_write(ctx, &arguments->outputs, write_view, &view);
 }
@@ -175,7 +248,7 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
 int fg_cmd_design(int argc, char **argv) {
   static const struct argp parser = {options, parse_option, "[DESIGN]", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  design_arguments arguments = {.outputs.count = 1};
+  design_arguments arguments = {.outputs.count = OUTPUTS, .material = fg_arch_material_default()};
   argv[0] = (char[]){"foilgauge design"};
   fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);

@@ -220,6 +220,7 @@ static fg_status take_design(fg_context *ctx, const loop_arguments *arguments, f
       {"bump_angle_deg", &design->bump_angle_deg},
       {"overall_radius_mm", &design->overall_radius_mm},
       {"thickness_mm", &design->thickness_mm},
+      {"top_foil_thickness_mm", &design->top_foil_thickness_mm},
       {"rotor_diameter_mm", &design->rotor_diameter_mm},
   };
   const size_t count = sizeof members / sizeof *members;
@@ -233,7 +234,8 @@ static fg_status take_design(fg_context *ctx, const loop_arguments *arguments, f
     if (i == count)
       return fg_fail(ctx, FG_ERR_DATA,
                      "%s: design.%s is not known here; what is known are bump_radius_mm, "
-                     "bump_angle_deg, overall_radius_mm, thickness_mm and rotor_diameter_mm",
+                     "bump_angle_deg, overall_radius_mm, thickness_mm, top_foil_thickness_mm and "
+                     "rotor_diameter_mm",
                      arguments->declared_path, item->string);
     if (!cJSON_IsNumber(item))
       return fg_fail(ctx, FG_ERR_DATA, "%s: design.%s must be a number", arguments->declared_path,

@@ -187,6 +187,12 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   if (design.form == FG_FORM_DISCS && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--same-foil is for foils: a disc does not show how far it was turned");
+  if (design.form == FG_FORM_ARC)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "%s: form is arc, and the loop needs bumps or discs: one circle takes up what a "
+                   "scanner does to it. Scan round gauges (--form discs) and apply what they say "
+                   "with measure --model",
+                   a->design_path);
   FG_TRY(fg_output_set_open(ctx, &a->outputs));
   a->options.date = find_date(a);
   FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));

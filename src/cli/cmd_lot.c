@@ -20,15 +20,21 @@ enum {
   OPTION_SCANNER,
   OPTION_NAME,
   OPTION_GROUP,
-  OPTION_INDEX
+  OPTION_DIE,
+  OPTION_CURVE,
+  OPTION_INDEX,
+  OPTION_CSV
 };
 
 typedef struct lot_arguments {
-  const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index;
+  const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index, *csv;
   double dpi;
   int jobs; /* -1: not given */
   bool print_recipe, resume, dry_run;
   fg_lot_shard shard;
+  const char *curve; /* reference curve; NULL: the recipe's */
+  const char *dies[FG_LOT_DIES_MAX];
+  size_t die_count;
   char **paths; /* of argv */
   size_t path_count;
 } lot_arguments;
@@ -43,12 +49,24 @@ static const struct argp_option options[] = {
     {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
+    {"reference-curve", OPTION_CURVE, "FILE.csv", 0,
+     "Draw this over the errors per bump: what a simulation or a die says; columns bump, "
+     "radius_error_pct, intersection_angle_error_pct",
+     0},
+    {"die", OPTION_DIE, "NAME=FILE.json", 0,
+     "What `foilgauge die -o` measured of the die that the manifest's column `die` calls NAME: the "
+     "reference of springback beside the design; once for each die",
+     0},
     {"jobs", 'j', "N", 0, "Scans at a time (default: one per core)", 1},
     {"resume", OPTION_RESUME, NULL, 0, "Measure only what is missing or has changed", 1},
     {"dry-run", OPTION_DRY_RUN, NULL, 0, "Say what would be measured; touch nothing", 1},
     {"shard", OPTION_SHARD, "I/N", 0, "Only part I of N; `foilgauge merge` joins them", 1},
     {"print-recipe", OPTION_PRINT_RECIPE, NULL, 0, "Print every setting in force", 2},
-    {"index", OPTION_INDEX, "FILE.html", 0, "A page over lots: the arguments are their folders", 2},
+    {"index", OPTION_INDEX, "FILE.html", 0,
+     "Lots over time and against each other, on a page: the arguments are their folders; -o "
+     "FILE.json writes the numbers",
+     2},
+    {"csv", OPTION_CSV, "FILE.csv", 0, "With --index: a line per lot and quantity", 2},
     {0},
 };
 
@@ -56,10 +74,16 @@ static const char doc[] =
     "Measure a production lot and report it: which foils pass, how the process runs, what the "
     "deviations do to the bearing."
     "\vPATH is a folder of scans, a scan, a list (.txt, a path a line) or a manifest (.csv with a "
-    "column `scan` and any others: foil, pad, bearing, die, coil ...).\n\n"
+    "column `scan` and any others: foil, pad, bearing, die, coil, date ...). Tolerances of a "
+    "bearing "
+    "(circularity_mm, clearance_min_mm, clearance_centred_min_mm) judge the bearings that the "
+    "columns `bearing` and `pad` say, or without them foils in a row; a foil whose cell is empty "
+    "is in none. The recipe's \"assembly\": {\"bearings\": 1000, \"seed\": 1} says how many "
+    "bearings are drawn from the foils, to see how many would assemble; 0 draws none.\n\n"
     "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
-    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
-    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output. A "
+    "more than U (of foils or of bearings), or a bump is missing; 2 something could not be "
+    "measured; 3 cannot tell: a limit lies within U of a value, none is exceeded; 64 usage; 65 bad "
+    "data; 74 input or output. A "
     "shard is not judged: 0 or 2.";
 
 static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
@@ -98,6 +122,15 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_GROUP:
     arguments->group = text;
     break;
+  case OPTION_CURVE:
+    arguments->curve = text;
+    break;
+  case OPTION_DIE:
+    if (!strchr(text, '=')) argp_error(state, "--die: '%s' is not NAME=FILE.json", text);
+    if (arguments->die_count == FG_LOT_DIES_MAX)
+      argp_error(state, "--die: at most %d", FG_LOT_DIES_MAX);
+    arguments->dies[arguments->die_count++] = text;
+    break;
   case OPTION_DPI:
     arguments->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
@@ -116,6 +149,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_INDEX:
     arguments->index = text;
     break;
+  case OPTION_CSV:
+    arguments->csv = text;
+    break;
   case ARGP_KEY_ARGS:
     arguments->paths = state->argv + state->next;
     arguments->path_count = (size_t)(state->argc - state->next);
@@ -124,6 +160,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     if (!arguments->print_recipe && !arguments->path_count) argp_error(state, "no PATH was given");
     if (!arguments->print_recipe && !arguments->folder && !arguments->index)
       argp_error(state, "give the lot's folder with -o DIR");
+    if (arguments->csv && !arguments->index)
+      argp_error(state, "--csv belongs to --index; a lot's tables are in its folder");
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -140,6 +178,22 @@ static fg_status set_text(fg_context *ctx, const char *option, const char *text,
   return FG_OK;
 }
 
+static fg_status take_dies(fg_context *ctx, const lot_arguments *arguments,
+                           fg_lot_settings *settings) {
+  if (arguments->die_count) settings->die_count = 0; /* they overrule the recipe's */
+  for (size_t i = 0; i < arguments->die_count; i++) {
+    char name[sizeof settings->dies[0].name];
+    const char *equals = strchr(arguments->dies[i], '=');
+    size_t length = (size_t)(equals - arguments->dies[i]);
+    if (length >= sizeof name)
+      return fg_fail(ctx, FG_ERR_USAGE, "--die: the name has more than %zu bytes", sizeof name - 1);
+    memcpy(name, arguments->dies[i], length);
+    name[length] = '\0';
+    FG_TRY(fg_lot_settings_take_die(ctx, name, equals + 1, settings));
+  }
+  return FG_OK;
+}
+
 static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
                                fg_lot_settings *settings) {
   fg_lot_settings_default(settings);
@@ -153,6 +207,8 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");
   if (arguments->model || arguments->scanner)
     FG_TRY(fg_lot_settings_take_model(ctx, model, arguments->scanner, settings));
+  FG_TRY(take_dies(ctx, arguments, settings));
+  if (arguments->curve) FG_TRY(fg_lot_settings_take_curve(ctx, arguments->curve, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
   FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));
@@ -185,6 +241,16 @@ static void show_progress(void *user, const fg_lot_progress *progress) {
           progress->done == progress->total ? "\n" : "");
 }
 
+static void say_bearings(const fg_lot_outcome *outcome) {
+  const size_t *by = outcome->bearings_by_verdict;
+  fprintf(stderr, "%zu bearings: %zu pass, %zu fail, %zu cannot be told, %zu not measured%s\n",
+          outcome->bearings, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED],
+          by[FG_VERDICT_NOT_MEASURED],
+          outcome->bearings ? ""
+                            : ": the design's tolerances of a bearing judge nothing, the foils "
+                              "make none");
+}
+
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   const size_t *by = outcome->foils_by_verdict;
   fprintf(stderr, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told", outcome->foils,
@@ -193,7 +259,11 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   if (by[FG_VERDICT_NOT_MEASURED] || outcome->failed)
     fprintf(stderr, "; not measured: %zu foils, %zu scans", by[FG_VERDICT_NOT_MEASURED],
             outcome->failed);
-  fprintf(stderr, "\n%s/index.html\n", folder);
+  fputc('\n', stderr);
+  if (outcome->bearings_judged) say_bearings(outcome);
+  for (size_t i = 0; i < sizeof outcome->assembly / sizeof *outcome->assembly; i++)
+    if (outcome->assembly[i][0]) fprintf(stderr, "%s\n", outcome->assembly[i]);
+  fprintf(stderr, "%s/index.html\n", folder);
   return fg_outcome_exit_code(&outcome->judged);
 }
 
@@ -217,12 +287,36 @@ static fg_status print_recipe(fg_context *ctx, const fg_lot_settings *settings) 
   return status;
 }
 
+static void say_lines(const char *words, const char *text) {
+  for (; text && *text; text += strcspn(text, "\n"), text += *text == '\n')
+    fprintf(stderr, "%s%.*s\n", words, (int)strcspn(text, "\n"), text);
+}
+
+/* Exit code 2: a lot could not be read. */
+static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int *code) {
+  fg_lot_index_outcome outcome;
+  const fg_lot_index_request request = {.folders = (const char *const *)arguments->paths,
+                                        .count = arguments->path_count,
+                                        .page = arguments->index,
+                                        .json = arguments->folder,
+                                        .csv = arguments->csv};
+  FG_TRY(fg_lot_index(ctx, &request, &outcome));
+  say_lines("foilgauge: note: ", outcome.notes);
+  say_lines("", outcome.summary);
+  fprintf(stderr, "%zu lots", outcome.lots);
+  if (outcome.not_read) fprintf(stderr, ", %zu could not be read", outcome.not_read);
+  fprintf(stderr, "\n%s\n", arguments->index);
+  *code = outcome.not_read ? 2 : 0;
+  fg_lot_index_outcome_free(&outcome);
+  return FG_OK;
+}
+
 static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code) {
   fg_lot_settings settings;
   fg_lot_outcome outcome;
   bool terminal = isatty(STDERR_FILENO);
   const char *const *paths = (const char *const *)arguments->paths;
-  if (arguments->index) return fg_lot_index(ctx, paths, arguments->path_count, arguments->index);
+  if (arguments->index) return make_index(ctx, arguments, code);
   FG_TRY(load_settings(ctx, arguments, &settings));
   if (arguments->print_recipe) return print_recipe(ctx, &settings);
   const fg_lot_request request = {.settings = &settings,

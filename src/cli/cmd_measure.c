@@ -336,10 +336,20 @@ static fg_status load_model(fg_context *ctx, measure_run *run) {
   return FG_OK;
 }
 
+static void tell_not_judged(const fg_design *design) {
+  char names[400];
+  if (fg_report_of_bearing(design, names, sizeof names))
+    fprintf(stderr,
+            "foilgauge: note: not judged here: %s: a scan has no bearing; `foilgauge lot` judges "
+            "its bearings by it\n",
+            names);
+}
+
 static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   choose_standard_output(&run->outputs);
   FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
+  tell_not_judged(&run->design);
   FG_TRY(load_model(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(measure_all(ctx, run));

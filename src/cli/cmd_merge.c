@@ -19,7 +19,8 @@ static const char doc[] =
     "\vEvery shard must be there, once, complete, and made with the same recipe, manifest and "
     "version. The report and the exit code are those of one run, whatever the number of shards.\n\n"
     "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
-    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
+    "more than U (of foils or of bearings), or a bump is missing; 2 something could not be "
+    "measured; 3 cannot tell: a limit "
     "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output.";
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {

@@ -23,6 +23,7 @@ fg_command_run fg_cmd_loop;
 fg_command_run fg_cmd_loop_scan; /* `loop` without --table */
 fg_command_run fg_cmd_lot;
 fg_command_run fg_cmd_merge;
+fg_command_run fg_cmd_die;
 fg_command_run fg_cmd_station;
 
 struct argp;

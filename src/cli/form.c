@@ -9,6 +9,10 @@ fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design
   } forms[] = {{"classical", FG_FORM_CLASSICAL},
                {"sinusoidal", FG_FORM_SINUSOIDAL},
                {"discs", FG_FORM_DISCS}};
+  if (form && !strcmp(form, "arc"))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--form: an arc has no built-in design; state it in a file: --design F with "
+                   "\"form\": \"arc\", overall_radius_mm, subtended_angle_deg, thickness_mm");
   if (!form) return FG_OK;
   for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
     if (strcmp(form, forms[i].name) != 0) continue;

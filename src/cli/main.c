@@ -14,6 +14,7 @@ static const fg_command commands[] = {
     {"loop", fg_cmd_loop, "find the effect that a declared model lacks; error before and after"},
     {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
     {"lot", fg_cmd_lot, "measure and report a production lot; resume it, shard it"},
+    {"die", fg_cmd_die, "stylus traces of a die against the design"},
     {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
     {"station", fg_cmd_station, "watch a folder of scans, keep results, show them in a browser"},
     {NULL, NULL, NULL},

@@ -101,6 +101,11 @@ static double bump_angle_error(const geometry *g, double gradient[BY_COUNT]) {
   return scaled(gradient, 100 / design) * (angle - design);
 }
 
+static double intersection_angle_error(const geometry *g, double gradient[BY_COUNT]) {
+  double design = g->nominal->intersection_angle_deg, angle = intersection_angle(g, gradient);
+  return scaled(gradient, 100 / design) * (angle - design);
+}
+
 static double height_model(const geometry *g, double gradient[BY_COUNT]) {
   gradient[BY_R] = g->model.height_slope;
   return g->model.height_mm;
@@ -129,6 +134,7 @@ static const quantity quantities[] = {
     QUANTITY(clearance_fitted, clearance_fitted_mm),
     QUANTITY(radius_error, radius_error_pct),
     QUANTITY(bump_angle_error, bump_angle_error_pct),
+    QUANTITY(intersection_angle_error, intersection_angle_error_pct),
     QUANTITY(height_model, height_model_mm),
     QUANTITY(bump_angle_model, bump_angle_model_deg),
 };

@@ -112,6 +112,23 @@ static fg_status check_bearing(fg_context *ctx, const fg_design *design) {
   return FG_OK;
 }
 
+/* With a top foil a design must leave the rotor room: a relative clearance error over a nominal
+ * clearance of 0 or less says nothing. */
+static fg_status check_top_foil(fg_context *ctx, const fg_design *design) {
+  double top = design->top_foil_thickness_mm;
+  if (!isfinite(top) || top < 0)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "top_foil_thickness_mm is %g; it must be a number above 0, or 0 for none", top);
+  double height = design->bump_radius_mm - (centre_to_centre(design) - design->sleeve_radius_mm);
+  double clearance = fg_design_clearance(design, height);
+  if (top == 0 || clearance > 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "top_foil_thickness_mm is %g: between the bumps and rotor_diameter_mm %g are "
+                 "%.4g mm only, which leaves no clearance; the rotor must be below %.6g",
+                 top, design->rotor_diameter_mm, clearance + top,
+                 design->rotor_diameter_mm + 2 * clearance);
+}
+
 static fg_status check_discs(fg_context *ctx, const fg_design *design) {
   if (design->diameter_count > FG_DIAMETERS_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm has %zu values; at most %d",
@@ -121,6 +138,25 @@ static fg_status check_discs(fg_context *ctx, const fg_design *design) {
     snprintf(member, sizeof member, "diameters_mm[%zu]", i);
     FG_TRY(check_positive(ctx, member, design->diameters_mm[i]));
   }
+  return FG_OK;
+}
+
+static fg_status check_arc(fg_context *ctx, const fg_design *design) {
+  double radius = design->overall_radius_mm, angle = design->subtended_angle_deg;
+  FG_TRY(check_positive(ctx, "overall_radius_mm", radius));
+  FG_TRY(check_positive(ctx, "thickness_mm", design->thickness_mm));
+  FG_TRY(check_positive(ctx, "subtended_angle_deg", angle));
+  if (angle >= 360)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "subtended_angle_deg is %g; a strip with two ends has less than a full turn (360)", angle);
+  if (design->thickness_mm >= radius)
+    return fg_fail(ctx, FG_ERR_DATA, "thickness_mm is %g; it must be below overall_radius_mm %g",
+                   design->thickness_mm, radius);
+  if (design->top_foil_thickness_mm != 0)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "top_foil_thickness_mm belongs to a foil with bumps; this one's is thickness_mm");
   return FG_OK;
 }
 
@@ -142,10 +178,14 @@ fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
   if (design->diameter_count != 0)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm belongs to form \"discs\" only");
+  if (design->form == FG_FORM_ARC) return check_arc(ctx, design);
+  if (design->subtended_angle_deg != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "subtended_angle_deg belongs to form \"arc\" only");
   FG_TRY(check_values(ctx, design));
   FG_TRY(check_bump(ctx, design));
   FG_TRY(check_pitch(ctx, design));
-  return check_bearing(ctx, design);
+  FG_TRY(check_bearing(ctx, design));
+  return check_top_foil(ctx, design);
 }
 
 static fg_nominal no_nominal(void) {
@@ -156,6 +196,10 @@ fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal 
   FG_TRY(fg_design_check(ctx, design));
   *nominal = no_nominal();
   if (design->form == FG_FORM_DISCS) return FG_OK;
+  if (design->form == FG_FORM_ARC) {
+    nominal->arc_length_mm = design->subtended_angle_deg * rad_per_deg * design->overall_radius_mm;
+    return FG_OK;
+  }
   double radius = design->bump_radius_mm, overall = design->overall_radius_mm;
   double alpha_rad = design->bump_angle_deg * rad_per_deg;
   double x = centre_to_centre(design);
@@ -171,7 +215,8 @@ fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal 
 }
 
 double fg_design_clearance_over(const fg_design *design, double height_mm, double thickness_mm) {
-  return design->sleeve_radius_mm - height_mm - design->rotor_diameter_mm / 2 - thickness_mm;
+  return design->sleeve_radius_mm - height_mm - design->rotor_diameter_mm / 2 - thickness_mm -
+         design->top_foil_thickness_mm;
 }
 
 double fg_design_clearance(const fg_design *design, double height_mm) {

@@ -8,6 +8,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "geometry/arc_foil.h"
 #include "geometry/bump_places.h"
 #include "geometry/foil_uncertainty.h"
 #include "geometry/labels.h"
@@ -52,6 +53,7 @@ void fg_foil_give_up(fg_foil *foil, const char *why) {
   foil->thickness_mm = foil->u_thickness_mm = NAN;
   foil->noise_um = foil->correlation_mm = foil->edge_model_um = NAN;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
+  foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
   forget_overall(&foil->overall);
 }
 
@@ -225,6 +227,27 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   return fg_labels_fill(ctx, layout, design->datum, foil);
 }
 
+/* A plain strip. */
+static fg_status fill_arc(fg_context *ctx, const fg_design *design, fg_layout *layout,
+                          fg_foil *foil) {
+  fg_foil_find_arc_uncertainty(layout, foil);
+  fg_foil_add_tone_doubt(foil);
+  fill_overall(layout, design, foil);
+  fg_arc_foil_derive(design, layout, foil);
+  fg_foil_recognise(design, foil);
+  FG_TRY(fg_labels_fill(ctx, layout, design->datum, foil));
+  for (size_t k = 0; k < foil->strip.count; k++)
+    if (foil->labels[k].kind == FG_ARC_LAND) foil->labels[k].number = 1;
+  return FG_OK;
+}
+
+static fg_status find_layout(fg_context *ctx, const fg_design *design, unsigned threads,
+                             fg_foil *foil, fg_layout *layout, const char **error) {
+  if (design->form == FG_FORM_ARC)
+    return fg_arc_foil_layout(ctx, design, &foil->strip, layout, &foil->flags, error);
+  return fg_layout_find(ctx, design, &foil->strip, threads, layout, error);
+}
+
 /* A foil that is the design's in shape but not in size was scanned at another resolution than was
  * said; every number would be wrong by the same factor. */
 static bool is_off_scale(const fg_design *design, const fg_layout *layout, const fg_strip *strip,
@@ -241,9 +264,10 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
   foil->thickness_mm = foil->strip.thickness_mm;
   foil->u_thickness_mm = foil->strip.u_thickness_mm;
   foil->correction = (fg_correction){NAN, NAN, NAN, NAN, NAN, NAN};
+  foil->arc = (fg_foil_arc){NAN, NAN, NAN, NAN, NAN, NAN};
   take_over_facts(foil);
   if (fg_foil_widths_in_blurs(foil) < COARSE_WIDTHS) foil->flags |= FG_FOIL_COARSE_RESOLUTION;
-  FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, &layout, &error));
+  FG_TRY(find_layout(ctx, design, threads, foil, &layout, &error));
   fg_status status = FG_OK;
   double factor;
   if (error) {
@@ -256,7 +280,7 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
              factor);
     fg_foil_give_up(foil, why);
   } else {
-    status = fill_foil(ctx, design, &layout, foil);
+    status = (design->form == FG_FORM_ARC ? fill_arc : fill_foil)(ctx, design, &layout, foil);
   }
   fg_layout_free(&layout);
   return status;

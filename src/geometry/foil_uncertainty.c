@@ -13,9 +13,6 @@
 /* The overall circle has one half-width shift of its own, no mean of many: it counts beyond so many
  * standard deviations. */
 #define OVERALL_SHIFT_SIGMAS 3.0
-/* Standard uncertainty of the line's place along its normal, as a share of the blur: what the
- * intensity model leaves on clean renders (reports/accuracy.md). */
-#define LINE_SHIFT_BLURS 0.001
 /* Where both edges blur into each other that place rests on the shape of the blur: the share grows
  * with the cube of the blur below so many blurs of width (reports/accuracy_hard.md). */
 #define LINE_SHIFT_WIDTHS 3.0
@@ -106,7 +103,7 @@ double fg_foil_widths_in_blurs(const fg_foil *foil) {
 static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
   double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
   double overlap = fmax(1, LINE_SHIFT_WIDTHS / fg_foil_widths_in_blurs(foil));
-  double shift_mm = LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
+  double shift_mm = FG_LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
   arc->covariance[2][2] += shift_mm * shift_mm;
 }
 
@@ -118,6 +115,31 @@ static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
   fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
   add_overall_systematic(layout, &half_width);
   add_line_shift(foil, &layout->overall);
+}
+
+/* Mean square of the edges' own standard deviation, which the pixels' noise gives, mm². */
+static double pixel_variance(const fg_strip *strip) {
+  double sum = 0, count = 0;
+  for (size_t i = 0; i < strip->count; i++) {
+    const fg_station *s = &strip->stations[i];
+    if (!(s->weight > 0)) continue;
+    sum += 1e-6 * ((double)s->u_left_um * s->u_left_um + (double)s->u_right_um * s->u_right_um) / 2;
+    count++;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+void fg_foil_find_arc_uncertainty(fg_layout *layout, fg_foil *foil) {
+  fg_noise_model noise, half_width;
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 0, &noise);
+  fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
+  double edge = noise.covariance[0] + half_width.covariance[0];
+  foil->noise_um = 1000 * sqrt(noise.covariance[0]);
+  foil->correlation_mm = noise.integral_stations * foil->strip.step_mm;
+  foil->edge_rough_um = 1000 * sqrt(fmax(edge - pixel_variance(&foil->strip), 0));
+  foil->edge_model_um = 0;
+  if (noise.integral_stations > ROUGH_STATIONS) foil->flags |= FG_FOIL_ROUGH_EDGE;
+  find_overall_covariance(layout, foil);
 }
 
 static size_t gather_bumps(const fg_layout *layout, fg_arc *arcs) {
@@ -151,10 +173,15 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil
   return FG_OK;
 }
 
-void fg_foil_add_tone_doubt(fg_foil *foil) {
+double fg_foil_tone_doubt(const fg_foil *foil) {
   const unsigned hidden = FG_FOIL_ROUGH_EDGE | FG_FOIL_SIDE_BAND | FG_FOIL_CLIPPED;
   const fg_strip *strip = &foil->strip;
   double doubt = strip->gamma > 0 ? strip->u_gamma / strip->gamma : 0;
-  if (foil->flags & hidden) doubt = hypot(doubt, HIDDEN_TONE_DOUBT);
-  foil->u_thickness_mm = hypot(strip->u_thickness_mm, doubt * strip->tone_um / 1000);
+  return foil->flags & hidden ? hypot(doubt, HIDDEN_TONE_DOUBT) : doubt;
+}
+
+void fg_foil_add_tone_doubt(fg_foil *foil) {
+  const fg_strip *strip = &foil->strip;
+  foil->u_thickness_mm =
+      hypot(strip->u_thickness_mm, fg_foil_tone_doubt(foil) * strip->tone_um / 1000);
 }

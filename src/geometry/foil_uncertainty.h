@@ -4,8 +4,18 @@
 
 #include "geometry/layout.h"
 
+/* Standard uncertainty of a line's place along its normal, as a share of the blur: what the
+ * intensity model leaves on clean renders (reports/accuracy.md). */
+#define FG_LINE_SHIFT_BLURS 0.001
+
 /* Covariances of the overall circle and of every bump's; noise and edge model of the foil. */
 fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil *foil);
+
+/* The same of a plain strip: its circle's covariance, noise, roughness of the edges. */
+void fg_foil_find_arc_uncertainty(fg_layout *layout, fg_foil *foil);
+
+/* Relative standard uncertainty of the tone curve's exponent. */
+double fg_foil_tone_doubt(const fg_foil *foil);
 
 /* The tone curve's share of the thickness' uncertainty. */
 void fg_foil_add_tone_doubt(fg_foil *foil);

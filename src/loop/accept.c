@@ -11,7 +11,7 @@
 /* What comes after a first claim must be so many times as sure: its null leans on the first. */
 enum { LATER_CLAIMS = 2 };
 /* Beside an effect another one explains more when chance would do so less often than this
- * (what that finds and misses: reports/loop_tables.md). */
+ * (what that finds and misses: reports/loop_power.md). */
 #define BESIDE_P 0.003
 /* Beside the best outlier a claim still shows when chance would do as much less often than this:
  * milder than a claim, for the outlier has taken some of it. */

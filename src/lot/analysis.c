@@ -61,7 +61,7 @@ static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_f
   return FG_OK;
 }
 
-/* Without tolerances the farthest height from the lot's mean is the worst. */
+/* Without tolerances of foils the farthest height from the lot's mean is the worst. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
   const fg_lot_quantity *height = fg_lot_find_quantity(analysis, "height_mm");
   if (!height || !(height->sd > 0)) return;
@@ -120,12 +120,15 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   count_bumps(analysis);
   FG_TRY(judge_all(ctx, analysis));
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
-  FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
-  if (!analysis->lot->settings.design.tolerance_count) rank_by_spread(analysis);
+  bool bumps = fg_form_has_bumps(analysis->lot->settings.design.form);
+  if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
+  const fg_design *design = &analysis->lot->settings.design;
+  if (design->tolerance_count == fg_report_of_bearing(design, NULL, 0)) rank_by_spread(analysis);
   find_worst(analysis);
   fg_lot_analyse_thickness(analysis);
-  FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
-  FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_stiffness(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_bearings(ctx, analysis));
+  if (bumps) FG_TRY(fg_lot_analyse_assembly(ctx, analysis));
   FG_TRY(fg_lot_analyse_groups(ctx, analysis));
   return fg_lot_analyse_gauge(ctx, analysis);
 }
@@ -150,7 +153,10 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis) {
   }
   free(analysis->quantities);
   free(analysis->stiffness.normalised);
+  for (size_t i = 0; i < analysis->bearing_count; i++)
+    fg_decision_free(&analysis->bearings[i].decision);
   free(analysis->bearings);
+  fg_lot_assembly_free(&analysis->assembly);
   free(analysis->differences);
   free(analysis->gauges);
   free(analysis->foils);

@@ -6,7 +6,10 @@
 #include "foilgauge/comparison.h"
 #include "foilgauge/control.h"
 #include "foilgauge/density.h"
+#include "foilgauge/stiffness.h"
+#include "lot/assembly.h"
 #include "lot/lot_report.h"
+#include "report/stiffness/stiffness_table.h"
 
 /* One foil of the lot. */
 typedef struct fg_lot_foil {
@@ -73,8 +76,37 @@ typedef struct fg_lot_thickness {
   bool differs; /* from the design's, by more than U */
 } fg_lot_thickness;
 
+/* One cause of the spread: d ln K = sensitivity × d ln of it. */
+typedef struct fg_lot_budget_term {
+  double spread_pct, sensitivity; /* relative sd over the bumps; NaN: not known */
+  double variance_pct2;           /* of the stiffness: their product, squared */
+} fg_lot_budget_term;
+
+/* Where the relative sd of the stiffness (arch) comes from, to first order about the lot's mean:
+ *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
+ *          + (s_t sigma_t)²,   s_t = 3 for slender bumps, r the correlation of R and arc length.
+ * All scans share the doubt about the thickness: it is in the mean (u_by_thickness), not here. */
+typedef struct fg_lot_budget {
+  bool known;
+  fg_lot_budget_term radius; /* at constant arc length */
+  fg_lot_budget_term arc_length, thickness;
+  double correlation, together_pct2; /* of radius and arc length; what that adds */
+  double sum_pct2;                   /* of what is known of the above */
+  double observed_pct;               /* rsd of the measured bumps */
+  double unexplained_pct2;           /* observed² - sum: curvature, what is not measured; may be
+                                        negative */
+  double measurement_pct;            /* of the observed, by the bumps' own uncertainties; NaN */
+  double parts_pct;                  /* what is left of the observed without it */
+} fg_lot_budget;
+
+enum { FG_LOT_CASE_DESIGN, FG_LOT_CASE_MEAN, FG_LOT_CASES };
+
 /* Stiffness of the bumps over that of the design's. */
 typedef struct fg_lot_stiffness {
+  fg_stiffness_case cases[FG_LOT_CASES];       /* by every model; the mean where there are bumps */
+  fg_lot_spread by_model[FG_STIFFNESS_MODELS]; /* measured, over the design's by that model; a count
+                                                  of 0: not known */
+  fg_lot_budget budget;
   fg_arch_stiffness design_free, design_welded;
   fg_arch_sensitivity sensitivity;
   double *normalised; /* by bump of the lot, foil after foil, thickness as measured; NaN; owned */
@@ -91,10 +123,59 @@ typedef struct fg_lot_bearing {
   const fg_lot_foil *pad[FG_BEARING_BUMPS_MAX]; /* layout.pads; NULL: missing */
   /* Of the foils fitted into the sleeve; NaN: no value, or a crushed bump's. */
   double angle_deg[FG_BEARING_BUMPS_MAX], clearance_mm[FG_BEARING_BUMPS_MAX];
+  double u_clearance_mm[FG_BEARING_BUMPS_MAX];
   size_t places;
   bool known;
   fg_bearing_clearance clearance;
+  fg_decision decision; /* fg_bearing_decide's; owned */
 } fg_lot_bearing;
+
+/* What of the foils is in no bearing, and why. */
+typedef struct fg_lot_unplaced {
+  size_t without;   /* the manifest names no bearing; of assumed ones: left over */
+  size_t displaced; /* the pad is taken, or the bearing has all its pads */
+  size_t bad_pads;  /* a pad that is no number from 1 to pads: the next free one was taken */
+} fg_lot_unplaced;
+
+/* Why a foil takes no part in the drawn bearings. */
+typedef enum fg_lot_left_out {
+  FG_LOT_IN_STOCK,
+  FG_LOT_NOT_MEASURED,
+  FG_LOT_DEFECT,        /* fg_foil_defect */
+  FG_LOT_FAILS,         /* its own tolerances */
+  FG_LOT_FLAGGED,       /* what is seen of it may not be the foil's */
+  FG_LOT_CRUSHED,       /* a bump of it is */
+  FG_LOT_NO_CLEARANCE,  /* at one of its places: fewer bumps than the layout asks, or no value */
+  FG_LOT_SCANNED_AGAIN, /* a part has several scans: the first that can be built in counts */
+  FG_LOT_LEFT_OUT
+} fg_lot_left_out;
+
+/* For people: "crushed bump". */
+const char *fg_lot_left_out_words(fg_lot_left_out why);
+
+/* What would change the share of bearings that assemble: the same lot, changed in one thing. */
+typedef struct fg_lot_change {
+  const char *name;  /* in JSON */
+  const char *words; /* for people: "the mean bump radius at the design's" */
+  double share, gain;
+  bool clear; /* more than twice the scatter of the draws, up or down */
+} fg_lot_change;
+
+enum { FG_LOT_CHANGES_MAX = 4 };
+
+typedef struct fg_lot_assembly {
+  bool asked;    /* the recipe asks for bearings */
+  char why[200]; /* why nothing was drawn; "": it was */
+  size_t left_out[FG_LOT_LEFT_OUT];
+  fg_lot_left_out *reason; /* of each foil of the lot; owned */
+  fg_stock stock;          /* owned */
+  fg_assembly_plan plan;
+  bool centred; /* the crowns surround the rotor, so that it has a place of most room */
+  fg_assembly_result drawn, design;
+  fg_lot_change change[FG_LOT_CHANGES_MAX];
+  size_t changes, classes; /* boxes that sorted foils would lie in */
+  char statement[3][400];
+} fg_lot_assembly;
 
 /* Two groups of the lot (dies, coils) in one quantity. */
 typedef struct fg_lot_difference {
@@ -117,7 +198,7 @@ typedef struct fg_lot_analysis {
   size_t foil_count, failed_scans;
   size_t bumps, crushed; /* of measured foils; crushed ones are in no statistics */
   size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
-  fg_report_outcome outcome;                        /* of all foils and scans */
+  fg_report_outcome outcome;                        /* of all foils, scans and bearings */
   const fg_lot_foil *worst[3];
   fg_lot_quantity *quantities;
   size_t quantity_count;
@@ -129,6 +210,9 @@ typedef struct fg_lot_analysis {
   char layout_note[400];    /* what of it contradicts the design; "": nothing */
   fg_lot_bearing *bearings;
   size_t bearing_count, bearing_capacity;
+  fg_lot_unplaced unplaced;
+  size_t bearings_by_verdict[FG_VERDICT_NONE + 1];
+  fg_lot_assembly assembly;
   /* Of the local clearance relative to the design's, in percent: foils free, and fitted. */
   fg_lot_spread clearance_pct, clearance_fitted_pct;
   fg_lot_difference *differences;
@@ -145,10 +229,16 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis);
  * foil of the design. */
 bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
 
-/* The arch of a bump: radii of design and measurement are those of the datum line, an arch bends
- * about its midline. */
-fg_arch fg_lot_arch(const fg_design *design, double thickness_mm, double radius_mm,
-                    double angle_deg);
+/* Clearance over a bump of the foil fitted into the sleeve, NaN where there is none that counts; of
+ * its u what all foils share, and the rest. */
+typedef struct fg_lot_clearance {
+  double mm, u_shared_mm, u_own_mm;
+} fg_lot_clearance;
+fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_lot_foil *foil,
+                                     int number);
+
+/* owner[i]: the foil of the lot that foil i is a scan of, itself where no part is named. */
+fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, size_t *owner);
 
 /* What the arch model leaves out of this lot's form; NULL: nothing. */
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);
@@ -171,6 +261,9 @@ void fg_lot_analyse_thickness(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_find_layout(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis);
+fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis);
+void fg_lot_assembly_free(fg_lot_assembly *assembly);
+void fg_lot_say_assembly(fg_lot_analysis *analysis); /* the statements */
 fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 

@@ -32,6 +32,7 @@ static fg_status assume_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
     memcpy(bearing->pad, set, pads * sizeof *set);
     pad = 0;
   }
+  analysis->unplaced.without = pad;
   return FG_OK;
 }
 
@@ -41,17 +42,20 @@ static fg_lot_bearing *find_bearing(fg_lot_analysis *analysis, const char *name)
   return NULL;
 }
 
-/* The pad that the manifest says, else the next free one. */
-static size_t pad_of(const fg_lot_bearing *bearing, const char *text, size_t pads) {
+/* The pad that the manifest says, else the next free one; `pads` when there is none. */
+static size_t pad_of(const fg_lot_bearing *bearing, const char *text, size_t pads, bool *bad) {
   char *end;
   unsigned long pad = strtoul(text, &end, 10);
-  if (*text && !*end && pad >= 1 && pad <= pads) return pad - 1;
+  bool right = *text && !*end && pad >= 1 && pad <= pads;
+  *bad = *text && !right;
+  if (right) return bearing->pad[pad - 1] ? pads : pad - 1;
   size_t next = 0;
   while (next < pads && bearing->pad[next])
     next++;
   return next;
 }
 
+/* A foil that could not be measured leaves its place in the bearing unknown. */
 static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t column) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   const fg_lot_settings *settings = &analysis->lot->settings;
@@ -59,35 +63,76 @@ static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t 
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
     const char *name = fg_manifest_cell(manifest, foil->item, column);
-    if (!*name || !is_measured(foil)) continue;
+    bool bad;
+    analysis->unplaced.without += !*name;
+    if (!*name) continue;
     fg_lot_bearing *bearing = find_bearing(analysis, name);
     if (!bearing) FG_TRY(add_bearing(ctx, analysis, name, &bearing));
+    if (!is_measured(foil)) continue;
     const char *cell = fg_manifest_cell(manifest, foil->item, pad_column);
-    size_t pad = pad_of(bearing, cell, analysis->layout.pads);
+    size_t pad = pad_of(bearing, cell, analysis->layout.pads, &bad);
+    analysis->unplaced.bad_pads += bad;
+    analysis->unplaced.displaced += pad == analysis->layout.pads;
     if (pad < analysis->layout.pads) bearing->pad[pad] = foil;
   }
   return FG_OK;
 }
 
-static double clearance_of(const fg_lot_foil *foil, int number) {
+fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_lot_foil *foil,
+                                     int number) {
+  const fg_lot_clearance unknown = {NAN, NAN, NAN};
   for (size_t i = 0; foil && i < foil->foil->bump_count; i++) {
     const fg_bump *bump = &foil->foil->bumps[i];
-    if (bump->number == number)
-      return fg_lot_bump_counts(foil->foil, bump) ? bump->clearance_fitted_mm : NAN;
+    if (bump->number != number) continue;
+    if (!fg_lot_bump_counts(foil->foil, bump)) return unknown;
+    double u = bump->u_clearance_fitted_mm;
+    double shared = fg_foil_thickness(&analysis->lot->settings.design, foil->foil).u_mm;
+    if (!isfinite(u)) u = 0;
+    if (!(shared >= 0)) shared = 0;
+    return (fg_lot_clearance){.mm = bump->clearance_fitted_mm,
+                              .u_shared_mm = fmin(u, shared),
+                              .u_own_mm = sqrt(fmax(0, (u - shared) * (u + shared)))};
   }
-  return NAN;
+  return unknown;
 }
 
-static void assess(const fg_bearing_layout *layout, fg_lot_bearing *bearing) {
+static void assess(const fg_lot_analysis *analysis, fg_lot_bearing *bearing) {
+  const fg_bearing_layout *layout = &analysis->layout;
+  double shared[FG_BEARING_BUMPS_MAX], own[FG_BEARING_BUMPS_MAX];
+  size_t pads[FG_BEARING_BUMPS_MAX];
   fg_context unused;
   for (size_t pad = 0; pad < layout->pads; pad++)
     for (size_t bump = 0; bump < layout->bumps_per_pad; bump++) {
-      bearing->angle_deg[bearing->places] = fg_bearing_angle_deg(layout, pad, bump);
-      bearing->clearance_mm[bearing->places++] =
-          clearance_of(bearing->pad[pad], (int)(layout->first_bump + bump));
+      size_t at = bearing->places++;
+      fg_lot_clearance c =
+          fg_lot_clearance_of(analysis, bearing->pad[pad], (int)(layout->first_bump + bump));
+      bearing->angle_deg[at] = fg_bearing_angle_deg(layout, pad, bump);
+      bearing->clearance_mm[at] = c.mm;
+      bearing->u_clearance_mm[at] = hypot(c.u_shared_mm, c.u_own_mm);
+      shared[at] = c.u_shared_mm;
+      own[at] = c.u_own_mm;
+      pads[at] = pad;
     }
-  bearing->known = fg_bearing_assess(&unused, bearing->angle_deg, bearing->clearance_mm,
-                                     bearing->places, &bearing->clearance) == FG_OK;
+  const fg_bearing_doubt doubt = {shared, own, pads};
+  bearing->known = fg_bearing_assess_doubt(&unused, bearing->angle_deg, bearing->clearance_mm,
+                                           bearing->places, &doubt, &bearing->clearance) == FG_OK;
+}
+
+/* A tolerance that nothing could be judged by must not read as a pass. */
+static fg_status judge(fg_context *ctx, fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
+    fg_lot_bearing *bearing = &analysis->bearings[i];
+    bool whole = bearing->known && bearing->clearance.count == bearing->places;
+    FG_TRY(fg_bearing_decide(ctx, design, bearing->known ? &bearing->clearance : NULL, whole,
+                             &bearing->decision));
+    analysis->bearings_by_verdict[bearing->decision.outcome.verdict]++;
+    fg_outcome_add(&analysis->outcome, &bearing->decision.outcome);
+  }
+  const fg_report_outcome none = {.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1};
+  if (!analysis->bearing_count && fg_report_of_bearing(design, NULL, 0))
+    fg_outcome_add(&analysis->outcome, &none);
+  return FG_OK;
 }
 
 /* Clearances as the thesis's figure 5.13 has them: 100 (C_local - C_D) / C_D. */
@@ -116,7 +161,8 @@ fg_status fg_lot_analyse_bearings(fg_context *ctx, fg_lot_analysis *analysis) {
   else
     FG_TRY(place_foils(ctx, analysis, column));
   for (size_t i = 0; i < analysis->bearing_count; i++)
-    assess(&analysis->layout, &analysis->bearings[i]);
+    assess(analysis, &analysis->bearings[i]);
+  FG_TRY(judge(ctx, analysis));
   FG_TRY(relative_clearance(ctx, analysis, "clearance_mm", &analysis->clearance_pct));
   return relative_clearance(ctx, analysis, "clearance_fitted_mm", &analysis->clearance_fitted_pct);
 }

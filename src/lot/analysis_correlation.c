@@ -46,8 +46,7 @@ static int compare_parts(const void *a, const void *b) {
   return order ? order : (p->at > q->at) - (p->at < q->at);
 }
 
-/* owner[i]: the foil of the lot that foil i is a scan of, itself where no part is named. */
-static fg_status find_owners(fg_context *ctx, const fg_lot_analysis *analysis, size_t *owner) {
+fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, size_t *owner) {
   const fg_lot *lot = analysis->lot;
   size_t column = fg_manifest_column(&lot->manifest, lot->settings.part_column), count = 0;
   void *block;
@@ -88,7 +87,7 @@ static fg_status collect_pairs(fg_context *ctx, const fg_lot_analysis *analysis,
     most += analysis->foils[i].foil->bump_count;
   FG_TRY(allocate_pairs(ctx, most, p));
   FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof(size_t), &block));
-  fg_status status = find_owners(ctx, analysis, block);
+  fg_status status = fg_lot_find_owners(ctx, analysis, block);
   if (status == FG_OK) fill_pairs(analysis, block, p);
   free(block);
   return status;

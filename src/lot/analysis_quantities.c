@@ -37,7 +37,7 @@ static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->quantities = block;
   for (size_t o = 0; o < OWNERS; o++) {
     const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-    size_t count = fg_quantity_shown(owners[o], FG_QUANTITY_IN_LOT, shown);
+    size_t count = fg_quantity_shown(owners[o], FG_QUANTITY_IN_LOT, design->form, shown);
     for (size_t i = 0; i < count; i++)
       list_quantity(analysis, owners[o], shown[i]);
   }

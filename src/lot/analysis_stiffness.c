@@ -3,13 +3,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
-#include "lot/analysis.h"
-
-fg_arch fg_lot_arch(const fg_design *design, double thickness_mm, double radius_mm,
-                    double angle_deg) {
-  double shift = design->datum == FG_DATUM_INNER ? -0.5 : design->datum == FG_DATUM_OUTER ? 0.5 : 0;
-  return (fg_arch){radius_mm + shift * thickness_mm, angle_deg, thickness_mm};
-}
+#include "lot/stiffness_columns.h"
 
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis) {
   fg_lot_thickness *result = &analysis->thickness;
@@ -31,7 +25,7 @@ static double stiffness_ratio(const fg_lot_settings *settings, const fg_lot_stif
                               double *foot) {
   fg_arch_stiffness stiffness;
   fg_context unused;
-  fg_arch arch = fg_lot_arch(&settings->design, thickness_mm, radius_mm, angle_deg);
+  fg_arch arch = fg_design_arch(&settings->design, thickness_mm, radius_mm, angle_deg);
   if (fg_arch_free(&unused, &arch, &settings->material, &stiffness) != FG_OK) return NAN;
   if (foot) *foot = stiffness.foot_n_mm2 / result->design_free.foot_n_mm2;
   return stiffness.stiffness_n_mm2 / result->design_free.stiffness_n_mm2;
@@ -41,42 +35,62 @@ static fg_status stiffness_of_design(fg_context *ctx, const fg_lot_settings *set
                                      fg_lot_stiffness *result) {
   const fg_design *design = &settings->design;
   fg_arch arch =
-      fg_lot_arch(design, design->thickness_mm, design->bump_radius_mm, design->bump_angle_deg);
+      fg_design_arch(design, design->thickness_mm, design->bump_radius_mm, design->bump_angle_deg);
+  result->cases[FG_LOT_CASE_DESIGN] =
+      (fg_stiffness_case){.title = "as designed", .name = "design", .arch = arch};
+  fg_stiffness_compare(&arch, &settings->material, result->cases[FG_LOT_CASE_DESIGN].lines);
   FG_TRY(fg_arch_free(ctx, &arch, &settings->material, &result->design_free));
   FG_TRY(fg_arch_welded(ctx, &arch, &settings->material, &result->design_welded));
   return fg_arch_sensitivities(ctx, &arch, &settings->material, &result->sensitivity);
 }
 
-/* Bumps of the lot with both radius and angle, as columns. */
-typedef struct bump_columns {
-  double *radius, *arc_length, *ratio, *foot, *thickness;
-  double *designed; /* ratio with the design's thickness */
-  size_t count;
-} bump_columns;
+enum { COLUMNS = 9 + FG_STIFFNESS_MODELS };
 
-static fg_status allocate_columns(fg_context *ctx, size_t count, bump_columns *columns) {
-  double **const all[] = {&columns->radius, &columns->arc_length, &columns->ratio,
-                          &columns->foot,   &columns->thickness,  &columns->designed};
+static void list_columns(fg_bump_columns *columns, double **all[COLUMNS]) {
+  double **const named[] = {&columns->radius,      &columns->arc_length, &columns->arch_radius,
+                            &columns->arch_length, &columns->thickness,  &columns->strip,
+                            &columns->measurement, &columns->foot,       &columns->designed};
+  size_t count = sizeof named / sizeof *named;
+  for (size_t i = 0; i < count; i++)
+    all[i] = named[i];
+  for (size_t i = 0; i < FG_STIFFNESS_MODELS; i++)
+    all[count + i] = &columns->ratio[i];
+}
+
+static fg_status allocate_columns(fg_context *ctx, size_t count, fg_bump_columns *columns) {
+  double **all[COLUMNS];
   void *block;
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+  list_columns(columns, all);
+  for (size_t i = 0; i < COLUMNS; i++) {
     FG_TRY(fg_memory_allocate(ctx, count, sizeof(double), &block));
     *all[i] = block;
   }
   return FG_OK;
 }
 
-static void free_columns(bump_columns *columns) {
-  free(columns->radius);
-  free(columns->arc_length);
-  free(columns->ratio);
-  free(columns->foot);
-  free(columns->thickness);
-  free(columns->designed);
+static void free_columns(fg_bump_columns *columns) {
+  double **all[COLUMNS];
+  list_columns(columns, all);
+  for (size_t i = 0; i < COLUMNS; i++)
+    free(*all[i]);
+}
+
+/* Of the models beside the arch; NaN where one gives none. */
+static void add_models(const fg_lot_settings *settings, const fg_lot_stiffness *result,
+                       const fg_arch *arch, fg_bump_columns *columns) {
+  for (int i = 1; i < FG_STIFFNESS_MODELS; i++) {
+    double stiffness = NAN;
+    fg_context unused;
+    if (fg_stiffness_models()[i].stiffness(&unused, arch, &settings->material, &stiffness) != FG_OK)
+      stiffness = NAN;
+    columns->ratio[i][columns->count] =
+        stiffness / result->cases[FG_LOT_CASE_DESIGN].lines[i].stiffness_n_mm2;
+  }
 }
 
 /* A line of the columns; what the bump's stiffness over the design's is. */
 static double add_bump(const fg_lot_analysis *analysis, const fg_foil *foil, const fg_bump *bump,
-                       bump_columns *columns) {
+                       fg_bump_columns *columns) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   double thickness_mm = fg_foil_thickness(&settings->design, foil).mm;
   double radius = bump->radius_mm, angle = bump->bump_angle_deg, foot;
@@ -88,14 +102,20 @@ static double add_bump(const fg_lot_analysis *analysis, const fg_foil *foil, con
   columns->arc_length[at] = radius * angle;
   columns->thickness[at] = thickness_mm;
   columns->foot[at] = foot;
-  columns->ratio[at] = ratio;
+  columns->ratio[0][at] = ratio;
+  const fg_arch arch = fg_design_arch(&settings->design, thickness_mm, radius, angle);
+  columns->arch_radius[at] = arch.radius_mm;
+  columns->arch_length[at] = arch.radius_mm * angle;
+  columns->strip[at] = foil->thickness_mm;
+  columns->measurement[at] = fg_bump_stiffness_variance(&foil->overall, bump, &result->sensitivity);
+  add_models(settings, result, &arch, columns);
   columns->designed[at] =
       stiffness_ratio(settings, result, settings->design.thickness_mm, radius, angle, NULL);
   columns->count++;
   return ratio;
 }
 
-static void fill_columns(fg_lot_analysis *analysis, bump_columns *columns) {
+static void fill_columns(fg_lot_analysis *analysis, fg_bump_columns *columns) {
   size_t at = 0;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
@@ -107,7 +127,7 @@ static void fill_columns(fg_lot_analysis *analysis, bump_columns *columns) {
 /* Radius and arc length are drawn apart: the first carries the springback, the second what is left
  * of the angle when the first is taken out. Every bump's thickness comes equally often. */
 static fg_status resample(fg_context *ctx, const fg_lot_settings *settings,
-                          const bump_columns *columns, fg_lot_stiffness *result) {
+                          const fg_bump_columns *columns, fg_lot_stiffness *result) {
   fg_density radius = {0}, arc_length = {0};
   void *block = NULL;
   fg_status status = FG_OK;
@@ -138,13 +158,45 @@ static bool differ(const double *values, size_t count) {
   return false;
 }
 
+static double mean_of(const double *values, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += values[i];
+  return sum / (double)count;
+}
+
+/* A bump of the lot's mean radius, arc length and thickness. */
+static void find_mean_bump(const fg_lot_settings *settings, const fg_bump_columns *columns,
+                           fg_lot_stiffness *result) {
+  fg_stiffness_case *bump = &result->cases[FG_LOT_CASE_MEAN];
+  double radius = mean_of(columns->arch_radius, columns->count);
+  *bump =
+      (fg_stiffness_case){.title = "the lot's mean",
+                          .name = "lot_mean",
+                          .arch = {radius, mean_of(columns->arch_length, columns->count) / radius,
+                                   mean_of(columns->thickness, columns->count)}};
+  fg_stiffness_compare(&bump->arch, &settings->material, bump->lines);
+}
+
+/* A model that gives no stiffness for one of the bumps has no spread over them. */
+static fg_status spread_by_models(fg_context *ctx, const fg_lot_settings *settings,
+                                  const fg_bump_columns *columns, fg_lot_stiffness *result) {
+  for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
+    if (!isfinite(mean_of(columns->ratio[i], columns->count))) continue;
+    FG_TRY(fg_lot_spread_of(ctx, columns->ratio[i], columns->count, settings->bandwidth,
+                            &result->by_model[i]));
+  }
+  return FG_OK;
+}
+
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   fg_lot_stiffness *result = &analysis->stiffness;
-  bump_columns columns = {0};
+  fg_bump_columns columns = {0};
   void *block;
   size_t most = 0;
   fg_status status = FG_OK;
+  if (!fg_form_has_bumps(settings->design.form)) return FG_OK;
   for (size_t i = 0; i < analysis->foil_count; i++)
     most += analysis->foils[i].foil->bump_count;
   FG_TRY_EXIT(stiffness_of_design(ctx, settings, result));
@@ -155,8 +207,11 @@ fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
   analysis->has_stiffness = differ(columns.radius, columns.count) &&
                             differ(columns.arc_length, columns.count) && settings->resamples > 1;
   if (!analysis->has_stiffness) goto exit;
-  FG_TRY_EXIT(
-      fg_lot_spread_of(ctx, columns.ratio, columns.count, settings->bandwidth, &result->measured));
+  FG_TRY_EXIT(fg_lot_spread_of(ctx, columns.ratio[0], columns.count, settings->bandwidth,
+                               &result->measured));
+  FG_TRY_EXIT(spread_by_models(ctx, settings, &columns, result));
+  find_mean_bump(settings, &columns, result);
+  fg_lot_analyse_budget(analysis, &columns);
   FG_TRY_EXIT(
       fg_lot_spread_of(ctx, columns.foot, columns.count, settings->bandwidth, &result->foot));
   FG_TRY_EXIT(fg_lot_spread_of(ctx, columns.designed, columns.count, settings->bandwidth,
@@ -171,7 +226,5 @@ exit:
 }
 
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis) {
-  if (analysis->lot->settings.design.form != FG_FORM_SINUSOIDAL) return NULL;
-  return "The model is the classical bump's: a circular arch on its two feet. The long fillets of "
-         "these sinusoidal foils bend too, and are not in it: these bumps are softer.";
+  return fg_stiffness_form_note(analysis->lot->settings.design.form);
 }

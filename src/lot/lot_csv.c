@@ -1,10 +1,13 @@
-/* foils.csv and bumps.csv: the manifest's columns first, so that any program can pivot by them. */
+/* foils.csv, bumps.csv, bearings.csv: the manifest's columns first, so that any program can pivot
+ * by them. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "lot/analysis_dies.h"
 #include "lot/writers.h"
 #include "quantity/quantity_rows.h"
 #include "report/words.h"
@@ -97,12 +100,23 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
   return fg_stream_finish(ctx, out, "foils.csv");
 }
 
+static void put_to_die(FILE *out, const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump) {
+  fg_lot_to_die to = fg_lot_bump_to_die(lot, foil, bump);
+  put_number(out, to.radius_mm);
+  put_number(out, to.error_pct);
+  put_number(out, to.u_error_pct);
+}
+
 fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_manifest *manifest = &analysis->lot->manifest;
   const fg_design *design = &analysis->lot->settings.design;
   const double *stiffness = analysis->stiffness.normalised;
   size_t at = 0;
-  put_heading(out, manifest, ",foil_number,bump,flags,normalised_stiffness,verdict",
+  bool dies = analysis->lot->settings.die_count > 0;
+  put_heading(out, manifest,
+              dies ? ",foil_number,bump,flags,normalised_stiffness,die_radius_mm,"
+                     "radius_error_to_die_pct,u_radius_error_to_die_pct,verdict"
+                   : ",foil_number,bump,flags,normalised_stiffness,verdict",
               FG_QUANTITY_OF_BUMP);
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_lot_foil *foil = &analysis->foils[i];
@@ -112,9 +126,68 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
       fprintf(out, ",%d,%d", foil->foil->number, bump->number);
       put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump));
       put_number(out, stiffness[at++]);
+      if (dies) put_to_die(out, analysis->lot, foil, bump);
       fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
       put_values(out, FG_QUANTITY_OF_BUMP, bump);
     }
   }
   return fg_stream_finish(ctx, out, "bumps.csv");
+}
+
+static void put_bearing_heading(FILE *out) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BEARING, &count);
+  fputs("bearing,pads,verdict,places", out);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < fg_quantity_width(&rows[i]); k++) {
+      char name[96];
+      fg_quantity_column(&rows[i], k, name, sizeof name);
+      fprintf(out, ",%s", name);
+    }
+  fputc('\n', out);
+}
+
+/* The foils' labels with a space between, "-" for a pad that is not there. */
+static fg_status put_pads(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis,
+                          const fg_lot_bearing *bearing) {
+  char *text = NULL;
+  size_t size;
+  FILE *words = open_memstream(&text, &size);
+  if (!words) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv");
+  for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
+    const fg_lot_foil *foil = bearing->pad[pad];
+    fprintf(words, "%s%s", pad ? " " : "",
+            foil ? fg_manifest_label(&analysis->lot->manifest, foil->item) : "-");
+    if (foil && analysis->lot->records[foil->item].foil_count > 1)
+      fprintf(words, "#%d", foil->foil->number);
+  }
+  bool broken = fclose(words) != 0;
+  if (!broken) put_text(out, text);
+  free(text);
+  return broken ? fg_fail(ctx, FG_ERR_MEMORY, "out of memory: bearings.csv") : FG_OK;
+}
+
+fg_status fg_lot_write_bearings_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  size_t rows;
+  const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_BEARING, &rows);
+  put_bearing_heading(out);
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
+    const fg_lot_bearing *bearing = &analysis->bearings[i];
+    if (bearing->name)
+      put_text(out, bearing->name);
+    else
+      fprintf(out, "%zu", bearing->number);
+    fputc(',', out);
+    FG_TRY(put_pads(ctx, out, analysis, bearing));
+    fprintf(out, ",%s,%zu", fg_verdict_word(bearing->decision.outcome.verdict), bearing->places);
+    for (size_t k = 0; k < rows; k++) {
+      double numbers[FG_QUANTITY_NUMBERS_MAX];
+      size_t width = fg_quantity_numbers(&row[k], &bearing->clearance, numbers);
+      bool count = row[k].kind == FG_QUANTITY_COUNT;
+      for (size_t n = 0; n < width; n++)
+        put_number(out, bearing->known || count ? numbers[n] : NAN);
+    }
+    fputc('\n', out);
+  }
+  return fg_stream_finish(ctx, out, "bearings.csv");
 }

@@ -1,92 +1,25 @@
-/* A page over lots, from their lot.json. */
+/* Lots over time and against each other: reads their reports, and writes page, JSON and table. */
 #include <stdlib.h>
 #include <string.h>
 
-#include <cjson/cJSON.h>
-
 #include "core/file.h"
+#include "core/memory.h"
 #include "core/overwrite.h"
 #include "core/text.h"
-#include "foilgauge/lot.h"
-#include "lot/lot_report.h"
-#include "report/measure/measure_page_parts.h"
+#include "lot/index.h"
 
-enum { LOT_BYTES_MAX = 1 << 30 };
-
-static const char *text_of(const cJSON *object, const char *name) {
-  const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, name);
-  return cJSON_IsString(value) ? value->valuestring : "";
-}
-
-static double count_of(const cJSON *counts, const char *name) {
-  const cJSON *value = cJSON_GetObjectItemCaseSensitive(counts, name);
-  return cJSON_IsNumber(value) ? value->valuedouble : 0;
-}
-
-static fg_verdict verdict_of(const char *word) {
-  for (int verdict = FG_VERDICT_PASS; verdict < FG_VERDICT_NONE; verdict++)
-    if (!strcmp(word, fg_verdict_word((fg_verdict)verdict))) return (fg_verdict)verdict;
-  return FG_VERDICT_NONE;
-}
-
-static void put_path(FILE *out, const char *path) {
-  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./~";
-  for (; *path; path++)
-    if (strchr(plain, *path))
-      fputc(*path, out);
-    else
-      fprintf(out, "%%%02X", (unsigned)(unsigned char)*path);
-}
-
-/* A folder as seen from the page's: both as given, so a lot beside or below the page keeps its
- * link when all is moved together. */
-static const char *seen_from(const char *page, const char *folder) {
-  const char *slash = strrchr(page, '/');
-  size_t length = slash ? (size_t)(slash - page) + 1 : 0;
-  return length && !strncmp(page, folder, length) ? folder + length : folder;
-}
-
-static void put_row(FILE *out, const char *page, const char *folder, const cJSON *root) {
-  static const char *const columns[] = {"scans", "foils",       "pass",
-                                        "fail",  "cannot_tell", "not_measured"};
-  const cJSON *counts = cJSON_GetObjectItemCaseSensitive(root, "counts");
-  fputs("<tr><td><a href=\"", out);
-  put_path(out, seen_from(page, folder));
-  fputs("/index.html\">", out);
-  fg_html_text(out, text_of(root, "name"));
-  fputs("</a></td><td>", out);
-  fg_html_verdict(out, verdict_of(text_of(root, "verdict")));
-  fputs("</td>", out);
-  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
-    fprintf(out, "<td>%.0f</td>", count_of(counts, columns[i]));
-  fputs("</tr>\n", out);
-}
-
-static fg_status add_lot(fg_context *ctx, FILE *out, const char *page, const char *folder) {
-  char *path, *text = NULL;
-  FG_TRY(fg_lot_path(ctx, folder, "lot.json", &path));
-  fg_status status = fg_file_read_text(ctx, path, LOT_BYTES_MAX, &text);
-  if (status == FG_OK) {
-    cJSON *root = cJSON_Parse(text);
-    if (!root || strcmp(text_of(root, "schema"), "foilgauge/lot/1") != 0)
-      status = fg_fail(ctx, FG_ERR_DATA, "%s: not the report of a lot", path);
-    else
-      put_row(out, page, folder, root);
-    cJSON_Delete(root);
-  }
-  free(text);
-  free(path);
-  return status;
-}
+enum { PAGE, JSON, TABLE, OUTPUTS };
 
 /* The page must not take the place of what it is made from, nor of what it links to. */
-static fg_status check_page(fg_context *ctx, const char *const *folders, size_t count,
-                            const char *page) {
+static fg_status check_outputs(fg_context *ctx, const fg_lot_index_request *request) {
+  static const char *const inputs[] = {"lot.json", "index.html", "foils.csv", "bumps.csv"};
+  enum { INPUTS = sizeof inputs / sizeof *inputs };
+  const char *const outputs[OUTPUTS] = {request->page, request->json, request->csv};
   fg_overwrite overwrite = {0};
-  fg_status status = fg_overwrite_begin(ctx, &page, 1, &overwrite);
-  for (size_t i = 0; i < 2 * count && status == FG_OK; i++) {
+  fg_status status = fg_overwrite_begin(ctx, outputs, OUTPUTS, &overwrite);
+  for (size_t i = 0; i < INPUTS * request->count && status == FG_OK; i++) {
     char *path;
-    status = fg_lot_path(ctx, folders[i / 2], i % 2 ? "lot.json" : "index.html", &path);
+    status = fg_lot_path(ctx, request->folders[i / INPUTS], inputs[i % INPUTS], &path);
     if (status != FG_OK) break;
     status = fg_overwrite_check(ctx, &overwrite, path, "a report of a lot");
     free(path);
@@ -95,20 +28,112 @@ static fg_status check_page(fg_context *ctx, const char *const *folders, size_t 
   return status;
 }
 
-fg_status fg_lot_index(fg_context *ctx, const char *const *folders, size_t count,
-                       const char *page) {
-  fg_output output;
-  FG_TRY(check_page(ctx, folders, count, page));
-  FG_TRY(fg_output_open(ctx, page, &output));
-  fg_html_begin(output.stream, "Lots");
-  fputs("<section>\n<h1>Lots</h1>\n<div class=\"scroll\"><table><thead><tr><th>lot</th><th>verdict"
-        "</th><th>scans</th><th>foils</th><th>pass</th><th>fail</th><th>cannot tell</th><th>not "
-        "measured</th></tr></thead>\n<tbody>\n",
-        output.stream);
+/* A folder that is named twice, under whatever spelling, is one lot. */
+static fg_status list_lots(fg_context *ctx, const fg_lot_index_request *request, fg_index *index) {
+  FG_TRY(fg_memory_allocate(ctx, request->count, sizeof *index->lots, (void **)&index->lots));
+  for (size_t i = 0; i < request->count; i++) {
+    const char *folder = request->folders[i], *first = NULL;
+    for (size_t k = 0; k < index->count && !first; k++)
+      if (fg_overwrite_is_same(index->lots[k].folder, folder)) first = index->lots[k].folder;
+    if (!first) {
+      index->lots[index->count++].folder = folder;
+      continue;
+    }
+    index->doubles++;
+    FG_TRY(fg_text_append(ctx, &index->notes, "%s: the same folder as %s, counts once\n", folder,
+                          first));
+  }
+  return FG_OK;
+}
+
+static fg_status read_lots(fg_context *ctx, fg_index *index) {
+  for (size_t i = 0; i < index->count; i++) {
+    fg_index_lot *lot = &index->lots[i];
+    FG_TRY(fg_index_read_lot(ctx, lot));
+    if (lot->problem) continue;
+    FG_TRY(fg_index_read_foils(ctx, index, lot));
+    if (lot->doubt)
+      FG_TRY(fg_text_append(ctx, &index->notes,
+                            "%s; without them there is no density and no test of this lot\n",
+                            lot->doubt));
+    if (!lot->date.from)
+      FG_TRY(fg_text_append(ctx, &index->notes,
+                            "%s: the lot has no date and stands behind those that have one; give "
+                            "its manifest a column `date` (2026-11-20) and write the report again "
+                            "with --resume\n",
+                            lot->folder));
+  }
+  return FG_OK;
+}
+
+static fg_status make(fg_context *ctx, const fg_lot_index_request *request, fg_index *index) {
+  FG_TRY(list_lots(ctx, request, index));
+  FG_TRY(read_lots(ctx, index));
+  FG_TRY(fg_index_arrange(ctx, index));
+  if (!index->read) return fg_fail(ctx, FG_ERR_DATA, "%s", index->lots[0].problem);
+  FG_TRY(fg_index_spreads(ctx, index));
+  FG_TRY(fg_index_compare(ctx, index));
+  FG_TRY(fg_index_compare_dies(ctx, index));
+  return fg_index_say(ctx, index);
+}
+
+static fg_status write_kind(fg_context *ctx, const fg_index *index, int kind, const char *path,
+                            FILE *out) {
+  if (kind == PAGE) return fg_index_write_page(ctx, index, path, out);
+  return kind == JSON ? fg_index_write_json(ctx, index, out) : fg_index_write_csv(ctx, index, out);
+}
+
+/* All are written and flushed before one gets its name: none where one cannot be written. */
+static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *request,
+                               const fg_index *index) {
+  const char *const path[OUTPUTS] = {request->page, request->json, request->csv};
+  fg_output output[OUTPUTS];
+  int opened = 0;
   fg_status status = FG_OK;
-  for (size_t i = 0; i < count && status == FG_OK; i++)
-    status = add_lot(ctx, output.stream, page, folders[i]);
-  fputs("</tbody></table></div>\n</section>\n", output.stream);
-  fg_html_end(output.stream);
-  return fg_output_end(ctx, &output, status);
+  for (; opened < OUTPUTS && status == FG_OK; opened++)
+    if (path[opened]) status = fg_output_open(ctx, path[opened], &output[opened]);
+  if (status != FG_OK) opened--; /* the last one is not open */
+  for (int i = 0; i < OUTPUTS && status == FG_OK; i++)
+    if (path[i]) {
+      status = write_kind(ctx, index, i, path[i], output[i].stream);
+      status = fg_output_flush(ctx, &output[i], status);
+    }
+  for (int i = 0; i < opened; i++)
+    if (path[i]) status = fg_output_end(ctx, &output[i], status);
+  return status;
+}
+
+/* What was not read, and the notes, for whoever called. */
+static fg_status take_outcome(fg_context *ctx, const fg_index *index,
+                              fg_lot_index_outcome *outcome) {
+  outcome->lots = index->read;
+  outcome->not_read = index->count - index->read;
+  outcome->differing = index->differing;
+  for (size_t i = index->read; i < index->count; i++)
+    FG_TRY(fg_text_append(ctx, &outcome->notes, "%s\n", index->lots[i].problem));
+  if (index->notes) FG_TRY(fg_text_append(ctx, &outcome->notes, "%s", index->notes));
+  for (size_t i = 0; i < index->sentence_count; i++)
+    FG_TRY(fg_text_append(ctx, &outcome->summary, "%s\n", index->sentences[i]));
+  return FG_OK;
+}
+
+fg_status fg_lot_index(fg_context *ctx, const fg_lot_index_request *request,
+                       fg_lot_index_outcome *outcome) {
+  fg_index index = {0};
+  fg_status status = FG_OK;
+  *outcome = (fg_lot_index_outcome){0};
+  FG_TRY_EXIT(check_outputs(ctx, request));
+  FG_TRY_EXIT(make(ctx, request, &index));
+  FG_TRY_EXIT(take_outcome(ctx, &index, outcome));
+  FG_TRY_EXIT(write_outputs(ctx, request, &index));
+exit:
+  if (status != FG_OK) fg_lot_index_outcome_free(outcome);
+  fg_index_free(&index);
+  return status;
+}
+
+void fg_lot_index_outcome_free(fg_lot_index_outcome *outcome) {
+  free(outcome->notes);
+  free(outcome->summary);
+  *outcome = (fg_lot_index_outcome){0};
 }

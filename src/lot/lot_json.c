@@ -2,6 +2,10 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "lot/analysis_dies.h"
+#include "lot/json_parts.h"
+#include "lot/lot_date.h"
+#include "lot/reference_curve.h"
 #include "lot/writers.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
@@ -185,7 +189,7 @@ static void write_correlation(fg_json *json, const fg_lot_correlation *correlati
   fg_json_object_end(json);
 }
 
-static void write_spread(fg_json *json, const char *name, const fg_lot_spread *spread) {
+void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread) {
   fg_json_object(json, name);
   fg_json_line(json);
   fg_json_integer(json, "count", (int64_t)spread->count);
@@ -199,18 +203,6 @@ static void write_spread(fg_json *json, const char *name, const fg_lot_spread *s
   fg_json_line_end(json);
 }
 
-static void write_arch(fg_json *json, const char *name, const fg_arch_stiffness *stiffness) {
-  fg_json_object(json, name);
-  fg_json_line(json);
-  fg_json_number(json, "stiffness_n_mm2", stiffness->stiffness_n_mm2);
-  fg_json_number(json, "unloading_n_mm2", stiffness->unloading_n_mm2);
-  fg_json_number(json, "foot_n_mm2", stiffness->foot_n_mm2);
-  fg_json_number(json, "foot_share", stiffness->foot_share);
-  fg_json_bool(json, "stuck", stiffness->stuck);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-}
-
 static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   const fg_lot_thickness *thickness = &analysis->thickness;
   fg_json_object(json, "thickness");
@@ -219,57 +211,6 @@ static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_number(json, "u_mean_mm", thickness->mean.u_mm);
   fg_json_number(json, "design_mm", analysis->lot->settings.design.thickness_mm);
   fg_json_bool(json, "differs", thickness->differs);
-  fg_json_object_end(json);
-}
-
-static void write_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
-  const fg_lot_stiffness *stiffness = &analysis->stiffness;
-  fg_json_object(json, "stiffness");
-  fg_json_string(json, "model", "classical");
-  fg_json_string(json, "note", fg_lot_stiffness_note(analysis));
-  write_arch(json, "design_free", &stiffness->design_free);
-  write_arch(json, "design_welded", &stiffness->design_welded);
-  fg_json_object(json, "sensitivity");
-  fg_json_line(json);
-  fg_json_number(json, "radius", stiffness->sensitivity.radius);
-  fg_json_number(json, "angle", stiffness->sensitivity.angle);
-  fg_json_number(json, "radius_at_arc_length", stiffness->sensitivity.radius_at_arc_length);
-  fg_json_number(json, "thickness", stiffness->sensitivity.thickness);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-  if (analysis->has_stiffness) {
-    write_spread(json, "normalised", &stiffness->measured);
-    fg_json_number(json, "u_normalised_by_thickness", stiffness->u_by_thickness);
-    write_spread(json, "normalised_at_design_thickness", &stiffness->at_design_thickness);
-    write_spread(json, "normalised_resampled", &stiffness->resampled);
-    write_spread(json, "normalised_foot", &stiffness->foot);
-  }
-  fg_json_object_end(json);
-}
-
-static void write_pads(fg_json *json, const fg_lot_analysis *analysis,
-                       const fg_lot_bearing *bearing) {
-  fg_json_array(json, "pads");
-  fg_json_line(json);
-  for (size_t pad = 0; pad < analysis->layout.pads; pad++)
-    fg_json_string(json, NULL,
-                   bearing->pad[pad]
-                       ? fg_manifest_label(&analysis->lot->manifest, bearing->pad[pad]->item)
-                       : NULL);
-  fg_json_array_end(json);
-  fg_json_line_end(json);
-}
-
-static void write_bearing(fg_json *json, const fg_lot_analysis *analysis,
-                          const fg_lot_bearing *bearing) {
-  fg_json_object(json, NULL);
-  fg_json_string(json, "name", bearing->name);
-  fg_json_integer(json, "number", (int64_t)bearing->number);
-  write_pads(json, analysis, bearing);
-  fg_json_numbers(json, "angle_deg", bearing->angle_deg, bearing->places);
-  fg_json_numbers(json, "clearance_mm", bearing->clearance_mm, bearing->places);
-  if (bearing->known)
-    fg_json_quantities(json, FG_QUANTITY_OF_BEARING, "", &bearing->clearance, true);
   fg_json_object_end(json);
 }
 
@@ -315,33 +256,6 @@ static void write_gauge(fg_json *json, const fg_lot_gauge *gauge) {
   fg_json_line_end(json);
 }
 
-static void write_layout(fg_json *json, const fg_lot_analysis *analysis) {
-  const fg_bearing_layout *layout = &analysis->layout;
-  fg_json_object(json, "bearing_layout");
-  fg_json_integer(json, "pads", (int64_t)layout->pads);
-  fg_json_integer(json, "bumps_per_pad", (int64_t)layout->bumps_per_pad);
-  fg_json_integer(json, "first_bump", (int64_t)layout->first_bump);
-  fg_json_number(json, "bump_pitch_deg", fg_bearing_pitch_deg(layout));
-  fg_json_string(json, "note", analysis->layout_note[0] ? analysis->layout_note : NULL);
-  fg_json_object_end(json);
-}
-
-static void write_bearings(fg_json *json, const fg_lot_analysis *analysis) {
-  const fg_manifest *manifest = &analysis->lot->manifest;
-  bool assumed =
-      fg_manifest_column(manifest, analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
-  write_layout(json, analysis);
-  fg_json_bool(json, "bearings_assumed", assumed);
-  fg_json_array(json, "bearings");
-  for (size_t i = 0; i < analysis->bearing_count; i++)
-    write_bearing(json, analysis, &analysis->bearings[i]);
-  fg_json_array_end(json);
-  if (analysis->clearance_pct.count)
-    write_spread(json, "clearance_relative_to_design_pct", &analysis->clearance_pct);
-  if (analysis->clearance_fitted_pct.count)
-    write_spread(json, "clearance_fitted_relative_to_design_pct", &analysis->clearance_fitted_pct);
-}
-
 fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   fg_json json;
@@ -349,6 +263,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/lot/1");
   fg_json_string(&json, "name", lot->settings.name);
+  fg_lot_date_write(&json, lot);
   fg_json_verdict(&json, analysis->outcome.verdict);
   write_counts(&json, analysis);
   fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
@@ -359,7 +274,8 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_correction most = fg_lot_correction_largest(analysis);
   fg_json_correction(&json, &most);
   fg_json_design(&json, "design", &lot->settings.design);
-  fg_json_nominal(&json, "nominal", &lot->nominal);
+  bool bumps = fg_form_has_bumps(lot->settings.design.form);
+  if (bumps) fg_json_nominal(&json, "nominal", &lot->nominal);
   write_inputs(&json, lot);
   write_foils(&json, analysis);
   fg_json_object(&json, "quantities");
@@ -368,8 +284,11 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
   write_thickness(&json, analysis);
-  write_stiffness(&json, analysis);
-  write_bearings(&json, analysis);
+  if (bumps) fg_lot_json_stiffness(&json, analysis);
+  if (bumps) fg_lot_json_bearings(&json, analysis);
+  if (bumps) fg_lot_json_dies(&json, analysis);
+  fg_reference_curve_write(&json, "reference_curve", &lot->settings);
+  if (bumps) fg_lot_json_assembly(&json, analysis);
   fg_json_array(&json, "comparisons");
   for (size_t i = 0; i < analysis->difference_count; i++)
     write_difference(&json, &analysis->differences[i]);

@@ -1,6 +1,7 @@
 /* The lot's page: verdict, counts, the worst three and one chart first; then the details. */
 
 #include "core/file.h"
+#include "lot/analysis_dies.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "lot/writers.h"
@@ -17,11 +18,23 @@ static void put_tiles(FILE *out, const fg_lot_analysis *analysis) {
   const size_t *by = analysis->by_verdict;
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, "Foils", analysis->foil_count);
-  bool judged = analysis->lot->settings.design.tolerance_count > 0;
+  const fg_design *design = &analysis->lot->settings.design;
+  size_t of_bearing = fg_report_of_bearing(design, NULL, 0);
+  bool judged = design->tolerance_count > of_bearing;
   if (judged) put_tile(out, "Pass", by[FG_VERDICT_PASS]);
   if (judged || by[FG_VERDICT_FAIL]) put_tile(out, "Fail", by[FG_VERDICT_FAIL]);
   if (judged) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
   put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED] + analysis->failed_scans);
+  if (of_bearing) {
+    by = analysis->bearings_by_verdict;
+    bool assumed = fg_manifest_column(&analysis->lot->manifest,
+                                      analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
+    put_tile(out, assumed ? "Bearings, foils in a row" : "Bearings", analysis->bearing_count);
+    put_tile(out, "Bearings pass", by[FG_VERDICT_PASS]);
+    put_tile(out, "Bearings fail", by[FG_VERDICT_FAIL]);
+    if (by[FG_VERDICT_UNDECIDED]) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
+    if (by[FG_VERDICT_NOT_MEASURED]) put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED]);
+  }
   fputs("</dl>\n", out);
 }
 
@@ -121,7 +134,7 @@ static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analy
   put_worst(out, analysis);
   if (leading) {
     fputs("<figure>", out);
-    fg_lot_plot_places(out, leading);
+    fg_lot_plot_places(out, leading, NULL);
     fprintf(out,
             "<figcaption>%s of each bump number: mean and two standard deviations over the "
             "foils%s.</figcaption></figure>\n",
@@ -199,11 +212,12 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *a
   FG_TRY(fg_html_model_facts(ctx, out, analysis->lot->model));
   fputs("</dl>\n<p class=\"note\">", out);
   fg_html_text(out, scale);
-  fputs(" A value passes when value ± U lies inside its tolerance "
-        "(U = 2 u, about 95 %), fails when it lies outside, and cannot be told when a limit runs "
-        "through it. All numbers: lot.json, foils.csv, bumps.csv; for quality systems "
-        "results.qif and results.dfq.</p>\n</section>\n",
-        out);
+  fputs(
+      " A value passes when value ± U lies inside its tolerance "
+      "(U = 2 u, about 95 %), fails when it lies outside, and cannot be told when a limit runs "
+      "through it. All numbers: lot.json, foils.csv, bumps.csv, bearings.csv; for quality systems "
+      "results.qif and results.dfq.</p>\n</section>\n",
+      out);
   return FG_OK;
 }
 
@@ -212,9 +226,15 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
   FG_TRY(put_first_screen(ctx, out, analysis));
   put_failed_scans(out, analysis);
   fg_lot_put_quantities(out, analysis);
-  fg_lot_put_springback(out, analysis);
-  fg_lot_put_stiffness(out, analysis);
-  fg_lot_put_bearings(out, analysis);
+  if (fg_form_has_bumps(analysis->lot->settings.design.form)) {
+    fg_lot_put_springback(out, analysis);
+    fg_lot_put_dies(out, analysis);
+    fg_lot_put_stiffness(out, analysis);
+    fg_lot_put_bearings(out, analysis);
+    fg_lot_put_assembly(out, analysis);
+  } else {
+    fg_lot_put_arcs(out, analysis);
+  }
   fg_lot_put_comparisons(out, analysis);
   fg_lot_put_gauge(out, analysis);
   put_foils(out, analysis);

@@ -15,6 +15,32 @@ static void put_bearing_name(FILE *out, const fg_lot_bearing *bearing) {
     fprintf(out, "%zu", bearing->number);
 }
 
+static bool is_judged(const fg_lot_analysis *analysis) {
+  return fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
+}
+
+/* What fails or cannot be told is named: a row of numbers alone would have to be searched. */
+static void put_verdict(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing) {
+  const fg_decision *decision = &bearing->decision;
+  fg_verdict verdict = decision->outcome.verdict;
+  const char *separator = ": ";
+  if (!is_judged(analysis)) return;
+  fprintf(out, "<td class=\"%s\">%s", fg_verdict_word(verdict), fg_html_verdict_title(verdict));
+  for (size_t i = 0; i < decision->count; i++) {
+    if (verdict == FG_VERDICT_PASS || decision->judgements[i].verdict != verdict) continue;
+    fprintf(out, "%s%s", separator, decision->judgements[i].row->symbol);
+    separator = "; ";
+  }
+  fputs("</td>", out);
+}
+
+static void put_um(FILE *out, double mm) {
+  if (isfinite(mm))
+    fprintf(out, "%s%.1f", mm < 0 ? "−" : "", UM_PER_MM * fabs(mm));
+  else
+    fputs("–", out);
+}
+
 static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
                             const fg_lot_bearing *bearing) {
   fputs("<tr><td>", out);
@@ -28,12 +54,43 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
       fputs("–", out);
   }
   fputs("</td>", out);
+  put_verdict(out, analysis, bearing);
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, shown);
+  size_t count =
+      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FORM_CLASSICAL, shown);
   for (size_t i = 0; i < count; i++) {
-    double value = fg_quantity_value(shown[i], &bearing->clearance);
+    double u = UM_PER_MM * fg_quantity_uncertainty(shown[i], &bearing->clearance);
     fputs("<td>", out);
-    fg_lot_put_number(out, bearing->known ? UM_PER_MM * value : NAN, 4);
+    put_um(out, bearing->known ? fg_quantity_value(shown[i], &bearing->clearance) : NAN);
+    if (bearing->known && isfinite(u)) fprintf(out, " <i>± %.2f</i>", FG_COVERAGE_FACTOR * u);
+    fputs("</td>", out);
+  }
+  fputs("</tr>\n", out);
+}
+
+/* The limits, over the columns that they are of. */
+static void put_limits(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
+  size_t count =
+      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FORM_CLASSICAL, shown);
+  if (!is_judged(analysis)) return;
+  fputs("<tr class=\"limits\"><td>tolerance</td><td></td><td></td>", out);
+  for (size_t i = 0; i < count; i++) {
+    fputs("<td>", out);
+    for (size_t k = 0; k < design->tolerance_count; k++) {
+      const fg_tolerance *tolerance = &design->tolerances[k];
+      if (fg_quantity_of_bearing_for(tolerance->quantity) != shown[i]) continue;
+      bool both = isfinite(tolerance->lower) && isfinite(tolerance->upper);
+      if (isfinite(tolerance->lower)) {
+        fputs(both ? "" : "≥ ", out);
+        fg_lot_put_number(out, UM_PER_MM * tolerance->lower, 6);
+      }
+      if (isfinite(tolerance->upper)) {
+        fputs(both ? " … " : "≤ ", out);
+        fg_lot_put_number(out, UM_PER_MM * tolerance->upper, 6);
+      }
+    }
     fputs("</td>", out);
   }
   fputs("</tr>\n", out);
@@ -41,16 +98,19 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
 
 static void put_bearing_table(FILE *out, const fg_lot_analysis *analysis) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, shown);
+  size_t count =
+      fg_quantity_shown(FG_QUANTITY_OF_BEARING, FG_QUANTITY_ON_PAGE, FG_FORM_CLASSICAL, shown);
   fputs("<div class=\"scroll\"><table><thead><tr><th>bearing</th><th>pads</th>", out);
+  if (is_judged(analysis)) fputs("<th>verdict</th>", out);
   for (size_t i = 0; i < count; i++)
     fprintf(out, "<th>%s<br>µm</th>", shown[i]->symbol);
   fputs("</tr></thead>\n<tbody>\n", out);
+  put_limits(out, analysis);
   for (size_t i = 0; i < analysis->bearing_count && i < BEARING_ROWS_MAX; i++)
     put_bearing_row(out, analysis, &analysis->bearings[i]);
   fputs("</tbody></table></div>\n", out);
   if (analysis->bearing_count > BEARING_ROWS_MAX)
-    fprintf(out, "<p class=\"note\">The first %d of %zu; the rest: lot.json.</p>\n",
+    fprintf(out, "<p class=\"note\">The first %d of %zu; the rest: bearings.csv.</p>\n",
             BEARING_ROWS_MAX, analysis->bearing_count);
 }
 
@@ -85,6 +145,32 @@ static void put_assembled(FILE *out, const fg_lot_analysis *analysis) {
   put_bearing_table(out, analysis);
 }
 
+/* Foils that are in no bearing, and tolerances that therefore judge nothing. */
+static void put_unplaced(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_lot_unplaced *unplaced = &analysis->unplaced;
+  const fg_lot_settings *settings = &analysis->lot->settings;
+  bool assumed =
+      fg_manifest_column(&analysis->lot->manifest, settings->bearing_column) == FG_NO_COLUMN;
+  if (is_judged(analysis) && !analysis->bearing_count)
+    fprintf(out,
+            "<p class=\"reasons\"><b>Not measured:</b> the design states tolerances of a bearing, "
+            "and these foils make none: a bearing takes %zu.</p>\n",
+            analysis->layout.pads);
+  if (unplaced->without)
+    fprintf(out, "<p class=\"note\">%zu foil(s) are in no bearing%s.</p>\n", unplaced->without,
+            assumed ? ": too few are left for another one" : ": the manifest names none for them");
+  if (unplaced->displaced)
+    fprintf(out,
+            "<p class=\"reasons\"><b>%zu foil(s) are left out:</b> the manifest gives them a pad "
+            "that another foil has already, or a bearing whose %zu pads are taken.</p>\n",
+            unplaced->displaced, analysis->layout.pads);
+  if (unplaced->bad_pads)
+    fprintf(out,
+            "<p class=\"reasons\"><b>%zu pad(s) of the manifest</b> are no number from 1 to %zu: "
+            "these foils took the next free one.</p>\n",
+            unplaced->bad_pads, analysis->layout.pads);
+}
+
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   const fg_lot_quantity *clearance = fg_lot_find_quantity(analysis, "clearance_fitted_mm");
@@ -106,6 +192,7 @@ void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis) {
     fprintf(out, "; with the design's thickness clearances would be %.3g µm %s.</p>\n",
             1000 * fabs(more), more > 0 ? "larger" : "smaller");
   }
+  put_unplaced(out, analysis);
   if (analysis->bearing_count) put_assembled(out, analysis);
   fputs("</section>\n", out);
 }

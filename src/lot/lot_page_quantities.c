@@ -3,6 +3,7 @@
 
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
+#include "report/measure/measure_page_parts.h"
 
 static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<h1>Quantities</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>unit"
@@ -96,7 +97,8 @@ static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
 }
 
 static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
-  static const char *const shown[] = {"radius_error_pct", "height_mm", "overall.radius_mm"};
+  static const char *const shown[] = {"radius_error_pct", "height_mm", "overall.radius_mm",
+                                      "arc.subtended_angle_deg"};
   fputs("<h2>How the process runs</h2>\n", out);
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
     const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
@@ -117,16 +119,56 @@ void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</section>\n", out);
 }
 
+/* How far the lot's means lie from the curve, in words. */
+static void put_against_curve(FILE *out, const fg_lot_quantity *quantity,
+                              const fg_lot_curve *curve) {
+  double sum = 0, most = 0, value;
+  int bumps = 0, at = 0;
+  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++) {
+    size_t place = (size_t)curve->point[i].bump - 1;
+    if (place >= quantity->places || !quantity->place[place].count) continue;
+    double off = quantity->place[place].mean - value;
+    sum += off;
+    bumps++;
+    if (bumps > 1 && fabs(off) <= fabs(most)) continue;
+    most = off;
+    at = curve->point[i].bump;
+  }
+  if (!bumps) return;
+  fprintf(out, " %s: %+.3g percentage points on the mean of %d bumps, farthest %+.3g at bump %d.",
+          quantity->row->words, sum / bumps, bumps, most, at);
+}
+
+/* Figure 5.17 of the thesis: both errors by bump number, and what a simulation or a die says. */
+static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
+  static const char *const shown[] = {"radius_error_pct", "intersection_angle_error_pct",
+                                      "bump_angle_error_pct"};
+  const fg_lot_curve *curve = &analysis->lot->settings.curve;
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+    if (quantity) fg_lot_plot_places(out, quantity, curve);
+  }
+  fputs("<figcaption>Each bump number: mean and two standard deviations over the foils, of the "
+        "errors of the bump radius (e_R), the intersection angle θ (e_θ) and the bump angle α "
+        "(e_α).",
+        out);
+  if (curve->count) {
+    fputs(" Diamonds, dashed: the reference curve ", out);
+    fg_html_text(out, curve->name);
+    fputs(". The lot against it:", out);
+    for (size_t i = 0; i < 2; i++) {
+      const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
+      if (quantity) put_against_curve(out, quantity, curve);
+    }
+  }
+  fputs("</figcaption></figure>\n", out);
+}
+
 void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_mm");
-  const fg_lot_quantity *errors = fg_lot_find_quantity(analysis, "radius_error_pct");
-  const fg_lot_quantity *angles = fg_lot_find_quantity(analysis, "bump_angle_error_pct");
   fputs("<section>\n<h1>Springback</h1>\n<figure>", out);
-  fg_lot_plot_places(out, errors);
-  fg_lot_plot_places(out, angles);
-  fputs("<figcaption>Each bump number: mean and two standard deviations over the foils."
-        "</figcaption></figure>\n<h2>Radius over design</h2>\n<figure>",
-        out);
+  put_errors_by_bump(out, analysis);
+  fputs("<h2>Radius over design</h2>\n<figure>", out);
   fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bump_radius_mm, 0,
                       "radius over design");
   fputs("<figcaption>Histogram and kernel density.</figcaption></figure>\n", out);
@@ -146,6 +188,28 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
             ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
             "</figcaption></figure>\n",
             line->count, line->arc_length_mean_pct, line->arc_length_sd_pct);
+  }
+  fputs("</section>\n", out);
+}
+
+void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis) {
+  const fg_design *design = &analysis->lot->settings.design;
+  const struct {
+    const char *name, *words;
+    double design;
+  } shown[] = {
+      {"overall.radius_mm", "radius over design", design->overall_radius_mm},
+      {"arc.subtended_angle_deg", "angle over design", design->subtended_angle_deg},
+  };
+  fputs("<section>\n<h1>Springback</h1>\n", out);
+  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
+    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i].name);
+    if (!quantity || !quantity->has_density) continue;
+    fputs("<figure>", out);
+    fg_lot_plot_density(out, quantity, 1 / shown[i].design, 0, shown[i].words);
+    fprintf(
+        out, "<figcaption>%s over the design's %g, %zu foils: mean %.5f.</figcaption></figure>\n",
+        quantity->row->words, shown[i].design, quantity->count, quantity->mean / shown[i].design);
   }
   fputs("</section>\n", out);
 }

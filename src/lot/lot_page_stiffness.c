@@ -32,38 +32,61 @@ void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis) {
   if (thickness->differs) fprintf(out, " and not %.4g as the design says", design_mm);
 }
 
-void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
+static void put_spreads(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_stiffness *stiffness = &analysis->stiffness;
-  const char *note = fg_lot_stiffness_note(analysis);
-  if (!analysis->has_stiffness) return;
-  fputs("<section>\n<h1>Stiffness of the bumps</h1>\n", out);
-  if (note) fprintf(out, "<p>%s</p>\n", note);
   fputs("<div class=\"scroll\"><table><thead><tr><th>"
         "over the design's</th><th>n</th><th>mean</th><th>mode</th><th>rel. s, %</th><th>min</th>"
         "<th>max</th></tr></thead>\n<tbody>\n",
         out);
-  put_spread_row(out, "measured bumps", &stiffness->measured);
+  put_spread_row(out, "measured bumps, arch", &stiffness->measured);
   if (analysis->thickness.differs)
     put_spread_row(out, "the same, strips as thick as designed", &stiffness->at_design_thickness);
-  put_spread_row(out, "drawn from their densities", &stiffness->resampled);
-  put_spread_row(out, "sideways, at the feet", &stiffness->foot);
+  for (int i = 1; i < FG_STIFFNESS_MODELS; i++) {
+    char title[80];
+    snprintf(title, sizeof title, "measured bumps, %s", fg_stiffness_models()[i].title);
+    if (stiffness->by_model[i].count) put_spread_row(out, title, &stiffness->by_model[i]);
+  }
+  put_spread_row(out, "drawn from the bumps' densities, arch", &stiffness->resampled);
+  put_spread_row(out, "sideways, at the feet, arch", &stiffness->foot);
   fputs("</tbody></table></div>\n", out);
+}
+
+static void put_models(FILE *out, const fg_lot_analysis *analysis, size_t cases) {
+  const fg_arch_material *material = &analysis->lot->settings.material;
+  double pitch_mm = fg_design_pitch_mm(&analysis->lot->settings.design);
+  fputs("<h2>By model</h2>\n", out);
+  fg_html_stiffness_table(out, analysis->stiffness.cases, cases, pitch_mm);
+  fprintf(out,
+          "<p class=\"note\">E %.4g GPa, Poisson's ratio %.3g, friction %.3g; pitch %.4g mm along "
+          "the sleeve. An arch with one end welded, as designed: %.4g N/mm²%s.</p>\n",
+          material->youngs_modulus_gpa, material->poisson_ratio, material->friction, pitch_mm,
+          analysis->stiffness.design_welded.stiffness_n_mm2,
+          analysis->stiffness.design_free.stuck ? "; friction holds the feet" : "");
+}
+
+static void put_spread_parts(FILE *out, const fg_lot_analysis *analysis) {
+  put_spreads(out, analysis);
   if (analysis->thickness.foils) put_thickness(out, analysis);
   fputs("<figure>", out);
   fg_lot_plot_map(out, analysis);
-  fprintf(
-      out,
-      "<figcaption>Stiffness over the design's, for strips as thick as designed: orange stiffer, "
-      "blue softer; dashed: as designed. A percent of radius alone is worth %+.2f %%, of angle "
-      "alone %+.2f %%, of "
-      "radius at constant arc length %+.2f %%.</figcaption></figure>\n",
-      stiffness->sensitivity.radius, stiffness->sensitivity.angle,
-      stiffness->sensitivity.radius_at_arc_length);
-  fprintf(out,
-          "<p class=\"note\">Arch model: E %.4g GPa, Poisson's ratio %.3g, friction %.3g. Design, "
-          "per mm of width: free bump %.4g N/mm², welded %.4g N/mm²%s.</p>\n</section>\n",
-          analysis->lot->settings.material.youngs_modulus_gpa,
-          analysis->lot->settings.material.poisson_ratio, analysis->lot->settings.material.friction,
-          stiffness->design_free.stiffness_n_mm2, stiffness->design_welded.stiffness_n_mm2,
-          stiffness->design_free.stuck ? "; friction holds the feet" : "");
+  fputs("<figcaption>Stiffness of the arch over the design's, for strips as thick as designed: "
+        "orange stiffer, blue softer; dashed: as designed; thick orange line: springback at "
+        "constant arc length. Each dot is a bump.</figcaption></figure>\n",
+        out);
+  fg_lot_put_stiffness_budget(out, analysis);
+}
+
+void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
+  const char *note = fg_lot_stiffness_note(analysis);
+  if (!fg_form_has_bumps(analysis->lot->settings.design.form) || !analysis->bumps) return;
+  fputs("<section>\n<h1>Stiffness of the bumps</h1>\n", out);
+  if (note) fprintf(out, "<p>%s</p>\n", note);
+  if (analysis->has_stiffness)
+    put_spread_parts(out, analysis);
+  else
+    fputs("<p class=\"note\">How stiffness varies is not known: that takes two bumps with radius "
+          "and angle.</p>\n",
+          out);
+  put_models(out, analysis, analysis->has_stiffness ? FG_LOT_CASES : 1);
+  fputs("</section>\n", out);
 }

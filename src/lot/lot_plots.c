@@ -6,6 +6,7 @@
 
 #include "report/measure/measure_page_parts.h"
 #include "report/plot_marks.h"
+#include "report/stiffness/stiffness_map.h"
 
 /* More dots than these cannot be told apart, and a page must open on a phone. */
 enum { PLOT_WIDTH = 1000, DOTS_MAX = 3000, CHART_POINTS_MAX = 600, CURVE_POINTS = 240, BARS = 30 };
@@ -40,7 +41,35 @@ static void axis_title(char *text, size_t size, const fg_quantity *row) {
            *row->unit ? ", " : "", row->unit);
 }
 
-void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
+bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i,
+                        double *value) {
+  bool radius = !strcmp(row->name, "radius_error_pct");
+  if (!curve || i >= curve->count) return false;
+  if (!radius && strcmp(row->name, "intersection_angle_error_pct") != 0) return false;
+  *value = radius ? curve->point[i].radius_error_pct : curve->point[i].angle_error_pct;
+  return true;
+}
+
+/* The reference curve: its points joined, a diamond each. */
+static void put_curve(const fg_plot *at, const fg_quantity *row, const fg_lot_curve *curve) {
+  double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
+  size_t count = 0;
+  while (fg_lot_curve_value(curve, row, count, &y[count])) {
+    x[count] = curve->point[count].bump;
+    count++;
+  }
+  if (!count) return;
+  fg_plot_line(at, x, y, count, "hypothesis");
+  for (size_t i = 0; i < count; i++) {
+    const double size = 6, px = fg_plot_x(at, x[i]), py = fg_plot_y(at, y[i]);
+    fprintf(at->out,
+            "<path class=\"hypothesis\" style=\"stroke-dasharray:none\" d=\"M%.1f %.1fl%g %gl%g "
+            "%gl%g %gz\"/>\n",
+            px, py - size, size, size, -size, size, -size, -size);
+  }
+}
+
+void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity, const fg_lot_curve *curve) {
   double low = INFINITY, high = -INFINITY;
   char title[160], number[24];
   for (size_t i = 0; i < quantity->places; i++) {
@@ -49,6 +78,9 @@ void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
     include(quantity->place[i].mean + reach, &low, &high);
   }
   if (!(high >= low)) return;
+  double value;
+  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
+    include(value, &low, &high);
   if (quantity->tolerance) {
     include(quantity->tolerance->lower, &low, &high);
     include(quantity->tolerance->upper, &low, &high);
@@ -70,6 +102,7 @@ void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity) {
       fg_plot_segment(&at, x, place->mean - 2 * place->sd, x, place->mean + 2 * place->sd, "curve");
     fg_plot_dot(&at, x, place->mean, 6, "s1");
   }
+  put_curve(&at, quantity->row, curve);
   fg_plot_end(&at);
 }
 
@@ -231,89 +264,23 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity) {
   fg_plot_end(&at);
 }
 
-/* Blue below 1, orange above: a colour for -40 % to +40 %. */
-static unsigned map_colour(double ratio) {
-  double share = fmax(-1, fmin(1, (ratio - 1) / 0.4)), rest = 1 - fabs(share);
-  double warm[3] = {217, 95, 2}, cold[3] = {31, 111, 208};
-  const double *end = share > 0 ? warm : cold;
-  unsigned colour = 0;
-  for (int i = 0; i < 3; i++)
-    colour = colour << 8 | (unsigned)lround(end[i] * (1 - rest) + 252 * rest);
-  return colour;
+static void put_ratio(const fg_plot *at, const fg_bump *bump) {
+  double x = 1 + bump->radius_error_pct / 100, y = 1 + bump->bump_angle_error_pct / 100;
+  if (!(x >= at->x_low && x <= at->x_high && y >= at->y_low && y <= at->y_high)) return;
+  fg_plot_dot(at, x, y, 4.5, "mapped");
 }
 
-static double map_value(const fg_lot_settings *settings, double design, double radius_pct,
-                        double angle_pct) {
-  fg_arch_stiffness stiffness;
-  fg_context unused;
-  const fg_design *of = &settings->design;
-  const fg_arch arch =
-      fg_lot_arch(of, of->thickness_mm, of->bump_radius_mm * (1 + radius_pct / 100),
-                  of->bump_angle_deg * (1 + angle_pct / 100));
-  if (fg_arch_free(&unused, &arch, &settings->material, &stiffness) != FG_OK) return NAN;
-  return stiffness.stiffness_n_mm2 / design;
-}
-
-static void put_cells(const fg_plot *at, const fg_lot_settings *settings) {
-  enum { COLUMNS = 44, ROWS = 26 };
-  double dx = (at->x_high - at->x_low) / COLUMNS, dy = (at->y_high - at->y_low) / ROWS;
-  double design = map_value(settings, 1, 0, 0);
-  for (int i = 0; i < COLUMNS; i++)
-    for (int k = 0; k < ROWS; k++) {
-      double x = at->x_low + i * dx, y = at->y_low + k * dy;
-      double ratio = map_value(settings, design, x + dx / 2, y + dy / 2);
-      if (!isfinite(ratio)) continue;
-      fprintf(at->out,
-              "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#%06x\"/>\n",
-              fg_plot_x(at, x), fg_plot_y(at, y + dy), (at->right - at->left) / COLUMNS + 0.5,
-              (at->bottom - at->top) / ROWS + 0.5, map_colour(ratio));
-    }
-}
-
-/* Lines of equal stiffness: for each radius the angle where it is reached, by bisection (stiffness
- * falls as the angle grows). */
-static void put_contour(const fg_plot *at, const fg_lot_settings *settings, double level) {
-  enum { STEPS = 60 };
-  double x[STEPS + 1], y[STEPS + 1], design = map_value(settings, 1, 0, 0);
-  char text[16];
-  for (int i = 0; i <= STEPS; i++) {
-    double low = at->y_low, high = at->y_high;
-    x[i] = at->x_low + (at->x_high - at->x_low) * i / STEPS;
-    bool crosses = map_value(settings, design, x[i], low) > level &&
-                   map_value(settings, design, x[i], high) < level;
-    for (int step = 0; step < 40; step++) {
-      double middle = (low + high) / 2;
-      if (map_value(settings, design, x[i], middle) > level)
-        low = middle;
-      else
-        high = middle;
-    }
-    y[i] = crosses ? low : NAN;
-  }
-  fg_plot_line(at, x, y, STEPS + 1, level == 1 ? "hypothesis" : "thin");
-  snprintf(text, sizeof text, "%.3g", level);
-  for (int i = 4; i <= STEPS - 4; i++) {
-    if (!isfinite(y[i])) continue;
-    fg_plot_text(at, x[i], y[i], "key", text);
-    break;
-  }
+static void put_ratios(const fg_plot *at, const void *user) {
+  each_bump(at, user, put_ratio);
 }
 
 void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis) {
-  static const double levels[] = {0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 1.75, 2};
   const fg_lot_settings *settings = &analysis->lot->settings;
-  fg_plot at = {
-      .out = out, .width = PLOT_WIDTH, .left = 92, .right = 985, .top = 14, .bottom = 380};
+  fg_plot at;
   if (!error_axes(analysis, &at)) return;
-  fg_plot_begin(&at, 430, "Stiffness of a bump over its radius and angle errors");
-  put_cells(&at, settings);
-  fg_plot_y_axis(&at, "angle error, %");
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, "radius error, %");
-  for (size_t i = 0; i < sizeof levels / sizeof *levels; i++)
-    put_contour(&at, settings, levels[i]);
-  each_bump(&at, analysis, put_bump);
-  fg_plot_end(&at);
+  const fg_stiffness_map map = {&settings->design,   &settings->material, 1 + at.x_low / 100,
+                                1 + at.x_high / 100, 1 + at.y_low / 100,  1 + at.y_high / 100};
+  fg_stiffness_plot_map(out, &map, put_ratios, analysis);
 }
 
 /* A polar plot: the clearance outwards from a zero circle, so that a rub shows inside it. */

@@ -6,8 +6,12 @@
 
 #include "lot/analysis.h"
 
-/* Mean ± 2 sd of each bump number, with the tolerance (thesis figure 5.17). */
-void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity);
+/* Mean ± 2 sd of each bump number, with the tolerance (thesis figure 5.17), and the reference curve
+ * where it speaks of this quantity; NULL: none. */
+void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity, const fg_lot_curve *curve);
+
+/* What the curve says of a quantity at its i-th point; false beyond its end, and of others. */
+bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i, double *value);
 
 /* Histogram and kernel density, with the mode (figure 5.11). `scale` and `shift` turn the values
  * into what the axis shows: scale × value + shift. */
@@ -26,5 +30,9 @@ void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis);
 
 /* Clearance around one bearing (figure 6.3). */
 void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing);
+
+/* Densities of value `value` (fg_assembly_row) of the bearings drawn and of those of the design,
+ * with the limits on it; µm. */
+void fg_lot_plot_assembly(FILE *out, const fg_lot_analysis *analysis, size_t value);
 
 #endif

@@ -1,5 +1,6 @@
 /* Writes the files of a report. */
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "lot/writers.h"
@@ -8,9 +9,13 @@ static const struct {
   const char *name;
   fg_lot_writer *write;
 } files[] = {
-    {"bumps.csv", fg_lot_write_bumps_csv}, {"foils.csv", fg_lot_write_foils_csv},
-    {"results.qif", fg_lot_write_qif},     {"results.dfq", fg_lot_write_dfq},
-    {"index.html", fg_lot_write_page},     {"lot.json", fg_lot_write_json},
+    {"bumps.csv", fg_lot_write_bumps_csv},
+    {"foils.csv", fg_lot_write_foils_csv},
+    {"bearings.csv", fg_lot_write_bearings_csv},
+    {"results.qif", fg_lot_write_qif},
+    {"results.dfq", fg_lot_write_dfq},
+    {"index.html", fg_lot_write_page},
+    {"lot.json", fg_lot_write_json},
 };
 
 static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
@@ -32,6 +37,11 @@ static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcom
   outcome->exceeded = analysis->exceeded;
   for (int i = 0; i <= FG_VERDICT_NONE; i++)
     outcome->foils_by_verdict[i] = analysis->by_verdict[i];
+  outcome->bearings = analysis->bearing_count;
+  outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
+  memcpy(outcome->assembly, analysis->assembly.statement, sizeof outcome->assembly);
+  for (int i = 0; i <= FG_VERDICT_NONE; i++)
+    outcome->bearings_by_verdict[i] = analysis->bearings_by_verdict[i];
 }
 
 fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,

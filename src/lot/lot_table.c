@@ -42,7 +42,7 @@ static fg_status find_quantity(fg_context *ctx, reading *r) {
   for (size_t i = 0; i < 2; i++) {
     r->row = fg_quantity_find(owners[i], r->options->quantity);
     r->of_bumps = owners[i] == FG_QUANTITY_OF_BUMP;
-    fg_quantity_list(owners[i], false, list, sizeof list);
+    fg_quantity_list(owners[i], FG_FORM_CLASSICAL, false, list, sizeof list);
     if (r->row && r->row->kind == FG_QUANTITY_NUMBER) return FG_OK;
   }
   return fg_fail(ctx, FG_ERR_DATA, "'%s' is no quantity that a lot holds; there are: %s",

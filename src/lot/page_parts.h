@@ -15,11 +15,16 @@ void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_f
 /* What the strips measure, and what the design says where that is another thickness. */
 void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis);
 
+/* Where the spread of the stiffness comes from: a part of that section. */
+void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis);
+
 /* The sections, in the page's order. */
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis); /* of plain strips instead */
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis);
 

@@ -11,7 +11,9 @@
 #include "core/text.h"
 #include "foilgauge/control.h"
 #include "foilgauge/lot.h"
-#include "foilgauge/scan_loop.h"
+#include "foilgauge/stiffness.h"
+#include "lot/dies.h"
+#include "lot/reference_curve.h"
 #include "report/measure/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
@@ -48,6 +50,7 @@ static const member members[] = {
     TEXT("operator_column", operator_column),
     TEXT("bearing_column", bearing_column),
     TEXT("pad_column", pad_column),
+    TEXT("die_column", die_column),
     {"pads", COUNT, AT(layout.pads), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
     {"bumps_per_pad", COUNT, AT(layout.bumps_per_pad), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
     {"first_bump", COUNT, AT(layout.first_bump), 0, 1, 1000, false, false},
@@ -58,6 +61,15 @@ static const member members[] = {
 };
 
 enum { MEMBERS = sizeof members / sizeof members[0] };
+
+/* Of the object "assembly". A hundred thousand draws take seconds, and tell shares to 0.3 %. */
+static const member assembly_members[] = {
+    {"bearings", COUNT, AT(assembly.bearings), 0, 0, 100000, false, false},
+    {"seed", SEED, AT(assembly.seed), 0, 0, 9007199254740992.0, false, false},
+    {"design_deviation_pct", REAL, AT(assembly.design_deviation_pct), 0, 0, 100, false, false},
+};
+
+enum { ASSEMBLY_MEMBERS = sizeof assembly_members / sizeof assembly_members[0] };
 
 static const fg_bandwidth_rule bandwidths[] = {FG_BANDWIDTH_SILVERMAN, FG_BANDWIDTH_SCOTT,
                                                FG_BANDWIDTH_SHEATHER_JONES};
@@ -75,8 +87,11 @@ void fg_lot_settings_default(fg_lot_settings *settings) {
       .operator_column = "operator",
       .bearing_column = "bearing",
       .pad_column = "pad",
+      .die_column = "die",
       .layout = {.first_bump = 1},
-      .material = {.youngs_modulus_gpa = 200, .poisson_ratio = 0.3, .friction = 0.1},
+      .material = fg_arch_material_default(),
+      /* Thesis chapter 5: ± 7 % of the clearance, 4.6 of 65.5 um. */
+      .assembly = {.bearings = 1000, .seed = 1, .design_deviation_pct = 7},
   };
   fg_design_default(&settings->design);
 }
@@ -129,10 +144,14 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
   for (size_t i = 0; i < MEMBERS; i++)
     if (members[i].kind <= UNSIGNED && !is_open(&members[i], number_of(&members[i], settings)))
       FG_TRY(check_number(ctx, &members[i], number_of(&members[i], settings)));
+  for (size_t i = 0; i < ASSEMBLY_MEMBERS; i++)
+    FG_TRY(check_number(ctx, &assembly_members[i], number_of(&assembly_members[i], settings)));
   FG_TRY(check_layout(ctx, &settings->layout));
   if (settings->design.form == FG_FORM_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
   FG_TRY(fg_design_check(ctx, &settings->design));
+  FG_TRY(fg_lot_dies_check(ctx, settings));
+  FG_TRY(fg_reference_curve_check(ctx, settings));
   return fg_report_check_tolerances(ctx, &settings->design);
 }
 
@@ -216,6 +235,29 @@ static fg_status read_design(fg_context *ctx, const char *path, const cJSON *val
   return status;
 }
 
+/* "assembly": { "bearings": 1000, ... }; members that are absent keep their value. */
+static fg_status read_assembly(fg_context *ctx, const cJSON *object, fg_lot_settings *settings) {
+  fg_context inner = {.message = ""};
+  const cJSON *value;
+  if (!cJSON_IsObject(object))
+    return fg_fail(ctx, FG_ERR_DATA, "assembly must be an object, as in {\"bearings\": 1000}");
+  cJSON_ArrayForEach(value, object) {
+    size_t i = 0;
+    while (i < ASSEMBLY_MEMBERS && strcmp(assembly_members[i].name, value->string) != 0)
+      i++;
+    if (i == ASSEMBLY_MEMBERS)
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "unknown member 'assembly.%.60s'; there are bearings, seed and "
+                     "design_deviation_pct",
+                     value->string);
+    if (cJSON_GetObjectItemCaseSensitive(object, value->string) != value)
+      return fg_fail(ctx, FG_ERR_DATA, "assembly.%s is there twice", value->string);
+    fg_status status = read_member(&inner, &assembly_members[i], value, settings);
+    if (status != FG_OK) return fg_fail(ctx, status, "assembly.%.300s", inner.message);
+  }
+  return FG_OK;
+}
+
 static const member *find_member(const char *name) {
   for (size_t i = 0; i < MEMBERS; i++)
     if (!strcmp(members[i].name, name)) return &members[i];
@@ -237,6 +279,12 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
       FG_TRY(read_member(ctx, row, value, settings));
     else if (!strcmp(value->string, "design"))
       FG_TRY(read_design(ctx, path, value, &settings->design));
+    else if (!strcmp(value->string, "dies"))
+      FG_TRY(fg_lot_dies_read(ctx, path, value, settings));
+    else if (!strcmp(value->string, "reference_curve"))
+      FG_TRY(fg_reference_curve_read(ctx, path, value, settings));
+    else if (!strcmp(value->string, "assembly"))
+      FG_TRY(read_assembly(ctx, value, settings));
     else if (value != schema && strcmp(value->string, "version") != 0 &&
              strcmp(value->string, "station") !=
                  0) /* the inspection station's: station/settings.c */
@@ -260,25 +308,6 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
   if (status != FG_OK) return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);
   *settings = copy;
   return FG_OK;
-}
-
-fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,
-                                     fg_lot_settings *settings) {
-  fg_scanner_model *model;
-  char *whole = realpath(path, NULL); /* the settings may be printed, and read elsewhere */
-  const char *name = whole ? whole : path;
-  fg_status status = fg_scanner_model_load(ctx, path, &model);
-  if (status == FG_OK && strlen(name) >= sizeof settings->model)
-    status = fg_fail(ctx, FG_ERR_USAGE, "%.200s ...: the path is too long; at most %zu bytes", name,
-                     sizeof settings->model - 1);
-  if (status == FG_OK) {
-    status = fg_scanner_model_check_scanner(ctx, model, path, scanner);
-    strcpy(settings->model, name);
-    strcpy(settings->model_sha256, fg_scanner_model_sha256(model));
-  }
-  if (model) fg_scanner_model_free(model);
-  free(whole);
-  return status;
 }
 
 static fg_status find_model(fg_context *ctx, const char *path, fg_lot_settings *settings) {
@@ -324,9 +353,10 @@ static void write_member(fg_json *json, const member *row, const fg_lot_settings
   }
 }
 
-/* A lot that knows no model has a recipe that does not speak of one. */
+/* A lot that knows no model, no dies, has a recipe that does not speak of them. */
 static bool is_silent(const member *row, const fg_lot_settings *settings) {
   bool model = row->offset == AT(model) || row->offset == AT(model_sha256);
+  if (row->offset == AT(die_column)) return !settings->die_count;
   return model && !*(const char *)place_of(row, settings);
 }
 
@@ -343,6 +373,16 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   for (size_t i = 0; i < MEMBERS; i++)
     if (with_jobs || !(members[i].jobs || is_silent(&members[i], settings)))
       write_member(&writer, &members[i], settings);
+  fg_lot_dies_write(&writer, settings);
+  writer.exact = true; /* what is read again gives the same report */
+  fg_reference_curve_write(&writer, "reference_curve", settings);
+  writer.exact = false;
+  fg_json_object(&writer, "assembly");
+  fg_json_line(&writer);
+  for (size_t i = 0; i < ASSEMBLY_MEMBERS; i++)
+    write_member(&writer, &assembly_members[i], settings);
+  fg_json_object_end(&writer);
+  fg_json_line_end(&writer);
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);

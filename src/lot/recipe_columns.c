@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "lot/dies.h"
 #include "lot/lot_report.h"
 
 static void list_columns(const fg_manifest *manifest, char *text, size_t size) {
@@ -41,6 +42,29 @@ static fg_status check_groups(fg_context *ctx, const fg_manifest *manifest, cons
   return FG_OK;
 }
 
+/* With dies, the column is there, and every cell names one of them or none. */
+static fg_status check_dies(fg_context *ctx, const fg_lot_settings *settings,
+                            const fg_manifest *manifest) {
+  char columns[400];
+  size_t column = fg_manifest_column(manifest, settings->die_column);
+  list_columns(manifest, columns, sizeof columns);
+  if (!settings->die_count) return FG_OK;
+  if (column == FG_NO_COLUMN)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "dies: the manifest has no column '%s' that says which die a foil is of; it "
+                   "has: %s",
+                   settings->die_column, columns);
+  for (size_t i = 0; i < manifest->items; i++) {
+    const char *name = fg_manifest_cell(manifest, i, column);
+    if (*name && !fg_lot_dies_find(settings, name))
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "dies: %.200s was pressed in die '%.60s' as the column '%s' says, of which "
+                     "there is no report; name it, or leave the cell empty",
+                     fg_manifest_scan(manifest, i), name, settings->die_column);
+  }
+  return FG_OK;
+}
+
 fg_status fg_lot_check_columns(fg_context *ctx, const fg_lot_settings *settings,
                                const fg_manifest *manifest) {
   fg_lot_settings usual;
@@ -51,6 +75,7 @@ fg_status fg_lot_check_columns(fg_context *ctx, const fg_lot_settings *settings,
   FG_TRY(CHECK(operator_column));
   FG_TRY(CHECK(bearing_column));
   FG_TRY(CHECK(pad_column));
+  FG_TRY(check_dies(ctx, settings, manifest));
 #undef CHECK
   return check_groups(ctx, manifest, settings->group_column);
 }

@@ -82,6 +82,7 @@ static void write_record(FILE *out, const fg_record *record, const char *scan_by
   fg_json_string(&json, "scan", record->scan);
   if (scan_bytes) fg_json_string(&json, "scan_bytes", scan_bytes);
   fg_json_string(&json, "sha256", record->sha256[0] ? record->sha256 : NULL);
+  if (record->date[0]) fg_json_string(&json, "date", record->date);
   fg_json_string(&json, "measured_with", record->measured_with);
   fg_json_string(&json, "error", measurement ? NULL : record->error);
   fg_json_array(&json, "foils");
@@ -214,11 +215,21 @@ static fg_status read_bytes(fg_context *ctx, const cJSON *value, char **text) {
   return FG_OK;
 }
 
+/* A record from before there were dates has none. */
+static fg_status read_date(fg_context *ctx, const cJSON *value, char date[11]) {
+  if (!value) return FG_OK;
+  if (!cJSON_IsString(value) || strlen(value->valuestring) != 10)
+    return fail_record(ctx, "a date that is none");
+  strcpy(date, value->valuestring);
+  return FG_OK;
+}
+
 static fg_status read_head(fg_context *ctx, const cJSON *root, fg_record *record) {
   FG_TRY(copy_words(ctx, member(root, "scan"), &record->scan));
   FG_TRY(read_bytes(ctx, member(root, "scan_bytes"), &record->scan));
   FG_TRY(read_sum(ctx, member(root, "sha256"), record->sha256));
   FG_TRY(read_sum(ctx, member(root, "measured_with"), record->measured_with));
+  FG_TRY(read_date(ctx, member(root, "date"), record->date));
   FG_TRY(copy_words(ctx, member(root, "error"), &record->error));
   if (!record->scan || !record->measured_with[0] || !cJSON_IsArray(member(root, "foils")))
     return fail_record(ctx, "members are missing");

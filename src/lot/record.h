@@ -1,6 +1,6 @@
 /* One measured scan as a line of results.jsonl: compact, and exact to the ten digits of a report.
  *
- * {"scan", "sha256", "measured_with", "error", "foils": [{"number", "flags", "error", "values",
+ * {"scan", "sha256", "date", "measured_with", "error", "foils": [{"number", "flags", "error", "values",
  *  "bumps": [{"number", "flags", "values"}]}], "checksum"}
  * `scan_bytes` follows `scan` where a file name is not UTF-8: its bytes as hex digits. The checksum
  * is of the line itself (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in
@@ -18,6 +18,7 @@ typedef struct fg_record {
   char *scan;
   char sha256[65];        /* "": the scan could not be read, so the record is never kept */
   char measured_with[65]; /* SHA-256 of version, design without tolerances, resolution, fields */
+  char date[11];          /* of the scan's file, UTC, "2026-11-20"; "": not known */
   char *error;            /* NULL: it was measured */
   fg_foil *foils;         /* without strips and labels; owned, with their bumps */
   size_t foil_count;

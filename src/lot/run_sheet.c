@@ -40,7 +40,7 @@ static fg_status find_quantity(fg_context *ctx, measuring *m) {
   char list[700] = "";
   for (size_t i = 0; i < (is_disc ? 1 : 2); i++) {
     const fg_quantity *found = fg_quantity_find(owners[i], m->options->quantity);
-    fg_quantity_list(owners[i], false, list, sizeof list);
+    fg_quantity_list(owners[i], FG_FORM_CLASSICAL, false, list, sizeof list);
     if (!found || found->kind != FG_QUANTITY_NUMBER) continue;
     m->row = found;
     m->owner = owners[i];

@@ -37,4 +37,8 @@ void fg_place_move(const int64_t origin_px[2], const double dpi[2], fg_foil *foi
     move(&foil->strip.stations[i].left, by_mm);
     move(&foil->strip.stations[i].right, by_mm);
   }
+  for (int i = 0; i < 2; i++) {
+    move(&foil->strip.ends[i].left, by_mm);
+    move(&foil->strip.ends[i].right, by_mm);
+  }
 }

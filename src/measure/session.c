@@ -16,6 +16,8 @@
 enum { WORKERS_MAX = 63 };
 /* An object smaller than this share of the design's bump radius is dust. */
 #define OBJECT_LEAST 1.0
+/* Of an arc: than this share of its length, or of a radian of it. */
+#define ARC_LEAST 0.25
 /* A strip without bumps is a foil that failed when its width is the design's within this factor,
  * and some other thing (a scratch, a hair) when it is not. */
 #define WIDTH_FACTOR 1.6
@@ -139,7 +141,10 @@ static fg_status measure_objects(fg_context *ctx, fg_session *s, const job *j,
 
 /* Diagonal of the smallest object that is no dust. */
 static double least_object_px(const fg_measurement *m) {
-  return OBJECT_LEAST * m->design.bump_radius_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+  double arc_mm =
+      ARC_LEAST * m->design.overall_radius_mm * fmin(m->design.subtended_angle_deg * M_PI / 180, 1);
+  return (m->design.form == FG_FORM_ARC ? arc_mm : OBJECT_LEAST * m->design.bump_radius_mm) *
+         sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
 static void free_job(job *j) {

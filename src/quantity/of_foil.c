@@ -8,6 +8,7 @@ enum {
   TERMINAL = FG_QUANTITY_ON_TERMINAL,
   LOT = FG_QUANTITY_IN_LOT,
   CAUSE = FG_QUANTITY_IS_CAUSE,
+  ARC = FG_QUANTITY_OF_ARC,
 };
 
 static double overall_radius_of(const fg_design *design, const fg_nominal *nominal) {
@@ -18,6 +19,16 @@ static double overall_radius_of(const fg_design *design, const fg_nominal *nomin
 static double thickness_of(const fg_design *design, const fg_nominal *nominal) {
   (void)nominal;
   return design->thickness_mm;
+}
+
+static double subtended_angle_of(const fg_design *design, const fg_nominal *nominal) {
+  (void)nominal;
+  return design->subtended_angle_deg;
+}
+
+static double arc_length_of(const fg_design *design, const fg_nominal *nominal) {
+  (void)design;
+  return nominal->arc_length_mm;
 }
 
 static const fg_quantity rows[] = {
@@ -78,6 +89,34 @@ static const fg_quantity rows[] = {
      .words = "points on the lands",
      .kind = FG_QUANTITY_COUNT,
      FG_AT(fg_foil, overall.points)},
+    {.name = "arc.subtended_angle_deg",
+     .unit = "°",
+     .symbol = "angle",
+     .words = "angle between the ends about the centre",
+     FG_AT_U(fg_foil, arc.subtended_angle_deg, arc.u_subtended_angle_deg),
+     .decimals = 3,
+     .uses = PAGE | TERMINAL | LOT | ARC,
+     .rank = 5,
+     .characteristic = "Angle",
+     .nominal = subtended_angle_of},
+    {.name = "arc.subtended_angle_error_pct",
+     .unit = "%",
+     .symbol = "e_angle",
+     .words = "springback error of the angle between the ends",
+     FG_AT_U(fg_foil, arc.subtended_angle_error_pct, arc.u_subtended_angle_error_pct),
+     .decimals = 3,
+     .uses = PAGE | TERMINAL | LOT | ARC,
+     .rank = 6},
+    {.name = "arc.length_mm",
+     .unit = "mm",
+     .symbol = "length",
+     .words = "arc length from end to end",
+     FG_AT_U(fg_foil, arc.length_mm, arc.u_length_mm),
+     .decimals = 4,
+     .uses = PAGE | TERMINAL | LOT | ARC,
+     .rank = 7,
+     .characteristic = "Length",
+     .nominal = arc_length_of},
     {.name = "noise_um",
      .unit = "µm",
      .symbol = "noise",

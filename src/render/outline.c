@@ -245,6 +245,36 @@ static fg_status append_all(outline *o, const bump_plan *plans, double start_rad
   return append_land(o, land_from, end_rad);
 }
 
+static fg_status finish(outline *o, double start_rad, double end_rad) {
+  fg_scene *scene = o->scene;
+  fg_drawn_foil *drawn = &scene->drawn[o->foil];
+  drawn->segment_count = scene->segment_count - drawn->first_segment;
+  if (drawn->segment_count == 0)
+    return fg_fail(o->place->ctx, FG_ERR_DATA, "%s: %s: the foil has no length", o->place->path,
+                   o->place->member);
+  scene->segments[drawn->first_segment].open_start = true;
+  scene->segments[scene->segment_count - 1].open_end = true;
+  drawn->length_mm = o->s_mm;
+  drawn->half_span_rad = 0.5 * (end_rad - start_rad);
+  drawn->half_thickness_mm = 0.5 * o->request->design.thickness_mm;
+  return FG_OK;
+}
+
+/* A plain strip, with a lip where one is asked for. */
+static fg_status build_arc(outline *o) {
+  double half_rad = 0.5 * o->request->subtended_angle_deg * pi / 180;
+  fg_drawn_foil *drawn = &o->scene->drawn[o->foil];
+  drawn->first_segment = o->scene->segment_count;
+  drawn->rough_cuts = true;
+  if (!(half_rad < pi))
+    return fg_fail(o->place->ctx, FG_ERR_DATA, "%s: %s: the foil is longer than a full turn",
+                   o->place->path, o->place->member);
+  o->scene->foils[o->foil].subtended_angle_deg = o->request->subtended_angle_deg;
+  if (o->request->has_lip) FG_TRY(append_lip(o, -half_rad));
+  FG_TRY(append_land(o, -half_rad, half_rad));
+  return finish(o, -half_rad, half_rad);
+}
+
 fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
                            const fg_foil_request *request, fg_scene *scene, size_t foil) {
   outline o = {.place = place, .spec = spec, .request = request, .scene = scene, .foil = foil};
@@ -258,6 +288,7 @@ fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
   truth->overall_radius_mm = request->overall_radius_mm;
   truth->thickness_mm = request->design.thickness_mm;
   truth->mirror = request->mirror;
+  if (request->design.arc) return build_arc(&o);
 
   const bump_plan *first = &plans[0], *last = &plans[request->design.bump_count - 1];
   double start =
@@ -269,14 +300,5 @@ fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
     return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s: the foil is longer than a full turn",
                    place->path, place->member);
   FG_TRY(append_all(&o, plans, start, end));
-  drawn->segment_count = scene->segment_count - drawn->first_segment;
-  if (drawn->segment_count == 0)
-    return fg_fail(place->ctx, FG_ERR_DATA, "%s: %s: the foil has no length", place->path,
-                   place->member);
-  scene->segments[drawn->first_segment].open_start = true;
-  scene->segments[scene->segment_count - 1].open_end = true;
-  drawn->length_mm = o.s_mm;
-  drawn->half_span_rad = 0.5 * (end - start);
-  drawn->half_thickness_mm = 0.5 * request->design.thickness_mm;
-  return FG_OK;
+  return finish(&o, start, end);
 }

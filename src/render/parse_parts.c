@@ -16,6 +16,7 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
       FG_SPEC_NUMBER(fg_render_design, fillet_radius_mm, 0.001, 100),
       FG_SPEC_NUMBER(fg_render_design, thickness_mm, 0.001, 10),
       FG_SPEC_NUMBER(fg_render_design, rotor_diameter_mm, 0.01, 10000),
+      FG_SPEC_NUMBER(fg_render_design, subtended_angle_deg, 0.1, 350),
       FG_SPEC_OTHER("schema"),
       FG_SPEC_OTHER("name"),
       FG_SPEC_OTHER("form"),
@@ -26,6 +27,9 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
   design->sleeve_radius_mm = NAN;
   FG_TRY(fg_members_read(place, object, table, design));
   if (isnan(design->sleeve_radius_mm)) design->sleeve_radius_mm = design->overall_radius_mm;
+  const cJSON *form = fg_spec_member(object, "form");
+  design->arc = cJSON_IsString(form) && !strcmp(form->valuestring, "arc");
+  if (design->arc) design->bump_count = 0;
   return FG_OK;
 }
 
@@ -110,8 +114,9 @@ static fg_status read_springback(const fg_place *place, const cJSON *object,
 
 fg_foil_request fg_spec_default_foil(void) {
   fg_foil_request request = {
-      .design = {9, 3.32, 63.15, 20.73, 20.73, 40.0 / 3, 0.35, 0.1, 40},
+      .design = {false, 9, 3.32, 63.15, 20.73, 20.73, 40.0 / 3, 0.35, 0.1, 40, 110},
       .overall_radius_mm = NAN,
+      .subtended_angle_deg = NAN,
       .has_lip = true,
       .lip = {2.0, 0.4, true},
       .first_land_mm = 1.8,
@@ -130,6 +135,7 @@ fg_foil_request fg_spec_default_foil(void) {
 static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_request *request) {
   static const fg_member table[] = {
       FG_SPEC_NUMBER(fg_foil_request, overall_radius_mm, 0.1, 10000),
+      FG_SPEC_NUMBER(fg_foil_request, subtended_angle_deg, 0.1, 350),
       FG_SPEC_NUMBER(fg_foil_request, first_land_mm, 0, 1000),
       FG_SPEC_NUMBER(fg_foil_request, last_land_mm, 0, 1000),
       FG_SPEC_NUMBER(fg_foil_request, rotate_deg, -3600, 3600),
@@ -153,6 +159,7 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
   if (design) FG_TRY(read_design(&inside, design, &request->design));
   const cJSON *form = fg_spec_member(design, "form");
   if (cJSON_IsString(form) && !strcmp(form->valuestring, "sinusoidal")) request->has_lip = false;
+  if (request->design.arc) request->has_lip = false;
   FG_TRY(read_lip(place, fg_spec_member(foil, "lip"), request));
   FG_TRY(read_missing(place, fg_spec_member(foil, "missing"), request));
   FG_TRY(read_crushed(place, fg_spec_member(foil, "crushed"), request));
@@ -167,6 +174,11 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
         fg_member_numbers(place, "centre_mm", centre, -1e4, 1e4, 2, 2, request->centre_mm, &count));
   if (isnan(request->overall_radius_mm))
     request->overall_radius_mm = request->design.overall_radius_mm;
+  if (!request->design.arc && !isnan(request->subtended_angle_deg))
+    return fg_member_fail(place, "subtended_angle_deg", NULL, "belongs to form \"arc\" only");
+  if (isnan(request->subtended_angle_deg))
+    request->subtended_angle_deg = request->design.subtended_angle_deg *
+                                   request->design.overall_radius_mm / request->overall_radius_mm;
   return FG_OK;
 }
 

@@ -130,6 +130,21 @@ static fg_status prepare(fg_context *ctx, sequence *q) {
   return fg_memory_allocate(ctx, white_count(q), sizeof *q->white, (void **)&q->white);
 }
 
+/* Drawn behind the edges, so that those stay what they are. `q` is the edges', whose kernel and
+ * noise serve here too: a strip is thinner than it is long. */
+static fg_status build_cuts(fg_context *ctx, fg_random *random, sequence q,
+                            const fg_scanner *scanner, fg_drawn_foil *drawn) {
+  double sd = 1e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
+  size_t count = (size_t)(2 * drawn->half_thickness_mm / q.step_mm) + 4;
+  if (count > q.count) return FG_OK;
+  drawn->cut_count = q.count = count;
+  for (int end = 0; end < 2; end++) {
+    FG_TRY(fg_memory_allocate(ctx, count, sizeof(float), (void **)&drawn->cut[end]));
+    draw_sequence(random, &q, sd, drawn->cut[end]);
+  }
+  return FG_OK;
+}
+
 fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t foil,
                              fg_drawn_foil *drawn) {
   const fg_scanner *scanner = &spec->scanner;
@@ -151,6 +166,7 @@ fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t
     for (size_t i = 0; i < q.count; i++)
       drawn->roughness[edge][i] += common[i];
   }
+  if (drawn->rough_cuts) FG_TRY_EXIT(build_cuts(ctx, &random, q, scanner, drawn));
 exit:
   free_sequence(&q);
   free(common);

@@ -163,6 +163,14 @@ static double far_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
   return value;
 }
 
+/* How far an arc's cut lies outwards of its place, where a line at n crosses it. */
+static double cut_shift(const fg_drawn_foil *drawn, int end, double n) {
+  if (!drawn->cut[end]) return 0;
+  double place = (n + drawn->half_thickness_mm) / drawn->roughness_step_mm + 1;
+  double last = (double)drawn->cut_count - 3;
+  return fg_roughness_at(drawn->cut[end], place < 1 ? 1 : place > last ? last : place);
+}
+
 static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                           const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
@@ -198,8 +206,9 @@ static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
   double value = phi(sampler, (n - outer) / outer_sd) - phi(sampler, (n - inner) / inner_sd);
   if (sampler->spec->scanner.wall_amplitude != 0)
     value += (1 - value) * wall(sampler, at, inner, outer);
-  if (segment->open_start) value *= phi(sampler, t / sd);
-  if (segment->open_end) value *= phi(sampler, (segment->length_mm - t) / sd);
+  if (segment->open_start) value *= phi(sampler, (t + cut_shift(drawn, 0, at->n)) / sd);
+  if (segment->open_end)
+    value *= phi(sampler, (segment->length_mm - t + cut_shift(drawn, 1, at->n)) / sd);
   return value;
 }
 

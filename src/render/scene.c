@@ -306,6 +306,8 @@ void fg_scene_free(fg_scene *scene) {
     free((void *)scene->foils[i].bumps);
     free(scene->drawn[i].roughness[0]);
     free(scene->drawn[i].roughness[1]);
+    free(scene->drawn[i].cut[0]);
+    free(scene->drawn[i].cut[1]);
   }
   for (size_t i = 0; i < scene->shape_count; i++)
     free(scene->shapes[i].roughness);

@@ -14,9 +14,11 @@ enum { FG_RENDER_BUMPS_MAX = 64, FG_RENDER_FOILS_MAX = 4096 };
 
 /* Design members that the renderer needs (the same names as in a design file). */
 typedef struct fg_render_design {
+  bool arc; /* form "arc": a plain strip, bump_count 0 */
   int bump_count;
   double bump_radius_mm, bump_angle_deg, overall_radius_mm, sleeve_radius_mm, pitch_deg;
   double fillet_radius_mm, thickness_mm, rotor_diameter_mm;
+  double subtended_angle_deg; /* of an arc */
 } fg_render_design;
 
 typedef struct fg_render_lip {
@@ -26,9 +28,10 @@ typedef struct fg_render_lip {
 
 typedef struct fg_foil_request {
   fg_render_design design;
-  double overall_radius_mm;                   /* actual; NaN: as designed */
-  double springback_mean, springback_sd;      /* R = R_D (1 + mean + sd × normal) */
-  double radius_mm[FG_RENDER_BUMPS_MAX];      /* overrides; NaN: by springback */
+  double overall_radius_mm;              /* actual; NaN: as designed */
+  double subtended_angle_deg;            /* of an arc; NaN: its length stays, the radius changes */
+  double springback_mean, springback_sd; /* R = R_D (1 + mean + sd × normal) */
+  double radius_mm[FG_RENDER_BUMPS_MAX]; /* overrides; NaN: by springback */
   double bump_angle_deg[FG_RENDER_BUMPS_MAX]; /* NaN: constant arc length */
   double height_factor[FG_RENDER_BUMPS_MAX];  /* 1: not crushed */
   bool missing[FG_RENDER_BUMPS_MAX];
@@ -97,6 +100,9 @@ typedef struct fg_drawn_foil {
   float *roughness[2]; /* inner and outer edge, shift to the inner side in mm; NULL: none */
   size_t roughness_count;
   double roughness_step_mm;
+  bool rough_cuts; /* of an arc the ends are as rough as its edges */
+  float *cut[2];   /* at its start and end, across, outwards, mm; NULL: none */
+  size_t cut_count;
 } fg_drawn_foil;
 
 /* Discs, dust and scratches: a capsule, or a circle with lobes. */

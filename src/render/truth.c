@@ -52,12 +52,29 @@ static void put_design(cJSON *foil, const fg_render_design *design) {
       design->sleeve_radius_mm - height - design->rotor_diameter_mm / 2 - design->thickness_mm);
 }
 
+static void put_arc_design(cJSON *foil, const fg_render_design *design) {
+  cJSON *object = cJSON_AddObjectToObject(foil, "design");
+  cJSON_AddStringToObject(object, "form", "arc");
+  put(object, "overall_radius_mm", design->overall_radius_mm);
+  put(object, "subtended_angle_deg", design->subtended_angle_deg);
+  put(object, "thickness_mm", design->thickness_mm);
+}
+
 static void put_foil(cJSON *object, const fg_render_foil *truth, const fg_render_design *design) {
   put(object, "overall_radius_mm", truth->overall_radius_mm);
   put_point(object, "overall_centre_px", truth->overall_centre_px);
   put(object, "thickness_mm", truth->thickness_mm);
+  if (design->arc) {
+    put(object, "subtended_angle_deg", truth->subtended_angle_deg);
+    put(object, "length_mm",
+        truth->overall_radius_mm * truth->subtended_angle_deg * 3.14159265358979323846 / 180);
+  }
   put(object, "rotate_deg", truth->rotate_deg);
   cJSON_AddBoolToObject(object, "mirror", truth->mirror);
+  if (design->arc) {
+    put_arc_design(object, design);
+    return;
+  }
   put_design(object, design);
   put_bumps(object, truth);
 }

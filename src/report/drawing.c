@@ -169,12 +169,32 @@ static fg_status draw_overall(fg_context *ctx, fg_canvas *canvas, const fg_overa
   return fg_canvas_text(ctx, canvas, at, 11, 0.5, FG_COLOUR_TEXT, "O");
 }
 
+/* The cuts of a plain strip, prolonged beyond its edges, and their directions from O: what the
+ * angle lies between. */
+static fg_status draw_ends(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil) {
+  fg_point o = foil->overall.centre_mm;
+  if (!isfinite(foil->arc.subtended_angle_deg)) return FG_OK;
+  for (int i = 0; i < 2; i++) {
+    const fg_strip_end *end = &foil->strip.ends[i];
+    double dx = end->right.x - end->left.x, dy = end->right.y - end->left.y;
+    const double beyond = 4; /* in widths of the strip: to be seen */
+    const fg_point cut[1][2] = {{{end->left.x - beyond * dx, end->left.y - beyond * dy},
+                                 {end->right.x + beyond * dx, end->right.y + beyond * dy}}};
+    fg_point middle = {(end->left.x + end->right.x) / 2, (end->left.y + end->right.y) / 2};
+    const fg_point ray[1][2] = {{o, middle}};
+    FG_TRY(fg_canvas_segments(ctx, canvas, cut, 1, (fg_pen){FG_COLOUR_BUMP, 1.6, 0}));
+    FG_TRY(fg_canvas_segments(ctx, canvas, ray, 1, (fg_pen){FG_COLOUR_OVERALL, 0.7, 0}));
+  }
+  return FG_OK;
+}
+
 static fg_status draw_foil(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil,
                            double magnification) {
   FG_TRY(draw_edges(ctx, canvas, &foil->strip));
   if (foil->flags & FG_FOIL_NOT_MEASURED) return FG_OK;
   FG_TRY(draw_whiskers(ctx, canvas, foil, magnification));
   FG_TRY(draw_overall(ctx, canvas, &foil->overall));
+  FG_TRY(draw_ends(ctx, canvas, foil));
   for (size_t i = 0; i < foil->bump_count; i++)
     FG_TRY(draw_bump(ctx, canvas, foil, &foil->bumps[i]));
   return FG_OK;

@@ -22,7 +22,8 @@ static const char style[] =
     "margin:0 0 16px}.tiles div{background:var(--ground);border-radius:8px;padding:9px 13px}"
     ".tiles dt{font-size:12.5px;color:var(--soft)}.tiles dd{margin:0;font-size:18px;"
     "font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}"
-    ".tiles small{display:block;font-size:12.5px;font-weight:400;color:var(--soft);white-space:normal}\n"
+    ".tiles "
+    "small{display:block;font-size:12.5px;font-weight:400;color:var(--soft);white-space:normal}\n"
     "figure{margin:0}figcaption{font-size:13px;color:var(--soft);margin-top:6px}\n"
     ".picture{display:block;width:auto;max-width:100%;height:auto;max-height:600px;margin:0 "
     "auto;border-radius:8px;background:#"
@@ -87,10 +88,12 @@ static const char plot_style[] =
 
 /* Pages of lots. */
 static const char lot_style[] =
-    ".dot{fill:var(--blue);fill-opacity:.4}.signal{fill:var(--bad)}.column{fill:#cfe0f5}"
+    ".dot{fill:var(--blue);fill-opacity:.4}.mapped{fill:var(--ink);fill-opacity:.6;stroke:#fff;"
+    "stroke-width:.9}.signal{fill:var(--bad)}.column{fill:#cfe0f5}"
     ".plot .fit{stroke:var(--bump);stroke-width:2.5}.plot .curve{stroke:var(--blue);"
     "stroke-width:2.5}.plot .thin{stroke:#8a96a1}.plot .hypothesis{stroke:var(--soft);"
     "stroke-width:2;stroke-dasharray:7 5}.plot .key{fill:var(--soft)}"
+    ".lots th,.lots td{padding:4px 7px}.lots td.words:not(:empty){min-width:0}"
     ".plot .end{text-anchor:end;fill:var(--soft)}.pair{display:grid;grid-template-columns:repeat("
     "auto-fit,minmax(min(300px,100%),1fr));gap:18px}.polar{max-width:520px;margin:0 auto}"
     "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";

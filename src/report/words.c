@@ -28,6 +28,12 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_RESOLUTION_CONTRADICTS_FILE, "resolution_contradicts_file",
      "The resolution that was given is not the one that the file states: if the file is right, "
      "every length is wrong by their ratio."},
+    {FG_FOIL_BUMPS_ON_ARC, "bumps_on_arc",
+     "There is a bump or a dent on what should be a plain strip; the circle is that of the rest."},
+    {FG_FOIL_LIP, "lip",
+     "An end is bent away, as a lip is: the circle is that of the rest, and no angle is told."},
+    {FG_FOIL_NO_END, "end_not_found",
+     "An end of the strip is hidden, torn or no straight cut: no angle is told."},
     {FG_FOIL_UNEQUAL_RESOLUTION, "unequal_resolution",
      "The resolutions along x and y differ: radii may be off by more than their uncertainty. Scan "
      "with equal ones."},
@@ -96,6 +102,8 @@ const char *fg_form_word(fg_form form) {
     return "sinusoidal";
   case FG_FORM_DISCS:
     return "discs";
+  case FG_FORM_ARC:
+    return "arc";
   }
   return "";
 }

@@ -29,6 +29,10 @@ static void move_edges(const fg_field_list *fields, fg_strip *strip) {
       *edges[side] = moved(fields, *edges[side]);
     }
   }
+  for (int i = 0; i < 2; i++) {
+    strip->ends[i].left = moved(fields, strip->ends[i].left);
+    strip->ends[i].right = moved(fields, strip->ends[i].right);
+  }
 }
 
 /* The row of a view that is nearest to a place; NULL: the view has none. */

@@ -4,57 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "stats/column.h"
-
-/* Days from 1970-01-01 in the Gregorian calendar (Hinnant 2013, "chrono-compatible low-level date
- * algorithms"). */
-static double days_of(int year, int month, int day) {
-  int y = month <= 2 ? year - 1 : year, era = y / 400, of_era = y - 400 * era;
-  int of_year = (153 * (month > 2 ? month - 3 : month + 9) + 2) / 5 + day - 1;
-  return era * 146097.0 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
-}
-
-static bool is_day(int year, int month, int day) {
-  static const int days[] = {31, 29, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  bool leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-  return year >= 1900 && year < 2200 && month >= 1 && month <= 12 && day >= 1 &&
-         day <= days[month - 1] - (month == 2 && !leap);
-}
-
-/* A time of day behind the date, in days; NaN: something else. */
-static double read_time(const char *text) {
-  int hour, minute, end = 0;
-  double second = 0;
-  if (!*text) return 0;
-  if (*text != ' ' && *text != 'T') return NAN;
-  if (sscanf(text + 1, "%2d:%2d%n", &hour, &minute, &end) < 2 || hour > 24 || minute > 59)
-    return NAN;
-  text += 1 + end;
-  end = 0;
-  if (*text == ':' && sscanf(text, ":%9lf%n", &second, &end) == 1) text += end;
-  if (*text == 'Z') text++;
-  return *text ? NAN : (hour + (minute + second / 60) / 60) / 24;
-}
-
-/* Days from 1970; NaN: no date. What is written with strokes may begin with day or month: no date.
- */
-static double read_date(const char *text) {
-  int year = 0, month = 0, day = 0, end = 0;
-  if (strspn(text, "0123456789") == 4)
-    (void)sscanf(text, "%4d-%2d-%2d%n", &year, &month, &day, &end);
-  else
-    (void)sscanf(text, "%2d.%2d.%4d%n", &day, &month, &year, &end);
-  return end && is_day(year, month, day) ? days_of(year, month, day) + read_time(text + end) : NAN;
-}
 
 /* What a word counts, of a column of such words; NaN: nothing. */
 typedef double counter(const char *word, const fg_column *column);
 
 static double count_date(const char *word, const fg_column *column) {
   (void)column;
-  return read_date(word);
+  return fg_date_days(word);
 }
 
 static size_t length_before_digits(const char *word) {

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "vision/ends.h"
 
 /* Distance of stations, and half window of the reference line. Both are lengths of the foil, whose
  * fillets are 0.2 mm long: a line that is smoothed over more cuts the corner and bends the scale
@@ -179,6 +180,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   strip->count = reference.count;
   fill_stations(&work, dpi, strip);
   find_box(&reference, strip);
+  fg_ends_measure(&work, dpi, strip);
   FG_TRY_EXIT(summarise(ctx, &work, dpi, strip));
 exit:
   fg_reference_free(&reference);

@@ -34,3 +34,4 @@ for declared in [tl]*.declared.json; do
   loop --table "$name.csv" --declared "$declared" -o "$root/reports/blind/$name.json" \
     --html "$root/reports/blind/$name.html"
 done
+/usr/bin/python3 "$root/tests/bench/loop_blind_tables.py" "$root/reports/blind"

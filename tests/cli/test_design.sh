@@ -21,6 +21,43 @@ echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [4]}' >"
 expect 0 "4.000000 mm" "$program" design "$work/discs.json"
 expect 65 "there is no curve" "$program" design --curve "$work/discs.json"
 
+# Stiffness: three models in the table, the JSON and the page; the numbers that a user gives count.
+expect 0 "Heshmat, Walowit and Anno" "$program" design
+expect 64 "it must be a number from 0 to 10" "$program" design --friction -1
+expect 64 "it must be a number from 0 to 0.499" "$program" design --poisson-ratio 0.3x
+expect 65 "has no bumps" "$program" design "$work/discs.json" --html "$work/never.html"
+[ -e "$work/never.html" ] && fail "a page of a design without bumps"
+expect 0 "<!doctype html>" "$program" design --html -
+expect 64 "two outputs cannot go to one file" "$program" design --html - --json
+expect 64 "two outputs cannot go to one file" "$program" design --html "$work/a" -o "$work/a"
+"$program" design --html "$work/page.html" -o "$work/stiff.json" || fail "design --html"
+"$program" design --youngs-modulus-gpa 100 -o "$work/soft.json" || fail "design --youngs-modulus-gpa"
+"$program" design "$work/discs.json" -o "$work/none.json" || fail "design of discs"
+echo '{"schema": "foilgauge/design/1", "form": "sinusoidal"}' >"$work/sinus.json"
+"$program" design "$work/sinus.json" --friction 5 --html "$work/sinus.html" -o "$work/sinus-out.json" ||
+  fail "a sinusoidal design"
+"$program" design "$root/samples/top_foil_design.json" -o "$work/arc.json" || fail "design of a plain strip"
+expect 65 "has no bumps" "$program" design "$root/samples/top_foil_design.json" --html "$work/never.html"
+valid nominal.schema.json "$work/arc.json" "$work/stiff.json" "$work/soft.json" "$work/none.json" "$work/sinus-out.json"
+python3 - "$work" <<'END' || fail "the stiffness of a design"
+import json, sys
+one, soft, none, sinus = (json.load(open(f"{sys.argv[1]}/{name}.json")) for name in ("stiff", "soft", "none", "sinus-out"))
+assert "stiffness" not in none
+models = one["stiffness"]["models"]
+assert [m["id"] for m in models] == ["arch", "heshmat", "link_spring"]
+for model, half in zip(models, soft["stiffness"]["models"]):
+    assert abs(half["design"]["stiffness_n_mm2"] / model["design"]["stiffness_n_mm2"] - 0.5) < 1e-9
+map = one["stiffness"]["map"]
+at = lambda r, a: map["normalised"][map["bump_angle_over_design"].index(a)][map["radius_over_design"].index(r)]
+assert at(0.9, 0.7) > 2 and at(1.35, 1.1) < 0.4
+assert "long fillets" in sinus["stiffness"]["note"] and one["stiffness"]["note"] is None
+assert all(r is not None for row in map["normalised"] for r in row)
+link = sinus["stiffness"]["models"][2]["design"]
+assert link["stiffness_n_mm2"] is None and "holds links" in link["reserve"]
+END
+grep -q 'long fillets' "$work/sinus.html" || fail "the page of a sinusoidal design has no reserve"
+grep -q 'bump radius over the design' "$work/page.html" || fail "the page has no map"
+
 # What is written loads again and gives the same.
 "$program" design -o "$work/first.json" || fail "design -o"
 sed -n '/^ "design": {/,/^ }/p' "$work/first.json" | sed '1s/.*/{/; $s/.*/}/' >"$work/again.json"

@@ -18,6 +18,7 @@ render 11 "$strange"
 echo "not a scan" >scans/broken.png
 cat >recipe.json <<'R'
 {"schema": "foilgauge/recipe/1", "name": "Lot <b>\"7\"</b> & ä", "resamples": 2000,
+ "pads": 3, "bumps_per_pad": 3, "assembly": {"bearings": 50, "seed": 3},
  "design": {"schema": "foilgauge/design/1", "bump_count": 3,
   "tolerances": {"height_mm": {"min": 0.50, "max": 0.60}, "overall.radius_mm": {"max": 20.95}}}}
 R
@@ -30,7 +31,7 @@ expect 0 '12 scans, 12 to measure, 0 kept' lot -o one --dry-run
 [ -e one ] && fail "a dry run made a folder"
 expect 2 '11 foils of 12 scans' lot -o one
 grep -q 'broken.png: is a text' stderr || fail "the bad scan is not named"
-for name in lot.json foils.csv bumps.csv index.html results.qif results.dfq results.jsonl recipe.json manifest.csv; do
+for name in lot.json foils.csv bumps.csv bearings.csv index.html results.qif results.dfq results.jsonl recipe.json manifest.csv; do
   [ -s "one/$name" ] || fail "no $name"
 done
 expect 2 '' lot -o jobs1 --jobs 1
@@ -40,6 +41,9 @@ same one jobs3
 [ "$(wc -l <one/results.jsonl)" = 13 ] || fail "results.jsonl has not one line per scan"
 [ "$(wc -l <one/foils.csv)" = 13 ] || fail "foils.csv"
 [ "$(wc -l <one/bumps.csv)" = 34 ] || fail "bumps.csv"
+
+grep -q '"assembled"' one/lot.json || fail "no bearings were drawn"
+grep -q 'of 50 bearings drawn from' stderr || fail "the terminal does not say how many bearings assemble"
 
 # A name is text wherever it stands.
 grep -q '<script>' one/index.html one/results.qif && fail "a name became markup"

@@ -202,4 +202,31 @@ design 5 '"height_mm":{"min":0.1,"max":1}'
 lot 2 fail wide.png gap.png
 holds whole/lot.json 'f["verdict"] == "not_measured" and r["quantities"]["overall.radius_mm"]["count"] == 1'
 
+# Tolerances of a bearing: a scan has none, which is said; lots judge their bearings, of three pads here.
+design 3 '"circularity_mm":{"max":1}'
+expect 0 'not judged here: circularity_mm' "$program" measure three.png -d design.json -o b.json --html b.html
+holds b.json 'r["verdict"] == "no_tolerance" and r["not_judged"] == ["circularity_mm"]'
+valid measure.schema.json b.json
+says b.html 'Not judged here: circularity_mm'
+bearings() { # CODE VERDICT LIMITS
+  rm -rf whole
+  printf '{"schema":"foilgauge/recipe/1","pads":3,"bumps_per_pad":3,"resamples":100,"design":{"schema":"foilgauge/design/1",
+"bump_count":3,"tolerances":{%s}}}' "$3" >recipe.json
+  printf 'scan,bearing\nthree.png,A1\nagain.png,A1\nthird.png,A1\n' >bearings.csv
+  cp three.png third.png
+  expect "$1" '1 bearings: ' "$program" lot bearings.csv --recipe recipe.json -o whole
+  holds whole/lot.json "r['verdict'] == r['bearings'][0]['verdict'] == '$2' and r['bearings'][0]['judgements']"
+  valid lot.schema.json whole/lot.json
+  says whole/bearings.csv "^A1,.*,$2,9,9,"
+}
+bearings 0 pass '"circularity_mm":{"max":1},"clearance_centred_min_mm":{"min":-1}'
+bearings 1 fail '"clearance_min_mm":{"min":1}'
+least=$(python3 -c 'import json; print(json.load(open("whole/lot.json"))["bearings"][0]["min_mm"])')
+bearings 3 cannot_tell "\"clearance_min_mm\":{\"min\":$least}"
+sed -i '/third/d' bearings.csv
+expect 2 '1 not measured' "$program" lot bearings.csv --recipe recipe.json -o whole --resume
+holds whole/lot.json 'r["bearings"][0]["verdict"] == "not_measured"'
+expect 2 'make none' "$program" lot three.png --recipe recipe.json -o alone
+says alone/index.html 'and these foils make none'
+
 exit $failed

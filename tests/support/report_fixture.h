@@ -110,7 +110,8 @@ static inline void same_fields(const cJSON *object, fg_quantity_owner owner, con
   size_t count;
   const fg_quantity *fields = fg_quantities(owner, &count);
   for (size_t i = 0; i < count; i++)
-    same_field(object, &fields[i], values);
+    if (fg_quantity_applies(owner, &fields[i], FG_FORM_CLASSICAL))
+      same_field(object, &fields[i], values);
 }
 
 #define REPORT_TEST(function) cmocka_unit_test_setup_teardown(function, set_up, tear_down)

@@ -91,6 +91,7 @@ static inline fg_bump synthetic_bump(const fg_design *design, const fg_nominal *
       .u_radius_error_pct = 0.0063,
       .bump_angle_error_pct = 100 * (synthetic_deg(angle) - 63.15) / 63.15,
       .u_bump_angle_error_pct = 0.0063,
+      .u_intersection_angle_error_pct = 0.005,
       .height_model_mm = r0 - (x - radius) + 0.001,
       .u_height_model_mm = 0.0002,
       .bump_angle_model_deg = synthetic_deg(angle) + 0.05,
@@ -100,6 +101,8 @@ static inline fg_bump synthetic_bump(const fg_design *design, const fg_nominal *
       .position_deg = synthetic_deg(psi),
       .covariance = {{4e-8, 0, 0}, {0, 4e-8, -3.9e-8}, {0, -3.9e-8, 4.4e-8}}};
   bump.clearance_mm = 20.73 - bump.height_mm - 20 - 0.1;
+  bump.intersection_angle_error_pct =
+      100 * (bump.intersection_angle_deg / nominal->intersection_angle_deg - 1);
   double chord = radius * sin(angle / 2), sleeve = design->sleeve_radius_mm;
   bump.height_fitted_mm =
       radius * (1 - cos(angle / 2)) + sleeve - sqrt(sleeve * sleeve - chord * chord);

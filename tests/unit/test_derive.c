@@ -49,6 +49,7 @@ static void design_bump_has_no_error(void **state) {
   assert_near(c.bump.clearance_error, 0, 1e-11);
   assert_near(c.bump.radius_error_pct, 0, 1e-12);
   assert_near(c.bump.bump_angle_error_pct, 0, 1e-10);
+  assert_near(c.bump.intersection_angle_error_pct, 0, 1e-10);
   assert_near(c.bump.height_model_mm, c.nominal.height_mm, 1e-13);
   assert_near(c.bump.bump_angle_model_deg, 63.15, 1e-12);
   assert_near(c.bump.position_deg, 0.7 * 180 / 3.14159265358979323846, 1e-11);
@@ -66,6 +67,8 @@ static void errors_have_the_signs_of_the_thesis(void **state) {
   assert_near(c.bump.clearance_error, (c.nominal.clearance_mm - clearance) / c.nominal.clearance_mm,
               1e-12);
   assert_near(c.bump.bump_angle_error_pct, 100 * (c.bump.bump_angle_deg / 63.15 - 1), 1e-12);
+  assert_near(c.bump.intersection_angle_error_pct,
+              100 * (c.bump.intersection_angle_deg / c.nominal.intersection_angle_deg - 1), 1e-12);
   assert_near(c.bump.bump_angle_model_deg, 63.15 / 1.1, 1e-11);
 }
 
@@ -93,21 +96,35 @@ static void disturb(fg_point *centre, double *radius, double direction_rad, doub
   *radius += by_radius;
 }
 
-enum { TRIALS = 40000, QUANTITIES = 12 };
+enum { TRIALS = 40000, QUANTITIES = 13 };
 
 static void quantities_of(const fg_bump *b, double value[QUANTITIES], double u[QUANTITIES]) {
-  double values[QUANTITIES] = {b->centre_to_centre_mm,    b->bump_angle_deg,
-                               b->intersection_angle_deg, b->height_mm,
-                               b->clearance_mm,           b->clearance_error,
-                               b->radius_error_pct,       b->bump_angle_error_pct,
-                               b->height_model_mm,        b->bump_angle_model_deg,
-                               b->height_fitted_mm,       b->clearance_fitted_mm};
-  double us[QUANTITIES] = {b->u_centre_to_centre_mm,    b->u_bump_angle_deg,
-                           b->u_intersection_angle_deg, b->u_height_mm,
-                           b->u_clearance_mm,           b->u_clearance_error,
-                           b->u_radius_error_pct,       b->u_bump_angle_error_pct,
-                           b->u_height_model_mm,        b->u_bump_angle_model_deg,
-                           b->u_height_fitted_mm,       b->u_clearance_fitted_mm};
+  double values[QUANTITIES] = {b->centre_to_centre_mm,
+                               b->bump_angle_deg,
+                               b->intersection_angle_deg,
+                               b->height_mm,
+                               b->clearance_mm,
+                               b->clearance_error,
+                               b->radius_error_pct,
+                               b->bump_angle_error_pct,
+                               b->height_model_mm,
+                               b->bump_angle_model_deg,
+                               b->height_fitted_mm,
+                               b->clearance_fitted_mm,
+                               b->intersection_angle_error_pct};
+  double us[QUANTITIES] = {b->u_centre_to_centre_mm,
+                           b->u_bump_angle_deg,
+                           b->u_intersection_angle_deg,
+                           b->u_height_mm,
+                           b->u_clearance_mm,
+                           b->u_clearance_error,
+                           b->u_radius_error_pct,
+                           b->u_bump_angle_error_pct,
+                           b->u_height_model_mm,
+                           b->u_bump_angle_model_deg,
+                           b->u_height_fitted_mm,
+                           b->u_clearance_fitted_mm,
+                           b->u_intersection_angle_error_pct};
   for (int i = 0; i < QUANTITIES; i++) {
     value[i] = values[i];
     u[i] = us[i];

@@ -52,6 +52,25 @@ static void sleeve_and_datum_enter_where_they_should(void **state) {
   assert_near(wide.clearance_mm, plain.clearance_mm, 1e-14);
 }
 
+/* Every clearance is less by the top foil's thickness, and nothing else changes. */
+static void top_foil_is_taken_off_every_clearance(void **state) {
+  (void)state;
+  fg_design design;
+  fg_nominal plain, covered;
+  fg_springback model;
+  fg_design_default(&design);
+  assert_int_equal(fg_design_derive(NULL, &design, &plain), FG_OK);
+  double over = fg_design_clearance_over(&design, 0.5, 0.12);
+  design.top_foil_thickness_mm = 0.05;
+  assert_int_equal(fg_design_derive(NULL, &design, &covered), FG_OK);
+  assert_near(covered.clearance_mm, plain.clearance_mm - 0.05, 1e-14);
+  assert_near(fg_design_clearance_over(&design, 0.5, 0.12), over - 0.05, 1e-14);
+  fg_design_springback(&design, &covered, design.bump_radius_mm, &model);
+  assert_near(model.clearance_mm, covered.clearance_mm, 1e-10);
+  covered.clearance_mm = plain.clearance_mm;
+  assert_memory_equal(&covered, &plain, sizeof plain);
+}
+
 /* The model written out as in the thesis, over the curve's range. */
 static void declared_model_is_the_law_of_cosines(void **state) {
   (void)state;
@@ -190,6 +209,9 @@ static void bad_files_are_refused(void **state) {
       {"{" SCHEMA ", \"fillet_radius_mm\": 4}", "pitch_deg is 13.3333: bumps overlap"},
       {"{" SCHEMA ", \"fillet_radius_mm\": 400}", "fillet_radius_mm is 400"},
       {"{" SCHEMA ", \"rotor_diameter_mm\": 42}", "rotor_diameter_mm is 42"},
+      {"{" SCHEMA ", \"top_foil_thickness_mm\": -0.1}", "top_foil_thickness_mm is -0.1"},
+      {"{" SCHEMA ", \"top_foil_thickness_mm\": null}", "top_foil_thickness_mm: must be a number"},
+      {"{" SCHEMA ", \"top_foil_thickness_mm\": 0.1}", "the rotor must be below 39.9309"},
       {"{" SCHEMA ", \"diameters_mm\": [1]}", "diameters_mm belongs to"},
       {"{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": 1}", "diameters_mm: must be an array"},
       {"{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": [1, \"2\"]}", "diameters_mm[1]: must"},
@@ -254,6 +276,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(default_design_has_known_values),
       cmocka_unit_test(sleeve_and_datum_enter_where_they_should),
+      cmocka_unit_test(top_foil_is_taken_off_every_clearance),
       cmocka_unit_test(declared_model_is_the_law_of_cosines),
       cmocka_unit_test(clearance_grows_as_the_model_says),
       cmocka_unit_test(file_is_read),

@@ -96,6 +96,8 @@ static void recipe_reads_back_what_it_writes(void **state) {
   settings.bandwidth = FG_BANDWIDTH_SHEATHER_JONES;
   settings.seed = 9007199254740991;
   settings.material.friction = 0.25;
+  settings.assembly.bearings = 0;
+  settings.assembly.seed = 77;
   settings.design.tolerance_count = 1;
   settings.design.tolerances[0] = (fg_tolerance){"height_mm", 0.5, INFINITY};
   char *text, *second;
@@ -104,6 +106,8 @@ static void recipe_reads_back_what_it_writes(void **state) {
   assert_int_equal(fg_lot_settings_parse(&ctx, "r.json", text, &again), FG_OK);
   assert_int_equal(again.jobs, 3);
   assert_int_equal(again.run_rules, 0x81);
+  assert_int_equal(again.assembly.bearings, 0);
+  assert_true(again.assembly.seed == 77);
   assert_true(again.seed == settings.seed);
   assert_int_equal(fg_lot_settings_format(&ctx, &again, true, &second), FG_OK);
   assert_string_equal(text, second);
@@ -129,6 +133,14 @@ static void bad_recipes_say_why(void **state) {
       {"\"pads\": 3, \"pads\": 3", "twice"},
       {"\"friction\": -0.1", "friction is -0.1"},
       {"\"design\": {\"schema\": \"foilgauge/design/1\", \"form\": \"discs\"}", "made of foils"},
+      {"\"assembly\": 5", "must be an object"},
+      {"\"assembly\": {\"bearings\": -1}", "assembly.bearings is -1"},
+      {"\"assembly\": {\"bearings\": 1e9}", "from 0 to 100000"},
+      {"\"assembly\": {\"bearings\": 2.5}", "whole number"},
+      {"\"assembly\": {\"seed\": -1}", "assembly.seed is -1"},
+      {"\"assembly\": {\"seed\": null}", "assembly.seed must be a number"},
+      {"\"assembly\": {\"baerings\": 1}", "unknown member 'assembly.baerings'"},
+      {"\"assembly\": {\"seed\": 1, \"seed\": 1}", "assembly.seed is there twice"},
   };
   for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
     fg_context ctx = {""};

@@ -85,9 +85,9 @@ static void arches_bend_about_the_midline(void **state) {
     fg_lot_analysis analysis;
     fg_design_default(&design);
     design.datum = datums[i];
-    fg_arch arch = fg_lot_arch(&design, 0.1, 3.32 + shift[i], 63.15);
+    fg_arch arch = fg_design_arch(&design, 0.1, 3.32 + shift[i], 63.15);
     assert_near(arch.radius_mm, 3.32, 1e-12);
-    assert_near(fg_lot_arch(&design, 0.12, 3.32 + 1.2 * shift[i], 63.15).radius_mm, 3.32, 1e-12);
+    assert_near(fg_design_arch(&design, 0.12, 3.32 + 1.2 * shift[i], 63.15).radius_mm, 3.32, 1e-12);
     fg_lot lot = sound_lot(&design); /* the same numbers, of another line */
     assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
     map[i] = map_of(&analysis);

@@ -96,6 +96,7 @@ static void grows(fg_quantity_owner owner, const void *narrow, const void *wide)
   for (size_t i = 0; i < count; i++) {
     double before[FG_QUANTITY_NUMBERS_MAX], after[FG_QUANTITY_NUMBERS_MAX];
     if (!fg_quantity_has_u(&rows[i])) continue;
+    if (!fg_quantity_applies(owner, &rows[i], FG_FORM_CLASSICAL)) continue;
     size_t width = fg_quantity_numbers(&rows[i], narrow, before);
     fg_quantity_numbers(&rows[i], wide, after);
     for (size_t k = fg_quantity_values(&rows[i]); k < width; k++) {

@@ -81,7 +81,7 @@ static void every_flag_has_its_words(void **state) {
   for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++)
     bump |= words->flag;
   assert_int_equal(foil, FG_FOIL_OVERALL_RADIUS_LEFT | FG_FOIL_RADIUS_LEFT | FG_FOIL_HEIGHT_LEFT |
-                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_UNEQUAL_RESOLUTION - 1));
+                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_NO_END - 1));
   assert_int_equal(bump, FG_BUMP_BEYOND_MODEL_REGION | (2 * FG_BUMP_TOUCHES_OTHER - 1));
 }
 

@@ -80,9 +80,10 @@ static fg_status read_word(const reader *r, const char *name, const cJSON *item,
 }
 
 static fg_status read_form(const reader *r, const char *name, const cJSON *item, void *out) {
-  static const char *const words[] = {"classical", "sinusoidal", "discs", NULL};
+  static const char *const words[] = {"classical", "sinusoidal", "discs", "arc", NULL};
   int place = 0;
-  FG_TRY(read_word(r, name, item, words, "\"classical\", \"sinusoidal\" or \"discs\"", &place));
+  FG_TRY(read_word(r, name, item, words, "\"classical\", \"sinusoidal\", \"discs\" or \"arc\"",
+                   &place));
   *(fg_form *)out = (fg_form)place;
   return FG_OK;
 }
@@ -177,7 +178,9 @@ static const member_row member_rows[] = {
     MEMBER(pitch_deg, read_number),
     MEMBER(fillet_radius_mm, read_number),
     MEMBER(thickness_mm, read_number),
+    MEMBER(top_foil_thickness_mm, read_number),
     MEMBER(rotor_diameter_mm, read_number),
+    MEMBER(subtended_angle_deg, read_number),
     {"diameters_mm", read_diameters, 0},
     {"tolerances", read_tolerances, 0},
 };
@@ -216,6 +219,24 @@ static fg_status check_complete(const reader *r, const cJSON *root, const fg_des
   return fail(r, missing, "is missing; a design that states %s must state it too", given);
 }
 
+static bool has_member(const cJSON *root, const char *name) {
+  return cJSON_GetObjectItemCaseSensitive(root, name) != NULL;
+}
+
+/* Nothing of an arc has a default, and what belongs to bumps would be ignored. */
+static fg_status check_arc_members(const reader *r, const cJSON *root) {
+  static const char *const needed[] = {"overall_radius_mm", "subtended_angle_deg", "thickness_mm"};
+  static const char *const others[] = {
+      "bump_count", "bump_radius_mm",   "bump_angle_deg",    "sleeve_radius_mm",
+      "pitch_deg",  "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm"};
+  for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
+    if (!has_member(root, needed[i])) return fail(r, needed[i], "is missing; an arc must state it");
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (has_member(root, others[i]))
+      return fail(r, others[i], "belongs to a foil with bumps; form is \"arc\"");
+  return FG_OK;
+}
+
 static fg_status read_root(const reader *r, const cJSON *root, fg_design *design) {
   if (!cJSON_IsObject(root)) return fail(r, "the design", "must be a JSON object");
   for (const cJSON *item = root->child; item; item = item->next) {
@@ -224,6 +245,11 @@ static fg_status read_root(const reader *r, const cJSON *root, fg_design *design
   }
   if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
     return fail(r, "schema", "is missing; a design has \"schema\": \"" DESIGN_SCHEMA "\"");
+  if (design->form == FG_FORM_ARC) {
+    FG_TRY(check_arc_members(r, root));
+    design->bump_count = 0;
+    return FG_OK;
+  }
   FG_TRY(check_complete(r, root, design));
   if (cJSON_GetObjectItemCaseSensitive(root, "overall_radius_mm") &&
       !cJSON_GetObjectItemCaseSensitive(root, "sleeve_radius_mm"))

@@ -98,26 +98,48 @@ static fg_status put_disc(fg_context *ctx, FILE *out, const scan_lines *scan, co
   return FG_OK;
 }
 
+/* A plain strip: a line per foil. */
+static fg_status put_arc(fg_context *ctx, FILE *out, const scan_lines *scan, const fg_foil *foil) {
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, scan->design, foil, &decision));
+  fg_csv_put_text(out, scan->path, NULL);
+  fprintf(out, ",%d", foil->number);
+  put_flags(out, fg_foil_flag_words(), foil->flags);
+  put_values(out, FG_QUANTITY_OF_FOIL, foil);
+  put_end(out, scan, decision.outcome.verdict, foil);
+  fg_decision_free(&decision);
+  return FG_OK;
+}
+
+static fg_quantity_owner owner_of_lines(fg_form form) {
+  if (form == FG_FORM_DISCS) return FG_QUANTITY_OF_DISC;
+  return form == FG_FORM_ARC ? FG_QUANTITY_OF_FOIL : FG_QUANTITY_OF_BUMP;
+}
+
 static void put_heading(FILE *out, fg_quantity_owner owner) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
-  fputs(owner == FG_QUANTITY_OF_BUMP ? "scan,foil,bump,flags" : "scan,disc,flags", out);
+  fputs(owner == FG_QUANTITY_OF_BUMP   ? "scan,foil,bump,flags"
+        : owner == FG_QUANTITY_OF_FOIL ? "scan,foil,flags"
+                                       : "scan,disc,flags",
+        out);
   for (size_t i = 0; i < count; i++)
     put_names(out, &rows[i]);
   fputs(",verdict,model_sha256", out);
-  if (owner == FG_QUANTITY_OF_BUMP) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
+  if (owner != FG_QUANTITY_OF_DISC) fputs(",foil_x_mm,foil_y_mm,foil_width_mm,foil_height_mm", out);
   fputc('\n', out);
 }
 
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
-  bool discs = report->design->form == FG_FORM_DISCS;
-  put_heading(out, discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP);
+  bool arc = report->design->form == FG_FORM_ARC;
+  put_heading(out, owner_of_lines(report->design->form));
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     const scan_lines scan = {report->scans[i].path, report->design, measurement};
     for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
       const fg_foil *foil = &measurement->foils[k];
-      if (!foil->bump_count) put_bare_foil(out, &scan, foil);
+      if (arc) FG_TRY(put_arc(ctx, out, &scan, foil));
+      if (!arc && !foil->bump_count) put_bare_foil(out, &scan, foil);
       for (size_t b = 0; b < foil->bump_count; b++)
         put_bump(out, &scan, foil, &foil->bumps[b]);
     }

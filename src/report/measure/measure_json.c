@@ -35,6 +35,11 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_string(json, "form", fg_form_word(design->form));
   if (design->form == FG_FORM_DISCS) {
     fg_json_numbers(json, "diameters_mm", design->diameters_mm, design->diameter_count);
+  } else if (design->form == FG_FORM_ARC) {
+    fg_json_string(json, "datum", fg_datum_word(design->datum));
+    fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+    fg_json_number(json, "subtended_angle_deg", design->subtended_angle_deg);
+    fg_json_number(json, "thickness_mm", design->thickness_mm);
   } else {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
     fg_json_integer(json, "bump_count", (int64_t)design->bump_count);
@@ -45,6 +50,8 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
     fg_json_number(json, "pitch_deg", design->pitch_deg);
     fg_json_number(json, "fillet_radius_mm", design->fillet_radius_mm);
     fg_json_number(json, "thickness_mm", design->thickness_mm);
+    if (design->top_foil_thickness_mm > 0)
+      fg_json_number(json, "top_foil_thickness_mm", design->top_foil_thickness_mm);
     fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
   }
   write_tolerances(json, design);
@@ -157,7 +164,7 @@ static void write_counts(fg_json *json, const fg_report_outcome *outcome) {
   fg_json_line_end(json);
 }
 
-static void write_judgements(fg_json *json, const fg_decision *decision, const char *owner) {
+void fg_json_judgements(fg_json *json, const fg_decision *decision, const char *owner) {
   fg_json_array(json, "judgements");
   for (size_t i = 0; i < decision->count; i++)
     write_judgement(json, &decision->judgements[i], owner);
@@ -175,8 +182,8 @@ static void write_strip(fg_json *json, const fg_strip *strip) {
 }
 
 static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
-  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  fg_json_string(json, "orientation", measured ? fg_orientation_word(foil->orientation) : NULL);
+  bool arc = design->form == FG_FORM_ARC, turns = !(foil->flags & FG_FOIL_NOT_MEASURED) && !arc;
+  fg_json_string(json, "orientation", turns ? fg_orientation_word(foil->orientation) : NULL);
   fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "", foil, true);
   const fg_thickness strip = fg_foil_thickness(design, foil);
   fg_json_number(json, "thickness_design_mm", design->thickness_mm);
@@ -186,6 +193,11 @@ static void write_foil_values(fg_json *json, const fg_design *design, const fg_f
   write_covariance(json, foil->overall.covariance);
   write_range(json, "radius_range_mm", foil->overall.radius_range_mm);
   fg_json_object_end(json);
+  if (arc) {
+    fg_json_object(json, "arc");
+    fg_json_quantities(json, FG_QUANTITY_OF_FOIL, "arc.", foil, true);
+    fg_json_object_end(json);
+  }
   fg_json_correction(json, &foil->correction);
   fg_json_choices(json, foil);
   write_strip(json, &foil->strip);
@@ -208,7 +220,7 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_verdict(json, decision.outcome.verdict);
   fg_json_string(json, "defect", rejected ? defect : NULL);
-  if (fg_foil_is_measured(foil)) write_judgements(json, &decision, "bump");
+  if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, "bump");
   write_foil_values(json, design, foil);
   fg_json_object_end(json);
   fg_decision_free(&decision);
@@ -225,7 +237,7 @@ fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_bool(json, "hole", disc->hole);
   fg_json_bool(json, "bright", disc->bright);
   fg_json_verdict(json, decision.outcome.verdict);
-  write_judgements(json, &decision, "disc");
+  fg_json_judgements(json, &decision, "disc");
   fg_json_quantities(json, FG_QUANTITY_OF_DISC, "", disc, true);
   write_covariance(json, disc->covariance);
   write_range(json, "radius_range_mm", disc->radius_range_mm);
@@ -269,6 +281,18 @@ static fg_status write_scans(fg_context *ctx, fg_json *json, const fg_report *re
   return FG_OK;
 }
 
+/* Tolerances of a bearing, where the design states any: a scan has none. */
+static void write_not_judged(fg_json *json, const fg_design *design) {
+  if (!fg_report_of_bearing(design, NULL, 0)) return;
+  fg_json_array(json, "not_judged");
+  fg_json_line(json);
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (fg_quantity_of_bearing_for(design->tolerances[i].quantity))
+      fg_json_string(json, NULL, design->tolerances[i].quantity);
+  fg_json_array_end(json);
+  fg_json_line_end(json);
+}
+
 fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *out) {
   fg_report_outcome outcome;
   fg_json json;
@@ -278,13 +302,14 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
   fg_json_head(&json, "foilgauge/measure/1");
   fg_json_verdict(&json, outcome.verdict);
   write_counts(&json, &outcome);
+  write_not_judged(&json, report->design);
   fg_json_array(&json, "inputs");
   for (size_t i = 0; i < report->scan_count; i++)
     write_input(&json, &report->scans[i]);
   fg_json_array_end(&json);
   fg_json_scan_model(&json, "model", fg_report_model(report));
   fg_json_design(&json, "design", report->design);
-  if (report->design->form != FG_FORM_DISCS) fg_json_nominal(&json, "nominal", report->nominal);
+  if (fg_form_has_bumps(report->design->form)) fg_json_nominal(&json, "nominal", report->nominal);
   if (report->scan_count == 1 && report->scans[0].measurement)
     FG_TRY(write_scan(ctx, &json, report, report->scans[0].measurement));
   else

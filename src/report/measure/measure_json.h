@@ -12,6 +12,9 @@ void fg_json_nominal(fg_json *json, const char *name, const fg_nominal *nominal)
 /* "in_tolerance": true only for a pass; null where nothing is judged. And "verdict". */
 void fg_json_verdict(fg_json *json, fg_verdict verdict);
 
+/* "judgements": of values; `owner` is what their numbers count: "bump", "disc". */
+void fg_json_judgements(fg_json *json, const fg_decision *decision, const char *owner);
+
 /* One member of `foils`, of `discs`. */
 fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
                        const fg_foil *foil);

@@ -50,6 +50,19 @@ static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, cons
   fputs("</dd></div>\n", out);
 }
 
+static void put_arc_tiles(FILE *out, const fg_foil *foil) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Springback of the radius",
+           foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg", "Angle between the ends", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct", "Angle against the design",
+           foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.length_mm", "Length", foil);
+  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
+  fputs("</dl>\n", out);
+}
+
 static void put_tiles(FILE *out, const fg_foil *foil) {
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
@@ -120,10 +133,36 @@ static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *m
                              const fg_foil *foil) {
   fputs("<figure>", out);
   FG_TRY(fg_html_picture(ctx, out, measurement, foil));
+  if (measurement->design.form == FG_FORM_ARC) {
+    fputs("<figcaption>Blue, dashed: the circle; orange: the cuts at the ends, with their "
+          "directions from the centre. Magenta: "
+          "residuals, magnified as the scale says.</figcaption></figure>\n",
+          out);
+    return FG_OK;
+  }
   fputs("<figcaption>Orange: bump circles, solid where the fit used them. Blue, dashed: overall "
         "circle. Magenta: residuals, magnified as the scale says.</figcaption></figure>\n",
         out);
   return FG_OK;
+}
+
+static void put_residuals(FILE *out, const fg_foil *foil, const char *against) {
+  fputs("<h2>Residual along the foil</h2>\n<figure>", out);
+  fg_html_residuals(out, foil);
+  fprintf(out,
+          "<figcaption>The midline against %s. Standard deviation %.3g µm, correlation length %.3g "
+          "mm.</figcaption></figure>\n",
+          against, foil->noise_um, foil->correlation_mm);
+}
+
+static void put_arc_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+  fg_html_foil_table(out, design, foil);
+  put_residuals(out, foil, "its circle");
+  fputs("<h2>What the errors mean</h2>\n<p class=\"note\">Springback of the radius is 100 (design "
+        "− actual) / design, that of the angle 100 (actual − design) / design: of a foil that has "
+        "opened both are below 0. The angle is that between the two cuts, seen from the centre."
+        "</p>\n",
+        out);
 }
 
 static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
@@ -135,12 +174,8 @@ static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *
   if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
   fputs("<h2>Springback error per bump</h2>\n<figure>", out);
   fg_html_springback(out, foil);
-  fputs("</figure>\n<h2>Residual along the foil</h2>\n<figure>", out);
-  fg_html_residuals(out, foil);
-  fprintf(out,
-          "<figcaption>The midline against its fitted circles: lands in blue, bumps in orange. "
-          "Standard deviation %.3g µm, correlation length %.3g mm.</figcaption></figure>\n",
-          foil->noise_um, foil->correlation_mm);
+  fputs("</figure>\n", out);
+  put_residuals(out, foil, "its fitted circles: lands in blue, bumps in orange");
 }
 
 /* "Out of tolerance (3 values): bump height 1, 8; bump angle 1." Judgements of one tolerance are
@@ -173,6 +208,15 @@ static void put_defect(FILE *out, const fg_design *design, const fg_foil *foil) 
     fprintf(out, "<p class=\"reasons\"><b>Rejected:</b> %s.</p>\n", words);
 }
 
+static void put_not_judged(FILE *out, const fg_design *design) {
+  char names[400];
+  if (fg_report_of_bearing(design, names, sizeof names))
+    fprintf(out,
+            "<p class=\"note\">Not judged here: %s: of a bearing; <code>foilgauge lot</code> "
+            "judges it.</p>\n",
+            names);
+}
+
 static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
                             const fg_measurement *measurement, const fg_foil *foil) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
@@ -185,12 +229,15 @@ static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
     fg_html_outcome(out, &decision.outcome);
   fputs("<p>", out);
   fg_html_text(out, base_name(measurement->scan));
-  if (!(foil->flags & FG_FOIL_NOT_MEASURED))
+  if (design->form == FG_FORM_ARC)
+    fputs(" · a plain strip", out);
+  else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
     fprintf(out, " · %zu bumps, %s", foil->bump_count, fg_orientation_word(foil->orientation));
   fputs("</p></header>\n", out);
   put_defect(out, design, foil);
   for (size_t i = 0; i < sizeof told / sizeof *told; i++)
     put_reasons(out, &decision, told[i]);
+  put_not_judged(out, design);
   fg_decision_free(&decision);
   return FG_OK;
 }
@@ -210,11 +257,12 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
     fg_html_text(out, foil->error);
     fputs("</p>\n", out);
   }
-  if (measured) put_tiles(out, foil);
+  bool arc = design->form == FG_FORM_ARC;
+  if (measured) (arc ? put_arc_tiles : put_tiles)(out, foil);
   FG_TRY(put_picture(ctx, out, measurement, foil));
   put_flags(out, foil);
-  if (measured) put_foil_details(out, design, foil);
-  if (measured) put_free_and_fitted(out);
+  if (measured) (arc ? put_arc_details : put_foil_details)(out, design, foil);
+  if (measured && !arc) put_free_and_fitted(out);
   if (measured) put_uncertainty(out, measurement->model);
   FG_TRY(put_facts(ctx, out, design, measurement));
   fputs("</section>\n", out);

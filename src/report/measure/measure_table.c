@@ -113,7 +113,7 @@ static void put_row(FILE *out, const column *columns, size_t count, int number, 
 
 static size_t make_columns(const row_set *rows, column *columns) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, shown);
+  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, FG_FORM_CLASSICAL, shown);
   for (size_t i = 0; i < count; i++) {
     columns[i].row = shown[i];
     measure_column(&columns[i], rows);
@@ -190,7 +190,8 @@ static void put_thickness_words(FILE *out, const fg_design *design, const fg_foi
 
 static void put_quantities(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(FG_QUANTITY_OF_FOIL, FG_QUANTITY_ON_TERMINAL, shown);
+  size_t count =
+      fg_quantity_shown(FG_QUANTITY_OF_FOIL, FG_QUANTITY_ON_TERMINAL, design->form, shown);
   for (size_t i = 0; i < count; i++) {
     put_quantity(out, foil, shown[i]);
     if (shown[i]->offset == offsetof(fg_foil, thickness_mm)) put_thickness_words(out, design, foil);
@@ -205,15 +206,18 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
     put_foil_flags(out, foil->flags & ~(unsigned)FG_FOIL_NOT_MEASURED);
     return;
   }
-  fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
-          fg_orientation_word(foil->orientation));
+  if (design->form == FG_FORM_ARC)
+    fprintf(out, "\nfoil %d: a plain strip\n", foil->number);
+  else
+    fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
+            fg_orientation_word(foil->orientation));
   if (foil->flags & FG_FOIL_NOT_THIS_DESIGN) fprintf(out, "  NOT MEASURED: %s\n", foil->error);
   if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
   put_quantities(out, design, foil);
   put_correction(out, foil);
   put_foil_flags(out, foil->flags);
-  put_bumps(out, design, foil);
+  if (design->form != FG_FORM_ARC) put_bumps(out, design, foil);
 }
 
 static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
@@ -237,7 +241,8 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
 }
 
 /* A line per thing that keeps the whole from passing: the worst first. */
-static void put_outcome(FILE *out, const fg_report_outcome *outcome) {
+static void put_outcome(FILE *out, const fg_design *design, const fg_report_outcome *outcome) {
+  char names[400];
   if (outcome->exceeded)
     fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit.\n", outcome->exceeded);
   if (outcome->rejected)
@@ -249,8 +254,12 @@ static void put_outcome(FILE *out, const fg_report_outcome *outcome) {
             outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit" : "");
   if (outcome->verdict == FG_VERDICT_PASS)
     fputs("Within every tolerance, uncertainty included.\n", out);
+  size_t of_bearing = fg_report_of_bearing(design, names, sizeof names);
   if (outcome->verdict == FG_VERDICT_NONE)
-    fputs("The design states no tolerances: nothing is judged.\n", out);
+    fprintf(out, "The design states no tolerances%s: nothing is judged.\n",
+            of_bearing ? " of a foil" : "");
+  if (of_bearing)
+    fprintf(out, "Not judged here: %s: of a bearing; `foilgauge lot` judges it.\n", names);
 }
 
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out) {
@@ -261,10 +270,10 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
     FG_TRY(put_scan(ctx, out, report->design, &report->scans[i]));
   }
   fputc('\n', out);
-  put_outcome(out, &outcome);
+  put_outcome(out, report->design, &outcome);
   char scale[FG_SCALE_WORDS];
   fg_scale_words(fg_report_model(report), scale, sizeof scale);
-  if (report->design->form != FG_FORM_DISCS)
+  if (fg_form_has_bumps(report->design->form))
     fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%). %s\n", scale);
   return fg_stream_finish(ctx, out, "the table");

@@ -67,6 +67,20 @@ static fg_status put_row(fg_context *ctx, legend *at, const fg_quantity *const *
   return FG_OK;
 }
 
+static fg_status put_arc(fg_context *ctx, legend *at, const fg_foil *foil) {
+  char text[LINE_MAX_LENGTH], angle[64], error[64], length[64];
+  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg"), foil, angle,
+             sizeof angle);
+  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct"), foil, error,
+             sizeof error);
+  value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "arc.length_mm"), foil, length, sizeof length);
+  snprintf(text, sizeof text, "angle between the ends %s °, against the design %s %%, length %s mm",
+           angle, error, length);
+  FG_TRY(put_text(ctx, at, 4, 0xf0f3f6, text));
+  at->line++;
+  return FG_OK;
+}
+
 static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
                           bool all) {
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
@@ -83,9 +97,11 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, 
              radius, error, thickness);
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
   at->line++;
+  if (design->form == FG_FORM_ARC) return put_arc(ctx, at, foil);
   if (!all) return FG_OK;
   const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(FG_QUANTITY_OF_BUMP, FG_QUANTITY_ON_PICTURE, columns);
+  size_t count =
+      fg_quantity_shown(FG_QUANTITY_OF_BUMP, FG_QUANTITY_ON_PICTURE, design->form, columns);
   FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < foil->bump_count; i++)
     FG_TRY(put_row(ctx, at, columns, count, foil->bumps[i].number,
@@ -95,7 +111,8 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, 
 
 static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *measurement) {
   const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE, columns);
+  size_t count =
+      fg_quantity_shown(FG_QUANTITY_OF_DISC, FG_QUANTITY_ON_PICTURE, FG_FORM_DISCS, columns);
   FG_TRY(put_heading(ctx, at, columns, count));
   for (size_t i = 0; i < measurement->disc_count; i++)
     FG_TRY(put_row(ctx, at, columns, count, measurement->discs[i].number,

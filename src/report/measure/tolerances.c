@@ -243,6 +243,39 @@ fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc
   return FG_OK;
 }
 
+/* A place without a clearance may be the lowest of all: what is known says how low the least is at
+ * best, and of a circularity nothing. */
+static fg_judgement judge_part(const fg_tolerance *tolerance, fg_judgement judgement) {
+  bool least = judgement.row == fg_quantity_of_bearing_for("clearance_min_mm") ||
+               judgement.row == fg_quantity_of_bearing_for("clearance_centred_min_mm");
+  double expanded = isnan(judgement.u) ? 0 : FG_COVERAGE_FACTOR * judgement.u;
+  if (least && judgement.value + expanded < tolerance->lower) return judgement;
+  judgement.verdict = FG_VERDICT_NOT_MEASURED;
+  judgement.exceeded = false;
+  return judgement;
+}
+
+fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
+                            const fg_bearing_clearance *clearance, bool whole,
+                            fg_decision *decision) {
+  static const fg_bearing_clearance unknown = {
+      .mean_mm = NAN,
+      .least_mm = NAN,
+      .most_mm = NAN,
+      .circularity_mm = NAN,
+      .centred_least_mm = NAN,
+  };
+  FG_TRY(allocate(ctx, design->tolerance_count, 1, decision));
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_tolerance *tolerance = &design->tolerances[i];
+    const fg_quantity *row = fg_quantity_of_bearing_for(tolerance->quantity);
+    if (!row) continue;
+    fg_judgement judgement = judge(tolerance, row, clearance ? clearance : &unknown, 0);
+    take(decision, clearance && whole ? judgement : judge_part(tolerance, judgement));
+  }
+  return FG_OK;
+}
+
 void fg_decision_free(fg_decision *decision) {
   free(decision->judgements);
   *decision = (fg_decision){.outcome = {.verdict = FG_VERDICT_NONE}};
@@ -312,20 +345,43 @@ fg_status fg_report_judge(fg_context *ctx, const fg_report *report, fg_report_ou
   return FG_OK;
 }
 
-static bool has_quantity(fg_quantity_owner owner, const char *name) {
+static bool has_quantity(fg_quantity_owner owner, fg_form form, const char *name) {
   const fg_quantity *row = fg_quantity_find(owner, name);
-  return row && row->kind != FG_QUANTITY_PAIR;
+  return row && row->kind != FG_QUANTITY_PAIR && fg_quantity_applies(owner, row, form);
+}
+
+static void list_bearing(char *text, size_t size) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_BEARING, &count);
+  for (size_t i = 0; i < count; i++)
+    if (rows[i].tolerance) add_words(text, size, ", %s", rows[i].tolerance);
+}
+
+size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size) {
+  size_t count = 0;
+  if (names) names[0] = 0;
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const char *quantity = design->tolerances[i].quantity;
+    if (!fg_quantity_of_bearing_for(quantity)) continue;
+    if (names) add_words(names, size, "%s%s", count ? ", " : "", quantity);
+    count++;
+  }
+  return count;
 }
 
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
   bool discs = design->form == FG_FORM_DISCS;
+  fg_quantity_owner part = discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP;
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const char *quantity = design->tolerances[i].quantity;
-    if (has_quantity(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, quantity)) continue;
-    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, quantity)) continue;
-    char names[800] = "";
-    fg_quantity_list(discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP, true, names, sizeof names);
-    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, true, names, sizeof names);
+    if (has_quantity(part, design->form, quantity)) continue;
+    if (!discs && has_quantity(FG_QUANTITY_OF_FOIL, design->form, quantity)) continue;
+    bool bumps = fg_form_has_bumps(design->form);
+    if (bumps && fg_quantity_of_bearing_for(quantity)) continue;
+    char names[1000] = "";
+    fg_quantity_list(part, design->form, true, names, sizeof names);
+    if (!discs) fg_quantity_list(FG_QUANTITY_OF_FOIL, design->form, true, names, sizeof names);
+    if (bumps) list_bearing(names, sizeof names);
     return fg_fail(ctx, FG_ERR_DATA, "tolerances.%s: no such quantity is reported; there are: %s",
                    quantity, names);
   }

@@ -1,0 +1,218 @@
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/die_list.h"
+#include "cli/output_set.h"
+#include "foilgauge/die.h"
+#include "report/die/die_report.h"
+
+enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT };
+
+typedef struct die_run {
+  const char *design_path, *list_path;
+  fg_die_source said; /* what the options before a profile say of it */
+  fg_die_sources sources;
+  fg_die_options options;
+  fg_output_set outputs;
+  fg_status status; /* of what failed while the command line was read */
+  fg_context *ctx;
+  fg_die die;
+} die_run;
+
+enum {
+  OPTION_HALF = 256,
+  OPTION_UNIT,
+  OPTION_COLUMNS,
+  OPTION_TIP,
+  OPTION_FIRST_BUMP,
+  OPTION_REVERSED,
+  OPTION_FORWARD,
+  OPTION_LIST,
+  OPTION_U_TIP,
+  OPTION_U_SCALE,
+  OPTION_MAX_SLOPE,
+  OPTION_HTML,
+  OPTION_TABLE,
+};
+
+static const struct argp_option options[] = {
+    {NULL, 0, NULL, 0, "Of the profiles that follow:", 1},
+    {"half", OPTION_HALF, "HALF", 0, "concave (its bumps are grooves) or convex (ridges)", 1},
+    {"unit", OPTION_UNIT, "UNIT", 0, "mm, um or nm; of x and z each: mm,um", 1},
+    {"columns", OPTION_COLUMNS, "X,Z", 0, "Which columns are x and z, from 1", 1},
+    {"tip-um", OPTION_TIP, "R", 0,
+     "Radius of the tip; 0 where the instrument has taken it off already", 1},
+    {"first-bump", OPTION_FIRST_BUMP, "N", 0,
+     "Lowest number of the bumps whose crown is seen (default: 1)", 1},
+    {"reversed", OPTION_REVERSED, NULL, 0, "The bumps' numbers run against x", 1},
+    {"forward", OPTION_FORWARD, NULL, 0, "They run with x (the default)", 1},
+    {NULL, 0, NULL, 0, "Of all:", 2},
+    {"design", 'd', "FILE", 0, "What the foil should be (default: the Gen II foil)", 2},
+    {"list", OPTION_LIST, "FILE.csv", 0,
+     "Profiles from a table: columns profile (relative to it), and half, unit, columns, tip_um, "
+     "first_bump, reversed (yes, no) as far as they are needed",
+     2},
+    {"u-tip-um", OPTION_U_TIP, "U", 0, "Standard uncertainty of the tip's radius (default: 0)", 2},
+    {"u-scale-ppm", OPTION_U_SCALE, "U", 0,
+     "Standard uncertainty of the instrument's scale (default: 0)", 2},
+    {"max-slope", OPTION_MAX_SLOPE, "DEG", 0,
+     "Steeper flanks take no part, where the tip's cone or the arm touches (default: 77)", 2},
+    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 3},
+    {"table", OPTION_TABLE, "FILE.txt", 0, "The table, as on a terminal", 3},
+    {0},
+};
+
+static const char doc[] =
+    "Measure a die by stylus traces of its halves, against the design of the foil that it presses."
+    "\v"
+    "PROFILE is the text that a profilometer exports: two columns x and z (z upwards, out of the "
+    "die), after any header; tabs, semicolons, blanks or commas between them; decimal point or "
+    "comma. Any number of repeats of each half, each trace across three bumps or more.\n\n"
+    "What the header says counts: unit (`X [mm]; Z [um]`, `Unit: mm`), tip (`Tip radius: 2 um`), "
+    "half (`concave`, `convex`); the half may stand in the file's name. What is not said must be "
+    "said by an option, and what contradicts is refused: a unit is never guessed.\n\n"
+    "A half is named by its bumps: the concave half has grooves on a dome and touches the strip's "
+    "shaft side, the convex half has ridges in a bowl and touches its sleeve side. The tip's "
+    "radius is taken off, and half of the design's thickness brings each half to the strip's "
+    "midline (or the design's datum). The die is the mean of its halves: a strip is pressed "
+    "between both.\n\n"
+    "Tolerances of the design that name radius_mm, radius_error_pct, bump_angle_deg, "
+    "bump_angle_error_pct, centre_to_centre_mm, height_mm, intersection_angle_deg, place_error_deg "
+    "or overall.radius_mm judge every bump of each half.\n\n"
+    "  foilgauge die concave_*.txt convex_*.txt --tip-um 2 --unit mm --html die.html\n"
+    "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
+    "Exit code: 0 done and within tolerance, or none is stated; 1 a limit is exceeded by more than "
+    "U; 2 bumps that limits ask for are in no trace; 3 cannot tell; 64 usage; 65 bad data; 74 "
+    "input or output.";
+
+static void take(die_run *run, fg_status status) {
+  if (run->status == FG_OK) run->status = status;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  die_run *run = state->input;
+  switch (key) {
+  case OPTION_HALF:
+    if (!fg_die_read_half(text, &run->said.half))
+      argp_error(state, "--half: '%s' is neither concave nor convex", text);
+    break;
+  case OPTION_UNIT:
+    if (!fg_die_read_units(text, run->said.unit))
+      argp_error(state, "--unit: '%s' is not mm, um or nm, nor two of them (mm,um)", text);
+    break;
+  case OPTION_COLUMNS:
+    if (!fg_die_read_columns(text, run->said.column))
+      argp_error(state, "--columns: '%s' is not two different numbers from 1: 1,3", text);
+    break;
+  case OPTION_TIP:
+    run->said.tip_um = fg_cli_number(state, "tip-um", text, 0, 1e5);
+    break;
+  case OPTION_FIRST_BUMP:
+    run->said.first_bump = (int)fg_cli_number(state, "first-bump", text, 1, 1000);
+    break;
+  case OPTION_REVERSED:
+  case OPTION_FORWARD:
+    run->said.reversed = key == OPTION_REVERSED;
+    break;
+  case OPTION_LIST:
+    run->list_path = text;
+    break;
+  case OPTION_U_TIP:
+    run->options.u_tip_um = fg_cli_number(state, "u-tip-um", text, 0, 1e4);
+    break;
+  case OPTION_U_SCALE:
+    run->options.u_scale_ppm = fg_cli_number(state, "u-scale-ppm", text, 0, 1e5);
+    break;
+  case OPTION_MAX_SLOPE:
+    run->options.max_slope_deg = fg_cli_number(state, "max-slope", text, 20, 89);
+    break;
+  case 'd':
+    run->design_path = text;
+    break;
+  case 'o':
+    run->outputs.path[OUT_JSON] = text;
+    break;
+  case OPTION_HTML:
+    run->outputs.path[OUT_HTML] = text;
+    break;
+  case OPTION_TABLE:
+    run->outputs.path[OUT_TABLE] = text;
+    break;
+  case ARGP_KEY_ARG:
+    run->said.path = text;
+    take(run, fg_die_sources_add(run->ctx, &run->sources, &run->said));
+    break;
+  case ARGP_KEY_END:
+    if (!run->sources.count && !run->list_path) argp_error(state, "no PROFILE was given");
+    break;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+  return 0;
+}
+
+static void choose_standard_output(fg_output_set *outputs) {
+  for (size_t i = 0; i < OUT_COUNT; i++)
+    if (outputs->path[i]) return;
+  outputs->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
+}
+
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  const die_run *run = user;
+  if (kind == OUT_JSON) return fg_die_write_json(ctx, &run->die, out);
+  return kind == OUT_HTML ? fg_die_write_html(ctx, &run->die, out)
+                          : fg_die_write_table(ctx, &run->die, out);
+}
+
+static fg_status load(fg_context *ctx, die_run *run, fg_design *design) {
+  const fg_input others[] = {{run->design_path, "the design"}, {run->list_path, "the list"}};
+  FG_TRY(run->status);
+  choose_standard_output(&run->outputs);
+  FG_TRY(fg_output_set_check(ctx, &run->outputs, others, sizeof others / sizeof *others));
+  if (run->list_path) FG_TRY(fg_die_list_load(ctx, run->list_path, &run->said, &run->sources));
+  for (size_t i = 0; i < run->sources.count; i++)
+    FG_TRY(fg_output_set_check(ctx, &run->outputs,
+                               &(fg_input){run->sources.source[i].path, "the profile"}, 1));
+  fg_design_default(design);
+  if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, design));
+  if (design->form == FG_FORM_DISCS)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no bumps; a die presses foils",
+                   run->design_path);
+  return FG_OK;
+}
+
+static fg_status measure(fg_context *ctx, die_run *run, int *code) {
+  fg_design design;
+  fg_report_outcome outcome;
+  FG_TRY(load(ctx, run, &design));
+  FG_TRY(fg_output_set_open(ctx, &run->outputs));
+  FG_TRY(fg_die_measure(ctx, &design, &run->options, run->sources.source, run->sources.count,
+                        &run->die));
+  fg_die_judge(&run->die, &outcome, NULL, 0);
+  *code = fg_outcome_exit_code(&outcome);
+  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+}
+
+int fg_cmd_die(int argc, char **argv) {
+  static const struct argp parser = {options, parse_option, "[PROFILE...]", doc, NULL, NULL, NULL};
+  fg_context ctx = {0};
+  die_run run = {.outputs.count = OUT_COUNT,
+                 .said.tip_um = NAN,
+                 .options.max_slope_deg = FG_DIE_MAX_SLOPE_DEG,
+                 .ctx = &ctx};
+  int code = 0;
+  argv[0] = (char[]){"foilgauge die"};
+  /* In order: an option counts for the profiles behind it. */
+  if (argp_parse(&parser, argc, argv, ARGP_IN_ORDER, NULL, &run) != 0)
+    run.status = fg_fail(&ctx, FG_ERR_MEMORY, "out of memory: the command line");
+  fg_status status = measure(&ctx, &run, &code);
+  fg_output_set_close(&run.outputs);
+  fg_die_sources_free(&run.sources);
+  fg_die_free(&run.die);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
+}

@@ -1,0 +1,16 @@
+/* Dates as people write them in tables. */
+#ifndef FG_CORE_DATE_H
+#define FG_CORE_DATE_H
+
+/* "2026-11-20T13:45" and its end. */
+enum { FG_DATE_TEXT = 24 };
+
+/* Days from 1970-01-01, a time of day as their fraction: 2024-05-31, 31.05.2024, behind them
+ * nothing or " 13:45", "T13:45:10", each with or without a Z. NaN: no date. What is written with
+ * strokes may begin with day or month: no date. */
+double fg_date_days(const char *text);
+
+/* As ISO 8601 has it: the day, and hours and minutes where the days are not whole; "" for NaN. */
+void fg_date_format(double days, char text[FG_DATE_TEXT]);
+
+#endif

@@ -1,0 +1,17 @@
+/* What the files of a lot's JSON share. */
+#ifndef FG_LOT_JSON_PARTS_H
+#define FG_LOT_JSON_PARTS_H
+
+#include "core/json_writer.h"
+#include "lot/analysis.h"
+
+void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread);
+void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis);
+
+/* Where bumps lie around a bearing, every bearing, the clearances of all bumps. */
+void fg_lot_json_bearings(fg_json *json, const fg_lot_analysis *analysis);
+
+/* Bearings drawn from the lot's foils; nothing where the recipe asks for none. */
+void fg_lot_json_assembly(fg_json *json, const fg_lot_analysis *analysis);
+
+#endif

@@ -1,0 +1,28 @@
+/* The report of a die: JSON, a table for the terminal, a page. */
+#ifndef FG_REPORT_DIE_DIE_REPORT_H
+#define FG_REPORT_DIE_DIE_REPORT_H
+
+#include "foilgauge/die.h"
+#include "foilgauge/report.h"
+
+/* What the design's tolerances say to a die: those that name a quantity of a die's bumps, of every
+ * bump of each half, and overall.radius_mm. The others are a foil's. */
+fg_verdict fg_die_judge_bump(const fg_die *die, const fg_die_bump *bump);
+fg_verdict fg_die_judge_value(const fg_die *die, const char *name, const fg_die_value *value);
+/* `words`: what it comes to, in a sentence; may be NULL. */
+void fg_die_judge(const fg_die *die, fg_report_outcome *outcome, char *words, size_t size);
+
+/* How many of the design's tolerances are about a die. */
+size_t fg_die_tolerances(const fg_die *die);
+
+/* Bumps of the design that no trace of a half shows whole, as words "1, 9"; false: none. */
+bool fg_die_unseen(const fg_die *die, fg_die_half half, char *words, size_t size);
+
+/* "foilgauge/die/1", reports/schema/die.schema.json. */
+fg_status fg_die_write_json(fg_context *ctx, const fg_die *die, FILE *out);
+fg_status fg_die_write_table(fg_context *ctx, const fg_die *die, FILE *out);
+
+/* One self-contained page: errors by half, traces with circles, residuals, tables. */
+fg_status fg_die_write_html(fg_context *ctx, const fg_die *die, FILE *out);
+
+#endif

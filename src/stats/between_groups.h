@@ -1,0 +1,35 @@
+/* Groups against each other: how far their means lie apart beyond what happens within them.
+ *
+ * Means y_i with the variance v_i that comes from within, of groups that scatter about a common
+ * centre with the standard deviation tau. tau² solves sum w_i (y_i - centre)² = k - 1 with
+ * w_i = 1 / (tau² + v_i) (Paule and Mandel 1982), its interval the same sum at the quantiles of
+ * chi² (Viechtbauer 2007). */
+#ifndef FG_STATS_BETWEEN_GROUPS_H
+#define FG_STATS_BETWEEN_GROUPS_H
+
+#include <stddef.h>
+
+#include "foilgauge/status.h"
+
+typedef struct fg_group_mean {
+  double mean, variance; /* of the mean, by what happens within the group */
+} fg_group_mean;
+
+typedef struct fg_between {
+  double centre, u_centre;
+  double sd, sd_low, sd_high; /* tau */
+} fg_between;
+
+/* NaN for fewer than two groups. */
+fg_between fg_between_groups(const fg_group_mean *groups, size_t count, double confidence);
+
+/* Where the mean of another group is to be expected: half the width about the centre, by Student's
+ * t with count - 1 degrees of freedom. NaN for fewer than two groups. */
+double fg_between_reach(const fg_between *between, size_t count, double variance,
+                        double confidence);
+
+/* p-values of a family, adjusted so that the chance of one that is wrong stays the level (Holm
+ * 1979). NaN stays, and is no member. */
+fg_status fg_holm_adjust(fg_context *ctx, const double *p, size_t count, double *adjusted);
+
+#endif

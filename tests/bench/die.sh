@@ -1,0 +1,9 @@
+#!/bin/bash
+# The thesis's die from traces with known truth: writes reports/thesis/die.md and die.html (the sample's page).
+#   tests/bench/die.sh [SEEDS]
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+python3 tests/bench/die.py "$PWD/build/foilgauge" "$folder" reports/thesis/die.md "${1:-10}"
+build/foilgauge die samples/die/con*.txt --html reports/thesis/die.html
