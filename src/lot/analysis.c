@@ -61,8 +61,24 @@ static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_f
   return FG_OK;
 }
 
+/* Plain strips have no heights: the radius that lies farthest from the lot's mean. */
+static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
+  const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "overall.radius_mm");
+  for (size_t i = 0; radius && radius->sd > 0 && i < analysis->foil_count; i++) {
+    fg_lot_foil *foil = &analysis->foils[i];
+    if (!fg_foil_is_measured(foil->foil)) continue;
+    foil->worst_row = radius->row;
+    foil->worst_value = foil->foil->overall.radius_mm;
+    foil->severity = fabs(foil->worst_value - radius->mean) / radius->sd;
+  }
+}
+
 /* Without tolerances of foils the farthest height from the lot's mean is the worst. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
+  if (!fg_form_has_bumps(analysis->lot->settings.design.form)) {
+    rank_arcs_by_spread(analysis);
+    return;
+  }
   const fg_lot_quantity *height = fg_lot_find_quantity(analysis, "height_mm");
   if (!height || !(height->sd > 0)) return;
   for (size_t i = 0; i < analysis->foil_count; i++) {

@@ -335,7 +335,7 @@ static bool fit_end(end_view *view, double rough, const double dpi[2], fg_strip_
     window(view, view->fit[PLACE], fmax(view->fit[BLUR], blur), &from, &to);
     if (!fit_window(view, from, to, &all) && round == 0) return false;
   }
-  if ((double)all.used < USED_SHARE * (double)all.seen) return false;
+  if ((double)all.used < USED_SHARE * (double)all.seen || all.used < 3 * UNKNOWNS) return false;
   fill_end(view, &all, from, to, dpi, end);
   return end->found;
 }

@@ -31,6 +31,7 @@ grep -q 'Angle between the ends' a.html || fail "the page does not say the angle
 expect 1 "arc.subtended_angle_deg|OUT" "$program" measure lot/c.png --design design.json
 expect 2 '"lip"' "$program" measure lip.png --design design.json
 expect 0 "40.000000 deg" "$program" design design.json
+expect 0 "design arc, form arc" "$program" design design.json
 expect 65 "there is no curve" "$program" design --curve design.json
 
 # What is written loads again.

@@ -95,6 +95,9 @@ def check(path):
     lots = {lot["folder"]: lot["quantities"] for lot in index["lots"]}
     pairs, worst = index["comparisons"]["pairs"], 0.0
     close = lambda a, b, share: abs(a - b) <= share * max(abs(a), abs(b), 1e-12)
+    for folder, quantities in lots.items():  # every foil has as many bumps: the mean of their means is the mean of all
+        for name, q in quantities.items():
+            assert close(q["foil_mean"], q["mean"], 1e-6), (folder, name, q)
     for rank, pair in enumerate(pairs):
         a, b = (lots[pair[side]][pair["quantity"]] for side in ("larger", "smaller"))
         va, vb = a["foil_sd"] ** 2 / a["foils"], b["foil_sd"] ** 2 / b["foils"]

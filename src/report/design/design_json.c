@@ -248,6 +248,7 @@ static fg_status read_root(const reader *r, const cJSON *root, fg_design *design
   if (design->form == FG_FORM_ARC) {
     FG_TRY(check_arc_members(r, root));
     design->bump_count = 0;
+    if (!has_member(root, "name")) strcpy(design->name, "arc");
     return FG_OK;
   }
   FG_TRY(check_complete(r, root, design));
