@@ -223,21 +223,35 @@ static void rank_changes(fg_lot_assembly *assembly) {
     }
 }
 
+/* A bump that no such change could leave has no clearance. */
+static bool is_possible(const fg_stock *stock) {
+  for (size_t i = 0; i < stock->foils * stock->places; i++)
+    if (!isfinite(stock->clearance_mm[i])) return false;
+  return true;
+}
+
+static fg_status try_change(fg_context *ctx, fg_lot_analysis *analysis, size_t i) {
+  fg_lot_assembly *assembly = &analysis->assembly;
+  fg_stock changed;
+  fg_assembly_result result;
+  FG_TRY(fg_stock_copy(ctx, &assembly->stock, &changed));
+  fg_status status = changes[i].make(analysis, &changed);
+  if (status == FG_OK && is_possible(&changed)) {
+    status = fg_assembly_draw(ctx, &changed, &assembly->plan, false, &result);
+    if (status == FG_OK) {
+      add_change(assembly, changes[i].name, changes[i].words, result.assembled.count);
+      fg_assembly_result_free(&result);
+    }
+  }
+  fg_stock_free(&changed);
+  return status;
+}
+
 static fg_status try_changes(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_assembly *assembly = &analysis->assembly;
   size_t most = assembly->stock.foils / assembly->plan.layout.pads, sorted;
-  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-    fg_stock changed;
-    fg_assembly_result result;
-    FG_TRY(fg_stock_copy(ctx, &assembly->stock, &changed));
-    fg_status status = changes[i].make(analysis, &changed);
-    if (status == FG_OK) status = fg_assembly_draw(ctx, &changed, &assembly->plan, false, &result);
-    if (status == FG_OK)
-      add_change(assembly, changes[i].name, changes[i].words, result.assembled.count);
-    if (status == FG_OK) fg_assembly_result_free(&result);
-    fg_stock_free(&changed);
-    FG_TRY(status);
-  }
+  for (size_t i = 0; i < sizeof changes / sizeof *changes; i++)
+    FG_TRY(try_change(ctx, analysis, i));
   assembly->classes = most < CLASSES_MAX ? most : CLASSES_MAX;
   if (assembly->classes > 1) {
     FG_TRY(fg_assembly_draw_sorted(ctx, &assembly->stock, &assembly->plan, assembly->classes,

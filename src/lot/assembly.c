@@ -8,6 +8,7 @@
 #include "core/memory.h"
 #include "core/select.h"
 #include "foilgauge/density.h"
+#include "foilgauge/distribution.h"
 #include "foilgauge/report.h"
 #include "loop/engine_random.h"
 
@@ -235,29 +236,27 @@ static fg_status share_of_set(fg_context *ctx, bench *b, size_t set,
   return status;
 }
 
-/* Shares of SETS sets of foils scatter by the foils and by their BEARINGS_OF_A_SET bearings: the
- * second is known, and the shares are drawn together by it. */
-static void interval_of_sets(double *share, double confidence, double foils, double pads,
+/* Shares of SETS sets of foils scatter by the foils and by their BEARINGS_OF_A_SET bearings; the
+ * second is known. What the foils leave is the scatter of a share of so many independent bearings,
+ * fewer by what few foils know of their own scatter (Korn and Graubard 1998), and the exact
+ * interval is of those. Where sets do not tell, bearings without a common foil are counted. */
+static void interval_of_sets(const double *share, double confidence, double foils, double pads,
                              fg_assembly_share *target) {
   double mean = 0, variance = 0, tail = (1 - confidence) / 2;
   for (size_t i = 0; i < SETS; i++)
     mean += share[i] / SETS;
   for (size_t i = 0; i < SETS; i++)
     variance += (share[i] - mean) * (share[i] - mean) / (SETS - 1);
-  double of_draws = mean * (1 - mean) / BEARINGS_OF_A_SET;
-  target->by_bootstrap = target->share > 0 && target->share < 1 && variance > of_draws;
-  if (!target->by_bootstrap) {
-    double bearings = foils / pads;
-    fg_assembly_interval(target->share * bearings, bearings, confidence, &target->foils_low,
-                         &target->foils_high);
-    return;
+  double of_draws = mean * (1 - mean) / BEARINGS_OF_A_SET, bearings = foils / pads;
+  target->by_bootstrap = target->share > 0 && target->share < 1 && variance > of_draws && foils > 1;
+  if (target->by_bootstrap) {
+    double of_foils = (variance - of_draws) * foils / (foils - 1);
+    double wider =
+        fg_distribution_t_quantile(tail, foils - 1) / fg_distribution_normal_quantile(tail);
+    bearings = target->share * (1 - target->share) / (of_foils * wider * wider);
   }
-  double drawn = sqrt(1 - of_draws / variance);
-  fg_sort(share, SETS);
-  double low = mean + drawn * (fg_sample_quantile(share, SETS, tail) - mean);
-  double high = mean + drawn * (fg_sample_quantile(share, SETS, 1 - tail) - mean);
-  target->foils_low = fmin(target->share, fmax(0, low));
-  target->foils_high = fmax(target->share, fmin(1, high));
+  fg_assembly_interval(target->share * bearings, bearings, confidence, &target->foils_low,
+                       &target->foils_high);
 }
 
 static fg_status resample_foils(fg_context *ctx, bench *b, fg_assembly_result *result) {

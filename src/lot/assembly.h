@@ -8,9 +8,12 @@
  * A share over N draws is doubtful in two ways, which are kept apart: there are N draws only
  * (Clopper and Pearson 1934, exact), and there are few foils. For the second the foils are drawn
  * anew, with replacement, and so are bearings of them (bootstrap; Efron 1979), the scatter of those
- * few bearings taken out. Where that shows nothing, because all bearings or none are within, it is
- * Clopper and Pearson's for foils / pads bearings: a share over all draws is known no worse than
- * over bearings that share no foil (Hoeffding 1948). */
+ * few bearings taken out: so many independent bearings would scatter as much, and the interval is
+ * Clopper and Pearson's of those (Korn and Graubard 1998). Where sets show nothing, because all
+ * bearings or none are within, it is that of foils / pads bearings: a share over all draws is known
+ * no worse than over bearings that share no foil (Hoeffding 1948). In made lots of 4 to 60 foils
+ * these intervals of 95 % held the truth in 88 to 100 %, plain quantiles of the sets in 82 to 93.
+ */
 #ifndef FG_LOT_ASSEMBLY_H
 #define FG_LOT_ASSEMBLY_H
 

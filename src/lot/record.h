@@ -1,11 +1,10 @@
 /* One measured scan as a line of results.jsonl: compact, and exact to the ten digits of a report.
  *
- * {"scan", "sha256", "date", "measured_with", "error", "foils": [{"number", "flags", "error", "values",
- *  "bumps": [{"number", "flags", "values"}]}], "checksum"}
- * `scan_bytes` follows `scan` where a file name is not UTF-8: its bytes as hex digits. The checksum
- * is of the line itself (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in
- * its order; the first line of the file names them. A quantity with an uncertainty takes two
- * places, a pair four. */
+ * {"scan", "sha256", "date", "measured_with", "error", "foils": [{"number", "flags", "error",
+ * "values", "bumps": [{"number", "flags", "values"}]}], "checksum"} `scan_bytes` follows `scan`
+ * where a file name is not UTF-8: its bytes as hex digits. The checksum is of the line itself
+ * (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in its order; the first
+ * line of the file names them. A quantity with an uncertainty takes two places, a pair four. */
 #ifndef FG_LOT_RECORD_H
 #define FG_LOT_RECORD_H
 
@@ -23,6 +22,12 @@ typedef struct fg_record {
   fg_foil *foils;         /* without strips and labels; owned, with their bumps */
   size_t foil_count;
 } fg_record;
+
+/* When the scan's file was written last, by its own time; "" where that is not known. A lot whose
+ * manifest has no column `date` is dated by it. */
+void fg_record_date_scan(const char *path, char date[11]);
+/* The same of a time, in seconds since 1970. */
+void fg_record_date(int64_t seconds, char date[11]);
 
 /* A line with its newline; `measurement` NULL: `record->error` says why. The caller frees. */
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,

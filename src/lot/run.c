@@ -205,16 +205,6 @@ static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *me
   return status;
 }
 
-/* When the file was written last, by its own time; "" where that is not known. A lot whose manifest
- * has no column `date` is dated by it. */
-static void date_scan(const char *scan, char date[11]) {
-  struct stat about;
-  struct tm when;
-  date[0] = '\0';
-  if (stat(scan, &about) == 0 && gmtime_r(&about.st_mtime, &when))
-    if (strftime(date, 11, "%Y-%m-%d", &when) != 10) date[0] = '\0';
-}
-
 /* Whatever is wrong with a scan is its record; only a record that cannot be kept is an error. A
  * scan that could be read but not measured is the same tomorrow; one that could not be read, or
  * for which there was no memory, has no checksum and is tried again. */
@@ -228,7 +218,7 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   fg_record record = {.scan = (char *)(uintptr_t)scan, .error = inner.message};
   memcpy(record.measured_with, run->head.measured_with, sizeof record.measured_with);
   bool beyond = false;
-  date_scan(scan, record.date);
+  fg_record_date_scan(scan, record.date);
   fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
   memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
   if (failure == FG_OK && run->model) failure = correct(&inner, run, &measurement, &beyond);

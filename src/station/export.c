@@ -155,13 +155,14 @@ static fg_status make_head(fg_context *ctx, export *at) {
 
 /* Of the lot's foils alone. */
 static fg_status format(fg_context *ctx, const export *at, size_t item, const fg_foil *foils,
-                        size_t foil_count, char **line, size_t *length) {
+                        size_t foil_count, const char *date, char **line, size_t *length) {
   const fg_lot_scan *scan = &at->content.scans[item];
   fg_measurement own = {0};
   fg_record record = {.scan = (char *)(uintptr_t)fg_manifest_scan(&at->manifest, item)};
   void *block;
   strcpy(record.sha256, scan->sha256);
   strcpy(record.measured_with, at->head.measured_with);
+  strcpy(record.date, date);
   FG_TRY(fg_memory_allocate(ctx, scan->count, sizeof *own.foils, &block));
   own.foils = block;
   for (size_t i = 0; i < foil_count; i++)
@@ -202,8 +203,10 @@ static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **
   const fg_measure_options options = {.dpi = at->settings.dpi, .threads = 1, .only_file = true};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
-  fg_status status = fg_measure_scan(&inner, fg_manifest_scan(&at->manifest, item),
-                                     &at->settings.design, &options, &measurement);
+  char date[11];
+  const char *path = fg_manifest_scan(&at->manifest, item);
+  fg_record_date_scan(path, date);
+  fg_status status = fg_measure_scan(&inner, path, &at->settings.design, &options, &measurement);
   if (status == FG_OK) status = correct(&inner, at, &measurement);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);
   if (status != FG_OK) return format_lost(ctx, at, item, inner.message, line, length);
@@ -212,7 +215,7 @@ static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **
   else if (measurement.foil_count != scan->of)
     status = format_lost(ctx, at, item, "other foils are found in it now", line, length);
   else
-    status = format(ctx, at, item, measurement.foils, measurement.foil_count, line, length);
+    status = format(ctx, at, item, measurement.foils, measurement.foil_count, date, line, length);
   at->exported->again++;
   fg_measurement_free(&measurement);
   return status;
@@ -241,8 +244,9 @@ static fg_status write_record(fg_context *ctx, void *user, size_t item, char **l
   fg_record record;
   FG_TRY(read_record(ctx, at, at->content.scans[item].id, &record));
   bool valid = record.scan && !strcmp(record.measured_with, at->head.measured_with);
-  fg_status status = valid ? format(ctx, at, item, record.foils, record.foil_count, line, length)
-                           : measure_again(ctx, at, item, line, length);
+  fg_status status =
+      valid ? format(ctx, at, item, record.foils, record.foil_count, record.date, line, length)
+            : measure_again(ctx, at, item, line, length);
   fg_record_free(&record);
   return status;
 }

@@ -199,6 +199,7 @@ static fg_status format_record(fg_context *ctx, const fg_station_scan *kept, cha
   size_t length;
   fg_record record = {.scan = (char *)(uintptr_t)kept->file.name};
   memcpy(record.sha256, kept->measurement->sha256, sizeof record.sha256);
+  fg_record_date(kept->file.modified_ns / 1000000000, record.date);
   FG_TRY(fg_lot_sum_settings(ctx, kept->settings, record.measured_with));
   return fg_record_format(ctx, &record, kept->measurement, line, &length);
 }
