@@ -44,7 +44,7 @@ static fg_status order_dies(fg_context *ctx, fg_index *index) {
   FG_TRY(fg_memory_allocate(ctx, index->die_count, sizeof *place, (void **)&place));
   for (size_t i = 0; i < index->die_count; i++)
     index->dies[i].foils = i; /* not counted yet: the place that it had */
-  qsort(index->dies, index->die_count, sizeof *index->dies, by_name);
+  if (index->die_count) qsort(index->dies, index->die_count, sizeof *index->dies, by_name);
   for (size_t i = 0; i < index->die_count; i++) {
     place[index->dies[i].foils] = i;
     index->dies[i].foils = 0;
@@ -183,7 +183,7 @@ static void find_same(fg_index *index) {
 }
 
 fg_status fg_index_arrange(fg_context *ctx, fg_index *index) {
-  qsort(index->lots, index->count, sizeof *index->lots, by_date);
+  if (index->count) qsort(index->lots, index->count, sizeof *index->lots, by_date);
   index->read = 0;
   while (index->read < index->count && !index->lots[index->read].problem)
     index->read++;

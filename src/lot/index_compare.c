@@ -43,8 +43,9 @@ static size_t count_shared(const fg_index_lot *a, const fg_index_lot *b) {
 /* The same scans in two lots make them alike: that is no evidence. */
 static fg_status mark_shared(fg_context *ctx, fg_index *index, bool *shared) {
   for (size_t i = 0; i < index->read; i++)
-    qsort(index->lots[i].scan_sum, index->lots[i].scan_sums, sizeof *index->lots[i].scan_sum,
-          by_text);
+    if (index->lots[i].scan_sums)
+      qsort(index->lots[i].scan_sum, index->lots[i].scan_sums, sizeof *index->lots[i].scan_sum,
+            by_text);
   for (size_t i = 0; i < index->read; i++)
     for (size_t k = i + 1; k < index->read; k++) {
       size_t scans = count_shared(&index->lots[i], &index->lots[k]);
@@ -96,7 +97,7 @@ static int by_p(const void *left, const void *right) {
 static fg_status adjust(fg_context *ctx, fg_index *index) {
   double *p = NULL;
   FG_TRY(fg_memory_allocate(ctx, 2 * index->pair_count, sizeof *p, (void **)&p));
-  qsort(index->pairs, index->pair_count, sizeof *index->pairs, by_p);
+  if (index->pair_count) qsort(index->pairs, index->pair_count, sizeof *index->pairs, by_p);
   for (size_t i = 0; i < index->pair_count; i++)
     p[i] = index->pairs[i].p;
   double *adjusted = p + index->pair_count;

@@ -114,7 +114,8 @@ static fg_status keep_deciding(fg_context *ctx, sqlite3 *writer, fg_decision *de
   fg_query query;
   int64_t quantity;
   fg_status status = FG_OK;
-  qsort(decision->judgements, decision->count, sizeof *decision->judgements, by_urgency);
+  if (decision->count)
+    qsort(decision->judgements, decision->count, sizeof *decision->judgements, by_urgency);
   fg_query_begin(
       writer,
       "INSERT INTO deciding (foil, rank, quantity, bump, value, u, lower, upper, verdict)"

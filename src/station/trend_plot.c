@@ -240,7 +240,7 @@ static void draw_labels(const drawing *d) {
   count = add_label(d, labels, count, d->chart->centre, "mean", "start");
   count = add_label(d, labels, count, last->lower, "−3σ", "start control");
   count = add_label(d, labels, count, d->lower, "min", "start tolerance");
-  qsort(labels, count, sizeof *labels, by_height);
+  if (count) qsort(labels, count, sizeof *labels, by_height);
   for (size_t i = 1; i < count; i++)
     labels[i].y = fmax(labels[i].y, labels[i - 1].y + LABEL_GAP_PX);
   for (size_t i = 0; i < count; i++)

@@ -90,7 +90,7 @@ fg_status fg_holm_adjust(fg_context *ctx, const double *p, size_t count, double 
     adjusted[i] = NAN;
     if (!isnan(p[i])) list[members++] = (ranked){p[i], i};
   }
-  qsort(list, members, sizeof *list, by_p);
+  if (members) qsort(list, members, sizeof *list, by_p);
   double most = 0;
   for (size_t i = 0; i < members; i++) {
     most = fmax(most, fmin(1, (double)(members - i) * list[i].p));

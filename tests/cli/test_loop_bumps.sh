@@ -48,9 +48,13 @@ SPEC
 render_rough lone 33 '{"id":"free.bump.index","form":"crown","amplitude_um":36,"bumps":[4]}'
 "$program" loop lone.png -o lone.out || fail "loop on a rough scan of a foil with one bump that is raised"
 says lone.out "r['verdict'] == 'unattributed' and not claims and curve['coordinate'] == 'bump.index'"
+if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
 render_rough seam 34 '' '"chip_seams":[{"x_mm":20,"shift_um":14}],'
 "$program" loop seam.png -o seam.out || fail "loop on a rough scan with a seam"
 says seam.out "'scan.column_step' in claims + [m for c in r['claims'] for m in c.get('alias_class') or []]"
 
-for report in middle whole lone seam; do valid loop_scan.schema.json $report.out; done
+valid loop_scan.schema.json seam.out
+fi
+
+for report in middle whole lone; do valid loop_scan.schema.json $report.out; done
 exit $failed

@@ -65,6 +65,8 @@ expect 0 '' "$program" lot again.csv -o again --design four.json
 expect 65 "again/manifest.csv: row 1 .line 2., column 'coil_mm': '0,10[0-9]*' is a number.*; and 'thin' in the same column" "$program" loop --lot again
 expect 0 '"groups": 7' "$program" loop --lot again --response overall.radius_mm --without coil_mm -o -
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
 # Its own tables through --table: results of the same measurement are never causes.
 expect 0 '' "$program" loop --table lot/bumps.csv --response radius_mm --model 1 --group serial -o own.json
 python3 - <<'P' || fail "the lot's own table: $(head -c 2000 own.json)"

@@ -57,6 +57,9 @@ loop clean
 [ "$(value clean.out "[c['verdict'] for c in r['rejected'] if c['id'] == '$id']")" = "['absent']" ] || fail "not absent"
 near "smallest change" "$(value clean.out "[c for c in r['rejected'] if c['id'] == '$id'][0]['smallest_amplitude']")" 1 0.6
 [ "$(value clean.out "'half_width' in r['before']")" = False ] || fail "widths without a claim"
+
+[ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
+
 "$renderer" render "$root/samples/render/rough.json" -o rough.png || fail "render rough"
 loop rough
 [[ "$(claims rough)" != *$id* ]] || fail "rough: $(claims rough)"

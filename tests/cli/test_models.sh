@@ -175,6 +175,8 @@ empty.json|65|`fields` is missing
 missing.json|74|missing.json
 TABLE
 
+[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+
 # A lot corrected by it: the same numbers as one by one, and the report says by what.
 expect 0 '' "$program" lot scans -o plain
 expect 0 '' "$program" lot scans --model left.json --scanner 'left desk' -o one

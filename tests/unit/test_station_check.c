@@ -113,7 +113,7 @@ static void check_coverage(const char *picture, const scanner *is, double least,
   assert_true(worst < 4);
   assert_true(all > least && all < most);
   for (int k = 0; k < 3; k++)
-    assert_true(sqrt(square_ppm[k]) < most_ppm);
+    assert_true(sqrt(square_ppm[k]) < most_ppm * 2 / sqrt(seeds)); /* of four */
 #else
   (void)all, (void)least, (void)most, (void)most_ppm;
 #endif
