@@ -340,8 +340,8 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
             "line %zu: what they said is measured again\n",
             outcome.torn, outcome.first_torn);
   if (outcome.earlier)
-    fprintf(stderr, "foilgauge: note: results.jsonl is of an earlier version, whose records carry "
-                    "no checksum: all scans are measured again\n");
+    fprintf(stderr, "foilgauge: note: results.jsonl is of an earlier version, whose records hold "
+                    "other values or no checksum: all scans are measured again\n");
   if (outcome.beyond)
     fprintf(stderr,
             "foilgauge: note: %zu scans reach beyond the region the scanner's model was found in\n",

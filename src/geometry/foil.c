@@ -241,11 +241,28 @@ static fg_status fill_arc(fg_context *ctx, const fg_design *design, fg_layout *l
   return FG_OK;
 }
 
+/* A plain strip that was taken for a foil with bumps: the design is wrong, not the scan. */
+static fg_status hint_at_arc(fg_context *ctx, const fg_design *design, const fg_strip *strip,
+                             const char **error) {
+  fg_layout plain;
+  unsigned flags = 0;
+  const char *why;
+  FG_TRY(fg_arc_foil_layout(ctx, design, strip, &plain, &flags, &why));
+  if (!why && !(flags & FG_FOIL_BUMPS_ON_ARC))
+    *error = "it is a plain strip without bumps; its design needs \"form\": \"arc\" (--design)";
+  fg_layout_free(&plain);
+  return FG_OK;
+}
+
 static fg_status find_layout(fg_context *ctx, const fg_design *design, unsigned threads,
                              fg_foil *foil, fg_layout *layout, const char **error) {
   if (design->form == FG_FORM_ARC)
     return fg_arc_foil_layout(ctx, design, &foil->strip, layout, &foil->flags, error);
-  return fg_layout_find(ctx, design, &foil->strip, threads, layout, error);
+  FG_TRY(fg_layout_find(ctx, design, &foil->strip, threads, layout, error));
+  if (!*error) return FG_OK;
+  fg_status status = hint_at_arc(ctx, design, &foil->strip, error);
+  if (status != FG_OK) fg_layout_free(layout);
+  return status;
 }
 
 /* A foil that is the design's in shape but not in size was scanned at another resolution than was

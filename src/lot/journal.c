@@ -1,11 +1,9 @@
 #include "lot/journal.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cjson/cJSON.h>
@@ -93,7 +91,19 @@ static bool has_schema(const cJSON *root, const char *expected) {
 
 typedef enum head_state { HEAD_GOOD, HEAD_EARLIER, HEAD_DAMAGED } head_state;
 
-static head_state parse_head(const char *line, fg_journal_head *head) {
+/* Values lie in records by their places alone: a build that measures others would take one for
+ * another, wherever as many are there. */
+static fg_status check_names(fg_context *ctx, const char *line, head_state *state) {
+  char *names;
+  FG_TRY(fg_record_format_names(ctx, &names));
+  names[strcspn(names, "}")] = '\0';
+  if (!strstr(line, names + 1)) *state = HEAD_EARLIER;
+  free(names);
+  return FG_OK;
+}
+
+static fg_status parse_head(fg_context *ctx, const char *line, fg_journal_head *head,
+                            head_state *out) {
   *head = (fg_journal_head){0};
   head_state state = HEAD_DAMAGED;
   cJSON *root = cJSON_Parse(line);
@@ -103,14 +113,15 @@ static head_state parse_head(const char *line, fg_journal_head *head) {
            read_head_members(root, head))
     state = HEAD_GOOD;
   cJSON_Delete(root);
-  return state;
+  *out = state;
+  return state == HEAD_GOOD ? check_names(ctx, line, out) : FG_OK;
 }
 
 static fg_status fail_head(fg_context *ctx, const char *path, head_state state) {
   if (state == HEAD_EARLIER)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: is of an earlier version, whose records carry no checksum; measure its "
-                   "scans again with --resume",
+                   "%s: is of an earlier version, whose records hold other values or carry no "
+                   "checksum; measure its scans again with --resume",
                    path);
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: line 1 is damaged, or it is not the results of a lot; `foilgauge lot "
@@ -195,8 +206,7 @@ static fg_status open_reader(fg_context *ctx, reader *r, fg_journal_head *head, 
   if (!r->in) return fail_errno(ctx, r->path, "opened");
   const char *line;
   FG_TRY(next_line(ctx, r, &entry, &line));
-  *state = parse_head(line ? line : "", head);
-  return FG_OK;
+  return parse_head(ctx, line ? line : "", head, state);
 }
 
 static fg_status close_reader(reader *r, fg_status status) {
@@ -365,37 +375,5 @@ fg_status fg_journal_close(fg_context *ctx, fg_journal *journal) {
   pthread_mutex_destroy(&journal->mutex);
   free(journal->path);
   *journal = (fg_journal){.descriptor = -1};
-  return status;
-}
-
-/* Ours alone: the names that outputs have before they are whole (core/file.h). */
-static void remove_leftovers(const char *folder) {
-  static const char first[] = ".foilgauge-", last[] = ".tmp";
-  DIR *entries = opendir(folder);
-  const struct dirent *entry;
-  while (entries && (entry = readdir(entries))) {
-    size_t length = strlen(entry->d_name), end = sizeof last - 1;
-    if (strncmp(entry->d_name, first, sizeof first - 1) != 0 || length < end) continue;
-    if (!strcmp(entry->d_name + length - end, last)) unlinkat(dirfd(entries), entry->d_name, 0);
-  }
-  if (entries) closedir(entries);
-}
-
-fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock) {
-  char *path = NULL;
-  FG_TRY(fg_text_print(ctx, &path, "%s/.lock", folder));
-  fg_status status = FG_OK;
-  *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (*lock < 0) {
-    status = fail_errno(ctx, path, "opened");
-  } else if (flock(*lock, LOCK_EX | LOCK_NB) != 0) {
-    status = fg_fail(ctx, FG_ERR_IO,
-                     "%s: another run is at work in this folder; wait for it, or choose another",
-                     folder);
-    close(*lock);
-    *lock = -1;
-  }
-  if (status == FG_OK) remove_leftovers(folder);
-  free(path);
   return status;
 }

@@ -33,7 +33,8 @@ typedef struct fg_journal_entry {
 typedef struct fg_journal_damage {
   size_t lines; /* not whole, or not what was written */
   size_t first; /* the first of them, from 1 */
-  bool earlier; /* by an earlier version, without checksums: none of it was taken */
+  bool earlier; /* by an earlier version, with other values or without checksums: nothing was taken
+                 */
 } fg_journal_damage;
 
 /* Called for every whole record; what it takes over it sets to zero. */
@@ -82,10 +83,5 @@ fg_status fg_journal_open(fg_context *ctx, const char *path, fg_journal *journal
 fg_status fg_journal_append(fg_context *ctx, fg_journal *journal, const char *line, size_t length,
                             fg_journal_entry *entry);
 fg_status fg_journal_close(fg_context *ctx, fg_journal *journal);
-
-/* Takes the folder for this process until the descriptor is closed (or the process is no more),
- * and removes the temporary files that a killed run has left there. FG_ERR_IO when another run has
- * it. */
-fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock);
 
 #endif

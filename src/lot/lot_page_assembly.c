@@ -219,8 +219,9 @@ static void put_meaning(FILE *out, const fg_lot_analysis *analysis) {
       out,
       "<p class=\"note\">A bearing takes %zu different foils, whole ones, which go back after it; "
       "seed %llu. By number of draws: what %zu draws leave open (Clopper and Pearson, %.3g %%). By "
-      "number of foils: these are %zu of those that the process makes (bootstrap over foils; where "
-      "all bearings or none are within, as of %zu bearings without a common foil). By measurement: "
+      "number of foils: these are %zu of those that the process makes (the interval of as many "
+      "independent bearings as these foils are worth, which foils drawn anew tell; where all "
+      "bearings or none are within, as of %zu without a common foil). By measurement: "
       "value ± U inside the limit, and not outside. At design: every clearance anywhere within ± "
       "%.3g %% of the design&#39;s %.4g µm. A change is the same lot, drawn again.%s</p>\n",
       assembly->plan.layout.pads, (unsigned long long)assembly->plan.seed, assembly->plan.bearings,

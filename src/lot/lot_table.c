@@ -147,6 +147,12 @@ static fg_status make_rows(fg_context *ctx, reading *r) {
       FG_TRY(add_foil(ctx, r, i, &record->foils[f]));
   }
   if (r->rows) return FG_OK;
+  if (r->of_bumps && r->out->design.form == FG_FORM_ARC)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: a lot of plain strips (form arc) has no %s, which is of bumps; choose another "
+        "--response, such as overall.radius_mm or arc.subtended_angle_deg",
+        r->folder, r->options->quantity);
   return fg_fail(ctx, FG_ERR_DATA, "%s: not one value of %s in %zu scans", r->folder,
                  r->options->quantity, r->lot.manifest.items);
 }

@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "lot/folder_lock.h"
 #include "lot/guard.h"
 #include "lot/lot_report.h"
 

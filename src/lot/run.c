@@ -16,6 +16,7 @@
 #include "core/text.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
+#include "lot/folder_lock.h"
 #include "lot/guard.h"
 #include "lot/lot_report.h"
 

@@ -9,6 +9,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"
+#include "lot/folder_lock.h"
 #include "lot/lot_report.h"
 #include "lot/manifest_build.h"
 #include "station/lot_content.h"

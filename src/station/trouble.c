@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "core/text.h"
-#include "lot/journal.h"
+#include "lot/folder_lock.h"
 #include "station/keep.h"
 
 void fg_station_set_trouble(fg_inspection *station, const char *words) {

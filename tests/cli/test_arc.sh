@@ -44,6 +44,8 @@ valid lot.schema.json out/lot.json
 near mean "$(value out/lot.json 'r["quantities"]["overall.radius_mm"]["mean"]')" 15.25 0.003
 [ "$(value out/lot.json '"height_mm" in r["quantities"]')" = False ] || fail "a lot of strips has bump heights"
 
+expect 65 "form arc. has no radius_mm.*overall.radius_mm" "$program" loop --lot out
+expect 2 "plain strip without bumps.*form.*arc" "$program" measure lot/a.png
 expect 64 "the loop needs bumps or discs" "$program" loop lot/a.png --design design.json
 expect 64 "no built-in design" "$program" measure lot/a.png --form arc
 # refused WORDS MEMBERS

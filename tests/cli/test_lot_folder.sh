@@ -46,6 +46,15 @@ damage bad 's/results\/2/results\/1/; s/, "checksum": "[0-9a-f]*"}/}/'
 expect 65 'earlier version' "$program" merge bad -o merged
 expect 0 'earlier version.*all scans are measured again' lot scans -o bad --resume
 same one bad
+# So is one of a build that measured as many values, of which one was another.
+rm -rf bad
+cp -r one bad
+head=$(sed 's/, "checksum".*//; s/"height_mm"/"depth_mm"/; q' one/results.jsonl)
+sum=$(printf '%s' "$head" | sha256sum)
+{ printf '%s, "checksum": "%s"}\n' "$head" "${sum:0:16}"; tail -n +2 one/results.jsonl; } >bad/results.jsonl
+expect 65 'records hold other values' "$program" loop --lot bad
+expect 0 'other values.*all scans are measured again' lot scans -o bad --resume
+same one bad
 mkdir mine
 echo 'my own notes' >mine/results.jsonl
 expect 65 'another folder' lot scans -o mine --resume

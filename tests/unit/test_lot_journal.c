@@ -15,6 +15,7 @@
 
 #include "../support/synthetic_foil.h"
 #include "foilgauge/lot.h"
+#include "lot/folder_lock.h"
 #include "lot/journal.h"
 #include "lot/manifest.h"
 #include "lot/record.h"
