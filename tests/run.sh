@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
 # --long adds the accuracy, speed and bed benchmarks, the rendered experiments, the thesis's
-# experiments, the comparison with R and the loop on measured tables, which rewrite the tables in reports/; a minute of fuzzing for
+# experiments, the comparison with R, the station in a browser and the loop on measured tables, which rewrite the tables in reports/; a minute of fuzzing for
 # each target, and a failure of every single allocation.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -31,7 +31,7 @@ if [ $long = yes ]; then
   tests/bench/slurm_lot.sh || [ $? = 77 ]
   tests/bench/doe_end_to_end.sh
   tests/bench/thesis.sh
-  install_missing $FOILGAUGE_R_PACKAGES
+  install_missing $FOILGAUGE_R_PACKAGES $FOILGAUGE_BROWSER_PACKAGES
   tests/bench/differential_r.sh 300 reports/differential_r.csv
   python3 tests/bench/loop_measured.py build/foilgauge
   python3 tests/bench/loop_r_tables.py build/foilgauge

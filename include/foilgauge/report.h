@@ -121,6 +121,7 @@ typedef struct fg_report_scan {
   const char *path;
   const fg_measurement *measurement; /* NULL when it could not be measured */
   const char *error;                 /* then: the words */
+  const char *name; /* of its one foil: a serial number; NULL: the foil's number on the scan */
 } fg_report_scan;
 
 typedef struct fg_report {

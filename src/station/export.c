@@ -294,8 +294,8 @@ static void find_words(fg_exported_lot *exported) {
   append(words, size, by[FG_VERDICT_NOT_MEASURED], "foil not measured", "foils not measured");
   append(words, size, exported->replaced, "foil counts with its later scan",
          "foils count with their later scans");
-  append(words, size, exported->withheld, "foil has no verdict: the scanner's check was due",
-         "foils have no verdict: the scanner's check was due");
+  append(words, size, exported->withheld, "verdict does not hold: the scanner's check was due",
+         "verdicts do not hold: the scanner's check was due");
   append(words, size, exported->again, "scan was measured again with the lot's newest setup",
          "scans were measured again with the lot's newest setup");
   append(words, size, exported->lost,

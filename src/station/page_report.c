@@ -41,7 +41,7 @@ static fg_status write_measured(fg_context *ctx, const fg_past *past,
   fg_measurement shown;
   if (!leave_one(&shown, measurement, past->number))
     return fg_fail(ctx, FG_ERR_DATA, "the foil was not found in it again");
-  const fg_report_scan scan = {.path = shown.scan, .measurement = &shown};
+  const fg_report_scan scan = {.path = shown.scan, .measurement = &shown, .name = past->serial};
   const fg_report report = {
       .design = &past->settings.design, .nominal = &shown.nominal, .scans = &scan, .scan_count = 1};
   return fg_report_write_html(ctx, &report, out);

@@ -111,16 +111,21 @@ static void write_next(FILE *out, const fg_station_check *check, const fg_statio
   fputs("</p>\n", out);
 }
 
+/* Rounded, and 0 without the sign that it comes from. */
+static double whole(double value) {
+  return round(value) + 0.0;
+}
+
 /* What the newest says of each axis, against the first that is drawn. */
 static void write_tiles(FILE *out, const history *all, double allowed) {
   const check_row *last = &all->row[0], *first = &all->row[all->count - 1];
   fputs("<dl class=\"tiles\">", out);
   for (int k = 0; k < AXES; k++) {
     fprintf(out, "<div><dt>%s</dt><dd>%+.0f ± %.0f %s<small>allowed ± %.0f</small>",
-            axes[k].short_title, last->value[k], 2 * last->u[k], axes[k].unit, allowed);
+            axes[k].short_title, whole(last->value[k]), 2 * last->u[k], axes[k].unit, allowed);
     if (all->count > 1)
       fprintf(out, "<small>%+.0f ± %.0f since the first that is drawn</small>",
-              last->value[k] - first->value[k], 2 * hypot(last->u[k], first->u[k]));
+              whole(last->value[k] - first->value[k]), 2 * hypot(last->u[k], first->u[k]));
     fputs("</dd></div>\n", out);
   }
   fputs("</dl>\n", out);

@@ -55,7 +55,9 @@ static const char fields[] =
     "td.text{max-width:180px;overflow-wrap:anywhere;white-space:normal}\n"
     ".paging{display:flex;gap:14px;align-items:center;margin:14px 0 0}"
     ".bed .tag{font-size:15px;text-decoration:none;display:inline-block;margin:0 6px 6px 0}\n"
-    "form.fields input,form.fields select{width:136px}\n";
+    "form.fields input,form.fields select{width:136px}form.fields input[type=date]{width:160px}"
+    "form.fields select[name=q],form.fields select[name=bump]{width:auto;min-width:136px}"
+    "h1+form,h1+form.fields{margin-top:14px}\n";
 
 static const char narrow[] =
     "@media(max-width:600px){.wide{display:none}nav{padding:0 4px}nav a{padding:12px 9px}"

@@ -180,5 +180,5 @@ sql "UPDATE foils SET serial = 'again'" \
   "UPDATE foils SET verdict = 'fail' WHERE lot = 'L 1' AND verdict <> 'cannot_tell'" \
   "UPDATE scans SET withheld = 'due' WHERE id = (SELECT max(id) FROM scans)"
 "$program" station "$work/in" --export "$work/last" 2>"$work/said" || true
-said "$work/said" "4 foils of 4 scans: 4 pass, 0 fail, 0 cannot be told; 1 foil counts with its later scan; 1 foil has no verdict: the scanner's check was due" "--export"
+said "$work/said" "4 foils of 4 scans: 4 pass, 0 fail, 0 cannot be told; 1 foil counts with its later scan; 1 verdict does not hold: the scanner's check was due" "--export"
 echo "lots: exported, closed, closed again"

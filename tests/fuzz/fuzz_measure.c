@@ -6,7 +6,7 @@
 #include "fuzz.h"
 
 static void write_reports(const fg_measurement *measurement) {
-  const fg_report_scan scan = {"scan", measurement, NULL};
+  const fg_report_scan scan = {"scan", measurement, NULL, NULL};
   const fg_report report = {&measurement->design, &measurement->nominal, &scan, 1};
   fg_context ctx = {0};
   FILE *out = fopen("/dev/null", "w");

@@ -28,8 +28,8 @@ static inline int set_up(void **state) {
   all->design = synthetic_design();
   all->nominal = synthetic_nominal(&all->design);
   all->measurement = synthetic_measurement(&all->design);
-  all->scans[0] = (fg_report_scan){all->measurement.scan, &all->measurement, NULL};
-  all->scans[1] = (fg_report_scan){"lost.png", NULL, "lost.png: cannot be opened"};
+  all->scans[0] = (fg_report_scan){all->measurement.scan, &all->measurement, NULL, NULL};
+  all->scans[1] = (fg_report_scan){"lost.png", NULL, "lost.png: cannot be opened", NULL};
   all->report = (fg_report){&all->design, &all->nominal, all->scans, 1};
   *state = all;
   return 0;

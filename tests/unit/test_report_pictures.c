@@ -129,7 +129,8 @@ static void a_page_escapes_every_name(void **state) {
   fg_nominal nominal = synthetic_nominal(&design);
   fg_measurement measurement = synthetic_measurement(&design);
   snprintf(design.name, sizeof design.name, "<script>alert(1)</script>");
-  fg_report_scan scans[2] = {{"<b>\"&'.png", &measurement, NULL}, {"x/<i>", NULL, "<u>broken</u>"}};
+  fg_report_scan scans[2] = {{"<b>\"&'.png", &measurement, NULL, NULL},
+                             {"x/<i>", NULL, "<u>broken</u>", NULL}};
   snprintf(measurement.scan, sizeof measurement.scan, "-"); /* no pixels: the drawing alone */
   char *page = page_of(&(fg_report){&design, &nominal, scans, 2});
   assert_null(strstr(page, "<script"));
@@ -155,7 +156,7 @@ static void a_page_says_the_verdict_and_why(void **state) {
   snprintf(measurement.scan, sizeof measurement.scan, "-");
   fg_foil *foil = &measurement.foils[0];
   foil->flags = FG_FOIL_SIDE_BAND;
-  fg_report_scan scan = {"-", &measurement, NULL};
+  fg_report_scan scan = {"-", &measurement, NULL, NULL};
   const fg_report report = {&design, &nominal, &scan, 1};
   char *page = page_of(&report);
   assert_non_null(strstr(page, "<span class=\"verdict fail\">Out of tolerance</span>"));
@@ -184,7 +185,7 @@ static void a_page_of_discs_lists_them(void **state) {
   measurement.disc_count = 2;
   measurement.discs[0] = synthetic_disc(1, 1.5);
   measurement.discs[1] = synthetic_disc(2, 2.75);
-  fg_report_scan scan = {"-", &measurement, NULL};
+  fg_report_scan scan = {"-", &measurement, NULL, NULL};
   char *page = page_of(&(fg_report){&design, NULL, &scan, 1});
   assert_non_null(strstr(page, "2 round features"));
   assert_non_null(strstr(page, "<span class=\"verdict cannot_tell\">"));

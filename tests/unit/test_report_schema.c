@@ -43,7 +43,8 @@ static void a_foil_is_valid(void **state) {
   synthetic_tolerance(&design, "height_mm", 0.5, INFINITY);
   fg_nominal nominal = synthetic_nominal(&design);
   fg_measurement measurement = synthetic_measurement(&design);
-  fg_report_scan scans[2] = {{"a.png", &measurement, NULL}, {"b.png", NULL, "b.png: broken"}};
+  fg_report_scan scans[2] = {{"a.png", &measurement, NULL, NULL},
+                             {"b.png", NULL, "b.png: broken", NULL}};
   fg_report report = {&design, &nominal, scans, 1};
   assert_valid(&report);
   report.scan_count = 2;
@@ -75,7 +76,7 @@ static void discs_are_valid(void **state) {
                                 .discs = discs,
                                 .disc_count = 2};
   memset(measurement.sha256, '0', 64);
-  fg_report_scan scan = {"discs.png", &measurement, NULL};
+  fg_report_scan scan = {"discs.png", &measurement, NULL, NULL};
   assert_valid(&(fg_report){&design, &nominal, &scan, 1});
   for (int i = 0; i < 2; i++) {
     free(discs[i].edge);

@@ -217,18 +217,27 @@ static void put_not_judged(FILE *out, const fg_design *design) {
             names);
 }
 
+static void put_heading(FILE *out, const fg_report_scan *scan, const fg_foil *foil) {
+  fputs("<header><h1>Foil ", out);
+  if (scan->name)
+    fg_html_text(out, scan->name);
+  else
+    fprintf(out, "%d", foil->number);
+  fputs("</h1>", out);
+}
+
 static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
-                            const fg_measurement *measurement, const fg_foil *foil) {
+                            const fg_report_scan *scan, const fg_foil *foil) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
   fg_decision decision;
   FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
-  fprintf(out, "<header><h1>Foil %d</h1>", foil->number);
+  put_heading(out, scan, foil);
   if (foil->flags & FG_FOIL_NOT_THIS_DESIGN)
     fputs("<span class=\"verdict not_measured\">Not a foil of this design</span>\n", out);
   else
     fg_html_outcome(out, &decision.outcome);
   fputs("<p>", out);
-  fg_html_text(out, base_name(measurement->scan));
+  fg_html_text(out, base_name(scan->measurement->scan));
   if (design->form == FG_FORM_ARC)
     fputs(" · a plain strip", out);
   else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
@@ -243,11 +252,12 @@ static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
 }
 
 static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
-                          const fg_measurement *measurement, const fg_foil *foil) {
+                          const fg_report_scan *scan, const fg_foil *foil) {
+  const fg_measurement *measurement = scan->measurement;
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
   fputs("<section>\n", out);
-  FG_TRY(put_judged(ctx, out, design, measurement, foil));
+  FG_TRY(put_judged(ctx, out, design, scan, foil));
   fg_correction_moved(&foil->correction, moved, sizeof moved);
   fg_correction_added(&foil->correction, added, sizeof added);
   if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
@@ -321,12 +331,13 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
   }
   if (report->design->form == FG_FORM_DISCS) return put_discs(ctx, out, report, scan);
   for (size_t i = 0; i < measurement->foil_count; i++)
-    FG_TRY(put_foil(ctx, out, report->design, measurement, &measurement->foils[i]));
+    FG_TRY(put_foil(ctx, out, report->design, scan, &measurement->foils[i]));
   return FG_OK;
 }
 
 fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
-  fg_html_begin(out, base_name(report->scans[0].path));
+  const fg_report_scan *first = &report->scans[0];
+  fg_html_begin(out, first->name ? first->name : base_name(first->path));
   for (size_t i = 0; i < report->scan_count; i++)
     FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
   fg_html_end(out);

@@ -1,0 +1,306 @@
+#!/usr/bin/python3
+"""A day at the inspection station in a real browser, headless: an empty folder, a good foil, a bad one,
+a scan that is half written, a file that is no scan; a barcode; History, a report, a chart that is zoomed
+by dragging, a lot that is closed and downloaded. Ends with an error at the first thing that is not as said.
+
+    tests/browser/station_browser.py PROGRAM [--renderer PROGRAM]
+    tests/browser/station_browser.py PROGRAM --pictures FOLDER      draws the five tabs instead
+
+Needs Debian's chromium, chromium-driver and python3-selenium; without them the exit code is 77."""
+
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import xml.etree.ElementTree
+
+try:
+    from selenium import webdriver
+    from selenium.common.exceptions import StaleElementReferenceException
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+    from selenium.webdriver.common.keys import Keys
+except ImportError:
+    print("skipped: python3-selenium is not on this machine")
+    sys.exit(77)
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+TABS = (("now", "/"), ("history", "/history"), ("trends", "/trends?newest=all"), ("scanner", "/scanner"),
+        ("lots", "/lots"))
+WIDTH = 1280
+TALLEST = {"now": 1000, "history": 900}  # px of a picture; what is below is more of the same
+TALLEST_OTHERS = 1280
+LIMITS = {"radius_mm": {"min": 3.3, "max": 3.34}}  # of a foil that is drawn with 3.32 mm
+GOOD_MM, BAD_MM = 3.32, 3.4
+WAIT_S = 20
+
+
+def wait(what, seconds=WAIT_S):
+    """What `what` comes to, as soon as it is true. A page may change while it is read."""
+    end = time.time() + seconds
+    while True:
+        try:
+            found = what()
+        except StaleElementReferenceException:
+            found = None
+        if found:
+            return found
+        if time.time() > end:
+            raise AssertionError("waited in vain")
+        time.sleep(0.02)
+
+
+def expect(true, words):
+    if not true:
+        raise AssertionError(words)
+
+
+class Station:
+    """A station that runs, and its address."""
+
+    def __init__(self, program, folder, recipe, errors):
+        self.process = subprocess.Popen([program, "station", folder, "--recipe", recipe, "--port", "0"],
+                                        stdout=subprocess.PIPE, stderr=errors, text=True)
+        self.address = self.process.stdout.readline().strip()
+        expect(self.address.startswith("http://"), f"no address: {self.address!r}")
+
+    def end(self):
+        self.process.terminate()
+        self.process.wait()
+
+
+def open_browser(downloads):
+    options = webdriver.ChromeOptions()
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars",
+                     f"--window-size={WIDTH},1000"):
+        options.add_argument(argument)
+    options.add_experimental_option("prefs", {"download.default_directory": downloads})
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
+
+
+class Day:
+    """What an inspector does, one step after the other."""
+
+    def __init__(self, browser, station, folder, work, renderer):
+        self.browser, self.station, self.folder, self.work = browser, station, folder, work
+        self.renderer, self.seed = renderer, 0
+
+    def go(self, path):
+        self.browser.get(self.station.address.rstrip("/") + path)
+
+    def one(self, selector):
+        return wait(lambda: (self.browser.find_elements(By.CSS_SELECTOR, selector) or [None])[0])
+
+    def text(self, selector="main"):
+        return self.one(selector).text
+
+    def follow(self, words):
+        wait(lambda: self.browser.find_elements(By.PARTIAL_LINK_TEXT, words))[0].click()
+
+    def draw(self, path, radius_mm):
+        self.seed += 1
+        spec = os.path.join(self.work, "spec.json")
+        with open(spec, "w", encoding="utf-8") as file:
+            json.dump({"schema": "foilgauge/render/1", "seed": self.seed, "scanner": {"dpi": 1200}, "foils": [
+                {"rotate_deg": -90, "design": {"bump_count": 2, "bump_radius_mm": radius_mm}}]}, file)
+        subprocess.run([self.renderer, "render", spec, "-o", path], check=True)
+
+    def drop(self, name, radius_mm):
+        """As a scanner's program does: it writes elsewhere and renames."""
+        self.draw(os.path.join(self.work, "drawn.png"), radius_mm)
+        shutil.copy(os.path.join(self.work, "drawn.png"), os.path.join(self.folder, "." + name))
+        os.rename(os.path.join(self.folder, "." + name), os.path.join(self.folder, name))
+
+    def card(self, name, call, *words):
+        """The newest card becomes that of `name`, by itself: nothing is loaded here."""
+        def shown():
+            large, page = self.text(".call"), self.text("main > section")
+            return name in large and call in large and all(word in page for word in words)
+
+        try:
+            wait(shown)
+        except AssertionError:
+            raise AssertionError(f"no card of {name} with {call!r}, {words}: {self.text()}") from None
+
+    def cards(self):
+        self.go("/")
+        expect("READY" in self.text(".call"), "an empty folder is not ready")
+        self.browser.execute_script("window.never_loaded = true")
+        self.drop("7_good.png", GOOD_MM)
+        self.card("7_good.png", "PASS", "Put the foil with the good ones")
+        self.drop("7_bad.png", BAD_MM)
+        self.card("7_bad.png", "FAIL", "Put the foil aside", "beyond", "max 3.34")
+        expect(len(self.browser.find_elements(By.CSS_SELECTOR, ".decided li.fail")) >= 2, "the values are not red")
+        expect(self.one("svg.picture, .picture").size["width"] > 600, "no picture of the bad foil")
+        self.draw(os.path.join(self.work, "half.png"), GOOD_MM)
+        with open(os.path.join(self.work, "half.png"), "rb") as file:
+            whole = file.read()
+        with open(os.path.join(self.folder, "7_half.png"), "wb") as file:
+            file.write(whole[:len(whole) // 2])
+        self.card("7_half.png", "SCAN AGAIN", "its end is missing", "Wait until the scanner is done")
+        with open(os.path.join(self.folder, "notes.txt"), "w", encoding="utf-8") as file:
+            file.write("not a scan\n")
+        self.card("notes.txt", "NO SCAN", "take this file out")
+        with open(os.path.join(self.folder, "7_half.png"), "wb") as file:
+            file.write(whole)
+        self.card("7_half.png", "PASS")
+        expect(self.browser.execute_script("return window.never_loaded"), "the page was loaded, not told")
+
+    def barcode(self):
+        """A reader types where the focus is, over what stands there, and ends with Enter."""
+        self.go("/")
+        expect(self.browser.switch_to.active_element.get_attribute("name") == "serial", "the serial has no focus")
+        ActionChains(self.browser).send_keys("SN-4711", Keys.ENTER).perform()
+        wait(lambda: "SN-4711" in self.text("h2"))
+        expect("Foil SN-4711" in self.text("h2"), "the barcode was not taken: " + self.text("h2"))
+
+    def history(self):
+        self.follow("History")
+        wait(lambda: "foils" in self.text(".note"))
+        field = self.browser.switch_to.active_element
+        expect(field.get_attribute("name") == "serial", "the search has no focus")
+        field.send_keys("4711", Keys.ENTER)
+        wait(lambda: "1 foil found" in self.text())
+        rows = self.browser.find_elements(By.CSS_SELECTOR, "table.found tbody tr")
+        expect(len(rows) == 1 and "SN-4711" in rows[0].text and "PASS" in rows[0].text, "the search found others")
+        self.follow("SN-4711")
+        self.follow("The whole")
+        wait(lambda: "Residual along the foil" in self.text("body"))
+        expect("SN-4711" in self.text("body"), "the report is not of SN-4711")
+        radius = re.search(r"3\.3[12]\d+", self.text("body"))
+        expect(radius, "the report has no radius")
+
+    def trends(self, points):
+        self.go("/trends?newest=all")
+        figure = wait(lambda: [f for f in self.browser.find_elements(By.CSS_SELECTOR, "figure.zoom") if f.is_displayed()])[0]
+        expect((figure.get_attribute("data-from"), figure.get_attribute("data-to")) == ("1", str(points)),
+               f"the chart is not of {points} foils: {figure.get_attribute('data-to')}")
+        wide = figure.size["width"]
+        left, right = (float(figure.get_attribute("data-" + side)) for side in ("left", "right"))
+
+        def at(share):
+            return int((left + (right - left) * share - 0.5) * wide)
+
+        # From the middle of the second foil to that of the last but one, through the chart's middle.
+        ActionChains(self.browser).move_to_element_with_offset(figure, at(1.5 / points), 0).click_and_hold() \
+            .move_by_offset(20, 0).move_to_element_with_offset(figure, at(1 - 1.5 / points), 0).release().perform()
+        wait(lambda: "from=2" in self.browser.current_url)
+        expect(f"to={points - 1}" in self.browser.current_url, "zoomed to " + self.browser.current_url)
+        shown = wait(lambda: [f for f in self.browser.find_elements(By.CSS_SELECTOR, "figure.zoom") if f.is_displayed()])[0]
+        expect(shown.get_attribute("data-from") == "2", "the zoomed chart is of others")
+        ActionChains(self.browser).send_keys("0").perform()
+        wait(lambda: "from=2" not in self.browser.current_url)
+
+    def lots(self, downloads):
+        self.follow("Lots")
+        expect("No lot is open" not in self.text(), "no lot is open")
+        self.follow("Close …")
+        expect(self.browser.switch_to.active_element.get_attribute("name") == "by", "who closes has no focus")
+        ActionChains(self.browser).send_keys("Ada", Keys.ENTER).perform()
+        wait(lambda: "closed" in self.text() and "by Ada" in self.text())
+        expect("FAIL" in self.text("ul.cards li"), "a lot with a bad foil did not fail: " + self.text("ul.cards li"))
+        wait(lambda: self.browser.find_elements(By.CSS_SELECTOR, "button[value='results.qif']"))[0].click()
+        path = wait(lambda: [os.path.join(downloads, name) for name in os.listdir(downloads) if name.endswith(".qif")])[0]
+        root = xml.etree.ElementTree.parse(path).getroot()
+        expect(root.tag.endswith("}QIFDocument"), f"no QIF: {root.tag}")
+        expect("SN-4711" in xml.etree.ElementTree.tostring(root, encoding="unicode"), "the QIF lacks the serial")
+
+    def quiet(self):
+        """Nothing that the page did was refused by the browser."""
+        said = [entry["message"] for entry in self.browser.get_log("browser") if entry["level"] == "SEVERE"
+                and "favicon" not in entry["message"]]
+        expect(not said, f"the browser complains: {said}")
+
+
+def run_day(program, renderer, work):
+    folder, downloads = os.path.join(work, "scans"), os.path.join(work, "downloads")
+    os.mkdir(folder)
+    os.mkdir(downloads)
+    recipe = os.path.join(work, "recipe.json")
+    with open(recipe, "w", encoding="utf-8") as file:
+        json.dump({"schema": "foilgauge/recipe/1", "station": {"file_name": "{lot}_{serial}"},
+                   "design": {"schema": "foilgauge/design/1", "bump_count": 2, "tolerances": LIMITS}}, file)
+    with open(os.path.join(work, "errors"), "w", encoding="utf-8") as errors:
+        station, browser = Station(program, folder, recipe, errors), None
+        try:
+            browser = open_browser(downloads)
+            day = Day(browser, station, folder, work, renderer)
+            day.cards()
+            day.barcode()
+            for i in range(5):
+                day.drop(f"7_{i}.png", GOOD_MM)
+            day.card("7_4.png", "PASS")
+            day.history()
+            day.trends(8)
+            day.lots(downloads)
+            day.quiet()
+        finally:
+            if browser:
+                browser.quit()
+            station.end()
+    print("browser: cards by themselves, barcode, search, report, zoom, lot, QIF")
+
+
+def run_pictures(program, folder, work):
+    """The five tabs of a station with 300 foils and three that are really scanned, the newest of them bad."""
+    filled = os.path.join(work, "scans")
+    recipe = os.path.join(ROOT, "samples", "station", "recipe.json")
+    fill = os.path.join(ROOT, "tests", "bench", "station_fill.py")
+    subprocess.run([sys.executable, fill, filled, "--scans", "300", "--checks", "30"], check=True)
+    with open(os.path.join(ROOT, "samples", "render", "gen2_foil.json"), encoding="utf-8") as file:
+        spec = json.load(file)
+    with open(os.path.join(work, "errors"), "w", encoding="utf-8") as errors:
+        station, browser = Station(program, filled, recipe, errors), None
+        try:
+            browser = open_browser(work)
+            day = Day(browser, station, filled, work, program)
+            day.go("/")
+            for seed, springback in ((1, {"mean": 0.02, "sd": 0.007}), (2, {"mean": 0.02, "sd": 0.007}),
+                                     (3, {"mean": 0.04, "sd": 0.02})):
+                spec["seed"], spec["foils"][0]["radius_springback"] = seed, springback
+                scan = os.path.join(filled, f".L006_A_{300 + seed:06d}.png")
+                with open(os.path.join(work, "spec.json"), "w", encoding="utf-8") as file:
+                    json.dump(spec, file)
+                subprocess.run([program, "render", file.name, "-o", scan], check=True)
+                os.rename(scan, scan.replace(".L006", "L006"))
+                wait(lambda name=f"{300 + seed:06d}": name in day.text(".call"))
+            day.go("/lots?close=1&lot=L006")
+            day.one("input[name=by]").send_keys("Ada", Keys.ENTER)
+            wait(lambda: "by Ada" in day.text())
+            for name, path in TABS:
+                browser.set_window_size(WIDTH, 1000)
+                day.go(path)
+                height = browser.execute_script("return document.documentElement.scrollHeight")
+                browser.set_window_size(WIDTH, min(height, TALLEST.get(name, TALLEST_OTHERS)) + 143)  # what a window has around its page
+                browser.save_screenshot(os.path.join(folder, f"station_{name}.png"))
+        finally:
+            if browser:
+                browser.quit()
+            station.end()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("--renderer", help="the program that draws scans; default PROGRAM")
+    parser.add_argument("--pictures", metavar="FOLDER")
+    arguments = parser.parse_args()
+    if not shutil.which("chromium") or not shutil.which("chromedriver"):
+        print("skipped: chromium and chromium-driver are not on this machine")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as work:
+        if arguments.pictures:
+            run_pictures(arguments.program, arguments.pictures, work)
+        else:
+            run_day(arguments.program, arguments.renderer or arguments.program, work)
+
+
+if __name__ == "__main__":
+    main()
