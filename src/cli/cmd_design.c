@@ -1,4 +1,5 @@
 #include <argp.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -185,10 +186,16 @@ static void write_table(const design_view *view, FILE *out) {
   }
   if (fg_form_has_bumps(design->form))
     fg_text_stiffness_table(out, &view->page.bump, fg_design_pitch_mm(design));
-  for (size_t i = 0; i < design->tolerance_count; i++)
-    fprintf(out, "%s  %-34s from %g to %g\n", i ? "" : "\ntolerances\n",
-            design->tolerances[i].quantity, design->tolerances[i].lower,
-            design->tolerances[i].upper);
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_tolerance *t = &design->tolerances[i];
+    fprintf(out, "%s  %-34s ", i ? "" : "\ntolerances\n", t->quantity);
+    if (isinf(t->lower))
+      fprintf(out, "at most %g\n", t->upper);
+    else if (isinf(t->upper))
+      fprintf(out, "at least %g\n", t->lower);
+    else
+      fprintf(out, "from %g to %g\n", t->lower, t->upper);
+  }
 }
 
 enum { CURVE_FROM_PCT = -5, CURVE_TO_PCT = 30 };

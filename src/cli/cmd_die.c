@@ -9,12 +9,14 @@
 #include "cli/output_set.h"
 #include "foilgauge/die.h"
 #include "report/die/die_report.h"
+#include "report/words.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT };
 
 typedef struct die_run {
   const char *design_path, *list_path;
   fg_die_source said; /* what the options before a profile say of it */
+  int unused;         /* the last of those options, while no profile has followed it; else 0 */
   fg_die_sources sources;
   fg_die_options options;
   fg_output_set outputs;
@@ -84,7 +86,7 @@ static const char doc[] =
     "Tolerances of the design that name radius_mm, radius_error_pct, bump_angle_deg, "
     "bump_angle_error_pct, centre_to_centre_mm, height_mm, intersection_angle_deg, place_error_deg "
     "or overall.radius_mm judge every bump of each half.\n\n"
-    "  foilgauge die concave_*.txt convex_*.txt --tip-um 2 --unit mm --html die.html\n"
+    "  foilgauge die --tip-um 2 --unit mm concave_*.txt convex_*.txt --html die.html\n"
     "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
     "Exit code: 0 done and within tolerance, or none is stated; 1 a limit is exceeded by more than "
     "U; 2 bumps that limits ask for are in no trace; 3 cannot tell; 64 usage; 65 bad data; 74 "
@@ -94,8 +96,21 @@ static void take(die_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
 }
 
+/* What stands behind the last profile would be said of none. */
+static void check_end(const die_run *run, const struct argp_state *state) {
+  if (!run->sources.count && !run->list_path) argp_error(state, "no PROFILE was given");
+  if (!run->unused || run->list_path) return;
+  const struct argp_option *option = options;
+  while (option->key != run->unused)
+    option++;
+  argp_error(state,
+             "--%s counts for the profiles that follow it, and none does: put it before them",
+             option->name);
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   die_run *run = state->input;
+  if (key >= OPTION_HALF && key <= OPTION_FORWARD) run->unused = key;
   switch (key) {
   case OPTION_HALF:
     if (!fg_die_read_half(text, &run->said.half))
@@ -145,10 +160,11 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case ARGP_KEY_ARG:
     run->said.path = text;
+    run->unused = 0;
     take(run, fg_die_sources_add(run->ctx, &run->sources, &run->said));
     break;
   case ARGP_KEY_END:
-    if (!run->sources.count && !run->list_path) argp_error(state, "no PROFILE was given");
+    check_end(run, state);
     break;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -180,9 +196,9 @@ static fg_status load(fg_context *ctx, die_run *run, fg_design *design) {
                                &(fg_input){run->sources.source[i].path, "the profile"}, 1));
   fg_design_default(design);
   if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, design));
-  if (design->form == FG_FORM_DISCS)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no bumps; a die presses foils",
-                   run->design_path);
+  if (!fg_form_has_bumps(design->form))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps; a die is measured by its bumps",
+                   run->design_path, fg_form_word(design->form));
   return FG_OK;
 }
 

@@ -15,9 +15,11 @@ __attribute__((format(printf, 3, 4))) static void add(char *text, size_t size, c
   va_end(list);
 }
 
-/* "97", "97.4", "99.96": as many digits as tell it from all. */
+/* "97.4", "99.96", "above 99.99": as many digits as tell it from all and from none. */
 static const char *percent(double share, char text[16]) {
   double value = 100 * share;
+  if (value > 99.99 && value < 100) return "above 99.99";
+  if (value > 0 && value < 0.01) return "below 0.01";
   bool near = (value > 99 && value < 100) || (value > 0 && value < 1);
   snprintf(text, 16, near ? "%.2f" : "%.1f", value);
   return text;
@@ -75,7 +77,7 @@ static void say_what_would_help(const fg_lot_assembly *assembly, char *text, siz
   const fg_lot_change *best = &assembly->change[0];
   char now[16], then[16];
   if (assembly->drawn.assembled.count == assembly->plan.bearings) {
-    add(text, size, "No change is needed: every bearing drawn assembles.");
+    add(text, size, "Every bearing drawn assembles already, so no change can show more.");
     return;
   }
   if (!assembly->changes || !best->clear || best->gain <= 0) {

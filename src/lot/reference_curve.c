@@ -54,9 +54,10 @@ static fg_status name_file(fg_context *ctx, const char *path, const fg_context *
   bool named = !strncmp(inner->message, path, strlen(path));
   return fg_fail(ctx, status, "reference_curve: %.200s%s%.*s%s", named ? "" : path,
                  named ? "" : ": ", CONTEXT_WORDS, inner->message,
-                 strstr(inner->message, "bump") ? ""
-                                                : "; it has the columns bump, radius_error_pct, "
-                                                  "intersection_angle_error_pct");
+                 strstr(inner->message, "bump")
+                     ? ""
+                     : "; a reference curve has the columns bump, radius_error_pct, "
+                       "intersection_angle_error_pct");
 }
 
 fg_status fg_lot_settings_take_curve(fg_context *ctx, const char *path, fg_lot_settings *settings) {

@@ -129,6 +129,8 @@ python3 -c "import sys, html.parser; html.parser.HTMLParser().feed(open(sys.argv
 
 expect 0 "named by its bumps" "$program" die --help
 expect 64 "no PROFILE" "$program" die
+expect 64 "--tip-um counts for the profiles that follow" "$program" die concave_1.txt --tip-um 2 -o after.json
+[ -e after.json ] && fail "an option that counts for no profile was passed over"
 expect 64 "--unit: 'inch'" "$program" die --unit inch bare.txt
 expect 64 "--half: 'hollow'" "$program" die --half hollow bare.txt
 expect 64 "" "$program" die concave_1.txt -o concave_1.txt

@@ -83,5 +83,8 @@ refuse "no bumps along the strip" line.txt $say
 refuse "the bumps that are seen would have numbers up to 13" concave_1.txt --first-bump 5
 printf '{"schema":"foilgauge/design/1","form":"discs","diameters_mm":[4]}' >discs.json
 expect 65 "has no bumps" "$program" die concave_1.txt --design discs.json
+echo '{"schema": "foilgauge/design/1", "form": "arc", "overall_radius_mm": 20.73, "subtended_angle_deg": 110,
+ "thickness_mm": 0.1}' >arc.json
+expect 65 "form .arc. has no bumps" "$program" die concave_1.txt --design arc.json
 
 exit $failed
