@@ -5,5 +5,5 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-/usr/bin/python3 tests/bench/die.py "$PWD/build/foilgauge" "$folder" reports/thesis/die.md "${1:-4}"
+/usr/bin/python3 tests/bench/die.py "$PWD/build/foilgauge" "$folder" reports/thesis/die.md "${1:-16}"
 (cd samples/die && ../../build/foilgauge die con*.txt --html ../../reports/thesis/die.html)
