@@ -28,7 +28,7 @@ render b 4 15 '{"id":"scan.scale_y","value":0.001}'
 near scale "$(value pair.out "r['claims'][0]['parameters']['value']")" 0.001 0.000002
 
 reports="clean ripple pair"
-if [ -z "${FOILGAUGE_TEST_BRIEF-}" ]; then
+if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
 reports="$reports oval"
 render oval_a 5 -75 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'
 render oval_b 6 15 '{"id":"part.ovality","amplitude_um":12,"phase_deg":20}'

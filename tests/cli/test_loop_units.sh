@@ -8,6 +8,7 @@ fi
 . tests/support/cli.sh
 
 only=(--only lattice_a --only check_standard)
-[ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || only+=(--only load_cell --only impact_energy --only filter_transmittance)
+[ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || only+=(--only impact_energy)
+[ -z "${FOILGAUGE_TEST_LONG:-}" ] || only+=(--only load_cell --only filter_transmittance)
 python3 "$root/tests/bench/loop_measured.py" "$program" --units "${only[@]}" >differences || fail "$(cat differences)"
 exit $failed

@@ -3,7 +3,7 @@
 # Usage: test_station_robust.sh PROGRAM [KILLS [FAILURES]]
 set -euo pipefail
 program=$1
-kills=${2:-4}
+kills=${2:-3}
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || kills=1
 failures=${3:-12}
 renderer=${FOILGAUGE_RENDERER:-$program}

@@ -79,7 +79,7 @@ static void any_number_of_bumps(void **state) {
 /* Every 15 degrees, both hands: the numbers start at the lip, the hand and direction are found. */
 static void any_rotation_and_either_hand(void **state) {
   (void)state;
-  for (int i = 0; i < 24; i += (int)test_step(5)) {
+  for (int i = 0; i < 24; i += (int)test_step(11)) {
     char members[100];
     bool mirror = i / 2 % 2;
     snprintf(members, sizeof members, ",\"rotate_deg\":%d,\"mirror\":%s", 15 * i,
@@ -145,7 +145,7 @@ static void missing_bumps_leave_their_numbers_out(void **state) {
 static void crushed_bumps_are_flagged(void **state) {
   (void)state;
   for (int bumps = 3; bumps <= 5; bumps += 2)
-    for (int crushed = 1; crushed <= bumps; crushed += (int)test_step(2)) {
+    for (int crushed = 1; crushed <= bumps; crushed += (int)test_step(4)) {
       char members[100];
       snprintf(members, sizeof members, ",\"crushed\":[{\"bump\":%d,\"height_factor\":0.5}]",
                crushed);

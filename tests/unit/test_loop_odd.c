@@ -284,7 +284,7 @@ static void scanners_far_out_of_line(void **state) {
                                          {.ripple_um = 200, .period_mm = 0.4},
                                          {.ripple_um = 30, .period_mm = 900}};
   (void)state;
-  for (size_t i = 0; i < sizeof scanners / sizeof *scanners; i += test_step(2))
+  for (size_t i = 0; i < sizeof scanners / sizeof *scanners; i += test_step(4))
     for (int same = 0; same < 2; same++) {
       char what[64];
       odd_input in = two_scans(4, same);
@@ -363,7 +363,7 @@ static void foils_and_discs_do_not_mix(void **state) {
 
 static void drawn_from_bytes(void **state) {
   (void)state;
-  for (uint64_t draw = 1; draw <= DRAWN; draw += test_step(4)) {
+  for (uint64_t draw = 1; draw <= DRAWN; draw += test_step(8)) {
     static odd_input in;
     uint8_t bytes[BYTES];
     char what[64];
