@@ -7,7 +7,6 @@ import json
 import os
 import re
 import shutil
-import signal
 import statistics
 import struct
 import subprocess
@@ -61,7 +60,7 @@ class Station:
         return len(os.listdir(f"/proc/{self.process.pid}/fd"))
 
     def close(self):
-        self.process.send_signal(signal.SIGINT)
+        self.process.terminate()  # a shell may have had it ignore SIGINT
         self.process.wait(timeout=30)
 
 
