@@ -216,6 +216,8 @@ static void tell_events(fg_inspection *station, const fg_request *request, fg_an
 static bool give_fixed(fg_inspection *station, const fg_request *request, fg_answer *answer) {
   if (!strcmp(request->path, "/style.css"))
     give_text(answer, "text/css; charset=utf-8", fg_station_style_text());
+  else if (!strcmp(request->path, "/icon.svg") || !strcmp(request->path, "/favicon.ico"))
+    give_text(answer, "image/svg+xml", fg_station_icon);
   else if (!strcmp(request->path, "/script.js"))
     give_text(answer, "text/javascript; charset=utf-8", fg_station_script);
   else if (!strcmp(request->path, "/trends.js"))

@@ -88,7 +88,8 @@ fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader
         "name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
   fg_html_text(out, title);
-  fputs(" – foilgauge station</title>\n<link rel=\"stylesheet\" href=\"/style.css\">\n<script "
+  fputs(" – foilgauge station</title>\n<link rel=\"icon\" href=\"/icon.svg\">\n<link "
+        "rel=\"stylesheet\" href=\"/style.css\">\n<script "
         "src=\"/script.js\" defer></script>\n</head>\n<body>\n",
         out);
   write_tabs(out, tab);

@@ -124,6 +124,22 @@ static void write_point(const page *p, size_t point) {
           fg_trend_number(p->trend, point));
 }
 
+static void write_changes(const page *p) {
+  fg_trend_change change[FG_TREND_CHANGES];
+  size_t count = fg_trend_changes(p->reader, p->trend, change);
+  if (!count) return;
+  fputs(" Dotted brown: foils were measured in another way from there on:", p->out);
+  for (size_t i = 0; i < count; i++) {
+    const char *and = change[i].program && (change[i].recipe || change[i].model) ? ", " : "";
+    fprintf(p->out, "%s by another %s%s%s%s%s since ", i ? ";" : "",
+            change[i].program ? "program" : "", and, change[i].recipe ? "recipe" : "",
+            change[i].recipe && change[i].model ? ", " : "",
+            change[i].model ? "model of the scanner" : "");
+    write_point(p, change[i].point);
+  }
+  fputs(".", p->out);
+}
+
 static void write_caption(const page *p) {
   const fg_trend *trend = p->trend;
   const fg_tolerance *tolerance = trend->quantity.tolerance;
@@ -152,6 +168,7 @@ static void write_caption(const page *p) {
                 : "a limit that is far off is not drawn");
   else
     fputs(" The design states no tolerance for it.", p->out);
+  write_changes(p);
   fputs("</p>\n", p->out);
 }
 

@@ -35,5 +35,6 @@ const char *fg_page_verdict_class(const char *verdict, bool withheld);
 /* The styles of the reports and the station's own; the one script. */
 const char *fg_station_style_text(void);
 extern const char fg_station_script[];
+extern const char fg_station_icon[]; /* SVG */
 
 #endif

@@ -7,23 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
-#include <time.h>
 
 #include "core/memory.h"
 #include "station/answer.h"
+#include "station/patience.h"
 #include "station/scan_command.h"
 
 /* A browser opens six connections, one of which waits for news; a page that was left is told apart
  * from one that waits only when there is news: what waits must leave room for others.
  * THREADS: a report that is measured again keeps one of them for a second. */
-enum {
-  THREADS = 4,
-  CONNECTIONS = 96,
-  OF_ONE = 48,
-  WAITING_MAX = 16,
-  SECONDS = 15,
-  HEADER_BYTES = 16384
-};
+enum { THREADS = 4, OF_ONE = 48, WAITING_MAX = 16, SECONDS = 15, HEADER_BYTES = 16384 };
 
 typedef struct server {
   fg_inspection *station;
@@ -33,6 +26,7 @@ typedef struct server {
   size_t waiters;
   unsigned long news; /* how often there were any */
   bool closing;
+  fg_patience patience;
 } server;
 
 /* One request on its way. */
@@ -40,15 +34,9 @@ typedef struct call {
   fg_request request;
   char *body;
   size_t size;
-  time_t until; /* when all of it must have come */
+  int64_t until; /* when all of it must have come */
   bool broken, waited;
 } call;
-
-static time_t seconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec;
-}
 
 /* The library decodes nothing, so that one decoder looks at every field. */
 static size_t leave_encoded(void *user, struct MHD_Connection *connection, char *text) {
@@ -75,7 +63,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   call *at = calloc(1, sizeof *at);
   if (!at) return NULL;
   fg_request *request = &at->request;
-  at->until = seconds_now() + SECONDS;
+  at->until = fg_patience_now() + SECONDS;
   request->post = !strcmp(method, "POST");
   request->host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
   request->origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
@@ -89,7 +77,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
 
 /* False: too much, or for too long. */
 static bool take_body(call *at, const char *bytes, size_t size) {
-  if (at->size + size > FG_BODY_MAX || seconds_now() > at->until) return false;
+  if (at->size + size > FG_BODY_MAX || fg_patience_now() > at->until) return false;
   char *grown = realloc(at->body, at->size + size);
   if (!grown) return false;
   memcpy(grown + at->size, bytes, size);
@@ -216,7 +204,10 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *connection, con
   server *at = user;
   call *asked = *place;
   (void)version;
-  if (!asked) return begin(connection, method, place);
+  if (!asked) {
+    fg_patience_asked(&at->patience, connection);
+    return begin(connection, method, place);
+  }
   if (*size) {
     bool taken = take_body(asked, bytes, *size);
     *size = 0;
@@ -228,10 +219,10 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *connection, con
 
 static void end_call(void *user, struct MHD_Connection *connection, void **place,
                      enum MHD_RequestTerminationCode code) {
+  server *at = user;
   call *asked = *place;
-  (void)user;
-  (void)connection;
   (void)code;
+  fg_patience_answered(&at->patience, connection);
   if (asked) free(asked->body);
   free(asked);
   *place = NULL;
@@ -270,11 +261,11 @@ static fg_status start(fg_context *ctx, server *at, const struct sockaddr_in *ad
   errno = 0;
   at->daemon = MHD_start_daemon(
       flags, 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED,
-      end_call, NULL, MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL,
-      MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
-      (unsigned)CONNECTIONS, MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)OF_ONE,
-      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-      (size_t)HEADER_BYTES, MHD_OPTION_END);
+      end_call, at, MHD_OPTION_NOTIFY_CONNECTION, fg_patience_notify, &at->patience,
+      MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL, MHD_OPTION_THREAD_POOL_SIZE,
+      (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)FG_CONNECTIONS,
+      MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT,
+      (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADER_BYTES, MHD_OPTION_END);
   if (at->daemon) return FG_OK;
   return fg_fail(ctx, FG_ERR_IO, "%s:%u: pages cannot be served there: %s; choose another --port",
                  inet_ntoa(address->sin_addr), ntohs(address->sin_port),
@@ -291,8 +282,10 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
   server *at = block;
   at->station = station;
   pthread_mutex_init(&at->mutex, NULL);
+  fg_patience_begin(&at->patience);
   fg_status status = start(ctx, at, &address);
   if (status != FG_OK) {
+    fg_patience_end(&at->patience);
     free(at);
     return status;
   }
@@ -317,5 +310,6 @@ void fg_station_server_stop(fg_inspection *station) {
   fg_station_scan_stop(station);
   station->wake = NULL;
   station->server = NULL;
+  fg_patience_end(&at->patience);
   free(at);
 }

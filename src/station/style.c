@@ -77,6 +77,12 @@ static const char print[] =
 /* New cards take the page's place, unless somebody is typing. The first field has the focus, and
  * what stands in it is marked, so that a barcode reader, which ends with Enter, writes over it.
  * The arrow keys turn pages. */
+/* A bump of a foil. */
+const char fg_station_icon[] =
+    "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 32 32\"><rect width=\"32\" "
+    "height=\"32\" rx=\"6\" fill=\"#16202a\"/><path d=\"M2 23H7Q16 -3 25 23H30\" fill=\"none\" "
+    "stroke=\"#fff\" stroke-width=\"3.5\"/></svg>\n";
+
 const char fg_station_script[] =
     "'use strict';\n"
     "(function(){\n"

@@ -64,6 +64,16 @@ enum { FG_TREND_RUNS = 8 }; /* so that a page is one sheet of paper */
 /* The newest FG_TREND_RUNS of them; *all says how many there are. */
 size_t fg_trend_runs(const fg_trend *trend, fg_trend_run runs[FG_TREND_RUNS], size_t *all);
 
+/* A point before which the setup changed: another program, recipe or model of the scanner. */
+typedef struct fg_trend_change {
+  size_t point;
+  bool program, recipe, model;
+} fg_trend_change;
+enum { FG_TREND_CHANGES = 4 };
+/* The newest FG_TREND_CHANGES of those that are drawn; none over lots. */
+size_t fg_trend_changes(sqlite3 *reader, const fg_trend *trend,
+                        fg_trend_change change[FG_TREND_CHANGES]);
+
 /* The chart as SVG: for wide pages and paper, or for narrow ones. */
 void fg_trend_plot(FILE *out, sqlite3 *reader, const fg_trend *trend, const fg_trend_run *runs,
                    size_t run_count, bool narrow);

@@ -215,6 +215,16 @@ static void draw_runs(const drawing *d, const fg_trend_run *runs, size_t count) 
   }
 }
 
+static void draw_changes(const drawing *d) {
+  fg_trend_change change[FG_TREND_CHANGES];
+  size_t count = fg_trend_changes(d->reader, d->trend, change);
+  for (size_t i = 0; i < count; i++) {
+    double x = fg_plot_x(&d->at, place(d, change[i].point) - 0.5);
+    fprintf(d->at.out, "<path class=\"change\" d=\"M%.1f %.1fV%.1f\"/>\n", x, d->at.top,
+            d->at.bottom);
+  }
+}
+
 static int by_height(const void *a, const void *b) {
   const label *one = a, *other = b;
   return (one->y > other->y) - (one->y < other->y);
@@ -257,6 +267,7 @@ static void draw(const drawing *d, const fg_trend_run *runs, size_t run_count) {
   fg_plot_segment(&d->at, d->at.x_low, d->chart->centre, d->at.x_high, d->chart->centre, "thin");
   draw_limit(d, true);
   draw_limit(d, false);
+  draw_changes(d);
   draw_course(d);
   draw_dots(d);
   draw_runs(d, runs, run_count);

@@ -5,6 +5,7 @@ const char fg_trend_style[] =
     ".narrow{display:none}.zoom{touch-action:pan-y;cursor:crosshair;position:relative}"
     ".plot .zone{fill:var(--bad);fill-opacity:.13}.plot path.tolerance{stroke:var(--bad);"
     "stroke-width:2.5}.plot path.control{stroke:var(--blue);stroke-width:1.6;stroke-dasharray:7 5}"
+    ".plot path.change{stroke:#7a4a00;stroke-width:1.8;stroke-dasharray:2 4}"
     ".plot text.tolerance{fill:var(--bad);font-weight:700}.plot text.control{fill:#0b4f9e}"
     ".plot path.curve{stroke:#33414e;stroke-width:1.3}.plot circle.s2{stroke:#33414e;"
     "stroke-width:1.6}.plot circle.signal{stroke:#fff;stroke-width:1}.plot .mark{text-anchor:"

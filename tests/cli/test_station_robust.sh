@@ -7,7 +7,7 @@ kills=${2:-3}
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || kills=1
 failures=${3:-12}
 renderer=${FOILGAUGE_RENDERER:-$program}
-shim=$(dirname "$program")/tests/libfailing_malloc.so
+shims=$(realpath "$(dirname "$program")")/tests
 work=$(mktemp -d)
 station=
 end() {
@@ -143,6 +143,17 @@ cp "$work/scans/3.png" "$work/in/half.png"
 expect 0 "1 measured, 0 known, 0 refused" once "$work/in" $recipe
 check "$work/in" 3
 
+# Databases of version 1 are in use: a change of theirs is a new migration, never another version 1.
+python3 - "$work/in/foilgauge.sqlite" <<'PY' || fail "version 1 of the database is not what it was"
+import hashlib, sqlite3, sys
+database = sqlite3.connect(sys.argv[1])
+if database.execute("PRAGMA user_version").fetchone() == (1,):
+    tables = database.execute("SELECT sql FROM sqlite_schema WHERE sql IS NOT NULL AND name NOT LIKE "
+                              "'sqlite_%' ORDER BY name").fetchall()
+    digest = hashlib.sha256("\n".join(table[0] for table in tables).encode()).hexdigest()
+    assert digest == "f95022470d3216694ba0dfcafafb27dc04586e7554e963ed10c5cc8a0bf1b01c", digest
+PY
+
 # Databases that are none of ours, and folders that are another's.
 broken() { # WORDS STATEMENT: a database made by it
   mkdir -p "$work/other"
@@ -212,6 +223,37 @@ done
 check "${all[@]}"
 echo "disk full: $((${#all[@]} / 2)) places; killed: $kills times, $arrived scans"
 
+# A header that comes byte by byte, for ever, holds no place for longer than half a minute.
+if [ -n "${FOILGAUGE_TEST_LONG-}" ]; then
+  start "$work/in" $recipe
+  python3 - "$work/address" <<'PY' || fail "a header that never ends"
+import socket, sys, time, urllib.parse, urllib.request
+base = open(sys.argv[1]).read().strip()
+where = urllib.parse.urlparse(base)
+drips = [socket.create_connection((where.hostname, where.port)) for _ in range(40)]
+for drip in drips:
+    drip.sendall(b"GET / HTTP/1.1\r\nX-Slow: ")
+end = time.monotonic() + 36
+while time.monotonic() < end:
+    time.sleep(3)
+    for drip in drips:
+        try:
+            drip.sendall(b"x")
+        except OSError:
+            pass
+for _ in range(2):
+    assert b"foilgauge" in urllib.request.urlopen(base).read()
+time.sleep(0.5)
+for drip in drips:
+    drip.settimeout(5)
+    try:
+        assert drip.recv(1) == b"", "still open"
+    except ConnectionResetError:
+        pass
+PY
+  stop
+fi
+
 # A station that runs gets over a full disk.
 if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=1m tmpfs "$work/full" 2>/dev/null; then
   start "$work/full" $recipe
@@ -280,28 +322,35 @@ cards = sqlite3.connect(sys.argv[1]).execute("SELECT path, kind FROM arrivals").
 assert sorted(cards) == [("a.tif", "measured"), ("b.png", "measured")], cards' \
   "$work/poll/foilgauge.sqlite" || fail "a card before the scan was whole"
 
-# Memory that runs out.
-if ldd "$program" | grep libasan >/dev/null || [ ! -e "$shim" ]; then
+# Memory that runs out, and a disk that is full, at any call.
+if ldd "$program" | grep libasan >/dev/null || [ ! -e "$shims/libfailing_malloc.so" ]; then
   exit 0
 fi
-failing() { # AT FOLDER
-  mkdir "$2"
-  cp "$work/scans/1.png" "$2"
+failing() { # SHIM VARIABLE AT FOLDER [VARIABLE=VALUE]
+  mkdir "$4"
+  cp "$work/scans/1.png" "$4"
   code=0
-  LD_PRELOAD=$shim FOILGAUGE_FAIL_AT=$1 "$program" station "$2" $recipe --once \
+  env LD_PRELOAD="$shims/$1" "$2=$3" "${@:5}" "$program" station "$4" $recipe --once \
     >/dev/null 2>"$work/said" || code=$?
 }
-failing 0 "$work/memory"
-total=$(sed -n 's/^allocations: //p' "$work/said")
-all=()
-for ((at = 1; at <= total; at += total / failures + 1)); do
-  failing $at "$work/memory$at"
-  case $code in
-    0 | 2 | 65 | 74) ;;
-    *) fail "allocation $at of $total: exit code $code" ;;
-  esac
-  once "$work/memory$at" $recipe 2>/dev/null || true
-  all+=("$work/memory$at" 1)
-done
-check "${all[@]}"
-echo "allocations: $((${#all[@]} / 2)) failures over $total"
+# at_calls SHIM VARIABLE NAME [VARIABLE=VALUE]: one failure after the other; nothing is lost by any.
+at_calls() {
+  failing "$1" "$2" 0 "$work/$3"
+  local total all=()
+  total=$(sed -En 's/^(allocations|writes): //p' "$work/said")
+  for ((at = 1; at <= total; at += total / failures + 1)); do
+    failing "$1" "$2" $at "$work/$3$at" "${@:4}"
+    case $code in
+      0) ;;
+      2 | 65 | 74) grep -q '^foilgauge: .' "$work/said" || fail "$3 at $at of $total: no words" ;;
+      *) fail "$3 at $at of $total: exit code $code" ;;
+    esac
+    once "$work/$3$at" $recipe 2>/dev/null || true
+    all+=("$work/$3$at" 1)
+  done
+  check "${all[@]}"
+  echo "$3: $((${#all[@]} / 2)) failures over $total"
+}
+at_calls libfailing_malloc.so FOILGAUGE_FAIL_AT allocations
+at_calls libfull_disk.so FOILGAUGE_FULL_AT writes
+at_calls libfull_disk.so FOILGAUGE_FULL_AT single_writes FOILGAUGE_FULL_ONCE=1

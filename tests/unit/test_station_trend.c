@@ -179,6 +179,20 @@ static void a_shift_is_told_since_its_first_foil(void **state) {
       " (no. 41) to <a href=\"/foil?id=52\">S0052</a> (no. 52)</li>");
 }
 
+static void another_setup_is_marked_where_it_began(void **state) {
+  fixture *f = *state;
+  add_foils(f, 1, 40, "L1", 3.4);
+  assert_has_not(get(f, "/trends", "", 200), "class=\"change\"");
+  run_sql(f, "INSERT INTO setups VALUES (2, 'y', 'v', '{}', NULL, 'm', 2);"
+             "UPDATE scans SET setup = 2 WHERE id >= 31");
+  const char *page = get(f, "/trends", "", 200);
+  assert_int_equal(count(page, "class=\"change\""), 2); /* wide and narrow */
+  assert_has(page, "measured in another way from there on: by another model of the scanner since "
+                   "<a href=\"/foil?id=31\">S0031</a> (no. 31).");
+  assert_has_not(get(f, "/trends", "from=31&to=40", 200), "class=\"change\"");
+  assert_has_not(get(f, "/trends", "by=lots", 200), "class=\"change\"");
+}
+
 static void a_crushed_bump_is_in_no_chart(void **state) {
   fixture *f = *state;
   add_foils(f, 1, 30, "L1", 3.4);
@@ -343,6 +357,7 @@ int main(void) {
       TEST(a_stable_process_has_a_capability),
       TEST(too_few_foils_have_none),
       TEST(a_shift_is_told_since_its_first_foil),
+      TEST(another_setup_is_marked_where_it_began),
       TEST(a_crushed_bump_is_in_no_chart),
       TEST(zooming_moves_no_limit_unless_asked_to),
       TEST(many_points_are_thinned_out_and_none_that_stands_out),
