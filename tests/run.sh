@@ -38,7 +38,7 @@ if [ $long = yes ]; then
   tests/bench/bed.sh
   tests/fuzz/run.sh 60
   step "failing every allocation once" bash tests/cli/test_failures.sh build/foilgauge 1
-  step "a station killed 200 times, 800 allocations failing" bash tests/cli/test_station_robust.sh build/foilgauge 200 800
+  step "a station killed 200 times, 800 allocations and every write failing" bash tests/cli/test_station_robust.sh build/foilgauge 200 800
 fi
 
 # The sanitized tree looks at scans that the release tree draws; drawing has tests of its own in both.
