@@ -45,6 +45,8 @@ typedef struct fg_experiment_taken {
   bool applied;      /* false: it concerns rows of the table it was found in, and stays */
 } fg_experiment_taken;
 
+#define FG_EXPERIMENT_CONFIDENCE 0.95 /* of intervals, where nothing else is said */
+
 typedef struct fg_experiment_options {
   const char *response; /* NULL: the formula's left side */
   const char *formula;
@@ -55,7 +57,7 @@ typedef struct fg_experiment_options {
   const char *block;       /* column that names the blocks; NULL: none */
   const char *whole_plot;  /* column that names the whole plots; NULL: none */
   const char *uncertainty; /* column with the response's standard uncertainty; NULL: none */
-  double confidence;       /* 0 means 0.95 */
+  double confidence;       /* 0: FG_EXPERIMENT_CONFIDENCE */
   fg_goal goal;
   double target;                 /* FG_GOAL_TARGET: the response wanted */
   const char *const *constraint; /* "temperature_C <= 700", "2*a + b >= 3", in real units */

@@ -12,6 +12,9 @@ extern "C" {
 /* How far the reading is; called by the thread that called fg_measure_scan. */
 typedef void fg_measure_progress(void *user, int64_t rows_done, int64_t rows);
 
+/* What a scan's rows and tiles may take where nothing else is said. */
+#define FG_MEASURE_MEMORY_CAP_MIB 2048
+
 typedef struct fg_measure_options {
   double dpi;                    /* 0: as the file says */
   unsigned threads;              /* 0: as many as there are cores */
@@ -19,8 +22,8 @@ typedef struct fg_measure_options {
   bool allow_lossy;              /* as in fg_scan_options */
   bool only_file;                /* as in fg_scan_options */
   bool sum_failed;               /* also find the SHA-256 of a file that cannot be measured */
-  uint64_t pixel_cap;            /* refuse larger scans; 0: 4e9 */
-  size_t memory_cap;             /* bytes that rows and tiles may take; 0: 2 GiB */
+  uint64_t pixel_cap;            /* refuse larger scans; 0: FG_SCAN_PIXEL_CAP */
+  size_t memory_cap;             /* bytes that rows and tiles may take; 0: as above */
   fg_measure_progress *progress; /* NULL: none */
   void *progress_user;
 } fg_measure_options;

@@ -38,9 +38,11 @@ typedef enum fg_channel {
   FG_CHANNEL_LUMINANCE,
 } fg_channel;
 
+#define FG_SCAN_PIXEL_CAP 4e9
+
 typedef struct fg_scan_options {
   double dpi;          /* 0: as the file says; else used for both axes, file or not */
-  uint64_t pixel_cap;  /* refuse larger ones; 0: 4e9 */
+  uint64_t pixel_cap;  /* refuse larger ones; 0: FG_SCAN_PIXEL_CAP */
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
   bool allow_lossy;    /* take a TIFF whose compression has moved edges (JPEG) */

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "cli/output_set.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"
@@ -40,9 +41,10 @@ static const struct argp_option options[] = {
      "One page to read and print, with the stiffness of a bump by three models and its map over "
      "radius and angle",
      0},
-    {"youngs-modulus-gpa", OPTION_MODULUS, "E", 0, "Of the strip, for the stiffness: 200", 1},
-    {"poisson-ratio", OPTION_POISSON, "NU", 0, "Likewise: 0.3", 1},
-    {"friction", OPTION_FRICTION, "MU", 0, "Coulomb, of the bumps' feet: 0.1", 1},
+    {"youngs-modulus-gpa", OPTION_MODULUS, "E", 0,
+     "Of the strip, for the stiffness (default: @youngs_modulus_gpa@)", 1},
+    {"poisson-ratio", OPTION_POISSON, "NU", 0, "Likewise (default: @poisson_ratio@)", 1},
+    {"friction", OPTION_FRICTION, "MU", 0, "Coulomb, of the bumps' feet (default: @friction@)", 1},
     {"output", 'o', "FILE", 0, "Write here (-: standard output)", 0},
     {0},
 };
@@ -58,7 +60,7 @@ static const char doc[] =
     "models: the arch on sliding feet, Heshmat's formula and the link-spring. The page and the "
     "JSON "
     "say formula, source and what a model leaves out.\n\n"
-    "Exit code: 0 done; 64 usage; 65 the design is wrong; 74 input or output.";
+    "@exit_done@";
 
 static error_t parse_number(const char *name, const char *text, double low, double high,
                             double *value, struct argp_state *state) {
@@ -252,12 +254,13 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   return fg_output_set_write(ctx, &arguments->outputs, write_view, &view);
 }
 
+const struct argp fg_design_parser = {options, parse_option, "[DESIGN]", doc,
+                                      NULL,    fg_cli_fill,  NULL};
+
 int fg_cmd_design(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "[DESIGN]", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
   design_arguments arguments = {.outputs.count = OUTPUTS, .material = fg_arch_material_default()};
-  argv[0] = (char[]){"foilgauge design"};
-  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
+  fg_status parsed = fg_cli_parse(&ctx, &fg_design_parser, argc, argv, &arguments);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = show_design(&ctx, &arguments);
   fg_output_set_close(&arguments.outputs);

@@ -6,6 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/die_list.h"
+#include "cli/facts.h"
 #include "cli/output_set.h"
 #include "foilgauge/die.h"
 #include "report/die/die_report.h"
@@ -62,7 +63,9 @@ static const struct argp_option options[] = {
     {"u-scale-ppm", OPTION_U_SCALE, "U", 0,
      "Standard uncertainty of the instrument's scale (default: 0)", 2},
     {"max-slope", OPTION_MAX_SLOPE, "DEG", 0,
-     "Steeper flanks take no part, where the tip's cone or the arm touches (default: 77)", 2},
+     "Steeper flanks take no part, where the tip's cone or the arm touches (default: "
+     "@max_slope_deg@)",
+     2},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
     {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 3},
     {"table", OPTION_TABLE, "FILE.txt", 0, "The table, as on a terminal", 3},
@@ -88,9 +91,7 @@ static const char doc[] =
     "or overall.radius_mm judge every bump of each half.\n\n"
     "  foilgauge die --tip-um 2 --unit mm concave_*.txt convex_*.txt --html die.html\n"
     "  foilgauge die --tip-um 2 --unit um --half concave a1.txt a2.txt --half convex b1.txt\n\n"
-    "Exit code: 0 done and within tolerance, or none is stated; 1 a limit is exceeded by more than "
-    "U; 2 bumps that limits ask for are in no trace; 3 cannot tell; 64 usage; 65 bad data; 74 "
-    "input or output.";
+    "@exit_judged@";
 
 static void take(die_run *run, fg_status status) {
   if (run->status == FG_OK) run->status = status;
@@ -214,18 +215,19 @@ static fg_status measure(fg_context *ctx, die_run *run, int *code) {
   return fg_output_set_write(ctx, &run->outputs, write_output, run);
 }
 
+const struct argp fg_die_parser = {options,     parse_option, "[PROFILE...]", doc, NULL,
+                                   fg_cli_fill, NULL};
+
 int fg_cmd_die(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "[PROFILE...]", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
   die_run run = {.outputs.count = OUT_COUNT,
                  .said.tip_um = NAN,
                  .options.max_slope_deg = FG_DIE_MAX_SLOPE_DEG,
                  .ctx = &ctx};
   int code = 0;
-  argv[0] = (char[]){"foilgauge die"};
   /* In order: an option counts for the profiles behind it. */
-  if (argp_parse(&parser, argc, argv, ARGP_IN_ORDER, NULL, &run) != 0)
-    run.status = fg_fail(&ctx, FG_ERR_MEMORY, "out of memory: the command line");
+  fg_status parsed = fg_cli_parse_in_order(&ctx, &fg_die_parser, argc, argv, &run);
+  if (parsed != FG_OK) run.status = parsed;
   fg_status status = measure(&ctx, &run, &code);
   fg_output_set_close(&run.outputs);
   fg_die_sources_free(&run.sources);

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/doe_plan.h"
+#include "cli/facts.h"
 #include "cli/runs.h"
 #include "core/memory.h"
 #include "core/sha256.h"
@@ -83,7 +84,7 @@ static const struct argp_option options[] = {
     {"block", OPTION_BLOCK, "COL", 0, "Column that names blocks (days, sheets of metal)", 0},
     {"whole-plot", OPTION_WHOLE_PLOT, "COL", 0,
      "Column that names whole plots: runs that shared a setting (one oven load)", 0},
-    {"confidence", OPTION_CONFIDENCE, "P", 0, "Of the intervals (default 0.95)", 0},
+    {"confidence", OPTION_CONFIDENCE, "P", 0, "Of the intervals (default: @confidence@)", 0},
     {"scans", OPTION_SCANS, "COL", 0, "Measure the scans that this column names (several: a;b)", 1},
     {"uncertainty", OPTION_UNCERTAINTY, "COL", 0,
      "Column with the standard uncertainty of a response typed by hand", 1},
@@ -105,8 +106,7 @@ static const char doc[] =
     "between the cells, decimal points or (not between commas) decimal commas. - is standard "
     "input. Without -o the results go to standard output: as a table on a terminal, else as "
     "JSON.\n\n"
-    "Exit code: 0 done; 2 some scans could not be measured; 64 usage; 65 bad data; 74 input or "
-    "output.";
+    "@exit_partly@";
 
 static void parse_code(struct argp_state *state, const char *text, doe_arguments *a) {
   fg_context ctx = {0};
@@ -354,15 +354,18 @@ static void free_run(doe_run *run) {
   free(run->u_name);
 }
 
+const struct argp fg_doe_parser = {options, parse_option, "DATA.csv", doc, NULL, fg_cli_fill, NULL};
+
 int fg_cmd_doe(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "DATA.csv", doc, NULL, NULL, NULL};
-  if (argc > 1 && !strcmp(argv[1], "plan")) return fg_cmd_doe_plan(argc - 1, argv + 1);
+  if (argc > 1 && !strcmp(argv[1], "plan")) {
+    argv[1] = (char[]){"foilgauge doe plan"};
+    return fg_cmd_doe_plan(argc - 1, argv + 1);
+  }
   fg_context ctx = {0};
   doe_run run = {.outputs.count = OUT_COUNT};
-  argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
-  argv[0] = (char[]){"foilgauge doe"};
-  argp_parse(&parser, argc, argv, 0, NULL, &run);
-  fg_status status = analyse(&ctx, &run);
+  fg_status status = fg_cli_parse(&ctx, &fg_doe_parser, argc, argv, &run);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  status = analyse(&ctx, &run);
   int code = run.measured.failed ? 2 : 0;
   free_run(&run);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);

@@ -5,7 +5,9 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "cli/commands.h"
 #include "cli/doe_plan.h"
+#include "cli/facts.h"
 #include "core/csv.h"
 #include "core/file.h"
 #include "foilgauge/doe.h"
@@ -54,7 +56,7 @@ static const struct argp_option options[] = {
     {"block-axial", OPTION_AXIAL_BLOCK, NULL, 0, "Corners and axial runs are two blocks", 2},
     {"hard", OPTION_HARD, "NAME", 0,
      "Hard to change: runs at one setting stay together as a whole plot", 2},
-    {"seed", OPTION_SEED, "N", 0, "Of the random order (default 1)", 3},
+    {"seed", OPTION_SEED, "N", 0, "Of the random order (default: @seed@)", 3},
     {"column", OPTION_COLUMN, "NAME", 0, "An empty column to fill in (default: scan)", 3},
     {"output", 'o', "RUNS.csv", 0, "Write the run sheet here (default: standard output)", 3},
     {0},
@@ -65,7 +67,7 @@ static const char doc[] =
     "Name the scans of each run in the empty column, then:\n"
     "  foilgauge doe RUNS.csv --scans scan --response overall.springback_error_pct --model ...\n\n"
     "What a fraction cannot tell apart is said on standard error.\n\n"
-    "Exit code: 0 done; 64 usage; 74 output.";
+    "@exit_done@";
 
 static size_t parse_count(struct argp_state *state, const char *name, const char *text) {
   char *end;
@@ -235,16 +237,17 @@ static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_p
   return tell(ctx, plan);
 }
 
+const struct argp fg_doe_plan_parser = {
+    options, parse_option, "--factor NAME=LOW:HIGH...", doc, NULL, fg_cli_fill, NULL};
+
 int fg_cmd_doe_plan(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
   fg_plan plan = {0};
-  plan_arguments arguments = {.options.seed = 1};
-  argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
-  argv[0] = (char[]){"foilgauge doe plan"};
-  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+  plan_arguments arguments = {.options.seed = FG_CLI_SEED};
+  fg_status status = fg_cli_parse(&ctx, &fg_doe_plan_parser, argc, argv, &arguments);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
   if (!arguments.columns) arguments.column[arguments.columns++] = "scan";
-  fg_status status = name_factors(&ctx, &arguments);
+  status = name_factors(&ctx, &arguments);
   if (status == FG_OK) status = fg_plan_make(&ctx, &arguments.options, &plan);
   if (status == FG_OK) status = write_plan(&ctx, &arguments, &plan);
   fg_plan_free(&plan);

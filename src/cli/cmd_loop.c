@@ -8,6 +8,7 @@
 #include <cjson/cJSON.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "cli/loop_outputs.h"
 #include "cli/loop_source.h"
 #include "cli/progress.h"
@@ -54,11 +55,8 @@ enum {
   OPTION_THREADS,
 };
 
-/* What a search may take by estimate before it is refused. */
-static const double default_minutes = 10, default_mebibytes = 512;
-
 /* A lot's response where none is named. */
-static const char lot_response[] = "radius_mm", lot_model[] = "1";
+static const char lot_response[] = FG_CLI_LOT_RESPONSE, lot_model[] = FG_CLI_LOT_MODEL;
 
 static const struct argp_option options[] = {
     {"table", OPTION_TABLE, "DATA.csv", 0, "The measured data", 0},
@@ -73,12 +71,13 @@ static const struct argp_option options[] = {
      "RUNS.csv), or another column that names them",
      0},
     {"response", OPTION_RESPONSE, "COLUMN", 0,
-     "What was measured; with --lot and --doe any reported quantity (--lot: radius_mm)", 0},
+     "What was measured; with --lot and --doe any reported quantity (--lot: @lot_response@)", 0},
     {"without", OPTION_WITHOUT, "COLUMN", 0, "Leave this column out (may be repeated)", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans of --doe; overrules the files", 0},
     {"threads", OPTION_THREADS, "N", 0, "Threads that measure them (default: one per core)", 0},
     {"model", OPTION_MODEL, "FORMULA", 0,
-     "The declared model: a formula ('1 + T + D + T:D + T^2'; --lot: 1), or arc_length (from the "
+     "The declared model: a formula ('1 + T + D + T:D + T^2'; --lot: @lot_model@), or arc_length "
+     "(from the "
      "bump radius)",
      0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
@@ -94,11 +93,12 @@ static const struct argp_option options[] = {
     {"matters", OPTION_MATTERS, "AMPLITUDE", 0,
      "An effect this small does not matter, in the response's unit (default: one noise sd)", 0},
     {"minutes", OPTION_MINUTES, "N", 0,
-     "Refuse a table whose search may take longer by estimate (default 10)", 0},
-    {"memory", OPTION_MEMORY, "MIB", 0, "Refuse one that may take more memory (default 512)", 0},
+     "Refuse a table whose search may take longer by estimate (default: @loop_minutes@)", 0},
+    {"memory", OPTION_MEMORY, "MIB", 0,
+     "Refuse one that may take more memory (default: @loop_mebibytes@)", 0},
     {"seed", OPTION_SEED, "N", 0,
      "Of the interval of the error ratio and of the smallest amplitudes; no verdict depends on it "
-     "(default 1)",
+     "(default: @seed@)",
      0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
     {"model-out", OPTION_MODEL_OUT, "FILE", 0,
@@ -118,8 +118,7 @@ static const char doc[] =
     "bump's number. DATA.csv has commas, semicolons or tabs between the cells, decimal points or "
     "(not between commas) decimal commas. Without -o a table is printed on a terminal and JSON "
     "elsewhere.\n\n"
-    "Exit code: 0 done; 2 some scans of --doe could not be measured; 64 usage; 65 bad data; 74 "
-    "input or output.";
+    "@exit_partly@";
 
 static void parse_number(struct argp_state *state, const char *name, const char *text,
                          double *value) {
@@ -354,17 +353,20 @@ static bool is_about_a_table(int argc, char **argv) {
   return false;
 }
 
+const struct argp fg_loop_table_parser = {
+    options,     parse_option, "--table DATA.csv\n--lot DIR\n--doe RUNS.csv", doc, NULL,
+    fg_cli_fill, NULL};
+
 int fg_cmd_loop(int argc, char **argv) {
   if (!is_about_a_table(argc, argv)) return fg_cmd_loop_scan(argc, argv);
-  static const struct argp parser = {options, parse_option, "", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  loop_arguments arguments = {.spec = {.seed = 1},
+  loop_arguments arguments = {.spec = {.seed = FG_CLI_SEED},
                               .outputs.count = FG_LOOP_OUTPUTS,
-                              .minutes = default_minutes,
-                              .mebibytes = default_mebibytes};
-  argv[0] = (char[]){"foilgauge loop"};
-  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
+                              .minutes = FG_CLI_LOOP_MINUTES,
+                              .mebibytes = FG_CLI_LOOP_MEBIBYTES};
+  fg_status status = fg_cli_parse(&ctx, &fg_loop_table_parser, argc, argv, &arguments);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
   bool failed = false;
-  fg_status status = run_loop(&ctx, &arguments, &failed);
+  status = run_loop(&ctx, &arguments, &failed);
   return status == FG_OK ? 2 * failed : fg_cli_fail(&ctx, status);
 }

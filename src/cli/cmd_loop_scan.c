@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "cli/loop_outputs.h"
 #include "core/file.h"
 #include "foilgauge/scan.h"
@@ -46,7 +47,7 @@ typedef struct arguments {
 static const struct argp_option options[] = {
     {"design", OPTION_DESIGN, "FILE", 0,
      "The design of the foil or of the gauges (default: Gen II)", 0},
-    {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
+    {"form", OPTION_FORM, "FORM", 0, "@forms@; overrules the design", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution, where the scan does not say it", 0},
     {"same-foil", OPTION_SAME, NULL, 0,
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
@@ -57,7 +58,7 @@ static const struct argp_option options[] = {
     {"model-out", OPTION_MODEL_OUT, "FILE", 0, "The scanner's model, for `measure --model`", 0},
     {"html", OPTION_HTML, "FILE", 0, "The report as a page", 0},
     {"scanner", OPTION_SCANNER, "NAME", 0, "Its name, kept in the model", 0},
-    {"seed", OPTION_SEED, "N", 0, "Of every random step (default 1)", 0},
+    {"seed", OPTION_SEED, "N", 0, "Of every random step (default: @seed@)", 0},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: all cores)", 0},
     {0},
 };
@@ -76,9 +77,8 @@ static const char doc[] =
     "of gauges tells the scanner's errors, known diameters_mm in the design its absolute scale.\n\n"
     "With --table DATA.csv the loop is closed on a table, with --lot DIR on what a lot measured, "
     "with "
-    "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table X --help`.\n\n"
-    "Exit code: 0 done; 2 a foil could not be measured and took no part; 64 usage; 65 bad data; 74 "
-    "input or output; 130 interrupted.";
+    "--doe RUNS.csv on an experiment's scans: `foilgauge loop --table --help`.\n\n"
+    "@exit_partly@";
 
 static void add_scan(struct argp_state *state, const char *path, bool aside) {
   arguments *a = state->input;
@@ -202,15 +202,16 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   return status;
 }
 
+const struct argp fg_loop_parser = {options, parse_option, "SCAN...", doc, NULL, fg_cli_fill, NULL};
+
 int fg_cmd_loop_scan(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "SCAN...", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
-  arguments a = {.options = {.seed = 1}, .outputs.count = FG_LOOP_OUTPUTS};
-  argv[0] = (char[]){"foilgauge loop"};
+  arguments a = {.options = {.seed = FG_CLI_SEED}, .outputs.count = FG_LOOP_OUTPUTS};
   /* in order: reports list the scans as they are given, those kept aside between the others */
-  argp_parse(&parser, argc, argv, ARGP_IN_ORDER, NULL, &a);
+  fg_status status = fg_cli_parse_in_order(&ctx, &fg_loop_parser, argc, argv, &a);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
   int code = 0;
-  fg_status status = run(&ctx, &a, &code);
+  status = run(&ctx, &a, &code);
   fg_output_set_close(&a.outputs);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "core/file.h"
 #include "foilgauge/lot.h"
 
@@ -80,11 +81,7 @@ static const char doc[] =
     "columns `bearing` and `pad` say, or without them foils in a row; a foil whose cell is empty "
     "is in none. The recipe's \"assembly\": {\"bearings\": 1000, \"seed\": 1} says how many "
     "bearings are drawn from the foils, to see how many would assemble; 0 draws none.\n\n"
-    "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
-    "more than U (of foils or of bearings), or a bump is missing; 2 something could not be "
-    "measured; 3 cannot tell: a limit lies within U of a value, none is exceeded; 64 usage; 65 bad "
-    "data; 74 input or output. A "
-    "shard is not judged: 0 or 2.";
+    "@exit_judged@ A shard is not judged: 0 or 2.";
 
 static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
   unsigned long long index, count;
@@ -355,13 +352,14 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
   return FG_OK;
 }
 
+const struct argp fg_lot_parser = {options, parse_option, "PATH...", doc, NULL, fg_cli_fill, NULL};
+
 int fg_cmd_lot(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "PATH...", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
   lot_arguments arguments = {.jobs = -1, .shard = {1, 1}};
   int code = 0;
-  argv[0] = (char[]){"foilgauge lot"};
-  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_status status = run(&ctx, &arguments, &code);
+  fg_status status = fg_cli_parse(&ctx, &fg_lot_parser, argc, argv, &arguments);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  status = run(&ctx, &arguments, &code);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

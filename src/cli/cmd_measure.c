@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "cli/output_set.h"
 #include "cli/progress.h"
 #include "core/memory.h"
@@ -70,15 +71,14 @@ enum {
 
 static const struct argp_option options[] = {
     {"design", 'd', "FILE", 0, "What the part should be (default: the Gen II foil)", 0},
-    {"form", OPTION_FORM, "FORM", 0, "classical, sinusoidal or discs; overrules the design", 0},
+    {"form", OPTION_FORM, "FORM", 0, "@forms@; overrules the design", 0},
     {"model", OPTION_MODEL, "FILE.json", 0,
      "Correct by what `foilgauge loop --model-out` found of this scanner", 0},
     {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scan; overrules the file", 0},
     {"channel", OPTION_CHANNEL, "CHANNEL", 0,
-     "Of a colour scan: red, green, blue, luminance, or auto: the one with the most contrast, "
-     "which "
-     "takes a second reading (default: auto)",
+     "Of a colour scan: @channels@; auto is the one with the most contrast, which takes a second "
+     "reading (default: auto)",
      0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, "Take a TIFF with JPEG inside, edges and all", 0},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 1},
@@ -87,28 +87,18 @@ static const struct argp_option options[] = {
     {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
     {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
-    {"max-pixels", OPTION_MAX_PIXELS, "N", 0, "Refuse larger scans (default: 4e9)", 2},
+    {"max-pixels", OPTION_MAX_PIXELS, "N", 0, "Refuse larger scans (default: @pixel_cap@)", 2},
     {"max-memory", OPTION_MAX_MEMORY, "MIB", 0,
-     "Stop when the scan's rows and foils take more memory (default: 2048)", 2},
+     "Stop when the scan's rows and foils take more memory (default: @memory_cap_mib@)", 2},
     {0},
 };
 
 static const char doc[] =
     "Measure every foil in a scan: radii, angles, heights, clearances, each with its uncertainty."
-    "\v file, or - for standard input. Without -o the results go to standard output: as a table on "
+    "\vSCAN is a @formats@ file, or - for standard input. Without -o the results go to standard "
+    "output: as a table on "
     "a terminal, else as JSON.\n\n"
-    "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
-    "more than U, or a bump is missing; 2 something could not be measured; 3 cannot tell: a limit "
-    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output.";
-
-/* Names the formats before what follows the options. */
-static char *name_formats(int key, const char *text, void *input) {
-  char names[100], *whole;
-  (void)input;
-  if (key != ARGP_KEY_HELP_POST_DOC) return (char *)text;
-  fg_scan_format_names(" or ", names, sizeof names);
-  return asprintf(&whole, "SCAN is a %s%s", names, text) < 0 ? (char *)text : whole;
-}
+    "@exit_judged@";
 
 static fg_channel parse_channel(struct argp_state *state, const char *text) {
   for (int channel = FG_CHANNEL_AUTO; channel <= FG_CHANNEL_LUMINANCE; channel++)
@@ -357,14 +347,14 @@ static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
   return fg_output_set_write(ctx, &run->outputs, write_output, run);
 }
 
+const struct argp fg_measure_parser = {options, parse_option, "SCAN...", doc,
+                                       NULL,    fg_cli_fill,  NULL};
+
 int fg_cmd_measure(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "SCAN...", doc,
-                                     NULL,    name_formats, NULL};
   fg_context ctx = {0};
   measure_run run = {.outputs.count = OUT_COUNT};
   int code = 0;
-  argv[0] = (char[]){"foilgauge measure"};
-  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &run);
+  fg_status parsed = fg_cli_parse(&ctx, &fg_measure_parser, argc, argv, &run);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = measure(&ctx, &run, &code);
   free_run(&run);

@@ -1,6 +1,7 @@
 #include <argp.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "foilgauge/lot.h"
 
 typedef struct merge_arguments {
@@ -18,10 +19,7 @@ static const char doc[] =
     "Join the shards of a lot and report it as if it had been measured in one run."
     "\vEvery shard must be there, once, complete, and made with the same recipe, manifest and "
     "version. The report and the exit code are those of one run, whatever the number of shards.\n\n"
-    "Exit code: 0 all measured and within tolerance, or none is stated; 1 a limit is exceeded by "
-    "more than U (of foils or of bearings), or a bump is missing; 2 something could not be "
-    "measured; 3 cannot tell: a limit "
-    "lies within U of a value, none is exceeded; 64 usage; 65 bad data; 74 input or output.";
+    "@exit_judged@";
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   merge_arguments *arguments = state->input;
@@ -43,15 +41,16 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
+const struct argp fg_merge_parser = {options, parse_option, "DIR...", doc, NULL, fg_cli_fill, NULL};
+
 int fg_cmd_merge(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "DIR...", doc, NULL, NULL, NULL};
   fg_context ctx = {0};
   merge_arguments arguments = {0};
   fg_lot_outcome outcome;
-  argv[0] = (char[]){"foilgauge merge"};
-  argp_parse(&parser, argc, argv, 0, NULL, &arguments);
-  fg_status status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
-                                  arguments.folder, &outcome);
+  fg_status status = fg_cli_parse(&ctx, &fg_merge_parser, argc, argv, &arguments);
+  if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
+                        arguments.folder, &outcome);
   return status == FG_OK ? fg_cli_lot_summary(&outcome, arguments.folder)
                          : fg_cli_fail(&ctx, status);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "cli/output_set.h"
 #include "foilgauge/render.h"
 
@@ -11,10 +12,16 @@ typedef struct render_arguments {
 } render_arguments;
 
 static const struct argp_option options[] = {
-    {"output", 'o', "SCAN.png", 0, "where the scan goes (PNG, gray); - is standard output", 0},
-    {"truth", 't', "F.json", 0, "where the true dimensions go", 0},
+    {"output", 'o', "SCAN.png", 0, "Where the scan goes (PNG, gray); - is standard output", 0},
+    {"truth", 't', "F.json", 0, "Where the true dimensions go", 0},
     {0},
 };
+
+static const char doc[] =
+    "Render a scan of foils as SPEC.json describes them, and the truth about it.\v"
+    "samples/render/clean.json, rough.json and harsh.json are specs to start from; "
+    "include/foilgauge/render.h lists their members. The same spec gives the same bytes."
+    "\n\n@exit_done@";
 
 static error_t parse_option(int key, char *value, struct argp_state *state) {
   render_arguments *arguments = state->input;
@@ -50,18 +57,13 @@ static fg_status render(fg_context *ctx, const render_arguments *arguments) {
   return status;
 }
 
+const struct argp fg_render_parser = {options, parse_option, "SPEC.json", doc,
+                                      NULL,    fg_cli_fill,  NULL};
+
 int fg_cmd_render(int argc, char **argv) {
-  static const struct argp parser = {
-      .options = options,
-      .parser = parse_option,
-      .args_doc = "SPEC.json",
-      .doc = "Renders a scan of foils as SPEC.json describes them, and the truth about it.\v"
-             "samples/render/clean.json, rough.json and harsh.json are specs to start from; "
-             "include/foilgauge/render.h lists their members. The same spec gives the same bytes."};
   render_arguments arguments = {0};
   fg_context ctx = {0};
-  argp_err_exit_status = fg_status_exit_code(FG_ERR_USAGE);
-  fg_status parsed = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
+  fg_status parsed = fg_cli_parse(&ctx, &fg_render_parser, argc, argv, &arguments);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);
   fg_status status = render(&ctx, &arguments);
   return status == FG_OK ? 0 : fg_cli_fail(&ctx, status);

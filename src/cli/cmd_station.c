@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/facts.h"
 #include "foilgauge/station.h"
 
 enum {
@@ -31,7 +32,7 @@ static const struct argp_option options[] = {
     {"poll", OPTION_POLL, "S", 0,
      "Look into the folder every so many seconds (network folders, of whose files nobody tells)",
      2},
-    {"port", OPTION_PORT, "N", 0, "Of the pages (default: 8317; 0: one that is free)", 2},
+    {"port", OPTION_PORT, "N", 0, "Of the pages (default: @station_port@; 0: one that is free)", 2},
     {"listen", OPTION_LISTEN, "ADDRESS", 0,
      "Serve the pages to other machines; needs --token (default: this machine alone)", 2},
     {"token", OPTION_TOKEN, "TEXT", 0, "What a browser must know; at least 16 characters", 2},
@@ -44,11 +45,7 @@ static const char doc[] =
     "and shown in the browser."
     "\vThe address is printed when the pages can be had. The database is "
     "FOLDER/" FG_STATION_DATABASE ". Scans are never changed.\n\n"
-    "Exit code: 130 when it was interrupted, which is how it ends; with --once and --export as of "
-    "`measure`: 0 all within tolerance, 1 a limit is exceeded, 2 something could not be measured, "
-    "3 cannot "
-    "tell; "
-    "64 usage; 65 bad data; 74 input or output, another station is at work in the folder.";
+    "@exit_judged@ So with --once and --export; else 130, by which it is ended.";
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   station_arguments *arguments = state->input;
@@ -102,14 +99,15 @@ static void say_file(void *user, const char *file, const char *words) {
   fprintf(stderr, "foilgauge: %s%s%s\n", file, words[0] ? " " : "", words);
 }
 
+const struct argp fg_station_parser = {options, parse_option, "FOLDER", doc,
+                                       NULL,    fg_cli_fill,  NULL};
+
 int fg_cmd_station(int argc, char **argv) {
-  static const struct argp parser = {options, parse_option, "FOLDER", doc, NULL, NULL, NULL};
   static fg_station_settings settings;
   fg_context ctx = {0};
-  station_arguments arguments = {.request = {.port = 8317}};
+  station_arguments arguments = {.request = {.port = FG_CLI_STATION_PORT}};
   fg_station_outcome outcome;
-  argv[0] = (char[]){"foilgauge station"};
-  fg_status status = fg_cli_parse(&ctx, &parser, argc, argv, &arguments);
+  fg_status status = fg_cli_parse(&ctx, &fg_station_parser, argc, argv, &arguments);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   status = fg_station_settings_load(&ctx, arguments.recipe, arguments.design, &settings);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);

@@ -2,6 +2,7 @@
 #include <argp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/commands.h"
 
@@ -10,10 +11,30 @@ int fg_cli_fail(const fg_context *ctx, fg_status status) {
   return fg_status_exit_code(status);
 }
 
+/* argp would take it for the value of an option that stands before it (`loop --table --help`). */
+static void answer_help(const struct argp *parser, int argc, char **argv) {
+  for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++) {
+    if (strcmp(argv[i], "--help") != 0) continue;
+    argp_help(parser, stdout, ARGP_HELP_STD_HELP, argv[0]);
+    exit(0);
+  }
+}
+
+static fg_status parse(fg_context *ctx, const struct argp *parser, unsigned flags, int argc,
+                       char **argv, void *input) {
+  answer_help(parser, argc, argv);
+  if (argp_parse(parser, argc, argv, flags, NULL, input) == 0) return FG_OK;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
+}
+
 fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                        void *input) {
-  if (argp_parse(parser, argc, argv, 0, NULL, input) == 0) return FG_OK;
-  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the command line");
+  return parse(ctx, parser, 0, argc, argv, input);
+}
+
+fg_status fg_cli_parse_in_order(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                                void *input) {
+  return parse(ctx, parser, ARGP_IN_ORDER, argc, argv, input);
 }
 
 double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,

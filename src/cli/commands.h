@@ -1,19 +1,37 @@
-/* The program's commands: a row of a table each (main.c); what they do alike (command.c, form.c).
- */
+/* The program's commands: a row of a table each (commands.c); what they do alike (command.c,
+ * form.c, facts.c). */
 #ifndef FG_CLI_COMMANDS_H
 #define FG_CLI_COMMANDS_H
+
+#include <stdio.h>
 
 #include "foilgauge/lot.h"
 #include "foilgauge/status.h"
 
-/* argv[0] is the command's name. Returns the exit code (0 to 3, 64, 65, 74, 130: README). */
+struct argp;
+struct argp_state;
+
+/* argv[0] is "foilgauge" and the command's name. Returns the exit code (facts.c lists them). */
 typedef int fg_command_run(int argc, char **argv);
+
+/* One way to call a command. Its parser says everything of its options: to who types them, to
+ * --help, the manual page and the shell's completion (src/manual/). */
+typedef struct fg_command_form {
+  const char *words; /* after "foilgauge": "doe plan" */
+  const struct argp *parser;
+  const char *title; /* over its options, where a command has more than one form; else NULL */
+} fg_command_form;
+
+enum { FG_COMMAND_FORMS = 2 };
 
 typedef struct fg_command {
   const char *name;
   fg_command_run *run;
   const char *summary; /* one line for `foilgauge help` */
+  fg_command_form form[FG_COMMAND_FORMS];
 } fg_command;
+
+extern const fg_command fg_commands[]; /* ends with a row without a name */
 
 fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_doe;
@@ -26,13 +44,19 @@ fg_command_run fg_cmd_merge;
 fg_command_run fg_cmd_die;
 fg_command_run fg_cmd_station;
 
-struct argp;
-struct argp_state;
+extern const struct argp fg_measure_parser, fg_doe_parser, fg_doe_plan_parser, fg_design_parser,
+    fg_render_parser, fg_loop_parser, fg_loop_table_parser, fg_lot_parser, fg_merge_parser,
+    fg_die_parser, fg_station_parser;
 
-/* Reads the command line into `input`. A wrong one ends the program (argp, exit code 64);
- * FG_ERR_MEMORY when argp has no memory, which it says by its return value alone. */
+/* Reads the command line into `input`. A wrong one ends the program (argp, exit code 64), and so
+ * does --help, wherever it stands; FG_ERR_MEMORY when argp has no memory, which it says by its
+ * return value alone. */
 fg_status fg_cli_parse(fg_context *ctx, const struct argp *parser, int argc, char **argv,
                        void *input);
+
+/* The same, options and arguments told in the order in which they stand. */
+fg_status fg_cli_parse_in_order(fg_context *ctx, const struct argp *parser, int argc, char **argv,
+                                void *input);
 
 /* The number of an option --name; one that is none or out of range ends the program (64). */
 double fg_cli_number(struct argp_state *state, const char *name, const char *text, double lowest,
@@ -46,5 +70,6 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 
 /* --form: overrules the design's; NULL leaves it. */
 fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design);
+void fg_cli_write_forms(FILE *out); /* "classical, sinusoidal or discs" */
 
 #endif

@@ -1,3 +1,4 @@
+#include <argp.h>
 #include <malloc.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,26 +8,49 @@
 #include "cli/stack.h"
 #include "cli/standard.h"
 
-static const fg_command commands[] = {
-    {"measure", fg_cmd_measure, "measure every foil in a scan, each value with its uncertainty"},
-    {"doe", fg_cmd_doe, "plan an experiment; analyse its runs or scans; the best setting"},
-    {"design", fg_cmd_design, "check a design; what follows from it; its clearance curve"},
-    {"loop", fg_cmd_loop, "find the effect that a declared model lacks; error before and after"},
-    {"render", fg_cmd_render, "draw a scan with known truth from a spec"},
-    {"lot", fg_cmd_lot, "measure and report a production lot; resume it, shard it"},
-    {"die", fg_cmd_die, "stylus traces of a die against the design"},
-    {"merge", fg_cmd_merge, "join the shards of a lot into one report"},
-    {"station", fg_cmd_station, "watch a folder of scans, keep results, show them in a browser"},
-    {NULL, NULL, NULL},
-};
-
 static void print_help(FILE *out) {
   fputs("foilgauge measures the foils of gas foil bearings from flatbed scans.\n\n"
         "Usage: foilgauge COMMAND [OPTION...]\n\nCommands:\n",
         out);
-  for (const fg_command *command = commands; command->name; command++)
+  for (const fg_command *command = fg_commands; command->name; command++)
     fprintf(out, "  %-10s %s\n", command->name, command->summary);
-  fputs("\n`foilgauge COMMAND --help` explains one command.\n", out);
+  fputs("\n`foilgauge help COMMAND` explains one command, `man foilgauge-COMMAND` all about it.\n",
+        out);
+}
+
+static const fg_command *find_command(const char *name) {
+  const fg_command *command = fg_commands;
+  while (command->name && strcmp(command->name, name) != 0)
+    command++;
+  return command->name ? command : NULL;
+}
+
+static int no_command(const char *name) {
+  fprintf(stderr, "foilgauge: no command '%s'; `foilgauge help` lists them\n", name);
+  return fg_status_exit_code(FG_ERR_USAGE);
+}
+
+/* What `foilgauge COMMAND --help` says, of every way to call it. */
+static int help_command(const char *name) {
+  const fg_command *command = find_command(name);
+  if (!command) return no_command(name);
+  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
+    char words[64];
+    const fg_command_form *form = &command->form[i];
+    snprintf(words, sizeof words, "foilgauge %s", form->words);
+    if (form->title) printf("%s%s\n\n", i ? "\n\n" : "", form->title);
+    argp_help(form->parser, stdout, ARGP_HELP_STD_HELP, words);
+  }
+  return 0;
+}
+
+static int run_command(int argc, char **argv) {
+  char words[64];
+  const fg_command *command = find_command(argv[0]);
+  if (!command) return no_command(argv[0]);
+  snprintf(words, sizeof words, "foilgauge %s", command->name);
+  argv[0] = words;
+  return command->run(argc, argv);
 }
 
 int main(int argc, char **argv) {
@@ -45,6 +69,7 @@ int main(int argc, char **argv) {
     return fg_status_exit_code(FG_ERR_USAGE);
   }
   if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help")) {
+    if (argc > 2) return help_command(argv[2]);
     print_help(stdout);
     return 0;
   }
@@ -52,8 +77,5 @@ int main(int argc, char **argv) {
     puts("foilgauge " FOILGAUGE_VERSION);
     return 0;
   }
-  for (const fg_command *command = commands; command->name; command++)
-    if (!strcmp(argv[1], command->name)) return command->run(argc - 1, argv + 1);
-  fprintf(stderr, "foilgauge: no command '%s'; `foilgauge help` lists them\n", argv[1]);
-  return fg_status_exit_code(FG_ERR_USAGE);
+  return run_command(argc - 1, argv + 1);
 }

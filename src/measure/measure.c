@@ -15,7 +15,7 @@
 #define UNEQUAL       0.05
 /* A strip narrower than so many pixels is not sure to be found. */
 #define STRIP_LEAST_PX   2.0
-#define MEMORY_CAP_BYTES ((size_t)2 << 30)
+#define MEMORY_CAP_BYTES ((size_t)FG_MEASURE_MEMORY_CAP_MIB << 20)
 
 static size_t memory_cap(const fg_measure_options *options) {
   return options->memory_cap ? options->memory_cap : MEMORY_CAP_BYTES;

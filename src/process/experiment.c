@@ -82,7 +82,7 @@ static fg_status read_options(fg_context *ctx, const fg_experiment_options *opti
   fg_status status = write_formula(ctx, options, &parsed, e);
   fg_formula_free(&parsed);
   FG_TRY(status);
-  e->confidence = options->confidence > 0 ? options->confidence : 0.95;
+  e->confidence = options->confidence > 0 ? options->confidence : FG_EXPERIMENT_CONFIDENCE;
   if (!(e->confidence < 1))
     return fg_fail(ctx, FG_ERR_USAGE, "the confidence %g is not between 0 and 1", e->confidence);
   if (options->block) FG_TRY(fg_text_print(ctx, &e->block, "%s", options->block));

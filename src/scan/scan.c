@@ -12,7 +12,6 @@
 #include "scan/resolution.h"
 #include "scan/source.h"
 
-#define DEFAULT_PIXEL_CAP 4000000000u
 enum { HEAD_BYTES = 512 }; /* that tell the format */
 
 struct fg_scan {
@@ -52,7 +51,7 @@ static fg_status check_size(fg_context *ctx, const fg_scan *scan, uint64_t cap) 
   const fg_scan_header *header = &scan->header;
   const char *name = scan->source.name;
   uint64_t pixels = 0;
-  if (cap == 0) cap = DEFAULT_PIXEL_CAP;
+  if (cap == 0) cap = (uint64_t)FG_SCAN_PIXEL_CAP;
   if (__builtin_mul_overflow(header->width_px, header->height_px, &pixels) || pixels > cap)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: has %" PRIu64 " x %" PRIu64 " pixels, more than the %" PRIu64

@@ -1,0 +1,124 @@
+/* Makes the manual's pages and the completion of the shell: foilgauge_manual FOLDER TEXT...
+ *
+ * FOLDER/man/<page>.<section>, FOLDER/completion/foilgauge, FOLDER/man/examples (a command a line:
+ * the tests run them). A command without a text, a text of no command that names a section 1 page,
+ * and a name that no fact has are errors. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/commands.h"
+#include "cli/facts.h"
+#include "core/file.h"
+#include "manual/facts.h"
+#include "manual/page.h"
+
+enum { TEXT_BYTES_MAX = 1 << 20, PAGES_MAX = 64 };
+
+typedef struct manual {
+  const char *folder;
+  char name[PAGES_MAX][80]; /* pages that were written */
+  size_t pages;
+  FILE *examples;
+} manual;
+
+static int complain(const char *path, const char *what) {
+  fprintf(stderr, "foilgauge_manual: %s: %s\n", path, what);
+  return 1;
+}
+
+static FILE *create(const char *folder, const char *name) {
+  char path[4096];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *out = fopen(path, "w");
+  if (!out) complain(path, strerror(errno));
+  return out;
+}
+
+static const fg_command *command_of(const fg_manual_text *text) {
+  static const char prefix[] = "foilgauge-";
+  const fg_command *command = fg_commands;
+  if (text->section != '1' || strncmp(text->name, prefix, sizeof prefix - 1) != 0) return NULL;
+  while (command->name && strcmp(command->name, text->name + sizeof prefix - 1) != 0)
+    command++;
+  return command;
+}
+
+static int write_page(manual *all, const char *path, const fg_manual_text *text) {
+  char name[80], place[100];
+  const fg_command *command = command_of(text);
+  if (command && !command->name) return complain(path, "there is no such command");
+  if (all->pages == PAGES_MAX) return complain(path, "too many pages");
+  snprintf(name, sizeof name, "%.64s.%c", text->name, text->section);
+  strcpy(all->name[all->pages++], name);
+  snprintf(place, sizeof place, "man/%s", name);
+  FILE *out = create(all->folder, place);
+  if (!out) return 1;
+  bool known = fg_manual_write_page(text, command, out);
+  fprintf(all->examples, "# %s\n", name);
+  fg_manual_write_examples(text, all->examples);
+  if (fclose(out) != 0) return complain(name, "cannot be written");
+  return known ? 0 : complain(path, "a @name@ of the command's help is not known");
+}
+
+static int read_page(manual *all, const char *path) {
+  fg_context ctx = {0};
+  fg_manual_text text = {0};
+  char *raw, *whole = NULL;
+  size_t size;
+  int skip = 0;
+  if (fg_file_read_text(&ctx, path, TEXT_BYTES_MAX, &raw) != FG_OK)
+    return complain(path, ctx.message);
+  FILE *filled = open_memstream(&whole, &size);
+  if (!filled) abort();
+  bool known = fg_facts_write(raw, fg_manual_fact, filled);
+  if (fclose(filled) != 0) abort();
+  free(raw);
+  bool titled = sscanf(whole, "# %63[^(](%c) - %199[^\n]%n", text.name, &text.section, text.summary,
+                       &skip) == 3;
+  text.body = whole + skip;
+  if (command_of(&text) && command_of(&text)->name)
+    snprintf(text.summary, sizeof text.summary, "%s", command_of(&text)->summary);
+  int failed = !known    ? complain(path, "a @name@ in it is not known")
+               : !titled ? complain(path, "does not begin with `# name(section) - summary`")
+                         : write_page(all, path, &text);
+  free(whole);
+  return failed;
+}
+
+static int miss_commands(const manual *all) {
+  int failed = 0;
+  for (const fg_command *command = fg_commands; command->name; command++) {
+    char name[80];
+    size_t i = 0;
+    snprintf(name, sizeof name, "foilgauge-%s.1", command->name);
+    while (i < all->pages && strcmp(all->name[i], name) != 0)
+      i++;
+    if (i == all->pages) failed = complain(name, "the command has no text in src/manual/text");
+  }
+  return failed;
+}
+
+int main(int argc, char **argv) {
+  static const char *const folders[] = {"", "/man", "/completion"};
+  manual all = {0};
+  int failed = 0;
+  if (argc < 3) return complain("usage", "foilgauge_manual FOLDER TEXT...");
+  all.folder = argv[1];
+  for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s%s", argv[1], folders[i]);
+    if (mkdir(path, 0777) != 0 && errno != EEXIST) return complain(path, strerror(errno));
+  }
+  FILE *completion = create(all.folder, "completion/foilgauge");
+  all.examples = create(all.folder, "man/examples");
+  if (!completion || !all.examples) return 1;
+  for (int i = 2; i < argc; i++)
+    failed |= read_page(&all, argv[i]);
+  failed |= miss_commands(&all);
+  fg_manual_write_completion(completion);
+  failed |= fclose(completion) != 0 || fclose(all.examples) != 0;
+  return failed;
+}

@@ -1,0 +1,217 @@
+#include "manual/page.h"
+
+#include <argp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/facts.h"
+#include "manual/roff.h"
+
+static const char see_also[][24] = {"foilgauge-design(5)", "foilgauge-recipe(5)"};
+
+/* What a parser says, with what the code knows put in; the caller frees. */
+static void fill(const char *text, bool *known, char **whole) {
+  size_t size;
+  FILE *out = open_memstream(whole, &size);
+  if (!out) abort();
+  *known = fg_facts_write(text, NULL, out) && *known;
+  if (fclose(out) != 0) abort();
+}
+
+static void write_name(const char *text, FILE *out) {
+  fg_roff_escape(text, strlen(text), out);
+}
+
+static void write_call(const char *words, const char *arguments, size_t length, FILE *out) {
+  fputs(".br\n.B foilgauge ", out);
+  write_name(words, out);
+  fputs("\n[\\fIOPTION\\fR...] \\fI", out);
+  fg_roff_escape(arguments, length, out);
+  fputs("\\fR\n", out);
+}
+
+/* One line for each of the parser's alternatives. */
+static void write_synopsis(const fg_command *command, FILE *out) {
+  fputs(".SH SYNOPSIS\n", out);
+  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
+    const char *arguments = command->form[i].parser->args_doc;
+    do {
+      size_t length = strcspn(arguments, "\n");
+      write_call(command->form[i].words, arguments, length, out);
+      arguments += length;
+    } while (*arguments++ == '\n');
+  }
+}
+
+/* Paragraphs of a parser's text as those of a manual: an example there has two blanks before it. */
+static void write_paragraphs(const char *text, FILE *out) {
+  char *marked = NULL;
+  size_t size;
+  FILE *lines = open_memstream(&marked, &size);
+  if (!lines) abort();
+  while (*text) {
+    size_t length = strcspn(text, "\n");
+    if (!strncmp(text, "  ", 2)) fputs("\n  ", lines);
+    fprintf(lines, "%.*s\n", (int)length, text);
+    text += length + (text[length] == '\n');
+  }
+  if (fclose(lines) != 0) abort();
+  fg_roff_text(marked, out);
+  free(marked);
+}
+
+/* The paragraph of a parser's text that says how the command ends, or NULL. */
+static const char *find_exit(const char *text) {
+  return strstr(text, "@exit_");
+}
+
+static void write_description(const fg_command_form *form, bool *known, FILE *out) {
+  char *doc = strdup(form->parser->doc);
+  if (!doc) abort();
+  char *after = strchr(doc, '\v'), *end = (char *)(uintptr_t)find_exit(doc);
+  if (end) *end = '\0';
+  if (after) *after = '\n';
+  char *whole = NULL;
+  fill(doc, known, &whole);
+  char *line = after ? strchr(whole, '\n') : NULL;
+  if (line) *line = '\0';
+  write_paragraphs(whole, out);
+  if (line) write_paragraphs(line + 1, out);
+  free(whole);
+  free(doc);
+}
+
+static void write_option(const struct argp_option *option, bool *known, FILE *out) {
+  bool optional = option->flags & OPTION_ARG_OPTIONAL;
+  fputs(".TP\n", out);
+  if (option->key > ' ' && option->key < 127) fprintf(out, "\\fB\\-%c\\fR, ", option->key);
+  fputs("\\fB\\-\\-", out);
+  write_name(option->name, out);
+  fputs("\\fR", out);
+  if (option->arg) {
+    fputs(optional ? "[=\\fI" : "=\\fI", out);
+    write_name(option->arg, out);
+    fputs(optional ? "\\fR]" : "\\fR", out);
+  }
+  fputc('\n', out);
+  char *words = NULL;
+  fill(option->doc, known, &words);
+  fg_roff_inline(words, strlen(words), out);
+  fputc('\n', out);
+  free(words);
+}
+
+static void write_options(const fg_command *command, bool *known, FILE *out) {
+  fputs(".SH OPTIONS\n", out);
+  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
+    const fg_command_form *form = &command->form[i];
+    const struct argp_option *option = form->parser->options;
+    if (form->title) fprintf(out, ".SS %s\n", form->title);
+    for (; option->name || option->doc; option++) {
+      if (option->name) write_option(option, known, out);
+      if (!option->name) fprintf(out, ".PP\n%s\n", option->doc);
+    }
+  }
+  fputs(command->form[1].parser ? ".SS Of both\n" : "", out);
+  fputs(".TP\n\\fB\\-\\-help\\fR\nPrint what the command line takes, and end.\n"
+        ".TP\n\\fB\\-\\-usage\\fR\nThe same in short.\n",
+        out);
+}
+
+/* `kind` stands behind an @. */
+static void write_exit_codes(const char *kind, FILE *out) {
+  size_t length = strcspn(kind, "@");
+  for (const fg_exit_code *code = fg_exit_codes; code->words; code++)
+    if (fg_exit_codes_use(kind, length, code))
+      fprintf(out, ".TP\n%d\n%s\n", code->code, code->words);
+}
+
+static void write_exit_status(const fg_command *command, bool *known, FILE *out) {
+  const char *last = NULL;
+  fputs(".SH EXIT STATUS\n", out);
+  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
+    const char *found = find_exit(command->form[i].parser->doc);
+    if (!found || (last && !strncmp(found, last, strcspn(found + 1, "@")))) continue;
+    if (command->form[i].title) fprintf(out, ".SS %s\n", command->form[i].title);
+    write_exit_codes(found + 1, out);
+    char *rest = NULL;
+    fill(found + 2 + strcspn(found + 1, "@"), known, &rest);
+    if (*rest) fputs(".PP\n", out);
+    write_paragraphs(rest, out);
+    free(rest);
+    last = found;
+  }
+}
+
+static void write_see_also(const char *self, FILE *out) {
+  fputs(".SH SEE ALSO\n", out);
+  if (strcmp(self, "foilgauge") != 0) fputs("\\fBfoilgauge\\fR(1),\n", out);
+  for (const fg_command *command = fg_commands; command->name; command++) {
+    if (!strcmp(self + strcspn(self, "-") + (strchr(self, '-') != NULL), command->name)) continue;
+    fputs("\\fBfoilgauge\\-", out);
+    write_name(command->name, out);
+    fputs("\\fR(1),\n", out);
+  }
+  for (size_t i = 0; i < sizeof see_also / sizeof *see_also; i++) {
+    size_t name = strcspn(see_also[i], "(");
+    fputs("\\fB", out);
+    fg_roff_escape(see_also[i], name, out);
+    fprintf(out, "\\fR%s%s\n", see_also[i] + name,
+            i + 1 < sizeof see_also / sizeof *see_also ? "," : "");
+  }
+}
+
+static void write_head(const fg_manual_text *text, FILE *out) {
+  fputs(".\\\" Written by foilgauge_manual (src/manual/).\n.TH \"", out);
+  for (const char *c = text->name; *c; c++)
+    fputc(*c >= 'a' && *c <= 'z' ? *c - 32 : *c, out);
+  fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.nh\n.ad l\n.SH NAME\n",
+          text->section, FOILGAUGE_VERSION);
+  write_name(text->name, out);
+  fputs(" \\- ", out);
+  write_name(text->summary, out);
+  fputc('\n', out);
+}
+
+static void write_part(const char *from, const char *to, FILE *out) {
+  char *part = strndup(from, (size_t)(to - from));
+  if (!part) abort();
+  fg_roff_text(part, out);
+  free(part);
+}
+
+bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command, FILE *out) {
+  bool known = true;
+  const char *body = text->body, *end = body + strlen(body);
+  const char *sections = strstr(body, "\n## ");
+  const char *examples = strstr(body, "\n## Examples\n");
+  if (!sections) sections = end;
+  if (!examples) examples = end;
+  write_head(text, out);
+  if (command) write_synopsis(command, out);
+  fputs(".SH DESCRIPTION\n", out);
+  for (size_t i = 0; command && i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
+    if (command->form[i].title) fprintf(out, ".SS %s\n", command->form[i].title);
+    write_description(&command->form[i], &known, out);
+  }
+  write_part(body, sections, out);
+  if (command) write_options(command, &known, out);
+  write_part(sections, examples, out);
+  if (command) write_exit_status(command, &known, out);
+  write_part(examples, end, out);
+  write_see_also(text->name, out);
+  return known;
+}
+
+void fg_manual_write_examples(const fg_manual_text *text, FILE *out) {
+  const char *at = strstr(text->body, "\n## Examples\n");
+  const char *end = at ? strstr(at + 4, "\n## ") : NULL;
+  for (at = at ? at + 1 : NULL; at && *at && (!end || at < end);) {
+    size_t length = strcspn(at, "\n");
+    if (length > 4 && !strncmp(at, "    ", 4)) {
+      bool goes_on = at[length - 1] == '\\';
+      fprintf(out, "%.*s%s", (int)(length - 4 - goes_on), at + 4, goes_on ? " " : "\n");
+    }
+    at += length + (at[length] == '\n');
+  }
+}

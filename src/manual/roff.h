@@ -1,0 +1,18 @@
+/* Manual pages: text with light marks in, roff (man macros) out. */
+#ifndef FG_MANUAL_ROFF_H
+#define FG_MANUAL_ROFF_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* Characters as they are, with nothing that roff would take for a command. */
+void fg_roff_escape(const char *text, size_t length, FILE *out);
+
+/* A line of running text: `code` in bold, **words** in bold, [words](address) as words. */
+void fg_roff_inline(const char *text, size_t length, FILE *out);
+
+/* A text of paragraphs, `## Headings`, tables (| a | b |), lists (- a) and indented examples; `#`
+ * headings and what stands before the first are left out. */
+void fg_roff_text(const char *text, FILE *out);
+
+#endif
