@@ -68,6 +68,10 @@ typedef struct fg_table {
 fg_status fg_table_parse(fg_context *ctx, const char *source, const char *text, size_t size,
                          fg_table *table);
 
+/* The table of a file ("-": standard input) of at most 1 GiB, and the SHA-256 of its bytes in
+ * hexadecimal. FG_ERR_IO, and as fg_table_parse. */
+fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char sha256[65]);
+
 /* A table in memory: start from {0}, add columns of equal length. FG_ERR_USAGE for a name that is
  * there already or another number of rows. Values that are not finite count as missing. */
 fg_status fg_table_add_numbers(fg_context *ctx, fg_table *table, const char *name,

@@ -1,5 +1,4 @@
 #include <argp.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -7,10 +6,9 @@
 #include "cli/facts.h"
 #include "cli/output_set.h"
 #include "foilgauge/design.h"
-#include "foilgauge/report.h"
-#include "report/design/design_page.h"
-#include "report/measure/measure_json.h"
-#include "report/words.h"
+#include "foilgauge/design_report.h"
+#include "foilgauge/stiffness.h"
+#include "foilgauge/words.h"
 
 typedef struct design_arguments {
   const char *design_path; /* NULL: built in */
@@ -111,124 +109,15 @@ typedef struct design_view {
   const design_arguments *arguments;
   fg_design design;
   fg_nominal nominal;
-  fg_design_page page; /* of a form with bumps */
 } design_view;
-
-static void write_json(const design_view *view, FILE *out) {
-  const fg_design *design = &view->design;
-  fg_json json;
-  fg_json_begin(&json, out);
-  fg_json_object(&json, NULL);
-  fg_json_head(&json, "foilgauge/nominal/1");
-  fg_json_design(&json, "design", design);
-  if (fg_form_has_bumps(design->form)) fg_json_nominal(&json, "nominal", &view->nominal);
-  if (fg_form_has_bumps(design->form)) fg_json_design_stiffness(&json, &view->page);
-  if (design->form == FG_FORM_ARC) {
-    fg_json_object(&json, "nominal");
-    fg_json_number(&json, "arc_length_mm", view->nominal.arc_length_mm);
-    fg_json_object_end(&json);
-  }
-  fg_json_object_end(&json);
-  fg_json_end(&json);
-}
-
-static void write_row(FILE *out, const char *words, const char *symbol, double value,
-                      const char *unit) {
-  fprintf(out, "  %-34s %-9s %12.6f %s\n", words, symbol, value, unit);
-}
-
-static void write_stated(const fg_design *design, FILE *out) {
-  write_row(out, "bump radius", "R_D", design->bump_radius_mm, "mm");
-  write_row(out, "bump angle", "alpha_D", design->bump_angle_deg, "deg");
-  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
-  write_row(out, "sleeve radius", "R_sleeve", design->sleeve_radius_mm, "mm");
-  write_row(out, "pitch", "", design->pitch_deg, "deg");
-  write_row(out, "fillet radius", "", design->fillet_radius_mm, "mm");
-  write_row(out, "thickness", "t", design->thickness_mm, "mm");
-  if (design->top_foil_thickness_mm > 0)
-    write_row(out, "top foil thickness", "", design->top_foil_thickness_mm, "mm");
-  write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
-}
-
-static void write_derived(const fg_nominal *nominal, FILE *out) {
-  write_row(out, "bump centre to overall centre", "X_D", nominal->centre_to_centre_mm, "mm");
-  write_row(out, "half chord (eq 5.2)", "l0", nominal->half_chord_mm, "mm");
-  write_row(out, "arc length of a bump", "", nominal->arc_length_mm, "mm");
-  write_row(out, "intersection angle", "theta_D", nominal->intersection_angle_deg, "deg");
-  write_row(out, "bump height (eq 5.5)", "h_D", nominal->height_mm, "mm");
-  write_row(out, "die height (eq 5.1)", "h_b", nominal->die_height_mm, "mm");
-  write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
-}
-
-static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *out) {
-  fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
-  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
-  write_row(out, "subtended angle", "", design->subtended_angle_deg, "deg");
-  write_row(out, "thickness", "t", design->thickness_mm, "mm");
-  fputs("\nderived\n", out);
-  write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
-}
-
-static void write_table(const design_view *view, FILE *out) {
-  const fg_design *design = &view->design;
-  fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
-  if (design->form == FG_FORM_DISCS) {
-    fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
-    for (size_t i = 0; i < design->diameter_count; i++)
-      write_row(out, "diameter", "", design->diameters_mm[i], "mm");
-  } else if (design->form == FG_FORM_ARC) {
-    write_arc(design, &view->nominal, out);
-  } else {
-    fprintf(out, ", datum %s", fg_datum_word(design->datum));
-    if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);
-    fputs("\n\nstated\n", out);
-    write_stated(design, out);
-    fputs("\nderived\n", out);
-    write_derived(&view->nominal, out);
-  }
-  if (fg_form_has_bumps(design->form))
-    fg_text_stiffness_table(out, &view->page.bump, fg_design_pitch_mm(design));
-  for (size_t i = 0; i < design->tolerance_count; i++) {
-    const fg_tolerance *t = &design->tolerances[i];
-    fprintf(out, "%s  %-34s ", i ? "" : "\ntolerances\n", t->quantity);
-    if (isinf(t->lower))
-      fprintf(out, "at most %g\n", t->upper);
-    else if (isinf(t->upper))
-      fprintf(out, "at least %g\n", t->lower);
-    else
-      fprintf(out, "from %g to %g\n", t->lower, t->upper);
-  }
-}
-
-enum { CURVE_FROM_PCT = -5, CURVE_TO_PCT = 30 };
-
-static void write_curve(const fg_design *design, const fg_nominal *nominal, FILE *out) {
-  double nominal_mm = nominal->clearance_mm;
-  fputs("radius_error_pct,radius_mm,bump_angle_model_deg,height_model_mm,clearance_mm,"
-        "clearance_error,clearance_change_pct\n",
-        out);
-  for (int percent = CURVE_FROM_PCT; percent <= CURVE_TO_PCT; percent++) {
-    fg_springback model;
-    double radius_mm = design->bump_radius_mm * (100 + percent) / 100;
-    fg_design_springback(design, nominal, radius_mm, &model);
-    fprintf(out, "%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f\n", percent, radius_mm, model.bump_angle_deg,
-            model.height_mm, model.clearance_mm, (nominal_mm - model.clearance_mm) / nominal_mm,
-            100 * (model.clearance_mm - nominal_mm) / nominal_mm);
-  }
-}
 
 static fg_status write_view(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const design_view *view = user;
-  (void)ctx;
-  if (kind == OUT_HTML)
-    fg_html_design_page(out, &view->page);
-  else if (view->arguments->curve)
-    write_curve(&view->design, &view->nominal, out);
-  else if (view->arguments->json)
-    write_json(view, out);
-  else
-    write_table(view, out);
-  return FG_OK;
+  const fg_design_report report = {&view->design, &view->nominal, &view->arguments->material};
+  if (kind == OUT_HTML) return fg_design_write_html(ctx, &report, out);
+  if (view->arguments->curve) return fg_design_write_curve(ctx, &report, out);
+  return view->arguments->json ? fg_design_write_json(ctx, &report, out)
+                               : fg_design_write_table(ctx, &report, out);
 }
 
 static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
@@ -245,9 +134,7 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   if (arguments->curve && !fg_form_has_bumps(view.design.form))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no curve",
                    arguments->design_path, fg_form_word(view.design.form));
-  if (fg_form_has_bumps(view.design.form))
-    fg_design_page_fill(&view.design, &view.nominal, &arguments->material, &view.page);
-  else if (arguments->outputs.path[OUT_HTML])
+  if (arguments->outputs.path[OUT_HTML] && !fg_form_has_bumps(view.design.form))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no page of them",
                    arguments->design_path, fg_form_word(view.design.form));
   FG_TRY(fg_output_set_open(ctx, &arguments->outputs));

@@ -9,8 +9,8 @@
 #include "cli/facts.h"
 #include "cli/output_set.h"
 #include "foilgauge/die.h"
-#include "report/die/die_report.h"
-#include "report/words.h"
+#include "foilgauge/die_report.h"
+#include "foilgauge/words.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT };
 

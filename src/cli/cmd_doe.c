@@ -9,10 +9,9 @@
 #include "cli/doe_plan.h"
 #include "cli/facts.h"
 #include "cli/runs.h"
-#include "core/memory.h"
-#include "core/sha256.h"
-#include "core/text.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/memory.h"
+#include "foilgauge/text.h"
 
 /* What the command can write. */
 typedef enum output_kind { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT } output_kind;
@@ -25,7 +24,7 @@ static report_writer *const writers[OUT_COUNT] = {
     [OUT_TABLE] = fg_experiment_write_table,
 };
 
-enum { CODINGS = FG_FORMULA_VARIABLES, MODEL_BYTES_MAX = 1 << 24 };
+enum { CODINGS = FG_FORMULA_VARIABLES };
 
 typedef struct doe_arguments {
   const char *data, *scans, *design_path;
@@ -304,21 +303,13 @@ static fg_status describe_taken(fg_context *ctx, doe_run *run) {
   return FG_OK;
 }
 
-static fg_status sum_model(fg_context *ctx, doe_run *run) {
-  char *text = NULL;
-  FG_TRY(fg_file_read_text(ctx, run->model_path, MODEL_BYTES_MAX, &text));
-  fg_sha256_text(text, run->model_sha256);
-  free(text);
-  return FG_OK;
-}
-
 /* The effects of a model file are taken out of the response, and its formula is the one to analyse.
  */
 static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table) {
   const char *name = run->model_path = run->arguments.options.formula;
   if (!is_model_file(name)) return FG_OK;
   FG_TRY(fg_loop_model_load(ctx, name, &run->loop_model));
-  FG_TRY(sum_model(ctx, run));
+  FG_TRY(fg_sha256_file(ctx, name, run->model_sha256));
   const char *response = fg_loop_model_response(run->loop_model);
   if (run->arguments.options.response && strcmp(run->arguments.options.response, response) != 0)
     return fg_fail(ctx, FG_ERR_DATA, "%s: a model of the response '%s', not of '%s'", name,
@@ -334,7 +325,7 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   a->options.constraint = a->constraint;
   choose_standard_output(&run->outputs);
   FG_TRY(check_outputs(ctx, run));
-  FG_TRY(fg_runs_read(ctx, a->data, &run->sheet, run->sha256));
+  FG_TRY(fg_table_load(ctx, a->data, &run->sheet, run->sha256));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
   FG_TRY(take_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));

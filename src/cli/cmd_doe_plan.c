@@ -8,9 +8,9 @@
 #include "cli/commands.h"
 #include "cli/doe_plan.h"
 #include "cli/facts.h"
-#include "core/csv.h"
-#include "core/file.h"
 #include "foilgauge/doe.h"
+#include "foilgauge/file.h"
+#include "foilgauge/memory.h"
 #include "foilgauge/plan.h"
 
 typedef struct plan_arguments {
@@ -189,25 +189,27 @@ static fg_status name_factors(fg_context *ctx, plan_arguments *a) {
   return FG_OK;
 }
 
-/* The run sheet with its empty columns: a comma per row is all that they need. */
+static fg_status add_empty_columns(fg_context *ctx, const plan_arguments *a, fg_table *table) {
+  const char **words = NULL;
+  fg_status status = FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, table->rows, sizeof *words, (void **)&words));
+  for (size_t i = 0; i < table->rows; i++)
+    words[i] = "";
+  for (size_t k = 0; k < a->columns && status == FG_OK; k++)
+    status = fg_table_add_words(ctx, table, a->column[k], words, table->rows);
+  free(words);
+  return status;
+}
+
 static fg_status write_sheet(fg_context *ctx, const plan_arguments *a, const fg_plan *plan,
                              FILE *out) {
   fg_table table = {0};
   char *text = NULL;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_plan_table(ctx, plan, &table));
+  FG_TRY_EXIT(add_empty_columns(ctx, a, &table));
   FG_TRY_EXIT(fg_table_format(ctx, &table, &text));
-  bool head = true;
-  for (const char *line = text; *line; head = false) {
-    size_t length = strcspn(line, "\n");
-    fwrite(line, 1, length, out);
-    for (size_t k = 0; k < a->columns; k++) {
-      fputc(',', out);
-      if (head) fg_csv_put_text(out, a->column[k], NULL);
-    }
-    fputc('\n', out);
-    line += length + (line[length] == '\n');
-  }
+  fputs(text, out);
 exit:
   free(text);
   fg_table_free(&table);

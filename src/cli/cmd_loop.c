@@ -12,7 +12,7 @@
 #include "cli/loop_outputs.h"
 #include "cli/loop_source.h"
 #include "cli/progress.h"
-#include "core/file.h"
+#include "foilgauge/file.h"
 
 typedef fg_status loop_writer(fg_context *ctx, const fg_loop_report *report, FILE *out);
 

@@ -8,7 +8,6 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/loop_outputs.h"
-#include "core/file.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/scan_loop.h"
 

@@ -7,7 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
-#include "core/file.h"
+#include "foilgauge/file.h"
 #include "foilgauge/lot.h"
 
 enum {

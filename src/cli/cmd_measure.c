@@ -7,11 +7,11 @@
 #include "cli/facts.h"
 #include "cli/output_set.h"
 #include "cli/progress.h"
-#include "core/memory.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/memory.h"
 #include "foilgauge/report.h"
 #include "foilgauge/scan_loop.h"
-#include "report/words.h"
+#include "foilgauge/words.h"
 
 /* What the command can write, in the order of writing. */
 typedef enum output_kind {

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/file.h"
-#include "core/memory.h"
-#include "core/text.h"
+#include "foilgauge/file.h"
+#include "foilgauge/memory.h"
 #include "foilgauge/table.h"
+#include "foilgauge/text.h"
 
 enum { LIST_BYTES_MAX = 1 << 20 };
 

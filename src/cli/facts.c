@@ -10,7 +10,7 @@
 #include "foilgauge/measure.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/stiffness.h"
-#include "report/words.h"
+#include "foilgauge/words.h"
 
 const fg_exit_code fg_exit_codes[] = {
     {0, "done"},

@@ -5,8 +5,7 @@
 #include <stdbool.h>
 #include <unistd.h>
 
-#include "core/temporary.h"
-#include "foilgauge/status.h"
+#include "foilgauge/file.h"
 
 static void *wait_for_signal(void *argument) {
   static const char words[] = "\nfoilgauge: interrupted\n";

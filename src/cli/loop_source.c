@@ -5,8 +5,8 @@
 #include <sys/stat.h>
 
 #include "cli/runs.h"
-#include "core/memory.h"
-#include "core/text.h"
+#include "foilgauge/memory.h"
+#include "foilgauge/text.h"
 
 /* Beyond, names are no levels that an effect may have: they may count. */
 enum { LEVELS_MOST = FG_LOOP_COLUMNS };
@@ -39,7 +39,7 @@ static fg_status drop_columns(fg_context *ctx, const fg_loop_source_request *req
 static fg_status read_table(fg_context *ctx, const fg_loop_source_request *request,
                             fg_loop_source *source) {
   source->path = request->table;
-  FG_TRY(fg_runs_read(ctx, request->table, &source->read, source->sha256));
+  FG_TRY(fg_table_load(ctx, request->table, &source->read, source->sha256));
   source->table = &source->read;
   return drop_columns(ctx, request, &source->read);
 }
@@ -107,7 +107,7 @@ static fg_status read_runs(fg_context *ctx, const fg_loop_source_request *reques
                        .outputs = outputs};
   choose_scans(request, &how);
   source->path = request->runs;
-  FG_TRY(fg_runs_read(ctx, request->runs, &source->read, source->sha256));
+  FG_TRY(fg_table_load(ctx, request->runs, &source->read, source->sha256));
   FG_TRY(drop_columns(ctx, request, &source->read));
   FG_TRY(fg_runs_measure(ctx, &source->read, &how, &source->measured));
   fg_table *table = &source->measured.table;

@@ -5,8 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "core/file.h"
-#include "core/overwrite.h"
+#include "foilgauge/file.h"
 
 enum { FG_OUTPUT_SET_MAX = 8 };
 
@@ -27,7 +26,7 @@ typedef struct fg_input {
 bool fg_is_standard(const char *path);
 bool fg_output_set_has_standard(const fg_output_set *set); /* one of them is standard output */
 
-/* FG_ERR_USAGE when two outputs are one file, or one is an input (core/overwrite.h). Once all
+/* FG_ERR_USAGE when two outputs are one file, or one is an input (foilgauge/file.h). Once all
  * outputs are known and before anything is done; again where more inputs become known. */
 fg_status fg_output_set_check(fg_context *ctx, fg_output_set *set, const fg_input *inputs,
                               size_t count);

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "core/utf8.h"
+#include "foilgauge/text.h"
 
 enum { BAR_WIDTH = 40 };
 /* A scan that is done at once shows no bar, and a bar is not drawn more often than it is seen. */

@@ -1,12 +1,9 @@
-/* Tables of runs, as `doe` and `loop` read them: the CSV, and what the scans of the runs give. */
+/* What the scans of a table of runs give, as `doe` and `loop` read them. */
 #ifndef FG_CLI_RUNS_H
 #define FG_CLI_RUNS_H
 
 #include "cli/output_set.h"
 #include "foilgauge/run_sheet.h"
-
-/* The table and its sum; "-" is standard input. */
-fg_status fg_runs_read(fg_context *ctx, const char *path, fg_table *table, char sha256[65]);
 
 typedef struct fg_runs_scans {
   const char *sheet_path; /* of the table, for messages and relative paths */

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "core/file.h"
-#include "core/utf8.h"
+#include "foilgauge/file.h"
+#include "foilgauge/text.h"
 
 /* What would be lost is an error: /dev/null is opened the wrong way round for input and output. */
 static void open_closed(void) {

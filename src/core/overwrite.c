@@ -1,4 +1,4 @@
-#include "core/overwrite.h"
+#include "foilgauge/file.h"
 
 #include <errno.h>
 #include <stdbool.h>

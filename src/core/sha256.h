@@ -1,4 +1,4 @@
-/* SHA-256 as reports state it: 64 lower-case hex digits. */
+/* SHA-256 as reports state it: 64 lower-case hex digits. That of a file: foilgauge/file.h. */
 #ifndef FG_CORE_SHA256_H
 #define FG_CORE_SHA256_H
 
@@ -6,7 +6,7 @@
 
 #include <nettle/sha2.h>
 
-#include "foilgauge/status.h"
+#include "foilgauge/file.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -14,9 +14,6 @@ extern "C" {
 
 /* Ends the sum; `sum` starts afresh. */
 void fg_sha256_finish(struct sha256_ctx *sum, char hex[65]);
-
-/* The sum of a regular file by its path. FG_ERR_IO, FG_ERR_MEMORY. */
-fg_status fg_sha256_file(fg_context *ctx, const char *path, char hex[65]);
 
 void fg_sha256_text(const char *text, char hex[65]);
 

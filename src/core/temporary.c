@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "foilgauge/file.h"
+
 /* Held while a name appears or goes, so that the list says at every moment what lies there. */
 static pthread_mutex_t guard = PTHREAD_MUTEX_INITIALIZER;
 static fg_temporary *first;

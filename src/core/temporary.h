@@ -1,8 +1,8 @@
 /* The names that files have before they are whole.
  *
  * A signal can come at any time, and is the process's: so is the list of these names, the only
- * state that the library keeps beyond a call. Whoever ends the process calls fg_temporaries_remove.
- */
+ * state that the library keeps beyond a call. Whoever ends the process calls fg_temporaries_remove
+ * (foilgauge/file.h). */
 #ifndef FG_CORE_TEMPORARY_H
 #define FG_CORE_TEMPORARY_H
 
@@ -28,11 +28,6 @@ int fg_temporary_rename(fg_temporary *temporary, const char *path);
 
 /* Removes it unless it was renamed, closes and frees it; NULL is fine. */
 void fg_temporary_close(fg_temporary *temporary);
-
-/* Removes all of them. From here on none is made, renamed or closed: every other thread that tries
- * waits for the end of the process, which must follow. Not to be called in a signal handler, but by
- * a thread that waits for signals. */
-void fg_temporaries_remove(void);
 
 #ifdef __cplusplus
 }

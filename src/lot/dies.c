@@ -8,8 +8,8 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "foilgauge/words.h"
 #include "lot/lot_report.h"
-#include "report/words.h"
 
 enum { DIE_BYTES_MAX = 64 << 20, CONTEXT_WORDS = 800 };
 

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "core/overwrite.h"
+#include "foilgauge/file.h"
 #include "foilgauge/lot.h"
 #include "lot/manifest.h"
 

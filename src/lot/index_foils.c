@@ -7,8 +7,8 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/table.h"
+#include "foilgauge/words.h"
 #include "lot/index.h"
-#include "report/words.h"
 
 /* lot.json has ten digits, and the mean of these files' values is computed from ten digits each. */
 #define SAME_MEAN 1e-8

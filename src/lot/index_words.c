@@ -6,8 +6,8 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "core/utf8.h"
+#include "foilgauge/words.h"
 #include "lot/index.h"
-#include "report/words.h"
 
 enum {
   SAID_MAX = 3,    /* quantities with a sentence of their own */

@@ -7,10 +7,10 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "foilgauge/words.h"
 #include "lot/analysis_dies.h"
 #include "lot/writers.h"
 #include "quantity/quantity_rows.h"
-#include "report/words.h"
 
 static void put_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);

@@ -6,9 +6,9 @@
 
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "foilgauge/words.h"
 #include "lot/characteristics.h"
 #include "lot/writers.h"
-#include "report/words.h"
 
 /* A control character would start another field. */
 static void put_text(FILE *out, const char *text) {

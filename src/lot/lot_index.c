@@ -4,8 +4,8 @@
 
 #include "core/file.h"
 #include "core/memory.h"
-#include "core/overwrite.h"
 #include "core/text.h"
+#include "foilgauge/file.h"
 #include "lot/index.h"
 
 enum { PAGE, JSON, TABLE, OUTPUTS };

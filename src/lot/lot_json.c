@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "foilgauge/words.h"
 #include "lot/analysis_dies.h"
 #include "lot/json_parts.h"
 #include "lot/lot_date.h"
@@ -10,7 +11,6 @@
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
-#include "report/words.h"
 
 static void write_inputs(fg_json *json, const fg_lot *lot) {
   fg_json_array(json, "inputs");

@@ -5,10 +5,10 @@
 
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "foilgauge/words.h"
 #include "lot/characteristics.h"
 #include "lot/writers.h"
 #include "report/measure/measure_page_parts.h"
-#include "report/words.h"
 
 typedef struct qif {
   FILE *out;

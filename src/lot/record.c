@@ -10,9 +10,9 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/words.h"
 #include "lot/seal.h"
 #include "quantity/quantity_rows.h"
-#include "report/words.h"
 
 /* NUMBER_MAX: of a foil or bump. No scan holds so many, and what is counted by number stays small.
  */

@@ -5,7 +5,7 @@
 #include <time.h>
 
 #include "core/text.h"
-#include "report/words.h"
+#include "foilgauge/words.h"
 #include "station/actions.h"
 #include "station/export.h"
 #include "station/lot_folder.h"

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "foilgauge/words.h"
 #include "lot/lot_report.h"
 #include "lot/record.h"
 #include "quantity/quantity_rows.h"
-#include "report/words.h"
 #include "station/keep_parts.h"
 
 enum { DECIDING_MAX = 3, WORDS = 600 };

@@ -13,6 +13,12 @@ private='#include "(field|rows|effect|explain|scan_loop|loop)/'
 found=$(grep -nE "$private" -r src/report)
 [ -z "$found" ] || say "a report includes what is private to the loop: $found"
 
+# The program is a user of the library like any other.
+found=$(grep -nE '^ *#include "' -r src/cli | grep -vE '"(cli|foilgauge)/')
+[ -z "$found" ] || say "the program includes what is private to the library: $found"
+found=$(grep -nE '^ *#include "' -r include | grep -v '"foilgauge/')
+[ -z "$found" ] || say "a public header includes a private one: $found"
+
 # Left is used by right, never the other way.
 must_not_include() {
   found=$(grep -nE "#include \"($2)/" -r "src/$1")

@@ -1,7 +1,7 @@
 /* Reports of a measurement made of formulas: what is written is what was measured. */
 #include "core/json_writer.h"
+#include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
-#include "report/words.h"
 #include "support/report_fixture.h"
 
 static void json_holds_every_field(void **state) {

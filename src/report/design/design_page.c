@@ -1,48 +1,12 @@
-#include "report/design/design_page.h"
-
+/* A design's page. */
 #include <math.h>
 
+#include "core/file.h"
+#include "foilgauge/design_report.h"
+#include "foilgauge/words.h"
 #include "report/measure/measure_page_parts.h"
-
-void fg_design_page_fill(const fg_design *design, const fg_nominal *nominal,
-                         const fg_arch_material *material, fg_design_page *page) {
-  *page = (fg_design_page){.design = design, .nominal = nominal, .material = material};
-  page->bump =
-      (fg_stiffness_case){.title = "as designed",
-                          .name = "design",
-                          .arch = fg_design_arch(design, design->thickness_mm,
-                                                 design->bump_radius_mm, design->bump_angle_deg)};
-  fg_stiffness_compare(&page->bump.arch, material, page->bump.lines);
-}
-
-static void write_material(fg_json *json, const fg_arch_material *material) {
-  fg_json_object(json, "material");
-  fg_json_line(json);
-  fg_json_number(json, "youngs_modulus_gpa", material->youngs_modulus_gpa);
-  fg_json_number(json, "poisson_ratio", material->poisson_ratio);
-  fg_json_number(json, "friction", material->friction);
-  fg_json_object_end(json);
-  fg_json_line_end(json);
-}
-
-void fg_json_design_stiffness(fg_json *json, const fg_design_page *page) {
-  const fg_stiffness_map map = fg_stiffness_map_around(page->design, page->material);
-  double pitch_mm = fg_design_pitch_mm(page->design);
-  fg_json_object(json, "stiffness");
-  write_material(json, page->material);
-  fg_json_number(json, "pitch_mm", pitch_mm);
-  fg_json_string(json, "note", fg_stiffness_form_note(page->design->form));
-  fg_json_array(json, "models");
-  for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
-    fg_json_object(json, NULL);
-    fg_json_stiffness_model(json, i);
-    fg_json_stiffness_case(json, &page->bump, i, pitch_mm);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
-  fg_json_stiffness_map(json, "map", &map);
-  fg_json_object_end(json);
-}
+#include "report/stiffness/stiffness_map.h"
+#include "report/stiffness/stiffness_table.h"
 
 static void put_tile(FILE *out, const char *title, double value, const char *unit,
                      const char *where) {
@@ -50,39 +14,44 @@ static void put_tile(FILE *out, const char *title, double value, const char *uni
           value < 0 ? "−" : "", fabs(value), unit, where);
 }
 
-static void put_tiles(FILE *out, const fg_design_page *page) {
-  const fg_design *design = page->design;
+static void put_tiles(FILE *out, const fg_design_report *report) {
+  const fg_design *design = report->design;
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, "bump radius", design->bump_radius_mm, "mm", "R<sub>D</sub>, stated");
   put_tile(out, "bump angle", design->bump_angle_deg, "°", "α<sub>D</sub>, stated");
   put_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
   put_tile(out, "thickness", design->thickness_mm, "mm", "stated");
-  put_tile(out, "bump height", page->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");
-  put_tile(out, "arc length of a bump", page->nominal->arc_length_mm, "mm",
+  put_tile(out, "bump height", report->nominal->height_mm, "mm", "h<sub>D</sub>, eq 5.5");
+  put_tile(out, "arc length of a bump", report->nominal->arc_length_mm, "mm",
            "α<sub>D</sub> R<sub>D</sub>");
-  put_tile(out, "intersection angle", page->nominal->intersection_angle_deg, "°", "θ<sub>D</sub>");
-  put_tile(out, "clearance", 1000 * page->nominal->clearance_mm, "µm", "C<sub>D</sub>, eq 5.8");
+  put_tile(out, "intersection angle", report->nominal->intersection_angle_deg, "°",
+           "θ<sub>D</sub>");
+  put_tile(out, "clearance", 1000 * report->nominal->clearance_mm, "µm", "C<sub>D</sub>, eq 5.8");
   fputs("</dl>\n", out);
 }
 
-void fg_html_design_page(FILE *out, const fg_design_page *page) {
-  const fg_stiffness_map map = fg_stiffness_map_around(page->design, page->material);
-  const char *note = fg_stiffness_form_note(page->design->form);
-  double along = page->bump.lines[0].sensitivity.radius_at_arc_length;
-  fg_html_begin(out, page->design->name);
+fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, FILE *out) {
+  if (!fg_form_has_bumps(report->design->form))
+    return fg_fail(ctx, FG_ERR_DATA, "form \"%s\" has no bumps, so there is no page of them",
+                   fg_form_word(report->design->form));
+  const fg_stiffness_case bump = fg_stiffness_case_of(report->design, report->material);
+  const fg_stiffness_map map = fg_stiffness_map_around(report->design, report->material);
+  const char *note = fg_stiffness_form_note(report->design->form);
+  double along = bump.lines[0].sensitivity.radius_at_arc_length;
+  fg_html_begin(out, report->design->name);
   fputs("<section>\n<header><h1>Design ", out);
-  fg_html_text(out, page->design->name);
+  fg_html_text(out, report->design->name);
   fputs("</h1></header>\n", out);
-  put_tiles(out, page);
+  put_tiles(out, report);
   fputs("<h2>Stiffness of a bump</h2>\n", out);
   if (note) fprintf(out, "<p>%s</p>\n", note);
-  fg_html_stiffness_table(out, &page->bump, 1, fg_design_pitch_mm(page->design));
+  fg_html_stiffness_table(out, &bump, 1, fg_design_pitch_mm(report->design));
   fprintf(
       out,
       "<p class=\"note\">E %.4g GPa, Poisson's ratio %.3g, friction %.3g; pitch s %.4g mm along "
       "the sleeve. A percent more thickness is worth three of stiffness in every model.</p>\n",
-      page->material->youngs_modulus_gpa, page->material->poisson_ratio, page->material->friction,
-      fg_design_pitch_mm(page->design));
+      report->material->youngs_modulus_gpa, report->material->poisson_ratio,
+      report->material->friction, fg_design_pitch_mm(report->design));
   fputs("</section>\n<section>\n<h1>What springback does to it</h1>\n<figure>", out);
   fg_stiffness_plot_map(out, &map, NULL, NULL);
   fputs("<figcaption>Stiffness of the arch over the design's: orange stiffer, blue softer; dashed: "
@@ -93,4 +62,5 @@ void fg_html_design_page(FILE *out, const fg_design_page *page) {
             along < 0 ? "−" : "+", fabs(along));
   fputs(".</figcaption></figure>\n</section>\n", out);
   fg_html_end(out);
+  return fg_stream_finish(ctx, out, "the page");
 }

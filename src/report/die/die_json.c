@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "core/file.h"
-#include "report/die/die_report.h"
+#include "foilgauge/die_report.h"
 #include "report/measure/measure_json.h"
 
 /* name, sd_name (as its own unit), u_name. */

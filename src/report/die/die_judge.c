@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "report/die/die_report.h"
+#include "foilgauge/die_report.h"
 
 #define OVERALL "overall.radius_mm"
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "foilgauge/die_report.h"
 #include "report/die/die_plots.h"
-#include "report/die/die_report.h"
 #include "report/measure/measure_page_parts.h"
 
 static const char *const datum_words[] = {"midline", "inner side", "outer side"};

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "core/file.h"
-#include "report/die/die_report.h"
+#include "foilgauge/die_report.h"
 
 static void write_number(FILE *out, double value, int width, int decimals, const char *sign) {
   if (isfinite(value))

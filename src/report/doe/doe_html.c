@@ -3,10 +3,10 @@
 #include <stdlib.h>
 
 #include "core/file.h"
+#include "foilgauge/words.h"
 #include "report/doe/doe_plots.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
-#include "report/words.h"
 
 enum { RUNS_SHOWN = 200 };
 

@@ -2,10 +2,10 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "foilgauge/words.h"
 #include "report/doe/doe_json_parts.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_json.h"
-#include "report/words.h"
 
 static void put_interval(fg_json *json, const char *name, double low, double high) {
   const double pair[2] = {low, high};

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 
 #include "core/file.h"
+#include "foilgauge/words.h"
 #include "report/doe/doe_words.h"
-#include "report/words.h"
 
 /* Breaks words at 100 columns; the first line starts with `mark`. */
 static void put_wrapped(FILE *out, const char *mark, const char *text) {

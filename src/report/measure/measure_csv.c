@@ -5,8 +5,8 @@
 #include "core/csv.h"
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
-#include "report/words.h"
 
 static void put_number(FILE *out, double value) {
   char text[32];

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "foilgauge/words.h"
 #include "report/correction_words.h"
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
-#include "report/words.h"
 
 static void write_limit(fg_json *json, const char *name, double limit) {
   if (isfinite(limit)) fg_json_number(json, name, limit);

@@ -2,12 +2,12 @@
 #ifndef FG_REPORT_MEASURE_MEASURE_PAGE_PARTS_H
 #define FG_REPORT_MEASURE_MEASURE_PAGE_PARTS_H
 
-#include "report/words.h"
+#include "foilgauge/words.h"
 
 /* A page from its doctype to its <main>, and from there to its end. */
 void fg_html_begin(FILE *out, const char *title);
 void fg_html_head(FILE *out, const char *title); /* up to the style: for a page with its own */
-void fg_html_style(FILE *out); /* what stands between <style> and </style> */
+void fg_html_style(FILE *out);                   /* what stands between <style> and </style> */
 void fg_html_end(FILE *out);
 
 /* Text with <, >, &, quotes and stray bytes made harmless. */

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
 #include "report/measure/scan_model_words.h"
-#include "report/words.h"
 
 enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
 

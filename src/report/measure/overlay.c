@@ -5,9 +5,9 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/drawing.h"
-#include "report/words.h"
 
 enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = 256 };
 static const double pixels_max = 48e6;

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "foilgauge/words.h"
 #include "report/drawing.h"
-#include "report/words.h"
 
 enum { COLOUR_FAIL = 0xff5252, COLOUR_OPEN = 0xffb833, MARKS_MAX = 40, TEXT_BYTES = 160 };
 

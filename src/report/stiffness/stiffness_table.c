@@ -4,6 +4,15 @@
 
 #include "report/measure/measure_page_parts.h"
 
+fg_stiffness_case fg_stiffness_case_of(const fg_design *design, const fg_arch_material *material) {
+  fg_stiffness_case bump = {.title = "as designed",
+                            .name = "design",
+                            .arch = fg_design_arch(design, design->thickness_mm,
+                                                   design->bump_radius_mm, design->bump_angle_deg)};
+  fg_stiffness_compare(&bump.arch, material, bump.lines);
+  return bump;
+}
+
 void fg_json_sensitivity(fg_json *json, const char *name, const fg_arch_sensitivity *sensitivity) {
   fg_json_object(json, name);
   fg_json_line(json);

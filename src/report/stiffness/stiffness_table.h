@@ -13,6 +13,9 @@ typedef struct fg_stiffness_case {
   fg_stiffness_line lines[FG_STIFFNESS_MODELS];
 } fg_stiffness_case;
 
+/* The design's bump. */
+fg_stiffness_case fg_stiffness_case_of(const fg_design *design, const fg_arch_material *material);
+
 void fg_json_sensitivity(fg_json *json, const char *name, const fg_arch_sensitivity *sensitivity);
 
 /* One member of the case's name: the bump, and what the model numbered so makes of it. */

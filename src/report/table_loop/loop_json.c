@@ -7,9 +7,9 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "foilgauge/loop.h"
+#include "foilgauge/words.h"
 #include "report/table_loop/loop_checks.h"
 #include "report/table_loop/loop_next.h"
-#include "report/words.h"
 
 static void write_error(fg_json *json, const char *name, const fg_loop_error *error) {
   fg_json_object(json, name);

@@ -2,7 +2,7 @@
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "foilgauge/loop.h"
-#include "report/words.h"
+#include "foilgauge/words.h"
 
 static void write_coordinate(fg_json *json, const fg_loop_coordinate *at) {
   fg_json_object(json, NULL);

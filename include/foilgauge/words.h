@@ -1,8 +1,12 @@
 /* Words of flags and kinds: as JSON has them, and in plain words for people. */
-#ifndef FG_REPORT_WORDS_H
-#define FG_REPORT_WORDS_H
+#ifndef FOILGAUGE_WORDS_H
+#define FOILGAUGE_WORDS_H
 
 #include "foilgauge/report.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 typedef struct fg_flag_words {
   unsigned flag;
@@ -28,4 +32,7 @@ const char *fg_channel_word(fg_channel channel);
  * fine enough. */
 int fg_report_decimals(const fg_quantity *row, double u);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

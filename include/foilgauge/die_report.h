@@ -1,9 +1,13 @@
 /* The report of a die: JSON, a table for the terminal, a page. */
-#ifndef FG_REPORT_DIE_DIE_REPORT_H
-#define FG_REPORT_DIE_DIE_REPORT_H
+#ifndef FOILGAUGE_DIE_REPORT_H
+#define FOILGAUGE_DIE_REPORT_H
 
 #include "foilgauge/die.h"
 #include "foilgauge/report.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 /* What the design's tolerances say to a die: those that name a quantity of a die's bumps, of every
  * bump of each half, and overall.radius_mm. The others are a foil's. */
@@ -25,4 +29,7 @@ fg_status fg_die_write_table(fg_context *ctx, const fg_die *die, FILE *out);
 /* One self-contained page: errors by half, traces with circles, residuals, tables. */
 fg_status fg_die_write_html(fg_context *ctx, const fg_die *die, FILE *out);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -1,0 +1,36 @@
+/* A design and what follows from it, as `foilgauge design` writes it. */
+#ifndef FOILGAUGE_DESIGN_REPORT_H
+#define FOILGAUGE_DESIGN_REPORT_H
+
+#include <stdio.h>
+
+#include "foilgauge/bearing.h"
+#include "foilgauge/design.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct fg_design_report {
+  const fg_design *design;
+  const fg_nominal *nominal;        /* fg_design_derive */
+  const fg_arch_material *material; /* of the strip, for the stiffness of its bumps */
+} fg_design_report;
+
+/* "foilgauge/nominal/1", reports/schema/nominal.schema.json. */
+fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out);
+
+/* For the terminal. */
+fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out);
+
+/* How the declared springback model changes the clearance, as CSV: bump radius error from -5 to
+ * +30 %. FG_ERR_DATA for a form without bumps. */
+fg_status fg_design_write_curve(fg_context *ctx, const fg_design_report *report, FILE *out);
+
+/* One self-contained page, with the stiffness of a bump. FG_ERR_DATA for a form without bumps. */
+fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, FILE *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,104 @@
+/* A design for the terminal, and its curve of springback as CSV. */
+#include <math.h>
+
+#include "core/file.h"
+#include "foilgauge/design_report.h"
+#include "foilgauge/words.h"
+#include "report/stiffness/stiffness_table.h"
+
+static void write_row(FILE *out, const char *words, const char *symbol, double value,
+                      const char *unit) {
+  fprintf(out, "  %-34s %-9s %12.6f %s\n", words, symbol, value, unit);
+}
+
+static void write_stated(const fg_design *design, FILE *out) {
+  write_row(out, "bump radius", "R_D", design->bump_radius_mm, "mm");
+  write_row(out, "bump angle", "alpha_D", design->bump_angle_deg, "deg");
+  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
+  write_row(out, "sleeve radius", "R_sleeve", design->sleeve_radius_mm, "mm");
+  write_row(out, "pitch", "", design->pitch_deg, "deg");
+  write_row(out, "fillet radius", "", design->fillet_radius_mm, "mm");
+  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  if (design->top_foil_thickness_mm > 0)
+    write_row(out, "top foil thickness", "", design->top_foil_thickness_mm, "mm");
+  write_row(out, "rotor diameter", "D", design->rotor_diameter_mm, "mm");
+}
+
+static void write_derived(const fg_nominal *nominal, FILE *out) {
+  write_row(out, "bump centre to overall centre", "X_D", nominal->centre_to_centre_mm, "mm");
+  write_row(out, "half chord (eq 5.2)", "l0", nominal->half_chord_mm, "mm");
+  write_row(out, "arc length of a bump", "", nominal->arc_length_mm, "mm");
+  write_row(out, "intersection angle", "theta_D", nominal->intersection_angle_deg, "deg");
+  write_row(out, "bump height (eq 5.5)", "h_D", nominal->height_mm, "mm");
+  write_row(out, "die height (eq 5.1)", "h_b", nominal->die_height_mm, "mm");
+  write_row(out, "clearance (eq 5.8)", "C_D", nominal->clearance_mm, "mm");
+}
+
+static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *out) {
+  fprintf(out, ", datum %s\n\nstated\n", fg_datum_word(design->datum));
+  write_row(out, "overall radius", "R0", design->overall_radius_mm, "mm");
+  write_row(out, "subtended angle", "", design->subtended_angle_deg, "deg");
+  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  fputs("\nderived\n", out);
+  write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
+}
+
+static void write_tolerances(const fg_design *design, FILE *out) {
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_tolerance *t = &design->tolerances[i];
+    fprintf(out, "%s  %-34s ", i ? "" : "\ntolerances\n", t->quantity);
+    if (isinf(t->lower))
+      fprintf(out, "at most %g\n", t->upper);
+    else if (isinf(t->upper))
+      fprintf(out, "at least %g\n", t->lower);
+    else
+      fprintf(out, "from %g to %g\n", t->lower, t->upper);
+  }
+}
+
+fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
+  fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
+  if (design->form == FG_FORM_DISCS) {
+    fprintf(out, "\n  %zu known diameters\n", design->diameter_count);
+    for (size_t i = 0; i < design->diameter_count; i++)
+      write_row(out, "diameter", "", design->diameters_mm[i], "mm");
+  } else if (design->form == FG_FORM_ARC) {
+    write_arc(design, report->nominal, out);
+  } else {
+    fprintf(out, ", datum %s", fg_datum_word(design->datum));
+    if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);
+    fputs("\n\nstated\n", out);
+    write_stated(design, out);
+    fputs("\nderived\n", out);
+    write_derived(report->nominal, out);
+  }
+  if (fg_form_has_bumps(design->form)) {
+    const fg_stiffness_case bump = fg_stiffness_case_of(design, report->material);
+    fg_text_stiffness_table(out, &bump, fg_design_pitch_mm(design));
+  }
+  write_tolerances(design, out);
+  return fg_stream_finish(ctx, out, "the design");
+}
+
+enum { CURVE_FROM_PCT = -5, CURVE_TO_PCT = 30 };
+
+fg_status fg_design_write_curve(fg_context *ctx, const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
+  double nominal_mm = report->nominal->clearance_mm;
+  if (!fg_form_has_bumps(design->form))
+    return fg_fail(ctx, FG_ERR_DATA, "form \"%s\" has no bumps, so there is no curve",
+                   fg_form_word(design->form));
+  fputs("radius_error_pct,radius_mm,bump_angle_model_deg,height_model_mm,clearance_mm,"
+        "clearance_error,clearance_change_pct\n",
+        out);
+  for (int percent = CURVE_FROM_PCT; percent <= CURVE_TO_PCT; percent++) {
+    fg_springback model;
+    double radius_mm = design->bump_radius_mm * (100 + percent) / 100;
+    fg_design_springback(design, report->nominal, radius_mm, &model);
+    fprintf(out, "%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.4f\n", percent, radius_mm, model.bump_angle_deg,
+            model.height_mm, model.clearance_mm, (nominal_mm - model.clearance_mm) / nominal_mm,
+            100 * (model.clearance_mm - nominal_mm) / nominal_mm);
+  }
+  return fg_stream_finish(ctx, out, "the curve");
+}

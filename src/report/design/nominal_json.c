@@ -1,0 +1,56 @@
+/* A design and what follows from it as JSON. */
+#include "core/file.h"
+#include "foilgauge/design_report.h"
+#include "report/measure/measure_json.h"
+#include "report/stiffness/stiffness_map.h"
+#include "report/stiffness/stiffness_table.h"
+
+static void write_material(fg_json *json, const fg_arch_material *material) {
+  fg_json_object(json, "material");
+  fg_json_line(json);
+  fg_json_number(json, "youngs_modulus_gpa", material->youngs_modulus_gpa);
+  fg_json_number(json, "poisson_ratio", material->poisson_ratio);
+  fg_json_number(json, "friction", material->friction);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_stiffness(fg_json *json, const fg_design_report *report) {
+  const fg_stiffness_case bump = fg_stiffness_case_of(report->design, report->material);
+  const fg_stiffness_map map = fg_stiffness_map_around(report->design, report->material);
+  double pitch_mm = fg_design_pitch_mm(report->design);
+  fg_json_object(json, "stiffness");
+  write_material(json, report->material);
+  fg_json_number(json, "pitch_mm", pitch_mm);
+  fg_json_string(json, "note", fg_stiffness_form_note(report->design->form));
+  fg_json_array(json, "models");
+  for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
+    fg_json_object(json, NULL);
+    fg_json_stiffness_model(json, i);
+    fg_json_stiffness_case(json, &bump, i, pitch_mm);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+  fg_json_stiffness_map(json, "map", &map);
+  fg_json_object_end(json);
+}
+
+fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
+  const fg_design *design = report->design;
+  bool bumps = fg_form_has_bumps(design->form);
+  fg_json json;
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/nominal/1");
+  fg_json_design(&json, "design", design);
+  if (bumps) fg_json_nominal(&json, "nominal", report->nominal);
+  if (bumps) write_stiffness(&json, report);
+  if (design->form == FG_FORM_ARC) {
+    fg_json_object(&json, "nominal");
+    fg_json_number(&json, "arc_length_mm", report->nominal->arc_length_mm);
+    fg_json_object_end(&json);
+  }
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  return fg_stream_finish(ctx, out, "the design");
+}

@@ -1,0 +1,50 @@
+/* A table from a file, with its sum. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/sha256.h"
+#include "foilgauge/table.h"
+
+enum { CSV_BYTES_MAX = 1 << 30 };
+
+static bool is_standard(const char *path) {
+  return !strcmp(path, "-");
+}
+
+/* The whole input, NUL bytes included (the table's reader names their place). */
+static fg_status read_all(fg_context *ctx, const char *path, char **text, size_t *size) {
+  FILE *in = is_standard(path) ? stdin : fopen(path, "rb");
+  size_t capacity = 0, got;
+  fg_status status = FG_OK;
+  *text = NULL;
+  *size = 0;
+  if (!in) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened; is the name right?", path);
+  do {
+    FG_TRY_EXIT(fg_memory_reserve(ctx, *size + 65536, 1, &capacity, (void **)text));
+    got = fread(*text + *size, 1, capacity - *size, in);
+    *size += got;
+    if (*size > CSV_BYTES_MAX)
+      FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: more than 1 GiB; is it a table of runs?", path));
+  } while (got > 0);
+  if (ferror(in)) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_IO, "%s: cannot be read; is it a file?", path));
+exit:
+  if (in != stdin) fclose(in);
+  return status;
+}
+
+fg_status fg_table_load(fg_context *ctx, const char *path, fg_table *table, char sha256[65]) {
+  struct sha256_ctx sum;
+  char *text = NULL;
+  size_t size = 0;
+  fg_status status = read_all(ctx, path, &text, &size);
+  if (status == FG_OK) {
+    sha256_init(&sum);
+    sha256_update(&sum, size, (const uint8_t *)text);
+    fg_sha256_finish(&sum, sha256);
+    status = fg_table_parse(ctx, is_standard(path) ? "standard input" : path, text, size, table);
+  }
+  free(text);
+  return status;
+}
