@@ -18,8 +18,11 @@ static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   for (size_t i = 0; i < lot->manifest.items; i++) {
     analysis->failed_scans += lot->records[i].error != NULL;
     for (size_t k = 0; k < lot->records[i].foil_count; k++)
-      analysis->foils[analysis->foil_count++] =
-          (fg_lot_foil){.item = i, .foil = &lot->records[i].foils[k]};
+      analysis->foils[analysis->foil_count++] = (fg_lot_foil){.item = i,
+                                                              .foil = &lot->records[i].foils[k],
+                                                              .worst_u = NAN,
+                                                              .worst_limit = NAN,
+                                                              .worst_margin = NAN};
   }
   return FG_OK;
 }
@@ -37,6 +40,15 @@ static double severity_of(const fg_judgement *judgement) {
   return 1 + past / (fabs(limit) > 0 ? fabs(limit) : 1);
 }
 
+/* Past a limit, or short of it: whichever is less. */
+static void find_margin(const fg_judgement *judgement, fg_lot_foil *foil) {
+  double below = judgement->value - judgement->tolerance->lower,
+         above = judgement->tolerance->upper - judgement->value;
+  bool upper = above < below;
+  foil->worst_limit = upper ? judgement->tolerance->upper : judgement->tolerance->lower;
+  foil->worst_margin = upper ? above : below;
+}
+
 static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
   for (size_t i = 0; i < decision->count; i++) {
     const fg_judgement *judgement = &decision->judgements[i];
@@ -46,6 +58,8 @@ static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
     foil->worst_number = judgement->number;
     foil->worst_row = judgement->row;
     foil->worst_value = judgement->value;
+    foil->worst_u = judgement->u;
+    find_margin(judgement, foil);
   }
 }
 
@@ -69,6 +83,7 @@ static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
     if (!fg_foil_is_measured(foil->foil)) continue;
     foil->worst_row = radius->row;
     foil->worst_value = foil->foil->overall.radius_mm;
+    foil->worst_u = fg_quantity_uncertainty(radius->row, foil->foil);
     foil->severity = fabs(foil->worst_value - radius->mean) / radius->sd;
   }
 }
@@ -91,6 +106,7 @@ static void rank_by_spread(fg_lot_analysis *analysis) {
       foil->worst_number = bump->number;
       foil->worst_row = height->row;
       foil->worst_value = bump->height_mm;
+      foil->worst_u = fg_quantity_uncertainty(height->row, bump);
     }
   }
 }
@@ -136,6 +152,7 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   count_bumps(analysis);
   FG_TRY(judge_all(ctx, analysis));
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
+  FG_TRY(fg_lot_analyse_causes(ctx, analysis));
   bool bumps = fg_form_has_bumps(analysis->lot->settings.design.form);
   if (bumps) FG_TRY(fg_lot_analyse_correlation(ctx, analysis));
   const fg_design *design = &analysis->lot->settings.design;

@@ -20,8 +20,22 @@ typedef struct fg_lot_foil {
   double severity;     /* the farthest value: 1 at its limit; without tolerances in sd of the lot */
   int worst_number;    /* its bump; 0: the whole foil */
   const fg_quantity *worst_row;
-  double worst_value;
+  double worst_value, worst_u;
+  double worst_limit;  /* the nearer one; NaN: there is no tolerance */
+  double worst_margin; /* how far the value is within it; negative: beyond it; NaN */
 } fg_lot_foil;
+
+/* What a chart's signals come from: foils of groups that have a mean of their own. */
+typedef struct fg_lot_cause {
+  size_t column; /* of the manifest; FG_NO_COLUMN: none is known */
+  size_t groups;
+  const char *name[FG_LOT_GROUPS_MAX]; /* in order of appearance */
+  double mean[FG_LOT_GROUPS_MAX];
+  size_t foils[FG_LOT_GROUPS_MAX];
+  double p_value;      /* of groups that are alike */
+  size_t signals_left; /* of the same chart with all groups moved to one mean */
+  bool in_turn;        /* one foil of each group after the other */
+} fg_lot_cause;
 
 /* Mean and spread of one bump number. */
 typedef struct fg_lot_place {
@@ -47,7 +61,8 @@ typedef struct fg_lot_quantity {
   double chart_sigma;
   fg_chart means, deviations; /* subgroups: the bumps of each foil */
   double within_sigma;
-  bool stable; /* no signal on the chart of individuals, nor on that of the deviations */
+  bool stable;        /* no signal on the chart of individuals, nor on that of the deviations */
+  fg_lot_cause cause; /* of the signals of the chart of individuals */
   fg_capability capability;
 } fg_lot_quantity;
 
@@ -192,6 +207,12 @@ typedef struct fg_lot_gauge {
   fg_gauge_study study;
 } fg_lot_gauge;
 
+/* Whether the process runs as it did, in the quantities that the release of the lot rests on. */
+typedef struct fg_lot_process {
+  size_t watched, unstable;
+  size_t explained; /* of the unstable: by groups, every signal of it */
+} fg_lot_process;
+
 typedef struct fg_lot_analysis {
   const fg_lot *lot;
   fg_lot_foil *foils;
@@ -202,6 +223,7 @@ typedef struct fg_lot_analysis {
   const fg_lot_foil *worst[3];
   fg_lot_quantity *quantities;
   size_t quantity_count;
+  fg_lot_process process;
   bool has_correlation, has_stiffness;
   fg_lot_correlation correlation;
   fg_lot_thickness thickness;
@@ -246,6 +268,13 @@ const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);
 /* NULL when the lot has none of it. */
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name);
 
+/* Whether the release of the lot rests on it; and whether groups explain all its signals. */
+bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
+bool fg_lot_is_explained(const fg_lot_quantity *quantity);
+
+/* Names of the quantities whose charts are drawn where none has a tolerance, then NULL. */
+extern const char *const fg_lot_charted[];
+
 /* What the scanner's model did to the foils, the largest of each; NaN: there is none. */
 fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis);
 
@@ -256,6 +285,8 @@ fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
                                 fg_lot_quantity *quantity);
 fg_status fg_lot_judge_capability(fg_context *ctx, double confidence, fg_lot_quantity *quantity);
+/* Why charts signal; and what the process as a whole comes to. */
+fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_correlation(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis);
 fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis);

@@ -124,7 +124,8 @@ static bool are_many(const fg_index *index) {
 static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_index *index,
                                   const char *page) {
   fprintf(out,
-          "<section>\n<header><h1>%zu lot%s, one after the other and against each other</h1>"
+          "<section class=\"part\">\n<header><h1>%zu lot%s, one after the other and against each "
+          "other</h1>"
           "</header>\n<ul class=\"words\">\n",
           index->read, index->read == 1 ? "" : "s");
   for (size_t i = 0; i < index->sentence_count; i++) {
@@ -164,7 +165,7 @@ static void put_spreads(FILE *out, const fg_index *index) {
 
 static void put_densities(FILE *out, const fg_index *index) {
   if (!has_curves(index)) return;
-  fputs("<section>\n<h1>Bump radius over design</h1>\n<figure>", out);
+  fputs("<section class=\"part\">\n<h1>Bump radius over design</h1>\n<figure>", out);
   fg_index_plot_lots(out, index);
   fputs(
       "<figcaption>Kernel densities of R / R_D, each lot&#39;s radii over the radius of its own "
@@ -178,9 +179,10 @@ static void put_densities(FILE *out, const fg_index *index) {
 /* The tables of many lots. */
 static fg_status put_behind(fg_context *ctx, FILE *out, const fg_index *index, const char *page) {
   if (!are_many(index)) return FG_OK;
-  fputs("<section id=\"lots\">\n<h1>The lots</h1>\n", out);
+  fputs("<section id=\"lots\" class=\"part\">\n<h1>The lots</h1>\n", out);
   FG_TRY(put_lot_table(ctx, out, index, page));
-  fputs("</section>\n<section>\n<h1>Bump radius over design, lot by lot</h1>\n", out);
+  fputs("</section>\n<section class=\"part\">\n<h1>Bump radius over design, lot by lot</h1>\n",
+        out);
   put_spreads(out, index);
   fputs("</section>\n", out);
   return FG_OK;
@@ -212,7 +214,8 @@ static bool is_shown(const fg_index *index, const fg_index_axis *axis) {
 static void put_axes(FILE *out, const fg_index *index) {
   const char *separator = "<p class=\"note\">Not drawn, for they say of every foil what another "
                           "quantity says: ";
-  fputs("<section>\n<h1>Every quantity over the lots</h1>\n<p class=\"note\">Circle: the lot&#39;s "
+  fputs("<section class=\"part\">\n<h1>Every quantity over the lots</h1>\n<p "
+        "class=\"note\">Circle: the lot&#39;s "
         "mean; bar: ± s of its single values. Red, dashed: tolerance. ",
         out);
   if (index->read < FG_INDEX_LOTS_MIN)
@@ -259,7 +262,7 @@ static void put_mean(FILE *out, const fg_index_axis *axis, const fg_index_stat *
 }
 
 static void put_table(FILE *out, const fg_index *index) {
-  fputs("<section>\n<h1>Mean and s of every quantity</h1>\n<div class=\"scroll "
+  fputs("<section class=\"part\">\n<h1>Mean and s of every quantity</h1>\n<div class=\"scroll "
         "lots\"><table><thead><tr>"
         "<th>no.</th><th class=\"w\">lot</th>",
         out);
@@ -284,7 +287,7 @@ static void put_table(FILE *out, const fg_index *index) {
 
 static void put_unread(FILE *out, const fg_index *index) {
   if (index->read == index->count) return;
-  fprintf(out, "<section>\n<h1>Not on this page: %zu</h1>\n<ul class=\"flags\">\n",
+  fprintf(out, "<section class=\"part\">\n<h1>Not on this page: %zu</h1>\n<ul class=\"flags\">\n",
           index->count - index->read);
   for (size_t i = index->read; i < index->count; i++) {
     fputs("<li>", out);

@@ -60,7 +60,7 @@ void fg_index_put_pairs(FILE *out, const fg_index *index) {
   char name[2][VALUE];
   shown = shown < pairs ? shown : pairs;
   if (!shown) return;
-  fputs("<section>\n<h1>Which lots differ</h1>\n<div class=\"scroll "
+  fputs("<section class=\"part\">\n<h1>Which lots differ</h1>\n<div class=\"scroll "
         "lots\"><table><thead><tr><th>quantity"
         "</th><th class=\"w\">larger in lot</th><th class=\"w\">than in</th><th>by (95 %)</th><th>"
         "foils</th><th>degrees of<br>freedom</th><th>p, Holm</th></tr></thead>\n<tbody>\n",
@@ -112,7 +112,7 @@ static void put_die_pairs(FILE *out, const fg_index *index) {
 
 void fg_index_put_dies(FILE *out, const fg_index *index) {
   if (index->die_count < 2) return;
-  fputs("<section>\n<h1>Dies</h1>\n<figure>", out);
+  fputs("<section class=\"part\">\n<h1>Dies</h1>\n<figure>", out);
   fg_index_plot_dies(out, index);
   fputs("<figcaption>Kernel densities of R / R_D of all foils of a die, whatever their lot."
         "</figcaption></figure>\n<div class=\"scroll "

@@ -6,6 +6,10 @@
 #include "lot/analysis.h"
 
 void fg_lot_json_spread(fg_json *json, const char *name, const fg_lot_spread *spread);
+/* Whether the process runs as it did; and what one quantity's signals come from. */
+void fg_lot_json_process(fg_json *json, const fg_lot_analysis *analysis);
+void fg_lot_json_cause(fg_json *json, const fg_lot_analysis *analysis,
+                       const fg_lot_quantity *quantity);
 void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis);
 
 /* Where bumps lie around a bearing, every bearing, the clearances of all bumps. */

@@ -67,6 +67,9 @@ static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_
   fg_json_string(json, "worst_quantity", foil->worst_row ? foil->worst_row->name : NULL);
   fg_json_integer(json, "worst_bump", foil->worst_number);
   fg_json_number(json, "worst_value", foil->worst_row ? foil->worst_value : NAN);
+  fg_json_number(json, "worst_u", foil->worst_u);
+  fg_json_number(json, "worst_limit", foil->worst_limit);
+  fg_json_number(json, "worst_margin", foil->worst_margin);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }
@@ -149,7 +152,8 @@ static void write_places(fg_json *json, const fg_lot_quantity *quantity) {
   fg_json_array_end(json);
 }
 
-static void write_quantity(fg_json *json, const fg_lot_quantity *quantity) {
+static void write_quantity(fg_json *json, const fg_lot_analysis *analysis,
+                           const fg_lot_quantity *quantity) {
   fg_json_object(json, quantity->row->name);
   fg_json_integer(json, "count", (int64_t)quantity->count);
   fg_json_number(json, "mean", quantity->mean);
@@ -163,6 +167,7 @@ static void write_quantity(fg_json *json, const fg_lot_quantity *quantity) {
   if (quantity->has_chart) {
     write_chart(json, "individuals", &quantity->chart, quantity->chart_sigma);
     fg_json_bool(json, "stable", quantity->stable);
+    fg_lot_json_cause(json, analysis, quantity);
   }
   if (quantity->has_subgroups) {
     write_chart(json, "means", &quantity->means, quantity->within_sigma);
@@ -266,6 +271,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_lot_date_write(&json, lot);
   fg_json_verdict(&json, analysis->outcome.verdict);
   write_counts(&json, analysis);
+  fg_lot_json_process(&json, analysis);
   fg_json_string(&json, "recipe_sha256", lot->head.recipe_sha256);
   fg_json_string(&json, "manifest_sha256", lot->head.manifest_sha256);
   fg_json_string(&json, "model_sha256",
@@ -280,7 +286,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   write_foils(&json, analysis);
   fg_json_object(&json, "quantities");
   for (size_t i = 0; i < analysis->quantity_count; i++)
-    write_quantity(&json, &analysis->quantities[i]);
+    write_quantity(&json, analysis, &analysis->quantities[i]);
   fg_json_object_end(&json);
   if (analysis->has_correlation) write_correlation(&json, &analysis->correlation);
   write_thickness(&json, analysis);

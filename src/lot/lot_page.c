@@ -10,72 +10,6 @@
 
 enum { FOIL_ROWS_MAX = 300 };
 
-static void put_tile(FILE *out, const char *title, size_t count) {
-  fprintf(out, "<div><dt>%s</dt><dd>%zu</dd></div>\n", title, count);
-}
-
-static void put_tiles(FILE *out, const fg_lot_analysis *analysis) {
-  const size_t *by = analysis->by_verdict;
-  fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, "Foils", analysis->foil_count);
-  const fg_design *design = &analysis->lot->settings.design;
-  size_t of_bearing = fg_report_of_bearing(design, NULL, 0);
-  bool judged = design->tolerance_count > of_bearing;
-  if (judged) put_tile(out, "Pass", by[FG_VERDICT_PASS]);
-  if (judged || by[FG_VERDICT_FAIL]) put_tile(out, "Fail", by[FG_VERDICT_FAIL]);
-  if (judged) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
-  put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED] + analysis->failed_scans);
-  if (of_bearing) {
-    by = analysis->bearings_by_verdict;
-    bool assumed = fg_manifest_column(&analysis->lot->manifest,
-                                      analysis->lot->settings.bearing_column) == FG_NO_COLUMN;
-    put_tile(out, assumed ? "Bearings, foils in a row" : "Bearings", analysis->bearing_count);
-    put_tile(out, "Bearings pass", by[FG_VERDICT_PASS]);
-    put_tile(out, "Bearings fail", by[FG_VERDICT_FAIL]);
-    if (by[FG_VERDICT_UNDECIDED]) put_tile(out, "Cannot tell", by[FG_VERDICT_UNDECIDED]);
-    if (by[FG_VERDICT_NOT_MEASURED]) put_tile(out, "Not measured", by[FG_VERDICT_NOT_MEASURED]);
-  }
-  fputs("</dl>\n", out);
-}
-
-/* What stands against a foil most: what it is, or its farthest value. */
-static void put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  char defect[200];
-  if (foil->foil->error[0]) {
-    fg_html_text(out, foil->foil->error);
-  } else if (fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect)) {
-    fputs(defect, out);
-  } else if (foil->worst_row) {
-    fputs(foil->worst_row->words, out);
-    if (foil->worst_number) fprintf(out, " of bump %d", foil->worst_number);
-    fputs(": ", out);
-    fg_lot_put_number(out, foil->worst_value, 5);
-    fprintf(out, " %s", foil->worst_row->unit);
-  }
-}
-
-static void put_worst(FILE *out, const fg_lot_analysis *analysis) {
-  if (!analysis->worst[0]) return;
-  fputs("<h2>The worst three</h2>\n<ol class=\"worst\">\n", out);
-  for (int i = 0; i < 3 && analysis->worst[i]; i++) {
-    const fg_lot_foil *foil = analysis->worst[i];
-    fputs("<li><b>", out);
-    fg_lot_put_label(out, analysis, foil);
-    fputs("</b>: ", out);
-    put_reason(out, analysis, foil);
-    fputs("</li>\n", out);
-  }
-  fputs("</ol>\n", out);
-}
-
-/* What the first chart shows: the first bump quantity with a tolerance, else the height. */
-static const fg_lot_quantity *leading_quantity(const fg_lot_analysis *analysis) {
-  for (size_t i = 0; i < analysis->quantity_count; i++)
-    if (analysis->quantities[i].tolerance && analysis->quantities[i].owner == FG_QUANTITY_OF_BUMP)
-      return &analysis->quantities[i];
-  return fg_lot_find_quantity(analysis, "height_mm");
-}
-
 /* What the model does not know well enough to correct. */
 static void put_left(FILE *out, const fg_lot_analysis *analysis) {
   static const struct {
@@ -120,26 +54,12 @@ static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis
 }
 
 static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
-  const fg_lot_quantity *leading = leading_quantity(analysis);
-  fputs("<section>\n<header><h1>", out);
-  fg_html_text(out, analysis->lot->settings.name);
-  fputs("</h1>", out);
-  fg_html_outcome(out, &analysis->outcome);
-  fprintf(out, "<p>%zu foils of %zu scans, design ", analysis->foil_count,
-          analysis->lot->manifest.items);
-  fg_html_text(out, analysis->lot->settings.design.name);
-  fputs("</p></header>\n", out);
+  fputs("<section class=\"part\">\n", out);
+  fg_lot_put_heading(out, analysis);
   FG_TRY(put_corrected(ctx, out, analysis));
-  put_tiles(out, analysis);
-  put_worst(out, analysis);
-  if (leading) {
-    fputs("<figure>", out);
-    fg_lot_plot_places(out, leading, NULL);
-    fprintf(out,
-            "<figcaption>%s of each bump number: mean and two standard deviations over the "
-            "foils%s.</figcaption></figure>\n",
-            leading->row->words, leading->tolerance ? "; red: tolerance" : "");
-  }
+  fg_lot_put_counts(out, analysis);
+  fg_lot_put_worst(out, analysis);
+  fg_lot_put_leading(out, analysis);
   fputs("</section>\n", out);
   return FG_OK;
 }
@@ -147,7 +67,7 @@ static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analy
 static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
   size_t told = 0;
   if (!analysis->failed_scans) return;
-  fprintf(out, "<section>\n<h1>Scans that could not be measured: %zu</h1>\n<ul>\n",
+  fprintf(out, "<section class=\"part\">\n<h1>Scans that could not be measured: %zu</h1>\n<ul>\n",
           analysis->failed_scans);
   for (size_t i = 0; i < analysis->lot->manifest.items && told < FOIL_ROWS_MAX; i++) {
     if (!analysis->lot->records[i].error) continue;
@@ -162,26 +82,26 @@ static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  fputs("<tr><td>", out);
+  fputs("<tr><td class=\"words path\">", out);
   fg_lot_put_label(out, analysis, foil);
-  fprintf(out, "</td><td class=\"%s\">%s</td><td>", fg_verdict_word(foil->verdict),
-          foil->verdict == FG_VERDICT_UNDECIDED      ? "cannot tell"
-          : foil->verdict == FG_VERDICT_NOT_MEASURED ? "not measured"
-          : foil->verdict == FG_VERDICT_NONE         ? "–"
-                                                     : fg_verdict_word(foil->verdict));
-  fprintf(out, "%zu</td><td>", foil->foil->bump_count);
+  fputs("</td>", out);
+  fg_lot_put_verdict(out, foil->verdict);
+  fprintf(out, "<td>%zu</td><td>", foil->foil->bump_count);
   fg_lot_put_number(out, foil->foil->overall.radius_mm, 6);
   fputs("</td><td class=\"words\">", out);
-  put_reason(out, analysis, foil);
-  fputs("</td></tr>\n", out);
+  fg_lot_put_reason(out, analysis, foil);
+  fputs("</td>", out);
+  fg_lot_put_margin(out, analysis, foil);
+  fputs("</tr>\n", out);
 }
 
 /* Those that do not pass first; a page of 100,000 rows helps nobody. */
 static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
-  fputs("<section>\n<h1>Foils</h1>\n<div class=\"scroll\"><table><thead><tr><th>foil</th><th>"
-        "verdict</th><th>bumps</th><th>R0<br>mm</th><th>farthest value, or why "
-        "not</th></tr></thead>\n"
+  fputs("<section class=\"part\">\n<h1>Foils</h1>\n<div "
+        "class=\"scroll\"><table><thead><tr><th>foil</th><th>"
+        "verdict</th><th>bumps</th><th>R0<br>mm</th><th class=\"w\">what is farthest, or why "
+        "not</th><th>value ± U</th><th>nearest<br>limit</th><th>margin</th></tr></thead>\n"
         "<tbody>\n",
         out);
   for (int pass = 0; pass < 2; pass++)
@@ -204,7 +124,8 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *a
   char scale[FG_SCALE_WORDS];
   fg_scale_words(analysis->lot->model, scale, sizeof scale);
   fprintf(out,
-          "<section>\n<h1>Where it comes from</h1>\n<dl class=\"facts\"><dt>Program</dt><dd>"
+          "<section class=\"part\">\n<h1>Where it comes from</h1>\n<dl "
+          "class=\"facts\"><dt>Program</dt><dd>"
           "foilgauge %s</dd><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
           "</dd>",
           analysis->lot->head.version, analysis->lot->head.recipe_sha256,

@@ -237,7 +237,9 @@ static void put_meaning(FILE *out, const fg_lot_analysis *analysis) {
 void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_assembly *assembly = &analysis->assembly;
   if (!assembly->asked) return;
-  fputs("<section>\n<h1>How many bearings of this lot assemble</h1>\n<ul class=\"said\">\n", out);
+  fputs("<section class=\"part\">\n<h1>How many bearings of this lot assemble</h1>\n<ul "
+        "class=\"said\">\n",
+        out);
   for (size_t i = 0; i < sizeof assembly->statement / sizeof *assembly->statement; i++) {
     if (!assembly->statement[i][0]) continue;
     fputs("<li>", out);

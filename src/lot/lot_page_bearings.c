@@ -6,7 +6,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/measure/measure_page_parts.h"
 
-enum { POLAR_MAX = 4, BEARING_ROWS_MAX = 200, UM_PER_MM = 1000 };
+enum { POLAR_MAX = 30, BEARING_ROWS_MAX = 200, UM_PER_MM = 1000 };
 
 static void put_bearing_name(FILE *out, const fg_lot_bearing *bearing) {
   if (bearing->name)
@@ -122,26 +122,54 @@ static void put_mean_and_sd(FILE *out, const fg_lot_spread *spread) {
   fputs(" %", out);
 }
 
-/* How the foils lie around the bearings, drawings of the first, and a line of each. */
+/* Bearings that do not pass come before those that do, where not all can be drawn. */
+static bool is_drawn(const fg_lot_analysis *analysis, size_t bearing) {
+  size_t before = 0;
+  bool good = analysis->bearings[bearing].decision.outcome.verdict == FG_VERDICT_PASS;
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
+    bool other = analysis->bearings[i].decision.outcome.verdict == FG_VERDICT_PASS;
+    before += other == good ? i < bearing : good;
+  }
+  return before < POLAR_MAX;
+}
+
+static void put_outcome(FILE *out, const fg_lot_analysis *analysis, const fg_lot_bearing *bearing) {
+  if (is_judged(analysis))
+    fprintf(out, ": %s", fg_html_verdict_title(bearing->decision.outcome.verdict));
+  if (!bearing->known) fputs(": not known, a foil or a value is missing", out);
+}
+
+/* How the foils lie around the bearings, drawings, and a line of each. */
 static void put_assembled(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   bool assumed =
       fg_manifest_column(&analysis->lot->manifest, settings->bearing_column) == FG_NO_COLUMN;
   fprintf(out,
           "<p class=\"note\">%zu pads of %zu bumps, %.2f° apart, from bump %zu of each foil; "
-          "clearances of the foils fitted into the sleeve%s.%s%s</p>\n<div class=\"pair\">\n",
+          "clearances of the foils fitted into the sleeve%s.%s%s</p>\n<div class=\"bearings\">\n",
           analysis->layout.pads, analysis->layout.bumps_per_pad,
           fg_bearing_pitch_deg(&analysis->layout), analysis->layout.first_bump,
           assumed ? ". The manifest assigns no bearing: foils in a row are taken together" : "",
           analysis->layout_note[0] ? " " : "", analysis->layout_note);
-  for (size_t i = 0; i < analysis->bearing_count && i < POLAR_MAX; i++) {
+  for (size_t i = 0; i < analysis->bearing_count; i++) {
+    if (!is_drawn(analysis, i)) continue;
     fputs("<figure>", out);
     fg_lot_plot_polar(out, analysis, &analysis->bearings[i]);
     fputs("<figcaption>Bearing ", out);
     put_bearing_name(out, &analysis->bearings[i]);
-    fputs("; radial lines: pads.</figcaption></figure>\n", out);
+    put_outcome(out, analysis, &analysis->bearings[i]);
+    fputs("</figcaption></figure>\n", out);
   }
-  fputs("</div>\n", out);
+  fprintf(out,
+          "</div>\n<p class=\"note\">Radial lines: pads; red, dashed: no clearance; grey, dashed: "
+          "as designed, %.0f µm; red dots: bumps that touch.",
+          UM_PER_MM * analysis->lot->nominal.clearance_mm);
+  if (analysis->bearing_count > POLAR_MAX)
+    fprintf(out,
+            " <b>%d of %zu bearings are drawn</b>, those that do not pass first; %zu are not: "
+            "bearings.csv has them.",
+            POLAR_MAX, analysis->bearing_count, analysis->bearing_count - POLAR_MAX);
+  fputs("</p>\n", out);
   put_bearing_table(out, analysis);
 }
 
@@ -175,7 +203,7 @@ void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_settings *settings = &analysis->lot->settings;
   const fg_lot_quantity *clearance = fg_lot_find_quantity(analysis, "clearance_fitted_mm");
   double nominal = analysis->lot->nominal.clearance_mm;
-  fputs("<section>\n<h1>Clearance of the bearings</h1>\n<figure>", out);
+  fputs("<section class=\"part\">\n<h1>Clearance of the bearings</h1>\n<figure>", out);
   fg_lot_plot_density(out, clearance, 100 / nominal, -100,
                       "local clearance against design, foil fitted, %");
   fputs("<figcaption>100 (C − C<sub>D</sub>) / C<sub>D</sub> of every bump, its foil fitted into "

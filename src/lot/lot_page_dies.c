@@ -163,7 +163,7 @@ void fg_lot_put_dies(FILE *out, const fg_lot_analysis *analysis) {
   fg_lot_analyse_dies(analysis, &dies);
   if (!dies.count) return;
   find_range(analysis, &dies, range);
-  fputs("<section>\n<h1>Dies: what of the deviation is theirs</h1>\n", out);
+  fputs("<section class=\"part\">\n<h1>Dies: what of the deviation is theirs</h1>\n", out);
   put_sentences(out, &dies);
   fputs("<div class=\"pair\">", out);
   for (size_t i = 0; i < dies.count; i++) {

@@ -10,7 +10,7 @@ static void put_p(FILE *out, double p) {
 
 void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->difference_count) return;
-  fputs("<section>\n<h1>Groups: ", out);
+  fputs("<section class=\"part\">\n<h1>Groups: ", out);
   fg_html_text(out, analysis->lot->settings.group_column);
   fputs("</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>groups</th><th>means"
         "</th><th>difference</th><th>p (Welch)</th><th>s</th><th>p (F)</th><th>p (Levene)</th></tr>"
@@ -35,7 +35,8 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->gauge_count) return;
-  fputs("<section>\n<h1>Gauge repeatability and reproducibility</h1>\n<div class=\"scroll\"><table>"
+  fputs("<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n<div "
+        "class=\"scroll\"><table>"
         "<thead><tr><th>quantity</th><th>bump</th><th>repeatability</th><th>reproducibility</th>"
         "<th>GRR</th><th>part</th><th>GRR, %</th><th>categories</th></tr></thead>\n<tbody>\n",
         out);

@@ -1,5 +1,6 @@
 /* The lot's page: statistics of the quantities, capability, charts, springback. */
 #include <math.h>
+#include <string.h>
 
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
@@ -14,27 +15,42 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
     const double values[] = {quantity->mean, quantity->sd,    quantity->median,
                              quantity->mode, quantity->least, quantity->most};
-    fprintf(out, "<tr><td>%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
+    fprintf(out, "<tr><td class=\"words\">%s</td><td>%s</td><td>%zu</td>", quantity->row->words,
             quantity->row->unit, quantity->count);
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
       fputs("<td>", out);
-      fg_lot_put_number(out, values[k], k == 1 ? 3 : 6);
+      fg_lot_put_decimals(out, values[k], fg_report_decimals(quantity->row, quantity->sd));
       fputs("</td>", out);
     }
-    fprintf(out, "<td>%s</td></tr>\n",
-            !quantity->has_chart ? "–"
-            : quantity->stable   ? "stable"
-                                 : "not stable");
+    fprintf(out, "<td%s</td></tr>\n",
+            !quantity->has_chart            ? ">–"
+            : quantity->stable              ? " class=\"pass\">stable"
+            : fg_lot_is_explained(quantity) ? " class=\"cannot_tell\">groups differ"
+                                            : " class=\"cannot_tell\">not stable");
   }
   fputs("</tbody></table></div>\n", out);
   if (analysis->crushed)
-    fprintf(out,
-            "<p class=\"note\">%zu of %zu bumps are crushed: they are in no statistics, stiffness "
-            "or clearance of this page.</p>\n",
-            analysis->crushed, analysis->bumps);
+    fprintf(
+        out,
+        "<p class=\"reasons\"><b>%zu of %zu bumps are crushed:</b> they are judged, and they are "
+        "in no statistics, stiffness or clearance of this page.</p>\n",
+        analysis->crushed, analysis->bumps);
 }
 
+static void put_cell(FILE *out, double value, int digits) {
+  fputs("<td>", out);
+  fg_lot_put_number(out, value, digits);
+  fputs("</td>", out);
+}
+
+/* So far within its tolerance that the number says nothing more. */
+static const double ratio_told = 100;
+
 static void put_ratio(FILE *out, const fg_ratio *ratio) {
+  if (ratio->value > ratio_told) {
+    fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
+    return;
+  }
   fputs("<td>", out);
   fg_lot_put_number(out, ratio->value, 3);
   if (isfinite(ratio->value)) {
@@ -49,7 +65,7 @@ static void put_ratio(FILE *out, const fg_ratio *ratio) {
 
 static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
   const fg_capability *capability = &quantity->capability;
-  fprintf(out, "<tr><td>%s</td><td>", quantity->row->words);
+  fprintf(out, "<tr><td class=\"words\">%s</td><td>", quantity->row->words);
   fg_lot_put_number(out, quantity->tolerance->lower, 6);
   fputs(" … ", out);
   fg_lot_put_number(out, quantity->tolerance->upper, 6);
@@ -58,9 +74,11 @@ static void put_capability_row(FILE *out, const fg_lot_quantity *quantity) {
   put_ratio(out, &capability->pk);
   put_ratio(out, &capability->c);
   put_ratio(out, &capability->ck);
-  fputs("<td>", out);
-  fg_lot_put_number(out, capability->quantile_pk, 3);
-  fprintf(out, "</td><td class=\"words\">%s, %s</td></tr>\n",
+  if (capability->quantile_pk > ratio_told)
+    fprintf(out, "<td>&gt; %.0f</td>", ratio_told);
+  else
+    put_cell(out, capability->quantile_pk, 3);
+  fprintf(out, "<td class=\"words\">%s, %s</td></tr>\n",
           capability->stable ? "stable" : "not stable",
           capability->normal ? "normal" : "not normal: the quantile method holds");
 }
@@ -70,10 +88,11 @@ static void put_capability(FILE *out, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
     any = any || analysis->quantities[i].has_capability;
   if (!any) return;
-  fputs("<h2>Capability</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>"
-        "tolerance</th><th>Pp</th><th>Ppk</th><th>Cp</th><th>Cpk</th><th>Ppk by quantiles</th><th>"
-        "</th></tr></thead>\n<tbody>\n",
-        out);
+  fputs(
+      "<h2>Capability</h2>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>"
+      "tolerance</th><th>Pp</th><th>Ppk</th><th>Cp</th><th>Cpk</th><th>Ppk by<br>quantiles</th><th>"
+      "</th></tr></thead>\n<tbody>\n",
+      out);
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (analysis->quantities[i].has_capability) put_capability_row(out, &analysis->quantities[i]);
   fprintf(
@@ -88,31 +107,44 @@ static void put_signals(FILE *out, const fg_lot_quantity *quantity) {
   unsigned rules = 0;
   for (size_t i = 0; i < quantity->chart.count; i++)
     rules |= quantity->chart.point[i].rules;
-  fprintf(out, "Limits at three sigma from foil to foil; %zu signals", quantity->chart.signals);
+  fprintf(out, "%zu signal%s", quantity->chart.signals, quantity->chart.signals == 1 ? "" : "s");
   for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
     if (rules & (1u << (rule - 1))) fprintf(out, "; %s", fg_run_rule_words(rule));
   if (quantity->has_subgroups)
-    fprintf(out, ". Spread within foils: %zu signals", quantity->deviations.signals);
+    fprintf(out, ". Spread within foils: %zu signal%s", quantity->deviations.signals,
+            quantity->deviations.signals == 1 ? "" : "s");
   fputs(".", out);
 }
 
-static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
-  static const char *const shown[] = {"radius_error_pct", "height_mm", "overall.radius_mm",
-                                      "arc.subtended_angle_deg"};
-  fputs("<h2>How the process runs</h2>\n", out);
-  for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
-    const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
-    if (!quantity || !quantity->has_chart) continue;
-    fputs("<figure>", out);
-    fg_lot_plot_chart(out, quantity);
-    fputs("<figcaption>", out);
-    put_signals(out, quantity);
-    fputs("</figcaption></figure>\n", out);
+static void put_chart(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  fputs("<figure>", out);
+  fg_lot_plot_chart(out, analysis, quantity);
+  fputs("<figcaption>", out);
+  put_signals(out, quantity);
+  if (quantity->cause.column != FG_NO_COLUMN) {
+    fputs(" They", out);
+    fg_lot_put_cause(out, analysis, quantity);
   }
+  fputs("</figcaption></figure>\n", out);
+}
+
+static bool is_charted(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
+  for (const char *const *name = fg_lot_charted; *name; name++)
+    if (!strcmp(quantity->row->name, *name)) return quantity->has_chart;
+  return fg_lot_is_watched(analysis, quantity) && !quantity->stable;
+}
+
+static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
+  fputs("<h2>How the process runs</h2>\n<p class=\"note\">Red, dashed: three sigma from foil to "
+        "foil about the mean. Red squares: signals.</p>\n",
+        out);
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (is_charted(analysis, &analysis->quantities[i]))
+      put_chart(out, analysis, &analysis->quantities[i]);
 }
 
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
-  fputs("<section>\n", out);
+  fputs("<section class=\"part\">\n", out);
   put_quantity_rows(out, analysis);
   put_capability(out, analysis);
   put_charts(out, analysis);
@@ -144,14 +176,17 @@ static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
   static const char *const shown[] = {"radius_error_pct", "intersection_angle_error_pct",
                                       "bump_angle_error_pct"};
   const fg_lot_curve *curve = &analysis->lot->settings.curve;
+  const fg_lot_quantity *last = NULL;
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
     const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
-    if (quantity) fg_lot_plot_places(out, quantity, curve);
+    if (!quantity) continue;
+    fg_lot_plot_places(out, analysis, quantity, curve);
+    last = quantity;
   }
-  fputs("<figcaption>Each bump number: mean and two standard deviations over the foils, of the "
-        "errors of the bump radius (e_R), the intersection angle θ (e_θ) and the bump angle α "
-        "(e_α).",
+  fputs("<figcaption>Errors of the bump radius (e_R), the intersection angle θ (e_θ) and the bump "
+        "angle α (e_α) of each bump number. ",
         out);
+  if (last) fg_lot_put_places_key(out, analysis, last);
   if (curve->count) {
     fputs(" Diamonds, dashed: the reference curve ", out);
     fg_html_text(out, curve->name);
@@ -166,7 +201,7 @@ static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_quantity *radius = fg_lot_find_quantity(analysis, "radius_mm");
-  fputs("<section>\n<h1>Springback</h1>\n<figure>", out);
+  fputs("<section class=\"part\">\n<h1>Springback</h1>\n<figure>", out);
   put_errors_by_bump(out, analysis);
   fputs("<h2>Radius over design</h2>\n<figure>", out);
   fg_lot_plot_density(out, radius, 1 / analysis->lot->settings.design.bump_radius_mm, 0,
@@ -201,7 +236,7 @@ void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis) {
       {"overall.radius_mm", "radius over design", design->overall_radius_mm},
       {"arc.subtended_angle_deg", "angle over design", design->subtended_angle_deg},
   };
-  fputs("<section>\n<h1>Springback</h1>\n", out);
+  fputs("<section class=\"part\">\n<h1>Springback</h1>\n", out);
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
     const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i].name);
     if (!quantity || !quantity->has_density) continue;

@@ -8,103 +8,7 @@
 #include "report/plot_marks.h"
 #include "report/stiffness/stiffness_map.h"
 
-/* More dots than these cannot be told apart, and a page must open on a phone. */
-enum { PLOT_WIDTH = 1000, DOTS_MAX = 3000, CHART_POINTS_MAX = 600, CURVE_POINTS = 240, BARS = 30 };
-
-/* Values that are equal but for rounding still get an axis with room for numbers. */
-static void widen(double *low, double *high, double share) {
-  static const double least = 1e-9;
-  double size = fmax(fabs(*low), fabs(*high)), room = (*high - *low) * share;
-  if (!(room > least * size)) room = size > 0 ? 0.01 * size : 1;
-  *low -= room;
-  *high += room;
-}
-
-static void include(double value, double *low, double *high) {
-  if (!isfinite(value)) return;
-  *low = fmin(*low, value);
-  *high = fmax(*high, value);
-}
-
-static void put_limits(const fg_plot *at, const fg_tolerance *tolerance) {
-  if (!tolerance) return;
-  const double limits[2] = {tolerance->lower, tolerance->upper};
-  for (int i = 0; i < 2; i++)
-    if (limits[i] > at->y_low && limits[i] < at->y_high)
-      fg_plot_segment(at, at->x_low, limits[i], at->x_high, limits[i], "limit");
-}
-
-/* Beside an axis there is room for some thirty letters; a longer name gives way to its symbol. */
-static void axis_title(char *text, size_t size, const fg_quantity *row) {
-  enum { LETTERS = 28 };
-  snprintf(text, size, "%s%s%s", strlen(row->words) > LETTERS ? row->symbol : row->words,
-           *row->unit ? ", " : "", row->unit);
-}
-
-bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i,
-                        double *value) {
-  bool radius = !strcmp(row->name, "radius_error_pct");
-  if (!curve || i >= curve->count) return false;
-  if (!radius && strcmp(row->name, "intersection_angle_error_pct") != 0) return false;
-  *value = radius ? curve->point[i].radius_error_pct : curve->point[i].angle_error_pct;
-  return true;
-}
-
-/* The reference curve: its points joined, a diamond each. */
-static void put_curve(const fg_plot *at, const fg_quantity *row, const fg_lot_curve *curve) {
-  double x[FG_LOT_CURVE_MAX], y[FG_LOT_CURVE_MAX];
-  size_t count = 0;
-  while (fg_lot_curve_value(curve, row, count, &y[count])) {
-    x[count] = curve->point[count].bump;
-    count++;
-  }
-  if (!count) return;
-  fg_plot_line(at, x, y, count, "hypothesis");
-  for (size_t i = 0; i < count; i++) {
-    const double size = 6, px = fg_plot_x(at, x[i]), py = fg_plot_y(at, y[i]);
-    fprintf(at->out,
-            "<path class=\"hypothesis\" style=\"stroke-dasharray:none\" d=\"M%.1f %.1fl%g %gl%g "
-            "%gl%g %gz\"/>\n",
-            px, py - size, size, size, -size, size, -size, -size);
-  }
-}
-
-void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity, const fg_lot_curve *curve) {
-  double low = INFINITY, high = -INFINITY;
-  char title[160], number[24];
-  for (size_t i = 0; i < quantity->places; i++) {
-    double reach = isfinite(quantity->place[i].sd) ? 2 * quantity->place[i].sd : 0;
-    include(quantity->place[i].mean - reach, &low, &high);
-    include(quantity->place[i].mean + reach, &low, &high);
-  }
-  if (!(high >= low)) return;
-  double value;
-  for (size_t i = 0; fg_lot_curve_value(curve, quantity->row, i, &value); i++)
-    include(value, &low, &high);
-  if (quantity->tolerance) {
-    include(quantity->tolerance->lower, &low, &high);
-    include(quantity->tolerance->upper, &low, &high);
-  }
-  widen(&low, &high, 0.06);
-  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
-  axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&at, 300, "Mean and two standard deviations of every bump number");
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_title(&at, "bump, 1 is next to the lip");
-  put_limits(&at, quantity->tolerance);
-  for (size_t i = 0; i < quantity->places; i++) {
-    const fg_lot_place *place = &quantity->place[i];
-    double x = (double)i + 1;
-    snprintf(number, sizeof number, "%zu", i + 1);
-    fg_plot_x_label(&at, fg_plot_x(&at, x), number);
-    if (!place->count) continue;
-    if (isfinite(place->sd))
-      fg_plot_segment(&at, x, place->mean - 2 * place->sd, x, place->mean + 2 * place->sd, "curve");
-    fg_plot_dot(&at, x, place->mean, 6, "s1");
-  }
-  put_curve(&at, quantity->row, curve);
-  fg_plot_end(&at);
-}
+enum { PLOT_WIDTH = 1000, CURVE_POINTS = 240, BARS = 30 };
 
 static void put_bars(const fg_plot *at, const double *bars) {
   double width = (at->x_high - at->x_low) / BARS;
@@ -168,7 +72,7 @@ static void each_bump(const fg_plot *at, const fg_lot_analysis *analysis, bump_v
   size_t total = 0, seen = 0;
   for (size_t i = 0; i < analysis->foil_count; i++)
     total += analysis->foils[i].foil->bump_count;
-  size_t every = total / DOTS_MAX + 1;
+  size_t every = total / FG_LOT_DOTS_MAX + 1;
   for (size_t i = 0; i < analysis->foil_count; i++)
     for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
       const fg_foil *foil = analysis->foils[i].foil;
@@ -213,8 +117,8 @@ static bool error_axes(const fg_lot_analysis *analysis, fg_plot *at) {
   at->x_high = fmax(0, radius->most);
   at->y_low = fmin(0, angle->least);
   at->y_high = fmax(0, angle->most);
-  widen(&at->x_low, &at->x_high, 0.06);
-  widen(&at->y_low, &at->y_high, 0.06);
+  fg_lot_plot_widen(&at->x_low, &at->x_high, 0.06);
+  fg_lot_plot_widen(&at->y_low, &at->y_high, 0.06);
   return true;
 }
 
@@ -230,37 +134,6 @@ void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis) {
   put_constant_arc(&at);
   each_bump(&at, analysis, put_bump);
   put_fit(&at, line->slope, line->intercept);
-  fg_plot_end(&at);
-}
-
-void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity) {
-  const fg_chart *chart = &quantity->chart;
-  char title[160];
-  if (!quantity->has_chart) return;
-  double low = chart->point[0].lower, high = chart->point[0].upper;
-  for (size_t i = 0; i < chart->count; i++)
-    include(chart->point[i].value, &low, &high);
-  widen(&low, &high, 0.08);
-  fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.5, (double)chart->count + 0.5, low, high};
-  size_t every = chart->count / CHART_POINTS_MAX + 1;
-  axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&at, 300, "Control chart, foil after foil");
-  fg_plot_y_axis(&at, title);
-  fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at,
-                  quantity->owner == FG_QUANTITY_OF_BUMP ? "foil (mean of its bumps)" : "foil");
-  fg_plot_segment(&at, at.x_low, chart->centre, at.x_high, chart->centre, "thin");
-  fg_plot_segment(&at, at.x_low, chart->point[0].lower, at.x_high, chart->point[0].lower, "limit");
-  fg_plot_segment(&at, at.x_low, chart->point[0].upper, at.x_high, chart->point[0].upper, "limit");
-  fputs("<path class=\"curve\" d=\"", out);
-  for (size_t i = 0; i < chart->count; i += every)
-    fprintf(out, "%c%.1f %.1f", i ? 'L' : 'M', fg_plot_x(&at, (double)i + 1),
-            fg_plot_y(&at, chart->point[i].value));
-  fputs("\"/>\n", out);
-  for (size_t i = 0; i < chart->count; i++)
-    if (chart->point[i].rules || (every == 1 && chart->count <= 120))
-      fg_plot_dot(&at, (double)i + 1, chart->point[i].value, chart->point[i].rules ? 6 : 4,
-                  chart->point[i].rules ? "signal" : "s2");
   fg_plot_end(&at);
 }
 
@@ -302,8 +175,9 @@ static void put_ring(const polar *p, double clearance_mm, const char *style, con
   double radius = p->zero_px + p->px_per_mm * clearance_mm;
   fprintf(p->out, "<circle cx=\"%d\" cy=\"%d\" r=\"%.1f\" fill=\"none\" class=\"%s\"/>\n",
           POLAR_MIDDLE, POLAR_MIDDLE, radius, style);
-  fprintf(p->out, "<text class=\"key\" x=\"%d\" y=\"%.1f\">%s</text>\n", POLAR_MIDDLE + 5,
-          POLAR_MIDDLE - radius - 4, words);
+  if (words)
+    fprintf(p->out, "<text class=\"key\" x=\"%d\" y=\"%.1f\">%s</text>\n", POLAR_MIDDLE + 5,
+            POLAR_MIDDLE - radius - 4, words);
 }
 
 static void put_pads(const polar *p, const fg_bearing_layout *layout) {
@@ -349,9 +223,12 @@ void fg_lot_plot_polar(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
           POLAR_SIZE, POLAR_SIZE);
   put_pads(&p, &analysis->layout);
   put_ring(&p, 0, "limit", "0");
-  char words[48];
-  snprintf(words, sizeof words, "design %.0f µm", 1000 * design);
-  put_ring(&p, design, "hypothesis", words);
+  put_ring(&p, design, "hypothesis", NULL);
+  fprintf(out,
+          "<text class=\"x\" x=\"%d\" y=\"%d\">least</text><text class=\"x\" x=\"%d\" "
+          "y=\"%d\">%.1f µm</text>\n",
+          POLAR_MIDDLE, POLAR_MIDDLE - 8, POLAR_MIDDLE, POLAR_MIDDLE + 18,
+          1000 * bearing->clearance.least_mm);
   put_places(&p, bearing);
   fputs("</svg>\n", out);
 }

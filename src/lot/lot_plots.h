@@ -6,9 +6,20 @@
 
 #include "lot/analysis.h"
 
-/* Mean ± 2 sd of each bump number, with the tolerance (thesis figure 5.17), and the reference curve
- * where it speaks of this quantity; NULL: none. */
-void fg_lot_plot_places(FILE *out, const fg_lot_quantity *quantity, const fg_lot_curve *curve);
+/* More dots than these cannot be told apart, and a page must open on a phone. */
+enum { FG_LOT_DOTS_MAX = 3000 };
+
+/* Room around an axis; a value on it. */
+void fg_lot_plot_widen(double *low, double *high, double share);
+void fg_lot_plot_include(double value, double *low, double *high);
+
+/* Mean ± 2 sd of each bump number and the foils beside them, with the tolerance (thesis figure
+ * 5.17), and the reference curve where it speaks of this quantity; NULL: none. And what its marks
+ * mean. */
+void fg_lot_plot_places(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity,
+                        const fg_lot_curve *curve);
+void fg_lot_put_places_key(FILE *out, const fg_lot_analysis *analysis,
+                           const fg_lot_quantity *quantity);
 
 /* What the curve says of a quantity at its i-th point; false beyond its end, and of others. */
 bool fg_lot_curve_value(const fg_lot_curve *curve, const fg_quantity *row, size_t i, double *value);
@@ -22,8 +33,8 @@ void fg_lot_plot_density(FILE *out, const fg_lot_quantity *quantity, double scal
  * says (figure 5.8). */
 void fg_lot_plot_correlation(FILE *out, const fg_lot_analysis *analysis);
 
-/* The chart of individuals: foil after foil, limits, signals. */
-void fg_lot_plot_chart(FILE *out, const fg_lot_quantity *quantity);
+/* The chart of individuals: foil after foil, limits, signals, and the groups that explain them. */
+void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
 
 /* Stiffness over radius and angle deviation, with the measured bumps (figures 5.4, 5.10). */
 void fg_lot_plot_map(FILE *out, const fg_lot_analysis *analysis);

@@ -9,6 +9,27 @@
 /* A dash where it is not known. */
 void fg_lot_put_number(FILE *out, double value, int digits);
 
+/* A value with as many decimals as people read of its quantity. */
+void fg_lot_put_value(FILE *out, const fg_quantity *row, double value);
+void fg_lot_put_decimals(FILE *out, double value, int decimals);
+
+/* A cell with a verdict: its word, and its colour. */
+void fg_lot_put_verdict(FILE *out, fg_verdict verdict);
+
+/* Of one foil: what stands against it most; three cells: the value ± U, the limit, the margin. */
+void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
+void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
+
+/* What the signals of a quantity's chart come from: the rest of a sentence; nothing where it is not
+ * known. */
+void fg_lot_put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
+
+/* Parts of the first screen, in its order. */
+void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_counts(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis);
+void fg_lot_put_leading(FILE *out, const fg_lot_analysis *analysis);
+
 /* What people call a foil. */
 void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
 

@@ -96,7 +96,22 @@ static const char lot_style[] =
     ".lots th,.lots td{padding:4px 7px}.lots td.words:not(:empty){min-width:0}"
     ".plot .end{text-anchor:end;fill:var(--soft)}.pair{display:grid;grid-template-columns:repeat("
     "auto-fit,minmax(min(300px,100%),1fr));gap:18px}.polar{max-width:520px;margin:0 auto}"
-    "ol.worst{margin:0 0 14px;padding-left:22px}ol.worst li{overflow-wrap:anywhere}\n";
+    ".plot .mark.group{fill:#fff;stroke:var(--ink);stroke-width:1.8px}.plot .mark.signal{fill:"
+    "var(--bad);stroke:var(--bad);stroke-width:1px}.plot .mark.beyond-limit{stroke:var(--bad);"
+    "stroke-width:2.2px}.verdict.process{font-weight:500}"
+    ".tiles .good{background:#e7f4ec;border-left:5px solid var(--good)}.tiles .bad{background:"
+    "#fdeaea;border-left:5px solid var(--bad)}.tiles .open{background:#fff4df;border-left:5px "
+    "solid var(--open)}.tiles+.tiles{margin-top:-6px}ul.flags{margin-bottom:14px}"
+    ".bearings{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(230px,100%),1fr));"
+    "gap:12px 18px}.bearings .plot{font-size:22px}.bearings figcaption{text-align:center}"
+    "section.part h1~h2{break-after:avoid}\n"
+    /* Sections follow each other on paper; what belongs together stays together. */
+    "@media print{section.part{break-after:auto;padding:0 0 10mm;margin:0;border-radius:0}"
+    "h1,h2,h3,header,h1+.note,h2+.note{break-after:avoid}.tiles,.reasons,ul.flags{break-inside:"
+    "avoid}tr{break-inside:avoid}thead{display:table-header-group}tbody tr:nth-child(-n+2),tbody "
+    "tr:nth-last-child(2){break-after:avoid}.bearings{grid-template-columns:"
+    "1fr 1fr 1fr;gap:8px}.bearings figure{break-inside:avoid}figure .plot{max-height:82mm}"
+    "p{orphans:3;widows:3}}\n";
 
 /* The loop on scans. Colours that the colour-blind tell apart: purple and orange for the two sides
  * of a circle, blue, orange, green and pink for scans. */

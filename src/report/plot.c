@@ -30,15 +30,26 @@ void fg_plot_end(const fg_plot *at) {
   fputs("</svg>\n", at->out);
 }
 
+/* As many digits as neighbouring ticks take to differ: 20.7299, 20.7300. */
+static void tick_text(char text[32], double value, double step) {
+  enum { LEAST_DIGITS = 4, MOST_DIGITS = 9 };
+  double size = fabs(value), clean = size < step * 1e-6 ? 0 : value;
+  int digits = clean != 0 ? (int)ceil(log10(size / step * (1 + 1e-9))) + 1 : LEAST_DIGITS;
+  digits = digits < LEAST_DIGITS ? LEAST_DIGITS : digits > MOST_DIGITS ? MOST_DIGITS : digits;
+  snprintf(text, 32, "%.*g", digits, clean);
+}
+
 void fg_plot_y_axis(const fg_plot *at, const char *title) {
   double step = fg_plot_nice_step(at->y_high - at->y_low);
   for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
+    char number[32];
     double clean = fabs(y) < step * 1e-6 ? 0 : y;
+    tick_text(number, clean, step);
     fprintf(at->out,
             "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/><text class=\"y\" x=\"%.1f\" "
-            "y=\"%.1f\">%.4g</text>\n",
+            "y=\"%.1f\">%s</text>\n",
             clean == 0 ? "zero" : "grid", at->left, fg_plot_y(at, clean), at->right, at->left - 8,
-            fg_plot_y(at, clean) + 5, clean);
+            fg_plot_y(at, clean) + 5, number);
   }
   fprintf(at->out, "<text class=\"title\" transform=\"translate(16 %.1f) rotate(-90)\">",
           (at->top + at->bottom) / 2);
@@ -56,7 +67,7 @@ void fg_plot_x_numbers(const fg_plot *at) {
   double step = fg_plot_nice_step(at->x_high - at->x_low);
   char text[32];
   for (double x = ceil(at->x_low / step) * step; x <= at->x_high + step * 1e-6; x += step) {
-    snprintf(text, sizeof text, "%.4g", fabs(x) < step * 1e-6 ? 0 : x);
+    tick_text(text, x, step);
     fg_plot_x_label(at, fg_plot_x(at, x), text);
   }
 }

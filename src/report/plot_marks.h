@@ -8,6 +8,21 @@
 
 void fg_plot_dot(const fg_plot *at, double x, double y, double radius, const char *style);
 
+/* Marks that differ without their colour. */
+typedef enum fg_shape {
+  FG_SHAPE_CIRCLE,
+  FG_SHAPE_SQUARE,
+  FG_SHAPE_TRIANGLE,
+  FG_SHAPE_DIAMOND,
+  FG_SHAPE_CROSS,
+  FG_SHAPES
+} fg_shape;
+void fg_plot_shape(const fg_plot *at, double x, double y, double radius, fg_shape shape,
+                   const char *style);
+/* The same at a place of the view box. */
+void fg_plot_shape_at(FILE *out, double x, double y, double radius, fg_shape shape,
+                      const char *style);
+
 /* A value that is not finite leaves a gap. */
 void fg_plot_line(const fg_plot *at, const double *x, const double *y, size_t count,
                   const char *style);

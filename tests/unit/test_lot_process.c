@@ -1,0 +1,156 @@
+/* Whether the process runs as it did, what its signals come from, and what is said of it. */
+#include "lot/writers.h"
+#include "support/made_lot.h"
+
+enum { FOILS = 24, BUMPS = 3 };
+
+/* Radii of foils whose die and operator are given; noise that is the same in every lot. */
+static fg_lot lot_of(const fg_design *design, const char *const *cells, const double *offset_mm) {
+  static const double noise_um[FOILS] = {3,  -2, 5, -6, 1, 4,  -3, -5, 2, 6,  -1, -4,
+                                         -2, 3,  1, -1, 6, -4, 2,  -6, 4, -3, 5,  -5};
+  fg_lot lot = made_lot(design, FOILS, BUMPS, ",die,operator", cells);
+  for (size_t i = 0; i < FOILS; i++)
+    for (size_t k = 0; k < BUMPS; k++) {
+      double radius = 3.36 + offset_mm[i] + noise_um[i] / 1000 + 0.004 * (double)k;
+      made_bump(&lot, i, k, radius, 63.15 * 3.32 / radius);
+    }
+  return lot;
+}
+
+/* What there is to know of the bump radius; the page's text where `page` is not NULL. */
+static fg_lot_quantity radius_of(const char *const *cells, const double *offset_mm,
+                                 fg_lot_process *process, char **page) {
+  fg_design design;
+  fg_lot_analysis analysis;
+  size_t size;
+  fg_design_default(&design);
+  design.bump_count = BUMPS;
+  design.tolerance_count = 1;
+  design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.5};
+  fg_lot lot = lot_of(&design, cells, offset_mm);
+  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  fg_lot_quantity radius = *fg_lot_find_quantity(&analysis, "radius_mm");
+  *process = analysis.process;
+  if (page) {
+    FILE *out = open_memstream(page, &size);
+    assert_int_equal(fg_lot_write_page(NULL, &analysis, out), FG_OK);
+    fclose(out);
+  }
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+  return radius; /* of it only numbers are read */
+}
+
+/* Two dies in turn, 60 µm apart: the chart signals, and the die is why; who measured is not. */
+static void dies_in_turn_explain_the_signals(void **state) {
+  (void)state;
+  const char *cells[FOILS];
+  double offset[FOILS];
+  fg_lot_process process;
+  char *page;
+  for (size_t i = 0; i < FOILS; i++) {
+    cells[i] = i % 2 ? i % 3 ? ",B,eve" : ",B,ada" : i % 3 ? ",A,eve" : ",A,ada";
+    offset[i] = i % 2 ? 0.06 : 0;
+  }
+  fg_lot_quantity radius = radius_of(cells, offset, &process, &page);
+  assert_true(radius.chart.count == FOILS && !radius.stable);
+  assert_int_equal(radius.cause.column, 1);
+  assert_int_equal(radius.cause.groups, 2);
+  assert_int_equal(radius.cause.foils[0], 12);
+  assert_int_equal(radius.cause.signals_left, 0);
+  assert_true(radius.cause.in_turn);
+  assert_true(radius.cause.p_value < 1e-10);
+  assert_true(fabs(radius.cause.mean[1] - radius.cause.mean[0] - 0.06) < 0.005);
+  assert_int_equal(process.watched, 1);
+  assert_int_equal(process.unstable, 1);
+  assert_int_equal(process.explained, 1);
+  assert_non_null(strstr(page, "Process: groups differ"));
+  assert_non_null(strstr(page, "come from the groups of the column <b>die</b>, whose foils lie in "
+                               "turn: A has a mean of 3.36"));
+  free(page);
+}
+
+/* A drift has nothing to do with the die of every other foil: the signals stay unexplained. */
+static void a_drift_is_no_group(void **state) {
+  (void)state;
+  const char *cells[FOILS];
+  double offset[FOILS];
+  fg_lot_process process;
+  char *page;
+  for (size_t i = 0; i < FOILS; i++) {
+    cells[i] = i % 2 ? ",B,ada" : ",A,ada";
+    offset[i] = 0.006 * (double)i;
+  }
+  fg_lot_quantity radius = radius_of(cells, offset, &process, &page);
+  assert_true(radius.chart.signals > 0);
+  assert_true(radius.cause.column == FG_NO_COLUMN);
+  assert_int_equal(process.unstable, 1);
+  assert_int_equal(process.explained, 0);
+  assert_non_null(strstr(page, "Process not stable: 1 of 1 quantities"));
+  assert_non_null(strstr(page, "no group of foils explains them"));
+  free(page);
+}
+
+/* Foils whose die is not named, and dies of one foil each, explain nothing. */
+static void groups_must_hold_every_foil(void **state) {
+  (void)state;
+  const char *cells[FOILS];
+  double offset[FOILS];
+  fg_lot_process process;
+  for (size_t i = 0; i < FOILS; i++) {
+    cells[i] = i == 5 ? ",,ada" : i % 2 ? ",B,ada" : ",A,ada";
+    offset[i] = i % 2 ? 0.06 : 0;
+  }
+  assert_true(radius_of(cells, offset, &process, NULL).cause.column == FG_NO_COLUMN);
+  cells[5] = ",C,ada";
+  assert_true(radius_of(cells, offset, &process, NULL).cause.column == FG_NO_COLUMN);
+}
+
+static void a_quiet_process_is_stable(void **state) {
+  (void)state;
+  const double offset[FOILS] = {0};
+  fg_lot_process process;
+  const char *cells[FOILS];
+  char *page;
+  for (size_t i = 0; i < FOILS; i++)
+    cells[i] = i % 2 ? ",B,ada" : ",A,ada";
+  assert_true(radius_of(cells, offset, &process, &page).stable);
+  assert_int_equal(process.unstable, 0);
+  assert_non_null(strstr(page, "Process stable"));
+  free(page);
+}
+
+/* One bump is beyond its limit: the lot says by how much, and which limit it is. */
+static void the_margin_of_the_worst_is_told(void **state) {
+  (void)state;
+  fg_design design;
+  fg_lot_analysis analysis;
+  fg_design_default(&design);
+  design.bump_count = BUMPS;
+  design.tolerance_count = 1;
+  design.tolerances[0] = (fg_tolerance){.quantity = "radius_mm", .lower = 3.3, .upper = 3.4};
+  const double offset[FOILS] = {[7] = 0.05};
+  fg_lot lot = lot_of(&design, NULL, offset);
+  lot.records[7].foils[0].bumps[2].u_radius_mm = 0.001;
+  assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+  const fg_lot_foil *worst = analysis.worst[0];
+  assert_int_equal(worst->item, 7);
+  assert_int_equal(worst->worst_number, 3);
+  assert_true(worst->worst_limit == 3.4);
+  assert_true(fabs(worst->worst_margin - (3.4 - worst->worst_value)) < 1e-12);
+  assert_true(worst->worst_margin < -0.01 && worst->worst_u == 0.001);
+  assert_true(analysis.worst[1]->worst_margin > 0);
+  fg_lot_analysis_free(&analysis);
+  made_lot_free(&lot);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(dies_in_turn_explain_the_signals),
+      cmocka_unit_test(a_drift_is_no_group),
+      cmocka_unit_test(groups_must_hold_every_foil),
+      cmocka_unit_test(a_quiet_process_is_stable),
+      cmocka_unit_test(the_margin_of_the_worst_is_told),
+  };
+  return cmocka_run_group_tests_name("the process of a lot", tests, NULL, NULL);
+}
