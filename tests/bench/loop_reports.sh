@@ -9,7 +9,7 @@ loop() { "$root/build/foilgauge" loop "$@"; }
 thesis=$root/reports/thesis
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$shared"/thesis/table_5_[14].csv "$work"
+cp "$root"/tests/data/thesis/table_5_[14].csv "$work"
 # Table 5.4 with the responses that table 5.1 gives for its corner runs 1, 3, 5 and 7.
 awk -F, -v OFS=, 'NR == FNR { y[$1] = $5; next } FNR > 1 && $1 <= 8 { $4 = y[$1] } { print }' \
   "$work/table_5_1.csv" "$work/table_5_4.csv" >"$work/table_5_4_corners_of_5_1.csv"

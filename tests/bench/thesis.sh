@@ -26,6 +26,4 @@ doe saturated springback_factorial "($first)^3" $levels $levels_two
 doe table_5_5 springback_composite "$second" --code temperature_C=400:700 --code duration_h=1:7 \
   --constraint 'temperature_C <= 700'
 
-if [ -e "${FOILGAUGE_SHARED:-../shared}/thesis/table_5_1.csv" ]; then
-  FOILGAUGE_SHARED=${FOILGAUGE_SHARED:-../shared} build/tests/test_thesis --report reports
-fi
+build/tests/test_thesis --report reports

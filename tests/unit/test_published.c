@@ -1,6 +1,7 @@
 /* Published experiments, to the digits that their authors print: Montgomery, Design and Analysis
  * of Experiments; Box, Hunter and Hunter, Statistics for Experimenters (pilot plant, penicillin);
- * Lenth, Response-surface methods in R, JSS 32-7 (2009); Montgomery, Peck and Vining (acetylene). */
+ * Lenth, Response-surface methods in R, JSS 32-7 (2009); Montgomery, Peck and Vining (acetylene).
+ */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,7 +13,7 @@
 
 #include "foilgauge/doe.h"
 #include "foilgauge/surface.h"
-#include "support/shared.h"
+#include "support/data.h"
 
 /* One experiment on its way from file to fit. */
 typedef struct experiment {
@@ -28,12 +29,10 @@ static void check(fg_status status, const experiment *e) {
 
 static void load(experiment *e, const char *name) {
   char path[120];
-  size_t length = 0;
   *e = (experiment){0};
-  snprintf(path, sizeof path, "reference/doe/%s.csv", name);
-  char *text = shared_read(path, &length);
-  assert_non_null(text);
-  check(fg_table_parse(&e->ctx, name, text, length, &e->table), e);
+  snprintf(path, sizeof path, "doe/%s.csv", name);
+  char *text = data_read(path);
+  check(fg_table_parse(&e->ctx, name, text, strlen(text), &e->table), e);
   free(text);
 }
 
@@ -392,9 +391,5 @@ int main(void) {
       cmocka_unit_test(box_cox_powers),
       cmocka_unit_test(penicillin),
   };
-  size_t length = 0;
-  char *probe = shared_read("reference/doe/rsm_heli.csv", &length);
-  if (!probe) return TEST_SKIPPED;
-  free(probe);
   return cmocka_run_group_tests_name("published", tests, NULL, NULL);
 }

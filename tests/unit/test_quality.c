@@ -10,13 +10,13 @@
 #include <cmocka.h>
 
 #include "../support/random.h"
-#include "../support/shared.h"
 #include "foilgauge/capability.h"
 #include "foilgauge/comparison.h"
 #include "foilgauge/control.h"
 #include "foilgauge/density.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/table.h"
+#include "support/data.h"
 
 /* Says both numbers when they differ: cmocka 1.1 compares no doubles. */
 static void near_at(double value, double expected, double tolerance, int line) {
@@ -179,13 +179,11 @@ static void limits_follow_the_subgroups(void **state) {
   fg_chart_free(&deviations);
 }
 
-static fg_table load(const char *rest) {
+static fg_table load(const char *name) {
   fg_context ctx;
-  size_t size = 0;
   fg_table table = {0};
-  char *text = shared_read(rest, &size);
-  if (!text) skip();
-  assert_int_equal(fg_table_parse(&ctx, rest, text, size, &table), FG_OK);
+  char *text = data_read(name);
+  assert_int_equal(fg_table_parse(&ctx, name, text, strlen(text), &table), FG_OK);
   free(text);
   return table;
 }
@@ -204,7 +202,7 @@ static double *numbers_of(const fg_table *table, const char *name) {
 static void piston_rings(void **state) {
   (void)state;
   fg_context ctx;
-  fg_table table = load("reference/doe/qcc_pistonrings.csv");
+  fg_table table = load("doe/qcc_pistonrings.csv");
   double *values = numbers_of(&table, "diameter"), sigma;
   size_t size[25] = {0};
   fg_chart chart;
@@ -309,7 +307,7 @@ static void comparison_is_r_s(void **state) {
 static void published_gauge_study(void **state) {
   (void)state;
   fg_context ctx;
-  fg_table table = load("reference/doe/aiag_grr_10x3x3.csv");
+  fg_table table = load("doe/aiag_grr_10x3x3.csv");
   double *values = numbers_of(&table, "y"), *parts = numbers_of(&table, "part");
   double *trials = numbers_of(&table, "trial"), ordered[90];
   fg_levels who;

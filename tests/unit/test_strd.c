@@ -19,7 +19,7 @@
 #include "foilgauge/anova.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/regression.h"
-#include "support/shared.h"
+#include "support/data.h"
 
 enum { MOST_FIELDS = 16, FIRST_DATA_LINE = 61, MOST_SETS = 64 };
 
@@ -78,11 +78,8 @@ static double last_number(const line *l) {
 
 static char *read_set(const char *name) {
   char path[80];
-  size_t length = 0;
-  snprintf(path, sizeof path, "reference/strd/%s.dat", name);
-  char *text = shared_read(path, &length);
-  if (!text) fail_msg("no %s", path);
-  return text;
+  snprintf(path, sizeof path, "strd/%s.dat", name);
+  return data_read(path);
 }
 
 /* The data lines as CSV text, and that as a table: the way a user's numbers come in. */
@@ -339,7 +336,7 @@ static void write_report(const char *folder) {
         "Digits are -log10 of the relative error against the certified value (of the absolute one\n"
         "where it is zero), the fewest over the numbers of a kind, at most 15: no more are\n"
         "certified. A summary's columns are mean, standard deviation and autocorrelation.\n\n"
-        "    FOILGAUGE_SHARED=../shared build/tests/test_strd --report reports\n\n"
+        "    build/tests/test_strd --report reports\n\n"
         "| set | kind | difficulty | estimates | standard errors | residual sd | R² or "
         "autocorrelation | sums of squares | F |\n|---|---|---|---|---|---|---|---|---|\n",
         page);
@@ -362,10 +359,6 @@ int main(int argc, char **argv) {
       cmocka_unit_test(anovas),
       cmocka_unit_test(summaries),
   };
-  size_t length = 0;
-  char *probe = shared_read("reference/strd/Norris.dat", &length);
-  if (!probe) return TEST_SKIPPED;
-  free(probe);
   int failures = cmocka_run_group_tests_name("strd", tests, NULL, NULL);
   if (!failures && argc == 3 && strcmp(argv[1], "--report") == 0) write_report(argv[2]);
   return failures;

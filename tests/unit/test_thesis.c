@@ -13,7 +13,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/doe.h"
-#include "support/shared.h"
+#include "support/data.h"
 
 static const char RESPONSE[] = "springback_error_pct";
 enum { MOST_TERMS = 8, QUANTITIES = 5 };
@@ -32,11 +32,9 @@ static comparison comparisons[4];
 static void read_table(const char *name, fg_table *table) {
   fg_context ctx = {0};
   char path[80];
-  size_t length = 0;
   snprintf(path, sizeof path, "thesis/%s.csv", name);
-  char *text = shared_read(path, &length);
-  assert_non_null(text);
-  if (fg_table_parse(&ctx, name, text, length, table) != FG_OK) fail_msg("%s", ctx.message);
+  char *text = data_read(path);
+  if (fg_table_parse(&ctx, name, text, strlen(text), table) != FG_OK) fail_msg("%s", ctx.message);
   free(text);
 }
 
@@ -260,7 +258,7 @@ static void write_report(const char *folder) {
       "responses of experiments 1, 2, 3 and 4 of table 5.1. With the responses that table 5.1\n"
       "gives for experiments 1, 3, 5 and 7 (-13.65, -2.67, -9.26, -4.63) the standard error of T\n"
       "falls from 2.74 to 0.69, and T (p = 0.08 %) and T^2 (p = 2.8 %) become significant.\n\n"
-      "    FOILGAUGE_SHARED=../shared build/tests/test_thesis --report reports\n\n",
+      "    build/tests/test_thesis --report reports\n\n",
       page);
   for (size_t i = 0; i < 3; i++)
     write_comparison(page, &comparisons[i]);
@@ -276,10 +274,6 @@ int main(int argc, char **argv) {
       cmocka_unit_test(table_5_4_with_the_responses_of_5_1),
       cmocka_unit_test(sign_is_a_choice),
   };
-  size_t length = 0;
-  char *probe = shared_read("thesis/table_5_1.csv", &length);
-  if (!probe) return TEST_SKIPPED;
-  free(probe);
   int failures = cmocka_run_group_tests_name("thesis", tests, NULL, NULL);
   if (!failures && argc == 3 && strcmp(argv[1], "--report") == 0) write_report(argv[2]);
   return failures;

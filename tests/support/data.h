@@ -1,0 +1,27 @@
+/* The numbers of reference in tests/data (tests/data/SOURCES.md). Tests run in the project's
+ * folder. */
+#ifndef FG_TESTS_DATA_H
+#define FG_TESTS_DATA_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include <cmocka.h>
+
+#include "core/file.h"
+
+/* The whole file, NUL-terminated; without it the test fails. The caller frees it. (Inlined, gcc 12
+ * takes the text for the local variable that points to it, and warns of dangling pointers.) */
+static __attribute__((noinline)) char *data_read(const char *name) {
+  enum { BYTES_MAX = 1 << 20 };
+  fg_context ctx = {0};
+  char path[200], *text = NULL;
+  snprintf(path, sizeof path, "tests/data/%s", name);
+  if (fg_file_read_text(&ctx, path, BYTES_MAX, &text) != FG_OK) fail_msg("%s", ctx.message);
+  return text;
+}
+
+#endif
