@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "foilgauge/calibration.h"
 #include "foilgauge/status.h"
 
 #ifdef __cplusplus
@@ -71,6 +72,7 @@ typedef struct fg_design {
   double diameters_mm[FG_DIAMETERS_MAX];
   size_t tolerance_count;
   fg_tolerance tolerances[FG_TOLERANCES_MAX];
+  fg_calibration calibration; /* of the scanner that measures it, and the part's temperature */
 } fg_design;
 
 /* What follows from a design (thesis eq 5.1, 5.2, 5.5, 5.8). */

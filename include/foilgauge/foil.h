@@ -69,6 +69,14 @@ typedef struct fg_thickness {
   double mm, u_mm;
 } fg_thickness;
 
+/* What one standard deviation of each error that a calibration leaves (calibration.h) moves every
+ * value by that has an uncertainty, in the order of the rows of quantities (quantity.h), two of a
+ * pair. They are in u_ already. The same errors in every foil of a scanner. */
+enum { FG_CALIBRATED_MAX = 16 };
+typedef struct fg_calibrated {
+  double move[FG_CALIBRATION_SOURCES][FG_CALIBRATED_MAX];
+} fg_calibrated;
+
 typedef struct fg_bump {
   int number;                    /* 1 is next to the lip */
   unsigned flags;                /* fg_bump_flag */
@@ -96,6 +104,7 @@ typedef struct fg_bump {
   /* Lowest and highest value over explanations that a loop could not tell apart; both 0: none. */
   double radius_range_mm[2], height_range_mm[2];
   double covariance[3][3]; /* of (C_x, C_y, R), mm² */
+  fg_calibrated calibrated;
 } fg_bump;
 
 typedef struct fg_overall {
@@ -197,6 +206,7 @@ typedef struct fg_foil {
   fg_correction correction; /* by a scanner's model */
   /* By a scanner's model or a loop: what was moved, and what was left as measured. */
   fg_correction_choice choice[FG_CORRECTED];
+  fg_calibrated calibrated;
 } fg_foil;
 
 /* One station of the turn around a round feature; equal steps of direction. Lengths in mm. */
@@ -236,6 +246,7 @@ typedef struct fg_disc {
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
   size_t station_count;
   double level_doubt_mm; /* what the level of the edge may move the radius by */
+  fg_calibrated calibrated;
 } fg_disc;
 
 /* A measured scan. */
@@ -246,7 +257,7 @@ typedef struct fg_measurement {
   const struct fg_scanner_model *model; /* the same (scan_loop.h); not owned; NULL: none */
   int64_t width_px, height_px;
   int bit_depth;
-  double dpi[2];      /* used, x and y */
+  double dpi[2];      /* used, x and y: as stated, over the length factor of the calibration */
   double dpi_file[2]; /* as the file says, before it was snapped; NaN without */
   char format[8];     /* as in fg_scan_info */
   bool colour;        /* the scan holds colours */
@@ -259,7 +270,8 @@ typedef struct fg_measurement {
   size_t foil_count;
   fg_disc *discs; /* owned; form discs only */
   size_t disc_count;
-  size_t specks; /* objects left alone: dust, scratches, other shapes */
+  size_t specks;   /* objects left alone: dust, scratches, other shapes */
+  bool calibrated; /* u_ holds what the design's calibration does not know */
 } fg_measurement;
 
 /* It was measured, and as a foil of its design: values may be judged and enter statistics. */

@@ -71,6 +71,9 @@ typedef struct fg_lot_settings {
   char name[128];   /* of the lot, as the report shows it */
   fg_design design; /* "design": an object as in a design file, or the path of one */
   double dpi;       /* 0: as the scans say */
+  /* "calibration" of the recipe itself, which is the design's too then; not stated: as the design
+   * says. */
+  fg_calibration calibration;
   /* The scanner's model that corrects every scan, as "model" in a recipe: the path of its file; in
    * the lot's folder it is scanner_model.json. "": none. */
   char model[1024], model_sha256[65];
@@ -95,7 +98,7 @@ typedef struct fg_lot_settings {
    * stand in the lot's own recipe. They are the reference of springback beside the design. */
   fg_lot_die dies[FG_LOT_DIES_MAX];
   size_t die_count;
-  fg_lot_curve curve;        /* "reference_curve" in a recipe: the path of a CSV */
+  fg_lot_curve curve; /* "reference_curve" in a recipe: the path of a CSV */
   /* Bearings drawn from the lot's foils, in a recipe "assembly": {"bearings", "seed",
    * "design_deviation_pct"}. */
   struct {
@@ -110,6 +113,9 @@ void fg_lot_settings_default(fg_lot_settings *settings);
 
 /* FG_ERR_DATA with the member, its value and what would be right. */
 fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings);
+
+/* The design of a file in place of the recipe's, under the recipe's own calibration. */
+fg_status fg_lot_settings_take_design(fg_context *ctx, const char *path, fg_lot_settings *settings);
 
 /* Sets the model and its sum; the file must be one, and the scanner's of that name unless NULL. */
 fg_status fg_lot_settings_take_model(fg_context *ctx, const char *path, const char *scanner,

@@ -37,6 +37,12 @@ typedef struct fg_measure_options {
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement);
 
+/* Adds to every u_ what the design's calibration does not know, once; a design without one changes
+ * nothing. After everything that corrects values, before anything that reports or judges them: what
+ * is found in residuals, by a loop or a model, must not see it. A foil whose stretched edges are no
+ * foil any more is given up. */
+fg_status fg_measurement_calibrate(fg_context *ctx, unsigned threads, fg_measurement *measurement);
+
 #ifdef __cplusplus
 }
 #endif

@@ -195,10 +195,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
                                fg_lot_settings *settings) {
   fg_lot_settings_default(settings);
   if (arguments->recipe) FG_TRY(fg_lot_settings_load(ctx, arguments->recipe, settings));
-  if (arguments->design) {
-    fg_design_default(&settings->design);
-    FG_TRY(fg_design_load(ctx, arguments->design, &settings->design));
-  }
+  if (arguments->design) FG_TRY(fg_lot_settings_take_design(ctx, arguments->design, settings));
   const char *model = arguments->model ? arguments->model : settings->model;
   if (arguments->scanner && !model[0])
     return fg_fail(ctx, FG_ERR_USAGE, "--scanner says which scanner --model must be of: give one");

@@ -258,6 +258,9 @@ static fg_status measure_one(fg_context *ctx, measure_run *run, size_t index) {
   fg_progress_end(&progress);
   if (status == FG_OK) {
     status = apply_model(ctx, run, &run->measurements[index]);
+    if (status == FG_OK)
+      status =
+          fg_measurement_calibrate(ctx, run->arguments.options.threads, &run->measurements[index]);
     if (status != FG_OK) fg_measurement_free(&run->measurements[index]);
   }
   scan->path = path;

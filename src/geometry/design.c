@@ -175,6 +175,7 @@ static fg_status check_tolerances(fg_context *ctx, const fg_design *design) {
 
 fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   FG_TRY(check_tolerances(ctx, design));
+  FG_TRY(fg_calibration_check(ctx, &design->calibration));
   if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
   if (design->diameter_count != 0)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm belongs to form \"discs\" only");

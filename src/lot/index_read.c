@@ -113,7 +113,7 @@ static void take_date(fg_index_lot *lot, const cJSON *root) {
   fg_date_format(isfinite(last) ? last : lot->day, lot->date.last);
 }
 
-/* What the design asks for: its text without its name and tolerances. */
+/* What the design asks for: its text without its name, tolerances and the scanner's calibration. */
 static fg_status sum_design(fg_context *ctx, fg_index_lot *lot) {
   char *text = NULL;
   size_t size;
@@ -121,6 +121,7 @@ static fg_status sum_design(fg_context *ctx, fg_index_lot *lot) {
   fg_design bare = lot->design;
   strcpy(bare.name, "-");
   bare.tolerance_count = 0;
+  bare.calibration = (fg_calibration){.stated = false};
   FILE *out = open_memstream(&text, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a design");
   fg_json_begin(&json, out);

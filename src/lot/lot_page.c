@@ -122,7 +122,8 @@ static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
 
 static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   char scale[FG_SCALE_WORDS];
-  fg_scale_words(analysis->lot->model, scale, sizeof scale);
+  fg_scale_words(analysis->lot->model, &analysis->lot->settings.design.calibration, scale,
+                 sizeof scale);
   fprintf(out,
           "<section class=\"part\">\n<h1>Where it comes from</h1>\n<dl "
           "class=\"facts\"><dt>Program</dt><dd>"

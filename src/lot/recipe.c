@@ -13,6 +13,7 @@
 #include "foilgauge/lot.h"
 #include "foilgauge/stiffness.h"
 #include "lot/dies.h"
+#include "lot/recipe_parts.h"
 #include "lot/reference_curve.h"
 #include "report/measure/measure_json.h"
 
@@ -285,6 +286,8 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
       FG_TRY(fg_reference_curve_read(ctx, path, value, settings));
     else if (!strcmp(value->string, "assembly"))
       FG_TRY(read_assembly(ctx, value, settings));
+    else if (!strcmp(value->string, "calibration"))
+      continue; /* below */
     else if (value != schema && strcmp(value->string, "version") != 0 &&
              strcmp(value->string, "station") !=
                  0) /* the inspection station's: station/settings.c */
@@ -292,6 +295,7 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
                      "unknown member '%.60s'; `foilgauge lot --print-recipe` shows them all",
                      value->string);
   }
+  FG_TRY(fg_recipe_read_calibration(ctx, root, settings));
   return fg_lot_settings_check(ctx, settings);
 }
 
@@ -383,6 +387,7 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
     write_member(&writer, &assembly_members[i], settings);
   fg_json_object_end(&writer);
   fg_json_line_end(&writer);
+  if (with_jobs) fg_recipe_write_calibration(&writer, settings); /* else as the design's */
   fg_json_design(&writer, "design", &settings->design);
   fg_json_object_end(&writer);
   fg_json_end(&writer);

@@ -31,6 +31,25 @@ static void write_values(fg_json *json, fg_quantity_owner owner, const void *obj
   fg_json_array_end(json);
 }
 
+static bool is_moved(const fg_calibrated *calibrated, size_t source) {
+  for (size_t k = 0; k < FG_CALIBRATED_MAX; k++)
+    if (calibrated->move[source][k] != 0) return true;
+  return false;
+}
+
+/* Nothing without a calibration. */
+static void write_calibrated(fg_json *json, fg_quantity_owner owner,
+                             const fg_calibrated *calibrated) {
+  size_t sources = FG_CALIBRATION_SOURCES;
+  while (sources > 0 && !is_moved(calibrated, sources - 1))
+    sources--;
+  if (!sources) return;
+  fg_json_array(json, "calibrated");
+  for (size_t s = 0; s < sources; s++)
+    fg_json_numbers(json, NULL, calibrated->move[s], fg_quantity_moves(owner));
+  fg_json_array_end(json);
+}
+
 static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags) {
   fg_json_array(json, "flags");
   for (; words->name; words++)
@@ -46,12 +65,14 @@ static void write_foil(fg_json *json, const fg_foil *foil) {
   write_flags(json, fg_foil_flag_words(), foil->flags);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   write_values(json, FG_QUANTITY_OF_FOIL, foil);
+  write_calibrated(json, FG_QUANTITY_OF_FOIL, &foil->calibrated);
   fg_json_array(json, "bumps");
   for (size_t i = 0; i < bumps; i++) {
     fg_json_object(json, NULL);
     fg_json_integer(json, "number", foil->bumps[i].number);
     write_flags(json, fg_bump_flag_words(), foil->bumps[i].flags);
     write_values(json, FG_QUANTITY_OF_BUMP, &foil->bumps[i]);
+    write_calibrated(json, FG_QUANTITY_OF_BUMP, &foil->bumps[i].calibrated);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
@@ -166,6 +187,25 @@ static fg_status read_values(fg_context *ctx, const cJSON *object, fg_quantity_o
   return value ? fail_record(ctx, "too many values") : FG_OK;
 }
 
+static fg_status read_calibrated(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
+                                 fg_calibrated *calibrated) {
+  const cJSON *sources = member(object, "calibrated"), *source, *move;
+  size_t s = 0;
+  *calibrated = (fg_calibrated){.move = {{0}}};
+  cJSON_ArrayForEach(source, sources) {
+    size_t k = 0;
+    if (s == FG_CALIBRATION_SOURCES || cJSON_GetArraySize(source) != (int)fg_quantity_moves(owner))
+      return fail_record(ctx, "a calibration of another size");
+    cJSON_ArrayForEach(move, source) {
+      if (!cJSON_IsNumber(move) || !isfinite(move->valuedouble))
+        return fail_record(ctx, "a calibration that is no number");
+      calibrated->move[s][k++] = move->valuedouble;
+    }
+    s++;
+  }
+  return FG_OK;
+}
+
 static fg_status read_number(fg_context *ctx, const cJSON *object, int *number) {
   const cJSON *value = member(object, "number");
   double read = cJSON_IsNumber(value) ? value->valuedouble : NAN;
@@ -181,6 +221,7 @@ static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) 
   FG_TRY(read_number(ctx, object, &foil->number));
   FG_TRY(read_flags(ctx, object, fg_foil_flag_words(), &foil->flags));
   FG_TRY(read_values(ctx, object, FG_QUANTITY_OF_FOIL, foil));
+  FG_TRY(read_calibrated(ctx, object, FG_QUANTITY_OF_FOIL, &foil->calibrated));
   if (cJSON_IsString(error))
     fg_text_clip(foil->error, sizeof foil->error, "%s", error->valuestring);
   if (!cJSON_IsArray(bumps)) return fail_record(ctx, "no bumps");
@@ -191,6 +232,7 @@ static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) 
     FG_TRY(read_number(ctx, bump, &target->number));
     FG_TRY(read_flags(ctx, bump, fg_bump_flag_words(), &target->flags));
     FG_TRY(read_values(ctx, bump, FG_QUANTITY_OF_BUMP, target));
+    FG_TRY(read_calibrated(ctx, bump, FG_QUANTITY_OF_BUMP, &target->calibrated));
   }
   return FG_OK;
 }

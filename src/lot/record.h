@@ -1,10 +1,12 @@
 /* One measured scan as a line of results.jsonl: compact, and exact to the ten digits of a report.
  *
  * {"scan", "sha256", "date", "measured_with", "error", "foils": [{"number", "flags", "error",
- * "values", "bumps": [{"number", "flags", "values"}]}], "checksum"} `scan_bytes` follows `scan`
- * where a file name is not UTF-8: its bytes as hex digits. The checksum is of the line itself
- * (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in its order; the first
- * line of the file names them. A quantity with an uncertainty takes two places, a pair four. */
+ * "values", "calibrated", "bumps": [{"number", "flags", "values", "calibrated"}]}], "checksum"}
+ * `calibrated`, where a calibration is stated: fg_calibrated, source by source. `scan_bytes`
+ * follows `scan` where a file name is not UTF-8: its bytes as hex digits. The checksum is of the
+ * line itself (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in its order;
+ * the first line of the file names them. A quantity with an uncertainty takes two places, a pair
+ * four. */
 #ifndef FG_LOT_RECORD_H
 #define FG_LOT_RECORD_H
 

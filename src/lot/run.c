@@ -196,11 +196,15 @@ static fg_status keep(fg_context *ctx, lot_run *run, size_t item, const fg_recor
   return status;
 }
 
-/* By the scanner's model; a scan that it does not fit is not measured. */
+/* By the scanner's model, if any; a scan that it does not fit is not measured. With what the
+ * calibration does not know. */
 static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *measurement,
                          bool *beyond) {
   char warning[200];
-  fg_status status = fg_scanner_model_apply(ctx, run->model, measurement, 1, warning);
+  fg_status status = FG_OK;
+  warning[0] = '\0';
+  if (run->model) status = fg_scanner_model_apply(ctx, run->model, measurement, 1, warning);
+  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 1, measurement);
   if (status != FG_OK) fg_measurement_free(measurement);
   *beyond = status == FG_OK && warning[0];
   return status;
@@ -222,7 +226,7 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   fg_record_date_scan(scan, record.date);
   fg_status failure = fg_measure_scan(&inner, scan, &settings->design, &options, &measurement);
   memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
-  if (failure == FG_OK && run->model) failure = correct(&inner, run, &measurement, &beyond);
+  if (failure == FG_OK) failure = correct(&inner, run, &measurement, &beyond);
   if (failure == FG_ERR_MEMORY || failure == FG_ERR_IO) record.sha256[0] = '\0';
   fg_status status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
   if (failure == FG_OK) fg_measurement_free(&measurement);

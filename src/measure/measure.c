@@ -111,7 +111,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   m->colour = info->colour;
   m->channel = info->channel;
   for (int i = 0; i < 2; i++) {
-    m->dpi[i] = info->dpi[i];
+    m->dpi[i] = info->dpi[i] / fg_calibration_factor(&m->design.calibration);
     m->dpi_file[i] = info->dpi_file[i];
   }
   return FG_OK;

@@ -49,6 +49,14 @@ void fg_quantity_take_moves(fg_quantity_owner owner, const void *object, const v
 /* Adds `share` of every move to its uncertainty, in squares, and to the covariances. */
 void fg_quantity_widen(fg_quantity_owner owner, void *object, const double *moves, double share);
 
+/* Adds what a calibration leaves in doubt, in squares, source by source. */
+void fg_quantity_widen_calibrated(fg_quantity_owner owner, void *object,
+                                  const fg_calibrated *calibrated);
+
+/* What of a row's u_ the calibration is; of a pair of its first. NaN where the row has none. */
+double fg_quantity_calibration(fg_quantity_owner owner, const fg_quantity *quantity,
+                               const fg_calibrated *calibrated);
+
 /* Whether a table's column of that name is a result of a measurement, not a cause of it: the value
  * or the uncertainty of a row of a foil, a bump or a disc, also as "bump_radius_mm",
  * "overall_radius_mm", "overall.radius_mm" or, of the overall circle, without the circle's name. */

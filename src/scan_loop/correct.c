@@ -1,38 +1,12 @@
 /* Foils with corrected edges, measured again. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include "core/memory.h"
-#include "geometry/disc_fit.h"
+#include "measure/again.h"
 #include "scan_loop/state.h"
 
-static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to) {
-  *to = *from;
-  to->stations = NULL;
-  FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *to->stations, (void **)&to->stations));
-  memcpy(to->stations, from->stations, from->count * sizeof *to->stations);
-  return FG_OK;
-}
-
-static fg_point moved(const fg_field_list *fields, fg_point at) {
-  fg_point d = fg_field_at(fields, at);
+static fg_point moved(const void *user, fg_point at) {
+  fg_point d = fg_field_at(user, at);
   return (fg_point){at.x + d.x, at.y + d.y};
-}
-
-static void move_edges(const fg_field_list *fields, fg_strip *strip) {
-  for (size_t k = 0; k < strip->count; k++) {
-    fg_station *s = &strip->stations[k];
-    fg_point *edges[2] = {&s->left, &s->right};
-    for (int side = 0; side < 2; side++) {
-      if (!isfinite(edges[side]->x)) continue;
-      *edges[side] = moved(fields, *edges[side]);
-    }
-  }
-  for (int i = 0; i < 2; i++) {
-    strip->ends[i].left = moved(fields, strip->ends[i].left);
-    strip->ends[i].right = moved(fields, strip->ends[i].right);
-  }
 }
 
 /* The row of a view that is nearest to a place; NULL: the view has none. */
@@ -83,68 +57,26 @@ static bool find_view(const fg_joint_fit_result *fit, const fg_foil *foil, const
   return false;
 }
 
-static fg_status correct_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
-                              const correction *c, unsigned threads, fg_foil *corrected) {
+static void correct_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
+  const correction *c = user;
   size_t view;
-  memset(corrected, 0, sizeof *corrected);
-  memcpy(corrected->place_mm, foil->place_mm, sizeof corrected->place_mm);
-  corrected->number = foil->number;
-  if (foil->flags & FG_FOIL_NOT_MEASURED) { /* nothing to correct; why stays as it is */
-    fg_foil_give_up(corrected, foil->error);
-    corrected->flags = foil->flags;
-    return FG_OK;
-  }
-  FG_TRY(copy_strip(ctx, &foil->strip, &corrected->strip));
-  if (c->fields && c->fields->count) move_edges(c->fields, &corrected->strip);
-  if (find_view(c->fit, foil, NULL, &view)) take_shift(c->fit, view, &corrected->strip);
-  fg_status status = fg_strip_measure_thickness(ctx, &corrected->strip);
-  if (status == FG_OK) status = fg_foil_measure(ctx, design, threads, corrected);
-  if (status != FG_OK) fg_foil_free(corrected);
-  return status;
+  if (c->fields && c->fields->count) fg_strip_move(strip, moved, c->fields);
+  if (find_view(c->fit, foil, NULL, &view)) take_shift(c->fit, view, strip);
 }
 
-static fg_status correct_disc(fg_context *ctx, const fg_disc *disc, const correction *c,
-                              fg_disc *corrected) {
+static fg_point correct_point(const void *user, const fg_disc *disc, fg_point at) {
+  const correction *c = user;
   size_t view;
-  *corrected = *disc;
-  corrected->edge = NULL;
-  corrected->residual_um = NULL;
-  corrected->stations = NULL;
-  FG_TRY(fg_memory_allocate(ctx, disc->station_count, sizeof *disc->stations,
-                            (void **)&corrected->stations));
-  memcpy(corrected->stations, disc->stations, disc->station_count * sizeof *disc->stations);
-  bool shifted = find_view(c->fit, NULL, disc, &view);
-  for (size_t k = 0; k < disc->station_count; k++) {
-    fg_point *at = &corrected->stations[k].at;
-    if (c->fields) *at = moved(c->fields, *at);
-    fg_point d = shifted ? shift_at(c->fit, view, *at) : (fg_point){0, 0};
-    at->x -= d.x;
-    at->y -= d.y;
-  }
-  return fg_disc_measure_again(ctx, corrected);
+  if (c->fields) at = moved(c->fields, at);
+  if (!find_view(c->fit, NULL, disc, &view)) return at;
+  fg_point d = shift_at(c->fit, view, at);
+  return (fg_point){at.x - d.x, at.y - d.y};
 }
 
 static fg_status correct(fg_context *ctx, const fg_measurement *m, const correction *c,
                          unsigned threads, fg_measurement *corrected) {
-  *corrected = *m;
-  corrected->foils = NULL;
-  corrected->foil_count = 0;
-  corrected->discs = NULL;
-  corrected->disc_count = 0;
-  fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils, (void **)&corrected->foils));
-  for (size_t f = 0; f < m->foil_count; f++) {
-    FG_TRY_EXIT(correct_foil(ctx, &m->foils[f], &m->design, c, threads, &corrected->foils[f]));
-    corrected->foil_count++;
-  }
-  FG_TRY_EXIT(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&corrected->discs));
-  for (size_t d = 0; d < m->disc_count; d++) {
-    corrected->disc_count++;
-    FG_TRY_EXIT(correct_disc(ctx, &m->discs[d], c, &corrected->discs[d]));
-  }
-exit:
-  if (status != FG_OK) fg_measurement_free(corrected);
-  return status;
+  const fg_measure_mover mover = {correct_strip, correct_point, c};
+  return fg_measure_again(ctx, m, &mover, threads, corrected);
 }
 
 fg_status fg_scan_loop_correct(fg_context *ctx, const fg_measurement *m,

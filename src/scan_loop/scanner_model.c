@@ -51,13 +51,14 @@ static fg_status check_place(fg_context *ctx, const fg_scanner_model *model,
   const fg_field_frame *frame = &model->fields.frame;
   double width = frame->high_mm[0] - frame->low_mm[0],
          height = frame->high_mm[1] - frame->low_mm[1];
+  double factor = fg_calibration_factor(&m->design.calibration);
   for (int axis = 0; axis < 2; axis++)
-    if (fabs(m->dpi[axis] / model->dpi[axis] - 1) > 1e-4)
+    if (fabs(m->dpi[axis] * factor / model->dpi[axis] - 1) > 1e-4)
       return fg_fail(
           ctx, FG_ERR_DATA,
           "%s: the scan has %g dpi and the model is of a scanner at %g dpi; find a model "
           "at this resolution",
-          m->scan, m->dpi[axis], model->dpi[axis]);
+          m->scan, m->dpi[axis] * factor, model->dpi[axis]);
   double reach = find_reach(frame, m);
   if (reach > reach_refused)
     return fg_fail(ctx, FG_ERR_DATA,

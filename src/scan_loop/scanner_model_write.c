@@ -36,7 +36,9 @@ fg_status fg_scanner_model_of(fg_context *ctx, const fg_scan_loop *loop, fg_scan
   if (loop->options.scanner)
     fg_text_clip(made->scanner, sizeof made->scanner, "%s", loop->options.scanner);
   format_date(loop->options.date, made->date);
-  memcpy(made->dpi, loop->before[0].dpi, sizeof made->dpi);
+  const fg_measurement *first = &loop->before[0];
+  for (int axis = 0; axis < 2; axis++) /* as the scan says */
+    made->dpi[axis] = first->dpi[axis] * fg_calibration_factor(&first->design.calibration);
   made->scans = loop->scan_count;
   made->known_diameters = known_diameters(loop);
   fg_effect_set_fields(&loop->points, &loop->set, &made->fields);

@@ -191,8 +191,9 @@ static fg_status format_lost(fg_context *ctx, export *at, size_t item, const cha
 
 static fg_status correct(fg_context *ctx, const export *at, fg_measurement *measurement) {
   char warning[200];
-  if (!at->model) return FG_OK;
-  fg_status status = fg_scanner_model_apply(ctx, at->model, measurement, 1, warning);
+  fg_status status = FG_OK;
+  if (at->model) status = fg_scanner_model_apply(ctx, at->model, measurement, 1, warning);
+  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 1, measurement);
   if (status != FG_OK) fg_measurement_free(measurement);
   return status;
 }

@@ -165,12 +165,13 @@ static fg_status take_measurement(fg_context *ctx, intake *at, const fg_measurem
   return keep_new(ctx, at, measurement);
 }
 
-/* By the scanner's model, where there is one. */
+/* By the scanner's model, where there is one; with what the calibration does not know. */
 static fg_status correct(fg_context *ctx, const fg_inspection *station,
                          fg_measurement *measurement) {
   char warning[200];
-  if (!station->model) return FG_OK;
-  fg_status status = fg_scanner_model_apply(ctx, station->model, measurement, 0, warning);
+  fg_status status = FG_OK;
+  if (station->model) status = fg_scanner_model_apply(ctx, station->model, measurement, 0, warning);
+  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 0, measurement);
   if (status != FG_OK) fg_measurement_free(measurement);
   return status;
 }

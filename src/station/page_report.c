@@ -63,6 +63,7 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_pas
   free(path);
   if (status != FG_OK) return status;
   status = apply_model(ctx, past, &model, &measurement);
+  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 0, &measurement);
   if (status == FG_OK) status = write_measured(ctx, past, &measurement, out);
   fg_measurement_free(&measurement);
   if (model) fg_scanner_model_free(model);

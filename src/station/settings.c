@@ -110,7 +110,6 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));
   if (!design) return FG_OK;
-  fg_design_default(&settings->lot.design);
-  FG_TRY(fg_design_load(ctx, design, &settings->lot.design));
+  FG_TRY(fg_lot_settings_take_design(ctx, design, &settings->lot));
   return fg_lot_settings_check(ctx, &settings->lot);
 }

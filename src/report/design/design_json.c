@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"
+#include "report/design/calibration_json.h"
 
 enum { DESIGN_BYTES_MAX = 1 << 20, MESSAGE_MAX = 900 };
 
@@ -156,6 +157,14 @@ static fg_status read_diameters(const reader *r, const char *name, const cJSON *
   return FG_OK;
 }
 
+static fg_status read_calibration(const reader *r, const char *name, const cJSON *item, void *out) {
+  fg_context words = {0};
+  (void)name;
+  fg_status status = fg_calibration_read(&words, item, out);
+  if (status == FG_OK) return FG_OK;
+  return fg_fail(r->ctx, status, "%s: %.*s", r->path, MESSAGE_MAX, words.message);
+}
+
 /* One row per member; offset 0 hands the whole design to the reader. */
 typedef struct member_row {
   const char *name;
@@ -183,6 +192,7 @@ static const member_row member_rows[] = {
     MEMBER(subtended_angle_deg, read_number),
     {"diameters_mm", read_diameters, 0},
     {"tolerances", read_tolerances, 0},
+    MEMBER(calibration, read_calibration),
 };
 #undef MEMBER
 

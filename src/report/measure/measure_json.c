@@ -7,7 +7,9 @@
 #include "core/file.h"
 #include "foilgauge/words.h"
 #include "report/correction_words.h"
+#include "report/design/calibration_json.h"
 #include "report/measure/scan_model_words.h"
+#include "report/measure/uncertainty_budget.h"
 #include "report/quantity_json.h"
 
 static void write_limit(fg_json *json, const char *name, double limit) {
@@ -55,6 +57,7 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
     fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
   }
   write_tolerances(json, design);
+  if (design->calibration.stated) fg_json_calibration(json, "calibration", &design->calibration);
   fg_json_object_end(json);
 }
 
@@ -308,6 +311,7 @@ fg_status fg_report_write_json(fg_context *ctx, const fg_report *report, FILE *o
     write_input(&json, &report->scans[i]);
   fg_json_array_end(&json);
   fg_json_scan_model(&json, "model", fg_report_model(report));
+  fg_json_report_calibration(&json, report);
   fg_json_design(&json, "design", report->design);
   if (fg_form_has_bumps(report->design->form)) fg_json_nominal(&json, "nominal", report->nominal);
   if (report->scan_count == 1 && report->scans[0].measurement)

@@ -9,6 +9,7 @@
 #include "report/correction_words.h"
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/scan_model_words.h"
+#include "report/measure/uncertainty_budget.h"
 
 static const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
@@ -104,9 +105,9 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
   return FG_OK;
 }
 
-static void put_uncertainty(FILE *out, const fg_scanner_model *model) {
+static void put_uncertainty(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
   char scale[FG_SCALE_WORDS];
-  fg_scale_words(model, scale, sizeof scale);
+  fg_scale_words(measurement->model, &measurement->design.calibration, scale, sizeof scale);
   fputs("<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
         "factor k = 2, about 95 %). u comes from the residuals with their correlation along the "
         "edge and from what the two edges say against each other. ",
@@ -116,6 +117,7 @@ static void put_uncertainty(FILE *out, const fg_scanner_model *model) {
         "it lies outside, and cannot be told when a limit runs through it. s is the standard "
         "deviation over the n bumps.</p>\n",
         out);
+  fg_html_uncertainty_budget(out, measurement, foil);
 }
 
 static void put_free_and_fitted(FILE *out) {
@@ -273,7 +275,7 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
   put_flags(out, foil);
   if (measured) (arc ? put_arc_details : put_foil_details)(out, design, foil);
   if (measured && !arc) put_free_and_fitted(out);
-  if (measured) put_uncertainty(out, measurement->model);
+  if (measured) put_uncertainty(out, measurement, foil);
   FG_TRY(put_facts(ctx, out, design, measurement));
   fputs("</section>\n", out);
   return FG_OK;
@@ -310,7 +312,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   FG_TRY(put_discs_corrected(ctx, out, measurement));
   FG_TRY(put_picture(ctx, out, measurement, NULL));
   fg_html_disc_table(out, report->design, measurement);
-  put_uncertainty(out, measurement->model);
+  put_uncertainty(out, measurement, NULL);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
   fputs("</section>\n", out);
   return FG_OK;

@@ -272,7 +272,7 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   fputc('\n', out);
   put_outcome(out, report->design, &outcome);
   char scale[FG_SCALE_WORDS];
-  fg_scale_words(fg_report_model(report), scale, sizeof scale);
+  fg_scale_words(fg_report_model(report), &report->design->calibration, scale, sizeof scale);
   if (fg_form_has_bumps(report->design->form))
     fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%). %s\n", scale);

@@ -89,12 +89,9 @@ const fg_scanner_model *fg_report_model(const fg_report *report) {
   return NULL;
 }
 
-void fg_scale_words(const fg_scanner_model *model, char *words, size_t size) {
+/* What a scanner's model says of the scale. */
+static void model_scale_words(const fg_scanner_model *model, char *words, size_t size) {
   fg_scanner_model_facts facts;
-  if (!model) {
-    fg_text_clip(words, size, "The scanner's own error of scale is not in it.");
-    return;
-  }
   fg_scanner_model_describe(model, &facts);
   if (facts.known_diameters)
     fg_text_clip(
@@ -106,6 +103,23 @@ void fg_scale_words(const fg_scanner_model *model, char *words, size_t size) {
     fg_text_clip(words, size,
                  "What the scanner's model corrects is in it. An error of scale that is equal in x "
                  "and y is not: the model was found without a known diameter.");
+}
+
+void fg_scale_words(const fg_scanner_model *model, const fg_calibration *calibration, char *words,
+                    size_t size) {
+  char scale[FG_SCALE_WORDS] = "The scanner's own error of scale is not in it.";
+  if (calibration->stated) {
+    fg_calibration_budget terms = fg_calibration_terms(calibration);
+    double most = fmax(terms.length[0], terms.length[1]);
+    fg_text_clip(words, size,
+                 "It holds what the stated calibration leaves in doubt: %.2g %% of a length, the "
+                 "same in every foil of this scanner%s.",
+                 100 * FG_COVERAGE_FACTOR * most,
+                 model ? "; what the scanner's model corrects is in it too" : "");
+    return;
+  }
+  if (model) model_scale_words(model, scale, sizeof scale);
+  fg_text_clip(words, size, "No calibration is stated: U holds statistics only. %s", scale);
 }
 
 /* "left.json, of the scanner 'left desk', 2026-03-14, found on 2 scans". The caller frees. */

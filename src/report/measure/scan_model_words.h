@@ -15,10 +15,12 @@ const struct fg_scanner_model *fg_report_model(const fg_report *report);
 /* An object; NULL: null. */
 void fg_json_scan_model(fg_json *json, const char *name, const struct fg_scanner_model *model);
 
-enum { FG_SCALE_WORDS = 256, FG_CORRECTION_WORDS = 256 };
+enum { FG_SCALE_WORDS = 480, FG_CORRECTION_WORDS = 256 };
 
-/* Whether the scanner's error of scale is in the uncertainties: a sentence. NULL: no model. */
-void fg_scale_words(const struct fg_scanner_model *model, char *words, size_t size);
+/* Whether the scanner's error of scale is in the uncertainties: a sentence or two. NULL: no model.
+ */
+void fg_scale_words(const struct fg_scanner_model *model, const fg_calibration *calibration,
+                    char *words, size_t size);
 
 /* "R0 by -41.9 µm, R by up to +8.2 µm, ...": what it did to one foil; "0.01 µm to u of R0, ...":
  * what it added. Empty where nothing was corrected. */

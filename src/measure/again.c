@@ -1,0 +1,84 @@
+#include "measure/again.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "geometry/disc_fit.h"
+
+static fg_status copy_strip(fg_context *ctx, const fg_strip *from, fg_strip *to) {
+  *to = *from;
+  to->stations = NULL;
+  FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *to->stations, (void **)&to->stations));
+  memcpy(to->stations, from->stations, from->count * sizeof *to->stations);
+  return FG_OK;
+}
+
+void fg_strip_move(fg_strip *strip, fg_point (*move)(const void *user, fg_point at),
+                   const void *user) {
+  for (size_t k = 0; k < strip->count; k++) {
+    fg_station *s = &strip->stations[k];
+    if (isfinite(s->left.x)) s->left = move(user, s->left);
+    if (isfinite(s->right.x)) s->right = move(user, s->right);
+  }
+  for (int i = 0; i < 2; i++) {
+    strip->ends[i].left = move(user, strip->ends[i].left);
+    strip->ends[i].right = move(user, strip->ends[i].right);
+  }
+}
+
+static fg_status measure_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
+                              const fg_measure_mover *mover, unsigned threads, fg_foil *again) {
+  memset(again, 0, sizeof *again);
+  memcpy(again->place_mm, foil->place_mm, sizeof again->place_mm);
+  again->number = foil->number;
+  if (foil->flags & FG_FOIL_NOT_MEASURED) { /* nothing to measure; why stays as it is */
+    fg_foil_give_up(again, foil->error);
+    again->flags = foil->flags;
+    return FG_OK;
+  }
+  FG_TRY(copy_strip(ctx, &foil->strip, &again->strip));
+  mover->strip(mover->user, foil, &again->strip);
+  fg_status status = fg_strip_measure_thickness(ctx, &again->strip);
+  if (status == FG_OK) status = fg_foil_measure(ctx, design, threads, again);
+  if (status != FG_OK) fg_foil_free(again);
+  return status;
+}
+
+static fg_status measure_disc(fg_context *ctx, const fg_disc *disc, const fg_measure_mover *mover,
+                              fg_disc *again) {
+  *again = *disc;
+  again->edge = NULL;
+  again->residual_um = NULL;
+  again->stations = NULL;
+  FG_TRY(fg_memory_allocate(ctx, disc->station_count, sizeof *disc->stations,
+                            (void **)&again->stations));
+  memcpy(again->stations, disc->stations, disc->station_count * sizeof *disc->stations);
+  for (size_t k = 0; k < disc->station_count; k++)
+    again->stations[k].at = mover->point(mover->user, disc, again->stations[k].at);
+  return fg_disc_measure_again(ctx, again);
+}
+
+fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_measure_mover *mover,
+                           unsigned threads, fg_measurement *again) {
+  *again = *m;
+  again->foils = NULL;
+  again->foil_count = 0;
+  again->discs = NULL;
+  again->disc_count = 0;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, m->foil_count, sizeof *m->foils, (void **)&again->foils));
+  for (size_t f = 0; f < m->foil_count; f++) {
+    FG_TRY_EXIT(measure_foil(ctx, &m->foils[f], &m->design, mover, threads, &again->foils[f]));
+    again->foil_count++;
+  }
+  FG_TRY_EXIT(fg_memory_allocate(ctx, m->disc_count, sizeof *m->discs, (void **)&again->discs));
+  for (size_t d = 0; d < m->disc_count; d++) {
+    again->disc_count++;
+    FG_TRY_EXIT(measure_disc(ctx, &m->discs[d], mover, &again->discs[d]));
+  }
+exit:
+  if (status != FG_OK) fg_measurement_free(again);
+  return status;
+}

@@ -1,0 +1,22 @@
+/* A measurement with other edges, measured again. */
+#ifndef FG_MEASURE_AGAIN_H
+#define FG_MEASURE_AGAIN_H
+
+#include "foilgauge/foil.h"
+
+/* What moves the edges: of a copy, while `foil` or `disc` is what it was copied from. */
+typedef struct fg_measure_mover {
+  void (*strip)(const void *user, const fg_foil *foil, fg_strip *strip);
+  fg_point (*point)(const void *user, const fg_disc *disc, fg_point at); /* of a disc */
+  const void *user;
+} fg_measure_mover;
+
+/* Moves every edge of a strip, and its ends, by the place that it is at. */
+void fg_strip_move(fg_strip *strip, fg_point (*move)(const void *user, fg_point at),
+                   const void *user);
+
+/* The caller frees `again`, whose foils and discs are its own. */
+fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_measure_mover *mover,
+                           unsigned threads, fg_measurement *again);
+
+#endif

@@ -1,0 +1,147 @@
+/* What a calibration does not know makes every value less certain. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "foilgauge/measure.h"
+#include "measure/again.h"
+#include "quantity/quantity_rows.h"
+
+/* The edges are stretched by this much, and what that moves is taken in proportion: large beside
+ * what the last digit of a fit's end moves, small enough to be linear (a thousandth of itself). */
+static const double step = 1e-3;
+
+static fg_point stretched(const void *user, fg_point at) {
+  const double *stretch = user;
+  return (fg_point){at.x * (1 + stretch[0]), at.y * (1 + stretch[1])};
+}
+
+static void stretch_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
+  (void)foil;
+  fg_strip_move(strip, stretched, user);
+}
+
+static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at) {
+  (void)disc;
+  return stretched(user, at);
+}
+
+static fg_status measure_stretched(fg_context *ctx, const fg_measurement *m, double x, double y,
+                                   unsigned threads, fg_measurement *other) {
+  const double by[2] = {x, y};
+  const fg_measure_mover mover = {stretch_strip, stretch_point, by};
+  return fg_measure_again(ctx, m, &mover, threads, other);
+}
+
+static void take(fg_quantity_owner owner, const void *from, const void *to, double share,
+                 double *move) {
+  memset(move, 0, FG_CALIBRATED_MAX * sizeof *move);
+  fg_quantity_take_moves(owner, from, to, move);
+  for (size_t k = 0; k < fg_quantity_moves(owner); k++)
+    move[k] *= share;
+}
+
+static const fg_bump *bump_of(const fg_foil *foil, int number) {
+  for (size_t b = 0; b < foil->bump_count; b++)
+    if (foil->bumps[b].number == number) return &foil->bumps[b];
+  return NULL;
+}
+
+static const char lost[] = "its edges, stretched by a thousandth, are not the same foil: what the "
+                           "calibration does not know cannot be told";
+
+static void give_up(fg_foil *foil) {
+  fg_foil_give_up(foil, lost);
+  foil->bump_count = 0;
+}
+
+static bool is_lost(double value, const double *here, const double *there) {
+  return isfinite(value) && !(here && there && isfinite(*there - *here));
+}
+
+static void take_foil(const fg_foil *from, const fg_foil *to, double share, size_t source,
+                      fg_foil *foil) {
+  if (foil->flags & FG_FOIL_NOT_MEASURED) return;
+  if (is_lost(foil->overall.radius_mm, &from->overall.radius_mm, &to->overall.radius_mm)) {
+    give_up(foil);
+    return;
+  }
+  take(FG_QUANTITY_OF_FOIL, from, to, share, foil->calibrated.move[source]);
+  for (size_t b = 0; b < foil->bump_count; b++) {
+    fg_bump *bump = &foil->bumps[b];
+    const fg_bump *here = bump_of(from, bump->number), *there = bump_of(to, bump->number);
+    if (is_lost(bump->radius_mm, here ? &here->radius_mm : NULL,
+                there ? &there->radius_mm : NULL)) {
+      give_up(foil);
+      return;
+    }
+    if (here && there) take(FG_QUANTITY_OF_BUMP, here, there, share, bump->calibrated.move[source]);
+  }
+}
+
+static void take_all(const fg_measurement *from, const fg_measurement *to, double share,
+                     size_t source, fg_measurement *m) {
+  for (size_t f = 0; f < m->foil_count; f++)
+    take_foil(&from->foils[f], &to->foils[f], share, source, &m->foils[f]);
+  for (size_t d = 0; d < m->disc_count; d++)
+    take(FG_QUANTITY_OF_DISC, &from->discs[d], &to->discs[d], share,
+         m->discs[d].calibrated.move[source]);
+}
+
+void fg_quantity_widen_calibrated(fg_quantity_owner owner, void *object,
+                                  const fg_calibrated *calibrated) {
+  for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
+    fg_quantity_widen(owner, object, calibrated->move[s], 1);
+}
+
+static void widen_all(fg_measurement *m) {
+  for (size_t f = 0; f < m->foil_count; f++) {
+    fg_foil *foil = &m->foils[f];
+    fg_quantity_widen_calibrated(FG_QUANTITY_OF_FOIL, foil, &foil->calibrated);
+    for (size_t b = 0; b < foil->bump_count; b++)
+      fg_quantity_widen_calibrated(FG_QUANTITY_OF_BUMP, &foil->bumps[b],
+                                   &foil->bumps[b].calibrated);
+  }
+  for (size_t d = 0; d < m->disc_count; d++)
+    fg_quantity_widen_calibrated(FG_QUANTITY_OF_DISC, &m->discs[d], &m->discs[d].calibrated);
+}
+
+static fg_status find_source(fg_context *ctx, const fg_measurement *same, const double stretch[2],
+                             size_t source, unsigned threads, fg_measurement *m) {
+  double most = fmax(fabs(stretch[0]), fabs(stretch[1])), share = most / step;
+  fg_measurement other;
+  if (most == 0) return FG_OK;
+  FG_TRY(measure_stretched(ctx, m, stretch[0] / share, stretch[1] / share, threads, &other));
+  take_all(same, &other, share, source, m);
+  fg_measurement_free(&other);
+  return FG_OK;
+}
+
+fg_status fg_measurement_calibrate(fg_context *ctx, unsigned threads, fg_measurement *m) {
+  double stretch[FG_CALIBRATION_SOURCES][2];
+  fg_measurement same; /* a correction that was left in part is none of edges: both are measured */
+  if (!m->design.calibration.stated || m->calibrated) return FG_OK;
+  fg_calibration_sources(&m->design.calibration, stretch);
+  FG_TRY(measure_stretched(ctx, m, 0, 0, threads, &same));
+  fg_status status = FG_OK;
+  for (size_t s = 0; s < FG_CALIBRATION_SOURCES && status == FG_OK; s++)
+    status = find_source(ctx, &same, stretch[s], s, threads, m);
+  fg_measurement_free(&same);
+  if (status != FG_OK) return status;
+  widen_all(m);
+  m->calibrated = true;
+  return FG_OK;
+}
+
+double fg_quantity_calibration(fg_quantity_owner owner, const fg_quantity *quantity,
+                               const fg_calibrated *calibrated) {
+  size_t count, at = 0;
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  double squares = 0;
+  if (!fg_quantity_has_u(quantity)) return NAN;
+  for (const fg_quantity *row = rows; row != quantity; row++)
+    if (fg_quantity_has_u(row)) at += fg_quantity_values(row);
+  for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
+    squares += calibrated->move[s][at] * calibrated->move[s][at];
+  return sqrt(squares);
+}
