@@ -13,119 +13,21 @@
 #include "foilgauge/lot.h"
 #include "foilgauge/stiffness.h"
 #include "lot/dies.h"
+#include "lot/recipe_members.h"
 #include "lot/recipe_parts.h"
 #include "lot/reference_curve.h"
 #include "report/measure/measure_json.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
 
-typedef enum member_kind { REAL, COUNT, SEED, UNSIGNED, WORDS, RULE, RUN_RULES } member_kind;
-
-typedef struct member {
-  const char *name;
-  member_kind kind;
-  size_t offset, size; /* size: of a text */
-  double lowest, highest;
-  bool jobs; /* says how the work is done, not what comes out */
-  bool open; /* null, kept as 0: what the design says */
-} member;
-
-#define AT(place) offsetof(fg_lot_settings, place)
-#define TEXT(name, place)                                                                          \
-  { name, WORDS, AT(place), sizeof(((fg_lot_settings *)0)->place), 0, 0, false, false }
-
-static const member members[] = {
-    TEXT("name", name),
-    TEXT("model", model),
-    TEXT("model_sha256", model_sha256),
-    {"dpi", REAL, AT(dpi), 0, 0, 1e6, false, false},
-    {"jobs", UNSIGNED, AT(jobs), 0, 0, 1024, true, false},
-    {"trim_pct", REAL, AT(trim_pct), 0, 0, 49, false, false},
-    {"confidence", REAL, AT(confidence), 0, 0.5, 0.9999, false, false},
-    {"bandwidth", RULE, AT(bandwidth), 0, 0, 0, false, false},
-    {"resamples", COUNT, AT(resamples), 0, 0, 1e7, false, false},
-    {"seed", SEED, AT(seed), 0, 0, 9007199254740992.0, false, false},
-    {"run_rules", RUN_RULES, AT(run_rules), 0, 1, FG_RUN_RULES, false, false},
-    TEXT("group_column", group_column),
-    TEXT("part_column", part_column),
-    TEXT("operator_column", operator_column),
-    TEXT("bearing_column", bearing_column),
-    TEXT("pad_column", pad_column),
-    TEXT("die_column", die_column),
-    {"pads", COUNT, AT(layout.pads), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
-    {"bumps_per_pad", COUNT, AT(layout.bumps_per_pad), 0, 1, FG_BEARING_BUMPS_MAX, false, true},
-    {"first_bump", COUNT, AT(layout.first_bump), 0, 1, 1000, false, false},
-    {"bump_pitch_deg", REAL, AT(layout.pitch_deg), 0, 0.1, 360, false, true},
-    {"youngs_modulus_gpa", REAL, AT(material.youngs_modulus_gpa), 0, 1e-3, 1e4, false, false},
-    {"poisson_ratio", REAL, AT(material.poisson_ratio), 0, 0, 0.499, false, false},
-    {"friction", REAL, AT(material.friction), 0, 0, 10, false, false},
-};
-
-enum { MEMBERS = sizeof members / sizeof members[0] };
-
-/* Of the object "assembly". A hundred thousand draws take seconds, and tell shares to 0.3 %. */
-static const member assembly_members[] = {
-    {"bearings", COUNT, AT(assembly.bearings), 0, 0, 100000, false, false},
-    {"seed", SEED, AT(assembly.seed), 0, 0, 9007199254740992.0, false, false},
-    {"design_deviation_pct", REAL, AT(assembly.design_deviation_pct), 0, 0, 100, false, false},
-};
-
-enum { ASSEMBLY_MEMBERS = sizeof assembly_members / sizeof assembly_members[0] };
-
 static const fg_bandwidth_rule bandwidths[] = {FG_BANDWIDTH_SILVERMAN, FG_BANDWIDTH_SCOTT,
                                                FG_BANDWIDTH_SHEATHER_JONES};
 
-void fg_lot_settings_default(fg_lot_settings *settings) {
-  *settings = (fg_lot_settings){
-      .name = "lot",
-      .trim_pct = 5,
-      .confidence = 0.95,
-      .bandwidth = FG_BANDWIDTH_SILVERMAN,
-      .resamples = 100000,
-      .seed = 1,
-      .run_rules = 0xF,
-      .part_column = "foil",
-      .operator_column = "operator",
-      .bearing_column = "bearing",
-      .pad_column = "pad",
-      .die_column = "die",
-      .layout = {.first_bump = 1},
-      .material = fg_arch_material_default(),
-      /* Thesis chapter 5: ± 7 % of the clearance, 4.6 of 65.5 um. */
-      .assembly = {.bearings = 1000, .seed = 1, .design_deviation_pct = 7},
-  };
-  fg_design_default(&settings->design);
-}
-
-static void *place_of(const member *row, const fg_lot_settings *settings) {
-  return (char *)(uintptr_t)settings + row->offset;
-}
-
-static double number_of(const member *row, const fg_lot_settings *settings) {
-  const void *place = place_of(row, settings);
-  switch (row->kind) {
-  case REAL:
-    return *(const double *)place;
-  case COUNT:
-    return (double)*(const size_t *)place;
-  case SEED:
-    return (double)*(const uint64_t *)place;
-  case UNSIGNED:
-    return *(const unsigned *)place;
-  default:
-    return NAN;
-  }
-}
-
-static bool is_open(const member *row, double value) {
-  return row->open && value == 0;
-}
-
-static fg_status check_number(fg_context *ctx, const member *row, double value) {
-  bool whole = row->kind == REAL || value == floor(value);
+static fg_status check_number(fg_context *ctx, const fg_recipe_member *row, double value) {
+  bool whole = row->kind == FG_RECIPE_REAL || value == floor(value);
   if (value >= row->lowest && value <= row->highest && whole) return FG_OK;
   return fg_fail(ctx, FG_ERR_DATA, "%s is %g; it must be a %snumber from %g to %g", row->name,
-                 value, row->kind == REAL ? "" : "whole ", row->lowest, row->highest);
+                 value, row->kind == FG_RECIPE_REAL ? "" : "whole ", row->lowest, row->highest);
 }
 
 static fg_status check_layout(fg_context *ctx, const fg_bearing_layout *layout) {
@@ -142,11 +44,15 @@ static fg_status check_layout(fg_context *ctx, const fg_bearing_layout *layout) 
 }
 
 fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings) {
-  for (size_t i = 0; i < MEMBERS; i++)
-    if (members[i].kind <= UNSIGNED && !is_open(&members[i], number_of(&members[i], settings)))
-      FG_TRY(check_number(ctx, &members[i], number_of(&members[i], settings)));
-  for (size_t i = 0; i < ASSEMBLY_MEMBERS; i++)
-    FG_TRY(check_number(ctx, &assembly_members[i], number_of(&assembly_members[i], settings)));
+  for (size_t i = 0; i < fg_recipe_values.count; i++)
+    if (fg_recipe_values.rows[i].kind <= FG_RECIPE_UNSIGNED &&
+        !fg_recipe_is_open(&fg_recipe_values.rows[i],
+                           fg_recipe_number(&fg_recipe_values.rows[i], settings)))
+      FG_TRY(check_number(ctx, &fg_recipe_values.rows[i],
+                          fg_recipe_number(&fg_recipe_values.rows[i], settings)));
+  for (size_t i = 0; i < fg_recipe_assembly.count; i++)
+    FG_TRY(check_number(ctx, &fg_recipe_assembly.rows[i],
+                        fg_recipe_number(&fg_recipe_assembly.rows[i], settings)));
   FG_TRY(check_layout(ctx, &settings->layout));
   if (settings->design.form == FG_FORM_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "design.form is discs; a lot is made of foils");
@@ -156,7 +62,8 @@ fg_status fg_lot_settings_check(fg_context *ctx, const fg_lot_settings *settings
   return fg_report_check_tolerances(ctx, &settings->design);
 }
 
-static fg_status read_words(fg_context *ctx, const member *row, const cJSON *value, char *text) {
+static fg_status read_words(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
+                            char *text) {
   if (!cJSON_IsString(value))
     return fg_fail(ctx, FG_ERR_DATA, "%s must be a text in quotes", row->name);
   if (strlen(value->valuestring) >= row->size)
@@ -176,7 +83,7 @@ static fg_status read_bandwidth(fg_context *ctx, const cJSON *value, fg_bandwidt
                  "bandwidth must be \"silverman\", \"scott\" or \"sheather_jones\"");
 }
 
-static fg_status read_run_rules(fg_context *ctx, const member *row, const cJSON *value,
+static fg_status read_run_rules(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
                                 unsigned *rules) {
   const cJSON *number;
   *rules = 0;
@@ -190,19 +97,19 @@ static fg_status read_run_rules(fg_context *ctx, const member *row, const cJSON 
   return FG_OK;
 }
 
-static void store_number(const member *row, void *place, double value) {
-  if (row->kind == REAL) *(double *)place = value;
-  if (row->kind == COUNT) *(size_t *)place = (size_t)value;
-  if (row->kind == SEED) *(uint64_t *)place = (uint64_t)value;
-  if (row->kind == UNSIGNED) *(unsigned *)place = (unsigned)value;
+static void store_number(const fg_recipe_member *row, void *place, double value) {
+  if (row->kind == FG_RECIPE_REAL) *(double *)place = value;
+  if (row->kind == FG_RECIPE_COUNT) *(size_t *)place = (size_t)value;
+  if (row->kind == FG_RECIPE_SEED) *(uint64_t *)place = (uint64_t)value;
+  if (row->kind == FG_RECIPE_UNSIGNED) *(unsigned *)place = (unsigned)value;
 }
 
-static fg_status read_member(fg_context *ctx, const member *row, const cJSON *value,
+static fg_status read_member(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
                              fg_lot_settings *settings) {
-  void *place = place_of(row, settings);
-  if (row->kind == WORDS) return read_words(ctx, row, value, place);
-  if (row->kind == RULE) return read_bandwidth(ctx, value, place);
-  if (row->kind == RUN_RULES) return read_run_rules(ctx, row, value, place);
+  void *place = fg_recipe_place(row, settings);
+  if (row->kind == FG_RECIPE_WORDS) return read_words(ctx, row, value, place);
+  if (row->kind == FG_RECIPE_RULE) return read_bandwidth(ctx, value, place);
+  if (row->kind == FG_RECIPE_RUN_RULES) return read_run_rules(ctx, row, value, place);
   if (row->open && cJSON_IsNull(value)) {
     store_number(row, place, 0);
     return FG_OK;
@@ -244,25 +151,74 @@ static fg_status read_assembly(fg_context *ctx, const cJSON *object, fg_lot_sett
     return fg_fail(ctx, FG_ERR_DATA, "assembly must be an object, as in {\"bearings\": 1000}");
   cJSON_ArrayForEach(value, object) {
     size_t i = 0;
-    while (i < ASSEMBLY_MEMBERS && strcmp(assembly_members[i].name, value->string) != 0)
+    while (i < fg_recipe_assembly.count &&
+           strcmp(fg_recipe_assembly.rows[i].name, value->string) != 0)
       i++;
-    if (i == ASSEMBLY_MEMBERS)
+    if (i == fg_recipe_assembly.count)
       return fg_fail(ctx, FG_ERR_DATA,
                      "unknown member 'assembly.%.60s'; there are bearings, seed and "
                      "design_deviation_pct",
                      value->string);
     if (cJSON_GetObjectItemCaseSensitive(object, value->string) != value)
       return fg_fail(ctx, FG_ERR_DATA, "assembly.%s is there twice", value->string);
-    fg_status status = read_member(&inner, &assembly_members[i], value, settings);
+    fg_status status = read_member(&inner, &fg_recipe_assembly.rows[i], value, settings);
     if (status != FG_OK) return fg_fail(ctx, status, "assembly.%.300s", inner.message);
   }
   return FG_OK;
 }
 
-static const member *find_member(const char *name) {
-  for (size_t i = 0; i < MEMBERS; i++)
-    if (!strcmp(members[i].name, name)) return &members[i];
+static fg_status read_own_design(fg_context *ctx, const char *path, const cJSON *value,
+                                 fg_lot_settings *settings) {
+  return read_design(ctx, path, value, &settings->design);
+}
+
+static fg_status read_drawn(fg_context *ctx, const char *path, const cJSON *value,
+                            fg_lot_settings *settings) {
+  (void)path;
+  return read_assembly(ctx, value, settings);
+}
+
+/* Members that are more than one value. */
+static const struct {
+  const char *name;
+  fg_status (*read)(fg_context *ctx, const char *path, const cJSON *value,
+                    fg_lot_settings *settings); /* NULL: read elsewhere, or to people only */
+  const char *meaning;
+} parts[] = {
+    {"schema", NULL, "Must be \"foilgauge/recipe/1\"."},
+    {"version", NULL, "Of the program that wrote it; not read."},
+    {"design", read_own_design,
+     "An object as in `foilgauge-design`(5), or the path of such a file beside the recipe."},
+    {"dies", fg_lot_dies_read,
+     "An object of names and paths of what `foilgauge die -o` wrote, as in {\"A\": "
+     "\"die_a.json\"}: the reference of springback of foils whose `die_column` names the die."},
+    {"reference_curve", fg_reference_curve_read,
+     "The path of a CSV file beside the recipe, with the columns bump, radius_error_pct and "
+     "intersection_angle_error_pct: drawn over the errors per bump."},
+    {"assembly", read_drawn, "An object with the members that follow."},
+    {"calibration", NULL,
+     "As in `foilgauge-design`(5), over that of the recipe's design."}, /* read last */
+    {"station", NULL,
+     "An object with the settings of `foilgauge-station`(1), below; a lot does "
+     "not read it."},
+};
+
+enum { PARTS = sizeof parts / sizeof *parts };
+
+static const fg_recipe_member *find_member(const char *name) {
+  for (size_t i = 0; i < fg_recipe_values.count; i++)
+    if (!strcmp(fg_recipe_values.rows[i].name, name)) return &fg_recipe_values.rows[i];
   return NULL;
+}
+
+static fg_status read_part(fg_context *ctx, const char *path, const cJSON *value,
+                           fg_lot_settings *settings) {
+  for (size_t i = 0; i < PARTS; i++)
+    if (!strcmp(value->string, parts[i].name))
+      return parts[i].read ? parts[i].read(ctx, path, value, settings) : FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "unknown member '%.60s'; `foilgauge lot --print-recipe` shows them all",
+                 value->string);
 }
 
 static fg_status read_object(fg_context *ctx, const char *path, const cJSON *root,
@@ -273,27 +229,13 @@ static fg_status read_object(fg_context *ctx, const char *path, const cJSON *roo
     return fg_fail(ctx, FG_ERR_DATA,
                    "not a recipe: it must hold \"schema\": \"foilgauge/recipe/1\"");
   cJSON_ArrayForEach(value, root) {
-    const member *row = find_member(value->string);
+    const fg_recipe_member *row = find_member(value->string);
     if (cJSON_GetObjectItemCaseSensitive(root, value->string) != value)
       return fg_fail(ctx, FG_ERR_DATA, "%s is there twice", value->string);
     if (row)
       FG_TRY(read_member(ctx, row, value, settings));
-    else if (!strcmp(value->string, "design"))
-      FG_TRY(read_design(ctx, path, value, &settings->design));
-    else if (!strcmp(value->string, "dies"))
-      FG_TRY(fg_lot_dies_read(ctx, path, value, settings));
-    else if (!strcmp(value->string, "reference_curve"))
-      FG_TRY(fg_reference_curve_read(ctx, path, value, settings));
-    else if (!strcmp(value->string, "assembly"))
-      FG_TRY(read_assembly(ctx, value, settings));
-    else if (!strcmp(value->string, "calibration"))
-      continue; /* below */
-    else if (value != schema && strcmp(value->string, "version") != 0 &&
-             strcmp(value->string, "station") !=
-                 0) /* the inspection station's: station/settings.c */
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "unknown member '%.60s'; `foilgauge lot --print-recipe` shows them all",
-                     value->string);
+    else
+      FG_TRY(read_part(ctx, path, value, settings));
   }
   FG_TRY(fg_recipe_read_calibration(ctx, root, settings));
   return fg_lot_settings_check(ctx, settings);
@@ -336,32 +278,12 @@ fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_setting
   return status;
 }
 
-static void write_member(fg_json *json, const member *row, const fg_lot_settings *settings) {
-  const void *place = place_of(row, settings);
-  if (row->kind == WORDS) {
-    fg_json_string(json, row->name, place);
-  } else if (row->kind == RULE) {
-    fg_json_string(json, row->name, fg_bandwidth_word(*(const fg_bandwidth_rule *)place));
-  } else if (row->kind == RUN_RULES) {
-    fg_json_array(json, row->name);
-    fg_json_line(json);
-    for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
-      if (*(const unsigned *)place & (1u << (rule - 1))) fg_json_integer(json, NULL, rule);
-    fg_json_array_end(json);
-    fg_json_line_end(json);
-  } else if (row->kind == REAL || is_open(row, number_of(row, settings))) {
-    double value = number_of(row, settings);
-    fg_json_number(json, row->name, is_open(row, value) ? NAN : value);
-  } else {
-    fg_json_integer(json, row->name, (int64_t)number_of(row, settings));
-  }
-}
-
 /* A lot that knows no model, no dies, has a recipe that does not speak of them. */
-static bool is_silent(const member *row, const fg_lot_settings *settings) {
-  bool model = row->offset == AT(model) || row->offset == AT(model_sha256);
-  if (row->offset == AT(die_column)) return !settings->die_count;
-  return model && !*(const char *)place_of(row, settings);
+static bool is_silent(const fg_recipe_member *row, const fg_lot_settings *settings) {
+  bool model = row->offset == offsetof(fg_lot_settings, model) ||
+               row->offset == offsetof(fg_lot_settings, model_sha256);
+  if (row->offset == offsetof(fg_lot_settings, die_column)) return !settings->die_count;
+  return model && !*(const char *)fg_recipe_place(row, settings);
 }
 
 fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *settings, bool with_jobs,
@@ -374,17 +296,18 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   fg_json_begin(&writer, out);
   fg_json_object(&writer, NULL);
   fg_json_head(&writer, "foilgauge/recipe/1");
-  for (size_t i = 0; i < MEMBERS; i++)
-    if (with_jobs || !(members[i].jobs || is_silent(&members[i], settings)))
-      write_member(&writer, &members[i], settings);
+  for (size_t i = 0; i < fg_recipe_values.count; i++)
+    if (with_jobs ||
+        !(fg_recipe_values.rows[i].jobs || is_silent(&fg_recipe_values.rows[i], settings)))
+      fg_recipe_write(&writer, &fg_recipe_values.rows[i], settings);
   fg_lot_dies_write(&writer, settings);
   writer.exact = true; /* what is read again gives the same report */
   fg_reference_curve_write(&writer, "reference_curve", settings);
   writer.exact = false;
   fg_json_object(&writer, "assembly");
   fg_json_line(&writer);
-  for (size_t i = 0; i < ASSEMBLY_MEMBERS; i++)
-    write_member(&writer, &assembly_members[i], settings);
+  for (size_t i = 0; i < fg_recipe_assembly.count; i++)
+    fg_recipe_write(&writer, &fg_recipe_assembly.rows[i], settings);
   fg_json_object_end(&writer);
   fg_json_line_end(&writer);
   if (with_jobs) fg_recipe_write_calibration(&writer, settings); /* else as the design's */
@@ -396,4 +319,18 @@ fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *setting
   free(*json);
   *json = NULL;
   return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a recipe");
+}
+
+size_t fg_recipe_members(fg_member_words *list, size_t most) {
+  size_t count = 0;
+  for (size_t i = 0; i < fg_recipe_values.count; i++, count++)
+    if (count < most) fg_recipe_say("", &fg_recipe_values.rows[i], &list[count]);
+  for (size_t i = 0; i < PARTS; i++, count++) {
+    if (count >= most) continue;
+    list[count] = (fg_member_words){.meaning = parts[i].meaning};
+    fg_text_clip(list[count].name, sizeof list[count].name, "%s", parts[i].name);
+  }
+  for (size_t i = 0; i < fg_recipe_assembly.count; i++, count++)
+    if (count < most) fg_recipe_say("assembly.", &fg_recipe_assembly.rows[i], &list[count]);
+  return count;
 }

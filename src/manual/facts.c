@@ -3,6 +3,9 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "core/member_words.h"
+#include "foilgauge/control.h"
+#include "foilgauge/quantity.h"
 #include "scan/format.h"
 
 static void write_commands(FILE *out) {
@@ -23,7 +26,76 @@ static void write_endings(FILE *out) {
   fputs(text, out);
 }
 
+enum { MEMBERS_MOST = 128 };
+
+/* Members of a JSON file, each with what is there where the file does not say it. */
+static void write_members(fg_member_words_list *list_all, FILE *out) {
+  static fg_member_words list[MEMBERS_MOST];
+  size_t count = list_all(list, MEMBERS_MOST);
+  fputs("| member | what it is |\n|---|---|\n", out);
+  for (size_t i = 0; i < count && i < MEMBERS_MOST; i++) {
+    const fg_member_words *words = &list[i];
+    fprintf(out, "| `%s` | %s", words->name, words->meaning ? words->meaning : "@missing@");
+    if (words->limits[0]) fprintf(out, " From %s.", words->limits);
+    if (words->usual[0]) fprintf(out, " Default: %s.", words->usual);
+    fputs(" |\n", out);
+  }
+}
+
+static void write_recipe_members(FILE *out) {
+  write_members(fg_recipe_members, out);
+}
+
+static void write_station_members(FILE *out) {
+  write_members(fg_station_members, out);
+}
+
+static void write_design_members(FILE *out) {
+  write_members(fg_design_members, out);
+}
+
+static void write_quantities(fg_quantity_owner owner, const char *prefix, FILE *out) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  fputs("| quantity | what it is |\n|---|---|\n", out);
+  for (size_t i = 0; i < count; i++) {
+    const char *name = owner == FG_QUANTITY_OF_BEARING ? rows[i].tolerance : rows[i].name;
+    if (!name || rows[i].kind == FG_QUANTITY_PAIR) continue;
+    fprintf(out, "| `%s%s` | %s |\n", prefix, name, rows[i].words);
+  }
+}
+
+static void write_quantities_of_bump(FILE *out) {
+  write_quantities(FG_QUANTITY_OF_BUMP, "", out);
+}
+
+static void write_quantities_of_foil(FILE *out) {
+  write_quantities(FG_QUANTITY_OF_FOIL, "", out);
+}
+
+static void write_quantities_of_bearing(FILE *out) {
+  write_quantities(FG_QUANTITY_OF_BEARING, "", out);
+}
+
+static void write_quantities_of_disc(FILE *out) {
+  write_quantities(FG_QUANTITY_OF_DISC, "", out);
+}
+
+static void write_run_rules(FILE *out) {
+  fputs("| rule | signals |\n|---|---|\n", out);
+  for (unsigned rule = 1; rule <= FG_RUN_RULES; rule++)
+    fprintf(out, "| %u | %s |\n", rule, fg_run_rule_words(rule));
+}
+
 static const fg_fact facts[] = {
+    {"recipe_members", write_recipe_members},
+    {"station_members", write_station_members},
+    {"design_members", write_design_members},
+    {"quantities_of_bump", write_quantities_of_bump},
+    {"quantities_of_foil", write_quantities_of_foil},
+    {"quantities_of_bearing", write_quantities_of_bearing},
+    {"quantities_of_disc", write_quantities_of_disc},
+    {"run_rules", write_run_rules},
     {"commands", write_commands},
     {"exit_codes", write_exit_codes},
     {"scan_endings", write_endings},

@@ -162,10 +162,10 @@ static void write_see_also(const char *self, FILE *out) {
 }
 
 static void write_head(const fg_manual_text *text, FILE *out) {
-  fputs(".\\\" Written by foilgauge_manual (src/manual/).\n.TH \"", out);
+  fputs(".\\\" Written by foilgauge_manual (src/manual/).\n.nr HY 0\n.TH \"", out);
   for (const char *c = text->name; *c; c++)
     fputc(*c >= 'a' && *c <= 'z' ? *c - 32 : *c, out);
-  fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.nh\n.ad l\n.SH NAME\n",
+  fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.ad l\n.SH NAME\n",
           text->section, FOILGAUGE_VERSION);
   write_name(text->name, out);
   fputs(" \\- ", out);

@@ -1,15 +1,65 @@
 /* A recipe's member `station`. */
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/member_words.h"
+#include "core/text.h"
 #include "foilgauge/station.h"
 #include "station/naming.h"
 
 enum { RECIPE_BYTES_MAX = 1 << 20 };
+
+typedef enum member_kind { WORDS, NUMBER, YES } member_kind;
+
+typedef struct member {
+  const char *name;
+  member_kind kind;
+  size_t offset, size; /* in the settings; of a text */
+  double highest;
+  const char *meaning; /* foilgauge-recipe(5) */
+} member;
+
+#define AT(place) offsetof(fg_station_settings, place)
+#define TEXT(name, place, meaning)                                                                 \
+  { name, WORDS, AT(place), sizeof(((fg_station_settings *)0)->place), 0, meaning }
+
+static const member members[] = {
+    TEXT("file_name", file_name,
+         "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
+         "`{lot}`, `{die}`, `{operator}`; such as `{lot}_{die}_{serial}`. A name of another form "
+         "is a serial number as a whole."),
+    TEXT("scan_command", scan_command,
+         "Puts a Scan button on the page: a command of the shell that writes the scan `{file}`. It "
+         "runs in the folder, as the user of the station."),
+};
+
+static const member check_members[] = {
+    TEXT("design", check.design,
+         "The plate or ring: the path of a design of form \"discs\" with its calibrated "
+         "`diameters_mm`. Discs of different sizes make a check sharper: they tell the scanner's "
+         "scale from the level at which edges are taken."),
+    TEXT("file_name", check.file_name, "How scans of it are called, as above."),
+    {"every_h", NUMBER, AT(check.every_h), 0, 1e5,
+     "Hours from check to check; 0: whenever somebody likes."},
+    {"scale_max_ppm", NUMBER, AT(check.scale_max_ppm), 0, 1e6,
+     "A scale (ppm) or shear (µrad) that is further off, its 2 u counted, fails."},
+    {"withhold", YES, AT(check.withhold), 0, 0,
+     "true: without a check that is in time and passed, foils are measured but get no verdict. A "
+     "clock that was set back makes a check due."},
+};
+
+enum { MEMBERS = sizeof members / sizeof *members };
+enum { CHECK_MEMBERS = sizeof check_members / sizeof *check_members };
+
+static const char check_name[] = "check";
+static const char check_meaning[] =
+    "An object with the members that follow: when the scanner has to prove itself by known "
+    "diameters. With a `scan_command` the Scanner tab has a button for it.";
 
 static fg_status read_text(fg_context *ctx, const cJSON *value, char *text, size_t size) {
   if (!cJSON_IsString(value))
@@ -29,47 +79,44 @@ static fg_status read_number(fg_context *ctx, const cJSON *value, double highest
   return FG_OK;
 }
 
-static fg_status read_check_member(fg_context *ctx, const cJSON *value, fg_station_check *check) {
-  if (!strcmp(value->string, "design"))
-    return read_text(ctx, value, check->design, sizeof check->design);
-  if (!strcmp(value->string, "file_name"))
-    return read_text(ctx, value, check->file_name, sizeof check->file_name);
-  if (!strcmp(value->string, "every_h")) return read_number(ctx, value, 1e5, &check->every_h);
-  if (!strcmp(value->string, "scale_max_ppm"))
-    return read_number(ctx, value, 1e6, &check->scale_max_ppm);
-  if (strcmp(value->string, "withhold") != 0)
-    return fg_fail(
-        ctx, FG_ERR_DATA,
-        "unknown member '%.60s'; there are design, file_name, every_h, scale_max_ppm, withhold",
-        value->string);
-  if (!cJSON_IsBool(value)) return fg_fail(ctx, FG_ERR_DATA, "withhold must be true or false");
-  check->withhold = cJSON_IsTrue(value);
-  return FG_OK;
+static fg_status read_member(fg_context *ctx, const cJSON *value, const member *rows, size_t count,
+                             fg_station_settings *settings) {
+  char known[300] = "";
+  for (size_t i = 0; i < count; i++) {
+    const member *row = &rows[i];
+    void *place = (char *)settings + row->offset;
+    fg_text_clip(known + strlen(known), sizeof known - strlen(known), "%s%s", i ? ", " : "",
+                 row->name);
+    if (strcmp(value->string, row->name) != 0) continue;
+    if (row->kind == WORDS) return read_text(ctx, value, place, row->size);
+    if (row->kind == NUMBER) return read_number(ctx, value, row->highest, place);
+    if (!cJSON_IsBool(value))
+      return fg_fail(ctx, FG_ERR_DATA, "%s must be true or false", row->name);
+    *(bool *)place = cJSON_IsTrue(value);
+    return FG_OK;
+  }
+  return fg_fail(ctx, FG_ERR_DATA, "unknown member '%.60s'; there are %s%s", value->string, known,
+                 rows == members ? ", check" : "");
 }
 
-static fg_status read_check(fg_context *ctx, const cJSON *object, fg_station_check *check) {
+static fg_status read_check(fg_context *ctx, const cJSON *object, fg_station_settings *settings) {
   const cJSON *value;
   if (!cJSON_IsObject(object)) return fg_fail(ctx, FG_ERR_DATA, "check must be an object");
-  cJSON_ArrayForEach(value, object) FG_TRY(read_check_member(ctx, value, check));
-  if (!check->design[0])
+  cJSON_ArrayForEach(value, object)
+      FG_TRY(read_member(ctx, value, check_members, CHECK_MEMBERS, settings));
+  if (!settings->check.design[0])
     return fg_fail(ctx, FG_ERR_DATA, "check needs the design of the plate or ring (form discs)");
-  return fg_naming_check(ctx, check->file_name);
+  return fg_naming_check(ctx, settings->check.file_name);
 }
 
 static fg_status read_station(fg_context *ctx, const cJSON *object, fg_station_settings *settings) {
   const cJSON *value;
   if (!cJSON_IsObject(object)) return fg_fail(ctx, FG_ERR_DATA, "station must be an object");
   cJSON_ArrayForEach(value, object) {
-    if (!strcmp(value->string, "file_name"))
-      FG_TRY(read_text(ctx, value, settings->file_name, sizeof settings->file_name));
-    else if (!strcmp(value->string, "scan_command"))
-      FG_TRY(read_text(ctx, value, settings->scan_command, sizeof settings->scan_command));
-    else if (!strcmp(value->string, "check"))
-      FG_TRY(read_check(ctx, value, &settings->check));
+    if (!strcmp(value->string, check_name))
+      FG_TRY(read_check(ctx, value, settings));
     else
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "unknown member '%.60s'; there are file_name, scan_command, check",
-                     value->string);
+      FG_TRY(read_member(ctx, value, members, MEMBERS, settings));
   }
   if (settings->scan_command[0] && !strstr(settings->scan_command, "{file}"))
     return fg_fail(ctx, FG_ERR_DATA, "scan_command: {file}, the scan to write, is not in it");
@@ -102,14 +149,49 @@ static fg_status load_station(fg_context *ctx, const char *recipe, fg_station_se
   return place_check(ctx, recipe, &settings->check);
 }
 
-fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const char *design,
-                                   fg_station_settings *settings) {
+static void set_usual(fg_station_settings *settings) {
   *settings = (fg_station_settings){.file_name = "{serial}",
                                     .check = {.file_name = "check*", .scale_max_ppm = 500}};
   fg_lot_settings_default(&settings->lot);
+}
+
+fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const char *design,
+                                   fg_station_settings *settings) {
+  set_usual(settings);
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));
   if (!design) return FG_OK;
   FG_TRY(fg_lot_settings_take_design(ctx, design, &settings->lot));
   return fg_lot_settings_check(ctx, &settings->lot);
+}
+
+static void say_member(const char *object, const member *row, const fg_station_settings *usual,
+                       fg_member_words *words) {
+  const char *place = (const char *)usual + row->offset;
+  *words = (fg_member_words){.meaning = row->meaning};
+  fg_text_clip(words->name, sizeof words->name, "station.%s%s", object, row->name);
+  if (row->kind == WORDS && *place)
+    fg_text_clip(words->usual, sizeof words->usual, "\"%s\"", place);
+  if (row->kind == NUMBER)
+    fg_text_clip(words->usual, sizeof words->usual, "%g", *(const double *)place);
+  if (row->kind == NUMBER)
+    fg_text_clip(words->limits, sizeof words->limits, "0 to %g", row->highest);
+  if (row->kind == YES)
+    fg_text_clip(words->usual, sizeof words->usual, "%s", *(const bool *)place ? "true" : "false");
+}
+
+size_t fg_station_members(fg_member_words *list, size_t most) {
+  static fg_station_settings usual;
+  size_t count = 0;
+  set_usual(&usual);
+  for (size_t i = 0; i < MEMBERS; i++, count++)
+    if (count < most) say_member("", &members[i], &usual, &list[count]);
+  if (count < most) {
+    list[count] = (fg_member_words){.meaning = check_meaning};
+    fg_text_clip(list[count].name, sizeof list[count].name, "station.%s", check_name);
+  }
+  count++;
+  for (size_t i = 0; i < CHECK_MEMBERS; i++, count++)
+    if (count < most) say_member("check.", &check_members[i], &usual, &list[count]);
+  return count;
 }

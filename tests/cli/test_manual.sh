@@ -41,19 +41,27 @@ for command in $commands; do
     say "$command: the page says something else than help"
 done
 
-if command -v groff >/dev/null; then
-  for page in "$man"/*.[15]; do
-    words=$(groff -man -ww -z "$page" 2>&1)
-    [ -z "$words" ] || say "$page: $words"
-  done
-fi
-if command -v man >/dev/null; then
-  for page in "$man"/*.[15]; do
+# What a recipe is written with is in its page; samples hold nothing else.
+plain "$man/foilgauge-recipe.5" >"$work/page"
+"$fg" lot --print-recipe | cat - samples/station/recipe.json | grep -oE '"[a-z_]+":' | tr -d '":' |
+  sort -u >"$work/keys"
+plain "$man/foilgauge-design.5" >>"$work/page"
+while read -r key; do
+  grep -qE "^\\\\?f?B?(assembly\.|station\.(check\.)?)?$key\$" "$work/page" ||
+    say "the recipe's member $key is in no page"
+done <"$work/keys"
+grep -q '@[a-z_]*@' "$man"/*.[15] && say "something was not put in"
+
+# man passes on what groff says; without man, groff itself.
+for page in "$man"/*.[15]; do
+  if command -v man >/dev/null; then
     words=$(LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l "$page" 2>&1 >"$work/shown")
-    [ -z "$words" ] || say "man: $page: $words"
     [ "$(wc -l <"$work/shown")" -gt 10 ] || say "man shows nothing of $page"
-  done
-fi
+  elif command -v groff >/dev/null; then
+    words=$(groff -man -ww -z "$page" 2>&1)
+  fi
+  [ -z "${words-}" ] || say "$page: $words"
+done
 
 # Help is help, whatever stands before it.
 "$fg" loop --table --help >"$work/out" 2>&1 || say "loop --table --help: exit $?"

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/member_words.h"
+#include "core/text.h"
 #include "foilgauge/design.h"
 #include "foilgauge/report.h"
 #include "report/design/calibration_json.h"
@@ -170,29 +172,44 @@ typedef struct member_row {
   const char *name;
   read_value *read;
   size_t offset;
+  const char *meaning; /* foilgauge-design(5) */
 } member_row;
 
-#define MEMBER(name, read)                                                                         \
-  { #name, read, offsetof(fg_design, name) }
+#define MEMBER(name, read, meaning)                                                                \
+  { #name, read, offsetof(fg_design, name), meaning }
 static const member_row member_rows[] = {
-    {"schema", read_schema, 0},
-    MEMBER(name, read_name),
-    MEMBER(form, read_form),
-    MEMBER(datum, read_datum),
-    MEMBER(bump_count, read_count),
-    MEMBER(bump_radius_mm, read_number),
-    MEMBER(bump_angle_deg, read_number),
-    MEMBER(overall_radius_mm, read_number),
-    MEMBER(sleeve_radius_mm, read_number),
-    MEMBER(pitch_deg, read_number),
-    MEMBER(fillet_radius_mm, read_number),
-    MEMBER(thickness_mm, read_number),
-    MEMBER(top_foil_thickness_mm, read_number),
-    MEMBER(rotor_diameter_mm, read_number),
-    MEMBER(subtended_angle_deg, read_number),
-    {"diameters_mm", read_diameters, 0},
-    {"tolerances", read_tolerances, 0},
-    MEMBER(calibration, read_calibration),
+    {"schema", read_schema, 0, "Must be \"foilgauge/design/1\"."},
+    MEMBER(name, read_name, "Of the design, as reports show it."),
+    MEMBER(form, read_form,
+           "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
+           "lands, no lip), \"arc\" (a plain strip, as a top foil) or \"discs\" (no foil: round "
+           "gauges)."),
+    MEMBER(datum, read_datum,
+           "Which line of the strip the lengths belong to: \"mid\", \"inner\" (the shaft's side) "
+           "or \"outer\" (the sleeve's)."),
+    MEMBER(bump_count, read_count, "Bumps of a foil; 0: not stated."),
+    MEMBER(bump_radius_mm, read_number, "R, of the circle of a bump."),
+    MEMBER(bump_angle_deg, read_number,
+           "alpha, at the bump's centre between the crossings with the overall circle."),
+    MEMBER(overall_radius_mm, read_number, "R0, of the circle through the lands, or of an arc."),
+    MEMBER(sleeve_radius_mm, read_number,
+           "Of the bore that the foil is pressed into; without it, `overall_radius_mm`."),
+    MEMBER(pitch_deg, read_number, "From bump to bump about the overall centre."),
+    MEMBER(fillet_radius_mm, read_number, "Between a bump and its lands."),
+    MEMBER(thickness_mm, read_number, "Of the strip."),
+    MEMBER(top_foil_thickness_mm, read_number,
+           "Of the plain foil between bumps and rotor, 0 for none: it is taken off every "
+           "clearance, that of the design too; one that leaves no clearance is refused."),
+    MEMBER(rotor_diameter_mm, read_number, "Of the rotor in the bearing."),
+    MEMBER(subtended_angle_deg, read_number,
+           "Of form \"arc\" alone: from end to end, about the centre."),
+    {"diameters_mm", read_diameters, 0,
+     "Of form \"discs\" alone: known diameters of the gauges, in any order."},
+    {"tolerances", read_tolerances, 0,
+     "An object of quantities with \"min\", \"max\" or both; below."},
+    MEMBER(calibration, read_calibration,
+           "What the statistics of a scan cannot know: how long a pixel is, how warm the part was; "
+           "below."),
 };
 #undef MEMBER
 
@@ -314,4 +331,21 @@ fg_status fg_design_load(fg_context *ctx, const char *path, fg_design *design) {
   fg_status status = fg_design_parse(ctx, path, text, design);
   free(text);
   return status;
+}
+
+/* Numbers that the built-in design has are what a file that states nothing is measured with. */
+size_t fg_design_members(fg_member_words *list, size_t most) {
+  fg_design usual;
+  fg_design_default(&usual);
+  for (size_t i = 0; i < MEMBER_ROWS && i < most; i++) {
+    const member_row *row = &member_rows[i];
+    const char *place = (const char *)&usual + row->offset;
+    list[i] = (fg_member_words){.meaning = row->meaning};
+    fg_text_clip(list[i].name, sizeof list[i].name, "%s", row->name);
+    if (row->read == read_number && *(const double *)place > 0)
+      fg_text_clip(list[i].usual, sizeof list[i].usual, "%.10g", *(const double *)place);
+    if (row->read == read_count)
+      fg_text_clip(list[i].usual, sizeof list[i].usual, "%zu", *(const size_t *)place);
+  }
+  return MEMBER_ROWS;
 }
