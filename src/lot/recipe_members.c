@@ -9,7 +9,7 @@
 #include "core/text.h"
 #include "foilgauge/control.h"
 #include "foilgauge/stiffness.h"
-#include "report/words.h"
+#include "foilgauge/words.h"
 
 #define AT(place) offsetof(fg_lot_settings, place)
 #define TEXT(name, place, meaning)                                                                 \

@@ -35,6 +35,7 @@ for command in $commands; do
     grep -qE "^(-[a-z], )?$option(=|\$)" "$work/page" || say "$option is not in the page of $command"
   done
   grep -q '^.SH EXIT STATUS' "$work/page" || say "$command: no exit status"
+  grep -q '^.SH EXAMPLES' "$work/page" || say "$command: no example"
   grep -q '^64$' "$work/page" || say "$command: no exit code 64"
   grep -q '@[a-z_]*@' "$work/page" "$work/help" && say "$command: something was not put in"
   "$fg" help | grep -qF "$(sed -n "/^foilgauge-$command - /s///p" "$work/page")" ||
@@ -72,6 +73,94 @@ grep -q -- '--response' "$work/out" || say "loop --table --help does not explain
 [ $? = 64 ] || say "help of no command"
 "$fg" measure --help >/dev/full 2>/dev/null
 [ $? = 74 ] || say "help on a full disk"
+
+# README: a page, with what the program says of the samples.
+[ "$(wc -l <README.md)" -le 150 ] || say "README.md is longer than a page"
+for command in $commands; do
+  grep -q "foilgauge-$command.1.md\|$command" README.md || say "README.md does not name $command"
+done
+grep -oE '\]\([^)]*\)' README.md | tr -d '](' | tr -d ')' | while read -r path; do
+  [ -e "$path" ] || echo "$path"
+done >"$work/gone"
+[ -s "$work/gone" ] && say "README.md points to what is not there: $(cat "$work/gone")"
+
+[ -n "${FOILGAUGE_TEST_BRIEF-}" ] && exit $failed
+
+ln -s "$PWD"/samples "$work/samples"
+mkdir -p "$work/build"
+ln -s "$fg" "$work/build/foilgauge"
+if command -v script >/dev/null; then
+  while IFS= read -r line; do
+    case $line in
+    '    $ '*)
+      (cd "$work" && script -qec "${line#    $ }" "$work/typed" </dev/null >/dev/null) ||
+        say "README.md: ${line#    $ }: exit $?"
+      tr -d '\r' <"$work/typed" >"$work/said" ;;
+    '    '?*)
+      [ -s "$work/said" ] || continue
+      grep -qF -- "${line#    }" "$work/said" || say "README.md says what the program does not: $line" ;;
+    *) : >"$work/said" ;;
+    esac
+  done < <(sed 's/ *$//' README.md)
+fi
+
+# Examples: in a folder that has what they name. Every one ends with 0.
+PATH=$build:$PATH
+spec() { # direction, seed, dpi: a foil of three bumps
+  printf '{"schema": "foilgauge/render/1", "seed": %s, "foils": [{"design": {"bump_count": 3},
+    "radius_springback": {"mean": 0.02, "sd": 0.005}, "rotate_deg": %s}],
+    "scanner": {"dpi": %s, "noise": 0.5}}' "$2" "$1" "$3"
+}
+mkdir -p "$work/ex/scans" "$work/ex/inbox"
+cp samples/die/*.txt samples/doe/*.csv "$work/ex"
+cd "$work/ex" || exit 1
+spec -90 1 2400 >spec.json && foilgauge render spec.json -o scan.png
+spec -90 2 2400 >other.json && foilgauge render other.json -o scan_2.png
+spec 0 1 2400 >turned.json && foilgauge render turned.json -o scan_90.png
+echo scan,foil,die >lot8.csv
+for i in 1 2 3 4; do
+  spec -90 "$i" 1200 >foil.json
+  foilgauge render foil.json -o "scans/foil_$i.png"
+  echo "scans/foil_$i.png,$i,$((i % 2))" >>lot8.csv
+done
+cp scans/foil_1.png inbox
+cat >my_foil.json <<'D'
+{"schema": "foilgauge/design/1", "name": "gen2", "bump_count": 3, "bump_radius_mm": 3.32, "bump_angle_deg": 63.15,
+ "overall_radius_mm": 20.73, "thickness_mm": 0.1, "tolerances": {"radius_mm": {"min": 3, "max": 4}}}
+D
+echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [2, 3, 4, 5]}' >plate.json
+cat >plate_spec.json <<'D'
+{"schema": "foilgauge/render/1", "scanner": {"dpi": 1200}, "discs": [
+  {"centre_mm": [3, 3], "radius_mm": 1}, {"centre_mm": [12, 4], "radius_mm": 1.5},
+  {"centre_mm": [4, 12], "radius_mm": 2}, {"centre_mm": [12, 12], "radius_mm": 2.5}]}
+D
+foilgauge render plate_spec.json -o plate.png
+echo '{"schema": "foilgauge/recipe/1", "design": "my_foil.json", "station": {"file_name": "{serial}"}}' >station.json
+cat >runs.csv <<'D'
+run,temperature_C,duration_h,scan
+1,500,3,scans/foil_1.png
+2,600,3,scans/foil_2.png
+3,500,5,scans/foil_3.png
+4,600,5,scans/foil_4.png
+5,550,4,scans/foil_1.png
+D
+foilgauge lot lot8.csv -o lot6 --design my_foil.json 2>/dev/null || say "the folder for the examples: lot6"
+examples=0
+while IFS= read -r line; do
+  case $line in
+  '#'*) page=${line#\# } ;;
+  *)
+    examples=$((examples + 1))
+    bash -c "$line" >"$work/out" 2>"$work/err" </dev/null ||
+      say "example of $page: $line: exit $?: $(head -c 300 "$work/err")" ;;
+  esac
+done <"$man/examples"
+[ "$examples" -ge 30 ] || say "only $examples examples were found"
+for file in foil.json foil.html foil.csv lot7/index.html lot8/lot.json lot9/lot.json die_a.json loop.json \
+  springback.html plan.csv rendered.png lots.html bumps.html better.json; do
+  [ -s "$file" ] || say "no example has made $file"
+done
+cd "$OLDPWD" || exit 1
 
 # Completion.
 complete_line() { # words...

@@ -123,7 +123,7 @@ static void documents_name_every_row(void **state) {
   (void)state;
   size_t count;
   const fg_format *const *formats = fg_formats(&count);
-  char *readme = read_text("README.md"), *text = read_text("reports/schema/measure.schema.json");
+  char *manual = read_text("src/manual/text/foilgauge-measure.1.md"), *text = read_text("reports/schema/measure.schema.json");
   cJSON *schema = cJSON_Parse(text);
   const cJSON *words = formats_of(schema);
   assert_int_equal(cJSON_GetArraySize(words), count);
@@ -134,10 +134,10 @@ static void documents_name_every_row(void **state) {
     cJSON_ArrayForEach(word, words) known = known || !strcmp(word->valuestring, formats[i]->name);
     assert_true(known);
     snprintf(row, sizeof row, "\n| %s", formats[i]->name);
-    assert_non_null(strstr(readme, row));
+    assert_non_null(strstr(manual, row));
   }
   cJSON_Delete(schema);
-  free(readme);
+  free(manual);
   free(text);
 }
 
