@@ -16,7 +16,9 @@ static void write_commands(FILE *out) {
 
 static void write_exit_codes(FILE *out) {
   fputs("| code | meaning |\n|---|---|\n", out);
-  for (const fg_exit_code *code = fg_exit_codes; code->words; code++)
+  fprintf(out, "| 0 | %s; of commands that judge: %s |\n", fg_exit_codes[0].words,
+          fg_exit_codes[1].words);
+  for (const fg_exit_code *code = fg_exit_codes + 2; code->words; code++)
     fprintf(out, "| %d | %s |\n", code->code, code->words);
 }
 

@@ -7,7 +7,8 @@
 #include "cli/facts.h"
 #include "manual/roff.h"
 
-static const char see_also[][24] = {"foilgauge-design(5)", "foilgauge-recipe(5)"};
+/* Of files, section 5. */
+static const char see_also[][24] = {"foilgauge-design", "foilgauge-recipe"};
 
 /* What a parser says, with what the code knows put in; the caller frees. */
 static void fill(const char *text, bool *known, char **whole) {
@@ -143,30 +144,37 @@ static void write_exit_status(const fg_command *command, bool *known, FILE *out)
   }
 }
 
-static void write_see_also(const char *self, FILE *out) {
+static void write_reference(const char *name, size_t length, char section, bool first, FILE *out) {
+  fputs(first ? "\\fB" : ",\n\\fB", out);
+  fg_roff_escape(name, length, out);
+  fprintf(out, "\\fR(%c)", section);
+}
+
+/* Every page but its own. */
+static void write_see_also(const char *self, char section, FILE *out) {
+  static const char program[] = "foilgauge";
+  bool first = strcmp(self, program) == 0;
   fputs(".SH SEE ALSO\n", out);
-  if (strcmp(self, "foilgauge") != 0) fputs("\\fBfoilgauge\\fR(1),\n", out);
+  if (!first) write_reference(program, strlen(program), '1', true, out);
   for (const fg_command *command = fg_commands; command->name; command++) {
-    if (!strcmp(self + strcspn(self, "-") + (strchr(self, '-') != NULL), command->name)) continue;
-    fputs("\\fBfoilgauge\\-", out);
-    write_name(command->name, out);
-    fputs("\\fR(1),\n", out);
+    char name[80];
+    snprintf(name, sizeof name, "%s-%s", program, command->name);
+    if (section == '1' && !strcmp(self, name)) continue;
+    write_reference(name, strlen(name), '1', first, out);
+    first = false;
   }
-  for (size_t i = 0; i < sizeof see_also / sizeof *see_also; i++) {
-    size_t name = strcspn(see_also[i], "(");
-    fputs("\\fB", out);
-    fg_roff_escape(see_also[i], name, out);
-    fprintf(out, "\\fR%s%s\n", see_also[i] + name,
-            i + 1 < sizeof see_also / sizeof *see_also ? "," : "");
-  }
+  for (size_t i = 0; i < sizeof see_also / sizeof *see_also; i++)
+    if (section != '5' || strcmp(self, see_also[i]) != 0)
+      write_reference(see_also[i], strlen(see_also[i]), '5', false, out);
+  fputc('\n', out);
 }
 
 static void write_head(const fg_manual_text *text, FILE *out) {
-  fputs(".\\\" Written by foilgauge_manual (src/manual/).\n.nr HY 0\n.TH \"", out);
+  fputs(".\\\" Written by foilgauge_manual (src/manual/).\n.nr HY 0\n.ss 12 0\n.TH \"", out);
   for (const char *c = text->name; *c; c++)
     fputc(*c >= 'a' && *c <= 'z' ? *c - 32 : *c, out);
-  fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.ad l\n.SH NAME\n",
-          text->section, FOILGAUGE_VERSION);
+  fprintf(out, "\" \"%c\" \"\" \"foilgauge %s\" \"foilgauge\"\n.ad l\n.SH NAME\n", text->section,
+          FOILGAUGE_VERSION);
   write_name(text->name, out);
   fputs(" \\- ", out);
   write_name(text->summary, out);
@@ -181,7 +189,7 @@ static void write_part(const char *from, const char *to, FILE *out) {
 }
 
 bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command, FILE *out) {
-  bool known = true;
+  bool known = true, several = command && command->form[1].parser;
   const char *body = text->body, *end = body + strlen(body);
   const char *sections = strstr(body, "\n## ");
   const char *examples = strstr(body, "\n## Examples\n");
@@ -190,16 +198,17 @@ bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command,
   write_head(text, out);
   if (command) write_synopsis(command, out);
   fputs(".SH DESCRIPTION\n", out);
+  if (several) write_part(body, sections, out);
   for (size_t i = 0; command && i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
     if (command->form[i].title) fprintf(out, ".SS %s\n", command->form[i].title);
     write_description(&command->form[i], &known, out);
   }
-  write_part(body, sections, out);
+  if (!several) write_part(body, sections, out);
   if (command) write_options(command, &known, out);
   write_part(sections, examples, out);
   if (command) write_exit_status(command, &known, out);
   write_part(examples, end, out);
-  write_see_also(text->name, out);
+  write_see_also(text->name, text->section, out);
   return known;
 }
 
