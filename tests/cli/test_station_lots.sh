@@ -127,6 +127,7 @@ assert ask("/close", form=form, lot="L 1", by=" ")[0] == 422
 assert ask("/close", form=form, lot="nothing", by="Ann")[0] == 404
 assert ask("/lot?name=L%201")[0] == 404
 for lot in "L 1", "../../up":
+    wait(lambda: "being closed" not in page("/lots")) # one at a time
     assert ask("/close", form=form, lot=lot, by="Ann <b>")[0] == 200
 wait(lambda: "being closed" not in page("/lots"))
 lots = page("/lots")
