@@ -32,7 +32,7 @@ typedef struct fg_context {
 fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* The exit code that goes with a status (README). */
+/* The exit code that goes with a status. */
 int fg_status_exit_code(fg_status status);
 
 /* Forwards an error to the caller. */

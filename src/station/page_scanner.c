@@ -262,7 +262,7 @@ fg_status fg_page_scanner(fg_context *ctx, fg_inspection *station, sqlite3 *read
     fputs("<p class=\"next\">The recipe asks for no checks. With a plate or a ring of known "
           "diameters the station shows how far the scanner's scale and its axes are off, reminds "
           "of it, and withholds verdicts where it must: <code>station.check</code> in the recipe "
-          "(README).</p>\n",
+          "(man foilgauge-recipe).</p>\n",
           out);
   else
     FG_TRY(write_checks(ctx, check, reader, all ? HISTORY_MAX : DRAWN, out));

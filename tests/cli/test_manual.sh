@@ -51,6 +51,17 @@ while read -r key; do
   grep -qE "^\\\\?f?B?(assembly\.|station\.(check\.)?)?$key\$" "$work/page" ||
     say "the recipe's member $key is in no page"
 done <"$work/keys"
+# Objects in objects: what the reader says that there is, is in the page.
+for object in '{"?": 1}' '{"scale": {"?": 1}}' \
+  '{"scale": {"u_rel": 1}, "temperature": {"?": 1}, "expansion": {}}' \
+  '{"scale": {"u_rel": 1e-4}, "temperature": {"value_C": 20, "u_K": 1}, "expansion": {"?": 1}}'; do
+  echo '{"schema": "foilgauge/design/1", "calibration": '"$object}" >"$work/wrong.json"
+  names=$("$fg" design "$work/wrong.json" 2>&1 | sed -n 's/.*there are //p' | tr -d ,)
+  [ -n "$names" ] || say "the members of a calibration are not told: $object"
+  for name in $names; do
+    grep -qw -- "$name" "$work/page" || say "the calibration's $name is in no page"
+  done
+done
 grep -q '@[a-z_]*@' "$man"/*.[15] && say "something was not put in"
 
 # man passes on what groff says; without man, groff itself.
@@ -76,8 +87,9 @@ grep -q -- '--response' "$work/out" || say "loop --table --help does not explain
 
 # README: a page, with what the program says of the samples.
 [ "$(wc -l <README.md)" -le 150 ] || say "README.md is longer than a page"
-for command in $commands; do
-  grep -q "foilgauge-$command.1.md\|$command" README.md || say "README.md does not name $command"
+named=$(grep -oE '^    (\$ )?build/foilgauge [a-z]+' README.md | sed 's/.* //' | sort -u)
+for command in $named; do
+  grep -qx "$command" <<<"$commands" || say "README.md uses a command that is none: $command"
 done
 grep -oE '\]\([^)]*\)' README.md | tr -d '](' | tr -d ')' | while read -r path; do
   [ -e "$path" ] || echo "$path"
