@@ -275,6 +275,6 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   fg_scale_words(fg_report_model(report), &report->design->calibration, scale, sizeof scale);
   if (fg_form_has_bumps(report->design->form))
     fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
-  fprintf(out, "± is U = 2 u (k = 2, about 95 %%). %s\n", scale);
+  fprintf(out, "± is U = 2 u (k = 2, about 95 %%).\n%s\n", scale);
   return fg_stream_finish(ctx, out, "the table");
 }
