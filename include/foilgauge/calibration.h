@@ -14,10 +14,11 @@
  * those at 20 °C, alpha is the foil's less the reference's: the rest cancels. The term of second
  * order, L u_alpha u_T (GUM H.1.7), is left out.
  *
- * WHAT IT DOES. The length of a pixel is multiplied by 1 - alpha (T - 20) before anything is
- * measured, so every length is one at 20 °C. What a longer or shorter pixel does to a reported
- * quantity is not written down anywhere: the edges are stretched and the foil is measured again
- * (measure.h), so that clearances, errors in percent and whatever comes later follow by themselves.
+ * WHAT IT DOES. Edges that were found are multiplied by 1 - alpha (T - 20) before anything is
+ * fitted to them, so every length is one at 20 °C, and a report's dpi is what makes it so. What a
+ * longer or shorter pixel does to a reported quantity is not written down anywhere: the edges are
+ * stretched and the foil is measured again (measure.h), so that clearances, errors in percent and
+ * whatever comes later follow by themselves.
  *   "scale": {"u_rel": 1e-4}                 both axes err alike: angles keep their value
  *   "scale": {"x": {...}, "y": {...}}        each axis by itself: angles and radii move, a bump's
  *                                            radius by -1 to 2 times the axis' error, as it lies

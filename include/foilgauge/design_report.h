@@ -15,6 +15,7 @@ typedef struct fg_design_report {
   const fg_design *design;
   const fg_nominal *nominal;        /* fg_design_derive */
   const fg_arch_material *material; /* of the strip, for the stiffness of its bumps */
+  const char *path;                 /* of the design's file, which dates it; NULL: none */
 } fg_design_report;
 
 /* "foilgauge/nominal/1", reports/schema/nominal.schema.json. */

@@ -188,6 +188,8 @@ typedef struct fg_experiment_scan {
   const char *error;
 } fg_experiment_scan;
 
+struct fg_design;
+
 typedef struct fg_experiment_report {
   const fg_experiment *experiment;
   const char *path;   /* of the run sheet */
@@ -197,6 +199,7 @@ typedef struct fg_experiment_report {
   const size_t *row; /* of the run sheet (from 1), for every run that was analysed; NULL: all */
   const char *scans_column;              /* of the run sheet; NULL: the response was typed */
   const char *design_path;               /* NULL: the default */
+  const struct fg_design *design;        /* that the scans were measured by; NULL: none were */
   const char *model_path, *model_sha256; /* of the loop's model; NULL: none */
 } fg_experiment_report;
 

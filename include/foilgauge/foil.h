@@ -253,7 +253,8 @@ typedef struct fg_disc {
 typedef struct fg_measurement {
   char scan[1024]; /* path as given */
   char sha256[65];
-  char model_sha256[65];                /* of the scanner's model that corrected it; "": none */
+  char date[11];         /* when its file was written last, UTC, "2026-11-20"; "": not known */
+  char model_sha256[65]; /* of the scanner's model that corrected it; "": none */
   const struct fg_scanner_model *model; /* the same (scan_loop.h); not owned; NULL: none */
   int64_t width_px, height_px;
   int bit_depth;

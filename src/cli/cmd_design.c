@@ -113,7 +113,8 @@ typedef struct design_view {
 
 static fg_status write_view(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const design_view *view = user;
-  const fg_design_report report = {&view->design, &view->nominal, &view->arguments->material};
+  const fg_design_report report = {&view->design, &view->nominal, &view->arguments->material,
+                                   view->arguments->design_path};
   if (kind == OUT_HTML) return fg_design_write_html(ctx, &report, out);
   if (view->arguments->curve) return fg_design_write_curve(ctx, &report, out);
   return view->arguments->json ? fg_design_write_json(ctx, &report, out)

@@ -44,6 +44,7 @@ typedef struct doe_run {
   fg_loop_takings takings;
   fg_experiment_taken *taken;
   fg_table sheet;
+  fg_design design; /* of the scans */
   fg_run_sheet measured;
   char *u_name;
   fg_experiment experiment;
@@ -243,13 +244,12 @@ static fg_status check_outputs(fg_context *ctx, doe_run *run) {
 
 static fg_status measure_scans(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
-  fg_design design;
-  fg_design_default(&design);
-  if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &design));
+  fg_design_default(&run->design);
+  if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &run->design));
   const fg_runs_scans how = {.sheet_path = a->data,
                              .column = a->scans,
                              .quantity = a->options.response,
-                             .design = &design,
+                             .design = &run->design,
                              .measure = {a->dpi, a->threads},
                              .outputs = &run->outputs};
   FG_TRY(fg_runs_measure(ctx, &run->sheet, &how, &run->measured));
@@ -267,6 +267,7 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
                                        .sha256 = run->sha256,
                                        .scans_column = run->arguments.scans,
                                        .design_path = run->arguments.design_path,
+                                       .design = run->measured.scans ? &run->design : NULL,
                                        .model_path = run->loop_model ? run->model_path : NULL,
                                        .model_sha256 = run->model_sha256,
                                        .scan = run->measured.scan,

@@ -4,6 +4,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <time.h>
 
 enum { DAYS_TO_1970 = 719468, DAYS_OF_ERA = 146097 };
 
@@ -61,4 +63,17 @@ void fg_date_format(double days, char text[FG_DATE_TEXT]) {
                      month, day);
   if (minutes && end > 0 && end < FG_DATE_TEXT)
     snprintf(text + end, (size_t)(FG_DATE_TEXT - end), "T%02ld:%02ld", minutes / 60, minutes % 60);
+}
+
+void fg_date_of_time(int64_t seconds, char day[FG_DATE_DAY]) {
+  time_t time = (time_t)seconds;
+  struct tm when;
+  if (!gmtime_r(&time, &when) || strftime(day, FG_DATE_DAY, "%Y-%m-%d", &when) != FG_DATE_DAY - 1)
+    day[0] = '\0';
+}
+
+void fg_date_of_file(const char *path, char day[FG_DATE_DAY]) {
+  struct stat about;
+  day[0] = '\0';
+  if (stat(path, &about) == 0) fg_date_of_time(about.st_mtime, day);
 }

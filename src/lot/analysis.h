@@ -97,6 +97,11 @@ typedef struct fg_lot_budget_term {
   double variance_pct2;           /* of the stiffness: their product, squared */
 } fg_lot_budget_term;
 
+/* Standard uncertainty of a mean over a lot's values; NaN: not known. */
+typedef struct fg_lot_known {
+  double u_statistical, u_calibration, u;
+} fg_lot_known;
+
 /* Where the relative sd of the stiffness (arch) comes from, to first order about the lot's mean:
  *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
  *          + (s_t sigma_t)²,   s_t = 3 for slender bumps, r the correlation of R and arc length.
@@ -128,6 +133,7 @@ typedef struct fg_lot_stiffness {
   fg_lot_spread measured;
   fg_lot_spread at_design_thickness; /* the same bumps, all strips as thick as the design */
   double u_by_thickness;   /* of measured.mean: the thickness' uncertainty, which all foils share */
+  double u_by_calibration; /* of measured.mean: what the calibration leaves, thickness included */
   fg_lot_spread resampled; /* radius drawn from its density, arc length from its own */
   fg_lot_spread foot;      /* sideways stiffness of the feet over the design's, measured */
 } fg_lot_stiffness;
@@ -301,5 +307,12 @@ fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 /* Mean, sd, range of `count` finite values, and the mode of their density. */
 fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,
                            fg_bandwidth_rule rule, fg_lot_spread *spread);
+
+/* Of the mean of a quantity's values: statistics average out over the foils, what the calibration
+ * leaves is the same error in each and does not. */
+fg_lot_known fg_lot_mean_known(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
+
+/* Relative, of the mean stiffness: what the calibration leaves. */
+double fg_lot_stiffness_calibration(const fg_lot_analysis *analysis);
 
 #endif

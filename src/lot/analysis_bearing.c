@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "lot/analysis.h"
+#include "quantity/quantity_rows.h"
 
 static fg_status add_bearing(fg_context *ctx, fg_lot_analysis *analysis, const char *name,
                              fg_lot_bearing **bearing) {
@@ -78,6 +79,21 @@ static fg_status place_foils(fg_context *ctx, fg_lot_analysis *analysis, size_t 
   return FG_OK;
 }
 
+/* What all clearances of a bearing err by alike: the strip's thickness, and what the calibration
+ * leaves, which holds its share of the thickness. Of two axes that err by themselves it is the same
+ * in bumps that lie alike on the glass only; taken as the same in all it is not less than it is in
+ * the least and the mean clearance. */
+static double shared_doubt(const fg_lot_analysis *analysis, const fg_foil *foil,
+                           const fg_bump *bump) {
+  const fg_quantity *thickness = fg_quantity_find(FG_QUANTITY_OF_FOIL, "thickness_mm");
+  const fg_quantity *clearance = fg_quantity_find(FG_QUANTITY_OF_BUMP, "clearance_fitted_mm");
+  double u = fg_foil_thickness(&analysis->lot->settings.design, foil).u_mm;
+  double of_it = fg_quantity_calibration(FG_QUANTITY_OF_FOIL, thickness, &foil->calibrated);
+  double all = fg_quantity_calibration(FG_QUANTITY_OF_BUMP, clearance, &bump->calibrated);
+  if (all == 0) return u;
+  return hypot(sqrt(fmax(0, (u - of_it) * (u + of_it))), all);
+}
+
 fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_lot_foil *foil,
                                      int number) {
   const fg_lot_clearance unknown = {NAN, NAN, NAN};
@@ -86,7 +102,7 @@ fg_lot_clearance fg_lot_clearance_of(const fg_lot_analysis *analysis, const fg_l
     if (bump->number != number) continue;
     if (!fg_lot_bump_counts(foil->foil, bump)) return unknown;
     double u = bump->u_clearance_fitted_mm;
-    double shared = fg_foil_thickness(&analysis->lot->settings.design, foil->foil).u_mm;
+    double shared = shared_doubt(analysis, foil->foil, bump);
     if (!isfinite(u)) u = 0;
     if (!(shared >= 0)) shared = 0;
     return (fg_lot_clearance){.mm = bump->clearance_fitted_mm,

@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "lot/stiffness_columns.h"
+#include "quantity/quantity_rows.h"
 
 void fg_lot_analyse_thickness(fg_lot_analysis *analysis) {
   fg_lot_thickness *result = &analysis->thickness;
@@ -107,7 +108,10 @@ static double add_bump(const fg_lot_analysis *analysis, const fg_foil *foil, con
   columns->arch_radius[at] = arch.radius_mm;
   columns->arch_length[at] = arch.radius_mm * angle;
   columns->strip[at] = foil->thickness_mm;
-  columns->measurement[at] = fg_bump_stiffness_variance(&foil->overall, bump, &result->sensitivity);
+  fg_bump scattered = *bump; /* what all bumps share is in no spread */
+  fg_quantity_narrow_calibrated(FG_QUANTITY_OF_BUMP, &scattered, &bump->calibrated);
+  columns->measurement[at] =
+      fg_bump_stiffness_variance(&foil->overall, &scattered, &result->sensitivity);
   add_models(settings, result, &arch, columns);
   columns->designed[at] =
       stiffness_ratio(settings, result, settings->design.thickness_mm, radius, angle, NULL);
@@ -219,6 +223,7 @@ fg_status fg_lot_analyse_stiffness(fg_context *ctx, fg_lot_analysis *analysis) {
   if (analysis->thickness.foils)
     result->u_by_thickness = fabs(result->sensitivity.thickness) * result->measured.mean *
                              analysis->thickness.mean.u_mm / analysis->thickness.mean.mm;
+  result->u_by_calibration = result->measured.mean * fg_lot_stiffness_calibration(analysis);
   FG_TRY_EXIT(resample(ctx, settings, &columns, result));
 exit:
   free_columns(&columns);

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "lot/index.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 
 enum {
   LOTS_FIRST_MAX = 20,
@@ -297,6 +298,23 @@ static void put_unread(FILE *out, const fg_index *index) {
   fputs("</ul>\n</section>\n", out);
 }
 
+static fg_status put_origin(fg_context *ctx, FILE *out, const fg_index *index) {
+  fg_provenance from = {.design = index->read ? &index->lots[0].design : NULL};
+  size_t stated = 0;
+  for (size_t i = 0; i < index->read; i++) {
+    const fg_index_lot *lot = &index->lots[i];
+    fg_provenance_take_date(&from, lot->date.first);
+    fg_provenance_take_date(&from, lot->date.last);
+    stated += lot->design.calibration.stated;
+    if (lot->design_number != index->lots[0].design_number) from.design = NULL;
+  }
+  from.design_words = "not the same in all lots: in the page of each";
+  from.calibration_words = stated == 0 ? "none is stated in any lot: U holds statistics only"
+                           : stated == index->read ? "in the page of each lot"
+                                                   : "not stated in all lots: in the page of each";
+  return fg_html_provenance_section(ctx, out, &from);
+}
+
 fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char *page, FILE *out) {
   fg_html_begin(out, "Lots");
   FG_TRY(put_first_screen(ctx, out, index, page));
@@ -307,6 +325,7 @@ fg_status fg_index_write_page(fg_context *ctx, const fg_index *index, const char
   fg_index_put_dies(out, index);
   FG_TRY(put_behind(ctx, out, index, page));
   put_table(out, index);
+  FG_TRY(put_origin(ctx, out, index));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page over lots");
 }

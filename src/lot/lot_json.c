@@ -8,6 +8,7 @@
 #include "lot/lot_date.h"
 #include "lot/reference_curve.h"
 #include "lot/writers.h"
+#include "report/design/calibration_json.h"
 #include "report/measure/measure_json.h"
 #include "report/measure/scan_model_words.h"
 #include "report/quantity_json.h"
@@ -158,6 +159,10 @@ static void write_quantity(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_integer(json, "count", (int64_t)quantity->count);
   fg_json_number(json, "mean", quantity->mean);
   fg_json_number(json, "sd", quantity->sd);
+  const fg_lot_known known = fg_lot_mean_known(analysis, quantity);
+  fg_json_number(json, "u_mean", known.u);
+  fg_json_number(json, "u_mean_statistical", known.u_statistical);
+  fg_json_number(json, "u_mean_calibration", known.u_calibration);
   fg_json_number(json, "median", quantity->median);
   fg_json_number(json, "mode", quantity->mode);
   fg_json_number(json, "min", quantity->least);
@@ -279,6 +284,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_scan_model(&json, "model", lot->model);
   fg_correction most = fg_lot_correction_largest(analysis);
   fg_json_correction(&json, &most);
+  fg_json_calibration_used(&json, "calibration", &lot->settings.design.calibration);
   fg_json_design(&json, "design", &lot->settings.design);
   bool bumps = fg_form_has_bumps(lot->settings.design.form);
   if (bumps) fg_json_nominal(&json, "nominal", &lot->nominal);

@@ -70,6 +70,7 @@ void fg_lot_json_stiffness(fg_json *json, const fg_lot_analysis *analysis) {
   if (analysis->has_stiffness) {
     fg_lot_json_spread(json, "normalised", &stiffness->measured);
     fg_json_number(json, "u_normalised_by_thickness", stiffness->u_by_thickness);
+    fg_json_number(json, "u_normalised_by_calibration", stiffness->u_by_calibration);
     fg_lot_json_spread(json, "normalised_at_design_thickness", &stiffness->at_design_thickness);
     fg_lot_json_spread(json, "normalised_resampled", &stiffness->resampled);
     fg_lot_json_spread(json, "normalised_foot", &stiffness->foot);

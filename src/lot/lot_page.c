@@ -2,11 +2,13 @@
 
 #include "core/file.h"
 #include "lot/analysis_dies.h"
+#include "lot/lot_date.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "lot/writers.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/measure/scan_model_words.h"
+#include "report/provenance.h"
 
 enum { FOIL_ROWS_MAX = 300 };
 
@@ -124,14 +126,21 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *a
   char scale[FG_SCALE_WORDS];
   fg_scale_words(analysis->lot->model, &analysis->lot->settings.design.calibration, scale,
                  sizeof scale);
+  const fg_lot *lot = analysis->lot;
+  fg_lot_date date;
+  fg_lot_date_find(lot, &date);
+  fg_provenance from = {.version = lot->head.version,
+                        .design = &lot->settings.design,
+                        .of_scans = true,
+                        .model = lot->model};
+  fg_provenance_take_date(&from, date.first);
+  fg_provenance_take_date(&from, date.last);
   fprintf(out,
           "<section class=\"part\">\n<h1>Where it comes from</h1>\n<dl "
-          "class=\"facts\"><dt>Program</dt><dd>"
-          "foilgauge %s</dd><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
-          "</dd>",
-          analysis->lot->head.version, analysis->lot->head.recipe_sha256,
-          analysis->lot->head.manifest_sha256);
-  FG_TRY(fg_html_model_facts(ctx, out, analysis->lot->model));
+          "class=\"facts\"><dt>Recipe, SHA-256</dt><dd>%s</dd><dt>Manifest, SHA-256</dt><dd>%s"
+          "</dd>\n",
+          lot->head.recipe_sha256, lot->head.manifest_sha256);
+  FG_TRY(fg_html_provenance(ctx, out, &from));
   fputs("</dl>\n<p class=\"note\">", out);
   fg_html_text(out, scale);
   fputs(

@@ -89,6 +89,20 @@ static void put_rest(FILE *out, const fg_lot_budget *budget) {
         out);
 }
 
+static void put_calibration(FILE *out, const fg_lot_analysis *analysis) {
+  double mean = analysis->stiffness.measured.mean, u = analysis->stiffness.u_by_calibration;
+  if (!analysis->lot->settings.design.calibration.stated) {
+    fputs("<p class=\"note\">Calibration: none is stated; what it leaves is not in the mean&#39;s "
+          "U.</p>\n",
+          out);
+    return;
+  }
+  fprintf(out,
+          "<p class=\"note\">Calibration: the same in every bump, so in no spread; of the mean "
+          "± %.2g %% (U).</p>\n",
+          100 * FG_COVERAGE_FACTOR * u / mean);
+}
+
 void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_budget *budget = &analysis->stiffness.budget;
   char title[80];
@@ -112,4 +126,5 @@ void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</tbody></table></div>\n", out);
   put_thickness_note(out, analysis);
   put_rest(out, budget);
+  put_calibration(out, analysis);
 }

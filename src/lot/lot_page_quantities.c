@@ -146,6 +146,7 @@ static void put_charts(FILE *out, const fg_lot_analysis *analysis) {
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<section class=\"part\">\n", out);
   put_quantity_rows(out, analysis);
+  fg_lot_put_known(out, analysis);
   put_capability(out, analysis);
   put_charts(out, analysis);
   fputs("</section>\n", out);

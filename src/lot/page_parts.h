@@ -36,6 +36,9 @@ void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_f
 /* What the strips measure, and what the design says where that is another thickness. */
 void fg_lot_put_thickness(FILE *out, const fg_lot_analysis *analysis);
 
+/* How well the means are known: a part of the quantities' section. */
+void fg_lot_put_known(FILE *out, const fg_lot_analysis *analysis);
+
 /* Where the spread of the stiffness comes from: a part of that section. */
 void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis);
 

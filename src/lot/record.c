@@ -3,11 +3,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
 
 #include <cjson/cJSON.h>
 
+#include "core/date.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/words.h"
@@ -117,16 +116,11 @@ static void write_record(FILE *out, const fg_record *record, const char *scan_by
 }
 
 void fg_record_date(int64_t seconds, char date[11]) {
-  time_t time = (time_t)seconds;
-  struct tm when;
-  date[0] = '\0';
-  if (gmtime_r(&time, &when) && strftime(date, 11, "%Y-%m-%d", &when) != 10) date[0] = '\0';
+  fg_date_of_time(seconds, date);
 }
 
 void fg_record_date_scan(const char *path, char date[11]) {
-  struct stat about;
-  date[0] = '\0';
-  if (stat(path, &about) == 0) fg_record_date(about.st_mtime, date);
+  fg_date_of_file(path, date);
 }
 
 fg_status fg_record_format(fg_context *ctx, const fg_record *record,

@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/date.h"
 #include "foilgauge/scan.h"
+#include "measure/again.h"
 #include "measure/measure_discs.h"
 #include "measure/reader.h"
 #include "measure/session.h"
@@ -103,6 +105,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   FG_TRY(fg_scan_open(ctx, path, &scan_options, scan));
   const fg_scan_info *info = fg_scan_get_info(*scan);
   snprintf(m->scan, sizeof m->scan, "%s", path);
+  if (fg_scan_is_file(*scan)) fg_date_of_file(path, m->date);
   snprintf(m->format, sizeof m->format, "%s", info->format);
   snprintf(m->warning, sizeof m->warning, "%s", info->warning);
   m->width_px = info->width_px;
@@ -111,7 +114,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   m->colour = info->colour;
   m->channel = info->channel;
   for (int i = 0; i < 2; i++) {
-    m->dpi[i] = info->dpi[i] / fg_calibration_factor(&m->design.calibration);
+    m->dpi[i] = info->dpi[i];
     m->dpi_file[i] = info->dpi_file[i];
   }
   return FG_OK;
@@ -150,6 +153,36 @@ static unsigned check_resolution(fg_measurement *m) {
   return flags;
 }
 
+static fg_point stretched(const void *user, fg_point at) {
+  const double *factor = user;
+  return (fg_point){at.x * *factor, at.y * *factor};
+}
+
+static void stretch_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
+  (void)foil;
+  fg_strip_move(strip, stretched, user);
+}
+
+static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at) {
+  (void)disc;
+  return stretched(user, at);
+}
+
+/* Lengths at 20 °C: the edges as they were found, with longer or shorter pixels. To find them anew
+ * with such pixels would draw other stations, and move a radius by as much as its u. */
+static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
+  double factor = fg_calibration_factor(&m->design.calibration);
+  const fg_measure_mover mover = {stretch_strip, stretch_point, &factor};
+  fg_measurement again;
+  if (factor == 1) return FG_OK;
+  FG_TRY(fg_measure_again(ctx, m, &mover, threads, &again));
+  for (int i = 0; i < 2; i++)
+    again.dpi[i] /= factor;
+  fg_measurement_free(m);
+  *m = again;
+  return FG_OK;
+}
+
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement) {
   static const fg_measure_options defaults = {0};
@@ -164,6 +197,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
     FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
   else
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
+  FG_TRY_EXIT(refer(ctx, options->threads, measurement));
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;

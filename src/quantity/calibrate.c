@@ -133,15 +133,33 @@ fg_status fg_measurement_calibrate(fg_context *ctx, unsigned threads, fg_measure
   return FG_OK;
 }
 
+size_t fg_quantity_move_of(fg_quantity_owner owner, const fg_quantity *quantity) {
+  size_t count, at = 0;
+  for (const fg_quantity *row = fg_quantities(owner, &count); row != quantity; row++)
+    if (fg_quantity_has_u(row)) at += fg_quantity_values(row);
+  return at;
+}
+
 double fg_quantity_calibration(fg_quantity_owner owner, const fg_quantity *quantity,
                                const fg_calibrated *calibrated) {
-  size_t count, at = 0;
-  const fg_quantity *rows = fg_quantities(owner, &count);
-  double squares = 0;
   if (!fg_quantity_has_u(quantity)) return NAN;
-  for (const fg_quantity *row = rows; row != quantity; row++)
-    if (fg_quantity_has_u(row)) at += fg_quantity_values(row);
+  size_t at = fg_quantity_move_of(owner, quantity);
+  double squares = 0;
   for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
     squares += calibrated->move[s][at] * calibrated->move[s][at];
   return sqrt(squares);
+}
+
+void fg_quantity_narrow_calibrated(fg_quantity_owner owner, void *object,
+                                   const fg_calibrated *calibrated) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(owner, &count);
+  for (size_t i = 0; i < count; i++) {
+    double numbers[FG_QUANTITY_NUMBERS_MAX], own;
+    if (!fg_quantity_has_u(&rows[i]) || rows[i].kind == FG_QUANTITY_PAIR) continue;
+    fg_quantity_numbers(&rows[i], object, numbers);
+    own = fg_quantity_calibration(owner, &rows[i], calibrated);
+    numbers[1] = sqrt(fmax(0, (numbers[1] - own) * (numbers[1] + own)));
+    fg_quantity_restore(&rows[i], object, numbers);
+  }
 }

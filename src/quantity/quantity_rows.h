@@ -53,6 +53,14 @@ void fg_quantity_widen(fg_quantity_owner owner, void *object, const double *move
 void fg_quantity_widen_calibrated(fg_quantity_owner owner, void *object,
                                   const fg_calibrated *calibrated);
 
+/* Takes it out again: u_ of the statistics alone; pairs keep theirs, and so do
+ * covariances. */
+void fg_quantity_narrow_calibrated(fg_quantity_owner owner, void *object,
+                                   const fg_calibrated *calibrated);
+
+/* Where the moves of an object hold a row that has u_. */
+size_t fg_quantity_move_of(fg_quantity_owner owner, const fg_quantity *quantity);
+
 /* What of a row's u_ the calibration is; of a pair of its first. NaN where the row has none. */
 double fg_quantity_calibration(fg_quantity_owner owner, const fg_quantity *quantity,
                                const fg_calibrated *calibrated);

@@ -5,6 +5,7 @@
 #include "foilgauge/design_report.h"
 #include "foilgauge/words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 #include "report/stiffness/stiffness_map.h"
 #include "report/stiffness/stiffness_table.h"
 
@@ -61,6 +62,9 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
     fprintf(out, ", along which a percent of radius is worth %s%.2g&nbsp;%% of stiffness at first",
             along < 0 ? "−" : "+", fabs(along));
   fputs(".</figcaption></figure>\n</section>\n", out);
+  fg_provenance from = {.design = report->design};
+  if (report->path) fg_provenance_take_file(&from, report->path);
+  FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");
 }

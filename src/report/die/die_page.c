@@ -6,6 +6,7 @@
 #include "foilgauge/die_report.h"
 #include "report/die/die_plots.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 
 static const char *const datum_words[] = {"midline", "inner side", "outer side"};
 static const char *const half_words[FG_DIE_HALVES] = {
@@ -158,7 +159,7 @@ static void put_half(FILE *out, const fg_die *die, fg_die_half half) {
   fputs("</section>\n", out);
 }
 
-static void put_traces(FILE *out, const fg_die *die) {
+static fg_status put_traces(fg_context *ctx, FILE *out, const fg_die *die) {
   fputs("<h2>Where it comes from</h2>\n<div class=\"scroll\"><table>\n<tr><th>profile</th><th "
         "class=\"w\">half</th><th>bumps</th><th>points</th><th>length, mm</th><th>tip, µm</th>"
         "<th>unit x, z</th><th>noise, µm</th><th>too steep</th><th class=\"w\">SHA-256</th></tr>\n",
@@ -178,9 +179,16 @@ static void put_traces(FILE *out, const fg_die *die) {
   fprintf(out,
           "</table></div>\n<p class=\"note\">The circles are fitted to the line of the tip's "
           "centre; the tip's radius (u %.3g µm) and the way to the strip's %s are taken off each "
-          "radius. Scale: u %.3g ppm. Flanks steeper than %g° take no part. foilgauge %s.</p>\n",
+          "radius. Scale: u %.3g ppm. Flanks steeper than %g° take no part.</p>\n",
           die->options.u_tip_um, datum_words[die->design.datum], die->options.u_scale_ppm,
-          die->options.max_slope_deg, FOILGAUGE_VERSION);
+          die->options.max_slope_deg);
+  fg_provenance from = {.design = &die->design};
+  for (size_t i = 0; i < die->trace_count; i++)
+    fg_provenance_take_file(&from, die->traces[i].path);
+  fputs("<dl class=\"facts\">\n", out);
+  FG_TRY(fg_html_provenance(ctx, out, &from));
+  fputs("</dl>\n", out);
+  return FG_OK;
 }
 
 static void put_summary(FILE *out, const fg_die *die, const char *words,
@@ -222,7 +230,7 @@ fg_status fg_die_write_html(fg_context *ctx, const fg_die *die, FILE *out) {
           out);
     put_table(out, die, &die->whole, "halves", "s of the two");
   }
-  put_traces(out, die);
+  FG_TRY(put_traces(ctx, out, die));
   fputs("</section>\n", out);
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");

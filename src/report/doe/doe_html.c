@@ -7,6 +7,7 @@
 #include "report/doe/doe_plots.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 
 enum { RUNS_SHOWN = 200 };
 
@@ -191,7 +192,8 @@ static void put_runs(FILE *out, const fg_experiment_report *report) {
             RUNS_SHOWN, r->rows);
 }
 
-static void put_facts(FILE *out, const fg_experiment_report *report, const char *response) {
+static fg_status put_facts(fg_context *ctx, FILE *out, const fg_experiment_report *report,
+                           const char *response) {
   const fg_experiment *e = report->experiment;
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\"><dt>Runs</dt><dd>", out);
   fg_html_text(out, report->path);
@@ -214,7 +216,11 @@ static void put_facts(FILE *out, const fg_experiment_report *report, const char 
             e->box_cox.low, e->box_cox.high);
   if (isfinite(e->regression.adequate_precision))
     fprintf(out, "<dt>Adequate precision</dt><dd>%.4g</dd>", e->regression.adequate_precision);
-  fputs("<dt>Program</dt><dd>foilgauge " FOILGAUGE_VERSION "</dd></dl>\n", out);
+  fg_provenance from = {.design = report->design, .of_scans = report->scans > 0};
+  fg_provenance_take_file(&from, report->path);
+  FG_TRY(fg_html_provenance(ctx, out, &from));
+  fputs("</dl>\n", out);
+  return FG_OK;
 }
 
 static void begin_panels(FILE *out, const char *title, const char *note) {
@@ -278,7 +284,7 @@ static fg_status put_page(fg_context *ctx, FILE *out, const fg_experiment_report
   put_anova(out, e);
   put_coefficients(out, e);
   put_runs(out, report);
-  put_facts(out, report, response);
+  FG_TRY(put_facts(ctx, out, report, response));
   fputs("</section>\n", out);
   fg_html_end(out);
   return FG_OK;

@@ -10,6 +10,7 @@
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
+#include "report/provenance.h"
 
 static const char *base_name(const char *path) {
   const char *slash = strrchr(path, '/');
@@ -97,11 +98,11 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
             measurement->dpi_file[1]);
   fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
   fg_html_text(out, measurement->sha256);
-  fputs("</dd>\n<dt>Design</dt><dd>", out);
-  fg_html_text(out, design->name);
-  fprintf(out, " (%s)</dd>\n", fg_form_word(design->form));
-  FG_TRY(fg_html_model_facts(ctx, out, measurement->model));
-  fputs("<dt>Program</dt><dd>foilgauge " FOILGAUGE_VERSION "</dd>\n</dl>\n", out);
+  fputs("</dd>\n", out);
+  fg_provenance from = {.design = design, .of_scans = true, .model = measurement->model};
+  fg_provenance_take_date(&from, measurement->date);
+  FG_TRY(fg_html_provenance(ctx, out, &from));
+  fputs("</dl>\n", out);
   return FG_OK;
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "report/provenance.h"
 #include "report/scan_loop/scan_loop_parts.h"
 
 static void put_tile(FILE *out, const char *name, const char *value, const char *small) {
@@ -246,6 +247,13 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   fputs("</p></section>\n", out);
 }
 
+static fg_status put_origin(fg_context *ctx, FILE *out, const fg_scan_result *result) {
+  fg_provenance from = {.design = &result->scan[0].before->design, .of_scans = true};
+  for (size_t i = 0; i < result->scans; i++)
+    fg_provenance_take_date(&from, result->scan[i].before->date);
+  return fg_html_provenance_section(ctx, out, &from);
+}
+
 fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
   const fg_scan_result *result = fg_scan_loop_result(loop);
   char *sentence = NULL;
@@ -263,6 +271,7 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_scan_loop_page_bumps(out, result);
   put_candidates(out, result);
   put_errors(out, result);
+  FG_TRY(put_origin(ctx, out, result));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the loop's page");
 }

@@ -2,6 +2,7 @@
 #include <stdio.h>
 
 #include "foilgauge/scan_loop.h"
+#include "report/design/calibration_json.h"
 #include "report/measure/measure_json.h"
 #include "report/scan_loop/scan_loop_bumps.h"
 
@@ -184,6 +185,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_string(&json, "domain", "scan");
   fg_json_string(&json, "verdict", fg_loop_outcome_word(result->verdict));
   write_inputs(&json, result);
+  fg_json_calibration_used(&json, "calibration", &result->scan[0].before->design.calibration);
   fg_json_bool(&json, "same_foil", result->same_foil);
   fg_json_number(&json, "p_value", result->p_value);
   write_noise(&json, result);

@@ -9,12 +9,15 @@
 #include "core/text.h"
 #include "foilgauge/loop.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 #include "report/table_loop/loop_checks.h"
 #include "report/table_loop/loop_next.h"
 #include "report/table_loop/loop_plots.h"
 #include "report/table_loop/loop_words.h"
 
 static const char style[] =
+    "dl.facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:0;"
+    "font-size:13.5px}dl.facts dt{color:var(--soft)}dl.facts dd{margin:0;overflow-wrap:anywhere}"
     ":root{--ink:#16202a;--soft:#5b6875;--line:#dfe4e9;--ground:#f4f6f8;--good:#12804a;"
     "--bad:#c62828;--open:#a86400;--bump:#d95f02;--blue:#1f6fd0}*{box-sizing:border-box}"
     "body{margin:0;background:var(--ground);color:var(--ink);font:15px/1.5 system-ui,"
@@ -242,6 +245,9 @@ fg_status fg_loop_write_html(fg_context *ctx, const fg_loop_report *report, FILE
   put_battery(out, report);
   put_notes(out, report);
   put_candidates(out, report);
+  fg_provenance from = {.of_scans = false};
+  fg_provenance_take_file(&from, report->path);
+  FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fputs("</main></body></html>\n", out);
   return fg_stream_finish(ctx, out, "the loop's page");
 }

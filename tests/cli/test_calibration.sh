@@ -1,0 +1,127 @@
+#!/bin/bash
+# What the statistics cannot know: a calibration in the design or the recipe, in every U, in verdicts, in lots and loops;
+# and where a report comes from, in the same words on every page.
+#   test_calibration.sh PROGRAM
+. tests/support/cli.sh
+
+for turn in 0 40 75; do
+  cat >r.json <<J
+{"schema": "foilgauge/render/1", "seed": 4$turn, "foils": [{"rotate_deg": $turn, "radius_springback": {"mean": 0.02, "sd": 0.007}}],
+ "scanner": {"dpi": 1200, "blur_px": 1.1, "noise": 1.0}}
+J
+  mkdir -p scans
+  "$renderer" render r.json -o scans/s$turn.png || fail "render"
+done
+scan=scans/s40.png
+scale='"calibration": {"certificate": "K 17 <b>", "date": "2026-03-14", "scale": {"U_rel": 1e-3, "k": 2}}'
+warm='"calibration": {"scale": {"u_rel": 5e-4}, "temperature": {"value_C": 30, "u_K": 1}, "expansion": {"value_per_K": 2e-5, "u_per_K": 2e-6}}'
+limits='"tolerances": {"overall.radius_mm": {"min": 20.71, "max": 20.75}}'
+design() {
+  echo "{\"schema\": \"foilgauge/design/1\", \"name\": \"d\"$1}" >"$2"
+}
+design '' plain.json
+design ", $scale" scale.json
+design ", $warm" warm.json
+design ", $limits" limits.json
+design ", $limits, $scale" both.json
+for d in plain scale warm; do
+  expect 0 '' "$program" measure $scan --design $d.json -o $d.out --html $d.html
+  valid measure.schema.json $d.out
+done
+python3 - <<'P' || fail "u and values"
+import json
+read = lambda name: json.load(open(name + ".out"))
+plain, scale, warm = read("plain"), read("scale"), read("warm")
+assert plain["calibration"] is None and scale["calibration"]["scale"] == {"u_rel": 5e-4}
+a, b, c = (r["foils"][0] for r in (plain, scale, warm))
+r0 = a["overall"]["radius_mm"]
+assert b["overall"]["radius_mm"] == r0
+u = (a["overall"]["u_radius_mm"] ** 2 + (5e-4 * r0) ** 2) ** 0.5
+assert abs(b["overall"]["u_radius_mm"] / u - 1) < 1e-4
+assert abs(c["overall"]["radius_mm"] / r0 - (1 - 2e-4)) < 1e-6
+# GUM 5.1.2: the pitch, (T - 20) u_alpha, alpha u_T
+rel = (5e-4 ** 2 + (10 * 2e-6) ** 2 + (2e-5 * 1) ** 2) ** 0.5
+assert abs(warm["calibration"]["u_rel"]["length"][0] / rel - 1) < 1e-9
+assert abs(c["overall"]["u_radius_mm"] / (rel * r0) - 1) < 1e-3
+for x, y in zip(a["bumps"], c["bumps"]):
+    assert abs(x["bump_angle_deg"] - y["bump_angle_deg"]) < 1e-3 and abs(x["u_bump_angle_deg"] / y["u_bump_angle_deg"] - 1) < 0.05
+for line in warm["calibration"]["budget"]:
+    assert abs(line["u"] ** 2 - line["u_statistical"] ** 2 - line["u_calibration"] ** 2) < 1e-6 * line["u"] ** 2
+assert any(line["quantity"] == "clearance_mm" and line["u_calibration"] > 0 for line in warm["calibration"]["budget"])
+P
+
+# R0 lies 20 um within its limits: enough for statistics, within U of a scale that is known to 0.1 %.
+expect 0 '' "$program" measure $scan --design limits.json -o sure.out
+expect 3 '' "$program" measure $scan --design both.json -o unsure.out
+[ "$(value unsure.out 'r["verdict"]')" = cannot_tell ] || fail "the limit lies within U"
+
+# Where it comes from, on every page.
+grep -q 'No calibration is stated: U holds statistics only' plain.html || fail "the page is silent about calibration"
+grep -q '<dt>Calibration</dt><dd>K 17 &lt;b&gt; of 2026-03-14: a length to ± 0.1 %' scale.html || fail "the certificate is not named"
+script -qec "'$program' measure $scan" /dev/null >plain.txt 2>/dev/null
+[ "$(grep -c 'calibration' plain.txt)" = 1 ] || fail "the terminal says it once: $(grep -c calibration plain.txt)"
+
+# A place for each fault.
+design ', "calibration": {"scale": {"u_rel": 1e-4, "k": 2}}' bad.json
+expect 65 'bad.json: calibration.scale: k belongs to U_rel' "$program" measure $scan --design bad.json -o never
+[ -e never ] && fail "a refused design leaves a report"
+
+# A lot: the recipe overrules the design; no number of foils makes it smaller; the same bytes however it came.
+echo "{\"schema\": \"foilgauge/recipe/1\", \"calibration\": {\"scale\": {\"u_rel\": 2e-3}}, \"design\": \"scale.json\", \"assembly\": {\"bearings\": 0}}" >recipe.json
+expect 0 '' "$program" lot scans --recipe recipe.json -o lot
+expect 0 '' "$program" lot scans --recipe recipe.json -o one --shard 1/2
+expect 0 '' "$program" lot scans --recipe recipe.json -o two --shard 2/2
+expect 0 '' "$program" merge one two -o merged
+cp -r lot before
+expect 0 '' "$program" lot scans --recipe lot/recipe.json -o lot --resume
+for file in lot.json index.html bumps.csv; do
+  same lot/$file before/$file
+  same lot/$file merged/$file
+done
+valid lot.schema.json lot/lot.json
+expect 0 '' "$program" lot scans --design plain.json -o bare
+python3 - <<'P' || fail "the lot"
+import json
+a, b = (json.load(open(d + "/lot.json")) for d in ("lot", "bare"))
+assert a["calibration"]["scale"]["u_rel"] == 2e-3 and b["calibration"] is None
+q, p = a["quantities"]["overall.radius_mm"], b["quantities"]["overall.radius_mm"]
+assert abs(q["u_mean_calibration"] / q["mean"] - 2e-3) < 1e-6 and p["u_mean_calibration"] == 0
+assert abs(q["u_mean"] ** 2 - q["u_mean_statistical"] ** 2 - q["u_mean_calibration"] ** 2) < 1e-6 * q["u_mean"] ** 2
+assert abs(q["u_mean_statistical"] / p["u_mean_statistical"] - 1) < 0.01
+assert abs(a["quantities"]["overall.radius_mm"]["sd"] - b["quantities"]["overall.radius_mm"]["sd"]) < 1e-9
+# A bearing's circularity is a difference of clearances: of a scale it takes a relative share, and no more.
+c, d = a["bearings"][0], b["bearings"][0]
+assert c["u_mean_mm"] > 1.1 * d["u_mean_mm"] and c["u_circularity_mm"] < 2 * d["u_circularity_mm"], (c["u_circularity_mm"], d["u_circularity_mm"])
+# Stiffness over the design's is of ratios t / R: a scale leaves it.
+assert a["stiffness"]["u_normalised_by_calibration"] < 1e-4
+P
+grep -q 'How well the means are known' lot/index.html || fail "the lot's page has no line of the calibration"
+grep -q 'no calibration is stated' bare/index.html || fail "the lot's page does not say that none is stated"
+expect 0 '' "$program" lot --index index.html lot bare
+for page in plain.html scale.html lot/index.html index.html; do
+  grep -q "<dt>Date</dt><dd>$(date -u -r $scan +%F)" "$page" || fail "$page: no date"
+  grep -q '<dt>Program</dt><dd>foilgauge ' "$page" || fail "$page: no program"
+  grep -q '<dt>Design</dt><dd>d (classical), SHA-256 ' "$page" || fail "$page: no design"
+  grep -q '<dt>Calibration</dt><dd>' "$page" || fail "$page: no calibration"
+done
+expect 0 '' "$program" design plain.json --html design.html -o design.out
+grep -q '<dt>Design</dt><dd>d (classical), SHA-256 ' design.html || fail "design.html: no design"
+
+[ -n "${FOILGAUGE_TEST_BRIEF-}" ] && exit $failed
+# A loop: what it decides does not see it, the dimensions that it reports do.
+for d in plain scale; do
+  expect 0 '' "$program" loop $scan --design $d.json -o loop_$d.out --html loop.html
+  valid loop_scan.schema.json loop_$d.out
+done
+grep -q '<dt>Calibration</dt><dd>K 17' loop.html || fail "the loop's page does not name it"
+python3 - <<'P' || fail "the loop"
+import json
+a, b = (json.load(open(f"loop_{d}.out")) for d in ("plain", "scale"))
+for name in ("verdict", "p_value", "noise_floor", "claims", "rejected", "error_ratio"):
+    assert a[name] == b[name], name
+for side in ("before", "after"):
+    x, y = (r[side]["foils"][0]["bumps"][3] for r in (a, b))
+    assert x["radius_mm"] == y["radius_mm"]
+    assert abs(y["u_radius_mm"] ** 2 - x["u_radius_mm"] ** 2 - (5e-4 * x["radius_mm"]) ** 2) < 1e-3 * y["u_radius_mm"] ** 2
+P
+exit $failed
