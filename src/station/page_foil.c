@@ -41,18 +41,17 @@ static fg_status write_picture(fg_context *ctx, sqlite3 *reader, const fg_past *
   return fg_query_end(ctx, &query, "reading a picture");
 }
 
-static void write_facts(const fg_past *past, FILE *out) {
+static fg_status write_facts(fg_context *ctx, const fg_past *past, FILE *out) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n", out);
   write_fact(out, "Scan", past->path);
   write_fact(out, "From", !strcmp(past->source, "scanner") ? "the Scan button" : "the folder");
   write_fact(out, "Lot", past->lot);
   write_fact(out, "Die", past->die);
   write_fact(out, "Operator", past->operator_name);
-  if (past->readable) write_fact(out, "Design", past->settings.design.name);
-  if (past->model) write_fact(out, "Scanner", "corrected by the model of the recipe of then");
   write_fact(out, "SHA-256", past->sha256);
-  write_fact(out, "Program", past->program);
+  FG_TRY(fg_past_write_provenance(ctx, past, out));
   fputs("</dl>\n", out);
+  return FG_OK;
 }
 
 static void write_change(FILE *out, const fg_query *at) {
@@ -111,7 +110,7 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   fputs("<h2 class=\"noprint\">Correct what is said of it</h2>\n", out);
   FG_TRY(write_form(ctx, station, reader, past, out));
   FG_TRY(write_trail(ctx, reader, past, out));
-  write_facts(past, out);
+  FG_TRY(write_facts(ctx, past, out));
   fputs("</section>\n", out);
   fg_page_end(out);
   return FG_OK;

@@ -70,18 +70,17 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_pas
   return status;
 }
 
-static void write_facts(const fg_past *past, FILE *out) {
+static fg_status write_facts(fg_context *ctx, const fg_past *past, FILE *out) {
   fputs("<h2>Where it comes from</h2>\n<dl class=\"facts\">\n<dt>Scan</dt><dd>", out);
   fg_html_text(out, past->path);
   fputs("</dd>\n<dt>Measured</dt><dd>", out);
   fg_page_time(out, past->at);
   fputs("</dd>\n<dt>SHA-256</dt><dd>", out);
   fg_html_text(out, past->sha256);
-  fputs("</dd>\n<dt>Design</dt><dd>", out);
-  fg_html_text(out, past->settings.design.name);
-  fputs("</dd>\n<dt>Program</dt><dd>foilgauge ", out);
-  fg_html_text(out, past->program);
-  fputs("</dd>\n</dl>\n", out);
+  fputs("</dd>\n", out);
+  FG_TRY(fg_past_write_provenance(ctx, past, out));
+  fputs("</dl>\n", out);
+  return FG_OK;
 }
 
 static fg_status write_record(fg_context *ctx, const fg_past *past, const char *why, FILE *out) {
@@ -97,7 +96,7 @@ static fg_status write_record(fg_context *ctx, const fg_past *past, const char *
         "are not kept.</p>\n",
         out);
   fg_past_write_tables(past, out);
-  write_facts(past, out);
+  FG_TRY(write_facts(ctx, past, out));
   fputs("</section>\n", out);
   fg_html_end(out);
   return FG_OK;

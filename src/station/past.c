@@ -5,7 +5,9 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "foilgauge/scan_loop.h"
 #include "report/measure/measure_page_tables.h"
+#include "report/provenance.h"
 
 /* NULL where the database has none. */
 static fg_status copy(fg_context *ctx, const fg_query *query, int column, char **text) {
@@ -114,4 +116,20 @@ void fg_past_write_tables(const fg_past *past, FILE *out) {
   fputs("<h2>Bumps</h2>\n", out);
   fg_html_bump_table(out, &past->settings.design, past->foil);
   fg_html_foil_table(out, &past->settings.design, past->foil);
+}
+
+enum { MS_PER_S = 1000 };
+
+fg_status fg_past_write_provenance(fg_context *ctx, const fg_past *past, FILE *out) {
+  fg_scanner_model *model = NULL;
+  fg_provenance from = {.version = past->program, .of_scans = past->readable};
+  if (past->readable) from.design = &past->settings.design;
+  fg_date_of_time(past->at / MS_PER_S, from.first);
+  fg_provenance_take_date(&from, from.first);
+  if (past->model)
+    FG_TRY(fg_scanner_model_parse(ctx, "the scanner's model of then", past->model, &model));
+  from.model = model;
+  fg_status status = fg_html_provenance(ctx, out, &from);
+  if (model) fg_scanner_model_free(model);
+  return status;
 }

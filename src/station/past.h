@@ -27,6 +27,9 @@ void fg_past_free(fg_past *past);
 /* The verdict as a pill; `past` is readable. */
 fg_status fg_past_write_verdict(fg_context *ctx, const fg_past *past, FILE *out);
 
+/* Rows of a list of facts: where it comes from, as on every page (report/provenance.h). */
+fg_status fg_past_write_provenance(fg_context *ctx, const fg_past *past, FILE *out);
+
 /* Every bump and the whole foil, each value with its limits and what they say of it; a sentence
  * where the record is not readable. */
 void fg_past_write_tables(const fg_past *past, FILE *out);
