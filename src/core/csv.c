@@ -1,8 +1,10 @@
 #include "core/csv.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "core/extended.h"
+#include "core/json_writer.h"
 
 static bool begins_formula(const char *text, size_t length) {
   size_t at = 0;
@@ -37,6 +39,14 @@ void fg_csv_put_text(FILE *out, const char *text, fg_csv_character *put) {
     text += put ? put(out, text) : put_byte(out, text);
   }
   if (quoted) fputc('"', out);
+}
+
+void fg_csv_put_number(FILE *out, double value) {
+  char text[32];
+  fputc(',', out);
+  if (!isfinite(value)) return;
+  fg_json_format(text, value);
+  fputs(text, out);
 }
 
 void fg_csv_take_apostrophe(const char **text, size_t *length) {

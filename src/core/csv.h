@@ -20,6 +20,10 @@ typedef size_t fg_csv_character(FILE *out, const char *text);
 /* A whole cell; `put` NULL writes the bytes as they are. */
 void fg_csv_put_text(FILE *out, const char *text, fg_csv_character *put);
 
+/* A comma and the number, as JSON has it (core/json_writer.h); nothing behind the comma for what is
+ * none. */
+void fg_csv_put_number(FILE *out, double value);
+
 /* How many bytes the line `sep=;` at the begin takes that spreadsheets write, and its separator; 0
  * without one. */
 size_t fg_csv_hint(const char *text, size_t size, unsigned char *separator);

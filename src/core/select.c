@@ -40,3 +40,8 @@ static int compare(const void *a, const void *b) {
 void fg_sort(double *values, size_t count) {
   qsort(values, count, sizeof *values, compare);
 }
+
+void fg_sort_items(void *items, size_t count, size_t size,
+                   int (*order)(const void *, const void *)) {
+  if (count) qsort(items, count, size, order);
+}

@@ -8,6 +8,10 @@
 double fg_select(double *values, size_t count, size_t k);
 float fg_select_float(float *values, size_t count, size_t k);
 
+/* qsort, which must not get the null pointer that stands for no items at all. */
+void fg_sort_items(void *items, size_t count, size_t size,
+                   int (*order)(const void *, const void *));
+
 /* Ascending. */
 void fg_sort(double *values, size_t count);
 

@@ -4,6 +4,13 @@
 
 #include "core/select.h"
 
+double fg_mean(const double *values, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += values[i];
+  return sum / (double)count;
+}
+
 fg_spread fg_spread_of(double *sizes, size_t count) {
   if (!count) return (fg_spread){NAN, NAN, NAN};
   size_t last = count - 1;

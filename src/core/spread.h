@@ -1,8 +1,11 @@
-/* How large the sizes of residuals are. */
+/* The mean of values; how large the sizes of residuals are. */
 #ifndef FG_CORE_SPREAD_H
 #define FG_CORE_SPREAD_H
 
 #include <stddef.h>
+
+/* NaN when there are none. */
+double fg_mean(const double *values, size_t count);
 
 /* The sd of a normal distribution over the median of its sizes. */
 #define FG_SD_PER_MEDIAN 1.4826

@@ -150,21 +150,6 @@ static void shift_circles(fg_layout *layout, double shift_mm) {
     layout->bumps[i].circle.radius += shift_mm;
 }
 
-static void fill_overall(const fg_layout *layout, const fg_design *design, fg_overall *o) {
-  const fg_arc *arc = &layout->overall;
-  o->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
-  o->radius_mm = arc->circle.radius;
-  memcpy(o->covariance, arc->covariance, sizeof o->covariance);
-  for (int i = 0; i < 2; i++)
-    o->u_centre_mm[i] = sqrt(arc->covariance[i][i]);
-  o->u_radius_mm = sqrt(arc->covariance[2][2]);
-  o->springback_error_pct =
-      100 * (design->overall_radius_mm - o->radius_mm) / design->overall_radius_mm;
-  o->u_springback_error_pct = 100 * o->u_radius_mm / design->overall_radius_mm;
-  o->rms_um = 1000 * arc->rms_mm;
-  o->points = arc->points;
-}
-
 static void fill_bump(const fg_layout *layout, size_t i, const fg_design *design,
                       const fg_nominal *nominal, const fg_overall *overall, fg_bump *bump) {
   const fg_arc *arc = &layout->bumps[i];
@@ -313,7 +298,7 @@ static fg_status take_layout(fg_context *ctx, const fg_design *design, const fg_
   trace->lands = layout->land_count;
   trace->shift_mm = datum_shift(design, profile);
   shift_circles(layout, trace->shift_mm);
-  fill_overall(layout, design, &trace->overall);
+  fg_layout_overall(layout, design, &trace->overall);
   FG_TRY(fill_bumps(ctx, design, layout, source, trace));
   shift_circles(layout, -trace->shift_mm);
   label_bumps(layout, trace);

@@ -95,6 +95,7 @@ static const fg_explain_policy discs = {
     .manners = {{true, false}},
     .manner_count = 1,
     .rest_share = 1, /* one round without a new effect is rest: confirmation judges what it is */
+    .falls_back = true,
     .rests_in_force = true, /* there is one manner only, so no other start follows */
     .own_noise = true,
     .step_half_mm = 0.03,

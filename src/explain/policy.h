@@ -67,6 +67,8 @@ struct fg_explain_policy {
                         is left */
   bool rests_in_force; /* it rests when it finds the set in force again, not the one it found last:
                           one that the fit gave up is tried again, without its outliers */
+  bool falls_back; /* of a set that no fit holds the best effect is fitted alone; else the set is
+                      not tried again */
   bool drops_nothings; /* what the fit has made nothing of leaves */
   bool drops_ends;     /* an arc's last rows may reach into its fillet */
   bool own_noise;      /* rows are outliers by their own noise, not by their size */

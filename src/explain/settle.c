@@ -184,6 +184,31 @@ static bool was_right_before(const round_end *end, int round) {
   return false;
 }
 
+/* Of a set the effect that alone takes the most of what there is. */
+static void take_best_alone(const fg_explanations *explanations, const fg_effect_set *from,
+                            fg_effect_set *to) {
+  double most = -1;
+  for (size_t e = 0; e < from->count; e++)
+    for (size_t c = 0; c < explanations->candidate_count; c++) {
+      if (explanations->candidates[c].kind != from->effects[e].kind ||
+          !(explanations->alone[c] > most))
+        continue;
+      most = explanations->alone[c];
+      *to = (fg_effect_set){.count = 1, .effects = {from->effects[e]}};
+    }
+}
+
+/* Several smooth effects beside a ripple whose period is a little off stand for what that leaves,
+ * and no fit holds them: the ripple alone finds its period, and the next round starts from there.
+ */
+static fg_status fit_or_best_alone(fg_context *ctx, fg_points *points, double none, settling *at) {
+  const fg_effect_set next = at->set;
+  FG_TRY(fit(ctx, points, none, at));
+  if (!at->policy->falls_back || next.count < 2 || at->set.count) return FG_OK;
+  take_best_alone(&at->explanations, &next, &at->set);
+  return fit(ctx, points, none, at);
+}
+
 /* Search and fit in turns from a start without effects. */
 static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_manner how,
                              settling *at) {
@@ -218,7 +243,7 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
     keep_numbers(&at->set, &next);
     at->set = next;
     fg_explain_drop_across_steps(points, &at->set, policy->step_half_mm);
-    FG_TRY(fit(ctx, points, none, at));
+    FG_TRY(fit_or_best_alone(ctx, points, none, at));
     /* Given up: what was right to first order is not. */
     if (next.count && !at->set.count) at->explanations.right = false;
     if (!at->explanations.right) tried = next;

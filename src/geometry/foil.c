@@ -57,22 +57,6 @@ void fg_foil_give_up(fg_foil *foil, const char *why) {
   forget_overall(&foil->overall);
 }
 
-static void fill_overall(const fg_layout *layout, const fg_design *design, fg_foil *foil) {
-  const fg_arc *arc = &layout->overall;
-  fg_overall *o = &foil->overall;
-  o->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
-  o->radius_mm = arc->circle.radius;
-  memcpy(o->covariance, arc->covariance, sizeof o->covariance);
-  for (int i = 0; i < 2; i++)
-    o->u_centre_mm[i] = sqrt(arc->covariance[i][i]);
-  o->u_radius_mm = sqrt(arc->covariance[2][2]);
-  double design_mm = design->overall_radius_mm;
-  o->springback_error_pct = 100 * (design_mm - o->radius_mm) / design_mm;
-  o->u_springback_error_pct = 100 * o->u_radius_mm / design_mm;
-  o->rms_um = 1000 * arc->rms_mm;
-  o->points = arc->points;
-}
-
 /* Of a bump without a circle: the direction of the middle of its stretch of the strip. */
 static double stretch_position_deg(const fg_foil *foil, fg_range range) {
   double x = 0, y = 0;
@@ -212,7 +196,7 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   size_t n = layout->turning.bump_count;
   FG_TRY(fg_foil_find_uncertainties(ctx, layout, foil));
   fg_foil_add_tone_doubt(foil);
-  fill_overall(layout, design, foil);
+  fg_layout_overall(layout, design, &foil->overall);
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *foil->bumps, (void **)&foil->bumps));
   foil->bump_count = n;
   for (size_t i = 0; i < n; i++)
@@ -232,7 +216,7 @@ static fg_status fill_arc(fg_context *ctx, const fg_design *design, fg_layout *l
                           fg_foil *foil) {
   fg_foil_find_arc_uncertainty(layout, foil);
   fg_foil_add_tone_doubt(foil);
-  fill_overall(layout, design, foil);
+  fg_layout_overall(layout, design, &foil->overall);
   fg_arc_foil_derive(design, layout, foil);
   fg_foil_recognise(design, foil);
   FG_TRY(fg_labels_fill(ctx, layout, design->datum, foil));

@@ -171,3 +171,18 @@ void fg_layout_free(fg_layout *layout) {
   free(layout->lands);
   memset(layout, 0, sizeof *layout);
 }
+
+void fg_layout_overall(const fg_layout *layout, const fg_design *design, fg_overall *o) {
+  const fg_arc *arc = &layout->overall;
+  o->centre_mm = (fg_point){arc->circle.x, arc->circle.y};
+  o->radius_mm = arc->circle.radius;
+  memcpy(o->covariance, arc->covariance, sizeof o->covariance);
+  for (int i = 0; i < 2; i++)
+    o->u_centre_mm[i] = sqrt(arc->covariance[i][i]);
+  o->u_radius_mm = sqrt(arc->covariance[2][2]);
+  o->springback_error_pct =
+      100 * (design->overall_radius_mm - o->radius_mm) / design->overall_radius_mm;
+  o->u_springback_error_pct = 100 * o->u_radius_mm / design->overall_radius_mm;
+  o->rms_um = 1000 * arc->rms_mm;
+  o->points = arc->points;
+}

@@ -24,4 +24,7 @@ fg_status fg_layout_find(fg_context *ctx, const fg_design *design, const fg_stri
 
 void fg_layout_free(fg_layout *layout);
 
+/* What the fit of the overall circle says, without what the pixels' noise adds to it. */
+void fg_layout_overall(const fg_layout *layout, const fg_design *design, fg_overall *overall);
+
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/spread.h"
 #include "lot/analysis.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
@@ -160,17 +161,10 @@ static fg_status centre_radii(const fg_lot_analysis *analysis, fg_stock *stock) 
   return FG_OK;
 }
 
-static double mean_of(const double *values, size_t count) {
-  double mean = 0;
-  for (size_t i = 0; i < count; i++)
-    mean += values[i] / (double)count;
-  return mean;
-}
-
 static fg_status halve_within(const fg_lot_analysis *analysis, fg_stock *stock) {
   (void)analysis;
   for (size_t i = 0; i < stock->foils; i++) {
-    double *foil = stock->clearance_mm + i * stock->places, mean = mean_of(foil, stock->places);
+    double *foil = stock->clearance_mm + i * stock->places, mean = fg_mean(foil, stock->places);
     for (size_t k = 0; k < stock->places; k++)
       foil[k] = (foil[k] + mean) / 2;
   }
@@ -179,9 +173,9 @@ static fg_status halve_within(const fg_lot_analysis *analysis, fg_stock *stock) 
 
 static fg_status halve_between(const fg_lot_analysis *analysis, fg_stock *stock) {
   (void)analysis;
-  double all = mean_of(stock->clearance_mm, stock->foils * stock->places);
+  double all = fg_mean(stock->clearance_mm, stock->foils * stock->places);
   for (size_t i = 0; i < stock->foils; i++) {
-    double *foil = stock->clearance_mm + i * stock->places, mean = mean_of(foil, stock->places);
+    double *foil = stock->clearance_mm + i * stock->places, mean = fg_mean(foil, stock->places);
     for (size_t k = 0; k < stock->places; k++)
       foil[k] += (all - mean) / 2;
   }

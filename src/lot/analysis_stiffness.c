@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/spread.h"
 #include "lot/stiffness_columns.h"
 #include "quantity/quantity_rows.h"
 
@@ -162,23 +163,16 @@ static bool differ(const double *values, size_t count) {
   return false;
 }
 
-static double mean_of(const double *values, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += values[i];
-  return sum / (double)count;
-}
-
 /* A bump of the lot's mean radius, arc length and thickness. */
 static void find_mean_bump(const fg_lot_settings *settings, const fg_bump_columns *columns,
                            fg_lot_stiffness *result) {
   fg_stiffness_case *bump = &result->cases[FG_LOT_CASE_MEAN];
-  double radius = mean_of(columns->arch_radius, columns->count);
+  double radius = fg_mean(columns->arch_radius, columns->count);
   *bump =
       (fg_stiffness_case){.title = "the lot's mean",
                           .name = "lot_mean",
-                          .arch = {radius, mean_of(columns->arch_length, columns->count) / radius,
-                                   mean_of(columns->thickness, columns->count)}};
+                          .arch = {radius, fg_mean(columns->arch_length, columns->count) / radius,
+                                   fg_mean(columns->thickness, columns->count)}};
   fg_stiffness_compare(&bump->arch, &settings->material, bump->lines);
 }
 
@@ -186,7 +180,7 @@ static void find_mean_bump(const fg_lot_settings *settings, const fg_bump_column
 static fg_status spread_by_models(fg_context *ctx, const fg_lot_settings *settings,
                                   const fg_bump_columns *columns, fg_lot_stiffness *result) {
   for (int i = 0; i < FG_STIFFNESS_MODELS; i++) {
-    if (!isfinite(mean_of(columns->ratio[i], columns->count))) continue;
+    if (!isfinite(fg_mean(columns->ratio[i], columns->count))) continue;
     FG_TRY(fg_lot_spread_of(ctx, columns->ratio[i], columns->count, settings->bandwidth,
                             &result->by_model[i]));
   }

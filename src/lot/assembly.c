@@ -356,7 +356,7 @@ fg_status fg_assembly_draw_sorted(fg_context *ctx, const fg_stock *stock,
     for (size_t k = 0; k < stock->places; k++)
       order[i].mean += stock->clearance_mm[i * stock->places + k];
   }
-  if (stock->foils) qsort(order, stock->foils, sizeof *order, by_mean);
+  fg_sort_items(order, stock->foils, sizeof *order, by_mean);
   for (size_t i = 0; i < plan->bearings && status == FG_OK; i++) {
     uint64_t state = stream(plan->seed, FOR_SORTED, i);
     /* The box of a foil drawn at random: a box is drawn as often as it has foils. */

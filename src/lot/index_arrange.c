@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "lot/index.h"
 
@@ -44,7 +45,7 @@ static fg_status order_dies(fg_context *ctx, fg_index *index) {
   FG_TRY(fg_memory_allocate(ctx, index->die_count, sizeof *place, (void **)&place));
   for (size_t i = 0; i < index->die_count; i++)
     index->dies[i].foils = i; /* not counted yet: the place that it had */
-  if (index->die_count) qsort(index->dies, index->die_count, sizeof *index->dies, by_name);
+  fg_sort_items(index->dies, index->die_count, sizeof *index->dies, by_name);
   for (size_t i = 0; i < index->die_count; i++) {
     place[index->dies[i].foils] = i;
     index->dies[i].foils = 0;
@@ -183,7 +184,7 @@ static void find_same(fg_index *index) {
 }
 
 fg_status fg_index_arrange(fg_context *ctx, fg_index *index) {
-  if (index->count) qsort(index->lots, index->count, sizeof *index->lots, by_date);
+  fg_sort_items(index->lots, index->count, sizeof *index->lots, by_date);
   index->read = 0;
   while (index->read < index->count && !index->lots[index->read].problem)
     index->read++;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "foilgauge/distribution.h"
 #include "lot/analysis.h"
@@ -97,7 +98,7 @@ static int by_p(const void *left, const void *right) {
 static fg_status adjust(fg_context *ctx, fg_index *index) {
   double *p = NULL;
   FG_TRY(fg_memory_allocate(ctx, 2 * index->pair_count, sizeof *p, (void **)&p));
-  if (index->pair_count) qsort(index->pairs, index->pair_count, sizeof *index->pairs, by_p);
+  fg_sort_items(index->pairs, index->pair_count, sizeof *index->pairs, by_p);
   for (size_t i = 0; i < index->pair_count; i++)
     p[i] = index->pairs[i].p;
   double *adjusted = p + index->pair_count;

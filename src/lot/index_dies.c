@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "lot/index.h"
 
@@ -134,7 +135,7 @@ static fg_status adjust(fg_context *ctx, fg_index *index) {
   double *p = NULL;
   size_t pairs = index->die_pair_count;
   FG_TRY(fg_memory_allocate(ctx, 2 * pairs, sizeof *p, (void **)&p));
-  if (pairs) qsort(index->die_pairs, pairs, sizeof *index->die_pairs, by_p);
+  fg_sort_items(index->die_pairs, pairs, sizeof *index->die_pairs, by_p);
   for (size_t i = 0; i < pairs; i++)
     p[i] = index->die_pairs[i].pair.p;
   fg_status status = fg_holm_adjust(ctx, p, pairs, p + pairs);

@@ -231,14 +231,6 @@ fg_status fg_index_write_json(fg_context *ctx, const fg_index *index, FILE *out)
   return fg_stream_finish(ctx, out, "the index of lots");
 }
 
-static void put_number(FILE *out, double value) {
-  char text[32];
-  fputc(',', out);
-  if (!isfinite(value)) return;
-  fg_json_format(text, value);
-  fputs(text, out);
-}
-
 static void put_line(FILE *out, const fg_index *index, const fg_index_lot *lot,
                      const fg_index_axis *axis, const fg_index_stat *stat) {
   const double numbers[] = {stat->mean,         stat->sd,           stat->least,     stat->most,
@@ -251,7 +243,7 @@ static void put_line(FILE *out, const fg_index *index, const fg_index_lot *lot,
   fprintf(out, ",%s,%s,%zu,%s,%s,%zu,%zu", lot->date.first, fg_verdict_word(lot->verdict),
           lot->design_number, axis->row->name, scale_word(axis->scale), stat->count, stat->foils);
   for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-    put_number(out, numbers[i]);
+    fg_csv_put_number(out, numbers[i]);
   fputc('\n', out);
 }
 

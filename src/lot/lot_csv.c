@@ -16,14 +16,6 @@ static void put_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
 }
 
-static void put_number(FILE *out, double value) {
-  char text[32];
-  fputc(',', out);
-  if (!isfinite(value)) return;
-  fg_json_format(text, value);
-  fputs(text, out);
-}
-
 static void put_columns(FILE *out, const fg_manifest *manifest, size_t item) {
   for (size_t i = 0; i < manifest->columns; i++) {
     if (i) fputc(',', out);
@@ -59,7 +51,7 @@ static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
     if (rows[i].kind == FG_QUANTITY_PAIR) continue;
     size_t width = fg_quantity_numbers(&rows[i], object, numbers);
     for (size_t k = 0; k < width; k++)
-      put_number(out, numbers[k]);
+      fg_csv_put_number(out, numbers[k]);
   }
   fputc('\n', out);
 }
@@ -107,9 +99,9 @@ fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysi
 
 static void put_to_die(FILE *out, const fg_lot *lot, const fg_lot_foil *foil, const fg_bump *bump) {
   fg_lot_to_die to = fg_lot_bump_to_die(lot, foil, bump);
-  put_number(out, to.radius_mm);
-  put_number(out, to.error_pct);
-  put_number(out, to.u_error_pct);
+  fg_csv_put_number(out, to.radius_mm);
+  fg_csv_put_number(out, to.error_pct);
+  fg_csv_put_number(out, to.u_error_pct);
 }
 
 fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
@@ -130,7 +122,7 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
       put_columns(out, manifest, foil->item);
       fprintf(out, ",%d,%d", foil->foil->number, bump->number);
       put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil->foil, bump));
-      put_number(out, stiffness[at++]);
+      fg_csv_put_number(out, stiffness[at++]);
       if (dies) put_to_die(out, analysis->lot, foil, bump);
       fprintf(out, ",%s", fg_verdict_word(fg_bump_verdict(design, foil->foil, bump)));
       put_values(out, FG_QUANTITY_OF_BUMP, bump);
@@ -190,7 +182,7 @@ fg_status fg_lot_write_bearings_csv(fg_context *ctx, const fg_lot_analysis *anal
       size_t width = fg_quantity_numbers(&row[k], &bearing->clearance, numbers);
       bool count = row[k].kind == FG_QUANTITY_COUNT;
       for (size_t n = 0; n < width; n++)
-        put_number(out, bearing->known || count ? numbers[n] : NAN);
+        fg_csv_put_number(out, bearing->known || count ? numbers[n] : NAN);
     }
     fputc('\n', out);
   }

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/clock.h"
 #include "core/file.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -39,7 +40,7 @@ typedef struct lot_run {
   size_t *todo, todo_count;
   fg_journal journal;
   fg_lot_outcome *outcome;
-  struct timespec start;
+  double start;
   pthread_mutex_t listening;
   atomic_bool stop;
   int lock;
@@ -157,12 +158,6 @@ static fg_status list_todo(fg_context *ctx, lot_run *run) {
   return FG_OK;
 }
 
-static double seconds_since(const struct timespec *start) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
-}
-
 /* One at a time; the first tenth of a second says nothing about the rest. */
 static void tell(lot_run *run, const char *scan, const char *error, bool beyond) {
   pthread_mutex_lock(&run->listening);
@@ -171,7 +166,7 @@ static void tell(lot_run *run, const char *scan, const char *error, bool beyond)
   outcome->measured += error == NULL;
   outcome->failed += error != NULL;
   size_t done = outcome->measured + outcome->failed;
-  double seconds = seconds_since(&run->start);
+  double seconds = fg_clock_seconds() - run->start;
   const fg_lot_progress progress = {
       .done = done,
       .total = run->todo_count,
@@ -270,7 +265,7 @@ static fg_status measure_missing(fg_context *ctx, lot_run *run) {
   FG_TRY(rewrite(ctx, run));
   if (!run->todo_count) return FG_OK;
   FG_TRY(fg_journal_open(ctx, run->results_path, &run->journal));
-  clock_gettime(CLOCK_MONOTONIC, &run->start);
+  run->start = fg_clock_seconds();
   fg_status status =
       fg_parallel_run(ctx, request->settings->jobs, run->todo_count, measure_next, run);
   fg_context inner;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 
 /* Radii of one bump in two scans may differ by so much: a ripple of the carriage moves them by a
  * tenth and more. */
@@ -319,7 +320,7 @@ fg_status fg_points_build_foils(fg_context *ctx, const fg_points_view *views, si
   FG_TRY_EXIT(take_views(ctx, views, count, points));
   FG_TRY_EXIT(fill(ctx, points));
   fg_points_count_parameters(points);
-  if (points->row_count) qsort(points->rows, points->row_count, sizeof *points->rows, compare_rows);
+  fg_sort_items(points->rows, points->row_count, sizeof *points->rows, compare_rows);
   FG_TRY_EXIT(find_range(ctx, points));
 exit:
   if (status != FG_OK) fg_points_free(points);

@@ -123,6 +123,20 @@ static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
       hidden, listed, FG_SCAN_LOOP_MATTERS_UM);
 }
 
+/* What each disc has of its own is no effect of the scanner, but it is not nothing. */
+#define FORM_P 1e-4
+static fg_status say_form(fg_context *ctx, fg_scan_loop *loop) {
+  const fg_explanations *explanations = &loop->explanations;
+  if (loop->set.count || !(explanations->p_value < FORM_P)) return FG_OK;
+  return fg_scan_loop_bumps_note(
+      ctx, &loop->bumps,
+      "points: the discs deviate from circles by %.2g um rms, more than noise (p = %.1g), and no "
+      "effect of the scanner that some of them show holds on the others: that is each disc's own "
+      "form, or what one disc alone shows, as a lost row; scan them again, moved by some mm: what "
+      "stays in the picture is the scanner",
+      loop->error_before.rms, explanations->p_value);
+}
+
 static bool bends_bumps(const fg_effect_set *set) {
   for (size_t e = 0; e < set->count; e++)
     if (set->effects[e].kind->bends) return true;
@@ -142,7 +156,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .seed = loop->options.seed,
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
-  if (!loop->points.discs) FG_TRY(say_reach(ctx, loop));
+  FG_TRY(loop->points.discs ? say_form(ctx, loop) : say_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
   return fg_scan_loop_scale_doubt(ctx, loop);
 }

@@ -12,6 +12,7 @@
 #include "lot/folder_lock.h"
 #include "lot/lot_report.h"
 #include "lot/manifest_build.h"
+#include "station/intake.h"
 #include "station/lot_content.h"
 #include "station/lot_folder.h"
 
@@ -189,15 +190,6 @@ static fg_status format_lost(fg_context *ctx, export *at, size_t item, const cha
   return status;
 }
 
-static fg_status correct(fg_context *ctx, const export *at, fg_measurement *measurement) {
-  char warning[200];
-  fg_status status = FG_OK;
-  if (at->model) status = fg_scanner_model_apply(ctx, at->model, measurement, 1, warning);
-  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 1, measurement);
-  if (status != FG_OK) fg_measurement_free(measurement);
-  return status;
-}
-
 /* The record is not of the lot's setup: the scan is, when it is what it was. */
 static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **line,
                                size_t *length) {
@@ -209,7 +201,7 @@ static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **
   const char *path = fg_manifest_scan(&at->manifest, item);
   fg_record_date_scan(path, date);
   fg_status status = fg_measure_scan(&inner, path, &at->settings.design, &options, &measurement);
-  if (status == FG_OK) status = correct(&inner, at, &measurement);
+  if (status == FG_OK) status = fg_station_correct(&inner, at->model, 1, &measurement);
   if (status == FG_ERR_MEMORY) return fg_fail(ctx, status, "%s", inner.message);
   if (status != FG_OK) return format_lost(ctx, at, item, inner.message, line, length);
   if (strcmp(measurement.sha256, scan->sha256) != 0)

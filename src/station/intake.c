@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/clock.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"
 #include "scan/format.h"
@@ -25,7 +26,7 @@ typedef struct intake {
   char *path;
   fg_station_file file;
   fg_named named;
-  struct timespec arrived;
+  double arrived;
   char words[WORDS]; /* of its card */
   bool later;        /* it has to be looked at again */
   bool silent;       /* nothing is new: no card */
@@ -99,12 +100,6 @@ static void take_words(intake *at, const char *message) {
   fg_text_clip(at->words, WORDS, "%s", named ? message + length + 2 : message);
 }
 
-static double seconds_since(const struct timespec *start) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
-}
-
 static fg_status keep_known(fg_context *ctx, intake *at, int64_t scan) {
   fg_query query;
   fg_station_database *database = &at->station->database;
@@ -148,7 +143,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
                                 .settings = &station->settings->lot,
                                 .setup = station->setup,
                                 .measurement = measurement,
-                                .seconds = seconds_since(&at->arrived),
+                                .seconds = fg_clock_seconds() - at->arrived,
                                 .withheld = withheld ? why : NULL,
                                 .note = at->words};
   FG_TRY(fg_station_keep_scan(ctx, &station->database, &kept, &scan, &outcome));
@@ -165,13 +160,12 @@ static fg_status take_measurement(fg_context *ctx, intake *at, const fg_measurem
   return keep_new(ctx, at, measurement);
 }
 
-/* By the scanner's model, where there is one; with what the calibration does not know. */
-static fg_status correct(fg_context *ctx, const fg_inspection *station,
-                         fg_measurement *measurement) {
+fg_status fg_station_correct(fg_context *ctx, const fg_scanner_model *model, unsigned threads,
+                             fg_measurement *measurement) {
   char warning[200];
   fg_status status = FG_OK;
-  if (station->model) status = fg_scanner_model_apply(ctx, station->model, measurement, 0, warning);
-  if (status == FG_OK) status = fg_measurement_calibrate(ctx, 0, measurement);
+  if (model) status = fg_scanner_model_apply(ctx, model, measurement, threads, warning);
+  if (status == FG_OK) status = fg_measurement_calibrate(ctx, threads, measurement);
   if (status != FG_OK) fg_measurement_free(measurement);
   return status;
 }
@@ -183,7 +177,7 @@ static fg_status measure(fg_context *ctx, intake *at) {
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);
-  if (failure == FG_OK) failure = correct(&inner, at->station, &measurement);
+  if (failure == FG_OK) failure = fg_station_correct(&inner, at->station->model, 0, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
   at->later = !is_unchanged(at);
   if (at->later) {
@@ -254,8 +248,7 @@ static fg_status take(fg_context *ctx, intake *at, bool final) {
 
 fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
                                bool final, bool *later) {
-  intake at = {.station = station, .file.name = name};
-  clock_gettime(CLOCK_MONOTONIC, &at.arrived);
+  intake at = {.station = station, .file.name = name, .arrived = fg_clock_seconds()};
   FG_TRY(fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name));
   fg_status status = take(ctx, &at, final);
   *later = at.later;

@@ -11,4 +11,9 @@
 fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
                                bool final, bool *later);
 
+/* By the scanner's model (NULL: none), with what the calibration does not know. A measurement that
+ * cannot be corrected is freed. */
+fg_status fg_station_correct(fg_context *ctx, const fg_scanner_model *model, unsigned threads,
+                             fg_measurement *measurement);
+
 #endif

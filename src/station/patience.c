@@ -1,16 +1,11 @@
 #include "station/patience.h"
 
 #include <sys/socket.h>
-#include <time.h>
+
+#include "core/clock.h"
 
 /* A connection that is kept open is idle for at most half of this (server.c). */
 enum { SECONDS = 30 };
-
-int64_t fg_patience_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec;
-}
 
 void fg_patience_begin(fg_patience *patience) {
   *patience = (fg_patience){0};
@@ -21,7 +16,7 @@ void fg_patience_end(fg_patience *patience) {
   pthread_mutex_destroy(&patience->mutex);
 }
 
-static void set(fg_patience *patience, const struct MHD_Connection *connection, int64_t until) {
+static void set(fg_patience *patience, const struct MHD_Connection *connection, double until) {
   pthread_mutex_lock(&patience->mutex);
   for (size_t i = 0; i < FG_CONNECTIONS; i++)
     if (patience->one[i].connection == connection) patience->one[i].until = until;
@@ -30,9 +25,9 @@ static void set(fg_patience *patience, const struct MHD_Connection *connection, 
 
 /* The library closes what was shut down; its socket is its own until it has told of that. */
 static void cut_off(fg_patience *patience) {
-  int64_t now = fg_patience_now();
+  double now = fg_clock_seconds();
   for (size_t i = 0; i < FG_CONNECTIONS; i++)
-    if (patience->one[i].connection && patience->one[i].until && now > patience->one[i].until)
+    if (patience->one[i].connection && patience->one[i].until > 0 && now > patience->one[i].until)
       shutdown(patience->one[i].socket, SHUT_RDWR);
 }
 
@@ -42,7 +37,7 @@ static void replace(fg_patience *patience, const struct MHD_Connection *which,
     if (patience->one[i].connection == which) {
       patience->one[i].connection = by;
       patience->one[i].socket = socket;
-      patience->one[i].until = fg_patience_now() + SECONDS;
+      patience->one[i].until = fg_clock_seconds() + SECONDS;
       return;
     }
 }
@@ -68,5 +63,5 @@ void fg_patience_asked(fg_patience *patience, struct MHD_Connection *connection)
 }
 
 void fg_patience_answered(fg_patience *patience, struct MHD_Connection *connection) {
-  set(patience, connection, fg_patience_now() + SECONDS);
+  set(patience, connection, fg_clock_seconds() + SECONDS);
 }

@@ -4,7 +4,6 @@
 #define FG_STATION_PATIENCE_H
 
 #include <pthread.h>
-#include <stdint.h>
 
 #include <microhttpd.h>
 
@@ -15,15 +14,12 @@ typedef struct fg_patience {
   struct {
     struct MHD_Connection *connection; /* NULL: none here */
     int socket;
-    int64_t until; /* in seconds; 0: it has asked, and waits for an answer */
+    double until; /* fg_clock_seconds; 0: it has asked, and waits for an answer */
   } one[FG_CONNECTIONS];
 } fg_patience;
 
 void fg_patience_begin(fg_patience *patience);
 void fg_patience_end(fg_patience *patience);
-
-/* Seconds of a clock that nobody sets. */
-int64_t fg_patience_now(void);
 
 /* MHD_NotifyConnectionCallback with the fg_patience as its first argument: a new connection has
  * some seconds; whoever is over its time is cut off then, since only then is the place missed. */

@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "station/actions.h"
@@ -125,17 +126,11 @@ static void listen_to(int input, words *said) {
   }
 }
 
-static double seconds_now(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* True with how it ended; false: it took too long, or the station ends. */
 static bool wait_for(scanner *at, pid_t child, int input, words *said, int *ended) {
-  double until = seconds_now() + SCAN_SECONDS;
+  double until = fg_clock_seconds() + SCAN_SECONDS;
   struct pollfd descriptor = {.fd = input, .events = POLLIN};
-  while (!atomic_load(&at->stop) && seconds_now() < until) {
+  while (!atomic_load(&at->stop) && fg_clock_seconds() < until) {
     if (poll(&descriptor, 1, TURN_MS) > 0 && descriptor.revents & (POLLHUP | POLLERR)) {
       descriptor.fd = -1; /* it says no more */
     }

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/socket.h>
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "station/answer.h"
 #include "station/patience.h"
@@ -34,7 +35,7 @@ typedef struct call {
   fg_request request;
   char *body;
   size_t size;
-  int64_t until; /* when all of it must have come */
+  double until; /* when all of it must have come */
   bool broken, waited;
 } call;
 
@@ -63,7 +64,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   call *at = calloc(1, sizeof *at);
   if (!at) return NULL;
   fg_request *request = &at->request;
-  at->until = fg_patience_now() + SECONDS;
+  at->until = fg_clock_seconds() + SECONDS;
   request->post = !strcmp(method, "POST");
   request->host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
   request->origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
@@ -77,7 +78,7 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
 
 /* False: too much, or for too long. */
 static bool take_body(call *at, const char *bytes, size_t size) {
-  if (at->size + size > FG_BODY_MAX || fg_patience_now() > at->until) return false;
+  if (at->size + size > FG_BODY_MAX || fg_clock_seconds() > at->until) return false;
   char *grown = realloc(at->body, at->size + size);
   if (!grown) return false;
   memcpy(grown + at->size, bytes, size);

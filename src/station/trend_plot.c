@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/select.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/plot_marks.h"
 #include "station/trend.h"
@@ -250,7 +251,7 @@ static void draw_labels(const drawing *d) {
   count = add_label(d, labels, count, d->chart->centre, "mean", "start");
   count = add_label(d, labels, count, last->lower, "−3σ", "start control");
   count = add_label(d, labels, count, d->lower, "min", "start tolerance");
-  if (count) qsort(labels, count, sizeof *labels, by_height);
+  fg_sort_items(labels, count, sizeof *labels, by_height);
   for (size_t i = 1; i < count; i++)
     labels[i].y = fmax(labels[i].y, labels[i - 1].y + LABEL_GAP_PX);
   for (size_t i = 0; i < count; i++)

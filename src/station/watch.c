@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "station/intake.h"
 #include "station/rest.h"
@@ -103,7 +104,7 @@ static fg_status list(fg_context *ctx, watch *at) {
       status = add(ctx, at, entry->d_name, &file);
   }
   closedir(open);
-  if (at->count) qsort(at->files, at->count, sizeof *at->files, by_arrival);
+  fg_sort_items(at->files, at->count, sizeof *at->files, by_arrival);
   return status;
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/distribution.h"
 
 /* Halvings of the interval that holds tau²: more than a double has digits. */
@@ -90,7 +91,7 @@ fg_status fg_holm_adjust(fg_context *ctx, const double *p, size_t count, double 
     adjusted[i] = NAN;
     if (!isnan(p[i])) list[members++] = (ranked){p[i], i};
   }
-  if (members) qsort(list, members, sizeof *list, by_p);
+  fg_sort_items(list, members, sizeof *list, by_p);
   double most = 0;
   for (size_t i = 0; i < members; i++) {
     most = fmax(most, fmin(1, (double)(members - i) * list[i].p));

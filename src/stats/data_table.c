@@ -6,6 +6,7 @@
 
 #include "core/extended.h"
 #include "core/memory.h"
+#include "core/select.h"
 #include "core/text.h"
 #include "stats/column.h"
 
@@ -183,7 +184,7 @@ static fg_status distinct_numbers(fg_context *ctx, const fg_table *table, const 
   for (size_t i = 0; i < table->rows; i++)
     if (!column->word || column->word[i] == FG_TABLE_NOT_A_WORD)
       sorted[filled++] = column->number[i];
-  if (filled) qsort(sorted, filled, sizeof *sorted, compare_numbers);
+  fg_sort_items(sorted, filled, sizeof *sorted, compare_numbers);
   for (size_t i = 0; i < filled; i++)
     if (!kept || compare_numbers(&sorted[kept - 1], &sorted[i]) != 0) sorted[kept++] = sorted[i];
   *numbers = sorted;
@@ -196,7 +197,7 @@ static fg_status rank_words(fg_context *ctx, const fg_column *column, word_rank 
   FG_TRY(fg_memory_allocate(ctx, column->word_count, sizeof **ranked, (void **)ranked));
   for (size_t i = 0; i < column->word_count; i++)
     (*ranked)[i] = (word_rank){column->words[i], i};
-  if (column->word_count) qsort(*ranked, column->word_count, sizeof **ranked, compare_words);
+  fg_sort_items(*ranked, column->word_count, sizeof **ranked, compare_words);
   return FG_OK;
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "vision/grid.h"
 
 /* A block belongs to an object when its excess is above this share of the typical contrast and
@@ -90,7 +91,7 @@ static fg_status estimate_noise(fg_context *ctx, const fg_island *island, fg_seg
             !tiles->wanted[(size_t)y * (size_t)tiles->columns + (size_t)x])
           visit_tile(out, x, y, take_sample, &s);
   }
-  if (s.count) qsort(s.values, s.count, sizeof *s.values, compare_floats);
+  fg_sort_items(s.values, s.count, sizeof *s.values, compare_floats);
   out->noise = (s.count ? 1.4826f * s.values[s.count / 2] : 0) + 0.02f;
   free(s.values);
   return FG_OK;

@@ -128,6 +128,32 @@ plate oval 5 '' 3
 "$program" loop oval.png --form discs -o oval.out || fail "loop on oval pins"
 [ "$(value oval.out "len(r['claims'])")" = 0 ] || fail "oval pins are called $(value oval.out "[c['id'] for c in r['claims']]")"
 
+# A ripple under which smooth effects and a period that is a little off cancel: no fit holds them
+# together, and the ripple alone must be found.
+cat >ripple.json <<'J'
+{"schema": "foilgauge/render/1", "seed": 927490561, "discs": [
+  {"centre_mm": [2.75, 3.118], "radius_mm": 1.75},
+  {"centre_mm": [10.643, 4.945], "radius_mm": 3.5},
+  {"centre_mm": [20.612, 4.067], "radius_mm": 2.75},
+  {"centre_mm": [28.838, 2.966], "radius_mm": 1.5},
+  {"centre_mm": [34.567, 2.371], "radius_mm": 1.0},
+  {"centre_mm": [3.0, 11.621], "radius_mm": 2.0},
+  {"centre_mm": [10.244, 12.03], "radius_mm": 2.25},
+  {"centre_mm": [15.744, 10.148], "radius_mm": 0.5},
+  {"centre_mm": [21.773, 12.539], "radius_mm": 3.0},
+  {"centre_mm": [28.938, 10.327], "radius_mm": 0.75},
+  {"centre_mm": [34.3, 11.021], "radius_mm": 1.25},
+  {"centre_mm": [3.5, 19.397], "radius_mm": 2.5}],
+ "scanner": {"dpi": 4800, "background": 35.6, "contrast": 162.7, "blur_px": 2.12, "noise": 1.47, "noise_correlation": 0.5,
+  "rough": {"edge_roughness_um": 0.52, "edge_common_um": 0.15, "correlation_um": 12.5, "correlation_form": "gaussian",
+            "one_sided_blur_px": 1.51, "one_sided_way": "+y"}},
+ "effects": [{"id": "scan.carriage_ripple", "amplitude_um": 9.02, "period_mm": 3.666, "phase_deg": 93.4}]}
+J
+"$renderer" render ripple.json -o ripple.png || fail "ripple.json"
+"$program" loop ripple.png --form discs -o ripple.out || fail "loop on a plate with a ripple"
+[ "$(value ripple.out "[c['id'] for c in r['claims']]")" = "['scan.carriage_ripple']" ] ||
+  fail "a ripple of 9 um is called $(value ripple.out "(r['verdict'], [c['id'] for c in r['claims']])")"
+reports="$reports ripple"
 fi
 
 for report in $reports; do valid loop_scan.schema.json $report.out; done

@@ -8,14 +8,6 @@
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 
-static void put_number(FILE *out, double value) {
-  char text[32];
-  fputc(',', out);
-  if (!isfinite(value)) return;
-  fg_json_format(text, value);
-  fputs(text, out);
-}
-
 static void put_names(FILE *out, const fg_quantity *quantity) {
   for (size_t k = 0; k < fg_quantity_width(quantity); k++) {
     char name[64];
@@ -41,7 +33,7 @@ static void put_values(FILE *out, fg_quantity_owner owner, const void *object) {
     double numbers[FG_QUANTITY_NUMBERS_MAX];
     size_t width = fg_quantity_numbers(&rows[i], object, numbers);
     for (size_t k = 0; k < width; k++)
-      put_number(out, numbers[k]);
+      fg_csv_put_number(out, numbers[k]);
   }
 }
 
@@ -56,7 +48,7 @@ typedef struct scan_lines {
 static void put_end(FILE *out, const scan_lines *scan, fg_verdict verdict, const fg_foil *foil) {
   fprintf(out, ",%s,%s", fg_verdict_word(verdict), scan->measurement->model_sha256);
   for (int i = 0; foil && i < 4; i++)
-    put_number(out, foil->place_mm[i]);
+    fg_csv_put_number(out, foil->place_mm[i]);
   fputc('\n', out);
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/select.h"
 #include "foilgauge/words.h"
 #include "report/drawing.h"
 
@@ -250,7 +251,7 @@ static fg_status draw_marks(fg_context *ctx, marks *at) {
   at->cells.taken = block;
   memset(block, 0, (size_t)at->cells.columns * (size_t)at->cells.rows);
   take_drawing(at);
-  if (at->count) qsort(at->list, at->count, sizeof *at->list, by_excess);
+  fg_sort_items(at->list, at->count, sizeof *at->list, by_excess);
   fg_status status = FG_OK;
   for (size_t i = 0; i < at->count && status == FG_OK; i++)
     status = draw_mark(ctx, at, &at->list[i]);

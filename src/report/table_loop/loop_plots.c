@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/spread.h"
 #include "core/text.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/table_loop/loop_panel.h"
@@ -32,13 +33,6 @@ static void left_over(const fg_loop_report *report, double *left) {
     bool follows = sum && i > 0 && problem->series[i] == problem->series[i - 1];
     left[i] = result->after_fit[i] + (follows ? result->noise.rho * left[i - 1] : 0);
   }
-}
-
-static double mean_of(const double *value, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += value[i];
-  return sum / (double)count;
 }
 
 /* The effect over its coordinate between the rows as well; of two coordinates, of levels, and what
@@ -153,7 +147,7 @@ static fg_status put_mean(fg_context *ctx, FILE *out, const fg_loop_report *repo
                        : "What the model lacks, over what is left";
   panel.marked = lone ? &claim->candidate : NULL;
   FG_TRY(fg_loop_claim_evaluate(ctx, problem, claim, work));
-  double mean = lone ? 0 : mean_of(work, rows);
+  double mean = lone ? 0 : fg_mean(work, rows);
   for (size_t i = 0; i < rows; i++)
     work[rows + i] = left[i] + work[i] - mean;
   if (is_curve(problem, claim))
