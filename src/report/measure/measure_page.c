@@ -76,11 +76,12 @@ static void put_tiles(FILE *out, const fg_foil *foil) {
   fputs("</dl>\n", out);
 }
 
-static void put_flags(FILE *out, const fg_foil *foil) {
-  if (!foil->flags) return;
+static void put_flags(FILE *out, const fg_design *design, const fg_foil *foil) {
+  unsigned flags = fg_foil_flags_told(design, foil);
+  if (!flags) return;
   fputs("<ul class=\"flags\">\n", out);
   for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
-    if (foil->flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
+    if (flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
   fputs("</ul>\n", out);
 }
 
@@ -272,7 +273,7 @@ static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
   bool arc = design->form == FG_FORM_ARC;
   if (measured) (arc ? put_arc_tiles : put_tiles)(out, foil);
   FG_TRY(put_picture(ctx, out, measurement, foil));
-  put_flags(out, foil);
+  put_flags(out, design, foil);
   if (measured) (arc ? put_arc_details : put_foil_details)(out, design, foil);
   if (measured && !arc) put_free_and_fitted(out);
   if (measured) put_uncertainty(out, measurement, foil);

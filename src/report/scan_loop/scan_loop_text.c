@@ -73,16 +73,26 @@ static void put_choice(FILE *out, const char *symbol, const fg_correction_choice
             2000 * choice->u_move_mm);
 }
 
+static void put_bump(FILE *out, const fg_bump *before, const fg_bump *after) {
+  if (!isfinite(before->radius_mm) || !isfinite(after->radius_mm))
+    fprintf(out, "  bump %d: not fitted\n", before->number);
+  else
+    fprintf(out, "  bump %d: R %.5f -> %.5f mm, h %.5f -> %.5f mm\n", before->number,
+            before->radius_mm, after->radius_mm, before->height_mm, after->height_mm);
+}
+
 static void put_foils(FILE *out, const fg_measurement *before, const fg_measurement *after,
                       bool tied) {
   for (size_t f = 0; f < before->foil_count && f < after->foil_count; f++) {
     const fg_foil *b = &before->foils[f], *a = &after->foils[f];
+    if (!isfinite(b->overall.radius_mm)) {
+      fprintf(out, "%s foil %d: not measured: %s\n", before->scan, b->number, b->error);
+      continue;
+    }
     fprintf(out, "%s foil %d: R0 %.5f -> %.5f mm\n", before->scan, b->number, b->overall.radius_mm,
             a->overall.radius_mm);
     for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++)
-      fprintf(out, "  bump %d: R %.5f -> %.5f mm, h %.5f -> %.5f mm\n", b->bumps[k].number,
-              b->bumps[k].radius_mm, a->bumps[k].radius_mm, b->bumps[k].height_mm,
-              a->bumps[k].height_mm);
+      put_bump(out, &b->bumps[k], &a->bumps[k]);
     for (int k = 0; k < FG_CORRECTED; k++)
       put_choice(out, fg_corrected_symbol((fg_corrected)k), &a->choice[k], tied);
   }
