@@ -84,21 +84,31 @@ static void put_moved(FILE *out, const char *symbol, double before_mm, double af
   fputs(" mm", out);
 }
 
+static void put_bump(FILE *out, const fg_bump *before, const fg_bump *after) {
+  fprintf(out, "  bump %d:", before->number);
+  if (!isfinite(before->radius_mm) || !isfinite(after->radius_mm)) {
+    fputs(" not fitted\n", out);
+    return;
+  }
+  put_moved(out, "R", before->radius_mm, after->radius_mm, after->u_radius_mm);
+  fputc(',', out);
+  put_moved(out, "h", before->height_mm, after->height_mm, after->u_height_mm);
+  fputc('\n', out);
+}
+
 static void put_foils(FILE *out, const fg_measurement *before, const fg_measurement *after,
                       bool tied) {
   for (size_t f = 0; f < before->foil_count && f < after->foil_count; f++) {
     const fg_foil *b = &before->foils[f], *a = &after->foils[f];
+    if (!isfinite(b->overall.radius_mm)) {
+      fprintf(out, "%s foil %d: not measured: %s\n", before->scan, b->number, b->error);
+      continue;
+    }
     fprintf(out, "%s foil %d:", before->scan, b->number);
     put_moved(out, "R0", b->overall.radius_mm, a->overall.radius_mm, a->overall.u_radius_mm);
     fputc('\n', out);
-    for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++) {
-      const fg_bump *was = &b->bumps[k], *is = &a->bumps[k];
-      fprintf(out, "  bump %d:", was->number);
-      put_moved(out, "R", was->radius_mm, is->radius_mm, is->u_radius_mm);
-      fputc(',', out);
-      put_moved(out, "h", was->height_mm, is->height_mm, is->u_height_mm);
-      fputc('\n', out);
-    }
+    for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++)
+      put_bump(out, &b->bumps[k], &a->bumps[k]);
     for (int k = 0; k < FG_CORRECTED; k++)
       put_choice(out, fg_corrected_symbol((fg_corrected)k), &a->choice[k], tied);
   }
