@@ -9,8 +9,8 @@ set(ABI_VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(EXPORTS ${CMAKE_BINARY_DIR}/exports.map)
 add_custom_command(OUTPUT ${EXPORTS}
   COMMAND ${CMAKE_COMMAND} "-DHEADERS=${PUBLIC_HEADERS}" -DVERSION=${ABI_VERSION} -DMAP=${EXPORTS}
-          -P ${CMAKE_SOURCE_DIR}/cmake/exports.cmake
-  DEPENDS ${PUBLIC_HEADERS} cmake/exports.cmake VERBATIM)
+          -P ${CMAKE_SOURCE_DIR}/src/cmake/exports.cmake
+  DEPENDS ${PUBLIC_HEADERS} src/cmake/exports.cmake VERBATIM)
 add_custom_target(exports DEPENDS ${EXPORTS})
 
 # Compiled once: objects as for a program serve the shared library too, where the compiler makes them for any address
@@ -24,7 +24,7 @@ check_c_source_compiles("
 int main(void) { return 0; }" OBJECTS_FOR_ANY_ADDRESS)
 if(OBJECTS_FOR_ANY_ADDRESS)
   set_source_files_properties(
-    src/geometry/circle_fit.c src/geometry/circle_levenberg.c src/geometry/roundness.c
+    src/forming/search.c src/geometry/circle_fit.c src/geometry/circle_levenberg.c src/geometry/roundness.c
     src/process/experiment_order.c src/station/scan_command.c src/stats/table_load.c
     PROPERTIES COMPILE_OPTIONS -fPIC)
 else()
@@ -53,7 +53,7 @@ install(FILES ${PUBLIC_HEADERS} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/foilgaug
         COMPONENT development)
 
 set(PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/foilgauge)
-configure_package_config_file(cmake/foilgaugeConfig.cmake.in
+configure_package_config_file(src/cmake/foilgaugeConfig.cmake.in
   ${CMAKE_BINARY_DIR}/package/foilgaugeConfig.cmake INSTALL_DESTINATION ${PACKAGE_DIR})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/foilgaugeConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
@@ -67,7 +67,7 @@ install(EXPORT foilgaugeTargets NAMESPACE foilgauge:: DESTINATION ${PACKAGE_DIR}
 file(RELATIVE_PATH PC_TO_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
 list(TRANSFORM STATIC_NEEDS PREPEND -l OUTPUT_VARIABLE PC_STATIC_LIBRARIES)
 list(JOIN PC_STATIC_LIBRARIES " " PC_STATIC_LIBRARIES)
-configure_file(cmake/foilgauge.pc.in ${CMAKE_BINARY_DIR}/package/foilgauge.pc @ONLY)
+configure_file(src/cmake/foilgauge.pc.in ${CMAKE_BINARY_DIR}/package/foilgauge.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/package/foilgauge.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
