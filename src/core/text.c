@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 fg_status fg_text_print(fg_context *ctx, char **text, const char *format, ...) {
   va_list arguments;
@@ -34,4 +35,14 @@ void fg_text_clip(char *text, size_t size, const char *format, ...) {
   va_start(arguments, format);
   vsnprintf(text, size, format, arguments);
   va_end(arguments);
+}
+
+fg_status fg_text_append_word(fg_context *ctx, char **text, const char *word) {
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-";
+  if (*word && strspn(word, plain) == strlen(word)) return fg_text_append(ctx, text, " %s", word);
+  FG_TRY(fg_text_append(ctx, text, " '"));
+  for (; *word; word++)
+    FG_TRY(*word == '\'' ? fg_text_append(ctx, text, "'\\''")
+                         : fg_text_append(ctx, text, "%c", *word));
+  return fg_text_append(ctx, text, "'");
 }

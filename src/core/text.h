@@ -4,4 +4,7 @@
 
 #include "foilgauge/text.h"
 
+/* Appends a blank and a word of a command, quoted where a shell would not take it for one word. */
+fg_status fg_text_append_word(fg_context *ctx, char **text, const char *word);
+
 #endif

@@ -56,15 +56,22 @@ static double large_residual(const fg_measurement *measurement) {
 
 /* The magnification of residuals that makes the larger ones about 0.9 mm long: 1, 2 or 5 times a
  * power of ten. 1000 when there are none. */
-static double magnification_of(const fg_measurement *measurement) {
+static double magnification_for(double largest) {
   static const double steps[] = {1, 2, 5, 10};
-  double largest = large_residual(measurement);
   if (!(largest > 0)) return 1000;
   double wanted = whisker_mm / (largest * 1e-3), power = pow(10, floor(log10(wanted)));
   double best = power;
   for (int i = 0; i < 4; i++)
     if (steps[i] * power <= wanted) best = steps[i] * power;
   return fmax(1, best);
+}
+
+double fg_drawing_magnification(const fg_report *report) {
+  double largest = 0;
+  for (size_t i = 0; i < report->scan_count; i++)
+    if (report->scans[i].measurement)
+      largest = fmax(largest, large_residual(report->scans[i].measurement));
+  return magnification_for(largest);
 }
 
 static fg_status draw_edges(fg_context *ctx, fg_canvas *canvas, const fg_strip *strip) {
@@ -239,7 +246,8 @@ static fg_drawing_box scale_box(const fg_canvas *canvas, int corner) {
       low, {low.x + size_px[0] / canvas->px_per_mm[0], low.y + size_px[1] / canvas->px_per_mm[1]}};
 }
 
-/* How much of the strips, and of their residuals beside them, lies in a box. */
+/* How much of the strips, with their residuals beside them, and of the discs' edges lies in a box.
+ */
 static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
   size_t inside = 0;
   double margin = baseline_mm + whisker_mm;
@@ -248,6 +256,11 @@ static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
       fg_point at = midpoint(&measurement->foils[i].strip.stations[k]);
       inside += at.x > box.low.x - margin && at.x < box.high.x + margin &&
                 at.y > box.low.y - margin && at.y < box.high.y + margin;
+    }
+  for (size_t i = 0; i < measurement->disc_count; i++)
+    for (size_t k = 0; measurement->discs[i].edge && k < measurement->discs[i].points; k++) {
+      fg_point at = measurement->discs[i].edge[k];
+      inside += at.x > box.low.x && at.x < box.high.x && at.y > box.low.y && at.y < box.high.y;
     }
   return inside;
 }
@@ -282,9 +295,9 @@ static fg_status draw_scale(fg_context *ctx, fg_canvas *canvas, const fg_measure
   return fg_canvas_text(ctx, canvas, text_at, 11, 0, FG_COLOUR_TEXT, text);
 }
 
-fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
-                              const fg_measurement *measurement) {
-  double magnification = magnification_of(measurement);
+fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
+                              double magnification) {
+  if (!(magnification > 0)) magnification = magnification_for(large_residual(measurement));
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(draw_foil(ctx, canvas, &measurement->foils[i], magnification));
   for (size_t i = 0; i < measurement->disc_count; i++)

@@ -2,6 +2,7 @@
 #ifndef FG_REPORT_DRAWING_H
 #define FG_REPORT_DRAWING_H
 
+#include "foilgauge/report.h"
 #include "report/canvas.h"
 
 enum {
@@ -19,8 +20,13 @@ typedef struct fg_drawing_box {
 } fg_drawing_box;
 fg_drawing_box fg_drawing_scale_box(const fg_canvas *canvas, const fg_measurement *measurement);
 
-/* Draws every foil and disc, and the residuals' scale in the emptiest corner. */
-fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas,
-                              const fg_measurement *measurement);
+/* How many times as large residuals are drawn so that those of all scans of a report compare: 1, 2
+ * or 5 times a power of ten. */
+double fg_drawing_magnification(const fg_report *report);
+
+/* Draws every foil and disc, and the residuals' scale in the emptiest corner. Residuals are
+ * `magnification` times as large; 0: as suits this measurement. */
+fg_status fg_draw_measurement(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement,
+                              double magnification);
 
 #endif

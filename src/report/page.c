@@ -14,13 +14,16 @@ static const char style[] =
     "header{display:flex;flex-wrap:wrap;gap:6px 18px;align-items:center;margin-bottom:14px}\n"
     "h1{font-size:24px;line-height:1.2;margin:0}h2{font-size:17px;margin:28px 0 8px}\n"
     "header p{margin:0;color:var(--soft);overflow-wrap:anywhere}\n"
-    ".verdict{font-weight:650;padding:5px "
-    "14px;border-radius:99px;color:#fff;background:var(--soft)}"
+    ".verdict{font-weight:700;font-size:17px;line-height:1.3;padding:5px "
+    "16px;border-radius:8px;color:#fff;background:var(--soft);white-space:nowrap}"
     ".verdict.pass{background:var(--good)}.verdict.fail{background:var(--bad)}"
-    ".verdict.cannot_tell,.verdict.not_measured{background:var(--open)}\n"
-    ".tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:10px;"
-    "margin:0 0 16px}.tiles div{background:var(--ground);border-radius:8px;padding:9px 13px}"
-    ".tiles dt{font-size:12.5px;color:var(--soft)}.tiles dd{margin:0;font-size:18px;"
+    ".verdict.cannot_tell,.verdict.not_measured{background:var(--open)}"
+    /* A verdict is a sign and a word before it is a colour. */
+    ".verdict.pass::before{content:\"✓ \"}.verdict.fail::before{content:\"✗ \"}"
+    ".verdict.cannot_tell::before{content:\"? \"}.verdict.not_measured::before{content:\"⊘ \"}"
+    ".tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(134px,1fr));gap:10px;"
+    "margin:0 0 16px}.tiles div{background:var(--ground);border-radius:8px;padding:9px 9px}"
+    ".tiles dt{font-size:12.5px;color:var(--soft)}.tiles dd{margin:0;font-size:15px;"
     "font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}"
     ".tiles "
     "small{display:block;font-size:12.5px;font-weight:400;color:var(--soft);white-space:normal}\n"
@@ -41,11 +44,12 @@ static const char style[] =
     "height:1.2}"
     "td.fail{background:#fdeaea;color:var(--bad);font-weight:600}"
     "td.cannot_tell{background:#fff4df;color:var(--open);font-weight:600}"
+    "td.fail::before{content:\"✗ \"}td.cannot_tell::before{content:\"? \"}"
     "td.pass{background:#edf7f1}tr.limits td{color:var(--soft);font-size:12.5px}\n"
     ".corrected{margin:0 0 14px;padding:9px 14px;border-left:4px solid var(--blue);background:"
     "#eaf2fc;border-radius:0 8px 8px 0;overflow-wrap:anywhere}\n"
     ".reasons{margin:-6px 0 10px;color:var(--soft)}.reasons b{color:var(--ink)}\n"
-    "ul.flags{margin:14px 0 0;padding:10px 14px 10px 32px;background:#fff8e8;border-radius:8px}\n"
+    "ul.flags{margin:0 0 14px;padding:10px 14px 10px 32px;background:#fff8e8;border-radius:8px}\n"
     ".plot{display:block;width:100%;height:auto;font-size:14px}.plot text{fill:var(--ink)}"
     ".plot .x,.plot .title{text-anchor:middle}.plot .y{text-anchor:end}.plot .title{fill:"
     "var(--soft)}.plot .bump{fill:var(--bump);font-weight:600}.grid{stroke:#e6eaee}"
@@ -58,12 +62,43 @@ static const char style[] =
     ".note{font-size:13.5px;color:var(--soft);max-width:75ch}\n"
     "@media(max-width:600px){main{padding:8px}section{padding:14px;border-radius:8px}"
     ".tiles{grid-template-columns:1fr 1fr}.tiles dd{font-size:16px;white-space:normal}"
-    ".plot{font-size:20px}dl.facts{grid-template-columns:1fr}dl.facts dd{margin-bottom:6px}}\n"
-    "@media print{@page{margin:14mm}body{background:#fff;font-size:10.5pt;"
+    ".plot{font-size:20px}dl.facts{grid-template-columns:1fr}dl.facts dd{margin-bottom:6px}}\n";
+
+/* Of a verdict: the section that it is of, what is told, what to do. */
+static const char judged_style[] =
+    "section.judged{border-left:10px solid var(--line)}section.judged.pass{border-left-color:"
+    "var(--good)}section.judged.fail{border-left-color:var(--bad)}section.judged.cannot_tell,"
+    "section.judged.not_measured{border-left-color:var(--open)}.why td{vertical-align:top}.why "
+    "td.words{min-width:0}.why td:last-child{width:46%}"
+    "tr.unfitted td{background:repeating-linear-gradient(135deg,#fff 0 6px,#f1f3f5 6px 12px)}"
+    ".why a{color:#0b4f9e}.limits-of{stroke:var(--bad);stroke-width:1.5;stroke-dasharray:7 4}"
+    ".inside{fill:#edf7f1}.plot .beyond-limit{stroke:var(--bad);stroke-width:2.5;fill:none}"
+    ".plot "
+    ".told{font-weight:600;fill:var(--bad);paint-order:stroke;stroke:#fff;stroke-width:4px}.plot "
+    ".open{fill:var(--open)}\n"
+    ".next{margin:0 0 16px;padding:10px 16px;border-left:6px solid var(--open);background:#fff8e8;"
+    "border-radius:0 8px 8px 0;font-size:16px;max-width:95ch}.next code{display:block;margin:6px 0 "
+    "0;"
+    "padding:5px 10px;background:#fff;border-radius:6px;font-size:13.5px;user-select:all}\n";
+
+/* On paper a page runs on: nothing begins a sheet of its own, a heading keeps what it is of, and
+ * no picture is so tall that it leaves half a sheet empty. */
+static const char print_style[] =
+    "@media print{@page{margin:14mm}body{background:#fff;font-size:10pt;"
     "-webkit-print-color-adjust:exact;print-color-adjust:exact}main{max-width:none;padding:0}"
-    "section{border:0;padding:0;break-after:page}section:last-child{break-after:auto}"
-    "figure,tr{break-inside:avoid}.scroll{overflow:visible}table{font-size:7.6pt}"
-    "th,td{padding:3px 4px}}\n";
+    "section{border:0;border-radius:0;padding:0;margin:0 0 18pt}"
+    "section.judged{padding-left:8px;"
+    "-webkit-box-decoration-break:clone;box-decoration-break:clone}"
+    "h1,h2,h3,summary,header,figcaption:first-child{break-after:avoid}"
+    "figure,tr,header,.tiles,.reasons,.next,ul.flags,.corrected,dl.facts,.panels figure,.two{"
+    "break-inside:avoid}p,li{orphans:3;widows:3}thead{display:table-header-group}"
+    ".picture{max-height:105mm}.scroll{overflow:visible}table{font-size:7.6pt}th,td{padding:3px "
+    "4px}"
+    "td i{font-size:6.6pt}td.words:not(:empty){min-width:18mm}.tiles{grid-template-columns:repeat("
+    "auto-fit,minmax(23mm,1fr));gap:5px}.tiles div{padding:5px 6px}.tiles "
+    "dd{font-size:9pt;white-space:normal}.tiles dt,.tiles small{font-size:7.5pt}"
+    ".note{max-width:none}"
+    ".panels{grid-template-columns:1fr 1fr}}\n";
 
 /* Plots side by side, effects, contours. */
 static const char plot_style[] =
@@ -83,8 +118,7 @@ static const char plot_style[] =
     "ul.words code{padding:4px "
     "8px;background:#eef2f5;border-radius:6px;overflow-wrap:anywhere;user-select:all}"
     "tr.on td{font-weight:600}tr.total td{border-top:2px solid var(--line)}\n"
-    "@media(max-width:600px){.panels .plot{font-size:14px}}\n"
-    "@media print{.panels{grid-template-columns:1fr 1fr}}\n";
+    "@media(max-width:600px){.panels .plot{font-size:14px}}\n";
 
 /* Pages of lots. */
 static const char lot_style[] =
@@ -117,8 +151,11 @@ static const char lot_style[] =
  * of a circle, blue, orange, green and pink for scans. */
 static const char loop_style[] =
     "h2.first{margin-top:0}.say{font-size:17px;max-width:82ch;margin:4px 0 16px}"
-    ".verdict.loop-clean{background:var(--good)}.verdict.loop-explained{background:var(--blue)}"
-    ".verdict.loop-partly,.verdict.loop-unattributed{background:var(--open)}"
+    ".verdict.loop-clean{background:var(--good)}.verdict.loop-clean::before{content:\"✓ \"}"
+    ".verdict.loop-explained,.verdict.loop-partly,.verdict.loop-unattributed{background:"
+    "var(--open)}.verdict.loop-explained::before,.verdict.loop-partly::before{content:\"! \"}"
+    ".verdict.loop-unattributed::before{content:\"? \"}.next.calm{border-left-color:var(--good);"
+    "background:#edf7f1}"
     "h3{font-size:14px;margin:16px 0 4px;overflow-wrap:anywhere}th.w,td.w{text-align:left}"
     "td.path{white-space:normal;overflow-wrap:anywhere;min-width:140px}"
     ".doubt{color:var(--bad);font-weight:650;max-width:82ch;margin:0 0 14px}"
@@ -141,7 +178,8 @@ static const char loop_style[] =
     "span.k3{color:#aa4499}span.k4{color:#5b6875}"
     "td.moved-on{background:#fff0d6;font-weight:650}th.group{text-align:center;border-left:1px "
     "solid var(--line)}details summary{cursor:pointer;font-weight:600;margin:14px 0 8px}"
-    ".dimensions th,.dimensions td{padding:4px 7px}.dimensions.narrow{width:auto}"
+    ".dimensions th,.dimensions td{padding:4px "
+    "7px}.dimensions.narrow{width:auto}.dimensions{margin-bottom:14px}.plot.scale{font-size:13px}"
     ".dimensions td:first-child{position:sticky;left:0;background:#fff}"
     ".two{display:grid;grid-template-columns:1fr 1fr;gap:16px 22px;margin-bottom:14px}"
     "code{font-size:12.5px;overflow-wrap:anywhere}\n"
@@ -191,7 +229,7 @@ void fg_html_head(FILE *out, const char *title) {
 }
 
 void fg_html_style(FILE *out) {
-  fprintf(out, "%s%s%s%s", style, plot_style, lot_style, loop_style);
+  fprintf(out, "%s%s%s%s%s%s", style, judged_style, plot_style, lot_style, loop_style, print_style);
 }
 
 void fg_html_begin(FILE *out, const char *title) {

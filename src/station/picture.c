@@ -13,7 +13,7 @@ static fg_status draw(fg_context *ctx, const fg_measurement *measurement, const 
   size_t size;
   FILE *out = open_memstream(html, &size);
   if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
-  fg_status status = fg_html_picture(ctx, out, measurement, foil);
+  fg_status status = fg_html_picture(ctx, out, measurement, foil, 0);
   if (fclose(out) != 0 && status == FG_OK)
     status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory: a picture");
   return status;

@@ -44,7 +44,7 @@ SCANNER = {"dpi": 2400, "background": 30, "contrast": 175, "blur_px": 1.3, "nois
 FOIL = {"overall_radius_mm": 20.95, "radius_mm": [3.34, 3.41, 3.36, 3.44, 3.38, 3.35, 3.42, 3.37, 3.40]}
 PINS = [[1.2, 1.6, 1], [5.0, 2.2, 1.5], [10.1, 2.9, 2], [16.2, 3.2, 2.5], [23.1, 3.6, 3], [29.8, 2.9, 2.25], [2.1, 9.4, 1.25],
         [7.2, 10.1, 2.75], [13.9, 11.3, 3], [20.8, 12.0, 2.5], [26.9, 12.9, 1.75], [6.2, 16.9, 1.5]]
-LIMITS = {"radius_error_pct": {"min": -1, "max": 3}, "height_mm": {"min": 0.5, "max": 0.6},
+LIMITS = {"radius_error_pct": {"min": -1, "max": 4}, "height_mm": {"min": 0.5, "max": 0.6},
           "overall.radius_mm": {"max": 21.05}}
 
 
@@ -61,7 +61,7 @@ def plate(seed, lobe_um=(0,), effects=()):
 
 RIPPLE = {"id": "scan.carriage_ripple", "amplitude_um": 7, "period_mm": 2.7, "phase_deg": 30}
 CURVE = {"id": "free.scan.y", "moves": "x", "knots": [[2, 0], [8, 9], [15, -8], [22, 10], [30, -9], [38, 0]]}
-BAD = dict(FOIL, radius_mm=[3.34, 3.35, 3.454, 3.34, 3.36, 3.35, 3.42, 3.37, 3.40])
+BAD = dict(FOIL, radius_mm=[3.34, 3.35, 3.49, 3.34, 3.36, 3.35, 3.42, 3.37, 3.40])
 PLACED = dict(FOIL, centre_mm=[20, 22])
 
 # A wave that no effect has, measured twice at every place: text, as it goes into the file.
@@ -188,6 +188,9 @@ for (const e of document.querySelectorAll('*')) {
   if (style.overflowX !== 'visible' && e.scrollWidth > e.clientWidth + slack && e.clientWidth && style.textOverflow !== 'ellipsis')
     found.push(name(e) + ' shows ' + e.clientWidth + ' of ' + e.scrollWidth + ' px: ' + e.textContent.trim().slice(0, 40));
 }
+for (const e of document.querySelectorAll('dd, dt, td, th, h1, h2, h3, p, figcaption, .verdict'))
+  if (shown(e) && getComputedStyle(e).display !== 'inline' && e.scrollWidth > e.clientWidth + slack)
+    found.push(name(e) + ' holds ' + e.scrollWidth + ' px in ' + e.clientWidth + ': ' + e.textContent.trim().slice(0, 40));
 for (const e of document.querySelectorAll('table, p, figure, dl, pre, ul, h1, h2')) {
   const box = e.getBoundingClientRect();
   if (shown(e) && (box.right > width + slack || box.left < -slack))
@@ -223,7 +226,7 @@ class Reader:
             options.add_argument(argument)
         self.browser = webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
 
-    def set_width(self, width, media):
+    def set_width(self, width, media=""):
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                      {"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": False})
         self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media})
@@ -232,7 +235,7 @@ class Reader:
         return [f"{where}: {words}" for words in self.browser.execute_script(CLIPPED)]
 
     def open(self, file):
-        self.set_width(SCREEN_PX, "screen")
+        self.set_width(SCREEN_PX)
         self.browser.get("file://" + file)
 
     def look(self, file):
@@ -242,7 +245,7 @@ class Reader:
         headings = {squeezed(text) for text in self.browser.execute_script(HEADINGS)} - {""}
         self.set_width(PRINT_PX, "print")
         wrong += self.clipped("printed on A4")
-        self.set_width(SCREEN_PX, "screen")
+        self.set_width(SCREEN_PX)
         with tempfile.NamedTemporaryFile(suffix=".pdf") as pdf:
             self.print(pdf.name)
             return wrong + printed_wrong(pdf.name, headings)
@@ -259,7 +262,7 @@ class Reader:
         self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
             "width": SCREEN_PX, "height": height, "deviceScaleFactor": 1, "mobile": False})
         self.browser.save_screenshot(path)
-        self.set_width(SCREEN_PX, "screen")
+        self.set_width(SCREEN_PX)
 
     def quit(self):
         self.browser.quit()

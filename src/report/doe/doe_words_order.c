@@ -9,17 +9,6 @@
 
 static const char program[] = "foilgauge ";
 
-/* As a shell takes it for one word. */
-static fg_status append_word(fg_context *ctx, char **text, const char *word) {
-  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-";
-  if (*word && strspn(word, plain) == strlen(word)) return fg_text_append(ctx, text, " %s", word);
-  FG_TRY(fg_text_append(ctx, text, " '"));
-  for (; *word; word++)
-    FG_TRY(*word == '\'' ? fg_text_append(ctx, text, "'\\''")
-                         : fg_text_append(ctx, text, "%c", *word));
-  return fg_text_append(ctx, text, "'");
-}
-
 fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report *report,
                                      char **command) {
   const fg_experiment *e = report->experiment;
@@ -37,7 +26,7 @@ fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report
   for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
     if (!words[i].value) continue;
     FG_TRY(fg_text_append(ctx, command, " %s", words[i].option));
-    FG_TRY(append_word(ctx, command, words[i].value));
+    FG_TRY(fg_text_append_word(ctx, command, words[i].value));
   }
   return FG_OK;
 }

@@ -1,81 +1,15 @@
 /* The page: for every foil its verdict, key numbers and picture first, then tables and plots. */
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/scan_loop.h"
 #include "report/correction_words.h"
+#include "report/drawing.h"
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
 #include "report/provenance.h"
-
-static const char *base_name(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash && slash[1] ? slash + 1 : path;
-}
-
-static void put_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
-                     const void *object) {
-  const fg_quantity *row = fg_quantity_find(owner, name);
-  double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
-  int decimals = fg_report_decimals(row, u);
-  fprintf(out, "<div><dt>%s</dt><dd>", title);
-  if (isfinite(value))
-    fprintf(out, "%s%.*f %s", value < 0 ? "−" : "", decimals, fabs(value), row->unit);
-  else
-    fputs("–", out);
-  if (isfinite(u)) fprintf(out, "<small>± %.*f</small>", decimals, FG_COVERAGE_FACTOR * u);
-  fputs("</dd></div>\n", out);
-}
-
-/* Mean over the bumps, with their spread as a standard deviation: it says more than one bump. */
-static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, const char *title) {
-  const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, name);
-  double sum = 0, squares = 0;
-  size_t count = 0;
-  for (size_t i = 0; i < foil->bump_count; i++) {
-    double value = fg_quantity_value(row, &foil->bumps[i]);
-    if (!isfinite(value)) continue;
-    count++;
-    double step = value - sum;
-    sum += step / (double)count; /* the running mean */
-    squares += step * (value - sum);
-  }
-  if (count == 0) return;
-  fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, row->decimals, sum, row->unit);
-  if (count > 1)
-    fprintf(out, "<small>s = %.*f, n = %zu</small>", row->decimals,
-            sqrt(squares / (double)(count - 1)), count);
-  fputs("</dd></div>\n", out);
-}
-
-static void put_arc_tiles(FILE *out, const fg_foil *foil) {
-  fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Radius", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Springback of the radius",
-           foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_deg", "Angle between the ends", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.subtended_angle_error_pct", "Angle against the design",
-           foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "arc.length_mm", "Length", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
-  fputs("</dl>\n", out);
-}
-
-static void put_tiles(FILE *out, const fg_foil *foil) {
-  fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
-  put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback", foil);
-  put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
-  put_mean_tile(out, foil, "height_mm", "Bump height, mean");
-  put_mean_tile(out, foil, "clearance_mm", "Clearance, free, mean");
-  put_mean_tile(out, foil, "clearance_fitted_mm", "Clearance, fitted, mean");
-  put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
-  fputs("</dl>\n", out);
-}
 
 static void put_flags(FILE *out, const fg_foil *foil) {
   if (!foil->flags) return;
@@ -106,6 +40,7 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
   return FG_OK;
 }
 
+/* Where the tiles have an s, it is said what over. */
 static void put_uncertainty(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
   char scale[FG_SCALE_WORDS];
   fg_scale_words(measurement->model, &measurement->design.calibration, scale, sizeof scale);
@@ -115,9 +50,11 @@ static void put_uncertainty(FILE *out, const fg_measurement *measurement, const 
         out);
   fg_html_text(out, scale);
   fputs(" A value passes when value ± U lies inside its tolerance, fails when "
-        "it lies outside, and cannot be told when a limit runs through it. s is the standard "
-        "deviation over the n bumps.</p>\n",
+        "it lies outside, and cannot be told when a limit runs through it.",
         out);
+  if (foil && measurement->design.form != FG_FORM_ARC)
+    fputs(" s is the standard deviation over the n bumps.", out);
+  fputs("</p>\n", out);
   fg_html_uncertainty_budget(out, measurement, foil);
 }
 
@@ -132,20 +69,24 @@ static void put_free_and_fitted(FILE *out) {
       out);
 }
 
-static fg_status put_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
-                             const fg_foil *foil) {
+/* What the colours of the picture mean. */
+static const char *legend_of(fg_form form) {
+  if (form == FG_FORM_DISCS)
+    return "Orange: the circle that was fitted to each feature, with its number. Magenta: how far "
+           "the edge lies from it. A red ring and value: beyond a limit.";
+  if (form == FG_FORM_ARC)
+    return "Blue, dashed: the circle; orange: the cuts at the ends, with their directions from the "
+           "centre. Magenta: residuals.";
+  return "Orange: bump circles, solid where the fit used them. Blue, dashed: overall circle. "
+         "Magenta: residuals. A red ring and value: beyond a limit; amber, with a question mark: "
+         "cannot be told.";
+}
+
+static fg_status put_picture(fg_context *ctx, FILE *out, const fg_report *report,
+                             const fg_measurement *measurement, const fg_foil *foil) {
   fputs("<figure>", out);
-  FG_TRY(fg_html_picture(ctx, out, measurement, foil));
-  if (measurement->design.form == FG_FORM_ARC) {
-    fputs("<figcaption>Blue, dashed: the circle; orange: the cuts at the ends, with their "
-          "directions from the centre. Magenta: "
-          "residuals, magnified as the scale says.</figcaption></figure>\n",
-          out);
-    return FG_OK;
-  }
-  fputs("<figcaption>Orange: bump circles, solid where the fit used them. Blue, dashed: overall "
-        "circle. Magenta: residuals, magnified as the scale says.</figcaption></figure>\n",
-        out);
+  FG_TRY(fg_html_picture(ctx, out, measurement, foil, fg_drawing_magnification(report)));
+  fprintf(out, "<figcaption>%s</figcaption></figure>\n", legend_of(measurement->design.form));
   return FG_OK;
 }
 
@@ -169,6 +110,7 @@ static void put_arc_details(FILE *out, const fg_design *design, const fg_foil *f
 }
 
 static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+  fg_html_limits(out, design, foil);
   fputs("<h2>Bumps</h2>\n", out);
   fg_html_bump_table(out, design, foil);
   fg_html_foil_table(out, design, foil);
@@ -176,39 +118,9 @@ static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *
   fg_thickness_words(design, foil, thickness, sizeof thickness);
   if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
   fputs("<h2>Springback error per bump</h2>\n<figure>", out);
-  fg_html_springback(out, foil);
+  fg_html_springback(out, design, foil);
   fputs("</figure>\n", out);
   put_residuals(out, foil, "its fitted circles: lands in blue, bumps in orange");
-}
-
-/* "Out of tolerance (3 values): bump height 1, 8; bump angle 1." Judgements of one tolerance are
- * neighbours. Bumps that are missing are the defect's to tell. */
-static void put_reasons(FILE *out, const fg_decision *decision, fg_verdict verdict) {
-  const fg_judgement *list = decision->judgements;
-  const fg_tolerance *last = NULL;
-  size_t values = 0;
-  for (size_t i = 0; i < decision->count; i++)
-    values += list[i].verdict == verdict && !list[i].missing;
-  for (size_t i = 0; i < decision->count; i++) {
-    if (list[i].verdict != verdict || list[i].missing) continue;
-    if (!last)
-      fprintf(out, "<p class=\"reasons\"><b>%s (%zu %s):</b> ", fg_html_verdict_title(verdict),
-              values, values == 1 ? "value" : "values");
-    if (list[i].tolerance != last) {
-      fprintf(out, "%s%s", last ? "; " : "", list[i].row->words);
-      if (list[i].number) fprintf(out, " %d", list[i].number);
-    } else {
-      fprintf(out, ", %d", list[i].number);
-    }
-    last = list[i].tolerance;
-  }
-  if (last) fputs(".</p>\n", out);
-}
-
-static void put_defect(FILE *out, const fg_design *design, const fg_foil *foil) {
-  char words[200];
-  if (fg_foil_defect(design, foil, words, sizeof words))
-    fprintf(out, "<p class=\"reasons\"><b>Rejected:</b> %s.</p>\n", words);
 }
 
 static void put_not_judged(FILE *out, const fg_design *design) {
@@ -220,6 +132,11 @@ static void put_not_judged(FILE *out, const fg_design *design) {
             names);
 }
 
+static void put_section(FILE *out, const fg_report_outcome *outcome, size_t number) {
+  fprintf(out, "<section id=\"part%zu\" class=\"judged %s\">\n", number,
+          fg_verdict_word(outcome->verdict));
+}
+
 static void put_heading(FILE *out, const fg_report_scan *scan, const fg_foil *foil) {
   fputs("<header><h1>Foil ", out);
   if (scan->name)
@@ -229,55 +146,63 @@ static void put_heading(FILE *out, const fg_report_scan *scan, const fg_foil *fo
   fputs("</h1>", out);
 }
 
-static fg_status put_judged(fg_context *ctx, FILE *out, const fg_design *design,
-                            const fg_report_scan *scan, const fg_foil *foil) {
+static void put_judged(FILE *out, const fg_design *design, const fg_report_scan *scan,
+                       const fg_foil *foil, const fg_decision *decision) {
   static const fg_verdict told[] = {FG_VERDICT_FAIL, FG_VERDICT_NOT_MEASURED, FG_VERDICT_UNDECIDED};
-  fg_decision decision;
-  FG_TRY(fg_foil_decide(ctx, design, foil, &decision));
   put_heading(out, scan, foil);
   if (foil->flags & FG_FOIL_NOT_THIS_DESIGN)
     fputs("<span class=\"verdict not_measured\">Not a foil of this design</span>\n", out);
   else
-    fg_html_outcome(out, &decision.outcome);
+    fg_html_outcome(out, &decision->outcome);
   fputs("<p>", out);
-  fg_html_text(out, base_name(scan->measurement->scan));
+  fg_html_text(out, fg_html_base_name(scan->measurement->scan));
   if (design->form == FG_FORM_ARC)
     fputs(" · a plain strip", out);
   else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
     fprintf(out, " · %zu bumps, %s", foil->bump_count, fg_orientation_word(foil->orientation));
   fputs("</p></header>\n", out);
-  put_defect(out, design, foil);
+  fg_html_defect(out, design, foil);
   for (size_t i = 0; i < sizeof told / sizeof *told; i++)
-    put_reasons(out, &decision, told[i]);
+    fg_html_reasons(out, decision, told[i]);
   put_not_judged(out, design);
-  fg_decision_free(&decision);
-  return FG_OK;
 }
 
-static fg_status put_foil(fg_context *ctx, FILE *out, const fg_design *design,
-                          const fg_report_scan *scan, const fg_foil *foil) {
+/* What ended or limits the measurement stands above the picture. */
+static void put_error(FILE *out, const fg_foil *foil) {
+  if (!foil->error[0]) return;
+  fputs("<p class=\"next\"><b>Why it is not measured:</b> ", out);
+  fg_html_text(out, foil->error);
+  fputs("</p>\n", out);
+}
+
+static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *report,
+                                  const fg_report_scan *scan, const fg_foil *foil) {
   const fg_measurement *measurement = scan->measurement;
+  const fg_design *design = report->design;
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
-  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
-  fputs("<section>\n", out);
-  FG_TRY(put_judged(ctx, out, design, scan, foil));
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED), arc = design->form == FG_FORM_ARC;
+  put_error(out, foil);
+  put_flags(out, foil);
   fg_correction_moved(&foil->correction, moved, sizeof moved);
   fg_correction_added(&foil->correction, added, sizeof added);
   if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));
   fg_html_choices(out, foil);
-  if (foil->error[0]) {
-    fputs("<p class=\"reasons\">", out);
-    fg_html_text(out, foil->error);
-    fputs("</p>\n", out);
-  }
-  bool arc = design->form == FG_FORM_ARC;
-  if (measured) (arc ? put_arc_tiles : put_tiles)(out, foil);
-  FG_TRY(put_picture(ctx, out, measurement, foil));
-  put_flags(out, foil);
+  if (measured) fg_html_tiles(out, design, foil);
+  FG_TRY(put_picture(ctx, out, report, measurement, foil));
   if (measured) (arc ? put_arc_details : put_foil_details)(out, design, foil);
   if (measured && !arc) put_free_and_fitted(out);
   if (measured) put_uncertainty(out, measurement, foil);
-  FG_TRY(put_facts(ctx, out, design, measurement));
+  return put_facts(ctx, out, design, measurement);
+}
+
+static fg_status put_foil(fg_context *ctx, FILE *out, const fg_report *report,
+                          const fg_report_scan *scan, const fg_foil *foil, size_t number) {
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, report->design, foil, &decision));
+  put_section(out, &decision.outcome, number);
+  put_judged(out, report->design, scan, foil, &decision);
+  fg_decision_free(&decision);
+  FG_TRY(put_foil_section(ctx, out, report, scan, foil));
   fputs("</section>\n", out);
   return FG_OK;
 }
@@ -301,17 +226,21 @@ static fg_status put_discs_corrected(fg_context *ctx, FILE *out,
 }
 
 static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
-                           const fg_report_scan *scan) {
+                           const fg_report_scan *scan, size_t number) {
   const fg_measurement *measurement = scan->measurement;
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
-  fprintf(out, "<section>\n<header><h1>%zu round features</h1>", measurement->disc_count);
+  put_section(out, &outcome, number);
+  fprintf(out, "<header><h1>%zu round features</h1>", measurement->disc_count);
   fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
-  fg_html_text(out, base_name(measurement->scan));
+  fg_html_text(out, fg_html_base_name(measurement->scan));
   fputs("</p></header>\n", out);
+  FG_TRY(fg_html_disc_reasons(ctx, out, report->design, measurement));
   FG_TRY(put_discs_corrected(ctx, out, measurement));
-  FG_TRY(put_picture(ctx, out, measurement, NULL));
+  fg_html_disc_tiles(out, measurement);
+  FG_TRY(put_picture(ctx, out, report, measurement, NULL));
+  fputs("<h2>Every feature</h2>\n", out);
   fg_html_disc_table(out, report->design, measurement);
   put_uncertainty(out, measurement, NULL);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
@@ -319,30 +248,39 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   return FG_OK;
 }
 
+static void put_no_scan(FILE *out, const fg_report_scan *scan, size_t number) {
+  const fg_report_outcome outcome = {.verdict = FG_VERDICT_NOT_MEASURED};
+  put_section(out, &outcome, number);
+  fputs("<header><h1>", out);
+  fg_html_text(out, fg_html_base_name(scan->path));
+  fputs("</h1>", out);
+  fg_html_verdict(out, FG_VERDICT_NOT_MEASURED);
+  fputs("</header>\n<p class=\"next\"><b>Why it is not measured:</b> ", out);
+  fg_html_text(out, scan->error);
+  fputs("</p>\n</section>\n", out);
+}
+
+/* `number`: of the section before, and then of its last. */
 static fg_status put_scan(fg_context *ctx, FILE *out, const fg_report *report,
-                          const fg_report_scan *scan) {
+                          const fg_report_scan *scan, size_t *number) {
   const fg_measurement *measurement = scan->measurement;
   if (!measurement) {
-    fputs("<section>\n<header><h1>", out);
-    fg_html_text(out, base_name(scan->path));
-    fputs("</h1>", out);
-    fg_html_verdict(out, FG_VERDICT_NOT_MEASURED);
-    fputs("</header>\n<p>", out);
-    fg_html_text(out, scan->error);
-    fputs("</p>\n</section>\n", out);
+    put_no_scan(out, scan, ++*number);
     return FG_OK;
   }
-  if (report->design->form == FG_FORM_DISCS) return put_discs(ctx, out, report, scan);
+  if (report->design->form == FG_FORM_DISCS) return put_discs(ctx, out, report, scan, ++*number);
   for (size_t i = 0; i < measurement->foil_count; i++)
-    FG_TRY(put_foil(ctx, out, report->design, scan, &measurement->foils[i]));
+    FG_TRY(put_foil(ctx, out, report, scan, &measurement->foils[i], ++*number));
   return FG_OK;
 }
 
 fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *out) {
   const fg_report_scan *first = &report->scans[0];
-  fg_html_begin(out, first->name ? first->name : base_name(first->path));
+  size_t number = 0;
+  fg_html_begin(out, first->name ? first->name : fg_html_base_name(first->path));
+  if (fg_html_sections(report) > 1) FG_TRY(fg_html_summary(ctx, out, report));
   for (size_t i = 0; i < report->scan_count; i++)
-    FG_TRY(put_scan(ctx, out, report, &report->scans[i]));
+    FG_TRY(put_scan(ctx, out, report, &report->scans[i], &number));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");
 }

@@ -23,14 +23,16 @@ void fg_html_outcome(FILE *out, const fg_report_outcome *outcome);
 void fg_html_value(FILE *out, const fg_quantity *row, const void *object);
 
 /* The foil (NULL: the whole scan) cut out of its scan, with circles and residuals over it. Where
- * the scan cannot be read again (standard input) the drawing stands alone. */
+ * the scan cannot be read again (standard input) the drawing stands alone. Residuals are drawn
+ * `magnification` times as large; 0: as suits this measurement. */
 fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
-                          const fg_foil *foil);
+                          const fg_foil *foil, double magnification);
 
 /* Residual of the midline along the foil, bumps marked. */
 void fg_html_residuals(FILE *out, const fg_foil *foil);
 
-/* Radius and angle error of every bump with error bars (as the thesis's figure 5.17). */
-void fg_html_springback(FILE *out, const fg_foil *foil);
+/* Radius and angle error of every bump with error bars (as the thesis's figure 5.17), and limits
+ * where there are any. */
+void fg_html_springback(FILE *out, const fg_design *design, const fg_foil *foil);
 
 #endif

@@ -66,7 +66,8 @@ static fg_status put_image(fg_context *ctx, FILE *out, const fg_picture *picture
 
 /* The measurement with this one foil, so that others do not reach into the picture. */
 static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *picture,
-                             const fg_measurement *measurement, const fg_foil *foil) {
+                             const fg_measurement *measurement, const fg_foil *foil,
+                             double magnification) {
   fg_measurement shown = *measurement;
   fg_foil one;
   if (foil) {
@@ -78,14 +79,14 @@ static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *pictu
   canvas.svg = out;
   canvas.unit_px = fmax(picture->width / SHOWN_WIDTH, picture->height / SHOWN_HEIGHT);
   fputs("<g fill=\"none\" stroke-linejoin=\"round\" class=\"drawing\">\n", out);
-  FG_TRY(fg_draw_measurement(ctx, &canvas, &shown));
-  if (foil) FG_TRY(fg_draw_verdicts(ctx, &canvas, &shown));
+  FG_TRY(fg_draw_measurement(ctx, &canvas, &shown, magnification));
+  if (foil || shown.disc_count) FG_TRY(fg_draw_verdicts(ctx, &canvas, &shown));
   fputs("</g>\n", out);
   return FG_OK;
 }
 
 fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
-                          const fg_foil *foil) {
+                          const fg_foil *foil, double magnification) {
   int64_t box[4];
   fg_picture picture;
   choose_box(measurement, foil, box);
@@ -100,7 +101,7 @@ fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *meas
           picture.width, picture.height, picture.width, picture.height);
   fg_status status = readable ? put_image(ctx, out, &picture) : FG_OK;
   if (!readable) fputs("<rect width=\"100%\" height=\"100%\" fill=\"#20262c\"/>\n", out);
-  if (status == FG_OK) status = put_drawing(ctx, out, &picture, measurement, foil);
+  if (status == FG_OK) status = put_drawing(ctx, out, &picture, measurement, foil, magnification);
   fputs("</svg>\n", out);
   fg_picture_free(&picture);
   return status;

@@ -1,10 +1,10 @@
 /* Plots as inline SVG. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/select.h"
-#include "report/measure/measure_page_parts.h"
-#include "report/plot.h"
+#include "report/measure/measure_page_tables.h"
 
 static bool has_residual(const fg_station_label *label) {
   return isfinite(label->residual_um) && (label->kind == FG_ARC_BUMP || label->kind == FG_ARC_LAND);
@@ -91,22 +91,47 @@ static const series both_series[] = {
     {"bump_angle_error_pct", "s2", "bump angle", 7},
 };
 
-static void springback_range(const fg_foil *foil, double range[2]) {
+/* Crushed bumps lie far out: where the others are is what the plot must show. */
+static bool is_shown(const fg_bump *bump) {
+  return !(bump->flags & FG_BUMP_CRUSHED);
+}
+
+static const fg_tolerance *limit_of(const fg_design *design, const series *one) {
+  for (size_t i = 0; i < design->tolerance_count; i++)
+    if (!strcmp(design->tolerances[i].quantity, one->quantity)) return &design->tolerances[i];
+  return NULL;
+}
+
+static void springback_range(const fg_design *design, const fg_foil *foil, double range[2]) {
   range[0] = range[1] = 0;
   for (size_t k = 0; k < 2; k++) {
     const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, both_series[k].quantity);
     for (size_t i = 0; i < foil->bump_count; i++) {
       double value = fg_quantity_value(row, &foil->bumps[i]);
       double u = fg_quantity_uncertainty(row, &foil->bumps[i]);
-      if (!isfinite(value)) continue;
+      if (!isfinite(value) || !is_shown(&foil->bumps[i])) continue;
       double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
       range[0] = fmin(range[0], value - expanded);
       range[1] = fmax(range[1], value + expanded);
     }
+    const fg_tolerance *limit = limit_of(design, &both_series[k]);
+    if (limit && isfinite(limit->lower)) range[0] = fmin(range[0], limit->lower);
+    if (limit && isfinite(limit->upper)) range[1] = fmax(range[1], limit->upper);
   }
   double margin = fmax(0.05, 0.08 * (range[1] - range[0]));
   range[0] -= margin;
   range[1] += margin;
+}
+
+/* Beyond the plot: its value, at the edge where it leaves. */
+static void put_outside(const fg_plot *at, const series *one, double x, double value) {
+  bool above = value > at->y_high;
+  double y = above ? at->top : at->bottom;
+  fprintf(at->out,
+          "<path class=\"%s\" d=\"M%.1f %.1fl0 %.0fM%.1f %.1fl-5 %.0fm5 %.0fl5 %.0f\"/>"
+          "<text x=\"%.1f\" y=\"%.1f\">%s%.1f %%</text>\n",
+          one->style, x, y, above ? 22.0 : -22.0, x, y, above ? 8.0 : -8.0, above ? -8.0 : 8.0,
+          above ? 8.0 : -8.0, x + 9, above ? y + 16 : y - 6, value < 0 ? "−" : "", fabs(value));
 }
 
 static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) {
@@ -114,6 +139,10 @@ static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) 
   double value = fg_quantity_value(row, bump), u = fg_quantity_uncertainty(row, bump);
   if (!isfinite(value)) return;
   double x = fg_plot_x(at, bump->number) + one->shift, y = fg_plot_y(at, value);
+  if (value > at->y_high || value < at->y_low) {
+    put_outside(at, one, x, value);
+    return;
+  }
   double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
   fprintf(at->out,
           "<path class=\"%s\" d=\"M%.1f %.1fV%.1fM%.1f %.1fh10M%.1f %.1fh10\"/>"
@@ -123,13 +152,13 @@ static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) 
           y);
 }
 
-void fg_html_springback(FILE *out, const fg_foil *foil) {
+void fg_html_springback(FILE *out, const fg_design *design, const fg_foil *foil) {
   double range[2];
   int last = 1;
   if (foil->bump_count == 0) return;
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].number > last) last = foil->bumps[i].number;
-  springback_range(foil, range);
+  springback_range(design, foil, range);
   fg_plot at = {out, 1000, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
   fg_plot_begin(&at, 310, "Springback error of every bump");
   fg_plot_y_axis(&at, "springback error, %");
@@ -138,8 +167,10 @@ void fg_html_springback(FILE *out, const fg_foil *foil) {
     snprintf(number, sizeof number, "%d", foil->bumps[i].number);
     fg_plot_x_label(&at, fg_plot_x(&at, foil->bumps[i].number), number);
   }
-  fg_plot_x_title(&at, "bump, 1 is next to the lip");
+  fg_plot_x_title(&at, foil->flags & FG_FOIL_NO_LIP ? "bump" : "bump, 1 is next to the lip");
   for (size_t k = 0; k < 2; k++) {
+    const fg_tolerance *limit = limit_of(design, &both_series[k]);
+    if (limit) fg_html_limit_lines(&at, limit, k ? " % of the angle" : " % of the radius");
     for (size_t i = 0; i < foil->bump_count; i++)
       put_mark(&at, &both_series[k], &foil->bumps[i]);
     fprintf(

@@ -89,16 +89,37 @@ static void put_table_head(FILE *out, const fg_design *design, const table_rows 
   fputs("<td></td></tr>\n", out);
 }
 
+/* A bump whose circle could not be fitted has no values: one cell says so. */
+static void put_unfitted(FILE *out, const fg_bump *bump, size_t columns) {
+  fprintf(out,
+          "<tr class=\"unfitted\"><td>%d</td><td class=\"words not_measured\" colspan=\"%zu\">"
+          "not fitted: it has no values</td>",
+          bump->number, columns);
+}
+
+/* What the symbols of the heads stand for. */
+static void put_key(FILE *out, const fg_quantity *const *columns, size_t count) {
+  fputs("<p class=\"note symbols\">", out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, "%s<b>%s</b> %s", i ? "; " : "", columns[i]->symbol, columns[i]->words);
+  fputs(". The small number below a value is its ±.</p>\n", out);
+}
+
 static void put_table(FILE *out, const fg_design *design, const table_rows *rows) {
   const fg_quantity *columns[PAGE_COLUMNS_MAX];
   size_t count = choose_columns(design, rows->owner, columns);
+  put_key(out, columns, count);
   put_table_head(out, design, rows, columns, count);
   for (size_t i = 0; i < rows->count; i++) {
     const void *object = rows->objects + i * rows->size;
     const fg_bump *bump = object;
     const fg_disc *disc = object;
-    fprintf(out, "<tr><td>%d</td>", rows->foil ? bump->number : disc->number);
-    for (size_t k = 0; k < count; k++)
+    bool unfitted = rows->foil && bump->flags & FG_BUMP_NOT_FITTED;
+    if (unfitted)
+      put_unfitted(out, bump, count);
+    else
+      fprintf(out, "<tr><td>%d</td>", rows->foil ? bump->number : disc->number);
+    for (size_t k = 0; k < count && !unfitted; k++)
       put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
     put_flag_cell(out, rows->foil ? fg_bump_flags(design, rows->foil, bump)
                                   : fg_disc_flags(design, disc));

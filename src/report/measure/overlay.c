@@ -165,7 +165,7 @@ static fg_status draw_overlay(fg_context *ctx, const fg_measurement *measurement
   fg_canvas canvas = fg_canvas_over(picture, measurement);
   fg_rgb upper = {rgb->pixels, picture->width, picture->height}; /* nothing reaches the legend */
   canvas.rgb = &upper;
-  FG_TRY(fg_draw_measurement(ctx, &canvas, measurement));
+  FG_TRY(fg_draw_measurement(ctx, &canvas, measurement, 0));
   legend at = {rgb, 2 * em_px, picture->height + em_px, em_px, 0};
   return draw_legend(ctx, &at, measurement);
 }

@@ -17,9 +17,9 @@ static const double letter_units = 12, width_per_height = 0.65 / 0.7, gap_units 
 static const double cell_units = 6;
 /* A ring's radius over half the bump's chord; where residuals and the bump's number are drawn
  * (drawing.c) over the ring's centre, mm. */
-static const double ring_over_chord = 1.08, number_mm = 2.1, band_mm = 0.9;
+static const double ring_over_chord = 1.08, ring_over_disc = 1.12, number_mm = 2.1, band_mm = 0.9;
 
-/* What is wrong at one place. */
+/* What is wrong at one place: a value, or what has none (worst NULL: it fails). */
 typedef struct mark {
   const fg_judgement *worst;
   fg_point at; /* mm: of the ring's centre, or of the overall circle's where there is no ring */
@@ -38,7 +38,7 @@ typedef struct cells {
 typedef struct marks {
   fg_canvas *canvas;
   const fg_measurement *measurement;
-  const fg_foil *foil; /* its one */
+  const fg_foil *foil; /* its one; NULL: discs */
   mark list[MARKS_MAX];
   size_t count;
   cells cells;
@@ -80,8 +80,8 @@ static double excess(const fg_judgement *judgement) {
 }
 
 static bool is_worse(const fg_judgement *one, const fg_judgement *other) {
+  if (!one || !other) return !one;
   bool fails = one->verdict == FG_VERDICT_FAIL;
-  if (!other) return true;
   if (fails != (other->verdict == FG_VERDICT_FAIL)) return fails;
   return excess(one) > excess(other);
 }
@@ -91,37 +91,46 @@ static const fg_judgement *find_worst(const fg_decision *decision, int number) {
   for (size_t i = 0; i < decision->count; i++) {
     const fg_judgement *one = &decision->judgements[i];
     bool told = one->verdict == FG_VERDICT_FAIL || one->verdict == FG_VERDICT_UNDECIDED;
-    if (one->number == number && told && isfinite(one->value) && is_worse(one, worst)) worst = one;
+    if (one->number == number && told && isfinite(one->value) && (!worst || is_worse(one, worst)))
+      worst = one;
   }
   return worst;
 }
 
 /* "3: R 3.454 mm, max 3.408". */
-static void write_text(mark *at) {
-  const fg_judgement *worst = at->worst;
+static void write_text(const fg_judgement *worst, char text[TEXT_BYTES]) {
   const fg_tolerance *limit = worst->tolerance;
   int decimals =
       worst->row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(worst->row, worst->u);
   bool high = !(worst->value - limit->lower < limit->upper - worst->value);
   char number[16] = "";
   if (worst->number) snprintf(number, sizeof number, "%d: ", worst->number);
-  snprintf(at->text, sizeof at->text, "%s%s %s%.*f %s, %s %.7g%s", number, worst->row->symbol,
+  snprintf(text, TEXT_BYTES, "%s%s %s%.*f %s, %s %.7g%s", number, worst->row->symbol,
            worst->value < 0 ? "−" : "", decimals, fabs(worst->value), worst->row->unit,
            high ? "max" : "min", high ? limit->upper : limit->lower,
            worst->verdict == FG_VERDICT_FAIL ? "" : " ?");
 }
 
-static void add_mark(marks *at, const fg_judgement *worst, fg_point where, double ring_mm) {
-  if (!worst || at->count == MARKS_MAX || !isfinite(where.x + where.y + ring_mm)) return;
+static mark *add_text(marks *at, const char *text, fg_point where, double ring_mm) {
+  if (at->count == MARKS_MAX || !isfinite(where.x + where.y + ring_mm)) return NULL;
   mark *added = &at->list[at->count++];
-  *added = (mark){.worst = worst, .at = where, .ring_mm = ring_mm};
-  write_text(added);
+  *added = (mark){.at = where, .ring_mm = ring_mm};
+  snprintf(added->text, sizeof added->text, "%s", text);
   size_t letters = 0;
   for (const char *c = added->text; *c; c++)
     letters += ((unsigned char)*c & 0xC0) != 0x80;
   double unit = at->canvas->unit_px;
   added->width_px = ((double)letters * letter_units * width_per_height + 2 * gap_units) * unit;
   added->height_px = (letter_units + 2 * gap_units) * unit;
+  return added;
+}
+
+static void add_mark(marks *at, const fg_judgement *worst, fg_point where, double ring_mm) {
+  char text[TEXT_BYTES];
+  if (!worst) return;
+  write_text(worst, text);
+  mark *added = add_text(at, text, where, ring_mm);
+  if (added) added->worst = worst;
 }
 
 /* Around the middle of the bump's chord. */
@@ -141,7 +150,7 @@ static void add_bump(marks *at, const fg_decision *decision, const fg_bump *bump
 static void take_strip(marks *at) {
   const fg_canvas *canvas = at->canvas;
   double band_px = band_mm * canvas->px_per_mm[0];
-  for (size_t i = 0; i < at->foil->strip.count; i++) {
+  for (size_t i = 0; at->foil && i < at->foil->strip.count; i++) {
     const fg_station *station = &at->foil->strip.stations[i];
     fg_point px = to_px(canvas, (fg_point){(station->left.x + station->right.x) / 2,
                                            (station->left.y + station->right.y) / 2});
@@ -152,7 +161,7 @@ static void take_strip(marks *at) {
 static void take_numbers(marks *at) {
   const fg_canvas *canvas = at->canvas;
   double unit = canvas->unit_px;
-  for (size_t i = 0; i < at->foil->bump_count; i++) {
+  for (size_t i = 0; at->foil && i < at->foil->bump_count; i++) {
     const fg_bump *bump = &at->foil->bumps[i];
     fg_point centre = at->foil->overall.centre_mm;
     double away = hypot(centre.x - bump->centre_mm.x, centre.y - bump->centre_mm.y);
@@ -165,19 +174,36 @@ static void take_numbers(marks *at) {
   }
 }
 
+static void take_centre(marks *at) {
+  if (!at->foil) return;
+  fg_point centre = to_px(at->canvas, at->foil->overall.centre_mm);
+  double around = 40 * at->canvas->unit_px;
+  if (isfinite(centre.x + centre.y))
+    take_box(&at->cells, centre.x - around, centre.y - around, centre.x + around,
+             centre.y + around);
+}
+
+static void take_discs(marks *at) {
+  const fg_canvas *canvas = at->canvas;
+  for (size_t i = 0; i < at->measurement->disc_count; i++) {
+    const fg_disc *disc = &at->measurement->discs[i];
+    double radius_px = ring_over_disc * disc->radius_mm * canvas->px_per_mm[0];
+    fg_point px = to_px(canvas, disc->centre_mm);
+    if (isfinite(px.x + px.y + radius_px))
+      take_box(&at->cells, px.x - radius_px, px.y - radius_px, px.x + radius_px, px.y + radius_px);
+  }
+}
+
 /* What is drawn already. */
 static void take_drawing(marks *at) {
   const fg_canvas *canvas = at->canvas;
   fg_drawing_box scale = fg_drawing_scale_box(canvas, at->measurement);
   fg_point low = to_px(canvas, scale.low), high = to_px(canvas, scale.high);
   take_box(&at->cells, low.x, low.y, high.x, high.y);
-  fg_point centre = to_px(canvas, at->foil->overall.centre_mm);
-  double around = 40 * canvas->unit_px;
-  if (isfinite(centre.x + centre.y))
-    take_box(&at->cells, centre.x - around, centre.y - around, centre.x + around,
-             centre.y + around);
+  take_centre(at);
   take_strip(at);
   take_numbers(at);
+  take_discs(at);
   for (size_t i = 0; i < at->count; i++) {
     double ring_px = at->list[i].ring_mm * canvas->px_per_mm[0];
     fg_point px = to_px(canvas, at->list[i].at);
@@ -221,7 +247,8 @@ static fg_status draw_leader(fg_context *ctx, fg_canvas *canvas, const mark *one
 
 static fg_status draw_mark(fg_context *ctx, marks *at, const mark *one) {
   static const double full_turn_rad = 6.283185307179586;
-  uint32_t colour = one->worst->verdict == FG_VERDICT_FAIL ? COLOUR_FAIL : COLOUR_OPEN;
+  bool fails = !one->worst || one->worst->verdict == FG_VERDICT_FAIL;
+  uint32_t colour = fails ? COLOUR_FAIL : COLOUR_OPEN;
   const fg_circle ring = {one->at.x, one->at.y, one->ring_mm};
   fg_point middle = {0, 0};
   if (one->ring_mm > 0)
@@ -258,17 +285,93 @@ static fg_status draw_marks(fg_context *ctx, marks *at) {
   return status;
 }
 
-fg_status fg_draw_verdicts(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement) {
-  fg_decision decision;
-  const fg_foil *foil = measurement->foils;
-  marks at = {.canvas = canvas, .measurement = measurement, .foil = foil};
-  FG_TRY(fg_foil_decide(ctx, &measurement->design, foil, &decision));
+static const fg_bump *find_bump(const fg_foil *foil, int number) {
   for (size_t i = 0; i < foil->bump_count; i++)
-    add_bump(&at, &decision, &foil->bumps[i]);
-  fg_point whole = foil->overall.centre_mm, px = to_px(canvas, whole);
+    if (foil->bumps[i].number == number && isfinite(foil->bumps[i].position_deg))
+      return &foil->bumps[i];
+  return NULL;
+}
+
+/* Where a bump that is not there belongs: on the overall circle, half-way between its neighbours,
+ * or one pitch beyond the last. False: too few of them are there. */
+static bool find_gap(const fg_foil *foil, int number, fg_point *at) {
+  static const double radian = 3.14159265358979323846 / 180;
+  const fg_bump *before = find_bump(foil, number - 1), *behind = find_bump(foil, number + 1);
+  double turn_deg;
+  if (before && behind) {
+    turn_deg =
+        before->position_deg + remainder(behind->position_deg - before->position_deg, 360) / 2;
+  } else {
+    const fg_bump *near = before ? before : behind;
+    const fg_bump *next = find_bump(foil, before ? number - 2 : number + 2);
+    if (!near || !next) return false;
+    turn_deg = near->position_deg + remainder(near->position_deg - next->position_deg, 360);
+  }
+  *at = (fg_point){foil->overall.centre_mm.x + foil->overall.radius_mm * cos(turn_deg * radian),
+                   foil->overall.centre_mm.y + foil->overall.radius_mm * sin(turn_deg * radian)};
+  return true;
+}
+
+/* Bumps without values: those that are missing, and those whose circle could not be fitted. */
+static void add_gaps(marks *at) {
+  const double half_chord_mm = 1.8; /* of a ring around nothing */
+  int last = (int)at->measurement->design.bump_count;
+  for (size_t i = 0; i < at->foil->bump_count; i++)
+    if (at->foil->bumps[i].number > last) last = at->foil->bumps[i].number;
+  for (int number = 1; number <= last; number++) {
+    bool there = false, fitted = false;
+    for (size_t i = 0; i < at->foil->bump_count; i++)
+      if (at->foil->bumps[i].number == number) {
+        there = true;
+        fitted = !(at->foil->bumps[i].flags & FG_BUMP_NOT_FITTED);
+      }
+    char text[TEXT_BYTES];
+    fg_point where;
+    if (fitted || !fg_foil_is_measured(at->foil) || !find_gap(at->foil, number, &where)) continue;
+    if (!there && at->foil->flags & FG_FOIL_TOUCHES_BORDER) continue;
+    snprintf(text, sizeof text, there ? "%d: not fitted" : "%d: missing", number);
+    add_text(at, text, where, half_chord_mm);
+  }
+}
+
+static fg_status draw_foil(fg_context *ctx, marks *at) {
+  fg_decision decision;
+  FG_TRY(fg_foil_decide(ctx, &at->measurement->design, at->foil, &decision));
+  for (size_t i = 0; i < at->foil->bump_count; i++)
+    add_bump(at, &decision, &at->foil->bumps[i]);
+  add_gaps(at);
+  fg_canvas *canvas = at->canvas;
+  fg_point px = to_px(canvas, at->foil->overall.centre_mm);
   px = (fg_point){fmin(fmax(px.x, 0), canvas->width_px), fmin(fmax(px.y, 0), canvas->height_px)};
-  add_mark(&at, find_worst(&decision, 0), to_mm(canvas, px), 0);
-  fg_status status = at.count ? draw_marks(ctx, &at) : FG_OK;
+  add_mark(at, find_worst(&decision, 0), to_mm(canvas, px), 0);
+  fg_status status = at->count ? draw_marks(ctx, at) : FG_OK;
   fg_decision_free(&decision);
   return status;
+}
+
+static fg_status draw_discs(fg_context *ctx, marks *at) {
+  const fg_measurement *measurement = at->measurement;
+  size_t count = measurement->disc_count < MARKS_MAX ? measurement->disc_count : MARKS_MAX;
+  fg_decision decisions[MARKS_MAX];
+  fg_status status = FG_OK;
+  size_t made = 0;
+  for (; made < count && status == FG_OK; made++) {
+    const fg_disc *disc = &measurement->discs[made];
+    status = fg_disc_decide(ctx, &measurement->design, disc, &decisions[made]);
+    if (status != FG_OK) break;
+    add_mark(at, find_worst(&decisions[made], disc->number), disc->centre_mm,
+             ring_over_disc * disc->radius_mm);
+  }
+  if (status == FG_OK && at->count) status = draw_marks(ctx, at);
+  while (made)
+    fg_decision_free(&decisions[--made]);
+  return status;
+}
+
+fg_status fg_draw_verdicts(fg_context *ctx, fg_canvas *canvas, const fg_measurement *measurement) {
+  marks at = {.canvas = canvas, .measurement = measurement};
+  if (measurement->disc_count) return draw_discs(ctx, &at);
+  if (!measurement->foil_count) return FG_OK;
+  at.foil = measurement->foils;
+  return draw_foil(ctx, &at);
 }

@@ -74,7 +74,7 @@ static void put_quantity(FILE *out, const quantity *q, bool corrected, bool tied
   if (tied) put_range(out, q);
 }
 
-enum { BUMP_QUANTITIES = 4 };
+enum { BUMP_QUANTITIES = 4, BESIDE = 2 };
 
 static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_QUANTITIES]) {
   q[0] = (quantity){"R",
@@ -113,8 +113,10 @@ static void bump_quantities(const fg_bump *b, const fg_bump *a, quantity q[BUMP_
 
 static void put_heads(FILE *out, const quantity *q, size_t count, const char *first, bool corrected,
                       bool tied) {
-  fprintf(out, "<div class=\"scroll\"><table class=\"dimensions%s\"><tr><th rowspan=\"2\">%s</th>",
-          count < 3 ? " narrow" : "", first);
+  fprintf(
+      out,
+      "<div class=\"scroll\"><table class=\"dimensions%s\"><thead><tr><th rowspan=\"2\">%s</th>",
+      count == 1 ? " narrow" : "", first);
   for (size_t i = 0; i < count; i++)
     fprintf(out, "<th class=\"group\" colspan=\"%d\">%s, %s</th>",
             !corrected           ? 1
@@ -127,7 +129,7 @@ static void put_heads(FILE *out, const quantity *q, size_t count, const char *fi
     if (corrected) fprintf(out, "<th>change, %s</th>", q[i].fine);
     if (corrected && tied && q[i].range) fputs("<th>range</th>", out);
   }
-  fputs("</tr>\n", out);
+  fputs("</tr></thead>\n<tbody>\n", out);
 }
 
 static const fg_bump *find_bump(const fg_foil *foil, int number) {
@@ -136,7 +138,10 @@ static const fg_bump *find_bump(const fg_foil *foil, int number) {
   return NULL;
 }
 
-static void put_bumps(FILE *out, const fg_foil *b, const fg_foil *a, bool corrected, bool tied) {
+/* Two quantities beside each other: more of them, each before, after, changed and with its range,
+ * are wider than a sheet of paper. */
+static void put_bump_table(FILE *out, const fg_foil *b, const fg_foil *a, size_t from,
+                           bool corrected, bool tied) {
   quantity q[BUMP_QUANTITIES];
   bool opened = false;
   for (size_t i = 0; i < b->bump_count; i++) {
@@ -145,14 +150,14 @@ static void put_bumps(FILE *out, const fg_foil *b, const fg_foil *a, bool correc
     bump_quantities(&b->bumps[i], after, q);
     q[0].left = fg_choice_is_left(&a->choice[FG_CORRECTED_RADIUS]);
     q[1].left = fg_choice_is_left(&a->choice[FG_CORRECTED_HEIGHT]);
-    if (!opened) put_heads(out, q, BUMP_QUANTITIES, "bump", corrected, tied);
+    if (!opened) put_heads(out, q + from, BESIDE, "bump", corrected, tied);
     opened = true;
     fprintf(out, "<tr><td>%d</td>", b->bumps[i].number);
-    for (size_t k = 0; k < BUMP_QUANTITIES; k++)
+    for (size_t k = from; k < from + BESIDE; k++)
       put_quantity(out, &q[k], corrected, tied);
     fputs("</tr>\n", out);
   }
-  if (opened) fputs("</table></div>\n", out);
+  if (opened) fputs("</tbody></table></div>\n", out);
 }
 
 static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corrected, bool tied) {
@@ -167,7 +172,7 @@ static void put_overall(FILE *out, const fg_foil *b, const fg_foil *a, bool corr
   put_heads(out, &q, 1, "circle", corrected, tied);
   fputs("<tr><td>overall</td>", out);
   put_quantity(out, &q, corrected, tied);
-  fputs("</tr></table></div>\n", out);
+  fputs("</tr></tbody></table></div>\n", out);
 }
 
 static void put_foil(FILE *out, const fg_scan_result *result, size_t scan, size_t f) {
@@ -184,7 +189,8 @@ static void put_foil(FILE *out, const fg_scan_result *result, size_t scan, size_
   bool tied = result->tied || result->scale_tied;
   fg_html_choices(out, a);
   put_overall(out, b, a, result->corrected, tied);
-  put_bumps(out, b, a, result->corrected, tied);
+  for (size_t from = 0; from < BUMP_QUANTITIES; from += BESIDE)
+    put_bump_table(out, b, a, from, result->corrected, tied);
 }
 
 static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
@@ -220,7 +226,7 @@ static void put_discs(FILE *out, const fg_scan_result *result, size_t scan) {
       put_quantity(out, &q[k], corrected, false);
     fputs("</tr>\n", out);
   }
-  if (count) fputs("</table></div>\n", out);
+  if (count) fputs("</tbody></table></div>\n", out);
   if (count) fg_html_disc_choice(out, &a->discs[0]);
 }
 

@@ -72,7 +72,36 @@ static void put_doubt(FILE *out, const fg_scan_result *result) {
           out);
 }
 
-static void put_head(FILE *out, const fg_scan_result *result, const char *sentence) {
+/* The commands, a line each. */
+static void put_commands(FILE *out, const char *commands) {
+  char line[2048];
+  while (commands && *commands) {
+    size_t length = strcspn(commands, "\n");
+    fg_text_clip(line, sizeof line, "%.*s", (int)length, commands);
+    fputs("<code>", out);
+    fg_html_text(out, line);
+    fputs("</code>", out);
+    commands += length + (commands[length] == '\n');
+  }
+}
+
+static fg_status put_next(fg_context *ctx, FILE *out, const fg_scan_result *result) {
+  char *words = NULL, *commands = NULL;
+  fg_status status = fg_scan_loop_next(ctx, result, &words, &commands);
+  if (status == FG_OK) {
+    fprintf(out, "<div class=\"next%s\"><b>What to do next:</b> ",
+            result->verdict == FG_LOOP_CLEAN ? " calm" : "");
+    fg_html_text(out, words);
+    put_commands(out, commands);
+    fputs("</div>\n", out);
+  }
+  free(words);
+  free(commands);
+  return status;
+}
+
+static fg_status put_head(fg_context *ctx, FILE *out, const fg_scan_result *result,
+                          const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fprintf(out,
           "<section><header><h1>Closing the loop</h1><span class=\"verdict loop-%s\">%s</span>"
@@ -82,9 +111,11 @@ static void put_head(FILE *out, const fg_scan_result *result, const char *senten
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
   put_doubt(out, result);
+  FG_TRY(put_next(ctx, out, result));
   put_tiles(out, result);
   put_inputs(out, result);
   fputs("</section>\n", out);
+  return FG_OK;
 }
 
 /* ---- candidates ---- */
@@ -259,8 +290,9 @@ fg_status fg_scan_loop_write_html(fg_context *ctx, const fg_scan_loop *loop, FIL
   char *sentence = NULL;
   FG_TRY(fg_scan_loop_sentence(ctx, result, &sentence));
   fg_html_begin(out, "Closing the loop");
-  put_head(out, result, sentence);
+  fg_status status = put_head(ctx, out, result, sentence);
   free(sentence);
+  FG_TRY(status);
   put_explanations(out, result);
   put_scale(out, result);
   put_advice(out, result);

@@ -17,6 +17,11 @@ double fg_scan_loop_nice_below(double most);
 /* The page's one sentence; the caller frees it. scan_loop_sentence.c */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text);
 
+/* What to do about it, in one sentence, and the commands for that, a line each; NULL: none. The
+ * caller frees both. scan_loop_next.c */
+fg_status fg_scan_loop_next(fg_context *ctx, const fg_scan_result *result, char **words,
+                            char **commands);
+
 /* ---- what an effect does (scan_loop_curves.c) ---- */
 
 /* The deformation of the picture, curves over the coordinates, parameters. */

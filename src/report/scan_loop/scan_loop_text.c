@@ -1,11 +1,14 @@
 /* The loop on scans for a terminal: what the page and the JSON say, in lines. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "foilgauge/scan_loop.h"
 #include "report/correction_words.h"
 #include "report/scan_loop/scan_loop_bumps.h"
+#include "report/scan_loop/scan_loop_parts.h"
 
 static void put_claims(FILE *out, const fg_scan_result *result) {
   for (size_t i = 0; i < result->claims; i++) {
@@ -73,16 +76,29 @@ static void put_choice(FILE *out, const char *symbol, const fg_correction_choice
             2000 * choice->u_move_mm);
 }
 
+/* " R 3.37998 -> 3.33999 +- 0.00034 mm": before and after the loop, U = 2 u behind what stands. */
+static void put_moved(FILE *out, const char *symbol, double before_mm, double after_mm,
+                      double u_mm) {
+  fprintf(out, " %s %.5f -> %.5f", symbol, before_mm, after_mm);
+  if (isfinite(u_mm)) fprintf(out, " +- %.5f", FG_COVERAGE_FACTOR * u_mm);
+  fputs(" mm", out);
+}
+
 static void put_foils(FILE *out, const fg_measurement *before, const fg_measurement *after,
                       bool tied) {
   for (size_t f = 0; f < before->foil_count && f < after->foil_count; f++) {
     const fg_foil *b = &before->foils[f], *a = &after->foils[f];
-    fprintf(out, "%s foil %d: R0 %.5f -> %.5f mm\n", before->scan, b->number, b->overall.radius_mm,
-            a->overall.radius_mm);
-    for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++)
-      fprintf(out, "  bump %d: R %.5f -> %.5f mm, h %.5f -> %.5f mm\n", b->bumps[k].number,
-              b->bumps[k].radius_mm, a->bumps[k].radius_mm, b->bumps[k].height_mm,
-              a->bumps[k].height_mm);
+    fprintf(out, "%s foil %d:", before->scan, b->number);
+    put_moved(out, "R0", b->overall.radius_mm, a->overall.radius_mm, a->overall.u_radius_mm);
+    fputc('\n', out);
+    for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++) {
+      const fg_bump *was = &b->bumps[k], *is = &a->bumps[k];
+      fprintf(out, "  bump %d:", was->number);
+      put_moved(out, "R", was->radius_mm, is->radius_mm, is->u_radius_mm);
+      fputc(',', out);
+      put_moved(out, "h", was->height_mm, is->height_mm, is->u_height_mm);
+      fputc('\n', out);
+    }
     for (int k = 0; k < FG_CORRECTED; k++)
       put_choice(out, fg_corrected_symbol((fg_corrected)k), &a->choice[k], tied);
   }
@@ -94,11 +110,26 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
   }
 }
 
+static fg_status put_next(fg_context *ctx, FILE *out, const fg_scan_result *result) {
+  char *words = NULL, *commands = NULL;
+  fg_status status = fg_scan_loop_next(ctx, result, &words, &commands);
+  if (status == FG_OK) fprintf(out, "next: %s\n", words);
+  for (const char *line = commands; line && *line;) {
+    size_t length = strcspn(line, "\n");
+    fprintf(out, "  %.*s\n", (int)length, line);
+    line += length + (line[length] == '\n');
+  }
+  free(words);
+  free(commands);
+  return status;
+}
+
 fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
   const fg_scan_result *result = fg_scan_loop_result(loop);
   fprintf(out, "%s: edge residual %.3f um before, %.3f um after; noise %.3f um\n",
           fg_loop_outcome_word(result->verdict), result->before.rms, result->after.rms,
           result->noise_floor_um);
+  FG_TRY(put_next(ctx, out, result));
   put_claims(out, result);
   fg_text_bumps(&result->bumps, out);
   for (size_t i = 0; i < result->notes; i++)

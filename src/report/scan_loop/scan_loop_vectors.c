@@ -10,12 +10,15 @@ enum {
   WIDTH = 520,
   HEIGHT_MOST = 560,
   MARGIN = 44,
-  FOOT = 40,
   NEEDLES_MOST = 420,
   RING_NEEDLES_MOST = 1100,
   NUMBERS_MOST = 40
 };
 enum { SCANS_DRAWN = 6 };
+/* The scale's bar, at most, in units of the drawing. */
+static const double bar_most = 88;
+/* Noise is drawn at most this long: a scan that holds nothing else must look as calm as it is. */
+static const double noise_length = 2;
 static const double needle_length = 44,
                     ring_needle_length = 16; /* of a large residual, in units of the drawing */
 
@@ -30,6 +33,7 @@ typedef struct vectors {
   double low[2], high[2]; /* of the rows, mm */
   double scale;           /* units per mm */
   double unit_per_um;     /* of a needle */
+  size_t drawings;
 } vectors;
 
 fg_status fg_scan_loop_residual_limit(fg_context *ctx, const fg_scan_result *result, bool after,
@@ -154,15 +158,17 @@ static void put_numbers(const vectors *v) {
   }
 }
 
-static void put_bar(const vectors *v, int height) {
-  double um = fg_scan_loop_nice_below(88 / v->unit_per_um), length = um * v->unit_per_um;
+/* The scale of all drawings, said once. */
+static void put_scale(const vectors *v) {
+  double um = fg_scan_loop_nice_below(bar_most / v->unit_per_um), length = um * v->unit_per_um;
   char words[32];
   fg_scan_loop_length_words(um, words, sizeof words);
   fprintf(v->out,
-          "<path class=\"bar\" d=\"M%d %dh%.1f\"/><text class=\"start\" x=\"%.1f\" y=\"%d\">%s of "
-          "residual, drawn %.0f times as large</text>\n",
-          MARGIN, height - 18, length, MARGIN + length + 10, height - 13, words,
-          1000 * v->unit_per_um / v->scale);
+          "<svg class=\"plot scale\" viewBox=\"0 0 1060 24\" role=\"img\" aria-label=\"The scale\">"
+          "<path class=\"bar\" d=\"M%d 12h%.1f\"/><text class=\"start\" x=\"%.1f\" y=\"17\">%s of "
+          "residual, drawn %.0f times as large%s</text></svg>\n",
+          MARGIN, length, MARGIN + length + 10, words, 1000 * v->unit_per_um / v->scale,
+          v->drawings > 1 ? ", in every drawing" : "");
 }
 
 static double rms_of(const vectors *v) {
@@ -177,7 +183,7 @@ static double rms_of(const vectors *v) {
 }
 
 static void put_figure(const vectors *v, const char *when) {
-  int height = (int)(2 * MARGIN + v->scale * (v->high[1] - v->low[1])) + FOOT;
+  int height = (int)(2 * MARGIN + v->scale * (v->high[1] - v->low[1]));
   char rms[32];
   fg_scan_loop_length_words(rms_of(v), rms, sizeof rms);
   fprintf(v->out,
@@ -189,7 +195,6 @@ static void put_figure(const vectors *v, const char *when) {
   for (int part = NEEDLES_OUT; part <= BASES; part++)
     put_needles(v, (needle_part)part);
   put_numbers(v);
-  put_bar(v, height);
   fputs("</svg></figure>\n", v->out);
 }
 
@@ -228,6 +233,14 @@ static void put_scan(vectors *v) {
   fputs("</div>\n", v->out);
 }
 
+/* A large residual is as long as a needle may be; where it is not far above the noise, the noise
+ * says how long it is. */
+static double needle_per_um(const vectors *v, double limit_um) {
+  double per_um = v->longest / limit_um, noise_um = v->result->noise_floor_um;
+  bool clean = !v->result->corrected;
+  return clean && noise_um > 0 ? fmin(per_um, noise_length / noise_um) : per_um;
+}
+
 /* All drawings have one scale, so that they compare. */
 static void put_scans(FILE *out, const fg_scan_result *result, double limit_um) {
   double scale = INFINITY;
@@ -241,9 +254,14 @@ static void put_scans(FILE *out, const fg_scan_result *result, double limit_um) 
       if (!(v.high[0] > v.low[0]) || !(v.high[1] > v.low[1])) continue;
       scale = fmin(scale, v.scale);
       v.scale = scale;
-      v.unit_per_um = fg_scan_loop_nice_below(1000 * v.longest / limit_um / scale) * scale / 1000;
-      if (drawn) put_scan(&v);
+      v.unit_per_um =
+          fg_scan_loop_nice_below(1000 * needle_per_um(&v, limit_um) / scale) * scale / 1000;
+      if (drawn) {
+        v.drawings += v.result->corrected ? 2 : 1;
+        put_scan(&v);
+      }
     }
+  if (v.drawings) put_scale(&v);
 }
 
 /* Residuals larger than all but this share of them may leave the drawing's scale. */

@@ -1,0 +1,171 @@
+/* Every toleranced quantity of the bumps over their numbers, with its limits. */
+#include <math.h>
+
+#include "report/measure/measure_page_tables.h"
+#include "report/plot_marks.h"
+
+/* What lies farther beyond its limits than this share of the limits' distance is drawn at the
+ * plot's edge, with its value: one crushed bump must not flatten the others. */
+static const double shown_beyond = 1.5;
+/* Around what is drawn, as a share of it. */
+static const double margin_share = 0.12;
+
+typedef struct panel {
+  fg_plot at;
+  const fg_design *design;
+  const fg_foil *foil;
+  const fg_quantity *row;
+  const fg_tolerance *limit;
+} panel;
+
+/* With one limit only, the values say how far it is sensible to look. */
+static double distance_of(const panel *p) {
+  double low = p->limit->lower, high = p->limit->upper;
+  if (isfinite(low) && isfinite(high) && high > low) return high - low;
+  double limit = isfinite(low) ? low : high, nearest = INFINITY;
+  for (size_t i = 0; i < p->foil->bump_count; i++) {
+    double value = fg_quantity_value(p->row, &p->foil->bumps[i]);
+    if (isfinite(value) && value != limit) nearest = fmin(nearest, fabs(value - limit));
+  }
+  return isfinite(nearest) ? 2 * nearest : fmax(fabs(limit), 1);
+}
+
+static void find_range(panel *p) {
+  double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * distance_of(p);
+  double from = isfinite(low) ? low : high, to = isfinite(high) ? high : low;
+  const double most[2] = {from - reach, to + reach};
+  for (size_t i = 0; i < p->foil->bump_count; i++) {
+    double value = fg_quantity_value(p->row, &p->foil->bumps[i]);
+    double u = fg_quantity_uncertainty(p->row, &p->foil->bumps[i]);
+    double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
+    if (!isfinite(value)) continue;
+    from = fmin(from, fmax(most[0], value - expanded));
+    to = fmax(to, fmin(most[1], value + expanded));
+  }
+  double margin = margin_share * (to > from ? to - from : fmax(fabs(to), 1e-9));
+  p->at.y_low = from - margin;
+  p->at.y_high = to + margin;
+}
+
+void fg_html_limit_lines(const fg_plot *at, const fg_tolerance *limit, const char *words) {
+  const double both[2] = {limit->lower, limit->upper};
+  char text[80];
+  for (int k = 0; k < 2; k++) {
+    if (!(both[k] >= at->y_low && both[k] <= at->y_high)) continue;
+    double y = fg_plot_y(at, both[k]);
+    fprintf(at->out, "<path class=\"limits-of\" d=\"M%.1f %.1fH%.1f\"/>", at->left, y, at->right);
+    snprintf(text, sizeof text, "%s %.7g%s", k ? "max" : "min", both[k], words);
+    fprintf(at->out, "<text class=\"told\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">", at->right,
+            k ? y - 5 : y + 15);
+    fg_html_text(at->out, text);
+    fputs("</text>\n", at->out);
+  }
+}
+
+/* A cross over what fails, a question mark over what cannot be told: the colour is not all. */
+static void put_verdict(const panel *p, fg_verdict verdict, double x, double y) {
+  if (verdict == FG_VERDICT_FAIL)
+    fprintf(p->at.out, "<path class=\"beyond-limit\" d=\"M%.1f %.1fl16 16m0 -16l-16 16\"/>\n",
+            x - 8, y - 8);
+  else if (verdict == FG_VERDICT_UNDECIDED)
+    fprintf(p->at.out, "<text class=\"told open\" x=\"%.1f\" y=\"%.1f\">?</text>\n", x + 8, y + 5);
+}
+
+/* At the plot's edge: an arrow, and what it is. */
+static void put_beyond(const panel *p, double x, double value) {
+  bool above = value > p->at.y_high;
+  double y = above ? p->at.top : p->at.bottom, away = above ? 1 : -1;
+  fprintf(p->at.out,
+          "<path class=\"beyond-limit\" d=\"M%.1f %.1fl0 %.1fM%.1f %.1fl-6 %.1fm6 %.1fl6 %.1f\"/>"
+          "<text class=\"told\" x=\"%.1f\" y=\"%.1f\">%s%.*f</text>\n",
+          x, y + 20 * away, -18 * away, x, y + 2 * away, 7 * away, -7 * away, 7 * away, x + 9,
+          y + (above ? 16 : -6), value < 0 ? "−" : "", p->row->decimals, fabs(value));
+}
+
+static bool is_there(const fg_foil *foil, int number) {
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number == number) return true;
+  return false;
+}
+
+/* A bump without a value: why, upright in its column. */
+static void put_nothing(const panel *p, int number, const char *why) {
+  fprintf(p->at.out,
+          "<text class=\"x told\" transform=\"translate(%.1f %.1f) rotate(-90)\">%s</text>\n",
+          fg_plot_x(&p->at, number) + 5, (p->at.top + p->at.bottom) / 2, why);
+}
+
+static void put_value(const panel *p, const fg_bump *bump) {
+  double value = fg_quantity_value(p->row, bump), u = fg_quantity_uncertainty(p->row, bump);
+  double x = fg_plot_x(&p->at, bump->number);
+  if (!isfinite(value)) {
+    put_nothing(p, bump->number, bump->flags & FG_BUMP_NOT_FITTED ? "not fitted" : "no value");
+    return;
+  }
+  if (value > p->at.y_high || value < p->at.y_low) {
+    put_beyond(p, x, value);
+    return;
+  }
+  double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0, y = fg_plot_y(&p->at, value);
+  fprintf(p->at.out,
+          "<path class=\"s2\" d=\"M%.1f %.1fV%.1f\"/><circle class=\"s2\" cx=\"%.1f\" cy=\"%.1f\" "
+          "r=\"4.5\"/>\n",
+          x, fg_plot_y(&p->at, fmax(p->at.y_low, value - expanded)),
+          fg_plot_y(&p->at, fmin(p->at.y_high, value + expanded)), x, y);
+  put_verdict(p, fg_judge_value(p->limit, value, u), x, y);
+}
+
+static void put_inside(const panel *p) {
+  double low = fmax(p->at.y_low, p->limit->lower), high = fmin(p->at.y_high, p->limit->upper);
+  fprintf(p->at.out,
+          "<rect class=\"inside\" x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\"/>\n",
+          p->at.left, fg_plot_y(&p->at, high), p->at.right - p->at.left,
+          fg_plot_y(&p->at, low) - fg_plot_y(&p->at, high));
+}
+
+static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
+                      const fg_tolerance *limit, const fg_quantity *row) {
+  int last = (int)design->bump_count;
+  for (size_t i = 0; i < foil->bump_count; i++)
+    if (foil->bumps[i].number > last) last = foil->bumps[i].number;
+  panel p = {{out, 500, 70, 490, 14, 210, 0.4, last + 0.6, 0, 1}, design, foil, row, limit};
+  char title[160];
+  find_range(&p);
+  fputs("<figure><h3>", out);
+  fg_html_text(out, row->words);
+  fputs("</h3>", out);
+  fg_plot_begin(&p.at, 258, row->words);
+  put_inside(&p);
+  snprintf(title, sizeof title, "%s, %s", row->symbol, row->unit);
+  fg_plot_y_axis(&p.at, row->unit[0] ? title : row->symbol);
+  fg_html_limit_lines(&p.at, limit, "");
+  for (int number = 1; number <= last; number++) {
+    char text[16];
+    snprintf(text, sizeof text, "%d", number);
+    fg_plot_x_label(&p.at, fg_plot_x(&p.at, number), text);
+    if (!is_there(foil, number) && !(foil->flags & FG_FOIL_TOUCHES_BORDER))
+      put_nothing(&p, number, "missing");
+  }
+  fg_plot_x_title(&p.at, "bump");
+  for (size_t i = 0; i < foil->bump_count; i++)
+    put_value(&p, &foil->bumps[i]);
+  fputs("</svg></figure>\n", out);
+}
+
+void fg_html_limits(FILE *out, const fg_design *design, const fg_foil *foil) {
+  bool opened = false;
+  if (!foil->bump_count) return;
+  for (size_t i = 0; i < design->tolerance_count; i++) {
+    const fg_tolerance *limit = &design->tolerances[i];
+    const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, limit->quantity);
+    if (!row || row->kind == FG_QUANTITY_PAIR) continue;
+    if (!opened)
+      fputs("<h2>Every bump against its limits</h2>\n<p class=\"note\">Green: inside the limits. A "
+            "cross fails, a question mark cannot be told, an arrow lies farther out than the plot "
+            "reaches. Bars: ±.</p>\n<div class=\"panels\">\n",
+            out);
+    opened = true;
+    put_panel(out, design, foil, limit, row);
+  }
+  if (opened) fputs("</div>\n", out);
+}
