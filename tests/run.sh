@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds foilgauge twice (release; sanitizers with warnings as errors) and runs every test in both.
 # --long adds the accuracy, speed and bed benchmarks, the rendered experiments, the thesis's
-# experiments, the comparison with R, the station in a browser and the loop on measured tables, which rewrite the tables in reports/; a minute of fuzzing for
+# experiments, the comparison with R, the station and every page in a browser and the loop on measured tables, which rewrite the tables in reports/; a minute of fuzzing for
 # each target, and a failure of every single allocation.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

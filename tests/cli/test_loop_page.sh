@@ -57,10 +57,22 @@ cp ripple.png "$odd"
 page odd.html "$odd"
 holds odd.html '>explained<' scan.carriage_ripple 'a&lt;b&gt;&amp;&quot;c&#39;.png' "$(sha256sum <"$odd" | cut -c1-12)"
 grep -q -F '<b>&"c' odd.html && fail "a file's name goes into the page as it is"
+holds odd.html 'What to do next:' 'foilgauge measure --model scanner.json' 'drawn 500 times as large, in every drawing'
+[ "$(grep -c 'of residual, drawn' odd.html)" = 1 ] || fail "the scale of the residuals is said more than once"
 page clean.html clean.png
 page again.html clean.png
 cmp -s clean.html again.html || fail "two runs give two pages"
-holds clean.html '>clean<' 'Nothing is claimed' 'As measured'
+holds clean.html '>clean<' 'Nothing is claimed' 'As measured' 'Nothing to correct: use the dimensions'
+# Needles of noise are no longer than a line is wide: the longest, in units of the drawing.
+python3 - <<'PYTHON' || fail "the noise of a clean scan is drawn as if it were something"
+import re
+page = open("clean.html", encoding="utf-8").read()
+needles = re.findall(r'class="(?:out|in)wards" d="([^"]*)"', page)
+lengths = [((float(a) - float(c)) ** 2 + (float(b) - float(d)) ** 2) ** 0.5
+           for path in needles for a, b, c, d in re.findall(r"M(\S+) (\S+?)L(\S+) ([^M]+)", path)]
+raise SystemExit(not lengths or max(lengths) > 10)
+PYTHON
+
 grep -q 'After' clean.html && fail "the page of a clean scan has an After"
 
 if [ -z "${FOILGAUGE_TEST_BRIEF-}" ]; then

@@ -112,7 +112,9 @@ static void a_line_lies_where_its_pixels_are(void **state) {
   }
 }
 
-static char *page_of(const fg_report *report) {
+/* Not inline: gcc takes what the stream allocates for its variable, and warns of the page as
+ * dangling. */
+__attribute__((noinline)) static char *page_of(const fg_report *report) {
   fg_context ctx = {0};
   char *text = NULL;
   size_t size = 0;
@@ -120,6 +122,11 @@ static char *page_of(const fg_report *report) {
   assert_int_equal(fg_report_write_html(&ctx, report, out), FG_OK);
   fclose(out);
   return text;
+}
+
+static bool stands_before(const char *page, const char *first, const char *second) {
+  const char *one = strstr(page, first);
+  return one && strstr(one, second) && strstr(page, second) > one;
 }
 
 static void a_page_escapes_every_name(void **state) {
@@ -143,6 +150,8 @@ static void a_page_escapes_every_name(void **state) {
   assert_null(strstr(page, "http://"));
   assert_null(strstr(page, "https://"));
   assert_null(strstr(page, "nan"));
+  /* What each comes to stands before the first. */
+  assert_true(stands_before(page, "<h1>2 foils</h1>", "id=\"part1\""));
   free(page);
   synthetic_free(&measurement);
 }
@@ -160,9 +169,18 @@ static void a_page_says_the_verdict_and_why(void **state) {
   const fg_report report = {&design, &nominal, &scan, 1};
   char *page = page_of(&report);
   assert_non_null(strstr(page, "<span class=\"verdict fail\">Out of tolerance</span>"));
-  assert_non_null(strstr(page, "springback error of the bump radius 1.</p>"));
+  assert_non_null(
+      strstr(page, "springback error of the bump radius: bump 1 (2.195 %, max 2).</p>"));
+  assert_non_null(strstr(page, "class=\"limits-of\""));          /* the limit is in the plot */
+  assert_non_null(strstr(page, "1: e_R 2.195 %, max 2</text>")); /* and the value on the picture */
   assert_non_null(strstr(page, "The wall of the foil shows beside one edge"));
   assert_non_null(strstr(page, "<td class=\"fail\">2.195 <i>± 0.013</i></td>"));
+  free(page);
+
+  foil->bumps[1].flags = FG_BUMP_NOT_FITTED;
+  foil->bumps[1].radius_mm = foil->bumps[1].radius_error_pct = NAN;
+  page = page_of(&report);
+  assert_non_null(strstr(page, "not fitted: it has no values"));
   free(page);
 
   fg_foil_give_up(foil, "no arc was found");
@@ -170,7 +188,7 @@ static void a_page_says_the_verdict_and_why(void **state) {
   foil->strip.count = 0;
   page = page_of(&report);
   assert_non_null(strstr(page, "<span class=\"verdict not_measured\">"));
-  assert_non_null(strstr(page, "no arc was found"));
+  assert_true(stands_before(page, "no arc was found", "<svg class=\"picture"));
   free(page);
   synthetic_free(&measurement);
 }
@@ -188,6 +206,8 @@ static void a_page_of_discs_lists_them(void **state) {
   fg_report_scan scan = {"-", &measurement, NULL, NULL};
   char *page = page_of(&(fg_report){&design, NULL, &scan, 1});
   assert_non_null(strstr(page, "2 round features"));
+  assert_null(strstr(page, "bump circle")); /* no legend of a foil */
+  assert_non_null(strstr(page, "the circle that was fitted to each feature"));
   assert_non_null(strstr(page, "<span class=\"verdict cannot_tell\">"));
   assert_non_null(strstr(page, "<td class=\"no_tolerance\">5.5000 <i>± 0.0020</i></td>"));
   assert_non_null(strstr(page, "<td class=\"cannot_tell\">4.2 <i>± 1.2</i></td>"));

@@ -86,7 +86,7 @@ static fg_status put_picture(fg_context *ctx, FILE *out, const fg_report *report
                              const fg_measurement *measurement, const fg_foil *foil) {
   fputs("<figure>", out);
   FG_TRY(fg_html_picture(ctx, out, measurement, foil, fg_drawing_magnification(report)));
-  fprintf(out, "<figcaption>%s</figcaption></figure>\n", legend_of(measurement->design.form));
+  fprintf(out, "<figcaption>%s</figcaption></figure>\n", legend_of(report->design->form));
   return FG_OK;
 }
 

@@ -104,10 +104,10 @@ static fg_status put_head(fg_context *ctx, FILE *out, const fg_scan_result *resu
                           const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
   fprintf(out,
-          "<section><header><h1>Closing the loop</h1><span class=\"verdict loop-%s\">%s</span>"
-          "%s</header>\n<p class=\"say\">",
-          classes[result->verdict], fg_loop_outcome_word(result->verdict),
-          result->named ? "" : "<span class=\"verdict loop-partly\">tied: not named</span>");
+          "<section><header><h1>Closing the loop</h1>%s<span class=\"verdict loop-%s\">%s</span>"
+          "</header>\n<p class=\"say\">",
+          result->named ? "" : "<span class=\"verdict loop-partly\">tied: not named</span>",
+          classes[result->verdict], fg_loop_outcome_word(result->verdict));
   fg_html_text(out, sentence);
   fputs("</p>\n", out);
   put_doubt(out, result);
@@ -220,10 +220,12 @@ static void put_explanations(FILE *out, const fg_scan_result *result) {
   fputs("</section>\n", out);
 }
 
+/* Of a tie the first advice stands at the top, as what to do next. */
 static void put_advice(FILE *out, const fg_scan_result *result) {
-  if (!result->advices) return;
+  size_t first = !result->named && !result->contradicted;
+  if (result->advices <= first) return;
   fputs("<section><h2 class=\"first\">To tell them apart</h2>\n<ul class=\"words\">\n", out);
-  for (size_t i = 0; i < result->advices; i++) {
+  for (size_t i = first; i < result->advices; i++) {
     fputs("<li>", out);
     fg_html_text(out, result->advice[i]);
     fputs(".</li>\n", out);

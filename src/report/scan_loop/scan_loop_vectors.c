@@ -275,7 +275,7 @@ fg_status fg_scan_loop_page_vectors(fg_context *ctx, FILE *out, const fg_scan_re
           "<section><h2 class=\"first\">Where the edges leave their circles</h2>\n"
           "<p class=\"note\">Every arc, and how far the measured edges lie from %s: "
           "<span class=\"key outkey\">outside</span> or <span class=\"key inkey\">inside</span> of "
-          "the circle. All drawings have one scale.</p>\n",
+          "the circle.</p>\n",
           result->same_foil && result->scans > 1
               ? "the one set of circles that was fitted to all scans of the foil"
               : "the circles that were fitted to them");
