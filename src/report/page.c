@@ -150,7 +150,8 @@ static const char lot_style[] =
 /* The loop on scans. Colours that the colour-blind tell apart: purple and orange for the two sides
  * of a circle, blue, orange, green and pink for scans. */
 static const char loop_style[] =
-    "h2.first{margin-top:0}.say{font-size:17px;max-width:82ch;margin:4px 0 16px}"
+    "h2.first{margin-top:0}.tiles.four{grid-template-columns:repeat(4,1fr)}.say{font-size:17px;max-"
+    "width:82ch;margin:4px 0 16px}"
     ".verdict.loop-clean{background:var(--good)}.verdict.loop-clean::before{content:\"✓ \"}"
     ".verdict.loop-explained,.verdict.loop-partly,.verdict.loop-unattributed{background:"
     "var(--open)}.verdict.loop-explained::before,.verdict.loop-partly::before{content:\"! \"}"

@@ -17,7 +17,7 @@ static void put_tile(FILE *out, const char *title, double value, const char *uni
 
 static void put_tiles(FILE *out, const fg_design_report *report) {
   const fg_design *design = report->design;
-  fputs("<dl class=\"tiles\">\n", out);
+  fputs("<dl class=\"tiles four\">\n", out);
   put_tile(out, "bump radius", design->bump_radius_mm, "mm", "R<sub>D</sub>, stated");
   put_tile(out, "bump angle", design->bump_angle_deg, "°", "α<sub>D</sub>, stated");
   put_tile(out, "overall radius", design->overall_radius_mm, "mm", "stated");
@@ -53,7 +53,7 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
       "the sleeve. A percent more thickness is worth three of stiffness in every model.</p>\n",
       report->material->youngs_modulus_gpa, report->material->poisson_ratio,
       report->material->friction, fg_design_pitch_mm(report->design));
-  fputs("</section>\n<section>\n<h1>What springback does to it</h1>\n<figure>", out);
+  fputs("</section>\n<section>\n<h2 class=\"first\">What springback does to it</h2>\n<figure>", out);
   fg_stiffness_plot_map(out, &map, NULL, NULL);
   fputs("<figcaption>Stiffness of the arch over the design's: orange stiffer, blue softer; dashed: "
         "as designed. The thick orange line is springback at constant arc length",
