@@ -7,6 +7,7 @@
 #include "cli/commands.h"
 #include "foilgauge/die.h"
 #include "foilgauge/experiment.h"
+#include "foilgauge/load_test.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/stiffness.h"
@@ -91,6 +92,26 @@ static void write_max_slope(FILE *out) {
   fprintf(out, "%g", FG_DIE_MAX_SLOPE_DEG);
 }
 
+static void write_load_threshold(FILE *out) {
+  fprintf(out, "%g", FG_LOAD_THRESHOLD_N);
+}
+
+static void write_load_u_force(FILE *out) {
+  fprintf(out, "%g", FG_LOAD_U_FORCE_PCT);
+}
+
+static void write_load_u_displacement(FILE *out) {
+  fprintf(out, "%g", FG_LOAD_U_DISPLACEMENT_PCT);
+}
+
+static void write_load_diameter(FILE *out) {
+  fprintf(out, "%g", FG_LOAD_DIAMETER_MM);
+}
+
+static void write_load_length(FILE *out) {
+  fprintf(out, "%g", FG_LOAD_LENGTH_MM);
+}
+
 static void write_modulus(FILE *out) {
   fprintf(out, "%g", fg_arch_material_default().youngs_modulus_gpa);
 }
@@ -138,6 +159,11 @@ static const fg_fact facts[] = {
     {"memory_cap_mib", write_memory_cap},
     {"confidence", write_confidence},
     {"max_slope_deg", write_max_slope},
+    {"load_threshold_n", write_load_threshold},
+    {"load_u_force_pct", write_load_u_force},
+    {"load_u_displacement_pct", write_load_u_displacement},
+    {"load_diameter_mm", write_load_diameter},
+    {"load_length_mm", write_load_length},
     {"youngs_modulus_gpa", write_modulus},
     {"poisson_ratio", write_poisson},
     {"friction", write_friction},

@@ -1,0 +1,217 @@
+/* Load-displacement tests of an assembled bearing (thesis section 5.13): a rotor that does not turn
+ * is pushed and pulled along an azimuth, force and displacement are recorded, several cycles.
+ *
+ * STROKES. A record is cut where the displacement turns. Up strokes push, down strokes pull. While
+ * |F| grows a stroke loads; what it does before, on the way back to the middle, is unloading.
+ *
+ * CLEARANCE. Travel between the points where the loading strokes pass +T and -T, T the threshold. A
+ * point is where a local quadratic regression of F over x says T. Over the strokes j, numbered in
+ * time, the points are
+ *   x_j = push + d j (up strokes),   x_j = pull + d j (down strokes),   clearance = push - pull:
+ * one drift d for both takes out what creeps (of the sensor, or of the force's zero over the local
+ * stiffness). Friction makes the unloading points lie elsewhere; their travel is reported beside.
+ *
+ * STIFFNESS. dF/dx of the loading strokes by the same regression; structural stiffness is its
+ * largest value. Where that is, is decided by the other cycles than the one whose value is taken
+ * there (the halves of one cycle's samples, where there is but one): the largest of noisy values
+ * would be too large.
+ *
+ * THE WINDOW of a regression grows as long as the intervals of all windows so far have a value in
+ * common (A. Goldenshluger, A. Nemirovski, On spatially adaptive estimation of nonparametric
+ * regression, Math. Methods Statist. 6, 1997; intersection of confidence intervals).
+ *
+ * LOSS FACTOR. Loop area over pi K X²: K the structural stiffness, X half of the travel. With K of
+ * the loop's ends (secant) it is reported beside: a bearing with clearance has a K that depends on
+ * where one looks.
+ *
+ * PRELOAD. Half of what lies between the strokes is friction. Over the mean force M of both,
+ *   H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)),
+ * s and s' the ways since each stroke turned, l the way that friction takes to turn round. b is the
+ * coefficient of friction; a is there without a load from outside: a / b is the force that presses
+ * the foils already, and over the bore's surface pi D L the preload:
+ *   p = a / (b pi D L):   1.032 N / 0.03 / (pi 40 mm 40 mm) = 6.84 kPa   (thesis: 6.85).
+ *
+ * AZIMUTHS. clearance = c0 + sum of c_k cos k az + s_k sin k az, k = 2 alone where no azimuths lie
+ * more than 180 degrees apart (a line through the bearing comes back after that), else 1 and 2.
+ *
+ * DOUBT. u of a point follows from the scatter about the regression; where the cycles differ by
+ * more than these say, all of them are made larger (the Birge ratio, over all directions of a
+ * bearing). To that come the instruments', relative and standard: the load cell's 1.3 % and the
+ * displacement's 1.0 % (thesis section 5.13), together 1.64 % of a stiffness; of a clearance the
+ * displacement's, and the load cell's over the local stiffness. They are the same for every
+ * direction and take no part in what differs over the azimuths. */
+#ifndef FOILGAUGE_LOAD_TEST_H
+#define FOILGAUGE_LOAD_TEST_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/design.h"
+#include "foilgauge/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define FG_LOAD_THRESHOLD_N        5.0
+#define FG_LOAD_U_FORCE_PCT        1.3
+#define FG_LOAD_U_DISPLACEMENT_PCT 1.0
+#define FG_LOAD_DIAMETER_MM        40.0
+#define FG_LOAD_LENGTH_MM          40.0
+
+/* A file and what is said of it. */
+typedef struct fg_load_source {
+  const char *path;
+  const char *bearing; /* where it has no column; NULL: the file's name */
+  double azimuth_deg;  /* where it has no column; NaN: not said */
+} fg_load_source;
+
+/* What limits may name. */
+typedef enum fg_load_quantity {
+  FG_LOAD_CLEARANCE, /* of every direction */
+  FG_LOAD_STIFFNESS,
+  FG_LOAD_LOSS,
+  FG_LOAD_PRELOAD, /* of a bearing */
+  FG_LOAD_QUANTITIES,
+} fg_load_quantity;
+
+/* clearance_mm, stiffness_n_mm, loss_factor, preload_kpa */
+const char *fg_load_quantity_name(fg_load_quantity quantity);
+
+enum { FG_LOAD_LIMITS_MAX = 16 };
+
+typedef struct fg_load_options {
+  double threshold_n;
+  double u_force_pct, u_displacement_pct; /* standard uncertainties */
+  double diameter_mm, length_mm;          /* of the bore */
+  double azimuth_zero_deg;                /* azimuth of the lot's direction 0 */
+  const char *lot;                        /* folder of a lot; NULL: none */
+  fg_tolerance limits[FG_LOAD_LIMITS_MAX];
+  size_t limit_count;
+} fg_load_options;
+
+fg_load_options fg_load_options_default(void);
+
+typedef struct fg_load_value {
+  double value;
+  double u;        /* standard uncertainty, instruments included */
+  double u_repeat; /* without the instruments' scale: what tells directions apart */
+} fg_load_value;
+
+/* What is wrong with a direction. */
+enum {
+  FG_LOAD_NO_CONTACT = 1 << 0,    /* |F| never passes the threshold */
+  FG_LOAD_ONE_SIDE = 1 << 1,      /* pushed or pulled only */
+  FG_LOAD_TOO_FEW = 1 << 2,       /* too few samples to regress */
+  FG_LOAD_WRONG_WAY = 1 << 3,     /* loops that give energy */
+  FG_LOAD_FORCE_TURNED = 1 << 4,  /* the force ran against the displacement; it was turned */
+  FG_LOAD_AT_END = 1 << 5,        /* stiffness is largest where the test ends */
+  FG_LOAD_FRICTION_HIGH = 1 << 6, /* friction in the middle is more than half of the threshold */
+  FG_LOAD_ONE_CYCLE = 1 << 7,     /* nothing says how cycles differ */
+};
+
+typedef struct fg_load_flag {
+  unsigned flag;
+  const char *name, *plain;
+} fg_load_flag;
+const fg_load_flag *fg_load_flags(void); /* ends with a row whose name is NULL */
+
+/* One place of the stiffness' course. */
+typedef struct fg_load_point {
+  double x_mm, force_n, stiffness_n_mm, u_stiffness_n_mm;
+} fg_load_point;
+
+enum { FG_LOAD_POINTS = 61 }; /* of each side */
+
+typedef struct fg_load_course {
+  fg_load_point point[FG_LOAD_POINTS];
+  size_t count;
+} fg_load_course;
+
+enum { FG_LOAD_PULL, FG_LOAD_PUSH, FG_LOAD_SIDES };
+
+typedef struct fg_load_sample {
+  double x_mm, force_n;
+} fg_load_sample;
+
+/* H = (a + b |M|) ...; NaN where it cannot be said. */
+typedef struct fg_load_friction {
+  double a_n, b, way_mm;
+  double u_a_n, u_b, r; /* r: correlation of a and b */
+} fg_load_friction;
+
+typedef struct fg_load_direction {
+  size_t bearing; /* fg_load_test.bearings[] */
+  double azimuth_deg;
+  char pad[64]; /* "" without such a column */
+  unsigned flags;
+  size_t first, count; /* of fg_load_test.samples[] */
+  size_t strokes, cycles;
+  double travel_mm, force_low_n, force_high_n;
+  fg_load_value clearance, unloading; /* mm */
+  double push_mm, pull_mm;            /* where T is passed */
+  double drift_um_cycle;
+  fg_load_value stiffness; /* N/mm */
+  double stiffness_at_mm;
+  fg_load_value area; /* N mm */
+  fg_load_value loss, loss_secant;
+  double secant_n_mm;
+  fg_load_friction friction;
+  fg_load_course course[FG_LOAD_SIDES];
+  fg_load_value predicted;  /* by the lot, mm; NaN: not */
+  fg_load_value difference; /* clearance - predicted */
+  int predicted_pad;        /* from 1: pad of the place that is met first of both sides; 0: none */
+} fg_load_direction;
+
+enum { FG_LOAD_HARMONICS = 2 };
+
+typedef struct fg_load_bearing {
+  char name[128];
+  size_t directions, measured;
+  double least_mm, most_mm, mean_mm, u_mean_mm, least_measured_at_deg, most_measured_at_deg;
+  fg_load_value least, most; /* of the directions; mm */
+  bool harmonic[FG_LOAD_HARMONICS + 1];
+  double cosine_mm[FG_LOAD_HARMONICS + 1], sine_mm[FG_LOAD_HARMONICS + 1];
+  double amplitude_mm[FG_LOAD_HARMONICS + 1], u_amplitude_mm[FG_LOAD_HARMONICS + 1];
+  double p_value;                      /* of all directions being alike; NaN: too few */
+  double least_at_deg, u_least_at_deg; /* of the fitted curve; NaN: too few */
+  double birge;                        /* how far cycles differ over what they should */
+  fg_load_value stiffness;             /* mean over the directions */
+  double intercept_n, slope, u_intercept_n, u_slope;
+  fg_load_value preload_n, preload_kpa;
+  size_t unknown_places; /* of the lot's bearing; predicted without them */
+  bool in_lot;
+} fg_load_bearing;
+
+typedef struct fg_load_file {
+  char *path, sha256[65], *not_read; /* columns that nothing reads; NULL: none */
+} fg_load_file;
+
+typedef struct fg_load_test {
+  fg_load_options options;
+  fg_load_file *files;
+  size_t file_count;
+  fg_load_bearing *bearings;
+  size_t bearing_count, bearing_capacity;
+  fg_load_direction *directions; /* by bearing, then azimuth */
+  size_t direction_count, direction_capacity;
+  fg_load_sample *samples; /* of a direction together, in the order of time */
+  size_t sample_count, sample_capacity;
+  char lot_sha256[65];
+} fg_load_test;
+
+/* FG_ERR_DATA names file, row and line: no such column, no unit, an unknown one; a missing number;
+ * times that do not rise; FG_ERR_NOT_MEASURED never: a direction that cannot be measured has a
+ * flag. Free with fg_load_test_free. */
+fg_status fg_load_test_measure(fg_context *ctx, const fg_load_options *options,
+                               const fg_load_source *sources, size_t count, fg_load_test *test);
+void fg_load_test_free(fg_load_test *test);
+
+/* p, kPa, and where `u_kpa` is not NULL its uncertainty by u of a and b, correlated by r. */
+double fg_load_preload_kpa(const fg_load_friction *friction, double diameter_mm, double length_mm,
+                           double *u_kpa);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,253 @@
+#include <argp.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "cli/commands.h"
+#include "cli/facts.h"
+#include "cli/output_set.h"
+#include "foilgauge/load_report.h"
+#include "foilgauge/memory.h"
+
+enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_CSV, OUT_TABLE, OUT_COUNT };
+
+typedef struct stiffness_run {
+  fg_load_source said; /* what the options before a file say of it */
+  fg_load_source *sources;
+  size_t count, capacity;
+  fg_load_options options;
+  fg_output_set outputs;
+  fg_status status; /* of what failed while the command line was read */
+  fg_context *ctx;
+  fg_load_test test;
+} stiffness_run;
+
+enum {
+  OPTION_BEARING = 256,
+  OPTION_AZIMUTH,
+  OPTION_THRESHOLD,
+  OPTION_U_FORCE,
+  OPTION_U_DISPLACEMENT,
+  OPTION_DIAMETER,
+  OPTION_LENGTH,
+  OPTION_LIMIT,
+  OPTION_LOT,
+  OPTION_AZIMUTH_ZERO,
+  OPTION_HTML,
+  OPTION_TEXT,
+  OPTION_CSV,
+  OPTION_TABLE,
+};
+
+static const struct argp_option options[] = {
+    {NULL, 0, NULL, 0, "Of the files that follow, where a column does not say it:", 1},
+    {"bearing", OPTION_BEARING, "NAME", 0, "Name of the bearing (default: the file's name)", 1},
+    {"azimuth", OPTION_AZIMUTH, "DEG", 0, "Azimuth that is pushed along", 1},
+    {NULL, 0, NULL, 0, "Of all:", 2},
+    {"threshold", OPTION_THRESHOLD, "N", 0,
+     "The clearance lies between the places where |F| passes this (default: @load_threshold_n@ N)",
+     2},
+    {"u-force", OPTION_U_FORCE, "PCT", 0,
+     "Standard uncertainty of the load cell's scale (default: @load_u_force_pct@ %, thesis section "
+     "5.13)",
+     2},
+    {"u-displacement", OPTION_U_DISPLACEMENT, "PCT", 0,
+     "Of the displacement's scale (default: @load_u_displacement_pct@ %, thesis section 5.13)", 2},
+    {"diameter", OPTION_DIAMETER, "MM", 0,
+     "Of the bore, for the preload (default: @load_diameter_mm@)", 2},
+    {"length", OPTION_LENGTH, "MM", 0,
+     "Of the bearing, for the preload (default: @load_length_mm@)", 2},
+    {"limit", OPTION_LIMIT, "NAME=LOW:HIGH", 0,
+     "A limit of clearance_mm, stiffness_n_mm, loss_factor (every azimuth) or preload_kpa (every "
+     "bearing); LOW or HIGH may be empty; may be repeated",
+     2},
+    {"lot", OPTION_LOT, "DIR", 0,
+     "The lot that `foilgauge lot -o DIR` measured: the travel that its foils leave a rotor, for "
+     "bearings of the same name",
+     2},
+    {"azimuth-zero", OPTION_AZIMUTH_ZERO, "DEG", 0,
+     "Azimuth of the test where the lot's bearings have 0 degrees (default: 0)", 2},
+    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print, with the loops", 3},
+    {"text", OPTION_TEXT, "FILE.txt", 0, "The table, as on a terminal", 3},
+    {"csv", OPTION_CSV, "FILE.csv", 0, "A row per bearing and azimuth, everything that was found",
+     3},
+    {"table-out", OPTION_TABLE, "FILE.csv", 0,
+     "For `foilgauge loop --table`: the clearance (with --lot: what it differs from the lot's by) "
+     "beside bearing, azimuth and pad",
+     3},
+    {0},
+};
+
+static const char doc[] =
+    "Judge assembled bearings by load-displacement tests: clearance, stiffness, loss factor, "
+    "preload, and how they differ over the azimuths."
+    "\v"
+    "TEST is CSV (comma, semicolon or tab; decimal point or comma) with a row per sample, in the "
+    "order of time, and columns named with their unit: azimuth_deg, force_N (mN, kN), "
+    "displacement_mm (um, m, nm); `force [N]` will do too. Columns bearing, pad, cycle and time_s "
+    "(ms, min) are read where they are there; others are named in the report and not read.\n\n"
+    "Pushed and pulled: force and displacement have both signs. One cycle will do; from three on "
+    "what drifts is told from what lies between the strokes, and from their scatter whether the "
+    "uncertainties say enough. An azimuth that is only pushed, or that never passes the threshold, "
+    "has no clearance: it is reported with the reason, exit code 2.\n\n"
+    "Standard uncertainties of both instruments' scales are combined: sqrt(1.3² + 1.0²) = 1.64 % "
+    "of a stiffness. They are the same for all azimuths and do not count where these are "
+    "compared.\n\n"
+    "  foilgauge stiffness test.csv --threshold 5 --html stiffness.html\n"
+    "  foilgauge stiffness --bearing B1 b1.csv --bearing B2 b2.csv --lot lot1 --table-out t.csv\n"
+    "  foilgauge loop --table t.csv --response difference_um --model 1\n\n"
+    "@exit_judged@";
+
+static void take(stiffness_run *run, fg_status status) {
+  if (run->status == FG_OK) run->status = status;
+}
+
+static fg_status add_source(stiffness_run *run, const char *path) {
+  FG_TRY(fg_memory_reserve(run->ctx, run->count + 1, sizeof *run->sources, &run->capacity,
+                           (void **)&run->sources));
+  run->sources[run->count] = run->said;
+  run->sources[run->count++].path = path;
+  return FG_OK;
+}
+
+/* One side of LOW:HIGH; nothing is no limit. */
+static bool read_side(const char *text, size_t length, double none, double *value) {
+  char *end;
+  *value = none;
+  if (!length) return true;
+  *value = strtod(text, &end);
+  return end == text + length && isfinite(*value);
+}
+
+static void read_limit(stiffness_run *run, struct argp_state *state, const char *text) {
+  fg_tolerance limit = {0};
+  const char *equals = strchr(text, '='), *colon = equals ? strchr(equals, ':') : NULL;
+  int q = 0;
+  if (!colon) argp_error(state, "--limit: '%s' is not NAME=LOW:HIGH", text);
+  size_t length = (size_t)(equals - text);
+  while (q < FG_LOAD_QUANTITIES &&
+         (strlen(fg_load_quantity_name((fg_load_quantity)q)) != length ||
+          strncmp(text, fg_load_quantity_name((fg_load_quantity)q), length) != 0))
+    q++;
+  if (q == FG_LOAD_QUANTITIES)
+    argp_error(state,
+               "--limit: '%.*s' is none of clearance_mm, stiffness_n_mm, loss_factor, preload_kpa",
+               (int)length, text);
+  memcpy(limit.quantity, fg_load_quantity_name((fg_load_quantity)q), length);
+  if (!read_side(equals + 1, (size_t)(colon - equals - 1), -INFINITY, &limit.lower) ||
+      !read_side(colon + 1, strlen(colon + 1), INFINITY, &limit.upper) ||
+      !(limit.lower <= limit.upper) || (isinf(limit.lower) && isinf(limit.upper)))
+    argp_error(state, "--limit: '%s' has no limits LOW:HIGH, numbers of which one may be left out",
+               text);
+  if (run->options.limit_count == FG_LOAD_LIMITS_MAX)
+    argp_error(state, "--limit: more than %d", FG_LOAD_LIMITS_MAX);
+  run->options.limits[run->options.limit_count++] = limit;
+}
+
+static error_t parse_output(int key, char *text, stiffness_run *run) {
+  static const int keys[OUT_COUNT] = {'o', OPTION_HTML, OPTION_TEXT, OPTION_CSV, OPTION_TABLE};
+  for (int i = 0; i < OUT_COUNT; i++)
+    if (keys[i] == key) {
+      run->outputs.path[i] = text;
+      return 0;
+    }
+  return ARGP_ERR_UNKNOWN;
+}
+
+static error_t parse_option(int key, char *text, struct argp_state *state) {
+  stiffness_run *run = state->input;
+  switch (key) {
+  case OPTION_BEARING:
+    run->said.bearing = text;
+    break;
+  case OPTION_AZIMUTH:
+    run->said.azimuth_deg = fg_cli_number(state, "azimuth", text, -720, 720);
+    break;
+  case OPTION_THRESHOLD:
+    run->options.threshold_n = fg_cli_number(state, "threshold", text, 1e-6, 1e6);
+    break;
+  case OPTION_U_FORCE:
+    run->options.u_force_pct = fg_cli_number(state, "u-force", text, 0, 100);
+    break;
+  case OPTION_U_DISPLACEMENT:
+    run->options.u_displacement_pct = fg_cli_number(state, "u-displacement", text, 0, 100);
+    break;
+  case OPTION_DIAMETER:
+    run->options.diameter_mm = fg_cli_number(state, "diameter", text, 1e-3, 1e6);
+    break;
+  case OPTION_LENGTH:
+    run->options.length_mm = fg_cli_number(state, "length", text, 1e-3, 1e6);
+    break;
+  case OPTION_AZIMUTH_ZERO:
+    run->options.azimuth_zero_deg = fg_cli_number(state, "azimuth-zero", text, -720, 720);
+    break;
+  case OPTION_LIMIT:
+    read_limit(run, state, text);
+    break;
+  case OPTION_LOT:
+    run->options.lot = text;
+    break;
+  case ARGP_KEY_ARG:
+    take(run, add_source(run, text));
+    break;
+  case ARGP_KEY_END:
+    if (!run->count) argp_error(state, "no TEST was given");
+    break;
+  default:
+    return parse_output(key, text, run);
+  }
+  return 0;
+}
+
+static void choose_standard_output(fg_output_set *outputs) {
+  for (size_t i = 0; i < OUT_COUNT; i++)
+    if (outputs->path[i]) return;
+  outputs->path[isatty(STDOUT_FILENO) ? OUT_TEXT : OUT_JSON] = "-";
+}
+
+static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
+  typedef fg_status writer(fg_context *, const fg_load_test *, FILE *);
+  static writer *const writers[OUT_COUNT] = {
+      [OUT_JSON] = fg_load_write_json,   [OUT_HTML] = fg_load_write_html,
+      [OUT_TEXT] = fg_load_write_text,   [OUT_CSV] = fg_load_write_csv,
+      [OUT_TABLE] = fg_load_write_table,
+  };
+  const stiffness_run *run = user;
+  return writers[kind](ctx, &run->test, out);
+}
+
+static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
+  fg_report_outcome outcome;
+  FG_TRY(run->status);
+  choose_standard_output(&run->outputs);
+  for (size_t i = 0; i < run->count; i++)
+    FG_TRY(
+        fg_output_set_check(ctx, &run->outputs, &(fg_input){run->sources[i].path, "the test"}, 1));
+  FG_TRY(fg_output_set_open(ctx, &run->outputs));
+  FG_TRY(fg_load_test_measure(ctx, &run->options, run->sources, run->count, &run->test));
+  fg_load_judge(&run->test, &outcome, NULL, 0);
+  *code = fg_outcome_exit_code(&outcome);
+  return fg_output_set_write(ctx, &run->outputs, write_output, run);
+}
+
+const struct argp fg_stiffness_parser = {options, parse_option, "TEST...", doc,
+                                         NULL,    fg_cli_fill,  NULL};
+
+int fg_cmd_stiffness(int argc, char **argv) {
+  fg_context ctx = {0};
+  stiffness_run run = {.outputs.count = OUT_COUNT,
+                       .said.azimuth_deg = NAN,
+                       .options = fg_load_options_default(),
+                       .ctx = &ctx};
+  int code = 0;
+  /* In order: an option counts for the files behind it. */
+  fg_status parsed = fg_cli_parse_in_order(&ctx, &fg_stiffness_parser, argc, argv, &run);
+  if (parsed != FG_OK) run.status = parsed;
+  fg_status status = measure(&ctx, &run, &code);
+  fg_output_set_close(&run.outputs);
+  free(run.sources);
+  fg_load_test_free(&run.test);
+  return status == FG_OK ? code : fg_cli_fail(&ctx, status);
+}

@@ -1,0 +1,49 @@
+/* What is found of one direction, and then of a bearing's directions together. */
+#ifndef FG_LOAD_TEST_ANALYSIS_H
+#define FG_LOAD_TEST_ANALYSIS_H
+
+#include "load_test/strokes.h"
+
+/* How far repeats of one thing lie apart over what their uncertainties say. */
+typedef struct fg_load_scatter {
+  double chi2, freedom;
+} fg_load_scatter;
+
+/* max(1, sqrt(chi2 / freedom)) (R. T. Birge, The calculation of errors by the method of least
+ * squares, Phys. Rev. 40, 1932); 1 without repeats. */
+double fg_load_birge(const fg_load_scatter *scatter);
+
+typedef struct fg_load_findings {
+  fg_load_scatter points, slopes;
+  double compliance_mm_n; /* sum of both points' 1 / (dF/dx): what the threshold's u moves */
+} fg_load_findings;
+
+/* Clearance of the loading and of the unloading strokes, and where the loading ones pass T; what
+ * each stroke has drifted. */
+fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, double threshold_n,
+                              fg_load_direction *direction, fg_load_findings *findings);
+
+/* Whether a stroke goes as far as the record does, on one side. */
+bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_direction *direction,
+                            double low, double high, int side);
+
+/* Course of the stiffness on both sides, its largest value. */
+fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes,
+                                 fg_load_direction *direction, fg_load_findings *findings);
+
+/* Area, loss factor (needs the stiffness). */
+void fg_load_find_loops(const fg_load_test *test, const fg_load_strokes *strokes,
+                        fg_load_direction *direction);
+
+/* Friction over force. */
+fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes, double threshold_n,
+                                fg_load_direction *direction);
+
+/* Of a bearing, from its directions with their final uncertainties. */
+void fg_load_sum_bearing(const fg_load_test *test, size_t bearing, fg_load_bearing *sum);
+void fg_load_sum_preload(const fg_load_test *test, size_t bearing, fg_load_bearing *sum);
+
+/* What test->options.lot says of the bearings. */
+fg_status fg_load_predict(fg_context *ctx, fg_load_test *test);
+
+#endif

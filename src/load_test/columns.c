@@ -1,0 +1,128 @@
+#include "load_test/columns.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "core/text.h"
+
+typedef struct unit {
+  const char *word;
+  double scale;
+} unit;
+
+enum { UNITS_MAX = 8 };
+
+typedef struct measured_row {
+  const char *name;
+  unit units[UNITS_MAX];
+  const char *wanted;
+} measured_row;
+
+static const measured_row rows[FG_LOAD_MEASURED] = {
+    [FG_LOAD_AZIMUTH] = {"azimuth",
+                         {{"deg", 1}, {"°", 1}, {"rad", 180 / M_PI}},
+                         "azimuth_deg or azimuth_rad"},
+    [FG_LOAD_FORCE] = {"force",
+                       {{"N", 1}, {"n", 1}, {"mN", 1e-3}, {"kN", 1e3}, {"kn", 1e3}},
+                       "force_N, force_mN or force_kN"},
+    [FG_LOAD_DISPLACEMENT] = {"displacement",
+                              {{"mm", 1},
+                               {"um", 1e-3},
+                               {"\xc2\xb5m", 1e-3},
+                               {"\xce\xbcm", 1e-3},
+                               {"m", 1e3},
+                               {"nm", 1e-6}},
+                              "displacement_mm, displacement_um or displacement_m"},
+    [FG_LOAD_TIME] = {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, "time_s, time_ms or time_min"},
+};
+
+/* What follows the quantity's word in a column's name, less blanks, underlines and brackets; NULL:
+ * the column is of something else. */
+static const char *unit_text(const char *name, const char *word, char *text, size_t size) {
+  size_t length = strlen(word);
+  if (strncasecmp(name, word, length) != 0 || isalnum((unsigned char)name[length])) return NULL;
+  const char *from = name + length + strspn(name + length, " _[(/");
+  size_t count = strcspn(from, " ])");
+  fg_text_clip(text, size, "%.*s", (int)count, from);
+  return text;
+}
+
+static fg_status fail_unit(fg_context *ctx, const fg_table *table, const char *name,
+                           const measured_row *row, const char *text) {
+  bool mass = row == &rows[FG_LOAD_FORCE] && (!strncasecmp(text, "kg", 2) || !strcmp(text, "g"));
+  if (!*text)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: the column '%s' has no unit; call it %s", table->source,
+                   name, row->wanted);
+  return fg_fail(ctx, FG_ERR_DATA, "%s: the column '%s': '%s' is no unit of %s%s; it must be %s",
+                 table->source, name, text, row->name,
+                 mass ? " but of mass: multiply kilograms by 9.80665 for newtons" : "",
+                 row->wanted);
+}
+
+static fg_status take(fg_context *ctx, const fg_table *table, size_t number, fg_load_measured which,
+                      const char *text, fg_load_columns *columns) {
+  const char *name = table->column[number].name;
+  const unit *u = rows[which].units;
+  while (u->word && strcmp(u->word, text) != 0)
+    u++;
+  if (!u->word) return fail_unit(ctx, table, name, &rows[which], text);
+  if (columns->number[which])
+    return fg_fail(ctx, FG_ERR_DATA, "%s: two columns of %s, '%s' is the second; leave one",
+                   table->source, rows[which].name, name);
+  FG_TRY(fg_table_check(ctx, table, name));
+  FG_TRY(fg_table_numbers(ctx, table, name, &columns->number[which]));
+  columns->scale[which] = u->scale;
+  return FG_OK;
+}
+
+static bool is_word(const fg_column *column, const char *word, const fg_column **found) {
+  if (strcasecmp(column->name, word) != 0) return false;
+  *found = column;
+  return true;
+}
+
+static fg_status sort_column(fg_context *ctx, const fg_table *table, size_t number,
+                             fg_load_columns *columns) {
+  const fg_column *column = &table->column[number];
+  char text[32];
+  for (int which = 0; which < FG_LOAD_MEASURED; which++)
+    if (unit_text(column->name, rows[which].name, text, sizeof text))
+      return take(ctx, table, number, (fg_load_measured)which, text, columns);
+  if (is_word(column, "cycle", &columns->cycle) || is_word(column, "bearing", &columns->bearing) ||
+      is_word(column, "pad", &columns->pad))
+    return FG_OK;
+  return fg_text_append(ctx, &columns->not_read, "%s%s", columns->not_read ? ", " : "",
+                        column->name);
+}
+
+fg_status fg_load_columns_find(fg_context *ctx, const fg_table *table, bool azimuth_said,
+                               fg_load_columns *columns) {
+  *columns = (fg_load_columns){0};
+  for (size_t i = 0; i < table->columns; i++)
+    FG_TRY(sort_column(ctx, table, i, columns));
+  for (int which = 0; which < FG_LOAD_TIME; which++) {
+    if (columns->number[which] || (which == FG_LOAD_AZIMUTH && azimuth_said)) continue;
+    return fg_fail(ctx, FG_ERR_DATA, "%s: no column of the %s; it must be called %s%s",
+                   table->source, rows[which].name, rows[which].wanted,
+                   which == FG_LOAD_AZIMUTH ? ", or say --azimuth DEG before the file" : "");
+  }
+  if (columns->cycle)
+    FG_TRY(fg_table_numbers(ctx, table, columns->cycle->name, &(const fg_extended *){NULL}));
+  return FG_OK;
+}
+
+fg_status fg_load_columns_text(fg_context *ctx, const fg_table *table, const fg_column *column,
+                               size_t row, char *text, size_t size) {
+  size_t mark = column->word ? column->word[row] : FG_TABLE_NOT_A_WORD;
+  if (mark == FG_TABLE_MISSING)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu (line %zu): the column '%s' is empty",
+                   table->source, row + 1, table->line[row], column->name);
+  if (mark == FG_TABLE_NOT_A_WORD)
+    fg_text_clip(text, size, "%.10g", column->number[row].value);
+  else
+    fg_text_clip(text, size, "%s", column->words[mark]);
+  return FG_OK;
+}

@@ -1,0 +1,32 @@
+/* The columns of a test's table, by their names and units. */
+#ifndef FG_LOAD_TEST_COLUMNS_H
+#define FG_LOAD_TEST_COLUMNS_H
+
+#include "foilgauge/load_test.h"
+#include "foilgauge/table.h"
+
+typedef enum fg_load_measured {
+  FG_LOAD_AZIMUTH,
+  FG_LOAD_FORCE,
+  FG_LOAD_DISPLACEMENT,
+  FG_LOAD_TIME,
+  FG_LOAD_MEASURED,
+} fg_load_measured;
+
+typedef struct fg_load_columns {
+  const fg_extended *number[FG_LOAD_MEASURED]; /* NULL: no such column */
+  double scale[FG_LOAD_MEASURED];              /* to degrees, N, mm, s */
+  const fg_column *cycle, *bearing, *pad;      /* NULL: no such column */
+  char *not_read;                              /* names that nothing reads; NULL: none; owned */
+} fg_load_columns;
+
+/* FG_ERR_DATA: what is missing, has no unit or an unknown one, is there twice, or holds a cell that
+ * is no number. Time may be missing, azimuth too where `azimuth_said`. */
+fg_status fg_load_columns_find(fg_context *ctx, const fg_table *table, bool azimuth_said,
+                               fg_load_columns *columns);
+
+/* The cell as text; FG_ERR_DATA where it is empty. */
+fg_status fg_load_columns_text(fg_context *ctx, const fg_table *table, const fg_column *column,
+                               size_t row, char *text, size_t size);
+
+#endif

@@ -1,0 +1,224 @@
+/* Friction between the strokes over the force, and the preload that follows from it. */
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "load_test/analysis.h"
+#include "load_test/local_fit.h"
+
+/* Places between the ends of all strokes, less a share of the travel at each end; the ways of
+ * friction that are tried, up to a quarter of the travel. */
+enum { PLACES = 49, WAYS = 51 };
+static const double end_left_out = 0.05, way_share_max = 0.25;
+
+/* The preload is a / b: where b is not known to a third, a / b has no interval worth the name. */
+static const double slope_known = 3;
+
+typedef struct between {
+  double x[PLACES], half[PLACES], middle[PLACES]; /* H, M */
+  double low, high;                               /* where strokes turn */
+  size_t count;                                   /* of strokes that are means */
+} between;
+
+static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction) {
+  return s->x[s->count - 1] - s->x[0] > 0.9 * direction->travel_mm;
+}
+
+/* Force of every whole stroke at the places; NaN of the others. */
+static fg_status fit_forces(fg_context *ctx, const fg_load_strokes *strokes,
+                            const fg_load_direction *direction, between *b, double **forces) {
+  b->low = -INFINITY, b->high = INFINITY;
+  for (size_t i = 0; i < strokes->count; i++) {
+    const fg_load_stroke *s = &strokes->stroke[i];
+    if (!is_whole(s, direction)) continue;
+    b->low = fmax(b->low, s->x[0]);
+    b->high = fmin(b->high, s->x[s->count - 1]);
+  }
+  FG_TRY(fg_memory_allocate(ctx, strokes->count * PLACES, sizeof **forces, (void **)forces));
+  for (size_t k = 0; k < PLACES; k++) {
+    double share = end_left_out + (1 - 2 * end_left_out) * (double)k / (PLACES - 1);
+    b->x[k] = b->low + share * (b->high - b->low);
+    for (size_t i = 0; i < strokes->count; i++) {
+      fg_local_fit fit;
+      bool known = is_whole(&strokes->stroke[i], direction) &&
+                   fg_local_fit_adaptive(&strokes->stroke[i], b->x[k], FG_LOCAL_VALUE, &fit);
+      (*forces)[i * PLACES + k] = known ? fit.value : NAN;
+    }
+  }
+  return FG_OK;
+}
+
+static bool follows(const fg_load_strokes *strokes, const double *forces, size_t i) {
+  return i + 1 < strokes->count && strokes->stroke[i].last == strokes->stroke[i + 1].first &&
+         strokes->stroke[i].record == strokes->stroke[i + 1].record &&
+         isfinite(forces[i * PLACES]) && isfinite(forces[(i + 1) * PLACES]);
+}
+
+/* Each stroke against the mean of those before and after it, which takes out what drifts; where
+ * none has both, against the next. */
+static void compare(const fg_load_strokes *strokes, const double *forces, between *b) {
+  for (int pairs = 0; pairs < 2 && !b->count; pairs++)
+    for (size_t i = 1; i <= strokes->count; i++) {
+      bool before = follows(strokes, forces, i - 1);
+      if (!before || (!pairs && !follows(strokes, forces, i))) continue;
+      for (size_t k = 0; k < PLACES; k++) {
+        double here = forces[i * PLACES + k], there = forces[(i - 1) * PLACES + k];
+        if (!pairs) there = (there + forces[(i + 1) * PLACES + k]) / 2;
+        b->half[k] += strokes->stroke[i].sense * (here - there) / 2;
+        b->middle[k] += (here + there) / 2;
+      }
+      b->count++;
+    }
+  for (size_t k = 0; k < PLACES && b->count; k++) {
+    b->half[k] /= (double)b->count;
+    b->middle[k] /= (double)b->count;
+  }
+}
+
+static double turned(const between *b, size_t k, double way) {
+  if (!(way > 0)) return 1;
+  return 1 - exp(-(b->x[k] - b->low) / way) - exp(-(b->high - b->x[k]) / way);
+}
+
+/* Sum of squares of the fit with this way; a and b. */
+static double try_way(const between *b, double zero, double way, double ab[2]) {
+  fg_normal_equations system;
+  fg_normal_clear(&system, 2);
+  for (size_t k = 0; k < PLACES; k++) {
+    double g = turned(b, k, way), row[2] = {g, g * fabs(b->middle[k] - zero)};
+    fg_normal_add(&system, row, b->half[k], 1);
+  }
+  if (!fg_normal_solve(&system, 0, ab, NULL)) return INFINITY;
+  return fmax(0, system.sum_squares - ab[0] * system.right[0] - ab[1] * system.right[1]);
+}
+
+/* Covariance of a and b with the way free too; neighbouring residuals are alike. */
+static void find_doubt(const between *b, double zero, double step, fg_load_friction *f) {
+  fg_normal_equations system;
+  double unused[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], last = 0, sum = 0, cross = 0;
+  size_t unknowns = f->way_mm > 0 ? 3 : 2;
+  fg_normal_clear(&system, unknowns);
+  for (size_t k = 0; k < PLACES; k++) {
+    double load = fabs(b->middle[k] - zero), g = turned(b, k, f->way_mm);
+    double change =
+        (turned(b, k, f->way_mm + step / 2) - turned(b, k, f->way_mm - step / 2)) / step;
+    double row[3] = {g, g * load, (f->a_n + f->b * load) * change};
+    double off = b->half[k] - (f->a_n + f->b * load) * g;
+    fg_normal_add(&system, row, 0, 1);
+    sum += off * off;
+    cross += k ? off * last : 0;
+    last = off;
+  }
+  if (!fg_normal_solve(&system, 0, unused, inverse)) return;
+  double alike = fmax(0, fmin(0.9, sum > 0 ? cross / sum : 0));
+  double variance = sum / (double)(PLACES - unknowns) * (1 + alike) / (1 - alike);
+  f->u_a_n = sqrt(variance * inverse[0][0]);
+  f->u_b = sqrt(variance * inverse[1][1]);
+  f->r = inverse[0][1] / sqrt(inverse[0][0] * inverse[1][1]);
+}
+
+static fg_load_friction fit(const between *b, double zero) {
+  fg_load_friction f = {NAN, NAN, NAN, NAN, NAN, NAN};
+  double least = INFINITY, step = way_share_max * (b->high - b->low) / (WAYS - 1), ab[2];
+  for (int i = 0; i < WAYS; i++) {
+    double squares = try_way(b, zero, i * step, ab);
+    if (squares >= least) continue;
+    least = squares;
+    f.a_n = ab[0], f.b = ab[1], f.way_mm = i * step;
+  }
+  find_doubt(b, zero, step, &f);
+  return f;
+}
+
+fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes, double threshold_n,
+                                fg_load_direction *direction) {
+  between b = {0};
+  double *forces = NULL, centre = (direction->push_mm + direction->pull_mm) / 2;
+  size_t zero = 0;
+  direction->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN, NAN};
+  fg_status status = fit_forces(ctx, strokes, direction, &b, &forces);
+  if (status == FG_OK) compare(strokes, forces, &b);
+  free(forces);
+  if (status != FG_OK || !b.count || !isfinite(centre)) return status;
+  for (size_t k = 0; k < PLACES; k++)
+    if (fabs(b.x[k] - centre) < fabs(b.x[zero] - centre)) zero = k;
+  /* In the middle between the points no foil pulls: what the cell says there is its zero. */
+  direction->friction = fit(&b, b.middle[zero]);
+  if (b.half[zero] > threshold_n / 2) direction->flags |= FG_LOAD_FRICTION_HIGH;
+  return FG_OK;
+}
+
+double fg_load_preload_kpa(const fg_load_friction *friction, double diameter_mm, double length_mm,
+                           double *u_kpa) {
+  double area = M_PI * diameter_mm * length_mm, load = friction->a_n / friction->b;
+  double a = friction->u_a_n / friction->a_n, b = friction->u_b / friction->b;
+  if (u_kpa)
+    *u_kpa = 1000 * fabs(load) / area * sqrt(fmax(0, a * a + b * b - 2 * friction->r * a * b));
+  return 1000 * load / area; /* N/mm² is 1000 kPa */
+}
+
+/* Means of a and b over the directions but one. */
+static size_t mean_of(const fg_load_test *test, size_t bearing, size_t but,
+                      fg_load_friction *mean) {
+  size_t count = 0;
+  double square_a = 0, square_b = 0, cross = 0;
+  *mean = (fg_load_friction){0};
+  for (size_t i = 0; i < test->direction_count; i++) {
+    const fg_load_friction *f = &test->directions[i].friction;
+    if (test->directions[i].bearing != bearing || i == but || !isfinite(f->a_n + f->b)) continue;
+    mean->a_n += f->a_n;
+    mean->b += f->b;
+    square_a += f->u_a_n * f->u_a_n;
+    square_b += f->u_b * f->u_b;
+    cross += f->r * f->u_a_n * f->u_b;
+    count++;
+  }
+  double n = (double)count;
+  mean->a_n /= n, mean->b /= n;
+  mean->u_a_n = sqrt(square_a) / n, mean->u_b = sqrt(square_b) / n;
+  mean->r = cross / sqrt(square_a * square_b);
+  return count;
+}
+
+/* Scatter of a, b and a / b over the directions, by leaving out one at a time (jackknife). */
+static void leave_out(const fg_load_test *test, size_t bearing, const fg_load_friction *all,
+                      size_t count, double u[3]) {
+  double sum[3] = {0};
+  for (size_t i = 0; i < test->direction_count; i++) {
+    const fg_load_direction *d = &test->directions[i];
+    fg_load_friction but;
+    if (d->bearing != bearing || !isfinite(d->friction.a_n + d->friction.b)) continue;
+    mean_of(test, bearing, i, &but);
+    sum[0] += pow(but.a_n - all->a_n, 2);
+    sum[1] += pow(but.b - all->b, 2);
+    sum[2] += pow(but.a_n / but.b - all->a_n / all->b, 2);
+  }
+  for (int k = 0; k < 3; k++)
+    u[k] = sqrt(sum[k] * (double)(count - 1) / (double)count);
+}
+
+void fg_load_sum_preload(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
+  enum { SCATTER_DIRECTIONS_MIN = 4 };
+  fg_load_friction all;
+  double u[3], u_kpa, area = M_PI * test->options.diameter_mm * test->options.length_mm;
+  sum->preload_n = sum->preload_kpa = (fg_load_value){NAN, NAN, NAN};
+  size_t count = mean_of(test, bearing, SIZE_MAX, &all);
+  sum->intercept_n = all.a_n, sum->slope = all.b;
+  sum->u_intercept_n = all.u_a_n, sum->u_slope = all.u_b;
+  if (!count) return;
+  double kpa =
+      fg_load_preload_kpa(&all, test->options.diameter_mm, test->options.length_mm, &u_kpa);
+  if (count >= SCATTER_DIRECTIONS_MIN) {
+    leave_out(test, bearing, &all, count, u);
+    sum->u_intercept_n = fmax(u[0], all.u_a_n);
+    sum->u_slope = fmax(u[1], all.u_b);
+    u_kpa = fmax(u_kpa, 1000 * u[2] / area);
+  }
+  if (!(sum->slope > slope_known * sum->u_slope) || !(all.a_n > 0)) return;
+  double scale = test->options.u_force_pct / 100;
+  sum->preload_kpa = (fg_load_value){kpa, hypot(u_kpa, scale * kpa), u_kpa};
+  double newtons = area / 1000;
+  sum->preload_n = (fg_load_value){newtons * kpa, newtons * sum->preload_kpa.u, newtons * u_kpa};
+}

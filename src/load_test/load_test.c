@@ -1,0 +1,179 @@
+#include "foilgauge/load_test.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/numerics.h"
+#include "load_test/analysis.h"
+
+fg_load_options fg_load_options_default(void) {
+  return (fg_load_options){.threshold_n = FG_LOAD_THRESHOLD_N,
+                           .u_force_pct = FG_LOAD_U_FORCE_PCT,
+                           .u_displacement_pct = FG_LOAD_U_DISPLACEMENT_PCT,
+                           .diameter_mm = FG_LOAD_DIAMETER_MM,
+                           .length_mm = FG_LOAD_LENGTH_MM};
+}
+
+const char *fg_load_quantity_name(fg_load_quantity quantity) {
+  static const char *const names[FG_LOAD_QUANTITIES] = {
+      [FG_LOAD_CLEARANCE] = "clearance_mm",
+      [FG_LOAD_STIFFNESS] = "stiffness_n_mm",
+      [FG_LOAD_LOSS] = "loss_factor",
+      [FG_LOAD_PRELOAD] = "preload_kpa",
+  };
+  return names[quantity];
+}
+
+const fg_load_flag *fg_load_flags(void) {
+  static const fg_load_flag flags[] = {
+      {FG_LOAD_NO_CONTACT, "no_contact",
+       "the force never passes the threshold: the foil is not touched, there is no clearance"},
+      {FG_LOAD_ONE_SIDE, "one_side", "pushed or pulled only: a clearance takes both"},
+      {FG_LOAD_TOO_FEW, "too_few_samples", "too few samples, or no travel"},
+      {FG_LOAD_WRONG_WAY, "energy_gained",
+       "the loops run the wrong way round: are the rows in the order of time?"},
+      {FG_LOAD_FORCE_TURNED, "force_turned",
+       "the force runs against the displacement, as a reaction does; its sign was turned"},
+      {FG_LOAD_AT_END, "stiffness_at_end",
+       "the stiffness is largest where the test ends: more travel would find more"},
+      {FG_LOAD_FRICTION_HIGH, "friction_high",
+       "friction in the middle is more than half of the threshold: choose a higher one"},
+      {FG_LOAD_ONE_CYCLE, "one_cycle", "one cycle: nothing says how cycles differ"},
+      {0, NULL, NULL},
+  };
+  return flags;
+}
+
+static void find_ranges(const fg_load_test *test, fg_load_direction *d) {
+  const fg_load_sample *s = test->samples + d->first;
+  double low = INFINITY, high = -INFINITY;
+  d->force_low_n = INFINITY, d->force_high_n = -INFINITY;
+  for (size_t i = 0; i < d->count; i++) {
+    low = fmin(low, s[i].x_mm), high = fmax(high, s[i].x_mm);
+    d->force_low_n = fmin(d->force_low_n, s[i].force_n);
+    d->force_high_n = fmax(d->force_high_n, s[i].force_n);
+  }
+  d->travel_mm = high - low;
+}
+
+/* A load cell may read what pushes or what resists. */
+static void turn_force(fg_load_test *test, fg_load_direction *d) {
+  fg_load_sample *s = test->samples + d->first;
+  double x = 0, f = 0, together = 0, n = (double)d->count;
+  for (size_t i = 0; i < d->count; i++)
+    x += s[i].x_mm / n, f += s[i].force_n / n;
+  for (size_t i = 0; i < d->count; i++)
+    together += (s[i].x_mm - x) * (s[i].force_n - f);
+  if (together >= 0) return;
+  for (size_t i = 0; i < d->count; i++)
+    s[i].force_n = -s[i].force_n;
+  d->flags |= FG_LOAD_FORCE_TURNED;
+}
+
+static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
+  if (isfinite(d->clearance.value)) {
+    if (d->cycles < 2) d->flags |= FG_LOAD_ONE_CYCLE;
+    return;
+  }
+  double t = test->options.threshold_n;
+  bool push = d->force_high_n > t, pull = d->force_low_n < -t;
+  if (!d->strokes)
+    d->flags |= FG_LOAD_TOO_FEW;
+  else if (!push && !pull)
+    d->flags |= FG_LOAD_NO_CONTACT;
+  else
+    d->flags |= push && pull ? FG_LOAD_TOO_FEW : FG_LOAD_ONE_SIDE;
+}
+
+static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
+                                   const fg_load_records *records, fg_load_direction *d,
+                                   fg_load_findings *findings) {
+  fg_load_strokes strokes = {0};
+  fg_status status = FG_OK;
+  const fg_load_value none = {NAN, NAN, NAN};
+  d->predicted = d->difference = none;
+  turn_force(test, d);
+  find_ranges(test, d);
+  FG_TRY_EXIT(fg_load_strokes_cut(ctx, test, d, records, &strokes));
+  d->strokes = strokes.count;
+  d->cycles = strokes.count / 2;
+  FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, test->options.threshold_n, d, findings));
+  FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
+  fg_load_find_loops(test, &strokes, d);
+  FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, test->options.threshold_n, d));
+  say_why_not(test, d);
+exit:
+  fg_load_strokes_free(&strokes);
+  return status;
+}
+
+static void widen(fg_load_value *value, double birge, double scale_pct, double more) {
+  value->u_repeat *= birge;
+  value->u = sqrt(pow(value->u_repeat, 2) + pow(scale_pct / 100 * value->value, 2) + more * more);
+}
+
+/* What repeats say of a bearing's directions, and the instruments' share. */
+static void finish_bearing(fg_load_test *test, const fg_load_findings *findings, size_t bearing) {
+  const fg_load_options *o = &test->options;
+  fg_load_scatter points = {0}, slopes = {0};
+  for (size_t i = 0; i < test->direction_count; i++)
+    if (test->directions[i].bearing == bearing) {
+      points.chi2 += findings[i].points.chi2, points.freedom += findings[i].points.freedom;
+      slopes.chi2 += findings[i].slopes.chi2, slopes.freedom += findings[i].slopes.freedom;
+    }
+  double birge = fg_load_birge(&points), steep = fg_load_birge(&slopes);
+  double both = hypot(o->u_force_pct, o->u_displacement_pct);
+  test->bearings[bearing].birge = birge;
+  for (size_t i = 0; i < test->direction_count; i++) {
+    fg_load_direction *d = &test->directions[i];
+    if (d->bearing != bearing) continue;
+    double threshold = o->threshold_n * o->u_force_pct / 100 * findings[i].compliance_mm_n;
+    widen(&d->clearance, birge, o->u_displacement_pct, threshold);
+    widen(&d->unloading, birge, o->u_displacement_pct, threshold);
+    widen(&d->stiffness, steep, both, 0);
+    widen(&d->area, 1, both, 0);
+    for (int side = 0; side < FG_LOAD_SIDES; side++)
+      for (size_t k = 0; k < d->course[side].count; k++)
+        d->course[side].point[k].u_stiffness_n_mm *= steep;
+  }
+}
+
+fg_status fg_load_test_measure(fg_context *ctx, const fg_load_options *options,
+                               const fg_load_source *sources, size_t count, fg_load_test *test) {
+  fg_status status = FG_OK;
+  fg_load_records records = {0};
+  fg_load_findings *findings = NULL;
+  fg_numerics_start();
+  *test = (fg_load_test){.options = *options};
+  FG_TRY_EXIT(fg_load_records_read(ctx, sources, count, test, &records));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, test->direction_count, sizeof *findings, (void **)&findings));
+  for (size_t i = 0; i < test->direction_count; i++)
+    FG_TRY_EXIT(measure_direction(ctx, test, &records, &test->directions[i], &findings[i]));
+  for (size_t i = 0; i < test->bearing_count; i++)
+    finish_bearing(test, findings, i);
+  if (options->lot) FG_TRY_EXIT(fg_load_predict(ctx, test));
+  for (size_t i = 0; i < test->bearing_count; i++) {
+    fg_load_sum_bearing(test, i, &test->bearings[i]);
+    fg_load_sum_preload(test, i, &test->bearings[i]);
+  }
+exit:
+  fg_load_records_free(&records);
+  free(findings);
+  if (status != FG_OK) fg_load_test_free(test);
+  return status;
+}
+
+void fg_load_test_free(fg_load_test *test) {
+  if (!test) return;
+  for (size_t i = 0; i < test->file_count; i++) {
+    free(test->files[i].path);
+    free(test->files[i].not_read);
+  }
+  free(test->files);
+  free(test->bearings);
+  free(test->directions);
+  free(test->samples);
+  memset(test, 0, sizeof *test);
+}

@@ -1,0 +1,169 @@
+#include "load_test/local_fit.h"
+
+#include <math.h>
+
+/* Samples of the smallest window; a window grows by a quarter. */
+enum { SAMPLES_MIN = 12 };
+static const double window_growth = 1.25, window_share_max = 0.5;
+
+/* Of the stroke: where it turns, samples lie so close that the displacement's noise would flatten
+ * what is fitted to a narrower window. */
+static const double window_share_min = 1.0 / 60;
+
+/* How many standard uncertainties the intervals of windows that must agree reach. Small: a window
+ * that is a little too small costs noise, which u says; one too large costs bias, which it does
+ * not. tests/unit/test_load_test.c counts what comes of it. */
+static const double interval_reach = 2.0, window_taken = 0.64;
+
+/* Places where a stroke is looked at for the force that is sought. */
+enum { LOOK_PLACES = 120, SOLVE_STEPS = 6 };
+
+static size_t first_from(const fg_load_stroke *s, double x) {
+  size_t low = 0, high = s->count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (s->x[middle] < x)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* Inverse of a symmetric 3 × 3 matrix. */
+static bool invert(const double m[3][3], double inverse[3][3]) {
+  double determinant = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+      inverse[j][i] = m[a][c] * m[b][d] - m[a][d] * m[b][c];
+    }
+  for (int i = 0; i < 3; i++)
+    determinant += m[0][i] * inverse[i][0];
+  if (!(determinant > 1e-12 * m[0][0] * m[1][1] * m[2][2])) return false;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      inverse[i][j] /= determinant;
+  return true;
+}
+
+/* Sums over the window with z = (x - x0) / h, weights of the tricube. */
+typedef struct sums {
+  double left[3][3], right[3], noise[3][3];
+  size_t count;
+} sums;
+
+static sums sum_window(const fg_load_stroke *s, double x, double window) {
+  sums all = {0};
+  for (size_t i = first_from(s, x - window); i < s->count && s->x[i] < x + window; i++) {
+    double z = (s->x[i] - x) / window, w = 1 - fabs(z * z * z), power[3] = {1, z, z * z};
+    w *= w * w;
+    all.count += w > 0.01;
+    for (int r = 0; r < 3; r++) {
+      all.right[r] += w * power[r] * s->f[i];
+      for (int c = 0; c < 3; c++) {
+        all.left[r][c] += w * power[r] * power[c];
+        all.noise[r][c] += w * w * power[r] * power[c] * s->variance[i];
+      }
+    }
+  }
+  return all;
+}
+
+bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit) {
+  sums all = sum_window(stroke, x, window_mm);
+  double inverse[3][3], solution[3] = {0}, variance[2] = {0};
+  if (all.count < SAMPLES_MIN / 2 || !invert((const double(*)[3])all.left, inverse)) return false;
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++)
+      solution[r] += inverse[r][c] * all.right[c];
+  for (int k = 0; k < 2; k++)
+    for (int r = 0; r < 3; r++)
+      for (int c = 0; c < 3; c++)
+        variance[k] += inverse[k][r] * all.noise[r][c] * inverse[c][k];
+  *fit = (fg_local_fit){solution[0], sqrt(variance[0]), solution[1] / window_mm,
+                        sqrt(variance[1]) / window_mm, window_mm};
+  return true;
+}
+
+/* Half of a width that holds SAMPLES_MIN samples. */
+static double smallest_window(const fg_load_stroke *s, double x) {
+  size_t low = first_from(s, x), high = low;
+  double window = window_share_min * (s->x[s->count - 1] - s->x[0]);
+  while (high - low < SAMPLES_MIN) {
+    bool left = low > 0 && (high == s->count || x - s->x[low - 1] < s->x[high] - x);
+    window = fmax(window, left ? x - s->x[--low] : s->x[high++] - x);
+  }
+  return window;
+}
+
+/* The narrower window is taken; half of what the wider one says otherwise stands for its bias: at
+ * 0.64 of the width a quarter to two fifths of the wider one's is left, over what they differ by a
+ * third to two thirds. */
+static void narrow(const fg_local_fit *narrower, fg_local_fit *fit) {
+  double value = (fit->value - narrower->value) / 2, slope = (fit->slope - narrower->slope) / 2;
+  *fit = *narrower;
+  fit->u_value = hypot(fit->u_value, value);
+  fit->u_slope = hypot(fit->u_slope, slope);
+}
+
+bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
+                           fg_local_fit *fit) {
+  double span = stroke->x[stroke->count - 1] - stroke->x[0], low = -INFINITY, high = INFINITY;
+  bool found = false;
+  if (stroke->count < SAMPLES_MIN || !(span > 0)) return false;
+  double window = fmax(1.0001 * smallest_window(stroke, x), 1e-9 * span);
+  for (; window < window_share_max * span; window *= window_growth) {
+    fg_local_fit next;
+    if (!fg_local_fit_at(stroke, x, window, &next)) continue;
+    double value = target == FG_LOCAL_VALUE ? next.value : next.slope;
+    double reach = interval_reach * (target == FG_LOCAL_VALUE ? next.u_value : next.u_slope);
+    low = fmax(low, value - reach);
+    high = fmin(high, value + reach);
+    if (low > high) break;
+    *fit = next;
+    found = true;
+  }
+  if (found) {
+    fg_local_fit smaller;
+    double taken = fmax(window_taken * fit->window_mm, 1.0001 * smallest_window(stroke, x));
+    if (fg_local_fit_at(stroke, x, taken, &smaller)) narrow(&smaller, fit);
+  }
+  return found;
+}
+
+/* A coarse look: between which places the force passes the level. */
+static bool look(const fg_load_stroke *s, double level, double *x) {
+  double low = s->x[0], high = s->x[s->count - 1], step = (high - low) / LOOK_PLACES;
+  double outer = NAN;
+  for (int i = LOOK_PLACES; i >= 0; i--) {
+    fg_local_fit fit;
+    double at = low + i * step, window = fmax(2 * step, 1.0001 * smallest_window(s, at));
+    if (!fg_local_fit_at(s, at, window, &fit)) continue;
+    if (fit.value < level && outer >= level) {
+      *x = at + step / 2;
+      return true;
+    }
+    outer = fit.value;
+  }
+  return false;
+}
+
+bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
+                       fg_local_fit *fit) {
+  double low = stroke->x[0], high = stroke->x[stroke->count - 1], window = 0, u = 0;
+  if (stroke->count < SAMPLES_MIN || !(high > low) || !look(stroke, level_n, x)) return false;
+  for (int step = 0; step < SOLVE_STEPS; step++) {
+    /* The window is that of the second place: the first is a guess. */
+    if (step < 2 ? !fg_local_fit_adaptive(stroke, *x, FG_LOCAL_VALUE, fit)
+                 : !fg_local_fit_at(stroke, *x, window, fit))
+      return false;
+    if (step < 2) window = fit->window_mm, u = fit->u_value;
+    if (!(fit->slope > 0)) return false;
+    *x += fmax(-window, fmin(window, (level_n - fit->value) / fit->slope));
+    if (*x < low || *x > high) return false;
+  }
+  if (!fg_local_fit_at(stroke, *x, window, fit) || !(fit->slope > 0)) return false;
+  *u_x = fmax(u, fit->u_value) / fit->slope;
+  return true;
+}

@@ -1,0 +1,27 @@
+/* Local quadratic regression of a stroke's force over its displacement. */
+#ifndef FG_LOAD_TEST_LOCAL_FIT_H
+#define FG_LOAD_TEST_LOCAL_FIT_H
+
+#include "load_test/strokes.h"
+
+typedef struct fg_local_fit {
+  double value, u_value; /* F, N */
+  double slope, u_slope; /* dF/dx, N/mm */
+  double window_mm;      /* half of its width */
+} fg_local_fit;
+
+typedef enum fg_local_target { FG_LOCAL_VALUE, FG_LOCAL_SLOPE } fg_local_target;
+
+/* With a window of half a width `window_mm` about x. False: too few samples in it. */
+bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
+
+/* With the window that the noise decides. */
+bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
+                           fg_local_fit *fit);
+
+/* Where the force passes `level_n`, seen from the largest displacement; the fit there. False: it
+ * does not. */
+bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
+                       fg_local_fit *fit);
+
+#endif

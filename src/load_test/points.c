@@ -1,0 +1,153 @@
+/* Where the strokes pass the threshold. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "load_test/analysis.h"
+#include "load_test/local_fit.h"
+
+enum { RECORDS_MAX = FG_SMALL_MAX - 3, PUSH = 0, PULL, DRIFT, OFFSETS };
+
+double fg_load_birge(const fg_load_scatter *scatter) {
+  return scatter->freedom > 0 ? fmax(1, sqrt(scatter->chi2 / scatter->freedom)) : 1;
+}
+
+typedef struct point {
+  bool found;
+  int side; /* PUSH, PULL */
+  double x, u;
+} point;
+
+/* How the points are joined. */
+typedef struct plan {
+  size_t count[2], repeats; /* points of each side; of one side in one record at most */
+  bool apart;               /* every record has points of both sides: each may have an offset */
+  size_t records, first_record;
+} plan;
+
+/* Up strokes load at +T, down strokes at -T. */
+static point find_point(const fg_load_stroke *stroke, double threshold_n) {
+  fg_local_fit fit;
+  point p = {.side = stroke->sense > 0 ? PUSH : PULL};
+  double level = p.side == PUSH ? threshold_n : -threshold_n;
+  p.found = fg_local_crossing(stroke, level, &p.x, &p.u, &fit);
+  return p;
+}
+
+static plan make_plan(const fg_load_strokes *strokes, double threshold_n) {
+  plan all = {.apart = true};
+  size_t in_record[2] = {0};
+  for (size_t i = 0; i < strokes->count; i++) {
+    const fg_load_stroke *s = &strokes->stroke[i];
+    point p = find_point(s, threshold_n);
+    if (!i) all.first_record = s->record;
+    if (p.found) {
+      all.count[p.side]++;
+      if (++in_record[p.side] > all.repeats) all.repeats = in_record[p.side];
+    }
+    if (i + 1 < strokes->count && strokes->stroke[i + 1].record == s->record) continue;
+    all.apart = all.apart && in_record[0] && in_record[1];
+    in_record[0] = in_record[1] = 0;
+    all.records = s->record - all.first_record + 1;
+  }
+  all.apart = all.apart && all.records > 1 && all.records <= RECORDS_MAX;
+  return all;
+}
+
+typedef struct joined {
+  double drift;
+  fg_load_scatter scatter;
+} joined;
+
+/* Least squares of all strokes' points, which says how the strokes have drifted; false where a side
+ * has none. */
+static bool join(fg_load_strokes *strokes, double threshold_n, joined *out) {
+  fg_normal_equations system;
+  plan all = make_plan(strokes, threshold_n);
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
+  if (!all.count[PUSH] || !all.count[PULL]) return false;
+  bool drifts = all.repeats > 1;
+  size_t unknowns = drifts ? OFFSETS : DRIFT, first = unknowns;
+  if (all.apart) unknowns += all.records - 1;
+  fg_normal_clear(&system, unknowns);
+  *out = (joined){0};
+  for (size_t i = 0; i < strokes->count; i++) {
+    const fg_load_stroke *s = &strokes->stroke[i];
+    point p = find_point(s, threshold_n);
+    double row[FG_SMALL_MAX] = {0};
+    if (!p.found) continue;
+    row[p.side] = 1;
+    if (drifts) row[DRIFT] = (double)i - 0.5 * (double)(strokes->count - 1);
+    if (all.apart && s->record > all.first_record)
+      row[first + s->record - all.first_record - 1] = 1;
+    fg_normal_add(&system, row, p.x, 1 / (p.u * p.u));
+  }
+  if (!fg_normal_solve(&system, 0, x, inverse)) return false;
+  out->drift = drifts ? x[DRIFT] : NAN;
+  out->scatter.freedom = (double)(all.count[0] + all.count[1]) - (double)unknowns;
+  out->scatter.chi2 = system.sum_squares;
+  for (size_t k = 0; k < unknowns; k++)
+    out->scatter.chi2 -= x[k] * system.right[k];
+  for (size_t i = 0; i < strokes->count; i++) {
+    fg_load_stroke *s = &strokes->stroke[i];
+    if (drifts) s->shift_mm = x[DRIFT] * ((double)i - 0.5 * (double)(strokes->count - 1));
+    if (all.apart && s->record > all.first_record)
+      s->shift_mm += x[first + s->record - all.first_record - 1];
+  }
+  return true;
+}
+
+/* Where all strokes of one sense pass a force. */
+typedef struct passed {
+  bool found;
+  double x, u, slope;
+} passed;
+
+static fg_status find_passed(fg_context *ctx, const fg_load_strokes *strokes, int sense,
+                             double level_n, passed *p) {
+  const fg_load_stroke **chosen;
+  fg_load_stroke merged = {0};
+  fg_local_fit fit;
+  size_t count = 0;
+  *p = (passed){0};
+  FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof *chosen, (void **)&chosen));
+  for (size_t i = 0; i < strokes->count; i++)
+    if (strokes->stroke[i].sense == sense) chosen[count++] = &strokes->stroke[i];
+  fg_status status = fg_load_strokes_merge(ctx, chosen, count, &merged);
+  if (status == FG_OK && fg_local_crossing(&merged, level_n, &p->x, &p->u, &fit)) {
+    p->found = true;
+    p->slope = fit.slope;
+  }
+  fg_load_stroke_free(&merged);
+  free(chosen);
+  return status;
+}
+
+static fg_load_value travel(const passed side[2]) {
+  if (!side[PUSH].found || !side[PULL].found) return (fg_load_value){NAN, NAN, NAN};
+  return (fg_load_value){side[PUSH].x - side[PULL].x, NAN, hypot(side[PUSH].u, side[PULL].u)};
+}
+
+fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, double threshold_n,
+                              fg_load_direction *direction, fg_load_findings *findings) {
+  joined all;
+  passed loading[2], unloading[2];
+  fg_load_value none = {NAN, NAN, NAN};
+  direction->clearance = direction->unloading = none;
+  direction->push_mm = direction->pull_mm = direction->drift_um_cycle = NAN;
+  if (!join(strokes, threshold_n, &all)) return FG_OK;
+  direction->drift_um_cycle = 2000 * all.drift;
+  findings->points = all.scatter;
+  for (int side = PUSH; side <= PULL; side++) {
+    int sense = side == PUSH ? 1 : -1;
+    FG_TRY(find_passed(ctx, strokes, sense, sense * threshold_n, &loading[side]));
+    FG_TRY(find_passed(ctx, strokes, -sense, sense * threshold_n, &unloading[side]));
+    if (loading[side].found) findings->compliance_mm_n += 1 / loading[side].slope;
+  }
+  direction->clearance = travel(loading);
+  direction->unloading = travel(unloading);
+  if (loading[PUSH].found) direction->push_mm = loading[PUSH].x;
+  if (loading[PULL].found) direction->pull_mm = loading[PULL].x;
+  return FG_OK;
+}

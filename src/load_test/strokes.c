@@ -1,0 +1,192 @@
+#include "load_test/strokes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+
+/* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
+static const double turn_share = 0.1;
+
+/* Fewer tell neither a course nor its scatter. */
+enum { STROKE_SAMPLES_MIN = 24 };
+
+/* The scatter about a sample is that of so many on each side of it. */
+enum { SCATTER_REACH = 40 };
+
+void fg_load_stroke_free(fg_load_stroke *stroke) {
+  free(stroke->x);
+  free(stroke->f);
+  free(stroke->variance);
+  *stroke = (fg_load_stroke){0};
+}
+
+void fg_load_strokes_free(fg_load_strokes *strokes) {
+  for (size_t i = 0; i < strokes->count; i++)
+    fg_load_stroke_free(&strokes->stroke[i]);
+  free(strokes->stroke);
+  *strokes = (fg_load_strokes){0};
+}
+
+static fg_status allocate(fg_context *ctx, size_t count, fg_load_stroke *stroke) {
+  stroke->count = count;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->x, (void **)&stroke->x));
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->f, (void **)&stroke->f));
+  return fg_memory_allocate(ctx, count, sizeof *stroke->variance, (void **)&stroke->variance);
+}
+
+/* Variance of a sample about the line between its neighbours (T. Gasser, L. Sroka, C.
+ * Jennen-Steinmetz, Residual variance and residual pattern in nonlinear regression, Biometrika 73,
+ * 1986), mean over those around it. */
+static fg_status find_scatter(fg_context *ctx, fg_load_stroke *s) {
+  double *sum;
+  FG_TRY(fg_memory_allocate(ctx, s->count + 1, sizeof *sum, (void **)&sum));
+  for (size_t i = 0; i < s->count; i++) {
+    double square = 0;
+    if (i > 0 && i + 1 < s->count) {
+      double span = s->x[i + 1] - s->x[i - 1];
+      double a = span > 0 ? (s->x[i + 1] - s->x[i]) / span : 0.5, b = 1 - a;
+      double off = a * s->f[i - 1] + b * s->f[i + 1] - s->f[i];
+      square = off * off / (a * a + b * b + 1);
+    }
+    sum[i + 1] = sum[i] + square;
+  }
+  for (size_t i = 0; i < s->count; i++) {
+    size_t low = i > SCATTER_REACH ? i - SCATTER_REACH : 1;
+    size_t high = i + SCATTER_REACH + 1 < s->count ? i + SCATTER_REACH + 1 : s->count - 1;
+    s->variance[i] = (sum[high] - sum[low]) / (double)(high - low);
+  }
+  free(sum);
+  return FG_OK;
+}
+
+static int by_x(const void *left, const void *right) {
+  const fg_load_sample *a = left, *b = right;
+  if (a->x_mm != b->x_mm) return a->x_mm < b->x_mm ? -1 : 1;
+  return (a->force_n > b->force_n) - (a->force_n < b->force_n);
+}
+
+static fg_status fill(fg_context *ctx, const fg_load_sample *samples, fg_load_stroke *stroke) {
+  fg_load_sample *sorted = NULL;
+  fg_status status = FG_OK;
+  size_t count = stroke->last - stroke->first + 1;
+  FG_TRY_EXIT(allocate(ctx, count, stroke));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *sorted, (void **)&sorted));
+  memcpy(sorted, samples + stroke->first, count * sizeof *sorted);
+  qsort(sorted, count, sizeof *sorted, by_x);
+  for (size_t i = 0; i < count; i++) {
+    stroke->x[i] = sorted[i].x_mm;
+    stroke->f[i] = sorted[i].force_n;
+  }
+  status = find_scatter(ctx, stroke);
+exit:
+  free(sorted);
+  return status;
+}
+
+static fg_status add_stroke(fg_context *ctx, const fg_load_sample *samples, fg_load_stroke stroke,
+                            fg_load_strokes *strokes) {
+  if (stroke.last < stroke.first + STROKE_SAMPLES_MIN - 1) return FG_OK;
+  FG_TRY(fg_memory_reserve(ctx, strokes->count + 1, sizeof *strokes->stroke, &strokes->capacity,
+                           (void **)&strokes->stroke));
+  strokes->stroke[strokes->count++] = stroke;
+  return fill(ctx, samples, &strokes->stroke[strokes->count - 1]);
+}
+
+/* Strokes of one record: from one extreme to the next that lies `way` off. */
+static fg_status cut_record(fg_context *ctx, const fg_load_sample *samples, size_t begin,
+                            size_t end, size_t record, double way, fg_load_strokes *strokes) {
+  size_t start = begin, low = begin, high = begin;
+  int sense = 0;
+  for (size_t i = begin; i < end; i++) {
+    if (samples[i].x_mm < samples[low].x_mm) low = i;
+    if (samples[i].x_mm > samples[high].x_mm) high = i;
+    bool up = samples[i].x_mm - samples[low].x_mm > way;
+    bool down = samples[high].x_mm - samples[i].x_mm > way;
+    if (sense >= 0 && down) { /* turned at `high` */
+      if (high > start)
+        FG_TRY(add_stroke(
+            ctx, samples,
+            (fg_load_stroke){.first = start, .last = high, .sense = 1, .record = record}, strokes));
+      start = high, low = i, sense = -1;
+    } else if (sense <= 0 && up) {
+      if (low > start)
+        FG_TRY(add_stroke(
+            ctx, samples,
+            (fg_load_stroke){.first = start, .last = low, .sense = -1, .record = record}, strokes));
+      start = low, high = i, sense = 1;
+    }
+  }
+  if (!sense) return FG_OK;
+  return add_stroke(
+      ctx, samples,
+      (fg_load_stroke){
+          .first = start, .last = sense > 0 ? high : low, .sense = sense, .record = record},
+      strokes);
+}
+
+fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
+                              const fg_load_direction *direction, const fg_load_records *records,
+                              fg_load_strokes *strokes) {
+  const fg_load_sample *samples = test->samples + direction->first;
+  size_t end = direction->first + direction->count;
+  *strokes = (fg_load_strokes){0};
+  for (size_t i = 0; i < records->count; i++) {
+    size_t from = records->begin[i];
+    if (from < direction->first || from >= end) continue;
+    size_t to = i + 1 < records->count && records->begin[i + 1] < end ? records->begin[i + 1] : end;
+    FG_TRY(cut_record(ctx, samples, from - direction->first, to - direction->first, i,
+                      turn_share * direction->travel_mm, strokes));
+  }
+  return FG_OK;
+}
+
+/* A sample with what is known of it. */
+typedef struct cell {
+  double x, f, variance;
+} cell;
+
+static int by_cell(const void *left, const void *right) {
+  const cell *a = left, *b = right;
+  if (a->x != b->x) return a->x < b->x ? -1 : 1;
+  return (a->f > b->f) - (a->f < b->f);
+}
+
+fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *chosen, size_t count,
+                                fg_load_stroke *merged) {
+  cell *cells = NULL;
+  size_t total = 0, n = 0;
+  fg_status status = FG_OK;
+  *merged = (fg_load_stroke){.sense = count ? chosen[0]->sense : 0};
+  for (size_t i = 0; i < count; i++)
+    total += chosen[i]->count;
+  FG_TRY_EXIT(allocate(ctx, total, merged));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, total, sizeof *cells, (void **)&cells));
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < chosen[i]->count; k++)
+      cells[n++] =
+          (cell){chosen[i]->x[k] - chosen[i]->shift_mm, chosen[i]->f[k], chosen[i]->variance[k]};
+  qsort(cells, total, sizeof *cells, by_cell);
+  for (size_t i = 0; i < total; i++) {
+    merged->x[i] = cells[i].x;
+    merged->f[i] = cells[i].f;
+    merged->variance[i] = cells[i].variance;
+  }
+exit:
+  free(cells);
+  return status;
+}
+
+fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, size_t from,
+                              fg_load_stroke *half) {
+  *half = *stroke;
+  half->x = half->f = half->variance = NULL;
+  FG_TRY(allocate(ctx, (stroke->count - from + 1) / 2, half));
+  for (size_t i = 0; i < half->count; i++) {
+    half->x[i] = stroke->x[2 * i + from];
+    half->f[i] = stroke->f[2 * i + from];
+    half->variance[i] = stroke->variance[2 * i + from];
+  }
+  return FG_OK;
+}

@@ -1,0 +1,38 @@
+/* A direction's record cut where its displacement turns. */
+#ifndef FG_LOAD_TEST_STROKES_H
+#define FG_LOAD_TEST_STROKES_H
+
+#include "load_test/records.h"
+
+/* Samples of one stroke by ascending displacement. */
+typedef struct fg_load_stroke {
+  double *x, *f;    /* count each */
+  double *variance; /* of f about its course, of the samples around */
+  size_t count;
+  size_t first, last; /* of the direction's samples, the turning points */
+  int sense;          /* +1: displacement grows, -1: shrinks */
+  size_t record;      /* strokes of one record follow each other */
+  double shift_mm;    /* what has drifted until then */
+} fg_load_stroke;
+
+typedef struct fg_load_strokes {
+  fg_load_stroke *stroke;
+  size_t count, capacity;
+} fg_load_strokes;
+
+/* Strokes of the samples first ... first + count - 1; what is too short for one is left out. */
+fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
+                              const fg_load_direction *direction, const fg_load_records *records,
+                              fg_load_strokes *strokes);
+void fg_load_strokes_free(fg_load_strokes *strokes);
+
+/* Samples of the strokes chosen, as one that has not drifted. */
+fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *chosen, size_t count,
+                                fg_load_stroke *merged);
+
+/* Every second sample of a stroke, from `from` (0 or 1). */
+fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, size_t from,
+                              fg_load_stroke *half);
+void fg_load_stroke_free(fg_load_stroke *stroke);
+
+#endif

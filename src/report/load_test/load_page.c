@@ -1,0 +1,189 @@
+/* The page: a bearing per section; clearances over the azimuths, then loops and stiffness. */
+#include <math.h>
+
+#include "core/file.h"
+#include "foilgauge/load_report.h"
+#include "report/load_test/load_plots.h"
+#include "report/measure/measure_page_parts.h"
+
+/* So many azimuths of a bearing are drawn with their loops; all are in the table. */
+enum { LOOPS_MAX = 24 };
+
+static void put_tile(FILE *out, const char *title, const fg_load_value *v, double unit,
+                     int decimals, const char *word, const char *small) {
+  fprintf(out, "<div><dt>%s</dt><dd>", title);
+  if (isfinite(v->value))
+    fprintf(out, "%.*f %s<small>± %.*f (U = 2 u)%s%s</small></dd></div>\n", decimals,
+            unit * v->value, word, decimals, FG_COVERAGE_FACTOR * unit * v->u, small[0] ? ", " : "",
+            small);
+  else
+    fputs("–<small>not known</small></dd></div>\n", out);
+}
+
+static void put_tiles(FILE *out, const fg_load_bearing *b) {
+  char least[60] = "", most[60] = "", towards[80];
+  if (isfinite(b->least.value)) {
+    snprintf(least, sizeof least, "at %g°", b->least_measured_at_deg);
+    snprintf(most, sizeof most, "at %g°", b->most_measured_at_deg);
+  }
+  fputs("<dl class=\"tiles\">\n", out);
+  put_tile(out, "Smallest clearance", &b->least, 1000, 1, "µm", least);
+  put_tile(out, "Largest clearance", &b->most, 1000, 1, "µm", most);
+  put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm", "");
+  put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
+  fputs("<div><dt>Smallest towards</dt><dd>", out);
+  if (isfinite(b->least_at_deg)) {
+    snprintf(towards, sizeof towards, "%.1f°<small>± %.1f° (U = 2 u), fitted</small>",
+             b->least_at_deg, 2 * b->u_least_at_deg);
+    fputs(towards, out);
+  } else {
+    fputs("–<small>no direction stands out</small>", out);
+  }
+  fputs("</dd></div>\n</dl>\n", out);
+}
+
+static void put_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
+                     fg_verdict verdict) {
+  if (isfinite(v->value))
+    fprintf(out, "<td class=\"%s\">%.*f<i>± %.*f</i></td>", fg_verdict_word(verdict), decimals,
+            unit * v->value, decimals, FG_COVERAGE_FACTOR * unit * v->u);
+  else
+    fputs("<td>–</td>", out);
+}
+
+static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction *d, bool lot) {
+  char flags[700];
+  fg_load_flag_words(d->flags, true, flags, sizeof flags);
+  fprintf(out, "<tr><td>%g°</td>", d->azimuth_deg);
+  put_cell(out, &d->clearance, 1000, 1,
+           fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
+  put_cell(out, &d->unloading, 1000, 1, FG_VERDICT_NONE);
+  put_cell(out, &d->stiffness, 1, 0, fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
+  put_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
+  put_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
+  if (lot) {
+    put_cell(out, &d->predicted, 1000, 1, FG_VERDICT_NONE);
+    put_cell(out, &d->difference, 1000, 1, FG_VERDICT_NONE);
+  }
+  fprintf(out, "<td>%zu</td><td class=\"words\">", d->cycles);
+  fg_html_text(out, flags);
+  fputs("</td></tr>\n", out);
+}
+
+static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
+  bool lot = test->bearings[bearing].in_lot;
+  fprintf(out,
+          "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance, µm</th><th>the same, "
+          "unloading</th><th>stiffness, N/mm</th><th>loss factor</th><th>of the secant</th>%s"
+          "<th>cycles</th><th class=\"w\">to know</th></tr>\n",
+          lot ? "<th>by the lot, µm</th><th>difference, µm</th>" : "");
+  for (size_t i = 0; i < test->direction_count; i++)
+    if (test->directions[i].bearing == bearing) put_row(out, test, &test->directions[i], lot);
+  fputs("</table></div>\n", out);
+}
+
+static void put_loops(FILE *out, const fg_load_test *test, size_t bearing) {
+  size_t drawn = 0;
+  fputs("<div class=\"panels\">\n", out);
+  for (size_t i = 0; i < test->direction_count; i++) {
+    const fg_load_direction *d = &test->directions[i];
+    if (d->bearing != bearing || drawn++ >= LOOPS_MAX) continue;
+    fprintf(out, "<figure><h3>%g°, force</h3>", d->azimuth_deg);
+    fg_load_plot_loops(out, test, d);
+    fprintf(out, "</figure>\n<figure><h3>%g°, stiffness</h3>", d->azimuth_deg);
+    fg_load_plot_stiffness(out, d);
+    fputs("</figure>\n", out);
+  }
+  fputs("</div>\n", out);
+  if (drawn > LOOPS_MAX)
+    fprintf(out, "<p class=\"note\">The first %d azimuths of %zu are drawn.</p>\n", LOOPS_MAX,
+            drawn);
+}
+
+static void put_sentences(FILE *out, const fg_load_test *test, const fg_load_bearing *b) {
+  fputs("<ul class=\"words\">\n", out);
+  if (isfinite(b->p_value))
+    fprintf(out, "<li>The azimuths %s (p = %.2g).</li>\n",
+            b->p_value < 0.01 ? "differ by more than their repeats do"
+                              : "do not differ by more than their repeats do",
+            b->p_value);
+  if (b->birge > 1.2)
+    fprintf(out,
+            "<li>The cycles differ by %.1f times what the scatter of the samples says; the "
+            "uncertainties are as much larger.</li>\n",
+            b->birge);
+  if (isfinite(b->preload_kpa.value))
+    fprintf(out,
+            "<li>Friction between the strokes: %.3f N + %.4f |F|; without a load from outside the "
+            "foils are pressed by %.3f / %.4f = %.1f N, over π · %g mm · %g mm: %.2f kPa.</li>\n",
+            b->intercept_n, b->slope, b->intercept_n, b->slope, b->preload_n.value,
+            test->options.diameter_mm, test->options.length_mm, b->preload_kpa.value);
+  if (b->in_lot && b->unknown_places)
+    fprintf(out,
+            "<li>%zu places of the lot's bearing have no clearance: predicted without them.</li>\n",
+            b->unknown_places);
+  if (test->options.lot && !b->in_lot)
+    fputs("<li>The lot has no bearing of this name.</li>\n", out);
+  fputs("</ul>\n", out);
+}
+
+static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  fputs("<section>\n<header><h1>Bearing ", out);
+  fg_html_text(out, b->name);
+  fputs("</h1>", out);
+  fg_html_verdict(out, fg_load_judge_bearing(test, bearing));
+  fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
+          b->directions == 1 ? "" : "s", test->options.threshold_n);
+  put_tiles(out, b);
+  put_sentences(out, test, b);
+  fputs("<figure>", out);
+  fg_load_plot_azimuths(out, test, bearing);
+  fprintf(out,
+          "<figcaption>Clearance with U of its repeats alone; dashed the fitted harmonics, red "
+          "where they are smallest%s.</figcaption></figure>\n",
+          b->in_lot ? "; orange what the lot's foils leave a rotor" : "");
+  put_table(out, test, bearing);
+  fputs("<h2>Loops</h2>\n<p class=\"note\">Every cycle as recorded; the band is the threshold, "
+        "orange where the loading strokes pass it. Beside it dF/dx of the loading strokes with U = "
+        "2 u, orange its largest value.</p>\n",
+        out);
+  put_loops(out, test, bearing);
+  fputs("</section>\n", out);
+}
+
+static void put_end(FILE *out, const fg_load_test *test) {
+  const fg_load_options *o = &test->options;
+  fputs("<section>\n<h2 class=\"first\">Where it comes from</h2>\n<div class=\"scroll\"><table>\n"
+        "<tr><th>file</th><th class=\"w\">not read</th><th class=\"w\">SHA-256</th></tr>\n",
+        out);
+  for (size_t i = 0; i < test->file_count; i++) {
+    fputs("<tr><td class=\"path\">", out);
+    fg_html_text(out, test->files[i].path);
+    fputs("</td><td class=\"w\">", out);
+    fg_html_text(out, test->files[i].not_read ? test->files[i].not_read : "");
+    fprintf(out, "</td><td class=\"w\">%.12s…</td></tr>\n", test->files[i].sha256);
+  }
+  fprintf(out,
+          "</table></div>\n<p class=\"note\">± is U = 2 u. Instruments, standard: load cell %g %%, "
+          "displacement %g %%, together %.2f %% of a stiffness. Loss factor: loop area / (π K X²), "
+          "X half of the travel, K the largest stiffness, or that of the loop's ends (secant). "
+          "foilgauge %s.</p>\n</section>\n",
+          o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct),
+          FOILGAUGE_VERSION);
+}
+
+fg_status fg_load_write_html(fg_context *ctx, const fg_load_test *test, FILE *out) {
+  char words[300];
+  fg_report_outcome outcome;
+  fg_load_judge(test, &outcome, words, sizeof words);
+  fg_html_begin(out, "Load-displacement tests");
+  fputs("<p class=\"say\">", out);
+  fg_html_text(out, words);
+  fputs(".</p>\n", out);
+  for (size_t i = 0; i < test->bearing_count; i++)
+    put_bearing(out, test, i);
+  put_end(out, test);
+  fg_html_end(out);
+  return fg_stream_finish(ctx, out, "the page");
+}

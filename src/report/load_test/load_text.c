@@ -1,0 +1,72 @@
+/* Load-displacement tests for the terminal. */
+#include <math.h>
+
+#include "core/file.h"
+#include "foilgauge/load_report.h"
+
+static void put(FILE *out, double value, int width, int decimals) {
+  if (isfinite(value))
+    fprintf(out, " %*.*f", width, decimals, value);
+  else
+    fprintf(out, " %*s", width, "-");
+}
+
+static void put_direction(FILE *out, const fg_load_test *test, const fg_load_direction *d,
+                          bool lot) {
+  char flags[600];
+  fprintf(out, "  %8.1f", d->azimuth_deg);
+  put(out, 1000 * d->clearance.value, 9, 2);
+  put(out, 2000 * d->clearance.u, 7, 2);
+  put(out, d->stiffness.value, 9, 1);
+  put(out, 2 * d->stiffness.u, 7, 1);
+  put(out, d->loss.value, 8, 4);
+  put(out, d->loss_secant.value, 8, 4);
+  if (lot) {
+    put(out, 1000 * d->predicted.value, 9, 2);
+    put(out, 1000 * d->difference.value, 9, 2);
+  }
+  fg_verdict verdict = fg_load_judge_direction(test, d);
+  if (verdict != FG_VERDICT_NONE) fprintf(out, "  %s", fg_verdict_word(verdict));
+  fg_load_flag_words(d->flags, true, flags, sizeof flags);
+  fprintf(out, "%s%s\n", flags[0] ? "  " : "", flags);
+}
+
+static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  bool lot = b->in_lot;
+  fprintf(out, "\nbearing %s, %zu azimuth%s\n", b->name, b->directions,
+          b->directions == 1 ? "" : "s");
+  fprintf(out, "  azimuth    c um    U um    K N/mm  U N/mm    loss   secant%s\n",
+          lot ? "   lot um  diff um" : "");
+  for (size_t i = 0; i < test->direction_count; i++)
+    if (test->directions[i].bearing == bearing) put_direction(out, test, &test->directions[i], lot);
+  if (b->measured > 1)
+    fprintf(out, "  clearance %.2f to %.2f um, mean %.2f, U %.2f\n", 1000 * b->least.value,
+            1000 * b->most.value, 1000 * b->mean_mm, 2000 * b->u_mean_mm);
+  if (isfinite(b->least_at_deg))
+    fprintf(out, "  smallest towards %.1f degrees, U %.1f\n", b->least_at_deg,
+            2 * b->u_least_at_deg);
+  if (isfinite(b->preload_kpa.value))
+    fprintf(out, "  friction %.3f N + %.4f |F|: preload %.2f N, %.3f kPa, U %.3f, on %g x %g mm\n",
+            b->intercept_n, b->slope, b->preload_n.value, b->preload_kpa.value,
+            2 * b->preload_kpa.u, test->options.diameter_mm, test->options.length_mm);
+}
+
+fg_status fg_load_write_text(fg_context *ctx, const fg_load_test *test, FILE *out) {
+  char words[300];
+  fg_report_outcome outcome;
+  fg_load_judge(test, &outcome, words, sizeof words);
+  fprintf(out, "%s: %s\n", fg_verdict_word(outcome.verdict), words);
+  for (size_t i = 0; i < test->bearing_count; i++)
+    put_bearing(out, test, i);
+  fprintf(out,
+          "\nU = 2 u; instruments %g %% of force and %g %% of displacement, together %.2f %% of a "
+          "stiffness; loss: loop area / (pi K X2), K the largest stiffness, secant: of the loop's "
+          "ends\n",
+          test->options.u_force_pct, test->options.u_displacement_pct,
+          hypot(test->options.u_force_pct, test->options.u_displacement_pct));
+  for (size_t i = 0; i < test->file_count; i++)
+    if (test->files[i].not_read)
+      fprintf(out, "%s: not read: %s\n", test->files[i].path, test->files[i].not_read);
+  return fg_stream_finish(ctx, out, "the table");
+}
