@@ -29,7 +29,7 @@ typedef struct side {
   fg_load_stroke part[PARTS];
   double x[FG_LOAD_POINTS];
   fg_local_fit fit[PARTS][FG_LOAD_POINTS];
-  bool known[FG_LOAD_POINTS];
+  bool seen[FG_LOAD_POINTS], known[FG_LOAD_POINTS]; /* of the whole; of both halves too */
 } side;
 
 static void free_side(side *s) {
@@ -112,7 +112,7 @@ static size_t steepest(const side *s, int part) {
 static void write_course(const side *s, fg_load_course *course) {
   for (size_t g = 0; g < FG_LOAD_POINTS; g++) {
     const fg_local_fit *fit = &s->fit[WHOLE][g];
-    if (s->known[g])
+    if (s->seen[g])
       course->point[course->count++] =
           (fg_load_point){s->x[g], fit->value, fit->slope, fit->u_slope};
   }

@@ -31,6 +31,7 @@ must_not_include explain 'scan_loop|report|lot|cli'
 must_not_include scan_loop 'report|lot|cli'
 must_not_include loop 'scan_loop|explain|report|lot|cli'
 must_not_include die 'scan|vision|measure|scan_loop|loop|report|lot|cli'
+must_not_include load_test 'scan|vision|measure|scan_loop|loop|report|lot|cli'
 must_not_include report 'cli'
 
 ids=$(grep -rhoE '(\.id = |OVER_GLASS\()"[^"]+"' src/effect | grep -oE '"[^"]+"')

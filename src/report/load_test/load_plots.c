@@ -155,7 +155,7 @@ void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) 
   if (!(c[1] >= c[0])) return;
   x[0] -= 10, x[1] += 10;
   add_margin(c, 0.1);
-  fg_plot at = {out, 1000, 70, 985, 14, 240, x[0], x[1], c[0], c[1]};
+  fg_plot at = {out, 1000, 92, 985, 14, 240, x[0], x[1], c[0], c[1]};
   fg_plot_begin(&at, 290, "Clearance over the azimuths");
   fg_plot_y_axis(&at, "clearance, µm");
   fg_plot_x_numbers(&at);

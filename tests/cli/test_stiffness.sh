@@ -1,0 +1,156 @@
+#!/bin/bash
+# `foilgauge stiffness`: tests of bearings with known clearance, stiffness and friction come back, in whatever way the
+# table is written; what a table can lack; limits and exit codes; a bearing against the lot's foils, and the table for
+# the loop, which finds what was planted there.
+. tests/support/cli.sh
+listened="stdout stderr"
+
+# make NAME GAP_UM AZIMUTHS [CYCLES [SIDE]]: rows of a bearing. Gap g, then K = 1000 N/mm; friction 1.032 N + 0.03 |F|,
+# which turns round over 4 um; noise of 0.05 N (noise_n). The loading strokes pass 20 N at K d 1.03 + 1.032 = 20: 18.415 um behind
+# the gap's edge, so the clearance is g + 36.83 um.
+make() {
+  awk -v name="$1" -v gap="$2" -v list="$3" -v cycles="${4:-3}" -v side="${5:-both}" -v shift="${shift_um:-0}" -v noise="${noise_n:-0.05}" \
+    -v seed="${seed:-7}" 'BEGIN {
+    srand(seed); pi = atan2(0, -1); n = split(list, azimuths, " ")
+    for (k = 1; k <= n; k++) for (i = 0; i < 300 * cycles; i++) {
+      phase = 2 * pi * i / 300; x = 0.18 * sin(phase); sense = cos(phase) >= 0 ? 1 : -1
+      g = gap + shift * cos(azimuths[k] * pi / 180)
+      d = (x < 0 ? -x : x) - g / 2000; f = d > 0 ? (x < 0 ? -1000 : 1000) * d : 0
+      way = i < 75 ? x + 0.5 : 0.18 + sense * x
+      f += sense * (1.032 + 0.03 * (f < 0 ? -f : f)) * (1 - 2 * exp(-way / 0.004))
+      f += noise * sqrt(-2 * log(1 - rand())) * cos(2 * pi * rand())
+      if (side == "push" && x < 0) continue
+      printf "%s,%g,%d,%.3f,%.6f,%.4f\n", name, azimuths[k], 1 + i / 300, i / 50, x, f
+    } }'
+}
+heading="bearing,azimuth_deg,cycle,time_s,displacement_mm,force_N"
+(echo $heading && make A 143.17 "0 60 120" && make B 103.17 "0") >test.csv
+run() { expect "$1" "$2" "$program" stiffness --threshold 20 "${@:3}"; }
+
+run 0 "" test.csv -o r.json --html r.html --csv r.csv --text r.txt --table-out t.csv
+valid load_test.schema.json r.json
+python3 - r.json <<'END' || fail "the report is not the truth"
+import json, sys
+r = json.load(open(sys.argv[1]))
+bad = []
+for a in r["azimuths"]:
+    truth = {"A": 0.180, "B": 0.140}[a["bearing"]]
+    if not (abs(a["clearance_mm"] - truth) < 0.0005 and a["u_repeat_clearance_mm"] < 0.0005):
+        bad.append((a["bearing"], a["azimuth_deg"], a["clearance_mm"], a["u_repeat_clearance_mm"]))
+    # The displacement's 1 % and the load cell's 1.3 % of 20 N over 1030 N/mm at both ends.
+    u = (a["u_repeat_clearance_mm"]**2 + (0.01 * truth)**2 + (2 * 0.013 * 20 / 1030)**2)**0.5
+    if not abs(a["u_clearance_mm"] - u) < 0.03 * u:
+        bad.append(("u", a["u_clearance_mm"], u))
+    if not abs(a["stiffness_n_mm"] - 1030) < 4 * a["u_repeat_stiffness_n_mm"] < 206:
+        bad.append(("K", a["stiffness_n_mm"], a["u_repeat_stiffness_n_mm"]))
+    scale = (a["u_stiffness_n_mm"]**2 - a["u_repeat_stiffness_n_mm"]**2)**0.5 / a["stiffness_n_mm"]
+    if not abs(scale - (0.013**2 + 0.01**2)**0.5) < 1e-6:
+        bad.append(("1.64 %", scale))
+    # The unloading strokes pass 20 N at K d 0.97 - 1.032: 21.682 um behind the edge.
+    if not abs(a["clearance_unloading_mm"] - truth - 2 * (0.021682 - 0.018415)) < 0.0006:
+        bad.append(a["clearance_unloading_mm"])
+    f = a["friction"]
+    if not (abs(f["intercept_n"] - 1.032) < 0.04 and abs(f["slope"] - 0.03) < 0.0012):
+        bad.append(f)
+    loss = a["loop_area_n_mm"] / (3.14159265 * a["stiffness_n_mm"] * 0.18**2)
+    if not abs(loss / a["loss_factor"] - 1) < 0.02:
+        bad.append(("loss", loss))
+for b in r["bearings"]:
+    # 1.032 N / 0.03 over pi 40 mm 40 mm: the thesis prints 6.85 kPa.
+    if not abs(b["preload_kpa"] - 6.844) < 3 * b["u_preload_kpa"] < 1.5:
+        bad.append(("preload", b["preload_kpa"], b["u_preload_kpa"]))
+print(*bad, sep="\n")
+sys.exit(bool(bad))
+END
+[ "$(wc -l <r.csv)" = 5 ] && [ "$(wc -l <t.csv)" = 5 ] || fail "rows of the tables"
+head -1 t.csv | grep -qx "bearing,azimuth_deg,azimuth_cosine,azimuth_sine,clearance_um" || fail "the table's columns"
+for words in "Bearing A" "<svg" "180[.]" "N/mm" "kPa" "together 1.64 %"; do
+  grep -q "$words" r.html || fail "the page has no '$words'"
+done
+[ "$(grep -c 'class="land"' r.html)" = 4 ] || fail "the page has not every loop"
+
+# Written otherwise it is the same test: a European table, other units and names, several files.
+clearances='[round(a["clearance_mm"], 5) for a in r["azimuths"]]'
+found=$(value r.json "$clearances")
+(echo "bearing;Azimuth [deg];Force [kN];displacement_um;note" &&
+  awk -F, 'NR > 1 { printf "%s;%s;%.7f;%.3f;x\n", $1, $2, $6 / 1000, 1000 * $5 }' test.csv | tr . ,) >europe.csv
+run 0 "" europe.csv -o other.json
+[ "$(value other.json "$clearances")" = "$found" ] || fail "a European table: $(value other.json "$clearances")"
+[ "$(value other.json 'r["inputs"][0]["columns_not_read"]')" = note ] || fail "what is not read"
+first() { grep '^A,0,' test.csv | cut -d, -f4- | (echo "time_s,displacement_mm,force_N" && cat); }
+first >a0.csv
+run 0 "" --bearing A --azimuth 0 a0.csv -o other.json
+[ "$(value other.json "$clearances")" = "${found%%,*}]" ] || fail "one file of one azimuth"
+awk -F, -v OFS=, 'NR > 1 { $3 = -$3 } { print }' a0.csv >turned.csv
+run 0 "the force runs against the displacement" --azimuth 0 turned.csv --text -
+
+# What cannot be measured has its reason; what can is still there.
+(echo $heading && make A 143.17 "0" && make A 143.17 "60" 3 push) >half.csv
+run 2 "" half.csv -o half.json
+run 2 "pushed or pulled only" half.csv --text -
+[ "$(value half.json '[a["clearance_mm"] is None for a in r["azimuths"]]')" = "[False, True]" ] || fail "half of a test"
+expect 2 "the foil is not touched, there is no clearance" "$program" stiffness --threshold 500 --azimuth 0 a0.csv --text -
+head -9 a0.csv >few.csv
+run 2 "too few samples" --azimuth 0 few.csv --text -
+(echo $heading && make A 143.17 "0" 1) >one.csv
+run 0 "one cycle: nothing says how cycles differ" one.csv --text -
+
+# Bad data.
+bad() { # WORDS, text on standard input
+  cat >bad.csv
+  expect 65 "$1" "$program" stiffness bad.csv
+}
+printf '' | bad "bad.csv: empty"
+echo $heading | bad "a header, but no rows"
+sed 's/azimuth_deg/place/' test.csv | bad "no column of the azimuth; it must be called azimuth_deg or azimuth_rad, or say"
+sed 's/force_N/force_kg/' test.csv | bad "'kg' is no unit of force but of mass: multiply kilograms by 9.80665"
+sed 's/force_N/force/' test.csv | bad "'force' has no unit; call it force_N"
+sed 's/displacement_mm/displacement_inch/' test.csv | bad "'inch' is no unit of displacement"
+sed 's/displacement_mm/force_kN/' test.csv | bad "two columns of force"
+sed '7s/,[^,]*$/,NaN/' test.csv | bad "row 6"
+sed '7s/,[^,]*$/,lots/' test.csv | bad "lots"
+sed '7s/^A//' test.csv | bad "line 7.*'bearing' is empty"
+sed '7p' test.csv | bad "line 8.*the time 0.1 is there twice"
+awk 'NR == 7 { kept = $0; next } { print } NR == 8 { print kept }' test.csv | bad "line 8.*follows a later"
+awk -F, -v OFS=, 'NR > 1 { $3 = 9 - $3 } { print }' test.csv | bad "cycle 7 follows cycle 8"
+awk -F, -v OFS=, 'NR > 1 { $2 = NR } { print }' test.csv | bad "more than 1000 different azimuths"
+run 74 "nothere.csv" nothere.csv
+expect 64 "no TEST" "$program" stiffness
+expect 64 "is none of clearance_mm" "$program" stiffness --limit radius=1: test.csv
+expect 64 "has no limits" "$program" stiffness --limit clearance_mm=2:1 test.csv
+expect 64 "the test" "$program" stiffness test.csv -o test.csv
+[ ! -e /dev/full ] || run 74 "" test.csv -o /dev/full
+
+# Limits: inside, outside, within U of one.
+run 0 "pass: " test.csv --limit clearance_mm=0.10:0.25 --limit preload_kpa=2: --text -
+run 1 "fail: .*beyond a limit" test.csv --limit clearance_mm=0.16: --text -
+run 3 "with a limit within U" test.csv --limit clearance_mm=:0.1802 --text -
+
+# Against a lot: a rotor meets the foils' places; what it differs by grows with the azimuth's cosine, and the loop says so.
+mkdir -p lot
+python3 - >lot/lot.json <<'END'
+import json
+angle = [10 * i for i in range(36)]
+print(json.dumps({"schema": "foilgauge/lot/1", "bearings": [
+    {"name": name, "number": 1, "pads": ["a", "b", "c"], "angle_deg": angle, "u_clearance_mm": [0.001] * 36,
+     "clearance_mm": [0.09 + 0.00002 * (i * 7 % 5) for i in range(36)]} for name in "AB"]}))
+END
+shift_um=6 noise_n=1
+(echo $heading && for name in A B; do seed=$((${seed:-7} + 1)) && make $name 143.17 "$(seq -s' ' 0 20 340)" 2; done) >planted.csv
+run 0 "" planted.csv --lot lot -o lot.json --table-out lot.csv
+valid load_test.schema.json lot.json
+near "predicted" "$(value lot.json 'r["azimuths"][0]["predicted_clearance_mm"]')" 0.18 0.0005
+near "difference" "$(value lot.json 'r["azimuths"][0]["clearance_difference_mm"]')" 0.006 0.002
+expect 0 "" "$program" loop --table lot.csv --response difference_um --model 1 -o loop.json
+python3 - loop.json <<'END' || fail "the loop does not find the azimuth's cosine"
+import json, sys
+r = json.load(open(sys.argv[1]))
+words = json.dumps(r["claims"])
+sys.exit(not (r["verdict"] == "explained" and "azimuth_cosine" in words))
+END
+sed 's/"A"/"X"/;s/"B"/"Y"/' lot/lot.json >lot/l2 && mv lot/l2 lot/lot.json
+run 65 "none of its bearings is called as one of the tests" planted.csv --lot lot
+echo '{"schema": 1}' >lot/lot.json
+run 65 "not the report of a lot" planted.csv --lot lot
+
+exit $failed
