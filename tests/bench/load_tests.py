@@ -121,7 +121,7 @@ def test_of(names, rng, changes=None, shift=None, scale=True):
             clearance += shift(name, azimuth) if shift else 0
             gap = gap_for(p, clearance)
             turns, x, f = record(p, gap, rng)
-            truth[name][float(azimuth)] = truth_of(p, gap, clearance)
+            truth[name][float(azimuth)] = dict(truth_of(p, gap, clearance), scale_x=scale_x)
             x, f = measured(p, turns, x, f, rng, scale_f, scale_x)
             for t, a, b in zip(turns, x, f):
                 rows.append((name, azimuth, int(t) + 1, 20 * t, a, b))

@@ -33,7 +33,7 @@ def coverage(program, seeds, names="A", changes=None, scale=True):
             of = truth[a["bearing"]][a["azimuth_deg"]]
             add(found, "clearance_mm", a["clearance_mm"], of["clearance_mm"], a[u + "clearance_mm"])
             # A spring that hardens has its largest stiffness where the test ends: the truth is that of the place reported.
-            at = a["stiffness_at_mm"] - (a["push_mm"] + a["pull_mm"]) / 2
+            at = (a["stiffness_at_mm"] - (a["push_mm"] + a["pull_mm"]) / 2) / (1 + of["scale_x"])
             stiffness = load_tests.slope_at(p, of["gap_mm"], at)
             add(found, "stiffness_n_mm", a["stiffness_n_mm"], stiffness, a[u + "stiffness_n_mm"])
             loss = of["area_n_mm"] / (np.pi * stiffness * p["amplitude"]**2)

@@ -124,7 +124,7 @@ spec() { # direction, seed, dpi: a foil of three bumps
     "scanner": {"dpi": %s, "noise": 0.5}}' "$2" "$1" "$3"
 }
 mkdir -p "$work/ex/scans" "$work/ex/inbox"
-cp samples/die/*.txt samples/doe/*.csv "$work/ex"
+cp samples/die/*.txt samples/doe/*.csv samples/stiffness/*.csv "$work/ex"
 cd "$work/ex" || exit 1
 spec -90 1 2400 >spec.json && foilgauge render spec.json -o scan.png
 spec -90 2 2400 >other.json && foilgauge render other.json -o scan_2.png

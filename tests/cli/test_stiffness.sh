@@ -63,7 +63,8 @@ print(*bad, sep="\n")
 sys.exit(bool(bad))
 END
 [ "$(wc -l <r.csv)" = 5 ] && [ "$(wc -l <t.csv)" = 5 ] || fail "rows of the tables"
-head -1 t.csv | grep -qx "bearing,azimuth_deg,azimuth_cosine,azimuth_sine,clearance_um" || fail "the table's columns"
+head -1 t.csv | 
+  grep -qx "bearing,azimuth_cosine,azimuth_sine,azimuth_cosine_2,azimuth_sine_2,clearance_um" || fail "the table's columns"
 for words in "Bearing A" "<svg" "180[.]" "N/mm" "kPa" "together 1.64 %"; do
   grep -q "$words" r.html || fail "the page has no '$words'"
 done

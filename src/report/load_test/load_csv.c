@@ -74,8 +74,9 @@ static causes find_causes(const fg_load_test *test) {
 fg_status fg_load_write_table(fg_context *ctx, const fg_load_test *test, FILE *out) {
   bool lot = test->options.lot != NULL;
   causes all = find_causes(test);
-  fprintf(out, "%s%sazimuth_deg,azimuth_cosine,azimuth_sine,%s\n", all.bearing ? "bearing," : "",
-          all.pad || all.predicted_pad ? "pad," : "", lot ? "difference_um" : "clearance_um");
+  fprintf(out, "%s%sazimuth_cosine,azimuth_sine,azimuth_cosine_2,azimuth_sine_2,%s\n",
+          all.bearing ? "bearing," : "", all.pad || all.predicted_pad ? "pad," : "",
+          lot ? "difference_um" : "clearance_um");
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_direction *d = &test->directions[i];
     const fg_load_value *response = lot ? &d->difference : &d->clearance;
@@ -90,7 +91,7 @@ fg_status fg_load_write_table(fg_context *ctx, const fg_load_test *test, FILE *o
       fputc(',', out);
     }
     if (all.predicted_pad) fprintf(out, "pad %d,", d->predicted_pad);
-    fprintf(out, "%.10g,%.9f,%.9f", d->azimuth_deg, cos(angle), sin(angle));
+    fprintf(out, "%.9f,%.9f,%.9f,%.9f", cos(angle), sin(angle), cos(2 * angle), sin(2 * angle));
     put_number(out, 1000 * response->value);
     fputc('\n', out);
   }
