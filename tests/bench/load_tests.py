@@ -43,9 +43,9 @@ def up_stroke(p, gap, x):
 
 def gap_for(p, clearance):
     """The gap whose loading strokes pass the threshold this far apart."""
-    x = np.linspace(0, p["amplitude"], 40001)
+    x = np.linspace(0, p["amplitude"], 8001)
     low, high = 0.0, clearance
-    for _ in range(50):
+    for _ in range(30):
         gap = (low + high) / 2
         at = np.interp(p["threshold"], up_stroke(p, gap, x), x)
         low, high = (gap, high) if 2 * at < clearance else (low, gap)
@@ -98,7 +98,7 @@ def slope_at(p, gap, x):
 def truth_of(p, gap, clearance):
     x = np.linspace(0, p["amplitude"] * (1 - 2 * 0.01), 20001)
     slope = slope_at(p, gap, x)
-    fine = np.linspace(0, 1, 400001)
+    fine = np.linspace(0, 1, 20001)
     xs = p["amplitude"] * np.cos(np.pi * fine)  # one stroke down
     e = elastic(p, gap, xs)
     slip = (p["a"] + p["b"] * np.abs(e)) * (1 - 2 * np.exp(-(p["amplitude"] - xs) / p["way"]))

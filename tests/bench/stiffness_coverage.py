@@ -43,6 +43,8 @@ def coverage(program, seeds, names="A", changes=None, scale=True):
             low, high = load_tests.KINDS[b["name"]]
             add(found, "clearance_min_mm", b["clearance_min_mm"], low, b[u + "clearance_min_mm"])
             add(found, "clearance_max_mm", b["clearance_max_mm"], high, b[u + "clearance_max_mm"])
+            if b["smallest_at_deg"] is None:
+                continue
             off = b["smallest_at_deg"] - 30
             off -= 180 * round(off / 180)
             found.setdefault("smallest_at_deg", []).append((off / b["u_smallest_at_deg"], off, b["u_smallest_at_deg"]))
