@@ -85,7 +85,7 @@ report says (`stiffness_at_end`). A window of the regression that is wider than 
 two windows differ by is part of u.
 
 Where it fails: with noise of 1 N and 1 µm (1 % of the largest force, a third of the contact's rounding) u of stiffness and loss factor is
-too small, and the preload comes out a fifth too large without that its u knows. What of the two noises does it was not found out.
+too small, and the preload comes out a fifth too small without that its u knows: wide windows smooth how friction turns round, and the slope takes it.
 """
 
 
