@@ -1,7 +1,7 @@
 # Sourced by samples/run.sh, tests/run.sh and the benchmarks: the Debian packages, in one place,
 # and the way a step is run and told.
 
-FOILGAUGE_PACKAGES="build-essential cmake pkg-config libpng-dev libisal-dev libtiff-dev libgsl-dev libcjson-dev nettle-dev libcsv-dev
+FOILGAUGE_PACKAGES="build-essential cmake pkg-config libpng-dev libisal-dev libtiff-dev libjpeg-dev libgsl-dev libcjson-dev nettle-dev libcsv-dev
 libopencv-core-dev libopencv-imgproc-dev libsqlite3-dev libmicrohttpd-dev libcmocka-dev"
 
 # Only the comparisons need these: what a user would write in Python instead.

@@ -43,6 +43,7 @@ typedef enum fg_foil_flag {
   FG_FOIL_BUMPS_ON_ARC = 1u << 15, /* "bumps_on_arc": a bump or a dent in what should be plain */
   FG_FOIL_LIP = 1u << 16,          /* "lip": an end is bent away: there is no angle between ends */
   FG_FOIL_NO_END = 1u << 17,       /* "end_not_found": an end is hidden or torn: no angle */
+  FG_FOIL_LOSSY = 1u << 18,        /* "lossy": the scan was compressed with loss */
   /* "beyond_model_region": it reaches beyond where the scanner's model was found */
   FG_FOIL_BEYOND_MODEL_REGION = 1u << 20,
   /* A correction that does not pay was left out, see `choice`. */
@@ -61,6 +62,7 @@ typedef enum fg_bump_flag {
   FG_BUMP_DISTURBED_EDGE = 1u << 6,   /* "disturbed_edge": dust or a burr hides part of its arc */
   FG_BUMP_GAP = 1u << 7,              /* "gap": the strip is cut within its arc */
   FG_BUMP_TOUCHES_OTHER = 1u << 8,    /* "touches_other": something lies on its arc or beside it */
+  FG_BUMP_LOSSY = 1u << 9,            /* "lossy": of discs, as of foils */
   FG_BUMP_BEYOND_MODEL_REGION = 1u << 20, /* "beyond_model_region": of discs, as of foils */
 } fg_bump_flag;
 
@@ -245,6 +247,7 @@ typedef struct fg_disc {
   double radius_range_mm[2];
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
   size_t station_count;
+  double loss_variance;  /* share by which JPEG's steps raise the variance that the edge tells */
   double level_doubt_mm; /* what the level of the edge may move the radius by */
   fg_calibrated calibrated;
 } fg_disc;
@@ -261,6 +264,7 @@ typedef struct fg_measurement {
   double dpi[2];      /* used, x and y: as stated, over the length factor of the calibration */
   double dpi_file[2]; /* as the file says, before it was snapped; NaN without */
   char format[8];     /* as in fg_scan_info */
+  int jpeg_quality;   /* as in fg_scan_info; 0: nothing was lost */
   bool colour;        /* the scan holds colours */
   fg_channel channel; /* what of them was measured */
   char warning[256];  /* what is odd about the file; empty when nothing is */

@@ -74,6 +74,7 @@ typedef struct fg_lot_settings {
   /* "calibration" of the recipe itself, which is the design's too then; not stated: as the design
    * says. */
   fg_calibration calibration;
+  bool allow_lossy; /* take scans that JPEG has compressed with loss, with wider uncertainties */
   /* The scanner's model that corrects every scan, as "model" in a recipe: the path of its file; in
    * the lot's folder it is scanner_model.json. "": none. */
   char model[1024], model_sha256[65];
@@ -182,7 +183,10 @@ typedef struct fg_lot_outcome {
   size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
   size_t torn;       /* lines of results.jsonl that were damaged or not whole, and measured again */
   size_t first_torn; /* the first of them, from 1 */
-  size_t doubles;    /* scans that were named once more, under whatever spelling, and count once */
+  size_t
+      no_dates; /* cells of the manifest's column `date` that are no date: all of it is not taken */
+  char first_no_date[64];
+  size_t doubles; /* scans that were named once more, under whatever spelling, and count once */
   char first_double[512]; /* the first of them, with the name under which it counts */
   bool earlier;           /* results.jsonl was of an earlier version: all of it is measured again */
 } fg_lot_outcome;

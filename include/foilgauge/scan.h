@@ -1,10 +1,11 @@
 /* A scan, read row by row as gray values.
  *
  * PNG of any kind (gray, RGB, palette, with or without alpha, 1 to 16 bit), TIFF and BigTIFF (gray,
- * RGB, palette; strips or tiles; both byte orders; any compression without loss), PNM (P4, P5, P6)
- * come out as rows of 8- or 16-bit gray: 16 when the file has 16, else 8. Fewer bits are spread
- * over 0 to 255; TIFF's min-is-white is turned round. Of colours one channel is taken, or the
- * luminance (Rec. 709 weights); alpha and infrared are dropped. Interlaced PNG are decoded whole in
+ * RGB, palette; strips or tiles; both byte orders; any compression without loss), PNM (P4, P5, P6),
+ * and JPEG (8-bit gray, YCbCr or RGB) where loss is allowed, come out as rows of 8- or 16-bit gray:
+ * 16 when the file has 16, else 8. Fewer bits are spread over 0 to 255; TIFF's min-is-white is
+ * turned round. Of colours one channel is taken, or the luminance (Rec. 709 weights; of a JPEG the
+ * one that it holds, Rec. 601); alpha and infrared are dropped. Interlaced PNG are decoded whole in
  * memory and served row by row. CRC errors and truncation are fatal. A TIFF on a pipe is stored in
  * an unnamed temporary file first (TMPDIR), and so is anything whose channel must be found.
  */
@@ -45,7 +46,7 @@ typedef struct fg_scan_options {
   uint64_t pixel_cap;  /* refuse larger ones; 0: FG_SCAN_PIXEL_CAP */
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
-  bool allow_lossy;    /* take a TIFF whose compression has moved edges (JPEG) */
+  bool allow_lossy;    /* take what JPEG has compressed with loss, which moves edges */
   bool only_file;      /* refuse pipes and devices, which may never end */
   bool unsummed;       /* the SHA-256 will not be asked for */
   unsigned threads;    /* 1: nothing runs beside the caller; 0: what is of use does */
@@ -53,6 +54,9 @@ typedef struct fg_scan_options {
                           scan; else "" */
 } fg_scan_options;
 
+/* The quality of a JPEG is that of the Independent JPEG Group whose quantization table is the
+ * nearest to the file's at the frequencies of edges. It is the last compression's: an image that
+ * was saved twice has lost more. */
 typedef struct fg_scan_info {
   int64_t width_px, height_px;
   int bit_depth;         /* of the file: 1, 2, 4, 8, 16 */
@@ -60,6 +64,7 @@ typedef struct fg_scan_info {
   double dpi[2];         /* x, y; snapped to the nearest whole dpi when within 0.02 dpi */
   double dpi_file[2];    /* what the file says, before snapping; NaN when it says none */
   const char *format;    /* its name, one of fg_scan_format_names */
+  int jpeg_quality;      /* what has lost: 1 to 100, see below; 0: without loss */
   bool colour;           /* the file holds colours */
   fg_channel channel;    /* what of them is taken; never FG_CHANNEL_AUTO */
   uint64_t memory_bytes; /* that the reader holds beyond a row */

@@ -21,6 +21,7 @@ enum { FG_SCANNER_NAME = 128 };
 
 typedef struct fg_scan_loop_options {
   double dpi;       /* 0: as the files say */
+  bool allow_lossy; /* as in fg_measure_options */
   unsigned threads; /* 0: all cores */
   bool same_foil;   /* foil k of every scan is one foil, turned or shifted in between */
   bool coarse;      /* a quick look: few starts, sets of one smooth effect, two rounds at most */
@@ -79,6 +80,8 @@ void fg_scanner_model_describe(const fg_scanner_model *model, fg_scanner_model_f
 const char *fg_scanner_model_sha256(const fg_scanner_model *model);
 /* Other explanations did as well when it was found. */
 bool fg_scanner_model_is_tied(const fg_scanner_model *model);
+/* Nothing was found of the scanner: the model corrects nothing. */
+bool fg_scanner_model_is_empty(const fg_scanner_model *model);
 /* FG_ERR_DATA unless the model is of the scanner of that name; NULL: any. */
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,
                                          const char *path, const char *scanner);

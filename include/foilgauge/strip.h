@@ -66,10 +66,13 @@ typedef struct fg_strip {
   double
       u_thickness_mm; /* what it varies by along the strip; the tone curve's doubt is beside it: */
   double blur_left_um, blur_right_um; /* sd of the edge blur found on each side */
-  double contrast;   /* strip minus background, in units of the scan's full scale */
-  double noise;      /* pixel noise sd, same unit */
-  double gamma;      /* exponent of the tone curve found */
-  double u_gamma;    /* what its profiles leave in doubt */
+  double contrast; /* strip minus background, in units of the scan's full scale */
+  double noise;    /* pixel noise sd, same unit */
+  double gamma;    /* exponent of the tone curve found */
+  double u_gamma;  /* what its profiles leave in doubt */
+  double loss_um;  /* u of each edge's place, outwards or inwards with the other, by what the scan
+                      has lost by JPEG; 0: nothing */
+  double loss_variance; /* and share by which it raises the variance that the residuals tell */
   double tone_um;    /* of thickness per unit of ln gamma: both edges lie where the light is half */
   unsigned facts;    /* fg_strip_fact */
   int64_t box_px[4]; /* x, y, width, height of what belongs to it in the scan */

@@ -32,6 +32,7 @@ typedef struct doe_arguments {
   fg_coding coding[CODINGS];
   const char *constraint[FG_REGION_PLANES];
   double dpi;
+  bool allow_lossy;
   unsigned threads;
 } doe_arguments;
 
@@ -60,6 +61,7 @@ enum {
   OPTION_UNCERTAINTY,
   OPTION_SCANS,
   OPTION_DPI,
+  OPTION_ALLOW_LOSSY,
   OPTION_THREADS,
   OPTION_CONSTRAINT,
   OPTION_GOAL,
@@ -90,6 +92,7 @@ static const struct argp_option options[] = {
      "Column with the standard uncertainty of a response typed by hand", 1},
     {"design", 'd', "FILE", 0, "What the foils should be (default: the Gen II foil)", 1},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 1},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 1},
     {"goal", OPTION_GOAL, "GOAL", 0, "lowest (default), highest, or the number to aim at", 2},
     {"constraint", OPTION_CONSTRAINT, "LIMIT", 0,
@@ -211,6 +214,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_DPI:
     a->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
+  case OPTION_ALLOW_LOSSY:
+    a->allow_lossy = true;
+    break;
   case OPTION_THREADS:
     a->threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);
     break;
@@ -242,16 +248,26 @@ static fg_status check_outputs(fg_context *ctx, doe_run *run) {
   return fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs);
 }
 
+/* What is not there is said before the scans are measured. */
+static fg_status check_columns(fg_context *ctx, const doe_run *run) {
+  const fg_experiment_options *how = &run->arguments.options;
+  const fg_column *column;
+  if (how->block) FG_TRY(fg_table_find(ctx, &run->sheet, how->block, &column));
+  return how->whole_plot ? fg_table_find(ctx, &run->sheet, how->whole_plot, &column) : FG_OK;
+}
+
 static fg_status measure_scans(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
+  FG_TRY(check_columns(ctx, run));
   fg_design_default(&run->design);
   if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &run->design));
-  const fg_runs_scans how = {.sheet_path = a->data,
-                             .column = a->scans,
-                             .quantity = a->options.response,
-                             .design = &run->design,
-                             .measure = {a->dpi, a->threads},
-                             .outputs = &run->outputs};
+  const fg_runs_scans how = {
+      .sheet_path = a->data,
+      .column = a->scans,
+      .quantity = a->options.response,
+      .design = &run->design,
+      .measure = {.dpi = a->dpi, .threads = a->threads, .allow_lossy = a->allow_lossy},
+      .outputs = &run->outputs};
   FG_TRY(fg_runs_measure(ctx, &run->sheet, &how, &run->measured));
   FG_TRY(fg_text_print(ctx, &run->u_name, "u_%s", a->options.response));
   const fg_column *column;

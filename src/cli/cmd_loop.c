@@ -52,6 +52,7 @@ enum {
   OPTION_SCANS,
   OPTION_WITHOUT,
   OPTION_DPI,
+  OPTION_ALLOW_LOSSY,
   OPTION_THREADS,
 };
 
@@ -74,6 +75,7 @@ static const struct argp_option options[] = {
      "What was measured; with --lot and --doe any reported quantity (--lot: @lot_response@)", 0},
     {"without", OPTION_WITHOUT, "COLUMN", 0, "Leave this column out (may be repeated)", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans of --doe; overrules the files", 0},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"threads", OPTION_THREADS, "N", 0, "Threads that measure them (default: one per core)", 0},
     {"model", OPTION_MODEL, "FORMULA", 0,
      "The declared model: a formula ('1 + T + D + T:D + T^2'; --lot: @lot_model@), or arc_length "
@@ -185,6 +187,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_DPI:
     arguments->source.dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
+    return 0;
+  case OPTION_ALLOW_LOSSY:
+    arguments->source.allow_lossy = true;
     return 0;
   case OPTION_THREADS:
     arguments->source.threads = (unsigned)fg_cli_number(state, "threads", text, 1, 1024);

@@ -16,6 +16,7 @@ enum {
   OPTION_DESIGN = 256,
   OPTION_FORM,
   OPTION_DPI,
+  OPTION_ALLOW_LOSSY,
   OPTION_SAME,
   OPTION_HOLD_OUT,
   OPTION_MODEL_OUT,
@@ -48,6 +49,7 @@ static const struct argp_option options[] = {
      "The design of the foil or of the gauges (default: Gen II)", 0},
     {"form", OPTION_FORM, "FORM", 0, "@forms@; overrules the design", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution, where the scan does not say it", 0},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"same-foil", OPTION_SAME, NULL, 0,
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
      "scanner, what turns is the part",
@@ -108,6 +110,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case OPTION_DPI:
     a->options.dpi = parse_number(state, "dpi", text);
+    return 0;
+  case OPTION_ALLOW_LOSSY:
+    a->options.allow_lossy = true;
     return 0;
   case OPTION_SAME:
     a->options.same_foil = true;
@@ -176,6 +181,16 @@ static int64_t find_date(const arguments *a) {
   return newest;
 }
 
+/* A scanner without faults has a model, too: that it was looked for, and on which scans. */
+static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
+  const char *path = a->outputs.path[FG_LOOP_MODEL];
+  if (path && fg_scanner_model_is_empty(result->model))
+    fprintf(stderr,
+            "foilgauge: note: %s: nothing was found of the scanner: the model says so, and with it "
+            "`measure --model` leaves every value as it is\n",
+            path);
+}
+
 static fg_status run(fg_context *ctx, arguments *a, int *code) {
   fg_design design;
   fg_scan_loop *loop = NULL;
@@ -197,6 +212,7 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
   FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
   *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
   fg_status status = fg_output_set_write(ctx, &a->outputs, write_output, loop);
+  if (status == FG_OK) tell_empty_model(a, fg_scan_loop_result(loop));
   fg_scan_loop_free(loop);
   return status;
 }

@@ -17,6 +17,7 @@ enum {
   OPTION_DRY_RUN,
   OPTION_SHARD,
   OPTION_DPI,
+  OPTION_ALLOW_LOSSY,
   OPTION_MODEL,
   OPTION_SCANNER,
   OPTION_NAME,
@@ -31,7 +32,7 @@ typedef struct lot_arguments {
   const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index, *csv;
   double dpi;
   int jobs; /* -1: not given */
-  bool print_recipe, resume, dry_run;
+  bool allow_lossy, print_recipe, resume, dry_run;
   fg_lot_shard shard;
   const char *curve; /* reference curve; NULL: the recipe's */
   const char *dies[FG_LOT_DIES_MAX];
@@ -49,6 +50,7 @@ static const struct argp_option options[] = {
     {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
     {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
     {"reference-curve", OPTION_CURVE, "FILE.csv", 0,
      "Draw this over the errors per bump: what a simulation or a die says; columns bump, "
@@ -131,6 +133,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_DPI:
     arguments->dpi = fg_cli_number(state, "dpi", text, 1, 1e6);
     break;
+  case OPTION_ALLOW_LOSSY:
+    arguments->allow_lossy = true;
+    break;
   case OPTION_RESUME:
     arguments->resume = true;
     break;
@@ -205,6 +210,7 @@ static fg_status load_settings(fg_context *ctx, const lot_arguments *arguments,
   if (arguments->curve) FG_TRY(fg_lot_settings_take_curve(ctx, arguments->curve, settings));
   if (arguments->jobs > 0) settings->jobs = (unsigned)arguments->jobs;
   if (arguments->dpi > 0) settings->dpi = arguments->dpi;
+  settings->allow_lossy |= arguments->allow_lossy;
   FG_TRY(set_text(ctx, "name", arguments->name, settings->name, sizeof settings->name));
   FG_TRY(set_text(ctx, "group", arguments->group, settings->group_column,
                   sizeof settings->group_column));
@@ -247,6 +253,12 @@ static void say_bearings(const fg_lot_outcome *outcome) {
 
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   const size_t *by = outcome->foils_by_verdict;
+  if (outcome->no_dates)
+    fprintf(stderr,
+            "foilgauge: note: %zu cells of the manifest's column date are no date, the first is "
+            "'%s' (2024-05-31 or 31.05.2024 would be one): the lot is dated by the times of its "
+            "scans' files\n",
+            outcome->no_dates, outcome->first_no_date);
   fprintf(stderr, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told", outcome->foils,
           outcome->scans, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
   if (by[FG_VERDICT_NONE]) fprintf(stderr, ", %zu without tolerances", by[FG_VERDICT_NONE]);

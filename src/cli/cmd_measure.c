@@ -80,7 +80,7 @@ static const struct argp_option options[] = {
      "Of a colour scan: @channels@; auto is the one with the most contrast, which takes a second "
      "reading (default: auto)",
      0},
-    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, "Take a TIFF with JPEG inside, edges and all", 0},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 1},
     {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
     {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},

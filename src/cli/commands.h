@@ -68,6 +68,11 @@ int fg_cli_fail(const fg_context *ctx, fg_status status);
 /* Says on standard error what a lot came to; returns the exit code. */
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 
+/* What --allow-lossy is for, in every command that reads scans. */
+#define FG_CLI_ALLOW_LOSSY                                                                         \
+  "Take scans that JPEG has compressed with loss, with the wider uncertainties that belong to "    \
+  "them"
+
 /* --form: overrules the design's; NULL leaves it. */
 fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design);
 void fg_cli_write_forms(FILE *out); /* "classical, sinusoidal or discs" */

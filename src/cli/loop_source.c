@@ -97,18 +97,29 @@ static fg_status name_runs(fg_context *ctx, fg_loop_source *source) {
                         source->said ? "; " : "", measured->empty, measured->failed);
 }
 
+/* What is not there is said before the scans are measured. */
+static fg_status check_columns(fg_context *ctx, const fg_loop_table_spec *spec,
+                               const fg_table *sheet) {
+  const fg_column *column;
+  if (spec->group) FG_TRY(fg_table_find(ctx, sheet, spec->group, &column));
+  return spec->order ? fg_table_find(ctx, sheet, spec->order, &column) : FG_OK;
+}
+
 static fg_status read_runs(fg_context *ctx, const fg_loop_source_request *request,
                            fg_output_set *outputs, const fg_loop_table_spec *spec,
                            const fg_design *design, fg_loop_source *source) {
   fg_runs_scans how = {.sheet_path = request->runs,
                        .quantity = spec->response,
                        .design = design,
-                       .measure = {request->dpi, request->threads},
+                       .measure = {.dpi = request->dpi,
+                                   .threads = request->threads,
+                                   .allow_lossy = request->allow_lossy},
                        .outputs = outputs};
   choose_scans(request, &how);
   source->path = request->runs;
   FG_TRY(fg_table_load(ctx, request->runs, &source->read, source->sha256));
   FG_TRY(drop_columns(ctx, request, &source->read));
+  FG_TRY(check_columns(ctx, spec, &source->read));
   FG_TRY(fg_runs_measure(ctx, &source->read, &how, &source->measured));
   fg_table *table = &source->measured.table;
   source->table = table;

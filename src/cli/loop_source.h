@@ -17,6 +17,7 @@ typedef struct fg_loop_source_request {
   size_t withouts;
   double dpi;
   unsigned threads;
+  bool allow_lossy;
 } fg_loop_source_request;
 
 typedef struct fg_loop_source {

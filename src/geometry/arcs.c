@@ -16,6 +16,7 @@ fg_status fg_datum_line_build(fg_context *ctx, const fg_strip *strip, fg_datum d
                               bool inner_is_right, fg_datum_line *line) {
   memset(line, 0, sizeof *line);
   line->strip = strip;
+  line->is_edge = datum != FG_DATUM_MID;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, strip->count, sizeof *line->points, (void **)&line->points));
   FG_TRY_EXIT(

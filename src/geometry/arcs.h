@@ -16,6 +16,7 @@ typedef struct fg_datum_line {
   const fg_strip *strip;
   fg_point *points;   /* datum line; owned */
   double *half_width; /* half the distance of the edges, mm; owned */
+  bool is_edge;       /* the datum is one of the edges, not the middle */
   double blur_mm;     /* rms blur of the edges that make the line */
 } fg_datum_line;
 

@@ -156,7 +156,7 @@ static double mean_noise(const fit_work *w) {
 }
 
 static void fill_circle(const fit_work *w, double level_doubt_mm, fg_disc *disc) {
-  double level = SHAPE_VARIANCE * low_level(w);
+  double level = SHAPE_VARIANCE * (1 + disc->loss_variance) * low_level(w);
   for (int p = 0; p < 3; p++)
     for (int q = 0; q < 3; q++)
       disc->covariance[p][q] = level * w->fit.covariance[p][q];

@@ -203,6 +203,7 @@ static void take_over_facts(fg_foil *foil) {
   };
   for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++)
     if (foil->strip.facts & pairs[i][0]) foil->flags |= pairs[i][1];
+  if (foil->strip.loss_um > 0) foil->flags |= FG_FOIL_LOSSY;
 }
 
 static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *layout,
@@ -211,7 +212,7 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
   FG_TRY(fg_design_derive(ctx, design, &nominal));
   size_t n = layout->turning.bump_count;
   FG_TRY(fg_foil_find_uncertainties(ctx, layout, foil));
-  fg_foil_add_tone_doubt(foil);
+  fg_foil_add_width_doubt(foil);
   fill_overall(layout, design, foil);
   FG_TRY(fg_memory_allocate(ctx, n, sizeof *foil->bumps, (void **)&foil->bumps));
   foil->bump_count = n;
@@ -231,7 +232,7 @@ static fg_status fill_foil(fg_context *ctx, const fg_design *design, fg_layout *
 static fg_status fill_arc(fg_context *ctx, const fg_design *design, fg_layout *layout,
                           fg_foil *foil) {
   fg_foil_find_arc_uncertainty(layout, foil);
-  fg_foil_add_tone_doubt(foil);
+  fg_foil_add_width_doubt(foil);
   fill_overall(layout, design, foil);
   fg_arc_foil_derive(design, layout, foil);
   fg_foil_recognise(design, foil);

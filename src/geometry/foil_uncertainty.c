@@ -99,12 +99,21 @@ double fg_foil_widths_in_blurs(const fg_foil *foil) {
 }
 
 /* What the edge model itself is worth: a shift of the whole line along its normal. It moves the
- * radius of every circle and the crowns, and nothing else. */
-static void add_line_shift(const fg_foil *foil, fg_arc *arc) {
+ * radius of every circle and the crowns, and nothing else. What the scan has lost moves an edge
+ * that is the datum; the middle of two edges it leaves. */
+static void add_line_shift(const fg_layout *layout, const fg_foil *foil, fg_arc *arc) {
   double blur_um = fmax(foil->strip.blur_left_um, foil->strip.blur_right_um);
   double overlap = fmax(1, LINE_SHIFT_WIDTHS / fg_foil_widths_in_blurs(foil));
   double shift_mm = FG_LINE_SHIFT_BLURS * pow(overlap, 3) * blur_um / 1000;
-  arc->covariance[2][2] += shift_mm * shift_mm;
+  double loss_mm = layout->line.is_edge ? foil->strip.loss_um / 1000 : 0;
+  arc->covariance[2][2] += shift_mm * shift_mm + loss_mm * loss_mm;
+}
+
+/* What JPEG's blocks have in common along an edge is more than the residuals tell. */
+static void widen_by_loss(const fg_foil *foil, fg_arc *arc) {
+  for (int p = 0; p < 3; p++)
+    for (int q = 0; q < 3; q++)
+      arc->covariance[p][q] *= 1 + foil->strip.loss_variance;
 }
 
 static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
@@ -113,8 +122,9 @@ static void find_overall_covariance(fg_layout *layout, const fg_foil *foil) {
   fg_noise_estimate(&layout->line, &layout->overall, 1, 1, &half_width);
   fg_arc_covariance(&layout->line, &noise, &layout->overall);
   fg_arc_cluster_covariance(&layout->line, EDGE_MODEL_P, &layout->overall);
+  widen_by_loss(foil, &layout->overall);
   add_overall_systematic(layout, &half_width);
-  add_line_shift(foil, &layout->overall);
+  add_line_shift(layout, foil, &layout->overall);
 }
 
 /* Mean square of the edges' own standard deviation, which the pixels' noise gives, mm². */
@@ -166,22 +176,25 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil
   for (size_t i = 0; i < layout->turning.bump_count; i++) {
     if (!layout->fitted[i]) continue;
     fg_arc_covariance(&layout->line, &noise, &layout->bumps[i]);
+    widen_by_loss(foil, &layout->bumps[i]);
     if (found) add_systematic(layout, systematic, &layout->bumps[i]);
-    add_line_shift(foil, &layout->bumps[i]);
+    add_line_shift(layout, foil, &layout->bumps[i]);
   }
   find_overall_covariance(layout, foil);
   return FG_OK;
 }
 
-double fg_foil_tone_doubt(const fg_foil *foil) {
+double fg_foil_tone_doubt_um(const fg_foil *foil) {
   const unsigned hidden = FG_FOIL_ROUGH_EDGE | FG_FOIL_SIDE_BAND | FG_FOIL_CLIPPED;
   const fg_strip *strip = &foil->strip;
   double doubt = strip->gamma > 0 ? strip->u_gamma / strip->gamma : 0;
-  return foil->flags & hidden ? hypot(doubt, HIDDEN_TONE_DOUBT) : doubt;
+  return strip->tone_um * (foil->flags & hidden ? hypot(doubt, HIDDEN_TONE_DOUBT) : doubt);
 }
 
-void fg_foil_add_tone_doubt(fg_foil *foil) {
-  const fg_strip *strip = &foil->strip;
-  foil->u_thickness_mm =
-      hypot(strip->u_thickness_mm, fg_foil_tone_doubt(foil) * strip->tone_um / 1000);
+double fg_foil_width_doubt_um(const fg_foil *foil) {
+  return hypot(fg_foil_tone_doubt_um(foil), 2 * foil->strip.loss_um);
+}
+
+void fg_foil_add_width_doubt(fg_foil *foil) {
+  foil->u_thickness_mm = hypot(foil->strip.u_thickness_mm, fg_foil_width_doubt_um(foil) / 1000);
 }

@@ -14,11 +14,13 @@ fg_status fg_foil_find_uncertainties(fg_context *ctx, fg_layout *layout, fg_foil
 /* The same of a plain strip: its circle's covariance, noise, roughness of the edges. */
 void fg_foil_find_arc_uncertainty(fg_layout *layout, fg_foil *foil);
 
-/* Relative standard uncertainty of the tone curve's exponent. */
-double fg_foil_tone_doubt(const fg_foil *foil);
+/* What moves both edges outwards or inwards, as u of their distance: the tone curve alone; with
+ * what the scan has lost. */
+double fg_foil_tone_doubt_um(const fg_foil *foil);
+double fg_foil_width_doubt_um(const fg_foil *foil);
 
-/* The tone curve's share of the thickness' uncertainty. */
-void fg_foil_add_tone_doubt(fg_foil *foil);
+/* Its share of the thickness' uncertainty. */
+void fg_foil_add_width_doubt(fg_foil *foil);
 
 /* The strip's thickness in units of the edges' blur. */
 double fg_foil_widths_in_blurs(const fg_foil *foil);

@@ -28,6 +28,7 @@ fg_status fg_lot_sum_settings(fg_context *ctx, const fg_lot_settings *settings, 
   bare.design = settings->design;
   bare.design.tolerance_count = 0;
   bare.dpi = settings->dpi;
+  bare.allow_lossy = settings->allow_lossy;
   strcpy(bare.model_sha256, settings->model_sha256);
   FG_TRY(fg_record_format_names(ctx, &names));
   fg_status status = fg_lot_settings_format(ctx, &bare, false, &text);

@@ -25,6 +25,17 @@ static bool of_manifest(const fg_manifest *manifest, span *days) {
   return isfinite(days->first);
 }
 
+size_t fg_lot_date_wrong(const fg_manifest *manifest, const char **first) {
+  size_t column = fg_manifest_column(manifest, FG_LOT_DATE_COLUMN), wrong = 0;
+  *first = NULL;
+  for (size_t i = 0; column != FG_NO_COLUMN && i < manifest->items; i++) {
+    const char *cell = fg_manifest_cell(manifest, i, column);
+    if (!*cell || isfinite(fg_date_days(cell))) continue;
+    if (wrong++ == 0) *first = cell;
+  }
+  return wrong;
+}
+
 static bool of_scans(const fg_lot *lot, span *days) {
   for (size_t i = 0; i < lot->manifest.items; i++)
     take(days, fg_date_days(lot->records[i].date));
@@ -47,12 +58,15 @@ void fg_lot_date_find(const fg_lot *lot, fg_lot_date *date) {
 
 void fg_lot_date_write(fg_json *json, const fg_lot *lot) {
   fg_lot_date date;
+  const char *wrong;
+  size_t count = fg_lot_date_wrong(&lot->manifest, &wrong);
   fg_lot_date_find(lot, &date);
   fg_json_object(json, "date");
   fg_json_line(json);
   fg_json_string(json, "first", date.from ? date.first : NULL);
   fg_json_string(json, "last", date.from ? date.last : NULL);
   fg_json_string(json, "from", date.from);
+  if (count) fg_json_integer(json, "cells_not_dates", (int64_t)count);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }

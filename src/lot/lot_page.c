@@ -55,10 +55,23 @@ static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis
   return FG_OK;
 }
 
+static void put_lossy(FILE *out, const fg_lot_analysis *analysis) {
+  size_t lossy = 0;
+  for (size_t i = 0; i < analysis->foil_count; i++)
+    lossy += (analysis->foils[i].foil->flags & FG_FOIL_LOSSY) != 0;
+  if (lossy)
+    fprintf(out,
+            "<ul class=\"flags\"><li>%zu of %zu foils are of scans that were compressed with loss "
+            "(JPEG), which moves edges: their uncertainties are wider for it (flag lossy in "
+            "foils.csv).</li></ul>\n",
+            lossy, analysis->foil_count);
+}
+
 static fg_status put_first_screen(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {
   fputs("<section class=\"part\">\n", out);
   fg_lot_put_heading(out, analysis);
   FG_TRY(put_corrected(ctx, out, analysis));
+  put_lossy(out, analysis);
   fg_lot_put_counts(out, analysis);
   fg_lot_put_worst(out, analysis);
   fg_lot_put_leading(out, analysis);

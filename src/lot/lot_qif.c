@@ -1,12 +1,16 @@
 /* results.qif: QIF 3.0 (ANSI/DMSC QIF 3.0, ISO 23952): the Characteristics, and one set of
- * MeasurementResults per foil with its ActualComponent. Ids count up in the order of the file. */
+ * MeasurementResults per foil with its ActualComponent. What the manifest says of a foil (die,
+ * coil, operator, bearing ...) are Attributes of the component; its date is when its inspection
+ * started. Ids count up in the order of the file. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "core/json_writer.h"
 #include "foilgauge/words.h"
 #include "lot/characteristics.h"
+#include "lot/lot_date.h"
 #include "lot/writers.h"
 #include "report/measure/measure_page_parts.h"
 
@@ -159,6 +163,22 @@ static void put_measurement(const qif *q, size_t id, size_t i, double value, dou
   fprintf(q->out, "</Value></%sCharacteristicMeasurement>\n", one->kind);
 }
 
+/* Of the manifest's column `date`, else of the scan's file; the standard wants a time in UTC. */
+static void put_start(const qif *q, const fg_lot_foil *foil) {
+  const fg_lot *lot = q->analysis->lot;
+  size_t column = fg_manifest_column(&lot->manifest, FG_LOT_DATE_COLUMN);
+  double days =
+      fg_date_days(column == FG_NO_COLUMN ? lot->records[foil->item].date
+                                          : fg_manifest_cell(&lot->manifest, foil->item, column));
+  char date[FG_DATE_TEXT];
+  if (!isfinite(days)) return;
+  fg_date_format(days, date);
+  fprintf(q->out,
+          "<InspectionTraceability><InspectionStart>%s%s</InspectionStart></InspectionTraceability>"
+          "\n",
+          date, strchr(date, 'T') ? ":00Z" : "T00:00:00Z");
+}
+
 static void put_foil(const qif *q, size_t index) {
   const fg_lot_foil *foil = &q->analysis->foils[index];
   size_t id = results_id(q, index), known = 0;
@@ -166,6 +186,7 @@ static void put_foil(const qif *q, size_t index) {
   for (size_t i = 0; i < q->count; i++)
     known += isfinite(fg_characteristic_value(&q->list[i], foil->foil, &u)) != 0;
   fprintf(q->out, "<MeasurementResults id=\"%zu\">\n", id);
+  put_start(q, foil);
   if (known) {
     fprintf(q->out, "<MeasuredCharacteristics><CharacteristicMeasurements n=\"%zu\">\n", known);
     for (size_t i = 0; i < q->count; i++) {
@@ -180,9 +201,30 @@ static void put_foil(const qif *q, size_t index) {
           inspection_status(foil->verdict), component_id(q, index));
 }
 
+/* What the manifest's columns say beside the scan, where they say something. */
+static void put_attributes(const qif *q, size_t item) {
+  const fg_manifest *manifest = &q->analysis->lot->manifest;
+  size_t count = 0;
+  for (size_t i = 1; i < manifest->columns; i++)
+    count += *fg_manifest_cell(manifest, item, i) != 0;
+  if (!count) return;
+  fprintf(q->out, "<Attributes n=\"%zu\">", count);
+  for (size_t i = 1; i < manifest->columns; i++) {
+    if (!*fg_manifest_cell(manifest, item, i)) continue;
+    fputs("<AttributeStr name=\"", q->out);
+    fg_html_text(q->out, manifest->name[i]);
+    fputs("\" value=\"", q->out);
+    fg_html_text(q->out, fg_manifest_cell(manifest, item, i));
+    fputs("\"/>", q->out);
+  }
+  fputs("</Attributes>", q->out);
+}
+
 static void put_component(const qif *q, size_t index) {
   const fg_lot_foil *foil = &q->analysis->foils[index];
-  fprintf(q->out, "<ActualComponent id=\"%zu\"><SerialNumber>", component_id(q, index));
+  fprintf(q->out, "<ActualComponent id=\"%zu\">", component_id(q, index));
+  put_attributes(q, foil->item);
+  fputs("<SerialNumber>", q->out);
   fg_html_text(q->out, fg_manifest_label(&q->analysis->lot->manifest, foil->item));
   if (q->analysis->lot->records[foil->item].foil_count > 1)
     fprintf(q->out, " #%d", foil->foil->number);

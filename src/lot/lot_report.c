@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/text.h"
+#include "lot/lot_date.h"
 #include "lot/writers.h"
 
 static const struct {
@@ -39,6 +41,9 @@ static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcom
     outcome->foils_by_verdict[i] = analysis->by_verdict[i];
   outcome->bearings = analysis->bearing_count;
   outcome->bearings_judged = fg_report_of_bearing(&analysis->lot->settings.design, NULL, 0) > 0;
+  const char *no_date;
+  outcome->no_dates = fg_lot_date_wrong(&analysis->lot->manifest, &no_date);
+  if (no_date) fg_text_clip(outcome->first_no_date, sizeof outcome->first_no_date, "%s", no_date);
   memcpy(outcome->assembly, analysis->assembly.statement, sizeof outcome->assembly);
   for (int i = 0; i <= FG_VERDICT_NONE; i++)
     outcome->bearings_by_verdict[i] = analysis->bearings_by_verdict[i];

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/folder.h"
 #include "core/memory.h"
 #include "lot/folder_lock.h"
 #include "lot/guard.h"
@@ -184,8 +185,7 @@ static fg_status gather(fg_context *ctx, merger *m) {
 static fg_status check_target(fg_context *ctx, const merger *m) {
   struct stat target, source;
   FG_TRY(fg_lot_check_shards(ctx, m->folder, m->folders, m->count));
-  if (mkdir(m->folder, 0777) != 0 && errno != EEXIST)
-    return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", m->folder, strerror(errno));
+  FG_TRY(fg_folder_make(ctx, m->folder));
   for (size_t i = 0; i < m->count; i++)
     if (stat(m->folder, &target) == 0 && stat(m->folders[i], &source) == 0 &&
         target.st_dev == source.st_dev && target.st_ino == source.st_ino)

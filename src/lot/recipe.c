@@ -97,6 +97,13 @@ static fg_status read_run_rules(fg_context *ctx, const fg_recipe_member *row, co
   return FG_OK;
 }
 
+static fg_status read_switch(fg_context *ctx, const fg_recipe_member *row, const cJSON *value,
+                             bool *on) {
+  if (!cJSON_IsBool(value)) return fg_fail(ctx, FG_ERR_DATA, "%s must be true or false", row->name);
+  *on = cJSON_IsTrue(value);
+  return FG_OK;
+}
+
 static void store_number(const fg_recipe_member *row, void *place, double value) {
   if (row->kind == FG_RECIPE_REAL) *(double *)place = value;
   if (row->kind == FG_RECIPE_COUNT) *(size_t *)place = (size_t)value;
@@ -108,6 +115,7 @@ static fg_status read_member(fg_context *ctx, const fg_recipe_member *row, const
                              fg_lot_settings *settings) {
   void *place = fg_recipe_place(row, settings);
   if (row->kind == FG_RECIPE_WORDS) return read_words(ctx, row, value, place);
+  if (row->kind == FG_RECIPE_SWITCH) return read_switch(ctx, row, value, place);
   if (row->kind == FG_RECIPE_RULE) return read_bandwidth(ctx, value, place);
   if (row->kind == FG_RECIPE_RUN_RULES) return read_run_rules(ctx, row, value, place);
   if (row->open && cJSON_IsNull(value)) {
@@ -278,11 +286,12 @@ fg_status fg_lot_settings_load(fg_context *ctx, const char *path, fg_lot_setting
   return status;
 }
 
-/* A lot that knows no model, no dies, has a recipe that does not speak of them. */
+/* A lot that knows no model, no dies, no loss, has a recipe that does not speak of them. */
 static bool is_silent(const fg_recipe_member *row, const fg_lot_settings *settings) {
   bool model = row->offset == offsetof(fg_lot_settings, model) ||
                row->offset == offsetof(fg_lot_settings, model_sha256);
   if (row->offset == offsetof(fg_lot_settings, die_column)) return !settings->die_count;
+  if (row->offset == offsetof(fg_lot_settings, allow_lossy)) return !settings->allow_lossy;
   return model && !*(const char *)fg_recipe_place(row, settings);
 }
 

@@ -28,6 +28,10 @@ static const fg_recipe_member members[] = {
          "is refused."),
     {"dpi", FG_RECIPE_REAL, AT(dpi), 0, 0, 1e6, false, false,
      "Resolution of the scans; 0: as the files say."},
+    {"allow_lossy", FG_RECIPE_SWITCH, AT(allow_lossy), 0, 0, 0, false, false,
+     "true: take scans that JPEG has compressed with loss, with the wider uncertainties that "
+     "belong "
+     "to them; false: they are not measured."},
     {"jobs", FG_RECIPE_UNSIGNED, AT(jobs), 0, 0, 1024, true, false,
      "Scans at a time; 0: one per core. Changes no result."},
     {"trim_pct", FG_RECIPE_REAL, AT(trim_pct), 0, 0, 49, false, false,
@@ -134,6 +138,8 @@ void fg_recipe_write(fg_json *json, const fg_recipe_member *row, const fg_lot_se
   const void *place = fg_recipe_place(row, settings);
   if (row->kind == FG_RECIPE_WORDS) {
     fg_json_string(json, row->name, place);
+  } else if (row->kind == FG_RECIPE_SWITCH) {
+    fg_json_bool(json, row->name, *(const bool *)place);
   } else if (row->kind == FG_RECIPE_RULE) {
     fg_json_string(json, row->name, fg_bandwidth_word(*(const fg_bandwidth_rule *)place));
   } else if (row->kind == FG_RECIPE_RUN_RULES) {

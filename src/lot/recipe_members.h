@@ -15,6 +15,7 @@ typedef enum fg_recipe_kind {
   FG_RECIPE_SEED,
   FG_RECIPE_UNSIGNED,
   FG_RECIPE_WORDS,
+  FG_RECIPE_SWITCH,
   FG_RECIPE_RULE,
   FG_RECIPE_RUN_RULES
 } fg_recipe_kind;

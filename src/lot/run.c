@@ -5,11 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "core/file.h"
+#include "core/folder.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/sha256.h"
@@ -215,8 +215,11 @@ static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *me
  * for which there was no memory, has no checksum and is tried again. */
 static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   const fg_lot_settings *settings = run->request->settings;
-  const fg_measure_options options = {
-      .dpi = settings->dpi, .threads = 1, .only_file = true, .sum_failed = true};
+  const fg_measure_options options = {.dpi = settings->dpi,
+                                      .allow_lossy = settings->allow_lossy,
+                                      .threads = 1,
+                                      .only_file = true,
+                                      .sum_failed = true};
   const char *scan = fg_manifest_scan(&run->manifest, item);
   fg_context inner = {.message = ""};
   fg_measurement measurement;
@@ -240,11 +243,6 @@ static fg_status measure_next(fg_context *ctx, void *shared, size_t i) {
   fg_status status = measure_item(ctx, run, run->todo[i]);
   if (status != FG_OK) atomic_store(&run->stop, true);
   return status;
-}
-
-static fg_status make_folder(fg_context *ctx, const char *folder) {
-  if (mkdir(folder, 0777) == 0 || errno == EEXIST) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", folder, strerror(errno));
 }
 
 /* The file in the manifest's order, with one record per item: the same bytes however it came. */
@@ -309,7 +307,7 @@ static fg_status report(fg_context *ctx, lot_run *run) {
 static fg_status work(fg_context *ctx, lot_run *run) {
   FG_TRY(prepare(ctx, run));
   if (!run->request->dry_run) {
-    FG_TRY(make_folder(ctx, run->request->folder));
+    FG_TRY(fg_folder_make(ctx, run->request->folder));
     FG_TRY(fg_folder_lock(ctx, run->request->folder, &run->lock));
   }
   FG_TRY(read_earlier(ctx, run));

@@ -111,6 +111,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
   m->width_px = info->width_px;
   m->height_px = info->height_px;
   m->bit_depth = info->bit_depth;
+  m->jpeg_quality = info->jpeg_quality;
   m->colour = info->colour;
   m->channel = info->channel;
   for (int i = 0; i < 2; i++) {
@@ -183,6 +184,20 @@ static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
   return FG_OK;
 }
 
+/* A note, where nothing else is odd, and a flag of all that was measured. */
+static void tell_loss(fg_measurement *m) {
+  for (size_t i = 0; i < m->foil_count; i++)
+    m->foils[i].flags |= FG_FOIL_LOSSY;
+  for (size_t i = 0; i < m->disc_count; i++)
+    m->discs[i].flags |= FG_BUMP_LOSSY;
+  if (!m->warning[0])
+    snprintf(
+        m->warning, sizeof m->warning,
+        "compressed with loss (JPEG, quality %d): edges have moved, and uncertainties are wider "
+        "for it",
+        m->jpeg_quality);
+}
+
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement) {
   static const fg_measure_options defaults = {0};
@@ -201,6 +216,7 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;
+  if (measurement->jpeg_quality) tell_loss(measurement);
 exit:
   if (status != FG_OK) clear_failed(options, scan, measurement);
   fg_scan_close(scan);

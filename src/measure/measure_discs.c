@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "core/select.h"
 #include "geometry/disc_fit.h"
+#include "measure/loss.h"
 #include "vision/disc_edge.h"
 #include "vision/disc_find.h"
 
@@ -24,6 +25,7 @@
 
 typedef struct disc_work {
   const fg_tiles *tiles;
+  int jpeg_quality; /* as in fg_measurement */
   fg_pixel_shape shape;
   const fg_disc_candidates *found;
   double background; /* counts */
@@ -61,9 +63,11 @@ static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double 
 }
 
 /* Stations of the edge as points in mm, and their circle. */
-static fg_status fit_edge(fg_context *ctx, const fg_disc_edge *edge, double um, fg_disc *disc) {
+static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_edge *edge,
+                          fg_disc *disc) {
   fg_disc_point *points;
-  double mm = um / 1000;
+  double mm = work->shape.um / 1000;
+  double loss_px = fg_loss_edge_px(work->jpeg_quality, edge->inside - edge->outside, edge->blur_px);
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *points, (void **)&points));
   for (size_t i = 0; i < edge->count; i++) {
     const fg_disc_station *s = &edge->stations[i];
@@ -79,7 +83,8 @@ static fg_status fit_edge(fg_context *ctx, const fg_disc_edge *edge, double um, 
   }
   disc->stations = points;
   disc->station_count = edge->count;
-  disc->level_doubt_mm = edge->level_doubt_px * mm;
+  disc->loss_variance = fg_loss_turn_variance(work->jpeg_quality);
+  disc->level_doubt_mm = hypot(edge->level_doubt_px, loss_px) * mm;
   return fg_disc_measure_again(ctx, disc);
 }
 
@@ -105,7 +110,7 @@ static fg_status measure_candidate(fg_context *ctx, void *shared, size_t i) {
   fg_disc_edge edge = {0};
   fg_status status = fg_disc_edge_measure(ctx, work->tiles, &work->shape, &work->found->list[i],
                                           &work->tone, &edge);
-  if (status == FG_OK) status = fit_edge(ctx, &edge, work->shape.um, disc);
+  if (status == FG_OK) status = fit_edge(ctx, work, &edge, disc);
   if (status == FG_OK) describe(work, &edge, disc);
   if (status == FG_OK && disc->rms_um > ROUND_SHARE * 1000 * disc->radius_mm) fg_disc_free(disc);
   if (status != FG_OK) fg_disc_free(disc);
@@ -171,7 +176,10 @@ exit:
 fg_status fg_measure_discs(fg_context *ctx, const fg_tiles *tiles, unsigned threads,
                            fg_measurement *m) {
   fg_disc_candidates found = {0};
-  disc_work work = {.tiles = tiles, .shape = fg_pixel_shape_of(m->dpi), .found = &found};
+  disc_work work = {.tiles = tiles,
+                    .jpeg_quality = m->jpeg_quality,
+                    .shape = fg_pixel_shape_of(m->dpi),
+                    .found = &found};
   double least = least_radius_px(&m->design, &work.shape);
   FG_TRY(fg_discs_find(ctx, tiles, &work.shape, least, threads, &found));
   fg_status status = measure_candidates(ctx, &work, threads, m);

@@ -1,4 +1,5 @@
 #include "measure/session.h"
+#include "measure/loss.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -76,12 +77,20 @@ static double expected_width_px(const fg_measurement *m) {
   return m->design.thickness_mm * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
+static void find_loss(const fg_measurement *m, fg_strip *strip) {
+  double um = 25400 / sqrt(m->dpi[0] * m->dpi[1]);
+  double blur_px = 0.5 * (strip->blur_left_um + strip->blur_right_um) / um;
+  strip->loss_variance = fg_loss_arc_variance(m->jpeg_quality);
+  strip->loss_um = um * fg_loss_edge_px(m->jpeg_quality, 255 * strip->contrast, blur_px);
+}
+
 /* A foil from one trace. What cannot be measured is a flag; what is no foil is a speck. */
 static fg_status measure_trace(fg_context *ctx, fg_session *s, const job *j,
                                const fg_segmentation *seg, const fg_trace *trace) {
   const fg_measurement *m = s->measurement;
   fg_foil foil = {0};
   fg_status status = fg_edges_measure(ctx, &j->view, seg, trace, m->dpi, s->threads, &foil.strip);
+  find_loss(m, &foil.strip);
   if (status == FG_OK) status = fg_foil_measure(ctx, &m->design, s->threads, &foil);
   if (status == FG_ERR_NUMERIC) {
     fg_foil_give_up(&foil, ctx->message);

@@ -37,6 +37,9 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_UNEQUAL_RESOLUTION, "unequal_resolution",
      "The resolutions along x and y differ: radii may be off by more than their uncertainty. Scan "
      "with equal ones."},
+    {FG_FOIL_LOSSY, "lossy",
+     "The scan was compressed with loss (JPEG), which moves edges: the uncertainties are wider by "
+     "what that does. Scan to PNG or TIFF."},
     {FG_FOIL_NOT_MEASURED, "not_measured", "The foil could not be measured."},
     {FG_FOIL_NOT_THIS_DESIGN, "not_this_design",
      "It cannot be a foil of this design: its values stand, and are not judged."},
@@ -64,6 +67,7 @@ static const fg_flag_words bump_flags[] = {
     {FG_BUMP_DISTURBED_EDGE, "disturbed_edge", "dust or a burr hides part of its arc"},
     {FG_BUMP_GAP, "gap", "the strip is cut within its arc"},
     {FG_BUMP_TOUCHES_OTHER, "touches_other", "another part touches its arc or the land beside it"},
+    {FG_BUMP_LOSSY, "lossy", "the scan was compressed with loss (JPEG): u is wider for it"},
     {FG_BUMP_OUT_OF_TOLERANCE, "out_of_tolerance", "a tolerance is exceeded"},
     {FG_BUMP_BEYOND_MODEL_REGION, "beyond_model_region",
      "it lies beyond the region that the scanner's model was found in"},
@@ -72,6 +76,11 @@ static const fg_flag_words bump_flags[] = {
 
 const fg_flag_words *fg_foil_flag_words(void) {
   return foil_flags;
+}
+
+unsigned fg_foil_flags_told(const fg_design *design, const fg_foil *foil) {
+  bool without_lip = design->form == FG_FORM_SINUSOIDAL;
+  return without_lip ? foil->flags & ~(unsigned)FG_FOIL_NO_LIP : foil->flags;
 }
 
 const fg_flag_words *fg_bump_flag_words(void) {

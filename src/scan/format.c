@@ -6,7 +6,8 @@
 
 #include "core/text.h"
 
-static const fg_format *const readable[] = {&fg_format_png, &fg_format_tiff, &fg_format_pnm};
+static const fg_format *const readable[] = {&fg_format_png, &fg_format_tiff, &fg_format_pnm,
+                                            &fg_format_jpeg};
 
 enum { READABLE = sizeof readable / sizeof readable[0] };
 
@@ -17,8 +18,6 @@ static const struct {
   size_t offset, length;
   const char *problem;
 } others[] = {
-    {"\xff\xd8\xff", 0, 3,
-     "is a JPEG, which is not read: its compression moves edges; scan again, to PNG or TIFF"},
     {"GIF8", 0, 4, "is a GIF, which is not read; " CONVERT},
     {"BM", 0, 2, "is a BMP, which is not read; " CONVERT},
     {"%PDF", 0, 4, "is a PDF, which is not read; scan again, to PNG"},
@@ -35,6 +34,14 @@ static const struct {
     {"PNG", 1, 3,
      "has a damaged PNG signature, as after a transfer in text mode; copy it again in binary mode"},
 };
+
+fg_status fg_format_refuse_lossy(fg_context *ctx, const char *name, const char *compression) {
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: is compressed with loss (%s), which moves edges; scan again to PNG or TIFF, "
+                 "or take it as it is, with wider uncertainties: --allow-lossy (in a recipe "
+                 "\"allow_lossy\": true)",
+                 name, compression);
+}
 
 static bool is_text(const uint8_t *head, size_t length) {
   for (size_t i = 0; i < length; i++) {

@@ -31,7 +31,10 @@ typedef struct fg_format {
   void (*close)(void *reader); /* NULL is fine */
 } fg_format;
 
-extern const fg_format fg_format_png, fg_format_tiff, fg_format_pnm;
+extern const fg_format fg_format_png, fg_format_tiff, fg_format_pnm, fg_format_jpeg;
+
+/* FG_ERR_DATA: the scan has lost by `compression`, and nobody has allowed that. */
+fg_status fg_format_refuse_lossy(fg_context *ctx, const char *name, const char *compression);
 
 /* Every format that is read. */
 const fg_format *const *fg_formats(size_t *count);

@@ -18,8 +18,10 @@ typedef struct fg_scan_header {
   int channels;  /* samples of a pixel */
   bool colour;   /* the first three are red, green, blue; else the first is gray; others are left */
   bool inverted; /* gray: 0 is white */
-  unsigned white;   /* a sample's largest value where that is not 2^bit_depth - 1; else 0 */
-  bool has_palette; /* samples are indices into `palette` */
+  bool luminance_only; /* it has colours, of which the reader gives the luminance as gray */
+  int jpeg_quality;    /* of what has lost: as its quantization tables tell; 0: without loss */
+  unsigned white;      /* a sample's largest value where that is not 2^bit_depth - 1; else 0 */
+  bool has_palette;    /* samples are indices into `palette` */
   size_t palette_size;
   fg_scan_loop_colour palette[256];
   double dpi[2];         /* as the file says, x and y; NaN when it says none */

@@ -88,7 +88,8 @@ static void fill_info(fg_scan *scan) {
   info->bit_depth = header->bit_depth;
   info->bytes_per_pixel = header->bit_depth == 16 ? 2 : 1;
   info->format = scan->format->name;
-  info->colour = header->colour || header->has_palette;
+  info->colour = header->colour || header->has_palette || header->luminance_only;
+  info->jpeg_quality = header->jpeg_quality;
   info->memory_bytes = header->memory_bytes;
   memcpy(info->warning, header->warning, sizeof info->warning);
 }
@@ -121,7 +122,8 @@ static fg_status find_channel(fg_context *ctx, const fg_scan_options *options, f
 static fg_status prepare_rows(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
   FG_TRY(scan->format->start(ctx, scan->reader));
   scan->info.channel = options->channel;
-  bool find = options->channel == FG_CHANNEL_AUTO && scan->info.colour;
+  bool find =
+      options->channel == FG_CHANNEL_AUTO && scan->info.colour && !scan->header.luminance_only;
   if (options->channel == FG_CHANNEL_AUTO) scan->info.channel = FG_CHANNEL_LUMINANCE;
   fg_gray_init(&scan->header, scan->info.channel, &scan->gray);
   if (!scan->gray.convert) return FG_OK;

@@ -6,7 +6,11 @@
 
 #include "core/memory.h"
 #include "scan/format.h"
+#include "scan/jpeg_tables.h"
 #include "scan/tiff_reader.h"
+
+/* Of an image's markers before its quantization table. */
+enum { TABLES_BYTES_MOST = 4096 };
 
 /* ratio: the most that a byte can become; 0: not known. */
 static const struct {
@@ -64,15 +68,32 @@ static fg_status check_compression(fg_context *ctx, fg_tiff *r, const fg_scan_op
   for (size_t i = 0; i < sizeof compressions / sizeof compressions[0]; i++) {
     if (compressions[i].code != r->compression) continue;
     if (compressions[i].lossy && !options->allow_lossy)
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: is compressed with loss (%s), which moves edges; scan again without, or "
-                     "take it as it is with --allow-lossy",
-                     r->source->name, compressions[i].name);
+      return fg_format_refuse_lossy(ctx, r->source->name, compressions[i].name);
     *ratio = compressions[i].ratio;
     r->main.strict = compressions[i].strict;
     if (TIFFIsCODECConfigured(r->compression)) return FG_OK;
   }
   return refuse(ctx, r, "an unknown compression", r->compression);
+}
+
+/* The quantization table of JPEG: in a tag of its own, or before the first strip's or tile's image.
+ */
+static fg_status find_quality(fg_context *ctx, const fg_tiff *r, fg_scan_header *header) {
+  uint8_t head[TABLES_BYTES_MOST];
+  uint16_t zigzag[64];
+  uint32_t length = 0;
+  const uint8_t *tables = NULL;
+  if (r->compression != COMPRESSION_JPEG) return FG_OK;
+  bool found = TIFFGetField(r->main.tiff, TIFFTAG_JPEGTABLES, &length, &tables) && tables &&
+               fg_jpeg_find_table(tables, length, zigzag);
+  if (!found) {
+    tmsize_t got = TIFFIsTiled(r->main.tiff) ? TIFFReadRawTile(r->main.tiff, 0, head, sizeof head)
+                                             : TIFFReadRawStrip(r->main.tiff, 0, head, sizeof head);
+    found = got > 0 && fg_jpeg_find_table(head, (size_t)got, zigzag);
+  }
+  if (!found) return fg_tiff_fail(ctx, r, "its JPEG has no quantization table");
+  header->jpeg_quality = fg_jpeg_quality_of(zigzag);
+  return FG_OK;
 }
 
 static fg_status check_samples(fg_context *ctx, fg_tiff *r) {
@@ -180,6 +201,7 @@ static fg_status read_tags(fg_context *ctx, fg_tiff *r, const fg_scan_options *o
   FG_TRY(open_tiff(ctx, r));
   FG_TRY(check_compression(ctx, r, options, &ratio));
   FG_TRY(check_samples(ctx, r));
+  FG_TRY(find_quality(ctx, r, header));
   FG_TRY(check_colours(ctx, r, header));
   header->width_px = r->width;
   header->height_px = r->height;

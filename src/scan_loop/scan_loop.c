@@ -24,7 +24,9 @@ static fg_status check_different(fg_context *ctx, const char *const *paths,
 
 static fg_status measure_all(fg_context *ctx, const char *const *paths, const fg_design *design,
                              fg_scan_loop *loop) {
-  fg_measure_options options = {.dpi = loop->options.dpi, .threads = loop->options.threads};
+  fg_measure_options options = {.dpi = loop->options.dpi,
+                                .allow_lossy = loop->options.allow_lossy,
+                                .threads = loop->options.threads};
   for (size_t i = 0; i < loop->scan_count; i++)
     FG_TRY(fg_measure_scan(ctx, paths[i], design, &options, &loop->before[i]));
   FG_TRY(check_different(ctx, paths, loop));
@@ -123,6 +125,16 @@ static fg_status say_reach(fg_context *ctx, fg_scan_loop *loop) {
       hidden, listed, FG_SCAN_LOOP_MATTERS_UM);
 }
 
+static fg_status say_lossy(fg_context *ctx, fg_scan_loop *loop) {
+  for (size_t i = 0; i < loop->scan_count; i++)
+    if (loop->before[i].jpeg_quality)
+      FG_TRY(fg_scan_loop_bumps_note(ctx, &loop->bumps,
+                                     "%.120s was compressed with loss (JPEG, quality %d), which "
+                                     "moves edges: scan to PNG or TIFF",
+                                     loop->before[i].scan, loop->before[i].jpeg_quality));
+  return FG_OK;
+}
+
 static bool bends_bumps(const fg_effect_set *set) {
   for (size_t e = 0; e < set->count; e++)
     if (set->effects[e].kind->bends) return true;
@@ -144,6 +156,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
   if (!loop->points.discs) FG_TRY(say_reach(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
+  FG_TRY(say_lossy(ctx, loop));
   return fg_scan_loop_scale_doubt(ctx, loop);
 }
 

@@ -223,6 +223,10 @@ bool fg_scanner_model_is_tied(const fg_scanner_model *model) {
   return model->tied;
 }
 
+bool fg_scanner_model_is_empty(const fg_scanner_model *model) {
+  return model->fields.count == 0 && model->others == 0;
+}
+
 fg_status fg_scanner_model_check_scanner(fg_context *ctx, const fg_scanner_model *model,
                                          const char *path, const char *scanner) {
   if (!scanner || !strcmp(model->scanner, scanner)) return FG_OK;

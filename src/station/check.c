@@ -58,7 +58,9 @@ fg_status fg_station_take_check(fg_context *ctx, fg_inspection *station, const c
                  "is called as a check of the scanner, but the recipe has no station.check.design");
     return refuse(ctx, station, file, words);
   }
-  const fg_measure_options options = {.dpi = station->settings->lot.dpi, .only_file = true};
+  const fg_measure_options options = {.dpi = station->settings->lot.dpi,
+                                      .allow_lossy = station->settings->lot.allow_lossy,
+                                      .only_file = true};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   fg_check_fit fit;

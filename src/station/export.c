@@ -202,7 +202,10 @@ static fg_status correct(fg_context *ctx, const export *at, fg_measurement *meas
 static fg_status measure_again(fg_context *ctx, export *at, size_t item, char **line,
                                size_t *length) {
   const fg_lot_scan *scan = &at->content.scans[item];
-  const fg_measure_options options = {.dpi = at->settings.dpi, .threads = 1, .only_file = true};
+  const fg_measure_options options = {.dpi = at->settings.dpi,
+                                      .allow_lossy = at->settings.allow_lossy,
+                                      .threads = 1,
+                                      .only_file = true};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   char date[11];

@@ -1,10 +1,9 @@
 /* Every lot of the database as a folder. */
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/folder.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/lot_report.h"
@@ -32,15 +31,10 @@ static fg_status list_lots(fg_context *ctx, fg_inspection *station, lot_names *l
   return status == FG_OK ? ended : status;
 }
 
-static fg_status make_folder(fg_context *ctx, const char *folder) {
-  if (mkdir(folder, 0777) == 0 || errno == EEXIST) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", folder, strerror(errno));
-}
-
 /* Nobody's results are overwritten. */
 static fg_status prepare(fg_context *ctx, const char *folder) {
   char *results;
-  FG_TRY(make_folder(ctx, folder));
+  FG_TRY(fg_folder_make(ctx, folder));
   FG_TRY(fg_lot_path(ctx, folder, "results.jsonl", &results));
   bool there = access(results, F_OK) == 0;
   free(results);
@@ -72,7 +66,7 @@ fg_status fg_station_export(fg_context *ctx, fg_inspection *station, const char 
   if (status == FG_OK && !lots.count)
     status =
         fg_fail(ctx, FG_ERR_DATA, "%s: the database holds no foil yet", station->request->folder);
-  if (status == FG_OK) status = make_folder(ctx, folder);
+  if (status == FG_OK) status = fg_folder_make(ctx, folder);
   for (size_t i = 0; i < lots.count && status == FG_OK; i++)
     status = export_one(ctx, station, folder, lots.name[i]);
   for (size_t i = 0; i < lots.count; i++)

@@ -134,6 +134,15 @@ static void wake(fg_inspection *station) {
   if (station->wake) station->wake(station->server);
 }
 
+/* On the card, beside whatever else it says. */
+static void say_lossy(const fg_measurement *measurement, char *words) {
+  size_t used = strlen(words);
+  if (measurement->jpeg_quality)
+    fg_text_clip(words + used, WORDS - used,
+                 "%scompressed with loss (JPEG, quality %d): uncertainties are wider for it",
+                 used ? "; " : "", measurement->jpeg_quality);
+}
+
 static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *measurement) {
   fg_inspection *station = at->station;
   fg_report_outcome outcome;
@@ -141,6 +150,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   char why[WORDS];
   bool withheld = fg_station_check_withholds(station, why, sizeof why);
   FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
+  say_lossy(measurement, at->words);
   const fg_station_scan kept = {.file = at->file,
                                 .source =
                                     fg_station_is_scanned(at->file.name) ? "scanner" : "folder",
@@ -179,7 +189,8 @@ static fg_status correct(fg_context *ctx, const fg_inspection *station,
 /* Memory that ran out is the station's trouble, not the scan's. */
 static fg_status measure(fg_context *ctx, intake *at) {
   const fg_lot_settings *settings = &at->station->settings->lot;
-  const fg_measure_options options = {.dpi = settings->dpi, .only_file = true};
+  const fg_measure_options options = {
+      .dpi = settings->dpi, .allow_lossy = settings->allow_lossy, .only_file = true};
   fg_context inner = {.message = ""};
   fg_measurement measurement;
   fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);

@@ -53,7 +53,8 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_pas
   char *path = NULL, sum[65];
   fg_scanner_model *model = NULL;
   fg_measurement measurement;
-  const fg_measure_options options = {.dpi = past->settings.dpi, .only_file = true};
+  const fg_measure_options options = {
+      .dpi = past->settings.dpi, .allow_lossy = past->settings.allow_lossy, .only_file = true};
   FG_TRY(fg_text_print(ctx, &path, "%s/%s", folder, past->path));
   fg_status status = fg_sha256_file(ctx, path, sum);
   if (status == FG_OK && strcmp(sum, past->sha256) != 0)

@@ -7,7 +7,8 @@
 render() { render_foil "$@" 2400; }
 
 render clean 1 -70 ''
-"$program" loop clean.png -o clean.out || fail "loop on a clean scan"
+expect 0 "note: nothing.json: nothing was found of the scanner" "$program" loop clean.png -o clean.out --model-out nothing.json
+expect 0 '' "$program" measure clean.png --model nothing.json -o nothing.out
 [ "$(value clean.out "r['verdict']")" = clean ] || fail "a clean scan is called $(value clean.out "r['verdict']")"
 
 render ripple 2 -60 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'

@@ -120,7 +120,7 @@ expect 65 'twice, with another die .items 1 and 2' lot other.csv --dry-run -o sp
 # All that can be read is found.
 mkdir formats
 for ending in png tif TIFF pnm pgm ppm pbm txt jpg; do : >"formats/a.$ending"; done
-expect 0 '^7 scans, 7 to measure' lot formats --dry-run -o found
+expect 0 '^8 scans, 8 to measure' lot formats --dry-run -o found
 mkdir empty
 expect 65 'no scan: the folders hold no file .*\.pbm' lot empty --dry-run -o found
 
@@ -136,5 +136,28 @@ expect 65 "pad_column: .* no column 'pads'" timeout 60 "$program" lot lot.csv --
 } >many.csv
 expect 65 'more than 12 groups' lot many.csv --group die -o early
 expect 0 '2 foils of 2 scans' lot lot.csv --group die -o early
+
+# Who, when, out of what: quality systems get it; words that are no date are said to be none.
+printf 'scan,die,coil,operator,date\nscans/foil1.png,A,C7,"Kim ""K"" <b>",2026-02-03 14:05\nscans/foil2.png,B,,,2026-02-04\n' >traced.csv
+expect 0 '' lot traced.csv -o deep/er/traced
+grep -q 'no date' stderr && fail "dates are called none"
+for line in 'K0004/1 03.02.2026/14:05:00' 'K0006/1 C7' 'K0009/1 die A, operator Kim "K" <b>' 'K0004/1 04.02.2026/00:00:00' 'K0009/1 die B'; do
+  grep -qF "$line" deep/er/traced/results.dfq || fail "results.dfq has no $line"
+done
+for part in '<InspectionStart>2026-02-03T14:05:00Z</InspectionStart>' '<InspectionStart>2026-02-04T00:00:00Z<' \
+  '<Attributes n="4"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
+  '<Attributes n="2"><AttributeStr name="die" value="B"/>'; do
+  grep -qF "$part" deep/er/traced/results.qif || fail "results.qif has no $part"
+done
+if command -v xmllint >/dev/null; then
+  xmllint --noout --schema "$root/tests/support/qif3_results.xsd" deep/er/traced/results.qif 2>xmllint.log ||
+    fail "results.qif: $(head -n 3 xmllint.log)"
+fi
+sed 's/2026-02-04/yesterday/' traced.csv >undated.csv
+expect 0 "note: 1 cells of the manifest's column date are no date, the first is 'yesterday'" lot undated.csv -o undated
+[ "$(value undated/lot.json 'r["date"]["from"], r["date"]["cells_not_dates"]')" = "('scans', 1)" ] || fail "the date"
+valid lot.schema.json undated/lot.json
+touch file
+expect 74 'file/a: the folder cannot be made|file: the folder cannot be made' lot traced.csv -o file/a
 
 exit $failed

@@ -1,4 +1,4 @@
-/* TIFF, and PNM by the way: any bytes that the table of formats takes. */
+/* TIFF, JPEG, and PNM by the way: any bytes that the table of formats takes. */
 #include "fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {

@@ -81,8 +81,35 @@ static void every_flag_has_its_words(void **state) {
   for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++)
     bump |= words->flag;
   assert_int_equal(foil, FG_FOIL_OVERALL_RADIUS_LEFT | FG_FOIL_RADIUS_LEFT | FG_FOIL_HEIGHT_LEFT |
-                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_NO_END - 1));
-  assert_int_equal(bump, FG_BUMP_BEYOND_MODEL_REGION | (2 * FG_BUMP_TOUCHES_OTHER - 1));
+                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_LOSSY - 1));
+  assert_int_equal(bump, FG_BUMP_BEYOND_MODEL_REGION | (2 * FG_BUMP_LOSSY - 1));
+}
+
+static void a_table_says_a_name_once(void **state) {
+  fixture *all = *state;
+  all->report.scan_count = 2;
+  char *text = text_of(fg_report_write_table, &all->report);
+  assert_non_null(strstr(text, "\nlost.png: not measured: cannot be opened\n"));
+  free(text);
+}
+
+/* It has none by design; what reads the JSON still learns how bumps are numbered. */
+static void a_sinusoidal_foil_is_not_warned_of_its_lip(void **state) {
+  fixture *all = *state;
+  fg_design *design = &all->design;
+  all->measurement.foils[0].flags = FG_FOIL_NO_LIP;
+  char *warned = text_of(fg_report_write_table, &all->report);
+  fg_form form = design->form;
+  design->form = FG_FORM_SINUSOIDAL;
+  char *told = text_of(fg_report_write_table, &all->report);
+  char *json = text_of(fg_report_write_json, &all->report);
+  design->form = form;
+  assert_non_null(strstr(warned, "no_lip"));
+  assert_null(strstr(told, "no_lip"));
+  assert_non_null(strstr(json, "no_lip"));
+  free(warned);
+  free(told);
+  free(json);
 }
 
 static void any_path_gives_valid_json(void **state) {
@@ -201,6 +228,8 @@ int main(void) {
       REPORT_TEST(unknown_is_null_and_flags_are_words),
       REPORT_TEST(every_flag_has_its_words),
       REPORT_TEST(any_path_gives_valid_json),
+      REPORT_TEST(a_table_says_a_name_once),
+      REPORT_TEST(a_sinusoidal_foil_is_not_warned_of_its_lip),
       REPORT_TEST(several_scans_stand_in_scans),
       REPORT_TEST(numbers_are_plain),
       REPORT_TEST(csv_has_a_line_per_bump),

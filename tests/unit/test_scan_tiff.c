@@ -219,6 +219,7 @@ static fg_status read_all(fg_context *ctx, const char *path, const fg_scan_optio
   FG_TRY(fg_scan_open(ctx, path, options, &scan));
   const fg_scan_info *info = fg_scan_get_info(scan);
   if (warning) memcpy(warning, info->warning, 256);
+  if (options->allow_lossy) assert_int_equal(info->jpeg_quality, 75); /* libtiff's */
   fg_status status = info->width_px == WIDTH ? FG_OK : FG_ERR_DATA;
   for (int64_t y = 0; y < info->height_px && status == FG_OK; y++)
     status = fg_scan_read_rows(ctx, scan, 1, row, sizeof row);

@@ -60,10 +60,16 @@ static void put_end(FILE *out, const scan_lines *scan, fg_verdict verdict, const
   fputc('\n', out);
 }
 
+/* What is of the whole scan stands in every line. */
+static unsigned flags_of_line(const scan_lines *scan, const fg_foil *foil, const fg_bump *bump) {
+  unsigned flags = fg_bump_flags(scan->design, foil, bump);
+  return foil->flags & FG_FOIL_LOSSY ? flags | FG_BUMP_LOSSY : flags;
+}
+
 static void put_bump(FILE *out, const scan_lines *scan, const fg_foil *foil, const fg_bump *bump) {
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,%d", foil->number, bump->number);
-  put_flags(out, fg_bump_flag_words(), fg_bump_flags(scan->design, foil, bump));
+  put_flags(out, fg_bump_flag_words(), flags_of_line(scan, foil, bump));
   put_values(out, FG_QUANTITY_OF_BUMP, bump);
   put_end(out, scan, fg_bump_verdict(scan->design, foil, bump), foil);
 }

@@ -86,6 +86,7 @@ static void write_input(fg_json *json, const fg_report_scan *scan) {
     if (measurement->format[0]) fg_json_string(json, "format", measurement->format);
     fg_json_string(json, "channel",
                    measurement->colour ? fg_channel_word(measurement->channel) : "gray");
+    if (measurement->jpeg_quality) fg_json_integer(json, "jpeg_quality", measurement->jpeg_quality);
     if (measurement->warning[0]) fg_json_string(json, "note", measurement->warning);
     if (measurement->model_sha256[0])
       fg_json_string(json, "model_sha256", measurement->model_sha256);

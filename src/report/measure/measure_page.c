@@ -11,11 +11,12 @@
 #include "report/measure/uncertainty_budget.h"
 #include "report/provenance.h"
 
-static void put_flags(FILE *out, const fg_foil *foil) {
-  if (!foil->flags) return;
+static void put_flags(FILE *out, const fg_design *design, const fg_foil *foil) {
+  unsigned flags = fg_foil_flags_told(design, foil);
+  if (!flags) return;
   fputs("<ul class=\"flags\">\n", out);
   for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
-    if (foil->flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
+    if (flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
   fputs("</ul>\n", out);
 }
 
@@ -182,7 +183,7 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
   bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED), arc = design->form == FG_FORM_ARC;
   put_error(out, foil);
-  put_flags(out, foil);
+  put_flags(out, design, foil);
   fg_correction_moved(&foil->correction, moved, sizeof moved);
   fg_correction_added(&foil->correction, added, sizeof added);
   if (measured) FG_TRY(fg_html_corrected(ctx, out, measurement->model, moved, added));

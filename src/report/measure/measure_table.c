@@ -203,7 +203,7 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   if (foil->flags & FG_FOIL_NOT_MEASURED) {
     fprintf(out, "\nfoil %d: not measured: %s\n", foil->number, foil->error);
     put_place(out, foil);
-    put_foil_flags(out, foil->flags & ~(unsigned)FG_FOIL_NOT_MEASURED);
+    put_foil_flags(out, fg_foil_flags_told(design, foil) & ~(unsigned)FG_FOIL_NOT_MEASURED);
     return;
   }
   if (design->form == FG_FORM_ARC)
@@ -216,15 +216,23 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   put_place(out, foil);
   put_quantities(out, design, foil);
   put_correction(out, foil);
-  put_foil_flags(out, foil->flags);
+  put_foil_flags(out, fg_foil_flags_told(design, foil));
   if (design->form != FG_FORM_ARC) put_bumps(out, design, foil);
+}
+
+/* An error begins with the scan's name where it knows it. */
+static void put_failed(FILE *out, const fg_report_scan *scan) {
+  size_t length = strlen(scan->path);
+  bool named = !strncmp(scan->error, scan->path, length) && scan->error[length] == ':';
+  fprintf(out, "%s: not measured: %s\n", scan->path,
+          named ? scan->error + length + 1 + strspn(scan->error + length + 1, " ") : scan->error);
 }
 
 static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
                           const fg_report_scan *scan) {
   const fg_measurement *measurement = scan->measurement;
   if (!measurement) {
-    fprintf(out, "%s: not measured: %s\n", scan->path, scan->error);
+    put_failed(out, scan);
     return FG_OK;
   }
   fprintf(out, "%s: %lld × %lld px, %d bit, %.6g", scan->path, (long long)measurement->width_px,

@@ -88,11 +88,19 @@ static void put_foils(FILE *out, const fg_measurement *before, const fg_measurem
                       bool tied) {
   for (size_t f = 0; f < before->foil_count && f < after->foil_count; f++) {
     const fg_foil *b = &before->foils[f], *a = &after->foils[f];
+    if (!isfinite(b->overall.radius_mm)) {
+      fprintf(out, "%s foil %d: not measured: %s\n", before->scan, b->number, b->error);
+      continue;
+    }
     fprintf(out, "%s foil %d:", before->scan, b->number);
     put_moved(out, "R0", b->overall.radius_mm, a->overall.radius_mm, a->overall.u_radius_mm);
     fputc('\n', out);
     for (size_t k = 0; k < b->bump_count && k < a->bump_count; k++) {
       const fg_bump *was = &b->bumps[k], *is = &a->bumps[k];
+      if (!isfinite(was->radius_mm) || !isfinite(is->radius_mm)) {
+        fprintf(out, "  bump %d: not fitted\n", was->number);
+        continue;
+      }
       fprintf(out, "  bump %d:", was->number);
       put_moved(out, "R", was->radius_mm, is->radius_mm, is->u_radius_mm);
       fputc(',', out);

@@ -1,0 +1,34 @@
+#include "core/folder.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static fg_status make_one(fg_context *ctx, const char *path) {
+  struct stat about;
+  if (mkdir(path, 0777) == 0) return FG_OK;
+  int error = errno;
+  if (error == EEXIST && stat(path, &about) == 0 && !S_ISDIR(about.st_mode)) error = ENOTDIR;
+  if (error == EEXIST) return FG_OK;
+  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", path, strerror(error));
+}
+
+/* One that is there may lie in a folder where nothing can be made: it is asked for only where the
+ * whole path cannot be made at once. */
+fg_status fg_folder_make(fg_context *ctx, const char *path) {
+  if (mkdir(path, 0777) == 0) return FG_OK;
+  if (errno != ENOENT || !*path) return make_one(ctx, path);
+  fg_status status = FG_OK;
+  char *part = strdup(path);
+  if (!part) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the folder %s", path);
+  for (char *slash = strchr(part + 1, '/'); slash && status == FG_OK;
+       slash = strchr(slash + 1, '/')) {
+    *slash = '\0';
+    struct stat about;
+    if (stat(part, &about) != 0) status = make_one(ctx, part);
+    *slash = '/';
+  }
+  free(part);
+  return status == FG_OK ? make_one(ctx, path) : status;
+}

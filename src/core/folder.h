@@ -1,0 +1,11 @@
+/* Folders for results. */
+#ifndef FG_CORE_FOLDER_H
+#define FG_CORE_FOLDER_H
+
+#include "foilgauge/status.h"
+
+/* Makes the folder, and those that it lies in, where they are not there. FG_ERR_IO: which of them
+ * cannot be made. */
+fg_status fg_folder_make(fg_context *ctx, const char *path);
+
+#endif

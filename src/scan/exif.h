@@ -1,0 +1,16 @@
+/* The resolution and the orientation that EXIF data state: a TIFF directory in a JPEG's APP1. */
+#ifndef FG_SCAN_EXIF_H
+#define FG_SCAN_EXIF_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct fg_exif {
+  double dpi[2];   /* NaN: not stated */
+  int orientation; /* 1: as it lies; 0: not stated */
+} fg_exif;
+
+/* `bytes` is what an APP1 holds after its length; what is damaged counts as not stated. */
+void fg_exif_read(const uint8_t *bytes, size_t length, fg_exif *exif);
+
+#endif

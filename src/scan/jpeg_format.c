@@ -1,0 +1,124 @@
+/* JPEG as one of the formats, for those who allow loss. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "scan/format.h"
+#include "scan/jpeg_reader.h"
+
+/* A block takes two codes of one bit at least. */
+#define BITS_PER_BLOCK 2.0
+/* A progressive image's blocks may share one bit for a band of them all. */
+#define BITS_PER_BLOCK_PROGRESSIVE 1.0
+/* JFIF and EXIF state one resolution where they differ by less: EXIF has fractions. */
+#define SAME_RESOLUTION 0.01
+
+typedef struct jpeg_reader {
+  fg_jpeg_in *jpeg;
+  bool luminance;
+} jpeg_reader;
+
+static bool matches(const uint8_t *head, size_t length) {
+  static const uint8_t magic[3] = {0xff, 0xd8, 0xff};
+  for (size_t i = 0; i < length && i < sizeof magic; i++)
+    if (head[i] != magic[i]) return false;
+  return true;
+}
+
+/* Which colours it has stands behind what may be a long way of EXIF data. */
+static bool has_colour(const uint8_t *head, size_t length) {
+  (void)head;
+  (void)length;
+  return true;
+}
+
+/* As JFIF states it; NaN without. */
+static double jfif_dpi(const fg_jpeg_header *jpeg, int axis) {
+  static const double per_inch[] = {NAN, 1, 2.54};
+  if (!jpeg->has_density || jpeg->density_unit < 1 || jpeg->density_unit > 2) return NAN;
+  return jpeg->density[axis] * per_inch[jpeg->density_unit];
+}
+
+static bool contradict(double a, double b) {
+  return a > 0 && b > 0 && fabs(log(a / b)) > SAME_RESOLUTION;
+}
+
+static void fill_resolution(const fg_jpeg_header *jpeg, fg_scan_header *header) {
+  bool jfif = jfif_dpi(jpeg, 0) > 0 && jfif_dpi(jpeg, 1) > 0;
+  const double *exif = jpeg->exif.dpi;
+  for (int axis = 0; axis < 2; axis++) {
+    header->dpi[axis] = jfif ? jfif_dpi(jpeg, axis) : exif[axis];
+    if (jfif && contradict(header->dpi[axis], exif[axis]))
+      header->no_dpi = "its JFIF header and its EXIF data contradict each other";
+  }
+  if (!(header->dpi[0] > 0 && header->dpi[1] > 0))
+    header->no_dpi = "no density in its JFIF header, no XResolution and YResolution in EXIF data";
+  if (header->no_dpi) header->dpi[0] = header->dpi[1] = NAN;
+  snprintf(header->dpi_source, sizeof header->dpi_source, "%s: %g × %g dpi",
+           jfif ? "JFIF header" : "EXIF data", header->dpi[0], header->dpi[1]);
+}
+
+static void fill_header(const fg_jpeg_header *jpeg, bool luminance, fg_scan_header *header) {
+  *header = (fg_scan_header){.width_px = jpeg->width_px,
+                             .height_px = jpeg->height_px,
+                             .bit_depth = 8,
+                             .channels = luminance ? 1 : 3,
+                             .colour = !luminance,
+                             .luminance_only = luminance && jpeg->colour,
+                             .jpeg_quality = jpeg->quality,
+                             .memory_bytes = jpeg->memory_bytes};
+  fill_resolution(jpeg, header);
+  double bits = jpeg->whole ? BITS_PER_BLOCK_PROGRESSIVE : BITS_PER_BLOCK;
+  if (!jpeg->arithmetic) header->bytes_least = (double)jpeg->blocks * bits / 8;
+  if (jpeg->exif.orientation > 1)
+    snprintf(header->warning, sizeof header->warning,
+             "its orientation tag (%d) is left alone: positions are those of the rows as stored",
+             jpeg->exif.orientation);
+}
+
+static fg_status open_jpeg(fg_context *ctx, fg_source *source, const fg_scan_options *options,
+                           void **out, fg_scan_header *header) {
+  if (!options->allow_lossy) return fg_format_refuse_lossy(ctx, source->name, "JPEG");
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof(jpeg_reader), out));
+  jpeg_reader *reader = *out;
+  FG_TRY(fg_jpeg_open(ctx, source, &reader->jpeg));
+  const fg_jpeg_header *jpeg = fg_jpeg_get_header(reader->jpeg);
+  /* Of YCbCr the Y is kept best: that is taken where nothing else is asked for. */
+  bool any = options->channel == FG_CHANNEL_AUTO || options->channel == FG_CHANNEL_LUMINANCE;
+  reader->luminance = jpeg->has_luminance && (any || !jpeg->colour);
+  fill_header(jpeg, reader->luminance, header);
+  return FG_OK;
+}
+
+static fg_status start(fg_context *ctx, void *r) {
+  jpeg_reader *reader = r;
+  return fg_jpeg_start(ctx, reader->jpeg, reader->luminance);
+}
+
+static fg_status read_row(fg_context *ctx, void *r, void *samples) {
+  return fg_jpeg_read_row(ctx, ((jpeg_reader *)r)->jpeg, samples);
+}
+
+static fg_status finish(fg_context *ctx, void *r) {
+  return fg_jpeg_finish(ctx, ((jpeg_reader *)r)->jpeg);
+}
+
+static void close_jpeg(void *r) {
+  jpeg_reader *reader = r;
+  if (!reader) return;
+  fg_jpeg_close(reader->jpeg);
+  free(reader);
+}
+
+static const char *const endings[] = {".jpg", ".jpeg", NULL};
+
+const fg_format fg_format_jpeg = {.name = "JPEG",
+                                  .endings = endings,
+                                  .matches = matches,
+                                  .has_colour = has_colour,
+                                  .open = open_jpeg,
+                                  .start = start,
+                                  .read_row = read_row,
+                                  .finish = finish,
+                                  .close = close_jpeg};

@@ -1,0 +1,27 @@
+/* How much a JPEG has lost, as its quantization tables tell. */
+#ifndef FG_SCAN_JPEG_TABLES_H
+#define FG_SCAN_JPEG_TABLES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Steps that count, in zigzag order: the frequencies with u + v up to 6. What lies above, a blurred
+ * edge hardly has. */
+enum { FG_JPEG_STEPS = 28 };
+
+/* Where the steps of a table in its natural order (8 u + v) stand in zigzag order. */
+void fg_jpeg_to_zigzag(const uint16_t natural[64], uint16_t zigzag[64]);
+
+/* The quality of the Independent JPEG Group, 1 to 100, whose table of luminance has the nearest
+ * root mean square of the steps that count. */
+int fg_jpeg_quality_of(const uint16_t zigzag[64]);
+
+/* Root mean square of the steps that count, in gray values of 8 bits. */
+double fg_jpeg_step_of(int quality);
+
+/* The first quantization table of a stream of markers (what stands before the image, or TIFF's tag
+ * JPEGTables), in zigzag order. False: there is none. */
+bool fg_jpeg_find_table(const uint8_t *bytes, size_t length, uint16_t zigzag[64]);
+
+#endif

@@ -1,0 +1,9 @@
+#!/bin/bash
+# What JPEG costs, and whether the uncertainties say so: writes reports/jpeg.md. --seed N, --renders N.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$root/tests/packages.sh"
+
+install_missing $FOILGAUGE_PACKAGES python3 python3-numpy
+(cd "$root" && build_preset release build)
+exec /usr/bin/python3 "$root/tests/bench/jpeg.py" "$@"

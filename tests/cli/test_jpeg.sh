@@ -1,0 +1,64 @@
+#!/bin/bash
+# Scans that exist only as JPEG: refused by every command unless loss is allowed, then flagged, and wider.
+. tests/support/cli.sh
+to_jpeg=$(dirname "$program")/tests/to_jpeg
+
+cat >spec.json <<'J'
+{"schema": "foilgauge/render/1", "seed": 19, "foils": [{"design": {"bump_count": 3}}],
+ "scanner": {"dpi": 2400, "blur_px": 1.2, "noise": 1}}
+J
+echo '{"schema": "foilgauge/design/1", "name": "three", "bump_count": 3}' >design.json
+echo '{"schema": "foilgauge/recipe/1", "design": "design.json", "allow_lossy": true}' >recipe.json
+"$renderer" render spec.json -o scan.png || fail "render"
+mkdir lot
+"$to_jpeg" scan.png lot/scan.jpg 80 && "$to_jpeg" lot/scan.jpg pixels.pgm 0 || fail "no JPEG"
+
+measure() {
+  "$program" measure --design design.json "$@"
+}
+
+# Refused by name, with the way out, wherever scans are read.
+printf 'scan,D\nlot/scan.jpg,1\nlot/scan.jpg,2\nlot/scan.jpg,3\n' >runs.csv
+expect 65 'lot/scan.jpg: is compressed with loss \(JPEG\).*--allow-lossy \(in a recipe "allow_lossy": true\)' \
+  measure lot/scan.jpg
+expect 65 '--allow-lossy' "$program" loop --design design.json lot/scan.jpg
+expect 65 '--allow-lossy' "$program" doe runs.csv --scans scan --design design.json --response radius_mm --model '1 + D'
+expect 2 '--allow-lossy' "$program" lot lot --design design.json -o refused
+value refused/lot.json 'r["inputs"][0]["error"]' | grep -q 'allow-lossy' || fail "lot.json does not say why"
+
+# Allowed: in every form of the report, and wider than the same pixels that do not tell where they are from.
+expect 0 'note: compressed with loss \(JPEG, quality 80\)' \
+  measure lot/scan.jpg --allow-lossy -o lossy.json --csv lossy.csv --html lossy.html
+measure pixels.pgm --dpi 2400 -o pixels.json || fail "the pixels are not measured"
+valid measure.schema.json lossy.json
+[ "$(value lossy.json 'r["inputs"][0]["format"], r["inputs"][0]["jpeg_quality"]')" = "('JPEG', 80)" ] || fail "inputs"
+[ "$(value lossy.json '"lossy" in r["foils"][0]["flags"]')" = True ] || fail "no flag in the JSON"
+[ "$(grep -c ',lossy,' lossy.csv)" = 3 ] || fail "no flag in the CSV"
+grep -q '<li>The scan was compressed with loss (JPEG)' lossy.html || fail "the page does not say it"
+foil='r["foils"][0]'
+near "radius, all the same" "$(value lossy.json "$foil['bumps'][1]['radius_mm']")" \
+  "$(value pixels.json "$foil['bumps'][1]['radius_mm']")" 1e-12
+python3 - <<'P' || fail "the uncertainties are not wider"
+import json
+lossy, pixels = (json.load(open(f"{name}.json"))["foils"][0] for name in ("lossy", "pixels"))
+wide = [lossy["u_thickness_mm"] / pixels["u_thickness_mm"]]
+wide += [a[n] / b[n] for a, b in zip(lossy["bumps"], pixels["bumps"]) for n in ("u_radius_mm", "u_bump_angle_deg")]
+assert wide[0] > 1.5 and min(wide[1:]) > 1.02 and max(wide[1:]) < 1.5, wide
+P
+
+# The loop says it before and after.
+expect 0 '' "$program" loop --design design.json --allow-lossy lot/scan.jpg -o loop.json --html loop.html
+[ "$(value loop.json '["lossy" in r[w]["foils"][0]["flags"] for w in ("before", "after")]')" = '[True, True]' ] || fail "loop: no flag"
+value loop.json 'r["notes"]' | grep -q 'lot/scan.jpg was compressed with loss (JPEG, quality 80)' || fail "loop: no note"
+grep -q 'was compressed with loss' loop.html || fail "the loop's page does not say it"
+
+# A lot takes them by its recipe or by the option, and says how many.
+expect 0 '1 foils of 1 scans' "$program" lot lot --recipe recipe.json -o taken
+[ "$(value taken/lot.json '"lossy" in r["foils"][0]["flags"]')" = True ] || fail "lot.json: no flag"
+grep -q '"allow_lossy": true' taken/recipe.json || fail "the lot's recipe forgets it"
+grep -q '1 of 1 foils are of scans that were compressed with loss' taken/index.html || fail "the lot's page is silent"
+expect 0 '1 foils of 1 scans' "$program" lot lot --design design.json --allow-lossy -o by/option
+sed 's/true/1/' recipe.json >wrong.json
+expect 65 'allow_lossy must be true or false' "$program" lot lot --recipe wrong.json -o no
+
+exit $failed
