@@ -31,6 +31,17 @@ fg_status fg_coding_parse(fg_context *ctx, const char *text, fg_coding *coding);
 fg_status fg_coding_from_data(fg_context *ctx, const fg_table *table, const char *name,
                               fg_coding *coding);
 double fg_coding_to_real(const fg_coding *coding, double coded);
+
+/* Settings that a machine can be given: the multiples of a step. */
+typedef struct fg_rounding {
+  char name[256]; /* of the factor */
+  double step;    /* above 0 */
+} fg_rounding;
+/* "NAME=STEP". FG_ERR_USAGE with what is wrong. */
+fg_status fg_rounding_parse(fg_context *ctx, const char *text, fg_rounding *rounding);
+/* The nearest multiple of the step; the value itself where the step is 0. */
+double fg_round_to(double value, double step);
+
 /* Replaces the table's column by coded values, to all digits. */
 fg_status fg_coding_apply(fg_context *ctx, const fg_coding *coding, fg_table *table);
 

@@ -62,6 +62,8 @@ typedef struct fg_experiment_options {
   double target;                 /* FG_GOAL_TARGET: the response wanted */
   const char *const *constraint; /* "temperature_C <= 700", "2*a + b >= 3", in real units */
   size_t constraints;
+  const fg_rounding *round; /* what the best setting is rounded to */
+  size_t rounds;
   const fg_experiment_taken *taken; /* what is out of the response already */
   size_t takens;
   const double *taken_out; /* rows: the sum of it; NULL without `taken` */
@@ -158,6 +160,11 @@ typedef struct fg_experiment {
   size_t constraints;
   double best_setting[FG_FORMULA_VARIABLES]; /* levels of word factors at the optimum */
   fg_optimum optimum;
+  /* The best of the settings that can be made, about the optimum: every factor with a step at a
+   * multiple of it, all in the region. */
+  bool has_rounded;
+  double step[FG_SURFACE_FACTORS]; /* of the surface's factors; 0: not rounded */
+  fg_optimum rounded;
   fg_ridge_point ridge[FG_RIDGE_POINTS];
 
   char **note; /* what could not be said and why */
@@ -201,6 +208,8 @@ typedef struct fg_experiment_report {
   const char *design_path;               /* NULL: the default */
   const struct fg_design *design;        /* that the scans were measured by; NULL: none were */
   const char *model_path, *model_sha256; /* of the loop's model; NULL: none */
+  const char *plan_path;                 /* whose limits code the factors; NULL: none */
+  const char *plan_note;                 /* what is odd about it: a sentence; NULL: nothing */
 } fg_experiment_report;
 
 /* JSON, "schema": "foilgauge/doe/1" (reports/schema/doe.schema.json); a table for the terminal; one

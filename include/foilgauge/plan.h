@@ -12,7 +12,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
+#include "foilgauge/doe.h"
 #include "foilgauge/status.h"
 #include "foilgauge/table.h"
 
@@ -32,6 +34,8 @@ typedef struct fg_plan_factor {
   const char *name;
   double low, high; /* real values of -1 and +1 */
   bool hard_to_change;
+  double
+      step; /* settings are rounded to its multiples: what the oven can be set to; 0: as they are */
 } fg_plan_factor;
 
 typedef struct fg_plan_options {
@@ -65,7 +69,8 @@ typedef struct fg_plan {
   size_t factors;
   char *name[FG_PLAN_FACTORS];
   double low[FG_PLAN_FACTORS], high[FG_PLAN_FACTORS];
-  fg_plan_run *run; /* in the order to be made */
+  double step[FG_PLAN_FACTORS]; /* 0: settings are not rounded */
+  fg_plan_run *run;             /* in the order to be made */
   size_t runs, capacity;
   size_t blocks, plots; /* plots 0: no restriction */
   double axial;         /* as used; 0 for other kinds */
@@ -82,6 +87,35 @@ fg_status fg_plan_make(fg_context *ctx, const fg_plan_options *options, fg_plan 
 /* The run sheet: run, standard_order, point, block (when there are several), whole_plot (when
  * restricted), the factors in real units. Free with fg_table_free. */
 fg_status fg_plan_table(fg_context *ctx, const fg_plan *plan, fg_table *table);
+
+/* What a factor is set to in a run, in real units, rounded as its step says. */
+double fg_plan_setting(const fg_plan *plan, size_t run, size_t factor);
+
+/* What a run sheet does not say, beside it: RUNS.csv has RUNS.plan.json, "foilgauge/plan/1". A
+ * spreadsheet that reads and writes the sheet does not touch it. */
+fg_status fg_plan_write_json(fg_context *ctx, const fg_plan *plan, FILE *out);
+/* "RUNS.plan.json" of "RUNS.csv" or of any other name; the caller frees it. */
+fg_status fg_plan_beside(fg_context *ctx, const char *sheet, char **path);
+
+/* What an analysis takes from a plan. */
+typedef struct fg_plan_limits {
+  fg_coding coding[FG_PLAN_FACTORS];
+  double step[FG_PLAN_FACTORS]; /* 0: not rounded */
+  size_t factors, runs;
+  double *setting; /* of run i of the standard order: i × factors; owned */
+} fg_plan_limits;
+/* FG_ERR_IO where there is none; FG_ERR_DATA when it is no plan. Free with fg_plan_limits_free. */
+fg_status fg_plan_limits_load(fg_context *ctx, const char *path, fg_plan_limits *limits);
+void fg_plan_limits_free(fg_plan_limits *limits);
+/* How many rows of a table that was a run sheet have another setting than planned (they count as
+ * they were made), the first of them from 1 in `first`; 0 also where the table does not say its
+ * standard order or its factors. */
+size_t fg_plan_limits_differ(const fg_plan_limits *limits, const fg_table *table, size_t *first);
+
+/* One page to print and fill in at the oven: a line per run in the order to be made, with room for
+ * `column`s and a note. */
+fg_status fg_plan_write_html(fg_context *ctx, const fg_plan *plan, const char *const *column,
+                             size_t columns, FILE *out);
 
 /* What the fraction cannot tell apart, in words: one line "A = B:C:E = -D:E" per effect of at most
  * `order` factors, with aliases of at most `alias_order`; "" for a full factorial. The caller

@@ -1,6 +1,7 @@
 /* foilgauge doe: a table of runs in, what matters and the best setting out. */
 #include <argp.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include "cli/runs.h"
 #include "foilgauge/loop.h"
 #include "foilgauge/memory.h"
+#include "foilgauge/plan.h"
 #include "foilgauge/text.h"
 
 /* What the command can write. */
@@ -31,6 +33,8 @@ typedef struct doe_arguments {
   fg_experiment_options options;
   fg_coding coding[CODINGS];
   const char *constraint[FG_REGION_PLANES];
+  fg_rounding round[CODINGS];
+  const char *plan_path; /* NULL: beside the table, if it is there */
   double dpi;
   unsigned threads;
 } doe_arguments;
@@ -46,7 +50,9 @@ typedef struct doe_run {
   fg_table sheet;
   fg_design design; /* of the scans */
   fg_run_sheet measured;
-  char *u_name;
+  char *u_name, *plan_path; /* the plan's that was found */
+  char plan_note[400];
+  fg_plan_limits plan;
   fg_experiment experiment;
 } doe_run;
 
@@ -64,7 +70,9 @@ enum {
   OPTION_CONSTRAINT,
   OPTION_GOAL,
   OPTION_CONFIDENCE,
-  OPTION_HTML
+  OPTION_HTML,
+  OPTION_ROUND,
+  OPTION_PLAN
 };
 
 static const struct argp_option options[] = {
@@ -94,6 +102,14 @@ static const struct argp_option options[] = {
     {"goal", OPTION_GOAL, "GOAL", 0, "lowest (default), highest, or the number to aim at", 2},
     {"constraint", OPTION_CONSTRAINT, "LIMIT", 0,
      "Keep the best setting within: 'temperature_C <= 700', '2*a + b >= 3'; may be repeated", 2},
+    {"round", OPTION_ROUND, "NAME=STEP", 0,
+     "Also the best setting with this factor at a multiple of STEP, as the oven can be set; once "
+     "for each factor (default: as planned)",
+     2},
+    {"plan", OPTION_PLAN, "RUNS.plan.json", 0,
+     "What `doe plan -o RUNS.csv` wrote beside the run sheet: factors are coded by its limits "
+     "(default: that of DATA.csv, where it is there)",
+     2},
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
     {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 3},
     {0},
@@ -148,6 +164,14 @@ static void parse_constraint(struct argp_state *state, const char *text, doe_arg
   a->constraint[a->options.constraints++] = text;
 }
 
+static void parse_round(struct argp_state *state, const char *text, doe_arguments *a) {
+  fg_context ctx = {0};
+  if (a->options.rounds == CODINGS) argp_error(state, "too many --round");
+  if (fg_rounding_parse(&ctx, text, &a->round[a->options.rounds]) != FG_OK)
+    argp_error(state, "--round: %s", ctx.message);
+  a->options.rounds++;
+}
+
 /* Options whose text is kept as it is. */
 static const char **text_option(int key, doe_run *run) {
   doe_arguments *a = &run->arguments;
@@ -170,6 +194,8 @@ static const char **text_option(int key, doe_run *run) {
     return &run->outputs.path[OUT_JSON];
   case OPTION_HTML:
     return &run->outputs.path[OUT_HTML];
+  case OPTION_PLAN:
+    return &a->plan_path;
   default:
     return NULL;
   }
@@ -204,6 +230,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_CONSTRAINT:
     parse_constraint(state, text, a);
+    break;
+  case OPTION_ROUND:
+    parse_round(state, text, a);
     break;
   case OPTION_CONFIDENCE:
     a->options.confidence = fg_cli_number(state, "confidence", text, 0.5, 0.9999);
@@ -272,7 +301,9 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
                                        .model_sha256 = run->model_sha256,
                                        .scan = run->measured.scan,
                                        .scans = run->measured.scans,
-                                       .row = run->measured.row};
+                                       .row = run->measured.row,
+                                       .plan_path = run->plan_path,
+                                       .plan_note = run->plan_note[0] ? run->plan_note : NULL};
   return writers[kind](ctx, &report, out);
 }
 
@@ -320,16 +351,100 @@ static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table)
   return describe_taken(ctx, run);
 }
 
+static bool is_coded(const doe_arguments *a, const char *name) {
+  for (size_t i = 0; i < a->options.codings; i++)
+    if (!strcmp(a->coding[i].name, name)) return true;
+  return false;
+}
+
+static bool is_rounded(const doe_arguments *a, const char *name) {
+  for (size_t i = 0; i < a->options.rounds; i++)
+    if (!strcmp(a->round[i].name, name)) return true;
+  return false;
+}
+
+/* A number of the formula that enters it as it is: what can be coded. */
+static bool is_factor(const fg_formula *formula, const char *name) {
+  bool found = false;
+  for (size_t v = 0; v < formula->variables; v++) {
+    if (strcmp(formula->variable[v].column, name) != 0) continue;
+    if (formula->variable[v].transform != FG_TRANSFORM_NONE) return false;
+    found = true;
+  }
+  return found;
+}
+
+/* The plan's limits and steps of the factors of the model; options go before them. */
+static void apply_plan(doe_run *run, const fg_formula *formula) {
+  doe_arguments *a = &run->arguments;
+  for (size_t k = 0; k < run->plan.factors; k++) {
+    const fg_coding *coding = &run->plan.coding[k];
+    if (!is_factor(formula, coding->name)) continue;
+    if (!a->options.uncoded && !is_coded(a, coding->name) && a->options.codings < CODINGS)
+      a->coding[a->options.codings++] = *coding;
+    if (run->plan.step[k] > 0 && !is_rounded(a, coding->name) && a->options.rounds < CODINGS) {
+      fg_rounding *round = &a->round[a->options.rounds++];
+      memcpy(round->name, coding->name, sizeof round->name);
+      round->step = run->plan.step[k];
+    }
+  }
+}
+
+/* A run sheet of `doe plan` whose plan is gone is analysed by its data, and that is said. */
+static void note_lost(doe_run *run) {
+  const fg_column *column;
+  if (fg_table_find(NULL, &run->sheet, "standard_order", &column) != FG_OK ||
+      fg_table_find(NULL, &run->sheet, "point", &column) != FG_OK)
+    return;
+  snprintf(run->plan_note, sizeof run->plan_note,
+           "The table was a run sheet of `doe plan`, and its plan is not beside it (%.200s): "
+           "factors are coded by their lowest and highest value; --plan names it.",
+           run->plan_path);
+}
+
+static void note_changed(doe_run *run) {
+  size_t first = 0, changed = fg_plan_limits_differ(&run->plan, &run->sheet, &first);
+  if (changed)
+    snprintf(run->plan_note, sizeof run->plan_note,
+             "%zu runs were made at another setting than planned, the first in row %zu: they "
+             "count as they were made.",
+             changed, first);
+}
+
+static fg_status take_plan(fg_context *ctx, doe_run *run) {
+  const doe_arguments *a = &run->arguments;
+  fg_formula formula;
+  if (!a->plan_path && !strcmp(a->data, "-")) return FG_OK;
+  if (a->plan_path)
+    FG_TRY(fg_text_print(ctx, &run->plan_path, "%s", a->plan_path));
+  else
+    FG_TRY(fg_plan_beside(ctx, a->data, &run->plan_path));
+  if (!a->plan_path && access(run->plan_path, F_OK) != 0) {
+    note_lost(run);
+    free(run->plan_path);
+    run->plan_path = NULL;
+    return FG_OK;
+  }
+  FG_TRY(fg_plan_limits_load(ctx, run->plan_path, &run->plan));
+  FG_TRY(fg_formula_parse(ctx, a->options.formula, &formula));
+  apply_plan(run, &formula);
+  fg_formula_free(&formula);
+  note_changed(run);
+  return FG_OK;
+}
+
 static fg_status analyse(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
   a->options.coding = a->coding;
   a->options.constraint = a->constraint;
+  a->options.round = a->round;
   choose_standard_output(&run->outputs);
   FG_TRY(check_outputs(ctx, run));
   FG_TRY(fg_table_load(ctx, a->data, &run->sheet, run->sha256));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
   FG_TRY(take_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));
+  FG_TRY(take_plan(ctx, run));
   FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
                                &run->experiment));
   return fg_output_set_write(ctx, &run->outputs, write_output, run);
@@ -344,6 +459,8 @@ static void free_run(doe_run *run) {
   free(run->taken);
   fg_table_free(&run->sheet);
   free(run->u_name);
+  free(run->plan_path);
+  fg_plan_limits_free(&run->plan);
 }
 
 const struct argp fg_doe_parser = {options, parse_option, "DATA.csv", doc, NULL, fg_cli_fill, NULL};

@@ -22,7 +22,9 @@ typedef struct plan_arguments {
   size_t hard_count;
   const char *column[FG_PLAN_FACTORS]; /* empty ones, to be filled in by hand */
   size_t columns;
-  const char *output_path;
+  fg_rounding round[FG_PLAN_FACTORS];
+  size_t rounds;
+  const char *output_path, *page_path;
 } plan_arguments;
 
 enum {
@@ -37,7 +39,9 @@ enum {
   OPTION_AXIAL,
   OPTION_HARD,
   OPTION_SEED,
-  OPTION_COLUMN
+  OPTION_COLUMN,
+  OPTION_ROUND,
+  OPTION_HTML
 };
 
 static const struct argp_option options[] = {
@@ -58,7 +62,14 @@ static const struct argp_option options[] = {
      "Hard to change: runs at one setting stay together as a whole plot", 2},
     {"seed", OPTION_SEED, "N", 0, "Of the random order (default: @seed@)", 3},
     {"column", OPTION_COLUMN, "NAME", 0, "An empty column to fill in (default: scan)", 3},
-    {"output", 'o', "RUNS.csv", 0, "Write the run sheet here (default: standard output)", 3},
+    {"round", OPTION_ROUND, "NAME=STEP", 0,
+     "Settings of a factor are multiples of STEP, as the oven can be set; once for each factor", 0},
+    {"output", 'o', "RUNS.csv", 0,
+     "Write the run sheet here (default: standard output), and the factors' limits and steps "
+     "beside "
+     "it, as RUNS.plan.json, where `foilgauge doe` finds them",
+     3},
+    {"html", OPTION_HTML, "RUNS.html", 0, "The run sheet as a page, to print and fill in", 3},
     {0},
 };
 
@@ -89,6 +100,14 @@ static void parse_factor(struct argp_state *state, const char *text, plan_argume
   if (fg_coding_parse(&ctx, text, &a->coding[place]) != FG_OK)
     argp_error(state, "--factor: %s", ctx.message);
   a->options.factors++;
+}
+
+static void parse_round(struct argp_state *state, const char *text, plan_arguments *a) {
+  fg_context ctx = {0};
+  if (a->rounds == FG_PLAN_FACTORS) argp_error(state, "more than %d --round", FG_PLAN_FACTORS);
+  if (fg_rounding_parse(&ctx, text, &a->round[a->rounds]) != FG_OK)
+    argp_error(state, "--round: %s", ctx.message);
+  a->rounds++;
 }
 
 static void parse_kind(struct argp_state *state, const char *text, plan_arguments *a) {
@@ -157,6 +176,12 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_AXIAL_BLOCK:
     a->options.composite_blocks = true;
     break;
+  case OPTION_ROUND:
+    parse_round(state, text, a);
+    break;
+  case OPTION_HTML:
+    a->page_path = text;
+    break;
   case 'o':
     a->output_path = text;
     break;
@@ -182,6 +207,17 @@ static fg_status name_factors(fg_context *ctx, plan_arguments *a) {
       if (!strcmp(a->hard[h], a->factor[i].name)) found = a->factor[i].hard_to_change = true;
     if (!found)
       return fg_fail(ctx, FG_ERR_USAGE, "--hard %s: there is no factor of that name", a->hard[h]);
+  }
+  for (size_t r = 0; r < a->rounds; r++) {
+    bool found = false;
+    for (size_t i = 0; i < a->options.factors; i++) {
+      if (strcmp(a->round[r].name, a->factor[i].name) != 0) continue;
+      a->factor[i].step = a->round[r].step;
+      found = true;
+    }
+    if (!found)
+      return fg_fail(ctx, FG_ERR_USAGE, "--round %s: there is no factor of that name",
+                     a->round[r].name);
   }
   a->options.factor = a->factor;
   a->options.generator = a->generator;
@@ -232,10 +268,33 @@ static fg_status tell(fg_context *ctx, const fg_plan *plan) {
   return status;
 }
 
+/* Beside a sheet that is a file: what a spreadsheet would lose. */
+static fg_status write_beside(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
+  fg_output output;
+  char *path;
+  if (!a->output_path || !strcmp(a->output_path, "-") || !strncmp(a->output_path, "/dev/", 5))
+    return FG_OK;
+  FG_TRY(fg_plan_beside(ctx, a->output_path, &path));
+  fg_status status = fg_output_open(ctx, path, &output);
+  free(path);
+  FG_TRY(status);
+  return fg_output_end(ctx, &output, fg_plan_write_json(ctx, plan, output.stream));
+}
+
+static fg_status write_page(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
+  fg_output output;
+  if (!a->page_path) return FG_OK;
+  FG_TRY(fg_output_open(ctx, a->page_path, &output));
+  return fg_output_end(ctx, &output,
+                       fg_plan_write_html(ctx, plan, a->column, a->columns, output.stream));
+}
+
 static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
   fg_output output;
   FG_TRY(fg_output_open(ctx, a->output_path, &output));
   FG_TRY(fg_output_end(ctx, &output, write_sheet(ctx, a, plan, output.stream)));
+  FG_TRY(write_beside(ctx, a, plan));
+  FG_TRY(write_page(ctx, a, plan));
   return tell(ctx, plan);
 }
 

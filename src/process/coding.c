@@ -1,5 +1,6 @@
 /* Factors to -1 and +1, responses to the sign that is modelled. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,30 @@ fg_status fg_coding_parse(fg_context *ctx, const char *text, fg_coding *coding) 
   if (!(fg_extended_subtract(coding->high, coding->low).value > 0))
     return fg_fail(ctx, FG_ERR_USAGE, "coding '%s': LOW must be below HIGH", text);
   return FG_OK;
+}
+
+fg_status fg_rounding_parse(fg_context *ctx, const char *text, fg_rounding *rounding) {
+  const char *equals = strrchr(text, '=');
+  char *end;
+  *rounding = (fg_rounding){0};
+  if (!equals || equals == text)
+    return fg_fail(ctx, FG_ERR_USAGE, "'%s': NAME=STEP is expected", text);
+  size_t length = (size_t)(equals - text);
+  if (length >= sizeof rounding->name)
+    return fg_fail(ctx, FG_ERR_USAGE, "'%s': the name is too long", text);
+  memcpy(rounding->name, text, length);
+  rounding->step = strtod(equals + 1, &end);
+  if (end == equals + 1 || *end || !(rounding->step > 0) || !isfinite(rounding->step))
+    return fg_fail(ctx, FG_ERR_USAGE, "'%s': STEP must be a number above 0", text);
+  return FG_OK;
+}
+
+/* By its decimal text, so that 3 steps of 0.1 are 0.3 and not 0.30000000000000004. */
+double fg_round_to(double value, double step) {
+  char text[40];
+  if (!(step > 0)) return value;
+  snprintf(text, sizeof text, "%.12g", step * round(value / step));
+  return strtod(text, NULL);
 }
 
 fg_status fg_coding_from_data(fg_context *ctx, const fg_table *table, const char *name,

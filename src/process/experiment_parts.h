@@ -25,4 +25,13 @@ fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *op
 fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experiment,
                                   const char *text, fg_region *region);
 
+/* The expected response at a place of the surface; whether it lies on the region's border. */
+fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *experiment,
+                                   const double *x, fg_prediction *prediction);
+bool fg_experiment_on_border(const fg_region *region, const double *x);
+
+/* The best setting that can be made, where steps are given. */
+fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *options,
+                              fg_experiment *experiment);
+
 #endif

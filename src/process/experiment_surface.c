@@ -63,8 +63,8 @@ static fg_status make_region(fg_context *ctx, const fg_experiment_options *optio
                  "the constraints leave nothing of the region of the data: loosen one");
 }
 
-static fg_status predict_at(fg_context *ctx, const fg_experiment *e, const double *x,
-                            fg_prediction *prediction) {
+fg_status fg_experiment_predict_at(fg_context *ctx, const fg_experiment *e, const double *x,
+                                   fg_prediction *prediction) {
   double setting[FG_FORMULA_VARIABLES];
   memcpy(setting, e->best_setting, sizeof setting);
   for (size_t k = 0; k < e->surface.factors; k++)
@@ -73,7 +73,7 @@ static fg_status predict_at(fg_context *ctx, const fg_experiment *e, const doubl
 }
 
 /* On its sphere or box side or half-space: a little outwards it would be out. */
-static bool on_border(const fg_region *r, const double *x) {
+bool fg_experiment_on_border(const fg_region *r, const double *x) {
   double size = 0;
   for (size_t i = 0; i < r->factors; i++)
     size = fmax(size, r->high[i] - r->low[i]);
@@ -115,10 +115,10 @@ static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
     fg_prediction centre;
     memcpy(kept, e->best_setting, sizeof kept);
     memcpy(e->best_setting, levels, sizeof levels);
-    FG_TRY(predict_at(ctx, e, e->region.centre, &centre));
+    FG_TRY(fg_experiment_predict_at(ctx, e, e->region.centre, &centre));
     surface.constant += centre.mean - fg_surface_value(&surface, e->region.centre);
     FG_TRY(fg_surface_optimum_region(ctx, &surface, e->goal, e->target, &e->region, optimum.x));
-    FG_TRY(predict_at(ctx, e, optimum.x, &optimum.prediction));
+    FG_TRY(fg_experiment_predict_at(ctx, e, optimum.x, &optimum.prediction));
     if (cost_of(e, optimum.prediction.mean) < best) {
       best = cost_of(e, optimum.prediction.mean);
       e->surface = surface;
@@ -127,7 +127,7 @@ static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
       memcpy(e->best_setting, kept, sizeof kept);
     }
   } while (++tried < COMBINATIONS && next_levels(e, levels));
-  e->optimum.on_border = on_border(&e->region, e->optimum.x);
+  e->optimum.on_border = fg_experiment_on_border(&e->region, e->optimum.x);
   e->has_optimum = true;
   return FG_OK;
 }
@@ -151,7 +151,7 @@ static fg_status make_ridge(fg_context *ctx, fg_experiment *e) {
     point->radius = radii[i];
     memcpy(point->x, path + i * n, n * sizeof *path);
     point->inside = fg_region_contains(&e->region, point->x, BORDER * size);
-    FG_TRY(predict_at(ctx, e, point->x, &point->prediction));
+    FG_TRY(fg_experiment_predict_at(ctx, e, point->x, &point->prediction));
   }
   return FG_OK;
 }
@@ -159,7 +159,7 @@ static fg_status make_ridge(fg_context *ctx, fg_experiment *e) {
 static fg_status judge_stationary(fg_context *ctx, fg_experiment *e) {
   if (!e->surface.has_stationary) return FG_OK;
   e->stationary_inside = fg_region_contains(&e->region, e->surface.stationary, 1e-9);
-  FG_TRY(predict_at(ctx, e, e->surface.stationary, &e->stationary));
+  FG_TRY(fg_experiment_predict_at(ctx, e, e->surface.stationary, &e->stationary));
   e->surface.stationary_value = e->stationary.mean;
   return FG_OK;
 }
@@ -178,6 +178,7 @@ fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *op
   e->has_surface = true;
   FG_TRY(make_region(ctx, options, e));
   FG_TRY(find_optimum(ctx, e));
+  FG_TRY(fg_experiment_round(ctx, options, e));
   FG_TRY(judge_stationary(ctx, e));
   return make_ridge(ctx, e);
 }

@@ -260,9 +260,26 @@ static fg_status copy_factors(fg_context *ctx, const fg_plan_options *o, fg_plan
   for (size_t k = 0; k < o->factors; k++) {
     plan->low[k] = o->factor[k].low;
     plan->high[k] = o->factor[k].high;
+    plan->step[k] = o->factor[k].step;
     FG_TRY(fg_text_print(ctx, &plan->name[k], "%s", o->factor[k].name));
     plan->factors++;
   }
+  return FG_OK;
+}
+
+/* A step so coarse that two levels become one leaves another plan than was asked for. */
+static fg_status check_steps(fg_context *ctx, const fg_plan *plan) {
+  for (size_t k = 0; k < plan->factors; k++)
+    for (size_t i = 0; plan->step[k] > 0 && i < plan->runs; i++)
+      for (size_t j = i + 1; j < plan->runs; j++) {
+        double a = plan->run[i].coded[k], b = plan->run[j].coded[k];
+        if (fabs(a - b) < 1e-9 || fg_plan_setting(plan, i, k) != fg_plan_setting(plan, j, k))
+          continue;
+        return fg_fail(ctx, FG_ERR_USAGE,
+                       "%s: rounded to %g, its settings of %.4g and %.4g (coded) both become %g; "
+                       "take a finer step or a wider range",
+                       plan->name[k], plan->step[k], a, b, fg_plan_setting(plan, i, k));
+      }
   return FG_OK;
 }
 
@@ -278,6 +295,7 @@ fg_status fg_plan_make(fg_context *ctx, const fg_plan_options *options, fg_plan 
     FG_TRY_EXIT(add_corners(ctx, options, replicates, plan));
   if (options->kind == FG_PLAN_COMPOSITE) FG_TRY_EXIT(add_axial(ctx, options, replicates, plan));
   FG_TRY_EXIT(add_centres(ctx, options, plan));
+  FG_TRY_EXIT(check_steps(ctx, plan));
   FG_TRY_EXIT(shuffle(ctx, options, plan));
 exit:
   if (status != FG_OK) fg_plan_free(plan);
@@ -295,13 +313,17 @@ static fg_status add_counts(fg_context *ctx, const fg_plan *plan, const char *na
   return fg_table_add_numbers(ctx, table, name, values, plan->runs);
 }
 
+double fg_plan_setting(const fg_plan *plan, size_t run, size_t k) {
+  double centre = (plan->low[k] + plan->high[k]) / 2, half = (plan->high[k] - plan->low[k]) / 2;
+  double coded = plan->run[run].coded[k];
+  double value = coded == -1 ? plan->low[k] : coded == 1 ? plan->high[k] : centre + coded * half;
+  return fg_round_to(value, plan->step[k]);
+}
+
 static fg_status add_factor(fg_context *ctx, const fg_plan *plan, size_t k, double *values,
                             fg_table *table) {
-  double centre = (plan->low[k] + plan->high[k]) / 2, half = (plan->high[k] - plan->low[k]) / 2;
-  for (size_t i = 0; i < plan->runs; i++) {
-    double coded = plan->run[i].coded[k];
-    values[i] = coded == -1 ? plan->low[k] : coded == 1 ? plan->high[k] : centre + coded * half;
-  }
+  for (size_t i = 0; i < plan->runs; i++)
+    values[i] = fg_plan_setting(plan, i, k);
   return fg_table_add_numbers(ctx, table, plan->name[k], values, plan->runs);
 }
 

@@ -118,6 +118,14 @@ static const char plot_style[] =
     "ul.words code{padding:4px "
     "8px;background:#eef2f5;border-radius:6px;overflow-wrap:anywhere;user-select:all}"
     "tr.on td{font-weight:600}tr.total td{border-top:2px solid var(--line)}\n"
+    ".answer{border-left:6px solid var(--blue);background:#eef5fd;border-radius:0 8px 8px 0;"
+    "padding:12px 18px;margin:0 0 16px;break-inside:avoid}.answer h2{margin:0}.answer p{margin:6px "
+    "0;max-width:90ch}.answer .set{font-size:22px;font-weight:650;margin:4px 0}.answer "
+    "ul{margin:8px 0 0;padding-left:20px}.answer .doubt{font-size:inherit;margin:0}"
+    ".plot path.outside{fill:#fff;fill-opacity:.66}.plot path.edge{stroke:var(--ink);"
+    "stroke-width:1.8}"
+    "table.sheet td{height:34px;vertical-align:middle}table.sheet td.blank{border:1px solid "
+    "#9aa5b0;min-width:90px}tr.begins td{border-top:3px solid var(--ink)}"
     "@media(max-width:600px){.panels .plot{font-size:14px}}\n";
 
 /* Pages of lots. */

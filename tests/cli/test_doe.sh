@@ -123,13 +123,65 @@ expect 0 '6 runs' "${plan[@]}" -o "$out/runs.csv"
 [ "$(head -n 1 "$out/runs.csv")" = run,standard_order,point,T,D,scan ] || fail "heading of the sheet"
 [ "$(wc -l <"$out/runs.csv")" = 7 ] || fail "the sheet has not 6 runs"
 cp "$out/runs.csv" "$folder/runs.csv"
+valid plan.schema.json "$out/runs.plan.json"
 expect 0 '' "${plan[@]}"
 cmp -s "$folder/stdout" "$folder/runs.csv" || fail "one seed gives two sheets"
 expect 0 '' "${plan[@]}" --seed 2
 cmp -s "$folder/stdout" "$folder/runs.csv" && fail "two seeds give one sheet"
 expect 0 'whole plots' "${plan[@]}" --hard T
 head -n 1 "$folder/stdout" | grep -q whole_plot || fail "a hard factor makes no whole plots"
-only runs.csv
+only runs.csv runs.plan.json
+
+# Settings that the oven can be given; a page to print; the plan's limits and steps go with the sheet, not in it.
+oven=("$program" doe plan --factor T=500:600 --factor D=3:5 --kind composite --centre 3 --round T=5 --round D=0.25)
+expect 0 '' "${oven[@]}" -o "$out/runs.csv" --html "$out/runs.html"
+grep -q ',465,4,' "$out/runs.csv" && fail "an axial run of two factors at the distance of three"
+cut -d, -f4 "$out/runs.csv" | tail -n +2 | sort -u | tr '\n' ' ' | grep -qx '480 500 550 600 620 ' ||
+  fail "settings of T: $(cut -d, -f4 "$out/runs.csv" | sort -u | tr '\n' ' ')"
+grep -q 'multiples of 0.25' "$out/runs.html" || fail "the page does not say the steps"
+[ "$(grep -c '<td class="blank">' "$out/runs.html")" = 11 ] || fail "the page has not a line per run"
+expect 64 'both become' "$program" doe plan --factor T=500:600 --round T=500
+expect 64 'no factor of that name' "$program" doe plan --factor T=500:600 --round D=5
+expect 64 'STEP must be' "$program" doe plan --factor T=500:600 --round T=-5
+respond() { # respond FROM TO: the sheet with a response, as a spreadsheet writes it back: other quotes, other order
+  python3 - "$1" "$2" <<'P'
+import csv, sys
+rows = list(csv.DictReader(open(sys.argv[1])))
+for row in rows:
+    t, d = (float(row["T"]) - 563) / 50, float(row["D"]) - 4.3
+    row["y"] = 4 + t * t + d * d + 0.3 * t * d + 0.01 * (int(row["run"]) % 3)
+rows.sort(key=lambda row: float(row["T"]))
+writer = csv.DictWriter(open(sys.argv[2], "w"), rows[0], delimiter=";", quoting=csv.QUOTE_ALL)
+writer.writeheader()
+writer.writerows(rows)
+P
+}
+quadratic='T*D + T^2 + D^2'
+respond "$out/runs.csv" "$out/runs.csv"
+expect 0 '' "$program" doe "$out/runs.csv" --response y --model "$quadratic" -o "$out/a.json" --html "$out/a.html"
+valid doe.schema.json "$out/a.json"
+[ "$(value "$out/a.json" '[(f["low"], f["high"]) for f in r["factors"]]')" = '[(500, 600), (3, 5)]' ] ||
+  fail "the factors are not coded as planned"
+[ "$(value "$out/a.json" 'r["surface"]["rounded"]["real"]')" = '[565, 4.25]' ] || fail "the best setting is not rounded"
+[ "$(value "$out/a.json" '[r["plan"][-14:], r["plan_note"]]')" = "['runs.plan.json', None]" ] || fail "the plan is not named"
+grep -q 'class="set">T 565, D 4.25<' "$out/a.html" || fail "the page does not answer first"
+sed -i '2s/"T"/"T"/; s/"620"/"625"/' "$out/runs.csv"
+expect 0 '' "$program" doe "$out/runs.csv" --response y --model "$quadratic" -o "$out/a.json" --round T=20 --code D=2:6
+value "$out/a.json" 'r["plan_note"]' | grep -q '^1 runs were made at another setting' || fail "another setting is not told"
+[ "$(value "$out/a.json" '[r["factors"][1]["low"], r["surface"]["rounded"]["real"]]')" = '[2, [560, 4.25]]' ] ||
+  fail "options do not go before the plan"
+mv "$out/runs.csv" "$out/renamed.csv"
+expect 0 '' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json"
+value "$out/a.json" 'r["plan_note"]' | grep -q 'is not beside it' || fail "a plan that is lost is not told"
+[ "$(value "$out/a.json" 'r["surface"]["rounded"]')" = None ] || fail "steps of a plan that is lost"
+expect 0 '' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json" --plan "$out/runs.plan.json"
+[ "$(value "$out/a.json" 'r["factors"][0]["low"]')" = 500 ] || fail "--plan does not code the factors"
+expect 65 'is no plan' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json" --plan "$out/renamed.csv"
+echo '{"schema": "foilgauge/plan/1", "factors": [{"name": "T", "low": 6, "high": 5}], "settings": []}' >"$out/runs.plan.json"
+expect 65 'LOW must be below' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --plan "$out/runs.plan.json"
+expect 64 'no numeric factor' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --round E=5
+[ -e /dev/full ] && expect 74 '/dev/full' "${oven[@]}" --html /dev/full
+rm -rf "$out" && mkdir "$out"
 expect 64 'no factor of that name' "$program" doe plan --factor T=1:2 --hard D
 expect 64 'factor' "$program" doe plan
 expect 64 'LOW must be below' "$program" doe plan --factor T=2:1

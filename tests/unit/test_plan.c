@@ -11,9 +11,9 @@
 #include "foilgauge/plan.h"
 #include "foilgauge/regression.h"
 
-static const fg_plan_factor FIVE[] = {{"A", -1, 1, false}, {"B", -1, 1, false}, {"C", -1, 1, false},
-                                      {"D", -1, 1, false}, {"E", -1, 1, false}, {"F", -1, 1, false},
-                                      {"G", -1, 1, false}};
+static const fg_plan_factor FIVE[] = {{"A", -1, 1, false, 0}, {"B", -1, 1, false, 0}, {"C", -1, 1, false, 0},
+                                      {"D", -1, 1, false, 0}, {"E", -1, 1, false, 0}, {"F", -1, 1, false, 0},
+                                      {"G", -1, 1, false, 0}};
 
 static void make(const fg_plan_options *options, fg_plan *plan) {
   fg_context ctx = {0};
@@ -71,7 +71,7 @@ static void fractions_have_their_resolution(void **state) {
 
 /* Table 5.4 of the thesis: corners, axial points at 3, one centre point. */
 static void the_modified_composite_is_the_thesis_one(void **state) {
-  static const fg_plan_factor factors[] = {{"T", 500, 600, false}, {"D", 3, 5, false}};
+  static const fg_plan_factor factors[] = {{"T", 500, 600, false, 0}, {"D", 3, 5, false, 0}};
   static const double runs[9][2] = {{500, 3}, {600, 3}, {500, 5}, {600, 5}, {400, 4},
                                     {700, 4}, {550, 1}, {550, 7}, {550, 4}};
   fg_context ctx = {0};
@@ -209,7 +209,7 @@ static void the_order_is_fair(void **state) {
 /* Temperature is hard to change: each load holds one temperature, loads of one replicate each. */
 static void hard_factors_make_whole_plots(void **state) {
   static const fg_plan_factor factors[] = {
-      {"T", 500, 600, true}, {"D", 3, 5, false}, {"P", 300, 400, false}};
+      {"T", 500, 600, true, 0}, {"D", 3, 5, false, 0}, {"P", 300, 400, false, 0}};
   fg_plan plan;
   (void)state;
   make(&(fg_plan_options){.factor = factors, .factors = 3, .replicates = 3, .seed = 11}, &plan);
@@ -224,8 +224,8 @@ static void hard_factors_make_whole_plots(void **state) {
 }
 
 static void impossible_plans_are_refused(void **state) {
-  static const fg_plan_factor same[] = {{"A", 1, 1, false}};
-  static const fg_plan_factor twice[] = {{"A", 0, 1, false}, {"A", 0, 1, false}};
+  static const fg_plan_factor same[] = {{"A", 1, 1, false, 0}};
+  static const fg_plan_factor twice[] = {{"A", 0, 1, false, 0}, {"A", 0, 1, false, 0}};
   static const char *const unknown[] = {"D=A:X"}, *const no_equals[] = {"ABC"},
                            *const doubled[] = {"D=A:B", "D=A:C"},
                            *const alike[] = {"C=A:B", "D=A:B"},

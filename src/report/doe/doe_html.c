@@ -4,7 +4,9 @@
 
 #include "core/file.h"
 #include "foilgauge/words.h"
+#include "report/doe/doe_answer.h"
 #include "report/doe/doe_plots.h"
+#include "report/doe/doe_units.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/provenance.h"
@@ -56,19 +58,12 @@ static void put_tiles(FILE *out, const fg_experiment *e) {
   snprintf(small, sizeof small, "%zu for the error", r->residual_freedom);
   put_tile(out, "Runs", value, small);
   if (r->residual_freedom) {
-    snprintf(value, sizeof value, "%.3g", r->residual_sd);
+    fg_value_with_unit(e->response, r->residual_sd, 3, value, sizeof value);
     put_tile(out, "Scatter about the model", value, "standard deviation");
     snprintf(value, sizeof value, "%.1f %%", 100 * r->r2);
     snprintf(small, sizeof small, "adjusted %.1f %%, predicted %.1f %%", 100 * r->adjusted_r2,
              100 * r->predicted_r2);
     put_tile(out, "R²", value, small);
-  }
-  if (e->has_optimum) {
-    const fg_prediction *p = &e->optimum.prediction;
-    snprintf(value, sizeof value, "%.4g", p->mean);
-    snprintf(small, sizeof small, isfinite(p->low) ? "%.3g to %.3g" : "no interval", p->low,
-             p->high);
-    put_tile(out, "Expected at the best setting", value, small);
   }
   fputs("</dl>\n", out);
 }
@@ -163,8 +158,10 @@ static void put_runs(FILE *out, const fg_experiment_report *report) {
   const fg_regression *r = &e->regression;
   fputs("<h2>Runs</h2>\n<div class=\"scroll\"><table><thead><tr><th>row</th>", out);
   for (size_t k = 0; k < e->factors; k++) {
+    char words[300];
+    fg_axis_words(e->factor[k].name, words, sizeof words);
     fputs("<th>", out);
-    fg_html_text(out, e->factor[k].name);
+    fg_html_text(out, words);
     fputs("</th>", out);
   }
   fputs("<th>response</th><th>u</th><th>fitted</th><th>residual</th><th>studentised</th>"
@@ -209,6 +206,10 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_experiment_repor
               fg_factor_real(&e->factor[k], 1));
     else
       fputs(": real units. ", out);
+  }
+  if (report->plan_path) {
+    fputs("</dd><dt>Plan</dt><dd>", out);
+    fg_html_text(out, report->plan_path);
   }
   fprintf(out, "</dd><dt>Condition number</dt><dd>%.4g</dd>", e->regression.condition_number);
   if (e->has_box_cox)
@@ -256,8 +257,8 @@ static fg_status put_plots(fg_context *ctx, FILE *out, const fg_experiment_repor
   }
   if (e->has_optimum && e->surface.factors >= 2) {
     begin_panels(out, "Response surface",
-                 "Through the best setting (red). Circles: the runs. Pale: outside the region of "
-                 "the data or the constraints.");
+                 "Through the best setting (red diamond). Circles: the runs. Pale, behind the "
+                 "dark edge: outside the region of the data or the constraints.");
     fg_doe_plot_contours(out, e);
     end_panels(out);
   }
@@ -271,15 +272,23 @@ static fg_status put_plots(fg_context *ctx, FILE *out, const fg_experiment_repor
 static fg_status put_page(fg_context *ctx, FILE *out, const fg_experiment_report *report,
                           const fg_sentences *conclusions, const char *response) {
   const fg_experiment *e = report->experiment;
+  char words[300];
+  fg_axis_words(e->response, words, sizeof words);
   fg_html_begin(out, e->response);
-  fputs("<section>\n<header><h1>", out);
-  fg_html_text(out, e->response);
+  fputs("<section class=\"part\">\n<header><h1>", out);
+  fg_html_text(out, words);
   fputs("</h1><p>designed experiment: ", out);
   fg_html_text(out, e->formula);
   fputs("</p></header>\n", out);
-  put_list(out, "words", conclusions->text, conclusions->count);
+  fg_doe_put_answer(out, e, conclusions);
   put_tiles(out, e);
+  fg_doe_put_conclusions(out, conclusions);
   put_list(out, "flags", e->note, e->notes);
+  if (report->plan_note) {
+    fputs("<ul class=\"flags\"><li>", out);
+    fg_html_text(out, report->plan_note);
+    fputs("</li></ul>\n", out);
+  }
   FG_TRY(put_plots(ctx, out, report));
   put_anova(out, e);
   put_coefficients(out, e);

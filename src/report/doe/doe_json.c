@@ -279,6 +279,19 @@ static void put_optimum(fg_json *json, const fg_experiment *e) {
   fg_json_object_end(json);
 }
 
+/* The best setting that can be made. */
+static void put_rounded(fg_json *json, const fg_experiment *e) {
+  if (!fg_doe_json_begin_part(json, "rounded", e->has_rounded)) return;
+  fg_json_array(json, "steps");
+  for (size_t k = 0; k < e->surface.factors; k++)
+    fg_json_number(json, NULL, e->step[k] > 0 ? e->step[k] : NAN);
+  fg_json_array_end(json);
+  put_point(json, e, e->rounded.x);
+  fg_json_bool(json, "on_border", e->rounded.on_border);
+  put_prediction(json, &e->rounded.prediction);
+  fg_json_object_end(json);
+}
+
 static void put_ridge(fg_json *json, const fg_experiment *e) {
   fg_json_array(json, "ridge");
   for (size_t i = 0; i < FG_RIDGE_POINTS && e->ridge[FG_RIDGE_POINTS - 1].radius > 0; i++) {
@@ -295,7 +308,10 @@ static void put_ridge(fg_json *json, const fg_experiment *e) {
 static void put_surface(fg_json *json, const fg_experiment *e) {
   if (!fg_doe_json_begin_part(json, "surface", e->has_surface)) return;
   put_stationary(json, e);
-  if (e->has_optimum) put_optimum(json, e);
+  if (e->has_optimum) {
+    put_optimum(json, e);
+    put_rounded(json, e);
+  }
   put_ridge(json, e);
   fg_json_object_end(json);
 }
@@ -349,6 +365,8 @@ static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_
   fg_json_string(json, "formula", e->formula);
   fg_json_string(json, "block", e->block);
   fg_json_number(json, "confidence", e->confidence);
+  fg_json_string(json, "plan", report->plan_path);
+  fg_json_string(json, "plan_note", report->plan_note);
   put_texts(json, "conclusions", conclusions->text, conclusions->count);
   put_texts(json, "notes", e->note, e->notes);
   fg_doe_json_taken(json, e);

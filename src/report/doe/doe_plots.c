@@ -5,10 +5,25 @@
 #include <string.h>
 
 #include "report/doe/doe_axes.h"
+#include "report/doe/doe_units.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
 
 enum { LEVELS_SHOWN = 12, PAIRS_SHOWN = 6 };
+
+static void put_x_title(const fg_plot *at, const char *name) {
+  char words[300];
+  fg_axis_words(name, words, sizeof words);
+  fg_plot_x_title(at, words);
+}
+
+/* What of the response it is, in its unit: the name stands at the head of the page. */
+static void put_y_axis(const fg_plot *at, const fg_experiment *e, const char *what) {
+  const char *unit = fg_unit_of_name(e->response);
+  char words[80];
+  snprintf(words, sizeof words, "%s%s%s", what, *unit ? ", " : "", unit);
+  fg_plot_y_axis(at, words);
+}
 
 static double response_at(const fg_experiment *e, size_t run) {
   return e->regression.fitted[run] + e->regression.residual[run];
@@ -67,12 +82,14 @@ static void put_means(FILE *out, const fg_experiment *e, size_t variable, const 
     real[k] = factor ? fg_factor_real(factor, m->value[k]) : m->value[k];
     fg_range_add(x, real[k]);
   }
-  fg_plot at = fg_axes_begin(out, name, x, y);
-  fg_plot_y_axis(&at, "mean response");
+  char title[300];
+  fg_name_words(name, title, sizeof title);
+  fg_plot at = fg_axes_begin(out, title, x, y);
+  put_y_axis(&at, e, "mean");
   for (size_t k = 0; k < m->count && levels->count; k++)
     fg_plot_x_label(&at, fg_plot_x(&at, real[k]), levels->name[(size_t)m->value[k]]);
   if (!levels->count) fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, name);
+  put_x_title(&at, name);
   for (size_t k = 0; k + 1 < m->count; k++)
     fg_axes_line(&at, "s1", real[k], m->mean[k], real[k + 1], m->mean[k + 1]);
   for (size_t k = 0; k < m->count; k++)
@@ -132,18 +149,20 @@ static fg_status put_pair(fg_context *ctx, FILE *out, const fg_experiment *e, co
                           const fg_factor *b) {
   double y[2][CURVE + 1], range[2] = {INFINITY, -INFINITY};
   double x[2] = {fg_factor_real(a, a->lowest), fg_factor_real(a, a->highest)};
-  char title[600], text[300];
+  char title[600], text[600], name[300], other[300];
   FG_TRY(sample_pair(ctx, e, a, b, y));
   for (int i = 0; i <= CURVE; i++) {
     fg_range_add(range, y[0][i]);
     fg_range_add(range, y[1][i]);
   }
-  snprintf(title, sizeof title, "%.250s × %.250s", a->name, b->name);
+  fg_name_words(a->name, name, sizeof name);
+  fg_name_words(b->name, other, sizeof other);
+  snprintf(title, sizeof title, "%.250s × %.250s", name, other);
   fg_plot at = fg_axes_begin(out, title, x, range);
   at.top = 48; /* the legend stands above */
-  fg_plot_y_axis(&at, "response (model)");
+  put_y_axis(&at, e, "model");
   fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, a->name);
+  put_x_title(&at, a->name);
   for (int side = 0; side < 2; side++) {
     fprintf(out, "<path class=\"%s\" d=\"", side ? "s2" : "s1");
     for (int i = 0; i <= CURVE; i++)
@@ -152,8 +171,10 @@ static fg_status put_pair(fg_context *ctx, FILE *out, const fg_experiment *e, co
     fputs("\"/>\n", out);
     fg_axes_dot(&at, side ? "s2" : "s1", x[0], y[side][0], 5);
     fg_axes_dot(&at, side ? "s2" : "s1", x[1], y[side][CURVE], 5);
-    snprintf(text, sizeof text, "%.200s = %.5g", b->name,
-             fg_factor_real(b, side ? b->highest : b->lowest));
+    char value[80];
+    fg_value_with_unit(b->name, fg_factor_real(b, side ? b->highest : b->lowest), 5, value,
+                       sizeof value);
+    snprintf(text, sizeof text, "%.250s %s", other, value);
     fprintf(out,
             "<circle class=\"%s\" cx=\"%d\" cy=\"%d\" r=\"5\"/><text class=\"start\" x=\"%d\" "
             "y=\"%d\">",
@@ -181,7 +202,7 @@ static fg_status put_profile(fg_context *ctx, FILE *out, const fg_experiment *e,
   double x[2] = {fg_factor_real(f, f->lowest), fg_factor_real(f, f->highest)};
   size_t variables = e->model.formula.variables,
          step = e->regression.rows / FG_DOE_POINTS_SHOWN + 1;
-  char title[400];
+  char title[400], name[300];
   middle_setting(e, setting);
   for (int i = 0; i <= 2 * CURVE; i++) {
     set_column(e, f, f->lowest + (f->highest - f->lowest) * i / (2 * CURVE), setting);
@@ -195,11 +216,12 @@ static fg_status put_profile(fg_context *ctx, FILE *out, const fg_experiment *e,
     fg_range_add(y, fmax(p[i].low, lowest));
     fg_range_add(y, fmin(p[i].high, highest));
   }
-  snprintf(title, sizeof title, "Response along %.300s", f->name);
+  fg_name_words(f->name, name, sizeof name);
+  snprintf(title, sizeof title, "Response along %.300s", name);
   fg_plot at = fg_axes_begin(out, title, x, y);
-  fg_plot_y_axis(&at, "response");
+  put_y_axis(&at, e, "response");
   fg_plot_x_numbers(&at);
-  fg_plot_x_title(&at, f->name);
+  put_x_title(&at, f->name);
   double at_x[2 * CURVE + 1];
   for (int i = 0; i <= 2 * CURVE; i++)
     at_x[i] = fg_plot_x(&at, x[0] + (x[1] - x[0]) * i / (2 * CURVE));

@@ -146,6 +146,7 @@ fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report 
       put_wrapped(out, "* ", conclusions.text[i]);
   for (size_t i = 0; i < e->notes; i++)
     put_wrapped(out, "! ", e->note[i]);
+  if (report->plan_note) put_wrapped(out, "! ", report->plan_note);
   FG_TRY_EXIT(fg_stream_finish(ctx, out, "the table"));
 exit:
   fg_sentences_free(&conclusions);

@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
+#include "report/doe/doe_units.h"
 
 const char *fg_surface_kind_word(fg_surface_kind kind) {
   switch (kind) {
@@ -192,13 +193,19 @@ static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sen
       e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
 }
 
-static void setting_text(const fg_experiment *e, const double *x, char *text, size_t size) {
+void fg_experiment_setting_words(const fg_experiment *e, const double *x, bool plain, char *text,
+                                 size_t size) {
   text[0] = '\0';
   for (size_t k = 0; k < e->surface.factors; k++) {
     const fg_factor *factor = fg_surface_factor(e, k);
+    char name[300], value[80];
     size_t used = strlen(text);
-    fg_text_clip(text + used, size - used, "%s%s %.5g", k ? ", " : "", factor->name,
-                 fg_factor_real(factor, x[k]));
+    fg_text_clip(name, sizeof name, "%s", factor->name);
+    if (plain) fg_name_words(factor->name, name, sizeof name);
+    double real = fg_factor_real(factor, x[k]);
+    fg_text_clip(value, sizeof value, "%.5g", real);
+    if (plain) fg_value_with_unit(factor->name, real, 5, value, sizeof value);
+    fg_text_clip(text + used, size - used, "%s%s %s", k ? ", " : "", name, value);
   }
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     const fg_levels *levels = &e->model.levels[v];
@@ -211,29 +218,53 @@ static void setting_text(const fg_experiment *e, const double *x, char *text, si
 
 static fg_status say_stationary(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char setting[700];
-  setting_text(e, e->surface.stationary, setting, sizeof setting);
+  if (!e->has_optimum || !e->surface.has_stationary) return FG_OK;
+  fg_experiment_setting_words(e, e->surface.stationary, false, setting, sizeof setting);
   return fg_sentences_say(ctx, s, "The surface is stationary at %s: a %s of %.4g, %s the region.",
                           setting, fg_surface_kind_word(e->surface.kind),
                           e->surface.stationary_value, e->stationary_inside ? "inside" : "outside");
 }
 
+/* "Expected response 3.45 (95 % interval ...); one confirmation run should fall between ...". */
+static fg_status say_expected(fg_context *ctx, const fg_experiment *e, const char *what,
+                              const char *setting, const fg_prediction *p, fg_sentences *s) {
+  if (!isfinite(p->low))
+    return fg_sentences_say(ctx, s, "%s (%s): %s. Expected response %.4g.", what,
+                            fg_goal_word(e->goal), setting, p->mean);
+  return fg_sentences_say(
+      ctx, s,
+      "%s (%s): %s. Expected response %.4g (%g %% interval %.3g to %.3g); one confirmation run "
+      "should fall between %.3g and %.3g.",
+      what, fg_goal_word(e->goal), setting, p->mean, 100 * e->confidence, p->low, p->high,
+      p->run_low, p->run_high);
+}
+
+static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  char setting[700], what[700] = "Best setting that can be made, in steps of ";
+  const char *separator = "";
+  if (!e->has_rounded) return FG_OK;
+  for (size_t k = 0; k < e->surface.factors; k++) {
+    char step[80];
+    size_t used = strlen(what);
+    if (!(e->step[k] > 0)) continue;
+    fg_value_with_unit(fg_surface_factor(e, k)->name, e->step[k], 5, step, sizeof step);
+    fg_text_clip(what + used, sizeof what - used, "%s%s", separator, step);
+    separator = " and ";
+  }
+  fg_experiment_setting_words(e, e->rounded.x, false, setting, sizeof setting);
+  return say_expected(ctx, e, what, setting, &e->rounded.prediction, s);
+}
+
 static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char setting[700];
-  const fg_prediction *p = &e->optimum.prediction;
   if (!e->has_optimum) return FG_OK;
-  if (e->surface.has_stationary) FG_TRY(say_stationary(ctx, e, s));
-  setting_text(e, e->optimum.x, setting, sizeof setting);
-  if (isfinite(p->low))
-    FG_TRY(fg_sentences_say(
-        ctx, s,
-        "Best setting in the region of the data%s (%s): %s. Expected response %.4g (%g %% "
-        "interval %.3g to %.3g); one confirmation run should fall between %.3g and %.3g.",
-        e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting, p->mean,
-        100 * e->confidence, p->low, p->high, p->run_low, p->run_high));
-  else
-    FG_TRY(fg_sentences_say(
-        ctx, s, "Best setting in the region of the data%s (%s): %s. Expected response %.4g.",
-        e->constraints ? " and the constraints" : "", fg_goal_word(e->goal), setting, p->mean));
+  const fg_prediction *p = &e->optimum.prediction;
+  FG_TRY(say_rounded(ctx, e, s));
+  fg_experiment_setting_words(e, e->optimum.x, false, setting, sizeof setting);
+  FG_TRY(say_expected(ctx, e,
+                      e->constraints ? "Best setting in the region of the data and the constraints"
+                                     : "Best setting in the region of the data",
+                      setting, p, s));
   if (e->magnitude && isfinite(p->run_low) && p->run_low < 0)
     FG_TRY(fg_sentences_say(
         ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
@@ -257,12 +288,13 @@ fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report 
   *s = (fg_sentences){0};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_experiment_say_taken(ctx, report, s));
+  FG_TRY_EXIT(say_optimum(ctx, e, s));
   FG_TRY_EXIT(say_effects(ctx, e, s));
   FG_TRY_EXIT(say_quality(ctx, e, s));
   FG_TRY_EXIT(say_curvature(ctx, e, s));
   FG_TRY_EXIT(say_measurement(ctx, e, s));
   FG_TRY_EXIT(fg_experiment_say_order(ctx, report, s));
-  FG_TRY_EXIT(say_optimum(ctx, e, s));
+  FG_TRY_EXIT(say_stationary(ctx, e, s));
 exit:
   if (status != FG_OK) fg_sentences_free(s);
   return status;

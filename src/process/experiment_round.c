@@ -1,0 +1,82 @@
+/* The best setting that the machine can be given: a multiple of each factor's step. */
+#include <math.h>
+#include <string.h>
+
+#include "process/experiment_parts.h"
+
+/* Steps that are tried on each side of the optimum: next to a border the nearest may be outside. */
+enum { REACH = 2, SIDES = 2 * REACH, TRIED_MOST = 1 << 16 };
+
+static const fg_factor *factor_of(const fg_experiment *e, size_t k) {
+  for (size_t f = 0; f < e->factors; f++)
+    if (e->factor[f].variable == e->surface.variable[k]) return &e->factor[f];
+  return NULL;
+}
+
+static fg_status find_steps(fg_context *ctx, const fg_experiment_options *options,
+                            fg_experiment *e) {
+  for (size_t r = 0; r < options->rounds; r++) {
+    bool found = false;
+    for (size_t k = 0; k < e->surface.factors; k++) {
+      if (strcmp(factor_of(e, k)->name, options->round[r].name) != 0) continue;
+      e->step[k] = options->round[r].step;
+      found = e->has_rounded = true;
+    }
+    if (!found)
+      return fg_fail(ctx, FG_ERR_USAGE, "--round %s: this is no numeric factor of the model",
+                     options->round[r].name);
+  }
+  return FG_OK;
+}
+
+/* The i-th multiple of the step about x, of SIDES; in the model's units. */
+static double multiple(const fg_factor *factor, double step, double x, size_t i) {
+  double real = fg_factor_real(factor, x), low = fg_factor_real(factor, -1),
+         per_unit = (fg_factor_real(factor, 1) - low) / 2;
+  double set = fg_round_to(step * (floor(real / step) + (double)i - (REACH - 1)), step);
+  return x + (set - real) / per_unit;
+}
+
+/* Combination `number` of the multiples of all factors that have a step. */
+static void combine(const fg_experiment *e, size_t number, double *x) {
+  memcpy(x, e->optimum.x, sizeof e->optimum.x);
+  for (size_t k = 0; k < e->surface.factors; k++) {
+    if (!(e->step[k] > 0)) continue;
+    x[k] = multiple(factor_of(e, k), e->step[k], x[k], number % SIDES);
+    number /= SIDES;
+  }
+}
+
+static double cost_of(const fg_experiment *e, double value) {
+  if (e->goal == FG_GOAL_TARGET) return fabs(value - e->target);
+  return e->goal == FG_GOAL_HIGHEST ? -value : value;
+}
+
+static bool find_best(const fg_experiment *e, size_t tried, double *best) {
+  double least = INFINITY, x[FG_SURFACE_FACTORS];
+  for (size_t i = 0; i < tried; i++) {
+    combine(e, i, x);
+    double cost = cost_of(e, fg_surface_value(&e->surface, x));
+    if (!(cost < least) || !fg_region_contains(&e->region, x, 1e-9)) continue;
+    least = cost;
+    memcpy(best, x, sizeof x);
+  }
+  return isfinite(least);
+}
+
+fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *options,
+                              fg_experiment *e) {
+  size_t tried = 1;
+  FG_TRY(find_steps(ctx, options, e));
+  if (!e->has_rounded) return FG_OK;
+  for (size_t k = 0; k < e->surface.factors; k++)
+    if (e->step[k] > 0) tried = tried > TRIED_MOST / SIDES ? TRIED_MOST : tried * SIDES;
+  e->has_rounded = find_best(e, tried, e->rounded.x);
+  if (!e->has_rounded)
+    return fg_experiment_note(ctx, e,
+                              "no setting that can be made (--round) lies in the region near the "
+                              "best one: take finer steps");
+  FG_TRY(fg_experiment_predict_at(ctx, e, e->rounded.x, &e->rounded.prediction));
+  e->rounded.on_border = fg_experiment_on_border(&e->region, e->rounded.x);
+  return FG_OK;
+}

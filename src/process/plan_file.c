@@ -1,0 +1,165 @@
+/* What lies beside a run sheet: the limits and steps of its factors, and every planned setting. */
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/file.h"
+#include "core/json_writer.h"
+#include "core/memory.h"
+#include "core/text.h"
+#include "foilgauge/plan.h"
+
+enum { PLAN_BYTES_MAX = 1 << 26 };
+
+/* What a spreadsheet may lose of a number that it shows. */
+static const double same = 1e-6;
+
+static void write_factors(fg_json *json, const fg_plan *plan) {
+  fg_json_array(json, "factors");
+  for (size_t k = 0; k < plan->factors; k++) {
+    fg_json_object(json, NULL);
+    fg_json_line(json);
+    fg_json_string(json, "name", plan->name[k]);
+    fg_json_number(json, "low", plan->low[k]);
+    fg_json_number(json, "high", plan->high[k]);
+    fg_json_number(json, "step", plan->step[k] > 0 ? plan->step[k] : NAN);
+    fg_json_object_end(json);
+    fg_json_line_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+static const fg_plan_run *run_of(const fg_plan *plan, size_t standard, size_t *place) {
+  for (*place = 0; *place < plan->runs; (*place)++)
+    if (plan->run[*place].standard == standard) return &plan->run[*place];
+  return NULL;
+}
+
+fg_status fg_plan_write_json(fg_context *ctx, const fg_plan *plan, FILE *out) {
+  fg_json json;
+  fg_json_begin(&json, out);
+  fg_json_object(&json, NULL);
+  fg_json_head(&json, "foilgauge/plan/1");
+  fg_json_number(&json, "axial", plan->axial > 0 ? plan->axial : NAN);
+  write_factors(&json, plan);
+  fg_json_array(&json, "settings");
+  for (size_t standard = 1; standard <= plan->runs; standard++) {
+    double setting[FG_PLAN_FACTORS] = {0};
+    size_t run;
+    if (run_of(plan, standard, &run))
+      for (size_t k = 0; k < plan->factors; k++)
+        setting[k] = fg_plan_setting(plan, run, k);
+    fg_json_numbers(&json, NULL, setting, plan->factors);
+  }
+  fg_json_array_end(&json);
+  fg_json_object_end(&json);
+  fg_json_end(&json);
+  return fg_stream_finish(ctx, out, "the plan");
+}
+
+fg_status fg_plan_beside(fg_context *ctx, const char *sheet, char **path) {
+  size_t length = strlen(sheet);
+  bool csv = length > 4 && !strcmp(sheet + length - 4, ".csv");
+  return fg_text_print(ctx, path, "%.*s.plan.json", (int)(csv ? length - 4 : length), sheet);
+}
+
+static fg_status read_factor(fg_context *ctx, const char *path, const cJSON *one,
+                             fg_plan_limits *limits) {
+  const cJSON *name = cJSON_GetObjectItemCaseSensitive(one, "name"),
+              *low = cJSON_GetObjectItemCaseSensitive(one, "low"),
+              *high = cJSON_GetObjectItemCaseSensitive(one, "high"),
+              *step = cJSON_GetObjectItemCaseSensitive(one, "step");
+  char text[400];
+  size_t k = limits->factors;
+  if (!cJSON_IsString(name) || !cJSON_IsNumber(low) || !cJSON_IsNumber(high))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: factors[%zu] has no name, low and high", path, k);
+  fg_text_clip(text, sizeof text, "%.250s=%.15g:%.15g", name->valuestring, low->valuedouble,
+               high->valuedouble);
+  fg_context words = {0};
+  if (fg_coding_parse(&words, text, &limits->coding[k]) != FG_OK)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: factors[%zu]: %s", path, k, words.message);
+  limits->step[k] = cJSON_IsNumber(step) && step->valuedouble > 0 ? step->valuedouble : 0;
+  limits->factors++;
+  return FG_OK;
+}
+
+static fg_status read_settings(fg_context *ctx, const char *path, const cJSON *settings,
+                               fg_plan_limits *limits) {
+  const cJSON *one, *number;
+  size_t runs = (size_t)cJSON_GetArraySize(settings);
+  void *block;
+  FG_TRY(fg_memory_allocate(ctx, runs * limits->factors + 1, sizeof(double), &block));
+  limits->setting = block;
+  cJSON_ArrayForEach(one, settings) {
+    size_t k = 0;
+    cJSON_ArrayForEach(number, one) {
+      if (k < limits->factors && cJSON_IsNumber(number))
+        limits->setting[limits->runs * limits->factors + k] = number->valuedouble;
+      k++;
+    }
+    if (k != limits->factors)
+      return fg_fail(ctx, FG_ERR_DATA, "%s: settings[%zu] has %zu numbers for %zu factors", path,
+                     limits->runs, k, limits->factors);
+    limits->runs++;
+  }
+  return FG_OK;
+}
+
+static fg_status read_plan(fg_context *ctx, const char *path, const cJSON *root,
+                           fg_plan_limits *limits) {
+  const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema"),
+              *factors = cJSON_GetObjectItemCaseSensitive(root, "factors"), *one;
+  if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/plan/1") != 0)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: is no plan: schema is not \"foilgauge/plan/1\"", path);
+  if (!cJSON_IsArray(factors) || !cJSON_GetArraySize(factors) ||
+      cJSON_GetArraySize(factors) > FG_PLAN_FACTORS)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: factors must be 1 to %d", path, FG_PLAN_FACTORS);
+  cJSON_ArrayForEach(one, factors) FG_TRY(read_factor(ctx, path, one, limits));
+  return read_settings(ctx, path, cJSON_GetObjectItemCaseSensitive(root, "settings"), limits);
+}
+
+fg_status fg_plan_limits_load(fg_context *ctx, const char *path, fg_plan_limits *limits) {
+  char *text = NULL;
+  *limits = (fg_plan_limits){0};
+  FG_TRY(fg_file_read_text(ctx, path, PLAN_BYTES_MAX, &text));
+  cJSON *root = cJSON_Parse(text);
+  free(text);
+  fg_status status = root ? read_plan(ctx, path, root, limits)
+                          : fg_fail(ctx, FG_ERR_DATA, "%s: is no plan: it is no JSON", path);
+  cJSON_Delete(root);
+  if (status != FG_OK) fg_plan_limits_free(limits);
+  return status;
+}
+
+void fg_plan_limits_free(fg_plan_limits *limits) {
+  free(limits->setting);
+  *limits = (fg_plan_limits){0};
+}
+
+static bool differs(const fg_plan_limits *limits, const fg_extended *const *column, size_t row,
+                    double standard) {
+  if (!(standard >= 1 && standard <= (double)limits->runs)) return true;
+  const double *setting = limits->setting + ((size_t)standard - 1) * limits->factors;
+  for (size_t k = 0; k < limits->factors; k++) {
+    double size = limits->coding[k].high.value - limits->coding[k].low.value;
+    if (column[k] && fabs(column[k][row].value - setting[k]) > same * size) return true;
+  }
+  return false;
+}
+
+size_t fg_plan_limits_differ(const fg_plan_limits *limits, const fg_table *table, size_t *first) {
+  const fg_extended *column[FG_PLAN_FACTORS] = {NULL}, *standard;
+  fg_context unused;
+  size_t count = 0;
+  if (fg_table_numbers(&unused, table, "standard_order", &standard) != FG_OK) return 0;
+  for (size_t k = 0; k < limits->factors; k++)
+    if (fg_table_numbers(&unused, table, limits->coding[k].name, &column[k]) != FG_OK)
+      column[k] = NULL;
+  for (size_t i = 0; i < table->rows; i++) {
+    if (!differs(limits, column, i, standard[i].value)) continue;
+    if (!count) *first = i + 1;
+    count++;
+  }
+  return count;
+}
