@@ -138,6 +138,21 @@ static fg_status judge_all(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
+bool fg_lot_foil_is_good(const fg_lot_foil *foil) {
+  return foil->verdict == FG_VERDICT_PASS || foil->verdict == FG_VERDICT_NONE;
+}
+
+/* A page of 100,000 rows helps nobody. */
+static void choose_rows(fg_lot_analysis *analysis) {
+  size_t rows = 0;
+  for (int good = 0; good < 2; good++)
+    for (size_t i = 0; i < analysis->foil_count && rows < FG_LOT_FOIL_ROWS_MAX; i++)
+      if (fg_lot_foil_is_good(&analysis->foils[i]) == (good == 1)) {
+        analysis->foils[i].row = true;
+        rows++;
+      }
+}
+
 static void count_bumps(fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->foil_count; i++)
     for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
@@ -151,6 +166,7 @@ static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
   FG_TRY(list_foils(ctx, analysis));
   count_bumps(analysis);
   FG_TRY(judge_all(ctx, analysis));
+  choose_rows(analysis);
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));
   FG_TRY(fg_lot_analyse_causes(ctx, analysis));
   bool bumps = fg_form_has_bumps(analysis->lot->settings.design.form);

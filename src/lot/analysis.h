@@ -17,6 +17,7 @@ typedef struct fg_lot_foil {
   const fg_foil *foil; /* of its record */
   fg_verdict verdict;  /* fg_foil_decide's */
   bool exceeded;       /* a value fails */
+  bool row;            /* the page's list has a line of it */
   double severity;     /* the farthest value: 1 at its limit; without tolerances in sd of the lot */
   int worst_number;    /* its bump; 0: the whole foil */
   const fg_quantity *worst_row;
@@ -221,6 +222,7 @@ typedef struct fg_lot_process {
 
 typedef struct fg_lot_analysis {
   const fg_lot *lot;
+  const char *folder; /* that the report is written to, from which links lead; NULL: not known */
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
   size_t bumps, crushed; /* of measured foils; crushed ones are in no statistics */
@@ -271,6 +273,8 @@ fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, s
 /* What the arch model leaves out of this lot's form; NULL: nothing. */
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);
 
+bool fg_lot_foil_is_good(const fg_lot_foil *foil);
+
 /* NULL when the lot has none of it. */
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name);
 
@@ -283,6 +287,9 @@ extern const char *const fg_lot_charted[];
 
 /* What the scanner's model did to the foils, the largest of each; NaN: there is none. */
 fg_correction fg_lot_correction_largest(const fg_lot_analysis *analysis);
+
+/* Foils whose lines the page has: those that do not pass, then others, so many at most. */
+enum { FG_LOT_FOIL_ROWS_MAX = 300 };
 
 /* Parts of the analysis, each in its own file. */
 fg_status fg_lot_analyse_quantities(fg_context *ctx, fg_lot_analysis *analysis);

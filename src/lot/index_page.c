@@ -6,6 +6,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "lot/index.h"
+#include "lot/page_parts.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/provenance.h"
 
@@ -14,15 +15,6 @@ enum {
   LOTS_SPREAD_MIN = 3, /* of two, the pair says it all */
   VALUE = 96,
 };
-
-static void put_path(FILE *out, const char *path) {
-  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./~";
-  for (; *path; path++)
-    if (strchr(plain, *path))
-      fputc(*path, out);
-    else
-      fprintf(out, "%%%02X", (unsigned)(unsigned char)*path);
-}
 
 /* A folder as seen from the page's: both as given, so a lot beside or below the page keeps its
  * link when all is moved together. */
@@ -77,7 +69,7 @@ static fg_status put_lot_row(fg_context *ctx, FILE *out, const fg_index *index,
                            lot->by_verdict[FG_VERDICT_NOT_MEASURED] + lot->failed_scans};
   FG_TRY(fg_index_die_names(ctx, index, lot, &dies));
   fprintf(out, "<tr><td>%zu</td><td class=\"words\"><a href=\"", fg_index_number(index, lot));
-  put_path(out, seen_from(page, lot->folder));
+  fg_lot_put_href(out, seen_from(page, lot->folder));
   fputs("/index.html\">", out);
   fg_html_text(out, lot->name);
   fputs("</a><i>", out);

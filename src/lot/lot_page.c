@@ -10,8 +10,6 @@
 #include "report/measure/scan_model_words.h"
 #include "report/provenance.h"
 
-enum { FOIL_ROWS_MAX = 300 };
-
 /* What the model does not know well enough to correct. */
 static void put_left(FILE *out, const fg_lot_analysis *analysis) {
   static const struct {
@@ -71,7 +69,7 @@ static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->failed_scans) return;
   fprintf(out, "<section class=\"part\">\n<h1>Scans that could not be measured: %zu</h1>\n<ul>\n",
           analysis->failed_scans);
-  for (size_t i = 0; i < analysis->lot->manifest.items && told < FOIL_ROWS_MAX; i++) {
+  for (size_t i = 0; i < analysis->lot->manifest.items && told < FG_LOT_FOIL_ROWS_MAX; i++) {
     if (!analysis->lot->records[i].error) continue;
     told++;
     fputs("<li>", out);
@@ -84,8 +82,11 @@ static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  fputs("<tr><td class=\"words path\">", out);
+  fprintf(out, "<tr id=\"foil-%zu\"><td class=\"words path\">",
+          (size_t)(foil - analysis->foils) + 1);
   fg_lot_put_label(out, analysis, foil);
+  fputs("</td><td class=\"words path\">", out);
+  fg_lot_put_scan(out, analysis, foil->item);
   fputs("</td>", out);
   fg_lot_put_verdict(out, foil->verdict);
   fprintf(out, "<td>%zu</td><td>", foil->foil->bump_count);
@@ -97,20 +98,18 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   fputs("</tr>\n", out);
 }
 
-/* Those that do not pass first; a page of 100,000 rows helps nobody. */
+/* Those that do not pass first. */
 static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
-  fputs("<section class=\"part\">\n<h1>Foils</h1>\n<div "
-        "class=\"scroll\"><table><thead><tr><th>foil</th><th>"
-        "verdict</th><th>bumps</th><th>R0<br>mm</th><th class=\"w\">what is farthest, or why "
-        "not</th><th>value ± U</th><th>nearest<br>limit</th><th>margin</th></tr></thead>\n"
-        "<tbody>\n",
+  fputs("<section class=\"part\">\n<h1>Foils</h1>\n<div class=\"scroll lots\"><table><thead><tr>"
+        "<th>foil</th><th class=\"w\">scan</th><th>verdict</th><th>bumps</th><th>R0<br>mm</th>"
+        "<th class=\"w\">what is farthest, or why not</th><th>value ± U</th><th>nearest<br>limit"
+        "</th><th>margin</th></tr></thead>\n<tbody>\n",
         out);
-  for (int pass = 0; pass < 2; pass++)
-    for (size_t i = 0; i < analysis->foil_count && rows < FOIL_ROWS_MAX; i++) {
+  for (int good = 0; good < 2; good++)
+    for (size_t i = 0; i < analysis->foil_count; i++) {
       const fg_lot_foil *foil = &analysis->foils[i];
-      bool good = foil->verdict == FG_VERDICT_PASS || foil->verdict == FG_VERDICT_NONE;
-      if (good != (pass == 1)) continue;
+      if (!foil->row || fg_lot_foil_is_good(foil) != (good == 1)) continue;
       put_foil_row(out, analysis, foil);
       rows++;
     }
@@ -119,7 +118,11 @@ static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
     fprintf(out,
             "<p class=\"note\">%zu of %zu, those that do not pass first; all: foils.csv.</p>\n",
             rows, analysis->foil_count);
-  fputs("</section>\n", out);
+  fputs(
+      "<p class=\"note\">A scan&#39;s name leads to the scan. Its picture with circles, residuals "
+      "and every value of its foils: <code>foilgauge measure SCAN --design … --html PAGE.html"
+      "</code>.</p>\n</section>\n",
+      out);
 }
 
 static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {

@@ -49,7 +49,7 @@ static void put_bearing_row(FILE *out, const fg_lot_analysis *analysis,
   for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
     if (pad) fputs(", ", out);
     if (bearing->pad[pad])
-      fg_lot_put_label(out, analysis, bearing->pad[pad]);
+      fg_lot_put_foil_link(out, analysis, bearing->pad[pad]);
     else
       fputs("–", out);
   }

@@ -205,11 +205,6 @@ void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
   fprintf(out, " %s %s</td>", row->unit, foil->worst_margin < 0 ? "beyond" : "within");
 }
 
-static const char *base_name(const char *path) {
-  const char *slash = strrchr(path, '/');
-  return slash && slash[1] ? slash + 1 : path;
-}
-
 void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot *lot = analysis->lot;
   size_t die = fg_manifest_column(&lot->manifest, lot->settings.die_column);
@@ -222,9 +217,9 @@ void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis) {
   for (int i = 0; i < 3 && analysis->worst[i]; i++) {
     const fg_lot_foil *foil = analysis->worst[i];
     fputs("<tr><td class=\"words path\"><b>", out);
-    fg_lot_put_label(out, analysis, foil);
+    fg_lot_put_foil_link(out, analysis, foil);
     fputs("</b></td><td class=\"words path\">", out);
-    fg_html_text(out, base_name(fg_manifest_scan(&lot->manifest, foil->item)));
+    fg_lot_put_scan(out, analysis, foil->item);
     fputs("</td>", out);
     if (die != FG_NO_COLUMN) {
       fputs("<td>", out);

@@ -48,6 +48,7 @@ fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot 
                               fg_lot_outcome *outcome) {
   fg_lot_analysis analysis;
   FG_TRY(fg_lot_analyse(ctx, lot, &analysis));
+  analysis.folder = folder;
   fg_status status = FG_OK;
   for (size_t i = 0; i < sizeof files / sizeof files[0] && status == FG_OK; i++)
     status = write_file(ctx, folder, i, &analysis);

@@ -1,6 +1,7 @@
 #include "lot/page_parts.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "report/measure/measure_page_parts.h"
@@ -33,6 +34,48 @@ void fg_lot_put_verdict(FILE *out, fg_verdict verdict) {
           : verdict == FG_VERDICT_NOT_MEASURED ? "not measured"
           : verdict == FG_VERDICT_NONE         ? "–"
                                                : fg_verdict_word(verdict));
+}
+
+void fg_lot_put_href(FILE *out, const char *path) {
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./~";
+  for (; *path; path++)
+    if (strchr(plain, *path))
+      fputc(*path, out);
+    else
+      fprintf(out, "%%%02X", (unsigned)(unsigned char)*path);
+}
+
+/* The way from one folder to a file, both as the system knows them: "../scans/1.png". */
+static void put_way(FILE *out, const char *folder, const char *file) {
+  size_t same = 0; /* behind the last slash that both have */
+  for (size_t i = 0; folder[i] && folder[i] == file[i]; i++)
+    if (file[i] == '/') same = i + 1;
+  size_t length = strlen(folder);
+  if (!strncmp(folder, file, length) && file[length] == '/') same = length + 1;
+  for (size_t i = same; i < length; i++)
+    if (i == same || folder[i] == '/') fputs("../", out);
+  fg_lot_put_href(out, file + same);
+}
+
+void fg_lot_put_scan(FILE *out, const fg_lot_analysis *analysis, size_t item) {
+  const char *scan = fg_manifest_scan(&analysis->lot->manifest, item), *slash = strrchr(scan, '/');
+  char *folder = analysis->folder ? realpath(analysis->folder, NULL) : NULL;
+  char *file = folder ? realpath(scan, NULL) : NULL;
+  if (file) {
+    fputs("<a href=\"", out);
+    put_way(out, folder, file);
+    fputs("\">", out);
+  }
+  fg_html_text(out, slash && slash[1] ? slash + 1 : scan);
+  if (file) fputs("</a>", out);
+  free(file);
+  free(folder);
+}
+
+void fg_lot_put_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  if (foil->row) fprintf(out, "<a href=\"#foil-%zu\">", (size_t)(foil - analysis->foils) + 1);
+  fg_lot_put_label(out, analysis, foil);
+  if (foil->row) fputs("</a>", out);
 }
 
 void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {

@@ -30,6 +30,15 @@ void fg_lot_put_counts(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_leading(FILE *out, const fg_lot_analysis *analysis);
 
+/* A path as a link has it. */
+void fg_lot_put_href(FILE *out, const char *path);
+
+/* A scan's name, which leads to the scan where it is still there. */
+void fg_lot_put_scan(FILE *out, const fg_lot_analysis *analysis, size_t item);
+
+/* What people call a foil, which leads to its line of the page's list. */
+void fg_lot_put_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
+
 /* What people call a foil. */
 void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
 

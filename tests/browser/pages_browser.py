@@ -38,7 +38,7 @@ PICTURE_DPI = 25  # of a printed page that is searched for ink
 SLACK_PX = 1.5
 CODES = (0, 1, 2, 3)  # a page is written whatever the verdict
 
-Page = namedtuple("Page", "name command file", defaults=(None,))
+Page = namedtuple("Page", "name command file needs", defaults=(None, ()))
 
 SCANNER = {"dpi": 2400, "background": 30, "contrast": 175, "blur_px": 1.3, "noise": 1.2}
 FOIL = {"overall_radius_mm": 20.95, "radius_mm": [3.34, 3.41, 3.36, 3.44, 3.38, 3.35, 3.42, 3.37, 3.40]}
@@ -68,8 +68,24 @@ PLACED = dict(FOIL, centre_mm=[20, 22])
 WAVE = "run,x,y\n" + "".join(f"{i},{i // 2 / 16:.4f},{math.sin(7 * (i // 2 / 16) ** 2) + 0.05 * ((i * 7919) % 13 - 6) / 6:.5f}\n"
                              for i in range(64))
 
+# A lot: two dies in turn, a foil of a wide bump, one that lacks a bump, one with a crushed bump.
+LOT_ODD = {4: {"radius_mm": [3.34, 3.41, 3.52, 3.44, 3.38, 3.35, 3.42, 3.37, 3.40]}, 9: {"missing": [3]},
+           14: {"crushed": [{"bump": 6, "height_factor": 0.5}]}}
+LOT = {f"lot_{i}.png": scan(20 + i, -90, dpi=1200, foil=dict(
+    {"overall_radius_mm": 20.9, "radius_springback": {"mean": 0.03 if i % 2 else 0.015, "sd": 0.004}}, **LOT_ODD.get(i, {})))
+    for i in range(18)}
+
+# Runs of a second-degree surface, and of oven loads.
+SURFACE = "run,temperature_C,duration_h,springback_error_pct\n" + "".join(
+    f"{n},{500 + 50 * i},{3 + k},{4 + (i - 1.2) ** 2 + 0.8 * (k - 1.1) ** 2 + 0.03 * ((n * 7) % 5):.3f}\n"
+    for n, (i, k) in enumerate(((i, k) for i in range(3) for k in range(3)), 1))
+SPLIT = "load,temperature_C,duration_h,springback_error_pct\n" + "".join(
+    f"{load},{500 + 100 * (load % 2)},{3 + 2 * (n % 2)},{9 - 3 * (load % 2) - 0.5 * (n % 2) + 0.2 * (load % 3) + 0.05 * n:.2f}\n"
+    for load in range(1, 7) for n in range(4))
+
 # What `render` draws: the scan's name is that of its file.
 SCANS = {
+    **LOT,
     "good.png": scan(1, -70), "bad.png": scan(2, -80, foil=BAD), "next.png": scan(5, -100),
     "crushed.png": scan(3, -85, foil=dict(FOIL, crushed=[{"bump": 4, "height_factor": 0.5}])),
     "missing.png": scan(4, -85, foil=dict(FOIL, missing=[3])),
@@ -102,6 +118,15 @@ FILES = {
     "line_width.csv": "tests/data/measured/line_width.csv", "pipeline.csv": "tests/data/measured/pipeline_defects.csv",
     "check.csv": "tests/data/measured/check_standard.csv",
     "wave.csv": WAVE,
+    "lot_list.csv": "scan,foil,die,bearing,pad\n" + "".join(
+        f"lot_{i}.png,F{i:03d},{'AB'[i % 2]},J{i // 3 + 1},{i % 3 + 1}\n" for i in range(18)) + "text.png,F099,A,,\n",
+    "text.png": "no scan\nbut a text\n",
+    "recipe.json": {"schema": "foilgauge/recipe/1", "name": "Lot 2026-17, two dies", "resamples": 2000,
+                    "group_column": "die", "assembly": {"bearings": 200, "seed": 1},
+                    "design": {"schema": "foilgauge/design/1", "name": "Gen II", "tolerances": dict(
+                        LIMITS, radius_mm={"min": 3.3, "max": 3.45}, circularity_mm={"max": 0.1})}},
+    "plain.json": {"schema": "foilgauge/recipe/1", "name": "Lot without tolerances", "resamples": 2000},
+    "surface.csv": SURFACE, "split.csv": SPLIT,
 }
 
 # The page is NAME.html, unless its file says else; a word that is a row of SCANS or FILES is made first.
@@ -132,6 +157,17 @@ PAGES = [
     Page("die", "die concave_1.txt concave_2.txt convex_1.txt convex_2.txt"),
     Page("die_limits", "die concave_1.txt concave_2.txt convex_1.txt convex_2.txt --design die.json"),
     Page("design", "design limits.json"),
+    Page("lot", "lot lot_list.csv --recipe recipe.json -o lot", "lot/index.html", tuple(LOT) + ("text.png",)),
+    Page("lot_plain", "lot lot_0.png lot_1.png lot_2.png lot_3.png --recipe plain.json -o plain", "plain/index.html"),
+    Page("lot_index", "lot --index lots.html lot plain", "lots.html"),
+    Page("doe_screening", "doe factorial.csv --response springback_error_pct --model pressure_bar*temperature_C*duration_h"),
+    Page("doe_composite", "doe composite.csv --response springback_error_pct "
+         "--model 'temperature_C*duration_h + temperature_C^2 + duration_h^2'"),
+    Page("doe_surface", "doe surface.csv --response springback_error_pct "
+         "--model 'temperature_C*duration_h + temperature_C^2 + duration_h^2' --round temperature_C=5 --round duration_h=0.25"),
+    Page("doe_split", "doe split.csv --response springback_error_pct --model temperature_C*duration_h --whole-plot load"),
+    Page("doe_sheet", "doe plan --factor temperature_C=500:600 --factor duration_h=3:5 --factor pressure_bar=2:6 "
+         "--kind composite --centre 3 --round temperature_C=5 --round duration_h=0.25 --round pressure_bar=0.1"),
 ]
 
 
@@ -166,7 +202,7 @@ class Work:
     def write(self, page):
         """The page's file, written by the program."""
         words = shlex.split(page.command)
-        for word in words:
+        for word in [*words, *page.needs]:
             if word in SCANS or word in FILES:
                 self.make(word)
         file = self.path(page.file or page.name + ".html")
