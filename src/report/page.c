@@ -148,7 +148,10 @@ static const char lot_style[] =
     "gap:12px 18px}.bearings .plot{font-size:22px}.bearings figcaption{text-align:center}"
     "section.part h1~h2{break-after:avoid}\n"
     /* Sections follow each other on paper; what belongs together stays together. */
-    "@media print{section.part{break-after:auto;padding:0 0 10mm;margin:0;border-radius:0}"
+    "@media print{section.part th,section.part td{white-space:normal}section.part "
+    "td.words:not(:empty){min-width:0}table.sheet "
+    "td.blank{min-width:60px}section.part{break-after:auto;padding:0 0 "
+    "10mm;margin:0;border-radius:0}"
     "h1,h2,h3,header,h1+.note,h2+.note{break-after:avoid}.tiles,.reasons,ul.flags{break-inside:"
     "avoid}tr{break-inside:avoid}thead{display:table-header-group}tbody tr:nth-child(-n+2),tbody "
     "tr:nth-last-child(2){break-after:avoid}.bearings{grid-template-columns:"
