@@ -148,7 +148,8 @@ static const char lot_style[] =
     "gap:12px 18px}.bearings .plot{font-size:22px}.bearings figcaption{text-align:center}"
     "section.part h1~h2{break-after:avoid}\n"
     /* Sections follow each other on paper; what belongs together stays together. */
-    "@media print{section.part th,section.part td{white-space:normal}section.part "
+    "@media print{.lots .verdict{font-size:9pt;padding:2px 6px;white-space:normal}section.part "
+    "th,section.part td{white-space:normal}section.part "
     ":not(.lots)>table td "
     "i{white-space:nowrap}section.part "
     "td.words:not(:empty){min-width:0}table.sheet "
