@@ -105,7 +105,8 @@ static void put_process(FILE *out, const fg_lot_process *process) {
 /* "The signals of bump radius come from the column die: ... each by itself shows none." */
 static void put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
-  fprintf(out, "<li>%zu signals of the %s", quantity->chart.signals, quantity->row->words);
+  fprintf(out, "<li>%zu signal%s of the %s", quantity->chart.signals,
+          quantity->chart.signals == 1 ? "" : "s", quantity->row->words);
   if (cause->column == FG_NO_COLUMN) {
     fputs(": no group of foils explains them.</li>\n", out);
     return;
@@ -130,7 +131,8 @@ void fg_lot_put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_q
     separator = g + 2 == cause->groups ? " and " : ", ";
   }
   if (cause->signals_left)
-    fprintf(out, "; with all groups moved to one mean %zu signals are left.", cause->signals_left);
+    fprintf(out, "; with all groups moved to one mean %zu of them %s left.", cause->signals_left,
+            cause->signals_left == 1 ? "is" : "are");
   else
     fputs("; with all groups moved to one mean no signal is left.", out);
 }
@@ -143,8 +145,9 @@ static void put_causes(FILE *out, const fg_lot_analysis *analysis) {
     if (!fg_lot_is_watched(analysis, quantity) || quantity->stable) continue;
     if (quantity->chart.signals) put_cause(out, analysis, quantity);
     if (quantity->has_subgroups && quantity->deviations.signals)
-      fprintf(out, "<li>%zu signals of the spread of the %s within foils.</li>\n",
-              quantity->deviations.signals, quantity->row->words);
+      fprintf(out, "<li>%zu signal%s of the spread of the %s within foils.</li>\n",
+              quantity->deviations.signals, quantity->deviations.signals == 1 ? "" : "s",
+              quantity->row->words);
   }
   fputs("</ul>\n", out);
 }

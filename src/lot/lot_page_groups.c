@@ -12,20 +12,21 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->difference_count) return;
   fputs("<section class=\"part\">\n<h1>Groups: ", out);
   fg_html_text(out, analysis->lot->settings.group_column);
-  fputs("</h1>\n<div class=\"scroll\"><table><thead><tr><th>quantity</th><th>groups</th><th>means"
+  fputs("</h1>\n<div class=\"scroll "
+        "lots\"><table><thead><tr><th>quantity</th><th>groups</th><th>means"
         "</th><th>difference</th><th>p (Welch)</th><th>s</th><th>p (F)</th><th>p (Levene)</th></tr>"
         "</thead>\n<tbody>\n",
         out);
   for (size_t i = 0; i < analysis->difference_count; i++) {
     const fg_lot_difference *one = &analysis->differences[i];
-    fprintf(out, "<tr><td>%s</td><td class=\"words\">", one->quantity->row->words);
+    fprintf(out, "<tr><td class=\"words\">%s</td><td class=\"words\">", one->quantity->row->words);
     fg_html_text(out, one->a);
     fputs(" against ", out);
     fg_html_text(out, one->b);
-    fprintf(out, "</td><td>%.6g, %.6g</td><td>%.4g <i>%.4g … %.4g</i></td>", one->mean_a,
+    fprintf(out, "</td><td>%.6g<br>%.6g</td><td>%.4g<i>%.4g … %.4g</i></td>", one->mean_a,
             one->mean_b, one->comparison.difference, one->comparison.low, one->comparison.high);
     put_p(out, one->comparison.p_means);
-    fprintf(out, "<td>%.3g, %.3g</td>", one->sd_a, one->sd_b);
+    fprintf(out, "<td>%.3g<br>%.3g</td>", one->sd_a, one->sd_b);
     put_p(out, one->comparison.p_variances);
     put_p(out, one->comparison.p_levene);
     fputs("</tr>\n", out);

@@ -181,6 +181,7 @@ static void put_errors_by_bump(FILE *out, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < sizeof shown / sizeof *shown; i++) {
     const fg_lot_quantity *quantity = fg_lot_find_quantity(analysis, shown[i]);
     if (!quantity) continue;
+    if (last) fputs("</figure>\n<figure>", out); /* of its own, so that a printed page can end */
     fg_lot_plot_places(out, analysis, quantity, curve);
     last = quantity;
   }
