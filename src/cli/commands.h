@@ -36,6 +36,7 @@ extern const fg_command fg_commands[]; /* ends with a row without a name */
 fg_command_run fg_cmd_measure;
 fg_command_run fg_cmd_doe;
 fg_command_run fg_cmd_design;
+fg_command_run fg_cmd_form;
 fg_command_run fg_cmd_render;
 fg_command_run fg_cmd_loop;
 fg_command_run fg_cmd_loop_scan; /* `loop` without --table */
@@ -44,6 +45,7 @@ fg_command_run fg_cmd_merge;
 fg_command_run fg_cmd_die;
 fg_command_run fg_cmd_station;
 
+extern const struct argp fg_form_parser;
 extern const struct argp fg_measure_parser, fg_doe_parser, fg_doe_plan_parser, fg_design_parser,
     fg_render_parser, fg_loop_parser, fg_loop_table_parser, fg_lot_parser, fg_merge_parser,
     fg_die_parser, fg_station_parser;

@@ -25,6 +25,7 @@ must_not_include() {
   [ -z "$found" ] || say "$1 includes what stands right of it: $found"
 }
 must_not_include field 'rows|effect|explain|scan_loop|loop|report|lot|cli'
+must_not_include forming 'scan|vision|measure|scan_loop|loop|report|lot|cli'
 must_not_include rows 'effect|explain|scan_loop|loop|report|lot|cli'
 must_not_include effect 'explain|scan_loop|loop|report|lot|cli'
 must_not_include explain 'scan_loop|report|lot|cli'

@@ -1,0 +1,288 @@
+/* Springback of a strip by a beam model of forming (thesis section 5.9, without its contact).
+ *
+ * BENT. A flat strip is bent to the die's curvature kappa_d(s). Its width is far larger than its
+ * thickness: plane strain, E' = E / (1 - nu²). Through the thickness eps = kappa_d z; layers yield
+ * at (2 / sqrt 3) Y and harden linearly, by (4 / 3) H per plastic strain. Both fall with the
+ * temperature by one curve, E' by a straight line.
+ *
+ * RELAXED. The die holds the curvature while the temperature follows a schedule. What exceeds the
+ * hot yield stress flows at once; the rest creeps by Norton's law, in uniaxial tension
+ *   d eps / dt = A (sigma / 100 MPa)^n exp(-(Q / R) (1/T - 1/T0)),   T0 = 550 degrees C,
+ * in plane strain (sigma_y = sigma_x / 2, no volume change) times (sqrt 3 / 2)^(n + 1). A constant
+ * temperature has a closed form in every layer:
+ *   sigma = (sigma_0^(1 - n) + (n - 1) E' B t)^(-1 / (n - 1)).
+ *
+ * RELEASED, cold and elastic: kappa_f = kappa_d - rho M / (E' I), with M the moment of the bend and
+ * rho the share of it that the treatment has left.
+ *
+ * The free strip is kappa_f integrated along s; its circles are fitted as `measure` fits them.
+ *
+ * OUT OF REACH: what needs contact and friction (figures 5.14 to 5.16: where the die touches while
+ * it closes, whether the pressure closes it, bumps that differ by their place). A pressure on both
+ * faces adds a hydrostatic stress in plane strain, which neither yields nor creeps: it enters no
+ * equation here.
+ */
+#ifndef FOILGAUGE_FORMING_H
+#define FOILGAUGE_FORMING_H
+
+#include <stdio.h>
+
+#include "foilgauge/foil.h"
+#include "foilgauge/table.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- the material ---- */
+
+enum {
+  FG_FORMING_CURVE_MAX = 16,
+  FG_FORMING_SOURCE = 240,
+  FG_FORMING_FREE_MAX = 4, /* constants that a fit may find */
+};
+#define FG_FORMING_COLD_C       20.0  /* where strips are bent and released */
+#define FG_FORMING_CREEP_MPA    100.0 /* where creep_rate_per_h is stated */
+#define FG_FORMING_CREEP_TEMP_C 550.0
+
+typedef enum fg_forming_constant {
+  FG_FORMING_MODULUS,       /* youngs_modulus_gpa, at 20 degrees C */
+  FG_FORMING_MODULUS_SLOPE, /* modulus_slope_per_K: E = E20 (1 - slope (T - 20)) */
+  FG_FORMING_POISSON,       /* poisson_ratio */
+  FG_FORMING_YIELD,         /* yield_mpa, at 20 degrees C */
+  FG_FORMING_HARDENING,     /* hardening_mpa, per plastic strain */
+  FG_FORMING_CREEP_RATE,    /* creep_rate_per_h: A */
+  FG_FORMING_CREEP_EXPONENT,
+  FG_FORMING_CREEP_ENERGY, /* creep_energy_kj_per_mol */
+  FG_FORMING_CONSTANTS
+} fg_forming_constant;
+
+typedef struct fg_forming_constant_row {
+  const char *name, *symbol, *unit, *words;
+  double low, high; /* what is accepted, and where a fit looks */
+  bool by_factors;  /* a fit takes steps in its logarithm */
+  double value;     /* the default */
+  const char *source;
+} fg_forming_constant_row;
+
+const fg_forming_constant_row *fg_forming_constant_of(fg_forming_constant constant);
+
+typedef struct fg_forming_material {
+  char name[96];
+  double value[FG_FORMING_CONSTANTS];
+  char source[FG_FORMING_CONSTANTS][FG_FORMING_SOURCE];
+  /* Yield and hardening at a temperature over those at 20 degrees C: straight lines between
+   * points, nothing beyond the last. */
+  size_t curve_count;
+  double curve_temperature_C[FG_FORMING_CURVE_MAX], curve_share[FG_FORMING_CURVE_MAX];
+  char curve_source[FG_FORMING_SOURCE];
+} fg_forming_material;
+
+/* Stainless strip 1.4310, annealed: literature, with its scatter in `source`. The thesis prints no
+ * constant. */
+void fg_forming_material_default(fg_forming_material *material);
+/* FG_ERR_DATA names the member and what would be right. */
+fg_status fg_forming_material_check(fg_context *ctx, const fg_forming_material *material);
+/* "foilgauge/material/1": members of the rows above, each a number or {"value", "source"}; and
+ * "yield_curve": {"temperature_C": [...], "share": [...], "source"}. Absent members keep theirs. */
+fg_status fg_forming_material_load(fg_context *ctx, const char *path,
+                                   fg_forming_material *material);
+
+/* ---- what is done to the strip ---- */
+
+/* Temperatures over time, straight between the points. None: released as it was bent. */
+typedef struct fg_forming_schedule {
+  double *time_h, *temperature_C; /* owned */
+  size_t count;
+} fg_forming_schedule;
+
+/* One hold, without the ways there and back. */
+fg_status fg_forming_schedule_hold(fg_context *ctx, double temperature_C, double hours,
+                                   fg_forming_schedule *schedule);
+/* CSV: time_h, temperature_C. */
+fg_status fg_forming_schedule_load(fg_context *ctx, const char *path,
+                                   fg_forming_schedule *schedule);
+void fg_forming_schedule_free(fg_forming_schedule *schedule);
+
+/* What the die is: the design's lands, fillets and bumps, or a sine of its height over its pitch.
+ */
+typedef enum fg_forming_shape { FG_FORMING_ARCS, FG_FORMING_SINE } fg_forming_shape;
+
+enum { FG_FORMING_BUMPS_MAX = 128, FG_FORMING_BUMPS_DEFAULT = 9 };
+
+/* A die that was measured (`foilgauge die -o`). Bumps that it does not show have its mean. */
+typedef struct fg_forming_die {
+  char sha256[65];
+  double overall_radius_mm;
+  size_t count;
+  struct {
+    int number;
+    double radius_mm, bump_angle_deg;
+  } bump[FG_FORMING_BUMPS_MAX];
+  double mean_radius_mm, mean_angle_deg;
+} fg_forming_die;
+
+fg_status fg_forming_die_load(fg_context *ctx, const char *path, const fg_design *design,
+                              fg_forming_die *die);
+
+typedef struct fg_forming_options {
+  fg_forming_shape shape;
+  const fg_forming_die *die; /* NULL: as designed */
+  size_t layers;             /* over half the thickness; 0: 200 */
+  size_t steps;              /* per stretch of a schedule; 0: 200 */
+} fg_forming_options;
+
+/* ---- what comes of it ---- */
+
+/* A stretch of one curvature. Curvatures are above 0 where the strip bends round the shaft's axis,
+ * as the lands do; stresses are of the fibre that this stretches, 0 to 2 of FG_FORMING_STATES. */
+typedef enum fg_forming_state {
+  FG_FORMING_BENT,   /* cold, in the die */
+  FG_FORMING_HEATED, /* at the end of the schedule, in the die */
+  FG_FORMING_FREE,   /* cold, out of the die */
+  FG_FORMING_STATES
+} fg_forming_state;
+
+typedef struct fg_forming_piece {
+  fg_arc_kind kind;
+  int number;                           /* of its bump or land */
+  double start_mm, length_mm;           /* along the midline */
+  double curvature_die, curvature;      /* 1/mm */
+  double moment_n, share;               /* M per mm of width when bent; rho */
+  double stress_mpa[FG_FORMING_STATES]; /* along the strip, at its face */
+} fg_forming_piece;
+
+typedef struct fg_forming_bump {
+  int number;
+  double die_radius_mm, die_angle_deg;
+  double curvature_radius_mm; /* 1 / kappa_f at its crown */
+  fg_bump fitted;             /* as `measure` fits it; NaN: not found */
+} fg_forming_bump;
+
+typedef struct fg_forming {
+  fg_design design;
+  fg_nominal nominal;
+  fg_forming_material material;
+  fg_forming_options options;
+  fg_forming_die die;           /* where one was given */
+  fg_forming_schedule schedule; /* owned */
+  fg_forming_piece *pieces;     /* owned */
+  size_t count;
+  double length_mm;
+  fg_forming_bump *bumps; /* owned */
+  size_t bump_count;
+  /* Of the integrated strip: each pitch turns it by one angle about one centre. NaN: it does not
+   * close round a centre any more. */
+  double overall_radius_mm, springback_error_pct;
+  double turn_die_deg, turn_deg; /* per pitch (arc: from end to end) */
+  /* The lands for themselves: a plain strip bent to the overall radius. */
+  double strip_radius_mm, strip_springback_error_pct;
+  double mean_stress_mpa[FG_FORMING_STATES], largest_stress_mpa[FG_FORMING_STATES];
+  double mean_share; /* rho over the strip's length */
+  bool yields_back;  /* on release a layer would yield: the release is not elastic */
+  fg_foil foil;      /* the free strip as `measure` sees it; owned */
+  bool fitted;       /* its circles are there */
+} fg_forming;
+
+/* FG_ERR_DATA: a design without curvature (discs), a schedule beyond the material's curve. `foil`
+ * says by its flags and `error` what `measure` would say. Free with fg_forming_free. */
+fg_status fg_forming_run(fg_context *ctx, const fg_design *design,
+                         const fg_forming_material *material, const fg_forming_schedule *schedule,
+                         const fg_forming_options *options, fg_forming *forming);
+void fg_forming_free(fg_forming *forming);
+
+/* "foilgauge/form/1" (reports/schema/form.schema.json), the table for a terminal, one row per bump,
+ * one row per stretch of the strip, a page. */
+fg_status fg_forming_write_json(fg_context *ctx, const fg_forming *forming, FILE *out);
+fg_status fg_forming_write_text(fg_context *ctx, const fg_forming *forming, FILE *out);
+fg_status fg_forming_write_bumps(fg_context *ctx, const fg_forming *forming, FILE *out);
+fg_status fg_forming_write_strip(fg_context *ctx, const fg_forming *forming, FILE *out);
+fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE *out);
+
+/* ---- constants from a designed experiment ---- */
+
+/* What a run's springback is of. */
+typedef enum fg_forming_response {
+  FG_FORMING_OF_STRIP, /* strip_springback_error_pct */
+  FG_FORMING_OF_FOIL,  /* springback_error_pct */
+} fg_forming_response;
+
+typedef struct fg_forming_found {
+  fg_forming_constant constant;
+  double value, u;    /* standard uncertainty from the covariance; of a constant by factors of
+                         its logarithm */
+  double interval[2]; /* 95 %, by profile; an end that the runs do not close is NaN */
+} fg_forming_found;
+
+/* One model's errors: sd of the residuals about it, and of runs that took no part (each in turn).
+ */
+typedef struct fg_forming_errors {
+  double residual_sd, left_out_rms;
+  size_t parameters;
+} fg_forming_errors;
+
+typedef struct fg_forming_run_fit {
+  double temperature_C, duration_h, measured, fitted, left_out; /* predicted without it */
+} fg_forming_run_fit;
+
+typedef struct fg_forming_fit {
+  fg_design design;
+  fg_forming_material material; /* with what was found in it */
+  fg_forming_response response;
+  fg_forming_options options;
+  char response_name[64];
+  size_t free;
+  fg_forming_found found[FG_FORMING_FREE_MAX];
+  double correlation[FG_FORMING_FREE_MAX][FG_FORMING_FREE_MAX];
+  fg_forming_run_fit *run; /* owned */
+  size_t runs;
+  fg_forming_errors model, surface; /* surface: 1 + T + D + T:D + T² + D² */
+  double repeat_sd;                 /* of runs at the same setting; NaN: none repeats */
+  size_t repeats;                   /* their degrees of freedom */
+} fg_forming_fit;
+
+/* Table columns temperature_C, duration_h and `response`. FG_ERR_DATA: fewer runs than constants
+ * + 2. Free with fg_forming_fit_free. */
+typedef struct fg_forming_fit_request {
+  const fg_design *design;
+  const fg_forming_material *material; /* start values, and what is not fitted */
+  const char *column;                  /* the response; NULL: springback_error_pct */
+  fg_forming_response response;
+  fg_forming_options options;
+  const fg_forming_constant *free;
+  size_t free_count;
+} fg_forming_fit_request;
+
+fg_status fg_forming_fit_runs(fg_context *ctx, const fg_table *table,
+                              const fg_forming_fit_request *request, fg_forming_fit *fit);
+void fg_forming_fit_free(fg_forming_fit *fit);
+
+/* "foilgauge/form-fit/1" (reports/schema/form_fit.schema.json), and for people; the material is a
+ * file that fg_forming_material_load reads. */
+fg_status fg_forming_fit_write_json(fg_context *ctx, const fg_forming_fit *fit, FILE *out);
+fg_status fg_forming_fit_write_text(fg_context *ctx, const fg_forming_fit *fit, FILE *out);
+fg_status fg_forming_fit_write_html(fg_context *ctx, const fg_forming_fit *fit, FILE *out);
+fg_status fg_forming_write_material(fg_context *ctx, const fg_forming_material *material,
+                                    FILE *out);
+
+/* ---- as a declared model ---- */
+
+/* What a report of `form` says of the bumps. */
+typedef struct fg_forming_prediction {
+  char path[1024], sha256[65];
+  size_t count;
+  fg_bump bump[FG_FORMING_BUMPS_MAX]; /* number and the reported quantities; NaN: not said */
+} fg_forming_prediction;
+
+/* Reads "foilgauge/form/1". FG_ERR_DATA: not one, or one without fitted bumps. */
+fg_status fg_forming_prediction_load(fg_context *ctx, const char *path,
+                                     fg_forming_prediction *prediction);
+/* The prediction of a bump's quantity (its JSON name) by the bump's number. FG_ERR_DATA: a number
+ * or a quantity that it does not have. */
+fg_status fg_forming_predict(fg_context *ctx, const fg_forming_prediction *prediction, int number,
+                             const char *quantity, double *value);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,93 @@
+#!/bin/bash
+# `foilgauge form`: its outputs, a die that was measured, constants from runs, bad input. What it computes: unit/test_forming.c.
+. tests/support/cli.sh
+listened="stdout stderr"
+
+echo '{"schema": "foilgauge/design/1", "name": "<b>&"}' >design.json
+expect 0 "" "$program" form design.json --temperature 650 --time 5 --pressure 300 -o form.json --html form.html --table form.txt \
+  --table-out bumps.csv --strip-out strip.csv --material-out material.json
+grep -q '&lt;b&gt;&amp;' form.html && ! grep -q '<b>&' form.html || fail "a name is not made harmless"
+for words in 'curvature, 1/mm' 'stress at the face, MPa' 'bump radius' 'Frost and Ashby' 'contact and friction'; do
+  grep -q "$words" form.html || fail "the page lacks $words"
+done
+grep -q 'contact and friction' form.txt || fail "the table does not say what is out of reach"
+value form.json "r['notes']" | grep -q 'contact and friction' || fail "the report does not say what is out of reach"
+[ "$(wc -l <bumps.csv)" = 10 ] && [ "$(wc -l <strip.csv)" = 48 ] || fail "rows of the tables"
+near "bump 5" "$(awk -F, '$1 == 5 {print $2}' bumps.csv)" "$(value form.json "r['bumps'][4]['radius_mm']")" 1e-6
+
+# The constants that it wrote, and a hold as a schedule, give the same; --pressure changes nothing.
+printf 'time_h,temperature_C\n0,650\n2,650\n5,650\n' >hold.csv
+expect 0 "" "$program" form design.json --material material.json --schedule hold.csv -o again.json
+near "a hold in two parts" "$(value again.json "r['bumps'][4]['radius_mm']")" \
+  "$(value form.json "r['bumps'][4]['radius_mm']")" 1e-9
+expect 0 "" "$program" form --shape sine -o sine.json
+expect 0 "" "$program" form "$root/samples/render/../top_foil_design.json" -o arc.json
+[ "$(value arc.json "r['overall']['radius_mm'] == r['plain_strip']['radius_mm'] and r['bumps']")" = "[]" ] || fail "a plain strip"
+
+# A die that was measured: its bumps are the die's, +0.09 and +0.35 % by halves, and the foil's follow them.
+expect 0 "" "$program" die "$root"/samples/die/*.txt -o die.json
+expect 0 "" "$program" form --die die.json -o of_die.json
+expect 0 "" "$program" form -o of_design.json
+python3 - of_die.json of_design.json die.json <<'END' || fail "the die's bumps"
+import json, sys
+die_form, design_form, die = (json.load(open(name)) for name in sys.argv[1:])
+of = {b["number"]: b["radius_mm"] for b in die["die"]["bumps"]}
+for a, b in zip(die_form["bumps"], design_form["bumps"]):
+    assert abs(a["die_radius_mm"] - of.get(a["number"], die["die"]["mean"]["radius_mm"])) < 1e-7, a
+    grown = a["radius_mm"] / b["radius_mm"] / (a["die_radius_mm"] / b["die_radius_mm"])
+    assert 1 < grown < 1.002, grown  # a flatter bump springs back by a little more
+END
+
+# Constants from the thesis's thirteen runs, as a page, a table and a material.
+cat "$root/samples/doe/springback_factorial.csv" | cut -d, -f3- >runs.csv
+tail -n +6 "$root/samples/doe/springback_composite.csv" | cut -d, -f2- >>runs.csv
+[ "$(wc -l <runs.csv)" = 14 ] || fail "the sample's runs"
+expect 0 "" "$program" form --fit runs.csv -o fit.json --html fit.html --table fit.txt --material-out fitted.json
+valid form_fit.schema.json fit.json
+valid material.schema.json fitted.json material.json
+valid form.schema.json form.json arc.json of_die.json
+near "residual sd" "$(value fit.json "r['beam_model']['residual_sd']")" 1.81 0.01
+grep -q 'leaves 1.81 points' fit.txt && grep -q 'quadratic surface 1.41' fit.txt || fail "what the fit leaves is not said"
+grep -q 'not beyond' fit.html || fail "the page does not say how far a fit may be believed"
+expect 0 "fitted to 13 runs" "$program" form --material fitted.json --temperature 650 --time 5 -o -
+
+# Bad input: what is wrong, and where.
+bad() {
+  echo "$2" >bad.json
+  expect 65 "bad.json: .*$1" "$program" form --material bad.json
+}
+head='"schema": "foilgauge/material/1"'
+bad "line 2: this is not JSON" "{ $head"
+bad "schema is missing" '{"yield_mpa": 300}'
+bad "yield_stress is not a member" "{$head, \"yield_stress\": 300}"
+bad "yield_mpa must be a number" "{$head, \"yield_mpa\": \"300\"}"
+bad "yield_mpa is -3; it must be from 1" "{$head, \"yield_mpa\": -3}"
+bad "yield_mpa is given twice" "{$head, \"yield_mpa\": 300, \"yield_mpa\": 301}"
+bad "yield_mpa: the unit must be .MPa" "{$head, \"yield_mpa\": {\"value\": 0.3, \"unit\": \"GPa\"}}"
+bad "creep_exponent is 0.5" "{$head, \"creep_exponent\": 0.5}"
+bad "temperatures must rise" "{$head, \"yield_curve\": {\"temperature_C\": [20, 20], \"share\": [1, 1]}}"
+bad "2 temperatures and 1 shares" "{$head, \"yield_curve\": {\"temperature_C\": [20, 30], \"share\": [1]}}"
+bad "nothing is left of E" "{$head, \"modulus_slope_per_K\": 0.001, \"yield_curve\": {\"temperature_C\": [20, 990], \"share\": [1, 1]}}"
+: >empty.json
+expect 65 "empty.json: line 1" "$program" form --material empty.json
+expect 65 "2000 degrees C is beyond the material" "$program" form --temperature 2000 --time 1
+printf 'time_h,temperature_C\n0,650\n0,650\n' >bad.csv
+expect 65 "bad.csv: row 2: time_h is 0 after 0" "$program" form --schedule bad.csv
+printf 'time_h,temperature_C\n0,650\n1,hot\n' >bad.csv
+expect 65 "bad.csv: .*row 2" "$program" form --schedule bad.csv
+printf 'temperature_C,duration_h,springback_error_pct\n500,3,-13\n500,3,-9\n600,3,-4\n' >bad.csv
+expect 65 "3 runs; to find 3 constants takes 5" "$program" form --fit bad.csv
+printf 'temperature_C,duration_h,springback_error_pct\n500,3,-13\n500,0,-9\n600,3,-4\n600,3,-4\n600,3,-4\n' >bad.csv
+expect 65 "row 2: duration_h is 0" "$program" form --fit bad.csv
+expect 65 "bad.csv: .*spring" "$program" form --fit bad.csv --response spring
+echo '{"schema": "foilgauge/design/1", "form": "discs", "diameters_mm": [5]}' >discs.json
+expect 65 "has no strip that is bent" "$program" form discs.json
+expect 65 "form.json: not a report of .foilgauge die" "$program" form --die form.json
+expect 64 "belong together" "$program" form --temperature 650
+expect 64 "says temperature and time already" "$program" form --temperature 650 --time 5 --schedule hold.csv
+expect 64 "is no constant of a material" "$program" form --fit runs.csv --free stiffness
+expect 64 "belong to --fit" "$program" form --of foil
+expect 64 "neither arcs nor sine" "$program" form --shape round
+expect 64 "" "$program" form design.json -o design.json
+if [ -w /dev/full ]; then expect 74 "full" "$program" form -o /dev/full; fi
+exit $failed
