@@ -364,10 +364,12 @@ double fg_loop_curve_at(const fg_loop_curve *curve, double value);
 const fg_loop_effect *fg_loop_table_effects(void);
 
 typedef struct fg_loop_table_spec {
-  const char *response;    /* column */
-  const char *model;       /* a formula, or "arc_length" */
-  const char *group;       /* column, or NULL */
-  const char *order;       /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
+  const char *response; /* column */
+  const char *model;    /* a formula, or "arc_length" */
+  const char *group;    /* column, or NULL */
+  const char *offset; /* column: what is predicted of the response besides the model, and taken from
+                         it (a beam model of forming, say); or NULL */
+  const char *order;  /* column, or NULL: `bump` in groups, `run` or the like, else the rows */
   const char *hold_out;    /* "0.2", "COLUMN=VALUE"; "0" or NULL: every row takes part */
   const fg_design *design; /* arc_length only */
   uint64_t seed;

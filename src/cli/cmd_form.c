@@ -106,10 +106,6 @@ static const char doc[] =
     "Out of reach is what needs contact and friction: where the die touches while it closes, "
     "whether the pressure closes it, bumps that differ by their place. A pressure on both faces is "
     "hydrostatic in plane strain: it neither yields nor creeps.\n\n"
-    "  foilgauge form DESIGN.json --temperature 650 --time 5 --html form.html\n"
-    "  foilgauge form --fit RUNS.csv --material-out fitted.json\n"
-    "  foilgauge form DESIGN.json --material fitted.json --temperature 650 --time 5 -o form.json\n"
-    "\n"
     "@exit_done@";
 
 static void take_free(struct argp_state *state, form_run *run, const char *text) {

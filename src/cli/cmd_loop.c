@@ -53,6 +53,8 @@ enum {
   OPTION_WITHOUT,
   OPTION_DPI,
   OPTION_THREADS,
+  OPTION_OFFSET,
+  OPTION_FORM_MODEL,
 };
 
 /* A lot's response where none is named. */
@@ -79,6 +81,12 @@ static const struct argp_option options[] = {
      "The declared model: a formula ('1 + T + D + T:D + T^2'; --lot: @lot_model@), or arc_length "
      "(from the "
      "bump radius)",
+     0},
+    {"offset", OPTION_OFFSET, "COLUMN", 0,
+     "What is predicted of the response besides the model: taken from it, and no candidate", 0},
+    {"form-model", OPTION_FORM_MODEL, "FORM.json", 0,
+     "A report of `foilgauge form -o` as the declared model: what it predicts of the response of "
+     "each bump is the offset, a column `declared`; needs a column `bump` (--lot has it)",
      0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Rows of a group share its level (foil)", 0},
     {"order", OPTION_ORDER, "COLUMN", 0,
@@ -154,6 +162,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
       {OPTION_MODEL, &arguments->spec.model},
       {OPTION_GROUP, &arguments->spec.group},
       {OPTION_ORDER, &arguments->spec.order},
+      {OPTION_OFFSET, &arguments->spec.offset},
+      {OPTION_FORM_MODEL, &arguments->source.form_model},
       {OPTION_DESIGN, &arguments->design_path},
       {OPTION_DECLARED, &arguments->declared_path},
       {OPTION_HOLD_OUT, &arguments->spec.hold_out},
@@ -194,6 +204,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return 0;
   case ARGP_KEY_END:
     check_source(state, &arguments->source);
+    if (arguments->source.form_model && arguments->spec.offset)
+      argp_error(state, "--form-model is the offset: drop --offset");
     return 0;
   default:
     return ARGP_ERR_UNKNOWN;
@@ -346,7 +358,8 @@ exit:
 
 /* The loop on a table, or on scans (cmd_loop_scan.c). */
 static bool is_about_a_table(int argc, char **argv) {
-  static const char *const words[] = {"--table", "--lot", "--doe", "--response", "--declared"};
+  static const char *const words[] = {"--table",    "--lot",    "--doe",       "--response",
+                                      "--declared", "--offset", "--form-model"};
   for (int i = 1; i < argc; i++)
     for (size_t w = 0; w < sizeof words / sizeof *words; w++)
       if (!strncmp(argv[i], words[w], strlen(words[w]))) return true;

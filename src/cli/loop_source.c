@@ -1,10 +1,12 @@
 #include "cli/loop_source.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "cli/runs.h"
+#include "foilgauge/forming.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/text.h"
 
@@ -17,8 +19,10 @@ fg_status fg_loop_source_check(fg_context *ctx, const fg_loop_source_request *re
                                fg_output_set *outputs) {
   static const char *const files[] = {"results.jsonl", "manifest.csv", "recipe.json", "lot.json",
                                       "index.html",    "foils.csv",    "bumps.csv"};
-  const fg_input tables[] = {{request->table, "the table"}, {request->runs, "the table of runs"}};
-  FG_TRY(fg_output_set_check(ctx, outputs, tables, 2));
+  const fg_input tables[] = {{request->table, "the table"},
+                             {request->runs, "the table of runs"},
+                             {request->form_model, "the forming"}};
+  FG_TRY(fg_output_set_check(ctx, outputs, tables, sizeof tables / sizeof *tables));
   for (size_t i = 0; request->lot && i < sizeof files / sizeof *files; i++) {
     char *path = NULL;
     FG_TRY(fg_text_print(ctx, &path, "%s/%s", request->lot, files[i]));
@@ -117,13 +121,84 @@ static fg_status read_runs(fg_context *ctx, const fg_loop_source_request *reques
   return name_runs(ctx, source);
 }
 
+/* ---- a forming as the declared model ---- */
+
+static const char declared_column[] = "declared", bump_column[] = "bump";
+
+static fg_status predict_rows(fg_context *ctx, const fg_forming_prediction *prediction,
+                              const char *response, const fg_table *table, double *predicted,
+                              double *apart) {
+  const fg_extended *number, *measured;
+  FG_TRY(fg_table_numbers(ctx, table, bump_column, &number));
+  FG_TRY(fg_table_numbers(ctx, table, response, &measured));
+  *apart = 0;
+  for (size_t i = 0; i < table->rows; i++) {
+    double bump = number[i].value;
+    if (bump != floor(bump) || fabs(bump) > 1e6)
+      return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: bump is %g, which is no bump's number",
+                     table->source, i + 1, bump);
+    FG_TRY(fg_forming_predict(ctx, prediction, (int)bump, response, &predicted[i]));
+    *apart += (measured[i].value - predicted[i]) / (double)table->rows;
+  }
+  return FG_OK;
+}
+
+static fg_status note_prediction(fg_context *ctx, const fg_forming_prediction *prediction,
+                                 const char *response, double apart, fg_loop_source *source) {
+  fg_loop_input *inputs = NULL;
+  FG_TRY(fg_text_print(ctx, &source->form_path, "%s", prediction->path));
+  memcpy(source->form_sha256, prediction->sha256, sizeof source->form_sha256);
+  FG_TRY(fg_memory_allocate(ctx, source->inputs + 1, sizeof *inputs, (void **)&inputs));
+  if (source->inputs) memcpy(inputs, source->input, source->inputs * sizeof *inputs);
+  inputs[source->inputs++] = (fg_loop_input){source->form_path, source->form_sha256};
+  free(source->input);
+  source->input = inputs;
+  return fg_text_append(ctx, &source->said,
+                        "%sdeclared: what %s (foilgauge form) predicts of %s by the bump's number; "
+                        "measured minus predicted is %+.6g on average",
+                        source->said ? "; " : "", prediction->path, response, apart);
+}
+
+/* What it predicts of every row becomes the offset. */
+static fg_status declare_forming(fg_context *ctx, const char *path, fg_table *table,
+                                 fg_loop_table_spec *spec, fg_loop_source *source) {
+  fg_forming_prediction *prediction = NULL;
+  double *predicted = NULL, apart = 0;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *prediction, (void **)&prediction));
+  FG_TRY_EXIT(fg_forming_prediction_load(ctx, path, prediction));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, table->rows, sizeof *predicted, (void **)&predicted));
+  FG_TRY_EXIT(predict_rows(ctx, prediction, spec->response, table, predicted, &apart));
+  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, declared_column, predicted, table->rows));
+  FG_TRY_EXIT(note_prediction(ctx, prediction, spec->response, apart, source));
+  spec->offset = declared_column;
+exit:
+  free(predicted);
+  free(prediction);
+  return status;
+}
+
+static fg_status read_source(fg_context *ctx, const fg_loop_source_request *request,
+                             bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
+                             fg_design *design, fg_loop_source *source) {
+  if (request->lot) return read_lot(ctx, request, has_design, spec, design, source);
+  if (request->runs) return read_runs(ctx, request, outputs, spec, design, source);
+  return read_table(ctx, request, source);
+}
+
+static fg_table *table_of(const fg_loop_source_request *request, fg_loop_source *source) {
+  return request->lot    ? &source->lot.table
+         : request->runs ? &source->measured.table
+                         : &source->read;
+}
+
 fg_status fg_loop_source_read(fg_context *ctx, const fg_loop_source_request *request,
                               bool has_design, fg_output_set *outputs, fg_loop_table_spec *spec,
                               fg_design *design, fg_loop_source *source) {
   *source = (fg_loop_source){0};
-  if (request->lot) return read_lot(ctx, request, has_design, spec, design, source);
-  if (request->runs) return read_runs(ctx, request, outputs, spec, design, source);
-  return read_table(ctx, request, source);
+  FG_TRY(read_source(ctx, request, has_design, outputs, spec, design, source));
+  if (!request->form_model) return FG_OK;
+  return declare_forming(ctx, request->form_model, table_of(request, source), spec, source);
 }
 
 void fg_loop_source_free(fg_loop_source *source) {
@@ -132,6 +207,7 @@ void fg_loop_source_free(fg_loop_source *source) {
   free(source->name);
   free(source->input);
   free(source->said);
+  free(source->form_path);
   fg_table_free(&source->read);
   fg_lot_table_free(&source->lot);
   fg_run_sheet_free(&source->measured);

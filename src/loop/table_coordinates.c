@@ -121,6 +121,7 @@ static fg_status add_column(fg_context *ctx, const fg_loop_table_state *build,
   unsigned roles = 0;
   bool words = column->word_count > 0;
   if (!strcmp(column->name, spec->response)) return FG_OK;
+  if (spec->offset && !strcmp(column->name, spec->offset)) return FG_OK;
   if (fg_quantity_is_result(column->name)) return FG_OK;
   if (column->missing_count)
     return fg_loop_table_leave_out(ctx, build, column->name, "cells are missing");

@@ -140,6 +140,21 @@ static fg_status take_origin(fg_context *ctx, const fg_loop_table_state *build) 
   return FG_OK;
 }
 
+/* What is predicted besides the model is taken from the residual; the response stays as it was
+ * measured: two that were exchanged are exchanged as they are. */
+static fg_status take_offset(fg_context *ctx, const fg_loop_table_state *build) {
+  fg_loop_problem *problem = &build->out->problem;
+  const char *name = build->spec->offset;
+  const fg_extended *offset;
+  if (!name) return FG_OK;
+  if (!strcmp(name, build->spec->response))
+    return fg_fail(ctx, FG_ERR_USAGE, "the response '%s' cannot be its own prediction", name);
+  FG_TRY(fg_table_numbers(ctx, build->table, name, &offset));
+  for (size_t i = 0; i < problem->rows; i++)
+    problem->residual[i] -= offset[build->out->row[i]].value;
+  return FG_OK;
+}
+
 /* What the declared model says of the response, as far as no column says the same: the scatter may
  * follow it. */
 static fg_status add_level(fg_context *ctx, const fg_loop_table_state *build) {
@@ -176,6 +191,7 @@ static fg_status build_all(fg_context *ctx, fg_loop_table_state *build) {
   else
     FG_TRY(fg_loop_table_fill_model(ctx, build));
   if (!fg_loop_table_is_arc_length(build->spec)) FG_TRY(take_origin(ctx, build));
+  FG_TRY(take_offset(ctx, build));
   bool grouped = build->spec->group != NULL;
   problem->level = grouped ? "bumps" : "runs";
   problem->group_level = grouped && rows >= 2 * problem->groups;

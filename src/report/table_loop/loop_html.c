@@ -228,6 +228,11 @@ static void put_head(FILE *out, const fg_loop_report *report, const char *senten
     fputs(" ~ ", out);
   }
   fg_html_text(out, report->spec->model);
+  if (report->spec->offset) {
+    fputs(" + offset(", out);
+    fg_html_text(out, report->spec->offset);
+    fputc(')', out);
+  }
   fprintf(out,
           "; %zu rows</p><span class=\"verdict %s\">%s</span><span class=\"mean\">%s</span><p "
           "class=\"say\">",

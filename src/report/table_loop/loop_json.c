@@ -249,6 +249,7 @@ static void write_inputs(fg_json *json, const fg_loop_report *report) {
   fg_json_object(json, "declared");
   fg_json_string(json, "response", report->spec->response);
   fg_json_string(json, "model", report->spec->model);
+  fg_json_string(json, "offset", report->spec->offset);
   fg_json_string(json, "group", report->spec->group);
   fg_json_integer(json, "groups", (int64_t)problem->groups);
   fg_json_object_end(json);
