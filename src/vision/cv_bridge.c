@@ -1,7 +1,9 @@
 #include "vision/cv_bridge.h"
 
 #include <dlfcn.h>
+#include <link.h>
 #include <pthread.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,18 +13,42 @@
 
 enum { PATH_BYTES = 4096 };
 
-/* Beside the program, where it is installed beside the program, where it was built. */
-static const char *const places[] = {"", "/../lib/foilgauge", NULL};
-
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 static const fg_cv_functions *loaded; /* NULL: `why` says what is wrong */
 static char why[600];
 
-static void find_program_folder(char folder[PATH_BYTES]) {
-  ssize_t length = readlink("/proc/self/exe", folder, PATH_BYTES - 1);
-  folder[length > 0 ? length : 0] = '\0';
+/* Where it lies in the build tree, where it is installed; from the folder of what this is linked
+ * into: a program, or the shared library, whose folder may be lib/TRIPLET. */
+static const char *const of_program[] = {"", "/../lib/foilgauge", NULL};
+static const char *const of_library[] = {"", "/foilgauge", "/../foilgauge", NULL};
+
+/* The program's own name is what its caller says it is: the system knows better. */
+static const char *const *find_own_folder(char folder[PATH_BYTES]) {
+  struct link_map *map = NULL;
+  Dl_info info;
+  bool library =
+      dladdr1(&once, &info, (void **)&map, RTLD_DL_LINKMAP) != 0 && map && map->l_name[0];
+  ssize_t length = library ? snprintf(folder, PATH_BYTES, "%s", map->l_name)
+                           : readlink("/proc/self/exe", folder, PATH_BYTES - 1);
+  folder[length > 0 && length < PATH_BYTES ? length : 0] = '\0';
   char *end = strrchr(folder, '/');
   if (end) *end = '\0';
+  return library ? of_library : of_program;
+}
+
+/* The first place where it is; false: nowhere. */
+static bool find_module(char path[PATH_BYTES + 100]) {
+  char folder[PATH_BYTES];
+  const char *const *place = find_own_folder(folder);
+  for (; *place; place++) {
+    snprintf(path, PATH_BYTES + 100, "%s%s/%s", folder, *place, FG_CV_MODULE_FILE);
+    if (access(path, F_OK) == 0) return true;
+  }
+  snprintf(path, PATH_BYTES + 100, "%s/%s", FOILGAUGE_MODULE_FOLDER, FG_CV_MODULE_FILE);
+  if (access(path, F_OK) == 0) return true;
+  snprintf(why, sizeof why, "%s: is neither in %.400s nor in ../lib/foilgauge", FG_CV_MODULE_FILE,
+           folder);
+  return false;
 }
 
 static void take(void *module, const char *path) {
@@ -35,21 +61,13 @@ static void take(void *module, const char *path) {
 
 /* The first that is there is the one; it stays to the end. */
 static void load(void) {
-  char folder[PATH_BYTES], path[PATH_BYTES + 100];
-  find_program_folder(folder);
-  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-    snprintf(path, sizeof path, "%s%s/%s", places[i] ? folder : FOILGAUGE_MODULE_FOLDER,
-             places[i] ? places[i] : "", FG_CV_MODULE_FILE);
-    if (access(path, F_OK) != 0) continue;
-    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (module)
-      take(module, path);
-    else
-      snprintf(why, sizeof why, "%.500s", dlerror());
-    return;
-  }
-  snprintf(why, sizeof why, "%s: is not beside the program (%.400s), nor in ../lib/foilgauge",
-           FG_CV_MODULE_FILE, folder);
+  char path[PATH_BYTES + 100];
+  if (!find_module(path)) return;
+  void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  if (module)
+    take(module, path);
+  else
+    snprintf(why, sizeof why, "%.500s", dlerror());
 }
 
 static fg_status need(fg_context *ctx, const fg_cv_functions **functions) {

@@ -1,0 +1,61 @@
+#!/bin/bash
+# The packages for Debian: installed on a root that holds nothing else, used from there, removed without a trace.
+set -u
+if [ -n "${FOILGAUGE_TEST_BRIEF:-}" ] || [ -z "${FOILGAUGE_TEST_LONG:-}" ]; then
+  echo "skipped: packages are made of a build without sanitizers, where FOILGAUGE_TEST_LONG is set"
+  exit 77
+fi
+for tool in cpack dpkg dpkg-deb dpkg-shlibdeps; do
+  command -v $tool >/dev/null || { echo "skipped: no $tool"; exit 77; }
+done
+[ "$(id -u)" -eq 0 ] || { echo "skipped: dpkg installs for root only"; exit 77; }
+. tests/support/cli.sh
+
+# The packages as they are made, but for the compression, which takes longer than all the rest.
+cpack --config "$(dirname "$program")/CPackConfig.cmake" -B "$work/made" -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip \
+  >"$work/log" 2>&1 || fail "cpack: $(tail -n 5 "$work/log")"
+deb=$(ls "$work"/made/foilgauge_*.deb) dev=$(ls "$work"/made/foilgauge-dev_*.deb)
+
+field() { dpkg-deb -f "$1" "$2"; }
+version=$("$program" version | cut -d' ' -f2)
+[ "$(field "$deb" Version)" = "$version" ] || fail "version $(field "$deb" Version)"
+[ "$(field "$dev" Depends)" = "foilgauge (= $version)" ] || fail "foilgauge-dev depends on $(field "$dev" Depends)"
+# Every library that the program, the shared library and the module are linked with is of a package that is depended on.
+dpkg-deb -x "$deb" "$work/open"
+depends=$(field "$deb" Depends)
+find "$work/open" -type f -exec readelf -d {} + 2>/dev/null | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort -u >"$work/needed"
+[ "$(wc -l <"$work/needed")" -gt 8 ] || fail "what is needed is not found"
+dpkg-query -S $(sed 's|^|*/|' "$work/needed") 2>/dev/null >"$work/owners"
+while read -r library; do
+  owners=$(grep "/$library\$" "$work/owners" | cut -d: -f1 | sort -u)
+  echo "$depends" | tr ',' '\n' | awk '{ print $1 }' | grep -qxF "${owners:-nobody}" ||
+    fail "$library is of '$owners': not in '$depends'"
+done <"$work/needed"
+
+# A root with a shell and the libraries of the packages that are depended on, and nothing else.
+root=$work/root
+mkdir -p "$root/bin" "$root/sbin" "$root/etc" "$root/tmp" "$root/var/lib/dpkg/updates" "$root/var/lib/dpkg/info"
+touch "$root/var/lib/dpkg/status"
+cp -L /bin/sh "$root/bin/sh"
+cp -L /sbin/ldconfig "$root/sbin/ldconfig"
+ldd /bin/sh "$program" | grep -oE '/[^ :]+\.so[^ :]*' | sort -u | xargs cp -L --parents -t "$root"
+listing() { (cd "$root" && find . -path ./var -prune -o ! -path ./etc/ld.so.cache -print | sort); }
+listing >"$work/before"
+dpkg_there() { dpkg --root="$root" --force-depends --log=/dev/null "$@" >"$work/log" 2>&1; }
+
+dpkg_there -i "$deb" "$dev" || fail "dpkg -i: $(tail -n 3 "$work/log")"
+[ -f "$root/usr/include/foilgauge/measure.h" ] || fail "no headers"
+find "$root/usr" -type f -perm /022 | grep . && fail "others may write what is installed"
+cat >"$root/tmp/spec.json" <<'SPEC'
+{"schema": "foilgauge/render/1", "seed": 5, "foils": [{"rotate_deg": -90}], "scanner": {"dpi": 1200}}
+SPEC
+expect 0 "" chroot "$root" foilgauge render /tmp/spec.json -o /tmp/foil.png
+expect 0 "" chroot "$root" foilgauge measure /tmp/foil.png -o /tmp/a.json
+# OpenCV and all that comes with it lie on the real root.
+expect 0 "" "$root/usr/bin/foilgauge" measure "$root/tmp/foil.png" -o "$work/a.json" --overlay "$work/a.png"
+rm "$root"/tmp/*
+
+dpkg_there -r foilgauge-dev foilgauge || fail "dpkg -r: $(tail -n 3 "$work/log")"
+listing >"$work/after"
+diff "$work/before" "$work/after" >"$work/differ" || fail "left behind: $(head -n 5 "$work/differ")"
+exit $failed
