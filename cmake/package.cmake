@@ -1,0 +1,27 @@
+# cpack: packages for Debian and Ubuntu.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME foilgauge)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "foilgauge developers <foilgauge@localhost>" CACHE STRING
+    "Who answers for the packages: NAME <ADDRESS>")
+
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME foilgauge)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+    "The program with its manual, its schemas and samples, and the shared library.")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME foilgauge-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "foilgauge (= ${PROJECT_VERSION})")
+# Of programs that link the static library.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libpng-dev, libtiff-dev, libisal-dev, libgsl-dev, libcjson-dev, nettle-dev, libcsv-dev, libsqlite3-dev, libmicrohttpd-dev")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+    "Headers, the static library, and what pkg-config and CMake need to build against foilgauge.")
+include(CPack)
