@@ -20,7 +20,7 @@ RUNS = [(500, 3, -13.65), (500, 3, -9.69), (600, 3, -2.67), (600, 3, -4.23), (50
 SINUSOIDAL = {"schema": "foilgauge/design/1", "name": "sinusoidal", "form": "sinusoidal", "bump_radius_mm": 3.2,
               "bump_angle_deg": 60, "overall_radius_mm": 20.73, "thickness_mm": 0.1, "fillet_radius_mm": 1.1}
 # Of the lot: bumps near the lip creep by this factor less, a law that a beam has not. Scatter from bump to bump.
-SLOWER, REACH, SCATTER = 2.0, 2.0, 0.0015
+SLOWER, REACH, SCATTER = 2.0, 2.0, 0.0008
 FOILS, BUMPS = 12, 9
 
 
@@ -96,6 +96,12 @@ def render_lot(folder, material, dpi):
     return truth, lot
 
 
+def claim_words(claim):
+    others = ", ".join(sorted({str(a.get("id") or a.get("name")) if isinstance(a, dict) else str(a) for a in claim.get("alias_class", [])}))
+    tie = f"; these data cannot tell it from {others}" if claim["verdict"] == "tied" and others else ""
+    return f"{claim['id']} ({claim['verdict']}, p = {claim['p_value']:.2g}{tie})"
+
+
 def draw(path, truth, declared, measured):
     """Measured bumps, the declared model and the law of the lot: radius over the bump's number, as SVG."""
     values = [*truth, declared, *(v for _, v in measured)]
@@ -141,8 +147,8 @@ Of the whole foil instead of its lands (`--of foil`) the fit leaves {foil_sd:.1f
 classical foil **closes** (overall springback above 0) at every setting, while the thesis's foils opened by 2.4 to 20.8 %. Bumps bend
 the other way than lands and fillets, are longer than both together ({bump_mm:.2f} against {rest_mm:.2f} mm of a pitch), and lose about
 as much curvature: a beam cannot open such a foil unless every curvature loses the same share of itself (Norton's n = 1, nothing
-yielding). What opens the measured ones needs contact and friction, or another material law; it is out of reach here, and said in
-every output. The fit above is of a plain strip of the overall radius, for which the beam has the measured sign.
+yielding). What opens the measured ones is not in this model (contact and friction, or another law of the material), and every
+output says so. The fit above is of a plain strip of the overall radius, for which the beam has the measured sign.
 
 ## Hotter and longer is less
 
@@ -159,7 +165,7 @@ following both; a strip that has crept all it can has the die's R, alpha, R0 wit
 ## The loop once more
 
 {foils} foils of {bumps} bumps rendered at {dpi} dpi, whose creep rate near the lip is lower (by exp(-{slower:g} exp(-(bump - 1) / {reach:g}))),
-scatter {scatter:g} %. Declared: `form` with the same strip and one rate for all bumps. `loop --lot DIR --form-model form.json`:
+scatter {scatter:.2g} %. Declared: `form` with the same strip and one rate for all bumps. `loop --lot DIR --form-model form.json`:
 
 > {summary}
 
@@ -213,7 +219,7 @@ def main():
         foils=FOILS, bumps=BUMPS, dpi=arguments.dpi, slower=SLOWER, reach=REACH, scatter=100 * SCATTER, summary=loop["summary"],
         before=um * loop["before"]["rms"], after=um * loop["after"]["rms"], held_before=um * loop["before"]["held_out_rms"],
         held_after=um * loop["after"]["held_out_rms"], verdict=loop["verdict"],
-        claims=", ".join(f"{c['id']} (p = {c['p_value']:.2g})" for c in loop["claims"]) or "nothing",
+        claims=", ".join(claim_words(c) for c in loop["claims"]) or "nothing",
         put_in=um * SCATTER * sum(truth) / len(truth))
     with open(os.path.join(arguments.o, "form.md"), "w", encoding="utf-8") as file:
         file.write(page)
