@@ -44,7 +44,7 @@ dated() {
 dated 20.11.2026 '' "['2026-11-20', '2026-11-20', 'manifest']"
 dated '2026-11-20 13:45' 2026-11-19 "['2026-11-19', '2026-11-20T13:45', 'manifest']"
 [ "$(value dated/lot.json 'r["date"]["from"]')" = manifest ] || fail "the manifest's dates are not taken"
-dated 11/20/2026 2026-11-19 "['2025-03-06', '$(date -u +%F -r scans/a.png)', 'scans']"
+dated 11/20/2026 2026-11-19 "['2025-03-06', '$(date -u +%F -r scans/a.png)', 'scans', 1]"
 
 # The lots of the tests below: 12 foils of 3 bumps each, alike but for what is said here.
 cat >list <<'L'
