@@ -12,7 +12,7 @@ static const double window_share_min = 1.0 / 60;
 
 /* How many standard uncertainties the intervals of windows that must agree reach. Small: a window
  * that is a little too small costs noise, which u says; one too large costs bias, which it does
- * not. tests/unit/test_load_test.c counts what comes of it. */
+ * not. tests/bench/stiffness.py counts what comes of it. */
 static const double interval_reach = 2.0, window_taken = 0.64;
 
 /* Places where a stroke is looked at for the force that is sought. */
