@@ -56,7 +56,7 @@ static bool read_table(const uint8_t *bytes, size_t length, uint16_t zigzag[64])
   if (length < 1 + 64 * width) return false;
   for (size_t i = 0; i < 64; i++) {
     const uint8_t *at = bytes + 1 + i * width;
-    zigzag[i] = width == 2 ? (uint16_t)(at[0] << 8 | at[1]) : at[0];
+    zigzag[i] = (uint16_t)(width == 2 ? at[0] << 8 | at[1] : at[0]);
   }
   return true;
 }
