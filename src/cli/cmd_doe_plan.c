@@ -289,8 +289,30 @@ static fg_status write_page(fg_context *ctx, const plan_arguments *a, const fg_p
                        fg_plan_write_html(ctx, plan, a->column, a->columns, output.stream));
 }
 
+/* A sheet that somebody filled in is no sheet to write over; what is no table is not looked at. */
+static fg_status check_unfilled(fg_context *ctx, const plan_arguments *a) {
+  fg_context unused = {.message = ""};
+  fg_table table;
+  char sum[65];
+  bool filled = false;
+  if (!a->output_path || access(a->output_path, R_OK) != 0 || !strncmp(a->output_path, "/dev/", 5))
+    return FG_OK;
+  if (fg_table_load(&unused, a->output_path, &table, sum) != FG_OK) return FG_OK;
+  for (size_t i = 0; i < a->columns; i++) {
+    const fg_column *column;
+    if (fg_table_find(&unused, &table, a->column[i], &column) == FG_OK)
+      filled = filled || column->missing_count < table.rows;
+  }
+  fg_table_free(&table);
+  if (!filled) return FG_OK;
+  return fg_fail(ctx, FG_ERR_USAGE,
+                 "%s: somebody has filled in this sheet: name another file, or move it away",
+                 a->output_path);
+}
+
 static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
   fg_output output;
+  FG_TRY(check_unfilled(ctx, a));
   FG_TRY(fg_output_open(ctx, a->output_path, &output));
   FG_TRY(fg_output_end(ctx, &output, write_sheet(ctx, a, plan, output.stream)));
   FG_TRY(write_beside(ctx, a, plan));

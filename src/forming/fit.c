@@ -108,12 +108,14 @@ static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double le
     found->u = sqrt(variance * gsl_matrix_get(inverse, k, k)) * (row->by_factors ? 1 : row->value);
     found->interval[0] = found->interval[1] = NAN;
     fit->material.value[s->constant[k]] = found->value;
-    fg_text_clip(fit->material.source[s->constant[k]], FG_FORMING_SOURCE, "fitted to %zu runs (%s)",
-                 fit->runs, fit->response_name);
     for (size_t j = 0; j < s->free; j++)
       fit->correlation[k][j] = gsl_matrix_get(inverse, k, j) /
                                sqrt(gsl_matrix_get(inverse, k, k) * gsl_matrix_get(inverse, j, j));
     FG_TRY(find_interval(s, x, least, k, found));
+    bool identified = isfinite(found->interval[0]) && isfinite(found->interval[1]);
+    fg_text_clip(fit->material.source[s->constant[k]], FG_FORMING_SOURCE,
+                 "fitted to %zu runs (%s)%s", fit->runs, fit->response_name,
+                 identified ? "" : "; not identified");
   }
   return FG_OK;
 }
@@ -125,8 +127,7 @@ static fg_status fit_all(fg_forming_search *s, gsl_vector *x, gsl_matrix *invers
   double least;
   FG_TRY(fg_forming_search_all(s, NULL, x, &least, inverse));
   if (!(least < INFINITY))
-    return fg_fail(s->ctx, FG_ERR_DATA,
-                   "no values of the constants fg_forming_search_predict these runs");
+    return fg_fail(s->ctx, FG_ERR_DATA, "no values of the constants predict these runs");
   fit->model = (fg_forming_errors){.residual_sd =
                                        sqrt(least / (double)(fg_forming_search_rows(s) - s->free)),
                                    .parameters = s->free};
@@ -196,6 +197,8 @@ static fg_status fit_surface(fg_context *ctx, const fg_table *table, fg_forming_
 
 /* ---- what is asked ---- */
 
+#define ABSOLUTE_ZERO_C (-273.15)
+
 static fg_status take_runs(fg_context *ctx, const fg_table *table, fg_forming_fit *fit) {
   const fg_extended *temperature, *duration, *response;
   FG_TRY(fg_table_numbers(ctx, table, "temperature_C", &temperature));
@@ -207,6 +210,10 @@ static fg_status take_runs(fg_context *ctx, const fg_table *table, fg_forming_fi
     fit->run[i] = (fg_forming_run_fit){.temperature_C = temperature[i].value,
                                        .duration_h = duration[i].value,
                                        .measured = response[i].value};
+    if (!(temperature[i].value > ABSOLUTE_ZERO_C))
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: row %zu: temperature_C is %g, below absolute zero: degrees Celsius",
+                     table->source, i + 1, temperature[i].value);
     if (!(duration[i].value > 0))
       return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: duration_h is %g; it must be above 0",
                      table->source, i + 1, duration[i].value);

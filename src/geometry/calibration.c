@@ -35,6 +35,11 @@ static fg_status check_temperature(fg_context *ctx, const fg_calibration *c) {
 fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *c) {
   static const char *const axes[] = {"scale.x", "scale.y"};
   if (!c->stated) return FG_OK;
+  if (!(c->u_scale[0] > 0 && c->u_scale[1] > 0))
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "calibration.scale: an uncertainty of 0; no scale is known exactly: state it, as "
+        "1e-4 for 0.01 %%, or leave the calibration out");
   for (int axis = 0; axis < 2; axis++)
     FG_TRY(check_u(ctx, c->per_axis ? axes[axis] : "scale", c->u_scale[axis], scale_most,
                    " of the length, as 1e-4 for 0.01 %"));

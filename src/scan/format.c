@@ -38,8 +38,8 @@ static const struct {
 fg_status fg_format_refuse_lossy(fg_context *ctx, const char *name, const char *compression) {
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: is compressed with loss (%s), which moves edges; scan again to PNG or TIFF, "
-                 "or take it as it is, with wider uncertainties: --allow-lossy (in a recipe "
-                 "\"allow_lossy\": true)",
+                 "or take it as it is, with wider uncertainties: \"allow_lossy\": true in a "
+                 "recipe, or the option --allow-lossy of measure, lot and loop",
                  name, compression);
 }
 

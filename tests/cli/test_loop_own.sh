@@ -29,7 +29,7 @@ r = json.load(open("bumps.json"))
 assert r["verdict"] == "explained", r["summary"]
 names = {c["name"] for c in r["claims"]} | {a["name"] for c in r["claims"] for a in c["alias_class"]}
 assert "table.factor(die)" in names, names
-assert r["declared"] == {"response": "radius_mm", "model": "1", "group": "foil", "groups": 14}, r["declared"]
+assert r["declared"] == {"response": "radius_mm", "model": "1", "offset": None, "group": "foil", "groups": 14}, r["declared"]
 assert [i["path"] for i in r["inputs"]] == ["lot/results.jsonl", "lot/manifest.csv", "lot/recipe.json"]
 assert r["inputs"][0]["rows"] == 56 and all(len(i["sha256"]) == 64 for i in r["inputs"])
 tried = " ".join(c["name"] for c in r["claims"] + r["rejected"])

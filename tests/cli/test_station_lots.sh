@@ -53,15 +53,15 @@ said "$work/said" "4 measured, 0 known, 0 refused" "--once"
 # All of a lot, and the same as `lot` makes of it.
 "$program" station "$work/in" --export "$work/out" 2>"$work/said" || fail "--export: $(cat "$work/said")"
 said "$work/said" "out/L 1 4 foils of 3 scans: 4 pass" "--export"
-"$program" lot "$work/out/L 1/manifest.csv" --recipe "$work/out/L 1/recipe.json" -o "$work/lot" 2>/dev/null
-diff -r "$work/lot" "$work/out/L 1" >&2 || fail "--export and lot differ"
+"$program" lot "$work/out/L 1/manifest.csv" --recipe "$work/out/L 1/recipe.json" -o "$work/ref/lot" 2>/dev/null
+diff -r "$work/ref/lot" "$work/out/L 1" >&2 || fail "--export and lot differ"
 for folder in "$work/out"/*; do
   "$program" lot "$folder/manifest.csv" --recipe "$folder/recipe.json" -o "$folder" --resume \
     --dry-run >"$work/said"
   grep -q " 0 to measure" "$work/said" || fail "--resume after --export: $(cat "$work/said")"
 done
-"$program" merge "$work/out/L 1" -o "$work/merged" 2>/dev/null
-diff -r "$work/merged" "$work/lot" >&2 || fail "merge of what was exported differs"
+"$program" merge "$work/out/L 1" -o "$work/ref/merged" 2>/dev/null
+diff -r "$work/ref/merged" "$work/ref/lot" >&2 || fail "merge of what was exported differs"
 "$program" lot --index "$work/index.html" "$work/out"/*
 grep -q 'L%201\|L 1' "$work/index.html" || fail "the index does not name the lot"
 code=0

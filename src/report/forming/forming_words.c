@@ -44,23 +44,28 @@ static size_t note_material(const fg_forming *forming, char *note) {
   for (int c = 0; c < FG_FORMING_CONSTANTS; c++)
     n += is_default(&forming->material, (fg_forming_constant)c);
   if (!n) return 0;
-  fg_text_clip(note, FG_FORMING_NOTE,
-               "%zu of %d constants are the literature's, not this strip's: yield stress and creep "
-               "rate scatter by factors, so the size of a springback is a guess until `form --fit` "
-               "has runs to find them from; trends are not.",
-               n, FG_FORMING_CONSTANTS);
+  fg_text_clip(
+      note, FG_FORMING_NOTE,
+      "%zu of %d constants are the literature's, not this strip's: yield stress and creep "
+      "rate scatter by factors, so the size of a springback is a guess until form --fit has "
+      "runs to find them from. Of the lands alone hotter and longer is less; of the whole "
+      "foil, a small difference of lands and bumps, not always.",
+      n, FG_FORMING_CONSTANTS);
   return 1;
 }
 
 /* Bumps bend the other way than lands and fillets: what they open closes the foil. */
 static size_t note_closing(const fg_forming *forming, char *note) {
+  char lands[60] = "springs back to no circle";
   if (!forming->bump_count || !(forming->springback_error_pct > 0)) return 0;
+  if (isfinite(forming->strip_springback_error_pct))
+    fg_text_clip(lands, sizeof lands, "it says %+.2f %%", forming->strip_springback_error_pct);
   fg_text_clip(note, FG_FORMING_NOTE,
                "The free foil closes: its bumps, which bend the other way, are longer than lands "
                "and fillets together, and each loses about the same curvature. The thesis's foils "
                "opened (-2.4 to -20.8 %%): what makes them open is not in this model. Of the lands "
-               "alone, a plain strip, it says %+.2f %%.",
-               forming->strip_springback_error_pct);
+               "alone, a plain strip, %s.",
+               lands);
   return 1;
 }
 
@@ -111,14 +116,22 @@ static size_t note_open(const fg_forming_fit *fit, char *note) {
 size_t fg_forming_fit_notes(const fg_forming_fit *fit,
                             char notes[FG_FORMING_NOTES][FG_FORMING_NOTE]) {
   size_t n = 0;
+  char surface[80] = "; a quadratic surface these runs do not carry";
+  char missed[60] = "";
   const fg_forming_errors *m = &fit->model, *q = &fit->surface;
+  if (isfinite(q->residual_sd)) {
+    fg_text_clip(surface, sizeof surface, ", a quadratic surface %.2f (%zu)", q->residual_sd,
+                 q->parameters);
+    if (isfinite(q->left_out_rms))
+      fg_text_clip(missed, sizeof missed, ", the surface %.2f", q->left_out_rms);
+    else
+      fg_text_clip(missed, sizeof missed, ", without which the surface is none");
+  }
   fg_text_clip(
       notes[n++], FG_FORMING_NOTE,
-      "The beam model leaves %.2f points (residual sd, %zu constants), a quadratic surface "
-      "%.2f (%zu). Of runs that took no part it misses %.2f points (rms, each run left out "
-      "in turn), the surface %.2f.%s",
-      m->residual_sd, m->parameters, q->residual_sd, q->parameters, m->left_out_rms,
-      q->left_out_rms,
+      "The beam model leaves %.2f points (residual sd, %zu constants)%s. Of runs that took no part "
+      "it misses %.2f points (rms, each run left out in turn)%s.%s",
+      m->residual_sd, m->parameters, surface, m->left_out_rms, missed,
       m->left_out_rms > 2 * m->residual_sd
           ? " It may be believed between these runs and not beyond: without its outermost "
             "run it does not find it again."
