@@ -35,7 +35,7 @@ static fg_status check_temperature(fg_context *ctx, const fg_calibration *c) {
 fg_status fg_calibration_check(fg_context *ctx, const fg_calibration *c) {
   static const char *const axes[] = {"scale.x", "scale.y"};
   if (!c->stated) return FG_OK;
-  if (!(c->u_scale[0] > 0 && c->u_scale[1] > 0))
+  if (c->u_scale[0] == 0 && c->u_scale[1] == 0)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "calibration.scale: an uncertainty of 0; no scale is known exactly: state it, as "

@@ -107,7 +107,7 @@ done
 expect 0 '' "$program" design plain.json --html design.html -o design.out
 grep -q '<dt>Design</dt><dd>d (classical), SHA-256 ' design.html || fail "design.html: no design"
 
-[ -n "${FOILGAUGE_TEST_BRIEF-}" ] && exit $failed
+[ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
 # A loop: what it decides does not see it, the dimensions that it reports do.
 for d in plain scale; do
   expect 0 '' "$program" loop $scan --design $d.json -o loop_$d.out --html loop.html

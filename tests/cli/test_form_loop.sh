@@ -1,6 +1,7 @@
 #!/bin/bash
 # `foilgauge form` as the declared model of a loop: foils whose creep depends on the bump's number, which the model lacks.
-. tests/support/cli.sh
+. tests/support/loop.sh
+skip_when_slow
 listened="stdout stderr"
 foils=8
 

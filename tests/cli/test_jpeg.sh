@@ -19,7 +19,7 @@ measure() {
 
 # Refused by name, with the way out, wherever scans are read.
 printf 'scan,D\nlot/scan.jpg,1\nlot/scan.jpg,2\nlot/scan.jpg,3\n' >runs.csv
-expect 65 'lot/scan.jpg: is compressed with loss \(JPEG\).*--allow-lossy \(in a recipe "allow_lossy": true\)' \
+expect 65 'lot/scan.jpg: is compressed with loss \(JPEG\).*"allow_lossy": true in a recipe, or the option --allow-lossy' \
   measure lot/scan.jpg
 expect 65 '--allow-lossy' "$program" loop --design design.json lot/scan.jpg
 expect 65 '--allow-lossy' "$program" doe runs.csv --scans scan --design design.json --response radius_mm --model '1 + D'

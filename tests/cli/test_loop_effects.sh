@@ -1,6 +1,7 @@
 #!/bin/bash
 # Effects of the scanner that other tests do not render: each is named with its numbers, and the dimensions come back.
 . tests/support/loop.sh
+skip_when_slow
 
 # found NAME ID EFFECT: renders it, and the loop names it alone.
 found() {

@@ -1,6 +1,7 @@
 #!/bin/bash
 # The loop on what is no foil of the design: it says so, the foils beside it still count, nothing ends with a signal.
 . tests/support/loop.sh
+skip_when_slow
 
 # Three times as large as the design has it, and no thicker.
 cat >large.json <<'SPEC'

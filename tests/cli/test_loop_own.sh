@@ -1,6 +1,7 @@
 #!/bin/bash
 # The loop on what the program itself measured: `loop --lot` and `loop --doe --scans`.
 . tests/support/loop.sh
+skip_when_slow
 listened="stdout stderr"
 
 # foil NAME SEED SPRINGBACK: a foil of four bumps whose radii lie above the design's by that share, with a scatter.

@@ -2,6 +2,7 @@
 # The page of the loop on scans (--html): it says what the report says, is whole and its own, makes
 # names of files harmless, and appears only when it could be written.
 . tests/support/loop.sh
+skip_when_slow
 
 # render NAME SEED ROTATION DPI EFFECTS
 render() { render_foil "$1" "$2" "$3" "$5" "$4"; }

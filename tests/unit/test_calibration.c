@@ -80,6 +80,7 @@ static void what_is_no_calibration_is_refused_with_its_place(void **state) {
       {"{\"scale\":{\"u_rel\":\"1e-4\"}}", "calibration.scale.u_rel: must be a number"},
       {"{\"scale\":{\"u_rel\":1e999}}", "calibration.scale.u_rel: the number is too large"},
       {"{\"scale\":{\"u_rel\":-1e-4}}", "calibration.scale: a standard uncertainty of -0.0001"},
+      {"{\"scale\":{\"u_rel\":0}}", "no scale is known exactly"},
       {"{\"scale\":{\"u_rel\":0.1}}", "it must be from 0 to 0.05 of the length"},
       {"{\"scale\":{\"x\":{\"u_rel\":1e-4}}}", "calibration.scale: y is missing"},
       {"{\"scale\":{\"x\":{\"u_rel\":1e-4},\"y\":{\"u_rel\":0.2}}}",
