@@ -100,7 +100,7 @@ fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis) {
   size_t column = fg_manifest_column(&lot->manifest, lot->settings.group_column);
   void *block;
   if (column == FG_NO_COLUMN && lot->settings.group_column[0])
-    return fg_fail(ctx, FG_ERR_DATA, "group_column: the manifest has no column '%s'",
+    return fg_fail(ctx, FG_ERR_DATA, "group_column (--group): the manifest has no column '%s'",
                    lot->settings.group_column);
   if (column == FG_NO_COLUMN) return FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(words), &block));

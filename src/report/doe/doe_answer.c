@@ -90,7 +90,7 @@ static void put_best(FILE *out, const fg_experiment *e) {
   if (isfinite(p->low)) {
     fprintf(out, ", with %g %% confidence ", 100 * e->confidence);
     put_interval(out, e->response, p->low, p->high);
-    fputs("; one run to confirm it should fall between ", out);
+    fputs("; one run to confirm it should come out at ", out);
     put_interval(out, e->response, p->run_low, p->run_high);
   }
   fputs(".", out);
