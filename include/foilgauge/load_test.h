@@ -9,7 +9,10 @@
  * time, the points are
  *   x_j = push + d j (up strokes),   x_j = pull + d j (down strokes),   clearance = push - pull:
  * one drift d for both takes out what creeps (of the sensor, or of the force's zero over the local
- * stiffness). Friction makes the unloading points lie elsewhere; their travel is reported beside.
+ * stiffness). T counts from the load cell's zero: the mean of up and down strokes where it rises
+ * least, if it rises there by less than half of its steepest. A zero beyond half of T, friction of
+ * T and more without a foil, loops that give energy: no clearance is named. Friction makes the
+ * unloading points lie elsewhere; their travel is reported beside.
  *
  * STIFFNESS. dF/dx of the loading strokes by the same regression; structural stiffness is its
  * largest value. Where that is, is decided by the other cycles than the one whose value is taken
@@ -108,6 +111,9 @@ enum {
   FG_LOAD_AT_END = 1 << 5,        /* stiffness is largest where the test ends */
   FG_LOAD_FRICTION_HIGH = 1 << 6, /* friction in the middle is more than half of the threshold */
   FG_LOAD_ONE_CYCLE = 1 << 7,     /* nothing says how cycles differ */
+  FG_LOAD_ZERO_OFF = 1 << 8,      /* the load cell's zero exceeds half of the threshold */
+  FG_LOAD_NO_GAP = 1 << 9,        /* clearance at or below zero */
+  FG_LOAD_UNITS = 1 << 10,        /* clearance of no bearing of that diameter */
 };
 
 typedef struct fg_load_flag {
@@ -149,7 +155,8 @@ typedef struct fg_load_direction {
   size_t strokes, cycles;
   double travel_mm, force_low_n, force_high_n;
   fg_load_value clearance, unloading; /* mm */
-  double push_mm, pull_mm;            /* where T is passed */
+  double zero_n;                      /* what the load cell says in the gap; NaN: not known */
+  double push_mm, pull_mm;            /* where zero + T, zero - T are passed */
   double drift_um_cycle;
   fg_load_value stiffness; /* N/mm */
   double stiffness_at_mm;

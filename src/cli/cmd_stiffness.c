@@ -9,6 +9,7 @@
 #include "cli/output_set.h"
 #include "foilgauge/load_report.h"
 #include "foilgauge/memory.h"
+#include "foilgauge/text.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TEXT, OUT_CSV, OUT_TABLE, OUT_COUNT };
 
@@ -218,6 +219,15 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
   return writers[kind](ctx, &run->test, out);
 }
 
+static fg_status check_lot(fg_context *ctx, stiffness_run *run) {
+  char *path;
+  if (!run->options.lot) return FG_OK;
+  FG_TRY(fg_text_print(ctx, &path, "%s/lot.json", run->options.lot));
+  fg_status status = fg_output_set_check(ctx, &run->outputs, &(fg_input){path, "the lot"}, 1);
+  free(path);
+  return status;
+}
+
 static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
   fg_report_outcome outcome;
   FG_TRY(run->status);
@@ -225,6 +235,7 @@ static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
   for (size_t i = 0; i < run->count; i++)
     FG_TRY(
         fg_output_set_check(ctx, &run->outputs, &(fg_input){run->sources[i].path, "the test"}, 1));
+  FG_TRY(check_lot(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(fg_load_test_measure(ctx, &run->options, run->sources, run->count, &run->test));
   fg_load_judge(&run->test, &outcome, NULL, 0);

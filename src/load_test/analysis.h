@@ -18,9 +18,19 @@ typedef struct fg_load_findings {
   double compliance_mm_n; /* sum of both points' 1 / (dF/dx): what the threshold's u moves */
 } fg_load_findings;
 
-/* Clearance of the loading and of the unloading strokes, and where the loading ones pass T; what
- * each stroke has drifted. */
-fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, double threshold_n,
+/* Between the strokes where the mean of both rises least: the load cell's zero, and the friction
+ * that is passed without a foil. NaN where no such place stands out. */
+typedef struct fg_load_zero {
+  double force_n, friction_n;
+} fg_load_zero;
+fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_load_zero *zero);
+
+/* Clearance of the loading and of the unloading strokes, and where the loading ones pass
+ * zero + T and zero - T; what each stroke has drifted. */
+typedef struct fg_load_levels {
+  double threshold_n, zero_n;
+} fg_load_levels;
+fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load_levels levels,
                               fg_load_direction *direction, fg_load_findings *findings);
 
 /* Whether a stroke goes as far as the record does, on one side. */
@@ -31,12 +41,12 @@ bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_directio
 fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes,
                                  fg_load_direction *direction, fg_load_findings *findings);
 
-/* Area, loss factor (needs the stiffness). */
+/* Area, loss factor (needs the stiffness); whether the loops give energy by more than U. */
 void fg_load_find_loops(const fg_load_test *test, const fg_load_strokes *strokes,
                         fg_load_direction *direction);
 
 /* Friction over force. */
-fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes, double threshold_n,
+fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
                                 fg_load_direction *direction);
 
 /* Of a bearing, from its directions with their final uncertainties. */

@@ -109,8 +109,8 @@ static void find_least(const curve *c, double birge, fg_load_bearing *sum) {
   for (size_t i = 1; i < c->count; i++)
     for (size_t k = 1; k < c->count; k++)
       variance += turned_term(c, i, best, 1) * c->inverse[i][k] * turned_term(c, k, best, 1);
-  double u = birge * sqrt(variance) / value_at(c, best, 2) * 180 / M_PI;
-  if (!(u < u_direction_max_deg)) return;
+  double bend = value_at(c, best, 2), u = birge * sqrt(variance) / bend * 180 / M_PI;
+  if (!(bend > 0 && u > 0 && u < u_direction_max_deg)) return;
   sum->least_at_deg = best - c->turn_deg * floor(best / c->turn_deg);
   sum->u_least_at_deg = u;
 }

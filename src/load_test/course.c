@@ -93,8 +93,8 @@ static void place(const fg_load_direction *direction, int which, side *s) {
 /* Slopes of all parts with the window that suits the whole. */
 static void fit_slopes(side *s) {
   for (size_t g = 0; g < FG_LOAD_POINTS; g++) {
-    s->known[g] =
-        fg_local_fit_adaptive(&s->part[WHOLE], s->x[g], FG_LOCAL_SLOPE, &s->fit[WHOLE][g]);
+    s->seen[g] = fg_local_fit_adaptive(&s->part[WHOLE], s->x[g], FG_LOCAL_SLOPE, &s->fit[WHOLE][g]);
+    s->known[g] = s->seen[g];
     for (int part = ODD; part <= EVEN; part++)
       s->known[g] = s->known[g] && fg_local_fit_at(&s->part[part], s->x[g],
                                                    s->fit[WHOLE][g].window_mm, &s->fit[part][g]);

@@ -132,7 +132,7 @@ static fg_load_friction fit(const between *b, double zero) {
   return f;
 }
 
-fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes, double threshold_n,
+fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
                                 fg_load_direction *direction) {
   between b = {0};
   double *forces = NULL, centre = (direction->push_mm + direction->pull_mm) / 2;
@@ -146,7 +146,6 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
     if (fabs(b.x[k] - centre) < fabs(b.x[zero] - centre)) zero = k;
   /* In the middle between the points no foil pulls: what the cell says there is its zero. */
   direction->friction = fit(&b, b.middle[zero]);
-  if (b.half[zero] > threshold_n / 2) direction->flags |= FG_LOAD_FRICTION_HIGH;
   return FG_OK;
 }
 

@@ -34,12 +34,20 @@ const fg_load_flag *fg_load_flags(void) {
       {FG_LOAD_TOO_FEW, "too_few_samples", "too few samples, or no travel"},
       {FG_LOAD_WRONG_WAY, "energy_gained",
        "the loops run the wrong way round: are the rows in the order of time?"},
+      {FG_LOAD_ZERO_OFF, "zero_off",
+       "the load cell's zero is off by more than half of the threshold: set it, or choose a higher "
+       "threshold"},
+      {FG_LOAD_NO_GAP, "no_gap",
+       "the loading strokes pass the threshold on the wrong sides: there is no clearance at it"},
+      {FG_LOAD_UNITS, "units_suspect",
+       "a clearance beyond 5 % of the diameter, or below 1 um: are the units what they say?"},
       {FG_LOAD_FORCE_TURNED, "force_turned",
        "the force runs against the displacement, as a reaction does; its sign was turned"},
       {FG_LOAD_AT_END, "stiffness_at_end",
        "the stiffness is largest where the test ends: more travel would find more"},
       {FG_LOAD_FRICTION_HIGH, "friction_high",
-       "friction in the middle is more than half of the threshold: choose a higher one"},
+       "friction in the middle is more than half of the threshold: choose a higher one (from the "
+       "threshold on there is no clearance)"},
       {FG_LOAD_ONE_CYCLE, "one_cycle", "one cycle: nothing says how cycles differ"},
       {0, NULL, NULL},
   };
@@ -72,11 +80,44 @@ static void turn_force(fg_load_test *test, fg_load_direction *d) {
   d->flags |= FG_LOAD_FORCE_TURNED;
 }
 
+/* Clearances that are units mistaken: a share of the bore, and below what a rotor is round to. */
+static const double clearance_share_max = 0.05, clearance_min_mm = 0.001;
+
+static void forget_clearance(fg_load_direction *d) {
+  d->clearance = d->unloading = (fg_load_value){NAN, NAN, NAN};
+  d->push_mm = d->pull_mm = NAN;
+}
+
+/* What is no clearance though both thresholds are passed. */
+static void check_clearance(const fg_load_test *test, const fg_load_zero *zero,
+                            fg_load_direction *d) {
+  double t = test->options.threshold_n, c = d->clearance.value;
+  if (fabs(zero->force_n) > t / 2) d->flags |= FG_LOAD_ZERO_OFF;
+  if (zero->friction_n > t / 2) d->flags |= FG_LOAD_FRICTION_HIGH;
+  if (c <= 0) d->flags |= FG_LOAD_NO_GAP;
+  if ((d->flags & (FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP)) || zero->friction_n >= t)
+    forget_clearance(d);
+  else if (c > clearance_share_max * test->options.diameter_mm || c < clearance_min_mm)
+    d->flags |= FG_LOAD_UNITS;
+}
+
+/* Rows that do not stand in the order of time: loading and unloading may be each other. */
+static void forget_all(fg_load_direction *d) {
+  const fg_load_value none = {NAN, NAN, NAN};
+  forget_clearance(d);
+  d->stiffness = d->loss = d->loss_secant = none;
+  d->stiffness_at_mm = NAN;
+  d->flags &= ~(unsigned)FG_LOAD_AT_END;
+  d->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN, NAN};
+}
+
 static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
+  enum { REASONS = FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP | FG_LOAD_WRONG_WAY | FG_LOAD_FRICTION_HIGH };
   if (isfinite(d->clearance.value)) {
     if (d->cycles < 2) d->flags |= FG_LOAD_ONE_CYCLE;
     return;
   }
+  if (d->flags & REASONS) return;
   double t = test->options.threshold_n;
   bool push = d->force_high_n > t, pull = d->force_low_n < -t;
   if (!d->strokes)
@@ -91,6 +132,8 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
                                    const fg_load_records *records, fg_load_direction *d,
                                    fg_load_findings *findings) {
   fg_load_strokes strokes = {0};
+  fg_load_zero zero;
+  fg_load_levels levels = {.threshold_n = test->options.threshold_n};
   fg_status status = FG_OK;
   const fg_load_value none = {NAN, NAN, NAN};
   d->predicted = d->difference = none;
@@ -99,10 +142,15 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   FG_TRY_EXIT(fg_load_strokes_cut(ctx, test, d, records, &strokes));
   d->strokes = strokes.count;
   d->cycles = strokes.count / 2;
-  FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, test->options.threshold_n, d, findings));
+  FG_TRY_EXIT(fg_load_find_zero(ctx, &strokes, &zero));
+  d->zero_n = zero.force_n;
+  levels.zero_n = isfinite(zero.force_n) ? zero.force_n : 0;
+  FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, levels, d, findings));
+  check_clearance(test, &zero, d);
   FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
   fg_load_find_loops(test, &strokes, d);
-  FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, test->options.threshold_n, d));
+  FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, d));
+  if (d->flags & FG_LOAD_WRONG_WAY) forget_all(d);
   say_why_not(test, d);
 exit:
   fg_load_strokes_free(&strokes);

@@ -6,6 +6,9 @@
 /* Ends of a loop that lie nearer to each other than this share of the travel close it. */
 static const double close_share = 0.05;
 
+/* Loops give energy where their area is below zero by more than U = 2 u. */
+static const double gained_reach = 2;
+
 /* Samples about a turning point whose mean is its force. */
 enum { TURN_SAMPLES = 9 };
 
@@ -98,7 +101,7 @@ void fg_load_find_loops(const fg_load_test *test, const fg_load_strokes *strokes
   double apart = (n + 1) / 2;
   double scatter = n > 1 ? fmax(0, (all.squares - n * mean * mean) / (n - 1)) / apart : 0;
   direction->area = (fg_load_value){mean, NAN, sqrt(fmax(scatter, all.noise / apart))};
-  if (mean < 0) direction->flags |= FG_LOAD_WRONG_WAY;
+  if (mean < -gained_reach * direction->area.u_repeat) direction->flags |= FG_LOAD_WRONG_WAY;
   double k = direction->stiffness.value, half = travel / 2;
   double u = hypot(direction->area.u_repeat / mean, direction->stiffness.u_repeat / k);
   double loss = mean / (M_PI * k * half * half);

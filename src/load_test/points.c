@@ -27,20 +27,20 @@ typedef struct plan {
 } plan;
 
 /* Up strokes load at +T, down strokes at -T. */
-static point find_point(const fg_load_stroke *stroke, double threshold_n) {
+static point find_point(const fg_load_stroke *stroke, fg_load_levels levels) {
   fg_local_fit fit;
   point p = {.side = stroke->sense > 0 ? PUSH : PULL};
-  double level = p.side == PUSH ? threshold_n : -threshold_n;
+  double level = levels.zero_n + (p.side == PUSH ? 1 : -1) * levels.threshold_n;
   p.found = fg_local_crossing(stroke, level, &p.x, &p.u, &fit);
   return p;
 }
 
-static plan make_plan(const fg_load_strokes *strokes, double threshold_n) {
+static plan make_plan(const fg_load_strokes *strokes, fg_load_levels levels) {
   plan all = {.apart = true};
   size_t in_record[2] = {0};
   for (size_t i = 0; i < strokes->count; i++) {
     const fg_load_stroke *s = &strokes->stroke[i];
-    point p = find_point(s, threshold_n);
+    point p = find_point(s, levels);
     if (!i) all.first_record = s->record;
     if (p.found) {
       all.count[p.side]++;
@@ -62,9 +62,9 @@ typedef struct joined {
 
 /* Least squares of all strokes' points, which says how the strokes have drifted; false where a side
  * has none. */
-static bool join(fg_load_strokes *strokes, double threshold_n, joined *out) {
+static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   fg_normal_equations system;
-  plan all = make_plan(strokes, threshold_n);
+  plan all = make_plan(strokes, levels);
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   if (!all.count[PUSH] || !all.count[PULL]) return false;
   bool drifts = all.repeats > 1;
@@ -74,7 +74,7 @@ static bool join(fg_load_strokes *strokes, double threshold_n, joined *out) {
   *out = (joined){0};
   for (size_t i = 0; i < strokes->count; i++) {
     const fg_load_stroke *s = &strokes->stroke[i];
-    point p = find_point(s, threshold_n);
+    point p = find_point(s, levels);
     double row[FG_SMALL_MAX] = {0};
     if (!p.found) continue;
     row[p.side] = 1;
@@ -129,20 +129,21 @@ static fg_load_value travel(const passed side[2]) {
   return (fg_load_value){side[PUSH].x - side[PULL].x, NAN, hypot(side[PUSH].u, side[PULL].u)};
 }
 
-fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, double threshold_n,
+fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load_levels levels,
                               fg_load_direction *direction, fg_load_findings *findings) {
   joined all;
   passed loading[2], unloading[2];
   fg_load_value none = {NAN, NAN, NAN};
   direction->clearance = direction->unloading = none;
   direction->push_mm = direction->pull_mm = direction->drift_um_cycle = NAN;
-  if (!join(strokes, threshold_n, &all)) return FG_OK;
+  if (!join(strokes, levels, &all)) return FG_OK;
   direction->drift_um_cycle = 2000 * all.drift;
   findings->points = all.scatter;
   for (int side = PUSH; side <= PULL; side++) {
     int sense = side == PUSH ? 1 : -1;
-    FG_TRY(find_passed(ctx, strokes, sense, sense * threshold_n, &loading[side]));
-    FG_TRY(find_passed(ctx, strokes, -sense, sense * threshold_n, &unloading[side]));
+    double level = levels.zero_n + sense * levels.threshold_n;
+    FG_TRY(find_passed(ctx, strokes, sense, level, &loading[side]));
+    FG_TRY(find_passed(ctx, strokes, -sense, level, &unloading[side]));
     if (loading[side].found) findings->compliance_mm_n += 1 / loading[side].slope;
   }
   direction->clearance = travel(loading);

@@ -42,16 +42,37 @@ static void name_of(const cJSON *bearing, char *text, size_t size) {
     fg_text_clip(text, size, "%.0f", cJSON_IsNumber(number) ? number->valuedouble : 0);
 }
 
-static bool read_places(const cJSON *bearing, places *p) {
+/* A clearance of null is a place that was not measured; what else is none is no lot's. */
+static const char *check_place(const places *p, size_t i) {
+  if (!isfinite(p->angle_deg[i])) return "has no angle_deg";
+  if (!isfinite(p->clearance_mm[i])) return NULL;
+  if (p->clearance_mm[i] < 0) return "has a negative clearance_mm";
+  return p->u_mm[i] >= 0 && isfinite(p->u_mm[i]) ? NULL : "has no u_clearance_mm";
+}
+
+static fg_status read_places(fg_context *ctx, const cJSON *bearing, const char *path,
+                             const char *name, places *p) {
   *p = (places){0};
   p->count = read_numbers(bearing, "angle_deg", p->angle_deg);
-  if (!p->count || read_numbers(bearing, "clearance_mm", p->clearance_mm) != p->count) return false;
-  if (read_numbers(bearing, "u_clearance_mm", p->u_mm) != p->count) return false;
-  for (size_t i = 0; i < p->count; i++)
+  if (!p->count || read_numbers(bearing, "clearance_mm", p->clearance_mm) != p->count ||
+      read_numbers(bearing, "u_clearance_mm", p->u_mm) != p->count)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: the bearing '%s' has no clearances", path, name);
+  for (size_t i = 0; i < p->count; i++) {
+    const char *wrong = check_place(p, i);
+    if (wrong)
+      return fg_fail(ctx, FG_ERR_DATA, "%s: place %zu of the bearing '%s' %s", path, i + 1, name,
+                     wrong);
     if (!isfinite(p->clearance_mm[i])) p->unknown++;
+  }
+  if (p->unknown == p->count)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: no place of the bearing '%s' has a clearance", path,
+                   name);
   int pads = cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(bearing, "pads"));
   p->per_pad = pads > 0 ? p->count / (size_t)pads : p->count;
-  return true;
+  if (pads > 0 && p->count % (size_t)pads)
+    return fg_fail(ctx, FG_ERR_DATA, "%s: the bearing '%s' has %zu places on %d pads", path, name,
+                   p->count, pads);
+  return FG_OK;
 }
 
 /* How far a rotor goes from the middle towards `deg` until it meets a place: place i leaves
@@ -94,8 +115,7 @@ static fg_status take_bearings(fg_context *ctx, fg_load_test *test, const cJSON 
     for (size_t i = 0; i < test->bearing_count; i++) {
       if (strcmp(test->bearings[i].name, name) != 0) continue;
       met++;
-      if (!read_places(bearing, &p))
-        return fg_fail(ctx, FG_ERR_DATA, "%s: the bearing '%s' has no clearances", path, name);
+      FG_TRY(read_places(ctx, bearing, path, name, &p));
       test->bearings[i].in_lot = true;
       test->bearings[i].unknown_places = p.unknown;
       for (size_t k = 0; k < test->direction_count; k++)

@@ -13,6 +13,9 @@
 /* More directions are a column of something else that is called azimuth. */
 enum { TEST_BYTES_MAX = 256 << 20, DIRECTIONS_MAX = 1000 };
 
+/* A kilometre and 100 MN are units mistaken; sums of squares stay far from the largest double. */
+static const double displacement_max_mm = 1e6, force_max_n = 1e8;
+
 /* Azimuths that are the same direction: a fraction of what a dividing head is set by. */
 static const double same_azimuth_deg = 0.05;
 
@@ -108,6 +111,30 @@ static double value_at(const fg_load_columns *columns, fg_load_measured which, s
   return columns->number[which][i].value * columns->scale[which];
 }
 
+static fg_status check_size(reading *r, const fg_table *table, const fg_load_columns *columns,
+                            size_t i) {
+  static const char *const words[] = {"displacement", "force"};
+  const double value[] = {value_at(columns, FG_LOAD_DISPLACEMENT, i),
+                          value_at(columns, FG_LOAD_FORCE, i)};
+  const double most[] = {displacement_max_mm, force_max_n};
+  for (int k = 0; k < 2; k++)
+    if (!(fabs(value[k]) <= most[k]))
+      return fg_fail(
+          r->ctx, FG_ERR_DATA, "%s: row %zu (line %zu): a %s of %.3g %s; no bearing's is beyond %g",
+          table->source, i + 1, table->line[i], words[k], value[k], k ? "N" : "mm", most[k]);
+  return FG_OK;
+}
+
+/* Repeats that are one file would halve the doubt for nothing. */
+static fg_status check_new(reading *r) {
+  const fg_load_file *last = &r->test->files[r->test->file_count - 1];
+  for (size_t i = 0; i + 1 < r->test->file_count; i++)
+    if (!strcmp(r->test->files[i].sha256, last->sha256))
+      return fg_fail(r->ctx, FG_ERR_DATA, "%s: the same bytes as %s; a test counts once",
+                     last->path, r->test->files[i].path);
+  return FG_OK;
+}
+
 static fg_status take_row(reading *r, const fg_table *table, const fg_load_columns *columns,
                           const fg_load_source *source, size_t i) {
   char name[128];
@@ -122,6 +149,7 @@ static fg_status take_row(reading *r, const fg_table *table, const fg_load_colum
     stem(source->path, name, sizeof name);
   if (columns->pad)
     FG_TRY(fg_load_columns_text(r->ctx, table, columns->pad, i, key.pad, sizeof key.pad));
+  FG_TRY(check_size(r, table, columns, i));
   FG_TRY(find_bearing(r, name, &key.bearing));
   FG_TRY(find_direction(r, &key, r->count ? r->rows[r->count - 1].direction : 0, &direction));
   FG_TRY(check_order(r, table, columns, i, direction));
@@ -142,6 +170,7 @@ static fg_status read_file(reading *r, const fg_load_source *source) {
   FG_TRY_EXIT(fg_text_print(r->ctx, &file->path, "%s", source->path));
   FG_TRY_EXIT(fg_file_read_text(r->ctx, source->path, TEST_BYTES_MAX, &text));
   fg_sha256_text(text, file->sha256);
+  FG_TRY_EXIT(check_new(r));
   FG_TRY_EXIT(fg_table_parse(r->ctx, source->path, text, strlen(text), &table));
   FG_TRY_EXIT(fg_load_columns_find(r->ctx, &table, isfinite(source->azimuth_deg), &columns));
   for (size_t k = 0; k < r->last_time_capacity; k++)

@@ -59,6 +59,7 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   fg_json_integer(json, "cycles", (int64_t)d->cycles);
   fg_json_number(json, "travel_mm", d->travel_mm);
   fg_json_numbers(json, "force_range_n", (const double[]){d->force_low_n, d->force_high_n}, 2);
+  fg_json_number(json, "force_zero_n", d->zero_n);
   write_value(json, "clearance_mm", &d->clearance);
   fg_json_number(json, "push_mm", d->push_mm);
   fg_json_number(json, "pull_mm", d->pull_mm);

@@ -36,14 +36,19 @@ static void put_record(const fg_plot *at, const fg_load_test *test, const fg_loa
   fputs("\"/>\n", at->out);
 }
 
+static double zero_of(const fg_load_direction *d) {
+  return isfinite(d->zero_n) ? d->zero_n : 0;
+}
+
 static void put_clearance(const fg_plot *at, const fg_load_direction *d, double threshold) {
   char text[60];
   if (!isfinite(d->clearance.value)) return;
-  fg_plot_dot(at, d->push_mm, threshold, 5, "s1");
-  fg_plot_dot(at, d->pull_mm, -threshold, 5, "s1");
+  double low = zero_of(d) - threshold, high = zero_of(d) + threshold;
+  fg_plot_dot(at, d->push_mm, high, 5, "s1");
+  fg_plot_dot(at, d->pull_mm, low, 5, "s1");
   double x1 = fg_plot_x(at, d->pull_mm), x2 = fg_plot_x(at, d->push_mm), y = at->bottom - 16;
   fprintf(at->out, "<path class=\"s1\" d=\"M%.1f %.1fV%.1fM%.1f %.1fV%.1fM%.1f %.1fH%.1f\"/>\n", x1,
-          fg_plot_y(at, -threshold), y + 6, x2, fg_plot_y(at, threshold), y + 6, x1, y, x2);
+          fg_plot_y(at, low), y + 6, x2, fg_plot_y(at, high), y + 6, x1, y, x2);
   snprintf(text, sizeof text, "%.1f ± %.1f µm", 1000 * d->clearance.value,
            1000 * FG_COVERAGE_FACTOR * d->clearance.u);
   fprintf(at->out, "<text class=\"x level\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", (x1 + x2) / 2,
@@ -56,12 +61,12 @@ void fg_load_plot_loops(FILE *out, const fg_load_test *test, const fg_load_direc
   double threshold = test->options.threshold_n;
   for (size_t i = 0; i < d->count; i++)
     widen(x, s[i].x_mm, s[i].x_mm);
-  widen(f, -threshold, threshold);
+  widen(f, zero_of(d) - threshold, zero_of(d) + threshold);
   add_margin(x, 0.04);
   add_margin(f, 0.08);
   fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], f[0], f[1]};
   fg_plot_begin(&at, 350, "Force over displacement, every cycle");
-  put_band(&at, -threshold, threshold, "band");
+  put_band(&at, zero_of(d) - threshold, zero_of(d) + threshold, "band");
   fg_plot_y_axis(&at, "force, N");
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at, "displacement, mm");
