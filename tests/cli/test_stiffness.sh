@@ -114,8 +114,8 @@ run 0 "one cycle: nothing says how cycles differ" one.csv --text -
 changed() { awk -F, -v OFS=, "NR > 1 { $1 } { print }" a0.csv >changed.csv; }
 changed '$3 += 6'
 run 0 "" --azimuth 0 changed.csv -o zero.json
-near "zero" "$(value zero.json 'r["azimuths"][0]["force_zero_n"]')" 6 0.05
-near "beside a zero" "$(value zero.json 'r["azimuths"][0]["clearance_mm"]')" 0.18 0.0005
+[ "$(value zero.json '[abs(a["force_zero_n"] - 6) < 0.05 and abs(a["clearance_mm"] - 0.18) < 0.0005 for a in r["azimuths"]]')" = "[True]" ] ||
+  fail "beside a zero"
 changed '$3 += 24'
 alone 2 "the load cell's zero is off by more than half of the threshold" changed.csv
 changed '$3 += 21 * ((NR + 73) % 300 < 150 ? 1 : -1)'
@@ -135,9 +135,7 @@ cp a0.csv again.csv
 run 65 "again.csv: the same bytes as a0.csv" --azimuth 0 a0.csv again.csv
 # What looks alike from every side has no direction of its own, and no u is below zero.
 changed '$3 += 0'
-degrees="30 60 90"
-! whole || degrees="$degrees 120 150"
-for deg in $degrees; do changed '$2 += 0' && sed "s/^/$deg,/;1s/$deg,/azimuth_deg,/" changed.csv; done |
+for deg in 30 60 90 120; do changed '$2 += 0' && sed "s/^/$deg,/;1s/$deg,/azimuth_deg,/" changed.csv; done |
   awk 'NR == 1 || !/azimuth/' >alike.csv
 run 0 "" alike.csv -o alike.json
 [ "$(value alike.json 'r["bearings"][0]["smallest_at_deg"]')" = None ] || fail "a direction of a round bearing"
@@ -190,8 +188,8 @@ shift_um=6 noise_n=1 step=20
 whole || step=120
 (echo $heading && for name in A B; do seed=$((${seed:-7} + 1)) && make $name 143.17 "$(seq -s' ' 0 $step 340)" 2; done) >planted.csv
 run 0 "" planted.csv --lot lot -o lot.json --table-out lot.csv
-near "predicted" "$(value lot.json 'r["azimuths"][0]["predicted_clearance_mm"]')" 0.18 0.0005
-near "difference" "$(value lot.json 'r["azimuths"][0]["clearance_difference_mm"]')" 0.006 0.002
+[ "$(value lot.json '[(abs(a["predicted_clearance_mm"] - 0.18) < 0.0005, abs(a["clearance_difference_mm"] - 0.006) < 0.002)
+  for a in r["azimuths"][:1]]')" = "[(True, True)]" ] || fail "predicted, difference"
 if whole; then
   expect 0 "" "$program" loop --table lot.csv --response difference_um --model 1 -o loop.json
   python3 - loop.json <<'END' || fail "the loop does not find the azimuth's cosine"
