@@ -86,7 +86,7 @@ static const char doc[] =
     "preload, and how they differ over the azimuths."
     "\v"
     "TEST is CSV (comma, semicolon or tab; decimal point or comma) with a row per sample, in the "
-    "order of time, and columns named with their unit: azimuth_deg, force_N (mN, kN), "
+    "order of time, and columns named with their unit: azimuth_deg (rad), force_N (mN, kN), "
     "displacement_mm (um, m, nm); `force [N]` will do too. Columns bearing, pad, cycle and time_s "
     "(ms, min) are read where they are there; others are named in the report and not read.\n\n"
     "Pushed and pulled: force and displacement have both signs. One cycle will do; from three on "

@@ -28,14 +28,15 @@ static const measured_row rows[FG_LOAD_MEASURED] = {
     [FG_LOAD_FORCE] = {"force",
                        {{"N", 1}, {"n", 1}, {"mN", 1e-3}, {"kN", 1e3}, {"kn", 1e3}},
                        "force_N, force_mN or force_kN"},
-    [FG_LOAD_DISPLACEMENT] = {"displacement",
-                              {{"mm", 1},
-                               {"um", 1e-3},
-                               {"\xc2\xb5m", 1e-3},
-                               {"\xce\xbcm", 1e-3},
-                               {"m", 1e3},
-                               {"nm", 1e-6}},
-                              "displacement_mm, displacement_um or displacement_m"},
+    [FG_LOAD_DISPLACEMENT] =
+        {"displacement",
+         {{"mm", 1},
+          {"um", 1e-3},
+          {"\xc2\xb5m", 1e-3},
+          {"\xce\xbcm", 1e-3},
+          {"m", 1e3},
+          {"nm", 1e-6}},
+         "displacement_mm, displacement_um, displacement_nm or displacement_m"},
     [FG_LOAD_TIME] = {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, "time_s, time_ms or time_min"},
 };
 

@@ -15,6 +15,10 @@ static const double end_left_out = 0.05, window_share = 1.0 / 16, window_share_m
  * the share that a foil's stiffness may well vary by on its own. */
 static const double flat_share = 0.5;
 
+/* Places that rise by no more than this share of the steepest beyond the flattest are the gap; the
+ * mean over them scatters less than one. */
+static const double gap_share = 0.05;
+
 static fg_status merge_sense(fg_context *ctx, const fg_load_strokes *strokes, int sense,
                              fg_load_stroke *merged) {
   const fg_load_stroke **chosen;
@@ -33,33 +37,55 @@ static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local
   return false;
 }
 
-/* Where the mean of both rises least. */
-static fg_load_zero find_flattest(const fg_load_stroke *up, const fg_load_stroke *down) {
-  fg_load_zero zero = {NAN, NAN};
+/* What both say where both are known, and how fast their mean rises. */
+typedef struct course {
+  double middle[PLACES], half[PLACES], slope[PLACES], least, most;
+  size_t count;
+} course;
+
+static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c) {
   double low = fmax(up->x[0], down->x[0]);
   double high = fmin(up->x[up->count - 1], down->x[down->count - 1]);
-  double least = INFINITY, most = 0;
+  *c = (course){.least = INFINITY};
   for (size_t k = 0; k < PLACES && high > low; k++) {
     double share = end_left_out + (1 - 2 * end_left_out) * (double)k / (PLACES - 1);
     double x = low + share * (high - low);
     fg_local_fit a, b;
     if (!fit_at(up, x, high - low, &a) || !fit_at(down, x, high - low, &b)) continue;
-    double slope = fabs(a.slope + b.slope) / 2;
-    most = fmax(most, slope);
-    if (slope >= least) continue;
-    least = slope;
-    zero = (fg_load_zero){(a.value + b.value) / 2, (a.value - b.value) / 2};
+    c->middle[c->count] = (a.value + b.value) / 2;
+    c->half[c->count] = (a.value - b.value) / 2;
+    c->slope[c->count] = fabs(a.slope + b.slope) / 2;
+    c->least = fmin(c->least, c->slope[c->count]);
+    c->most = fmax(c->most, c->slope[c->count]);
+    c->count++;
   }
-  return least < flat_share * most ? zero : (fg_load_zero){NAN, NAN};
+}
+
+/* Mean over the places where it rises next to nothing. */
+static fg_load_zero mean_of_gap(const course *c) {
+  fg_load_zero zero = {0, 0};
+  double count = 0;
+  if (!(c->least < flat_share * c->most)) return (fg_load_zero){NAN, NAN};
+  for (size_t k = 0; k < c->count; k++) {
+    if (c->slope[k] > c->least + gap_share * c->most) continue;
+    zero.force_n += c->middle[k];
+    zero.friction_n += c->half[k];
+    count++;
+  }
+  return (fg_load_zero){zero.force_n / count, zero.friction_n / count};
 }
 
 fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_load_zero *zero) {
   fg_load_stroke up = {0}, down = {0};
+  course c;
   fg_status status = FG_OK;
   *zero = (fg_load_zero){NAN, NAN};
   FG_TRY_EXIT(merge_sense(ctx, strokes, 1, &up));
   FG_TRY_EXIT(merge_sense(ctx, strokes, -1, &down));
-  if (up.count && down.count) *zero = find_flattest(&up, &down);
+  if (up.count && down.count) {
+    look(&up, &down, &c);
+    *zero = mean_of_gap(&c);
+  }
 exit:
   fg_load_stroke_free(&up);
   fg_load_stroke_free(&down);

@@ -1,13 +1,25 @@
 /* The page: a bearing per section; clearances over the azimuths, then loops and stiffness. */
 #include <math.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "foilgauge/load_report.h"
 #include "report/load_test/load_plots.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 
 /* So many azimuths of a bearing are drawn with their loops; all are in the table. */
 enum { LOOPS_MAX = 24 };
+
+/* The tail of a distribution is not known below. */
+static const double p_least = 1e-12;
+
+static size_t count_flagged(const fg_load_test *test, size_t bearing, unsigned flag) {
+  size_t count = 0;
+  for (size_t i = 0; i < test->direction_count; i++)
+    count += test->directions[i].bearing == bearing && (test->directions[i].flags & flag);
+  return count;
+}
 
 static void put_tile(FILE *out, const char *title, const fg_load_value *v, double unit,
                      int decimals, const char *word, const char *small) {
@@ -20,7 +32,8 @@ static void put_tile(FILE *out, const char *title, const fg_load_value *v, doubl
     fputs("–<small>not known</small></dd></div>\n", out);
 }
 
-static void put_tiles(FILE *out, const fg_load_bearing *b) {
+static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
   char least[60] = "", most[60] = "", towards[80];
   if (isfinite(b->least.value)) {
     snprintf(least, sizeof least, "at %g°", b->least_measured_at_deg);
@@ -29,7 +42,8 @@ static void put_tiles(FILE *out, const fg_load_bearing *b) {
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, "Smallest clearance", &b->least, 1000, 1, "µm", least);
   put_tile(out, "Largest clearance", &b->most, 1000, 1, "µm", most);
-  put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm", "");
+  put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
+           count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
   put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
   fputs("<div><dt>Smallest towards</dt><dd>", out);
   if (isfinite(b->least_at_deg)) {
@@ -53,7 +67,8 @@ static void put_cell(FILE *out, const fg_load_value *v, double unit, int decimal
 
 static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction *d, bool lot) {
   char flags[700];
-  fg_load_flag_words(d->flags, true, flags, sizeof flags);
+  /* Said once of the bearing, above the table. */
+  fg_load_flag_words(d->flags & ~(unsigned)FG_LOAD_AT_END, true, flags, sizeof flags);
   fprintf(out, "<tr><td>%g°</td>", d->azimuth_deg);
   put_cell(out, &d->clearance, 1000, 1,
            fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
@@ -100,13 +115,20 @@ static void put_loops(FILE *out, const fg_load_test *test, size_t bearing) {
             drawn);
 }
 
-static void put_sentences(FILE *out, const fg_load_test *test, const fg_load_bearing *b) {
+static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
   fputs("<ul class=\"words\">\n", out);
   if (isfinite(b->p_value))
-    fprintf(out, "<li>The azimuths %s (p = %.2g).</li>\n",
+    fprintf(out, "<li>The azimuths %s (p %s %.2g).</li>\n",
             b->p_value < 0.01 ? "differ by more than their repeats do"
                               : "do not differ by more than their repeats do",
-            b->p_value);
+            b->p_value < p_least ? "&lt;" : "=", fmax(b->p_value, p_least));
+  size_t at_end = count_flagged(test, bearing, FG_LOAD_AT_END);
+  if (at_end)
+    fprintf(out,
+            "<li>Of %zu of %zu azimuths the stiffness is largest where the test ends: more travel "
+            "would find more, and K is a lower bound.</li>\n",
+            at_end, b->directions);
   if (b->birge > 1.2)
     fprintf(out,
             "<li>The cycles differ by %.1f times what the scatter of the samples says; the "
@@ -135,8 +157,8 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   fg_html_verdict(out, fg_load_judge_bearing(test, bearing));
   fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
           b->directions == 1 ? "" : "s", test->options.threshold_n);
-  put_tiles(out, b);
-  put_sentences(out, test, b);
+  put_tiles(out, test, bearing);
+  put_sentences(out, test, bearing);
   fputs("<figure>", out);
   fg_load_plot_azimuths(out, test, bearing);
   fprintf(out,
@@ -154,7 +176,7 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
 
 static void put_end(FILE *out, const fg_load_test *test) {
   const fg_load_options *o = &test->options;
-  fputs("<section>\n<h2 class=\"first\">Where it comes from</h2>\n<div class=\"scroll\"><table>\n"
+  fputs("<section>\n<h2 class=\"first\">Tests that were read</h2>\n<div class=\"scroll\"><table>\n"
         "<tr><th>file</th><th class=\"w\">not read</th><th class=\"w\">SHA-256</th></tr>\n",
         out);
   for (size_t i = 0; i < test->file_count; i++) {
@@ -167,10 +189,40 @@ static void put_end(FILE *out, const fg_load_test *test) {
   fprintf(out,
           "</table></div>\n<p class=\"note\">± is U = 2 u. Instruments, standard: load cell %g %%, "
           "displacement %g %%, together %.2f %% of a stiffness. Loss factor: loop area / (π K X²), "
-          "X half of the travel, K the largest stiffness, or that of the loop's ends (secant). "
-          "foilgauge %s.</p>\n</section>\n",
-          o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct),
-          FOILGAUGE_VERSION);
+          "X half of the travel, K the largest stiffness, or that of the loop's ends "
+          "(secant).</p>\n</section>\n",
+          o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct));
+}
+
+/* Limits, and what none was given for. */
+static void put_limits(FILE *out, const fg_load_test *test) {
+  const fg_load_options *o = &test->options;
+  bool comma = false;
+  fputs("<dl class=\"facts\">\n<dt>Limits</dt><dd>", out);
+  for (size_t i = 0; i < o->limit_count; i++) {
+    const fg_tolerance *l = &o->limits[i];
+    fprintf(out, "%s%s", i ? ", " : "", l->quantity);
+    if (isfinite(l->lower)) fprintf(out, " from %g", l->lower);
+    if (isfinite(l->upper)) fprintf(out, " to %g", l->upper);
+  }
+  fprintf(out, "%s</dd>\n<dt>Not judged</dt><dd>", o->limit_count ? "" : "none");
+  for (int q = 0; q < FG_LOAD_QUANTITIES; q++) {
+    const char *name = fg_load_quantity_name((fg_load_quantity)q);
+    bool judged = false;
+    for (size_t i = 0; i < o->limit_count; i++)
+      judged = judged || !strcmp(o->limits[i].quantity, name);
+    if (judged) continue;
+    fprintf(out, "%s%s", comma ? ", " : "", name);
+    comma = true;
+  }
+  fprintf(out, "%s</dd>\n</dl>\n", comma ? "" : "nothing");
+}
+
+static fg_status put_provenance(fg_context *ctx, FILE *out, const fg_load_test *test) {
+  fg_provenance from = {.of_scans = false};
+  for (size_t i = 0; i < test->file_count; i++)
+    fg_provenance_take_file(&from, test->files[i].path);
+  return fg_html_provenance_section(ctx, out, &from);
 }
 
 fg_status fg_load_write_html(fg_context *ctx, const fg_load_test *test, FILE *out) {
@@ -178,12 +230,17 @@ fg_status fg_load_write_html(fg_context *ctx, const fg_load_test *test, FILE *ou
   fg_report_outcome outcome;
   fg_load_judge(test, &outcome, words, sizeof words);
   fg_html_begin(out, "Load-displacement tests");
-  fputs("<p class=\"say\">", out);
+  fputs("<section>\n<header><h1>Load-displacement tests of bearings</h1>", out);
+  fg_html_verdict(out, outcome.verdict);
+  fputs("</header>\n<p class=\"say\">", out);
   fg_html_text(out, words);
   fputs(".</p>\n", out);
+  put_limits(out, test);
+  fputs("</section>\n", out);
   for (size_t i = 0; i < test->bearing_count; i++)
     put_bearing(out, test, i);
   put_end(out, test);
+  FG_TRY(put_provenance(ctx, out, test));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");
 }
