@@ -2,7 +2,7 @@
 # The loop on scans beyond one listed effect: curves that no effect stands for, four effects at once, and
 # what the data cannot tell: on which side of a bump a step lies, and the scale beside a lens.
 . tests/support/loop.sh
-skip_when_slow
+long_only
 
 # render NAME SEED ROTATION EFFECTS X,Y [DPI]: the foil's centre in mm on 44 x 44 mm
 render() {

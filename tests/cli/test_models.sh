@@ -175,7 +175,7 @@ empty.json|65|`fields` is missing
 missing.json|74|missing.json
 TABLE
 
-[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+[ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
 
 # A lot corrected by it: the same numbers as one by one, and the report says by what.
 expect 0 '' "$program" lot scans -o plain

@@ -145,7 +145,7 @@ says a.csv '^three.png,1,,[a-z_ ]*not_measured,,,,'
 says a.csv ',not_measured,,[0-9]'
 valid measure.schema.json a.json
 
-[ -z "${FOILGAUGE_TEST_BRIEF-}" ] || exit $failed
+[ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
 
 # No foil of the design: it says what it is, and why, and is no success.
 design 5 '"height_mm":{"min":0.1,"max":1}'

@@ -19,3 +19,10 @@ skip_when_slow() {
   echo "skipped: this build is slow; tests/run.sh --long runs it"
   exit 77
 }
+
+# What takes long and says more of accuracy than of right and wrong.
+long_only() {
+  [ -n "${FOILGAUGE_TEST_LONG-}" ] && return 0
+  echo "skipped: tests/run.sh --long runs it"
+  exit 77
+}
