@@ -6,6 +6,7 @@ if ! command -v python3 >/dev/null; then
   exit 77
 fi
 . tests/support/cli.sh
+long_only
 
 only=()
 [ -n "${FOILGAUGE_TEST_BRIEF:-}" ] && only=(--only load_cell --only impact_energy --only lattice_a)

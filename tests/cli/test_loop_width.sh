@@ -2,7 +2,7 @@
 # A strip whose thickness changes along the foil: named with its size and its sign, whatever else is there, and never
 # where it does not.
 . tests/support/loop.sh
-skip_when_slow
+long_only
 id=part.thickness_taper
 
 # loop NAME [OPTIONS]

@@ -50,3 +50,17 @@ valid() {
   python3 "$root/tests/support/validate_schema.py" "$root/reports/schema" "$@" || code=$?
   [ $code -eq 0 ] || [ $code -eq 77 ] || [ $code -eq 127 ] || fail "$* does not validate"
 }
+
+# Builds with sanitizers are slow: what says little more there than other scripts is left to their long tier.
+skip_when_slow() {
+  [ -n "${FOILGAUGE_TEST_BRIEF-}" ] && [ -z "${FOILGAUGE_TEST_LONG-}" ] || return 0
+  echo "skipped: this build is slow; tests/run.sh --long runs it"
+  exit 77
+}
+
+# What takes long and says more of accuracy than of right and wrong.
+long_only() {
+  [ -n "${FOILGAUGE_TEST_LONG-}" ] && return 0
+  echo "skipped: tests/run.sh --long runs it"
+  exit 77
+}

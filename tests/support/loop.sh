@@ -12,17 +12,3 @@ render_foil() {
 SPEC
   "$renderer" render "$1.json" -o "$1.png" --truth "$1.truth.json" || fail "render $1"
 }
-
-# Builds with sanitizers are slow: what says little more there than other scripts is left to their long tier.
-skip_when_slow() {
-  [ -n "${FOILGAUGE_TEST_BRIEF-}" ] && [ -z "${FOILGAUGE_TEST_LONG-}" ] || return 0
-  echo "skipped: this build is slow; tests/run.sh --long runs it"
-  exit 77
-}
-
-# What takes long and says more of accuracy than of right and wrong.
-long_only() {
-  [ -n "${FOILGAUGE_TEST_LONG-}" ] && return 0
-  echo "skipped: tests/run.sh --long runs it"
-  exit 77
-}
