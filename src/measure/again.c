@@ -82,3 +82,24 @@ exit:
   if (status != FG_OK) fg_measurement_free(again);
   return status;
 }
+
+static fg_point stretched(const void *user, fg_point at) {
+  const double *factor = user;
+  return (fg_point){at.x * factor[0], at.y * factor[1]};
+}
+
+static void stretch_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
+  (void)foil;
+  fg_strip_move(strip, stretched, user);
+}
+
+static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at) {
+  (void)disc;
+  return stretched(user, at);
+}
+
+fg_status fg_measure_stretched(fg_context *ctx, const fg_measurement *m, const double factor[2],
+                               unsigned threads, fg_measurement *again) {
+  const fg_measure_mover mover = {stretch_strip, stretch_point, factor};
+  return fg_measure_again(ctx, m, &mover, threads, again);
+}

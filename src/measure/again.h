@@ -19,4 +19,8 @@ void fg_strip_move(fg_strip *strip, fg_point (*move)(const void *user, fg_point 
 fg_status fg_measure_again(fg_context *ctx, const fg_measurement *m, const fg_measure_mover *mover,
                            unsigned threads, fg_measurement *again);
 
+/* The same with places times a factor along x and along y. */
+fg_status fg_measure_stretched(fg_context *ctx, const fg_measurement *m, const double factor[2],
+                               unsigned threads, fg_measurement *again);
+
 #endif

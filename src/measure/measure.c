@@ -154,29 +154,14 @@ static unsigned check_resolution(fg_measurement *m) {
   return flags;
 }
 
-static fg_point stretched(const void *user, fg_point at) {
-  const double *factor = user;
-  return (fg_point){at.x * *factor, at.y * *factor};
-}
-
-static void stretch_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
-  (void)foil;
-  fg_strip_move(strip, stretched, user);
-}
-
-static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at) {
-  (void)disc;
-  return stretched(user, at);
-}
-
 /* Lengths at 20 °C: the edges as they were found, with longer or shorter pixels. To find them anew
  * with such pixels would draw other stations, and move a radius by as much as its u. */
 static fg_status refer(fg_context *ctx, unsigned threads, fg_measurement *m) {
   double factor = fg_calibration_factor(&m->design.calibration);
-  const fg_measure_mover mover = {stretch_strip, stretch_point, &factor};
+  const double factors[2] = {factor, factor};
   fg_measurement again;
   if (factor == 1) return FG_OK;
-  FG_TRY(fg_measure_again(ctx, m, &mover, threads, &again));
+  FG_TRY(fg_measure_stretched(ctx, m, factors, threads, &again));
   for (int i = 0; i < 2; i++)
     again.dpi[i] /= factor;
   fg_measurement_free(m);

@@ -11,28 +11,6 @@
  * what the last digit of a fit's end moves, small enough to be linear (a thousandth of itself). */
 static const double step = 1e-3;
 
-static fg_point stretched(const void *user, fg_point at) {
-  const double *stretch = user;
-  return (fg_point){at.x * (1 + stretch[0]), at.y * (1 + stretch[1])};
-}
-
-static void stretch_strip(const void *user, const fg_foil *foil, fg_strip *strip) {
-  (void)foil;
-  fg_strip_move(strip, stretched, user);
-}
-
-static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at) {
-  (void)disc;
-  return stretched(user, at);
-}
-
-static fg_status measure_stretched(fg_context *ctx, const fg_measurement *m, double x, double y,
-                                   unsigned threads, fg_measurement *other) {
-  const double by[2] = {x, y};
-  const fg_measure_mover mover = {stretch_strip, stretch_point, by};
-  return fg_measure_again(ctx, m, &mover, threads, other);
-}
-
 static void take(fg_quantity_owner owner, const void *from, const void *to, double share,
                  double *move) {
   memset(move, 0, FG_CALIBRATED_MAX * sizeof *move);
@@ -111,7 +89,8 @@ static fg_status find_source(fg_context *ctx, const fg_measurement *same, const 
   double most = fmax(fabs(stretch[0]), fabs(stretch[1])), share = most / step;
   fg_measurement other;
   if (most == 0) return FG_OK;
-  FG_TRY(measure_stretched(ctx, m, stretch[0] / share, stretch[1] / share, threads, &other));
+  const double factor[2] = {1 + stretch[0] / share, 1 + stretch[1] / share};
+  FG_TRY(fg_measure_stretched(ctx, m, factor, threads, &other));
   take_all(same, &other, share, source, m);
   fg_measurement_free(&other);
   return FG_OK;
@@ -122,7 +101,7 @@ fg_status fg_measurement_calibrate(fg_context *ctx, unsigned threads, fg_measure
   fg_measurement same; /* a correction that was left in part is none of edges: both are measured */
   if (!m->design.calibration.stated || m->calibrated) return FG_OK;
   fg_calibration_sources(&m->design.calibration, stretch);
-  FG_TRY(measure_stretched(ctx, m, 0, 0, threads, &same));
+  FG_TRY(fg_measure_stretched(ctx, m, (const double[]){1, 1}, threads, &same));
   fg_status status = FG_OK;
   for (size_t s = 0; s < FG_CALIBRATION_SOURCES && status == FG_OK; s++)
     status = find_source(ctx, &same, stretch[s], s, threads, m);

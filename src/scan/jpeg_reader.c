@@ -110,11 +110,7 @@ static fg_status fail(fg_context *ctx, const fg_jpeg_in *reader) {
   int code = reader->errors.msg_code;
   char place[96];
   describe_place(reader, place, sizeof place);
-  if (reader->source->error)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read at %s: %s; check the disk or copy it again",
-                   name, place, strerror(reader->source->error));
-  if (reader->cut_off)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: is cut off (%s); copy or scan it again", name, place);
+  FG_TRY(fg_source_check(ctx, reader->source, reader->cut_off, place));
   if (code == JERR_OUT_OF_MEMORY)
     return fg_fail(ctx, FG_ERR_MEMORY, "%s: out of memory (%s)", name, place);
   if (code == JERR_BAD_PRECISION || code == JERR_SOF_UNSUPPORTED || code == JERR_NOTIMPL)

@@ -120,11 +120,7 @@ static fg_status fail(fg_context *ctx, const fg_png *reader) {
   const char *name = reader->source->name;
   char place[128], chunk[24];
   describe_place(reader, place, sizeof place);
-  if (reader->source->error)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read at %s: %s; check the disk or copy it again",
-                   name, place, strerror(reader->source->error));
-  if (reader->cut_off)
-    return fg_fail(ctx, FG_ERR_DATA, "%s: is cut off (%s); copy or scan it again", name, place);
+  FG_TRY(fg_source_check(ctx, reader->source, reader->cut_off, place));
   const char *words = split_chunk(reader, chunk);
   if (strstr(words, "ut of memory") || strstr(words, "nsufficient memory"))
     return fg_fail(ctx, FG_ERR_MEMORY, "%s: out of memory (%s)", name, place);

@@ -298,3 +298,13 @@ fg_status fg_source_sha256(fg_context *ctx, fg_source *source, char hex[65]) {
   memcpy(hex, source->sha256, 65);
   return FG_OK;
 }
+
+fg_status fg_source_check(fg_context *ctx, const fg_source *source, bool cut_off,
+                          const char *place) {
+  if (source->error)
+    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read at %s: %s; check the disk or copy it again",
+                   source->name, place, strerror(source->error));
+  if (!cut_off) return FG_OK;
+  return fg_fail(ctx, FG_ERR_DATA, "%s: is cut off (%s); copy or scan it again", source->name,
+                 place);
+}

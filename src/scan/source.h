@@ -54,6 +54,11 @@ size_t fg_source_peek(fg_source *source, size_t wanted, const uint8_t **bytes);
 /* Hands out exactly `wanted` bytes, or fewer at the end of the file or after a failure. */
 size_t fg_source_read(fg_source *source, void *out, size_t wanted);
 
+/* Why a decoder got fewer bytes than it asked for, at `place`: FG_ERR_IO when reading failed,
+ * FG_ERR_DATA when the file ended (`cut_off`); else FG_OK. */
+fg_status fg_source_check(fg_context *ctx, const fg_source *source, bool cut_off,
+                          const char *place);
+
 /* Stores a pipe in a temporary file without a name (in TMPDIR) and goes on from there as with a
  * regular file; nothing may have been handed out. A regular file stays. */
 fg_status fg_source_store(fg_context *ctx, fg_source *source);

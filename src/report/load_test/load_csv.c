@@ -10,17 +10,9 @@ static void put_text(FILE *out, const char *text) {
   fg_csv_put_text(out, text, fg_utf8_put);
 }
 
-static void put_number(FILE *out, double value) {
-  char text[32];
-  fputc(',', out);
-  if (!isfinite(value)) return;
-  fg_json_format(text, value);
-  fputs(text, out);
-}
-
 static void put_value(FILE *out, const fg_load_value *value, double unit) {
-  put_number(out, unit * value->value);
-  put_number(out, unit * value->u);
+  fg_csv_put_number(out, unit * value->value);
+  fg_csv_put_number(out, unit * value->u);
 }
 
 fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out) {
@@ -36,19 +28,19 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
     char flags[200];
     fg_load_flag_words(d->flags, false, flags, sizeof flags);
     put_text(out, test->bearings[d->bearing].name);
-    put_number(out, d->azimuth_deg);
+    fg_csv_put_number(out, d->azimuth_deg);
     fputc(',', out);
     put_text(out, d->pad);
     fprintf(out, ",%s,%s,%zu", fg_verdict_word(fg_load_judge_direction(test, d)), flags, d->cycles);
     put_value(out, &d->clearance, 1);
     put_value(out, &d->unloading, 1);
     put_value(out, &d->stiffness, 1);
-    put_number(out, d->stiffness_at_mm);
+    fg_csv_put_number(out, d->stiffness_at_mm);
     put_value(out, &d->area, 1);
     put_value(out, &d->loss, 1);
     put_value(out, &d->loss_secant, 1);
-    put_number(out, d->friction.a_n);
-    put_number(out, d->friction.b);
+    fg_csv_put_number(out, d->friction.a_n);
+    fg_csv_put_number(out, d->friction.b);
     put_value(out, &d->predicted, 1);
     put_value(out, &d->difference, 1);
     fputc('\n', out);
@@ -92,7 +84,7 @@ fg_status fg_load_write_table(fg_context *ctx, const fg_load_test *test, FILE *o
     }
     if (all.predicted_pad) fprintf(out, "pad %d,", d->predicted_pad);
     fprintf(out, "%.9f,%.9f,%.9f,%.9f", cos(angle), sin(angle), cos(2 * angle), sin(2 * angle));
-    put_number(out, 1000 * response->value);
+    fg_csv_put_number(out, 1000 * response->value);
     fputc('\n', out);
   }
   return fg_stream_finish(ctx, out, "the table");
