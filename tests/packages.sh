@@ -61,8 +61,8 @@ install_missing() {
   fi
 }
 
-# build_preset PRESET FOLDER: configure and build; a tree that is there is brought up to date.
+# build_preset KIND FOLDER: configure by src/cmake/KIND.cmake and build; a tree that is there is brought up to date.
 build_preset() {
-  step "configuring $1 in $2/" cmake --preset "$1" || return
+  step "configuring $1 in $2/" cmake -S . -B "$2" -G "Unix Makefiles" -C "src/cmake/$1.cmake" || return
   step "building $1" cmake --build "$2" -j"$(nproc)"
 }
