@@ -21,6 +21,7 @@ typedef enum fg_form {
   FG_FORM_SINUSOIDAL, /* long fillets, short lands, no lip */
   FG_FORM_DISCS,      /* no foil: round holes and discs */
   FG_FORM_ARC,        /* a plain strip, as a top foil: one circle from end to end, no bumps */
+  FG_FORM_CANTILEVER, /* a flat foil with beams cut out of it, measured before they are bent */
 } fg_form;
 
 static inline bool fg_form_has_bumps(fg_form form) {
@@ -68,6 +69,14 @@ typedef struct fg_design {
   double top_foil_thickness_mm; /* the plain foil between bumps and rotor; 0: none */
   double rotor_diameter_mm;     /* D */
   double subtended_angle_deg;   /* of an arc, from end to end about its centre; else 0 */
+  size_t beam_count;            /* of a cantilever, as all that follow up to clearance_mm, and 0 of
+                                   other forms; expected; 0: not stated */
+  double beam_length_mm;        /* L, from the root to the free end */
+  double beam_width_mm;         /* w */
+  double u_thickness_mm;        /* standard uncertainty of thickness_mm; 0: none stated */
+  double sagitta_mm;            /* s_D, of a beam as bent; 0: not stated */
+  double elastic_modulus_gpa;   /* E; 0: not stated */
+  double clearance_mm;          /* C_D of the bearing, which s_D belongs to; 0: not stated */
   size_t diameter_count;        /* discs only: known diameters, in any order */
   double diameters_mm[FG_DIAMETERS_MAX];
   size_t tolerance_count;
@@ -106,8 +115,9 @@ void fg_design_default(fg_design *design);
  * message names the member, its value and what would be right. */
 fg_status fg_design_check(fg_context *ctx, const fg_design *design);
 
-/* The derived nominal values; checks the design first. All NaN for form discs; of an arc the arc
- * length is that from end to end, and the others are NaN. */
+/* The derived nominal values; checks the design first. All NaN for form discs, and for a cantilever
+ * (foilgauge/cantilever.h has its values); of an arc the arc length is that from end to end, and
+ * the others are NaN. */
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal);
 
 /* Clearance over a bump of this height: eq 5.8 less the top foil's thickness, mm, with the design's
@@ -124,7 +134,8 @@ void fg_design_springback(const fg_design *design, const fg_nominal *nominal, do
 /* Reads a design from JSON text; members that are absent keep the value `design` has on entry, so
  * fill it with fg_design_default first. Two exceptions guard against a half-written design: of
  * bump_radius_mm, bump_angle_deg, overall_radius_mm and thickness_mm a foil's file states all or
- * none (of an arc overall_radius_mm, subtended_angle_deg and thickness_mm, all of them),
+ * none (of an arc overall_radius_mm, subtended_angle_deg and thickness_mm, all of them; of a
+ * cantilever beam_length_mm, beam_width_mm and thickness_mm),
  * and sleeve_radius_mm follows an overall_radius_mm that comes without it. Unknown and
  * duplicate members, wrong types, a missing or wrong schema and text after the end are FG_ERR_DATA.
  * `path` is for messages. Checks with fg_design_check; `design` changes on success only. */

@@ -259,6 +259,12 @@ static fg_status load(fg_context *ctx, form_run *run) {
   if (run->design.form == FG_FORM_DISCS)
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"discs\" has no strip that is bent",
                    run->design_path);
+  if (run->design.form == FG_FORM_CANTILEVER)
+    return fg_fail(
+        ctx, FG_ERR_DATA,
+        "%s: form \"cantilever\" lies flat, and its die is not stated: there is no strip "
+        "along a die to bend",
+        run->design_path);
   fg_forming_material_default(&run->material);
   if (run->material_path) FG_TRY(fg_forming_material_load(ctx, run->material_path, &run->material));
   return FG_OK;

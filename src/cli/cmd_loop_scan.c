@@ -207,6 +207,11 @@ static fg_status run(fg_context *ctx, arguments *a, int *code) {
                    "scanner does to it. Scan round gauges (--form discs) and apply what they say "
                    "with measure --model",
                    a->design_path);
+  if (design.form == FG_FORM_CANTILEVER)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "%s: form is cantilever, and the loop needs bumps or discs. Scan round gauges "
+                   "(--form discs) to see what the scanner does to lengths",
+                   a->design_path);
   FG_TRY(fg_output_set_open(ctx, &a->outputs));
   a->options.date = find_date(a);
   FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));

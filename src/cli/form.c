@@ -22,6 +22,10 @@ fg_status fg_cli_apply_form(fg_context *ctx, const char *form, fg_design *design
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--form: an arc has no built-in design; state it in a file: --design F with "
                    "\"form\": \"arc\", overall_radius_mm, subtended_angle_deg, thickness_mm");
+  if (form && !strcmp(form, "cantilever"))
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "--form: a cantilever has no built-in design; state it in a file: --design F "
+                   "with \"form\": \"cantilever\", beam_length_mm, beam_width_mm, thickness_mm");
   if (!form) return FG_OK;
   for (size_t i = 0; i < FORMS; i++) {
     if (strcmp(form, forms[i].name) != 0) continue;

@@ -160,6 +160,72 @@ static fg_status check_arc(fg_context *ctx, const fg_design *design) {
   return FG_OK;
 }
 
+/* 0: not stated. */
+static fg_status check_stated(fg_context *ctx, const char *member, double value) {
+  return value == 0 ? FG_OK : check_positive(ctx, member, value);
+}
+
+/* Eq 5.10 is that of a slender beam of a thin sheet; s goes with L² while the beam's arc is flat.
+ */
+static fg_status check_slender(fg_context *ctx, const fg_design *design) {
+  double length = design->beam_length_mm, width = design->beam_width_mm;
+  if (width >= length)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "beam_width_mm is %g; it must be below beam_length_mm %g: L is from the root "
+                   "to the free end, and eq 5.10 is that of a beam",
+                   width, length);
+  if (design->thickness_mm >= width)
+    return fg_fail(ctx, FG_ERR_DATA, "thickness_mm is %g; it must be below beam_width_mm %g",
+                   design->thickness_mm, width);
+  if (design->sagitta_mm >= length / 2)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "sagitta_mm is %g; it must be below half of beam_length_mm %g: it goes with the "
+                   "square of the length of flat arcs only",
+                   design->sagitta_mm, length);
+  if (design->u_thickness_mm >= design->thickness_mm / 2)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "u_thickness_mm is %g; a standard uncertainty must be below half of "
+                   "thickness_mm %g",
+                   design->u_thickness_mm, design->thickness_mm);
+  return FG_OK;
+}
+
+static fg_status check_cantilever(fg_context *ctx, const fg_design *design) {
+  FG_TRY(check_positive(ctx, "beam_length_mm", design->beam_length_mm));
+  FG_TRY(check_positive(ctx, "beam_width_mm", design->beam_width_mm));
+  FG_TRY(check_positive(ctx, "thickness_mm", design->thickness_mm));
+  FG_TRY(check_stated(ctx, "u_thickness_mm", design->u_thickness_mm));
+  FG_TRY(check_stated(ctx, "sagitta_mm", design->sagitta_mm));
+  FG_TRY(check_stated(ctx, "elastic_modulus_gpa", design->elastic_modulus_gpa));
+  FG_TRY(check_stated(ctx, "clearance_mm", design->clearance_mm));
+  if (design->clearance_mm != 0 && design->sagitta_mm == 0)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "clearance_mm is %g without sagitta_mm: the clearance changes by what the "
+                   "sagitta does; state both",
+                   design->clearance_mm);
+  return check_slender(ctx, design);
+}
+
+/* What a cantilever alone has. */
+static fg_status check_no_beams(fg_context *ctx, const fg_design *design) {
+  const struct {
+    const char *member;
+    double value;
+  } values[] = {
+      {"beam_count", (double)design->beam_count},
+      {"beam_length_mm", design->beam_length_mm},
+      {"beam_width_mm", design->beam_width_mm},
+      {"u_thickness_mm", design->u_thickness_mm},
+      {"sagitta_mm", design->sagitta_mm},
+      {"elastic_modulus_gpa", design->elastic_modulus_gpa},
+      {"clearance_mm", design->clearance_mm},
+  };
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+    if (values[i].value != 0)
+      return fg_fail(ctx, FG_ERR_DATA, "%s belongs to form \"cantilever\" only", values[i].member);
+  return FG_OK;
+}
+
 static fg_status check_tolerances(fg_context *ctx, const fg_design *design) {
   if (design->tolerance_count > FG_TOLERANCES_MAX)
     return fg_fail(ctx, FG_ERR_DATA, "tolerances has %zu entries; at most %d",
@@ -176,12 +242,14 @@ static fg_status check_tolerances(fg_context *ctx, const fg_design *design) {
 fg_status fg_design_check(fg_context *ctx, const fg_design *design) {
   FG_TRY(check_tolerances(ctx, design));
   FG_TRY(fg_calibration_check(ctx, &design->calibration));
+  if (design->form != FG_FORM_CANTILEVER) FG_TRY(check_no_beams(ctx, design));
   if (design->form == FG_FORM_DISCS) return check_discs(ctx, design);
   if (design->diameter_count != 0)
     return fg_fail(ctx, FG_ERR_DATA, "diameters_mm belongs to form \"discs\" only");
   if (design->form == FG_FORM_ARC) return check_arc(ctx, design);
   if (design->subtended_angle_deg != 0)
     return fg_fail(ctx, FG_ERR_DATA, "subtended_angle_deg belongs to form \"arc\" only");
+  if (design->form == FG_FORM_CANTILEVER) return check_cantilever(ctx, design);
   FG_TRY(check_values(ctx, design));
   FG_TRY(check_bump(ctx, design));
   FG_TRY(check_pitch(ctx, design));
@@ -196,7 +264,7 @@ static fg_nominal no_nominal(void) {
 fg_status fg_design_derive(fg_context *ctx, const fg_design *design, fg_nominal *nominal) {
   FG_TRY(fg_design_check(ctx, design));
   *nominal = no_nominal();
-  if (design->form == FG_FORM_DISCS) return FG_OK;
+  if (design->form == FG_FORM_DISCS || design->form == FG_FORM_CANTILEVER) return FG_OK;
   if (design->form == FG_FORM_ARC) {
     nominal->arc_length_mm = design->subtended_angle_deg * rad_per_deg * design->overall_radius_mm;
     return FG_OK;

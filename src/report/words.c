@@ -113,6 +113,8 @@ const char *fg_form_word(fg_form form) {
     return "discs";
   case FG_FORM_ARC:
     return "arc";
+  case FG_FORM_CANTILEVER:
+    return "cantilever";
   }
   return "";
 }

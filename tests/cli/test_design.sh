@@ -58,6 +58,22 @@ END
 grep -q 'long fillets' "$work/sinus.html" || fail "the page of a sinusoidal design has no reserve"
 grep -q 'bump radius over the design' "$work/page.html" || fail "the page has no map"
 
+# A cantilever: its numbers, those of the thesis, and who refuses it.
+cantilever=$root/samples/cantilever_design.json
+expect 0 'compliance [+]3.59 %, sagitta [+]0.88 %, clearance -0.0088 mm [(]-7.0 %' "$program" design "$cantilever"
+expect 0 "compliance -3.43 %, sagitta -0.88 %" "$program" design "$cantilever"
+expect 0 "4.542056 mm/N" "$program" design "$cantilever"
+"$program" design "$cantilever" -o "$work/cantilever.json" || fail "design of a cantilever"
+echo '{"schema": "foilgauge/design/1", "form": "cantilever", "beam_length_mm": 9, "beam_width_mm": 3, "thickness_mm": 0.1}' >"$work/flat.json"
+expect 0 'sagitta [+]2.01 %' "$program" design "$work/flat.json"
+grep -q "mm/N\|clearance" "$work/stdout" && fail "what nobody stated is told of a cantilever"
+"$program" design "$work/flat.json" -o "$work/flat-out.json" || fail "design of a bare cantilever"
+valid nominal.schema.json "$work/cantilever.json" "$work/flat-out.json"
+expect 65 "there is no curve" "$program" design --curve "$cantilever"
+expect 64 "form is cantilever" "$program" loop "$root/samples/gen2_foil.png" --design "$cantilever"
+expect 64 "a cantilever has no built-in design" "$program" measure "$root/samples/gen2_foil.png" --form cantilever
+expect 65 "lies flat" "$program" form "$cantilever"
+
 # What is written loads again and gives the same.
 "$program" design -o "$work/first.json" || fail "design -o"
 sed -n '/^ "design": {/,/^ }/p' "$work/first.json" | sed '1s/.*/{/; $s/.*/}/' >"$work/again.json"

@@ -159,6 +159,27 @@ static void discs_need_no_bump_values(void **state) {
   assert_true(isnan(nominal.height_mm));
 }
 
+#define CANTILEVER(length, width)                                                                  \
+  "{" SCHEMA ", \"form\": \"cantilever\", \"thickness_mm\": 0.1, \"beam_length_mm\": " #length     \
+  ", \"beam_width_mm\": " #width
+
+static void cantilever_is_read(void **state) {
+  (void)state;
+  fg_design design;
+  fg_nominal nominal;
+  fg_design_default(&design);
+  const char *json = CANTILEVER(9, 3) ", \"beam_count\": 8, \"sagitta_mm\": 1, "
+                                      "\"clearance_mm\": 0.126, \"elastic_modulus_gpa\": 214}";
+  assert_int_equal(fg_design_parse(NULL, "x", json, &design), FG_OK);
+  assert_int_equal(design.form, FG_FORM_CANTILEVER);
+  assert_int_equal(design.beam_count, 8);
+  assert_int_equal(design.bump_count, 0);
+  assert_string_equal(design.name, "cantilever");
+  assert_near(design.clearance_mm, 0.126, 0);
+  assert_int_equal(fg_design_derive(NULL, &design, &nominal), FG_OK);
+  assert_true(isnan(nominal.height_mm));
+}
+
 /* A text, and what the message must say; the design must stay as it was. */
 static void bad_files_are_refused(void **state) {
   (void)state;
@@ -216,6 +237,22 @@ static void bad_files_are_refused(void **state) {
       {"{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": 1}", "diameters_mm: must be an array"},
       {"{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": [1, \"2\"]}", "diameters_mm[1]: must"},
       {"{" SCHEMA ", \"form\": \"discs\", \"diameters_mm\": [1, 0]}", "diameters_mm[1] is 0"},
+      {"{" SCHEMA ", \"beam_length_mm\": 9}", "beam_length_mm belongs to form \"cantilever\""},
+      {"{" SCHEMA ", \"clearance_mm\": 0.1}", "clearance_mm belongs to form \"cantilever\""},
+      {"{" SCHEMA ", \"form\": \"cantilever\"}", "beam_length_mm: is missing; a cantilever must"},
+      {CANTILEVER(9, 3) ", \"bump_count\": 9}", "bump_count: belongs to a foil with bumps"},
+      {CANTILEVER(9, 3) ", \"datum\": \"mid\"}", "datum: belongs to a foil with bumps"},
+      {CANTILEVER(9, 3) ", \"subtended_angle_deg\": 40}", "subtended_angle_deg belongs to"},
+      {CANTILEVER(-9, 3) "}", "beam_length_mm is -9"},
+      {CANTILEVER(9, 0) "}", "beam_width_mm is 0"},
+      {CANTILEVER(3, 9) "}", "beam_width_mm is 9; it must be below beam_length_mm 3"},
+      {CANTILEVER(9, 0.05) "}", "thickness_mm is 0.1; it must be below beam_width_mm 0.05"},
+      {CANTILEVER(9, 3) ", \"beam_count\": 2.5}", "beam_count: is 2.5"},
+      {CANTILEVER(9, 3) ", \"sagitta_mm\": 4.5}", "sagitta_mm is 4.5; it must be below half"},
+      {CANTILEVER(9, 3) ", \"sagitta_mm\": -1}", "sagitta_mm is -1"},
+      {CANTILEVER(9, 3) ", \"clearance_mm\": 0.1}", "clearance_mm is 0.1 without sagitta_mm"},
+      {CANTILEVER(9, 3) ", \"elastic_modulus_gpa\": -5}", "elastic_modulus_gpa is -5"},
+      {CANTILEVER(9, 3) ", \"u_thickness_mm\": 0.06}", "u_thickness_mm is 0.06"},
       {"{" SCHEMA ", \"tolerances\": []}", "tolerances: must be an object"},
       {"{" SCHEMA ", \"tolerances\": {\"height_mm\": 1}}", "tolerances.height_mm: must be"},
       {"{" SCHEMA ", \"tolerances\": {\"height_mm\": {}}}", "tolerances.height_mm: must be"},
@@ -282,6 +319,7 @@ int main(void) {
       cmocka_unit_test(file_is_read),
       cmocka_unit_test(absent_members_keep_their_values),
       cmocka_unit_test(discs_need_no_bump_values),
+      cmocka_unit_test(cantilever_is_read),
       cmocka_unit_test(bad_files_are_refused),
       cmocka_unit_test(check_refuses_senseless_values),
       cmocka_unit_test(missing_file_is_an_io_error),

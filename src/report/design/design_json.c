@@ -83,10 +83,11 @@ static fg_status read_word(const reader *r, const char *name, const cJSON *item,
 }
 
 static fg_status read_form(const reader *r, const char *name, const cJSON *item, void *out) {
-  static const char *const words[] = {"classical", "sinusoidal", "discs", "arc", NULL};
+  static const char *const words[] = {"classical", "sinusoidal", "discs",
+                                      "arc",       "cantilever", NULL};
   int place = 0;
-  FG_TRY(read_word(r, name, item, words, "\"classical\", \"sinusoidal\", \"discs\" or \"arc\"",
-                   &place));
+  FG_TRY(read_word(r, name, item, words,
+                   "\"classical\", \"sinusoidal\", \"discs\", \"arc\" or \"cantilever\"", &place));
   *(fg_form *)out = (fg_form)place;
   return FG_OK;
 }
@@ -180,10 +181,11 @@ typedef struct member_row {
 static const member_row member_rows[] = {
     {"schema", read_schema, 0, "Must be \"foilgauge/design/1\"."},
     MEMBER(name, read_name, "Of the design, as reports show it."),
-    MEMBER(form, read_form,
-           "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
-           "lands, no lip), \"arc\" (a plain strip, as a top foil) or \"discs\" (no foil: round "
-           "gauges)."),
+    MEMBER(
+        form, read_form,
+        "\"classical\" (bumps, lands, a lip at one end), \"sinusoidal\" (long fillets, short "
+        "lands, no lip), \"arc\" (a plain strip, as a top foil), \"cantilever\" (a flat foil with "
+        "beams cut out of it) or \"discs\" (no foil: round gauges)."),
     MEMBER(datum, read_datum,
            "Which line of the strip the lengths belong to: \"mid\", \"inner\" (the shaft's side) "
            "or \"outer\" (the sleeve's)."),
@@ -203,6 +205,19 @@ static const member_row member_rows[] = {
     MEMBER(rotor_diameter_mm, read_number, "Of the rotor in the bearing."),
     MEMBER(subtended_angle_deg, read_number,
            "Of form \"arc\" alone: from end to end, about the centre."),
+    MEMBER(beam_count, read_count,
+           "Of form \"cantilever\" alone, as all up to `clearance_mm`: beams of a foil; 0: not "
+           "stated."),
+    MEMBER(beam_length_mm, read_number, "L, from the root of a beam to its free end."),
+    MEMBER(beam_width_mm, read_number, "w, of a beam."),
+    MEMBER(u_thickness_mm, read_number,
+           "Standard uncertainty of `thickness_mm`, which goes into that of the compliance; a scan "
+           "does not see the thickness of what lies flat."),
+    MEMBER(sagitta_mm, read_number, "s, by which a beam stands off its sheet once it is bent."),
+    MEMBER(elastic_modulus_gpa, read_number,
+           "E of the sheet; without it the compliance is told against the design's alone."),
+    MEMBER(clearance_mm, read_number,
+           "Of the bearing with beams of this sagitta; its change is then told in percent, too."),
     {"diameters_mm", read_diameters, 0,
      "Of form \"discs\" alone: known diameters of the gauges, in any order."},
     {"tolerances", read_tolerances, 0,
@@ -242,7 +257,7 @@ static fg_status check_complete(const reader *r, const cJSON *root, const fg_des
     if (has && !given) given = together[i];
     if (!has && !missing) missing = together[i];
   }
-  if (design->form == FG_FORM_DISCS || !given || !missing) return FG_OK;
+  if (!fg_form_has_bumps(design->form) || !given || !missing) return FG_OK;
   return fail(r, missing, "is missing; a design that states %s must state it too", given);
 }
 
@@ -250,17 +265,43 @@ static bool has_member(const cJSON *root, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(root, name) != NULL;
 }
 
-/* Nothing of an arc has a default, and what belongs to bumps would be ignored. */
-static fg_status check_arc_members(const reader *r, const cJSON *root) {
-  static const char *const needed[] = {"overall_radius_mm", "subtended_angle_deg", "thickness_mm"};
-  static const char *const others[] = {
-      "bump_count", "bump_radius_mm",   "bump_angle_deg",    "sleeve_radius_mm",
-      "pitch_deg",  "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm"};
-  for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
-    if (!has_member(root, needed[i])) return fail(r, needed[i], "is missing; an arc must state it");
-  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-    if (has_member(root, others[i]))
-      return fail(r, others[i], "belongs to a foil with bumps; form is \"arc\"");
+/* Of a form that nothing has a default of: what it must state, and what belongs to other forms and
+ * would be ignored. */
+typedef struct form_members {
+  const char *form, *part;
+  const char *needed[4], *others[12];
+} form_members;
+
+static const form_members arc_members = {
+    "arc",
+    "an arc",
+    {"overall_radius_mm", "subtended_angle_deg", "thickness_mm"},
+    {"bump_count", "bump_radius_mm", "bump_angle_deg", "sleeve_radius_mm", "pitch_deg",
+     "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm"}};
+
+static const form_members cantilever_members = {
+    "cantilever",
+    "a cantilever",
+    {"beam_length_mm", "beam_width_mm", "thickness_mm"},
+    {"bump_count", "bump_radius_mm", "bump_angle_deg", "sleeve_radius_mm", "pitch_deg",
+     "fillet_radius_mm", "rotor_diameter_mm", "top_foil_thickness_mm", "overall_radius_mm",
+     "datum"}};
+
+static fg_status check_form_members(const reader *r, const cJSON *root, const form_members *own) {
+  for (size_t i = 0; own->needed[i]; i++)
+    if (!has_member(root, own->needed[i]))
+      return fail(r, own->needed[i], "is missing; %s must state it", own->part);
+  for (size_t i = 0; own->others[i]; i++)
+    if (has_member(root, own->others[i]))
+      return fail(r, own->others[i], "belongs to a foil with bumps; form is \"%s\"", own->form);
+  return FG_OK;
+}
+
+static fg_status read_form_alone(const reader *r, const cJSON *root, const form_members *own,
+                                 fg_design *design) {
+  FG_TRY(check_form_members(r, root, own));
+  design->bump_count = 0;
+  if (!has_member(root, "name")) strcpy(design->name, own->form);
   return FG_OK;
 }
 
@@ -272,12 +313,9 @@ static fg_status read_root(const reader *r, const cJSON *root, fg_design *design
   }
   if (!cJSON_GetObjectItemCaseSensitive(root, "schema"))
     return fail(r, "schema", "is missing; a design has \"schema\": \"" DESIGN_SCHEMA "\"");
-  if (design->form == FG_FORM_ARC) {
-    FG_TRY(check_arc_members(r, root));
-    design->bump_count = 0;
-    if (!has_member(root, "name")) strcpy(design->name, "arc");
-    return FG_OK;
-  }
+  if (design->form == FG_FORM_ARC) return read_form_alone(r, root, &arc_members, design);
+  if (design->form == FG_FORM_CANTILEVER)
+    return read_form_alone(r, root, &cantilever_members, design);
   FG_TRY(check_complete(r, root, design));
   if (cJSON_GetObjectItemCaseSensitive(root, "overall_radius_mm") &&
       !cJSON_GetObjectItemCaseSensitive(root, "sleeve_radius_mm"))

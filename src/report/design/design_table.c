@@ -2,8 +2,10 @@
 #include <math.h>
 
 #include "core/file.h"
+#include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"
 #include "foilgauge/words.h"
+#include "report/design/beam_deviations.h"
 #include "report/stiffness/stiffness_table.h"
 
 static void write_row(FILE *out, const char *words, const char *symbol, double value,
@@ -43,6 +45,46 @@ static void write_arc(const fg_design *design, const fg_nominal *nominal, FILE *
   write_row(out, "arc length", "", nominal->arc_length_mm, "mm");
 }
 
+static void write_beam(const fg_design *design, FILE *out) {
+  write_row(out, "beam length", "L", design->beam_length_mm, "mm");
+  write_row(out, "beam width", "w", design->beam_width_mm, "mm");
+  write_row(out, "thickness", "t", design->thickness_mm, "mm");
+  if (design->u_thickness_mm > 0)
+    write_row(out, "its standard uncertainty", "u(t)", design->u_thickness_mm, "mm");
+  if (design->sagitta_mm > 0) write_row(out, "sagitta, as bent", "s", design->sagitta_mm, "mm");
+  if (design->clearance_mm > 0) write_row(out, "clearance", "C", design->clearance_mm, "mm");
+  if (design->elastic_modulus_gpa > 0)
+    write_row(out, "elastic modulus", "E", design->elastic_modulus_gpa, "GPa");
+}
+
+/* What of sagitta and clearance cannot be said stays out of a line. */
+static void write_deviating(const fg_design *design, double length_pct, double width_pct,
+                            FILE *out) {
+  const fg_cantilever beam = fg_cantilever_deviating(design, length_pct, width_pct);
+  fprintf(out, "  L %+.2f %%, w %+.2f %%: compliance %+.2f %%, sagitta %+.2f %%", length_pct,
+          width_pct, beam.compliance_error_pct, beam.sagitta_error_pct);
+  if (isfinite(beam.clearance_change_mm))
+    fprintf(out, ", clearance %+.4f mm", beam.clearance_change_mm);
+  if (isfinite(beam.clearance_change_pct)) fprintf(out, " (%+.1f %%)", beam.clearance_change_pct);
+  fputc('\n', out);
+}
+
+static void write_cantilever(const fg_design *design, FILE *out) {
+  const fg_cantilever beam = fg_cantilever_nominal(design);
+  if (design->beam_count) fprintf(out, ", %zu beams", design->beam_count);
+  fputs("\n\nstated\n", out);
+  write_beam(design, out);
+  fputs("\nderived\n", out);
+  write_row(out, "second moment w t^3 / 12", "I", fg_cantilever_second_moment_mm4(design), "mm4");
+  if (isfinite(beam.compliance_mm_per_n))
+    write_row(out, "compliance L^3 / (3 E I), eq 5.10", "S", beam.compliance_mm_per_n, "mm/N");
+  if (design->elastic_modulus_gpa > 0 && design->u_thickness_mm > 0)
+    write_row(out, "its u by that of the thickness", "u(S)", beam.u_compliance_mm_per_n, "mm/N");
+  fputs("\nwhat a deviation of the beams does; the last two are the thesis's\n", out);
+  for (size_t i = 0; i < FG_BEAM_DEVIATIONS; i++)
+    write_deviating(design, fg_beam_deviations_pct[i][0], fg_beam_deviations_pct[i][1], out);
+}
+
 static void write_tolerances(const fg_design *design, FILE *out) {
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *t = &design->tolerances[i];
@@ -65,6 +107,8 @@ fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report,
       write_row(out, "diameter", "", design->diameters_mm[i], "mm");
   } else if (design->form == FG_FORM_ARC) {
     write_arc(design, report->nominal, out);
+  } else if (design->form == FG_FORM_CANTILEVER) {
+    write_cantilever(design, out);
   } else {
     fprintf(out, ", datum %s", fg_datum_word(design->datum));
     if (design->bump_count) fprintf(out, ", %zu bumps", design->bump_count);

@@ -1,6 +1,8 @@
 /* A design and what follows from it as JSON. */
 #include "core/file.h"
+#include "foilgauge/cantilever.h"
 #include "foilgauge/design_report.h"
+#include "report/design/beam_deviations.h"
 #include "report/measure/measure_json.h"
 #include "report/stiffness/stiffness_map.h"
 #include "report/stiffness/stiffness_table.h"
@@ -35,6 +37,34 @@ static void write_stiffness(fg_json *json, const fg_design_report *report) {
   fg_json_object_end(json);
 }
 
+static void write_deviating(fg_json *json, const fg_design *design, double length_pct,
+                            double width_pct) {
+  const fg_cantilever beam = fg_cantilever_deviating(design, length_pct, width_pct);
+  fg_json_object(json, NULL);
+  fg_json_line(json);
+  fg_json_number(json, "length_error_pct", length_pct);
+  fg_json_number(json, "width_error_pct", width_pct);
+  fg_json_number(json, "compliance_error_pct", beam.compliance_error_pct);
+  fg_json_number(json, "sagitta_error_pct", beam.sagitta_error_pct);
+  fg_json_number(json, "clearance_change_mm", beam.clearance_change_mm);
+  fg_json_number(json, "clearance_change_pct", beam.clearance_change_pct);
+  fg_json_object_end(json);
+  fg_json_line_end(json);
+}
+
+static void write_cantilever(fg_json *json, const fg_design *design) {
+  const fg_cantilever beam = fg_cantilever_nominal(design);
+  fg_json_object(json, "nominal");
+  fg_json_number(json, "second_moment_mm4", fg_cantilever_second_moment_mm4(design));
+  fg_json_number(json, "compliance_mm_per_n", beam.compliance_mm_per_n);
+  fg_json_number(json, "u_compliance_mm_per_n", beam.u_compliance_mm_per_n);
+  fg_json_array(json, "deviations");
+  for (size_t i = 0; i < FG_BEAM_DEVIATIONS; i++)
+    write_deviating(json, design, fg_beam_deviations_pct[i][0], fg_beam_deviations_pct[i][1]);
+  fg_json_array_end(json);
+  fg_json_object_end(json);
+}
+
 fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   bool bumps = fg_form_has_bumps(design->form);
@@ -50,6 +80,7 @@ fg_status fg_design_write_json(fg_context *ctx, const fg_design_report *report, 
     fg_json_number(&json, "arc_length_mm", report->nominal->arc_length_mm);
     fg_json_object_end(&json);
   }
+  if (design->form == FG_FORM_CANTILEVER) write_cantilever(&json, design);
   fg_json_object_end(&json);
   fg_json_end(&json);
   return fg_stream_finish(ctx, out, "the design");

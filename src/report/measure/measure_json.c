@@ -30,6 +30,22 @@ static void write_tolerances(fg_json *json, const fg_design *design) {
   fg_json_object_end(json);
 }
 
+/* Where 0 says that none is stated. */
+static void write_stated(fg_json *json, const char *name, double value) {
+  if (value != 0) fg_json_number(json, name, value);
+}
+
+static void write_cantilever(fg_json *json, const fg_design *design) {
+  fg_json_integer(json, "beam_count", (int64_t)design->beam_count);
+  fg_json_number(json, "beam_length_mm", design->beam_length_mm);
+  fg_json_number(json, "beam_width_mm", design->beam_width_mm);
+  fg_json_number(json, "thickness_mm", design->thickness_mm);
+  write_stated(json, "u_thickness_mm", design->u_thickness_mm);
+  write_stated(json, "sagitta_mm", design->sagitta_mm);
+  write_stated(json, "elastic_modulus_gpa", design->elastic_modulus_gpa);
+  write_stated(json, "clearance_mm", design->clearance_mm);
+}
+
 void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
   fg_json_object(json, name);
   fg_json_string(json, "schema", "foilgauge/design/1");
@@ -42,6 +58,8 @@ void fg_json_design(fg_json *json, const char *name, const fg_design *design) {
     fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
     fg_json_number(json, "subtended_angle_deg", design->subtended_angle_deg);
     fg_json_number(json, "thickness_mm", design->thickness_mm);
+  } else if (design->form == FG_FORM_CANTILEVER) {
+    write_cantilever(json, design);
   } else {
     fg_json_string(json, "datum", fg_datum_word(design->datum));
     fg_json_integer(json, "bump_count", (int64_t)design->bump_count);
