@@ -19,6 +19,8 @@ extern "C" {
 
 enum { FG_SCANNER_NAME = 128 };
 
+struct fg_forming_prediction; /* foilgauge/forming.h */
+
 typedef struct fg_scan_loop_options {
   double dpi;       /* 0: as the files say */
   bool allow_lossy; /* as in fg_measure_options */
@@ -28,12 +30,16 @@ typedef struct fg_scan_loop_options {
   uint64_t seed;
   const char *scanner; /* its name, for the model file; NULL: not said */
   int64_t date; /* likewise, when its scans were made: seconds since 1970, UTC; 0: not said */
+  /* Declared of the bumps in place of the design's springback, each by its number; NULL: the
+   * design's. It must outlive the loop. */
+  const struct fg_forming_prediction *forming;
 } fg_scan_loop_options;
 
 typedef struct fg_scan_loop fg_scan_loop; /* src/scan_loop/state.h */
 
 /* `hold_out[i]`: scan i only confirms. At least one scan must not be kept aside. FG_ERR_DATA when
- * the scans do not fit together (resolution; under same_foil scans that are not of one foil),
+ * the scans do not fit together (resolution; under same_foil scans that are not of one foil), or
+ * `forming` does not know a bump that they show,
  * FG_ERR_NOT_MEASURED when no foil of the design could be measured. */
 fg_status fg_scan_loop_run(fg_context *ctx, const char *const *paths, const bool *hold_out,
                            size_t count, const fg_design *design,

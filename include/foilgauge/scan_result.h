@@ -145,7 +145,7 @@ typedef struct fg_scan_result_grid {
   double period_mm;               /* of the shortest ripple; infinite: none */
 } fg_scan_result_grid;
 
-/* ---- the bumps against the declared springback ---- */
+/* ---- the bumps against the declared springback, or against what a forming predicts ---- */
 
 enum { FG_SCAN_RESULT_RESPONSES = 2 };
 
@@ -202,12 +202,15 @@ typedef struct fg_scan_result_response {
   const char **nearest; /* effects that come near the curve */
   size_t nearests;
   fg_scan_result_bump_error error;
+  /* Mean of measured minus declared, which the errors are without; NaN: the model has no level. */
+  double level, u_level;
 } fg_scan_result_response;
 
 typedef struct fg_scan_result_bumps {
-  size_t count, aside, parts;  /* bumps that are judged, and kept aside; foils */
-  bool lip;                    /* their numbers count from a lip */
-  const char *coordinate_name; /* of those numbers */
+  size_t count, aside, parts;                  /* bumps that are judged, and kept aside; foils */
+  bool lip;                                    /* their numbers count from a lip */
+  const char *coordinate_name;                 /* of those numbers */
+  const char *declared_path, *declared_sha256; /* of the forming; NULL: the design's springback */
   fg_scan_result_response response[FG_SCAN_RESULT_RESPONSES];
   fg_scan_result_bump_error height_um;  /* follows from both */
   const fg_scan_result_response *curve; /* of which a curve is told; NULL: none */

@@ -363,8 +363,8 @@ exit:
 
 /* The loop on a table, or on scans (cmd_loop_scan.c). */
 static bool is_about_a_table(int argc, char **argv) {
-  static const char *const words[] = {"--table",    "--lot",    "--doe",       "--response",
-                                      "--declared", "--offset", "--form-model"};
+  static const char *const words[] = {"--table",    "--lot",      "--doe",
+                                      "--response", "--declared", "--offset"};
   for (int i = 1; i < argc; i++)
     for (size_t w = 0; w < sizeof words / sizeof *words; w++)
       if (!strncmp(argv[i], words[w], strlen(words[w]))) return true;

@@ -8,6 +8,8 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/loop_outputs.h"
+#include "foilgauge/forming.h"
+#include "foilgauge/memory.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/scan_loop.h"
 
@@ -22,6 +24,7 @@ enum {
   OPTION_MODEL_OUT,
   OPTION_HTML,
   OPTION_SCANNER,
+  OPTION_FORM_MODEL,
   OPTION_SEED,
   OPTION_THREADS
 };
@@ -39,7 +42,7 @@ typedef struct arguments {
   const char *paths[SCANS_MOST];
   bool hold_out[SCANS_MOST];
   size_t count, kept_aside;
-  const char *design_path, *form;
+  const char *design_path, *form, *form_model;
   fg_output_set outputs;
   fg_scan_loop_options options;
 } arguments;
@@ -53,6 +56,11 @@ static const struct argp_option options[] = {
     {"same-foil", OPTION_SAME, NULL, 0,
      "The scans show the same foil, turned or shifted in between: what stays with the glass is the "
      "scanner, what turns is the part",
+     0},
+    {"form-model", OPTION_FORM_MODEL, "FORM.json", 0,
+     "A report of `foilgauge form -o` as the declared model of the bumps, in place of one "
+     "springback for all: the radius that it predicts of each bump beside one level, and its arc "
+     "length",
      0},
     {"hold-out", OPTION_HOLD_OUT, "SCAN", 0, "A scan that only confirms (may be repeated)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
@@ -108,6 +116,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_FORM:
     a->form = text;
     return 0;
+  case OPTION_FORM_MODEL:
+    a->form_model = text;
+    return 0;
   case OPTION_DPI:
     a->options.dpi = parse_number(state, "dpi", text);
     return 0;
@@ -157,9 +168,9 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
 }
 
 static fg_status check_outputs(fg_context *ctx, arguments *a) {
-  const fg_input design = {a->design_path, "the design"};
+  const fg_input files[] = {{a->design_path, "the design"}, {a->form_model, "the forming"}};
   fg_loop_outputs_choose(&a->outputs);
-  FG_TRY(fg_output_set_check(ctx, &a->outputs, &design, 1));
+  FG_TRY(fg_output_set_check(ctx, &a->outputs, files, sizeof files / sizeof *files));
   for (size_t i = 0; i < a->count; i++)
     FG_TRY(fg_output_set_check(ctx, &a->outputs, &(fg_input){a->paths[i], "the scan"}, 1));
   return FG_OK;
@@ -191,34 +202,54 @@ static void tell_empty_model(const arguments *a, const fg_scan_result *result) {
             path);
 }
 
-static fg_status run(fg_context *ctx, arguments *a, int *code) {
-  fg_design design;
-  fg_scan_loop *loop = NULL;
-  FG_TRY(check_outputs(ctx, a));
-  fg_design_default(&design);
-  if (a->design_path) FG_TRY(fg_design_load(ctx, a->design_path, &design));
-  FG_TRY(fg_cli_apply_form(ctx, a->form, &design));
-  if (design.form == FG_FORM_DISCS && a->options.same_foil)
+static fg_status check_design(fg_context *ctx, const arguments *a, const fg_design *design) {
+  if (design->form == FG_FORM_DISCS && a->options.same_foil)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "--same-foil is for foils: a disc does not show how far it was turned");
-  if (design.form == FG_FORM_ARC)
+  if (design->form == FG_FORM_DISCS && a->form_model)
+    return fg_fail(ctx, FG_ERR_USAGE, "--form-model is of the bumps of foils: discs have none");
+  if (design->form == FG_FORM_ARC)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: form is arc, and the loop needs bumps or discs: one circle takes up what a "
                    "scanner does to it. Scan round gauges (--form discs) and apply what they say "
                    "with measure --model",
                    a->design_path);
-  if (design.form == FG_FORM_CANTILEVER)
+  if (design->form == FG_FORM_CANTILEVER)
     return fg_fail(ctx, FG_ERR_USAGE,
                    "%s: form is cantilever, and the loop needs bumps or discs. Scan round gauges "
                    "(--form discs) to see what the scanner does to lengths",
                    a->design_path);
-  FG_TRY(fg_output_set_open(ctx, &a->outputs));
+  return FG_OK;
+}
+
+static fg_status read_forming(fg_context *ctx, const char *path,
+                              fg_forming_prediction **prediction) {
+  if (!path) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof **prediction, (void **)prediction));
+  return fg_forming_prediction_load(ctx, path, *prediction);
+}
+
+static fg_status run(fg_context *ctx, arguments *a, int *code) {
+  fg_design design;
+  fg_scan_loop *loop = NULL;
+  fg_forming_prediction *prediction = NULL;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(check_outputs(ctx, a));
+  fg_design_default(&design);
+  if (a->design_path) FG_TRY_EXIT(fg_design_load(ctx, a->design_path, &design));
+  FG_TRY_EXIT(fg_cli_apply_form(ctx, a->form, &design));
+  FG_TRY_EXIT(check_design(ctx, a, &design));
+  FG_TRY_EXIT(read_forming(ctx, a->form_model, &prediction));
+  FG_TRY_EXIT(fg_output_set_open(ctx, &a->outputs));
   a->options.date = find_date(a);
-  FG_TRY(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
+  a->options.forming = prediction;
+  FG_TRY_EXIT(fg_scan_loop_run(ctx, a->paths, a->hold_out, a->count, &design, &a->options, &loop));
   *code = fg_scan_loop_result(loop)->left_out ? 2 : 0;
-  fg_status status = fg_output_set_write(ctx, &a->outputs, write_output, loop);
-  if (status == FG_OK) tell_empty_model(a, fg_scan_loop_result(loop));
+  FG_TRY_EXIT(fg_output_set_write(ctx, &a->outputs, write_output, loop));
+  tell_empty_model(a, fg_scan_loop_result(loop));
+exit:
   fg_scan_loop_free(loop);
+  free(prediction);
   return status;
 }
 

@@ -9,8 +9,8 @@
 #include "core/text.h"
 
 const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_RESPONSES] = {
-    {"bump_radius_mm", "bump radius", "um", "uniform springback", 1000},
-    {"bump_angle_deg", "bump angle", "deg", "constant arc length", 1},
+    {"bump_radius_mm", "bump radius", "um", "uniform springback", "what form predicts of it", 1000},
+    {"bump_angle_deg", "bump angle", "deg", "constant arc length", "the arc length of form", 1},
 };
 
 enum { RADIUS = FG_SCAN_LOOP_BUMP_RADIUS, ANGLE = FG_SCAN_LOOP_BUMP_ANGLE };
@@ -40,22 +40,32 @@ fg_status fg_scan_loop_bumps_note(fg_context *ctx, fg_scan_loop_bumps *bumps, co
 
 /* ---- the problem ---- */
 
-static fg_status build_table(fg_context *ctx, const fg_scan_loop_bumps *bumps, fg_table *table) {
+static const char *const offset_column[FG_SCAN_LOOP_BUMP_RESPONSES] = {"declared radius",
+                                                                       "declared angle"};
+
+static fg_status build_table(fg_context *ctx, const fg_scan_loop_bumps *bumps,
+                             const fg_design *design, fg_table *table) {
   fg_status status = FG_OK;
   double *column = NULL;
   size_t n = bumps->count;
   *table = (fg_table){0};
-  FG_TRY(fg_memory_allocate(ctx, n, 4 * sizeof *column, (void **)&column));
+  FG_TRY(fg_memory_allocate(ctx, n, 6 * sizeof *column, (void **)&column));
   for (size_t i = 0; i < n; i++) {
-    column[i] = (double)bumps->bump[i].part + 1;
-    column[n + i] = bumps->bump[i].number;
-    column[2 * n + i] = bumps->bump[i].value[RADIUS];
-    column[3 * n + i] = bumps->bump[i].value[ANGLE];
+    const fg_scan_loop_bump *bump = &bumps->bump[i];
+    column[i] = (double)bump->part + 1;
+    column[n + i] = bump->number;
+    for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++) {
+      column[(2 + r) * n + i] = bump->value[r];
+      column[(4 + r) * n + i] = fg_scan_loop_bumps_offset(design, bump, r);
+    }
   }
   FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "foil", column, n));
   FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "bump", column + n, n));
-  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "bump_radius_mm", column + 2 * n, n));
-  FG_TRY_EXIT(fg_table_add_numbers(ctx, table, "bump_angle_deg", column + 3 * n, n));
+  for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
+    FG_TRY_EXIT(fg_table_add_numbers(ctx, table, fg_scan_loop_bump_responses[r].name,
+                                     column + (2 + r) * n, n));
+  for (size_t r = 0; bumps->forming && r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
+    FG_TRY_EXIT(fg_table_add_numbers(ctx, table, offset_column[r], column + (4 + r) * n, n));
 exit:
   free(column);
   return status;
@@ -83,6 +93,7 @@ static fg_status build_problem(fg_context *ctx, const fg_scan_loop_bumps *bumps,
                                          : "1",
       .group = "foil",
       .hold_out = "0",
+      .offset = bumps->forming ? offset_column[response] : NULL,
       .design = design,
   };
   FG_TRY(fg_loop_table_problem_build(ctx, table, &spec, out));
@@ -90,6 +101,8 @@ static fg_status build_problem(fg_context *ctx, const fg_scan_loop_bumps *bumps,
   for (size_t i = 0; i < problem->rows; i++)
     problem->aside[i] = bumps->bump[out->row[i]].aside;
   drop_coordinate(problem, "foil");
+  for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
+    drop_coordinate(problem, offset_column[r]);
   if (!bumps->lip) drop_coordinate(problem, "bump");
   if (!few) return FG_OK;
   problem->few = true;
@@ -288,6 +301,7 @@ static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, 
       n++;
     }
   level->least = beyond_doubt * sum / n;
+  fg_scan_loop_bumps_find_level(bumps, response);
   FG_TRY(judge_claims(ctx, bumps, response, seed));
   find_errors(level, bumps, response == RADIUS);
   return FG_OK;
@@ -300,7 +314,7 @@ static double height_of(double overall_mm, double radius_mm, double angle_deg) {
 }
 
 /* Predicted from the declared model alone, and with what was found. */
-static void find_height_errors(const fg_design *design, fg_scan_loop_bumps *bumps) {
+static void find_height_errors(fg_scan_loop_bumps *bumps) {
   const fg_scan_loop_bump_level *radius = &bumps->level[RADIUS], *angle = &bumps->level[ANGLE];
   double sum[2][2] = {{0}}, n[2] = {0};
   for (size_t i = 0; i < bumps->count; i++) {
@@ -309,8 +323,10 @@ static void find_height_errors(const fg_design *design, fg_scan_loop_bumps *bump
     for (int after = 0; after < 2; after++) {
       double effect_mm = after ? radius->result.effect_fit[i] : 0;
       double effect_deg = after ? angle->result.effect_fit[i] : 0;
-      double r = part_mean(radius, bumps, bump->part, after) + effect_mm;
-      double alpha = design->bump_angle_deg * design->bump_radius_mm / r + effect_deg;
+      double level_mm =
+          radius->problem.problem.origin + part_mean(radius, bumps, bump->part, after);
+      double r = level_mm + bump->declared_mm + effect_mm;
+      double alpha = bump->declared_arc / r + effect_deg;
       double error = bump->height_mm - height_of(bump->overall_mm, r, alpha);
       sum[bump->aside][after] += error * error;
     }
@@ -333,7 +349,7 @@ static fg_status say_power(fg_context *ctx, fg_scan_loop_bumps *bumps, size_t ro
       ctx, bumps,
       "bumps: %zu measured: %s can be told from chance, whatever its size; it takes %d%s, "
       "on one foil or several",
-      rows, rows < ORDERS ? "no effect over them" : "no arc length unlike the design's", SIGNS,
+      rows, rows < ORDERS ? "no effect over them" : "no arc length unlike the declared one", SIGNS,
       rows < ORDERS ? " (6 for a trend over their number)" : "");
 }
 
@@ -347,10 +363,10 @@ static fg_status run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
     rows += !bumps->bump[i].aside;
   FG_TRY(say_power(ctx, bumps, rows));
   if (rows < FG_SCAN_LOOP_BUMP_ROWS + bumps->parts - 1) return FG_OK;
-  FG_TRY_EXIT(build_table(ctx, bumps, &table));
+  FG_TRY_EXIT(build_table(ctx, bumps, design, &table));
   for (size_t r = 0; r < FG_SCAN_LOOP_BUMP_RESPONSES; r++)
     FG_TRY_EXIT(judge(ctx, design, request->seed, r, &table, bumps));
-  find_height_errors(design, bumps);
+  find_height_errors(bumps);
 exit:
   fg_table_free(&table);
   return status;
@@ -359,6 +375,7 @@ exit:
 fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_request *request,
                                  fg_scan_loop_bumps *bumps) {
   *bumps = (fg_scan_loop_bumps){
+      .forming = request->forming,
       .height = {{NAN, NAN}, {NAN, NAN}},
       .level = {{.error = {{NAN, NAN}, {NAN, NAN}}}, {.error = {{NAN, NAN}, {NAN, NAN}}}}};
   if (request->before[0].design.form == FG_FORM_DISCS) return FG_OK; /* no bumps, nothing to say */
@@ -369,6 +386,7 @@ fg_status fg_scan_loop_bumps_run(fg_context *ctx, const fg_scan_loop_bumps_reque
         "of basis, and the bumps are not held against the springback model");
   choose_effects(bumps);
   fg_status status = fg_scan_loop_bumps_collect(ctx, request, bumps);
+  if (status == FG_OK) status = fg_scan_loop_bumps_declare(ctx, &request->before[0].design, bumps);
   if (status == FG_OK) status = run(ctx, request, bumps);
   if (status != FG_OK) fg_scan_loop_bumps_free(bumps);
   return status;

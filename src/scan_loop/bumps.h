@@ -1,6 +1,7 @@
 /* Level `bumps` of the loop on scans: the measured bumps, after what was found on the points has
  * been taken out, against the declared springback model: one radius on all bumps of a foil, and
- * constant arc length (thesis eq 5.6 and 5.7).
+ * constant arc length (thesis eq 5.6 and 5.7); or, where a forming is declared, the radius that it
+ * predicts of each bump beside one level, and the arc length that it predicts.
  *
  * Radius and angle are judged. The height follows from them and the overall circle (it is no third
  * witness), so it is only predicted: how far off before and after.
@@ -15,6 +16,7 @@
 #ifndef FG_SCAN_LOOP_BUMPS_H
 #define FG_SCAN_LOOP_BUMPS_H
 
+#include "foilgauge/forming.h"
 #include "foilgauge/loop.h"
 #include "foilgauge/measure.h"
 
@@ -35,6 +37,8 @@ typedef struct fg_scan_loop_bump {
   bool aside;
   double overall_mm, height_mm;
   double value[FG_SCAN_LOOP_BUMP_RESPONSES], doubt[FG_SCAN_LOOP_BUMP_RESPONSES]; /* mm, degrees */
+  double declared_mm;  /* radius beside the level; 0: a level alone */
+  double declared_arc; /* radius times angle, mm degrees */
 } fg_scan_loop_bump;
 
 /* Errors about the declared model, without and with what was found; NaN where there are none. */
@@ -48,8 +52,9 @@ typedef struct fg_scan_loop_bump_level {
   fg_loop_result result; /* with the claims that stand; p-values over both responses */
   fg_loop_claim dropped[FG_LOOP_CLAIMS];
   size_t drops;
-  double least; /* smallest amplitude beyond doubt, the response's unit */
-  double base;  /* mean of response minus effects, over rows that are not aside */
+  double least;          /* smallest amplitude beyond doubt, the response's unit */
+  double base;           /* mean of response minus effects, over rows that are not aside */
+  double level, u_level; /* mean of response minus declared; NaN: none is declared beside one */
   fg_scan_loop_bump_error error;
 } fg_scan_loop_bump_level;
 
@@ -58,7 +63,8 @@ typedef struct fg_scan_loop_bumps {
       effect[FG_SCAN_LOOP_BUMP_EFFECTS + 1]; /* looked for; claims point here: do not move */
   fg_scan_loop_bump *bump;                   /* in order of part and number */
   size_t count, parts;
-  bool lip; /* bump numbers count from a lip */
+  bool lip;                             /* bump numbers count from a lip */
+  const fg_forming_prediction *forming; /* declared; NULL: the design's springback */
   fg_scan_loop_bump_level level[FG_SCAN_LOOP_BUMP_RESPONSES];
   fg_scan_loop_bump_error height;
   char **note;
@@ -66,8 +72,9 @@ typedef struct fg_scan_loop_bumps {
 } fg_scan_loop_bumps;
 
 typedef struct fg_scan_loop_bump_response {
-  const char *name, *words, *unit, *model;
-  double scale; /* from the response's unit to `unit` */
+  const char *name, *words, *unit;
+  const char *model, *forming_model; /* what it is held against */
+  double scale;                      /* from the response's unit to `unit` */
 } fg_scan_loop_bump_response;
 extern const fg_scan_loop_bump_response fg_scan_loop_bump_responses[FG_SCAN_LOOP_BUMP_RESPONSES];
 
@@ -79,8 +86,22 @@ typedef struct fg_scan_loop_bumps_request {
   size_t scan_count;
   bool same_foil, open;
   bool bent; /* the bumps are no circles: how they deviate from one has been found */
+  const fg_forming_prediction *forming; /* NULL: the design's springback is declared */
   uint64_t seed;
 } fg_scan_loop_bumps_request;
+
+/* FG_ERR_DATA: a measured bump that the forming does not know. */
+fg_status fg_scan_loop_bumps_check_forming(fg_context *ctx, const fg_forming_prediction *forming,
+                                           const fg_measurement *measured, size_t scan_count);
+/* Fills what is declared of every bump. */
+fg_status fg_scan_loop_bumps_declare(fg_context *ctx, const fg_design *design,
+                                     fg_scan_loop_bumps *bumps);
+/* What the declared model says of a response besides the level, and besides the angle that the
+ * design's arc length gives. */
+double fg_scan_loop_bumps_offset(const fg_design *design, const fg_scan_loop_bump *bump,
+                                 size_t response);
+/* How far the measured level lies from the declared one, and by how far that may be off. */
+void fg_scan_loop_bumps_find_level(fg_scan_loop_bumps *bumps, size_t response);
 
 /* Fills `bump`: one row per bump of a part. A part's scans that were kept aside show nothing new of
  * it. */

@@ -158,7 +158,9 @@ static fg_status put_response(fg_context *ctx, const fg_scan_loop_bumps *bumps, 
   out->name = what->name;
   out->words = what->words;
   out->unit = what->unit;
-  out->model = what->model;
+  out->model = bumps->forming ? what->forming_model : what->model;
+  out->level = what->scale * from.level->level;
+  out->u_level = what->scale * from.level->u_level;
   out->judged = from.level->judged;
   out->error = scaled(&from.level->error, what->scale);
   for (size_t m = 0; m < from.level->result.claims; m++)
@@ -178,6 +180,10 @@ fg_status fg_scan_result_put_bumps(fg_context *ctx, const fg_scan_loop *loop,
   out->parts = bumps->parts;
   out->lip = bumps->lip;
   out->coordinate_name = fg_effect_coordinate_name(FG_EFFECT_INDEX);
+  if (bumps->forming) {
+    out->declared_path = bumps->forming->path;
+    out->declared_sha256 = bumps->forming->sha256;
+  }
   out->height_um = scaled(&bumps->height, 1000);
   FG_TRY(put_unclaimed(ctx, bumps, result));
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {

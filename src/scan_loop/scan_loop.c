@@ -164,6 +164,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
       .scan_count = loop->scan_count,
       .same_foil = loop->options.same_foil,
       .bent = bends_bumps(&loop->set),
+      .forming = loop->options.forming,
       .open = loop->tied || points == FG_LOOP_PARTLY || points == FG_LOOP_UNATTRIBUTED,
       .seed = loop->options.seed,
   };
@@ -240,6 +241,8 @@ static fg_status close_loop(fg_context *ctx, fg_scan_loop *loop, fg_scan_loop **
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_scan_loop_leave_out(ctx, loop));
   if (loop->options.same_foil) FG_TRY_EXIT(check_same_foils(ctx, loop));
+  FG_TRY_EXIT(
+      fg_scan_loop_bumps_check_forming(ctx, loop->options.forming, loop->before, loop->scan_count));
   FG_TRY_EXIT(build_points(ctx, loop));
   FG_TRY_EXIT(search(ctx, loop));
   FG_TRY_EXIT(calibrate(ctx, loop));

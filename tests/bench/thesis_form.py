@@ -177,6 +177,8 @@ scatter {scatter:.2g} %. Declared: `form` with the same strip and one rate for a
 Verdict {verdict}; found: {claims}. The scatter that was put in is {put_in:.2f} µm: nothing else could be taken away.
 
 ![Radius over the bump's number](form_loop.svg)
+
+form_loop.md has the same over twelve seeds, with weaker laws and clean lots, of lots and of scans (`loop SCAN... --form-model form.json`).
 """
 
 

@@ -22,11 +22,14 @@ mkdir lot
 python3 - $foils <<'END'
 import json, random, sys
 rng = random.Random(1)
-truth = [float(line.split(",")[1]) for line in open("truth.csv")]
-for foil in range(int(sys.argv[1])):
-    spec = {"schema": "foilgauge/render/1", "seed": foil, "scanner": {"dpi": 900},
-            "foils": [{"overall_radius_mm": 20.9, "radius_mm": [round(r * (1 + rng.gauss(0, 0.0005)), 6) for r in truth]}]}
-    json.dump(spec, open(f"spec_{foil + 1}.json", "w"))
+truth = [[float(cell) for cell in line.split(",")] for line in open("truth.csv")]
+for number in range(int(sys.argv[1])):
+    radii = [round(t[1] * (1 + rng.gauss(0, 0.0005)), 6) for t in truth]
+    # the arc length stays that of the forming
+    foil = {"radius_mm": radii, "bump_angle_deg": [t[1] * t[3] / r for t, r in zip(truth, radii)]}
+    spec = {"schema": "foilgauge/render/1", "seed": number, "scanner": {"dpi": 900},
+            "foils": [dict(foil, overall_radius_mm=20.9)]}
+    json.dump(spec, open(f"spec_{number + 1}.json", "w"))
 END
 for i in $(seq $foils); do
   "$renderer" render spec_$i.json -o lot/$i.png || fail "render $i"
@@ -45,6 +48,36 @@ assert r["after"]["rms"] < 0.5 * r["before"]["rms"] and r["error_ratio"]["held_o
 END
 grep -q 'offset(declared)' loop.html || fail "the page does not name the prediction"
 grep -q 'measured minus predicted' loop.html || fail "the page does not say how far the prediction is off"
+
+# The same on scans, beside one that is kept aside; what is declared is named everywhere.
+scans="lot/1.png lot/2.png lot/3.png --hold-out lot/4.png"
+expect 0 "" "$program" loop $scans --form-model declared.json -o scans.json --html scans.html
+valid loop_scan.schema.json scans.json
+python3 - scans.json declared.json <<'END' || fail "the effect over the bumps of scans is not found"
+import hashlib, json, sys
+r = json.load(open(sys.argv[1]))
+bumps = r["bumps"]
+radius, angle, height = bumps["responses"]
+assert bumps["declared"] == {"path": "declared.json", "sha256": hashlib.sha256(open(sys.argv[2], "rb").read()).hexdigest()}
+assert r["verdict"] == "explained" and [(c["id"], c["response"]) for c in r["claims"]] == [("part.lip_decay", "bump_radius_mm")], r["claims"]
+assert radius["rms_after"] < 0.6 * radius["rms_before"] and radius["held_out_rms_after"] < 0.7 * radius["held_out_rms_before"], radius
+# On average the bumps are 3 um larger than one rate for all would have them.
+assert abs(radius["level"] - 3) < 3 * radius["u_level"] and radius["u_level"] < 2, radius
+assert angle["level"] is None and height["rms_before"] < 2, (angle, height)
+END
+grep -q 'declared of the bumps' scans.html && grep -q 'against the declared forming' scans.html ||
+  fail "the page does not name the forming"
+script -qec "$program loop $scans --form-model declared.json" /dev/null >terminal.txt 2>&1 || fail "the table of a loop on scans"
+grep -q 'declared is what declared.json (foilgauge form) predicts' terminal.txt && grep -q 'measured minus declared is' terminal.txt ||
+  fail "the terminal does not name the forming"
+expect 65 "loop.json: not a report of .foilgauge form" "$program" loop lot/1.png --form-model loop.json
+expect 74 "missing.json" "$program" loop lot/1.png --form-model missing.json
+expect 64 "form-model is of the bumps of foils" "$program" loop lot/1.png --form discs --form-model declared.json
+expect 64 "" "$program" loop lot/1.png --form-model declared.json -o declared.json
+expect 64 "give a scan" "$program" loop --form-model declared.json
+echo '{"schema": "foilgauge/design/1", "form": "classical", "bump_count": 6}' >six.json
+expect 0 "" "$program" form six.json -o six_form.json
+expect 65 "six_form.json: it has no bump 7, which foil 1 of lot/1.png has" "$program" loop lot/1.png --form-model six_form.json
 
 # A column of a table says the same as the report; what cannot be declared is refused.
 printf 'foil,bump,radius_mm,declared\n' >table.csv

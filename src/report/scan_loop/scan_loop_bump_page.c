@@ -158,6 +158,24 @@ static void put_errors(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs("</table></div>\n", out);
 }
 
+/* Which forming is declared, and how far its level lies off. */
+static void put_declared(FILE *out, const fg_scan_result_bumps *bumps) {
+  if (!bumps->declared_path) return;
+  fputs("<p class=\"note\">Declared is what <code>", out);
+  fg_html_text(out, bumps->declared_path);
+  fprintf(out,
+          "</code> (<code>foilgauge form</code>, SHA-256 <code>%.12s</code>) predicts of each bump "
+          "by its number: its radius beside one level, and its arc length.",
+          bumps->declared_sha256);
+  for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
+    const fg_scan_result_response *one = &bumps->response[r];
+    if (isfinite(one->level))
+      fprintf(out, " Measured minus declared is <b>%+.3g ± %.2g %s</b> of the %s on average.",
+              one->level, 2 * one->u_level, fg_scan_loop_unit_words(one->unit), one->words);
+  }
+  fputs("</p>\n", out);
+}
+
 static void put_drawings(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs("<p class=\"note\">The bumps as corrected. Dots: bumps, rings: kept aside. Orange: what "
         "was "
@@ -174,7 +192,9 @@ void fg_scan_loop_page_bumps(FILE *out, const fg_scan_result *result) {
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     judged |= bumps->response[r].judged;
   if (!any && !result->notes) return;
-  fputs("<section><h2 class=\"first\">The bumps against the declared springback</h2>\n", out);
+  fprintf(out, "<section><h2 class=\"first\">The bumps against %s</h2>\n",
+          bumps->declared_path ? "the declared forming" : "the declared springback");
+  put_declared(out, bumps);
   if (judged) put_drawings(out, bumps);
   if (any) put_candidates(out, bumps);
   if (judged) put_errors(out, bumps);

@@ -89,13 +89,25 @@ static void write_error(fg_json *json, const fg_scan_result_bump_error *error) {
   fg_json_number(json, "held_out_rms_after", error->held_out_rms[1]);
 }
 
-static void write_response(fg_json *json, const char *name, const char *unit, const char *model,
-                           const fg_scan_result_bump_error *error) {
+static void write_response(fg_json *json, const fg_scan_result_response *response) {
   fg_json_object(json, NULL);
-  fg_json_string(json, "response", name);
-  fg_json_string(json, "unit", unit);
-  fg_json_string(json, "model", model);
-  write_error(json, error);
+  fg_json_string(json, "response", response->name);
+  fg_json_string(json, "unit", response->unit);
+  fg_json_string(json, "model", response->model);
+  fg_json_number(json, "level", response->level);
+  fg_json_number(json, "u_level", response->u_level);
+  write_error(json, &response->error);
+  fg_json_object_end(json);
+}
+
+static void write_declared(fg_json *json, const fg_scan_result_bumps *bumps) {
+  if (!bumps->declared_path) {
+    fg_json_string(json, "declared", NULL);
+    return;
+  }
+  fg_json_object(json, "declared");
+  fg_json_string(json, "path", bumps->declared_path);
+  fg_json_string(json, "sha256", bumps->declared_sha256);
   fg_json_object_end(json);
 }
 
@@ -104,12 +116,17 @@ void fg_json_bumps(fg_json *json, const fg_scan_result_bumps *bumps) {
   fg_json_integer(json, "count", (int64_t)bumps->count);
   fg_json_integer(json, "kept_aside", (int64_t)bumps->aside);
   fg_json_integer(json, "foils", (int64_t)bumps->parts);
+  write_declared(json, bumps);
   fg_json_array(json, "responses");
-  for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
-    const fg_scan_result_response *one = &bumps->response[r];
-    write_response(json, one->name, one->unit, one->model, &one->error);
-  }
-  write_response(json, "height_mm", "um", "follows from radius and angle", &bumps->height_um);
+  for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
+    write_response(json, &bumps->response[r]);
+  const fg_scan_result_response height = {.name = "height_mm",
+                                          .unit = "um",
+                                          .model = "follows from radius and angle",
+                                          .level = NAN,
+                                          .u_level = NAN,
+                                          .error = bumps->height_um};
+  write_response(json, &height);
   fg_json_array_end(json);
   fg_json_object_end(json);
 }
@@ -129,6 +146,9 @@ static void text_claim(const fg_scan_result_response *response,
 }
 
 void fg_text_bumps(const fg_scan_result_bumps *bumps, FILE *out) {
+  if (bumps->declared_path)
+    fprintf(out, "  bumps: declared is what %s (foilgauge form) predicts of each by its number\n",
+            bumps->declared_path);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     const fg_scan_result_response *one = &bumps->response[r];
     for (size_t m = 0; m < one->claims; m++)
@@ -136,6 +156,9 @@ void fg_text_bumps(const fg_scan_result_bumps *bumps, FILE *out) {
     if (one->judged)
       fprintf(out, "  bumps: %s about %s: %.3g %s before, %.3g %s after\n", one->name, one->model,
               one->error.rms[0], one->unit, one->error.rms[1], one->unit);
+    if (isfinite(one->level))
+      fprintf(out, "  bumps: %s measured minus declared is %+.3g +- %.2g %s on average\n",
+              one->name, one->level, 2 * one->u_level, one->unit);
   }
   if (bumps->curve)
     fprintf(out, "  unattributed, over the bump's number: %s\n", bumps->curve->name);

@@ -40,7 +40,7 @@ static void put_tiles(FILE *out, const fg_scan_result *result) {
 }
 
 static void put_inputs(FILE *out, const fg_scan_result *result) {
-  fputs("<div class=\"scroll\"><table><tr><th>scan</th><th class=\"w\">SHA-256</th>"
+  fputs("<div class=\"scroll\"><table><tr><th>input</th><th class=\"w\">SHA-256</th>"
         "<th class=\"w\">dpi</th><th class=\"w\">shows</th><th class=\"w\">role</th></tr>\n",
         out);
   for (size_t i = 0; i < result->scans; i++) {
@@ -57,6 +57,14 @@ static void put_inputs(FILE *out, const fg_scan_result *result) {
               m->disc_count > 1 ? "s" : "");
     fprintf(out, "</td><td class=\"w\">%s</td></tr>\n",
             result->scan[i].hold_out ? "kept aside: only confirms" : "searched");
+  }
+  if (result->bumps.declared_path) {
+    fputs("<tr><td class=\"path\">", out);
+    fg_html_text(out, result->bumps.declared_path);
+    fprintf(out,
+            "</td><td class=\"w\"><code>%.12s</code></td><td class=\"w\">–</td><td class=\"w\">a "
+            "forming</td><td class=\"w\">declared of the bumps</td></tr>\n",
+            result->bumps.declared_sha256);
   }
   fputs("</table></div>\n", out);
   if (result->same_foil)

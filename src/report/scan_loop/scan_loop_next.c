@@ -80,7 +80,7 @@ static const char *for_part(sources found) {
     return "Look at the sheet: its thickness changes along the strip; radii and heights of the "
            "midline stand.";
   return "Look at the die and the heat treatment: the bumps differ among themselves in a way that "
-         "the declared springback does not explain; the dimensions stand as measured.";
+         "the declared model does not explain; the dimensions stand as measured.";
 }
 
 fg_status fg_scan_loop_next(fg_context *ctx, const fg_scan_result *result, char **words,

@@ -180,12 +180,12 @@ static fg_status say_width(fg_context *ctx, const fg_scan_result *result, char *
 /* ---- the bumps ---- */
 
 static fg_status say_bump_claim(fg_context *ctx, const fg_scan_result_response *response,
-                                const fg_scan_result_bump_claim *claim, bool first, char **text) {
+                                const fg_scan_result_bump_claim *claim, const char *lead,
+                                char **text) {
   char value[64];
   fg_scan_loop_value_words(claim->amplitude, claim->u_amplitude, value, sizeof value);
-  FG_TRY(fg_text_append(ctx, text, "%s%s in the %s (half range %s %s)",
-                        first ? " Over the bumps: " : "; ", claim->words, response->words, value,
-                        fg_scan_loop_unit_words(response->unit)));
+  FG_TRY(fg_text_append(ctx, text, "%s%s in the %s (half range %s %s)", lead, claim->words,
+                        response->words, value, fg_scan_loop_unit_words(response->unit)));
   if (!claim->ties) return FG_OK;
   return fg_text_append(ctx, text, ", or %s%s", claim->tied[0].name,
                         claim->ties > 1 ? " or others" : "");
@@ -193,16 +193,18 @@ static fg_status say_bump_claim(fg_context *ctx, const fg_scan_result_response *
 
 /* Appends what was found over the bumps. */
 static fg_status say_bumps(fg_context *ctx, const fg_scan_result_bumps *bumps, char **text) {
-  bool first = true;
+  const char *first =
+      bumps->declared_path ? " Over the bumps, beside the declared forming: " : " Over the bumps: ";
+  const char *lead = first;
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
-    for (size_t m = 0; m < bumps->response[r].claims; m++, first = false)
-      FG_TRY(say_bump_claim(ctx, &bumps->response[r], &bumps->response[r].claim[m], first, text));
+    for (size_t m = 0; m < bumps->response[r].claims; m++, lead = "; ")
+      FG_TRY(say_bump_claim(ctx, &bumps->response[r], &bumps->response[r].claim[m], lead, text));
   if (bumps->curve) {
-    FG_TRY(fg_text_append(ctx, text, "%sno listed effect explains how the %s varies",
-                          first ? " Over the bumps: " : "; ", bumps->curve->words));
-    first = false;
+    FG_TRY(fg_text_append(ctx, text, "%sno listed effect explains how the %s varies", lead,
+                          bumps->curve->words));
+    lead = "; ";
   }
-  return first ? FG_OK : fg_text_append(ctx, text, ".");
+  return lead == first ? FG_OK : fg_text_append(ctx, text, ".");
 }
 
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text) {
