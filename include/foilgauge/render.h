@@ -27,10 +27,20 @@
  *     lip null or {length_mm [2], bend_radius_mm [0.4], side ["outwards"]}
  *     first_land_mm [1.8], last_land_mm [1.3]: from the fillet to the lip's bend, or the free end
  *     missing [numbers]; crushed [{bump, height_factor [0.5]}]: crossings stay, the crown gives way
- *     rotate_deg [-90]: direction of the middle from O (x right, y down); mirror [false];
- *     centre_mm [x, y] of O [placed on shelves from the top]; repeat [1], rotate_step_deg [0]
- *   discs[]: centre_mm, radius_mm, hole [false], lobes [0], lobe_um, lobe_phase_deg:
- *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
+ *     beams, of a design with "form": "cantilever" (beam_count [8], beam_length_mm [9],
+ *       beam_width_mm [3], thickness_mm; a flat sheet) and of no other: layout "comb" or "slits"
+ *       ["comb"]: beams that stand out from a base, or that U-shaped slits cut free inside a sheet;
+ *       pitch_mm [1.5 widths], base_mm [4] behind the roots (of slits beyond the free ends, too),
+ *       shoulder_mm [2] beside the outer beams, kerf_mm [0.2] of slits, whose ends are round,
+ *       corner_radius_mm [0.1] of the free ends and the sheet, root_radius_mm [0.3] of a comb's
+ *       fillets; length, width {mean_um [0], sd_um [0]}: normal, over the beams; length_um,
+ *       width_um [...] per beam, on top; taper_um: width at the root less that at the free end, one
+ *       number or one per beam; missing [numbers]; torn [{beam, length_factor [0.5]}];
+ *       bent [{beam, angle_deg [2]}]: in the sheet's plane, about the root
+ *     rotate_deg [-90]: of a cantilever the direction from roots to free ends; direction of the
+ * middle from O (x right, y down); mirror [false]; centre_mm [x, y] of O [placed on shelves from
+ * the top]; repeat [1], rotate_step_deg [0] discs[]: centre_mm, radius_mm, hole [false], lobes [0],
+ * lobe_um, lobe_phase_deg: r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
  *   scanner:
  *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
  *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm], noise
@@ -52,7 +62,8 @@
  *       edge_roughness_um, edge_common_um [0]: sd per edge, and of both together, along the strip
  *         with the correlation_um [50; 0.2 to 1e5] L and the correlation_form "gaussian",
  *         exp(-(d / L)²), or "exponential", exp(-d / L) ["gaussian"]. The sd is that of the edge
- *         itself: blur takes its share of what is finer than it. A disc's edge has both sds
+ *         itself: blur takes its share of what is finer than it. A disc's edge and that of a
+ *         cantilever have both sds
  *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
  *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
  *         edges that face the direction, decaying over the length, times the cosine to it
@@ -102,15 +113,29 @@ typedef struct fg_render_bump {
   bool crushed;
 } fg_render_bump;
 
+/* What one beam of a cantilever really is. Its length is from the line of the roots (a comb's base,
+ * the ends of the slits) to the free end, along the beam; its width that half way. */
+typedef struct fg_render_beam {
+  int number; /* from 1; in order along y where the beams point along x */
+  double length_mm, width_mm;
+  double taper_um;          /* width at the root less that at the free end */
+  double bent_deg;          /* in the sheet's plane, about the root */
+  bool torn;                /* length_mm is the mean of what is left */
+  fg_point root_px, tip_px; /* on its middle line */
+} fg_render_beam;
+
 typedef struct fg_render_foil {
-  double overall_radius_mm;
-  fg_point overall_centre_px;
+  double overall_radius_mm;   /* NaN of a cantilever */
+  fg_point overall_centre_px; /* of a cantilever the middle of the line of the roots */
   double thickness_mm;
   double subtended_angle_deg; /* of an arc; 0: it has bumps */
-  double rotate_deg; /* direction of the foil's middle seen from O, about the scan's x axis */
+  double rotate_deg; /* direction of the foil's middle seen from O, or of a cantilever's beams,
+                        about the scan's x axis */
   bool mirror;       /* false: bump numbers rise clockwise as the scan is seen */
   const fg_render_bump *bumps; /* without the missing ones */
   size_t bump_count;
+  const fg_render_beam *beams; /* of a cantilever, without the missing ones; else NULL */
+  size_t beam_count;
 } fg_render_foil;
 
 typedef struct fg_render_disc {
@@ -145,7 +170,7 @@ const fg_render_truth *fg_render_get_truth(const fg_render_spec *spec);
 
 /* A point of a foil's true midline at arc length s_mm from its first end (the lip's), in pixels;
  * part effects are in it, scanner effects and edge roughness are not. `foil` counts from 0.
- * FG_ERR_USAGE when there is no such foil or place. */
+ * FG_ERR_USAGE when there is no such foil or place, and for a cantilever. */
 fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t foil, double s_mm,
                             fg_point *point_px);
 

@@ -55,9 +55,12 @@ static fg_point mark_point(const fg_sampler *sampler, const fg_segment *segment,
   return nominal_px(sampler, p.x, p.y);
 }
 
+/* The outlines of a sheet are marked over a block's diagonal more: who finds none of them in a list
+ * is away from all, and as far inside or outside as the whole block. */
 static double segment_reach_px(const fg_sampler *sampler, const fg_segment *segment) {
-  return reach_px(sampler, sampler->spec->scene.drawn[segment->foil].half_thickness_mm,
-                  sampler->reach_mm);
+  const fg_drawn_foil *drawn = &sampler->spec->scene.drawn[segment->foil];
+  return reach_px(sampler, drawn->half_thickness_mm, sampler->reach_mm) +
+         (drawn->sheet ? 1.5 * FG_BLOCK_PX : 0);
 }
 
 static void find_spans(const fg_sampler *sampler, fg_band *band) {
@@ -92,6 +95,8 @@ fg_status fg_band_create(fg_context *ctx, const fg_sampler *sampler, int64_t row
   band->column0 = -margin_px / FG_BLOCK_PX;
   FG_TRY(fg_memory_allocate(ctx, (size_t)band->columns * (size_t)band->rows, sizeof *band->heads,
                             (void **)&band->heads));
+  FG_TRY(fg_memory_allocate(ctx, (size_t)band->columns * (size_t)band->rows, sizeof *band->filled,
+                            (void **)&band->filled));
   FG_TRY(fg_memory_allocate(ctx, thing_count(sampler), sizeof *band->spans_px,
                             (void **)&band->spans_px));
   find_spans(sampler, band);
@@ -100,6 +105,7 @@ fg_status fg_band_create(fg_context *ctx, const fg_sampler *sampler, int64_t row
 
 void fg_band_free(fg_band *band) {
   free(band->heads);
+  free(band->filled);
   free(band->nodes);
   free(band->spans_px);
   *band = (fg_band){0};
@@ -144,6 +150,59 @@ static fg_status mark_segment(fg_context *ctx, const fg_sampler *sampler, size_t
   return FG_OK;
 }
 
+static bool lists_foil(const fg_band *band, const fg_scene *scene, int32_t at, size_t foil) {
+  for (; at >= 0; at = band->nodes[at].next)
+    if (band->nodes[at].id < scene->segment_count &&
+        scene->segments[band->nodes[at].id].foil == foil)
+      return true;
+  return false;
+}
+
+/* A block's middle in true coordinates. */
+static fg_point true_middle(const fg_sampler *sampler, const fg_band *band, int64_t x, int64_t y) {
+  double mm[2] = {((double)(x + band->column0) + 0.5) * FG_BLOCK_PX * sampler->pixel_mm[0],
+                  ((double)(y + band->row0) + 0.5) * FG_BLOCK_PX * sampler->pixel_mm[1]};
+  double d[2] = {0, 0};
+  if (sampler->has_field) fg_render_effects_field(&sampler->spec->effects, mm[0], mm[1], mm, d);
+  return (fg_point){mm[0] + d[0], mm[1] + d[1]};
+}
+
+/* Along a row of blocks what is filled changes only across blocks that list the outlines. */
+static void fill_sheet_row(const fg_sampler *sampler, size_t foil, int64_t y, fg_band *band) {
+  const fg_scene *scene = &sampler->spec->scene;
+  bool known = false, inside = false;
+  for (int64_t x = 0; x < band->columns; x++) {
+    int64_t block = y * band->columns + x;
+    if (lists_foil(band, scene, band->heads[block], foil)) {
+      known = false;
+      continue;
+    }
+    if (!known) {
+      fg_point p = true_middle(sampler, band, x, y);
+      inside = fg_sheet_inside(scene, &scene->drawn[foil], p.x, p.y);
+    }
+    known = true;
+    if (inside) band->filled[block] = true;
+  }
+}
+
+static void fill_sheets(const fg_sampler *sampler, fg_band *band) {
+  const fg_scene *scene = &sampler->spec->scene;
+  memset(band->filled, 0, (size_t)(band->columns * band->rows) * sizeof *band->filled);
+  for (size_t foil = 0; foil < scene->foil_count; foil++) {
+    const fg_drawn_foil *drawn = &scene->drawn[foil];
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; drawn->sheet && i < drawn->segment_count; i++) {
+      low = fmin(low, band->spans_px[drawn->first_segment + i][0]);
+      high = fmax(high, band->spans_px[drawn->first_segment + i][1]);
+    }
+    for (int64_t y = 0; y < band->rows; y++) {
+      double top = (double)(y + band->row0) * FG_BLOCK_PX;
+      if (top + FG_BLOCK_PX >= low && top <= high) fill_sheet_row(sampler, foil, y, band);
+    }
+  }
+}
+
 fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px, int64_t margin_px,
                        fg_band *band) {
   const fg_scene *scene = &sampler->spec->scene;
@@ -163,13 +222,16 @@ fg_status fg_band_fill(fg_context *ctx, const fg_sampler *sampler, int64_t y0_px
       FG_TRY(mark(ctx, band, box, i));
     }
   }
+  fill_sheets(sampler, band);
   return FG_OK;
 }
 
 void fg_band_gather(const fg_band *band, int64_t block_x, int64_t block_y, fg_near *near) {
   near->count = 0;
+  near->filled = false;
   int64_t x = block_x - band->column0, y = block_y - band->row0;
   if (x < 0 || y < 0 || x >= band->columns || y >= band->rows) return;
+  near->filled = band->filled[y * band->columns + x];
   for (int32_t at = band->heads[y * band->columns + x]; at >= 0; at = band->nodes[at].next) {
     /* The list runs from the last thing to the first. */
     if (near->count == FG_NEAR_MAX) {
@@ -189,7 +251,7 @@ bool fg_band_any(const fg_band *band, int64_t x0, int64_t y0, int64_t x1, int64_
   for (int64_t y = y0 - band->row0; y <= y1 - band->row0; y++)
     for (int64_t x = x0 - band->column0; x <= x1 - band->column0; x++)
       if (x >= 0 && y >= 0 && x < band->columns && y < band->rows &&
-          band->heads[y * band->columns + x] >= 0)
+          (band->heads[y * band->columns + x] >= 0 || band->filled[y * band->columns + x]))
         return true;
   return false;
 }

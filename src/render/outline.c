@@ -108,15 +108,19 @@ static fg_status plan_bump(const outline *o, const fg_render_bump *bump, bump_pl
   return FG_OK;
 }
 
-static fg_status append(outline *o, fg_segment segment) {
-  fg_scene *scene = o->scene;
-  FG_TRY(fg_memory_reserve(o->place->ctx, scene->segment_count + 1, sizeof segment,
-                           &scene->segment_capacity, (void **)&scene->segments));
-  segment.s_mm = o->s_mm;
-  segment.foil = o->foil;
-  o->s_mm += segment.length_mm;
+fg_status fg_scene_append(fg_context *ctx, fg_scene *scene, size_t foil, double *s_mm,
+                          fg_segment segment) {
+  FG_TRY(fg_memory_reserve(ctx, scene->segment_count + 1, sizeof segment, &scene->segment_capacity,
+                           (void **)&scene->segments));
+  segment.s_mm = *s_mm;
+  segment.foil = foil;
+  *s_mm += segment.length_mm;
   scene->segments[scene->segment_count++] = segment;
   return FG_OK;
+}
+
+static fg_status append(outline *o, fg_segment segment) {
+  return fg_scene_append(o->place->ctx, o->scene, o->foil, &o->s_mm, segment);
 }
 
 static fg_status append_arc(outline *o, fg_segment arc) {

@@ -22,6 +22,7 @@ static inline const cJSON *fg_spec_member(const cJSON *object, const char *name)
 /* The Gen II design of thesis table 5.6, with the lip and end lands of the fixture. */
 fg_foil_request fg_spec_default_foil(void);
 fg_status fg_spec_read_foils(const fg_place *place, const cJSON *array, fg_render_spec *spec);
+fg_status fg_spec_read_beams(const fg_place *place, const cJSON *foil, fg_foil_request *request);
 fg_status fg_spec_read_discs(const fg_place *place, const cJSON *array, fg_render_spec *spec);
 
 fg_scanner fg_spec_default_scanner(void);

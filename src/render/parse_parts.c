@@ -17,6 +17,13 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
       FG_SPEC_NUMBER(fg_render_design, thickness_mm, 0.001, 10),
       FG_SPEC_NUMBER(fg_render_design, rotor_diameter_mm, 0.01, 10000),
       FG_SPEC_NUMBER(fg_render_design, subtended_angle_deg, 0.1, 350),
+      FG_SPEC_INTEGER(fg_render_design, beam_count, 1, FG_RENDER_BUMPS_MAX),
+      FG_SPEC_NUMBER(fg_render_design, beam_length_mm, 0.05, 1000),
+      FG_SPEC_NUMBER(fg_render_design, beam_width_mm, 0.01, 1000),
+      FG_SPEC_NUMBER(fg_render_design, sagitta_mm, 0.0001, 1000),
+      FG_SPEC_NUMBER(fg_render_design, clearance_mm, 0.0001, 1000),
+      FG_SPEC_OTHER("elastic_modulus_gpa"),
+      FG_SPEC_OTHER("u_thickness_mm"),
       FG_SPEC_OTHER("schema"),
       FG_SPEC_OTHER("name"),
       FG_SPEC_OTHER("form"),
@@ -29,7 +36,8 @@ static fg_status read_design(const fg_place *place, const cJSON *object, fg_rend
   if (isnan(design->sleeve_radius_mm)) design->sleeve_radius_mm = design->overall_radius_mm;
   const cJSON *form = fg_spec_member(object, "form");
   design->arc = cJSON_IsString(form) && !strcmp(form->valuestring, "arc");
-  if (design->arc) design->bump_count = 0;
+  design->cantilever = cJSON_IsString(form) && !strcmp(form->valuestring, "cantilever");
+  if (design->arc || design->cantilever) design->bump_count = 0;
   return FG_OK;
 }
 
@@ -114,7 +122,21 @@ static fg_status read_springback(const fg_place *place, const cJSON *object,
 
 fg_foil_request fg_spec_default_foil(void) {
   fg_foil_request request = {
-      .design = {false, 9, 3.32, 63.15, 20.73, 20.73, 40.0 / 3, 0.35, 0.1, 40, 110},
+      .design = {.bump_count = 9,
+                 .bump_radius_mm = 3.32,
+                 .bump_angle_deg = 63.15,
+                 .overall_radius_mm = 20.73,
+                 .sleeve_radius_mm = 20.73,
+                 .pitch_deg = 40.0 / 3,
+                 .fillet_radius_mm = 0.35,
+                 .thickness_mm = 0.1,
+                 .rotor_diameter_mm = 40,
+                 .subtended_angle_deg = 110,
+                 .beam_count = 8,
+                 .beam_length_mm = 9,
+                 .beam_width_mm = 3,
+                 .sagitta_mm = NAN,
+                 .clearance_mm = NAN},
       .overall_radius_mm = NAN,
       .subtended_angle_deg = NAN,
       .has_lip = true,
@@ -150,6 +172,7 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
       FG_SPEC_OTHER("bump_angle_deg"),
       FG_SPEC_OTHER("radius_springback"),
       FG_SPEC_OTHER("centre_mm"),
+      FG_SPEC_OTHER("beams"),
       FG_SPEC_END,
   };
   *request = fg_spec_default_foil();
@@ -160,6 +183,7 @@ static fg_status read_foil(const fg_place *place, const cJSON *foil, fg_foil_req
   const cJSON *form = fg_spec_member(design, "form");
   if (cJSON_IsString(form) && !strcmp(form->valuestring, "sinusoidal")) request->has_lip = false;
   if (request->design.arc) request->has_lip = false;
+  FG_TRY(fg_spec_read_beams(place, foil, request));
   FG_TRY(read_lip(place, fg_spec_member(foil, "lip"), request));
   FG_TRY(read_missing(place, fg_spec_member(foil, "missing"), request));
   FG_TRY(read_crushed(place, fg_spec_member(foil, "crushed"), request));

@@ -145,6 +145,12 @@ static fg_status build_cuts(fg_context *ctx, fg_random *random, sequence q,
   return FG_OK;
 }
 
+/* A sheet's outlines have one edge, which scatters by both. */
+static double edge_sd_mm(const fg_scanner *scanner, const fg_drawn_foil *drawn) {
+  double common_um = drawn->sheet ? scanner->edge_common_um : 0;
+  return 1e-3 * hypot(scanner->edge_roughness_um, common_um);
+}
+
 fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t foil,
                              fg_drawn_foil *drawn) {
   const fg_scanner *scanner = &spec->scanner;
@@ -160,10 +166,10 @@ fg_status fg_roughness_build(fg_context *ctx, const fg_render_spec *spec, size_t
   FG_TRY_EXIT(prepare(ctx, &q));
   FG_TRY_EXIT(fg_memory_allocate(ctx, q.count, sizeof *common, (void **)&common));
   draw_sequence(&random, &q, 1e-3 * scanner->edge_common_um, common);
-  for (int edge = 0; edge < 2; edge++) {
+  for (int edge = 0; edge < (drawn->sheet ? 1 : 2); edge++) {
     FG_TRY_EXIT(fg_memory_allocate(ctx, q.count, sizeof(float), (void **)&drawn->roughness[edge]));
-    draw_sequence(&random, &q, 1e-3 * scanner->edge_roughness_um, drawn->roughness[edge]);
-    for (size_t i = 0; i < q.count; i++)
+    draw_sequence(&random, &q, edge_sd_mm(scanner, drawn), drawn->roughness[edge]);
+    for (size_t i = 0; !drawn->sheet && i < q.count; i++)
       drawn->roughness[edge][i] += common[i];
   }
   if (drawn->rough_cuts) FG_TRY_EXIT(build_cuts(ctx, &random, q, scanner, drawn));

@@ -212,10 +212,61 @@ static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
   return value;
 }
 
+bool fg_sheet_inside(const fg_scene *scene, const fg_drawn_foil *drawn, double x_mm, double y_mm) {
+  cross_section best = {0};
+  for (size_t i = 0; i < drawn->segment_count; i++)
+    try_segment(&scene->segments[drawn->first_segment + i], x_mm, y_mm, &best);
+  return best.segment && best.n > 0;
+}
+
+/* How far the scatter and the effects move a sheet's edge outwards. */
+static double sheet_shift(const fg_sampler *sampler, const fg_drawn_foil *drawn,
+                          const cross_section *at) {
+  double shift[2] = {0};
+  if (sampler->has_edge) fg_render_effects_edges(&sampler->spec->effects, -at->nx, -at->ny, shift);
+  if (drawn->roughness[0]) shift[0] += roughness(drawn, 0, at->segment->s_mm + along(at));
+  return shift[0];
+}
+
+/* The strongest of the walls whose edges face this place: a band goes on where another edge is
+ * nearer. */
+static double sheet_wall(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
+                         double y) {
+  double strongest = 0;
+  for (size_t i = 0; i < count; i++) {
+    cross_section at = {0};
+    try_segment(&sampler->spec->scene.segments[ids[i]], x, y, &at);
+    if (!at.segment || at.n > 0) continue;
+    double value = wall(sampler, &at, INFINITY, 0);
+    if (fabs(value) > fabs(strongest)) strongest = value;
+  }
+  return strongest;
+}
+
+static double sheet_value(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
+                          double y, double sd) {
+  const fg_scene *scene = &sampler->spec->scene;
+  const fg_drawn_foil *drawn = &scene->drawn[scene->segments[ids[0]].foil];
+  cross_section best = {0};
+  for (size_t i = 0; i < count; i++)
+    try_segment(&scene->segments[ids[i]], x, y, &best);
+  if (!best.segment) return fg_sheet_inside(scene, drawn, x, y) ? 1 : 0;
+  double limit = sampler->edge_reach_mm + phi_limit * (sd - sampler->sd_mm), value = 0;
+  if (best.n > limit) return 1;
+  if (best.n > -limit) {
+    double bright = sampler->spec->scanner.contrast > 0 ? 1 : -1;
+    double n = best.n + bend_shift(best.bend, sd) + sheet_shift(sampler, drawn, &best);
+    value = phi(sampler, n / edge_sd(sampler, sd, -best.ny, bright));
+  }
+  if (sampler->spec->scanner.wall_amplitude == 0 || best.n > 0) return value;
+  return value + (1 - value) * sheet_wall(sampler, ids, count, x, y);
+}
+
 static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
                          double y, double sd) {
   const fg_scene *scene = &sampler->spec->scene;
   const fg_drawn_foil *drawn = &scene->drawn[scene->segments[ids[0]].foil];
+  if (drawn->sheet) return sheet_value(sampler, ids, count, x, y, sd);
   if (sampler->has_part) {
     /* The shape moves radially, so a place belongs to the part that is radially below it. */
     double dx = x - drawn->x, dy = y - drawn->y, distance = hypot(dx, dy);
@@ -277,7 +328,7 @@ double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, do
     x += d[0];
     y += d[1];
   }
-  double value = 0;
+  double value = near->filled ? 1 : 0;
   size_t i = 0;
   while (i < near->count && near->ids[i] < scene->segment_count) {
     size_t first = i, foil = scene->segments[near->ids[i]].foil;

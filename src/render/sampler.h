@@ -39,11 +39,16 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler);
 typedef struct fg_near {
   size_t ids[FG_NEAR_MAX];
   size_t count;
+  bool filled; /* it lies within a sheet, away from its outlines */
 } fg_near;
 
 /* Value at a nominal place: 0 background, 1 foil. `sd_mm` is the smoothing. */
 double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, double y_mm,
                  double sd_mm);
+
+/* Whether a true position lies within a sheet: on the material's side of the outline that is
+ * nearest. */
+bool fg_sheet_inside(const fg_scene *scene, const fg_drawn_foil *drawn, double x_mm, double y_mm);
 
 /* Lists of what is near each block of a band of rows. */
 typedef struct fg_band_node {
@@ -55,6 +60,7 @@ typedef struct fg_band {
   int64_t column0, row0; /* block coordinates of the first block: floor(pixel / 8) */
   int64_t columns, rows;
   int32_t *heads; /* -1: empty */
+  bool *filled;   /* within a sheet whose outlines are not in the list */
   fg_band_node *nodes;
   size_t node_count, node_capacity;
   double (*spans_px)[2]; /* first and last row that a segment or shape can reach */

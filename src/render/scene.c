@@ -136,6 +136,15 @@ static void finish_foil_truth(const fg_render_spec *spec, const fg_drawn_foil *d
     bumps[i].centre_px =
         (fg_point){(drawn->x + c.x) / spec->pixel_mm[0], (drawn->y + c.y) / spec->pixel_mm[1]};
   }
+  fg_render_beam *beams = (fg_render_beam *)foil->beams;
+  for (size_t i = 0; i < foil->beam_count; i++) {
+    fg_point *const ends[] = {&beams[i].root_px, &beams[i].tip_px};
+    for (int k = 0; k < 2; k++) {
+      fg_point p = turn(drawn, ends[k]->x, ends[k]->y);
+      *ends[k] =
+          (fg_point){(drawn->x + p.x) / spec->pixel_mm[0], (drawn->y + p.y) / spec->pixel_mm[1]};
+    }
+  }
 }
 
 static fg_status build_foil(const fg_place *place, fg_render_spec *spec,
@@ -145,7 +154,8 @@ static fg_status build_foil(const fg_place *place, fg_render_spec *spec,
   fg_drawn_foil *drawn = &scene->drawn[foil];
   drawn->axis_rad = (request->rotate_deg + copy * request->rotate_step_deg) * pi / 180;
   drawn->mirror = request->mirror ? -1 : 1;
-  FG_TRY(fg_outline_build(place, spec, request, scene, foil));
+  FG_TRY((request->design.cantilever ? fg_sheet_build : fg_outline_build)(place, spec, request,
+                                                                          scene, foil));
   for (size_t i = 0; i < drawn->segment_count; i++)
     turn_segment(drawn, &scene->segments[drawn->first_segment + i]);
   box b = foil_box(scene, drawn);
@@ -249,6 +259,23 @@ static fg_status check_lifts(const fg_place *place, const fg_render_spec *spec) 
   return FG_OK;
 }
 
+/* What moves a midline has nothing to move on a flat sheet. */
+static fg_status check_sheets(const fg_place *place, const fg_render_spec *spec) {
+  bool sheets = false;
+  for (size_t i = 0; i < spec->request_count; i++)
+    sheets = sheets || spec->requests[i].design.cantilever;
+  for (size_t i = 0; sheets && i < spec->effects.count; i++) {
+    const fg_render_effect *effect = &spec->effects.effects[i];
+    if (effect->target != FG_RENDER_EFFECT_SCANNER && effect->target != FG_RENDER_EFFECT_STEP &&
+        effect->target != FG_RENDER_EFFECT_EDGE)
+      return fg_fail(place->ctx, FG_ERR_DATA,
+                     "%s: effects[%zu] is %s: it moves the midline of a bent strip, and a "
+                     "cantilever has none; draw it in a spec of its own",
+                     place->path, i, effect->row->id);
+  }
+  return FG_OK;
+}
+
 static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box *all) {
   const char *names[2] = {"width_px", "height_px"};
   double *sizes[2] = {&spec->width_px, &spec->height_px};
@@ -274,6 +301,7 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
     spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
   box all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   FG_TRY(check_lifts(place, spec));
+  FG_TRY(check_sheets(place, spec));
   FG_TRY(build_foils(place, spec, &all));
   size_t litter = (size_t)scanner->dust.count + (size_t)scanner->specks.count +
                   (size_t)scanner->scratches.count;
@@ -304,6 +332,7 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
 void fg_scene_free(fg_scene *scene) {
   for (size_t i = 0; i < scene->foil_count; i++) {
     free((void *)scene->foils[i].bumps);
+    free((void *)scene->foils[i].beams);
     free(scene->drawn[i].roughness[0]);
     free(scene->drawn[i].roughness[1]);
     free(scene->drawn[i].cut[0]);
@@ -332,6 +361,8 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
   if (foil >= scene->foil_count || !(s_mm >= 0 && s_mm <= scene->drawn[foil].length_mm))
     return fg_fail(ctx, FG_ERR_USAGE, "there is no foil %zu with a midline of %g mm", foil, s_mm);
   const fg_drawn_foil *drawn = &scene->drawn[foil];
+  if (drawn->sheet)
+    return fg_fail(ctx, FG_ERR_USAGE, "foil %zu is a flat sheet: it has no midline", foil);
   size_t i = drawn->first_segment, last = i + drawn->segment_count - 1;
   while (i < last && s_mm > scene->segments[i].s_mm + scene->segments[i].length_mm)
     i++;

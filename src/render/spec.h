@@ -14,12 +14,32 @@ enum { FG_RENDER_BUMPS_MAX = 64, FG_RENDER_FOILS_MAX = 4096 };
 
 /* Design members that the renderer needs (the same names as in a design file). */
 typedef struct fg_render_design {
-  bool arc; /* form "arc": a plain strip, bump_count 0 */
+  bool arc;        /* form "arc": a plain strip, bump_count 0 */
+  bool cantilever; /* form "cantilever": a flat sheet with beams, bump_count 0 */
   int bump_count;
   double bump_radius_mm, bump_angle_deg, overall_radius_mm, sleeve_radius_mm, pitch_deg;
   double fillet_radius_mm, thickness_mm, rotor_diameter_mm;
   double subtended_angle_deg; /* of an arc */
+  int beam_count;             /* of a cantilever, as what follows */
+  double beam_length_mm, beam_width_mm, sagitta_mm, clearance_mm; /* NaN: not stated */
 } fg_render_design;
+
+/* Mean and standard deviation over the beams of what their length or width deviates by. */
+typedef struct fg_beam_scatter {
+  double mean_um, sd_um;
+} fg_beam_scatter;
+
+/* The beams of a cantilever. */
+typedef struct fg_beams_request {
+  bool slits; /* cut free inside a sheet by U-shaped slits; else a comb */
+  double pitch_mm, base_mm, shoulder_mm, kerf_mm, corner_radius_mm, root_radius_mm;
+  fg_beam_scatter length, width;
+  double length_um[FG_RENDER_BUMPS_MAX], width_um[FG_RENDER_BUMPS_MAX]; /* deviations, as well */
+  double taper_um[FG_RENDER_BUMPS_MAX];                                 /* root less free end */
+  bool missing[FG_RENDER_BUMPS_MAX];
+  double torn[FG_RENDER_BUMPS_MAX]; /* share of the length that is left; 1: whole */
+  double bent_deg[FG_RENDER_BUMPS_MAX];
+} fg_beams_request;
 
 typedef struct fg_render_lip {
   double length_mm, bend_radius_mm;
@@ -42,6 +62,7 @@ typedef struct fg_foil_request {
   double rotate_deg, rotate_step_deg;
   bool mirror;
   int repeat;
+  fg_beams_request beams; /* of a cantilever */
 } fg_foil_request;
 
 typedef struct fg_disc_request {
@@ -103,6 +124,7 @@ typedef struct fg_drawn_foil {
   bool rough_cuts; /* of an arc the ends are as rough as its edges */
   float *cut[2];   /* at its start and end, across, outwards, mm; NULL: none */
   size_t cut_count;
+  bool sheet; /* no strip: its segments are the outlines of a flat part, its thickness 0 */
 } fg_drawn_foil;
 
 /* Discs, dust and scratches: a capsule, or a circle with lobes. */
@@ -175,6 +197,15 @@ double fg_segment_bump_shift(const fg_render_effect_list *effects, const fg_segm
  * of it. */
 fg_status fg_outline_build(const fg_place *place, const fg_render_spec *spec,
                            const fg_foil_request *request, fg_scene *scene, size_t foil);
+
+/* Appends a segment that begins where the ones before it have come to, *s_mm, which it moves on. */
+fg_status fg_scene_append(fg_context *ctx, fg_scene *scene, size_t foil, double *s_mm,
+                          fg_segment segment);
+
+/* The same of a cantilever: the outlines of the sheet in its own coordinates (the middle of the
+ * roots at the origin, beams along x, their numbers along rising y). */
+fg_status fg_sheet_build(const fg_place *place, const fg_render_spec *spec,
+                         const fg_foil_request *request, fg_scene *scene, size_t foil);
 
 /* X, theta and h of a bump as designed. */
 fg_render_bump fg_outline_nominal(const fg_render_design *design);

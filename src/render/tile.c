@@ -124,12 +124,13 @@ static void sample_block(const fg_tiler *tiler, const fg_near *near, int64_t x_p
                          float *out, int64_t stride) {
   const fg_sampler *sampler = tiler->sampler;
   const int count = FG_BLOCK_PX * FG_SAMPLES;
+  const float plain = near->filled ? 1.0F : 0.0F;
   for (int j = 0; j < count; j++) {
     double y = ((double)y_px + (double)(j - 1) / FG_SAMPLES) * sampler->pixel_mm[1];
     for (int i = 0; i < count; i++) {
       double x = ((double)x_px + (double)(i - 1) / FG_SAMPLES) * sampler->pixel_mm[0];
       out[j * stride + i] =
-          near->count ? (float)fg_sample(sampler, near, x, y, sampler->sd_mm) : 0.0F;
+          near->count ? (float)fg_sample(sampler, near, x, y, sampler->sd_mm) : plain;
     }
   }
 }
@@ -191,9 +192,10 @@ static void sample_cells(const fg_tiler *tiler, const fg_band *band, int64_t x0,
       for (int64_t k = 0; k < per_block * per_block; k++) {
         int64_t i = k % per_block, j = k / per_block;
         tiler->cells[(y + j) * cells + x + i] =
-            near.count ? sample_cell(tiler, &near, (double)(px + FG_COARSE_PX * i),
-                                     (double)(py + FG_COARSE_PX * j))
-                       : 0.0F;
+            near.count    ? sample_cell(tiler, &near, (double)(px + FG_COARSE_PX * i),
+                                        (double)(py + FG_COARSE_PX * j))
+            : near.filled ? 1.0F
+                          : 0.0F;
       }
     }
 }

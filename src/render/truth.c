@@ -60,7 +60,68 @@ static void put_arc_design(cJSON *foil, const fg_render_design *design) {
   put(object, "thickness_mm", design->thickness_mm);
 }
 
+/* What is stated of sagitta and clearance. */
+static void put_stated(cJSON *object, const char *name, double value) {
+  if (isfinite(value)) put(object, name, value);
+}
+
+static void put_cantilever_design(cJSON *foil, const fg_render_design *design) {
+  cJSON *object = cJSON_AddObjectToObject(foil, "design");
+  cJSON_AddStringToObject(object, "form", "cantilever");
+  put(object, "beam_count", design->beam_count);
+  put(object, "beam_length_mm", design->beam_length_mm);
+  put(object, "beam_width_mm", design->beam_width_mm);
+  put(object, "thickness_mm", design->thickness_mm);
+  put_stated(object, "sagitta_mm", design->sagitta_mm);
+  put_stated(object, "clearance_mm", design->clearance_mm);
+}
+
+/* S goes with L³ / w (eq 5.10), s with L². */
+static void put_consequences(cJSON *entry, const fg_render_beam *beam,
+                             const fg_render_design *design) {
+  double length = beam->length_mm / design->beam_length_mm;
+  double width = beam->width_mm / design->beam_width_mm;
+  double change_mm = design->sagitta_mm * (1 - length * length);
+  put(entry, "compliance_error_pct", 100 * (length * length * length / width - 1));
+  put(entry, "sagitta_error_pct", 100 * (length * length - 1));
+  put_stated(entry, "sagitta_mm", design->sagitta_mm * length * length);
+  put_stated(entry, "clearance_change_mm", change_mm);
+  put_stated(entry, "clearance_change_pct", 100 * change_mm / design->clearance_mm);
+}
+
+static void put_beams(cJSON *foil, const fg_render_foil *truth, const fg_render_design *design) {
+  cJSON *beams = cJSON_AddArrayToObject(foil, "beams");
+  for (size_t i = 0; i < truth->beam_count; i++) {
+    const fg_render_beam *beam = &truth->beams[i];
+    cJSON *entry = cJSON_CreateObject();
+    put(entry, "number", beam->number);
+    put(entry, "length_mm", beam->length_mm);
+    put(entry, "width_mm", beam->width_mm);
+    put_consequences(entry, beam, design);
+    put(entry, "taper_um", beam->taper_um);
+    put_point(entry, "root_px", beam->root_px);
+    put_point(entry, "tip_px", beam->tip_px);
+    if (beam->torn) cJSON_AddTrueToObject(entry, "torn");
+    if (beam->bent_deg != 0) put(entry, "bent_deg", beam->bent_deg);
+    cJSON_AddItemToArray(beams, entry);
+  }
+}
+
+static void put_cantilever(cJSON *object, const fg_render_foil *truth,
+                           const fg_render_design *design) {
+  put_point(object, "root_centre_px", truth->overall_centre_px);
+  put(object, "thickness_mm", truth->thickness_mm);
+  put(object, "rotate_deg", truth->rotate_deg);
+  cJSON_AddBoolToObject(object, "mirror", truth->mirror);
+  put_cantilever_design(object, design);
+  put_beams(object, truth, design);
+}
+
 static void put_foil(cJSON *object, const fg_render_foil *truth, const fg_render_design *design) {
+  if (design->cantilever) {
+    put_cantilever(object, truth, design);
+    return;
+  }
   put(object, "overall_radius_mm", truth->overall_radius_mm);
   put_point(object, "overall_centre_px", truth->overall_centre_px);
   put(object, "thickness_mm", truth->thickness_mm);

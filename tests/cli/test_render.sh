@@ -14,7 +14,7 @@ expect 74 'nowhere' "$program" render samples/render/clean.json -o "$folder/a.pn
   --truth "$folder/nowhere/t.json"
 ls -A "$folder" | grep -q 'a\.png' && fail "left behind: $(ls -A "$folder")"
 
-tiers="clean rough harsh" dpi=2400
+tiers="clean rough harsh cantilever" dpi=2400
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || tiers=harsh dpi=1200
 for tier in $tiers; do
   sed "s/\"dpi\": 4800/\"dpi\": $dpi/" "samples/render/$tier.json" >"$folder/$tier.spec"
