@@ -6,6 +6,7 @@
  *   scanner_model.json   the scanner's model, where the lot is corrected by one
  *   results.jsonl   one line per measured scan, kept as it is made, with the date of its
  *                   file and a checksum of its own ("foilgauge/results/2")
+ *   pages/          a page per scan: picture and report of its foils (fg_lot_pages)
  *   lot.json, foils.csv, bumps.csv, bearings.csv, index.html, results.qif, results.dfq   the report
  *
  * The report is a function of the first three alone: it is computed from the recorded values, never
@@ -141,6 +142,16 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
 fg_status fg_lot_settings_format(fg_context *ctx, const fg_lot_settings *settings, bool with_jobs,
                                  char **json);
 
+/* Which scans get a page of their own, drawn while they are measured. A page holds while all that
+ * it shows holds: its scan, what measured it, the foil's name, the tolerances. With `resume` what
+ * is wanted and not there is drawn again, which measures the scan once more and keeps its record.
+ */
+typedef enum fg_lot_pages {
+  FG_LOT_PAGES_ALL,
+  FG_LOT_PAGES_BAD, /* those with a foil that does not pass */
+  FG_LOT_PAGES_NONE,
+} fg_lot_pages;
+
 /* One part of the work: items i - 1, i - 1 + n, ... of the manifest; {1, 1} is all of it. */
 typedef struct fg_lot_shard {
   size_t index, count;
@@ -167,6 +178,7 @@ typedef struct fg_lot_request {
   const char *recipe, *design; /* the files that the settings came from; NULL: none */
   bool resume;  /* keep valid records; without it a folder with results is FG_ERR_USAGE */
   bool dry_run; /* say what would be measured, and touch nothing */
+  fg_lot_pages pages;
   fg_lot_shard shard;
   fg_lot_listener *listener; /* may be NULL */
   void *user;
@@ -175,6 +187,9 @@ typedef struct fg_lot_request {
 typedef struct fg_lot_outcome {
   fg_report_outcome judged; /* of all foils, scans, bearings; fg_outcome_exit_code */
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
+  size_t redrawn;                                   /* kept scans whose pages are drawn again */
+  size_t not_drawn; /* pages that could not be: the scan could not be read again */
+  char first_not_drawn[512];
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
   bool bearings_judged; /* the design states tolerances of a bearing */
   size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];

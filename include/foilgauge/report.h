@@ -129,6 +129,7 @@ typedef struct fg_report {
   const fg_nominal *nominal;
   const fg_report_scan *scans;
   size_t scan_count;
+  const char *back; /* where the page leads back to; NULL: nowhere */
 } fg_report;
 
 /* One scan, and all of them. */

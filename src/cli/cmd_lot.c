@@ -16,6 +16,7 @@ enum {
   OPTION_RESUME,
   OPTION_DRY_RUN,
   OPTION_SHARD,
+  OPTION_PAGES,
   OPTION_DPI,
   OPTION_ALLOW_LOSSY,
   OPTION_MODEL,
@@ -34,6 +35,7 @@ typedef struct lot_arguments {
   int jobs; /* -1: not given */
   bool allow_lossy, print_recipe, resume, dry_run;
   fg_lot_shard shard;
+  fg_lot_pages pages;
   const char *curve; /* reference curve; NULL: the recipe's */
   const char *dies[FG_LOT_DIES_MAX];
   size_t die_count;
@@ -63,6 +65,10 @@ static const struct argp_option options[] = {
     {"jobs", 'j', "N", 0, "Scans at a time (default: one per core)", 1},
     {"resume", OPTION_RESUME, NULL, 0, "Measure only what is missing or has changed", 1},
     {"dry-run", OPTION_DRY_RUN, NULL, 0, "Say what would be measured; touch nothing", 1},
+    {"pages", OPTION_PAGES, "WHICH", 0,
+     "all, bad or none: which scans get a page of their own, with picture and report (default: "
+     "all)",
+     1},
     {"shard", OPTION_SHARD, "I/N", 0, "Only part I of N; `foilgauge merge` joins them", 1},
     {"print-recipe", OPTION_PRINT_RECIPE, NULL, 0, "Print every setting in force", 2},
     {"index", OPTION_INDEX, "FILE.html", 0,
@@ -92,6 +98,15 @@ static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
       index > count || count > 1000000000ULL)
     argp_error(state, "--shard: '%s' is not i/n with i from 1 to n", text);
   return (fg_lot_shard){(size_t)index, (size_t)count};
+}
+
+static fg_lot_pages parse_pages(struct argp_state *state, const char *text) {
+  static const char *const words[] = {
+      [FG_LOT_PAGES_ALL] = "all", [FG_LOT_PAGES_BAD] = "bad", [FG_LOT_PAGES_NONE] = "none"};
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (!strcmp(text, words[i])) return (fg_lot_pages)i;
+  argp_error(state, "--pages: '%s' is none of all, bad, none", text);
+  return FG_LOT_PAGES_ALL;
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
@@ -144,6 +159,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_SHARD:
     arguments->shard = parse_shard(state, text);
+    break;
+  case OPTION_PAGES:
+    arguments->pages = parse_pages(state, text);
     break;
   case OPTION_PRINT_RECIPE:
     arguments->print_recipe = true;
@@ -273,6 +291,12 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   return fg_outcome_exit_code(&outcome->judged);
 }
 
+static void say_plan(const fg_lot_outcome *outcome) {
+  printf("%zu scans, %zu to measure, %zu kept", outcome->scans, outcome->to_measure, outcome->kept);
+  if (outcome->redrawn) printf(", %zu of them for their pages", outcome->redrawn);
+  putchar('\n');
+}
+
 static int say_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
   fprintf(stderr, "shard %zu/%zu: %zu scans measured, %zu kept, %zu could not be measured\n",
           arguments->shard.index, arguments->shard.count, outcome->measured, outcome->kept,
@@ -334,6 +358,7 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
                                   .resume = arguments->resume,
                                   .dry_run = arguments->dry_run,
                                   .shard = arguments->shard,
+                                  .pages = arguments->pages,
                                   .listener = show_progress,
                                   .user = &terminal};
   FG_TRY(fg_lot_run(ctx, &request, &outcome));
@@ -352,9 +377,11 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
     fprintf(stderr,
             "foilgauge: note: %zu scans reach beyond the region the scanner's model was found in\n",
             outcome.beyond);
+  if (outcome.not_drawn)
+    fprintf(stderr, "foilgauge: note: %zu pages could not be drawn; the first: %s\n",
+            outcome.not_drawn, outcome.first_not_drawn);
   if (arguments->dry_run)
-    printf("%zu scans, %zu to measure, %zu kept\n", outcome.scans, outcome.to_measure,
-           outcome.kept);
+    say_plan(&outcome);
   else
     *code = arguments->shard.count > 1 ? say_shard(arguments, &outcome)
                                        : fg_cli_lot_summary(&outcome, arguments->folder);

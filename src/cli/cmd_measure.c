@@ -292,12 +292,14 @@ static fg_status measure_all(fg_context *ctx, measure_run *run) {
 
 static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const measure_run *run = user;
-  const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
+  const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count,
+                            NULL};
   return writers[kind](ctx, &report, out);
 }
 
 static fg_status outcome_code(fg_context *ctx, const measure_run *run, int *code) {
-  const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count};
+  const fg_report report = {&run->design, &run->nominal, run->scans, run->arguments.scan_count,
+                            NULL};
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge(ctx, &report, &outcome));
   *code = fg_outcome_exit_code(&outcome);

@@ -223,6 +223,7 @@ typedef struct fg_lot_process {
 typedef struct fg_lot_analysis {
   const fg_lot *lot;
   const char *folder; /* that the report is written to, from which links lead; NULL: not known */
+  char *const *pages; /* by item of the manifest, from the folder; NULL: none; not owned */
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
   size_t bumps, crushed; /* of measured foils; crushed ones are in no statistics */

@@ -71,7 +71,7 @@ static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
   size_t rows;
   const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_FOIL, &rows);
   put_columns(out, &lot->manifest, item);
-  fputs(",,not_measured,,", out);
+  fputs(",,,not_measured,,", out);
   put_text(out, lot->records[item].error);
   for (size_t i = 0; i < rows; i++)
     if (row[i].kind != FG_QUANTITY_PAIR) fputs(fg_quantity_has_u(&row[i]) ? ",," : ",", out);
@@ -81,13 +81,15 @@ static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
 fg_status fg_lot_write_foils_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   const fg_lot *lot = analysis->lot;
   size_t next = 0;
-  put_heading(out, &lot->manifest, ",foil_number,verdict,flags,error", FG_QUANTITY_OF_FOIL);
+  put_heading(out, &lot->manifest, ",foil_number,page,verdict,flags,error", FG_QUANTITY_OF_FOIL);
   for (size_t item = 0; item < lot->manifest.items; item++) {
     if (lot->records[item].error) put_failed(out, lot, item);
     for (; next < analysis->foil_count && analysis->foils[next].item == item; next++) {
       const fg_lot_foil *foil = &analysis->foils[next];
       put_columns(out, &lot->manifest, item);
-      fprintf(out, ",%d,%s", foil->foil->number, fg_verdict_word(foil->verdict));
+      fprintf(out, ",%d,", foil->foil->number);
+      if (analysis->pages && analysis->pages[item]) put_text(out, analysis->pages[item]);
+      fprintf(out, ",%s", fg_verdict_word(foil->verdict));
       put_flags(out, fg_foil_flag_words(), foil->foil->flags);
       fputc(',', out);
       put_text(out, foil->foil->error);

@@ -97,7 +97,10 @@ static void put_failed_scans(FILE *out, const fg_lot_analysis *analysis) {
 static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   fprintf(out, "<tr id=\"foil-%zu\"><td class=\"words path\">",
           (size_t)(foil - analysis->foils) + 1);
-  fg_lot_put_label(out, analysis, foil);
+  if (analysis->pages && analysis->pages[foil->item])
+    fg_lot_put_foil_link(out, analysis, foil);
+  else
+    fg_lot_put_label(out, analysis, foil);
   fputs("</td><td class=\"words path\">", out);
   fg_lot_put_scan(out, analysis, foil->item);
   fputs("</td>", out);
@@ -109,6 +112,24 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   fputs("</td>", out);
   fg_lot_put_margin(out, analysis, foil);
   fputs("</tr>\n", out);
+}
+
+static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
+  size_t without = 0, with = 0;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    bool there = analysis->pages && analysis->pages[analysis->foils[i].item];
+    with += there;
+    without += !there;
+  }
+  fputs("<p class=\"note\">A scan&#39;s name leads to the scan", out);
+  if (with)
+    fputs(", a foil&#39;s to its page: picture with circles and residuals, and every value", out);
+  if (with && without) fputs("; where it has none, to its line here", out);
+  if (without)
+    fputs(". The page of a foil that has none: <code>foilgauge measure SCAN --design … --html "
+          "PAGE.html</code>, or the lot again with <code>--resume --pages all</code>",
+          out);
+  fputs(".</p>\n", out);
 }
 
 /* Those that do not pass first. */
@@ -131,11 +152,8 @@ static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
     fprintf(out,
             "<p class=\"note\">%zu of %zu, those that do not pass first; all: foils.csv.</p>\n",
             rows, analysis->foil_count);
-  fputs(
-      "<p class=\"note\">A scan&#39;s name leads to the scan. Its picture with circles, residuals "
-      "and every value of its foils: <code>foilgauge measure SCAN --design … --html PAGE.html"
-      "</code>.</p>\n</section>\n",
-      out);
+  put_where_pages_are(out, analysis);
+  fputs("</section>\n", out);
 }
 
 static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *analysis) {

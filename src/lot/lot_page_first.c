@@ -102,13 +102,34 @@ static void put_process(FILE *out, const fg_lot_process *process) {
             open, process->watched);
 }
 
+/* " (foils A, B and 3 more)" */
+static void put_signals(FILE *out, const fg_lot_analysis *analysis,
+                        const fg_lot_quantity *quantity) {
+  enum { NAMED = 8 };
+  size_t told = 0, foil = 0, foils = quantity->chart.signals;
+  if (!foils) return;
+  fputs(foils == 1 ? " (foil " : " (foils ", out);
+  for (size_t i = 0; i < quantity->chart.count && told < NAMED; i++, foil++) {
+    while (!quantity->size[foil])
+      foil++;
+    if (!quantity->chart.point[i].rules) continue;
+    if (told) fputs(told + 1 == foils ? " and " : ", ", out);
+    fg_lot_put_foil_link(out, analysis, &analysis->foils[foil]);
+    told++;
+  }
+  if (told < foils) fprintf(out, " and %zu more", foils - told);
+  fputs(")", out);
+}
+
 /* "The signals of bump radius come from the column die: ... each by itself shows none." */
 static void put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
   fprintf(out, "<li>%zu signal%s of the %s", quantity->chart.signals,
           quantity->chart.signals == 1 ? "" : "s", quantity->row->words);
   if (cause->column == FG_NO_COLUMN) {
-    fputs(": no group of foils explains them.</li>\n", out);
+    put_signals(out, analysis, quantity);
+    fprintf(out, ": no group of foils explains %s.</li>\n",
+            quantity->chart.signals == 1 ? "it" : "them");
     return;
   }
   fg_lot_put_cause(out, analysis, quantity);

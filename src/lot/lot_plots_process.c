@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "lot/lot_plots.h"
+#include "lot/page_parts.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/plot_marks.h"
 
@@ -176,6 +177,15 @@ static size_t next_foil(const fg_lot_quantity *quantity, size_t foil) {
   return foil;
 }
 
+/* A mark that leads to its foil, and says which that is where a pointer rests on it. */
+static bool begin_mark(const fg_plot *at, const fg_lot_analysis *analysis, size_t foil) {
+  if (!fg_lot_begin_foil_link(at->out, analysis, &analysis->foils[foil])) return false;
+  fputs("<title>", at->out);
+  fg_lot_put_label(at->out, analysis, &analysis->foils[foil]);
+  fputs("</title>", at->out);
+  return true;
+}
+
 /* The groups that explain the signals: a shape for each, a line at its mean, a key above. */
 static void put_groups(const fg_plot *at, const fg_lot_analysis *analysis,
                        const fg_lot_quantity *quantity) {
@@ -199,17 +209,28 @@ static void put_groups(const fg_plot *at, const fg_lot_analysis *analysis,
     size_t g = 0;
     while (g + 1 < cause->groups && strcmp(cause->name[g], name) != 0)
       g++;
+    bool linked = begin_mark(at, analysis, foil);
     fg_plot_shape(at, (double)i + 1, quantity->chart.point[i].value, 6, (fg_shape)(g % FG_SHAPES),
                   quantity->chart.point[i].rules ? "signal" : "group");
+    if (linked) fputs("</a>\n", at->out);
   }
 }
 
-static void put_points(const fg_plot *at, const fg_chart *chart, size_t every) {
-  for (size_t i = 0; i < chart->count; i++)
-    if (chart->point[i].rules)
-      fg_plot_shape(at, (double)i + 1, chart->point[i].value, 7, FG_SHAPE_SQUARE, "signal");
-    else if (every == 1 && chart->count <= DOTS_DRAWN_MAX)
-      fg_plot_dot(at, (double)i + 1, chart->point[i].value, 4, "s2");
+static void put_points(const fg_plot *at, const fg_lot_analysis *analysis,
+                       const fg_lot_quantity *quantity) {
+  const fg_chart *chart = &quantity->chart;
+  size_t foil = 0;
+  for (size_t i = 0; i < chart->count; i++, foil++) {
+    const fg_chart_point *point = &chart->point[i];
+    foil = next_foil(quantity, foil);
+    if (!point->rules && chart->count > DOTS_DRAWN_MAX) continue;
+    bool linked = begin_mark(at, analysis, foil);
+    if (point->rules)
+      fg_plot_shape(at, (double)i + 1, point->value, 7, FG_SHAPE_SQUARE, "signal");
+    else
+      fg_plot_dot(at, (double)i + 1, point->value, 4, "s2");
+    if (linked) fputs("</a>\n", at->out);
+  }
 }
 
 void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
@@ -242,6 +263,6 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
   if (groups)
     put_groups(&at, analysis, quantity);
   else
-    put_points(&at, chart, every);
+    put_points(&at, analysis, quantity);
   fg_plot_end(&at);
 }

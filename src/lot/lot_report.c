@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "lot/foil_pages.h"
 #include "lot/lot_date.h"
 #include "lot/writers.h"
 
@@ -54,10 +55,13 @@ fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot 
   fg_lot_analysis analysis;
   FG_TRY(fg_lot_analyse(ctx, lot, &analysis));
   analysis.folder = folder;
-  fg_status status = FG_OK;
+  char **pages = NULL;
+  fg_status status = fg_lot_pages_find(ctx, folder, lot, &pages);
+  analysis.pages = pages;
   for (size_t i = 0; i < sizeof files / sizeof files[0] && status == FG_OK; i++)
     status = write_file(ctx, folder, i, &analysis);
   if (status == FG_OK) take_outcome(&analysis, outcome);
+  fg_lot_pages_free(lot, pages);
   fg_lot_analysis_free(&analysis);
   return status;
 }

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/folder.h"
 #include "core/memory.h"
+#include "lot/foil_pages.h"
 #include "lot/folder_lock.h"
 #include "lot/guard.h"
 #include "lot/lot_report.h"
@@ -209,6 +210,7 @@ static fg_status write_lot(fg_context *ctx, merger *m, fg_lot_outcome *outcome) 
   fg_lot lot = {.settings = m->settings, .manifest = m->manifest};
   m->manifest = (fg_manifest){0};
   status = fg_lot_load(ctx, m->folder, &lot);
+  if (status == FG_OK) status = fg_lot_pages_take(ctx, m->folders, m->from, m->folder, &lot);
   if (status == FG_OK) status = fg_lot_write_report(ctx, m->folder, &lot, outcome);
   fg_lot_free(&lot);
   return status;

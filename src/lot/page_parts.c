@@ -72,10 +72,24 @@ void fg_lot_put_scan(FILE *out, const fg_lot_analysis *analysis, size_t item) {
   free(folder);
 }
 
+bool fg_lot_begin_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
+  const fg_record *record = &analysis->lot->records[foil->item];
+  const char *page = analysis->pages ? analysis->pages[foil->item] : NULL;
+  if (!page && !foil->row) return false;
+  fputs("<a href=\"", out);
+  if (page) {
+    fg_lot_put_href(out, page);
+    fprintf(out, "#part%zu\">", (size_t)(foil->foil - record->foils) + 1);
+  } else {
+    fprintf(out, "#foil-%zu\">", (size_t)(foil - analysis->foils) + 1);
+  }
+  return true;
+}
+
 void fg_lot_put_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
-  if (foil->row) fprintf(out, "<a href=\"#foil-%zu\">", (size_t)(foil - analysis->foils) + 1);
+  bool linked = fg_lot_begin_foil_link(out, analysis, foil);
   fg_lot_put_label(out, analysis, foil);
-  if (foil->row) fputs("</a>", out);
+  if (linked) fputs("</a>", out);
 }
 
 void fg_lot_put_label(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {

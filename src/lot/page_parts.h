@@ -36,7 +36,11 @@ void fg_lot_put_href(FILE *out, const char *path);
 /* A scan's name, which leads to the scan where it is still there. */
 void fg_lot_put_scan(FILE *out, const fg_lot_analysis *analysis, size_t item);
 
-/* What people call a foil, which leads to its line of the page's list. */
+/* The start of a link to a foil's own page, or where it has none to its line of the page's list;
+ * false: neither is there, and nothing is written. */
+bool fg_lot_begin_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
+
+/* What people call a foil, with that link. */
 void fg_lot_put_foil_link(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil);
 
 /* What people call a foil. */

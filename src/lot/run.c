@@ -17,6 +17,7 @@
 #include "core/text.h"
 #include "foilgauge/measure.h"
 #include "foilgauge/scan_loop.h"
+#include "lot/foil_pages.h"
 #include "lot/folder_lock.h"
 #include "lot/guard.h"
 #include "lot/lot_report.h"
@@ -26,6 +27,8 @@ typedef struct item_state {
   fg_journal_entry entry; /* its record; length 0: to be measured */
   char sha256[65];        /* as recorded */
   bool mine;              /* of this shard */
+  bool wanted;            /* its record's foils are to have a page */
+  bool redrawn;           /* the record stands, but the page is not there */
 } item_state;
 
 typedef struct lot_run {
@@ -37,7 +40,7 @@ typedef struct lot_run {
   fg_scanner_model *model; /* the same, read */
   fg_journal_head head;
   item_state *items;
-  size_t *todo, todo_count;
+  size_t *todo, todo_count, done;
   fg_journal journal;
   fg_lot_outcome *outcome;
   double start;
@@ -103,14 +106,23 @@ static fg_status prepare(fg_context *ctx, lot_run *run) {
 static fg_status take_entry(fg_context *ctx, void *user, fg_record *record,
                             fg_journal_entry entry) {
   lot_run *run = user;
-  (void)ctx;
   size_t item = fg_manifest_index_find(&run->index, &run->manifest, record->scan);
   if (item == run->manifest.items || !run->items[item].mine || !record->sha256[0] ||
       strcmp(record->measured_with, run->head.measured_with) != 0)
     return FG_OK;
   run->items[item].entry = entry;
   strcpy(run->items[item].sha256, record->sha256);
-  return FG_OK;
+  return fg_lot_page_is_wanted(ctx, run->request->pages, &run->request->settings->design,
+                               record->foils, record->foil_count, &run->items[item].wanted);
+}
+
+static fg_status name_page(fg_context *ctx, const lot_run *run, size_t item, const char *sha256,
+                           char **name) {
+  fg_record record = {0};
+  strcpy(record.sha256, sha256);
+  strcpy(record.measured_with, run->head.measured_with);
+  return fg_lot_page_name(ctx, &run->request->settings->design, &run->manifest, item, &record,
+                          name);
 }
 
 /* A record stands while its scan is what it was. A scan that is gone takes nothing with it. */
@@ -119,11 +131,15 @@ static fg_status check_scan(fg_context *ctx, void *shared, size_t i) {
   item_state *item = &run->items[i];
   const char *scan = fg_manifest_scan(&run->manifest, i);
   char sum[65];
-  (void)ctx;
   if (!item->entry.length || (access(scan, F_OK) != 0 && errno == ENOENT)) return FG_OK;
   fg_context inner;
   if (fg_sha256_file(&inner, scan, sum) != FG_OK || strcmp(sum, item->sha256) != 0)
     item->entry.length = 0;
+  if (!item->entry.length || !item->wanted) return FG_OK;
+  char *page;
+  FG_TRY(name_page(ctx, run, i, sum, &page));
+  item->redrawn = !fg_lot_page_is_there(run->request->folder, page);
+  free(page);
   return FG_OK;
 }
 
@@ -149,23 +165,24 @@ static fg_status list_todo(fg_context *ctx, lot_run *run) {
   for (size_t i = 0; i < run->manifest.items; i++) {
     if (!run->items[i].mine) continue;
     run->outcome->scans++;
-    if (run->items[i].entry.length)
-      run->outcome->kept++;
-    else
-      run->todo[run->todo_count++] = i;
+    bool kept = run->items[i].entry.length > 0, redrawn = run->items[i].redrawn;
+    run->outcome->kept += kept;
+    run->outcome->redrawn += redrawn;
+    if (!kept || redrawn) run->todo[run->todo_count++] = i;
   }
-  run->outcome->to_measure = run->todo_count;
+  run->outcome->to_measure = run->todo_count - run->outcome->redrawn;
   return FG_OK;
 }
 
 /* One at a time; the first tenth of a second says nothing about the rest. */
-static void tell(lot_run *run, const char *scan, const char *error, bool beyond) {
+static void tell(lot_run *run, size_t item, const char *error, bool beyond) {
   pthread_mutex_lock(&run->listening);
   fg_lot_outcome *outcome = run->outcome;
-  outcome->beyond += beyond;
-  outcome->measured += error == NULL;
-  outcome->failed += error != NULL;
-  size_t done = outcome->measured + outcome->failed;
+  bool kept = run->items[item].redrawn;
+  outcome->beyond += beyond && !kept;
+  outcome->measured += !error && !kept;
+  outcome->failed += error && !kept;
+  size_t done = ++run->done;
   double seconds = fg_clock_seconds() - run->start;
   const fg_lot_progress progress = {
       .done = done,
@@ -175,7 +192,7 @@ static void tell(lot_run *run, const char *scan, const char *error, bool beyond)
       .seconds = seconds,
       .seconds_left =
           seconds > 0.1 ? seconds * (double)(run->todo_count - done) / (double)done : NAN,
-      .scan = scan,
+      .scan = fg_manifest_scan(&run->manifest, item),
       .error = error};
   if (run->request->listener) run->request->listener(run->request->user, &progress);
   pthread_mutex_unlock(&run->listening);
@@ -205,6 +222,36 @@ static fg_status correct(fg_context *ctx, const lot_run *run, fg_measurement *me
   return status;
 }
 
+static void tell_not_drawn(lot_run *run, const char *why) {
+  pthread_mutex_lock(&run->listening);
+  if (run->outcome->not_drawn++ == 0)
+    fg_text_clip(run->outcome->first_not_drawn, sizeof run->outcome->first_not_drawn, "%s", why);
+  pthread_mutex_unlock(&run->listening);
+}
+
+/* Before the record is kept, so that a record's page is there. A scan that cannot be read a second
+ * time has none; only a page that cannot be written is an error. */
+static fg_status draw_page(fg_context *ctx, lot_run *run, size_t item,
+                           const fg_measurement *measurement) {
+  const fg_design *design = &run->request->settings->design;
+  char *page, *name = NULL;
+  bool wanted;
+  fg_context inner = {.message = ""};
+  FG_TRY(fg_lot_page_is_wanted(ctx, run->request->pages, design, measurement->foils,
+                               measurement->foil_count, &wanted));
+  if (!wanted) return FG_OK;
+  if (fg_lot_page_draw(&inner, design, &run->manifest, item, measurement, &page) != FG_OK) {
+    tell_not_drawn(run, inner.message);
+    return FG_OK;
+  }
+  fg_status status = name_page(ctx, run, item, measurement->sha256, &name);
+  if (status == FG_OK) status = fg_lot_pages_make(ctx, run->request->folder);
+  if (status == FG_OK) status = fg_lot_write_text(ctx, run->request->folder, name, page);
+  free(name);
+  free(page);
+  return status;
+}
+
 /* Whatever is wrong with a scan is its record; only a record that cannot be kept is an error. A
  * scan that could be read but not measured is the same tomorrow; one that could not be read, or
  * for which there was no memory, has no checksum and is tried again. */
@@ -226,9 +273,11 @@ static fg_status measure_item(fg_context *ctx, lot_run *run, size_t item) {
   memcpy(record.sha256, measurement.sha256, sizeof record.sha256);
   if (failure == FG_OK) failure = correct(&inner, run, &measurement, &beyond);
   if (failure == FG_ERR_MEMORY || failure == FG_ERR_IO) record.sha256[0] = '\0';
-  fg_status status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
+  fg_status status = failure == FG_OK ? draw_page(ctx, run, item, &measurement) : FG_OK;
+  if (status == FG_OK && !run->items[item].redrawn)
+    status = keep(ctx, run, item, &record, failure == FG_OK ? &measurement : NULL);
   if (failure == FG_OK) fg_measurement_free(&measurement);
-  if (status == FG_OK) tell(run, scan, failure == FG_OK ? NULL : inner.message, beyond);
+  if (status == FG_OK) tell(run, item, failure == FG_OK ? NULL : inner.message, beyond);
   return status;
 }
 

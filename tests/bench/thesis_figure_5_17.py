@@ -120,7 +120,7 @@ def main():
         truth = render(folder, arguments.dpi)
         out = os.path.join(folder, "lot")
         subprocess.run([lib.FOILGAUGE, "lot", folder, "-o", out, "--name", "Thesis, figure 5.17",
-                        "--reference-curve", curve], check=True)
+                        "--reference-curve", curve, "--pages", "none"], check=True)
         shutil.copy(os.path.join(out, "index.html"), os.path.join(arguments.o, "figure_5_17.html"))
         lot = lib.load(os.path.join(out, "lot.json"))
     rows, worst = rows_of(lot, truth)

@@ -20,7 +20,7 @@ make_lot() {
   cd "$1"
   printf '%s\n' foil*.json | sed 's/\.json$//' |
     xargs -P "$(nproc)" -I{} "$program" render {}.json -o {}.png --truth {}.truth
-  "$program" lot manifest.csv -o lot --name "$title" --group die --jobs "$(nproc)" || [[ $? == [13] ]]
+  "$program" lot manifest.csv -o lot --name "$title" --group die --pages none --jobs "$(nproc)" || [[ $? == [13] ]]
   rm -- *.png
   cd ..
 }

@@ -19,7 +19,7 @@ make_lot() {
   printf '%s\n' foil*.json | sed 's/\.json$//' |
     xargs -P "$(nproc)" -I{} "$program" render {}.json -o {}.png --truth {}.truth
   touch -d "$3" -- *.png
-  "$program" lot manifest.csv -o "../$1-lot" --name "$2" "${@:4}" || [[ $? == [13] ]]
+  "$program" lot manifest.csv -o "../$1-lot" --name "$2" --pages none "${@:4}" || [[ $? == [13] ]]
   rm -- *.png
   cd ..
 }

@@ -7,7 +7,7 @@
 
 static void write_reports(const fg_measurement *measurement) {
   const fg_report_scan scan = {"scan", measurement, NULL, NULL};
-  const fg_report report = {&measurement->design, &measurement->nominal, &scan, 1};
+  const fg_report report = {&measurement->design, &measurement->nominal, &scan, 1, NULL};
   fg_context ctx = {0};
   FILE *out = fopen("/dev/null", "w");
   if (!out) return;

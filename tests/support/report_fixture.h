@@ -30,7 +30,7 @@ static inline int set_up(void **state) {
   all->measurement = synthetic_measurement(&all->design);
   all->scans[0] = (fg_report_scan){all->measurement.scan, &all->measurement, NULL, NULL};
   all->scans[1] = (fg_report_scan){"lost.png", NULL, "lost.png: cannot be opened", NULL};
-  all->report = (fg_report){&all->design, &all->nominal, all->scans, 1};
+  all->report = (fg_report){&all->design, &all->nominal, all->scans, 1, NULL};
   *state = all;
   return 0;
 }

@@ -146,7 +146,7 @@ static void reports_hold_every_row(void **state) {
   fg_foil *foil = &measurement.foils[0];
   foil->correction = (fg_correction){1e-3, 2e-4, 3e-3, 4e-4, 5e-3, 6e-4};
   fg_report_scan scan = {"a.png", &measurement, NULL, NULL};
-  fg_report report = {&design, &nominal, &scan, 1};
+  fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *text = text_of(&report, fg_report_write_json);
   cJSON *json = cJSON_Parse(text);
   const cJSON *written = item(json, "foils", 0);
@@ -173,7 +173,7 @@ static void reports_hold_every_row_of_arcs(void **state) {
   foil->correction = (fg_correction){1e-3, 2e-4, 3e-3, 4e-4, 5e-3, 6e-4};
   foil->arc = (fg_foil_arc){110.5, 0.001, 0.45, 0.0009, 39.8, 0.002};
   fg_report_scan scan = {"arc.png", &measurement, NULL, NULL};
-  fg_report report = {&design, &nominal, &scan, 1};
+  fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *text = text_of(&report, fg_report_write_json);
   cJSON *json = cJSON_Parse(text);
   holds_every_row(item(json, "foils", 0), FG_QUANTITY_OF_FOIL, FG_FORM_ARC, foil);
@@ -193,7 +193,7 @@ static void reports_hold_every_row_of_discs(void **state) {
   fg_disc disc = synthetic_disc(1, 1.5);
   fg_measurement measurement = {.dpi = {1200, 1200}, .discs = &disc, .disc_count = 1};
   fg_report_scan scan = {"discs.png", &measurement, NULL, NULL};
-  fg_report report = {&design, &nominal, &scan, 1};
+  fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *text = text_of(&report, fg_report_write_json);
   cJSON *json = cJSON_Parse(text);
   holds_every_row(item(json, "discs", 0), FG_QUANTITY_OF_DISC, design.form, &disc);

@@ -139,7 +139,7 @@ static void a_page_escapes_every_name(void **state) {
   fg_report_scan scans[2] = {{"<b>\"&'.png", &measurement, NULL, NULL},
                              {"x/<i>", NULL, "<u>broken</u>", NULL}};
   snprintf(measurement.scan, sizeof measurement.scan, "-"); /* no pixels: the drawing alone */
-  char *page = page_of(&(fg_report){&design, &nominal, scans, 2});
+  char *page = page_of(&(fg_report){&design, &nominal, scans, 2, NULL});
   assert_null(strstr(page, "<script"));
   assert_null(strstr(page, "<b>\""));
   assert_null(strstr(page, "<i></h1>"));
@@ -166,7 +166,7 @@ static void a_page_says_the_verdict_and_why(void **state) {
   fg_foil *foil = &measurement.foils[0];
   foil->flags = FG_FOIL_SIDE_BAND;
   fg_report_scan scan = {"-", &measurement, NULL, NULL};
-  const fg_report report = {&design, &nominal, &scan, 1};
+  const fg_report report = {&design, &nominal, &scan, 1, NULL};
   char *page = page_of(&report);
   assert_non_null(strstr(page, "<span class=\"verdict fail\">Out of tolerance</span>"));
   assert_non_null(
@@ -204,7 +204,7 @@ static void a_page_of_discs_lists_them(void **state) {
   measurement.discs[0] = synthetic_disc(1, 1.5);
   measurement.discs[1] = synthetic_disc(2, 2.75);
   fg_report_scan scan = {"-", &measurement, NULL, NULL};
-  char *page = page_of(&(fg_report){&design, NULL, &scan, 1});
+  char *page = page_of(&(fg_report){&design, NULL, &scan, 1, NULL});
   assert_non_null(strstr(page, "2 round features"));
   assert_null(strstr(page, "bump circle")); /* no legend of a foil */
   assert_non_null(strstr(page, "the circle that was fitted to each feature"));

@@ -45,7 +45,7 @@ static void a_foil_is_valid(void **state) {
   fg_measurement measurement = synthetic_measurement(&design);
   fg_report_scan scans[2] = {{"a.png", &measurement, NULL, NULL},
                              {"b.png", NULL, "b.png: broken", NULL}};
-  fg_report report = {&design, &nominal, scans, 1};
+  fg_report report = {&design, &nominal, scans, 1, NULL};
   assert_valid(&report);
   report.scan_count = 2;
   assert_valid(&report);
@@ -77,7 +77,7 @@ static void discs_are_valid(void **state) {
                                 .disc_count = 2};
   memset(measurement.sha256, '0', 64);
   fg_report_scan scan = {"discs.png", &measurement, NULL, NULL};
-  assert_valid(&(fg_report){&design, &nominal, &scan, 1});
+  assert_valid(&(fg_report){&design, &nominal, &scan, 1, NULL});
   for (int i = 0; i < 2; i++) {
     free(discs[i].edge);
     free(discs[i].residual_um);

@@ -279,6 +279,7 @@ fg_status fg_report_write_html(fg_context *ctx, const fg_report *report, FILE *o
   const fg_report_scan *first = &report->scans[0];
   size_t number = 0;
   fg_html_begin(out, first->name ? first->name : fg_html_base_name(first->path));
+  if (report->back) fprintf(out, "<p class=\"back\"><a href=\"%s\">← Lot</a></p>\n", report->back);
   if (fg_html_sections(report) > 1) FG_TRY(fg_html_summary(ctx, out, report));
   for (size_t i = 0; i < report->scan_count; i++)
     FG_TRY(put_scan(ctx, out, report, &report->scans[i], &number));
