@@ -53,10 +53,10 @@ said "$work/said" "4 measured, 0 known, 0 refused" "--once"
 # All of a lot, and the same as `lot` makes of it.
 "$program" station "$work/in" --export "$work/out" 2>"$work/said" || fail "--export: $(cat "$work/said")"
 said "$work/said" "out/L 1 4 foils of 3 scans: 4 pass" "--export"
-"$program" lot "$work/out/L 1/manifest.csv" --recipe "$work/out/L 1/recipe.json" -o "$work/ref/lot" 2>/dev/null
+"$program" lot "$work/out/L 1/manifest.csv" --recipe "$work/out/L 1/recipe.json" -o "$work/ref/lot" --pages none 2>/dev/null
 diff -r "$work/ref/lot" "$work/out/L 1" >&2 || fail "--export and lot differ"
 for folder in "$work/out"/*; do
-  "$program" lot "$folder/manifest.csv" --recipe "$folder/recipe.json" -o "$folder" --resume \
+  "$program" lot "$folder/manifest.csv" --recipe "$folder/recipe.json" -o "$folder" --resume --pages none \
     --dry-run >"$work/said"
   grep -q " 0 to measure" "$work/said" || fail "--resume after --export: $(cat "$work/said")"
 done
@@ -88,7 +88,7 @@ code=0
 [ $code -eq 2 ] || fail "a scan of another setup that is gone: exit code $code"
 said "$work/said" "2 scans were measured again with the lot's newest setup; 1 scan is of another setup and cannot be measured again" "--export"
 mv "$work/b.png" "$work/in/L 1-b.png"
-"$program" lot "$work/again/L 1/manifest.csv" --recipe "$work/again/L 1/recipe.json" \
+"$program" lot "$work/again/L 1/manifest.csv" --recipe "$work/again/L 1/recipe.json" --pages none \
   -o "$work/again/L 1" --resume --dry-run >"$work/said"
 grep -q "4 scans, 1 to measure, 3 kept" "$work/said" || fail "--resume of two setups: $(cat "$work/said")"
 
