@@ -45,6 +45,20 @@ typedef struct fg_scan_loop_error {
   double rms, robust_sd, p95, maximum, held_out_rms; /* NaN without scans kept aside */
 } fg_scan_loop_error;
 
+/* Noise of an edge row, um: white, and what neighbours along the edge share (Patterson and Thompson
+ * 1971: restricted likelihood). Every sum of squares was judged by it. */
+typedef struct fg_scan_noise {
+  const char *form; /* "white": rows are independent. Else how the correlation falls with the
+                       distance d: "gaussian": exp(-(d / range)²), "exponential": exp(-d / range) */
+  double sd_um;     /* of a row: the root of the squares of the two that follow */
+  double white_um, correlated_um;
+  double correlation; /* share of the variance that rows next to each other have in common */
+  double range_mm;
+  double long_waves; /* variance of waves of half a millimetre over what the form says of them */
+  double *disc_um;   /* sd of a row of every disc, which has its own; in the scans' order */
+  size_t discs;
+} fg_scan_noise;
+
 /* One number of an effect: as JSON has it, and as people read it (a ratio in ppm; what leads an
  * effect with its sign). */
 typedef struct fg_scan_result_parameter {
@@ -228,6 +242,7 @@ typedef struct fg_scan_result {
   bool of_width;     /* there are claims of the width */
   bool contradicted; /* scans kept aside become worse */
   double noise_floor_um, edge_model_error_um;
+  fg_scan_noise noise;
   double half_width_rms_um, half_width_smooth_um;
   double p_value;    /* that no effect is needed */
   double matters_um; /* an effect of this size would be a nuisance: `absent` below it */

@@ -93,6 +93,7 @@ void fg_scan_result_free(fg_scan_result *result) {
   free(result->row);
   free(result->line);
   free(result->grid.line);
+  free(result->noise.disc_um);
   fg_scanner_model_free((fg_scanner_model *)result->model);
   *result = (fg_scan_result){0};
 }

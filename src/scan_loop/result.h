@@ -33,6 +33,10 @@ fg_status fg_scan_result_put_lines(fg_context *ctx, const struct fg_scan_loop *l
 fg_status fg_scan_result_put_grid(fg_context *ctx, const struct fg_scan_loop *loop,
                                   fg_scan_result *result);
 
+/* Noise of the rows. */
+fg_status fg_scan_result_put_noise(fg_context *ctx, const struct fg_scan_loop *loop,
+                                   fg_scan_result *result);
+
 /* The bumps against the declared springback, and the notes. */
 fg_status fg_scan_result_put_bumps(fg_context *ctx, const struct fg_scan_loop *loop,
                                    fg_scan_result *result);

@@ -314,6 +314,7 @@ fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
   fg_scan_result *result = &loop->result;
   fg_scan_result_free(result);
   put_numbers(loop, result);
+  FG_TRY(fg_scan_result_put_noise(ctx, loop, result));
   put_explanations(&loop->explanations, result);
   FG_TRY(put_claims(ctx, loop, result));
   put_width(&loop->width, result);

@@ -100,6 +100,8 @@ json.dump({'schema': 'foilgauge/design/1', 'name': 'plate', 'form': 'discs',
            'diameters_mm': [2.004 * p[2] for p in pins][::-1]}, open('known.json', 'w'))"
 "$program" loop clean.png --design known.json --model-out absolute.json -o known.out || fail "loop with known diameters"
 [ "$(value known.out "[c['id'] for c in r['claims']]")" = "['scan.scale']" ] || fail "known diameters give no scale"
+[ "$(value known.out "r['noise']['form'], len(r['noise']['sd_of_discs']), min(r['noise']['sd_of_discs']) == r['noise']['sd']")" = "('white', 12, True)" ] ||
+  fail "the noise of a plate is $(value known.out "r['noise']")"
 near "absolute scale" "$(value known.out "r['claims'][0]['parameters']['value']")" 0.002 0.00001
 near "radius at the known scale" "$(value known.out "max(d['radius_mm'] for d in r['after']['discs'])")" 3.006 0.0002
 # Where they have given it, nothing says that the scale is not known; without them a model's does.

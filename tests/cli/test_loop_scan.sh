@@ -9,11 +9,15 @@ render() { render_foil "$@" 2400; }
 render clean 1 -70 ''
 expect 0 "note: nothing.json: nothing was found of the scanner" "$program" loop clean.png -o clean.out --model-out nothing.json
 expect 0 '' "$program" measure clean.png --model nothing.json -o nothing.out
+[ "$(value clean.out "r['noise']['form'], r['noise']['sd'] == r['noise']['white_sd'] == r['noise_floor']")" = "('white', True)" ] ||
+  fail "the noise of a clean scan is $(value clean.out "r['noise']")"
+value clean.out "r['summary']" | grep -q '^Nothing is claimed: ' || fail "a clean scan is summed up as $(value clean.out "r['summary']")"
 [ "$(value clean.out "r['verdict']")" = clean ] || fail "a clean scan is called $(value clean.out "r['verdict']")"
 
 render ripple 2 -60 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2.7,"phase_deg":30}'
 "$program" loop ripple.png -o ripple.out || fail "loop on a ripple"
 [ "$(value ripple.out "r['claims'][0]['id']")" = scan.carriage_ripple ] || fail "the ripple is not named"
+value ripple.out "r['summary']" | grep -q '^Found: .*ripple.* falls from ' || fail "a ripple is summed up as $(value ripple.out "r['summary']")"
 near amplitude "$(value ripple.out "r['claims'][0]['parameters']['amplitude_um']")" 7 0.05
 near period "$(value ripple.out "r['claims'][0]['parameters']['period_mm']")" 2.7 0.003
 near R0 "$(value ripple.out "r['after']['foils'][0]['overall']['radius_mm']")" 20.95 0.0001

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "foilgauge/scan_loop.h"
+#include "report/scan_loop/scan_loop_parts.h"
 #include "scan_loop/state.h"
 #include "support/near.h"
 #include "support/odd_scan.h"
@@ -96,6 +97,31 @@ static void assert_errors(const cJSON *side, const fg_scan_loop_error *error) {
   assert_number(side, "held_out_rms", error->held_out_rms);
 }
 
+static void assert_noise(const cJSON *json, const fg_scan_noise *noise) {
+  assert_text(json, "form", noise->form);
+  assert_number(json, "sd", noise->sd_um);
+  assert_number(json, "white_sd", noise->white_um);
+  assert_number(json, "correlated_sd", noise->correlated_um);
+  assert_number(json, "correlation", noise->correlation);
+  assert_number(json, "range_mm", noise->range_mm);
+  assert_number(json, "long_waves", noise->long_waves);
+  assert_near(hypot(noise->white_um, noise->correlated_um), noise->sd_um, 1e-9 * noise->sd_um);
+  assert_int_equal(noise->correlation > 0, noise->range_mm > 0);
+  assert_int_equal(!noise->discs, !cJSON_HasObjectItem(json, "sd_of_discs"));
+  for (size_t d = 0; d < noise->discs; d++)
+    assert_true(noise->disc_um[d] >= noise->sd_um * (1 - 1e-9));
+}
+
+/* The page's words. */
+static void assert_summary(const cJSON *json, const fg_scan_result *result) {
+  fg_context ctx = {0};
+  char *sentence = NULL;
+  assert_int_equal(fg_scan_loop_sentence(&ctx, result, &sentence), FG_OK);
+  assert_true(strlen(sentence) > 0);
+  assert_text(json, "summary", sentence);
+  free(sentence);
+}
+
 static void assert_claim(const cJSON *json, const fg_scan_result *result,
                          const fg_scan_result_claim *claim) {
   assert_text(json, "id", claim->id);
@@ -109,11 +135,10 @@ static void assert_claim(const cJSON *json, const fg_scan_result *result,
     assert_number(u, claim->parameter[i].name, claim->parameter[i].u);
   }
   assert_int_equal(claim->verdict == FG_LOOP_TIED, !claim->sure);
-  if (claim->sure) return;
   const char *names[FG_SCAN_RESULT_EXPLANATIONS];
   for (size_t k = 0; k < result->explanations; k++)
     names[k] = result->explanation[k].name;
-  assert_texts(member(json, "alias_class"), names, result->explanations);
+  assert_texts(member(json, "alias_class"), names, claim->sure ? 0 : result->explanations);
 }
 
 static void assert_claims(const cJSON *json, const fg_scan_result *result) {
@@ -177,7 +202,9 @@ static void assert_same(const fg_scan_loop *loop) {
   const fg_scan_result *result = fg_scan_loop_result(loop);
   cJSON *json = written(loop);
   assert_text(json, "verdict", fg_loop_outcome_word(result->verdict));
+  assert_summary(json, result);
   assert_number(json, "noise_floor", result->noise_floor_um);
+  assert_noise(member(json, "noise"), &result->noise);
   assert_errors(member(json, "before"), &result->before);
   assert_errors(member(json, "after"), &result->after);
   assert_claims(json, result);

@@ -5,26 +5,7 @@
 #include "core/file.h"
 #include "foilgauge/words.h"
 #include "report/doe/doe_words.h"
-
-/* Breaks words at 100 columns; the first line starts with `mark`. */
-static void put_wrapped(FILE *out, const char *mark, const char *text) {
-  enum { WIDTH = 98 };
-  size_t column = 0;
-  fputs(mark, out);
-  while (*text) {
-    size_t length = 0;
-    while (text[length] && text[length] != ' ')
-      length++;
-    if (column && column + length > WIDTH) {
-      fputs("\n  ", out);
-      column = 0;
-    }
-    fprintf(out, "%s%.*s", column ? " " : "", (int)length, text);
-    column += length + 1;
-    text += length + (text[length] == ' ');
-  }
-  fputc('\n', out);
-}
+#include "report/wrapped.h"
 
 static void put_number(FILE *out, int width, double value) {
   if (isfinite(value))
@@ -143,10 +124,10 @@ fg_status fg_experiment_write_table(fg_context *ctx, const fg_experiment_report 
     if (fg_sentence_is_command(conclusions.text[i]))
       fprintf(out, "    %s\n", conclusions.text[i]);
     else
-      put_wrapped(out, "* ", conclusions.text[i]);
+      fg_write_wrapped(out, "* ", "  ", conclusions.text[i]);
   for (size_t i = 0; i < e->notes; i++)
-    put_wrapped(out, "! ", e->note[i]);
-  if (report->plan_note) put_wrapped(out, "! ", report->plan_note);
+    fg_write_wrapped(out, "! ", "  ", e->note[i]);
+  if (report->plan_note) fg_write_wrapped(out, "! ", "  ", report->plan_note);
   FG_TRY_EXIT(fg_stream_finish(ctx, out, "the table"));
 exit:
   fg_sentences_free(&conclusions);

@@ -4,8 +4,8 @@
 
 static void write_ties(fg_json *json, const fg_scan_result_bump_claim *claim) {
   fg_json_array(json, "alias_class");
-  fg_json_string(json, NULL, claim->id);
-  for (size_t i = 0; i < claim->ties; i++)
+  if (claim->verdict == FG_LOOP_TIED) fg_json_string(json, NULL, claim->id);
+  for (size_t i = 0; claim->verdict == FG_LOOP_TIED && i < claim->ties; i++)
     fg_json_string(json, NULL, claim->tied[i].id);
   fg_json_array_end(json);
 }
@@ -31,7 +31,7 @@ static void write_claim(fg_json *json, const fg_scan_result_response *response,
   fg_json_number(json, "u_amplitude", claim->u_amplitude);
   fg_json_number(json, "p_value", claim->p_value);
   fg_json_number(json, "retained_share", claim->retained_share);
-  if (claim->verdict == FG_LOOP_TIED) write_ties(json, claim);
+  write_ties(json, claim);
   fg_json_object_end(json);
 }
 

@@ -262,6 +262,45 @@ static void put_error(FILE *out, const char *name, double before, double after) 
           words[1], after / before);
 }
 
+static void put_disc_noise(FILE *out, const fg_scan_noise *noise) {
+  char words[2][32];
+  double low = INFINITY, high = 0;
+  for (size_t d = 0; d < noise->discs; d++) {
+    low = fmin(low, noise->disc_um[d]);
+    high = fmax(high, noise->disc_um[d]);
+  }
+  fg_scan_loop_length_words(low, words[0], sizeof words[0]);
+  fg_scan_loop_length_words(high, words[1], sizeof words[1]);
+  fprintf(out,
+          "<tr><td class=\"words\">white: rows are independent, every disc has its own</td>"
+          "<td>%s%s%s</td><td>–</td><td>–</td></tr>\n",
+          words[0], noise->discs > 1 ? " to " : "", noise->discs > 1 ? words[1] : "");
+}
+
+static void put_edge_noise(FILE *out, const fg_scan_noise *noise) {
+  char words[2][32];
+  fg_scan_loop_length_words(noise->white_um, words[0], sizeof words[0]);
+  fg_scan_loop_length_words(noise->correlated_um, words[1], sizeof words[1]);
+  if (noise->correlation > 0)
+    fprintf(out,
+            "<tr><td class=\"words\">white, and %s along the edge</td><td>%s</td><td>%s</td>"
+            "<td>%.2g mm</td></tr>\n",
+            noise->form, words[0], words[1], noise->range_mm);
+  else
+    fprintf(out,
+            "<tr><td class=\"words\">white: rows are independent</td><td>%s</td><td>–</td>"
+            "<td>–</td></tr>\n",
+            words[0]);
+}
+
+static void put_noise(FILE *out, const fg_scan_noise *noise) {
+  fputs("<div class=\"scroll\"><table><tr><th>noise of a row</th><th>white, sd</th>"
+        "<th>shared by<br>neighbours, sd</th><th>over</th></tr>\n",
+        out);
+  (noise->discs ? put_disc_noise : put_edge_noise)(out, noise);
+  fputs("</table></div>\n", out);
+}
+
 static void put_errors(FILE *out, const fg_scan_result *result) {
   const fg_scan_loop_error *b = &result->before, *a = &result->after;
   size_t left_out = 0;
@@ -279,13 +318,16 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   if (result->of_width)
     put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
   fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);
+  fputs("</table></div>\n", out);
   fprintf(out,
-          "</table></div>\n<p class=\"note\">%zu rows, each the mean of %zu neighbours along the "
+          "<p class=\"note\">%zu rows, each the mean of %zu neighbours along the "
           "strip; %zu of them left out as outliers. Noise floor of a row: %s; after / noise floor "
           "= %.3g.",
           result->rows, result->row_stations, left_out, words, a->rms / result->noise_floor_um);
   if (!isfinite(b->held_out_rms)) fputs(" No scan was kept aside (<code>--hold-out</code>).", out);
-  fputs("</p></section>\n", out);
+  fputs("</p>\n", out);
+  put_noise(out, &result->noise);
+  fputs("</section>\n", out);
 }
 
 static fg_status put_origin(fg_context *ctx, FILE *out, const fg_scan_result *result) {

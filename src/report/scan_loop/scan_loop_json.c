@@ -1,10 +1,12 @@
 /* "foilgauge/loop/1", domain "scan". */
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "foilgauge/scan_loop.h"
 #include "report/design/calibration_json.h"
 #include "report/measure/measure_json.h"
 #include "report/scan_loop/scan_loop_bumps.h"
+#include "report/scan_loop/scan_loop_parts.h"
 
 /* Parameters by their names; with `u`, their standard uncertainties. */
 static void write_parameters(fg_json *json, const fg_scan_result_claim *claim, bool u) {
@@ -15,9 +17,10 @@ static void write_parameters(fg_json *json, const fg_scan_result_claim *claim, b
   fg_json_object_end(json);
 }
 
-static void write_explanations(fg_json *json, const fg_scan_result *result) {
+/* Of what every explanation holds it is empty. */
+static void write_explanations(fg_json *json, const fg_scan_result *result, bool sure) {
   fg_json_array(json, "alias_class");
-  for (size_t k = 0; k < result->explanations; k++)
+  for (size_t k = 0; k < result->explanations && !sure; k++)
     fg_json_string(json, NULL, result->explanation[k].name);
   fg_json_array_end(json);
 }
@@ -45,7 +48,7 @@ static void write_claim(fg_json *json, const fg_scan_result *result,
     fg_json_string(json, "basis", claim->basis);
     write_shape(json, claim);
   }
-  if (!claim->sure) write_explanations(json, result);
+  write_explanations(json, result, claim->sure);
   fg_json_object_end(json);
 }
 
@@ -80,7 +83,7 @@ static void write_unattributed(fg_json *json, const fg_scan_result *result) {
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
-  if (!result->curve->sure) write_explanations(json, result);
+  write_explanations(json, result, result->curve->sure);
   fg_json_number(json, "rms", result->before.rms);
   fg_json_number(json, "p_value", result->p_value);
   fg_json_array(json, "nearest");
@@ -167,8 +170,22 @@ static void write_inputs(fg_json *json, const fg_scan_result *result) {
   fg_json_array_end(json);
 }
 
-static void write_noise(fg_json *json, const fg_scan_result *result) {
+static void write_noise(fg_json *json, const fg_scan_noise *noise) {
+  fg_json_object(json, "noise");
+  fg_json_string(json, "form", noise->form);
+  fg_json_number(json, "sd", noise->sd_um);
+  fg_json_number(json, "white_sd", noise->white_um);
+  fg_json_number(json, "correlated_sd", noise->correlated_um);
+  fg_json_number(json, "correlation", noise->correlation);
+  fg_json_number(json, "range_mm", noise->range_mm);
+  fg_json_number(json, "long_waves", noise->long_waves);
+  if (noise->discs) fg_json_numbers(json, "sd_of_discs", noise->disc_um, noise->discs);
+  fg_json_object_end(json);
+}
+
+static void write_edges(fg_json *json, const fg_scan_result *result) {
   fg_json_number(json, "noise_floor", result->noise_floor_um);
+  write_noise(json, &result->noise);
   fg_json_number(json, "edge_model_error", result->edge_model_error_um);
   fg_json_object(json, "half_width");
   fg_json_number(json, "rms", result->half_width_rms_um);
@@ -178,17 +195,21 @@ static void write_noise(fg_json *json, const fg_scan_result *result) {
 
 fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
   const fg_scan_result *result = fg_scan_loop_result(loop);
+  char *sentence = NULL;
   fg_json json;
+  FG_TRY(fg_scan_loop_sentence(ctx, result, &sentence));
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/loop/1");
   fg_json_string(&json, "domain", "scan");
   fg_json_string(&json, "verdict", fg_loop_outcome_word(result->verdict));
+  fg_json_string(&json, "summary", sentence);
+  free(sentence);
   write_inputs(&json, result);
   fg_json_calibration_used(&json, "calibration", &result->scan[0].before->design.calibration);
   fg_json_bool(&json, "same_foil", result->same_foil);
   fg_json_number(&json, "p_value", result->p_value);
-  write_noise(&json, result);
+  write_edges(&json, result);
   fg_json_string(&json, "unit", "um");
   FG_TRY(write_side(ctx, &json, "before", result, false));
   write_claims(&json, result);

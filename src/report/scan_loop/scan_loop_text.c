@@ -9,6 +9,7 @@
 #include "report/correction_words.h"
 #include "report/scan_loop/scan_loop_bumps.h"
 #include "report/scan_loop/scan_loop_parts.h"
+#include "report/wrapped.h"
 
 static void put_claims(FILE *out, const fg_scan_result *result) {
   for (size_t i = 0; i < result->claims; i++) {
@@ -63,6 +64,21 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   put_error(out, "scans kept aside, rms", b->held_out_rms, a->held_out_rms);
   if (result->of_width)
     put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
+}
+
+static void put_noise(FILE *out, const fg_scan_noise *noise) {
+  if (noise->discs) {
+    fputs("noise of a row, um: white, of every disc its own:", out);
+    for (size_t d = 0; d < noise->discs; d++)
+      fprintf(out, " %.3g", noise->disc_um[d]);
+    fputc('\n', out);
+    return;
+  }
+  fprintf(out, "noise of a row, um: %.4g; white %.4g", noise->sd_um, noise->white_um);
+  if (noise->correlation > 0)
+    fprintf(out, ", shared by neighbours %.4g (%s, over %.2g mm)", noise->correlated_um,
+            noise->form, noise->range_mm);
+  fputc('\n', out);
 }
 
 /* What was left, and in a tie what was moved all the same. */
@@ -136,9 +152,13 @@ static fg_status put_next(fg_context *ctx, FILE *out, const fg_scan_result *resu
 
 fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FILE *out) {
   const fg_scan_result *result = fg_scan_loop_result(loop);
+  char *sentence = NULL;
+  FG_TRY(fg_scan_loop_sentence(ctx, result, &sentence));
   fprintf(out, "%s: edge residual %.3f um before, %.3f um after; noise %.3f um\n",
           fg_loop_outcome_word(result->verdict), result->before.rms, result->after.rms,
           result->noise_floor_um);
+  fg_write_wrapped(out, "  ", "  ", sentence);
+  free(sentence);
   FG_TRY(put_next(ctx, out, result));
   put_claims(out, result);
   fg_text_bumps(&result->bumps, out);
@@ -151,6 +171,7 @@ fg_status fg_scan_loop_write_text(fg_context *ctx, const fg_scan_loop *loop, FIL
   put_unclaimed(out, result);
   fg_text_bumps_rejected(&result->bumps, out);
   put_errors(out, result);
+  put_noise(out, &result->noise);
   fputs("+- is U = 2 u.\n", out);
   return fg_stream_finish(ctx, out, "the loop's report");
 }

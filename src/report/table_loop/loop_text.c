@@ -9,6 +9,7 @@
 #include "report/table_loop/loop_checks.h"
 #include "report/table_loop/loop_next.h"
 #include "report/table_loop/loop_words.h"
+#include "report/wrapped.h"
 
 const char *fg_loop_noise_form(const fg_loop_result *result) {
   bool serial = fg_loop_claims_scatter(result, FG_LOOP_SERIAL);
@@ -141,24 +142,6 @@ fg_status fg_loop_sentence(fg_context *ctx, const fg_loop_report *report, char *
   return nothing ? FG_OK : say_errors(ctx, result, text);
 }
 
-/* Lines of a terminal that is not too narrow; words longer than that stand alone. */
-enum { LINE = 100 };
-
-static void write_wrapped(const char *first, const char *indent, const char *text, FILE *out) {
-  size_t column = strlen(first);
-  fputs(first, out);
-  for (bool begin = true; *text; begin = false) {
-    size_t length = strcspn(text, " ");
-    bool fits = column + 1 + length <= LINE;
-    if (!begin) fputs(fits ? " " : "\n", out);
-    if (!begin && !fits) fputs(indent, out);
-    column = begin ? column + length : (fits ? column + 1 : strlen(indent)) + length;
-    fwrite(text, 1, length, out);
-    text += length + (text[length] == ' ');
-  }
-  fputc('\n', out);
-}
-
 static void write_errors(const fg_loop_report *report, FILE *out) {
   const fg_loop_result *result = report->result;
   fg_loop_error_row row[FG_LOOP_ERROR_ROWS];
@@ -196,7 +179,7 @@ static void write_next(const fg_loop_report *report, FILE *out) {
   fputs("\nwhat to do next\n", out);
   for (size_t i = 0; i < fg_loop_next_count(report); i++) {
     fg_loop_next_step(report, i, step);
-    write_wrapped("  - ", "    ", step, out);
+    fg_write_wrapped(out, "  - ", "    ", step);
   }
 }
 
@@ -245,11 +228,11 @@ static void write_notes(const fg_loop_report *report, FILE *out) {
   const fg_loop_result *result = report->result;
   if (!report->problem->excluded && !report->said && !result->notes) return;
   fputc('\n', out);
-  if (report->said) write_wrapped("note: ", "      ", report->said, out);
+  if (report->said) fg_write_wrapped(out, "note: ", "      ", report->said);
   for (size_t i = 0; i < result->notes; i++)
-    write_wrapped("note: ", "      ", result->note[i], out);
+    fg_write_wrapped(out, "note: ", "      ", result->note[i]);
   if (report->problem->excluded)
-    write_wrapped("no candidates: ", "      ", report->problem->excluded, out);
+    fg_write_wrapped(out, "no candidates: ", "      ", report->problem->excluded);
 }
 
 fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE *out) {
@@ -259,7 +242,7 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   fprintf(out, "%s: %s\n", report->path, fg_loop_outcome_word(result->verdict));
   if (result->verdict != FG_LOOP_CLEAN) fprintf(out, "%s\n", fg_loop_outcome_meaning(result));
   fputc('\n', out);
-  write_wrapped("", "", sentence, out);
+  fg_write_wrapped(out, "", "", sentence);
   free(sentence);
   write_next(report, out);
   if (result->claims) fputs("\nwhat was found\n", out);

@@ -1,0 +1,40 @@
+/* The noise that everything was judged by, as the search left it beside what was found. */
+#include <math.h>
+
+#include "core/memory.h"
+#include "scan_loop/result.h"
+#include "scan_loop/state.h"
+
+static const char *form_of(const fg_scatter *scatter) {
+  if (!(scatter->share > 0)) return "white";
+  return scatter->form == FG_SCATTER_GAUSSIAN ? "gaussian" : "exponential";
+}
+
+/* A disc's rows weigh by their own noise: that of a whole row of the cleanest edge is the unit. */
+static fg_status put_discs(fg_context *ctx, const fg_points *points, fg_scan_noise *noise) {
+  FG_TRY(fg_memory_allocate(ctx, points->view_count, sizeof *noise->disc_um,
+                            (void **)&noise->disc_um));
+  noise->discs = points->view_count;
+  for (size_t v = 0; v < points->view_count; v++) {
+    double most = 0;
+    for (size_t i = 0; i < points->row_count; i++)
+      if (points->rows[i].view == v) most = fmax(most, points->rows[i].weight);
+    noise->disc_um[v] = most > 0 ? noise->sd_um / sqrt(most / FG_POINTS_BLOCK) : NAN;
+  }
+  return FG_OK;
+}
+
+fg_status fg_scan_result_put_noise(fg_context *ctx, const fg_scan_loop *loop,
+                                   fg_scan_result *result) {
+  const fg_scatter *scatter = &loop->points.scatter;
+  fg_scan_noise *noise = &result->noise;
+  double sd = loop->noise_floor_um;
+  *noise = (fg_scan_noise){.form = form_of(scatter),
+                           .sd_um = sd,
+                           .white_um = sd * sqrt(1 - scatter->share),
+                           .correlated_um = sd * sqrt(scatter->share),
+                           .correlation = scatter->share,
+                           .range_mm = scatter->share > 0 ? scatter->range_mm : 0,
+                           .long_waves = fmax(scatter->swell, 1)};
+  return loop->points.discs ? put_discs(ctx, &loop->points, noise) : FG_OK;
+}
