@@ -54,6 +54,12 @@
  *     chip_seams[] {x_mm, shift_um, shift_y_um [0]}: what lies behind a seam between two chips of a
  *       contact image sensor is seen at true = nominal + shift; seams add up from left to right.
  *       The truth has each as scan.column_step, with amplitude_y_um where it shifts along y
+ *     colour_lines: makes it a colour scan; each member has a number for red, green and blue:
+ *       gap_px [0]: rows by which the line lies ahead: at row y it has the carriage's errors of
+ *         y + gap, the gap itself being taken out as a scanner does it; dx_px, dy_px [0]: by which
+ *         it shows everything further right and down; magnification_ppm [0]: along x about the
+ *         picture's middle; background, contrast [as above; contrast may be 0]. Noise is each
+ *         line's own; the truth has the course along y of red and blue against green. No rough.jpeg
  *     rough:
  *       one_sided_blur_px [0]: blur added (in squares) to edges that go from bright to dark along
  *         the carriage's way, in proportion to the edge normal's share along it; one_sided_way
@@ -148,6 +154,7 @@ typedef struct fg_render_disc {
 typedef struct fg_render_truth {
   int64_t width_px, height_px;
   int bits;
+  int channels;  /* 1; 3: red, green, blue */
   double dpi[2]; /* x, y */
   const fg_render_foil *foils;
   size_t foil_count;
@@ -155,8 +162,8 @@ typedef struct fg_render_truth {
   size_t disc_count;
 } fg_render_truth;
 
-/* Takes a row of the picture: `pixels` are width_px values of 8 bit, or of 16 bit in host byte
- * order. Rows come in order. What it returns other than FG_OK ends the rendering. */
+/* Takes a row of the picture: `pixels` are width_px × channels values of 8 bit, or of 16 bit in
+ * host byte order. Rows come in order. What it returns other than FG_OK ends the rendering. */
 typedef fg_status fg_render_row(fg_context *ctx, void *user, int64_t row, const void *pixels);
 
 /* Reads a spec; `path` is for messages. FG_ERR_DATA names the member, its value and what would be
@@ -179,7 +186,7 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
 fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
                          fg_render_row *row, void *user);
 
-/* Renders to a PNG file (gray, 8 or 16 bit, with pHYs) and, unless truth_path is NULL, writes the
+/* Renders to a PNG file (gray or RGB, 8 or 16 bit, with pHYs) and, unless truth_path is NULL, writes the
  * truth as JSON ("schema": "foilgauge/truth/1"). Each appears only when whole. */
 fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char *scan_path,
                          const char *truth_path);

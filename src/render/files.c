@@ -32,8 +32,8 @@ static void on_warning(png_structp png, png_const_charp words) {
 static void write_header(png_out *out, const fg_render_truth *truth) {
   png_init_io(out->png, out->file.stream);
   png_set_IHDR(out->png, out->info, (png_uint_32)truth->width_px, (png_uint_32)truth->height_px,
-               truth->bits, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+               truth->bits, truth->channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_pHYs(out->png, out->info, (png_uint_32)lround(truth->dpi[0] / 0.0254),
                (png_uint_32)lround(truth->dpi[1] / 0.0254), PNG_RESOLUTION_METER);
   /* Noise does not repeat: what is won comes from the frequencies of single values alone. */

@@ -17,10 +17,12 @@ typedef struct picture {
   fg_band band;
   int64_t width, padded, strip_rows;
   float *coverage; /* padded × strip_rows */
-  float *values, *noise, *noise_above;
+  float *values, *noise;
+  float *noise_above; /* of every channel */
   float *column_shading;
   float *tone;  /* NULL: linear */
-  void *pixels; /* strip_rows rows */
+  void *pixels; /* strip_rows rows of `channels` values a pixel */
+  int channels;
   fg_noise_table table;
   fg_jpeg jpeg;
 } picture;
@@ -38,6 +40,7 @@ static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int
                                 picture *p) {
   p->spec = spec;
   p->width = spec->truth.width_px;
+  p->channels = spec->truth.channels;
   p->padded = (p->width + FG_TILE_PX - 1) / FG_TILE_PX * FG_TILE_PX;
   if (strip_rows < 1) strip_rows = FG_TILE_PX;
   if (strip_rows > spec->truth.height_px) strip_rows = spec->truth.height_px;
@@ -47,10 +50,12 @@ static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int
   FG_TRY(fg_band_create(ctx, &p->sampler, p->strip_rows, fg_tiler_reach_px(&p->tiler), &p->band));
   size_t padded = (size_t)p->padded, rows = (size_t)p->strip_rows;
   FG_TRY(fg_memory_allocate(ctx, padded * rows, sizeof(float), (void **)&p->coverage));
-  FG_TRY(fg_memory_allocate(ctx, padded * rows, spec->scanner.bits == 16 ? 2 : 1, &p->pixels));
+  FG_TRY(fg_memory_allocate(ctx, padded * rows,
+                            (spec->scanner.bits == 16 ? 2 : 1) * (size_t)p->channels, &p->pixels));
   FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->values));
   FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->noise));
-  FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->noise_above));
+  FG_TRY(fg_memory_allocate(ctx, padded * (size_t)p->channels, sizeof(float),
+                            (void **)&p->noise_above));
   FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->column_shading));
   FG_TRY(make_tone(ctx, p));
   const double *shading = spec->scanner.shading;
@@ -75,21 +80,21 @@ static void picture_free(picture *p) {
   free(p->tone);
 }
 
-static fg_status draw_coverage(fg_context *ctx, picture *p, int64_t y0) {
-  FG_TRY(fg_band_fill(ctx, &p->sampler, y0, fg_tiler_reach_px(&p->tiler), &p->band));
+static void draw_coverage(picture *p, int64_t y0) {
   memset(p->coverage, 0, (size_t)p->padded * (size_t)p->strip_rows * sizeof *p->coverage);
   for (int64_t y = 0; y < p->strip_rows && y0 + y < p->spec->truth.height_px; y += FG_TILE_PX)
     for (int64_t x = 0; x < p->padded; x += FG_TILE_PX)
       fg_tiler_draw(&p->tiler, &p->band, x, y0 + y, p->coverage + y * p->padded + x, p->padded);
-  return FG_OK;
 }
 
 /* Light of one row as DN of 8 bit. The ends of the scale keep their DN whatever gamma is. */
-static void expose_row(const picture *p, int64_t y, const float *coverage, float *values) {
+static void expose_row(const picture *p, int line, int64_t y, const float *coverage,
+                       float *values) {
   const fg_scanner *scanner = &p->spec->scanner;
   double gamma = scanner->gamma;
-  double dark = pow(scanner->background / 255, gamma);
-  double bright = pow((scanner->background + scanner->contrast) / 255, gamma);
+  double background = scanner->colour.line[line].background;
+  double dark = pow(background / 255, gamma);
+  double bright = pow((background + scanner->colour.line[line].contrast) / 255, gamma);
   double v = 2.0 * (double)y / (double)(p->spec->truth.height_px - 1) - 1;
   float row_shading = (float)(scanner->shading[1] * v + scanner->shading[2] * v * v);
   float base = (float)dark, step = (float)(bright - dark);
@@ -110,10 +115,11 @@ static void expose_row(const picture *p, int64_t y, const float *coverage, float
 
 /* Noise of variance 1. Correlated: first-order recursions along the row and down the columns, so
  * the correlation to the next pixel is `rho` both ways, and rho² diagonally. */
-static void noise_row(picture *p, int64_t y) {
+static void noise_row(picture *p, int line, int64_t y) {
   float rho = (float)p->spec->scanner.noise_correlation;
+  float *above = p->noise_above + line * p->padded;
   fg_random random;
-  fg_random_seed(&random, p->spec->seed, FG_STREAM_NOISE, (uint64_t)y);
+  fg_random_seed(&random, p->spec->seed, FG_STREAM_NOISE, (uint64_t)y + ((uint64_t)line << 40));
   fg_noise_draw(&p->table, &random, p->noise, (size_t)p->width);
   if (rho <= 0) return;
   float fresh = sqrtf(1 - rho * rho);
@@ -121,24 +127,35 @@ static void noise_row(picture *p, int64_t y) {
     p->noise[x] = rho * p->noise[x - 1] + fresh * p->noise[x];
   if (y > 0)
     for (int64_t x = 0; x < p->width; x++)
-      p->noise[x] = rho * p->noise_above[x] + fresh * p->noise[x];
-  memcpy(p->noise_above, p->noise, (size_t)p->width * sizeof *p->noise);
+      p->noise[x] = rho * above[x] + fresh * p->noise[x];
+  memcpy(above, p->noise, (size_t)p->width * sizeof *p->noise);
 }
 
-static void quantise_row(const picture *p, const float *values, void *pixels) {
+static void quantise_row(const picture *p, int line, const float *values, void *pixels) {
   const fg_scanner *scanner = &p->spec->scanner;
   float top = isnan(scanner->clip_white) ? 255.0F : (float)scanner->clip_white;
   float sd = (float)scanner->noise;
   bool wide = scanner->bits == 16;
-  uint8_t *narrow_out = pixels;
-  uint16_t *wide_out = pixels;
+  uint8_t *narrow_out = (uint8_t *)pixels + line;
+  uint16_t *wide_out = (uint16_t *)pixels + line;
   for (int64_t x = 0; x < p->width; x++) {
     float value = values[x] + sd * p->noise[x];
     value = value < 0 ? 0 : value > top ? top : value;
     if (wide)
-      wide_out[x] = (uint16_t)(value * 257 + 0.5F);
+      wide_out[x * p->channels] = (uint16_t)(value * 257 + 0.5F);
     else
-      narrow_out[x] = (uint8_t)(value + 0.5F);
+      narrow_out[x * p->channels] = (uint8_t)(value + 0.5F);
+  }
+}
+
+/* One channel of the strip's rows. Noise of a colour scan is each line's own. */
+static void draw_channel(picture *p, int line, int64_t y0, int64_t rows, size_t row_bytes) {
+  if (p->spec->scanner.colour.stated) fg_sampler_take_line(&p->sampler, line);
+  draw_coverage(p, y0);
+  for (int64_t y = 0; y < rows; y++) {
+    expose_row(p, line, y0 + y, p->coverage + y * p->padded, p->values);
+    if (p->spec->scanner.noise > 0) noise_row(p, line, y0 + y);
+    quantise_row(p, line, p->values, (char *)p->pixels + (size_t)y * row_bytes);
   }
 }
 
@@ -146,13 +163,11 @@ static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0, fg_render_r
                             void *user) {
   int64_t rows = p->spec->truth.height_px - y0;
   if (rows > p->strip_rows) rows = p->strip_rows;
-  size_t row_bytes = (size_t)p->padded * (p->spec->scanner.bits == 16 ? 2 : 1);
-  FG_TRY(draw_coverage(ctx, p, y0));
-  for (int64_t y = 0; y < rows; y++) {
-    expose_row(p, y0 + y, p->coverage + y * p->padded, p->values);
-    if (p->spec->scanner.noise > 0) noise_row(p, y0 + y);
-    quantise_row(p, p->values, (char *)p->pixels + (size_t)y * row_bytes);
-  }
+  size_t row_bytes =
+      (size_t)p->padded * (size_t)p->channels * (p->spec->scanner.bits == 16 ? 2 : 1);
+  FG_TRY(fg_band_fill(ctx, &p->sampler, y0, fg_tiler_reach_px(&p->tiler), &p->band));
+  for (int line = 0; line < p->channels; line++)
+    draw_channel(p, line, y0, rows, row_bytes);
   if (p->spec->scanner.jpeg_quality)
     fg_jpeg_squeeze(&p->jpeg, p->pixels, p->width, rows, p->padded);
   for (int64_t y = 0; y < rows; y++)

@@ -27,9 +27,11 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->wall_y = sin(direction);
   sampler->wall_mm = scanner->wall_length_px * pixel;
   sampler->wall_gap_mm = scanner->wall_gap_px * pixel;
+  double line_px = fg_colour_lines_reach_px(&scanner->colour, (double)spec->truth.width_px);
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
   reach += fg_render_effects_reach(&spec->effects);
+  reach += line_px * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
   sampler->edge_reach_mm = reach;
   sampler->reach_mm =
       reach +
@@ -38,6 +40,17 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
     double u = phi_limit * (2.0 * i / FG_PHI_STEPS - 1);
     sampler->phi[i] = (float)(0.5 * erfc(-u / sqrt(2.0)));
   }
+}
+
+void fg_sampler_take_line(fg_sampler *sampler, int line) {
+  const fg_colour_line *from = &sampler->spec->scanner.colour.line[line];
+  sampler->has_line = true;
+  for (int axis = 0; axis < 2; axis++)
+    sampler->line_shift_mm[axis] = from->shift_px[axis] * sampler->pixel_mm[axis];
+  sampler->line_scale = 1 / (1 + 1e-6 * from->magnification_ppm);
+  sampler->line_middle_mm =
+      0.5 * (double)(sampler->spec->truth.width_px - 1) * sampler->pixel_mm[0];
+  sampler->lag_mm = from->gap_px * sampler->pixel_mm[1];
 }
 
 /* Normal distribution function, linear between 2048 values: within 3e-6. */
@@ -320,11 +333,16 @@ double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, do
                  double sd_mm) {
   const fg_scene *scene = &sampler->spec->scene;
   double x = x_mm, y = y_mm;
+  if (sampler->has_line) {
+    double middle = sampler->line_middle_mm;
+    x = middle + (x - sampler->line_shift_mm[0] - middle) * sampler->line_scale;
+    y -= sampler->line_shift_mm[1];
+  }
   if (sampler->has_field) {
-    double d[2];
-    const double side[2] = {isnan(sampler->side_mm[0]) ? x : sampler->side_mm[0],
-                            isnan(sampler->side_mm[1]) ? y : sampler->side_mm[1]};
-    fg_render_effects_field(&sampler->spec->effects, x, y, side, d);
+    double d[2], lag = sampler->lag_mm;
+    const double side[2] = {isnan(sampler->side_mm[0]) ? x_mm : sampler->side_mm[0],
+                            (isnan(sampler->side_mm[1]) ? y_mm : sampler->side_mm[1]) + lag};
+    fg_render_effects_field(&sampler->spec->effects, x_mm, y_mm + lag, side, d);
     x += d[0];
     y += d[1];
   }

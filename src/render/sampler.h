@@ -25,6 +25,9 @@ typedef struct fg_sampler {
   double edge_reach_mm; /* how far from an undisturbed edge its blur can be seen */
   double reach_mm;      /* how far from the midline of a thin strip a sample can be non-zero */
   double side_mm[2];    /* x, y: side of jumps that the sample is seen from; NaN: its own */
+  bool has_line;        /* one of a colour sensor's: */
+  double line_shift_mm[2], line_scale, line_middle_mm;
+  double lag_mm; /* errors of the carriage at y are those of y + lag; 0 without lines */
   bool has_field, has_part, has_normal, has_width, has_bump, has_edge;
   double one_sided_mm;   /* sd; 0 without */
   double wall_x, wall_y; /* direction */
@@ -34,6 +37,9 @@ typedef struct fg_sampler {
 } fg_sampler;
 
 void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler);
+
+/* From here on samples are those of one line of a colour sensor. */
+void fg_sampler_take_line(fg_sampler *sampler, int line);
 
 /* Things near one block, ascending: segments first, then shapes (segment_count + index). */
 typedef struct fg_near {

@@ -321,6 +321,7 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   spec->truth = (fg_render_truth){.width_px = (int64_t)spec->width_px,
                                   .height_px = (int64_t)spec->height_px,
                                   .bits = scanner->bits,
+                                  .channels = scanner->colour.stated ? FG_COLOUR_LINES : 1,
                                   .dpi = {scanner->dpi[0], scanner->dpi[1]},
                                   .foils = scene->foils,
                                   .foil_count = scene->foil_count,

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "foilgauge/render.h"
+#include "render/colour_lines.h"
 #include "render/jumps.h"
 #include "render/spec_effects.h"
 
@@ -94,6 +95,7 @@ typedef struct fg_scanner {
   double wall_amplitude, wall_direction_deg, wall_length_px, wall_gap_px;
   int jpeg_quality; /* 0: none */
   fg_jump_requests jumps;
+  fg_colour_lines colour;
 } fg_scanner;
 
 /* A piece of a midline, in mm of true coordinates. Arc length runs from the lip to the free end. */

@@ -248,10 +248,18 @@ static void draw_plain(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t
   if (tiler->halo_px) add_halo(tiler, band, x0, y0, out, stride);
 }
 
+/* The next jump, where the line that is drawn meets it; NaN without. */
+static double next_jump(const fg_tiler *tiler, int axis, double low_mm, double high_mm) {
+  const fg_sampler *sampler = tiler->sampler;
+  double lag = axis ? sampler->lag_mm : 0;
+  return fg_render_effects_next_step(&sampler->spec->effects, axis, low_mm + lag, high_mm + lag) -
+         lag;
+}
+
 /* First pixel behind `from` that lies beyond the next jump along an axis, within the tile. */
 static int64_t run_end(const fg_tiler *tiler, int axis, int64_t origin, int64_t from) {
   double pixel = tiler->sampler->pixel_mm[axis], at = (double)(origin + from) * pixel;
-  double jump = fg_render_effects_next_step(&tiler->sampler->spec->effects, axis, at, INFINITY);
+  double jump = next_jump(tiler, axis, at, INFINITY);
   int64_t end = from + 1;
   while (end < FG_TILE_PX && !((double)(origin + end) * pixel > jump))
     end++;
@@ -282,9 +290,8 @@ static void draw_with_jumps(fg_tiler *tiler, const fg_band *band, int64_t x0, in
 static bool has_jump(const fg_tiler *tiler, int axis, int64_t origin_px) {
   int64_t reach = fg_tiler_reach_px(tiler);
   double pixel = tiler->sampler->pixel_mm[axis];
-  return !isnan(fg_render_effects_next_step(&tiler->sampler->spec->effects, axis,
-                                            (double)(origin_px - reach) * pixel,
-                                            (double)(origin_px + FG_TILE_PX + reach) * pixel));
+  return !isnan(next_jump(tiler, axis, (double)(origin_px - reach) * pixel,
+                          (double)(origin_px + FG_TILE_PX + reach) * pixel));
 }
 
 bool fg_tiler_draw(fg_tiler *tiler, const fg_band *band, int64_t x0_px, int64_t y0_px, float *out,

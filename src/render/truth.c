@@ -255,6 +255,7 @@ fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char
   put_discs(root, spec);
   put_scan(root, spec);
   put_effects(root, spec);
+  fg_colour_lines_put_truth(root, spec);
   *json = cJSON_Print(root);
   cJSON_Delete(root);
   return *json ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory for the truth");
