@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "foilgauge/circle.h"
+#include "foilgauge/colour.h"
 #include "foilgauge/design.h"
 #include "foilgauge/scan.h"
 #include "foilgauge/strip.h"
@@ -267,6 +268,7 @@ typedef struct fg_measurement {
   int jpeg_quality;   /* as in fg_scan_info; 0: nothing was lost */
   bool colour;        /* the scan holds colours */
   fg_channel channel; /* what of them was measured */
+  fg_colour_lines colour_lines;
   char warning[256];  /* what is odd about the file; empty when nothing is */
   fg_design design;
   fg_nominal nominal;

@@ -47,6 +47,7 @@ typedef struct fg_scan_options {
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
   bool allow_lossy;    /* take what JPEG has compressed with loss, which moves edges */
+  bool colours;        /* all three will be read, see fg_scan_begin_colours */
   bool only_file;      /* refuse pipes and devices, which may never end */
   bool unsummed;       /* the SHA-256 will not be asked for */
   unsigned threads;    /* 1: nothing runs beside the caller; 0: what is of use does */
@@ -91,6 +92,17 @@ const fg_scan_info *fg_scan_get_info(const fg_scan *scan);
  * FG_ERR_USAGE. After the last row everything up to the end of the file is read and checked. */
 fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *out,
                             int64_t stride_bytes);
+
+/* Whether red, green and blue can be read apart, after everything else: a colour scan without loss
+ * that is a regular file, or was opened to have its colours read. */
+bool fg_scan_has_colours(const fg_scan *scan);
+
+/* Goes back to the first row, after the last one (and the SHA-256) was read, for
+ * fg_scan_read_colours. FG_ERR_USAGE where fg_scan_has_colours says no. */
+fg_status fg_scan_begin_colours(fg_context *ctx, fg_scan *scan);
+
+/* The next row of each of red, green and blue, as gray rows of bytes_per_pixel. */
+fg_status fg_scan_read_colours(fg_context *ctx, fg_scan *scan, void *const planes[3]);
 
 /* As it was opened. */
 unsigned fg_scan_get_threads(const fg_scan *scan);

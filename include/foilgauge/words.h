@@ -30,6 +30,7 @@ void fg_thickness_words(const fg_design *design, const fg_foil *foil, char *word
 const char *fg_orientation_word(fg_orientation orientation);
 const char *fg_arc_kind_word(fg_arc_kind kind);
 const char *fg_channel_word(fg_channel channel);
+const char *fg_colour_state_word(fg_colour_state state);
 
 /* How many decimals of a value people should see: U = 2 u shows two digits, or one where that is
  * fine enough. */

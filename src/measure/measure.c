@@ -7,6 +7,7 @@
 #include "core/date.h"
 #include "foilgauge/scan.h"
 #include "measure/again.h"
+#include "measure/colour.h"
 #include "measure/measure_discs.h"
 #include "measure/reader.h"
 #include "measure/session.h"
@@ -98,6 +99,7 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
                                         .pixel_cap = options->pixel_cap,
                                         .memory_cap = memory_cap(options),
                                         .channel = options->channel,
+                                        .colours = true,
                                         .allow_lossy = options->allow_lossy,
                                         .only_file = options->only_file,
                                         .threads = options->threads,
@@ -183,6 +185,26 @@ static void tell_loss(fg_measurement *m) {
         m->jpeg_quality);
 }
 
+/* A note, where nothing else is odd. */
+static void tell_apart(fg_measurement *m) {
+  const fg_colour_lines *lines = &m->colour_lines;
+  double most = 0;
+  for (int k = 0; k < 2; k++)
+    most = fmax(most, lines->shifts[k].largest_px); /* fmax prefers the number to NaN */
+  if (m->warning[0]) return;
+  if (m->channel == FG_CHANNEL_LUMINANCE)
+    snprintf(
+        m->warning, sizeof m->warning,
+        "the colour channels lie %.2f px apart, and their mean was measured: edges are blurred "
+        "and moved; measure one channel (--channel green), do not convert to gray",
+        most);
+  else
+    snprintf(m->warning, sizeof m->warning,
+             "the colour channels lie %.2f px apart: one was measured, which is right; do not "
+             "average channels or convert the scan to gray",
+             most);
+}
+
 fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *design,
                           const fg_measure_options *options, fg_measurement *measurement) {
   static const fg_measure_options defaults = {0};
@@ -197,11 +219,13 @@ fg_status fg_measure_scan(fg_context *ctx, const char *path, const fg_design *de
     FG_TRY_EXIT(measure_discs(ctx, scan, options, measurement));
   else
     FG_TRY_EXIT(measure_foils(ctx, scan, options, measurement));
+  FG_TRY_EXIT(fg_colour_measure(ctx, scan, memory_cap(options), options->threads, measurement));
   FG_TRY_EXIT(refer(ctx, options->threads, measurement));
   unsigned flags = check_resolution(measurement);
   for (size_t i = 0; i < measurement->foil_count; i++)
     measurement->foils[i].flags |= flags;
   if (measurement->jpeg_quality) tell_loss(measurement);
+  if (measurement->colour_lines.apart) tell_apart(measurement);
 exit:
   if (status != FG_OK) clear_failed(options, scan, measurement);
   fg_scan_close(scan);

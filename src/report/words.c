@@ -103,6 +103,20 @@ const char *fg_channel_word(fg_channel channel) {
   return "";
 }
 
+const char *fg_colour_state_word(fg_colour_state state) {
+  switch (state) {
+  case FG_COLOUR_MEASURED:
+    return "measured";
+  case FG_COLOUR_IDENTICAL:
+    return "identical";
+  case FG_COLOUR_NO_CONTRAST:
+    return "no_contrast";
+  case FG_COLOUR_FEW_EDGES:
+    return "few_edges";
+  }
+  return "";
+}
+
 const char *fg_form_word(fg_form form) {
   switch (form) {
   case FG_FORM_CLASSICAL:

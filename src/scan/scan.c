@@ -20,7 +20,8 @@ struct fg_scan {
   void *reader; /* of the format */
   fg_scan_header header;
   fg_gray gray;
-  void *samples; /* room for a row of samples; NULL where they need no conversion */
+  fg_gray colours[3]; /* once they are read apart */
+  void *samples;      /* room for a row of samples; NULL where they need no conversion */
   fg_scan_info info;
   unsigned threads;
   int64_t rows_read;
@@ -41,7 +42,8 @@ static fg_status find_format(fg_context *ctx, const fg_scan_options *options, fg
     fg_format_problem(head, length, problem, sizeof problem);
     return fg_fail(ctx, FG_ERR_DATA, "%s: %s", source->name, problem);
   }
-  bool twice = options->channel == FG_CHANNEL_AUTO && scan->format->has_colour(head, length);
+  bool twice = (options->channel == FG_CHANNEL_AUTO || options->colours) &&
+               scan->format->has_colour(head, length);
   return twice || scan->format->needs_file ? fg_source_store(ctx, source) : FG_OK;
 }
 
@@ -104,6 +106,15 @@ static size_t count_sample_bytes(const fg_scan *scan) {
   return (size_t)(scan->header.channels * scan->info.bytes_per_pixel);
 }
 
+/* Back to the first row. */
+static fg_status begin_again(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
+  scan->format->close(scan->reader);
+  scan->reader = NULL;
+  FG_TRY(fg_source_rewind(ctx, &scan->source));
+  FG_TRY(open_format(ctx, options, scan));
+  return scan->format->start(ctx, scan->reader);
+}
+
 /* Reads the scan once to find the channel, and begins again. */
 static fg_status find_channel(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
   fg_contrast contrast = {.header = &scan->header};
@@ -112,11 +123,7 @@ static fg_status find_channel(fg_context *ctx, const fg_scan_options *options, f
     fg_contrast_add_row(&contrast, y, scan->samples);
   }
   scan->info.channel = fg_contrast_best(&contrast);
-  scan->format->close(scan->reader);
-  scan->reader = NULL;
-  FG_TRY(fg_source_rewind(ctx, &scan->source));
-  FG_TRY(open_format(ctx, options, scan));
-  return scan->format->start(ctx, scan->reader);
+  return begin_again(ctx, options, scan);
 }
 
 static fg_status prepare_rows(fg_context *ctx, const fg_scan_options *options, fg_scan *scan) {
@@ -231,6 +238,32 @@ fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *
   fg_status status = read_rows(ctx, scan, rows, out, stride_bytes);
   scan->broken = status != FG_OK;
   return status;
+}
+
+bool fg_scan_has_colours(const fg_scan *scan) {
+  const fg_scan_header *header = &scan->header;
+  return (header->colour || header->has_palette) && !header->luminance_only &&
+         !header->jpeg_quality && scan->source.regular;
+}
+
+fg_status fg_scan_begin_colours(fg_context *ctx, fg_scan *scan) {
+  if (!fg_scan_has_colours(scan) || scan->broken)
+    return fg_fail(ctx, FG_ERR_USAGE, "%s: its colours cannot be read apart", scan->source.name);
+  const fg_scan_options options = {
+      .allow_lossy = true, .pixel_cap = UINT64_MAX, .unsummed = true, .threads = scan->threads};
+  for (int i = 0; i < 3; i++)
+    fg_gray_init(&scan->header, (fg_channel)(FG_CHANNEL_RED + i), &scan->colours[i]);
+  scan->source.unsummed = true; /* it is known, or nobody has asked */
+  scan->broken = true;          /* its gray rows are over */
+  return begin_again(ctx, &options, scan);
+}
+
+fg_status fg_scan_read_colours(fg_context *ctx, fg_scan *scan, void *const planes[3]) {
+  size_t width = (size_t)scan->info.width_px;
+  FG_TRY(scan->format->read_row(ctx, scan->reader, scan->samples));
+  for (int i = 0; i < 3; i++)
+    scan->colours[i].convert(&scan->colours[i], scan->samples, width, planes[i]);
+  return FG_OK;
 }
 
 unsigned fg_scan_get_threads(const fg_scan *scan) {

@@ -8,6 +8,7 @@
 #include "foilgauge/words.h"
 #include "report/correction_words.h"
 #include "report/design/calibration_json.h"
+#include "report/measure/colour_lines_report.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
 #include "report/quantity_json.h"
@@ -274,6 +275,7 @@ static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *rep
                             const fg_measurement *measurement) {
   fg_json_bool(json, "light_on_dark", measurement->light_on_dark);
   fg_json_integer(json, "specks", (int64_t)measurement->specks);
+  fg_json_colour_lines(json, measurement);
   fg_json_array(json, "foils");
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));

@@ -6,6 +6,7 @@
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
+#include "report/measure/colour_lines_report.h"
 #include "report/measure/scan_model_words.h"
 
 enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
@@ -241,6 +242,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
   fputs(" dpi", out);
   if (measurement->colour) fprintf(out, ", channel %s", fg_channel_word(measurement->channel));
   fputc('\n', out);
+  fg_text_colour_lines(out, measurement);
   FG_TRY(fg_text_scan_model(ctx, out, measurement->model));
   for (size_t i = 0; i < measurement->foil_count; i++)
     put_foil(out, design, &measurement->foils[i]);

@@ -1,0 +1,75 @@
+/* What the three lines of a colour scanner's sensor say against each other.
+ *
+ * Each line sees an edge at a moment of its own, so each channel has its own place of every edge.
+ * With n the edge's normal and D(y) the carriage's error (true = nominal + D), a line that lies a
+ * gap g ahead shows, after the scanner has put the rows together by the nominal gap, an edge at
+ *
+ *   n . d = n_x (dx + m (x - x0)) + n_y (dy(y) + s (x - x0)),   dy(y) = dy - (D(y + g) - D(y))
+ *
+ * away from where the other line shows it: m is lateral colour of the optics, s a line that is
+ * turned against the other, and dy(y) the carriage's unevenness over the gap, without anything that
+ * the optics, the part or its edges do: those are the same in all channels.
+ */
+#ifndef FOILGAUGE_COLOUR_H
+#define FOILGAUGE_COLOUR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "foilgauge/scan.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Distance between two channels, in pixels, from which on it is flagged. */
+#define FG_COLOUR_APART_PX 0.1
+
+enum { FG_COLOUR_WINDOWS_MAX = 240, FG_COLOUR_SHARED = 4 };
+
+/* Mean of dy(y) over the edges of one window along y, and the smooth curve there. u_dy is made of
+ * u_own, which the windows do not share, and of what one standard deviation of each of four
+ * independent errors that they do share moves it by. */
+typedef struct fg_colour_window {
+  float y_mm, dy_um, u_dy_um;
+  float u_own_um, shared_um[FG_COLOUR_SHARED];
+  float smooth_um, u_smooth_um;
+} fg_colour_window;
+
+typedef enum fg_colour_state {
+  FG_COLOUR_MEASURED,    /* "measured" */
+  FG_COLOUR_IDENTICAL,   /* "identical": the same picture as the other: a gray one saved as RGB */
+  FG_COLOUR_NO_CONTRAST, /* "no_contrast": its edges cannot be seen */
+  FG_COLOUR_FEW_EDGES,   /* "few_edges": too few to tell */
+} fg_colour_state;
+
+/* One channel against another: where it shows edges, minus where the other does. Values are NaN
+ * unless measured; all zero without u where identical. dx and dy hold at (x0, mean over all y). */
+typedef struct fg_colour_shift {
+  fg_channel channel;
+  fg_colour_state state;
+  double dx_px, u_dx_px, dy_px, u_dy_px;
+  double magnification_ppm, u_magnification_ppm; /* m: this channel's picture is larger along x */
+  double skew_ppm, u_skew_ppm;                   /* s */
+  double largest_px;    /* distance where it is largest along x within the parts measured */
+  size_t stations;      /* cross-sections used */
+  double rms_um;        /* of their differences, along the normal, that is left */
+  double correlation;   /* by how much their u are larger than of independent ones, squared */
+  double course_rms_um; /* of the smooth dy(y) about its mean */
+  double p_constant;    /* that a constant dy shows as much: small, the carriage was uneven */
+  size_t window_count;
+  fg_colour_window windows[FG_COLOUR_WINDOWS_MAX]; /* ascending y */
+} fg_colour_shift;
+
+typedef struct fg_colour_lines {
+  bool seen;          /* it is a colour scan whose channels could be read apart; else all is 0 */
+  fg_channel against; /* green, where it has contrast; else the channel that was measured */
+  double x0_mm;       /* where dx and dy hold */
+  fg_colour_shift shifts[2];
+  bool apart; /* one of them by more than FG_COLOUR_APART_PX */
+} fg_colour_lines;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

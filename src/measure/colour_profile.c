@@ -1,0 +1,122 @@
+#include "measure/colour_profile.h"
+
+#include <math.h>
+
+#include "core/small_solve.h"
+
+enum { LEVEL, CONTRAST, SHIFT, BLUR, VALUES, ROUNDS = 12, PIXELS_LEAST = 12 };
+#define BLUR_LEAST_PX 0.35
+#define BLUR_MOST_PX  8.0
+#define STEP_MOST_PX  1.0
+#define SETTLED_PX    1e-4
+#define BLUR_SETTLED  0.005
+#define OUTER_SHARE   0.8 /* of the reach: beyond it, what lies around is seen */
+
+static double cumulative(double u) {
+  return 0.5 * erfc(-u * M_SQRT1_2);
+}
+
+static double density(double u) {
+  return exp(-0.5 * u * u) * 0.3989422804014327;
+}
+
+/* The profile at v = n - shift, without level and contrast: its value and its derivatives by v and
+ * by the blur. */
+typedef struct form {
+  double value, by_v, by_blur;
+} form;
+
+static form add_edge(form sum, double sign, double v, double blur) {
+  double u = v / blur, p = density(u) / blur;
+  sum.value += sign * cumulative(u);
+  sum.by_v += sign * p;
+  sum.by_blur -= sign * p * u;
+  return sum;
+}
+
+static form form_at(const fg_colour_known *known, double v, double blur) {
+  form sum = {0};
+  if (isinf(known->half_width_px)) {
+    sum = add_edge(sum, 1, -v, blur);
+    sum.by_v = -sum.by_v;
+    return sum;
+  }
+  sum = add_edge(sum, 1, v + known->half_width_px, blur);
+  return add_edge(sum, -1, v - known->half_width_px, blur);
+}
+
+/* Level outside; contrast and place from what the pixels have more than it: of a strip its centre
+ * of gravity, of a lone edge how far it fills the reach. */
+static bool start(const fg_colour_known *known, const fg_colour_pixel *pixels, size_t count,
+                  int channel, double x[VALUES]) {
+  bool lone = isinf(known->half_width_px);
+  double reach = 0, level = 0, outside = 0, inner = 0, inside = 0, sum = 0, moment = 0;
+  for (size_t i = 0; i < count; i++)
+    reach = fmax(reach, fabs((double)pixels[i].across_px));
+  double out = OUTER_SHARE * reach, in = lone ? -out : fmin(known->half_width_px, 0.5 * reach);
+  for (size_t i = 0; i < count; i++) {
+    double n = (double)pixels[i].across_px, value = (double)pixels[i].value[channel];
+    bool is_out = lone ? n > out : fabs(n) > out, is_in = lone ? n < in : fabs(n) < in;
+    outside += is_out;
+    level += is_out ? value : 0;
+    inside += is_in;
+    inner += is_in ? value : 0;
+  }
+  if (outside < 1 || inside < 1) return false;
+  x[LEVEL] = level / outside;
+  x[CONTRAST] = inner / inside - x[LEVEL];
+  for (size_t i = 0; i < count; i++) {
+    double more = (double)pixels[i].value[channel] - x[LEVEL];
+    sum += more;
+    moment += more * (double)pixels[i].across_px;
+  }
+  if (x[CONTRAST] == 0 || sum == 0) return false;
+  x[SHIFT] = lone ? reach * (2 * sum / x[CONTRAST] / (double)count - 1) : moment / sum;
+  x[SHIFT] = fmax(-0.5 * reach, fmin(0.5 * reach, x[SHIFT]));
+  x[BLUR] = known->blur_px;
+  return true;
+}
+
+/* Normal equations of one round; returns the sum of squares. */
+static double add_pixels(const fg_colour_known *known, const fg_colour_pixel *pixels, size_t count,
+                         int channel, const double x[VALUES], fg_normal_equations *system) {
+  double sum = 0;
+  fg_normal_clear(system, VALUES);
+  for (size_t i = 0; i < count; i++) {
+    form at = form_at(known, (double)pixels[i].across_px - x[SHIFT], x[BLUR]);
+    double row[VALUES] = {1, at.value, -x[CONTRAST] * at.by_v, x[CONTRAST] * at.by_blur};
+    double residual = (double)pixels[i].value[channel] - x[LEVEL] - x[CONTRAST] * at.value;
+    fg_normal_add(system, row, residual, 1);
+    sum += residual * residual;
+  }
+  return sum;
+}
+
+static void take_step(double x[VALUES], const double step[VALUES]) {
+  x[LEVEL] += step[LEVEL];
+  x[CONTRAST] += step[CONTRAST];
+  x[SHIFT] += fmax(-STEP_MOST_PX, fmin(STEP_MOST_PX, step[SHIFT]));
+  double blur = x[BLUR] + fmax(-0.3 * x[BLUR], fmin(0.5 * x[BLUR], step[BLUR]));
+  x[BLUR] = fmax(BLUR_LEAST_PX, fmin(BLUR_MOST_PX, blur));
+}
+
+void fg_colour_profile_fit(const fg_colour_known *known, const fg_colour_pixel *pixels,
+                           size_t count, int channel, fg_colour_place *place) {
+  double x[VALUES], step[VALUES], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
+  fg_normal_equations system;
+  *place = (fg_colour_place){0};
+  if (count < PIXELS_LEAST || !start(known, pixels, count, channel, x)) return;
+  bool settled = false;
+  double sum = 0;
+  for (int round = 0; round < ROUNDS && !settled; round++) {
+    sum = add_pixels(known, pixels, count, channel, x, &system);
+    if (!fg_normal_solve(&system, 1e-9, step, inverse)) return;
+    take_step(x, step);
+    settled = fabs(step[SHIFT]) < SETTLED_PX && fabs(step[BLUR]) < BLUR_SETTLED * x[BLUR];
+  }
+  *place = (fg_colour_place){.shift_px = x[SHIFT],
+                             .variance = inverse[SHIFT][SHIFT],
+                             .contrast = x[CONTRAST],
+                             .noise = sum / (double)(count - VALUES),
+                             .good = settled};
+}

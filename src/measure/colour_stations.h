@@ -1,0 +1,31 @@
+/* Cross-sections of a measurement, in pixels, at which the channels of its scan are held against
+ * each other: of foils across the whole strip, of discs across their edge. */
+#ifndef FG_MEASURE_COLOUR_STATIONS_H
+#define FG_MEASURE_COLOUR_STATIONS_H
+
+#include "foilgauge/foil.h"
+#include "measure/colour_profile.h"
+
+typedef struct fg_colour_station {
+  double x, y, nx, ny; /* middle of the strip, or the edge; unit normal */
+  double half_along_px, half_across_px;
+  fg_colour_known known;
+  int64_t top, bottom; /* rows that its pixels lie in */
+  int part;            /* foil, or disc behind the foils; neighbours in the list are neighbours */
+  bool lone;           /* a disc's */
+  fg_colour_place place[3];
+} fg_colour_station;
+
+typedef struct fg_colour_stations {
+  fg_colour_station *list; /* along the parts; owned */
+  size_t *order;           /* by bottom row; owned */
+  size_t count, capacity;
+  int64_t rows_most; /* that one of them reaches over */
+} fg_colour_stations;
+
+/* `m` as its edges were found: at the resolution of the scan, not calibrated. */
+fg_status fg_colour_stations_choose(fg_context *ctx, const fg_measurement *m,
+                                    fg_colour_stations *stations);
+void fg_colour_stations_free(fg_colour_stations *stations);
+
+#endif
