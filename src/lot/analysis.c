@@ -88,25 +88,27 @@ static void rank_arcs_by_spread(fg_lot_analysis *analysis) {
   }
 }
 
-/* Without tolerances of foils the farthest height from the lot's mean is the worst. */
+/* Without tolerances of foils what lies farthest from the lot's mean in its leading quantity, the
+ * height of bumps, is the worst. */
 static void rank_by_spread(fg_lot_analysis *analysis) {
-  if (!fg_form_has_bumps(analysis->lot->settings.design.form)) {
+  if (analysis->lot->settings.design.form == FG_FORM_ARC) {
     rank_arcs_by_spread(analysis);
     return;
   }
-  const fg_lot_quantity *height = fg_lot_find_quantity(analysis, "height_mm");
-  if (!height || !(height->sd > 0)) return;
+  const fg_lot_quantity *leading = fg_lot_leading_quantity(analysis);
+  if (!leading || !(leading->sd > 0)) return;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     fg_lot_foil *foil = &analysis->foils[i];
-    for (size_t k = 0; k < foil->foil->bump_count; k++) {
-      const fg_bump *bump = &foil->foil->bumps[k];
-      double severity = fabs(bump->height_mm - height->mean) / height->sd;
+    for (size_t k = 0; k < fg_part_count(foil->foil, leading->owner); k++) {
+      const fg_part part = fg_part_at(foil->foil, leading->owner, k);
+      double value = fg_quantity_value(leading->row, part.object);
+      double severity = fabs(value - leading->mean) / leading->sd;
       if (!(severity > foil->severity)) continue;
       foil->severity = severity;
-      foil->worst_number = bump->number;
-      foil->worst_row = height->row;
-      foil->worst_value = bump->height_mm;
-      foil->worst_u = fg_quantity_uncertainty(height->row, bump);
+      foil->worst_number = part.number;
+      foil->worst_row = leading->row;
+      foil->worst_value = value;
+      foil->worst_u = fg_quantity_uncertainty(leading->row, part.object);
     }
   }
 }
@@ -153,18 +155,22 @@ static void choose_rows(fg_lot_analysis *analysis) {
       }
 }
 
-static void count_bumps(fg_lot_analysis *analysis) {
-  for (size_t i = 0; i < analysis->foil_count; i++)
-    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++) {
-      if (!fg_foil_is_measured(analysis->foils[i].foil)) break;
-      analysis->bumps++;
-      analysis->crushed += (analysis->foils[i].foil->bumps[k].flags & FG_BUMP_CRUSHED) != 0;
+static void count_parts(fg_lot_analysis *analysis) {
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
+    for (size_t k = 0; k < parts; k++) {
+      const fg_part part = fg_part_at(foil, analysis->parts, k);
+      analysis->left_out += !fg_lot_part_counts(foil, analysis->parts, &part);
     }
+    analysis->part_count += parts;
+  }
 }
 
 static fg_status analyse(fg_context *ctx, fg_lot_analysis *analysis) {
+  analysis->parts = fg_form_parts(analysis->lot->settings.design.form);
   FG_TRY(list_foils(ctx, analysis));
-  count_bumps(analysis);
+  count_parts(analysis);
   FG_TRY(judge_all(ctx, analysis));
   choose_rows(analysis);
   FG_TRY(fg_lot_analyse_quantities(ctx, analysis));

@@ -9,6 +9,7 @@
 #include "foilgauge/stiffness.h"
 #include "lot/assembly.h"
 #include "lot/lot_report.h"
+#include "quantity/parts.h"
 #include "report/stiffness/stiffness_table.h"
 
 /* One foil of the lot. */
@@ -19,7 +20,7 @@ typedef struct fg_lot_foil {
   bool exceeded;       /* a value fails */
   bool row;            /* the page's list has a line of it */
   double severity;     /* the farthest value: 1 at its limit; without tolerances in sd of the lot */
-  int worst_number;    /* its bump; 0: the whole foil */
+  int worst_number;    /* of its part; 0: the whole foil */
   const fg_quantity *worst_row;
   double worst_value, worst_u;
   double worst_limit;  /* the nearer one; NaN: there is no tolerance */
@@ -38,7 +39,7 @@ typedef struct fg_lot_cause {
   bool in_turn;        /* one foil of each group after the other */
 } fg_lot_cause;
 
-/* Mean and spread of one bump number. */
+/* Mean and spread of one bump (or other part) of the foils, by its number. */
 typedef struct fg_lot_place {
   size_t count;
   double mean, sd; /* NaN where there are too few */
@@ -47,20 +48,20 @@ typedef struct fg_lot_place {
 /* One quantity over the lot. */
 typedef struct fg_lot_quantity {
   const fg_quantity *row;
-  fg_quantity_owner owner;
+  fg_quantity_owner owner;       /* the foil, or the parts of the form */
   const fg_tolerance *tolerance; /* NULL: none */
   double *value;                 /* what is known, foil by foil; owned */
   size_t count;
   size_t *size; /* values of each foil; owned */
   double mean, sd, least, most, median;
-  fg_lot_place *place; /* by bump number - 1; owned */
+  fg_lot_place *place; /* by number of the part - 1; owned */
   size_t places;
   bool has_density, has_chart, has_subgroups, has_capability;
   fg_density density;
   double mode;
   fg_chart chart; /* individuals: the mean of each foil */
   double chart_sigma;
-  fg_chart means, deviations; /* subgroups: the bumps of each foil */
+  fg_chart means, deviations; /* subgroups: the parts of each foil */
   double within_sigma;
   bool stable;        /* no signal on the chart of individuals, nor on that of the deviations */
   fg_lot_cause cause; /* of the signals of the chart of individuals */
@@ -210,7 +211,7 @@ typedef struct fg_lot_difference {
 
 typedef struct fg_lot_gauge {
   const fg_lot_quantity *quantity;
-  int bump; /* 0: the whole foil */
+  int number; /* of the part; 0: the whole foil */
   fg_gauge_study study;
 } fg_lot_gauge;
 
@@ -224,9 +225,11 @@ typedef struct fg_lot_analysis {
   const fg_lot *lot;
   const char *folder; /* that the report is written to, from which links lead; NULL: not known */
   char *const *pages; /* by item of the manifest, from the folder; NULL: none; not owned */
+  fg_quantity_owner parts; /* what the foils' parts are */
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
-  size_t bumps, crushed; /* of measured foils; crushed ones are in no statistics */
+  size_t part_count; /* of measured foils */
+  size_t left_out;   /* of them: what is in no statistics, as crushed bumps */
   size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
   fg_report_outcome outcome;                        /* of all foils, scans and bearings */
   const fg_lot_foil *worst[3];
@@ -259,6 +262,21 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis);
  * the statistics, stiffness and clearances. It is judged as every other. So is a bump of what is no
  * foil of the design. */
 bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
+bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_part *part);
+
+/* What a lot calls the parts of its foils. */
+typedef struct fg_lot_words {
+  const char *one, *many;             /* "bump", "bumps"; the members of JSON and CSV, too */
+  const char *counted;                /* "Bumps measured" */
+  const char *how;                    /* those are that are left out: "crushed" */
+  const char *damaged, *json_damaged; /* "Crushed bumps", "bumps_crushed" */
+  const char *json_worst;             /* "worst_bump" */
+  const char *numbers;                /* how they are numbered */
+  const char *before_number;          /* of a part, behind the words of its quantity */
+  const char *mean;                   /* of a foil: "foil (mean of its bumps)" */
+} fg_lot_words;
+
+const fg_lot_words *fg_lot_words_of(const fg_lot_analysis *analysis);
 
 /* Clearance over a bump of the foil fitted into the sleeve, NaN where there is none that counts; of
  * its u what all foils share, and the rest. */
@@ -275,6 +293,10 @@ fg_status fg_lot_find_owners(fg_context *ctx, const fg_lot_analysis *analysis, s
 const char *fg_lot_stiffness_note(const fg_lot_analysis *analysis);
 
 bool fg_lot_foil_is_good(const fg_lot_foil *foil);
+
+/* Of the parts: the first with a tolerance, else what a lot of this form is first asked for. NULL:
+ * there is none. */
+const fg_lot_quantity *fg_lot_leading_quantity(const fg_lot_analysis *analysis);
 
 /* NULL when the lot has none of it. */
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name);

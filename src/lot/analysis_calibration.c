@@ -18,19 +18,22 @@ typedef struct reading {
   size_t at; /* of its moves */
 } reading;
 
-/* By how much a value lies elsewhere with a strip thicker by its statistical u: derived again. */
-static double by_thickness(const reading *r, const fg_foil *foil, const fg_bump *bump) {
+/* By how much a value lies elsewhere with a strip thicker by its statistical u: derived again. What
+ * lies flat has none. */
+static double by_thickness(const reading *r, const fg_foil *foil, const fg_part *part) {
   double moves[FG_CALIBRATED_MAX] = {0};
   const fg_design *design = &r->analysis->lot->settings.design;
   fg_foil thick = *foil;
+  if (design->form == FG_FORM_CANTILEVER) return 0;
   fg_quantity_narrow_calibrated(FG_QUANTITY_OF_FOIL, &thick, &foil->calibrated);
   double u = isfinite(thick.u_thickness_mm) ? thick.u_thickness_mm : 0;
   thick.thickness_mm += u;
-  if (!bump) {
+  if (!part) {
     fg_quantity_take_moves(FG_QUANTITY_OF_FOIL, foil, &thick, moves);
     return moves[r->at];
   }
   const fg_thickness strip[] = {fg_foil_thickness(design, foil), fg_foil_thickness(design, &thick)};
+  const fg_bump *bump = part->object;
   fg_bump both[] = {*bump, *bump};
   for (int i = 0; i < 2; i++)
     fg_bump_derive(design, &r->analysis->lot->nominal, &foil->overall, &strip[i], &both[i]);
@@ -38,14 +41,14 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_bump 
   return moves[r->at];
 }
 
-static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_bump *bump) {
+static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_part *part) {
   const fg_quantity *row = r->quantity->row;
-  const void *object = bump ? (const void *)bump : foil;
-  const fg_calibrated *calibrated = bump ? &bump->calibrated : &foil->calibrated;
+  const void *object = part ? part->object : foil;
+  const fg_calibrated *calibrated = part ? part->calibrated : &foil->calibrated;
   double u = fg_quantity_uncertainty(row, object);
   double own = fg_quantity_calibration(r->quantity->owner, row, calibrated);
   if (!isfinite(fg_quantity_value(row, object)) || !isfinite(u)) return;
-  double alike = by_thickness(r, foil, bump);
+  double alike = by_thickness(r, foil, part);
   double statistical = fmax(0, u * u - own * own - alike * alike);
   sum->u += sqrt(statistical);
   sum->squares += statistical;
@@ -59,8 +62,10 @@ static sums of_foil(const reading *r, const fg_foil *foil) {
   sums sum = {0};
   if (!fg_foil_is_measured(foil)) return sum;
   if (r->quantity->owner == FG_QUANTITY_OF_FOIL) add(&sum, r, foil, NULL);
-  for (size_t b = 0; r->quantity->owner == FG_QUANTITY_OF_BUMP && b < foil->bump_count; b++)
-    if (fg_lot_bump_counts(foil, &foil->bumps[b])) add(&sum, r, foil, &foil->bumps[b]);
+  for (size_t k = 0; k < fg_part_count(foil, r->quantity->owner); k++) {
+    const fg_part part = fg_part_at(foil, r->quantity->owner, k);
+    if (fg_lot_part_counts(foil, r->quantity->owner, &part)) add(&sum, r, foil, &part);
+  }
   return sum;
 }
 

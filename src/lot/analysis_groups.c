@@ -160,20 +160,22 @@ static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size
   return true;
 }
 
-static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int bump) {
-  if (!bump) return fg_quantity_value(quantity->row, foil);
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number == bump && fg_lot_bump_counts(foil, &foil->bumps[i]))
-      return fg_quantity_value(quantity->row, &foil->bumps[i]);
+static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int number) {
+  if (!number) return fg_quantity_value(quantity->row, foil);
+  for (size_t i = 0; i < fg_part_count(foil, quantity->owner); i++) {
+    const fg_part part = fg_part_at(foil, quantity->owner, i);
+    if (part.number == number && fg_lot_part_counts(foil, quantity->owner, &part))
+      return fg_quantity_value(quantity->row, part.object);
+  }
   return NAN;
 }
 
 static fg_status study(fg_context *ctx, fg_lot_analysis *analysis, const gauge_table *table,
-                       const fg_lot_quantity *quantity, int bump, double *values) {
-  fg_lot_gauge gauge = {.quantity = quantity, .bump = bump};
+                       const fg_lot_quantity *quantity, int number, double *values) {
+  fg_lot_gauge gauge = {.quantity = quantity, .number = number};
   size_t count = table->parts.count * table->operators.count * table->trials;
   for (size_t i = 0; i < count; i++) {
-    values[i] = foil_value(quantity, table->foil[i], bump);
+    values[i] = foil_value(quantity, table->foil[i], number);
     if (!isfinite(values[i])) return FG_OK;
   }
   FG_TRY(fg_gauge_study_compute(ctx, values, table->parts.count, table->operators.count,
@@ -188,9 +190,9 @@ static fg_status study_all(fg_context *ctx, fg_lot_analysis *analysis, const gau
                            double *values) {
   for (size_t q = 0; q < analysis->quantity_count; q++) {
     const fg_lot_quantity *quantity = &analysis->quantities[q];
-    int bumps = quantity->owner == FG_QUANTITY_OF_BUMP ? (int)quantity->places : 0;
-    for (int bump = bumps ? 1 : 0; bump <= bumps; bump++)
-      FG_TRY(study(ctx, analysis, table, quantity, bump, values));
+    int parts = (int)quantity->places;
+    for (int number = parts ? 1 : 0; number <= parts; number++)
+      FG_TRY(study(ctx, analysis, table, quantity, number, values));
   }
   return FG_OK;
 }

@@ -28,7 +28,7 @@ static void list_quantity(fg_lot_analysis *analysis, fg_quantity_owner owner,
 
 /* What every report shows; what has a tolerance comes behind. */
 static fg_status list_quantities(fg_context *ctx, fg_lot_analysis *analysis) {
-  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_FOIL};
+  const fg_quantity_owner owners[] = {analysis->parts, FG_QUANTITY_OF_FOIL};
   enum { OWNERS = sizeof owners / sizeof owners[0] };
   const fg_design *design = &analysis->lot->settings.design;
   void *block;
@@ -59,7 +59,7 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
   size_t most = 0;
   void *block;
   for (size_t i = 0; i < analysis->foil_count; i++)
-    most += quantity->owner == FG_QUANTITY_OF_BUMP ? analysis->foils[i].foil->bump_count : 1;
+    most += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
   FG_TRY(fg_memory_allocate(ctx, most, sizeof *quantity->value, &block));
   quantity->value = block;
   FG_TRY(fg_memory_allocate(ctx, analysis->foil_count, sizeof *quantity->size, &block));
@@ -69,9 +69,11 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
     if (!fg_foil_is_measured(foil)) continue;
     if (quantity->owner == FG_QUANTITY_OF_FOIL)
       take_value(quantity, i, fg_quantity_value(quantity->row, foil));
-    for (size_t k = 0; quantity->owner == FG_QUANTITY_OF_BUMP && k < foil->bump_count; k++)
-      if (fg_lot_bump_counts(foil, &foil->bumps[k]))
-        take_value(quantity, i, fg_quantity_value(quantity->row, &foil->bumps[k]));
+    for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
+      const fg_part part = fg_part_at(foil, quantity->owner, k);
+      if (fg_lot_part_counts(foil, quantity->owner, &part))
+        take_value(quantity, i, fg_quantity_value(quantity->row, part.object));
+    }
   }
   return FG_OK;
 }
@@ -102,11 +104,14 @@ static fg_status describe(fg_context *ctx, const fg_lot_settings *settings,
 
 static size_t highest_number(const fg_lot_analysis *analysis) {
   int highest = 0;
-  for (size_t i = 0; i < analysis->foil_count; i++)
-    for (size_t k = 0; k < analysis->foils[i].foil->bump_count; k++)
-      if (fg_foil_is_measured(analysis->foils[i].foil) &&
-          analysis->foils[i].foil->bumps[k].number > highest)
-        highest = analysis->foils[i].foil->bumps[k].number;
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
+    for (size_t k = 0; k < parts; k++) {
+      int number = fg_part_at(foil, analysis->parts, k).number;
+      highest = number > highest ? number : highest;
+    }
+  }
   return (size_t)highest;
 }
 
@@ -118,20 +123,22 @@ static void add_to_place(fg_lot_place *place, double value) {
   place->sd += step * (value - place->mean); /* the sum of squares, until all are there */
 }
 
-/* Mean and sd of each bump number over the foils (Welford's running sums). */
+/* Mean and sd of each number over the foils (Welford's running sums). */
 static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysis,
                                  fg_lot_quantity *quantity) {
   void *block;
-  if (quantity->owner != FG_QUANTITY_OF_BUMP) return FG_OK;
+  if (!fg_owner_is_part(quantity->owner)) return FG_OK;
   quantity->places = highest_number(analysis);
   FG_TRY(fg_memory_allocate(ctx, quantity->places, sizeof *quantity->place, &block));
   quantity->place = block;
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
-    for (size_t k = 0; k < foil->bump_count; k++)
-      if (foil->bumps[k].number >= 1 && fg_lot_bump_counts(foil, &foil->bumps[k]))
-        add_to_place(&quantity->place[foil->bumps[k].number - 1],
-                     fg_quantity_value(quantity->row, &foil->bumps[k]));
+    for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
+      const fg_part part = fg_part_at(foil, quantity->owner, k);
+      if (part.number >= 1 && fg_lot_part_counts(foil, quantity->owner, &part))
+        add_to_place(&quantity->place[part.number - 1],
+                     fg_quantity_value(quantity->row, part.object));
+    }
   }
   for (size_t i = 0; i < quantity->places; i++) {
     fg_lot_place *place = &quantity->place[i];
@@ -173,7 +180,7 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
   FG_TRY(status);
   fg_context unused;
   quantity->has_subgroups =
-      quantity->owner == FG_QUANTITY_OF_BUMP &&
+      fg_owner_is_part(quantity->owner) &&
       fg_chart_subgroups(&unused, quantity->value, quantity->size, foils, FG_SIGMA_FROM_SD, rules,
                          &quantity->means, &quantity->deviations, &quantity->within_sigma) == FG_OK;
   quantity->stable = quantity->has_chart && quantity->chart.signals == 0 &&
@@ -181,15 +188,15 @@ fg_status fg_lot_chart_quantity(fg_context *ctx, unsigned rules, size_t foils,
   return FG_OK;
 }
 
-/* Sigma of the process over the lot: what foils vary by from one to the next, and bumps within a
+/* Sigma of the process over the lot: what foils vary by from one to the next, and parts within a
  * foil. The mean of n bumps carries within² / n of the variance of one: it is taken out of the
  * first before the second is added. The degrees of freedom are those of a moving range (0.62 (n -
  * 1), Wetherill and Brown 1991), the fewer of the two. */
 static double process_sigma(const fg_lot_quantity *quantity) {
   if (!quantity->has_subgroups) return quantity->chart_sigma;
-  double bumps = (double)quantity->count / (double)quantity->chart.count;
+  double parts = (double)quantity->count / (double)quantity->chart.count;
   double within = quantity->within_sigma * quantity->within_sigma;
-  double between = quantity->chart_sigma * quantity->chart_sigma - within / bumps;
+  double between = quantity->chart_sigma * quantity->chart_sigma - within / parts;
   return sqrt(fmax(between, 0) + within);
 }
 

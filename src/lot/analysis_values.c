@@ -8,10 +8,38 @@ bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump) {
   return fg_foil_is_measured(foil) && !(bump->flags & FG_BUMP_CRUSHED);
 }
 
+bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_part *part) {
+  (void)owner;
+  return fg_lot_bump_counts(foil, part->object);
+}
+
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (!strcmp(analysis->quantities[i].row->name, name)) return &analysis->quantities[i];
   return NULL;
+}
+
+const fg_lot_words *fg_lot_words_of(const fg_lot_analysis *analysis) {
+  static const fg_lot_words words[FG_QUANTITY_OWNERS] = {
+      [FG_QUANTITY_OF_BUMP] = {.one = "bump",
+                               .many = "bumps",
+                               .counted = "Bumps measured",
+                               .how = "crushed",
+                               .damaged = "Crushed bumps",
+                               .json_damaged = "bumps_crushed",
+                               .json_worst = "worst_bump",
+                               .numbers = "bump, 1 is next to the lip",
+                               .before_number = " ",
+                               .mean = "foil (mean of its bumps)"},
+  };
+  return &words[analysis->parts];
+}
+
+const fg_lot_quantity *fg_lot_leading_quantity(const fg_lot_analysis *analysis) {
+  for (size_t i = 0; i < analysis->quantity_count; i++)
+    if (analysis->quantities[i].tolerance && fg_owner_is_part(analysis->quantities[i].owner))
+      return &analysis->quantities[i];
+  return fg_lot_find_quantity(analysis, "height_mm");
 }
 
 fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,

@@ -19,9 +19,10 @@ fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analys
     const fg_quantity *row = quantity->row;
     if (!row->characteristic || !quantity->count) continue;
     double nominal = row->nominal(&analysis->lot->settings.design, &analysis->lot->nominal);
-    bool of_bumps = quantity->owner == FG_QUANTITY_OF_BUMP;
-    for (size_t bump = of_bumps; bump <= (of_bumps ? quantity->places : 0); bump++)
-      (*list)[(*count)++] = (fg_characteristic){quantity, (int)bump, nominal, row->characteristic};
+    bool of_parts = fg_owner_is_part(quantity->owner);
+    for (size_t number = of_parts; number <= (of_parts ? quantity->places : 0); number++)
+      (*list)[(*count)++] =
+          (fg_characteristic){quantity, (int)number, nominal, row->characteristic};
   }
   return FG_OK;
 }
@@ -29,9 +30,12 @@ fg_status fg_characteristics_list(fg_context *ctx, const fg_lot_analysis *analys
 double fg_characteristic_value(const fg_characteristic *characteristic, const fg_foil *foil,
                                double *u) {
   const fg_quantity *row = characteristic->quantity->row;
-  const void *object = characteristic->bump ? NULL : foil;
-  for (size_t i = 0; characteristic->bump && i < foil->bump_count; i++)
-    if (foil->bumps[i].number == characteristic->bump) object = &foil->bumps[i];
+  const fg_quantity_owner owner = characteristic->quantity->owner;
+  const void *object = characteristic->number ? NULL : foil;
+  for (size_t i = 0; characteristic->number && i < fg_part_count(foil, owner); i++) {
+    const fg_part part = fg_part_at(foil, owner, i);
+    if (part.number == characteristic->number) object = part.object;
+  }
   *u = NAN;
   if (!object || !fg_foil_is_measured(foil)) return NAN;
   *u = fg_quantity_uncertainty(row, object);

@@ -1,4 +1,4 @@
-/* What goes to quality systems: lengths and angles, one characteristic per quantity and bump. */
+/* What goes to quality systems: lengths and angles, one characteristic per quantity and part. */
 #ifndef FG_LOT_CHARACTERISTICS_H
 #define FG_LOT_CHARACTERISTICS_H
 
@@ -6,7 +6,7 @@
 
 typedef struct fg_characteristic {
   const fg_lot_quantity *quantity;
-  int bump;         /* 0: the whole foil */
+  int number;       /* of the part; 0: the whole foil */
   double nominal;   /* of the design */
   const char *kind; /* QIF's name */
 } fg_characteristic;

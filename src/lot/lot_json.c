@@ -29,12 +29,13 @@ static void write_inputs(fg_json *json, const fg_lot *lot) {
 }
 
 static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
+  const fg_lot_words *words = fg_lot_words_of(analysis);
   fg_json_object(json, "counts");
   fg_json_integer(json, "scans", (int64_t)analysis->lot->manifest.items);
   fg_json_integer(json, "scans_not_measured", (int64_t)analysis->failed_scans);
   fg_json_integer(json, "foils", (int64_t)analysis->foil_count);
-  fg_json_integer(json, "bumps", (int64_t)analysis->bumps);
-  fg_json_integer(json, "bumps_crushed", (int64_t)analysis->crushed);
+  fg_json_integer(json, words->many, (int64_t)analysis->part_count);
+  fg_json_integer(json, words->json_damaged, (int64_t)analysis->left_out);
   for (int verdict = FG_VERDICT_PASS; verdict <= FG_VERDICT_NONE; verdict++)
     fg_json_integer(json, fg_verdict_word((fg_verdict)verdict),
                     (int64_t)analysis->by_verdict[verdict]);
@@ -66,7 +67,7 @@ static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_
   fg_json_bool(json, "exceeded", foil->exceeded);
   fg_json_number(json, "severity", foil->severity);
   fg_json_string(json, "worst_quantity", foil->worst_row ? foil->worst_row->name : NULL);
-  fg_json_integer(json, "worst_bump", foil->worst_number);
+  fg_json_integer(json, fg_lot_words_of(analysis)->json_worst, foil->worst_number);
   fg_json_number(json, "worst_value", foil->worst_row ? foil->worst_value : NAN);
   fg_json_number(json, "worst_u", foil->worst_u);
   fg_json_number(json, "worst_limit", foil->worst_limit);
@@ -138,8 +139,9 @@ static void write_chart(fg_json *json, const char *name, const fg_chart *chart, 
   fg_json_object_end(json);
 }
 
-static void write_places(fg_json *json, const fg_lot_quantity *quantity) {
-  fg_json_array(json, "bumps");
+static void write_places(fg_json *json, const fg_lot_words *words,
+                         const fg_lot_quantity *quantity) {
+  fg_json_array(json, words->many);
   for (size_t i = 0; i < quantity->places; i++) {
     fg_json_object(json, NULL);
     fg_json_line(json);
@@ -168,7 +170,7 @@ static void write_quantity(fg_json *json, const fg_lot_analysis *analysis,
   fg_json_number(json, "min", quantity->least);
   fg_json_number(json, "max", quantity->most);
   fg_json_number(json, "bandwidth", quantity->has_density ? quantity->density.bandwidth : NAN);
-  if (quantity->owner == FG_QUANTITY_OF_BUMP) write_places(json, quantity);
+  if (fg_owner_is_part(quantity->owner)) write_places(json, fg_lot_words_of(analysis), quantity);
   if (quantity->has_chart) {
     write_chart(json, "individuals", &quantity->chart, quantity->chart_sigma);
     fg_json_bool(json, "stable", quantity->stable);
@@ -246,12 +248,12 @@ static void write_difference(fg_json *json, const fg_lot_difference *difference)
   fg_json_object_end(json);
 }
 
-static void write_gauge(fg_json *json, const fg_lot_gauge *gauge) {
+static void write_gauge(fg_json *json, const fg_lot_words *words, const fg_lot_gauge *gauge) {
   const fg_gauge_study *study = &gauge->study;
   fg_json_object(json, NULL);
   fg_json_line(json);
   fg_json_string(json, "quantity", gauge->quantity->row->name);
-  fg_json_integer(json, "bump", gauge->bump);
+  fg_json_integer(json, words->one, gauge->number);
   fg_json_integer(json, "parts", (int64_t)study->parts);
   fg_json_integer(json, "operators", (int64_t)study->operators);
   fg_json_integer(json, "trials", (int64_t)study->trials);
@@ -307,7 +309,7 @@ fg_status fg_lot_write_json(fg_context *ctx, const fg_lot_analysis *analysis, FI
   fg_json_array_end(&json);
   fg_json_array(&json, "gauge_studies");
   for (size_t i = 0; i < analysis->gauge_count; i++)
-    write_gauge(&json, &analysis->gauges[i]);
+    write_gauge(&json, fg_lot_words_of(analysis), &analysis->gauges[i]);
   fg_json_array_end(&json);
   fg_json_object_end(&json);
   fg_json_end(&json);

@@ -105,9 +105,13 @@ static void put_foil_row(FILE *out, const fg_lot_analysis *analysis, const fg_lo
   fg_lot_put_scan(out, analysis, foil->item);
   fputs("</td>", out);
   fg_lot_put_verdict(out, foil->verdict);
-  fprintf(out, "<td>%zu</td><td>", foil->foil->bump_count);
-  fg_lot_put_number(out, foil->foil->overall.radius_mm, 6);
-  fputs("</td><td class=\"words\">", out);
+  fprintf(out, "<td>%zu</td>", fg_part_count(foil->foil, analysis->parts));
+  if (analysis->lot->settings.design.form != FG_FORM_CANTILEVER) {
+    fputs("<td>", out);
+    fg_lot_put_number(out, foil->foil->overall.radius_mm, 6);
+    fputs("</td>", out);
+  }
+  fputs("<td class=\"words\">", out);
   fg_lot_put_reason(out, analysis, foil);
   fputs("</td>", out);
   fg_lot_put_margin(out, analysis, foil);
@@ -135,11 +139,13 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
 /* Those that do not pass first. */
 static void put_foils(FILE *out, const fg_lot_analysis *analysis) {
   size_t rows = 0;
-  fputs("<section class=\"part\">\n<h1>Foils</h1>\n<div class=\"scroll lots\"><table><thead><tr>"
-        "<th>foil</th><th class=\"w\">scan</th><th>verdict</th><th>bumps</th><th>R0<br>mm</th>"
-        "<th class=\"w\">what is farthest, or why not</th><th>value ± U</th><th>nearest<br>limit"
-        "</th><th>margin</th></tr></thead>\n<tbody>\n",
-        out);
+  bool flat = analysis->lot->settings.design.form == FG_FORM_CANTILEVER;
+  fprintf(out,
+          "<section class=\"part\">\n<h1>Foils</h1>\n<div class=\"scroll lots\"><table><thead><tr>"
+          "<th>foil</th><th class=\"w\">scan</th><th>verdict</th><th>%s</th>%s"
+          "<th class=\"w\">what is farthest, or why not</th><th>value ± U</th><th>nearest<br>limit"
+          "</th><th>margin</th></tr></thead>\n<tbody>\n",
+          fg_lot_words_of(analysis)->many, flat ? "" : "<th>R0<br>mm</th>");
   for (int good = 0; good < 2; good++)
     for (size_t i = 0; i < analysis->foil_count; i++) {
       const fg_lot_foil *foil = &analysis->foils[i];

@@ -38,10 +38,11 @@ static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   put_tile(out, TONE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
   if (failed) put_tile(out, TONE_OPEN, "Scans not measured", failed, "named below");
   put_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
-  if (fg_form_has_bumps(analysis->lot->settings.design.form)) {
-    put_tile(out, TONE_PLAIN, "Bumps measured", analysis->bumps, "");
-    if (analysis->crushed)
-      put_tile(out, TONE_OPEN, "Crushed bumps", analysis->crushed,
+  if (analysis->lot->settings.design.form != FG_FORM_ARC) {
+    const fg_lot_words *words = fg_lot_words_of(analysis);
+    put_tile(out, TONE_PLAIN, words->counted, analysis->part_count, "");
+    if (analysis->left_out)
+      put_tile(out, TONE_OPEN, words->damaged, analysis->left_out,
                "judged, but in no statistics of this page");
   }
   fputs("</dl>\n", out);
@@ -195,7 +196,8 @@ void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
     fputs(defect, out);
   } else if (foil->worst_row) {
     fputs(foil->worst_row->words, out);
-    if (foil->worst_number) fprintf(out, " of bump %d", foil->worst_number);
+    if (foil->worst_number)
+      fprintf(out, " of %s %d", fg_lot_words_of(analysis)->one, foil->worst_number);
   }
 }
 
@@ -264,21 +266,13 @@ void fg_lot_put_worst(FILE *out, const fg_lot_analysis *analysis) {
           out);
 }
 
-/* The first bump quantity with a tolerance, else the height. */
-static const fg_lot_quantity *leading_quantity(const fg_lot_analysis *analysis) {
-  for (size_t i = 0; i < analysis->quantity_count; i++)
-    if (analysis->quantities[i].tolerance && analysis->quantities[i].owner == FG_QUANTITY_OF_BUMP)
-      return &analysis->quantities[i];
-  return fg_lot_find_quantity(analysis, "height_mm");
-}
-
 void fg_lot_put_leading(FILE *out, const fg_lot_analysis *analysis) {
-  const fg_lot_quantity *leading = leading_quantity(analysis);
+  const fg_lot_quantity *leading = fg_lot_leading_quantity(analysis);
   if (!leading || !leading->places) return;
   fprintf(out, "<h2>Every %s</h2>\n<figure>", leading->row->words);
   fg_lot_plot_places(out, analysis, leading, NULL);
   fputs("<figcaption>", out);
   fg_lot_put_places_key(out, analysis, leading);
-  if (analysis->crushed) fputs(" Crushed bumps are not drawn.", out);
+  if (analysis->left_out) fprintf(out, " %s are not drawn.", fg_lot_words_of(analysis)->damaged);
   fputs("</figcaption></figure>\n", out);
 }

@@ -36,19 +36,21 @@ void fg_lot_put_comparisons(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_gauge(FILE *out, const fg_lot_analysis *analysis) {
   if (!analysis->gauge_count) return;
-  fputs("<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n<div "
-        "class=\"scroll\"><table>"
-        "<thead><tr><th>quantity</th><th>bump</th><th>repeatability</th><th>reproducibility</th>"
-        "<th>GRR</th><th>part</th><th>GRR, %</th><th>categories</th></tr></thead>\n<tbody>\n",
-        out);
+  fprintf(out,
+          "<section class=\"part\">\n<h1>Gauge repeatability and reproducibility</h1>\n<div "
+          "class=\"scroll\"><table>"
+          "<thead><tr><th>quantity</th><th>%s</th><th>repeatability</th><th>reproducibility</th>"
+          "<th>GRR</th><th>part</th><th>GRR, %%</th><th>categories</th></tr></thead>\n<tbody>\n",
+          fg_lot_words_of(analysis)->one);
   for (size_t i = 0; i < analysis->gauge_count; i++) {
     const fg_lot_gauge *gauge = &analysis->gauges[i];
     const fg_gauge_study *study = &gauge->study;
     fprintf(out,
             "<tr><td>%s</td><td>%d</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g</td><td>%.3g"
             "</td><td>%.0f</td></tr>\n",
-            gauge->quantity->row->words, gauge->bump, study->repeatability, study->reproducibility,
-            study->grr, study->part, study->grr_pct, floor(study->distinct_categories));
+            gauge->quantity->row->words, gauge->number, study->repeatability,
+            study->reproducibility, study->grr, study->part, study->grr_pct,
+            floor(study->distinct_categories));
   }
   fputs("</tbody></table></div>\n</section>\n", out);
 }

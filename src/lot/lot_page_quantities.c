@@ -29,12 +29,13 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
                                             : " class=\"cannot_tell\">not stable");
   }
   fputs("</tbody></table></div>\n", out);
-  if (analysis->crushed)
-    fprintf(
-        out,
-        "<p class=\"reasons\"><b>%zu of %zu bumps are crushed:</b> they are judged, and they are "
-        "in no statistics, stiffness or clearance of this page.</p>\n",
-        analysis->crushed, analysis->bumps);
+  if (analysis->left_out)
+    fprintf(out,
+            "<p class=\"reasons\"><b>%zu of %zu %s are %s:</b> they are judged, and they are in no "
+            "statistics%s of this page.</p>\n",
+            analysis->left_out, analysis->part_count, fg_lot_words_of(analysis)->many,
+            fg_lot_words_of(analysis)->how,
+            analysis->parts == FG_QUANTITY_OF_BUMP ? ", stiffness or clearance" : "");
 }
 
 static void put_cell(FILE *out, double value, int digits) {

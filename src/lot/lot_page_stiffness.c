@@ -78,7 +78,7 @@ static void put_spread_parts(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis) {
   const char *note = fg_lot_stiffness_note(analysis);
-  if (!fg_form_has_bumps(analysis->lot->settings.design.form) || !analysis->bumps) return;
+  if (!fg_form_has_bumps(analysis->lot->settings.design.form) || !analysis->part_count) return;
   fputs("<section class=\"part\">\n<h1>Stiffness of the bumps</h1>\n", out);
   if (note) fprintf(out, "<p>%s</p>\n", note);
   if (analysis->has_stiffness)

@@ -1,4 +1,4 @@
-/* A quantity over the bump numbers, and over the foils. */
+/* A quantity over the numbers of the parts, and over the foils. */
 #include <math.h>
 #include <string.h>
 
@@ -80,15 +80,16 @@ static size_t foils_per_dot(const fg_lot_analysis *analysis, const fg_lot_quanti
   return quantity->count / FG_LOT_DOTS_MAX + 1;
 }
 
-/* The values of one foil's bumps, right of their means: from left to right in order of the foils.
+/* The values of one foil's parts, right of their means: from left to right in order of the foils.
  * What is beyond a limit is a cross. */
 static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, const fg_foil *foil,
                           double share) {
-  for (size_t k = 0; k < foil->bump_count; k++) {
-    const fg_bump *bump = &foil->bumps[k];
-    double value = fg_quantity_value(quantity->row, bump);
-    if (bump->number < 1 || !isfinite(value) || !fg_lot_bump_counts(foil, bump)) continue;
-    double x = bump->number + FIRST_DOT + (LAST_DOT - FIRST_DOT) * share;
+  for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
+    const fg_part part = fg_part_at(foil, quantity->owner, k);
+    double value = fg_quantity_value(quantity->row, part.object);
+    if (part.number < 1 || !isfinite(value) || !fg_lot_part_counts(foil, quantity->owner, &part))
+      continue;
+    double x = part.number + FIRST_DOT + (LAST_DOT - FIRST_DOT) * share;
     bool beyond = quantity->tolerance &&
                   (value < quantity->tolerance->lower || value > quantity->tolerance->upper);
     if (beyond)
@@ -149,9 +150,9 @@ void fg_lot_plot_places(FILE *out, const fg_lot_analysis *analysis, const fg_lot
   if (!find_range(quantity, curve, &low, &high)) return;
   fg_plot at = {out, PLOT_WIDTH, 92, 985, 14, 250, 0.4, (double)quantity->places + 0.6, low, high};
   axis_title(title, sizeof title, quantity->row);
-  fg_plot_begin(&at, 300, "Every bump number: mean, two standard deviations, and every foil");
+  fg_plot_begin(&at, 300, "By number: mean, two standard deviations, and every foil");
   fg_plot_y_axis(&at, title);
-  fg_plot_x_title(&at, "bump, 1 is next to the lip");
+  fg_plot_x_title(&at, fg_lot_words_of(analysis)->numbers);
   put_limits(&at, quantity->tolerance);
   put_dots(&at, analysis, quantity);
   put_places(&at, quantity);
@@ -251,7 +252,7 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
   fg_plot_y_axis(&at, title);
   fg_plot_x_numbers(&at);
   fg_plot_x_title(&at,
-                  quantity->owner == FG_QUANTITY_OF_BUMP ? "foil (mean of its bumps)" : "foil");
+                  fg_owner_is_part(quantity->owner) ? fg_lot_words_of(analysis)->mean : "foil");
   fg_plot_segment(&at, at.x_low, chart->centre, at.x_high, chart->centre, "thin");
   fg_plot_segment(&at, at.x_low, chart->point[0].lower, at.x_high, chart->point[0].lower, "limit");
   fg_plot_segment(&at, at.x_low, chart->point[0].upper, at.x_high, chart->point[0].upper, "limit");

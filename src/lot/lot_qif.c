@@ -85,9 +85,9 @@ static void put_tolerance(FILE *out, const fg_tolerance *tolerance) {
   fputs("<DefinedAsLimit>true</DefinedAsLimit></Tolerance>", out);
 }
 
-static void put_name(FILE *out, const fg_characteristic *one) {
+static void put_name(FILE *out, const fg_lot_words *words, const fg_characteristic *one) {
   fputs(one->quantity->row->words, out);
-  if (one->bump) fprintf(out, " %d", one->bump);
+  if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
 }
 
 static void put_characteristics(const qif *q) {
@@ -109,7 +109,7 @@ static void put_characteristics(const qif *q) {
   fprintf(q->out, "</CharacteristicNominals>\n<CharacteristicItems n=\"%zu\">\n", q->count);
   for (size_t i = 0; i < q->count; i++) {
     fprintf(q->out, "<%sCharacteristicItem id=\"%zu\"><Name>", q->list[i].kind, item_id(q, i));
-    put_name(q->out, &q->list[i]);
+    put_name(q->out, fg_lot_words_of(q->analysis), &q->list[i]);
     fprintf(q->out,
             "</Name><CharacteristicNominalId>%zu</CharacteristicNominalId>"
             "</%sCharacteristicItem>\n",
