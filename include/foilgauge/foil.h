@@ -12,6 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "foilgauge/cantilever.h"
 #include "foilgauge/circle.h"
 #include "foilgauge/colour.h"
 #include "foilgauge/design.h"
@@ -45,6 +46,8 @@ typedef enum fg_foil_flag {
   FG_FOIL_LIP = 1u << 16,          /* "lip": an end is bent away: there is no angle between ends */
   FG_FOIL_NO_END = 1u << 17,       /* "end_not_found": an end is hidden or torn: no angle */
   FG_FOIL_LOSSY = 1u << 18,        /* "lossy": the scan was compressed with loss */
+  /* Of form cantilever: "beam_count": not the number the design states */
+  FG_FOIL_BEAM_COUNT = 1u << 19,
   /* "beyond_model_region": it reaches beyond where the scanner's model was found */
   FG_FOIL_BEYOND_MODEL_REGION = 1u << 20,
   /* A correction that does not pay was left out, see `choice`. */
@@ -183,6 +186,91 @@ typedef struct fg_correction_choice {
   double move_mm, u_move_mm;
 } fg_correction_choice;
 
+/* One station of the turn around a round feature, in equal steps of direction, or of a beam's side,
+ * in equal steps of length. Lengths in mm. */
+typedef struct fg_disc_point {
+  fg_point at;
+  double u;     /* sd of its place across the edge from pixel noise */
+  double split; /* half of what its flanks' and its core's pixels differ by; may be NaN */
+  double u_split;
+  bool used; /* usable */
+} fg_disc_point;
+
+/* A BEAM of a flat foil (form cantilever) is a tongue of material that is free at one end: two long
+ * edges that face each other across it, joined at the tip by a straight edge across. It may stand
+ * out from a common base, as the tooth of a comb, or lie inside a sheet, cut free by a slit. Every
+ * edge is where the scan's light is halfway between what it is on both sides, and its line is
+ * fitted to all of it but what corners and fillets round.
+ *
+ *   axis         runs midway between the lines of the two long edges, from the root to the tip
+ *   floor        the end of the cut beside a long edge: its place is the middle of its fitted line,
+ *                or, where it is round, the apex of its circle: the point that is farthest from the
+ *                tip
+ *   root line    joins the floors' places on both sides; where there is a floor on one side only
+ *                (the outermost beams of a comb: flag "one_floor") it is at right angles to the
+ *                axis, through that floor's place
+ *   length       along the axis, from the root line to the tip's line
+ *   width        across the axis, between the two long edges' lines, halfway along the length
+ *   taper        how much wider the beam is per length towards the root; below 0: narrower
+ *   bow          how far its middle lies to one side of the chord of its ends, in the sheet's
+ * plane, by the parabola that fits both long edges; above 0: to the right, the tip up
+ *
+ * Beams that point the same way within 45 degrees are numbered from left to right, as the scan is
+ * seen when it is turned so that their tips point up, row by row from the top; others clockwise
+ * about the middle of them all, starting after the widest gap. A foil that is turned over has them
+ * the other way round. */
+typedef enum fg_beam_side {
+  FG_BEAM_LEFT, /* as seen with the tip up */
+  FG_BEAM_RIGHT,
+  FG_BEAM_TIP,
+  FG_BEAM_ROOT_LEFT, /* the floors */
+  FG_BEAM_ROOT_RIGHT,
+  FG_BEAM_SIDES
+} fg_beam_side;
+
+typedef enum fg_beam_flag {
+  FG_BEAM_NOT_FITTED = 1u << 0,       /* "not_fitted": a long edge is not to be seen */
+  FG_BEAM_TORN_TIP = 1u << 1,         /* "torn_tip": its end is not straight: no length */
+  FG_BEAM_NO_FLOOR = 1u << 2,         /* "no_floor": no edge where its root should be: no length */
+  FG_BEAM_ONE_FLOOR = 1u << 3,        /* "one_floor": the root is seen on one side only */
+  FG_BEAM_BENT = 1u << 4,             /* "bent": it bows in the sheet's plane */
+  FG_BEAM_OUT_OF_TOLERANCE = 1u << 5, /* "out_of_tolerance": reports only, fg_beam_flags */
+  FG_BEAM_OUTLIERS = 1u << 6,         /* "outliers": burr or dust was left out */
+  FG_BEAM_DISTURBED_EDGE = 1u << 7,   /* "disturbed_edge": part of an edge is not to be seen */
+  FG_BEAM_TOUCHES_BORDER = 1u << 8,   /* "touches_border": of the scan */
+} fg_beam_flag;
+
+/* One edge of a beam as it was found, for measuring it again. */
+typedef struct fg_beam_edge {
+  fg_disc_point *stations; /* in order, the material to the right as seen; owned */
+  size_t count;
+  bool round;        /* an arc about the apex of a floor */
+  double blur_mm;    /* of the scan, there */
+  double doubt_mm;   /* what the level of the edge may move it by */
+  double split_mm;   /* what its flanks and its core differ by, beyond chance; towards the void */
+  double loss_share; /* by which JPEG's steps raise the variance that the edge tells */
+} fg_beam_edge;
+
+typedef struct fg_beam {
+  int number;
+  unsigned flags; /* fg_beam_flag */
+  double length_mm, u_length_mm;
+  double width_mm, u_width_mm;
+  double length_error_pct, u_length_error_pct; /* 100 (actual - design) / design */
+  double width_error_pct, u_width_error_pct;
+  double taper_um_per_mm, u_taper_um_per_mm;
+  double bow_um, u_bow_um;
+  fg_cantilever follows;    /* what follows from length and width; NaN without them */
+  double direction_deg;     /* of the axis, about the scan's x axis */
+  double rms_um;            /* of the edges about their lines */
+  size_t points;            /* in the fits of the two long edges */
+  fg_point root_mm, tip_mm; /* the ends of the axis */
+  fg_point
+      corners_mm[4]; /* left at the root, left at the tip, right at the tip, right at the root */
+  fg_beam_edge edges[FG_BEAM_SIDES]; /* count 0: not there */
+  fg_calibrated calibrated;
+} fg_beam;
+
 typedef enum fg_orientation {
   FG_CLOCKWISE, /* bump numbers rise clockwise as the scan is seen */
   FG_COUNTERCLOCKWISE,
@@ -200,7 +288,9 @@ typedef struct fg_foil {
   fg_foil_arc arc;
   fg_bump *bumps; /* in order of number; owned */
   size_t bump_count;
-  fg_strip strip;           /* the edges; owned */
+  fg_beam *beams; /* form cantilever: in order of number; owned, and their edges */
+  size_t beam_count;
+  fg_strip strip;           /* the edges; owned; form cantilever: its box alone */
   fg_station_label *labels; /* strip.count entries; owned */
   double noise_um;          /* sd of the midline residuals over all arcs */
   double correlation_mm;    /* integral length of their autocorrelation along the strip */
@@ -211,15 +301,6 @@ typedef struct fg_foil {
   fg_correction_choice choice[FG_CORRECTED];
   fg_calibrated calibrated;
 } fg_foil;
-
-/* One station of the turn around a round feature; equal steps of direction. Lengths in mm. */
-typedef struct fg_disc_point {
-  fg_point at;
-  double u;     /* sd of its radius from pixel noise */
-  double split; /* half of what its flanks' and its core's pixels differ by; may be NaN */
-  double u_split;
-  bool used; /* usable */
-} fg_disc_point;
 
 /* One round hole or disc (form discs). */
 typedef struct fg_disc {
@@ -295,6 +376,7 @@ bool fg_thickness_differs(const fg_design *design, const fg_thickness *strip);
 
 void fg_foil_free(fg_foil *foil); /* what it owns; NULL is fine */
 void fg_disc_free(fg_disc *disc); /* likewise */
+void fg_beam_free(fg_beam *beam); /* likewise */
 void fg_measurement_free(fg_measurement *measurement);
 
 /* Recognises lip, lands, bumps and free end of a strip, fits every circle, derives every quantity.
@@ -305,6 +387,13 @@ void fg_measurement_free(fg_measurement *measurement);
  * FG_FOIL_NOT_THIS_DESIGN. The result does not depend on `threads` (0: all cores). */
 fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned threads,
                           fg_foil *foil);
+
+/* Fits the lines of every beam of a foil of form cantilever to its edges, whose stations the caller
+ * filled, and derives every quantity; numbers the beams and puts them in order; sets their flags
+ * but for FG_BEAM_TOUCHES_BORDER, rotation_deg (of the beams' common direction; NaN where they have
+ * none), noise_um, correlation_mm, FG_FOIL_BEAM_COUNT and FG_FOIL_ROUGH_EDGE of the foil.
+ * FG_ERR_MEMORY. */
+fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil);
 
 /* FREE AND FITTED. A scan shows the foil free: height_mm, clearance_mm (eq 5.8) and clearance_error
  * are those of the free foil, on its own overall circle R0. In the bearing the lands are pressed

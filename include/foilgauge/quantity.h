@@ -20,6 +20,7 @@ typedef enum fg_quantity_owner {
                              is there of form arc, the third where a scanner's model corrected
                              the foil */
   FG_QUANTITY_OF_BUMP,    /* fg_bump */
+  FG_QUANTITY_OF_BEAM,    /* fg_beam; of form cantilever */
   FG_QUANTITY_OF_DISC,    /* fg_disc */
   FG_QUANTITY_OF_STRIP,   /* fg_strip */
   FG_QUANTITY_OF_BEARING, /* fg_bearing_clearance (bearing.h); of a lot */
@@ -45,7 +46,8 @@ typedef enum fg_quantity_use {
   /* The bump's own circle alone says it: its errors are independent from bump to bump, while all
    * that rests on the overall circle errs alike within a foil. */
   FG_QUANTITY_IS_OWN = 1u << 5,
-  FG_QUANTITY_OF_ARC = 1u << 6, /* of form arc alone */
+  FG_QUANTITY_OF_ARC = 1u << 6,  /* of form arc alone */
+  FG_QUANTITY_OF_FLAT = 1u << 7, /* of a foil: of form cantilever, too */
 } fg_quantity_use;
 
 #define FG_NO_UNCERTAINTY ((size_t)-1)
@@ -81,7 +83,7 @@ typedef struct fg_quantity {
 /* The rows of one owner, in the order of the report. */
 const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count);
 
-/* Whether parts of that form have it: an arc has no bumps, and ends. */
+/* Whether parts of that form have it: an arc has no bumps, and ends; a cantilever has beams. */
 bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_form form);
 
 /* The row of that name, or NULL. */

@@ -112,6 +112,10 @@ fg_verdict fg_bump_verdict(const fg_design *design, const fg_foil *foil, const f
 unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bump *bump);
 unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc);
 
+/* The same of a beam; "not_measured" without a length or a width. */
+fg_verdict fg_beam_verdict(const fg_design *design, const fg_foil *foil, const fg_beam *beam);
+unsigned fg_beam_flags(const fg_design *design, const fg_foil *foil, const fg_beam *beam);
+
 /* FG_ERR_DATA when a tolerance names a quantity that is not reported for this form of part; the
  * message lists the names that there are. Those of a bearing are right for foils. */
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design);

@@ -20,6 +20,7 @@ const fg_flag_words *fg_foil_flag_words(void);
 /* The flags that are told to people: a sinusoidal foil has no lip by design. */
 unsigned fg_foil_flags_told(const fg_design *design, const fg_foil *foil);
 const fg_flag_words *fg_bump_flag_words(void);
+const fg_flag_words *fg_beam_flag_words(void);
 
 const char *fg_form_word(fg_form form);
 const char *fg_datum_word(fg_datum datum);

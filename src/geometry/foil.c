@@ -290,10 +290,20 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
 
 void fg_foil_free(fg_foil *foil) {
   if (!foil) return;
+  for (size_t i = 0; i < foil->beam_count; i++)
+    fg_beam_free(&foil->beams[i]);
+  free(foil->beams);
   free(foil->bumps);
   free(foil->labels);
   fg_strip_free(&foil->strip);
   memset(foil, 0, sizeof *foil);
+}
+
+void fg_beam_free(fg_beam *beam) {
+  if (!beam) return;
+  for (size_t i = 0; i < FG_BEAM_SIDES; i++)
+    free(beam->edges[i].stations);
+  memset(beam, 0, sizeof *beam);
 }
 
 void fg_disc_free(fg_disc *disc) {

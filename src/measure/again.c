@@ -28,8 +28,47 @@ void fg_strip_move(fg_strip *strip, fg_point (*move)(const void *user, fg_point 
   }
 }
 
+static fg_status copy_edge(fg_context *ctx, const fg_measure_mover *mover, const fg_beam_edge *from,
+                           fg_beam_edge *to) {
+  *to = *from;
+  to->stations = NULL;
+  FG_TRY(fg_memory_allocate(ctx, from->count, sizeof *to->stations, (void **)&to->stations));
+  for (size_t k = 0; k < from->count; k++) {
+    to->stations[k] = from->stations[k];
+    if (mover->flat) to->stations[k].at = mover->flat(mover->user, from->stations[k].at);
+  }
+  return FG_OK;
+}
+
+static fg_status copy_beams(fg_context *ctx, const fg_measure_mover *mover, const fg_foil *foil,
+                            fg_foil *again) {
+  FG_TRY(fg_memory_allocate(ctx, foil->beam_count, sizeof *again->beams, (void **)&again->beams));
+  for (size_t i = 0; i < foil->beam_count; i++) {
+    fg_beam *beam = &again->beams[again->beam_count++];
+    *beam = foil->beams[i];
+    for (int side = 0; side < FG_BEAM_SIDES; side++)
+      beam->edges[side].stations = NULL;
+    for (int side = 0; side < FG_BEAM_SIDES; side++)
+      FG_TRY(copy_edge(ctx, mover, &foil->beams[i].edges[side], &beam->edges[side]));
+  }
+  return FG_OK;
+}
+
+/* A flat foil is its beams; everything else of it is theirs or the scan's. */
+static fg_status measure_flat(fg_context *ctx, const fg_foil *foil, const fg_design *design,
+                              const fg_measure_mover *mover, fg_foil *again) {
+  *again = *foil;
+  again->beams = NULL;
+  again->beam_count = 0;
+  fg_status status = copy_beams(ctx, mover, foil, again);
+  if (status == FG_OK) status = fg_beams_measure(ctx, design, again);
+  if (status != FG_OK) fg_foil_free(again);
+  return status;
+}
+
 static fg_status measure_foil(fg_context *ctx, const fg_foil *foil, const fg_design *design,
                               const fg_measure_mover *mover, unsigned threads, fg_foil *again) {
+  if (design->form == FG_FORM_CANTILEVER) return measure_flat(ctx, foil, design, mover, again);
   memset(again, 0, sizeof *again);
   memcpy(again->place_mm, foil->place_mm, sizeof again->place_mm);
   again->number = foil->number;
@@ -100,6 +139,6 @@ static fg_point stretch_point(const void *user, const fg_disc *disc, fg_point at
 
 fg_status fg_measure_stretched(fg_context *ctx, const fg_measurement *m, const double factor[2],
                                unsigned threads, fg_measurement *again) {
-  const fg_measure_mover mover = {stretch_strip, stretch_point, factor};
+  const fg_measure_mover mover = {stretch_strip, stretch_point, stretched, factor};
   return fg_measure_again(ctx, m, &mover, threads, again);
 }

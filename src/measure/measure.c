@@ -41,8 +41,17 @@ static fg_status visit_strip(fg_context *ctx, fg_tiles *tiles, void *data) {
   return FG_OK;
 }
 
+static fg_status fail_without_beams(fg_context *ctx, const fg_measurement *m) {
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s: no foil with beams in the picture (%zu other objects or specks): form "
+                 "cantilever is a flat foil with beams of about %g × %g mm that are free at one "
+                 "end; is it that foil, is the design right, or the resolution of %g dpi wrong?",
+                 m->scan, m->specks, m->design.beam_length_mm, m->design.beam_width_mm, m->dpi[0]);
+}
+
 /* Nothing was found: the strip may be too thin for this resolution, if that is the right one. */
 static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
+  if (m->design.form == FG_FORM_CANTILEVER) return fail_without_beams(ctx, m);
   double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
   if (width_px >= STRIP_LEAST_PX)
     return fg_fail(ctx, FG_ERR_DATA,

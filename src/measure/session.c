@@ -8,6 +8,8 @@
 
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/select.h"
+#include "measure/measure_beams.h"
 #include "measure/place.h"
 #include "vision/anchor.h"
 #include "vision/edges.h"
@@ -19,6 +21,8 @@ enum { WORKERS_MAX = 63 };
 #define OBJECT_LEAST 1.0
 /* Of an arc: than this share of its length, or of a radian of it. */
 #define ARC_LEAST 0.25
+/* Of a cantilever: than this share of a beam's length. */
+#define BEAM_LEAST 0.3
 /* A strip without bumps is a foil that failed when its width is the design's within this factor,
  * and some other thing (a scratch, a hair) when it is not. */
 #define WIDTH_FACTOR 1.6
@@ -35,6 +39,7 @@ typedef struct job {
   fg_island island;
   fg_tiles view;
   int64_t origin_px[2];
+  double background; /* form cantilever: level of the scan's border */
 } job;
 
 struct fg_session {
@@ -51,7 +56,8 @@ struct fg_session {
   bool ended;           /* nothing more will be queued */
   fg_status status;
   fg_context context;
-  size_t light, dark; /* islands by polarity */
+  size_t light, dark;  /* islands by polarity */
+  fg_flat_parts parts; /* form cantilever */
   size_t foil_capacity;
 };
 
@@ -148,12 +154,15 @@ static fg_status measure_objects(fg_context *ctx, fg_session *s, const job *j,
   return status;
 }
 
+static double least_object_mm(const fg_design *design) {
+  if (design->form == FG_FORM_CANTILEVER) return BEAM_LEAST * design->beam_length_mm;
+  if (design->form != FG_FORM_ARC) return OBJECT_LEAST * design->bump_radius_mm;
+  return ARC_LEAST * design->overall_radius_mm * fmin(design->subtended_angle_deg * M_PI / 180, 1);
+}
+
 /* Diagonal of the smallest object that is no dust. */
 static double least_object_px(const fg_measurement *m) {
-  double arc_mm =
-      ARC_LEAST * m->design.overall_radius_mm * fmin(m->design.subtended_angle_deg * M_PI / 180, 1);
-  return (m->design.form == FG_FORM_ARC ? arc_mm : OBJECT_LEAST * m->design.bump_radius_mm) *
-         sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
+  return least_object_mm(&m->design) * sqrt(m->dpi[0] * m->dpi[1]) / 25.4;
 }
 
 static void free_job(job *j) {
@@ -178,8 +187,21 @@ static fg_status anchor(fg_context *ctx, fg_session *s, job *j) {
   return FG_OK;
 }
 
+/* Its edges lie where its pixels have them, wherever tiles' corners are: it needs no anchor. */
+static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
+  fg_flat_parts parts = {0};
+  fg_status status = fg_flat_island_measure(ctx, &j->view, &j->island, j->origin_px, s->measurement,
+                                            j->background, s->threads, &parts);
+  pthread_mutex_lock(&s->lock);
+  if (status == FG_OK) status = fg_flat_parts_move(ctx, &parts, &s->parts);
+  pthread_mutex_unlock(&s->lock);
+  fg_flat_parts_free(&parts);
+  return status;
+}
+
 static fg_status measure_island(fg_context *ctx, fg_session *s, job *j) {
   fg_segmentation seg;
+  if (s->measurement->design.form == FG_FORM_CANTILEVER) return measure_flat(ctx, s, j);
   FG_TRY(anchor(ctx, s, j));
   FG_TRY(fg_segment(ctx, &j->view, &j->island, least_object_px(s->measurement), &seg));
   count_specks(s, seg.speck_count);
@@ -275,6 +297,24 @@ static fg_status push_job(fg_context *ctx, fg_session *s, const job *j) {
   return status;
 }
 
+/* Level of the border of what has been read: the median of its outermost blocks. */
+static fg_status find_background(fg_context *ctx, const fg_tiles *tiles, double *level) {
+  int32_t w = tiles->block_columns, h = tiles->received * FG_BLOCKS_PER_TILE;
+  if (h > tiles->block_rows) h = tiles->block_rows;
+  size_t n = 0;
+  double *values;
+  FG_TRY(fg_memory_allocate(ctx, (size_t)w + 2 * (size_t)h, sizeof *values, (void **)&values));
+  for (int32_t x = 0; x < w; x++)
+    values[n++] = (double)fg_tiles_block(tiles, x, 0);
+  for (int32_t y = 0; y < h; y++) {
+    values[n++] = (double)fg_tiles_block(tiles, 0, y);
+    values[n++] = (double)fg_tiles_block(tiles, w - 1, y);
+  }
+  *level = fg_select(values, n, n / 2);
+  free(values);
+  return FG_OK;
+}
+
 /* Hands an island to the workers; dust is counted and forgotten. */
 static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg_island *island) {
   if (hypot(island->width, island->height) * FG_TILE_PX < least_object_px(s->measurement)) {
@@ -284,7 +324,10 @@ static fg_status take_island(fg_context *ctx, fg_session *s, fg_tiles *tiles, fg
     return FG_OK;
   }
   job j = {.island = *island};
-  fg_status status = fg_island_cut(ctx, tiles, &j.island, &j.view, j.origin_px);
+  fg_status status = FG_OK;
+  if (s->measurement->design.form == FG_FORM_CANTILEVER)
+    status = find_background(ctx, tiles, &j.background);
+  if (status == FG_OK) status = fg_island_cut(ctx, tiles, &j.island, &j.view, j.origin_px);
   if (status == FG_OK) status = push_job(ctx, s, &j);
   if (status != FG_OK) free_job(&j);
   return status;
@@ -366,6 +409,8 @@ fg_status fg_session_finish(fg_context *ctx, fg_session *s) {
   s->worker_count = 0;
   if (s->status != FG_OK) return fg_fail(ctx, s->status, "%s", s->context.message);
   s->measurement->light_on_dark = s->light >= s->dark;
+  if (s->measurement->design.form == FG_FORM_CANTILEVER)
+    FG_TRY(fg_flat_foils_assemble(ctx, &s->parts, s->measurement));
   sort_foils(s->measurement);
   return FG_OK;
 }
@@ -382,6 +427,7 @@ void fg_session_free(fg_session *s) {
     free_job(&s->queue[i]);
   free(s->queue);
   fg_islands_free(s->islands);
+  fg_flat_parts_free(&s->parts);
   pthread_mutex_destroy(&s->lock);
   pthread_cond_destroy(&s->changed);
   free(s);

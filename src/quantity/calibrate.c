@@ -33,6 +33,21 @@ static void give_up(fg_foil *foil) {
   foil->bump_count = 0;
 }
 
+static const fg_beam *beam_of(const fg_foil *foil, int number) {
+  for (size_t b = 0; b < foil->beam_count; b++)
+    if (foil->beams[b].number == number) return &foil->beams[b];
+  return NULL;
+}
+
+static void take_beams(const fg_foil *from, const fg_foil *to, double share, size_t source,
+                       fg_foil *foil) {
+  for (size_t b = 0; b < foil->beam_count; b++) {
+    fg_beam *beam = &foil->beams[b];
+    const fg_beam *here = beam_of(from, beam->number), *there = beam_of(to, beam->number);
+    if (here && there) take(FG_QUANTITY_OF_BEAM, here, there, share, beam->calibrated.move[source]);
+  }
+}
+
 static bool is_lost(double value, const double *here, const double *there) {
   return isfinite(value) && !(here && there && isfinite(*there - *here));
 }
@@ -40,6 +55,7 @@ static bool is_lost(double value, const double *here, const double *there) {
 static void take_foil(const fg_foil *from, const fg_foil *to, double share, size_t source,
                       fg_foil *foil) {
   if (foil->flags & FG_FOIL_NOT_MEASURED) return;
+  take_beams(from, to, share, source, foil);
   if (is_lost(foil->overall.radius_mm, &from->overall.radius_mm, &to->overall.radius_mm)) {
     give_up(foil);
     return;
@@ -79,6 +95,9 @@ static void widen_all(fg_measurement *m) {
     for (size_t b = 0; b < foil->bump_count; b++)
       fg_quantity_widen_calibrated(FG_QUANTITY_OF_BUMP, &foil->bumps[b],
                                    &foil->bumps[b].calibrated);
+    for (size_t b = 0; b < foil->beam_count; b++)
+      fg_quantity_widen_calibrated(FG_QUANTITY_OF_BEAM, &foil->beams[b],
+                                   &foil->beams[b].calibrated);
   }
   for (size_t d = 0; d < m->disc_count; d++)
     fg_quantity_widen_calibrated(FG_QUANTITY_OF_DISC, &m->discs[d], &m->discs[d].calibrated);

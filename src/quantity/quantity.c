@@ -10,6 +10,7 @@ const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count) {
   static const fg_quantity_rows *const tables[FG_QUANTITY_OWNERS] = {
       [FG_QUANTITY_OF_FOIL] = &fg_quantities_of_foil,
       [FG_QUANTITY_OF_BUMP] = &fg_quantities_of_bump,
+      [FG_QUANTITY_OF_BEAM] = &fg_quantities_of_beam,
       [FG_QUANTITY_OF_DISC] = &fg_quantities_of_disc,
       [FG_QUANTITY_OF_STRIP] = &fg_quantities_of_strip,
       [FG_QUANTITY_OF_BEARING] = &fg_quantities_of_bearing,
@@ -19,6 +20,10 @@ const fg_quantity *fg_quantities(fg_quantity_owner owner, size_t *count) {
 }
 
 bool fg_quantity_applies(fg_quantity_owner owner, const fg_quantity *quantity, fg_form form) {
+  if (owner == FG_QUANTITY_OF_BEAM || form == FG_FORM_CANTILEVER)
+    return form == FG_FORM_CANTILEVER &&
+           (owner == FG_QUANTITY_OF_BEAM ||
+            (owner == FG_QUANTITY_OF_FOIL && quantity->uses & FG_QUANTITY_OF_FLAT));
   if (form == FG_FORM_ARC) return owner == FG_QUANTITY_OF_FOIL;
   return !(quantity->uses & FG_QUANTITY_OF_ARC);
 }

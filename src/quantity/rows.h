@@ -9,7 +9,7 @@ typedef struct fg_quantity_rows {
   size_t count;
 } fg_quantity_rows;
 
-extern const fg_quantity_rows fg_quantities_of_foil, fg_quantities_of_bump, fg_quantities_of_disc,
+extern const fg_quantity_rows fg_quantities_of_foil, fg_quantities_of_bump, fg_quantities_of_beam, fg_quantities_of_disc,
     fg_quantities_of_strip, fg_quantities_of_bearing;
 
 #define FG_QUANTITY_ROWS(table)                                                                    \

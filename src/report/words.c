@@ -37,6 +37,7 @@ static const fg_flag_words foil_flags[] = {
     {FG_FOIL_UNEQUAL_RESOLUTION, "unequal_resolution",
      "The resolutions along x and y differ: radii may be off by more than their uncertainty. Scan "
      "with equal ones."},
+    {FG_FOIL_BEAM_COUNT, "beam_count", "The number of beams is not the one the design states."},
     {FG_FOIL_LOSSY, "lossy",
      "The scan was compressed with loss (JPEG), which moves edges: the uncertainties are wider by "
      "what that does. Scan to PNG or TIFF."},
@@ -73,6 +74,23 @@ static const fg_flag_words bump_flags[] = {
      "it lies beyond the region that the scanner's model was found in"},
     {0, NULL, NULL},
 };
+
+static const fg_flag_words beam_flags[] = {
+    {FG_BEAM_NOT_FITTED, "not_fitted", "a long edge is not to be seen"},
+    {FG_BEAM_TORN_TIP, "torn_tip", "its end is no straight edge: no length"},
+    {FG_BEAM_NO_FLOOR, "no_floor", "no edge is seen where its root should be: no length"},
+    {FG_BEAM_ONE_FLOOR, "one_floor", "the cut beside it has a floor on one side only"},
+    {FG_BEAM_BENT, "bent", "it bows to one side in the plane of the foil"},
+    {FG_BEAM_OUTLIERS, "outliers", "burr or dust on its edges was left out"},
+    {FG_BEAM_DISTURBED_EDGE, "disturbed_edge", "dust or a burr hides part of an edge"},
+    {FG_BEAM_TOUCHES_BORDER, "touches_border", "the border of the scan cuts what it belongs to"},
+    {FG_BEAM_OUT_OF_TOLERANCE, "out_of_tolerance", "a tolerance is exceeded"},
+    {0, NULL, NULL},
+};
+
+const fg_flag_words *fg_beam_flag_words(void) {
+  return beam_flags;
+}
 
 const fg_flag_words *fg_foil_flag_words(void) {
   return foil_flags;

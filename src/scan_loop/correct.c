@@ -75,7 +75,7 @@ static fg_point correct_point(const void *user, const fg_disc *disc, fg_point at
 
 static fg_status correct(fg_context *ctx, const fg_measurement *m, const correction *c,
                          unsigned threads, fg_measurement *corrected) {
-  const fg_measure_mover mover = {correct_strip, correct_point, c};
+  const fg_measure_mover mover = {.strip = correct_strip, .point = correct_point, .user = c};
   return fg_measure_again(ctx, m, &mover, threads, corrected);
 }
 

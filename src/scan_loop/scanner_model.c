@@ -158,6 +158,13 @@ static fg_status keep_what_pays(fg_context *ctx, const fg_measurement *m,
 fg_status fg_scanner_model_apply(fg_context *ctx, const fg_scanner_model *model, fg_measurement *m,
                                  unsigned threads, char *warning) {
   if (warning) warning[0] = 0;
+  /* Which corrections pay is decided of radii and heights, and beams have none. */
+  if (m->design.form == FG_FORM_CANTILEVER)
+    return fg_fail(ctx, FG_ERR_USAGE,
+                   "%s: a scanner's model corrects bumps and discs, not the beams of form "
+                   "cantilever: measure without --model; what the scanner's scale is wrong by "
+                   "belongs into the design's calibration",
+                   m->scan);
   FG_TRY(check_place(ctx, model, m, warning));
   fg_measurement corrected = {0};
   fg_model_doubt doubt;

@@ -24,65 +24,6 @@ enum { CENTRE_ROUNDS = 3, TRIM_ROUNDS = 4, SECTORS_LEAST = 12, SECTORS_MOST = 64
 /* Clipped light may exceed the end of the scale by this share of the contrast. */
 #define WHITE_DOUBT 0.1
 
-static double *value_of(fg_step_fit *fit, int i) {
-  return &fit->values[i];
-}
-
-/* Mean of the profile on one side's outer half, in counts. */
-static double side_level(const fg_disc_work *work, const fg_profile_bin *bins, int side) {
-  double sum = 0, n = 0, half = 0.5 * work->ring.reach_px;
-  for (size_t i = 0; i < work->bin_count; i++) {
-    if (bins[i].count <= 0 || (side ? bins[i].across_px < half : bins[i].across_px > -half))
-      continue;
-    sum += bins[i].value * bins[i].count;
-    n += bins[i].count;
-  }
-  return n > 0 ? sum / n : NAN;
-}
-
-/* Where the profile crosses the middle of its two levels, nearest to the circle. */
-static double find_crossing(const fg_disc_work *work, const fg_profile_bin *bins, double inside,
-                            double outside) {
-  double middle = 0.5 * (inside + outside), sign = outside > inside ? 1 : -1, best = NAN;
-  const fg_profile_bin *last = NULL;
-  for (size_t i = 0; i < work->bin_count; i++) {
-    if (bins[i].count <= 0) continue;
-    if (last && sign * (last->value - middle) < 0 && sign * (bins[i].value - middle) >= 0) {
-      double at = 0.5 * (last->across_px + bins[i].across_px);
-      if (!(fabs(best) <= fabs(at))) best = at;
-    }
-    last = &bins[i];
-  }
-  return best;
-}
-
-static void start_sector(const fg_disc_work *work, size_t s, unsigned held, fg_step_fit *fit) {
-  const fg_profile_bin *bins = work->bins + s * work->bin_count;
-  double level[2] = {side_level(work, bins, 0), side_level(work, bins, 1)};
-  memset(fit, 0, sizeof *fit);
-  fit->held = held;
-  fit->values[FG_STEP_EDGE] = find_crossing(work, bins, level[0], level[1]);
-  for (int side = 0; side < 2; side++) {
-    *value_of(fit, FG_STEP_INSIDE + side) = fg_edge_light(work->gamma, level[side]);
-    if (!work->white[side]) continue;
-    *value_of(fit, FG_STEP_INSIDE + side) = 255;
-    fit->held |= 1u << (FG_STEP_INSIDE + side) | 1u << (FG_STEP_SLOPE_IN + side);
-  }
-  fit->values[FG_STEP_BLUR] = 1.2;
-  fit->values[FG_STEP_GAMMA] = work->gamma;
-}
-
-/* A side is white when it is so in half of the sectors. */
-static void find_white(fg_disc_work *work) {
-  size_t count = work->ring.sector_count;
-  for (int side = 0; side < 2; side++) {
-    size_t white = 0;
-    for (size_t s = 0; s < count; s++)
-      white += side_level(work, work->bins + s * work->bin_count, side) >= FG_COUNT_WHITE;
-    work->white[side] = 2 * white > count;
-  }
-}
-
 static double step_of(const fg_step_fit *fit) {
   return fit->values[FG_STEP_OUTSIDE] - fit->values[FG_STEP_INSIDE];
 }
@@ -108,13 +49,7 @@ static fg_status drop_weak(fg_context *ctx, fg_disc_work *work) {
 }
 
 static fg_status fit_sectors(fg_context *ctx, fg_disc_work *work, unsigned held) {
-  for (size_t s = 0; s < work->ring.sector_count; s++) {
-    fg_step_fit *fit = &work->sectors[s];
-    start_sector(work, s, held, fit);
-    if (isnan(fit->values[FG_STEP_EDGE])) continue;
-    fg_step_fit_model(work->bins + s * work->bin_count, work->bin_count, fit);
-    fit->good = fit->good && fabs(fit->values[FG_STEP_EDGE]) < work->ring.reach_px;
-  }
+  fg_disc_fit_sectors(work, held);
   return drop_weak(ctx, work);
 }
 
@@ -127,18 +62,7 @@ static fg_status fill_ring(fg_context *ctx, fg_disc_work *work, double reach_px)
   size_t per_sector = (size_t)(circumference / STATION_PX / (double)ring->sector_count) + 1;
   ring->station_count = per_sector * ring->sector_count;
   FG_TRY(fg_ring_collect(ctx, work->tiles, work->shape, ring));
-  free(work->bins);
-  free(work->sectors);
-  work->bins = NULL;
-  work->sectors = NULL;
-  work->bin_count = fg_ring_bin_count(ring->reach_px);
-  FG_TRY(fg_memory_allocate(ctx, ring->sector_count * work->bin_count, sizeof *work->bins,
-                            (void **)&work->bins));
-  FG_TRY(
-      fg_memory_allocate(ctx, ring->sector_count, sizeof *work->sectors, (void **)&work->sectors));
-  fg_ring_stack(ring, work->bins, work->bin_count);
-  find_white(work);
-  return FG_OK;
+  return fg_disc_stack_sectors(ctx, work);
 }
 
 /* One trim: weights of the sectors' points by their distance from the circle. Their rms. */
@@ -229,7 +153,7 @@ static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
   return fit_sectors(ctx, work, held);
 }
 
-static void free_work(fg_disc_work *work) {
+void fg_disc_work_free(fg_disc_work *work) {
   fg_ring_free(&work->ring);
   free(work->bins);
   free(work->sectors);
@@ -244,13 +168,14 @@ fg_status fg_disc_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pix
   FG_TRY_EXIT(fit_sectors(ctx, &work, 1u << FG_STEP_GAMMA));
   FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
 exit:
-  free_work(&work);
+  fg_disc_work_free(&work);
   return status;
 }
 
 /* A doubt of the levels or the tone curve moves the count that is taken for the edge; over the
  * profile's slope there, contrast / (s sqrt(2 pi)), that is a shift. */
-static double level_doubt(const fg_disc_work *work, const fg_tone *tone, const fg_disc_edge *edge) {
+double fg_disc_level_doubt(const fg_disc_work *work, const fg_tone *tone,
+                           const fg_disc_edge *edge) {
   double per_contrast = edge->blur_px * sqrt(2 * M_PI), white = 0, change = 0;
   const double lights[2] = {edge->inside, edge->outside};
   double counts[2];
@@ -272,7 +197,7 @@ static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_disc_candidat
   edge->count = work->ring.station_count;
   FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
   FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
-  edge->level_doubt_px = level_doubt(work, tone, edge);
+  edge->level_doubt_px = fg_disc_level_doubt(work, tone, edge);
   return fg_disc_solve(ctx, work, edge);
 }
 
@@ -283,7 +208,7 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
   memset(edge, 0, sizeof *edge);
   edge->gamma = tone->gamma;
   fg_status status = run(ctx, &work, candidate, tone, edge);
-  free_work(&work);
+  fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;
 }

@@ -64,7 +64,8 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
                                fg_disc_edge *edge);
 void fg_disc_edge_free(fg_disc_edge *edge);
 
-/* One feature at work. */
+/* One edge at work: around a feature, or a straight stretch (vision/line_edge.h), whose ring is
+ * the band about it and whose turn is its length. */
 typedef struct fg_disc_work {
   const fg_tiles *tiles;
   const fg_pixel_shape *shape;
@@ -74,7 +75,19 @@ typedef struct fg_disc_work {
   fg_step_fit *sectors; /* ring.sector_count */
   double gamma;
   bool white[2]; /* inside, outside is at the end of the scale */
+  bool open;     /* it does not close: stretches */
 } fg_disc_work;
+
+void fg_disc_work_free(fg_disc_work *work); /* what was collected and fitted */
+
+/* Mean profiles of the collected pixels, and whether a side is white. disc_sectors.c */
+fg_status fg_disc_stack_sectors(fg_context *ctx, fg_disc_work *work);
+
+/* A step to each profile; `held` as in fg_step_fit. disc_sectors.c */
+void fg_disc_fit_sectors(const fg_disc_work *work, unsigned held);
+
+/* level_doubt_px of the edge, see above. */
+double fg_disc_level_doubt(const fg_disc_work *work, const fg_tone *tone, const fg_disc_edge *edge);
 
 /* The shape of every station from the sectors' fits. disc_shape.c */
 fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge);

@@ -26,11 +26,21 @@ static double sector_angle(const fg_disc_work *work, double sector) {
   return (sector + 0.5) * 2 * M_PI / (double)work->ring.sector_count;
 }
 
+/* Harmonics of a turn; of a stretch that does not close a straight line. */
+static void fill_basis(const course *c, double angle, double row[BASIS_MAX]) {
+  row[0] = 1;
+  if (c->work->open) row[1] = angle / M_PI - 1;
+  for (size_t k = 1; 2 * k < c->unknowns && !c->work->open; k++) {
+    row[2 * k - 1] = cos((double)k * angle);
+    row[2 * k] = sin((double)k * angle);
+  }
+}
+
 static double predict(const course *c, double angle) {
-  double sum = c->coefficients[0];
-  for (size_t k = 1; 2 * k < c->unknowns; k++)
-    sum += c->coefficients[2 * k - 1] * cos((double)k * angle) +
-           c->coefficients[2 * k] * sin((double)k * angle);
+  double row[BASIS_MAX], sum = 0;
+  fill_basis(c, angle, row);
+  for (size_t k = 0; k < c->unknowns; k++)
+    sum += c->coefficients[k] * row[k];
   return sum;
 }
 
@@ -49,11 +59,7 @@ static bool fit_course(course *c, double limit) {
     const fg_step_fit *fit = &c->work->sectors[s];
     double off = deviation(c, s), angle = sector_angle(c->work, (double)s);
     if (!fit->good || fabs(off) > limit) continue;
-    row[0] = 1;
-    for (size_t k = 1; 2 * k < c->unknowns; k++) {
-      row[2 * k - 1] = cos((double)k * angle);
-      row[2 * k] = sin((double)k * angle);
-    }
+    fill_basis(c, angle, row);
     sums.squares += off * off;
     sums.expected += fit->sd[c->value] * fit->sd[c->value];
     sums.count++;
@@ -80,12 +86,19 @@ static double course_at(const course *c, double turn) {
   size_t count = c->work->ring.sector_count;
   double at = turn * (double)count - 0.5;
   double value = predict(c, turn * 2 * M_PI);
+  if (c->work->open) at = fmin(fmax(at, 0), (double)count - 1);
   if (at < 0) at += (double)count;
-  size_t s0 = (size_t)at % count, s1 = (s0 + 1) % count;
+  size_t s0 = (size_t)at % count, s1 = c->work->open && s0 + 1 == count ? s0 : (s0 + 1) % count;
   double share = at - floor(at), d0 = deviation(c, s0), d1 = deviation(c, s1);
   if (isfinite(d0)) value += c->real * (1 - share) * d0;
   if (isfinite(d1)) value += c->real * share * d1;
   return value;
+}
+
+/* How many values of the basis so many good sectors can bear. */
+static size_t count_unknowns(const fg_disc_work *work, size_t good) {
+  if (work->open) return good >= 4 ? 2 : 1;
+  return good >= 24 ? 7 : good >= 14 ? 5 : 3;
 }
 
 fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_disc_edge *edge) {
@@ -95,7 +108,7 @@ fg_status fg_disc_smooth_shape(fg_context *ctx, const fg_disc_work *work, fg_dis
   for (size_t s = 0; s < work->ring.sector_count; s++)
     good += work->sectors[s].good;
   course c = {.work = work, .scratch = scratch};
-  c.unknowns = good >= 24 ? 7 : good >= 14 ? 5 : 3;
+  c.unknowns = count_unknowns(work, good);
   for (c.value = FG_STEP_EDGE; c.value <= FG_STEP_BLUR; c.value++) {
     find_course(&c);
     if (c.value == FG_STEP_EDGE) c.real = 1;

@@ -233,6 +233,7 @@ static void schemas_know_every_row(void **state) {
   } schemas[FG_QUANTITY_OWNERS] = {
       [FG_QUANTITY_OF_FOIL] = {"reports/schema/measure.schema.json", "foil"},
       [FG_QUANTITY_OF_BUMP] = {"reports/schema/measure.schema.json", "bump"},
+      [FG_QUANTITY_OF_BEAM] = {"reports/schema/measure.schema.json", "beam"},
       [FG_QUANTITY_OF_DISC] = {"reports/schema/measure.schema.json", "disc"},
       [FG_QUANTITY_OF_STRIP] = {"reports/schema/measure.schema.json", "strip"},
       [FG_QUANTITY_OF_BEARING] = {"reports/schema/lot.schema.json", "bearing"},

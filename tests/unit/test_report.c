@@ -75,13 +75,16 @@ static void unknown_is_null_and_flags_are_words(void **state) {
 
 static void every_flag_has_its_words(void **state) {
   (void)state;
-  unsigned foil = 0, bump = 0;
+  unsigned foil = 0, bump = 0, beam = 0;
   for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
     foil |= words->flag;
   for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++)
     bump |= words->flag;
   assert_int_equal(foil, FG_FOIL_OVERALL_RADIUS_LEFT | FG_FOIL_RADIUS_LEFT | FG_FOIL_HEIGHT_LEFT |
-                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_LOSSY - 1));
+                             FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_BEAM_COUNT - 1));
+  for (const fg_flag_words *words = fg_beam_flag_words(); words->name; words++)
+    beam |= words->flag;
+  assert_int_equal(beam, 2 * FG_BEAM_TOUCHES_BORDER - 1);
   assert_int_equal(bump, FG_BUMP_BEYOND_MODEL_REGION | (2 * FG_BUMP_LOSSY - 1));
 }
 

@@ -66,6 +66,20 @@ static void put_bump(FILE *out, const scan_lines *scan, const fg_foil *foil, con
   put_end(out, scan, fg_bump_verdict(scan->design, foil, bump), foil);
 }
 
+static void put_beam(FILE *out, const scan_lines *scan, const fg_foil *foil, const fg_beam *beam) {
+  fg_csv_put_text(out, scan->path, NULL);
+  fprintf(out, ",%d,%d", foil->number, beam->number);
+  put_flags(out, fg_beam_flag_words(), fg_beam_flags(scan->design, foil, beam));
+  put_values(out, FG_QUANTITY_OF_BEAM, beam);
+  put_end(out, scan, fg_beam_verdict(scan->design, foil, beam), foil);
+}
+
+static fg_quantity_owner owner_of_lines(fg_form form) {
+  if (form == FG_FORM_DISCS) return FG_QUANTITY_OF_DISC;
+  if (form == FG_FORM_CANTILEVER) return FG_QUANTITY_OF_BEAM;
+  return form == FG_FORM_ARC ? FG_QUANTITY_OF_FOIL : FG_QUANTITY_OF_BUMP;
+}
+
 static size_t count_numbers(fg_quantity_owner owner) {
   size_t count, numbers = 0;
   const fg_quantity *rows = fg_quantities(owner, &count);
@@ -79,7 +93,7 @@ static void put_bare_foil(FILE *out, const scan_lines *scan, const fg_foil *foil
   fg_csv_put_text(out, scan->path, NULL);
   fprintf(out, ",%d,", foil->number);
   put_flags(out, fg_foil_flag_words(), foil->flags);
-  for (size_t i = count_numbers(FG_QUANTITY_OF_BUMP); i-- > 0;)
+  for (size_t i = count_numbers(owner_of_lines(scan->design->form)); i-- > 0;)
     fputc(',', out);
   put_end(out, scan, FG_VERDICT_NOT_MEASURED, foil);
 }
@@ -109,15 +123,11 @@ static fg_status put_arc(fg_context *ctx, FILE *out, const scan_lines *scan, con
   return FG_OK;
 }
 
-static fg_quantity_owner owner_of_lines(fg_form form) {
-  if (form == FG_FORM_DISCS) return FG_QUANTITY_OF_DISC;
-  return form == FG_FORM_ARC ? FG_QUANTITY_OF_FOIL : FG_QUANTITY_OF_BUMP;
-}
-
 static void put_heading(FILE *out, fg_quantity_owner owner) {
   size_t count;
   const fg_quantity *rows = fg_quantities(owner, &count);
   fputs(owner == FG_QUANTITY_OF_BUMP   ? "scan,foil,bump,flags"
+        : owner == FG_QUANTITY_OF_BEAM ? "scan,foil,beam,flags"
         : owner == FG_QUANTITY_OF_FOIL ? "scan,foil,flags"
                                        : "scan,disc,flags",
         out);
@@ -128,19 +138,23 @@ static void put_heading(FILE *out, fg_quantity_owner owner) {
   fputc('\n', out);
 }
 
+static fg_status put_foil(fg_context *ctx, FILE *out, const scan_lines *scan, const fg_foil *foil) {
+  if (scan->design->form == FG_FORM_ARC) return put_arc(ctx, out, scan, foil);
+  if (!foil->bump_count && !foil->beam_count) put_bare_foil(out, scan, foil);
+  for (size_t b = 0; b < foil->bump_count; b++)
+    put_bump(out, scan, foil, &foil->bumps[b]);
+  for (size_t b = 0; b < foil->beam_count; b++)
+    put_beam(out, scan, foil, &foil->beams[b]);
+  return FG_OK;
+}
+
 fg_status fg_report_write_csv(fg_context *ctx, const fg_report *report, FILE *out) {
-  bool arc = report->design->form == FG_FORM_ARC;
   put_heading(out, owner_of_lines(report->design->form));
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     const scan_lines scan = {report->scans[i].path, report->design, measurement};
-    for (size_t k = 0; measurement && k < measurement->foil_count; k++) {
-      const fg_foil *foil = &measurement->foils[k];
-      if (arc) FG_TRY(put_arc(ctx, out, &scan, foil));
-      if (!arc && !foil->bump_count) put_bare_foil(out, &scan, foil);
-      for (size_t b = 0; b < foil->bump_count; b++)
-        put_bump(out, &scan, foil, &foil->bumps[b]);
-    }
+    for (size_t k = 0; measurement && k < measurement->foil_count; k++)
+      FG_TRY(put_foil(ctx, out, &scan, &measurement->foils[k]));
     for (size_t k = 0; measurement && k < measurement->disc_count; k++)
       FG_TRY(put_disc(ctx, out, &scan, &measurement->discs[k]));
   }
@@ -183,8 +197,30 @@ static void put_station(FILE *out, const char *place, const fg_station *station,
     put_point(out, place, station, label, &points[i]);
 }
 
+/* Of a beam's edges. */
+static void put_beam_points(FILE *out, size_t scan, const fg_foil *foil, const fg_beam *beam) {
+  static const char *const sides[FG_BEAM_SIDES] = {"left", "right", "tip", "root_left",
+                                                   "root_right"};
+  for (int side = 0; side < FG_BEAM_SIDES; side++)
+    for (size_t i = 0; i < beam->edges[side].count; i++) {
+      const fg_disc_point *p = &beam->edges[side].stations[i];
+      fprintf(out, "%zu,%d,%d,%s,%zu,%.6f,%.6f", scan, foil->number, beam->number, sides[side], i,
+              p->at.x, p->at.y);
+      put_fixed(out, 1000 * p->u);
+      fprintf(out, ",%d\n", p->used);
+    }
+}
+
+static const char *heading_of_points(fg_form form) {
+  if (form == FG_FORM_DISCS) return "scan,disc,point,x_mm,y_mm,residual_um\n";
+  if (form == FG_FORM_CANTILEVER) return "scan,foil,beam,side,station,x_mm,y_mm,u_um,usable\n";
+  return "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n";
+}
+
 static void put_foil_points(FILE *out, size_t scan, const fg_foil *foil) {
   char place[80];
+  for (size_t b = 0; b < foil->beam_count; b++)
+    put_beam_points(out, scan, foil, &foil->beams[b]);
   for (size_t i = 0; foil->labels && i < foil->strip.count; i++) {
     snprintf(place, sizeof place, "%zu,%d,%zu", scan, foil->number, i);
     put_station(out, place, &foil->strip.stations[i], &foil->labels[i]);
@@ -200,10 +236,7 @@ static void put_disc_points(FILE *out, size_t scan, const fg_disc *disc) {
 }
 
 fg_status fg_report_write_points(fg_context *ctx, const fg_report *report, FILE *out) {
-  fputs(report->design->form == FG_FORM_DISCS
-            ? "scan,disc,point,x_mm,y_mm,residual_um\n"
-            : "scan,foil,station,s_mm,side,x_mm,y_mm,u_um,arc,number,fitted,residual_um\n",
-        out);
+  fputs(heading_of_points(report->design->form), out);
   for (size_t i = 0; i < report->scan_count; i++) {
     const fg_measurement *measurement = report->scans[i].measurement;
     for (size_t k = 0; measurement && k < measurement->foil_count; k++)

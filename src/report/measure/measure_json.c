@@ -204,6 +204,32 @@ static void write_strip(fg_json *json, const fg_strip *strip) {
   fg_json_object_end(json);
 }
 
+static void write_beam(fg_json *json, const fg_design *design, const fg_foil *foil,
+                       const fg_beam *beam) {
+  fg_json_object(json, NULL);
+  fg_json_integer(json, "number", beam->number);
+  write_flags(json, fg_beam_flag_words(), fg_beam_flags(design, foil, beam));
+  fg_json_string(json, "verdict", fg_verdict_word(fg_beam_verdict(design, foil, beam)));
+  fg_json_quantities(json, FG_QUANTITY_OF_BEAM, "", beam, true);
+  fg_json_numbers(json, "root_mm", (const double[]){beam->root_mm.x, beam->root_mm.y}, 2);
+  fg_json_numbers(json, "tip_mm", (const double[]){beam->tip_mm.x, beam->tip_mm.y}, 2);
+  fg_json_object_end(json);
+}
+
+/* What a flat foil has of a foil's values, and its beams. */
+static void write_flat_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
+  size_t count;
+  const fg_quantity *rows = fg_quantities(FG_QUANTITY_OF_FOIL, &count);
+  for (size_t i = 0; i < count; i++)
+    if (fg_quantity_applies(FG_QUANTITY_OF_FOIL, &rows[i], design->form))
+      fg_json_number(json, rows[i].name, fg_quantity_value(&rows[i], foil));
+  fg_json_number(json, "thickness_design_mm", design->thickness_mm);
+  fg_json_array(json, "beams");
+  for (size_t i = 0; i < foil->beam_count; i++)
+    write_beam(json, design, foil, &foil->beams[i]);
+  fg_json_array_end(json);
+}
+
 static void write_foil_values(fg_json *json, const fg_design *design, const fg_foil *foil) {
   bool arc = design->form == FG_FORM_ARC, turns = !(foil->flags & FG_FOIL_NOT_MEASURED) && !arc;
   fg_json_string(json, "orientation", turns ? fg_orientation_word(foil->orientation) : NULL);
@@ -243,8 +269,12 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_verdict(json, decision.outcome.verdict);
   fg_json_string(json, "defect", rejected ? defect : NULL);
-  if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, "bump");
-  write_foil_values(json, design, foil);
+  bool flat = design->form == FG_FORM_CANTILEVER;
+  if (fg_foil_is_measured(foil)) fg_json_judgements(json, &decision, flat ? "beam" : "bump");
+  if (flat)
+    write_flat_values(json, design, foil);
+  else
+    write_foil_values(json, design, foil);
   fg_json_object_end(json);
   fg_decision_free(&decision);
   return FG_OK;

@@ -97,7 +97,7 @@ static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
     if (flags & words->flag) fprintf(out, "  %s", words->name);
 }
 
-static void put_row(FILE *out, const column *columns, size_t count, int number, unsigned flags,
+static void put_row(FILE *out, const column *columns, size_t count, int number,
                     const void *object) {
   fprintf(out, "%4d", number);
   for (size_t i = 0; i < count; i++) {
@@ -108,13 +108,12 @@ static void put_row(FILE *out, const column *columns, size_t count, int number, 
     fputc(' ', out);
     put_number(out, expanded_of(at->row, object), at->decimals, at->u_width);
   }
-  put_flags(out, fg_bump_flag_words(), flags);
-  fputc('\n', out);
 }
 
 static size_t make_columns(const row_set *rows, column *columns) {
   const fg_quantity *shown[FG_QUANTITY_SHOWN_MAX];
-  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, FG_FORM_CLASSICAL, shown);
+  fg_form form = rows->owner == FG_QUANTITY_OF_BEAM ? FG_FORM_CANTILEVER : FG_FORM_CLASSICAL;
+  size_t count = fg_quantity_shown(rows->owner, FG_QUANTITY_ON_TERMINAL, form, shown);
   for (size_t i = 0; i < count; i++) {
     columns[i].row = shown[i];
     measure_column(&columns[i], rows);
@@ -131,9 +130,27 @@ static void put_bumps(FILE *out, const fg_design *design, const fg_foil *foil) {
   put_cells(out, columns, count, false);
   fputs("    ", out);
   put_cells(out, columns, count, true);
-  for (size_t i = 0; i < foil->bump_count; i++)
-    put_row(out, columns, count, foil->bumps[i].number,
-            fg_bump_flags(design, foil, &foil->bumps[i]), &foil->bumps[i]);
+  for (size_t i = 0; i < foil->bump_count; i++) {
+    put_row(out, columns, count, foil->bumps[i].number, &foil->bumps[i]);
+    put_flags(out, fg_bump_flag_words(), fg_bump_flags(design, foil, &foil->bumps[i]));
+    fputc('\n', out);
+  }
+}
+
+static void put_beams(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const row_set rows = {FG_QUANTITY_OF_BEAM, (const char *)foil->beams, foil->beam_count,
+                        sizeof *foil->beams};
+  column columns[FG_QUANTITY_SHOWN_MAX];
+  size_t count = make_columns(&rows, columns);
+  fputs("beam", out);
+  put_cells(out, columns, count, false);
+  fputs("    ", out);
+  put_cells(out, columns, count, true);
+  for (size_t i = 0; i < foil->beam_count; i++) {
+    put_row(out, columns, count, foil->beams[i].number, &foil->beams[i]);
+    put_flags(out, fg_beam_flag_words(), fg_beam_flags(design, foil, &foil->beams[i]));
+    fputc('\n', out);
+  }
 }
 
 static void put_discs(FILE *out, const fg_design *design, const fg_measurement *measurement) {
@@ -145,9 +162,11 @@ static void put_discs(FILE *out, const fg_design *design, const fg_measurement *
   put_cells(out, columns, count, false);
   fputs("    ", out);
   put_cells(out, columns, count, true);
-  for (size_t i = 0; i < measurement->disc_count; i++)
-    put_row(out, columns, count, measurement->discs[i].number,
-            fg_disc_flags(design, &measurement->discs[i]), &measurement->discs[i]);
+  for (size_t i = 0; i < measurement->disc_count; i++) {
+    put_row(out, columns, count, measurement->discs[i].number, &measurement->discs[i]);
+    put_flags(out, fg_bump_flag_words(), fg_disc_flags(design, &measurement->discs[i]));
+    fputc('\n', out);
+  }
 }
 
 /* "overall radius 20.9500 ± 0.0012 mm" */
@@ -209,6 +228,8 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   }
   if (design->form == FG_FORM_ARC)
     fprintf(out, "\nfoil %d: a plain strip\n", foil->number);
+  else if (design->form == FG_FORM_CANTILEVER)
+    fprintf(out, "\nfoil %d: flat, %zu beams\n", foil->number, foil->beam_count);
   else
     fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
             fg_orientation_word(foil->orientation));
@@ -218,7 +239,10 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   put_quantities(out, design, foil);
   put_correction(out, foil);
   put_foil_flags(out, fg_foil_flags_told(design, foil));
-  if (design->form != FG_FORM_ARC) put_bumps(out, design, foil);
+  if (design->form == FG_FORM_CANTILEVER)
+    put_beams(out, design, foil);
+  else if (design->form != FG_FORM_ARC)
+    put_bumps(out, design, foil);
 }
 
 /* An error begins with the scan's name where it knows it. */
@@ -256,7 +280,8 @@ static void put_outcome(FILE *out, const fg_design *design, const fg_report_outc
   if (outcome->exceeded)
     fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit.\n", outcome->exceeded);
   if (outcome->rejected)
-    fprintf(out, "REJECTED: %zu foil(s) with bumps missing or too many.\n", outcome->rejected);
+    fprintf(out, "REJECTED: %zu foil(s) with %s missing or too many.\n", outcome->rejected,
+            design->form == FG_FORM_CANTILEVER ? "beams" : "bumps");
   if (outcome->not_measured)
     fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
   if (outcome->undecided)
@@ -285,6 +310,8 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
   fg_scale_words(fg_report_model(report), &report->design->calibration, scale, sizeof scale);
   if (fg_form_has_bumps(report->design->form))
     fputs("h and C_loc: the foil free, as scanned. C_fit: pressed into the sleeve.\n", out);
+  if (report->design->form == FG_FORM_CANTILEVER)
+    fputs("e_S, e_s: compliance and sagitta against the design's, of L and w as measured.\n", out);
   fprintf(out, "± is U = 2 u (k = 2, about 95 %%).\n%s\n", scale);
   return fg_stream_finish(ctx, out, "the table");
 }

@@ -112,6 +112,11 @@ static bool lacks_bumps(const fg_design *design, const fg_foil *foil) {
   return design->tolerance_count && foil->bump_count < design->bump_count;
 }
 
+/* Of a cantilever. */
+static bool lacks_beams(const fg_design *design, const fg_foil *foil) {
+  return design->tolerance_count && foil->beam_count < design->beam_count;
+}
+
 static bool may_be_hidden(const fg_foil *foil) {
   return foil->flags & FG_FOIL_TOUCHES_BORDER;
 }
@@ -151,6 +156,16 @@ static void name_missing(const fg_design *design, const fg_foil *foil, char *wor
   add_words(words, size, ")");
 }
 
+/* Another number of beams than the design's rejects a foil, unless the border may hide some. */
+static bool is_miscounted(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
+  if (!design->tolerance_count || !design->beam_count || foil->beam_count == design->beam_count)
+    return false;
+  if (lacks_beams(design, foil) && may_be_hidden(foil)) return false;
+  add_words(words, size, "%zu beams where the design has %zu", foil->beam_count,
+            design->beam_count);
+  return true;
+}
+
 bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
   char unused[1];
   if (!words) {
@@ -159,6 +174,7 @@ bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, s
   }
   words[0] = '\0';
   if (!fg_foil_is_measured(foil)) return false;
+  if (design->form == FG_FORM_CANTILEVER) return is_miscounted(design, foil, words, size);
   if (foil->flags & FG_FOIL_MISSING_BUMP || (lacks_bumps(design, foil) && !may_be_hidden(foil))) {
     name_missing(design, foil, words, size);
     return true;
@@ -198,7 +214,20 @@ static void judge_bumps(const fg_tolerance *tolerance, const fg_quantity *row, i
   }
 }
 
+static void judge_beams(const fg_tolerance *tolerance, const fg_quantity *row, const fg_foil *foil,
+                        fg_decision *decision) {
+  for (size_t i = 0; i < foil->beam_count; i++)
+    take(decision, judge(tolerance, row, &foil->beams[i], foil->beams[i].number));
+}
+
+static bool is_sized(const fg_beam *beam) {
+  return isfinite(beam->length_mm) && isfinite(beam->width_mm);
+}
+
 static bool is_whole(const fg_design *design, const fg_foil *foil) {
+  for (size_t i = 0; i < foil->beam_count; i++)
+    if (!is_sized(&foil->beams[i])) return false;
+  if (lacks_beams(design, foil) && may_be_hidden(foil)) return false;
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].flags & FG_BUMP_NOT_FITTED) return false;
   return !(lacks_bumps(design, foil) && may_be_hidden(foil));
@@ -215,8 +244,8 @@ static void judge_whole(const fg_design *design, const fg_foil *foil, fg_report_
 
 fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil *foil,
                          fg_decision *decision) {
-  int last = last_bump_number(design, foil);
-  FG_TRY(allocate(ctx, design->tolerance_count, (size_t)last + 1, decision));
+  int last = fg_form_has_bumps(design->form) ? last_bump_number(design, foil) : 0;
+  FG_TRY(allocate(ctx, design->tolerance_count, (size_t)last + foil->beam_count + 1, decision));
   if (!fg_foil_is_measured(foil)) {
     add_unmeasured(&decision->outcome);
     return FG_OK;
@@ -227,6 +256,8 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
     if (row) take(decision, judge(tolerance, row, foil, 0));
     row = fg_quantity_find(FG_QUANTITY_OF_BUMP, tolerance->quantity);
     if (row) judge_bumps(tolerance, row, last, foil, decision);
+    row = fg_quantity_find(FG_QUANTITY_OF_BEAM, tolerance->quantity);
+    if (row) judge_beams(tolerance, row, foil, decision);
   }
   judge_whole(design, foil, &decision->outcome);
   return FG_OK;
@@ -309,6 +340,18 @@ unsigned fg_bump_flags(const fg_design *design, const fg_foil *foil, const fg_bu
   return reported(bump->flags, fg_bump_verdict(design, foil, bump));
 }
 
+fg_verdict fg_beam_verdict(const fg_design *design, const fg_foil *foil, const fg_beam *beam) {
+  if (!fg_foil_is_measured(foil)) return FG_VERDICT_NOT_MEASURED;
+  fg_verdict verdict = object_verdict(design, FG_QUANTITY_OF_BEAM, beam);
+  return is_sized(beam) ? verdict : fg_verdict_worse(verdict, FG_VERDICT_NOT_MEASURED);
+}
+
+unsigned fg_beam_flags(const fg_design *design, const fg_foil *foil, const fg_beam *beam) {
+  unsigned flags = beam->flags & ~(unsigned)FG_BEAM_OUT_OF_TOLERANCE;
+  bool out = fg_beam_verdict(design, foil, beam) == FG_VERDICT_FAIL;
+  return out ? flags | FG_BEAM_OUT_OF_TOLERANCE : flags;
+}
+
 unsigned fg_disc_flags(const fg_design *design, const fg_disc *disc) {
   return reported(disc->flags, object_verdict(design, FG_QUANTITY_OF_DISC, disc));
 }
@@ -370,8 +413,10 @@ size_t fg_report_of_bearing(const fg_design *design, char *names, size_t size) {
 }
 
 fg_status fg_report_check_tolerances(fg_context *ctx, const fg_design *design) {
-  bool discs = design->form == FG_FORM_DISCS;
-  fg_quantity_owner part = discs ? FG_QUANTITY_OF_DISC : FG_QUANTITY_OF_BUMP;
+  bool discs = design->form == FG_FORM_DISCS, beams = design->form == FG_FORM_CANTILEVER;
+  fg_quantity_owner part = discs   ? FG_QUANTITY_OF_DISC
+                           : beams ? FG_QUANTITY_OF_BEAM
+                                   : FG_QUANTITY_OF_BUMP;
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const char *quantity = design->tolerances[i].quantity;
     if (has_quantity(part, design->form, quantity)) continue;

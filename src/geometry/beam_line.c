@@ -1,0 +1,346 @@
+#include "geometry/beam_line.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/correlation.h"
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "core/spread.h"
+
+enum { ROUNDS = 6, LEAST_STATIONS = 4, BLOCK = 64, BLOCKS_LEAST = 6 };
+/* Stations further off than so many robust deviations, and at least so far, are left out. */
+#define OUTLIER_DEVIATIONS 4.5
+#define OUTLIER_LEAST_MM   0.0004
+/* Long stretches scatter more than the lags tell when their ratio is above this. */
+#define LONG_RANGE_LEAST 1.5
+/* The shape of the edge was fitted to the same pixels (geometry/disc_fit.c). */
+#define SHAPE_VARIANCE 1.12
+
+static const fg_disc_point *station(const fg_beam_line *line, size_t i) {
+  return &line->edge->stations[i];
+}
+
+static double place_along(const fg_beam_line *line, fg_point p) {
+  return line->along.x * (p.x - line->at.x) + line->along.y * (p.y - line->at.y);
+}
+
+/* The void is to the left as seen of a rim's way: to the right where y points up. */
+static double place_across(const fg_beam_line *line, fg_point p) {
+  return line->along.y * (p.x - line->at.x) - line->along.x * (p.y - line->at.y);
+}
+
+static void fit_once(fg_beam_line *line) {
+  double n = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
+  fg_point o = station(line, 0)->at;
+  for (size_t i = 0; i < line->edge->count; i++) {
+    if (isnan(line->across[i])) continue;
+    double x = station(line, i)->at.x - o.x, y = station(line, i)->at.y - o.y;
+    n++;
+    sx += x;
+    sy += y;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  sx /= n;
+  sy /= n;
+  double angle = 0.5 * atan2(2 * (xy / n - sx * sy), xx / n - sx * sx - yy / n + sy * sy);
+  fg_point last = station(line, line->edge->count - 1)->at;
+  line->at = (fg_point){o.x + sx, o.y + sy};
+  line->along = (fg_point){cos(angle), sin(angle)};
+  if (line->along.x * (last.x - o.x) + line->along.y * (last.y - o.y) < 0)
+    line->along = (fg_point){-line->along.x, -line->along.y};
+}
+
+/* Usable stations within the limit of where the fit has them. */
+static void take_within(fg_beam_line *line, const double *off, double limit) {
+  double squares = 0;
+  line->used = 0;
+  for (size_t i = 0; i < line->edge->count; i++) {
+    bool use = station(line, i)->used && fabs(off[i]) <= limit;
+    line->across[i] = use ? off[i] : NAN;
+    line->used += use;
+    squares += use ? off[i] * off[i] : 0;
+  }
+  line->rms_mm = sqrt(squares / (double)line->used);
+}
+
+static double find_limit(const fg_beam_line *line, const double *off, double *scratch) {
+  size_t n = 0;
+  for (size_t i = 0; i < line->edge->count; i++)
+    if (station(line, i)->used) scratch[n++] = fabs(off[i]);
+  return fmax(fg_spread_limit(scratch, n, OUTLIER_DEVIATIONS), OUTLIER_LEAST_MM);
+}
+
+/* The circle of a round floor about its apex: q = a + b cos f + c sin f of a station's distance
+ * from a centre, f its direction from there against the axis. Its apex lies at a + b. */
+typedef struct apex {
+  fg_circle circle;
+  fg_point axis; /* away from the tip */
+} apex;
+
+static void fit_apex(fg_beam_line *line, apex *a, double *off) {
+  fg_normal_equations system;
+  double x[FG_SMALL_MAX] = {0};
+  fg_normal_clear(&system, 3);
+  for (size_t i = 0; i < line->edge->count; i++) {
+    double dx = station(line, i)->at.x - a->circle.x, dy = station(line, i)->at.y - a->circle.y;
+    double r = hypot(dx, dy), c = (dx * a->axis.x + dy * a->axis.y) / r;
+    double s = (dy * a->axis.x - dx * a->axis.y) / r;
+    if (!isnan(line->across[i])) fg_normal_add(&system, (double[]){1, c, s}, r, 1);
+  }
+  fg_normal_solve(&system, 1e-12, x, NULL);
+  for (size_t i = 0; i < line->edge->count; i++) {
+    double dx = station(line, i)->at.x - a->circle.x, dy = station(line, i)->at.y - a->circle.y;
+    double r = hypot(dx, dy), c = (dx * a->axis.x + dy * a->axis.y) / r;
+    double s = (dy * a->axis.x - dx * a->axis.y) / r;
+    off[i] = -(r - x[0] - x[1] * c - x[2] * s);
+  }
+  /* c is b's and s is c's part of the centre's move, so the circle's own apex is at the sum. */
+  line->at = (fg_point){a->circle.x + (x[0] + x[1]) * a->axis.x - x[2] * a->axis.y,
+                        a->circle.y + (x[0] + x[1]) * a->axis.y + x[2] * a->axis.x};
+  line->along = (fg_point){-a->axis.y, a->axis.x};
+}
+
+static fg_status start_apex(fg_context *ctx, const fg_beam_line *line, fg_point axis, apex *a) {
+  size_t n = line->edge->count;
+  fg_point *points;
+  size_t used = 0;
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *points, (void **)&points));
+  for (size_t i = 0; i < n; i++)
+    if (station(line, i)->used) points[used++] = station(line, i)->at;
+  fg_status status = fg_circle_estimate(ctx, points, NULL, used, &a->circle);
+  a->axis = (fg_point){-axis.x, -axis.y};
+  free(points);
+  return status;
+}
+
+static fg_status fit_rounds(fg_context *ctx, fg_point axis, double *off, double *scratch,
+                            fg_beam_line *line) {
+  apex a;
+  if (line->edge->round) FG_TRY(start_apex(ctx, line, axis, &a));
+  for (int round = 0; round < ROUNDS; round++) {
+    if (line->edge->round)
+      fit_apex(line, &a, off);
+    else
+      fit_once(line);
+    for (size_t i = 0; i < line->edge->count && !line->edge->round; i++)
+      off[i] = place_across(line, station(line, i)->at);
+    if (round + 1 < ROUNDS) take_within(line, off, find_limit(line, off, scratch));
+    if (line->used < LEAST_STATIONS || 2 * line->used < line->edge->count)
+      return fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",
+                     line->used, line->edge->count);
+  }
+  for (size_t i = 0; i < line->edge->count; i++)
+    if (!isnan(line->across[i])) line->across[i] = off[i];
+  return FG_OK;
+}
+
+fg_status fg_beam_line_fit(fg_context *ctx, const fg_beam_edge *edge, fg_point axis,
+                           fg_beam_line *line) {
+  double *block = NULL;
+  fg_status status = FG_OK;
+  *line = (fg_beam_line){.edge = edge, .spread = 1};
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *line->across, (void **)&line->across));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, 2 * sizeof *block, (void **)&block));
+  take_within(line, line->across, INFINITY); /* across is all 0: what is usable */
+  line->usable = line->used;
+  if (line->usable < LEAST_STATIONS || 2 * line->usable < edge->count)
+    status = fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",
+                     line->usable, edge->count);
+  else
+    status = fit_rounds(ctx, axis, block, block + edge->count, line);
+exit:
+  free(block);
+  if (status != FG_OK) fg_beam_line_free(line);
+  return status;
+}
+
+void fg_beam_line_free(fg_beam_line *line) {
+  free(line->across);
+  *line = (fg_beam_line){0};
+}
+
+/* Weights whose sum with the stations' places across is what is asked. */
+typedef struct asked {
+  const fg_beam_line *line;
+  double half; /* length */
+  double n, xx, mean_square, qq;
+} asked;
+
+static double relative_along(const asked *a, size_t i) {
+  return place_along(a->line, station(a->line, i)->at) / a->half;
+}
+
+static void prepare(const fg_beam_line *line, asked *a) {
+  double low = INFINITY, high = -INFINITY;
+  *a = (asked){.line = line, .half = 1};
+  for (size_t i = 0; i < line->edge->count; i++) {
+    if (isnan(line->across[i])) continue;
+    low = fmin(low, relative_along(a, i));
+    high = fmax(high, relative_along(a, i));
+  }
+  a->half = 0.5 * (high - low);
+  for (size_t i = 0; i < line->edge->count; i++) {
+    if (isnan(line->across[i])) continue;
+    double x = relative_along(a, i);
+    a->n++;
+    a->xx += x * x;
+  }
+  a->mean_square = a->xx / a->n;
+  for (size_t i = 0; i < line->edge->count; i++) {
+    if (isnan(line->across[i])) continue;
+    double x = relative_along(a, i), q = x * x - a->mean_square;
+    a->qq += q * q;
+  }
+}
+
+static double weight_of(const asked *a, size_t i, fg_beam_ask ask, double along_mm) {
+  double x = relative_along(a, i);
+  if (isnan(a->line->across[i])) return 0;
+  if (ask == FG_BEAM_PLACE) return 1 / a->n + along_mm / a->half * x / a->xx;
+  if (ask == FG_BEAM_SLOPE) return x / (a->xx * a->half);
+  return (x * x - a->mean_square) / a->qq;
+}
+
+double fg_beam_line_parabola(const fg_beam_line *line) {
+  asked a;
+  double sum = 0;
+  prepare(line, &a);
+  for (size_t i = 0; i < line->edge->count; i++)
+    if (!isnan(line->across[i])) sum += weight_of(&a, i, FG_BEAM_PARABOLA, 0) * line->across[i];
+  return sum;
+}
+
+/* The apex of a round floor takes a row of (J'J)^-1 J' for a + b of fit_apex. */
+static bool weigh_apex(const fg_beam_line *line, double *weights) {
+  fg_normal_equations system;
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], half = 0;
+  fg_normal_clear(&system, 3);
+  for (size_t i = 0; i < line->edge->count; i++)
+    half = fmax(half, fabs(place_along(line, station(line, i)->at)));
+  for (int fill = 0; fill < 2; fill++) {
+    for (size_t i = 0; i < line->edge->count; i++) {
+      double s = place_along(line, station(line, i)->at) / half;
+      const double row[3] = {1, s, s * s};
+      weights[i] = 0;
+      if (isnan(line->across[i])) continue;
+      if (!fill) fg_normal_add(&system, row, 0, 1);
+      for (int k = 0; k < 3 && fill; k++)
+        weights[i] += inverse[0][k] * row[k];
+    }
+    if (!fill && !fg_normal_solve(&system, 0, x, inverse)) return false;
+  }
+  return true;
+}
+
+static double sum_covariance(const double *weights, size_t n, const fg_beam_noise *noise) {
+  double sum = 0;
+  for (size_t lag = 0; lag < noise->lags; lag++) {
+    double products = 0;
+    for (size_t i = 0; i + lag < n; i++)
+      products += weights[i] * weights[i + lag];
+    sum += (lag ? 2 : 1) * noise->covariance[lag] * products;
+  }
+  return fmax(sum, 0);
+}
+
+fg_status fg_beam_line_variance(fg_context *ctx, const fg_beam_line *line,
+                                const fg_beam_noise *noise, fg_beam_ask ask, double along_mm,
+                                double *variance) {
+  double *weights;
+  asked a;
+  FG_TRY(fg_memory_allocate(ctx, line->edge->count, sizeof *weights, (void **)&weights));
+  prepare(line, &a);
+  for (size_t i = 0; i < line->edge->count; i++)
+    weights[i] = weight_of(&a, i, ask, along_mm);
+  bool good = !line->edge->round || weigh_apex(line, weights);
+  *variance = good ? SHAPE_VARIANCE * (1 + line->edge->loss_share) * line->spread *
+                         sum_covariance(weights, line->edge->count, noise)
+                   : NAN;
+  free(weights);
+  return FG_OK;
+}
+
+/* A long edge without its line and its parabola: what is left is scatter. */
+static double scatter_at(const asked *a, size_t i, double parabola) {
+  double x = relative_along(a, i);
+  return a->line->across[i] - parabola * (x * x - a->mean_square);
+}
+
+typedef struct sums {
+  double products[FG_BEAM_LAGS], pairs[FG_BEAM_LAGS];
+  double block_squares, blocks, block_stations;
+} sums;
+
+static void add_block(const double *values, size_t n, size_t first, sums *s) {
+  double sum = 0, used = 0;
+  for (size_t i = first; i < first + BLOCK && i < n; i++) {
+    if (isnan(values[i])) continue;
+    sum += values[i];
+    used++;
+  }
+  if (2 * used < BLOCK) return;
+  s->block_squares += sum * sum / (used * used);
+  s->block_stations += used;
+  s->blocks++;
+}
+
+static void add_edge(const fg_beam_line *line, double *values, sums *s) {
+  asked a;
+  size_t n = line->edge->count;
+  double parabola = fg_beam_line_parabola(line);
+  prepare(line, &a);
+  for (size_t i = 0; i < n; i++)
+    values[i] = scatter_at(&a, i, parabola);
+  for (size_t lag = 0; lag < FG_BEAM_LAGS && lag < n; lag++)
+    for (size_t i = 0; i + lag < n; i++) {
+      if (isnan(values[i]) || isnan(values[i + lag])) continue;
+      s->products[lag] += values[i] * values[i + lag];
+      s->pairs[lag]++;
+    }
+  for (size_t first = 0; first < n; first += BLOCK)
+    add_block(values, n, first, s);
+}
+
+/* By what the means over blocks scatter more than the lags alone would have it. */
+static double compare_blocks(const sums *s, const fg_beam_noise *noise) {
+  double expected = 0, n = s->block_stations / s->blocks;
+  if (s->blocks < BLOCKS_LEAST) return 1;
+  for (size_t lag = 0; lag < noise->lags && (double)lag < n; lag++)
+    expected += (lag ? 2 : 1) * noise->covariance[lag] * (n - (double)lag) / (n * n);
+  double ratio = s->block_squares / s->blocks / expected;
+  return ratio > LONG_RANGE_LEAST ? ratio : 1;
+}
+
+static double step_of(const fg_beam_line *line) {
+  size_t n = line->edge->count;
+  fg_point a = station(line, 0)->at, b = station(line, n - 1)->at;
+  return hypot(b.x - a.x, b.y - a.y) / (double)(n - 1);
+}
+
+fg_status fg_beam_noise_find(fg_context *ctx, const fg_beam_line *left, const fg_beam_line *right,
+                             fg_beam_noise *noise) {
+  sums s = {0};
+  size_t n = left->edge->count > right->edge->count ? left->edge->count : right->edge->count;
+  double *values;
+  *noise = (fg_beam_noise){.long_range = 1, .step_mm = 0.5 * (step_of(left) + step_of(right))};
+  FG_TRY(fg_memory_allocate(ctx, n, sizeof *values, (void **)&values));
+  add_edge(left, values, &s);
+  add_edge(right, values, &s);
+  free(values);
+  noise->lags = fg_correlation_lags(s.products, s.pairs, FG_BEAM_LAGS);
+  for (size_t lag = 0; lag < noise->lags; lag++)
+    noise->covariance[lag] = s.products[lag] / s.pairs[lag];
+  noise->long_range = compare_blocks(&s, noise);
+  return FG_OK;
+}
+
+double fg_beam_noise_length(const fg_beam_noise *noise) {
+  double integral = 1;
+  for (size_t lag = 1; lag < noise->lags; lag++)
+    integral += 2 * noise->covariance[lag] / noise->covariance[0];
+  return integral * noise->step_mm;
+}

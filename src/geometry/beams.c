@@ -1,0 +1,336 @@
+/* Beams of a flat foil from their edges: size, uncertainty, numbers, flags. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "geometry/beam_line.h"
+#include "geometry/beam_numbers.h"
+
+/* More than this share of stations left out is said. */
+#define OUTLIER_SHARE   0.01
+#define DISTURBED_SHARE 0.05
+/* A bow counts above so many of its u, and this share of the length. */
+#define BENT_DEVIATIONS 4.0
+#define BENT_SHARE      0.002
+/* A short edge scatters more than the long ones when its variance is above so many times theirs. */
+#define SPREAD_LEAST 2.0
+/* A tip is torn when it scatters so many times more than the long edges, and by more than this
+ * share of the width. */
+#define TORN_SPREAD 9.0
+#define TORN_SHARE  0.002
+/* Neighbouring stations of a rough edge err alike over more than so many steps. */
+#define ROUGH_STEPS 3.0
+
+/* One beam at work. */
+typedef struct beam_work {
+  fg_beam *beam;
+  fg_beam_line lines[FG_BEAM_SIDES];
+  bool fitted[FG_BEAM_SIDES];
+  fg_beam_noise noise;
+  fg_point root, axis; /* a point of the axis and its direction, towards the tip */
+  double length;
+} beam_work;
+
+static void forget_size(fg_beam *beam) {
+  beam->length_mm = beam->u_length_mm = beam->width_mm = beam->u_width_mm = NAN;
+  beam->taper_um_per_mm = beam->u_taper_um_per_mm = beam->bow_um = beam->u_bow_um = NAN;
+  beam->rms_um = NAN;
+}
+
+static fg_point middle(fg_point a, fg_point b) {
+  return (fg_point){0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
+}
+
+/* Along the axis, and across it to the left as seen with the tip up. */
+static double along_axis(const beam_work *w, fg_point p) {
+  return w->axis.x * (p.x - w->root.x) + w->axis.y * (p.y - w->root.y);
+}
+
+static double left_of_axis(const beam_work *w, fg_point p) {
+  return w->axis.y * (p.x - w->root.x) - w->axis.x * (p.y - w->root.y);
+}
+
+static fg_point on_axis(const beam_work *w, double along, double left) {
+  return (fg_point){w->root.x + along * w->axis.x + left * w->axis.y,
+                    w->root.y + along * w->axis.y - left * w->axis.x};
+}
+
+/* How far a long edge's line lies to the left of the axis at a place along it, and how far along
+ * itself that is. */
+static double edge_at(const beam_work *w, fg_beam_side side, double along, double *on_line) {
+  const fg_beam_line *line = &w->lines[side];
+  double forward = w->axis.x * line->along.x + w->axis.y * line->along.y;
+  *on_line = (along - along_axis(w, line->at)) / forward;
+  fg_point p = {line->at.x + *on_line * line->along.x, line->at.y + *on_line * line->along.y};
+  return left_of_axis(w, p);
+}
+
+static void find_axis(beam_work *w) {
+  const fg_beam_line *l = &w->lines[FG_BEAM_LEFT], *r = &w->lines[FG_BEAM_RIGHT];
+  fg_point sum = {l->along.x - r->along.x, l->along.y - r->along.y};
+  double size = hypot(sum.x, sum.y);
+  w->axis = (fg_point){sum.x / size, sum.y / size};
+  w->root = middle(l->at, r->at);
+  double on_line;
+  double off =
+      0.5 * (edge_at(w, FG_BEAM_LEFT, 0, &on_line) + edge_at(w, FG_BEAM_RIGHT, 0, &on_line));
+  w->root = on_axis(w, 0, off);
+}
+
+/* A floor's place: the middle of its straight line, or the apex. */
+static fg_point floor_place(const beam_work *w, fg_beam_side side) {
+  const fg_beam_line *line = &w->lines[side];
+  if (line->edge->round) return line->at;
+  const fg_disc_point *s = line->edge->stations;
+  fg_point mid = middle(s[0].at, s[line->edge->count - 1].at);
+  double t = line->along.x * (mid.x - line->at.x) + line->along.y * (mid.y - line->at.y);
+  return (fg_point){line->at.x + t * line->along.x, line->at.y + t * line->along.y};
+}
+
+/* Where the root line crosses the axis, and the share that each floor has in it. */
+static double find_root(const beam_work *w, double share[2]) {
+  double along[2], left[2];
+  for (int i = 0; i < 2; i++) {
+    share[i] = w->fitted[FG_BEAM_ROOT_LEFT + i];
+    if (!w->fitted[FG_BEAM_ROOT_LEFT + i]) continue;
+    fg_point p = floor_place(w, FG_BEAM_ROOT_LEFT + i);
+    along[i] = along_axis(w, p);
+    left[i] = left_of_axis(w, p);
+  }
+  if (!w->fitted[FG_BEAM_ROOT_LEFT]) return along[1];
+  if (!w->fitted[FG_BEAM_ROOT_RIGHT]) return along[0];
+  share[0] = -left[1] / (left[0] - left[1]);
+  share[1] = 1 - share[0];
+  return share[0] * along[0] + share[1] * along[1];
+}
+
+/* Where the tip's line crosses the axis, and where that is along the line. */
+static double find_tip(const beam_work *w, double *on_line) {
+  const fg_beam_line *t = &w->lines[FG_BEAM_TIP];
+  double rate = w->axis.y * t->along.x - w->axis.x * t->along.y;
+  *on_line = -left_of_axis(w, t->at) / rate;
+  fg_point p = {t->at.x + *on_line * t->along.x, t->at.y + *on_line * t->along.y};
+  return along_axis(w, p);
+}
+
+static double square(double x) {
+  return x * x;
+}
+
+static fg_status find_length(fg_context *ctx, beam_work *w) {
+  fg_beam *beam = w->beam;
+  double share[2], on_tip, variance, split = 0, doubt = 0, sum;
+  double root = find_root(w, share), tip = find_tip(w, &on_tip);
+  const fg_beam_edge *edges = beam->edges;
+  beam->length_mm = tip - root;
+  FG_TRY(
+      fg_beam_line_variance(ctx, &w->lines[FG_BEAM_TIP], &w->noise, FG_BEAM_PLACE, on_tip, &sum));
+  for (int i = 0; i < 2; i++) {
+    fg_beam_side side = FG_BEAM_ROOT_LEFT + i;
+    if (share[i] == 0) continue;
+    FG_TRY(fg_beam_line_variance(ctx, &w->lines[side], &w->noise, FG_BEAM_PLACE, 0, &variance));
+    sum += square(share[i]) * variance;
+    split += share[i] * edges[side].split_mm;
+    doubt += share[i] * edges[side].doubt_mm;
+  }
+  /* What moves an edge towards the void makes the beam longer at its tip and shorter at its root.
+   */
+  beam->u_length_mm = sqrt(sum + square(edges[FG_BEAM_TIP].split_mm - split) +
+                           square(edges[FG_BEAM_TIP].doubt_mm - doubt));
+  w->root = on_axis(w, root, 0);
+  w->length = beam->length_mm;
+  return FG_OK;
+}
+
+/* Without tip or floor the axis ends where the long edges do. */
+static void take_length_of_edges(beam_work *w) {
+  const fg_beam_edge *edge = &w->beam->edges[FG_BEAM_LEFT];
+  fg_point from = edge->stations[0].at, to = edge->stations[edge->count - 1].at;
+  w->length = along_axis(w, to) - along_axis(w, from);
+  w->root = on_axis(w, along_axis(w, from), 0);
+}
+
+static fg_status find_width(fg_context *ctx, beam_work *w) {
+  fg_beam *beam = w->beam;
+  double at[2], sum = 0, slopes = 0, variance, left[2], root[2], tip[2], doubt = 0, split = 0, on;
+  for (int i = 0; i < 2; i++) {
+    left[i] = edge_at(w, FG_BEAM_LEFT + i, 0.5 * w->length, &at[i]);
+    root[i] = edge_at(w, FG_BEAM_LEFT + i, 0, &on);
+    tip[i] = edge_at(w, FG_BEAM_LEFT + i, w->length, &on);
+    const fg_beam_line *line = &w->lines[FG_BEAM_LEFT + i];
+    FG_TRY(fg_beam_line_variance(ctx, line, &w->noise, FG_BEAM_PLACE, at[i], &variance));
+    sum += w->noise.long_range * variance;
+    FG_TRY(fg_beam_line_variance(ctx, line, &w->noise, FG_BEAM_SLOPE, 0, &variance));
+    slopes += w->noise.long_range * variance;
+    doubt += beam->edges[FG_BEAM_LEFT + i].doubt_mm;
+    split += beam->edges[FG_BEAM_LEFT + i].split_mm;
+  }
+  beam->width_mm = left[0] - left[1];
+  beam->u_width_mm = sqrt(sum + square(doubt) + square(split));
+  beam->taper_um_per_mm = 1000 * (root[0] - root[1] - tip[0] + tip[1]) / w->length;
+  beam->u_taper_um_per_mm = 1000 * sqrt(slopes);
+  beam->root_mm = on_axis(w, 0, 0);
+  beam->tip_mm = on_axis(w, w->length, 0);
+  beam->corners_mm[0] = on_axis(w, 0, root[0]);
+  beam->corners_mm[1] = on_axis(w, w->length, tip[0]);
+  beam->corners_mm[2] = on_axis(w, w->length, tip[1]);
+  beam->corners_mm[3] = on_axis(w, 0, root[1]);
+  return FG_OK;
+}
+
+/* Both long edges bow alike: the void is to the left of one and to the right of the other. */
+static fg_status find_bow(fg_context *ctx, beam_work *w) {
+  double variance, sum = 0, parabola[2];
+  for (int i = 0; i < 2; i++) {
+    const fg_beam_line *line = &w->lines[FG_BEAM_LEFT + i];
+    parabola[i] = fg_beam_line_parabola(line);
+    FG_TRY(fg_beam_line_variance(ctx, line, &w->noise, FG_BEAM_PARABOLA, 0, &variance));
+    sum += w->noise.long_range * variance;
+  }
+  w->beam->bow_um = 500 * (parabola[0] - parabola[1]);
+  w->beam->u_bow_um = 500 * sqrt(sum);
+  double size = fabs(w->beam->bow_um);
+  if (size > BENT_DEVIATIONS * w->beam->u_bow_um && size > 1000 * BENT_SHARE * w->length)
+    w->beam->flags |= FG_BEAM_BENT;
+  return FG_OK;
+}
+
+static void count_points(beam_work *w) {
+  double squares = 0, left_out = 0, stations = 0, unusable = 0, all = 0;
+  for (int i = 0; i < FG_BEAM_SIDES; i++) {
+    const fg_beam_line *line = &w->lines[i];
+    if (!w->fitted[i]) continue;
+    left_out += (double)(line->usable - line->used);
+    unusable += (double)(line->edge->count - line->usable);
+    all += (double)line->edge->count;
+    if (i > FG_BEAM_RIGHT) continue;
+    squares += square(line->rms_mm) * (double)line->used;
+    stations += (double)line->used;
+  }
+  w->beam->rms_um = 1000 * sqrt(squares / stations);
+  w->beam->points = (size_t)stations;
+  if (left_out > OUTLIER_SHARE * all) w->beam->flags |= FG_BEAM_OUTLIERS;
+  if (unusable > DISTURBED_SHARE * all) w->beam->flags |= FG_BEAM_DISTURBED_EDGE;
+}
+
+/* A short edge that scatters more than the long ones has what it scatters more in its variance. */
+static void find_spread(beam_work *w) {
+  for (int i = FG_BEAM_TIP; i < FG_BEAM_SIDES; i++) {
+    fg_beam_line *line = &w->lines[i];
+    if (!w->fitted[i]) continue;
+    double freedom = (double)line->used - (line->edge->round ? 3 : 2);
+    if (freedom < 1) continue;
+    double ratio = square(line->rms_mm) * (double)line->used / freedom / w->noise.covariance[0];
+    line->spread = ratio > SPREAD_LEAST ? ratio : 1;
+  }
+}
+
+static fg_status fit_lines(fg_context *ctx, beam_work *w) {
+  for (int i = 0; i < FG_BEAM_SIDES; i++) {
+    const fg_beam_edge *edge = &w->beam->edges[i];
+    if (!edge->count) continue;
+    fg_status status = fg_beam_line_fit(ctx, edge, w->axis, &w->lines[i]);
+    if (status == FG_ERR_MEMORY) return status;
+    w->fitted[i] = status == FG_OK;
+    if (i == FG_BEAM_RIGHT && w->fitted[FG_BEAM_LEFT] && w->fitted[i]) find_axis(w);
+    if (i >= FG_BEAM_RIGHT && !(w->fitted[FG_BEAM_LEFT] && w->fitted[FG_BEAM_RIGHT])) return FG_OK;
+  }
+  return FG_OK;
+}
+
+static bool is_torn(const beam_work *w) {
+  const fg_beam_line *tip = &w->lines[FG_BEAM_TIP];
+  double width =
+      edge_at(w, FG_BEAM_LEFT, 0, &(double){0}) - edge_at(w, FG_BEAM_RIGHT, 0, &(double){0});
+  return !w->fitted[FG_BEAM_TIP] || (tip->spread > TORN_SPREAD && tip->rms_mm > TORN_SHARE * width);
+}
+
+static fg_status measure_lines(fg_context *ctx, beam_work *w) {
+  fg_beam *beam = w->beam;
+  if (!w->fitted[FG_BEAM_LEFT] || !w->fitted[FG_BEAM_RIGHT]) {
+    beam->flags |= FG_BEAM_NOT_FITTED;
+    return FG_OK;
+  }
+  FG_TRY(fg_beam_noise_find(ctx, &w->lines[FG_BEAM_LEFT], &w->lines[FG_BEAM_RIGHT], &w->noise));
+  find_spread(w);
+  bool left = w->fitted[FG_BEAM_ROOT_LEFT], right = w->fitted[FG_BEAM_ROOT_RIGHT];
+  bool torn = is_torn(w);
+  if (torn) beam->flags |= FG_BEAM_TORN_TIP;
+  if (!left && !right) beam->flags |= FG_BEAM_NO_FLOOR;
+  if (left != right) beam->flags |= FG_BEAM_ONE_FLOOR;
+  if (!torn && (left || right))
+    FG_TRY(find_length(ctx, w));
+  else
+    take_length_of_edges(w);
+  FG_TRY(find_width(ctx, w));
+  FG_TRY(find_bow(ctx, w));
+  count_points(w);
+  beam->direction_deg = atan2(w->axis.y, w->axis.x) * 180 / M_PI;
+  return FG_OK;
+}
+
+static void put_errors(const fg_design *design, fg_beam *beam) {
+  beam->length_error_pct = 100 * (beam->length_mm / design->beam_length_mm - 1);
+  beam->u_length_error_pct = 100 * beam->u_length_mm / design->beam_length_mm;
+  beam->width_error_pct = 100 * (beam->width_mm / design->beam_width_mm - 1);
+  beam->u_width_error_pct = 100 * beam->u_width_mm / design->beam_width_mm;
+  const fg_beam_size size = {.length_mm = beam->length_mm,
+                             .u_length_mm = beam->u_length_mm,
+                             .width_mm = beam->width_mm,
+                             .u_width_mm = beam->u_width_mm};
+  beam->follows = fg_cantilever_of(design, &size);
+}
+
+static fg_status measure_beam(fg_context *ctx, const fg_design *design, fg_beam *beam,
+                              fg_beam_noise *noise) {
+  beam_work w = {.beam = beam};
+  beam->flags &= FG_BEAM_TOUCHES_BORDER;
+  forget_size(beam);
+  fg_status status = fit_lines(ctx, &w);
+  if (status == FG_OK) status = measure_lines(ctx, &w);
+  put_errors(design, beam);
+  *noise = w.noise;
+  for (int i = 0; i < FG_BEAM_SIDES; i++)
+    if (w.fitted[i]) fg_beam_line_free(&w.lines[i]);
+  return status;
+}
+
+/* The foil's scatter: the median of its beams'. */
+static void put_noise(fg_foil *foil, const fg_beam_noise *noises, double *scratch) {
+  size_t n = 0;
+  foil->noise_um = foil->correlation_mm = NAN;
+  for (size_t i = 0; i < foil->beam_count; i++)
+    if (noises[i].lags) scratch[n++] = 1000 * sqrt(noises[i].covariance[0]);
+  if (!n) return;
+  foil->noise_um = fg_select(scratch, n, n / 2);
+  n = 0;
+  for (size_t i = 0; i < foil->beam_count; i++)
+    if (noises[i].lags) scratch[n++] = fg_beam_noise_length(&noises[i]) / noises[i].step_mm;
+  double steps = fg_select(scratch, n, n / 2), step = 0;
+  for (size_t i = 0; i < foil->beam_count; i++)
+    if (noises[i].lags) step = noises[i].step_mm;
+  foil->correlation_mm = steps * step;
+  if (steps > ROUGH_STEPS) foil->flags |= FG_FOIL_ROUGH_EDGE;
+}
+
+fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil) {
+  fg_beam_noise *noises = NULL;
+  double *scratch = NULL;
+  fg_status status = FG_OK;
+  foil->flags &= ~(unsigned)(FG_FOIL_BEAM_COUNT | FG_FOIL_ROUGH_EDGE);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foil->beam_count, sizeof *noises, (void **)&noises));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, foil->beam_count, sizeof *scratch, (void **)&scratch));
+  for (size_t i = 0; i < foil->beam_count; i++)
+    FG_TRY_EXIT(measure_beam(ctx, design, &foil->beams[i], &noises[i]));
+  put_noise(foil, noises, scratch);
+  FG_TRY_EXIT(fg_beams_number(ctx, foil));
+  if (design->beam_count && foil->beam_count != design->beam_count)
+    foil->flags |= FG_FOIL_BEAM_COUNT;
+exit:
+  free(noises);
+  free(scratch);
+  return status;
+}

@@ -1,0 +1,340 @@
+#include "measure/measure_beams.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "measure/loss.h"
+#include "vision/beam_find.h"
+#include "vision/rims.h"
+
+/* What is smaller than this share of a beam's length is dust. */
+#define LEAST_SHARE 0.3
+/* A difference between the edge's core and flanks counts above so many of its own deviations
+ * (geometry/disc_fit.c). */
+#define SPLIT_DEVIATIONS 3.0
+/* A Gaussian's shift along a curved edge, s²/2R, is right but for this share of (s/R)². */
+#define CURVED_DOUBT 0.5
+
+/* An island at work. */
+typedef struct flat_work {
+  const fg_tiles *tiles;
+  const int64_t *origin_px;
+  const fg_measurement *m;
+  fg_pixel_shape shape;
+  fg_two_levels levels;
+  fg_rims rims;
+  fg_polygon *polygons; /* one per rim */
+  fg_beam_places places;
+  size_t *place_rim; /* which rim a place lies on */
+  fg_tone *tones;    /* two per place */
+  fg_tone tone;
+  fg_beam *beams; /* one per place */
+} flat_work;
+
+static double middle_level(const flat_work *w) {
+  return 0.5 * (w->levels.low + w->levels.high);
+}
+
+static double least_px(const fg_measurement *m, const fg_pixel_shape *shape) {
+  return LEAST_SHARE * m->design.beam_length_mm * 1000 / shape->um;
+}
+
+static fg_status find_polygon(fg_context *ctx, void *shared, size_t i) {
+  flat_work *w = shared;
+  fg_rim *rim = &w->rims.list[i];
+  const fg_beam_limits limits = fg_beam_limits_of(&w->m->design, &w->shape);
+  for (size_t k = 0; k < rim->count; k++) {
+    rim->points[k].x *= w->shape.scale[0];
+    rim->points[k].y *= w->shape.scale[1];
+  }
+  return fg_polygon_make(ctx, rim->points, rim->count, limits.tolerance_px, &w->polygons[i]);
+}
+
+static fg_status find_places(fg_context *ctx, flat_work *w, unsigned threads) {
+  const fg_beam_limits limits = fg_beam_limits_of(&w->m->design, &w->shape);
+  size_t capacity = 0;
+  FG_TRY(fg_memory_allocate(ctx, w->rims.count, sizeof *w->polygons, (void **)&w->polygons));
+  FG_TRY(fg_parallel_run(ctx, threads, w->rims.count, find_polygon, w));
+  for (size_t i = 0; i < w->rims.count; i++) {
+    size_t before = w->places.count;
+    FG_TRY(fg_beams_find(ctx, &w->polygons[i], &limits, &w->places));
+    FG_TRY(fg_memory_reserve(ctx, w->places.count + 1, sizeof *w->place_rim, &capacity,
+                             (void **)&w->place_rim));
+    for (size_t k = before; k < w->places.count; k++)
+      w->place_rim[k] = i;
+  }
+  return FG_OK;
+}
+
+static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
+  flat_work *w = shared;
+  const fg_stretch *side = &w->places.list[i / 2].sides[FG_BEAM_LEFT + i % 2];
+  fg_status status =
+      fg_line_edge_tone(ctx, w->tiles, &w->shape, side, middle_level(w), &w->tones[i]);
+  if (status == FG_ERR_NUMERIC) w->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* What the flanks and the core of the whole edge differ by, beyond what chance makes of it. The
+ * sum's own variance is that of its stations, raised by how much more they scatter. */
+static double find_split(const fg_disc_edge *edge) {
+  double sum = 0, weights = 0, squares = 0, n = 0;
+  for (size_t i = 0; i < edge->count; i++) {
+    const fg_disc_station *s = &edge->stations[i];
+    if (!(s->weight > 0) || !isfinite(s->split_px) || !(s->u_split_px > 0)) continue;
+    double weight = 1 / ((double)s->u_split_px * (double)s->u_split_px);
+    sum += weight * (double)s->split_px;
+    squares += weight * (double)s->split_px * (double)s->split_px;
+    weights += weight;
+    n++;
+  }
+  if (n < 2) return 0;
+  double mean = sum / weights;
+  double variance = fmax(1, (squares - sum * mean) / (n - 1)) / weights;
+  if (mean * mean <= SPLIT_DEVIATIONS * SPLIT_DEVIATIONS * variance) return 0;
+  return copysign(sqrt(mean * mean - variance), mean);
+}
+
+static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
+                           const fg_disc_edge *found, fg_beam_edge *edge) {
+  double mm = w->shape.um / 1000, contrast = fabs(found->inside - found->outside);
+  double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px), curved = 0;
+  const double origin[2] = {(double)w->origin_px[0] * w->shape.scale[0],
+                            (double)w->origin_px[1] * w->shape.scale[1]};
+  FG_TRY(fg_memory_allocate(ctx, found->count, sizeof *edge->stations, (void **)&edge->stations));
+  edge->count = found->count;
+  for (size_t i = 0; i < found->count; i++) {
+    const fg_disc_station *s = &found->stations[i];
+    double share = ((double)i + 0.5) / (double)found->count;
+    fg_point p = fg_stretch_point(side, share, s->weight > 0 ? (double)s->edge_px : 0);
+    edge->stations[i] = (fg_disc_point){.at = {(p.x + origin[0]) * mm, (p.y + origin[1]) * mm},
+                                        .u = (double)s->u_px * mm,
+                                        .split = (double)s->split_px * mm,
+                                        .u_split = (double)s->u_split_px * mm,
+                                        .used = s->weight > 0};
+  }
+  edge->round = isfinite(side->radius);
+  if (edge->round) {
+    double ratio = found->blur_px / side->radius;
+    curved = CURVED_DOUBT * ratio * ratio * 0.5 * ratio * found->blur_px;
+  }
+  edge->blur_mm = found->blur_px * mm;
+  edge->split_mm = find_split(found) * mm;
+  edge->doubt_mm = (hypot(found->level_doubt_px, loss_px) + curved) * mm;
+  edge->loss_share = fg_loss_turn_variance(w->m->jpeg_quality);
+  return FG_OK;
+}
+
+static fg_point to_mm(const flat_work *w, fg_point p) {
+  double mm = w->shape.um / 1000;
+  return (fg_point){(p.x + (double)w->origin_px[0] * w->shape.scale[0]) * mm,
+                    (p.y + (double)w->origin_px[1] * w->shape.scale[1]) * mm};
+}
+
+/* The edges of one beam, and where it lies as far as that is known. */
+static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
+  flat_work *w = shared;
+  const fg_beam_place *place = &w->places.list[i];
+  fg_beam *beam = &w->beams[i];
+  beam->root_mm = to_mm(w, place->root);
+  beam->tip_mm = to_mm(w, place->tip);
+  beam->direction_deg =
+      atan2(beam->tip_mm.y - beam->root_mm.y, beam->tip_mm.x - beam->root_mm.x) * 180 / M_PI;
+  if (w->rims.list[w->place_rim[i]].touches_border) beam->flags |= FG_BEAM_TOUCHES_BORDER;
+  for (int side = 0; side < FG_BEAM_SIDES; side++) {
+    fg_disc_edge found = {0};
+    if (!place->there[side]) continue;
+    fg_status status = fg_line_edge_measure(ctx, w->tiles, &w->shape, &place->sides[side],
+                                            middle_level(w), &w->tone, &found);
+    if (status == FG_OK)
+      status = take_edge(ctx, w, &place->sides[side], &found, &beam->edges[side]);
+    fg_disc_edge_free(&found);
+    if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
+  }
+  return FG_OK;
+}
+
+static fg_status take_part(fg_context *ctx, flat_work *w, size_t r, fg_flat_part *part) {
+  const fg_rim *rim = &w->rims.list[r];
+  const fg_polygon *polygon = &w->polygons[r];
+  size_t count = 0;
+  part->hole = rim->hole;
+  part->touches_border = rim->touches_border;
+  for (int k = 0; k < 4; k++)
+    part->box_px[k] = rim->box_px[k] + (k < 2 ? w->origin_px[k] : 0);
+  FG_TRY(fg_memory_allocate(ctx, polygon->count, sizeof *part->corners, (void **)&part->corners));
+  for (size_t i = 0; i < polygon->count; i++)
+    part->corners[part->corner_count++] = to_mm(w, rim->points[polygon->sides[i].first]);
+  for (size_t i = 0; i < w->places.count; i++)
+    count += w->place_rim[i] == r;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *part->beams, (void **)&part->beams));
+  for (size_t i = 0; i < w->places.count; i++) {
+    if (w->place_rim[i] != r) continue;
+    part->beams[part->beam_count++] = w->beams[i];
+    memset(&w->beams[i], 0, sizeof w->beams[i]);
+  }
+  return FG_OK;
+}
+
+static fg_status take_parts(fg_context *ctx, flat_work *w, bool light, fg_flat_parts *parts) {
+  for (size_t r = 0; r < w->rims.count; r++) {
+    fg_flat_part *part;
+    FG_TRY(fg_memory_reserve(ctx, parts->count + 1, sizeof *parts->list, &parts->capacity,
+                             (void **)&parts->list));
+    part = &parts->list[parts->count++];
+    *part = (fg_flat_part){.light = light};
+    FG_TRY(take_part(ctx, w, r, part));
+  }
+  parts->specks += w->rims.specks;
+  return FG_OK;
+}
+
+static fg_status measure_places(fg_context *ctx, flat_work *w, unsigned threads) {
+  size_t count = w->places.count;
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *w->beams, (void **)&w->beams));
+  FG_TRY(fg_memory_allocate(ctx, 2 * count, sizeof *w->tones, (void **)&w->tones));
+  FG_TRY(fg_parallel_run(ctx, threads, 2 * count, find_tone, w));
+  w->tone = fg_tone_pool(w->tones, 2 * count);
+  return fg_parallel_run(ctx, threads, count, measure_edges, w);
+}
+
+static void free_work(flat_work *w) {
+  for (size_t i = 0; w->polygons && i < w->rims.count; i++)
+    fg_polygon_free(&w->polygons[i]);
+  for (size_t i = 0; w->beams && i < w->places.count; i++)
+    fg_beam_free(&w->beams[i]);
+  fg_rims_free(&w->rims);
+  free(w->polygons);
+  free(w->places.list);
+  free(w->place_rim);
+  free(w->tones);
+  free(w->beams);
+}
+
+fg_status fg_flat_island_measure(fg_context *ctx, const fg_tiles *view, const fg_island *island,
+                                 const int64_t origin_px[2], const fg_measurement *m,
+                                 double background, unsigned threads, fg_flat_parts *parts) {
+  flat_work w = {.tiles = view,
+                 .origin_px = origin_px,
+                 .m = m,
+                 .shape = fg_pixel_shape_of(m->dpi),
+                 .levels = fg_two_levels_find(view, island)};
+  bool light = fabs(background - w.levels.low) <= fabs(background - w.levels.high);
+  fg_status status = FG_OK;
+  if (!w.levels.found) {
+    parts->specks++;
+    return FG_OK;
+  }
+  FG_TRY_EXIT(fg_rims_trace(ctx, view, island, &w.levels, light, least_px(m, &w.shape), &w.rims));
+  FG_TRY_EXIT(find_places(ctx, &w, threads));
+  FG_TRY_EXIT(measure_places(ctx, &w, threads));
+  FG_TRY_EXIT(take_parts(ctx, &w, light, parts));
+exit:
+  free_work(&w);
+  return status;
+}
+
+static void free_part(fg_flat_part *part) {
+  for (size_t i = 0; i < part->beam_count; i++)
+    fg_beam_free(&part->beams[i]);
+  free(part->beams);
+  free(part->corners);
+  memset(part, 0, sizeof *part);
+}
+
+void fg_flat_parts_free(fg_flat_parts *parts) {
+  for (size_t i = 0; i < parts->count; i++)
+    free_part(&parts->list[i]);
+  free(parts->list);
+  memset(parts, 0, sizeof *parts);
+}
+
+fg_status fg_flat_parts_move(fg_context *ctx, fg_flat_parts *from, fg_flat_parts *to) {
+  FG_TRY(fg_memory_reserve(ctx, to->count + from->count, sizeof *to->list, &to->capacity,
+                           (void **)&to->list));
+  if (from->count) memcpy(to->list + to->count, from->list, from->count * sizeof *from->list);
+  to->count += from->count;
+  to->specks += from->specks;
+  from->count = 0;
+  return FG_OK;
+}
+
+/* By the crossings of a ray to the right. */
+static bool is_inside(const fg_flat_part *outline, fg_point p) {
+  bool inside = false;
+  for (size_t i = 0; i < outline->corner_count; i++) {
+    fg_point a = outline->corners[i];
+    fg_point b = outline->corners[i + 1 < outline->corner_count ? i + 1 : 0];
+    if ((a.y > p.y) == (b.y > p.y)) continue;
+    if (p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+  }
+  return inside;
+}
+
+/* The smallest outline around a hole, or the outline itself; NULL where there is none. */
+static fg_flat_part *find_outline(const fg_flat_parts *parts, fg_flat_part *part) {
+  fg_flat_part *best = NULL;
+  if (!part->hole) return part;
+  for (size_t i = 0; i < parts->count; i++) {
+    fg_flat_part *other = &parts->list[i];
+    if (other->hole || !is_inside(other, part->corners[0])) continue;
+    if (!best || other->box_px[2] * other->box_px[3] < best->box_px[2] * best->box_px[3])
+      best = other;
+  }
+  return best;
+}
+
+/* Moves a hole's beams to its outline. */
+static fg_status hand_over(fg_context *ctx, fg_flat_part *from, fg_flat_part *to) {
+  size_t capacity = to->beam_count;
+  if (from == to || !from->beam_count) return FG_OK;
+  FG_TRY(fg_memory_reserve(ctx, to->beam_count + from->beam_count, sizeof *to->beams, &capacity,
+                           (void **)&to->beams));
+  memcpy(to->beams + to->beam_count, from->beams, from->beam_count * sizeof *from->beams);
+  to->beam_count += from->beam_count;
+  from->beam_count = 0;
+  return FG_OK;
+}
+
+static void place_foil(const fg_flat_part *part, const fg_measurement *m, fg_foil *foil) {
+  for (int k = 0; k < 4; k++) {
+    foil->strip.box_px[k] = part->box_px[k];
+    foil->place_mm[k] = (double)part->box_px[k] * 25.4 / m->dpi[k % 2];
+  }
+  if (part->touches_border) foil->flags |= FG_FOIL_TOUCHES_BORDER;
+}
+
+static fg_status make_foil(fg_context *ctx, fg_flat_part *part, fg_measurement *m) {
+  fg_foil *foil = &m->foils[m->foil_count++];
+  fg_foil_give_up(foil, "");
+  foil->flags = 0;
+  place_foil(part, m, foil);
+  foil->beams = part->beams;
+  foil->beam_count = part->beam_count;
+  part->beams = NULL;
+  part->beam_count = 0;
+  return fg_beams_measure(ctx, &m->design, foil);
+}
+
+fg_status fg_flat_foils_assemble(fg_context *ctx, fg_flat_parts *parts, fg_measurement *m) {
+  size_t light = 0;
+  for (size_t i = 0; i < parts->count; i++) {
+    fg_flat_part *outline = find_outline(parts, &parts->list[i]);
+    if (outline) FG_TRY(hand_over(ctx, &parts->list[i], outline));
+    light += parts->list[i].light;
+  }
+  m->light_on_dark = 2 * light >= parts->count;
+  m->specks += parts->specks;
+  FG_TRY(fg_memory_allocate(ctx, parts->count, sizeof *m->foils, (void **)&m->foils));
+  for (size_t i = 0; i < parts->count; i++) {
+    if (parts->list[i].beam_count)
+      FG_TRY(make_foil(ctx, &parts->list[i], m));
+    else if (!parts->list[i].hole)
+      m->specks++;
+  }
+  return FG_OK;
+}

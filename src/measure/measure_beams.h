@@ -1,0 +1,45 @@
+/* Flat foils with beams: islands of a scan become parts of foils, and these are put together.
+ *
+ * The edges of a slit in a sheet need not hang together with those of the sheet's outline by tiles
+ * of contrast: they are islands of their own, each with beams. What an outline encloses is one
+ * foil. So nothing larger than an island is in memory.
+ */
+#ifndef FG_MEASURE_MEASURE_BEAMS_H
+#define FG_MEASURE_MEASURE_BEAMS_H
+
+#include "foilgauge/foil.h"
+#include "vision/islands.h"
+
+/* What one rim encloses, and the beams along it. Lengths in mm of the scan. */
+typedef struct fg_flat_part {
+  fg_point *corners; /* of the rim's polygon; owned */
+  size_t corner_count;
+  int64_t box_px[4];
+  bool hole, touches_border, light;
+  fg_beam *beams; /* owned */
+  size_t beam_count;
+} fg_flat_part;
+
+typedef struct fg_flat_parts {
+  fg_flat_part *list; /* owned */
+  size_t count, capacity;
+  size_t specks;
+} fg_flat_parts;
+
+void fg_flat_parts_free(fg_flat_parts *parts);
+
+/* Adds those of one list to another, whose they then are. FG_ERR_MEMORY. */
+fg_status fg_flat_parts_move(fg_context *ctx, fg_flat_parts *from, fg_flat_parts *to);
+
+/* Adds the parts of one island, whose view lies at origin_px of the scan; `background` is the
+ * scan's level around all that lies on it, 8-bit counts. The result does not depend on `threads`.
+ * FG_ERR_MEMORY. */
+fg_status fg_flat_island_measure(fg_context *ctx, const fg_tiles *view, const fg_island *island,
+                                 const int64_t origin_px[2], const fg_measurement *m,
+                                 double background, unsigned threads, fg_flat_parts *parts);
+
+/* Foils from all parts: fills foils, foil_count, specks and light_on_dark of `m`, in no order.
+ * What has beams or is as large as one of the design is a foil; the rest are specks. */
+fg_status fg_flat_foils_assemble(fg_context *ctx, fg_flat_parts *parts, fg_measurement *m);
+
+#endif

@@ -1,0 +1,40 @@
+/* Where the beams of a flat cantilever foil are, from its rims: to within a pixel.
+ *
+ * A beam is found by the way of its rim, the material to the left of it (vision/rims.h): a long
+ * side towards the tip, a convex turn of half a circle over the tip, a long side back. Before and
+ * after it the rim turns the other way, into the floor of the cut, where there is one. That holds
+ * for beams of a comb and for those cut out of a sheet alike. Lengths are square pixels.
+ */
+#ifndef FG_VISION_BEAM_FIND_H
+#define FG_VISION_BEAM_FIND_H
+
+#include "foilgauge/foil.h"
+#include "vision/line_edge.h"
+#include "vision/polygon.h"
+
+/* What is taken for a beam. */
+typedef struct fg_beam_limits {
+  double length_px[2], width_px[2]; /* least, most */
+  double tolerance_px;              /* of a straight side */
+} fg_beam_limits;
+
+fg_beam_limits fg_beam_limits_of(const fg_design *design, const fg_pixel_shape *shape);
+
+typedef struct fg_beam_place {
+  fg_stretch sides[FG_BEAM_SIDES]; /* the straight part of each, without what corners round */
+  bool there[FG_BEAM_SIDES];
+  unsigned flags;     /* fg_beam_flag */
+  fg_point root, tip; /* middle of its root and of its tip */
+  double length_px, width_px;
+} fg_beam_place;
+
+typedef struct fg_beam_places {
+  fg_beam_place *list; /* owned */
+  size_t count, capacity;
+} fg_beam_places;
+
+/* Adds the beams of one rim. FG_ERR_MEMORY. */
+fg_status fg_beams_find(fg_context *ctx, const fg_polygon *rim, const fg_beam_limits *limits,
+                        fg_beam_places *places);
+
+#endif

@@ -1,0 +1,258 @@
+#include "vision/line_edge.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+
+enum { SECTORS_MOST = 24, STATIONS_LEAST = 4, PLACES = 9 };
+#define SECTOR_PX   96.0
+#define STATION_PX  1.5
+#define REACH_PX    15.0 /* of the band, on either side */
+#define REACH_LEAST 2.5
+/* The band ends before the next edge: at this share of the way. */
+#define NEXT_EDGE_SHARE 0.45
+/* An arc's band ends at this share of its radius. */
+#define RADIUS_SHARE 0.6
+/* From so much reach on the levels may run with slopes. */
+#define SLOPE_REACH_PX 10.0
+#define CONTRAST_LEAST 6.0
+
+/* The stretch as the band's frame: a straight one, or an arc about a centre. */
+typedef struct frame {
+  fg_point from, along; /* of a straight one: its start and direction */
+  fg_point centre;      /* of an arc */
+  double radius, start, length;
+} frame;
+
+double fg_stretch_length(const fg_stretch *s) {
+  double chord = hypot(s->to.x - s->from.x, s->to.y - s->from.y);
+  if (isinf(s->radius)) return chord;
+  return 2 * s->radius * asin(fmin(1, 0.5 * chord / s->radius));
+}
+
+static frame frame_of(const fg_stretch *s) {
+  double chord = hypot(s->to.x - s->from.x, s->to.y - s->from.y);
+  frame f = {.from = s->from,
+             .along = {(s->to.x - s->from.x) / chord, (s->to.y - s->from.y) / chord},
+             .radius = s->radius,
+             .length = fg_stretch_length(s)};
+  if (isinf(s->radius)) return f;
+  double off = sqrt(fmax(0, s->radius * s->radius - 0.25 * chord * chord));
+  /* Outwards of the material is (y, -x) of the way. */
+  f.centre = (fg_point){0.5 * (s->from.x + s->to.x) + off * f.along.y,
+                        0.5 * (s->from.y + s->to.y) - off * f.along.x};
+  f.start = atan2(s->from.y - f.centre.y, s->from.x - f.centre.x);
+  return f;
+}
+
+/* The material lies outside of an arc, which so runs the other way round than a disc's edge. */
+static fg_point point_of(const frame *f, double along, double outwards) {
+  if (isinf(f->radius))
+    return (fg_point){f->from.x + along * f->along.x + outwards * f->along.y,
+                      f->from.y + along * f->along.y - outwards * f->along.x};
+  double angle = f->start - along / f->radius, r = f->radius - outwards;
+  return (fg_point){f->centre.x + r * cos(angle), f->centre.y + r * sin(angle)};
+}
+
+fg_point fg_stretch_point(const fg_stretch *stretch, double share, double outwards) {
+  frame f = frame_of(stretch);
+  return point_of(&f, share * f.length, outwards);
+}
+
+/* Where a pixel lies in the band. */
+static void place_of(const frame *f, double x, double y, double *along, double *outwards) {
+  if (isinf(f->radius)) {
+    double dx = x - f->from.x, dy = y - f->from.y;
+    *along = dx * f->along.x + dy * f->along.y;
+    *outwards = dx * f->along.y - dy * f->along.x;
+    return;
+  }
+  double dx = x - f->centre.x, dy = y - f->centre.y;
+  *along = f->radius * remainder(f->start - atan2(dy, dx), 2 * M_PI);
+  *outwards = f->radius - hypot(dx, dy);
+}
+
+/* Narrows [from, to] to where low <= at + rate x <= high. */
+static void clip(double at, double rate, double low, double high, double *from, double *to) {
+  if (fabs(rate) < 1e-12) {
+    if (at < low || at > high) *to = *from - 1;
+    return;
+  }
+  double a = (low - at) / rate, b = (high - at) / rate;
+  *from = fmax(*from, fmin(a, b));
+  *to = fmin(*to, fmax(a, b));
+}
+
+/* Columns of a row that the band may hold. */
+static void find_columns(const frame *f, double reach, double v, double *from, double *to) {
+  if (isinf(f->radius)) {
+    double dy = v - f->from.y;
+    clip(dy * f->along.y - f->from.x * f->along.x, f->along.x, 0, f->length, from, to);
+    clip(-dy * f->along.x - f->from.x * f->along.y, f->along.y, -reach, reach, from, to);
+    return;
+  }
+  double far = f->radius + reach, dv = v - f->centre.y;
+  clip(-f->centre.x, 1, -sqrt(fmax(0, far * far - dv * dv)), sqrt(fmax(0, far * far - dv * dv)),
+       from, to);
+}
+
+static fg_status collect_row(fg_context *ctx, const fg_disc_work *work, const frame *f, int64_t y,
+                             fg_ring *ring) {
+  const double *scale = work->shape->scale;
+  double v = (double)y * scale[1], from = 0, to = (double)(work->tiles->width_px - 1) * scale[0];
+  find_columns(f, ring->reach_px, v, &from, &to);
+  int64_t first = (int64_t)ceil(from / scale[0]), last = (int64_t)floor(to / scale[0]);
+  if (first > last) return FG_OK;
+  FG_TRY(fg_memory_reserve(ctx, ring->count + (size_t)(last - first + 1), sizeof *ring->pixels,
+                           &ring->capacity, (void **)&ring->pixels));
+  for (int64_t x = first; x <= last; x++) {
+    float value = fg_tiles_pixel(work->tiles, x, y);
+    double along, outwards;
+    if (isnan(value)) continue;
+    place_of(f, (double)x * scale[0], v, &along, &outwards);
+    if (!(along >= 0 && along < f->length) || fabs(outwards) > ring->reach_px) continue;
+    size_t station = (size_t)(along / f->length * (double)ring->station_count);
+    if (station >= ring->station_count) station = ring->station_count - 1;
+    ring->pixels[ring->count++] = (fg_ring_pixel){(float)outwards, value, (int32_t)station};
+  }
+  return FG_OK;
+}
+
+/* Rows that the band may reach. */
+static void find_rows(const fg_disc_work *work, const frame *f, int64_t rows[2]) {
+  double low = INFINITY, high = -INFINITY, reach = work->ring.reach_px;
+  for (int i = 0; i < PLACES; i++)
+    for (int side = -1; side <= 1; side += 2) {
+      double y = point_of(f, f->length * i / (PLACES - 1), side * reach).y;
+      low = fmin(low, y);
+      high = fmax(high, y);
+    }
+  double spare = isinf(f->radius) ? 0 : reach;
+  rows[0] = (int64_t)fmax(0, ceil((low - spare) / work->shape->scale[1]));
+  rows[1] = (int64_t)fmin((double)work->tiles->height_px - 1,
+                          floor((high + spare) / work->shape->scale[1]));
+}
+
+static fg_status collect(fg_context *ctx, fg_disc_work *work, const frame *f) {
+  int64_t rows[2];
+  work->ring.count = 0;
+  find_rows(work, f, rows);
+  for (int64_t y = rows[0]; y <= rows[1]; y++)
+    FG_TRY(collect_row(ctx, work, f, y, &work->ring));
+  return FG_OK;
+}
+
+static double pixel_at(const fg_disc_work *work, fg_point at) {
+  return (double)fg_tiles_pixel(work->tiles, (int64_t)lround(at.x / work->shape->scale[0]),
+                                (int64_t)lround(at.y / work->shape->scale[1]));
+}
+
+/* How far the next edge is from the stretch, on one side: where the count passes the middle. */
+static double next_edge(const fg_disc_work *work, const frame *f, double along, int side,
+                        double middle) {
+  bool bright = pixel_at(work, point_of(f, along, 3 * side)) > middle;
+  for (double out = 4; out < REACH_PX / NEXT_EDGE_SHARE; out++) {
+    double value = pixel_at(work, point_of(f, along, side * out));
+    if (!isnan(value) && (value > middle) != bright) return out - 0.5;
+  }
+  return INFINITY;
+}
+
+/* Half of the band's width: the median over places of what the next edge leaves. */
+static double find_reach(const fg_disc_work *work, const frame *f, double middle) {
+  double reach = fmin(REACH_PX, RADIUS_SHARE * f->radius);
+  for (int side = -1; side <= 1; side += 2) {
+    double next[PLACES];
+    for (int i = 0; i < PLACES; i++)
+      next[i] = next_edge(work, f, f->length * (i + 0.5) / PLACES, side, middle);
+    reach = fmin(reach, NEXT_EDGE_SHARE * fg_select(next, PLACES, PLACES / 2));
+  }
+  return fmax(reach, REACH_LEAST);
+}
+
+static size_t good_sectors(const fg_disc_work *work) {
+  size_t good = 0;
+  for (size_t s = 0; s < work->ring.sector_count; s++) {
+    fg_step_fit *fit = &work->sectors[s];
+    double step = fit->values[FG_STEP_OUTSIDE] - fit->values[FG_STEP_INSIDE];
+    fit->good = fit->good && fabs(step) > CONTRAST_LEAST;
+    good += fit->good;
+  }
+  return good;
+}
+
+static fg_status check_sectors(fg_context *ctx, const fg_disc_work *work) {
+  size_t good = good_sectors(work);
+  if (good > 0 && 2 * good >= work->ring.sector_count) return FG_OK;
+  return fg_fail(ctx, FG_ERR_NUMERIC, "no edge along a side");
+}
+
+/* The band with its profiles, and a step without slopes to each. */
+static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double middle,
+                           fg_disc_work *work) {
+  frame f = frame_of(stretch);
+  fg_ring *ring = &work->ring;
+  if (!(f.length >= STATIONS_LEAST * STATION_PX))
+    return fg_fail(ctx, FG_ERR_NUMERIC, "a side is too short");
+  work->open = true;
+  ring->circle.radius = stretch->radius;
+  ring->reach_px = find_reach(work, &f, middle);
+  ring->sector_count = (size_t)fmin(fmax(f.length / SECTOR_PX, 1), SECTORS_MOST);
+  size_t per_sector = (size_t)(f.length / STATION_PX / (double)ring->sector_count);
+  ring->station_count = per_sector * ring->sector_count;
+  FG_TRY(collect(ctx, work, &f));
+  FG_TRY(fg_disc_stack_sectors(ctx, work));
+  fg_disc_fit_sectors(work, 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT);
+  return check_sectors(ctx, work);
+}
+
+fg_status fg_line_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                            const fg_stretch *stretch, double middle, fg_tone *tone) {
+  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = 1};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_band(ctx, stretch, middle, &work));
+  FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
+exit:
+  fg_disc_work_free(&work);
+  return status;
+}
+
+/* Slopes only where the band is wide enough to tell them from the edge's blur, and there are any.
+ */
+static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
+  unsigned held = 1u << FG_STEP_GAMMA;
+  if (work->ring.reach_px < SLOPE_REACH_PX) return FG_OK;
+  fg_disc_fit_sectors(work, held);
+  good_sectors(work);
+  for (int side = 0; side < 2; side++)
+    if (!fg_disc_has_slope(work, FG_STEP_SLOPE_IN + side)) held |= 1u << (FG_STEP_SLOPE_IN + side);
+  fg_disc_fit_sectors(work, held);
+  return check_sectors(ctx, work);
+}
+
+static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch, double middle,
+                     const fg_tone *tone, fg_disc_edge *edge) {
+  FG_TRY(open_band(ctx, stretch, middle, work));
+  FG_TRY(find_shape(ctx, work));
+  edge->circle = (fg_circle){.radius = -stretch->radius};
+  edge->count = work->ring.station_count;
+  FG_TRY(fg_memory_allocate(ctx, edge->count, sizeof *edge->stations, (void **)&edge->stations));
+  FG_TRY(fg_disc_smooth_shape(ctx, work, edge));
+  edge->level_doubt_px = fg_disc_level_doubt(work, tone, edge);
+  return fg_disc_solve(ctx, work, edge);
+}
+
+fg_status fg_line_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                               const fg_stretch *stretch, double middle, const fg_tone *tone,
+                               fg_disc_edge *edge) {
+  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
+  memset(edge, 0, sizeof *edge);
+  edge->gamma = tone->gamma;
+  fg_status status = run(ctx, &work, stretch, middle, tone, edge);
+  fg_disc_work_free(&work);
+  if (status != FG_OK) fg_disc_edge_free(edge);
+  return status;
+}

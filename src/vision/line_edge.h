@@ -1,0 +1,36 @@
+/* The edge of a straight stretch, or of a flat arc: stations along it, each with its place across.
+ *
+ * The same model of one step as of round features (vision/disc_edge.h), fitted to every pixel of a
+ * band about the stretch; its shape (levels, slopes, blur) runs straight along the stretch.
+ * Lengths are square pixels (vision/disc_find.h).
+ */
+#ifndef FG_VISION_LINE_EDGE_H
+#define FG_VISION_LINE_EDGE_H
+
+#include "vision/disc_edge.h"
+
+/* From one place to another, the material to the left of the way where y points up (see
+ * vision/rims.h). `radius` is that of an arc from place to place, whose centre lies in what
+ * surrounds the material; INFINITY: a straight line. */
+typedef struct fg_stretch {
+  fg_point from, to;
+  double radius;
+} fg_stretch;
+
+double fg_stretch_length(const fg_stretch *stretch);
+
+/* The place at a share of its length, so far towards what surrounds the material. */
+fg_point fg_stretch_point(const fg_stretch *stretch, double share, double outwards);
+
+/* What the stretch says of the tone curve, as fg_disc_edge_tone. `middle` is the count between
+ * the two sides. */
+fg_status fg_line_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                            const fg_stretch *stretch, double middle, fg_tone *tone);
+
+/* Fills `edge`; its circle is not used, and edge_px counts towards what surrounds the material.
+ * FG_ERR_NUMERIC when there is no edge. */
+fg_status fg_line_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
+                               const fg_stretch *stretch, double middle, const fg_tone *tone,
+                               fg_disc_edge *edge);
+
+#endif

@@ -1,0 +1,45 @@
+/* Rims: the closed lines between a flat part's material and what surrounds it, pixel by pixel.
+ *
+ * A rim runs along the sides of pixels, with the material to the left of its way in coordinates
+ * whose y axis points up (to the right as the scan is seen, where y runs down): so the area inside
+ * an outer rim counts positive by the shoelace formula in x and y of the scan, and that of a hole
+ * negative. Rims tell where edges are to within a pixel; where exactly, vision/line_edge.h finds.
+ */
+#ifndef FG_VISION_RIMS_H
+#define FG_VISION_RIMS_H
+
+#include <stdbool.h>
+
+#include "foilgauge/circle.h"
+#include "vision/islands.h"
+
+typedef struct fg_rim {
+  fg_point *points; /* middles of the pixels' sides, px; owned */
+  size_t count;
+  int32_t box_px[4];   /* x, y, width, height */
+  bool hole;           /* it surrounds no material */
+  bool touches_border; /* of the area that was looked at */
+} fg_rim;
+
+typedef struct fg_rims {
+  fg_rim *list; /* owned */
+  size_t count, capacity;
+  size_t specks; /* rims that are too small */
+} fg_rims;
+
+/* The two sides of the edges of an island, in 8-bit counts. */
+typedef struct fg_two_levels {
+  double low, high;
+  bool found; /* they differ by more than noise does */
+} fg_two_levels;
+
+/* What parts an island's counts into two classes best (Otsu 1979), and the medians of both. */
+fg_two_levels fg_two_levels_find(const fg_tiles *tiles, const fg_island *island);
+
+/* Every rim of an island between two levels whose box has a diagonal of at least `least_px`, in
+ * the order of their uppermost points. `light`: the material is what is brighter. FG_ERR_MEMORY. */
+fg_status fg_rims_trace(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
+                        const fg_two_levels *levels, bool light, double least_px, fg_rims *rims);
+void fg_rims_free(fg_rims *rims);
+
+#endif

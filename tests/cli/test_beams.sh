@@ -1,0 +1,72 @@
+#!/bin/bash
+# Flat foils with beams (form "cantilever"): combs and slits, what is wrong with them, what is refused.
+. tests/support/cli.sh
+listened="stdout stderr"
+
+cat >design.json <<'J'
+{"schema": "foilgauge/design/1", "form": "cantilever", "beam_count": 4, "beam_length_mm": 4, "beam_width_mm": 1, "thickness_mm": 0.1,
+ "sagitta_mm": 0.5, "clearance_mm": 0.1, "tolerances": {"length_mm": {"min": 3.9, "max": 4.1}, "compliance_error_pct": {"max": 8}}}
+J
+# sheet NAME BEAMS [SCANNER] [DIRECTION]: a scan of a foil whose beams have these members.
+sheet() {
+  cat >"$1.spec" <<J
+{"schema": "foilgauge/render/1", "seed": 3, "scanner": {"dpi": 1200${3-}}, "foils": [{"design": {"form": "cantilever",
+ "beam_count": 4, "beam_length_mm": 4, "beam_width_mm": 1, "thickness_mm": 0.1}, "beams": {"pitch_mm": 1.8, $2}, "rotate_deg": ${4--70}}]}
+J
+  "$renderer" render "$1.spec" -o "$1.png" --truth "$1.truth" || fail "render $1"
+}
+# agrees NAME WIDEST: every beam of a report beside its truth, in um.
+agrees() {
+  python3 - "$1" "$2" <<'P' || fail "$1 is not as rendered"
+import json, sys
+truth, found = json.load(open(sys.argv[1] + ".truth")), json.load(open(sys.argv[1] + ".json"))
+beams = found["foils"][0]["beams"]
+assert len(beams) == len(truth["beams"]), len(beams)
+for beam in beams:
+    near = min(truth["beams"], key=lambda t: sum(abs(a * 25.4 / 1200 - b) for a, b in zip(t["tip_px"], beam["tip_mm"])))
+    for name in ("length_mm", "width_mm"):
+        assert abs(beam[name] - near[name]) < float(sys.argv[2]) / 1000, (beam["number"], name, beam[name], near[name])
+    for name in ("compliance_error_pct", "sagitta_error_pct"):
+        assert abs(beam[name] - near[name]) < 5 * beam["u_" + name] + 0.01, (beam["number"], name, beam[name], near[name])
+P
+}
+spread='"length": {"mean_um": 10, "sd_um": 20}, "width": {"mean_um": -5, "sd_um": 10}'
+sheet comb "$spread"
+sheet slits "$spread, \"layout\": \"slits\"" ', "contrast": -175, "background": 225'
+for name in comb slits; do
+  expect 0 "" "$program" measure $name.png --design design.json -o $name.json --csv $name.csv --points $name.points
+  valid measure.schema.json $name.json
+  agrees $name 1.0
+done
+[ "$(head -n 1 comb.csv | tr , '\n' | grep -c '^u_')" = 12 ] || fail "comb.csv has not twelve uncertainties"
+[ "$(wc -l <comb.csv)" = 5 ] || fail "comb.csv has not a line per beam"
+[ "$(cut -d , -f 4 comb.points | sort -u | wc -l)" = 6 ] || fail "comb.points has not five sides"
+# Numbers follow the foil: from left to right with the tips up, however it lies.
+sheet turned "$spread" "" 100
+"$program" measure turned.png --design design.json -o turned.json
+for k in 0 3; do
+  near "beam $k turned" "$(value turned.json "r['foils'][0]['beams'][$k]['length_mm']")" \
+    "$(value comb.json "r['foils'][0]['beams'][$k]['length_mm']")" 0.002
+done
+
+# What is wrong with a foil is said, and judged.
+sheet torn '"torn": [{"beam": 2}]'
+expect 2 'torn_tip' "$program" measure torn.png --design design.json
+sheet missing '"missing": [3]'
+expect 1 'rejected|3 beams where the design has 4' "$program" measure missing.png --design design.json
+sheet soft '"length": {"mean_um": 150}'
+expect 1 "out_of_tolerance" "$program" measure soft.png --design design.json
+
+# Calibration widens; a length in doubt by 1e-3 doubts a compliance's error by 2e-3.
+sed 's/"form"/"calibration": {"scale": {"u_rel": 0.001}}, "form"/' design.json >doubted.json
+"$program" measure comb.png --design doubted.json -o doubted.json.out
+near "u of a length" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_length_mm"]')" 0.004 0.0002
+near "u of a compliance" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_compliance_error_pct"]')" 0.2 0.02
+
+# Other parts, other designs, other commands.
+expect 65 "no foil with beams in the picture" "$program" measure "$root/samples/gen2_foil.png" --design design.json
+expect 65 "no foil" "$program" measure comb.png
+expect 64 "the loop needs bumps or discs" "$program" loop comb.png --design design.json
+head -c 20000 comb.png >cut.png
+expect 65 "cut.png" "$program" measure cut.png --design design.json
+exit $failed
