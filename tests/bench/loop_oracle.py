@@ -181,16 +181,53 @@ def listed(size_mm):
         yield name, [{"id": name, "amplitude_um": 10.0}]
 
 
-def standard_errors_apart(case):
-    """(how many, which): standard errors that lie between the case's effect and the nearest other listed one."""
-    wanted = [e["id"] for e in case["effects"]]
+def against_listed(case):
+    """The case's effect and every listed one, as `seen`: (columns, {name: [the columns of one place, middle, length or period]})."""
     size = MM_PER_PX * max(case["specs"][0][side] for side in ("width_px", "height_px"))
-    others = [(name, effects) for name, effects in listed(size) if name not in wanted]
+    others = list(listed(size))
     columns = seen(case, [case["effects"], *([e] for _, effects in others for e in effects)])
-    signal, at, best = columns[:, 0], 1, (math.inf, "")
+    groups, at, least = {}, 1, 1e-8 * np.linalg.norm(columns, axis=0).max()
     for name, effects in others:
-        other = columns[:, at : at + len(effects)]
+        own = [k for k in range(at, at + len(effects)) if np.linalg.norm(columns[:, k]) > least]
         at += len(effects)
-        left = signal - other @ np.linalg.lstsq(other, signal, rcond=None)[0]
-        best = min(best, (float(np.linalg.norm(left)), name))
-    return best
+        if own:
+            groups.setdefault(name, []).append(own)
+    return columns, groups
+
+
+def standard_errors_apart(case):
+    """(how many, which, share): standard errors that lie between the case's effect and the nearest other listed one, and how
+    often an oracle names it."""
+    wanted = [e["id"] for e in case["effects"]]
+    columns, groups = against_listed(case)
+    signal, best = columns[:, 0], (math.inf, "")
+    for name, each in groups.items():
+        for own in each if name not in wanted else ():
+            other = columns[:, own]
+            left = signal - other @ np.linalg.lstsq(other, signal, rcond=None)[0]
+            best = min(best, (float(np.linalg.norm(left)), name))
+    return *best, share_named(columns, groups, wanted[0])
+
+
+# What an oracle takes for possible: amplitudes up to so many standard errors, evenly. Draws of the noise.
+REACH, TRIALS = 10.0, 400
+
+
+def share_named(columns, groups, wanted, seed=1):
+    """How often the effect of the first column is the likeliest one by Bayes' rule: every listed one of any size and at any place
+    of its grid alike, the grid holding the true place, and geometry, form and covariance known. None can do better."""
+    q, _ = np.linalg.qr(columns)
+    noise = np.random.default_rng(seed).standard_normal((q.shape[1], TRIALS))
+    data = (q.T @ columns[:, 0])[:, None] + noise
+    groups = {**groups, wanted: [[0], *groups.get(wanted, [])]}
+    evidence = {}
+    for name, each in groups.items():
+        logs = []
+        for own in each:
+            basis, _ = np.linalg.qr(q.T @ columns[:, own])
+            width = len(own) * math.log(math.sqrt(2 * math.pi) / (2 * REACH))
+            logs.append(0.5 * np.sum((basis.T @ data) ** 2, axis=0) + width - math.log(len(each)))
+        evidence[name] = np.logaddexp.reduce(logs, axis=0)
+    names = list(evidence)
+    likeliest = np.argmax([evidence[n] for n in names], axis=0)
+    return float(np.mean(likeliest == names.index(wanted)))

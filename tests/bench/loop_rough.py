@@ -145,7 +145,7 @@ def make_case(name, index, seed):
 
 
 def apart(row):
-    """How far the oracle holds a row's effect from the nearest other one: (standard errors, which)."""
+    """How far the oracle holds a row's effect from the nearest other one: (standard errors, which, how often it names it)."""
     _, case = make_case(row["tier"], int(row["index"]), int(row["seed"]))
     return standard_errors_apart(for_oracle(case))
 

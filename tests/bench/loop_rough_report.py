@@ -75,15 +75,17 @@ def apart_lines(rows, apart):
     pairs = [r for r in rows if r["tier"].endswith("pair") and "thickness" not in r["wanted"]]
     known = {id(r): apart(r) for r in pairs}
     table, missed = [], []
-    for title, test in ((f"at least {APART:g}", lambda a: a >= APART), ("less", lambda a: a < APART)):
+    groups = ((f"at least {APART:g}", lambda a: a >= APART), ("less", lambda a: a < APART), ("all", lambda a: True))
+    for title, test in groups:
         own = [r for r in pairs if test(known[id(r)][0])]
-        table.append([title, len(own), share(own, lambda r: number(r, "named")), share(own, told), share(own, is_right)])
-        missed += [r for r in own if not number(r, "named")]
+        oracle = f"{100 * np.mean([known[id(r)][2] for r in own]):.1f}" if own else "–"
+        table.append([title, len(own), oracle, share(own, lambda r: number(r, "named")), share(own, told), share(own, is_right)])
+        missed += [r for r in own if not number(r, "named") and title != "all"]
     said = [[r["tier"], r["seed"], r["index"], r["wanted"], r["claims"] or r["unattributed"] or r["verdict"],
-             f"{known[id(r)][0]:.1f}", known[id(r)][1]] for r in missed]  # fmt: skip
-    return [*markdown(["standard errors to the nearest other effect", "pairs", "exactly named %", "and nothing tied %", "in class %"], table),
+             f"{known[id(r)][0]:.1f}", known[id(r)][1], f"{100 * known[id(r)][2]:.0f}"] for r in missed]  # fmt: skip
+    return [*markdown(["standard errors to the nearest other effect", "pairs", "an oracle names %", "exactly named %", "and nothing tied %", "in class %"], table),
             "", "Pairs that were not exactly named:", "",
-            *markdown(["tier", "seed", "case", "there", "said", "standard errors apart", "nearest"], said)]  # fmt: skip
+            *markdown(["tier", "seed", "case", "there", "said", "standard errors apart", "nearest", "an oracle names it, %"], said)]  # fmt: skip
 
 
 def error_cells(rows, q):
@@ -220,7 +222,8 @@ def write(folder, rows, tiers, apart, busy=False):
     lines += ["## What was asked, and what holds", "", *glance_lines(rows, busy), "", *missed_figures_lines(rows, tiers, busy)]
     lines += ["", "## Named", "", *naming_lines(rows, tiers), "", "Effect by effect, in class:", "", *effect_lines(rows)]
     lines += ["", "Turned pairs, by how far an oracle, which knows every form and the noise's covariance, can hold the effect from the nearest",
-              "other listed one of any size, place, middle, length or period (loop_oracle.py):", "", *apart_lines(rows, apart)]  # fmt: skip
+              "other listed one of any size, place, middle, length or period (loop_oracle.py), and by how often Bayes' rule over all of these names",
+              "it. That is the most that anybody can name:", "", *apart_lines(rows, apart)]  # fmt: skip
     lines += ["", "## Errors against truth, effects of the scanner", "", "Medians, µm.", "", *error_lines(rows, tiers)]
     lines += ["", "Distance of the true midline from what is reported, all effects; medians, µm.", "", *profile_lines(rows, tiers)]
     lines += ["", "## Intervals", "", "Inputs with an effect of the scanner where the dimension was corrected: values within U = 2 u of the",
