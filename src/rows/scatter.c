@@ -49,6 +49,7 @@ typedef struct search {
   double *left, *columns; /* the same, whitened */
   arc *arcs;
   size_t arc_count;
+  double shared; /* numbers that went with what all bumps share, beyond the arcs' own */
 } search;
 
 static fg_status list_arcs(search *s) {
@@ -146,6 +147,7 @@ static fg_status deviance(search *s, const fg_scatter *scatter, double *value) {
     freedom += a->freedom;
   }
   fg_whitening_close(&whitening);
+  freedom = fmax(1, freedom - s->shared);
   *value = square > 0 ? freedom * log(square / freedom) + determinants : INFINITY;
   s->points->scatter.row_um = sqrt(square / fmax(freedom, 1));
   return FG_OK;
@@ -338,18 +340,27 @@ static fg_status open(search *s) {
   return FG_OK;
 }
 
+/* Of the first bump: they are alike. */
+static double polynomials_of_bumps(const search *s) {
+  for (size_t k = 0; k < s->arc_count; k++)
+    if (s->points->rows[s->arcs[k].from].bump) return (double)s->arcs[k].polynomials;
+  return 0;
+}
+
 fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um) {
   search s = {.ctx = ctx, .points = points};
   fg_scatter from = points->scatter;
   trial best = {.scatter = {.integral = 1, .swell = 1}};
   double *weighted = NULL;
-  size_t out;
+  size_t out, shared;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *weighted, (void **)&weighted));
   for (size_t i = 0; i < points->row_count; i++)
     weighted[i] = residual_um[i] * fg_points_root_weight(&points->rows[i]);
   s.weighted = weighted;
+  FG_TRY_EXIT(fg_points_take_shared(ctx, points, weighted, &shared));
   FG_TRY_EXIT(open(&s));
+  s.shared = fmax(0, (double)shared - polynomials_of_bumps(&s));
   if (!s.arc_count) goto exit;
   FG_TRY_EXIT(find(&s, from, &best));
   FG_TRY_EXIT(leave_out(&s, &best.scatter, &out));

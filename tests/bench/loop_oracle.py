@@ -82,14 +82,33 @@ def correlation(apart, length, form):
     return (1 + near) * np.exp(-near)
 
 
+def noise_spectrum(w, scanner):
+    """Of pixel noise along x or y, over that of white noise: a pixel is rho times the one before it and something new; the second
+    renderer's, `noise_form` moving, a mean over three."""
+    rho = scanner.get("noise_correlation", 0)
+    if scanner.get("noise_form") == "moving" and rho:
+        side = (1 - math.sqrt(1 - 2 * rho**2)) / (2 * rho)
+        return (1 + 2 * side * np.cos(w)) ** 2 / (1 + 2 * side**2)
+    return (1 - rho**2) / (1 - 2 * rho * np.cos(w) + rho**2)
+
+
+def row_um(scanner):
+    """The bound for a row of the midline: for one crossing of one edge and white noise (n / A) sqrt(2 s sqrt(pi)) px. Noise that is
+    correlated across the edge tells 1 / spectrum over the line spread's power, exp(-w² s²); along it rows are long beside a pixel."""
+    s, w = scanner["blur_px"], np.linspace(0, math.pi, 400)
+    power = np.exp(-((w * s) ** 2))
+    told = np.sum(power / noise_spectrum(w, scanner)) / np.sum(power)
+    white = scanner["noise"] / abs(scanner["contrast"]) * math.sqrt(2 * s * math.sqrt(math.pi))
+    rows = 2 * STEP_MM / MM_PER_PX  # crossings of both edges
+    return white * math.sqrt(float(noise_spectrum(0.0, scanner)) / told / rows) * MM_PER_PX * 1000
+
+
 def whiten(midline, scanner, columns):
     """Columns through the inverse root of the covariance of a row of the midline, arc by arc."""
     rough = scanner.get("rough", {})
     smooth = math.hypot(rough.get("edge_common_um", 0), rough.get("edge_roughness_um", 0) / math.sqrt(2))
     length = rough.get("correlation_um", 50) / 1000
-    share = scanner.get("noise_correlation", 0)
-    edge = scanner["noise"] / abs(scanner["contrast"]) * math.sqrt(2 * scanner["blur_px"] * math.sqrt(math.pi))
-    white = edge * math.sqrt((1 + share) / (1 - share)) / math.sqrt(2 * 4) * MM_PER_PX * 1000
+    white = row_um(scanner)
     out = np.empty_like(columns)
     for piece in midline.pieces:
         along = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(midline.xy[piece], axis=0).T))])

@@ -87,7 +87,7 @@ def as_rough(scanner):
     um = scanner["scatter_px"] * 1000 * MM_PER_PX
     rough = {"edge_roughness_um": um * (1 - scanner["common"] ** 2) ** 0.5, "edge_common_um": um * scanner["common"],
              "correlation_um": scanner["correlation_px"] * 1000 * MM_PER_PX, "correlation_form": scanner["form"]}  # fmt: skip
-    return {**scanner, "rough": rough, "noise_correlation": scanner["grain"]}
+    return {**scanner, "rough": rough, "noise_correlation": scanner["grain"], "noise_form": "moving"}
 
 
 def draw_odd(rng, kind, case):

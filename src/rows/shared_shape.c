@@ -1,0 +1,70 @@
+/* What all bumps share of a deviation from their circles. It is the part's, not the edge's noise.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "rows/scatter.h"
+
+/* As many polynomials as the search can follow over a bump's arc (effect/curves.c), with the two
+ * lowest. Of fewer bumps too much of each would go with what they share. */
+enum { POLYNOMIALS = 18, BUMPS_LEAST = 4 };
+/* Rounding: a polynomial lies in those before it. */
+#define REST_LEAST 1e-9
+
+static double dot(const double *a, const double *b, size_t n) {
+  double sum = 0;
+  for (size_t i = 0; i < n; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+static void take(const double *unit, size_t n, double *from) {
+  double along = dot(unit, from, n);
+  for (size_t i = 0; i < n; i++)
+    from[i] -= along * unit[i];
+}
+
+/* Chebyshev's over every bump's arc, weighted; returns how many bumps there are. */
+static size_t fill(const fg_points *points, double *basis) {
+  size_t bumps = 0;
+  for (size_t from = 0, to; from < points->row_count; from = to) {
+    to = fg_points_arc_end(points, from);
+    double low = points->rows[from].s_mm, length = points->rows[to - 1].s_mm - low;
+    if (!points->rows[from].bump || length == 0) continue;
+    bumps++;
+    for (size_t i = from; i < to; i++) {
+      const fg_points_row *row = &points->rows[i];
+      double x = acos(fmax(-1, fmin(1, 2 * (row->s_mm - low) / length - 1)));
+      for (size_t p = 0; p < POLYNOMIALS; p++)
+        basis[p * points->row_count + i] = fg_points_root_weight(row) * cos((double)p * x);
+    }
+  }
+  return bumps;
+}
+
+fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, double *weighted,
+                                size_t *numbers) {
+  size_t n = points->row_count;
+  double *basis = NULL;
+  *numbers = 0;
+  FG_TRY(fg_memory_allocate(ctx, n, POLYNOMIALS * sizeof *basis, (void **)&basis));
+  size_t bumps = fill(points, basis);
+  for (size_t p = 0; bumps >= BUMPS_LEAST && p < POLYNOMIALS; p++) {
+    double *own = basis + p * n, before = sqrt(dot(own, own, n));
+    for (size_t q = 0; q < p; q++)
+      take(basis + q * n, n, own);
+    double rest = sqrt(dot(own, own, n));
+    if (!(rest > REST_LEAST * before)) {
+      memset(own, 0, n * sizeof *own);
+      continue;
+    }
+    for (size_t i = 0; i < n; i++)
+      own[i] /= rest;
+    take(own, n, weighted);
+    ++*numbers;
+  }
+  free(basis);
+  return FG_OK;
+}
