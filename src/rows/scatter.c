@@ -347,21 +347,40 @@ static double polynomials_of_bumps(const search *s) {
   return 0;
 }
 
+/* What the bumps share, of those that hold nothing else as far as that shows before the noise is
+ * known. */
+static fg_status take_shared(search *s, double *weighted) {
+  const fg_scatter white = {.integral = 1};
+  bool *left_out = NULL;
+  size_t out, numbers;
+  FG_TRY(leave_out(s, &white, &out));
+  FG_TRY(fg_memory_allocate(s->ctx, s->points->row_count, sizeof *left_out, (void **)&left_out));
+  for (size_t k = 0; k < s->arc_count; k++) {
+    arc *a = &s->arcs[k];
+    for (size_t i = a->from; i < a->to; i++)
+      left_out[i] = a->out;
+    a->out = false;
+  }
+  fg_status status = fg_points_take_shared(s->ctx, s->points, left_out, weighted, &numbers);
+  s->shared = fmax(0, (double)numbers - polynomials_of_bumps(s));
+  free(left_out);
+  return status;
+}
+
 fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um) {
   search s = {.ctx = ctx, .points = points};
   fg_scatter from = points->scatter;
   trial best = {.scatter = {.integral = 1, .swell = 1}};
   double *weighted = NULL;
-  size_t out, shared;
+  size_t out;
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *weighted, (void **)&weighted));
   for (size_t i = 0; i < points->row_count; i++)
     weighted[i] = residual_um[i] * fg_points_root_weight(&points->rows[i]);
   s.weighted = weighted;
-  FG_TRY_EXIT(fg_points_take_shared(ctx, points, weighted, &shared));
   FG_TRY_EXIT(open(&s));
-  s.shared = fmax(0, (double)shared - polynomials_of_bumps(&s));
   if (!s.arc_count) goto exit;
+  FG_TRY_EXIT(take_shared(&s, weighted));
   FG_TRY_EXIT(find(&s, from, &best));
   FG_TRY_EXIT(leave_out(&s, &best.scatter, &out));
   if (out) FG_TRY_EXIT(find(&s, best.scatter, &best));

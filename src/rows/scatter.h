@@ -19,10 +19,11 @@ size_t fg_points_arc_end(const fg_points *points, size_t from);
  * residual of every arc holds beside polynomials along it, which take what is smooth. */
 fg_status fg_points_find_scatter(fg_context *ctx, fg_points *points, const double *residual_um);
 
-/* Takes out of weighted residuals what all bumps share along their arcs, with `numbers` numbers: an
- * effect of the part that is not found yet is no noise. */
-fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, double *weighted,
-                                size_t *numbers);
+/* Takes out of weighted residuals what the bumps share along their arcs, with `numbers` numbers: an
+ * effect of the part that is not found yet is no noise. `left_out`: rows of arcs that hold
+ * something of their own; of the others it would become a part. */
+fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, const bool *left_out,
+                                double *weighted, size_t *numbers);
 
 /* Makes rows independent. Values of smooth things keep their size: a sum of squares over what it
  * returns is that of generalised least squares, in units of fg_scatter.integral times the variance

@@ -26,13 +26,13 @@ static void take(const double *unit, size_t n, double *from) {
     from[i] -= along * unit[i];
 }
 
-/* Chebyshev's over every bump's arc, weighted; returns how many bumps there are. */
-static size_t fill(const fg_points *points, double *basis) {
+/* Chebyshev's over every arc of a bump that counts, weighted; returns how many there are. */
+static size_t fill(const fg_points *points, const bool *left_out, double *basis) {
   size_t bumps = 0;
   for (size_t from = 0, to; from < points->row_count; from = to) {
     to = fg_points_arc_end(points, from);
     double low = points->rows[from].s_mm, length = points->rows[to - 1].s_mm - low;
-    if (!points->rows[from].bump || length == 0) continue;
+    if (!points->rows[from].bump || length == 0 || left_out[from]) continue;
     bumps++;
     for (size_t i = from; i < to; i++) {
       const fg_points_row *row = &points->rows[i];
@@ -44,13 +44,13 @@ static size_t fill(const fg_points *points, double *basis) {
   return bumps;
 }
 
-fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, double *weighted,
-                                size_t *numbers) {
+fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, const bool *left_out,
+                                double *weighted, size_t *numbers) {
   size_t n = points->row_count;
   double *basis = NULL;
   *numbers = 0;
   FG_TRY(fg_memory_allocate(ctx, n, POLYNOMIALS * sizeof *basis, (void **)&basis));
-  size_t bumps = fill(points, basis);
+  size_t bumps = fill(points, left_out, basis);
   for (size_t p = 0; bumps >= BUMPS_LEAST && p < POLYNOMIALS; p++) {
     double *own = basis + p * n, before = sqrt(dot(own, own, n));
     for (size_t q = 0; q < p; q++)

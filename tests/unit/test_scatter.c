@@ -188,6 +188,22 @@ static void white_noise_stays_white(void **state) {
   foil_rows_close(&f);
 }
 
+/* Nor is what every bump has: short waves that polynomials along one arc do not follow. */
+static void what_bumps_share_is_no_noise(void **state) {
+  (void)state;
+  fg_context ctx = {0};
+  foil_rows f;
+  foil_rows_open(&f);
+  foil_rows_put_noise(&f, 0.3);
+  double none = 0, waves[16] = {0};
+  waves[11] = waves[12] = 1;
+  foil_rows_add_effect(&f, fg_effect_find("free.bump.phi"), &none, waves, 16);
+  assert_int_equal(fg_points_find_scatter(&ctx, &f.points, f.residual_um), FG_OK);
+  assert_true(f.points.scatter.share == 0);
+  assert_near(f.points.scatter.row_um, 0.3, 0.02);
+  foil_rows_close(&f);
+}
+
 /* Lost rows within an arc are no scatter of the edge. */
 static void a_step_within_an_arc_is_no_noise(void **state) {
   (void)state;
@@ -209,6 +225,7 @@ int main(void) {
       cmocka_unit_test(a_row_without_weight_tells_nothing),
       cmocka_unit_test(noise_at_long_waves_is_found_from_short_ones),
       cmocka_unit_test(white_noise_stays_white),
+      cmocka_unit_test(what_bumps_share_is_no_noise),
       cmocka_unit_test(a_step_within_an_arc_is_no_noise),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
