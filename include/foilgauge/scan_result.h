@@ -40,9 +40,18 @@ typedef enum fg_scan_coordinate {
   FG_SCAN_COORDINATES
 } fg_scan_coordinate;
 
+/* What the held-out error is of. */
+typedef enum fg_scan_held_out {
+  FG_SCAN_HELD_OUT_NOTHING, /* nothing was found: it is the rms; or too few bumps to keep some
+                               aside: it is NaN */
+  FG_SCAN_HELD_OUT_SCANS,   /* scans kept aside */
+  FG_SCAN_HELD_OUT_FOLDS    /* cross-fitted: bumps (discs) in folds, and the search repeated without
+                               each. Before, nothing but the geometry is fitted, as to all rows */
+} fg_scan_held_out;
+
 /* Errors of the points, um. */
 typedef struct fg_scan_loop_error {
-  double rms, robust_sd, p95, maximum, held_out_rms; /* NaN without scans kept aside */
+  double rms, robust_sd, p95, maximum, held_out_rms;
 } fg_scan_loop_error;
 
 /* Noise of an edge row, um: white, and what neighbours along the edge share (Patterson and Thompson
@@ -247,6 +256,8 @@ typedef struct fg_scan_result {
   double p_value;    /* that no effect is needed */
   double matters_um; /* an effect of this size would be a nuisance: `absent` below it */
   fg_scan_loop_error before, after;
+  fg_scan_held_out held_out;
+  size_t folds; /* that it is cross-fitted over */
   double width_before_um,
       width_after_um; /* with `of_width`: rms of half the width about its mean */
 

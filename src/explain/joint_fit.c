@@ -298,25 +298,36 @@ static void find_uncertainties(refit *r, gsl_matrix *alone) {
   find_effects_covariance(r, variance, alone);
 }
 
-/* Residual in um and Jacobian with the set's present correction, geometry fitted to it. */
-static fg_status evaluate(fg_context *ctx, refit *r) {
+/* Residual in um and, unless NULL, Jacobian with the set's present correction, geometry fitted to
+ * it. */
+static fg_status fit_geometry(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                              double *residual_um, double *jacobian) {
   fg_field_list fields;
   double *shift = NULL;
-  fg_effect_set_fields(r->points, r->set, &fields);
+  fg_effect_set_fields(points, set, &fields);
   fg_status status = FG_OK;
   for (int twice = 0; twice < 2 && status == FG_OK; twice++) {
     /* Directions in the part's frame come from the geometry, and the geometry from the shift. */
     free(shift);
     shift = NULL;
-    status = fg_effect_set_shift(ctx, r->points, r->set, &shift);
+    status = fg_effect_set_shift(ctx, points, set, &shift);
     fg_points_correction correction = {&fields, shift};
-    if (status == FG_OK) status = fg_points_fit(ctx, r->points, &correction);
-    if (status == FG_OK) fg_points_residual(r->points, &correction, r->residual, r->jacobian);
+    if (status == FG_OK) status = fg_points_fit(ctx, points, &correction);
+    if (status == FG_OK) fg_points_residual(points, &correction, residual_um, jacobian);
   }
-  for (size_t i = 0; i < r->points->row_count; i++)
-    r->residual[i] *= 1000;
+  for (size_t i = 0; i < points->row_count; i++)
+    residual_um[i] *= 1000;
   free(shift);
   return status;
+}
+
+fg_status fg_joint_fit_geometry(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                                double *residual_um) {
+  return fit_geometry(ctx, points, set, residual_um, NULL);
+}
+
+static fg_status evaluate(fg_context *ctx, refit *r) {
+  return fit_geometry(ctx, r->points, r->set, r->residual, r->jacobian);
 }
 
 static fg_status allocate(fg_context *ctx, refit *r) {

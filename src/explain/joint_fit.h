@@ -8,6 +8,10 @@
  * gets what is left. */
 fg_status fg_joint_fit(fg_context *ctx, fg_points *points, fg_effect_set *set, double *residual_um);
 
+/* The geometry alone, beside effects whose numbers stand. */
+fg_status fg_joint_fit_geometry(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                                double *residual_um);
+
 /* What the effects of a fit add to the covariance of its geometry's noise, mm². */
 typedef struct fg_joint_fit_part {
   double overall;        /* variance of R0 */

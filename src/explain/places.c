@@ -1,5 +1,6 @@
 /* Where a shape takes most: a grid of starts, then finer around the best one. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "core/small_solve.h"
 #include "explain/search.h"
@@ -13,6 +14,8 @@ enum { COARSER = 40 };
 #define COLUMN_LEAST (1e-3 / 64)
 /* Its normal equations are singular where a pivot is this share of its diagonal. */
 #define SINGULAR 1e-9
+/* Columns of one grid that are kept: beyond that the rows are many, and memory counts. */
+#define GRID_BYTES_MOST ((size_t)32 << 20)
 
 /* A step needs rows on both sides that speak of it: one bad row at the foil's end is none. */
 static bool has_both_sides(const fg_explain_columns *c, const fg_effect *kind, double at_mm) {
@@ -25,27 +28,25 @@ static bool has_both_sides(const fg_explain_columns *c, const fg_effect *kind, d
   return low >= SIDE_ROWS && all - low >= SIDE_ROWS;
 }
 
-/* Gain beside everything else, in chi². */
-static fg_explain_hit gain_at(const fg_explain_search *s, size_t rank, const fg_effect *kind,
-                              double place, double *work) {
+/* Gain of columns beside everything else, in chi². */
+static fg_explain_hit gain_of(const fg_explain_search *s, size_t rank, double place, size_t count,
+                              const double *columns) {
   const fg_explain_columns *c = &s->columns;
-  if (kind->jumps && !has_both_sides(c, kind, place)) return (fg_explain_hit){0, 0, place};
-  double shape[FG_FIELD_SHAPES] = {place}, x[FG_SMALL_MAX], square = 0;
-  size_t count = fg_explain_gather(c, kind, shape, work);
+  double x[FG_SMALL_MAX], square = 0;
   fg_normal_equations system;
   fg_explain_hit none = {0, 0, place}, found = none;
   fg_normal_clear(&system, count);
   for (size_t a = 0; a < count; a++) {
     /* What is left stands beside the basis already, and the basis takes its share of the products.
      */
-    system.right[a] = fg_explain_dot(c->rows, work + a * c->rows, c->left);
+    system.right[a] = fg_explain_dot(c->rows, columns + a * c->rows, c->left);
     for (size_t b = 0; b <= a; b++)
-      system.matrix[a][b] = fg_explain_dot(c->rows, work + a * c->rows, work + b * c->rows);
+      system.matrix[a][b] = fg_explain_dot(c->rows, columns + a * c->rows, columns + b * c->rows);
   }
   for (size_t k = 0; k < rank; k++) {
     double along[FG_SMALL_MAX];
     for (size_t a = 0; a < count; a++) {
-      along[a] = fg_explain_along(c, k, work + a * c->rows);
+      along[a] = fg_explain_along(c, k, columns + a * c->rows);
       for (size_t b = 0; b <= a; b++)
         system.matrix[a][b] -= along[a] * along[b];
     }
@@ -62,15 +63,59 @@ static fg_explain_hit gain_at(const fg_explain_search *s, size_t rank, const fg_
   return found;
 }
 
+static fg_explain_hit gain_at(const fg_explain_search *s, size_t rank, const fg_effect *kind,
+                              double place, double *work) {
+  double shape[FG_FIELD_SHAPES] = {place};
+  if (kind->jumps && !has_both_sides(&s->columns, kind, place))
+    return (fg_explain_hit){0, 0, place};
+  size_t count = fg_explain_gather(&s->columns, kind, shape, work);
+  return gain_of(s, rank, place, count, work);
+}
+
+/* ---- the grid of starts ---- */
+
+/* The columns over all starts; NULL: they would take too much memory. */
+static const fg_explain_grid *grid_of(fg_explain_search *s, const fg_effect *kind, size_t starts) {
+  size_t vector = s->columns.rows * sizeof(double), count = kind->columns;
+  for (size_t g = 0; g < s->grids; g++)
+    if (s->grid[g].kind == kind) return &s->grid[g];
+  if (s->grids == FG_EXPLAIN_GRIDS || starts * count * vector > GRID_BYTES_MOST) return NULL;
+  fg_explain_grid *grid = &s->grid[s->grids];
+  *grid = (fg_explain_grid){kind, starts, count, malloc(starts * count * vector)};
+  if (!grid->values) return NULL;
+  for (size_t i = 0; i < starts; i++) {
+    double shape[FG_FIELD_SHAPES] = {kind->start(&s->columns.points->frame, i, starts)};
+    fg_explain_gather(&s->columns, kind, shape, grid->values + i * count * s->columns.rows);
+  }
+  s->grids++;
+  return grid;
+}
+
+void fg_explain_free_grids(fg_explain_search *s) {
+  for (size_t g = 0; g < s->grids; g++)
+    free(s->grid[g].values);
+  s->grids = 0;
+}
+
+static fg_explain_hit gain_at_start(fg_explain_search *s, size_t rank, const fg_effect *kind,
+                                    size_t i, size_t starts, double *work) {
+  double place = kind->start(&s->columns.points->frame, i, starts);
+  const fg_explain_grid *grid = grid_of(s, kind, starts);
+  if (!grid) return gain_at(s, rank, kind, place, work);
+  if (kind->jumps && !has_both_sides(&s->columns, kind, place))
+    return (fg_explain_hit){0, 0, place};
+  return gain_of(s, rank, place, grid->columns, grid->values + i * grid->columns * s->columns.rows);
+}
+
 /* The best place over a grid of starts, then finer around it. */
-fg_explain_hit fg_explain_find_place(const fg_explain_search *s, size_t rank, const fg_effect *kind,
+fg_explain_hit fg_explain_find_place(fg_explain_search *s, size_t rank, const fg_effect *kind,
                                      double *work) {
   const fg_field_frame *frame = &s->columns.points->frame;
   fg_explain_hit best = {0};
   bool coarse = s->columns.points->coarse;
   size_t which = 0, starts = kind->starts / (coarse ? COARSER : 1);
   for (size_t i = 0; i < starts; i++) {
-    fg_explain_hit tried = gain_at(s, rank, kind, kind->start(frame, i, starts), work);
+    fg_explain_hit tried = gain_at_start(s, rank, kind, i, starts, work);
     if (tried.gain <= best.gain) continue;
     best = tried;
     which = i;

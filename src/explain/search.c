@@ -108,6 +108,7 @@ fg_status fg_explain_find(fg_context *ctx, const fg_points *points,
   fg_explain_try_sets(&s, &y);
   fg_explain_describe(&s, &y);
 exit:
+  fg_explain_free_grids(&s);
   fg_explain_columns_close(&s.columns);
   return status;
 }

@@ -4,9 +4,20 @@
 
 #include "explain/explain_columns.h"
 
+/* Columns of one shaped effect over its grid of starts: a search comes back to them several times,
+ * beside other effects. */
+typedef struct fg_explain_grid {
+  const fg_effect *kind;
+  size_t starts, columns;
+  double *values; /* owned; starts × FG_SMALL_MAX or fewer columns × rows */
+} fg_explain_grid;
+enum { FG_EXPLAIN_GRIDS = 8 };
+
 typedef struct fg_explain_search {
   const fg_explain_policy *policy;
   fg_explain_columns columns;
+  fg_explain_grid grid[FG_EXPLAIN_GRIDS];
+  size_t grids;
   fg_explanations *out;
   size_t free_column, free_end;  /* columns of the free curves */
   bool two_curves;               /* may stand in */
@@ -152,8 +163,9 @@ void fg_explain_describe(fg_explain_search *s, const fg_explain_yardstick *y);
 typedef struct fg_explain_hit {
   double gain, amplitude, at;
 } fg_explain_hit;
-fg_explain_hit fg_explain_find_place(const fg_explain_search *s, size_t rank, const fg_effect *kind,
+fg_explain_hit fg_explain_find_place(fg_explain_search *s, size_t rank, const fg_effect *kind,
                                      double *work);
+void fg_explain_free_grids(fg_explain_search *s);
 /* What a step at this place leaves beside the basis, its mean square being 1 per um; INFINITY where
  * too few rows lie on one side. */
 double fg_explain_rest_of_step(const fg_explain_columns *c, size_t rank, const fg_effect *kind,

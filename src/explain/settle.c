@@ -209,6 +209,31 @@ static fg_status fit_or_best_alone(fg_context *ctx, fg_points *points, double no
   return fit(ctx, points, none, at);
 }
 
+/* One turn: the search at the geometry that stands, and the fit of what it finds, which is `next`.
+ * The request holds what differs from turn to turn. */
+static fg_status take_turn(fg_context *ctx, fg_points *points, fg_explain_request request,
+                           double none, settling *at, fg_effect_set *next) {
+  const fg_explain_policy *policy = at->policy;
+  request.policy = policy;
+  request.residual_um = at->residual_um;
+  request.jacobian = at->jacobian;
+  request.known = &at->set;
+  request.given_up = at->given_up;
+  request.given_up_count = policy->drops_nothings ? at->given_up_count : 0;
+  request.barred = at->barred;
+  if (policy->scatters) FG_TRY(fg_points_find_scatter(ctx, points, at->residual_um));
+  FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
+  FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
+  fg_explain_take(&at->explanations, 0, next);
+  keep_numbers(&at->set, next);
+  at->set = *next;
+  fg_explain_drop_across_steps(points, &at->set, policy->step_half_mm);
+  FG_TRY(fit_or_best_alone(ctx, points, none, at));
+  /* Given up: what was right to first order is not. */
+  if (next->count && !at->set.count) at->explanations.right = false;
+  return FG_OK;
+}
+
 /* Search and fit in turns from a start without effects. */
 static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_manner how,
                              settling *at) {
@@ -221,31 +246,15 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
   round_end end[ROUNDS];
   bool hopeless = false;
   for (int round = 0; round < (points->coarse ? COARSE_ROUNDS : ROUNDS); round++) {
+    const fg_effect_set in_force = at->set;
     fg_effect_set next;
-    const fg_explain_request request = {.policy = policy,
-                                        .residual_um = at->residual_um,
-                                        .jacobian = at->jacobian,
-                                        .known = &at->set,
-                                        .tried = &tried,
-                                        .given_up = at->given_up,
-                                        .given_up_count =
-                                            policy->drops_nothings ? at->given_up_count : 0,
-                                        .barred = at->barred,
+    const fg_explain_request request = {.tried = &tried,
                                         .look = how.eager || round > 0,
                                         .two_curves = how.two_curves,
                                         .hopeless = hopeless};
-    if (policy->scatters) FG_TRY(fg_points_find_scatter(ctx, points, at->residual_um));
-    FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
-    FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
-    fg_explain_take(&at->explanations, 0, &next);
-    bool same = same_effects(policy->rests_in_force ? &at->set : &last, &next);
+    FG_TRY(take_turn(ctx, points, request, none, at, &next));
+    bool same = same_effects(policy->rests_in_force ? &in_force : &last, &next);
     last = next;
-    keep_numbers(&at->set, &next);
-    at->set = next;
-    fg_explain_drop_across_steps(points, &at->set, policy->step_half_mm);
-    FG_TRY(fit_or_best_alone(ctx, points, none, at));
-    /* Given up: what was right to first order is not. */
-    if (next.count && !at->set.count) at->explanations.right = false;
     if (!at->explanations.right) tried = next;
     FG_TRY(fg_explain_drop_outliers(ctx, points, policy->own_noise, at->residual_um));
     double before = left;
@@ -257,6 +266,27 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
     if (policy->drops_nothings) drop_nothings(&at->set);
   }
   return FG_OK;
+}
+
+static size_t count_free(const fg_effect_set *set) {
+  size_t count = 0;
+  for (size_t e = 0; e < set->count; e++)
+    count += fg_effect_is_free(set->effects[e].kind);
+  return count;
+}
+
+/* From a set in force; no turn follows that could fit a shape in hope, so none is. */
+static fg_status settle_from_set(fg_context *ctx, fg_points *points, const fg_effect_set *set,
+                                 settling *at) {
+  memset(&at->set, 0, sizeof at->set);
+  FG_TRY(fg_joint_fit(ctx, points, &at->set, at->residual_um));
+  double none = square_of(points, at->residual_um);
+  at->set = *set;
+  FG_TRY(fit(ctx, points, none, at));
+  fg_effect_set next;
+  const fg_explain_request request = {
+      .look = true, .two_curves = count_free(set) > 1, .hopeless = true};
+  return take_turn(ctx, points, request, none, at, &next);
 }
 
 /* The manners of the policy, each where the one before does not come to rest at an explanation that
@@ -297,22 +327,46 @@ static fg_status drop_ends(fg_context *ctx, fg_points *points, double *residual_
   return fg_explain_drop_ends(ctx, points, residual_um);
 }
 
+static fg_status open_settling(fg_context *ctx, const fg_settle_request *request,
+                               double *residual_um, settling *at) {
+  const fg_points *points = request->points;
+  *at =
+      (settling){.policy = request->policy, .barred = request->barred, .residual_um = residual_um};
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *at->jacobian,
+                            (void **)&at->jacobian));
+  return fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *at->geometry,
+                            (void **)&at->geometry);
+}
+
+static void close_settling(settling *at) {
+  free(at->jacobian);
+  free(at->geometry);
+}
+
 fg_status fg_explain_settle(fg_context *ctx, const fg_settle_request *request, fg_effect_set *set,
                             fg_explanations *explanations, double *residual_um) {
   fg_points *points = request->points;
-  settling at = {.policy = request->policy, .barred = request->barred, .residual_um = residual_um};
+  settling at;
   fg_status status = FG_OK;
   memset(set, 0, sizeof *set);
-  if (at.policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
-  FG_TRY(fg_memory_allocate(ctx, points->row_count, points->parameters * sizeof *at.jacobian,
-                            (void **)&at.jacobian));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, fg_points_geometry_size(points), sizeof *at.geometry,
-                                 (void **)&at.geometry));
+  if (request->policy->drops_ends) FG_TRY(drop_ends(ctx, points, residual_um));
+  FG_TRY_EXIT(open_settling(ctx, request, residual_um, &at));
   FG_TRY_EXIT(settle_best(ctx, points, &at));
   *set = at.set;
   *explanations = at.explanations;
 exit:
-  free(at.jacobian);
-  free(at.geometry);
+  close_settling(&at);
+  return status;
+}
+
+fg_status fg_explain_settle_again(fg_context *ctx, const fg_settle_request *request,
+                                  fg_effect_set *set, double *residual_um) {
+  settling at;
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(open_settling(ctx, request, residual_um, &at));
+  FG_TRY_EXIT(settle_from_set(ctx, request->points, set, &at));
+  *set = at.set;
+exit:
+  close_settling(&at);
   return status;
 }

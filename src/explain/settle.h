@@ -16,4 +16,9 @@ typedef struct fg_settle_request {
 fg_status fg_explain_settle(fg_context *ctx, const fg_settle_request *request, fg_effect_set *set,
                             fg_explanations *explanations, double *residual_um);
 
+/* The same in one turn from a set in force, whose shapes are the start, with the noise found
+ * anew: for some of the rows on which it was found. */
+fg_status fg_explain_settle_again(fg_context *ctx, const fg_settle_request *request,
+                                  fg_effect_set *set, double *residual_um);
+
 #endif

@@ -114,6 +114,11 @@ fg_status fg_points_build(fg_context *ctx, const fg_points_view *views, size_t c
 
 void fg_points_free(fg_points *points);
 
+/* A copy with those rows alone that `keep` says (NULL: all), and with all of the geometry. What
+ * views point to is shared. */
+fg_status fg_points_subset(fg_context *ctx, const fg_points *points, const bool *keep,
+                           fg_points *subset);
+
 /* The same for foils, and for discs; fg_points_build calls them. */
 fg_status fg_points_build_foils(fg_context *ctx, const fg_points_view *views, size_t count,
                                 fg_points *points);

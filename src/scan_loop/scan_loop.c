@@ -170,6 +170,7 @@ static fg_status search_bumps(fg_context *ctx, fg_scan_loop *loop) {
   };
   FG_TRY(fg_scan_loop_bumps_run(ctx, &request, &loop->bumps));
   FG_TRY(loop->points.discs ? say_form(ctx, loop) : say_reach(ctx, loop));
+  FG_TRY(fg_scan_loop_say_held_out(ctx, loop));
   FG_TRY(fg_scan_loop_say_left_out(ctx, loop));
   FG_TRY(say_lossy(ctx, loop));
   return fg_scan_loop_scale_doubt(ctx, loop);
@@ -197,6 +198,7 @@ static fg_status search(fg_context *ctx, fg_scan_loop *loop) {
   FG_TRY(fg_scan_loop_check_one_foil(ctx, loop));
   loop->error_before = summarise(ctx, &loop->points, loop->residual_before);
   loop->error_after = summarise(ctx, &loop->points, loop->residual_after);
+  FG_TRY(fg_scan_loop_find_held_out(ctx, loop));
   loop->noise_floor_um = loop->explanations.noise_um;
   loop->tied = loop->explanations.count > 1;
   FG_TRY(correct(ctx, loop));

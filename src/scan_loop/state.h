@@ -2,6 +2,7 @@
 #ifndef FG_SCAN_LOOP_STATE_H
 #define FG_SCAN_LOOP_STATE_H
 
+#include "explain/cross_fit.h"
 #include "explain/explain.h"
 #include "explain/joint_fit.h"
 #include "explain/width_search.h"
@@ -27,6 +28,7 @@ struct fg_scan_loop {
   fg_effect_set set;                        /* the winner, fitted */
   double *residual_before, *residual_after; /* um, per row of points */
   fg_scan_loop_error error_before, error_after;
+  fg_cross_fit cross_fit; /* no folds: scans were kept aside, or nothing was found */
   double noise_floor_um;
   bool tied;
   bool scale_tied;                        /* scale_doubt.c */
@@ -58,6 +60,10 @@ fg_status fg_scan_loop_find_single_bumps(fg_context *ctx, fg_scan_loop *loop);
 
 /* Under same_foil, once the points are settled: FG_ERR_DATA when the scans show different foils. */
 fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop);
+
+/* Held-out errors of the set in force; a note where they did not fall. */
+fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop);
+fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop);
 
 /* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
 fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop);

@@ -277,6 +277,12 @@ static void put_advice(const fg_scan_loop *loop, fg_scan_result *result) {
         "which no foil of unknown size can";
 }
 
+static fg_scan_held_out held_out_of(const fg_scan_loop *loop) {
+  for (size_t i = 0; i < loop->scan_count; i++)
+    if (loop->hold_out[i]) return FG_SCAN_HELD_OUT_SCANS;
+  return loop->cross_fit.folds ? FG_SCAN_HELD_OUT_FOLDS : FG_SCAN_HELD_OUT_NOTHING;
+}
+
 static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->verdict = loop->verdict;
   result->same_foil = loop->options.same_foil;
@@ -290,13 +296,15 @@ static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->matters_um = FG_SCAN_LOOP_MATTERS_UM;
   result->before = loop->error_before;
   result->after = loop->error_after;
+  result->folds = loop->cross_fit.folds;
   result->left_out = loop->left_out;
   result->note = (const char *const *)loop->bumps.note;
   result->notes = loop->bumps.notes;
   /* What was found must hold on scans that had no say in finding it. */
   result->corrected = loop->set.count > 0;
-  result->contradicted =
-      result->corrected && loop->error_after.held_out_rms > loop->error_before.held_out_rms;
+  result->held_out = held_out_of(loop);
+  result->contradicted = result->corrected && result->held_out == FG_SCAN_HELD_OUT_SCANS &&
+                         loop->error_after.held_out_rms > loop->error_before.held_out_rms;
   for (int c = 0; c < FG_SCAN_COORDINATES; c++) {
     result->coordinate_name[c] = fg_effect_coordinate_name((fg_effect_coordinate)c);
     result->coordinate_title[c] = fg_effect_coordinate_title((fg_effect_coordinate)c);

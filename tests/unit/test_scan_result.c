@@ -97,6 +97,13 @@ static void assert_errors(const cJSON *side, const fg_scan_loop_error *error) {
   assert_number(side, "held_out_rms", error->held_out_rms);
 }
 
+static void assert_ratios(const cJSON *json, const fg_scan_result *result) {
+  assert_number(json, "rms", result->after.rms / result->before.rms);
+  assert_number(json, "held_out", result->after.held_out_rms / result->before.held_out_rms);
+  assert_int_equal(member(json, "folds")->valueint, result->folds);
+  assert_int_equal(result->folds > 0, result->held_out == FG_SCAN_HELD_OUT_FOLDS);
+}
+
 static void assert_noise(const cJSON *json, const fg_scan_noise *noise) {
   assert_text(json, "form", noise->form);
   assert_number(json, "sd", noise->sd_um);
@@ -207,6 +214,7 @@ static void assert_same(const fg_scan_loop *loop) {
   assert_noise(member(json, "noise"), &result->noise);
   assert_errors(member(json, "before"), &result->before);
   assert_errors(member(json, "after"), &result->after);
+  assert_ratios(member(json, "error_ratio"), result);
   assert_claims(json, result);
   assert_unclaimed(json, result);
   assert_texts(member(json, "separating_measurement"), result->advice, result->advices);
@@ -240,6 +248,7 @@ static void a_ring_is_tied(void **state) {
   assert_string_equal(result->explanation[0].name, result->claim[0].id);
   assert_string_equal(result->explanation[0].words, result->claim[0].words);
   assert_string_equal(result->common, "");
+  assert_true(isnan(result->after.held_out_rms)); /* there is no other disc */
   for (size_t k = 1; k < result->explanations; k++) {
     const fg_scan_result_unclaimed *other = find_unclaimed(result, result->explanation[k].name);
     if (strchr(result->explanation[k].name, '+')) continue;
@@ -259,6 +268,9 @@ static void a_clean_foil_holds_nothing_to_draw(void **state) {
   assert_same(loop);
   assert_int_equal(result->verdict, FG_LOOP_CLEAN);
   assert_true(result->named && !result->tied && !result->corrected && !result->contradicted);
+  assert_near(result->before.held_out_rms, result->before.rms, 0);
+  assert_near(result->after.held_out_rms, result->before.rms, 0);
+  assert_int_equal(result->held_out, FG_SCAN_HELD_OUT_NOTHING);
   assert_int_equal(result->claims + result->lines + result->grid.lines + result->advices, 0);
   assert_null(result->curve);
   assert_true(result->rows > 60 && result->views == 1 && result->view[0].bumps == FOIL_BUMPS);
@@ -296,6 +308,9 @@ static void a_ripple_is_what_is_drawn(void **state) {
   assert_int_equal(result->verdict, FG_LOOP_EXPLAINED);
   const fg_scan_result_claim *claim = &result->claim[0];
   assert_true(claim->sure && !claim->shape);
+  assert_int_equal(result->folds, FOIL_BUMPS);
+  assert_true(result->after.held_out_rms < 0.1 * result->before.held_out_rms);
+  assert_false(result->contradicted);
   assert_string_equal(claim->parameter[0].name, "amplitude_um");
   assert_near(claim->parameter[0].value, RIPPLE_UM, 0.3);
   double highest = 0;

@@ -66,11 +66,12 @@ static fg_status say_errors(fg_context *ctx, const fg_scan_result *result, char 
   FG_TRY(fg_text_append(
       ctx, text, " The edge residual %s from %s to %s rms; the noise alone makes %s.",
       result->after.rms <= result->before.rms ? "falls" : "rises", before, after, floor_words));
-  if (!isfinite(result->before.held_out_rms)) return FG_OK;
+  const char *held_out = fg_scan_loop_held_out_words(result);
+  if (!held_out || !isfinite(result->before.held_out_rms)) return FG_OK;
   fg_scan_loop_length_words(result->before.held_out_rms, before, sizeof before);
   fg_scan_loop_length_words(result->after.held_out_rms, after, sizeof after);
   return fg_text_append(
-      ctx, text, " On scans kept aside it %s from %s to %s.",
+      ctx, text, " On %s it %s from %s to %s.", held_out,
       result->after.held_out_rms <= result->before.held_out_rms ? "falls" : "rises", before, after);
 }
 

@@ -61,7 +61,11 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   put_error(out, "robust sd", b->robust_sd, a->robust_sd);
   put_error(out, "95th percentile", b->p95, a->p95);
   put_error(out, "maximum", b->maximum, a->maximum);
-  put_error(out, "scans kept aside, rms", b->held_out_rms, a->held_out_rms);
+  const char *held_out = fg_scan_loop_held_out_words(result);
+  if (held_out) {
+    fprintf(out, "  %s:\n", held_out);
+    put_error(out, "rms", b->held_out_rms, a->held_out_rms);
+  }
   if (result->of_width)
     put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
 }

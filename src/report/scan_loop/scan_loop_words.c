@@ -13,3 +13,15 @@ double fg_scan_loop_nice_below(double most) {
 const char *fg_scan_loop_unit_words(const char *unit) {
   return !strcmp(unit, "um") ? "µm" : !strcmp(unit, "deg") ? "°" : unit;
 }
+
+const char *fg_scan_loop_held_out_words(const fg_scan_result *result) {
+  switch (result->held_out) {
+  case FG_SCAN_HELD_OUT_SCANS:
+    return "scans kept aside";
+  case FG_SCAN_HELD_OUT_FOLDS:
+    return result->discs ? "discs that took no part in the search"
+                         : "bumps that took no part in the search";
+  default:
+    return NULL;
+  }
+}

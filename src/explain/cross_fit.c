@@ -1,0 +1,149 @@
+#include "explain/cross_fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/parallel.h"
+#include "explain/joint_fit.h"
+#include "explain/policy.h"
+#include "explain/settle.h"
+
+enum { FOLDS_MOST = 5, FOLDS_LEAST = 2 };
+
+typedef struct cross_fit {
+  const fg_points *points;
+  const fg_effect_set *set;
+  const fg_explain_bars *barred;
+  size_t folds;
+  size_t *fold;                /* per group */
+  double *before_um;           /* per row */
+  double *after_um;            /* every row from the search without its fold */
+  bool cannot[FOLDS_MOST + 1]; /* too few rows, or a geometry that they do not hold */
+} cross_fit;
+
+/* Every other kind of group has a turn of its own: a bump and the land behind it are in one fold,
+ * and every fold has both. */
+static fg_status deal(fg_context *ctx, cross_fit *c) {
+  const fg_points *points = c->points;
+  size_t bumps = 0, others = 0;
+  FG_TRY(fg_memory_allocate(ctx, points->group_count, sizeof *c->fold, (void **)&c->fold));
+  for (size_t i = 0; i < points->row_count; i++) {
+    const fg_points_row *row = &points->rows[i];
+    if (i && row->group == points->rows[i - 1].group) continue;
+    c->fold[row->group] = row->bump ? bumps++ : others++;
+  }
+  size_t units = points->discs ? others : bumps;
+  c->folds = units < FOLDS_MOST ? units : FOLDS_MOST;
+  for (size_t g = 0; g < points->group_count && c->folds; g++)
+    c->fold[g] %= c->folds;
+  return FG_OK;
+}
+
+/* What a set leaves of all rows. */
+static fg_status leave(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
+                       double *residual_um) {
+  fg_points all;
+  FG_TRY(fg_points_subset(ctx, points, NULL, &all));
+  fg_status status = fg_joint_fit_geometry(ctx, &all, set, residual_um);
+  fg_points_free(&all);
+  return status;
+}
+
+/* The search on the rows of all other folds. */
+static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold,
+                                fg_effect_set *set) {
+  const fg_points *points = c->points;
+  bool *keep = NULL;
+  double *residual_um = NULL;
+  fg_points others = {0};
+  const fg_settle_request request = {&others, fg_explain_policy_of(points), c->barred};
+  fg_status status = FG_OK;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *keep, (void **)&keep));
+  for (size_t i = 0; i < points->row_count; i++)
+    keep[i] = c->fold[points->rows[i].group] != fold;
+  FG_TRY_EXIT(fg_points_subset(ctx, points, keep, &others));
+  FG_TRY_EXIT(
+      fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
+  FG_TRY_EXIT(fg_explain_settle_again(ctx, &request, set, residual_um));
+exit:
+  free(keep);
+  free(residual_um);
+  fg_points_free(&others);
+  return status;
+}
+
+static fg_status judge_fold(fg_context *ctx, cross_fit *c, size_t fold) {
+  const fg_points *points = c->points;
+  fg_effect_set set = *c->set;
+  double *left = NULL;
+  FG_TRY(search_without(ctx, c, fold, &set));
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *left, (void **)&left));
+  fg_status status = leave(ctx, points, &set, left);
+  for (size_t i = 0; i < points->row_count && status == FG_OK; i++)
+    if (c->fold[points->rows[i].group] == fold) c->after_um[i] = left[i];
+  free(left);
+  return status;
+}
+
+/* Item 0: before; then fold by fold. */
+static fg_status take_item(fg_context *ctx, void *shared, size_t item) {
+  cross_fit *c = shared;
+  const fg_effect_set none = {.count = 0};
+  fg_status status =
+      item ? judge_fold(ctx, c, item - 1) : leave(ctx, c->points, &none, c->before_um);
+  if (status == FG_OK || status == FG_ERR_MEMORY) return status;
+  c->cannot[item] = true;
+  return FG_OK;
+}
+
+/* Mean squares, and how far their difference varies from group to group. */
+static void sum_up(const cross_fit *c, fg_cross_fit *result) {
+  const fg_points *points = c->points;
+  double before = 0, after = 0, weight = 0, square = 0, groups = 0;
+  for (size_t i = 0, to; i < points->row_count; i = to) {
+    double own[2] = {0, 0};
+    for (to = i; to < points->row_count && points->rows[to].group == points->rows[i].group; to++) {
+      double w = points->rows[to].weight;
+      own[0] += w * c->before_um[to] * c->before_um[to];
+      own[1] += w * c->after_um[to] * c->after_um[to];
+      weight += w;
+    }
+    before += own[0];
+    after += own[1];
+    square += (own[0] - own[1]) * (own[0] - own[1]);
+    groups++;
+  }
+  if (!(weight > 0)) return;
+  double gain = before - after;
+  double scatter = groups / (groups - 1) * (square - gain * gain / groups);
+  *result = (fg_cross_fit){.folds = c->folds,
+                           .before_um = sqrt(before / weight),
+                           .after_um = sqrt(after / weight),
+                           .gain = gain / weight,
+                           .u_gain = sqrt(fmax(scatter, 0)) / weight};
+}
+
+fg_status fg_explain_cross_fit(fg_context *ctx, const fg_points *points, const fg_effect_set *set,
+                               const fg_explain_bars *barred, unsigned threads,
+                               fg_cross_fit *result) {
+  cross_fit c = {.points = points, .set = set, .barred = barred};
+  size_t rows = points->row_count;
+  fg_status status = FG_OK;
+  bool cannot = false;
+  *result = (fg_cross_fit){0, NAN, NAN, NAN, NAN};
+  FG_TRY_EXIT(deal(ctx, &c));
+  if (c.folds < FOLDS_LEAST) goto exit;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.before_um, (void **)&c.before_um));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.after_um, (void **)&c.after_um));
+  FG_TRY_EXIT(fg_parallel_run(ctx, threads, c.folds + 1, take_item, &c));
+  for (size_t item = 0; item <= c.folds; item++)
+    cannot = cannot || c.cannot[item];
+  if (!cannot) sum_up(&c, result);
+exit:
+  free(c.fold);
+  free(c.before_um);
+  free(c.after_um);
+  return status;
+}

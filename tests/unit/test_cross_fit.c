@@ -1,0 +1,176 @@
+/* Errors on bumps that took no part in the search: what is there is foretold, what is not there is
+ * not, and neither the copies nor the threads that this takes leave a trace. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "explain/cross_fit.h"
+#include "explain/joint_fit.h"
+#include "support/near.h"
+#include "support/odd_scan.h"
+
+enum { BUMPS = 6, RIPPLE_UM = 5 };
+
+typedef struct fixture {
+  fg_context ctx;
+  odd_input in;
+  fg_measurement measurement[ODD_SCANS];
+  fg_points points;
+  fg_effect_set set;
+  fg_explanations explanations;
+} fixture;
+
+/* One foil on every scan, turned by 90 degrees from one to the next. */
+static void open_foil(fixture *f, size_t scans, int bumps, double ripple_um) {
+  fg_points_view view[ODD_SCANS] = {{0}};
+  *f = (fixture){.in = {.scans = scans}};
+  fg_design_default(&f->in.design);
+  for (size_t i = 0; i < scans; i++) {
+    odd_scan *scan = &f->in.scan[i];
+    scan->foils = 1;
+    scan->foil[0] = odd_plain_foil(bumps);
+    scan->foil[0].turn_deg += 90 * (double)i;
+    scan->foil[0].seed += i;
+    if (bumps < BUMPS) scan->foil[0].step_mm /= 3; /* rows enough */
+    scan->scanner = (odd_scanner){.ripple_um = ripple_um, .period_mm = 3, .step_mm = 1e3};
+  }
+  odd_measure(&f->in, f->measurement);
+  for (size_t i = 0; i < scans; i++)
+    view[i] = (fg_points_view){
+        .foil = &f->measurement[i].foils[0], .measurement = &f->measurement[i], .scan = i};
+  if (fg_points_build(&f->ctx, view, scans, &f->points) != FG_OK) fail_msg("%s", f->ctx.message);
+}
+
+static void search(fixture *f) {
+  double *residual_um = calloc(f->points.row_count, sizeof *residual_um);
+  assert_non_null(residual_um);
+  if (fg_explain_run(&f->ctx, &f->points, &f->set, &f->explanations, residual_um) != FG_OK)
+    fail_msg("%s", f->ctx.message);
+  free(residual_um);
+}
+
+static fg_cross_fit judge(fixture *f, unsigned threads) {
+  fg_cross_fit result;
+  assert_int_equal(
+      fg_explain_cross_fit(&f->ctx, &f->points, &f->set, &f->explanations.barred, threads, &result),
+      FG_OK);
+  return result;
+}
+
+static void close_foil(fixture *f) {
+  fg_points_free(&f->points);
+  for (size_t i = 0; i < f->in.scans; i++)
+    fg_measurement_free(&f->measurement[i]);
+}
+
+static void a_subset_leaves_the_whole_alone(void **state) {
+  (void)state;
+  fixture f;
+  open_foil(&f, 1, BUMPS, 0);
+  fg_points subset;
+  bool *keep = calloc(f.points.row_count, sizeof *keep);
+  assert_non_null(keep);
+  size_t kept = 0;
+  for (size_t i = 0; i < f.points.row_count; i++)
+    kept += keep[i] = f.points.rows[i].bump == 2;
+  assert_int_equal(fg_points_subset(&f.ctx, &f.points, keep, &subset), FG_OK);
+  assert_true(kept > 0);
+  assert_int_equal(subset.row_count, kept);
+  for (size_t i = 0; i < kept; i++)
+    assert_int_equal(subset.rows[i].bump, 2);
+  double radius_mm = f.points.parts[0].bumps[1].radius_mm, x_mm = f.points.poses[0].origin_mm.x;
+  subset.parts[0].bumps[1].radius_mm = subset.poses[0].origin_mm.x = subset.rows[0].weight = -1;
+  assert_near(f.points.parts[0].bumps[1].radius_mm, radius_mm, 0);
+  assert_near(f.points.poses[0].origin_mm.x, x_mm, 0);
+  for (size_t i = 0; i < f.points.row_count; i++)
+    assert_true(f.points.rows[i].weight >= 0);
+  fg_points_free(&subset);
+  free(keep);
+  close_foil(&f);
+}
+
+/* Without its fold the search finds what it found with it, and the fold is as well explained. */
+static void what_is_there_is_foretold(void **state) {
+  (void)state;
+  for (size_t scans = 1; scans <= 2; scans++) {
+    fixture f;
+    open_foil(&f, scans, BUMPS, RIPPLE_UM);
+    search(&f);
+    assert_true(f.set.count > 0);
+    fg_cross_fit one = judge(&f, 1), two = judge(&f, 2);
+    assert_int_equal(one.folds, 5);
+    assert_true(one.after_um < 0.1 * one.before_um);
+    assert_true(one.gain > one.u_gain);
+    assert_near(one.gain, one.before_um * one.before_um - one.after_um * one.after_um, 1e-9);
+    assert_near(two.after_um, one.after_um, 0);
+    assert_near(two.u_gain, one.u_gain, 0);
+    close_foil(&f);
+  }
+}
+
+/* A set that noise alone would have: its numbers, fitted to all rows, must not come along. */
+static void what_is_not_there_is_not(void **state) {
+  (void)state;
+  fixture f;
+  open_foil(&f, 1, BUMPS, 0);
+  search(&f);
+  assert_int_equal(f.set.count, 0);
+  f.set = (fg_effect_set){.count = 1,
+                          .effects = {{.kind = fg_effect_find("scan.shear"), .columns = 1}}};
+  assert_int_equal(fg_joint_fit(&f.ctx, &f.points, &f.set, NULL), FG_OK);
+  fg_cross_fit result = judge(&f, 1);
+  assert_int_equal(result.folds, 5);
+  assert_true(result.gain <= result.u_gain);
+  assert_true(result.after_um > 0.999 * result.before_um);
+  close_foil(&f);
+}
+
+/* Before, nothing but the geometry is fitted: the error is the rms of all rows. */
+static void before_is_the_rms(void **state) {
+  (void)state;
+  fixture f;
+  open_foil(&f, 1, 3, RIPPLE_UM);
+  search(&f);
+  assert_true(f.set.count > 0);
+  fg_cross_fit result = judge(&f, 1);
+  assert_int_equal(result.folds, 3); /* a bump each */
+  const fg_effect_set none = {.count = 0};
+  double *residual_um = calloc(f.points.row_count, sizeof *residual_um), sum = 0, weight = 0;
+  assert_non_null(residual_um);
+  assert_int_equal(fg_joint_fit_geometry(&f.ctx, &f.points, &none, residual_um), FG_OK);
+  for (size_t i = 0; i < f.points.row_count; i++) {
+    sum += f.points.rows[i].weight * residual_um[i] * residual_um[i];
+    weight += f.points.rows[i].weight;
+  }
+  assert_near(result.before_um, sqrt(sum / weight), 1e-6);
+  free(residual_um);
+  close_foil(&f);
+}
+
+static void one_bump_cannot_be_left_out(void **state) {
+  (void)state;
+  fixture f;
+  open_foil(&f, 1, 1, 0);
+  f.set = (fg_effect_set){.count = 1,
+                          .effects = {{.kind = fg_effect_find("scan.shear"), .columns = 1}}};
+  fg_cross_fit result = judge(&f, 1);
+  assert_int_equal(result.folds, 0);
+  assert_true(isnan(result.before_um) && isnan(result.after_um));
+  close_foil(&f);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_subset_leaves_the_whole_alone),
+      cmocka_unit_test(what_is_there_is_foretold),
+      cmocka_unit_test(what_is_not_there_is_not),
+      cmocka_unit_test(before_is_the_rms),
+      cmocka_unit_test(one_bump_cannot_be_left_out),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
