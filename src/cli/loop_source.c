@@ -18,7 +18,7 @@ static const char scan_column[] = "scan";
 fg_status fg_loop_source_check(fg_context *ctx, const fg_loop_source_request *request,
                                fg_output_set *outputs) {
   static const char *const files[] = {"results.jsonl", "manifest.csv", "recipe.json", "lot.json",
-                                      "index.html",    "foils.csv",    "bumps.csv"};
+                                      "index.html",    "foils.csv",    "bumps.csv",   "beams.csv"};
   const fg_input tables[] = {{request->table, "the table"},
                              {request->runs, "the table of runs"},
                              {request->form_model, "the forming"}};

@@ -100,7 +100,7 @@ static void rank_by_spread(fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->foil_count; i++) {
     fg_lot_foil *foil = &analysis->foils[i];
     for (size_t k = 0; k < fg_part_count(foil->foil, leading->owner); k++) {
-      const fg_part part = fg_part_at(foil->foil, leading->owner, k);
+      const fg_foil_part part = fg_part_at(foil->foil, leading->owner, k);
       double value = fg_quantity_value(leading->row, part.object);
       double severity = fabs(value - leading->mean) / leading->sd;
       if (!(severity > foil->severity)) continue;
@@ -160,7 +160,7 @@ static void count_parts(fg_lot_analysis *analysis) {
     const fg_foil *foil = analysis->foils[i].foil;
     size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
     for (size_t k = 0; k < parts; k++) {
-      const fg_part part = fg_part_at(foil, analysis->parts, k);
+      const fg_foil_part part = fg_part_at(foil, analysis->parts, k);
       analysis->left_out += !fg_lot_part_counts(foil, analysis->parts, &part);
     }
     analysis->part_count += parts;

@@ -229,7 +229,7 @@ typedef struct fg_lot_analysis {
   fg_lot_foil *foils;
   size_t foil_count, failed_scans;
   size_t part_count; /* of measured foils */
-  size_t left_out;   /* of them: what is in no statistics, as crushed bumps */
+  size_t left_out;   /* of them: what is in no statistics, as crushed bumps and torn beams */
   size_t by_verdict[FG_VERDICT_NONE + 1], exceeded; /* foils */
   fg_report_outcome outcome;                        /* of all foils, scans and bearings */
   const fg_lot_foil *worst[3];
@@ -258,11 +258,12 @@ typedef struct fg_lot_analysis {
 fg_status fg_lot_analyse(fg_context *ctx, const fg_lot *lot, fg_lot_analysis *analysis);
 void fg_lot_analysis_free(fg_lot_analysis *analysis);
 
-/* A crushed bump says what became of it, not what the process makes: it is counted, and left out of
- * the statistics, stiffness and clearances. It is judged as every other. So is a bump of what is no
- * foil of the design. */
+/* A crushed bump says what became of it, not what the process makes, and so does a torn or bent
+ * beam: it is counted, and left out of the statistics, stiffness and clearances. It is judged as
+ * every other. So is a bump of what is no foil of the design. */
+enum { FG_LOT_BEAM_DAMAGED = FG_BEAM_NOT_FITTED | FG_BEAM_TORN_TIP | FG_BEAM_BENT };
 bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
-bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_part *part);
+bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_foil_part *part);
 
 /* What a lot calls the parts of its foils. */
 typedef struct fg_lot_words {

@@ -20,7 +20,7 @@ typedef struct reading {
 
 /* By how much a value lies elsewhere with a strip thicker by its statistical u: derived again. What
  * lies flat has none. */
-static double by_thickness(const reading *r, const fg_foil *foil, const fg_part *part) {
+static double by_thickness(const reading *r, const fg_foil *foil, const fg_foil_part *part) {
   double moves[FG_CALIBRATED_MAX] = {0};
   const fg_design *design = &r->analysis->lot->settings.design;
   fg_foil thick = *foil;
@@ -41,7 +41,7 @@ static double by_thickness(const reading *r, const fg_foil *foil, const fg_part 
   return moves[r->at];
 }
 
-static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_part *part) {
+static void add(sums *sum, const reading *r, const fg_foil *foil, const fg_foil_part *part) {
   const fg_quantity *row = r->quantity->row;
   const void *object = part ? part->object : foil;
   const fg_calibrated *calibrated = part ? part->calibrated : &foil->calibrated;
@@ -63,7 +63,7 @@ static sums of_foil(const reading *r, const fg_foil *foil) {
   if (!fg_foil_is_measured(foil)) return sum;
   if (r->quantity->owner == FG_QUANTITY_OF_FOIL) add(&sum, r, foil, NULL);
   for (size_t k = 0; k < fg_part_count(foil, r->quantity->owner); k++) {
-    const fg_part part = fg_part_at(foil, r->quantity->owner, k);
+    const fg_foil_part part = fg_part_at(foil, r->quantity->owner, k);
     if (fg_lot_part_counts(foil, r->quantity->owner, &part)) add(&sum, r, foil, &part);
   }
   return sum;

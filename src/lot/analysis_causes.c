@@ -125,8 +125,10 @@ bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *q
   return false;
 }
 
-const char *const fg_lot_charted[] = {"radius_error_pct", "height_mm", "overall.radius_mm",
-                                      "arc.subtended_angle_deg", NULL};
+const char *const fg_lot_charted[] = {
+    "radius_error_pct",        "height_mm",         "overall.radius_mm",
+    "arc.subtended_angle_deg", "length_mm",         "width_mm",
+    "compliance_error_pct",    "sagitta_error_pct", NULL};
 
 bool fg_lot_is_explained(const fg_lot_quantity *quantity) {
   return quantity->cause.column != FG_NO_COLUMN && quantity->cause.signals_left == 0 &&

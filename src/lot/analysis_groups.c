@@ -163,7 +163,7 @@ static bool fill_table(const fg_lot_analysis *analysis, gauge_table *table, size
 static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, int number) {
   if (!number) return fg_quantity_value(quantity->row, foil);
   for (size_t i = 0; i < fg_part_count(foil, quantity->owner); i++) {
-    const fg_part part = fg_part_at(foil, quantity->owner, i);
+    const fg_foil_part part = fg_part_at(foil, quantity->owner, i);
     if (part.number == number && fg_lot_part_counts(foil, quantity->owner, &part))
       return fg_quantity_value(quantity->row, part.object);
   }

@@ -70,7 +70,7 @@ static fg_status collect(fg_context *ctx, const fg_lot_analysis *analysis,
     if (quantity->owner == FG_QUANTITY_OF_FOIL)
       take_value(quantity, i, fg_quantity_value(quantity->row, foil));
     for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
-      const fg_part part = fg_part_at(foil, quantity->owner, k);
+      const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
       if (fg_lot_part_counts(foil, quantity->owner, &part))
         take_value(quantity, i, fg_quantity_value(quantity->row, part.object));
     }
@@ -134,7 +134,7 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
   for (size_t i = 0; i < analysis->foil_count; i++) {
     const fg_foil *foil = analysis->foils[i].foil;
     for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
-      const fg_part part = fg_part_at(foil, quantity->owner, k);
+      const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
       if (part.number >= 1 && fg_lot_part_counts(foil, quantity->owner, &part))
         add_to_place(&quantity->place[part.number - 1],
                      fg_quantity_value(quantity->row, part.object));

@@ -8,8 +8,9 @@ bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump) {
   return fg_foil_is_measured(foil) && !(bump->flags & FG_BUMP_CRUSHED);
 }
 
-bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_part *part) {
-  (void)owner;
+bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_foil_part *part) {
+  if (owner == FG_QUANTITY_OF_BEAM)
+    return fg_foil_is_measured(foil) && !(part->flags & (unsigned)FG_LOT_BEAM_DAMAGED);
   return fg_lot_bump_counts(foil, part->object);
 }
 
@@ -31,6 +32,16 @@ const fg_lot_words *fg_lot_words_of(const fg_lot_analysis *analysis) {
                                .numbers = "bump, 1 is next to the lip",
                                .before_number = " ",
                                .mean = "foil (mean of its bumps)"},
+      [FG_QUANTITY_OF_BEAM] = {.one = "beam",
+                               .many = "beams",
+                               .counted = "Beams measured",
+                               .how = "torn, bent or hidden",
+                               .damaged = "Damaged beams",
+                               .json_damaged = "beams_damaged",
+                               .json_worst = "worst_beam",
+                               .numbers = "beam, from left to right with the free ends up",
+                               .before_number = ", beam ",
+                               .mean = "foil (mean of its beams)"},
   };
   return &words[analysis->parts];
 }
@@ -39,7 +50,8 @@ const fg_lot_quantity *fg_lot_leading_quantity(const fg_lot_analysis *analysis) 
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (analysis->quantities[i].tolerance && fg_owner_is_part(analysis->quantities[i].owner))
       return &analysis->quantities[i];
-  return fg_lot_find_quantity(analysis, "height_mm");
+  const bool beams = analysis->parts == FG_QUANTITY_OF_BEAM;
+  return fg_lot_find_quantity(analysis, beams ? "compliance_error_pct" : "height_mm");
 }
 
 fg_status fg_lot_spread_of(fg_context *ctx, const double *values, size_t count,

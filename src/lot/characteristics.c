@@ -33,7 +33,7 @@ double fg_characteristic_value(const fg_characteristic *characteristic, const fg
   const fg_quantity_owner owner = characteristic->quantity->owner;
   const void *object = characteristic->number ? NULL : foil;
   for (size_t i = 0; characteristic->number && i < fg_part_count(foil, owner); i++) {
-    const fg_part part = fg_part_at(foil, owner, i);
+    const fg_foil_part part = fg_part_at(foil, owner, i);
     if (part.number == characteristic->number) object = part.object;
   }
   *u = NAN;

@@ -8,8 +8,9 @@
 #include "lot/lot_report.h"
 
 static const char *const lot_files[FG_LOT_FILES] = {
-    "manifest.csv", "recipe.json", FG_LOT_MODEL_FILE, "results.jsonl", "lot.json",    "index.html",
-    "foils.csv",    "bumps.csv",   "results.qif",     "results.dfq",   "bearings.csv"};
+    "manifest.csv", "recipe.json", FG_LOT_MODEL_FILE, "results.jsonl",
+    "lot.json",     "index.html",  "foils.csv",       "bumps.csv",
+    "beams.csv",    "results.qif", "results.dfq",     "bearings.csv"};
 
 fg_status fg_lot_guard_begin(fg_context *ctx, const char *folder, fg_lot_guard *guard) {
   for (size_t i = 0; i < FG_LOT_FILES; i++)

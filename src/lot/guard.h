@@ -8,7 +8,7 @@
 #include "foilgauge/lot.h"
 #include "lot/manifest.h"
 
-enum { FG_LOT_FILES = 11 };
+enum { FG_LOT_FILES = 12 };
 
 /* The files that a run writes into a lot's folder. All zero before; free in any case. */
 typedef struct fg_lot_guard {

@@ -1,7 +1,7 @@
 /* Lots over time and against each other: what a page over lots says, from their reports.
  *
- * A lot is read from lot.json, foils.csv and bumps.csv, not from its records: lots of years come
- * from many versions of the program, and the names in these files stay. */
+ * A lot is read from lot.json, foils.csv and bumps.csv (or beams.csv), not from its records: lots
+ * of years come from many versions of the program, and the names in these files stay. */
 #ifndef FG_LOT_INDEX_H
 #define FG_LOT_INDEX_H
 
@@ -144,7 +144,7 @@ enum { FG_INDEX_DIES_MAX = 24 };
  * error is only one of memory. */
 fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot);
 
-/* Reads foils.csv and bumps.csv; what is wrong is its `doubt`. */
+/* Reads foils.csv and bumps.csv or beams.csv; what is wrong is its `doubt`. */
 fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lot);
 
 /* Order, designs, axes and what is asked of them. */

@@ -73,11 +73,12 @@ static fg_index_scale scale_of(const fg_index *index, const fg_quantity *row) {
   return row->nominal ? FG_INDEX_OVER_DESIGN : FG_INDEX_APART;
 }
 
-/* Those of bumps before those of foils, each in the order of the lots' reports. */
+/* Those of bumps and beams before those of foils, each in the order of the lots' reports. */
 static fg_status list_axes(fg_context *ctx, fg_index *index) {
-  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_FOIL};
+  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_BEAM,
+                                             FG_QUANTITY_OF_FOIL};
   size_t capacity = 0;
-  for (size_t o = 0; o < 2; o++)
+  for (size_t o = 0; o < sizeof owners / sizeof *owners; o++)
     for (size_t i = 0; i < index->read; i++)
       for (size_t k = 0; k < index->lots[i].stat_count; k++) {
         const fg_index_stat *stat = &index->lots[i].stats[k];

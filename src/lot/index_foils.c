@@ -1,4 +1,4 @@
-/* The foils of a lot, from its foils.csv and bumps.csv. */
+/* The foils of a lot, from its foils.csv and its bumps.csv or beams.csv. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "foilgauge/table.h"
 #include "foilgauge/words.h"
+#include "lot/analysis.h"
 #include "lot/index.h"
 
 /* lot.json has ten digits, and the mean of these files' values is computed from ten digits each. */
@@ -18,10 +19,10 @@ enum { TABLE_BYTES_MAX = 1 << 30, CELL = 160 };
 typedef struct reading {
   fg_index *index;
   fg_index_lot *lot;
-  fg_table foils, bumps;
-  size_t *foil;  /* row of foils.csv of each foil that counts */
-  size_t *owner; /* foil of each row of bumps.csv */
-  size_t *count; /* values of the stat that is read, by foil */
+  fg_table foils, parts; /* of the lot's CSV files */
+  size_t *foil;          /* row of foils.csv of each foil that counts */
+  size_t *owner;         /* foil of each row of `parts` */
+  size_t *count;         /* values of the stat that is read, by foil */
 } reading;
 
 static const fg_column *find_column(const fg_table *table, const char *name) {
@@ -111,19 +112,30 @@ static fg_status take_dies(fg_context *ctx, reading *r) {
   return list_words(ctx, r, "coil", &r->lot->coils);
 }
 
-/* Whose foil every line of bumps.csv is, FG_INDEX_NONE for a bump that does not count: both files
- * are in one order. */
-static fg_status own_bumps(fg_context *ctx, reading *r) {
-  const fg_column *scan[2] = {find_column(&r->foils, "scan"), find_column(&r->bumps, "scan")},
+/* Flags of what does not count, as fg_lot_part_counts has it. */
+static bool is_damaged(const fg_index_lot *lot, const char *flags) {
+  bool damaged = false;
+  if (fg_form_parts(lot->design.form) == FG_QUANTITY_OF_BUMP)
+    return has_flag(fg_bump_flag_words(), flags, FG_BUMP_CRUSHED);
+  for (unsigned flag = 1; flag <= FG_LOT_BEAM_DAMAGED; flag <<= 1)
+    damaged =
+        damaged || (flag & FG_LOT_BEAM_DAMAGED && has_flag(fg_beam_flag_words(), flags, flag));
+  return damaged;
+}
+
+/* Whose foil every line of `parts` is, FG_INDEX_NONE for one that does not count: both files are in
+ * one order. */
+static fg_status own_parts(fg_context *ctx, reading *r) {
+  const fg_column *scan[2] = {find_column(&r->foils, "scan"), find_column(&r->parts, "scan")},
                   *number[2] = {find_column(&r->foils, "foil_number"),
-                                find_column(&r->bumps, "foil_number")},
-                  *flag = find_column(&r->bumps, "flags");
+                                find_column(&r->parts, "foil_number")},
+                  *flag = find_column(&r->parts, "flags");
   char a[CELL], b[CELL];
   size_t foil = 0;
   void *block;
-  FG_TRY(fg_memory_allocate(ctx, r->bumps.rows, sizeof *r->owner, &block));
+  FG_TRY(fg_memory_allocate(ctx, r->parts.rows, sizeof *r->owner, &block));
   r->owner = block;
-  for (size_t row = 0; row < r->bumps.rows; row++) {
+  for (size_t row = 0; row < r->parts.rows; row++) {
     size_t at = foil;
     r->owner[row] = FG_INDEX_NONE;
     if (!scan[0] || !scan[1] || !number[0] || !number[1]) continue;
@@ -133,26 +145,25 @@ static fg_status own_bumps(fg_context *ctx, reading *r) {
       at++;
     if (at == r->lot->foil_count) continue; /* of no foil that counts */
     foil = at;
-    if (!has_flag(fg_bump_flag_words(), cell_text(flag, row, a), FG_BUMP_CRUSHED))
-      r->owner[row] = foil;
+    if (!is_damaged(r->lot, cell_text(flag, row, a))) r->owner[row] = foil;
   }
   return FG_OK;
 }
 
-/* The value of every foil, or the mean of its bumps; the mean of all of them in *mean. */
+/* The value of every foil, or the mean of its parts; the mean of all of them in *mean. */
 static fg_status read_stat(fg_context *ctx, reading *r, fg_index_stat *stat, double *mean) {
-  bool of_bump = stat->owner == FG_QUANTITY_OF_BUMP;
-  const fg_table *table = of_bump ? &r->bumps : &r->foils;
+  bool of_part = fg_owner_is_part(stat->owner);
+  const fg_table *table = of_part ? &r->parts : &r->foils;
   const fg_column *column = find_column(table, stat->row->name);
-  size_t lines = of_bump ? r->bumps.rows : r->lot->foil_count, known = 0;
+  size_t lines = of_part ? r->parts.rows : r->lot->foil_count, known = 0;
   double sum = 0;
   void *block;
   FG_TRY(fg_memory_allocate(ctx, r->lot->foil_count, sizeof *stat->foil, &block));
   stat->foil = block;
   memset(r->count, 0, r->lot->foil_count * sizeof *r->count);
   for (size_t i = 0; column && i < lines; i++) {
-    size_t foil = of_bump ? r->owner[i] : i;
-    double value = cell_number(column, of_bump ? i : r->foil[i]);
+    size_t foil = of_part ? r->owner[i] : i;
+    double value = cell_number(column, of_part ? i : r->foil[i]);
     if (foil == FG_INDEX_NONE || !isfinite(value)) continue;
     stat->foil[foil] += value;
     r->count[foil]++;
@@ -166,18 +177,22 @@ static fg_status read_stat(fg_context *ctx, reading *r, fg_index_stat *stat, dou
 }
 
 static fg_status read_ratios(fg_context *ctx, reading *r) {
-  const fg_column *column = find_column(&r->bumps, "radius_mm");
+  const fg_column *column = find_column(&r->parts, "radius_mm");
   fg_index_lot *lot = r->lot;
-  FG_TRY(fg_memory_allocate(ctx, r->bumps.rows, sizeof *lot->ratio, (void **)&lot->ratio));
+  FG_TRY(fg_memory_allocate(ctx, r->parts.rows, sizeof *lot->ratio, (void **)&lot->ratio));
   FG_TRY(
-      fg_memory_allocate(ctx, r->bumps.rows, sizeof *lot->ratio_foil, (void **)&lot->ratio_foil));
-  for (size_t row = 0; column && row < r->bumps.rows; row++) {
+      fg_memory_allocate(ctx, r->parts.rows, sizeof *lot->ratio_foil, (void **)&lot->ratio_foil));
+  for (size_t row = 0; column && row < r->parts.rows; row++) {
     double value = cell_number(column, row);
     if (r->owner[row] == FG_INDEX_NONE || !isfinite(value)) continue;
     lot->ratio_foil[lot->ratios] = r->owner[row];
     lot->ratio[lot->ratios++] = value / lot->design.bump_radius_mm;
   }
   return FG_OK;
+}
+
+static const char *parts_file(const fg_index_lot *lot) {
+  return lot->design.form == FG_FORM_CANTILEVER ? "beams.csv" : "bumps.csv";
 }
 
 /* The files must be those of lot.json: another run may have written one of them. */
@@ -191,10 +206,11 @@ static fg_status read_stats(fg_context *ctx, reading *r) {
     if (stat->count == 0 || fabs(mean - stat->mean) <= SAME_MEAN * fmax(fabs(stat->most), 1e-3))
       continue;
     return fg_text_print(ctx, &lot->doubt,
-                         "%s: foils.csv and bumps.csv hold other values of %s than lot.json; write "
+                         "%s: foils.csv and %s hold other values of %s than lot.json; write "
                          "them again with `foilgauge lot %s/manifest.csv -o %s --recipe "
                          "%s/recipe.json --resume`",
-                         lot->folder, stat->row->name, lot->folder, lot->folder, lot->folder);
+                         lot->folder, parts_file(lot), stat->row->name, lot->folder, lot->folder,
+                         lot->folder);
   }
   return read_ratios(ctx, r);
 }
@@ -229,16 +245,16 @@ fg_status fg_index_read_foils(fg_context *ctx, fg_index *index, fg_index_lot *lo
   reading r = {.index = index, .lot = lot};
   fg_status status = FG_OK;
   FG_TRY_EXIT(read_table(ctx, lot, "foils.csv", &r.foils));
-  if (!lot->doubt) FG_TRY_EXIT(read_table(ctx, lot, "bumps.csv", &r.bumps));
+  if (!lot->doubt) FG_TRY_EXIT(read_table(ctx, lot, parts_file(lot), &r.parts));
   if (lot->doubt) goto exit;
   FG_TRY_EXIT(list_foils(ctx, &r));
-  FG_TRY_EXIT(own_bumps(ctx, &r));
+  FG_TRY_EXIT(own_parts(ctx, &r));
   FG_TRY_EXIT(read_stats(ctx, &r));
   if (!lot->doubt) FG_TRY_EXIT(take_dies(ctx, &r));
 exit:
   if (lot->doubt) forget(lot);
   fg_table_free(&r.foils);
-  fg_table_free(&r.bumps);
+  fg_table_free(&r.parts);
   free(r.foil);
   free(r.owner);
   free(r.count);

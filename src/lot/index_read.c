@@ -11,6 +11,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/index.h"
+#include "quantity/parts.h"
 #include "report/measure/measure_json.h"
 
 enum { LOT_BYTES_MAX = 1 << 30 };
@@ -183,7 +184,7 @@ static void take_stat(fg_index_lot *lot, fg_quantity_owner owner, const fg_quant
 
 /* In the order of lot.json; what another version knows and this one does not is passed over. */
 static fg_status take_stats(fg_context *ctx, fg_index_lot *lot, const cJSON *root) {
-  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_FOIL};
+  const fg_quantity_owner owners[] = {fg_form_parts(lot->design.form), FG_QUANTITY_OF_FOIL};
   const cJSON *list = member(root, "quantities"), *item;
   void *block;
   int size = cJSON_GetArraySize(list);

@@ -66,8 +66,9 @@ fg_status fg_lot_write_model(fg_context *ctx, const char *folder, const char *te
               : remove_file(ctx, folder, FG_LOT_MODEL_FILE);
 }
 
-static const char *const report_files[] = {"lot.json",     "index.html",  "foils.csv",  "bumps.csv",
-                                           "bearings.csv", "results.qif", "results.dfq"};
+static const char *const report_files[] = {"lot.json",    "index.html", "foils.csv",
+                                           "bumps.csv",   "beams.csv",  "bearings.csv",
+                                           "results.qif", "results.dfq"};
 
 fg_status fg_lot_remove_report(fg_context *ctx, const char *folder) {
   for (size_t i = 0; i < sizeof report_files / sizeof *report_files; i++)

@@ -1,5 +1,5 @@
-/* foils.csv, bumps.csv, bearings.csv: the manifest's columns first, so that any program can pivot
- * by them. */
+/* foils.csv, bumps.csv or beams.csv, bearings.csv: the manifest's columns first, so that any
+ * program can pivot by them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -131,6 +131,24 @@ fg_status fg_lot_write_bumps_csv(fg_context *ctx, const fg_lot_analysis *analysi
     }
   }
   return fg_stream_finish(ctx, out, "bumps.csv");
+}
+
+fg_status fg_lot_write_beams_csv(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
+  const fg_manifest *manifest = &analysis->lot->manifest;
+  const fg_design *design = &analysis->lot->settings.design;
+  put_heading(out, manifest, ",foil_number,beam,flags,verdict", FG_QUANTITY_OF_BEAM);
+  for (size_t i = 0; i < analysis->foil_count; i++) {
+    const fg_foil *foil = analysis->foils[i].foil;
+    for (size_t k = 0; k < foil->beam_count; k++) {
+      const fg_beam *beam = &foil->beams[k];
+      put_columns(out, manifest, analysis->foils[i].item);
+      fprintf(out, ",%d,%d", foil->number, beam->number);
+      put_flags(out, fg_beam_flag_words(), fg_beam_flags(design, foil, beam));
+      fprintf(out, ",%s", fg_verdict_word(fg_beam_verdict(design, foil, beam)));
+      put_values(out, FG_QUANTITY_OF_BEAM, beam);
+    }
+  }
+  return fg_stream_finish(ctx, out, "beams.csv");
 }
 
 static void put_bearing_heading(FILE *out) {

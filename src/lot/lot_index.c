@@ -12,7 +12,8 @@ enum { PAGE, JSON, TABLE, OUTPUTS };
 
 /* The page must not take the place of what it is made from, nor of what it links to. */
 static fg_status check_outputs(fg_context *ctx, const fg_lot_index_request *request) {
-  static const char *const inputs[] = {"lot.json", "index.html", "foils.csv", "bumps.csv"};
+  static const char *const inputs[] = {"lot.json", "index.html", "foils.csv", "bumps.csv",
+                                       "beams.csv"};
   enum { INPUTS = sizeof inputs / sizeof *inputs };
   const char *const outputs[OUTPUTS] = {request->page, request->json, request->csv};
   fg_overwrite overwrite = {0};

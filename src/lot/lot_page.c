@@ -127,7 +127,8 @@ static void put_where_pages_are(FILE *out, const fg_lot_analysis *analysis) {
   }
   fputs("<p class=\"note\">A scan&#39;s name leads to the scan", out);
   if (with)
-    fputs(", a foil&#39;s to its page: picture with circles and residuals, and every value", out);
+    fprintf(out, ", a foil&#39;s to its page: picture%s, and every value",
+            analysis->parts == FG_QUANTITY_OF_BEAM ? "" : " with circles and residuals");
   if (with && without) fputs("; where it has none, to its line here", out);
   if (without)
     fputs(". The page of a foil that has none: <code>foilgauge measure SCAN --design … --html "
@@ -183,12 +184,13 @@ static fg_status put_origin(fg_context *ctx, FILE *out, const fg_lot_analysis *a
   FG_TRY(fg_html_provenance(ctx, out, &from));
   fputs("</dl>\n<p class=\"note\">", out);
   fg_html_text(out, scale);
-  fputs(
+  fprintf(
+      out,
       " A value passes when value ± U lies inside its tolerance "
-      "(U = 2 u, about 95 %), fails when it lies outside, and cannot be told when a limit runs "
-      "through it. All numbers: lot.json, foils.csv, bumps.csv, bearings.csv; for quality systems "
+      "(U = 2 u, about 95 %%), fails when it lies outside, and cannot be told when a limit runs "
+      "through it. All numbers: lot.json, foils.csv, %s; for quality systems "
       "results.qif and results.dfq.</p>\n</section>\n",
-      out);
+      analysis->parts == FG_QUANTITY_OF_BEAM ? "beams.csv" : "bumps.csv, bearings.csv");
   return FG_OK;
 }
 
@@ -203,6 +205,8 @@ fg_status fg_lot_write_page(fg_context *ctx, const fg_lot_analysis *analysis, FI
     fg_lot_put_stiffness(out, analysis);
     fg_lot_put_bearings(out, analysis);
     fg_lot_put_assembly(out, analysis);
+  } else if (analysis->parts == FG_QUANTITY_OF_BEAM) {
+    fg_lot_put_beams(out, analysis);
   } else {
     fg_lot_put_arcs(out, analysis);
   }

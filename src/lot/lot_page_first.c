@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "foilgauge/words.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "report/measure/measure_page_parts.h"
@@ -187,6 +188,20 @@ void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
   put_causes(out, analysis);
 }
 
+/* The first damaged beam, with what is wrong with it; false where there is none. */
+static bool put_damage(FILE *out, const fg_foil *foil) {
+  for (size_t i = 0; i < foil->beam_count; i++) {
+    const fg_foil_part part = fg_part_at(foil, FG_QUANTITY_OF_BEAM, i);
+    if (fg_lot_part_counts(foil, FG_QUANTITY_OF_BEAM, &part)) continue;
+    for (const fg_flag_words *words = fg_beam_flag_words(); words->name; words++) {
+      if (!(part.flags & words->flag & FG_LOT_BEAM_DAMAGED)) continue;
+      fprintf(out, "beam %d: %s", part.number, words->plain);
+      return true;
+    }
+  }
+  return false;
+}
+
 /* What stands against a foil most: what it is, or its farthest value. */
 void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   char defect[200];
@@ -194,6 +209,8 @@ void fg_lot_put_reason(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
     fg_html_text(out, foil->foil->error);
   } else if (fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect)) {
     fputs(defect, out);
+  } else if (foil->verdict == FG_VERDICT_NOT_MEASURED && put_damage(out, foil->foil)) {
+    return;
   } else if (foil->worst_row) {
     fputs(foil->worst_row->words, out);
     if (foil->worst_number)

@@ -13,6 +13,8 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
         out);
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     const fg_lot_quantity *quantity = &analysis->quantities[i];
+    bool unstated = !quantity->count && !quantity->tolerance;
+    if (unstated && quantity->owner == FG_QUANTITY_OF_BEAM) continue; /* as without a sagitta */
     const double values[] = {quantity->mean, quantity->sd,    quantity->median,
                              quantity->mode, quantity->least, quantity->most};
     fprintf(out, "<tr><td class=\"words\">%s</td><td>%s</td><td>%zu</td>", quantity->row->words,

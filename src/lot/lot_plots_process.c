@@ -85,7 +85,7 @@ static size_t foils_per_dot(const fg_lot_analysis *analysis, const fg_lot_quanti
 static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, const fg_foil *foil,
                           double share) {
   for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
-    const fg_part part = fg_part_at(foil, quantity->owner, k);
+    const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
     double value = fg_quantity_value(quantity->row, part.object);
     if (part.number < 1 || !isfinite(value) || !fg_lot_part_counts(foil, quantity->owner, &part))
       continue;

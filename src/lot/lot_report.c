@@ -8,23 +8,30 @@
 #include "lot/lot_date.h"
 #include "lot/writers.h"
 
+/* Which lots have a file. */
+typedef enum lot_kind { ALL, CURVED, FLAT } lot_kind;
+
 static const struct {
   const char *name;
   fg_lot_writer *write;
+  lot_kind of;
 } files[] = {
-    {"bumps.csv", fg_lot_write_bumps_csv},
-    {"foils.csv", fg_lot_write_foils_csv},
-    {"bearings.csv", fg_lot_write_bearings_csv},
-    {"results.qif", fg_lot_write_qif},
-    {"results.dfq", fg_lot_write_dfq},
-    {"index.html", fg_lot_write_page},
-    {"lot.json", fg_lot_write_json},
+    {"bumps.csv", fg_lot_write_bumps_csv, CURVED},
+    {"beams.csv", fg_lot_write_beams_csv, FLAT},
+    {"foils.csv", fg_lot_write_foils_csv, ALL},
+    {"bearings.csv", fg_lot_write_bearings_csv, CURVED},
+    {"results.qif", fg_lot_write_qif, ALL},
+    {"results.dfq", fg_lot_write_dfq, ALL},
+    {"index.html", fg_lot_write_page, ALL},
+    {"lot.json", fg_lot_write_json, ALL},
 };
 
 static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
                             const fg_lot_analysis *analysis) {
   char *path;
   fg_output output;
+  bool flat = analysis->lot->settings.design.form == FG_FORM_CANTILEVER;
+  if (files[i].of == (flat ? CURVED : FLAT)) return FG_OK;
   FG_TRY(fg_lot_path(ctx, folder, files[i].name, &path));
   fg_status status = fg_output_open(ctx, path, &output);
   free(path);

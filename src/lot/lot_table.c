@@ -26,7 +26,7 @@ typedef struct reading {
   fg_lot lot;
   fg_table manifest;
   const fg_quantity *row;
-  bool of_bumps;
+  fg_quantity_owner owner;
   /* Of the rows that are made. */
   size_t rows, *item;
   double *value, *radius, *bump, *number;
@@ -36,13 +36,15 @@ typedef struct reading {
   size_t failed, foreign, crushed, unknown;
 } reading;
 
+/* A lot of plain strips holds what a lot with bumps does, and has no value of much of it. */
 static fg_status find_quantity(fg_context *ctx, reading *r) {
-  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BUMP, FG_QUANTITY_OF_FOIL};
+  fg_form form = r->out->design.form == FG_FORM_CANTILEVER ? FG_FORM_CANTILEVER : FG_FORM_CLASSICAL;
+  const fg_quantity_owner owners[] = {fg_form_parts(form), FG_QUANTITY_OF_FOIL};
   char list[700] = "";
   for (size_t i = 0; i < 2; i++) {
     r->row = fg_quantity_find(owners[i], r->options->quantity);
-    r->of_bumps = owners[i] == FG_QUANTITY_OF_BUMP;
-    fg_quantity_list(owners[i], FG_FORM_CLASSICAL, false, list, sizeof list);
+    r->owner = owners[i];
+    fg_quantity_list(owners[i], form, false, list, sizeof list);
     if (r->row && r->row->kind == FG_QUANTITY_NUMBER) return FG_OK;
   }
   return fg_fail(ctx, FG_ERR_DATA, "'%s' is no quantity that a lot holds; there are: %s",
@@ -83,11 +85,15 @@ exit:
   return status;
 }
 
+static bool of_parts(const reading *r) {
+  return fg_owner_is_part(r->owner);
+}
+
 static size_t count_rows(const reading *r) {
   size_t rows = 0;
   for (size_t i = 0; i < r->lot.manifest.items; i++)
     for (size_t f = 0; f < r->lot.records[i].foil_count; f++)
-      rows += r->of_bumps ? r->lot.records[i].foils[f].bump_count : 1;
+      rows += of_parts(r) ? fg_part_count(&r->lot.records[i].foils[f], r->owner) : 1;
   return rows;
 }
 
@@ -104,9 +110,10 @@ static fg_status allocate(fg_context *ctx, reading *r) {
 
 /* A row of the object; one without a value is counted. */
 static fg_status add_row(fg_context *ctx, reading *r, size_t item, const fg_foil *foil,
-                         const fg_bump *bump) {
+                         const fg_foil_part *part) {
   size_t at = r->rows, foils = r->lot.records[item].foil_count;
-  double value = fg_quantity_value(r->row, bump ? (const void *)bump : (const void *)foil);
+  double value = fg_quantity_value(r->row, part ? part->object : (const void *)foil);
+  const fg_bump *bump = part && r->owner == FG_QUANTITY_OF_BUMP ? part->object : NULL;
   const char *label = fg_manifest_label(&r->lot.manifest, item);
   if (!isfinite(value)) {
     r->unknown++;
@@ -115,12 +122,13 @@ static fg_status add_row(fg_context *ctx, reading *r, size_t item, const fg_foil
   r->item[at] = item;
   r->value[at] = value;
   r->radius[at] = bump ? bump->radius_mm : 0;
-  r->bump[at] = bump ? bump->number : 0;
+  r->bump[at] = part ? part->number : 0;
   r->number[at] = foil->number;
   r->out->names = ++r->rows;
   FG_TRY(fg_text_print(ctx, &r->label[at], foils > 1 ? "%s #%d" : "%s", label, foil->number));
-  if (!bump) return fg_text_print(ctx, &r->out->name[at], "foil %s", r->label[at]);
-  return fg_text_print(ctx, &r->out->name[at], "foil %s, bump %d", r->label[at], bump->number);
+  if (!part) return fg_text_print(ctx, &r->out->name[at], "foil %s", r->label[at]);
+  return fg_text_print(ctx, &r->out->name[at], "foil %s, %s %d", r->label[at],
+                       fg_part_word(r->owner), part->number);
 }
 
 static fg_status add_foil(fg_context *ctx, reading *r, size_t item, const fg_foil *foil) {
@@ -129,11 +137,12 @@ static fg_status add_foil(fg_context *ctx, reading *r, size_t item, const fg_foi
     r->foreign++;
     return FG_OK;
   }
-  if (!r->of_bumps) return add_row(ctx, r, item, foil, NULL);
-  for (size_t k = 0; k < foil->bump_count; k++) {
-    bool counts = fg_lot_bump_counts(foil, &foil->bumps[k]);
+  if (!of_parts(r)) return add_row(ctx, r, item, foil, NULL);
+  for (size_t k = 0; k < fg_part_count(foil, r->owner); k++) {
+    const fg_foil_part part = fg_part_at(foil, r->owner, k);
+    bool counts = fg_lot_part_counts(foil, r->owner, &part);
     r->crushed += !counts;
-    if (counts) FG_TRY(add_row(ctx, r, item, foil, &foil->bumps[k]));
+    if (counts) FG_TRY(add_row(ctx, r, item, foil, &part));
   }
   return FG_OK;
 }
@@ -147,7 +156,7 @@ static fg_status make_rows(fg_context *ctx, reading *r) {
       FG_TRY(add_foil(ctx, r, i, &record->foils[f]));
   }
   if (r->rows) return FG_OK;
-  if (r->of_bumps && r->out->design.form == FG_FORM_ARC)
+  if (of_parts(r) && r->out->design.form == FG_FORM_ARC)
     return fg_fail(
         ctx, FG_ERR_DATA,
         "%s: a lot of plain strips (form arc) has no %s, which is of bumps; choose another "
@@ -165,7 +174,8 @@ static bool is_named(const reading *r, const char *column) {
 
 /* The manifest's columns that may be causes: sound ones, and none that the table names itself. */
 static fg_status choose_columns(fg_context *ctx, reading *r) {
-  const char *own[] = {"scan", "foil", "foil_number", "bump", "radius_mm", r->options->quantity};
+  const char *own[] = {
+      "scan", "foil", "foil_number", fg_part_word(r->owner), "radius_mm", r->options->quantity};
   const fg_column *column;
   for (size_t i = 0; i < r->options->withouts; i++)
     FG_TRY(fg_table_find(ctx, &r->manifest, r->options->without[i], &column));
@@ -191,7 +201,7 @@ static bool has_repeats(fg_context *ctx, const reading *r, fg_status *status) {
 static fg_status fill_table(fg_context *ctx, reading *r) {
   fg_table *table = &r->out->table;
   fg_status status = FG_OK;
-  bool grouped = r->of_bumps || has_repeats(ctx, r, &status);
+  bool grouped = of_parts(r) || has_repeats(ctx, r, &status);
   FG_TRY(status);
   FG_TRY(fg_table_select(ctx, &r->manifest, r->item, r->rows, table));
   free(table->line); /* its rows are not the manifest's */
@@ -204,21 +214,26 @@ static fg_status fill_table(fg_context *ctx, reading *r) {
     r->out->group = "foil";
   }
   if (r->several) FG_TRY(fg_table_add_numbers(ctx, table, "foil_number", r->number, r->rows));
-  if (r->of_bumps) FG_TRY(fg_table_add_numbers(ctx, table, "bump", r->bump, r->rows));
-  if (r->options->with_radius && r->of_bumps && strcmp(r->options->quantity, "radius_mm") != 0)
+  if (of_parts(r))
+    FG_TRY(fg_table_add_numbers(ctx, table, fg_part_word(r->owner), r->bump, r->rows));
+  if (r->options->with_radius && r->owner == FG_QUANTITY_OF_BUMP &&
+      strcmp(r->options->quantity, "radius_mm") != 0)
     FG_TRY(fg_table_add_numbers(ctx, table, "radius_mm", r->radius, r->rows));
   return fg_table_add_numbers(ctx, table, r->options->quantity, r->value, r->rows);
 }
 
 static fg_status say_left_out(fg_context *ctx, reading *r) {
+  bool beams = r->owner == FG_QUANTITY_OF_BEAM;
   const struct {
     size_t count;
     const char *words;
   } counts[] = {
       {r->failed, "scans that could not be measured"},
       {r->foreign, "foils that are none of the design"},
-      {r->crushed, "crushed bumps"},
-      {r->unknown, r->of_bumps ? "bumps without a value" : "foils without a value"},
+      {r->crushed, beams ? "torn, bent or hidden beams" : "crushed bumps"},
+      {r->unknown, beams         ? "beams without a value"
+                   : of_parts(r) ? "bumps without a value"
+                                 : "foils without a value"},
   };
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     if (counts[i].count)
@@ -228,8 +243,8 @@ static fg_status say_left_out(fg_context *ctx, reading *r) {
 }
 
 static fg_status read_all(fg_context *ctx, reading *r) {
-  FG_TRY(find_quantity(ctx, r));
   FG_TRY(read_folder(ctx, r));
+  FG_TRY(find_quantity(ctx, r));
   FG_TRY(make_rows(ctx, r));
   FG_TRY(choose_columns(ctx, r));
   FG_TRY(say_left_out(ctx, r));

@@ -58,7 +58,8 @@ void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis);
 /* The sections, in the page's order. */
 void fg_lot_put_quantities(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis);
-void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis); /* of plain strips instead */
+void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis);  /* of plain strips instead */
+void fg_lot_put_beams(FILE *out, const fg_lot_analysis *analysis); /* of cantilevers instead */
 void fg_lot_put_stiffness(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis);
 void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis);

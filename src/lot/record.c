@@ -11,9 +11,11 @@
 #include "core/text.h"
 #include "foilgauge/words.h"
 #include "lot/seal.h"
+#include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
 
-/* NUMBER_MAX: of a foil or bump. No scan holds so many, and what is counted by number stays small.
+/* NUMBER_MAX: of a foil or a part of it. No scan holds so many, and what is counted by number stays
+ * small.
  */
 enum { NUMBER_MAX = 10000 };
 
@@ -56,25 +58,36 @@ static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flag
   fg_json_array_end(json);
 }
 
-/* Of a part that is no foil of the design a lot keeps what the whole is, not the bumps. */
+static const fg_flag_words *flag_words(fg_quantity_owner owner) {
+  return owner == FG_QUANTITY_OF_BEAM ? fg_beam_flag_words() : fg_bump_flag_words();
+}
+
+/* Of what is no foil of the design a lot keeps what the whole is, not its parts. */
+static void write_parts(fg_json *json, const char *name, const fg_foil *foil,
+                        fg_quantity_owner owner) {
+  size_t count = fg_foil_is_measured(foil) ? fg_part_count(foil, owner) : 0;
+  fg_json_array(json, name);
+  for (size_t i = 0; i < count; i++) {
+    const fg_foil_part part = fg_part_at(foil, owner, i);
+    fg_json_object(json, NULL);
+    fg_json_integer(json, "number", part.number);
+    write_flags(json, flag_words(owner), part.flags);
+    write_values(json, owner, part.object);
+    write_calibrated(json, owner, part.calibrated);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
 static void write_foil(fg_json *json, const fg_foil *foil) {
-  size_t bumps = fg_foil_is_measured(foil) ? foil->bump_count : 0;
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
   write_flags(json, fg_foil_flag_words(), foil->flags);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   write_values(json, FG_QUANTITY_OF_FOIL, foil);
   write_calibrated(json, FG_QUANTITY_OF_FOIL, &foil->calibrated);
-  fg_json_array(json, "bumps");
-  for (size_t i = 0; i < bumps; i++) {
-    fg_json_object(json, NULL);
-    fg_json_integer(json, "number", foil->bumps[i].number);
-    write_flags(json, fg_bump_flag_words(), foil->bumps[i].flags);
-    write_values(json, FG_QUANTITY_OF_BUMP, &foil->bumps[i]);
-    write_calibrated(json, FG_QUANTITY_OF_BUMP, &foil->bumps[i].calibrated);
-    fg_json_object_end(json);
-  }
-  fg_json_array_end(json);
+  write_parts(json, "bumps", foil, FG_QUANTITY_OF_BUMP);
+  if (foil->beam_count) write_parts(json, "beams", foil, FG_QUANTITY_OF_BEAM);
   fg_json_object_end(json);
 }
 
@@ -204,31 +217,64 @@ static fg_status read_number(fg_context *ctx, const cJSON *object, int *number) 
   const cJSON *value = member(object, "number");
   double read = cJSON_IsNumber(value) ? value->valuedouble : NAN;
   if (!(read >= 0 && read <= NUMBER_MAX && read == floor(read)))
-    return fail_record(ctx, "no number that a foil or bump can have");
+    return fail_record(ctx, "no number that a foil, bump or beam can have");
   *number = (int)read;
   return FG_OK;
 }
 
-static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) {
-  const cJSON *error = member(object, "error"), *bumps = member(object, "bumps"), *bump;
+/* What every part has, whatever it is. */
+static fg_status read_part(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
+                           fg_foil_part *part, void *target, fg_calibrated *calibrated) {
+  FG_TRY(read_number(ctx, object, &part->number));
+  FG_TRY(read_flags(ctx, object, flag_words(owner), &part->flags));
+  FG_TRY(read_values(ctx, object, owner, target));
+  return read_calibrated(ctx, object, owner, calibrated);
+}
+
+static fg_status read_bumps(fg_context *ctx, const cJSON *bumps, fg_foil *foil) {
+  const cJSON *bump;
   void *block;
+  if (!cJSON_IsArray(bumps)) return fail_record(ctx, "no bumps");
+  FG_TRY(fg_memory_allocate(ctx, (size_t)cJSON_GetArraySize(bumps), sizeof *foil->bumps, &block));
+  foil->bumps = block;
+  cJSON_ArrayForEach(bump, bumps) {
+    fg_bump *target = &foil->bumps[foil->bump_count++];
+    fg_foil_part part;
+    FG_TRY(read_part(ctx, bump, FG_QUANTITY_OF_BUMP, &part, target, &target->calibrated));
+    target->number = part.number;
+    target->flags = part.flags;
+  }
+  return FG_OK;
+}
+
+/* Of a cantilever; other records have none. */
+static fg_status read_beams(fg_context *ctx, const cJSON *beams, fg_foil *foil) {
+  const cJSON *beam;
+  void *block;
+  if (!beams) return FG_OK;
+  if (!cJSON_IsArray(beams)) return fail_record(ctx, "beams that are no list");
+  FG_TRY(fg_memory_allocate(ctx, (size_t)cJSON_GetArraySize(beams), sizeof *foil->beams, &block));
+  foil->beams = block;
+  cJSON_ArrayForEach(beam, beams) {
+    fg_beam *target = &foil->beams[foil->beam_count++];
+    fg_foil_part part;
+    FG_TRY(read_part(ctx, beam, FG_QUANTITY_OF_BEAM, &part, target, &target->calibrated));
+    target->number = part.number;
+    target->flags = part.flags;
+  }
+  return FG_OK;
+}
+
+static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) {
+  const cJSON *error = member(object, "error");
   FG_TRY(read_number(ctx, object, &foil->number));
   FG_TRY(read_flags(ctx, object, fg_foil_flag_words(), &foil->flags));
   FG_TRY(read_values(ctx, object, FG_QUANTITY_OF_FOIL, foil));
   FG_TRY(read_calibrated(ctx, object, FG_QUANTITY_OF_FOIL, &foil->calibrated));
   if (cJSON_IsString(error))
     fg_text_clip(foil->error, sizeof foil->error, "%s", error->valuestring);
-  if (!cJSON_IsArray(bumps)) return fail_record(ctx, "no bumps");
-  FG_TRY(fg_memory_allocate(ctx, (size_t)cJSON_GetArraySize(bumps), sizeof *foil->bumps, &block));
-  foil->bumps = block;
-  cJSON_ArrayForEach(bump, bumps) {
-    fg_bump *target = &foil->bumps[foil->bump_count++];
-    FG_TRY(read_number(ctx, bump, &target->number));
-    FG_TRY(read_flags(ctx, bump, fg_bump_flag_words(), &target->flags));
-    FG_TRY(read_values(ctx, bump, FG_QUANTITY_OF_BUMP, target));
-    FG_TRY(read_calibrated(ctx, bump, FG_QUANTITY_OF_BUMP, &target->calibrated));
-  }
-  return FG_OK;
+  FG_TRY(read_bumps(ctx, member(object, "bumps"), foil));
+  return read_beams(ctx, member(object, "beams"), foil);
 }
 
 static fg_status read_sum(fg_context *ctx, const cJSON *value, char sum[65]) {
@@ -310,8 +356,10 @@ fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record) 
 }
 
 void fg_record_free(fg_record *record) {
-  for (size_t i = 0; i < record->foil_count; i++)
+  for (size_t i = 0; i < record->foil_count; i++) {
     free(record->foils[i].bumps);
+    free(record->foils[i].beams); /* whose edges a record does not have */
+  }
   free(record->foils);
   free(record->scan);
   free(record->error);
@@ -340,6 +388,7 @@ static void write_names(fg_json *json, const char *name, fg_quantity_owner owner
 void fg_record_write_names(fg_json *json) {
   write_names(json, "foil_values", FG_QUANTITY_OF_FOIL);
   write_names(json, "bump_values", FG_QUANTITY_OF_BUMP);
+  write_names(json, "beam_values", FG_QUANTITY_OF_BEAM);
 }
 
 fg_status fg_record_format_names(fg_context *ctx, char **text) {

@@ -2,6 +2,7 @@
  *
  * {"scan", "sha256", "date", "measured_with", "error", "foils": [{"number", "flags", "error",
  * "values", "calibrated", "bumps": [{"number", "flags", "values", "calibrated"}]}], "checksum"}
+ * Of a cantilever the foils have "beams" besides, of the same members.
  * `calibrated`, where a calibration is stated: fg_calibrated, source by source. `scan_bytes`
  * follows `scan` where a file name is not UTF-8: its bytes as hex digits. The checksum is of the
  * line itself (lot/seal.h). `values` are those of the rows of quantities (quantity.h) in its order;

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/report.h"
+#include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
 
 /* A mean as it grows: independent parts add in squares, common ones as they are. */
@@ -33,14 +34,16 @@ typedef struct measuring {
 } measuring;
 
 static fg_status find_quantity(fg_context *ctx, measuring *m) {
-  static const fg_quantity_owner foils[] = {FG_QUANTITY_OF_FOIL, FG_QUANTITY_OF_BUMP};
   static const fg_quantity_owner discs[] = {FG_QUANTITY_OF_DISC};
-  bool is_disc = m->options->design->form == FG_FORM_DISCS;
+  fg_form form = m->options->design->form;
+  const fg_quantity_owner foils[] = {FG_QUANTITY_OF_FOIL, fg_form_parts(form)};
+  bool is_disc = form == FG_FORM_DISCS;
   const fg_quantity_owner *owners = is_disc ? discs : foils;
   char list[700] = "";
   for (size_t i = 0; i < (is_disc ? 1 : 2); i++) {
     const fg_quantity *found = fg_quantity_find(owners[i], m->options->quantity);
-    fg_quantity_list(owners[i], FG_FORM_CLASSICAL, false, list, sizeof list);
+    fg_quantity_list(owners[i], form == FG_FORM_CANTILEVER ? form : FG_FORM_CLASSICAL, false, list,
+                     sizeof list);
     if (!found || found->kind != FG_QUANTITY_NUMBER) continue;
     m->row = found;
     m->owner = owners[i];
@@ -50,18 +53,16 @@ static fg_status find_quantity(fg_context *ctx, measuring *m) {
                  m->options->quantity, list);
 }
 
-/* Mean over the bumps (or discs) of one part; both kinds of uncertainty. */
-static void add_parts(const measuring *m, const void *objects, size_t count, size_t size,
-                      mean *foils) {
-  mean parts = {0};
-  for (size_t i = 0; i < count; i++) {
-    const void *object = (const char *)objects + i * size;
-    add(&parts, fg_quantity_value(m->row, object), fg_quantity_uncertainty(m->row, object));
-  }
-  if (!parts.count) return;
-  double n = (double)parts.count;
-  double u = m->row->uses & FG_QUANTITY_IS_OWN ? sqrt(parts.squares) / n : parts.common / n;
-  add(foils, parts.sum / n, u);
+static void add_object(const measuring *m, const void *object, mean *parts) {
+  add(parts, fg_quantity_value(m->row, object), fg_quantity_uncertainty(m->row, object));
+}
+
+/* Mean over the bumps (or beams, or discs) of one foil; both kinds of uncertainty. */
+static void add_parts(const measuring *m, const mean *parts, mean *foils) {
+  if (!parts->count) return;
+  double n = (double)parts->count;
+  double u = m->row->uses & FG_QUANTITY_IS_OWN ? sqrt(parts->squares) / n : parts->common / n;
+  add(foils, parts->sum / n, u);
 }
 
 static void read_measurement(const measuring *m, const fg_measurement *measurement,
@@ -70,13 +71,16 @@ static void read_measurement(const measuring *m, const fg_measurement *measureme
   memcpy(scan->sha256, measurement->sha256, sizeof scan->sha256);
   for (size_t i = 0; i < measurement->foil_count; i++) {
     const fg_foil *foil = &measurement->foils[i];
-    if (m->owner == FG_QUANTITY_OF_FOIL)
-      add_parts(m, foil, 1, sizeof *foil, &foils);
-    else
-      add_parts(m, foil->bumps, foil->bump_count, sizeof *foil->bumps, &foils);
+    mean parts = {0};
+    if (m->owner == FG_QUANTITY_OF_FOIL) add_object(m, foil, &parts);
+    for (size_t k = 0; k < fg_part_count(foil, m->owner); k++)
+      add_object(m, fg_part_at(foil, m->owner, k).object, &parts);
+    add_parts(m, &parts, &foils);
   }
-  if (m->owner == FG_QUANTITY_OF_DISC)
-    add_parts(m, measurement->discs, measurement->disc_count, sizeof *measurement->discs, &foils);
+  mean discs = {0};
+  for (size_t i = 0; m->owner == FG_QUANTITY_OF_DISC && i < measurement->disc_count; i++)
+    add_object(m, &measurement->discs[i], &discs);
+  add_parts(m, &discs, &foils);
   if (!foils.count) return;
   scan->value = foils.sum / (double)foils.count;
   scan->u = sqrt(foils.squares) / (double)foils.count;

@@ -1,25 +1,27 @@
 #include "quantity/parts.h"
 
 fg_quantity_owner fg_form_parts(fg_form form) {
-  (void)form;
-  return FG_QUANTITY_OF_BUMP;
+  return form == FG_FORM_CANTILEVER ? FG_QUANTITY_OF_BEAM : FG_QUANTITY_OF_BUMP;
 }
 
 bool fg_owner_is_part(fg_quantity_owner owner) {
-  return owner == FG_QUANTITY_OF_BUMP;
+  return owner == FG_QUANTITY_OF_BUMP || owner == FG_QUANTITY_OF_BEAM;
 }
 
 const char *fg_part_word(fg_quantity_owner owner) {
-  (void)owner;
-  return "bump";
+  return owner == FG_QUANTITY_OF_BEAM ? "beam" : "bump";
 }
 
 size_t fg_part_count(const fg_foil *foil, fg_quantity_owner owner) {
+  if (owner == FG_QUANTITY_OF_BEAM) return foil->beam_count;
   return owner == FG_QUANTITY_OF_BUMP ? foil->bump_count : 0;
 }
 
-fg_part fg_part_at(const fg_foil *foil, fg_quantity_owner owner, size_t i) {
-  (void)owner;
+fg_foil_part fg_part_at(const fg_foil *foil, fg_quantity_owner owner, size_t i) {
+  if (owner == FG_QUANTITY_OF_BEAM) {
+    const fg_beam *beam = &foil->beams[i];
+    return (fg_foil_part){beam->number, beam->flags, beam, &beam->calibrated};
+  }
   const fg_bump *bump = &foil->bumps[i];
-  return (fg_part){bump->number, bump->flags, bump, &bump->calibrated};
+  return (fg_foil_part){bump->number, bump->flags, bump, &bump->calibrated};
 }

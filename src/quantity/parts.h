@@ -1,25 +1,25 @@
-/* The numbered parts of a foil, whatever they are: its bumps. */
+/* The numbered parts of a foil, whatever they are: its bumps, or a cantilever's beams. */
 #ifndef FG_QUANTITY_PARTS_H
 #define FG_QUANTITY_PARTS_H
 
 #include "foilgauge/quantity.h"
 
 /* One of them, as what asks no more than numbers sees it. */
-typedef struct fg_part {
+typedef struct fg_foil_part {
   int number;
   unsigned flags;
   const void *object; /* of the owner's type */
   const fg_calibrated *calibrated;
-} fg_part;
+} fg_foil_part;
 
 /* What the parts of a form are. */
 fg_quantity_owner fg_form_parts(fg_form form);
 bool fg_owner_is_part(fg_quantity_owner owner);
 
-/* "bump". */
+/* "bump", "beam". */
 const char *fg_part_word(fg_quantity_owner owner);
 
 size_t fg_part_count(const fg_foil *foil, fg_quantity_owner owner);
-fg_part fg_part_at(const fg_foil *foil, fg_quantity_owner owner, size_t i);
+fg_foil_part fg_part_at(const fg_foil *foil, fg_quantity_owner owner, size_t i);
 
 #endif

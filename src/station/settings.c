@@ -160,9 +160,12 @@ fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const ch
   set_usual(settings);
   if (recipe) FG_TRY(fg_lot_settings_load(ctx, recipe, &settings->lot));
   if (recipe) FG_TRY(load_station(ctx, recipe, settings));
-  if (!design) return FG_OK;
-  FG_TRY(fg_lot_settings_take_design(ctx, design, &settings->lot));
-  return fg_lot_settings_check(ctx, &settings->lot);
+  if (design) FG_TRY(fg_lot_settings_take_design(ctx, design, &settings->lot));
+  if (settings->lot.design.form == FG_FORM_CANTILEVER)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "design.form is cantilever: a station keeps foils with bumps and plain strips; "
+                   "measure beams with `foilgauge lot`");
+  return design ? fg_lot_settings_check(ctx, &settings->lot) : FG_OK;
 }
 
 static void say_member(const char *object, const member *row, const fg_station_settings *usual,
