@@ -113,7 +113,7 @@ enum {
   FG_LOAD_ONE_CYCLE = 1 << 7,     /* nothing says how cycles differ */
   FG_LOAD_ZERO_OFF = 1 << 8,      /* the load cell's zero exceeds half of the threshold */
   FG_LOAD_NO_GAP = 1 << 9,        /* clearance at or below zero */
-  FG_LOAD_UNITS = 1 << 10,        /* clearance of no bearing of that diameter */
+  FG_LOAD_UNITS = 1 << 10,        /* clearance or stiffness of no bearing of that diameter */
 };
 
 typedef struct fg_load_flag {
@@ -154,6 +154,8 @@ typedef struct fg_load_direction {
   size_t first, count; /* of fg_load_test.samples[] */
   size_t strokes, cycles;
   double travel_mm, force_low_n, force_high_n;
+  double noise_n, noise_mm;           /* sd of the columns; the displacement's with its step */
+  double step_mm;                     /* that the displacement was rounded to; 0: none is seen */
   fg_load_value clearance, unloading; /* mm */
   double zero_n;                      /* what the load cell says in the gap; NaN: not known */
   double push_mm, pull_mm;            /* where zero + T, zero - T are passed */
@@ -184,6 +186,7 @@ typedef struct fg_load_bearing {
   double least_at_deg, u_least_at_deg; /* of the fitted curve; NaN: too few */
   double birge;                        /* how far cycles differ over what they should */
   fg_load_value stiffness;             /* mean over the directions */
+  double noise_n, noise_mm, step_mm;   /* of the directions: means, and the largest step */
   double intercept_n, slope, u_intercept_n, u_slope;
   fg_load_value preload_n, preload_kpa;
   size_t unknown_places; /* of the lot's bearing; predicted without them */

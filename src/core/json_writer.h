@@ -46,6 +46,13 @@ void fg_json_head(fg_json *json, const char *schema);
 /* An array of numbers on one line. */
 void fg_json_numbers(fg_json *json, const char *name, const double *values, size_t count);
 
+/* A number under its name with a word before it: "u_" and "radius_mm". */
+void fg_json_of(fg_json *json, const char *before, const char *name, double value);
+/* An array of texts. */
+void fg_json_strings(fg_json *json, const char *name, const char *const *texts, size_t count);
+/* A file that was read: an object of its path and SHA-256; null without a path. */
+void fg_json_file(fg_json *json, const char *name, const char *path, const char *sha256);
+
 /* The digits of a number as JSON writes them, or "null". */
 void fg_json_format(char text[32], double value);
 

@@ -41,7 +41,8 @@ bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_directio
 fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes,
                                  fg_load_direction *direction, fg_load_findings *findings);
 
-/* Area, loss factor (needs the stiffness); whether the loops give energy by more than U. */
+/* Area, loss factor (needs the stiffness; without its uncertainty, which repeats widen); whether
+ * the loops give energy by more than U. */
 void fg_load_find_loops(const fg_load_test *test, const fg_load_strokes *strokes,
                         fg_load_direction *direction);
 

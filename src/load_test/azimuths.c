@@ -144,7 +144,7 @@ static void take_harmonics(const curve *c, double birge, fg_load_bearing *sum) {
 }
 
 static void take_extremes(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
-  double stiffness = 0, square = 0, count = 0;
+  double stiffness = 0, u = 0, count = 0;
   const fg_load_direction *least = NULL, *most = NULL;
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_direction *d = &test->directions[i];
@@ -152,7 +152,7 @@ static void take_extremes(const fg_load_test *test, size_t bearing, fg_load_bear
     sum->directions++;
     if (isfinite(d->stiffness.value)) {
       stiffness += d->stiffness.value;
-      square += pow(d->stiffness.u_repeat, 2);
+      u += d->stiffness.u_repeat; /* what windows bend is alike in all directions */
       count++;
     }
     if (!is_of(test, i, bearing)) continue;
@@ -161,13 +161,28 @@ static void take_extremes(const fg_load_test *test, size_t bearing, fg_load_bear
     if (!most || d->clearance.value > most->clearance.value) most = d;
   }
   double scale = hypot(test->options.u_force_pct, test->options.u_displacement_pct) / 100;
-  double mean = stiffness / count, u = sqrt(square) / count;
-  sum->stiffness = (fg_load_value){mean, hypot(u, scale * mean), u};
+  double mean = stiffness / count;
+  sum->stiffness = (fg_load_value){mean, hypot(u / count, scale * mean), u / count};
   if (!least) return;
   sum->least = least->clearance;
   sum->most = most->clearance;
   sum->least_measured_at_deg = least->azimuth_deg;
   sum->most_measured_at_deg = most->azimuth_deg;
+}
+
+static void sum_noise(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
+  double count = 0;
+  sum->noise_n = sum->noise_mm = sum->step_mm = 0;
+  for (size_t i = 0; i < test->direction_count; i++) {
+    const fg_load_direction *d = &test->directions[i];
+    if (d->bearing != bearing || !isfinite(d->noise_n)) continue;
+    sum->noise_n += d->noise_n;
+    sum->noise_mm += d->noise_mm;
+    sum->step_mm = fmax(sum->step_mm, d->step_mm);
+    count++;
+  }
+  sum->noise_n /= count; /* NaN without one */
+  sum->noise_mm /= count;
 }
 
 /* Whether the directions differ at all: by their weighted mean. */
@@ -187,6 +202,7 @@ void fg_load_sum_bearing(const fg_load_test *test, size_t bearing, fg_load_beari
   sum->least_measured_at_deg = sum->most_measured_at_deg = NAN;
   sum->least_at_deg = sum->u_least_at_deg = NAN;
   take_extremes(test, bearing, sum);
+  sum_noise(test, bearing, sum);
   if (!sum->measured) return;
   curve c = make_curve(test, bearing);
   if (!fit(test, bearing, &c, &scatter)) return;

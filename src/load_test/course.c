@@ -12,6 +12,11 @@ static const double reach_share = 0.05;
 /* Where a stroke turns its samples lie in the noise of the displacement: so much is left out. */
 static const double turn_left_out = 0.01;
 
+/* So many times the displacement's noise are left out as well. At a distance d from where samples
+ * crowd, as those of a sine do, the place of one is off on average by s² / (2 d), which rises by
+ * s² / (2 d²): at 10 s by half a percent, and so does the slope. */
+static const double noise_left_out = 10;
+
 bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_direction *direction,
                             double low, double high, int side) {
   double way = reach_share * direction->travel_mm;
@@ -75,29 +80,58 @@ static fg_status make_parts(fg_context *ctx, side *s) {
 }
 
 /* From the middle between the points to where the first stroke turns. */
-static void place(const fg_load_direction *direction, int which, side *s) {
+static void place(const fg_load_direction *direction, int which, double noise_mm, side *s) {
   double middle = (direction->push_mm + direction->pull_mm) / 2;
   double end = which == FG_LOAD_PUSH ? INFINITY : -INFINITY;
   for (size_t i = 0; i < s->count; i++) {
     const fg_load_stroke *stroke = s->stroke[i];
-    double low = stroke->x[0] - stroke->shift_mm;
-    double high = stroke->x[stroke->count - 1] - stroke->shift_mm;
+    double low = stroke->low_mm - stroke->shift_mm, high = stroke->high_mm - stroke->shift_mm;
     end = which == FG_LOAD_PUSH ? fmin(end, high) : fmax(end, low);
     if (!isfinite(middle)) middle = (low + high) / 2;
   }
-  end += (which == FG_LOAD_PUSH ? -1 : 1) * turn_left_out * direction->travel_mm;
+  double way = fmax(turn_left_out * direction->travel_mm, noise_left_out * noise_mm);
+  end += (which == FG_LOAD_PUSH ? -1 : 1) * way;
   for (size_t g = 0; g < FG_LOAD_POINTS; g++)
     s->x[g] = middle + (end - middle) * (double)g / (FG_LOAD_POINTS - 1);
 }
 
-/* Slopes of all parts with the window that suits the whole. */
-static void fit_slopes(side *s) {
+static int by_size(const void *left, const void *right) {
+  double a = *(const double *)left, b = *(const double *)right;
+  return (a > b) - (a < b);
+}
+
+/* Windows that suit the whole: of each place the middle one of those around. Where noise makes a
+ * slope steep it makes its window narrow as well, and the largest slope of all would be sought
+ * among such. */
+static void find_windows(const side *s, double window[FG_LOAD_POINTS]) {
+  enum { AROUND = 4 };
+  double own[FG_LOAD_POINTS];
   for (size_t g = 0; g < FG_LOAD_POINTS; g++) {
-    s->seen[g] = fg_local_fit_adaptive(&s->part[WHOLE], s->x[g], FG_LOCAL_SLOPE, &s->fit[WHOLE][g]);
+    fg_local_fit fit;
+    bool found = fg_local_fit_adaptive(&s->part[WHOLE], s->x[g], FG_LOCAL_SLOPE, &fit);
+    own[g] = found ? fit.window_mm : NAN;
+  }
+  for (size_t g = 0; g < FG_LOAD_POINTS; g++) {
+    double around[2 * AROUND + 1];
+    size_t count = 0;
+    for (size_t k = g > AROUND ? g - AROUND : 0; k <= g + AROUND && k < FG_LOAD_POINTS; k++)
+      if (isfinite(own[k])) around[count++] = own[k];
+    qsort(around, count, sizeof *around, by_size);
+    window[g] = count ? around[count / 2] : NAN;
+  }
+}
+
+/* Slopes of all parts with the same window. */
+static void fit_slopes(side *s) {
+  double window[FG_LOAD_POINTS];
+  find_windows(s, window);
+  for (size_t g = 0; g < FG_LOAD_POINTS; g++) {
+    s->seen[g] = isfinite(window[g]) &&
+                 fg_local_fit_with(&s->part[WHOLE], s->x[g], window[g], &s->fit[WHOLE][g]);
     s->known[g] = s->seen[g];
     for (int part = ODD; part <= EVEN; part++)
-      s->known[g] = s->known[g] && fg_local_fit_at(&s->part[part], s->x[g],
-                                                   s->fit[WHOLE][g].window_mm, &s->fit[part][g]);
+      s->known[g] =
+          s->known[g] && fg_local_fit_at(&s->part[part], s->x[g], window[g], &s->fit[part][g]);
   }
 }
 
@@ -160,7 +194,7 @@ fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes
     fg_status status = choose(ctx, strokes, direction, which, s);
     if (status == FG_OK && s->count) status = make_parts(ctx, s);
     if (status == FG_OK && s->count) {
-      place(direction, which, s);
+      place(direction, which, strokes->noise_mm, s);
       fit_slopes(s);
       write_course(s, &direction->course[which]);
       take_largest(s, direction, &findings->slopes);

@@ -13,6 +13,11 @@
 enum { PLACES = 49, WAYS = 51 };
 static const double end_left_out = 0.05, way_share_max = 0.25;
 
+/* Half of the regression's window, in distances between places. It is the same everywhere and
+ * whatever the noise is: one that the noise widens reaches to where friction turns round, and what
+ * it smooths there the slope takes. All places together average the noise. */
+static const double window_places = 1.5;
+
 /* The preload is a / b: where b is not known to a third, a / b has no interval worth the name. */
 static const double slope_known = 3;
 
@@ -23,7 +28,7 @@ typedef struct between {
 } between;
 
 static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction) {
-  return s->x[s->count - 1] - s->x[0] > 0.9 * direction->travel_mm;
+  return s->high_mm - s->low_mm > 0.9 * direction->travel_mm;
 }
 
 /* Force of every whole stroke at the places; NaN of the others. */
@@ -33,17 +38,18 @@ static fg_status fit_forces(fg_context *ctx, const fg_load_strokes *strokes,
   for (size_t i = 0; i < strokes->count; i++) {
     const fg_load_stroke *s = &strokes->stroke[i];
     if (!is_whole(s, direction)) continue;
-    b->low = fmax(b->low, s->x[0]);
-    b->high = fmin(b->high, s->x[s->count - 1]);
+    b->low = fmax(b->low, s->low_mm);
+    b->high = fmin(b->high, s->high_mm);
   }
   FG_TRY(fg_memory_allocate(ctx, strokes->count * PLACES, sizeof **forces, (void **)forces));
+  double window = window_places * (1 - 2 * end_left_out) * (b->high - b->low) / (PLACES - 1);
   for (size_t k = 0; k < PLACES; k++) {
     double share = end_left_out + (1 - 2 * end_left_out) * (double)k / (PLACES - 1);
     b->x[k] = b->low + share * (b->high - b->low);
     for (size_t i = 0; i < strokes->count; i++) {
       fg_local_fit fit;
       bool known = is_whole(&strokes->stroke[i], direction) &&
-                   fg_local_fit_adaptive(&strokes->stroke[i], b->x[k], FG_LOCAL_VALUE, &fit);
+                   fg_local_fit_near(&strokes->stroke[i], b->x[k], window, &fit);
       (*forces)[i * PLACES + k] = known ? fit.value : NAN;
     }
   }
@@ -56,8 +62,23 @@ static bool follows(const fg_load_strokes *strokes, const double *forces, size_t
          isfinite(forces[i * PLACES]) && isfinite(forces[(i + 1) * PLACES]);
 }
 
-/* Each stroke against the mean of those before and after it, which takes out what drifts; where
- * none has both, against the next. */
+/* Share of the stroke's time until it passes x: of its samples, which are taken at even times. */
+static double time_until(const fg_load_stroke *s, double x) {
+  size_t low = 0, high = s->count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (s->x[middle] < x)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  double share = (double)low / (double)s->count;
+  return s->sense > 0 ? share : 1 - share;
+}
+
+/* Each stroke against those before and after it, at the time when it passes the place: that takes
+ * out what drifts. A place that it passes at p of its time, they passed p before it began and will
+ * pass 1 - p after it has ended. Where none has both, against the next. */
 static void compare(const fg_load_strokes *strokes, const double *forces, between *b) {
   for (int pairs = 0; pairs < 2 && !b->count; pairs++)
     for (size_t i = 1; i <= strokes->count; i++) {
@@ -65,7 +86,8 @@ static void compare(const fg_load_strokes *strokes, const double *forces, betwee
       if (!before || (!pairs && !follows(strokes, forces, i))) continue;
       for (size_t k = 0; k < PLACES; k++) {
         double here = forces[i * PLACES + k], there = forces[(i - 1) * PLACES + k];
-        if (!pairs) there = (there + forces[(i + 1) * PLACES + k]) / 2;
+        double p = time_until(&strokes->stroke[i], b->x[k]);
+        if (!pairs) there = (1 - p) * there + p * forces[(i + 1) * PLACES + k];
         b->half[k] += strokes->stroke[i].sense * (here - there) / 2;
         b->middle[k] += (here + there) / 2;
       }

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "load_test/analysis.h"
+#include "load_test/noise.h"
 
 fg_load_options fg_load_options_default(void) {
   return (fg_load_options){.threshold_n = FG_LOAD_THRESHOLD_N,
@@ -40,7 +41,8 @@ const fg_load_flag *fg_load_flags(void) {
       {FG_LOAD_NO_GAP, "no_gap",
        "the loading strokes pass the threshold on the wrong sides: there is no clearance at it"},
       {FG_LOAD_UNITS, "units_suspect",
-       "a clearance beyond 5 % of the diameter, or below 1 um: are the units what they say?"},
+       "a clearance beyond 5 % of the diameter or below 1 um, or a stiffness beyond 1e5 N/mm: are "
+       "the units what they say?"},
       {FG_LOAD_FORCE_TURNED, "force_turned",
        "the force runs against the displacement, as a reaction does; its sign was turned"},
       {FG_LOAD_AT_END, "stiffness_at_end",
@@ -82,6 +84,9 @@ static void turn_force(fg_load_test *test, fg_load_direction *d) {
 
 /* Clearances that are units mistaken: a share of the bore, and below what a rotor is round to. */
 static const double clearance_share_max = 0.05, clearance_min_mm = 0.001;
+
+/* Likewise of a stiffness: of steel as thick as the foil is, not of a foil. */
+static const double stiffness_max_n_mm = 1e5;
 
 static void forget_clearance(fg_load_direction *d) {
   d->clearance = d->unloading = (fg_load_value){NAN, NAN, NAN};
@@ -139,7 +144,10 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   d->predicted = d->difference = none;
   turn_force(test, d);
   find_ranges(test, d);
+  d->step_mm = fg_load_find_step(test->samples + d->first, d->count);
   FG_TRY_EXIT(fg_load_strokes_cut(ctx, test, d, records, &strokes));
+  d->noise_n = strokes.count ? strokes.noise_n : NAN;
+  d->noise_mm = strokes.count ? strokes.noise_mm : NAN;
   d->strokes = strokes.count;
   d->cycles = strokes.count / 2;
   FG_TRY_EXIT(fg_load_find_zero(ctx, &strokes, &zero));
@@ -148,6 +156,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, levels, d, findings));
   check_clearance(test, &zero, d);
   FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
+  if (d->stiffness.value > stiffness_max_n_mm) d->flags |= FG_LOAD_UNITS;
   fg_load_find_loops(test, &strokes, d);
   FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, d));
   if (d->flags & FG_LOAD_WRONG_WAY) forget_all(d);
@@ -160,6 +169,13 @@ exit:
 static void widen(fg_load_value *value, double birge, double scale_pct, double more) {
   value->u_repeat *= birge;
   value->u = sqrt(pow(value->u_repeat, 2) + pow(scale_pct / 100 * value->value, 2) + more * more);
+}
+
+/* The instruments' scales are in the area as they are in K X². */
+static void doubt_loss(fg_load_direction *d) {
+  double area = d->area.u_repeat / d->area.value, k = d->stiffness.u_repeat / d->stiffness.value;
+  d->loss.u = d->loss.u_repeat = fabs(d->loss.value) * hypot(area, k);
+  d->loss_secant.u = d->loss_secant.u_repeat = fabs(d->loss_secant.value * area);
 }
 
 /* What repeats say of a bearing's directions, and the instruments' share. */
@@ -182,6 +198,7 @@ static void finish_bearing(fg_load_test *test, const fg_load_findings *findings,
     widen(&d->unloading, birge, o->u_displacement_pct, threshold);
     widen(&d->stiffness, steep, both, 0);
     widen(&d->area, 1, both, 0);
+    doubt_loss(d);
     for (int side = 0; side < FG_LOAD_SIDES; side++)
       for (size_t k = 0; k < d->course[side].count; k++)
         d->course[side].point[k].u_stiffness_n_mm *= steep;

@@ -13,7 +13,8 @@ static const double window_share_min = 1.0 / 60;
 /* How many standard uncertainties the intervals of windows that must agree reach. Small: a window
  * that is a little too small costs noise, which u says; one too large costs bias, which it does
  * not. tests/bench/stiffness.py counts what comes of it. */
-static const double interval_reach = 2.0, window_taken = 0.64;
+static const double interval_reach[] = {[FG_LOCAL_VALUE] = 1.0, [FG_LOCAL_SLOPE] = 2.0};
+static const double window_taken = 0.64;
 
 /* Places where a stroke is looked at for the force that is sought. */
 enum { LOOK_PLACES = 120, SOLVE_STEPS = 6 };
@@ -97,14 +98,33 @@ static double smallest_window(const fg_load_stroke *s, double x) {
   return window;
 }
 
-/* The narrower window is taken; half of what the wider one says otherwise stands for its bias: at
- * 0.64 of the width a quarter to two fifths of the wider one's is left, over what they differ by a
- * third to two thirds. */
+bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm,
+                       fg_local_fit *fit) {
+  if (stroke->count < SAMPLES_MIN) return false;
+  return fg_local_fit_at(stroke, x, fmax(window_mm, 1.0001 * smallest_window(stroke, x)), fit);
+}
+
+/* The narrower window is taken, and what the wider one says otherwise stands for its bias: at 0.64
+ * of the width a quarter to two fifths of the wider one's is left, over what they differ by a third
+ * to two thirds; of a slope two thirds. Where the foil is touched the force has a bend that is
+ * sharper than windows are: there the bias of a value falls as slowly as the width, and all of it
+ * counts. */
+static const double slope_share = 2.0 / 3;
+
 static void narrow(const fg_local_fit *narrower, fg_local_fit *fit) {
-  double value = (fit->value - narrower->value) / 2, slope = (fit->slope - narrower->slope) / 2;
+  double value = fit->value - narrower->value, slope = slope_share * (fit->slope - narrower->slope);
   *fit = *narrower;
   fit->u_value = hypot(fit->u_value, value);
   fit->u_slope = hypot(fit->u_slope, slope);
+}
+
+bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm,
+                       fg_local_fit *fit) {
+  fg_local_fit narrower;
+  if (!fg_local_fit_at(stroke, x, window_mm, &narrower)) return false;
+  if (!fg_local_fit_at(stroke, x, window_mm / window_taken, fit)) *fit = narrower;
+  narrow(&narrower, fit);
+  return true;
 }
 
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
@@ -117,7 +137,8 @@ bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_targ
     fg_local_fit next;
     if (!fg_local_fit_at(stroke, x, window, &next)) continue;
     double value = target == FG_LOCAL_VALUE ? next.value : next.slope;
-    double reach = interval_reach * (target == FG_LOCAL_VALUE ? next.u_value : next.u_slope);
+    double reach =
+        interval_reach[target] * (target == FG_LOCAL_VALUE ? next.u_value : next.u_slope);
     low = fmax(low, value - reach);
     high = fmin(high, value + reach);
     if (low > high) break;

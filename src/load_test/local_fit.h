@@ -15,6 +15,12 @@ typedef enum fg_local_target { FG_LOCAL_VALUE, FG_LOCAL_SLOPE } fg_local_target;
 /* With a window of half a width `window_mm` about x. False: too few samples in it. */
 bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
 
+/* With this window, or with the next wider one that holds enough samples. */
+bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
+
+/* With this window; u holds half of what the next wider one says otherwise. */
+bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
+
 /* With the window that the noise decides. */
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
                            fg_local_fit *fit);

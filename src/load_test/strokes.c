@@ -1,10 +1,12 @@
 #include "load_test/strokes.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
+#include "load_test/noise.h"
 
 /* A way back that is shorter than this share of the travel is noise, or a stop on the way. */
 static const double turn_share = 0.1;
@@ -12,13 +14,11 @@ static const double turn_share = 0.1;
 /* Fewer tell neither a course nor its scatter. */
 enum { STROKE_SAMPLES_MIN = 24 };
 
-/* The scatter about a sample is that of so many on each side of it. */
-enum { SCATTER_REACH = 40 };
-
 void fg_load_stroke_free(fg_load_stroke *stroke) {
   free(stroke->x);
   free(stroke->f);
   free(stroke->variance);
+  free(stroke->scatter);
   *stroke = (fg_load_stroke){0};
 }
 
@@ -33,53 +33,58 @@ static fg_status allocate(fg_context *ctx, size_t count, fg_load_stroke *stroke)
   stroke->count = count;
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->x, (void **)&stroke->x));
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->f, (void **)&stroke->f));
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->scatter, (void **)&stroke->scatter));
   return fg_memory_allocate(ctx, count, sizeof *stroke->variance, (void **)&stroke->variance);
 }
 
-/* Variance of a sample about the line between its neighbours (T. Gasser, L. Sroka, C.
- * Jennen-Steinmetz, Residual variance and residual pattern in nonlinear regression, Biometrika 73,
- * 1986), mean over those around it. */
-static fg_status find_scatter(fg_context *ctx, fg_load_stroke *s) {
-  double *sum;
-  FG_TRY(fg_memory_allocate(ctx, s->count + 1, sizeof *sum, (void **)&sum));
-  for (size_t i = 0; i < s->count; i++) {
-    double square = 0;
-    if (i > 0 && i + 1 < s->count) {
-      double span = s->x[i + 1] - s->x[i - 1];
-      double a = span > 0 ? (s->x[i + 1] - s->x[i]) / span : 0.5, b = 1 - a;
-      double off = a * s->f[i - 1] + b * s->f[i + 1] - s->f[i];
-      square = off * off / (a * a + b * b + 1);
-    }
-    sum[i + 1] = sum[i] + square;
+/* Of a sample about the line between its neighbours (T. Gasser, L. Sroka, C. Jennen-Steinmetz,
+ * Residual variance and residual pattern in nonlinear regression, Biometrika 73, 1986). */
+static void find_scatter(fg_load_stroke *s) {
+  for (size_t i = 1; i + 1 < s->count; i++) {
+    double span = s->x[i + 1] - s->x[i - 1];
+    double a = span > 0 ? (s->x[i + 1] - s->x[i]) / span : 0.5, b = 1 - a;
+    double off = a * s->f[i - 1] + b * s->f[i + 1] - s->f[i];
+    s->scatter[i] = off * off / (a * a + b * b + 1);
   }
-  for (size_t i = 0; i < s->count; i++) {
-    size_t low = i > SCATTER_REACH ? i - SCATTER_REACH : 1;
-    size_t high = i + SCATTER_REACH + 1 < s->count ? i + SCATTER_REACH + 1 : s->count - 1;
-    s->variance[i] = (sum[high] - sum[low]) / (double)(high - low);
-  }
-  free(sum);
-  return FG_OK;
 }
 
+/* A number that follows from a sample's place in the record and from nothing else. */
+static uint64_t shuffled(size_t i) {
+  uint64_t z = (uint64_t)i + 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+typedef struct placed {
+  double x, f;
+  uint64_t order;
+} placed;
+
+/* Where a column was rounded many samples have one displacement: in the order of their force, or
+ * of time, neighbours would be more alike than the scatter is. */
 static int by_x(const void *left, const void *right) {
-  const fg_load_sample *a = left, *b = right;
-  if (a->x_mm != b->x_mm) return a->x_mm < b->x_mm ? -1 : 1;
-  return (a->force_n > b->force_n) - (a->force_n < b->force_n);
+  const placed *a = left, *b = right;
+  if (a->x != b->x) return a->x < b->x ? -1 : 1;
+  return (a->order > b->order) - (a->order < b->order);
 }
 
 static fg_status fill(fg_context *ctx, const fg_load_sample *samples, fg_load_stroke *stroke) {
-  fg_load_sample *sorted = NULL;
+  placed *sorted = NULL;
   fg_status status = FG_OK;
   size_t count = stroke->last - stroke->first + 1;
   FG_TRY_EXIT(allocate(ctx, count, stroke));
   FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *sorted, (void **)&sorted));
-  memcpy(sorted, samples + stroke->first, count * sizeof *sorted);
+  for (size_t i = 0; i < count; i++) {
+    const fg_load_sample *s = &samples[stroke->first + i];
+    sorted[i] = (placed){s->x_mm, s->force_n, shuffled(stroke->first + i)};
+  }
   qsort(sorted, count, sizeof *sorted, by_x);
   for (size_t i = 0; i < count; i++) {
-    stroke->x[i] = sorted[i].x_mm;
-    stroke->f[i] = sorted[i].force_n;
+    stroke->x[i] = sorted[i].x;
+    stroke->f[i] = sorted[i].f;
   }
-  status = find_scatter(ctx, stroke);
+  find_scatter(stroke);
 exit:
   free(sorted);
   return status;
@@ -106,24 +111,37 @@ static fg_status cut_record(fg_context *ctx, const fg_load_sample *samples, size
     bool down = samples[high].x_mm - samples[i].x_mm > way;
     if (sense >= 0 && down) { /* turned at `high` */
       if (high > start)
-        FG_TRY(add_stroke(
-            ctx, samples,
-            (fg_load_stroke){.first = start, .last = high, .sense = 1, .record = record}, strokes));
+        FG_TRY(add_stroke(ctx, samples,
+                          (fg_load_stroke){.first = start,
+                                           .last = high,
+                                           .begin = begin,
+                                           .end = end,
+                                           .sense = 1,
+                                           .record = record},
+                          strokes));
       start = high, low = i, sense = -1;
     } else if (sense <= 0 && up) {
       if (low > start)
-        FG_TRY(add_stroke(
-            ctx, samples,
-            (fg_load_stroke){.first = start, .last = low, .sense = -1, .record = record}, strokes));
+        FG_TRY(add_stroke(ctx, samples,
+                          (fg_load_stroke){.first = start,
+                                           .last = low,
+                                           .begin = begin,
+                                           .end = end,
+                                           .sense = -1,
+                                           .record = record},
+                          strokes));
       start = low, high = i, sense = 1;
     }
   }
   if (!sense) return FG_OK;
-  return add_stroke(
-      ctx, samples,
-      (fg_load_stroke){
-          .first = start, .last = sense > 0 ? high : low, .sense = sense, .record = record},
-      strokes);
+  return add_stroke(ctx, samples,
+                    (fg_load_stroke){.first = start,
+                                     .last = sense > 0 ? high : low,
+                                     .begin = begin,
+                                     .end = end,
+                                     .sense = sense,
+                                     .record = record},
+                    strokes);
 }
 
 fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
@@ -139,18 +157,19 @@ fg_status fg_load_strokes_cut(fg_context *ctx, const fg_load_test *test,
     FG_TRY(cut_record(ctx, samples, from - direction->first, to - direction->first, i,
                       turn_share * direction->travel_mm, strokes));
   }
-  return FG_OK;
+  return fg_load_find_noise(ctx, samples, direction->step_mm, strokes);
 }
 
 /* A sample with what is known of it. */
 typedef struct cell {
-  double x, f, variance;
+  double x, f, variance, scatter;
+  uint64_t order;
 } cell;
 
 static int by_cell(const void *left, const void *right) {
   const cell *a = left, *b = right;
   if (a->x != b->x) return a->x < b->x ? -1 : 1;
-  return (a->f > b->f) - (a->f < b->f);
+  return (a->order > b->order) - (a->order < b->order);
 }
 
 fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *chosen, size_t count,
@@ -164,14 +183,15 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
   FG_TRY_EXIT(allocate(ctx, total, merged));
   FG_TRY_EXIT(fg_memory_allocate(ctx, total, sizeof *cells, (void **)&cells));
   for (size_t i = 0; i < count; i++)
-    for (size_t k = 0; k < chosen[i]->count; k++)
-      cells[n++] =
-          (cell){chosen[i]->x[k] - chosen[i]->shift_mm, chosen[i]->f[k], chosen[i]->variance[k]};
+    for (size_t k = 0; k < chosen[i]->count; k++, n++)
+      cells[n] = (cell){chosen[i]->x[k] - chosen[i]->shift_mm, chosen[i]->f[k],
+                        chosen[i]->variance[k], chosen[i]->scatter[k], shuffled(n)};
   qsort(cells, total, sizeof *cells, by_cell);
   for (size_t i = 0; i < total; i++) {
     merged->x[i] = cells[i].x;
     merged->f[i] = cells[i].f;
     merged->variance[i] = cells[i].variance;
+    merged->scatter[i] = cells[i].scatter;
   }
 exit:
   free(cells);
@@ -181,12 +201,13 @@ exit:
 fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, size_t from,
                               fg_load_stroke *half) {
   *half = *stroke;
-  half->x = half->f = half->variance = NULL;
+  half->x = half->f = half->variance = half->scatter = NULL;
   FG_TRY(allocate(ctx, (stroke->count - from + 1) / 2, half));
   for (size_t i = 0; i < half->count; i++) {
     half->x[i] = stroke->x[2 * i + from];
     half->f[i] = stroke->f[2 * i + from];
     half->variance[i] = stroke->variance[2 * i + from];
+    half->scatter[i] = stroke->scatter[2 * i + from];
   }
   return FG_OK;
 }

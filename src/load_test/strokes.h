@@ -7,17 +7,21 @@
 /* Samples of one stroke by ascending displacement. */
 typedef struct fg_load_stroke {
   double *x, *f;    /* count each */
-  double *variance; /* of f about its course, of the samples around */
+  double *variance; /* of f about its course, by the noise of both columns */
+  double *scatter;  /* squared, of f about the line between its neighbours */
   size_t count;
-  size_t first, last; /* of the direction's samples, the turning points */
-  int sense;          /* +1: displacement grows, -1: shrinks */
-  size_t record;      /* strokes of one record follow each other */
-  double shift_mm;    /* what has drifted until then */
+  size_t first, last;     /* of the direction's samples, the turning points */
+  size_t begin, end;      /* of their record */
+  double low_mm, high_mm; /* where it turns, without the displacement's noise */
+  int sense;              /* +1: displacement grows, -1: shrinks */
+  size_t record;          /* strokes of one record follow each other */
+  double shift_mm;        /* what has drifted until then */
 } fg_load_stroke;
 
 typedef struct fg_load_strokes {
   fg_load_stroke *stroke;
   size_t count, capacity;
+  double noise_n, noise_mm; /* sd of the columns; the displacement's with its step */
 } fg_load_strokes;
 
 /* Strokes of the samples first ... first + count - 1; what is too short for one is left out. */

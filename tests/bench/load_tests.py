@@ -5,6 +5,7 @@ A rotor without turning goes to and fro along an azimuth, x(t) = A sin, from the
   friction       (a + b |elastic|), against the way; after a turn it changes sign over exp(-s / l);
   drift          of force and displacement, linear in time;
   noise          of both, white or of first order (ar);
+  step           of a digital indicator: displacement rounded to whole ones;
   sampling       at times that are jittered, with samples lost;
   scale          of force and displacement, one for a whole test: what an instrument's calibration is off by.
 The truth is of the curves without noise: travel between the loading strokes' +T and -T, largest slope of a loading stroke.
@@ -21,7 +22,7 @@ KINDS = {  # clearance's range over the azimuths, mm: the thesis's three bearing
 def bearing(**changes):
     parts = dict(k=500.0, k3=5e4, w=0.003, amplitude=0.19, a=1.032, b=0.03, way=0.006, noise_n=0.2, noise_um=0.2, ar=0.0,
                  force_drift=0.1, x_drift_um=0.5, cycles=5, samples=600, lost=0.1, jitter=0.3, threshold=5.0,
-                 least_at=30.0, azimuths=np.arange(0, 360, 30.0), wander_um=0.0)
+                 least_at=30.0, azimuths=np.arange(0, 360, 30.0), wander_um=0.0, step_um=0.0)
     parts.update(changes)
     return parts
 
@@ -86,7 +87,10 @@ def measured(p, turns, x, f, rng, scale_f, scale_x):
     if p["wander_um"]:
         x = x + np.interp(turns, np.arange(p["cycles"] * 2 + 2) / 2, np.cumsum(rng.normal(size=p["cycles"] * 2 + 2)) * p["wander_um"] / 1000)
     f = f + noise(rng, len(f), p["noise_n"], p["ar"]) + p["force_drift"] * turns
-    return x * (1 + scale_x), f * (1 + scale_f)
+    x = x * (1 + scale_x)
+    if p["step_um"]:  # what an indicator shows
+        x = np.round(x * 1000 / p["step_um"]) * p["step_um"] / 1000
+    return x, f * (1 + scale_f)
 
 
 def slope_at(p, gap, x):

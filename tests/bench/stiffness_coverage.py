@@ -13,7 +13,9 @@ PRELOAD_KPA = 1000 * 1.032 / 0.03 / (np.pi * 40 * 40)
 def run(program, rows, *options):
     with tempfile.TemporaryDirectory() as folder:
         load_tests.write_csv(folder + "/t.csv", rows)
-        subprocess.run([program, "stiffness", folder + "/t.csv", "-o", folder + "/r.json", *options], check=True)
+        code = subprocess.run([program, "stiffness", folder + "/t.csv", "-o", folder + "/r.json", *options]).returncode
+        if code not in (0, 2):  # 2: an azimuth is not measured
+            raise RuntimeError(f"exit code {code}")
         return json.load(open(folder + "/r.json"))
 
 
@@ -32,6 +34,8 @@ def coverage(program, seeds, names="A", changes=None, scale=True):
         for a in report["azimuths"]:
             of = truth[a["bearing"]][a["azimuth_deg"]]
             add(found, "clearance_mm", a["clearance_mm"], of["clearance_mm"], a[u + "clearance_mm"])
+            if a["push_mm"] is None or a["pull_mm"] is None:
+                continue
             # A spring that hardens has its largest stiffness where the test ends: the truth is that of the place reported.
             at = (a["stiffness_at_mm"] - (a["push_mm"] + a["pull_mm"]) / 2) / (1 + of["scale_x"])
             stiffness = load_tests.slope_at(p, of["gap_mm"], at)

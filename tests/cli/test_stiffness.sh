@@ -68,6 +68,22 @@ for b in r["bearings"]:
 print(*bad, sep="\n")
 sys.exit(bool(bad))
 END
+# A digital indicator shows whole steps: the report names them, and the values stay within U.
+awk -F, -v OFS=, 'NR > 1 { $5 = sprintf("%.3f", $5) } { print }' test.csv >steps.csv
+run 0 "" steps.csv -o steps.json --text steps.txt --html steps.html
+python3 - steps.json r.json <<'END' || fail "a displacement in steps"
+import json, sys
+steps, fine = (json.load(open(path))["azimuths"] for path in sys.argv[1:])
+for a, b in zip(steps, fine):
+    assert b["displacement_step_mm"] is None and b["displacement_noise_mm"] < 0.0001, b["displacement_noise_mm"]
+    assert abs(b["force_noise_n"] - 0.05) < 0.02, b["force_noise_n"]
+    assert abs(a["displacement_step_mm"] - 0.001) < 1e-9 and a["displacement_noise_mm"] > 0.000288, a["displacement_noise_mm"]
+    for name in "clearance_mm", "stiffness_n_mm", "loss_factor":
+        off = abs(a[name] - b[name])
+        assert off < 2.5 * a["u_repeat_" + name], (name, a[name], b[name], a["u_repeat_" + name])
+END
+grep -q "in steps of 1 um" steps.txt && grep -q "in steps of 1 µm" steps.html || fail "the step is not named"
+
 [ "$(wc -l <r.csv)" = 5 ] && [ "$(wc -l <t.csv)" = 5 ] || fail "rows of the tables"
 head -1 t.csv | 
   grep -qx "bearing,azimuth_cosine,azimuth_sine,azimuth_cosine_2,azimuth_sine_2,clearance_um" || fail "the table's columns"

@@ -7,12 +7,9 @@
 
 /* name, sd_name (as its own unit), u_name. */
 static void write_value(fg_json *json, const char *name, const fg_die_value *value) {
-  char other[64];
   fg_json_number(json, name, value->value);
-  snprintf(other, sizeof other, "sd_%s", name);
-  fg_json_number(json, other, value->sd);
-  snprintf(other, sizeof other, "u_%s", name);
-  fg_json_number(json, other, value->u);
+  fg_json_of(json, "sd_", name, value->sd);
+  fg_json_of(json, "u_", name, value->u);
 }
 
 static void write_values(fg_json *json, const fg_die_value values[FG_DIE_QUANTITIES]) {

@@ -338,13 +338,6 @@ static void put_runs(fg_json *json, const fg_experiment_report *report) {
   fg_json_array_end(json);
 }
 
-static void put_texts(fg_json *json, const char *name, char *const *text, size_t count) {
-  fg_json_array(json, name);
-  for (size_t i = 0; i < count; i++)
-    fg_json_string(json, NULL, text[i]);
-  fg_json_array_end(json);
-}
-
 static void put_measurement(fg_json *json, const fg_experiment *e) {
   double sd = e->regression.residual_sd;
   if (!fg_doe_json_begin_part(json, "measurement", e->u != NULL)) return;
@@ -367,8 +360,8 @@ static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_
   fg_json_number(json, "confidence", e->confidence);
   fg_json_string(json, "plan", report->plan_path);
   fg_json_string(json, "plan_note", report->plan_note);
-  put_texts(json, "conclusions", conclusions->text, conclusions->count);
-  put_texts(json, "notes", e->note, e->notes);
+  fg_json_strings(json, "conclusions", (const char *const *)conclusions->text, conclusions->count);
+  fg_json_strings(json, "notes", (const char *const *)e->note, e->notes);
   fg_doe_json_taken(json, e);
   put_factors(json, e);
   put_coefficients(json, e);

@@ -7,12 +7,9 @@
 
 /* name, u_name, and what repeats alone say of it. */
 static void write_value(fg_json *json, const char *name, const fg_load_value *value) {
-  char other[64];
   fg_json_number(json, name, value->value);
-  snprintf(other, sizeof other, "u_%s", name);
-  fg_json_number(json, other, value->u);
-  snprintf(other, sizeof other, "u_repeat_%s", name);
-  fg_json_number(json, other, value->u_repeat);
+  fg_json_of(json, "u_", name, value->u);
+  fg_json_of(json, "u_repeat_", name, value->u_repeat);
 }
 
 static void write_flags(fg_json *json, unsigned flags) {
@@ -60,6 +57,9 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   fg_json_number(json, "travel_mm", d->travel_mm);
   fg_json_numbers(json, "force_range_n", (const double[]){d->force_low_n, d->force_high_n}, 2);
   fg_json_number(json, "force_zero_n", d->zero_n);
+  fg_json_number(json, "force_noise_n", d->noise_n);
+  fg_json_number(json, "displacement_noise_mm", d->noise_mm);
+  fg_json_number(json, "displacement_step_mm", d->step_mm > 0 ? d->step_mm : NAN);
   write_value(json, "clearance_mm", &d->clearance);
   fg_json_number(json, "push_mm", d->push_mm);
   fg_json_number(json, "pull_mm", d->pull_mm);
@@ -161,11 +161,7 @@ static void write_inputs(fg_json *json, const fg_load_test *test) {
     fg_json_object_end(json);
   }
   fg_json_array_end(json);
-  if (!test->options.lot) return;
-  fg_json_object(json, "lot");
-  fg_json_string(json, "path", test->options.lot);
-  fg_json_string(json, "sha256", test->lot_sha256);
-  fg_json_object_end(json);
+  if (test->options.lot) fg_json_file(json, "lot", test->options.lot, test->lot_sha256);
 }
 
 fg_status fg_load_write_json(fg_context *ctx, const fg_load_test *test, FILE *out) {

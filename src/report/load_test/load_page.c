@@ -140,6 +140,13 @@ static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
             "foils are pressed by %.3f / %.4f = %.1f N, over π · %g mm · %g mm: %.2f kPa.</li>\n",
             b->intercept_n, b->slope, b->intercept_n, b->slope, b->preload_n.value,
             test->options.diameter_mm, test->options.length_mm, b->preload_kpa.value);
+  if (isfinite(b->noise_n)) {
+    fprintf(out, "<li>Noise of a sample: %.3g N, and %.2g µm of displacement", b->noise_n,
+            1000 * b->noise_mm);
+    if (b->step_mm > b->noise_mm)
+      fprintf(out, ", which was recorded in steps of %.3g µm", 1000 * b->step_mm);
+    fputs(".</li>\n", out);
+  }
   if (b->in_lot && b->unknown_places)
     fprintf(out,
             "<li>%zu places of the lot's bearing have no clearance: predicted without them.</li>\n",

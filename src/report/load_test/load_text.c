@@ -46,6 +46,12 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   if (isfinite(b->least_at_deg))
     fprintf(out, "  smallest towards %.1f degrees, U %.1f\n", b->least_at_deg,
             2 * b->u_least_at_deg);
+  if (isfinite(b->noise_n)) {
+    fprintf(out, "  noise of a sample %.3g N and %.2g um", b->noise_n, 1000 * b->noise_mm);
+    if (b->step_mm > b->noise_mm)
+      fprintf(out, ", which was recorded in steps of %.3g um", 1000 * b->step_mm);
+    fputc('\n', out);
+  }
   if (isfinite(b->preload_kpa.value))
     fprintf(out, "  friction %.3f N + %.4f |F|: preload %.2f N, %.3f kPa, U %.3f, on %g x %g mm\n",
             b->intercept_n, b->slope, b->preload_n.value, b->preload_kpa.value,

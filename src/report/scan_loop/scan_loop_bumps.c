@@ -100,23 +100,12 @@ static void write_response(fg_json *json, const fg_scan_result_response *respons
   fg_json_object_end(json);
 }
 
-static void write_declared(fg_json *json, const fg_scan_result_bumps *bumps) {
-  if (!bumps->declared_path) {
-    fg_json_string(json, "declared", NULL);
-    return;
-  }
-  fg_json_object(json, "declared");
-  fg_json_string(json, "path", bumps->declared_path);
-  fg_json_string(json, "sha256", bumps->declared_sha256);
-  fg_json_object_end(json);
-}
-
 void fg_json_bumps(fg_json *json, const fg_scan_result_bumps *bumps) {
   fg_json_object(json, "bumps");
   fg_json_integer(json, "count", (int64_t)bumps->count);
   fg_json_integer(json, "kept_aside", (int64_t)bumps->aside);
   fg_json_integer(json, "foils", (int64_t)bumps->parts);
-  write_declared(json, bumps);
+  fg_json_file(json, "declared", bumps->declared_path, bumps->declared_sha256);
   fg_json_array(json, "responses");
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++)
     write_response(json, &bumps->response[r]);

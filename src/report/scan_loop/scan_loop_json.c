@@ -151,13 +151,6 @@ static void write_rejected(fg_json *json, const fg_scan_result *result) {
   fg_json_array_end(json);
 }
 
-static void write_texts(fg_json *json, const char *name, const char *const *text, size_t count) {
-  fg_json_array(json, name);
-  for (size_t i = 0; i < count; i++)
-    fg_json_string(json, NULL, text[i]);
-  fg_json_array_end(json);
-}
-
 static void write_inputs(fg_json *json, const fg_scan_result *result) {
   fg_json_array(json, "inputs");
   for (size_t i = 0; i < result->scans; i++) {
@@ -221,9 +214,9 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_integer(&json, "folds", (int64_t)result->folds);
   fg_json_object_end(&json);
   write_rejected(&json, result);
-  write_texts(&json, "separating_measurement", result->advice, result->advices);
+  fg_json_strings(&json, "separating_measurement", result->advice, result->advices);
   fg_json_bumps(&json, &result->bumps);
-  write_texts(&json, "notes", result->note, result->notes);
+  fg_json_strings(&json, "notes", result->note, result->notes);
   fg_json_object_end(&json);
   fg_json_end(&json);
   return FG_OK;
