@@ -34,6 +34,11 @@
 extern "C" {
 #endif
 
+/* A file that was read, for the report; path "": none was. */
+typedef struct fg_forming_file {
+  char path[512], sha256[65];
+} fg_forming_file;
+
 /* ---- the material ---- */
 
 enum {
@@ -76,6 +81,7 @@ typedef struct fg_forming_material {
   size_t curve_count;
   double curve_temperature_C[FG_FORMING_CURVE_MAX], curve_share[FG_FORMING_CURVE_MAX];
   char curve_source[FG_FORMING_SOURCE];
+  fg_forming_file file;
 } fg_forming_material;
 
 /* Stainless strip 1.4310, annealed: literature, with its scatter in `source`. The thesis prints no
@@ -94,6 +100,7 @@ fg_status fg_forming_material_load(fg_context *ctx, const char *path,
 typedef struct fg_forming_schedule {
   double *time_h, *temperature_C; /* owned */
   size_t count;
+  fg_forming_file file;
 } fg_forming_schedule;
 
 /* One hold, without the ways there and back. */
@@ -112,7 +119,7 @@ enum { FG_FORMING_BUMPS_MAX = 128, FG_FORMING_BUMPS_DEFAULT = 9 };
 
 /* A die that was measured (`foilgauge die -o`). Bumps that it does not show have its mean. */
 typedef struct fg_forming_die {
-  char sha256[65];
+  fg_forming_file file;
   double overall_radius_mm;
   size_t count;
   struct {
@@ -212,7 +219,11 @@ typedef struct fg_forming_found {
   double value, u;    /* standard uncertainty from the covariance; of a constant by factors of
                          its logarithm */
   double interval[2]; /* 95 %, by profile; an end that the runs do not close is NaN */
+  bool at_bound;      /* it ran to the end of what the constant may be: its value says nothing */
 } fg_forming_found;
+
+/* Whether the runs say what it is: not at its bound, and both ends of its interval closed. */
+bool fg_forming_identified(const fg_forming_found *found);
 
 /* One model's errors: sd of the residuals about it, and of runs that took no part (each in turn).
  */
@@ -231,6 +242,7 @@ typedef struct fg_forming_fit {
   fg_forming_response response;
   fg_forming_options options;
   char response_name[64];
+  fg_forming_file file; /* of the runs */
   size_t free;
   fg_forming_found found[FG_FORMING_FREE_MAX];
   double correlation[FG_FORMING_FREE_MAX][FG_FORMING_FREE_MAX];
@@ -247,6 +259,7 @@ typedef struct fg_forming_fit_request {
   const fg_design *design;
   const fg_forming_material *material; /* start values, and what is not fitted */
   const char *column;                  /* the response; NULL: springback_error_pct */
+  const char *sha256;                  /* of the table's file; NULL: not said */
   fg_forming_response response;
   fg_forming_options options;
   const fg_forming_constant *free;

@@ -279,6 +279,7 @@ static fg_status fit_runs(fg_context *ctx, form_run *run) {
   const fg_forming_fit_request request = {.design = &run->design,
                                           .material = &run->material,
                                           .column = run->response,
+                                          .sha256 = sha256,
                                           .response = run->of,
                                           .options = run->options,
                                           .free = given ? run->free : creep,

@@ -258,6 +258,8 @@ static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, si
     return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
   (*text)[length] = '\0';
   const char *nul = memchr(*text, '\0', length);
+  if (nul && length > 1 && (!memcmp(*text, "\xff\xfe", 2) || !memcmp(*text, "\xfe\xff", 2)))
+    return fg_fail(ctx, FG_ERR_DATA, "%s: this is UTF-16; save it as UTF-8 or as CSV", path);
   if (nul)
     return fg_fail(ctx, FG_ERR_DATA, "%s: not a text: byte %zu is zero; is it the right file?",
                    path, (size_t)(nul - *text));

@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/sha256.h"
+#include "core/text.h"
 #include "forming/strip.h"
 
 enum { BYTES_MAX = 64 << 20 };
@@ -72,7 +73,8 @@ fg_status fg_forming_die_load(fg_context *ctx, const char *path, const fg_design
   fg_status status =
       root ? read_root(&words, root, design, die) : fg_fail(&words, FG_ERR_DATA, "not JSON");
   cJSON_Delete(root);
-  fg_sha256_text(text, die->sha256);
+  fg_text_clip(die->file.path, sizeof die->file.path, "%s", path);
+  fg_sha256_text(text, die->file.sha256);
   free(text);
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
 }

@@ -8,7 +8,9 @@
 #include "core/numerics.h"
 #include "core/text.h"
 #include "foilgauge/regression.h"
+#include "forming/forming.h"
 #include "forming/search.h"
+#include "forming/section.h"
 
 enum {
   HALVINGS = 12, /* to 1/4000 of a stride */
@@ -97,6 +99,18 @@ static fg_status find_interval(const fg_forming_search *s, const gsl_vector *x, 
   return status;
 }
 
+bool fg_forming_identified(const fg_forming_found *found) {
+  return !found->at_bound && isfinite(found->interval[0]) && isfinite(found->interval[1]);
+}
+
+/* A search that wants beyond stops there, to the digits of its tolerance. */
+static bool is_at_bound(fg_forming_constant c, double step) {
+  const fg_forming_constant_row *row = fg_forming_constant_of(c);
+  double low = fg_forming_to_step(c, row->low), high = fg_forming_to_step(c, row->high);
+  double near = 1e-6 * (high - low);
+  return !(step > low + near && step < high - near);
+}
+
 static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double least,
                             const gsl_matrix *inverse, fg_forming_fit *fit) {
   double variance = least / (double)(fg_forming_search_rows(s) - s->free);
@@ -107,15 +121,17 @@ static fg_status take_found(fg_forming_search *s, const gsl_vector *x, double le
     found->value = fg_forming_from_step(s->constant[k], gsl_vector_get(x, k));
     found->u = sqrt(variance * gsl_matrix_get(inverse, k, k)) * (row->by_factors ? 1 : row->value);
     found->interval[0] = found->interval[1] = NAN;
+    found->at_bound = is_at_bound(s->constant[k], gsl_vector_get(x, k));
     fit->material.value[s->constant[k]] = found->value;
     for (size_t j = 0; j < s->free; j++)
       fit->correlation[k][j] = gsl_matrix_get(inverse, k, j) /
                                sqrt(gsl_matrix_get(inverse, k, k) * gsl_matrix_get(inverse, j, j));
     FG_TRY(find_interval(s, x, least, k, found));
-    bool identified = isfinite(found->interval[0]) && isfinite(found->interval[1]);
     fg_text_clip(fit->material.source[s->constant[k]], FG_FORMING_SOURCE,
                  "fitted to %zu runs (%s)%s", fit->runs, fit->response_name,
-                 identified ? "" : "; not identified");
+                 found->at_bound                ? "; at its bound: not identified"
+                 : fg_forming_identified(found) ? ""
+                                                : "; not identified");
   }
   return FG_OK;
 }
@@ -199,11 +215,29 @@ static fg_status fit_surface(fg_context *ctx, const fg_table *table, fg_forming_
 
 #define ABSOLUTE_ZERO_C (-273.15)
 
+static fg_status find_columns(fg_context *ctx, const fg_table *table, const char *response,
+                              const fg_extended *columns[3]) {
+  const char *const names[] = {"temperature_C", "duration_h", response};
+  for (size_t i = 0; i < 3; i++) {
+    fg_status status = fg_table_numbers(ctx, table, names[i], &columns[i]);
+    const fg_column *column;
+    fg_context ignored = {0};
+    if (status == FG_OK) continue;
+    if (fg_table_find(&ignored, table, names[i], &column) == FG_OK) return status;
+    char words[sizeof ctx->message];
+    fg_text_clip(words, sizeof words, "%s", ctx->message);
+    return fg_fail(ctx, status,
+                   "%.600s; runs have temperature_C in degrees Celsius, duration_h in hours and %s "
+                   "in percent (another response: --response)",
+                   words, response);
+  }
+  return FG_OK;
+}
+
 static fg_status take_runs(fg_context *ctx, const fg_table *table, fg_forming_fit *fit) {
-  const fg_extended *temperature, *duration, *response;
-  FG_TRY(fg_table_numbers(ctx, table, "temperature_C", &temperature));
-  FG_TRY(fg_table_numbers(ctx, table, "duration_h", &duration));
-  FG_TRY(fg_table_numbers(ctx, table, fit->response_name, &response));
+  const fg_extended *columns[3];
+  FG_TRY(find_columns(ctx, table, fit->response_name, columns));
+  const fg_extended *temperature = columns[0], *duration = columns[1], *response = columns[2];
   FG_TRY(fg_memory_allocate(ctx, table->rows, sizeof *fit->run, (void **)&fit->run));
   fit->runs = table->rows;
   for (size_t i = 0; i < table->rows; i++) {
@@ -214,6 +248,11 @@ static fg_status take_runs(fg_context *ctx, const fg_table *table, fg_forming_fi
       return fg_fail(ctx, FG_ERR_DATA,
                      "%s: row %zu: temperature_C is %g, below absolute zero: degrees Celsius",
                      table->source, i + 1, temperature[i].value);
+    if (!isfinite(fg_section_yield_share(&fit->material, temperature[i].value))) {
+      char where[300];
+      fg_text_clip(where, sizeof where, "%s: row %zu: temperature_C: ", table->source, i + 1);
+      return fg_forming_too_hot(ctx, where, &fit->material, temperature[i].value);
+    }
     if (!(duration[i].value > 0))
       return fg_fail(ctx, FG_ERR_DATA, "%s: row %zu: duration_h is %g; it must be above 0",
                      table->source, i + 1, duration[i].value);
@@ -261,6 +300,9 @@ static fg_status fit_table(fg_context *ctx, const fg_table *table,
   if (!fit->options.layers) fit->options.layers = FIT_LAYERS;
   fg_text_clip(fit->response_name, sizeof fit->response_name, "%s",
                request->column ? request->column : "springback_error_pct");
+  fg_text_clip(fit->file.path, sizeof fit->file.path, "%s", table->source ? table->source : "");
+  if (request->sha256)
+    fg_text_clip(fit->file.sha256, sizeof fit->file.sha256, "%s", request->sha256);
   FG_TRY(take_runs(ctx, table, fit));
   FG_TRY(fit_surface(ctx, table, fit));
   fg_forming_search s = {.ctx = ctx,

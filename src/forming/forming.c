@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/numerics.h"
+#include "core/text.h"
 #include "forming/forming.h"
 #include "forming/section.h"
 #include "forming/strip.h"
@@ -75,6 +76,14 @@ static double opened_pct(const fg_design *design, double radius_mm) {
 
 /* Each pitch turns the strip by an angle about one centre: its chord gives the radius on which the
  * lands' middles lie. */
+/* A strip that has become straight has no radius, and no rounding makes one. */
+static const double straight = 1e4; /* times the design's */
+
+static double radius_of(const fg_forming *forming, double radius_mm) {
+  return radius_mm > 0 && radius_mm < straight * forming->design.overall_radius_mm ? radius_mm
+                                                                                   : NAN;
+}
+
 static void find_overall(fg_forming *forming) {
   fg_forming_pitch die = fg_forming_pitch_of(forming, true);
   fg_forming_pitch free_pitch = fg_forming_pitch_of(forming, false);
@@ -87,10 +96,10 @@ static void find_overall(fg_forming *forming) {
   forming->overall_radius_mm =
       closes ? free_pitch.chord_mm / (2 * sin(free_pitch.turn_rad / 2)) - in : NAN;
   /* A plain strip may turn by more than half a circle: its curvature says it. */
-  if (!forming->bump_count) forming->overall_radius_mm = 1 / forming->pieces[0].curvature - in;
+  if (!forming->bump_count)
+    forming->overall_radius_mm = radius_of(forming, 1 / forming->pieces[0].curvature - in);
   forming->springback_error_pct = opened_pct(&forming->design, forming->overall_radius_mm);
-  forming->strip_radius_mm = 1 / forming->pieces[0].curvature - in;
-  if (!(forming->strip_radius_mm > 0)) forming->strip_radius_mm = NAN;
+  forming->strip_radius_mm = radius_of(forming, 1 / forming->pieces[0].curvature - in);
   forming->strip_springback_error_pct = opened_pct(&forming->design, forming->strip_radius_mm);
 }
 
@@ -159,13 +168,24 @@ static void find_crowns(fg_forming *forming) {
   }
 }
 
+fg_status fg_forming_too_hot(fg_context *ctx, const char *where,
+                             const fg_forming_material *material, double temperature_C) {
+  return fg_fail(ctx, FG_ERR_DATA,
+                 "%s%g degrees C is beyond the material's yield_curve, which ends at %g; is the "
+                 "temperature in degrees Celsius?",
+                 where, temperature_C, material->curve_temperature_C[material->curve_count - 1]);
+}
+
 static fg_status check_schedule(fg_context *ctx, const fg_forming_material *material,
                                 const fg_forming_schedule *schedule) {
   for (size_t i = 0; i < schedule->count; i++)
-    if (!isfinite(fg_section_yield_share(material, schedule->temperature_C[i])))
-      return fg_fail(
-          ctx, FG_ERR_DATA, "%g degrees C is beyond the material's yield_curve, which ends at %g",
-          schedule->temperature_C[i], material->curve_temperature_C[material->curve_count - 1]);
+    if (!isfinite(fg_section_yield_share(material, schedule->temperature_C[i]))) {
+      char where[600] = "";
+      if (schedule->file.path[0])
+        fg_text_clip(where, sizeof where, "%s: row %zu: temperature_C: ", schedule->file.path,
+                     i + 1);
+      return fg_forming_too_hot(ctx, where, material, schedule->temperature_C[i]);
+    }
   return FG_OK;
 }
 
@@ -176,6 +196,7 @@ static fg_status copy_schedule(fg_context *ctx, const fg_forming_schedule *from,
   FG_TRY(fg_memory_allocate(ctx, 2 * from->count, sizeof *to->time_h, (void **)&to->time_h));
   to->temperature_C = to->time_h + from->count;
   to->count = from->count;
+  to->file = from->file;
   memcpy(to->time_h, from->time_h, from->count * sizeof *to->time_h);
   memcpy(to->temperature_C, from->temperature_C, from->count * sizeof *to->time_h);
   return FG_OK;

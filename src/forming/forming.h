@@ -10,4 +10,9 @@ fg_status fg_forming_bend(fg_context *ctx, const fg_design *design,
                           const fg_forming_material *material, const fg_forming_schedule *schedule,
                           const fg_forming_options *options, fg_forming *forming);
 
+/* FG_ERR_DATA: a temperature where the material has no yield stress any more. `where`: of which
+ * file and row, with what joins it to the words; "" without. */
+fg_status fg_forming_too_hot(fg_context *ctx, const char *where,
+                             const fg_forming_material *material, double temperature_C);
+
 #endif

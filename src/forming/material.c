@@ -6,6 +6,7 @@
 
 #include "core/file.h"
 #include "core/json_writer.h"
+#include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/forming.h"
 
@@ -229,6 +230,8 @@ fg_status fg_forming_material_load(fg_context *ctx, const char *path,
   fg_forming_material read = *material;
   fg_context words = {0};
   FG_TRY(fg_file_read_text(ctx, path, BYTES_MAX, &text));
+  fg_text_clip(read.file.path, sizeof read.file.path, "%s", path);
+  fg_sha256_text(text, read.file.sha256);
   cJSON *root = cJSON_ParseWithOpts(text, &end, true);
   size_t line = 1;
   for (const char *c = text; !root && end && c < end; c++)

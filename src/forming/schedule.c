@@ -5,6 +5,8 @@
 
 #include "core/file.h"
 #include "core/memory.h"
+#include "core/sha256.h"
+#include "core/text.h"
 #include "foilgauge/forming.h"
 
 enum { BYTES_MAX = 1 << 20, POINTS_MAX = 10000 };
@@ -53,6 +55,10 @@ fg_status fg_forming_schedule_load(fg_context *ctx, const char *path,
   fg_status status = fg_table_parse(ctx, path, text, strlen(text), &table);
   *schedule = (fg_forming_schedule){0};
   if (status == FG_OK) status = take(ctx, &table, schedule);
+  if (status == FG_OK) {
+    fg_text_clip(schedule->file.path, sizeof schedule->file.path, "%s", path);
+    fg_sha256_text(text, schedule->file.sha256);
+  }
   if (status != FG_OK) fg_forming_schedule_free(schedule);
   fg_table_free(&table);
   free(text);

@@ -74,14 +74,19 @@ static bool commas_in_numbers(const csv_reader *r) {
   return true;
 }
 
+static const char *what_to_do(const csv_reader *r) {
+  if (commas_in_numbers(r)) return "; decimal commas? Then separate the cells by semicolons";
+  if (r->table->columns == 1) return "; is a title above it? The first row must name the columns";
+  return "";
+}
+
 static fg_status end_row(csv_reader *r) {
   fg_table *table = r->table;
   if (r->empty) return FG_OK;
   if (r->column != table->columns)
-    return fg_fail(
-        r->ctx, FG_ERR_DATA, "%s: row %zu (line %zu) has %zu cells, the header names %zu columns%s",
-        r->source, table->rows + 1, r->line, r->column, table->columns,
-        commas_in_numbers(r) ? "; decimal commas? Then separate the cells by semicolons" : "");
+    return fg_fail(r->ctx, FG_ERR_DATA,
+                   "%s: row %zu (line %zu) has %zu cells, the header names %zu columns%s",
+                   r->source, table->rows + 1, r->line, r->column, table->columns, what_to_do(r));
   for (size_t i = 0; i < table->columns; i++)
     FG_TRY(fg_column_push_text(r->ctx, &table->column[i], table->rows, r->pending[i],
                                r->pending_length[i], r->separator != ','));

@@ -7,7 +7,7 @@ echo '{"schema": "foilgauge/design/1", "name": "<b>&"}' >design.json
 expect 0 "" "$program" form design.json --temperature 650 --time 5 --pressure 300 -o form.json --html form.html --table form.txt \
   --table-out bumps.csv --strip-out strip.csv --material-out material.json
 grep -q '&lt;b&gt;&amp;' form.html && ! grep -q '<b>&' form.html || fail "a name is not made harmless"
-for words in 'curvature, 1/mm' 'stress at the face, MPa' 'bump radius' 'Frost and Ashby' 'contact and friction'; do
+for words in '<dt>Program</dt>' '<dt>Design</dt>' 'curvature, 1/mm' 'stress at the face, MPa' 'bump radius' 'Frost and Ashby' 'contact and friction'; do
   grep -q "$words" form.html || fail "the page lacks $words"
 done
 grep -q 'contact and friction' form.txt || fail "the table does not say what is out of reach"
@@ -18,6 +18,8 @@ near "bump 5" "$(awk -F, '$1 == 5 {print $2}' bumps.csv)" "$(value form.json "r[
 # The constants that it wrote, and a hold as a schedule, give the same; --pressure changes nothing.
 printf 'time_h,temperature_C\n0,650\n2,650\n5,650\n' >hold.csv
 expect 0 "" "$program" form design.json --material material.json --schedule hold.csv -o again.json
+[ "$(value again.json "r['inputs']['material']['path'], r['inputs']['schedule']['path']")" = "('material.json', 'hold.csv')" ] ||
+  fail "what was read is not named"
 near "a hold in two parts" "$(value again.json "r['bumps'][4]['radius_mm']")" \
   "$(value form.json "r['bumps'][4]['radius_mm']")" 1e-9
 expect 0 "" "$program" form --shape sine -o sine.json
@@ -74,6 +76,22 @@ bad "nothing is left of E" "{$head, \"modulus_slope_per_K\": 0.001, \"yield_curv
 : >empty.json
 expect 65 "empty.json: line 1" "$program" form --material empty.json
 expect 65 "2000 degrees C is beyond the material" "$program" form --temperature 2000 --time 1
+printf 'time_h,temperature_C\n0,650\n1,2000\n' >hot.csv
+expect 65 "hot.csv: row 2: temperature_C: 2000 degrees C is beyond the material" "$program" form --schedule hot.csv
+printf 'temperature_C,duration_h,springback_error_pct\n500,3,-13\n500,3,-9\n600,3,-4\n2000,3,-4\n600,3,-4\n' >hot.csv
+expect 65 "hot.csv: row 4: temperature_C: 2000 degrees C is beyond the material" "$program" form --fit hot.csv
+
+printf 'temperature_K,duration_h,springback_error_pct\n773,3,-13\n773,3,-9\n873,3,-4\n873,5,-4\n873,7,-3\n' >kelvin.csv
+expect 65 "no column 'temperature_C'.*in degrees Celsius" "$program" form --fit kelvin.csv
+
+# A constant that runs to the end of what it may be is not found: table, report, page and material say so.
+printf 'temperature_C,duration_h,springback_error_pct\n500,3,-900\n500,5,-900\n600,3,-900\n600,5,-900\n' >flat.csv
+expect 0 "" "$program" form --fit flat.csv --free creep_rate_per_h -o bound.json --table bound.txt --html bound.html --material-out bound_material.json
+[ "$(value bound.json "[(f['at_bound'], f['identified']) for f in r['found']]")" = "[(True, False)]" ] || fail "a constant at its bound is called found"
+for report in bound.txt bound.html bound_material.json; do
+  grep -q 'at its bound: not identified' $report || fail "$report does not say that a constant is at its bound"
+done
+value bound.json "r['notes']" | grep -q 'At its bound: not identified: creep_rate_per_h' || fail "the notes do not name it"
 printf 'time_h,temperature_C\n0,650\n0,650\n' >bad.csv
 expect 65 "bad.csv: row 2: time_h is 0 after 0" "$program" form --schedule bad.csv
 printf 'time_h,temperature_C\n0,650\n1,hot\n' >bad.csv

@@ -111,7 +111,7 @@ static void relaxing_bar(void **state) {
   (void)state;
   const double exponents[] = {1, 1.0001, 3, 7.5};
   double times[] = {0, 5}, temperatures[] = {600, 600};
-  const fg_forming_schedule hold = {times, temperatures, 2};
+  const fg_forming_schedule hold = {.time_h = times, .temperature_C = temperatures, .count = 2};
   fg_forming_material m = plain_material(5000, 0);
   m.value[FG_FORMING_CREEP_RATE] = 1e-4;
   double start = plane_modulus(&m) * 0.05 * 0.04;
@@ -146,7 +146,7 @@ static double ramp_truth(const fg_forming_material *m, double start) {
 static void ramps_converge(void **state) {
   (void)state;
   double times[] = {0, 3, 6}, temperatures[] = {20, 620, 20};
-  const fg_forming_schedule ramp = {times, temperatures, 3};
+  const fg_forming_schedule ramp = {.time_h = times, .temperature_C = temperatures, .count = 3};
   fg_forming_material m = plain_material(5000, 0);
   m.value[FG_FORMING_CREEP_RATE] = 1e-3;
   m.value[FG_FORMING_CREEP_EXPONENT] = 4;
@@ -165,7 +165,7 @@ static void plane_strain_is_near(void **state) {
   (void)state;
   const double n = 4.6, hours = 5;
   double times[] = {0, hours}, temperatures[] = {550, 550};
-  const fg_forming_schedule hold = {times, temperatures, 2};
+  const fg_forming_schedule hold = {.time_h = times, .temperature_C = temperatures, .count = 2};
   fg_forming_material m = plain_material(5000, 0);
   m.value[FG_FORMING_CREEP_RATE] = 5e-4;
   m.value[FG_FORMING_CREEP_EXPONENT] = n;

@@ -27,10 +27,15 @@ static void write_material(fg_json *json, const fg_forming_material *material) {
   fg_json_object_end(json);
 }
 
+/* Files that were read, by what they are. */
+static void write_input(fg_json *json, const char *name, const fg_forming_file *file) {
+  if (file->path[0]) fg_json_file(json, name, file->path, file->sha256);
+}
+
 static void write_treatment(fg_json *json, const fg_forming *forming) {
   fg_json_object(json, "die");
   fg_json_string(json, "shape", fg_forming_shape_word(forming->options.shape));
-  fg_json_string(json, "sha256", forming->options.die ? forming->die.sha256 : NULL);
+  fg_json_string(json, "sha256", forming->options.die ? forming->die.file.sha256 : NULL);
   fg_json_object_end(json);
   fg_json_object(json, "schedule");
   fg_json_numbers(json, "time_h", forming->schedule.time_h, forming->schedule.count);
@@ -118,6 +123,11 @@ fg_status fg_forming_write_json(fg_context *ctx, const fg_forming *forming, FILE
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/form/1");
+  fg_json_object(&json, "inputs");
+  write_input(&json, "material", &forming->material.file);
+  write_input(&json, "schedule", &forming->schedule.file);
+  write_input(&json, "die", &forming->die.file);
+  fg_json_object_end(&json);
   fg_json_design(&json, "design", &forming->design);
   write_material(&json, &forming->material);
   fg_forming_treatment(forming, treatment, sizeof treatment);
@@ -207,7 +217,8 @@ static void write_found(fg_json *json, const fg_forming_fit *fit, size_t k) {
   fg_json_number(json, "value", found->value);
   fg_json_number(json, row->by_factors ? "u_of_logarithm" : "u", found->u);
   fg_json_numbers(json, "interval_95", found->interval, 2);
-  fg_json_bool(json, "identified", isfinite(found->interval[0]) && isfinite(found->interval[1]));
+  fg_json_bool(json, "at_bound", found->at_bound);
+  fg_json_bool(json, "identified", fg_forming_identified(found));
   fg_json_numbers(json, "correlation", fit->correlation[k], fit->free);
   fg_json_object_end(json);
 }
@@ -230,6 +241,10 @@ fg_status fg_forming_fit_write_json(fg_context *ctx, const fg_forming_fit *fit, 
   fg_json_begin(&json, out);
   fg_json_object(&json, NULL);
   fg_json_head(&json, "foilgauge/form-fit/1");
+  fg_json_object(&json, "inputs");
+  write_input(&json, "runs", &fit->file);
+  write_input(&json, "material", &fit->material.file);
+  fg_json_object_end(&json);
   fg_json_design(&json, "design", &fit->design);
   fg_json_string(&json, "response", fit->response_name);
   fg_json_string(&json, "of", fit->response == FG_FORMING_OF_FOIL ? "foil" : "strip");

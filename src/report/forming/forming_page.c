@@ -7,6 +7,7 @@
 #include "report/forming/forming_plots.h"
 #include "report/forming/forming_words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/provenance.h"
 
 static void put_tile(FILE *out, const char *title, double value, int decimals, const char *unit,
                      const char *small) {
@@ -119,6 +120,31 @@ static void put_strip(FILE *out, const fg_forming *f) {
         out);
 }
 
+/* Files that were read beside the design, each with the row that it has. */
+typedef struct origin {
+  const char *title;
+  const fg_forming_file *file;
+} origin;
+
+static fg_status put_origin(fg_context *ctx, FILE *out, const fg_design *design,
+                            const origin *origins, size_t count) {
+  fg_provenance from = {.design = design};
+  for (size_t i = 0; i < count; i++)
+    if (origins[i].file->path[0]) fg_provenance_take_file(&from, origins[i].file->path);
+  fputs("<section>\n<h2 class=\"first\">Where it comes from</h2>\n<dl class=\"facts\">\n", out);
+  FG_TRY(fg_html_provenance(ctx, out, &from));
+  for (size_t i = 0; i < count; i++) {
+    const fg_forming_file *file = origins[i].file;
+    if (!file->path[0]) continue;
+    fprintf(out, "<dt>%s</dt><dd>", origins[i].title);
+    fg_html_text(out, file->path);
+    if (file->sha256[0]) fprintf(out, ", SHA-256 %.12s…", file->sha256);
+    fputs("</dd>\n", out);
+  }
+  fputs("</dl>\n</section>\n", out);
+  return FG_OK;
+}
+
 fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE *out) {
   char title[120];
   snprintf(title, sizeof title, "Forming of %s", forming->design.name);
@@ -137,35 +163,30 @@ fg_status fg_forming_write_html(fg_context *ctx, const fg_forming *forming, FILE
   put_material(out, &forming->material);
   fprintf(out,
           "<p class=\"note\">Bent flat to kappa_d in plane strain, %zu layers over half the "
-          "thickness; Norton creep; released elastically: kappa_f = kappa_d - rho M / (E' I). "
-          "foilgauge %s.</p>\n</section>\n",
-          forming->options.layers, FOILGAUGE_VERSION);
+          "thickness; Norton creep; released elastically: kappa_f = kappa_d - rho M / (E' "
+          "I).</p>\n</section>\n",
+          forming->options.layers);
+  const origin origins[] = {{"Material", &forming->material.file},
+                            {"Schedule", &forming->schedule.file},
+                            {"Die", &forming->die.file}};
+  FG_TRY(put_origin(ctx, out, &forming->design, origins, sizeof origins / sizeof *origins));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");
 }
 
 /* ---- a fit ---- */
 
-static void put_end(FILE *out, double value) {
-  if (isfinite(value))
-    fprintf(out, "%.3g", value);
-  else
-    fputs("open", out);
-}
-
 static void put_found(FILE *out, const fg_forming_fit *fit) {
+  char words[80];
   fputs("<div class=\"scroll\"><table>\n<tr><th>constant</th><th>value</th><th>95 % interval, "
         "profile</th></tr>\n",
         out);
   for (size_t k = 0; k < fit->free; k++) {
     const fg_forming_found *found = &fit->found[k];
     const fg_forming_constant_row *row = fg_forming_constant_of(found->constant);
-    fprintf(out, "<tr><td>%s, %s</td><td>%.5g %s</td><td>", row->words, row->symbol, found->value,
-            row->unit);
-    put_end(out, found->interval[0]);
-    fputs(" … ", out);
-    put_end(out, found->interval[1]);
-    fputs("</td></tr>\n", out);
+    fg_forming_found_words(found, words, sizeof words);
+    fprintf(out, "<tr><td>%s, %s</td><td>%.5g %s</td><td>%s</td></tr>\n", row->words, row->symbol,
+            found->value, row->unit, words);
   }
   fputs("</table></div>\n", out);
 }
@@ -198,6 +219,8 @@ fg_status fg_forming_fit_write_html(fg_context *ctx, const fg_forming_fit *fit, 
   fputs("</section>\n<section>\n", out);
   put_material(out, &fit->material);
   fputs("</section>\n", out);
+  const origin origins[] = {{"Runs", &fit->file}, {"Material", &fit->material.file}};
+  FG_TRY(put_origin(ctx, out, &fit->design, origins, sizeof origins / sizeof *origins));
   fg_html_end(out);
   return fg_stream_finish(ctx, out, "the page");
 }

@@ -65,19 +65,13 @@ fg_status fg_forming_write_text(fg_context *ctx, const fg_forming *f, FILE *out)
 }
 
 static void put_found(FILE *out, const fg_forming_fit *fit) {
+  char words[80];
   for (size_t k = 0; k < fit->free; k++) {
     const fg_forming_found *found = &fit->found[k];
     const fg_forming_constant_row *row = fg_forming_constant_of(found->constant);
-    fprintf(out, "  %-24s %12.5g %-8s 95 %%: ", row->name, found->value, row->unit);
-    if (isfinite(found->interval[0]))
-      fprintf(out, "%.3g", found->interval[0]);
-    else
-      fputs("open", out);
-    fputs(" to ", out);
-    if (isfinite(found->interval[1]))
-      fprintf(out, "%.3g\n", found->interval[1]);
-    else
-      fputs("open\n", out);
+    fg_forming_found_words(found, words, sizeof words);
+    fprintf(out, "  %-24s %12.5g %-8s %s%s\n", row->name, found->value, row->unit,
+            found->at_bound ? "" : "95 %: ", words);
   }
 }
 

@@ -92,24 +92,73 @@ size_t fg_forming_notes(const fg_forming *forming, char notes[FG_FORMING_NOTES][
 
 /* ---- a fit ---- */
 
+/* Names of constants, joined by commas. */
+static void add_name(char *list, size_t size, const fg_forming_found *found) {
+  size_t used = strlen(list);
+  fg_text_clip(list + used, size - used, "%s%s", used ? ", " : "",
+               fg_forming_constant_of(found->constant)->name);
+}
+
+static size_t note_bounds(const fg_forming_fit *fit, char *note) {
+  char names[200] = "";
+  for (size_t k = 0; k < fit->free; k++)
+    if (fit->found[k].at_bound) add_name(names, sizeof names, &fit->found[k]);
+  if (!names[0]) return 0;
+  fg_text_clip(note, FG_FORMING_NOTE,
+               "At its bound: not identified: %s. The fit wanted beyond what such a constant may "
+               "be, and its value there says nothing: find fewer constants (--free), or check "
+               "units and signs of the runs.",
+               names);
+  return 1;
+}
+
+void fg_forming_found_words(const fg_forming_found *found, char *text, size_t size) {
+  char end[2][32];
+  if (found->at_bound) {
+    fg_text_clip(text, size, "at its bound: not identified");
+    return;
+  }
+  for (int side = 0; side < 2; side++)
+    if (isfinite(found->interval[side]))
+      fg_text_clip(end[side], sizeof end[side], "%.3g", found->interval[side]);
+    else
+      fg_text_clip(end[side], sizeof end[side], "open");
+  fg_text_clip(text, size, "%s to %s", end[0], end[1]);
+}
+
 static size_t note_open(const fg_forming_fit *fit, char *note) {
   char open[200] = "";
   double worst = 0;
   for (size_t k = 0; k < fit->free; k++) {
     const fg_forming_found *found = &fit->found[k];
-    size_t used = strlen(open);
-    if (!isfinite(found->interval[0]) || !isfinite(found->interval[1]))
-      fg_text_clip(open + used, sizeof open - used, "%s%s", used ? ", " : "",
-                   fg_forming_constant_of(found->constant)->name);
+    if (!found->at_bound && !fg_forming_identified(found)) add_name(open, sizeof open, found);
     for (size_t j = 0; j < k; j++)
       worst = fmax(worst, fabs(fit->correlation[k][j]));
   }
   if (!open[0] && !(worst > 0.9)) return 0;
-  fg_text_clip(note, FG_FORMING_NOTE,
-               "%s%s%sThe constants go together (correlation up to %.3f): their combination is "
-               "known, none of them alone.",
+  char together[120] = "";
+  if (worst > 0.9)
+    fg_text_clip(together, sizeof together,
+                 "The constants go together (correlation up to %.3f): their combination is known, "
+                 "none of them alone.",
+                 worst);
+  fg_text_clip(note, FG_FORMING_NOTE, "%s%s%s%s",
                open[0] ? "Not identified, the interval has an open end: " : "", open,
-               open[0] ? ". " : "", worst);
+               open[0] ? ". " : "", together);
+  return 1;
+}
+
+/* A plain strip only opens. */
+static size_t note_sign(const fg_forming_fit *fit, char *note) {
+  double sum = 0;
+  for (size_t i = 0; i < fit->runs; i++)
+    sum += fit->run[i].measured;
+  if (fit->response != FG_FORMING_OF_STRIP || !(sum > 0)) return 0;
+  fg_text_clip(
+      note, FG_FORMING_NOTE,
+      "The runs' %s is above 0 on average, and a plain strip only opens: is it 100 (R0 - R) "
+      "/ R0, which is below 0 where a foil opens?",
+      fit->response_name);
   return 1;
 }
 
@@ -127,20 +176,23 @@ size_t fg_forming_fit_notes(const fg_forming_fit *fit,
     else
       fg_text_clip(missed, sizeof missed, ", without which the surface is none");
   }
-  fg_text_clip(
-      notes[n++], FG_FORMING_NOTE,
-      "The beam model leaves %.2f points (residual sd, %zu constants)%s. Of runs that took no part "
-      "it misses %.2f points (rms, each run left out in turn)%s.%s",
-      m->residual_sd, m->parameters, surface, m->left_out_rms, missed,
-      m->left_out_rms > 2 * m->residual_sd
-          ? " It may be believed between these runs and not beyond: without its outermost "
-            "run it does not find it again."
-          : "");
+  fg_text_clip(notes[n++], FG_FORMING_NOTE,
+               "The beam model leaves %.2f points (residual sd, %zu constant%s)%s. Of runs that "
+               "took no part "
+               "it misses %.2f points (rms, each run left out in turn)%s.%s",
+               m->residual_sd, m->parameters, m->parameters == 1 ? "" : "s", surface,
+               m->left_out_rms, missed,
+               m->left_out_rms > 2 * m->residual_sd
+                   ? " It may be believed between these runs and not beyond: without its outermost "
+                     "run it does not find it again."
+                   : "");
   if (isfinite(fit->repeat_sd))
     fg_text_clip(notes[n++], FG_FORMING_NOTE,
                  "Runs of the same temperature and duration differ by %.2f points (sd, %zu degrees "
                  "of freedom): no model of these two leaves less.",
                  fit->repeat_sd, fit->repeats);
+  n += note_sign(fit, notes[n]);
+  n += note_bounds(fit, notes[n]);
   n += note_open(fit, notes[n]);
   if (fit->response == FG_FORMING_OF_STRIP && fit->design.form != FG_FORM_ARC)
     fg_text_clip(notes[n++], FG_FORMING_NOTE,

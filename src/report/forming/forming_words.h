@@ -17,6 +17,9 @@ void fg_forming_treatment(const fg_forming *forming, char *text, size_t size);
 size_t fg_forming_fit_notes(const fg_forming_fit *fit,
                             char notes[FG_FORMING_NOTES][FG_FORMING_NOTE]);
 
+/* "2.81 to open", "at its bound: not identified": the interval of a constant. */
+void fg_forming_found_words(const fg_forming_found *found, char *text, size_t size);
+
 /* "arcs", "sine"; "bent", "heated", "free". */
 const char *fg_forming_shape_word(fg_forming_shape shape);
 const char *fg_forming_state_word(fg_forming_state state);
