@@ -19,7 +19,7 @@ enum {
 };
 #define BANDWIDTH_FACTOR 1.5
 /* Windows that tell less than this share of what the middle one tells are left out. */
-#define TELLING_SHARE 0.02
+#define TELLING_SHARE 0.1
 /* What is called uneven has its constants found beside it. */
 #define UNEVEN_P 0.01
 /* A row so many standard deviations off its own window is something else than the carriage. */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/correlation.h"
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/small_solve.h"
@@ -12,9 +11,12 @@
 /* Rows that lie so many standard deviations off (by the median) are dust, or something else. */
 #define OUTLIER_SIGMAS 4.5
 #define ROUNDS         8
-/* The correlation is sought over so many neighbours: some 0.1 to 0.2 mm of edge. */
-enum { LAGS = 12 };
-#define MEDIAN_TO_SD 1.4826
+/* The correlation is sought over so many neighbours, the farther half with falling weight: some 0.1
+ * to 0.3 mm of edge. Pixels that the channels meet at different phases leave one that swings, so
+ * that its integral may well be below 1, but not far. */
+enum { LAGS = 16 };
+#define CORRELATION_LEAST 0.8
+#define MEDIAN_TO_SD      1.4826
 
 /* Median of a channel's noise variance, or of its contrast, over the cross-sections it shows. */
 static fg_status median_of(fg_context *ctx, const fg_colour_stations *stations, int channel,
@@ -146,6 +148,15 @@ static size_t drop_outliers(fg_colour_rows *rows) {
   return fg_colour_rows_keep(rows, OUTLIER_SIGMAS);
 }
 
+static double integrate(const double products[LAGS], const double pairs[LAGS]) {
+  double sum = 1;
+  for (int lag = 1; lag < LAGS && products[0] > 0; lag++)
+    if (pairs[lag] > 0)
+      sum += 2 * fmin(1, 2 - 2.0 * lag / LAGS) * (products[lag] / pairs[lag]) /
+             (products[0] / pairs[0]);
+  return fmax(CORRELATION_LEAST, sum);
+}
+
 void fg_colour_rows_scatter(fg_colour_rows *rows, double (*course)(const void *user, double y_mm),
                             const void *user) {
   double products[LAGS] = {0}, pairs[LAGS] = {0}, used = 0;
@@ -161,7 +172,7 @@ void fg_colour_rows_scatter(fg_colour_rows *rows, double (*course)(const void *u
     used += row->used;
   }
   rows->scatter = products[0] / fmax(1, used - (double)rows->unknowns);
-  rows->correlation = fg_correlation_integral(products, pairs, LAGS);
+  rows->correlation = integrate(products, pairs);
 }
 
 bool fg_colour_rows_fit(fg_colour_rows *rows) {

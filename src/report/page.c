@@ -56,7 +56,7 @@ static const char style[] =
     ".zero{stroke:#8a96a1}.band{fill:#fdf0e6}.plot path{fill:none}.land{stroke:var(--blue)}"
     ".arc{stroke:var(--bump)}path.s1{stroke:var(--bump);stroke-width:2}circle.s1{fill:var(--bump)}"
     "path.s2{stroke:var(--blue);stroke-width:2}circle.s2{fill:#fff;stroke:var(--blue);"
-    "stroke-width:2.5}\n"
+    "stroke-width:2.5}path.doubt{stroke-width:1;stroke-dasharray:4 3}\n"
     "dl.facts{display:grid;grid-template-columns:max-content 1fr;gap:2px 16px;margin:0;"
     "font-size:13.5px}dl.facts dt{color:var(--soft)}dl.facts dd{margin:0;overflow-wrap:anywhere}\n"
     ".note{font-size:13.5px;color:var(--soft);max-width:75ch}\n"

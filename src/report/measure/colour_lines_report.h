@@ -13,4 +13,7 @@ void fg_json_colour_lines(fg_json *json, const fg_measurement *measurement);
 /* One line for the terminal; nothing of a gray scan. */
 void fg_text_colour_lines(FILE *out, const fg_measurement *measurement);
 
+/* A section of a page; nothing of a gray scan. */
+void fg_html_colour_lines(FILE *out, const fg_measurement *measurement);
+
 #endif

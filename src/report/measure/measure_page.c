@@ -6,6 +6,7 @@
 #include "foilgauge/scan_loop.h"
 #include "report/correction_words.h"
 #include "report/drawing.h"
+#include "report/measure/colour_lines_report.h"
 #include "report/measure/measure_page_tables.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
@@ -192,6 +193,7 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   FG_TRY(put_picture(ctx, out, report, measurement, foil));
   if (measured) (arc ? put_arc_details : put_foil_details)(out, design, foil);
   if (measured && !arc) put_free_and_fitted(out);
+  if (foil == measurement->foils) fg_html_colour_lines(out, measurement);
   if (measured) put_uncertainty(out, measurement, foil);
   return put_facts(ctx, out, design, measurement);
 }
@@ -243,6 +245,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   FG_TRY(put_picture(ctx, out, report, measurement, NULL));
   fputs("<h2>Every feature</h2>\n", out);
   fg_html_disc_table(out, report->design, measurement);
+  fg_html_colour_lines(out, measurement);
   put_uncertainty(out, measurement, NULL);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
   fputs("</section>\n", out);

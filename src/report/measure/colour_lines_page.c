@@ -1,0 +1,153 @@
+/* The channels of a colour scan against each other, on a page. */
+#include <math.h>
+
+#include "foilgauge/words.h"
+#include "report/measure/colour_lines_report.h"
+#include "report/measure/measure_page_parts.h"
+#include "report/plot_marks.h"
+
+/* Below this a constant course is doubted. */
+#define UNEVEN_P 0.01
+
+/* Looks of the two channels: not of their colours, which those who do not see them could not tell.
+ */
+static const char *const line_style[2] = {"s1", "s2"};
+static const char *const doubt_style[2] = {"s1 doubt", "s2 doubt"};
+
+static void put_value(FILE *out, double value, double u, int decimals) {
+  fprintf(out, "<td>%+.*f ± %.*f</td>", decimals, value, decimals, FG_COVERAGE_FACTOR * u);
+}
+
+static const char *without_values(fg_colour_state state) {
+  switch (state) {
+  case FG_COLOUR_IDENTICAL:
+    return "the same picture: a gray one saved as RGB";
+  case FG_COLOUR_NO_CONTRAST:
+    return "shows no edges";
+  case FG_COLOUR_FEW_EDGES:
+    return "shows too few edges to tell";
+  case FG_COLOUR_MEASURED:
+    break;
+  }
+  return "";
+}
+
+static void put_row(FILE *out, const fg_measurement *m, const fg_colour_shift *shift) {
+  fprintf(out, "<tr><td>%s</td>", fg_channel_word(shift->channel));
+  if (shift->state != FG_COLOUR_MEASURED) {
+    fprintf(out, "<td colspan=\"8\">%s</td></tr>\n", without_values(shift->state));
+    return;
+  }
+  put_value(out, shift->dx_px, shift->u_dx_px, 3);
+  put_value(out, shift->dy_px, shift->u_dy_px, 3);
+  put_value(out, shift->dx_px * 25400 / m->dpi[0], shift->u_dx_px * 25400 / m->dpi[0], 2);
+  put_value(out, shift->dy_px * 25400 / m->dpi[1], shift->u_dy_px * 25400 / m->dpi[1], 2);
+  put_value(out, shift->magnification_ppm, shift->u_magnification_ppm, 1);
+  put_value(out, shift->skew_ppm, shift->u_skew_ppm, 1);
+  fprintf(out, "<td>%.2g</td><td>%.2g</td></tr>\n", shift->course_rms_um, shift->p_constant);
+}
+
+static void put_table(FILE *out, const fg_measurement *m) {
+  fputs("<div class=\"scroll\"><table>\n<thead><tr><th>channel</th><th>dx, px</th><th>dy, px</th>"
+        "<th>dx, µm</th><th>dy, µm</th><th>magnified, ppm</th><th>skew, ppm</th>"
+        "<th>uneven, µm rms</th><th>p</th></tr></thead>\n<tbody>\n",
+        out);
+  for (int k = 0; k < 2; k++)
+    put_row(out, m, &m->colour_lines.shifts[k]);
+  fputs("</tbody></table></div>\n", out);
+}
+
+/* About the mean of each, so that both fit one plot. */
+static double level_of(const fg_measurement *m, const fg_colour_shift *shift) {
+  return shift->dy_px * 25400 / m->dpi[1];
+}
+
+static void widen(double range[2], double value) {
+  range[0] = fmin(range[0], value);
+  range[1] = fmax(range[1], value);
+}
+
+static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
+  x[0] = y[0] = INFINITY;
+  x[1] = y[1] = -INFINITY;
+  for (int k = 0; k < 2; k++) {
+    const fg_colour_shift *shift = &m->colour_lines.shifts[k];
+    for (size_t i = 0; i < shift->window_count; i++) {
+      const fg_colour_window *w = &shift->windows[i];
+      widen(x, (double)w->y_mm);
+      for (int side = -1; side <= 1; side += 2)
+        widen(y, (double)w->smooth_um - level_of(m, shift) +
+                     side * FG_COVERAGE_FACTOR * (double)w->u_smooth_um);
+    }
+  }
+  double margin = fmax(0.05, 0.15 * (y[1] - y[0]));
+  y[0] -= margin;
+  y[1] += margin;
+  return x[1] > x[0];
+}
+
+static void put_course(const fg_plot *at, const fg_measurement *m, int k) {
+  const fg_colour_shift *shift = &m->colour_lines.shifts[k];
+  double x[FG_COLOUR_WINDOWS_MAX], y[3][FG_COLOUR_WINDOWS_MAX], key = 80 + 330.0 * k;
+  if (!shift->window_count) return;
+  for (size_t i = 0; i < shift->window_count; i++) {
+    const fg_colour_window *w = &shift->windows[i];
+    x[i] = (double)w->y_mm;
+    for (int side = -1; side <= 1; side++)
+      y[side + 1][i] = (double)w->smooth_um - level_of(m, shift) +
+                       side * FG_COVERAGE_FACTOR * (double)w->u_smooth_um;
+    double dot = (double)w->dy_um - level_of(m, shift);
+    if (dot > at->y_low && dot < at->y_high) fg_plot_dot(at, x[i], dot, 2, line_style[k]);
+  }
+  for (int side = 0; side < 3; side++)
+    fg_plot_line(at, x, y[side], shift->window_count, side == 1 ? line_style[k] : doubt_style[k]);
+  fprintf(at->out,
+          "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s, about "
+          "%+.2f µm</text>\n",
+          line_style[k], key, key + 12, fg_channel_word(shift->channel), level_of(m, shift));
+}
+
+static void put_plot(FILE *out, const fg_measurement *m) {
+  double x[2], y[2];
+  if (!find_ranges(m, x, y)) return;
+  fg_plot at = {out, 1000, 70, 985, 34, 230, x[0], x[1], y[0], y[1]};
+  fputs("<figure>", out);
+  fg_plot_begin(&at, 280, "Course of dy along y");
+  fg_plot_y_axis(&at, "dy about its mean, µm");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "y of the scan, mm (the carriage's way)");
+  for (int k = 0; k < 2; k++)
+    put_course(&at, m, k);
+  fg_plot_end(&at);
+  fputs("</figure>\n", out);
+}
+
+static const char *say_course(const fg_colour_lines *lines) {
+  bool uneven = false;
+  for (int k = 0; k < 2; k++)
+    uneven = uneven || lines->shifts[k].p_constant < UNEVEN_P;
+  return uneven ? "It is not constant: the carriage was uneven."
+                : "Nothing says that it is not constant.";
+}
+
+void fg_html_colour_lines(FILE *out, const fg_measurement *m) {
+  const fg_colour_lines *lines = &m->colour_lines;
+  if (!lines->seen) return;
+  fputs("<h2>Colour lines</h2>\n", out);
+  if (lines->apart)
+    fprintf(
+        out,
+        "<p class=\"next\"><b>The channels lie apart</b> by more than %.1f px: %s was measured. "
+        "Measure one channel; do not average channels or convert the scan to gray.</p>\n",
+        FG_COLOUR_APART_PX, fg_channel_word(m->channel));
+  fprintf(
+      out,
+      "<p class=\"note\">Where each channel shows the edges, minus where %s does (x right, y "
+      "down). The sensor's lines see an edge at different moments, so the course of dy along y "
+      "is what the carriage's error differs by over the lines' gap, without anything that "
+      "optics, part or edges do. Magnified: "
+      "along x, by the colour of the optics; skew: dy over x, of a line that is turned. %s</p>\n",
+      fg_channel_word(lines->against), say_course(lines));
+  put_table(out, m);
+  put_plot(out, m);
+}
