@@ -57,13 +57,14 @@ typedef struct fg_colour_shift {
   double correlation;   /* by how much their u are larger than of independent ones, squared */
   double course_rms_um; /* of the smooth dy(y) about its mean */
   double p_constant;    /* that a constant dy shows as much: small, the carriage was uneven */
+  double window_mm;     /* length of a window */
   size_t window_count;
   fg_colour_window windows[FG_COLOUR_WINDOWS_MAX]; /* ascending y */
 } fg_colour_shift;
 
 typedef struct fg_colour_lines {
   bool seen;          /* it is a colour scan whose channels could be read apart; else all is 0 */
-  fg_channel against; /* green, where it has contrast; else the channel that was measured */
+  fg_channel against; /* the channel that was measured; green where it was their mean */
   double x0_mm;       /* where dx and dy hold */
   fg_colour_shift shifts[2];
   bool apart; /* one of them by more than FG_COLOUR_APART_PX */

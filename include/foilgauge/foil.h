@@ -350,7 +350,7 @@ typedef struct fg_measurement {
   bool colour;        /* the scan holds colours */
   fg_channel channel; /* what of them was measured */
   fg_colour_lines colour_lines;
-  char warning[256];  /* what is odd about the file; empty when nothing is */
+  char warning[256]; /* what is odd about the file; empty when nothing is */
   fg_design design;
   fg_nominal nominal;
   bool light_on_dark;

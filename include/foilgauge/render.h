@@ -186,8 +186,8 @@ fg_status fg_render_midline(fg_context *ctx, const fg_render_spec *spec, size_t 
 fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
                          fg_render_row *row, void *user);
 
-/* Renders to a PNG file (gray or RGB, 8 or 16 bit, with pHYs) and, unless truth_path is NULL, writes the
- * truth as JSON ("schema": "foilgauge/truth/1"). Each appears only when whole. */
+/* Renders to a PNG file (gray or RGB, 8 or 16 bit, with pHYs) and, unless truth_path is NULL,
+ * writes the truth as JSON ("schema": "foilgauge/truth/1"). Each appears only when whole. */
 fg_status fg_render_scan(fg_context *ctx, const fg_render_spec *spec, const char *scan_path,
                          const char *truth_path);
 

@@ -27,6 +27,9 @@ typedef struct fg_scan_loop_options {
   unsigned threads; /* 0: all cores */
   bool same_foil;   /* foil k of every scan is one foil, turned or shifted in between */
   bool coarse;      /* a quick look: few starts, sets of one smooth effect, two rounds at most */
+  /* Rows of the scan by which the sensor's red and blue line lie ahead of the green one (they see
+   * at row y what the carriage does at y + gap); both 0: not known. */
+  double colour_gap_px[2];
   uint64_t seed;
   const char *scanner; /* its name, for the model file; NULL: not said */
   int64_t date; /* likewise, when its scans were made: seconds since 1970, UTC; 0: not said */

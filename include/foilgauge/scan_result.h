@@ -22,7 +22,7 @@ enum {
   FG_SCAN_RESULT_EXPLANATIONS = 16,
   FG_SCAN_RESULT_UNCLAIMED = 60,
   FG_SCAN_RESULT_PARAMETERS = 4,
-  FG_SCAN_RESULT_ADVICE = 2,
+  FG_SCAN_RESULT_ADVICE = 3,
   FG_SCAN_RESULT_WORDS = 512,
   FG_SCAN_RESULT_SAMPLES = 241,     /* of a curve that is drawn */
   FG_SCAN_RESULT_GRID_SAMPLES = 61, /* of a line of the picture's grid */
@@ -77,6 +77,26 @@ typedef struct fg_scan_result_parameter {
   double told, u_told;
 } fg_scan_result_parameter;
 
+/* What the colour lines say of an effect of the carriage: between the channels of one scan neither
+ * part nor optics shows, but the carriage does. */
+typedef enum fg_scan_witness_verdict {
+  FG_WITNESS_NONE,        /* not the carriage's, or no colour scan */
+  FG_WITNESS_FOR,         /* "for" */
+  FG_WITNESS_AGAINST,     /* "against" */
+  FG_WITNESS_CANNOT_TELL, /* "cannot_tell" */
+} fg_scan_witness_verdict;
+
+typedef struct fg_scan_witness {
+  fg_scan_witness_verdict verdict;
+  const char *reason; /* in words */
+  double p_value;     /* that lines which show nothing of it look like that */
+  double p_against;   /* the same of lines that show it as it is claimed; NaN: gaps not known */
+  double factor, u_factor; /* what they show over what they must; without known gaps 1 and NaN */
+  double expected_um;      /* rms of what they must show, about its mean */
+  double gap_px[3];        /* of red, green, blue: as stated, or what fits best; NaN: none */
+  bool gap_stated;
+} fg_scan_witness;
+
 /* An effect that is in the corrected model. */
 typedef struct fg_scan_result_claim {
   const char *id, *form; /* form: "normal", "radial"; NULL: it has one only */
@@ -99,6 +119,7 @@ typedef struct fg_scan_result_claim {
                             likewise */
   double (*shape)[2];    /* coordinate and deviation in um, of curves and of what has a basis */
   size_t shape_points;
+  fg_scan_witness witness;
 } fg_scan_result_claim;
 
 /* One of several sets of effects that explain. */
@@ -275,7 +296,8 @@ typedef struct fg_scan_result {
   size_t unclaimeds;
   const char *advice[FG_SCAN_RESULT_ADVICE]; /* measurements that would part what is tied */
   size_t advices;
-  const char *const *note; /* what the reader must know */
+  char witness_words[FG_SCAN_RESULT_WORDS]; /* the last of them, where the colour lines say it */
+  const char *const *note;                  /* what the reader must know */
   size_t notes;
   size_t left_out; /* foils that could not be measured, or are none of the design's */
   fg_scan_result_bumps bumps;

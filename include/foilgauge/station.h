@@ -43,7 +43,8 @@ typedef struct fg_station_settings {
 } fg_station_settings;
 
 /* A recipe of lots with a member `station` {"file_name", "scan_command", "check": {"design",
- * "file_name", "every_h", "scale_max_ppm", "withhold"}}; NULL: no recipe. FG_ERR_DATA names the member. */
+ * "file_name", "every_h", "scale_max_ppm", "withhold"}}; NULL: no recipe. FG_ERR_DATA names the
+ * member. */
 fg_status fg_station_settings_load(fg_context *ctx, const char *recipe, const char *design,
                                    fg_station_settings *settings);
 

@@ -1,4 +1,5 @@
 #include <argp.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,7 @@ enum {
   OPTION_HTML,
   OPTION_SCANNER,
   OPTION_FORM_MODEL,
+  OPTION_COLOUR_GAP,
   OPTION_SEED,
   OPTION_THREADS
 };
@@ -61,6 +63,12 @@ static const struct argp_option options[] = {
      "A report of `foilgauge form -o` as the declared model of the bumps, in place of one "
      "springback for all: the radius that it predicts of each bump beside one level, and its arc "
      "length",
+     0},
+    {"colour-gap", OPTION_COLOUR_GAP, "RED[,BLUE]", 0,
+     "Rows of the scan by which the red and the blue line of a colour sensor lie ahead of the "
+     "green "
+     "one; BLUE: -RED, where it is not given. What the colour lines say of an effect of the "
+     "carriage then has a size",
      0},
     {"hold-out", OPTION_HOLD_OUT, "SCAN", 0, "A scan that only confirms (may be repeated)", 0},
     {"output", 'o', "FILE", 0, "The report as JSON (-: standard output)", 0},
@@ -107,6 +115,26 @@ static double parse_number(struct argp_state *state, const char *name, const cha
   return value;
 }
 
+/* Lines of a sensor lie some rows apart, to a few hundred. */
+#define GAP_MOST_PX 1000.0
+
+static void parse_gaps(struct argp_state *state, const char *text, double gap_px[2]) {
+  char *end;
+  gap_px[0] = strtod(text, &end);
+  bool fine = end != text;
+  gap_px[1] = -gap_px[0];
+  if (fine && *end == ',') {
+    const char *next = end + 1;
+    gap_px[1] = strtod(next, &end);
+    fine = end != next;
+  }
+  for (int i = 0; i < 2; i++)
+    fine = fine && fabs(gap_px[i]) <= GAP_MOST_PX;
+  if (!fine || *end || (gap_px[0] == 0 && gap_px[1] == 0))
+    argp_error(state, "--colour-gap %s: one or two numbers of rows from -%g to %g, not both 0",
+               text, GAP_MOST_PX, GAP_MOST_PX);
+}
+
 static error_t parse_option(int key, char *text, struct argp_state *state) {
   arguments *a = state->input;
   switch (key) {
@@ -141,6 +169,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     if (!*text || strlen(text) >= FG_SCANNER_NAME)
       argp_error(state, "--scanner: a name of 1 to %d bytes", FG_SCANNER_NAME - 1);
     a->options.scanner = text;
+    return 0;
+  case OPTION_COLOUR_GAP:
+    parse_gaps(state, text, a->options.colour_gap_px);
     return 0;
   case OPTION_SEED:
     a->options.seed = (uint64_t)parse_number(state, "seed", text);

@@ -121,7 +121,9 @@ typedef struct fg_effect {
   double hold; /* weight of a curve's coefficients beside rows that weigh FG_POINTS_BLOCK each: of
                   all curves that leave the same residual the smallest one is meant */
   bool bends;  /* bumps are no circles with it */
-  bool scales; /* both axes alike: parts of known size tell it from larger ones */
+  bool of_carriage; /* an error of the carriage along its way, the same for all x: the lines of a
+                       colour sensor see it at their own moments */
+  bool scales;      /* both axes alike: parts of known size tell it from larger ones */
   fg_effect_ring ring;
 } fg_effect;
 

@@ -9,13 +9,16 @@
 enum { RED, GREEN, BLUE, CHANNELS, ROWS_LEAST = 30 };
 /* Contrast over noise from which on a channel shows edges. */
 #define CONTRAST_LEAST 4.0
+/* Cross-sections meet the pixels at phases that change slowly along an edge, which shows in no
+ * correlation of so few: with less the intervals hold too seldom (reports/colour_lines.md). */
+#define CORRELATION_LEAST 1.25
 /* What is seen to be apart must be so many u beyond 0. */
 #define APART_SIGMAS 3.0
 
-/* The channel that others are held against: green, where it shows edges; else the clearest. */
-static int choose_reference(const double contrast[CHANNELS]) {
-  if (contrast[GREEN] >= CONTRAST_LEAST) return GREEN;
-  return contrast[RED] >= contrast[BLUE] ? RED : BLUE;
+/* The channel that others are held against: the one that was measured; green where it was their
+ * mean. */
+static int choose_reference(const fg_measurement *m) {
+  return m->channel == FG_CHANNEL_LUMINANCE ? GREEN : (int)m->channel - FG_CHANNEL_RED;
 }
 
 static void clear_shift(int channel, fg_colour_state state, fg_colour_shift *shift) {
@@ -38,7 +41,8 @@ static void clear_shift(int channel, fg_colour_state state, fg_colour_shift *shi
 }
 
 static double u_of(const fg_colour_rows *rows, int unknown) {
-  return sqrt(rows->covariance[unknown][unknown] * rows->scatter * rows->correlation);
+  double correlation = fmax(CORRELATION_LEAST, rows->correlation);
+  return sqrt(rows->covariance[unknown][unknown] * rows->scatter * correlation);
 }
 
 /* Along x within the parts that were measured. */
@@ -119,7 +123,7 @@ static fg_status compare_all(fg_context *ctx, const fg_colour_stations *stations
   int next = 0;
   for (int channel = 0; channel < CHANNELS; channel++)
     contrast[channel] = fg_colour_contrast(ctx, stations, channel);
-  int against = choose_reference(contrast);
+  int against = choose_reference(m);
   lines->seen = true;
   lines->against = (fg_channel)(FG_CHANNEL_RED + against);
   for (int channel = 0; channel < CHANNELS; channel++) {

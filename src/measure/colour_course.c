@@ -377,6 +377,7 @@ static bool find_course(fg_colour_rows *rows, windows *w, windows *scratch,
                         fg_colour_shift *shift) {
   fg_colour_rows constant = *rows;
   lay_out(rows, FG_COLOUR_WINDOWS_MAX, w);
+  shift->window_mm = w->length_mm;
   if (!find_windows(rows, w)) return false;
   take_values(rows, w);
   write_points(rows, w, shift);

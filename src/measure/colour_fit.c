@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/correlation.h"
 #include "core/memory.h"
 #include "core/select.h"
 #include "core/small_solve.h"
@@ -11,12 +12,9 @@
 /* Rows that lie so many standard deviations off (by the median) are dust, or something else. */
 #define OUTLIER_SIGMAS 4.5
 #define ROUNDS         8
-/* The correlation is sought over so many neighbours, the farther half with falling weight: some 0.1
- * to 0.3 mm of edge. Pixels that the channels meet at different phases leave one that swings, so
- * that its integral may well be below 1, but not far. */
-enum { LAGS = 16 };
-#define CORRELATION_LEAST 0.8
-#define MEDIAN_TO_SD      1.4826
+/* The correlation is sought over so many neighbours: some 0.1 to 0.2 mm of edge. */
+enum { LAGS = 12 };
+#define MEDIAN_TO_SD 1.4826
 
 /* Median of a channel's noise variance, or of its contrast, over the cross-sections it shows. */
 static fg_status median_of(fg_context *ctx, const fg_colour_stations *stations, int channel,
@@ -51,6 +49,7 @@ static fg_colour_row row_of(const fg_colour_station *s, int against, int channel
                          .y_mm = s->y * pixel_mm[1],
                          .nx = s->nx,
                          .ny = s->ny,
+                         .bend = s->bend,
                          .value = one->shift_px - other->shift_px,
                          .weight = 1 / variance,
                          .part = s->part,
@@ -148,15 +147,6 @@ static size_t drop_outliers(fg_colour_rows *rows) {
   return fg_colour_rows_keep(rows, OUTLIER_SIGMAS);
 }
 
-static double integrate(const double products[LAGS], const double pairs[LAGS]) {
-  double sum = 1;
-  for (int lag = 1; lag < LAGS && products[0] > 0; lag++)
-    if (pairs[lag] > 0)
-      sum += 2 * fmin(1, 2 - 2.0 * lag / LAGS) * (products[lag] / pairs[lag]) /
-             (products[0] / pairs[0]);
-  return fmax(CORRELATION_LEAST, sum);
-}
-
 void fg_colour_rows_scatter(fg_colour_rows *rows, double (*course)(const void *user, double y_mm),
                             const void *user) {
   double products[LAGS] = {0}, pairs[LAGS] = {0}, used = 0;
@@ -172,12 +162,32 @@ void fg_colour_rows_scatter(fg_colour_rows *rows, double (*course)(const void *u
     used += row->used;
   }
   rows->scatter = products[0] / fmax(1, used - (double)rows->unknowns);
-  rows->correlation = integrate(products, pairs);
+  rows->correlation = fg_correlation_integral(products, pairs, LAGS);
 }
 
-bool fg_colour_rows_fit(fg_colour_rows *rows) {
+static bool fit(fg_colour_rows *rows) {
   bool fine = rows->count > 0 && solve(rows);
   for (int round = 0; round < ROUNDS && fine && drop_outliers(rows); round++)
     fine = solve(rows);
   return fine;
+}
+
+/* A bent strip that lies off along itself, too, shows that along its normal: n = bend t² / 2 moved
+ * by (t, n) passes t = 0 at n + bend t² / 2. In a fillet that is some 0.003 px. */
+static void straighten(fg_colour_rows *rows) {
+  const double *v = rows->values;
+  for (size_t i = 0; i < rows->count; i++) {
+    fg_colour_row *row = &rows->list[i];
+    double x = row->x_mm - rows->x0_mm;
+    double dx = v[FG_COLOUR_DX] + x * v[FG_COLOUR_MAGNIFICATION];
+    double dy = v[FG_COLOUR_DY] + x * v[FG_COLOUR_SKEW];
+    double along = dy * row->nx - dx * row->ny;
+    row->value -= 0.5 * row->bend * along * along;
+  }
+}
+
+bool fg_colour_rows_fit(fg_colour_rows *rows) {
+  if (!fit(rows)) return false;
+  straighten(rows);
+  return fit(rows);
 }

@@ -17,7 +17,7 @@ enum {
 
 /* One cross-section's difference between two channels, px, in the order along its part. */
 typedef struct fg_colour_row {
-  double x_mm, y_mm, nx, ny;
+  double x_mm, y_mm, nx, ny, bend;
   double value, weight; /* 1 / variance, as the pixels' noise says */
   double size;          /* of its residual, in standard deviations of its own */
   int part;

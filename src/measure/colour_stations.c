@@ -8,6 +8,7 @@
 
 /* Length of a cross-section along the strip, so that it holds pixels enough for its own fit. */
 #define ALONG_PX 3.0
+#define RUN_PX   5.0 /* to either side, over which it is seen how the strip bends */
 /* More than this say no more that is of use, and cost time. */
 #define STATIONS_MOST 20000
 /* Pixels are taken as far from the edges as their blur reaches, and as the channels may be apart.
@@ -66,6 +67,30 @@ static fg_colour_station across_strip(const chooser *c, const fg_station *from,
                              .part = part};
 }
 
+/* Turns the normal to how the strip runs past a cross-section as its neighbours show it, and finds
+ * how it bends there: where it begins to bend, the normal that the edges were sought along is some
+ * 0.02 rad off, and channels that lie apart along the strip would seem to lie apart across it. */
+static void find_run(const chooser *c, const fg_strip *strip, size_t i, fg_colour_station *s) {
+  double mm = sqrt(c->pixel_mm[0] * c->pixel_mm[1]), across[2], along[2];
+  size_t reach = (size_t)fmax(1, ceil(RUN_PX * mm / strip->step_mm));
+  if (i < reach || i + reach >= strip->count) return;
+  for (int side = 0; side < 2; side++) {
+    const fg_station *at = &strip->stations[side ? i + reach : i - reach];
+    if (at->weight <= 0) return;
+    double dx = 0.5 * (at->left.x + at->right.x) / c->pixel_mm[0] - s->x;
+    double dy = 0.5 * (at->left.y + at->right.y) / c->pixel_mm[1] - s->y;
+    across[side] = dx * s->nx + dy * s->ny;
+    along[side] = dy * s->nx - dx * s->ny;
+  }
+  /* The parabola through three points. */
+  double a = along[0], b = along[1];
+  if (a * b * (a - b) == 0) return;
+  s->bend = 2 * (across[0] / a - across[1] / b) / (a - b);
+  double slope = across[0] / a - 0.5 * s->bend * a, norm = hypot(1, slope), nx = s->nx;
+  s->nx = (nx + slope * s->ny) / norm;
+  s->ny = (s->ny - slope * nx) / norm;
+}
+
 /* What is cut or touched is no place to look at. */
 static fg_status add_foil(fg_context *ctx, const chooser *c, const fg_foil *foil, int part) {
   const fg_strip *strip = &foil->strip;
@@ -76,6 +101,7 @@ static fg_status add_foil(fg_context *ctx, const chooser *c, const fg_foil *foil
   for (size_t i = step / 2; i < strip->count; i += step) {
     if (strip->stations[i].weight <= 0) continue;
     fg_colour_station s = across_strip(c, &strip->stations[i], &known, part);
+    find_run(c, strip, i, &s);
     if (isfinite(s.x) && isfinite(s.y)) FG_TRY(add(ctx, c, &s));
   }
   return FG_OK;

@@ -8,6 +8,7 @@
 
 typedef struct fg_colour_station {
   double x, y, nx, ny; /* middle of the strip, or the edge; unit normal */
+  double bend;         /* 1/px: the strip runs past it along the parabola n = bend t² / 2 */
   double half_along_px, half_across_px;
   fg_colour_known known;
   int64_t top, bottom; /* rows that its pixels lie in */

@@ -7,6 +7,7 @@
 #include "scan_loop/result.h"
 #include "scan_loop/scanner_model.h"
 #include "scan_loop/state.h"
+#include "scan_loop/witness.h"
 
 /* Below this share of an effect beside the geometry no data of this kind could show it. */
 #define ABSORBED_SHARE 1e-4
@@ -329,6 +330,7 @@ fg_status fg_scan_loop_decide(fg_context *ctx, fg_scan_loop *loop) {
   put_unclaimed(loop, result);
   put_width_unclaimed(&loop->width, result);
   put_advice(loop, result);
+  fg_scan_loop_ask_witness(loop, result);
   FG_TRY(fg_scan_result_put_bumps(ctx, loop, result));
   FG_TRY(fg_scan_result_put_rows(ctx, loop, result));
   FG_TRY(fg_scan_result_put_lines(ctx, loop, result));

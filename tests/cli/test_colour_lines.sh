@@ -18,7 +18,7 @@ within() {
 }
 
 draw apart '"gap_px": [8, 0, -8], "dx_px": [0.3, 0, -0.2], "dy_px": [0.15, 0, -0.4], "magnification_ppm": [50, 0, -80]'
-expect 0 "the colour channels lie 0\.[45][0-9] px apart: one was measured" "$program" measure apart.png -o apart.report.json
+expect 0 "the colour channels lie 0\.[45][0-9] px apart: one was measured" "$program" measure --channel green apart.png -o apart.report.json
 valid measure.schema.json apart.report.json
 away=$(value apart.report.json "(r['colour_lines']['x0_mm'] - json.load(open('apart.truth.json'))['colour_lines']['middle_x_mm']) / 25.4e6 * 1200")
 within apart dx_px red "0.3 + 50 * $away"
@@ -36,20 +36,20 @@ expect 0 "" "$program" measure --channel green apart.png -o named.json
 [ "$(value piped.json "r['colour_lines']")" = "$(value named.json "r['colour_lines']")" ] || fail "a pipe shows other lines"
 
 draw near '"dx_px": [0.04, 0, -0.03], "dy_px": [-0.03, 0, 0.02]'
-expect 0 "" "$program" measure near.png -o near.report.json
+expect 0 "" "$program" measure near.png --channel green -o near.report.json
 [ "$(value near.report.json "r['colour_lines']['apart']")" = False ] || fail "0.08 px is flagged"
 within near dx_px red 0.04
 
 # A ripple of the carriage shows between the lines: 2 a sin(pi gap / p) = 4.97 um peak.
 draw uneven '"gap_px": [8, 0, -8]' '{"id": "scan.carriage_ripple", "amplitude_um": 10, "period_mm": 2, "phase_deg": 0}'
 listened=stdout expect 0 "uneven along y" script -qc "$program measure uneven.png" /dev/null
-expect 0 "" "$program" measure uneven.png -o uneven.report.json
+expect 0 "" "$program" measure uneven.png --channel green -o uneven.report.json
 [ "$(value uneven.report.json "r['colour_lines']['red']['p_constant'] < 1e-6")" = True ] || fail "a ripple is not seen"
 near "the course's rms" "$(value uneven.report.json "r['colour_lines']['red']['course_rms_um']")" 3.5 0.5
 
 # A strong colour: red shows no edges, the others stand.
 draw strong '"contrast": [0, 165, 120], "background": [200, 30, 40], "dx_px": [0, 0, 0.2]'
-expect 0 "" "$program" measure strong.png -o strong.report.json
+expect 0 "" "$program" measure strong.png --channel green -o strong.report.json
 [ "$(value strong.report.json "[r['colour_lines'][c]['state'] for c in ('red', 'blue')]")" = "['no_contrast', 'measured']" ] ||
   fail "a channel without contrast"
 within strong dx_px blue 0.2
@@ -81,11 +81,11 @@ with open("same.ppm", "wb") as out:
 with open("cut.png", "wb") as out:
     out.write(data[:len(data) // 2])
 PYTHON
-expect 0 "" "$program" measure same.ppm --dpi 1200 -o same.json
+expect 0 "" "$program" measure same.ppm --dpi 1200 --channel green -o same.json
 valid measure.schema.json same.json
 [ "$(value same.json "[(c['state'], c['dx_px'], c['u_dx_px'], c['course']) for c in (r['colour_lines']['red'], r['colour_lines']['blue'])]")" = \
   "[('identical', 0, None, []), ('identical', 0, None, [])]" ] || fail "a gray picture saved as RGB"
-listened=stdout expect 0 "red is the same picture; blue is the same picture" script -qc "$program measure same.ppm --dpi 1200" /dev/null
+listened=stdout expect 0 "red is the same picture; blue is the same picture" script -qc "$program measure same.ppm --dpi 1200 --channel green" /dev/null
 expect 0 "" "$program" measure gray.pgm --dpi 1200 -o gray.json
 [ "$(value gray.json "'colour_lines' in r")" = False ] || fail "a gray scan has colour lines"
 [ "$(value gray.json "r['foils']")" = "$(value same.json "r['foils']")" ] || fail "gray saved as RGB is measured otherwise"
@@ -98,7 +98,7 @@ cat >discs.spec.json <<'SPEC'
  "scanner": {"dpi": 1200, "colour_lines": {"dx_px": [0.3, 0, -0.2], "dy_px": [0.15, 0, -0.4]}}}
 SPEC
 "$renderer" render discs.spec.json -o discs.png || fail "discs are not drawn"
-expect 0 "" "$program" measure --form discs discs.png -o discs.report.json
+expect 0 "" "$program" measure --form discs --channel green discs.png -o discs.report.json
 valid measure.schema.json discs.report.json
 within discs dx_px red 0.3
 within discs dy_px blue -0.4

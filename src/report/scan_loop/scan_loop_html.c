@@ -147,6 +147,14 @@ static void put_shares(FILE *out, double alone, double share, bool of_width) {
             of_width ? " of the width" : "", share < 0.1 ? 2 : 0, 100 * share);
 }
 
+static void put_witness(FILE *out, const fg_scan_witness *witness) {
+  if (witness->verdict == FG_WITNESS_NONE) return;
+  fputs("<br><span class=\"note\">", out);
+  fg_html_text(out, witness->reason);
+  if (isfinite(witness->p_value)) fprintf(out, " (p = %.1g)", witness->p_value);
+  fputs("</span>", out);
+}
+
 static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
   char words[64];
   fputs("<tr class=\"on\">", out);
@@ -161,6 +169,7 @@ static void put_claim(FILE *out, const fg_scan_result_claim *claim) {
   } else {
     fputs("see its curve", out);
   }
+  put_witness(out, &claim->witness);
   fputs("</td>", out);
   put_shares(out, claim->would_explain, claim->retained_share, claim->of_width);
 }

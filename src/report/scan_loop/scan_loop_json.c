@@ -32,6 +32,25 @@ static void write_shape(fg_json *json, const fg_scan_result_claim *claim) {
   fg_json_array_end(json);
 }
 
+static void write_witness(fg_json *json, const fg_scan_witness *witness) {
+  static const char *const lines[] = {"red", "green", "blue"};
+  if (witness->verdict == FG_WITNESS_NONE) return;
+  fg_json_object(json, "witness");
+  fg_json_string(json, "verdict", fg_scan_loop_witness_word(witness->verdict));
+  fg_json_string(json, "reason", witness->reason);
+  fg_json_number(json, "p_value", witness->p_value);
+  fg_json_number(json, "p_against", witness->p_against);
+  fg_json_number(json, "factor", witness->factor);
+  fg_json_number(json, "u_factor", witness->u_factor);
+  fg_json_number(json, "expected_um", witness->expected_um);
+  fg_json_bool(json, "gap_stated", witness->gap_stated);
+  fg_json_object(json, "gap_px");
+  for (int k = 0; k < 3; k++)
+    fg_json_number(json, lines[k], witness->gap_px[k]);
+  fg_json_object_end(json);
+  fg_json_object_end(json);
+}
+
 static void write_claim(fg_json *json, const fg_scan_result *result,
                         const fg_scan_result_claim *claim) {
   fg_json_object(json, NULL);
@@ -49,6 +68,7 @@ static void write_claim(fg_json *json, const fg_scan_result *result,
     write_shape(json, claim);
   }
   write_explanations(json, result, claim->sure);
+  write_witness(json, &claim->witness);
   fg_json_object_end(json);
 }
 

@@ -17,6 +17,9 @@ const char *fg_scan_loop_held_out_words(const fg_scan_result *result);
 /* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
 double fg_scan_loop_nice_below(double most);
 
+/* "for", "against", "cannot_tell". */
+const char *fg_scan_loop_witness_word(fg_scan_witness_verdict verdict);
+
 /* The page's one sentence; the caller frees it. scan_loop_sentence.c */
 fg_status fg_scan_loop_sentence(fg_context *ctx, const fg_scan_result *result, char **text);
 

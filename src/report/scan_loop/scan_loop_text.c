@@ -11,6 +11,13 @@
 #include "report/scan_loop/scan_loop_parts.h"
 #include "report/wrapped.h"
 
+static void put_witness(FILE *out, const fg_scan_witness *witness) {
+  if (witness->verdict == FG_WITNESS_NONE) return;
+  fprintf(out, "    %s", witness->reason);
+  if (isfinite(witness->p_value)) fprintf(out, " (p = %.1g)", witness->p_value);
+  fputc('\n', out);
+}
+
 static void put_claims(FILE *out, const fg_scan_result *result) {
   for (size_t i = 0; i < result->claims; i++) {
     const fg_scan_result_claim *claim = &result->claim[i];
@@ -24,6 +31,7 @@ static void put_claims(FILE *out, const fg_scan_result *result) {
       fprintf(out, " %s %.6g +- %.2g", claim->parameter[p].name, claim->parameter[p].value,
               2 * claim->parameter[p].u);
     fputc('\n', out);
+    put_witness(out, &claim->witness);
   }
 }
 

@@ -25,3 +25,17 @@ const char *fg_scan_loop_held_out_words(const fg_scan_result *result) {
     return NULL;
   }
 }
+
+const char *fg_scan_loop_witness_word(fg_scan_witness_verdict verdict) {
+  switch (verdict) {
+  case FG_WITNESS_FOR:
+    return "for";
+  case FG_WITNESS_AGAINST:
+    return "against";
+  case FG_WITNESS_CANNOT_TELL:
+    return "cannot_tell";
+  case FG_WITNESS_NONE:
+    break;
+  }
+  return "";
+}
