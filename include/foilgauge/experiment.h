@@ -19,6 +19,7 @@
 
 #include <stdio.h>
 
+#include "foilgauge/calibration.h"
 #include "foilgauge/doe.h"
 #include "foilgauge/regression.h"
 #include "foilgauge/surface.h"
@@ -191,7 +192,10 @@ typedef struct fg_experiment_scan {
   const char *path; /* as opened */
   size_t run;       /* row of the run sheet, from 1 */
   char sha256[65];  /* "" when it could not be read */
-  double value, u;  /* NaN when it could not be measured */
+  double value, u;  /* NaN when it could not be measured; u: of the scan alone */
+  /* What one standard deviation of each error that a calibration leaves moves the value by: the
+   * same error in every scan. 0: none is stated. */
+  double move[FG_CALIBRATION_SOURCES];
   const char *error;
 } fg_experiment_scan;
 
@@ -204,9 +208,11 @@ typedef struct fg_experiment_report {
   const fg_experiment_scan *scan;
   size_t scans;
   const size_t *row; /* of the run sheet (from 1), for every run that was analysed; NULL: all */
-  const char *scans_column;              /* of the run sheet; NULL: the response was typed */
-  const char *design_path;               /* NULL: the default */
-  const struct fg_design *design;        /* that the scans were measured by; NULL: none were */
+  const char *scans_column;       /* of the run sheet; NULL: the response was typed */
+  const char *design_path;        /* NULL: the default */
+  const struct fg_design *design; /* that the scans were measured by; NULL: none were */
+  double u_calibration; /* of the level of all runs, by what is the same in every scan; in no run's
+                           u. 0: no calibration is stated */
   const char *model_path, *model_sha256; /* of the loop's model; NULL: none */
   const char *plan_path;                 /* whose limits code the factors; NULL: none */
   const char *plan_note;                 /* what is odd about it: a sentence; NULL: nothing */

@@ -8,7 +8,8 @@
  * Standard uncertainty of these means: scans and foils are independent. Bumps of one foil are so in
  * what their own circle says alone (radius); what needs the overall circle too (height, angle,
  * clearance) shares its error, and the mean over bumps gets the mean of their uncertainties, which
- * is an upper bound.
+ * is an upper bound. What a calibration leaves in doubt is the same error in every scan: it is in
+ * no run's uncertainty, moves the level of all runs, and has its own number.
  */
 #ifndef FOILGAUGE_RUN_SHEET_H
 #define FOILGAUGE_RUN_SHEET_H
@@ -38,8 +39,9 @@ typedef struct fg_run_sheet {
   size_t *row;    /* table.rows: row of the sheet, from 1 */
   fg_experiment_scan *scan;
   size_t scans;
-  size_t empty;  /* runs without a scan: left out */
-  size_t failed; /* scans that could not be measured; a run without any other is left out */
+  double u_calibration; /* of the mean of all runs by the design's calibration; 0: none is stated */
+  size_t empty;         /* runs without a scan: left out */
+  size_t failed;        /* scans that could not be measured; a run without any other is left out */
 } fg_run_sheet;
 
 /* FG_ERR_DATA: no such column; no reported quantity of that name (the message lists them); a column

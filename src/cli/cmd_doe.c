@@ -313,6 +313,7 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
                                        .scans_column = run->arguments.scans,
                                        .design_path = run->arguments.design_path,
                                        .design = run->measured.scans ? &run->design : NULL,
+                                       .u_calibration = run->measured.u_calibration,
                                        .model_path = run->loop_model ? run->model_path : NULL,
                                        .model_sha256 = run->model_sha256,
                                        .scan = run->measured.scan,

@@ -86,6 +86,37 @@ static void read_measurement(const measuring *m, const fg_measurement *measureme
   scan->u = sqrt(foils.squares) / (double)foils.count;
 }
 
+/* Mean over the parts of each foil, and over the foils. */
+static double mean_move(const measuring *m, const fg_measurement *measurement, size_t source) {
+  size_t at = fg_quantity_move_of(m->owner, m->row);
+  mean foils = {0}, discs = {0};
+  for (size_t i = 0; i < measurement->foil_count; i++) {
+    const fg_foil *foil = &measurement->foils[i];
+    mean parts = {0};
+    if (m->owner == FG_QUANTITY_OF_FOIL && isfinite(fg_quantity_value(m->row, foil)))
+      add(&parts, foil->calibrated.move[source][at], 0);
+    for (size_t k = 0; k < fg_part_count(foil, m->owner); k++) {
+      const fg_foil_part part = fg_part_at(foil, m->owner, k);
+      if (isfinite(fg_quantity_value(m->row, part.object)))
+        add(&parts, part.calibrated->move[source][at], 0);
+    }
+    if (parts.count) add(&foils, parts.sum / (double)parts.count, 0);
+  }
+  for (size_t i = 0; m->owner == FG_QUANTITY_OF_DISC && i < measurement->disc_count; i++)
+    add(&discs, measurement->discs[i].calibrated.move[source][at], 0);
+  if (discs.count) add(&foils, discs.sum / (double)discs.count, 0);
+  return foils.count ? foils.sum / (double)foils.count : 0;
+}
+
+static fg_status read_moves(fg_context *ctx, const measuring *m, fg_measurement *measurement,
+                            fg_experiment_scan *scan) {
+  if (!m->options->design->calibration.stated || !fg_quantity_has_u(m->row)) return FG_OK;
+  FG_TRY(fg_measurement_calibrate(ctx, m->options->measure.threads, measurement));
+  for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++)
+    scan->move[s] = mean_move(m, measurement, s);
+  return FG_OK;
+}
+
 static fg_status describe_failure(fg_context *ctx, fg_experiment_scan *scan, const char *words) {
   char *text = NULL;
   FG_TRY(fg_text_print(ctx, &text, "%s", words));
@@ -108,6 +139,8 @@ static fg_status measure_scan(fg_context *ctx, const measuring *m, fg_experiment
              measurement.foil_count && measurement.foils[0].error[0] ? ": " : "",
              measurement.foil_count ? measurement.foils[0].error : "");
     status = describe_failure(ctx, scan, words.message);
+  } else {
+    status = read_moves(ctx, m, &measurement, scan);
   }
   fg_measurement_free(&measurement);
   return status;
@@ -166,6 +199,18 @@ static fg_status list_scans(fg_context *ctx, const fg_table *sheet, const fg_col
   return FG_OK;
 }
 
+/* Every scan has the same error: it moves the mean of all by the mean of what it moves each by. */
+static double level_calibration(const fg_run_sheet *sheet) {
+  double squares = 0;
+  for (size_t s = 0; s < FG_CALIBRATION_SOURCES; s++) {
+    mean all = {0};
+    for (size_t i = 0; i < sheet->scans; i++)
+      if (!sheet->scan[i].error) add(&all, sheet->scan[i].move[s], 0);
+    if (all.count) squares += pow(all.sum / (double)all.count, 2);
+  }
+  return sqrt(squares);
+}
+
 static fg_status measure_runs(fg_context *ctx, measuring *m) {
   fg_run_sheet *out = m->out;
   size_t kept = 0;
@@ -183,6 +228,7 @@ static fg_status measure_runs(fg_context *ctx, measuring *m) {
     out->row[kept++] = run - 1;
   }
   out->table.rows = kept;
+  out->u_calibration = level_calibration(out);
   return FG_OK;
 }
 

@@ -117,7 +117,7 @@ fg_status fg_html_provenance(fg_context *ctx, FILE *out, const fg_provenance *p)
     fputs("<dt>Calibration</dt><dd>", out);
     fg_html_text(out, p->calibration_words);
     fputs("</dd>\n", out);
-  } else if (p->of_scans) {
+  } else if (p->of_scans || p->calibration) {
     put_calibration(out, p->design ? &p->design->calibration : NULL);
   }
   return FG_OK;

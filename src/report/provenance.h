@@ -17,7 +17,8 @@ typedef struct fg_provenance {
   const char *version;                          /* that measured; NULL: this one */
   const fg_design *design;                      /* NULL: none, or these words */
   const char *design_words;
-  bool of_scans; /* model and calibration are said, also that there is none */
+  bool of_scans;    /* model and calibration are said, also that there is none */
+  bool calibration; /* of the design is said, without scans */
   const struct fg_scanner_model *model;
   /* In place of what the design says; of lots, whose models may differ, without `of_scans`. */
   const char *calibration_words;

@@ -107,6 +107,35 @@ done
 expect 0 '' "$program" design plain.json --html design.html -o design.out
 grep -q '<dt>Design</dt><dd>d (classical), SHA-256 ' design.html || fail "design.html: no design"
 
+# A design says its calibration; without one, that there is none.
+for d in scale warm plain; do
+  expect 0 '' "$program" design $d.json --html $d.design.html
+  "$program" design $d.json >$d.design
+done
+grep -q 'K 17 <b> of 2026-03-14' scale.design && grep -q 'scale, U = 2 u .* x 0.1 %, y 0.1 % (one error of both)' scale.design ||
+  fail "the design's table has no calibration: $(grep -A4 '^calibration' scale.design)"
+grep -q 'scanned at .* 30 C, U 2 K: 0.004 % of a length' warm.design || fail "the design's temperature: $(grep -A6 '^calibration' warm.design)"
+grep -q 'none is stated' plain.design || fail "the design does not say that none is stated"
+grep -q '<dt>Calibration</dt><dd>K 17' scale.design.html && grep -q '<dt>Calibration</dt><dd>none is stated' plain.design.html ||
+  fail "the design's page is silent about calibration"
+
+# An experiment: its runs share the error, which is in the level and in no effect.
+printf 'T,scan\n-1,s0.png\n-1,s40.png\n1,s75.png\n' >scans/runs.csv
+for d in plain scale; do
+  expect 0 '' "$program" doe scans/runs.csv --scans scan --design $d.json --response overall.radius_mm --model T -o doe_$d.out --html doe_$d.html
+done
+valid doe.schema.json doe_plain.out doe_scale.out
+python3 - <<'P' || fail "an experiment's calibration"
+import json
+a, b = (json.load(open(f"doe_{d}.out")) for d in ("plain", "scale"))
+assert a["calibration"] is None and a["u_calibration"] is None
+level = sum(i["value"] for i in b["inputs"][1:]) / 3
+assert abs(b["u_calibration"] / (5e-4 * level) - 1) < 1e-3, (b["u_calibration"], level)
+assert a["coefficients"] == b["coefficients"] and [i.get("u") for i in a["inputs"]] == [i.get("u") for i in b["inputs"]]
+assert any("the same in every scan" in c for c in b["conclusions"]) and any("No calibration is stated" in c for c in a["conclusions"])
+P
+grep -q 'the same in every scan' doe_scale.html || fail "the experiment's page does not say what its calibration does"
+
 [ -n "${FOILGAUGE_TEST_LONG-}" ] || exit $failed
 # A loop: what it decides does not see it, the dimensions that it reports do.
 for d in plain scale; do

@@ -62,7 +62,7 @@ fg_status fg_design_write_html(fg_context *ctx, const fg_design_report *report, 
     fprintf(out, ", along which a percent of radius is worth %s%.2g&nbsp;%% of stiffness at first",
             along < 0 ? "−" : "+", fabs(along));
   fputs(".</figcaption></figure>\n</section>\n", out);
-  fg_provenance from = {.design = report->design};
+  fg_provenance from = {.design = report->design, .calibration = true};
   if (report->path) fg_provenance_take_file(&from, report->path);
   FG_TRY(fg_html_provenance_section(ctx, out, &from));
   fg_html_end(out);

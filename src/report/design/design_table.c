@@ -98,6 +98,32 @@ static void write_tolerances(const fg_design *design, FILE *out) {
   }
 }
 
+static void write_calibration(const fg_calibration *c, FILE *out) {
+  fputs("\ncalibration\n", out);
+  if (!c->stated) {
+    fputs("  none is stated: U of what is measured holds statistics only\n", out);
+    return;
+  }
+  const fg_calibration_budget terms = fg_calibration_terms(c);
+  const double k = 100 * FG_COVERAGE_FACTOR;
+  if (c->certificate[0] || c->date[0])
+    fprintf(out, "  %s%s%s\n", c->certificate, c->certificate[0] && c->date[0] ? " of " : "",
+            c->date);
+  fprintf(out, "  scale, U = 2 u                      x %.3g %%, y %.3g %%%s\n", k * terms.scale[0],
+          k * terms.scale[1], c->per_axis ? "" : " (one error of both)");
+  if (c->has_temperature) {
+    fprintf(out, "  scanned at                          %g C, U %.3g K: %.3g %% of a length\n",
+            c->temperature_c, FG_COVERAGE_FACTOR * c->u_temperature_k, k * terms.temperature);
+    fprintf(out, "  expansion                           %.4g 1/K, U %.2g: %.3g %% of a length\n",
+            c->expansion_per_k, FG_COVERAGE_FACTOR * c->u_expansion_per_k, k * terms.expansion);
+    fprintf(out, "  a length at 20 C over one scanned   %.7f\n", fg_calibration_factor(c));
+  } else {
+    fputs("  the part is taken to be at 20 C\n", out);
+  }
+  fprintf(out, "  together, of a length               x %.3g %%, y %.3g %%\n", k * terms.length[0],
+          k * terms.length[1]);
+}
+
 fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report, FILE *out) {
   const fg_design *design = report->design;
   fprintf(out, "design %s, form %s", design->name, fg_form_word(design->form));
@@ -122,6 +148,7 @@ fg_status fg_design_write_table(fg_context *ctx, const fg_design_report *report,
     fg_text_stiffness_table(out, &bump, fg_design_pitch_mm(design));
   }
   write_tolerances(design, out);
+  write_calibration(&design->calibration, out);
   return fg_stream_finish(ctx, out, "the design");
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/file.h"
 #include "foilgauge/words.h"
+#include "report/design/calibration_json.h"
 #include "report/doe/doe_json_parts.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_json.h"
@@ -348,6 +349,15 @@ static void put_measurement(fg_json *json, const fg_experiment *e) {
   fg_json_object_end(json);
 }
 
+static void put_calibration(fg_json *json, const fg_experiment_report *report) {
+  bool stated = report->design && report->design->calibration.stated;
+  if (stated)
+    fg_json_calibration_used(json, "calibration", &report->design->calibration);
+  else
+    fg_json_string(json, "calibration", NULL);
+  fg_json_number(json, "u_calibration", stated ? report->u_calibration : NAN);
+}
+
 static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_report *report,
                             const fg_sentences *conclusions) {
   const fg_experiment *e = report->experiment;
@@ -368,6 +378,7 @@ static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_
   put_anova(json, &e->regression);
   put_fit(json, &e->regression);
   put_measurement(json, e);
+  put_calibration(json, report);
   put_aliases(json, &e->regression);
   put_tests(json, e);
   put_split_plot(json, e);

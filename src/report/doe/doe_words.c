@@ -1,4 +1,6 @@
 #include "report/doe/doe_words.h"
+#include "foilgauge/design.h"
+#include "foilgauge/report.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -193,6 +195,23 @@ static fg_status say_measurement(fg_context *ctx, const fg_experiment *e, fg_sen
       e->u_rms, fmin(100, 100 * e->u_rms * e->u_rms / (sd * sd)));
 }
 
+/* What every scan shares is in no run's u. */
+static fg_status say_calibration(fg_context *ctx, const fg_experiment_report *report,
+                                 fg_sentences *s) {
+  if (!report->scans || !report->design) return FG_OK;
+  if (!report->design->calibration.stated)
+    return fg_sentences_say(
+        ctx, s,
+        "No calibration is stated: u of the runs holds statistics only, and the "
+        "scanner's scale is taken for right.");
+  if (!(report->u_calibration > 0)) return FG_OK;
+  return fg_sentences_say(
+      ctx, s,
+      "Calibration: its error is the same in every scan, so it is in no run's u and in no effect's "
+      "interval; it moves the level of all runs by up to %.2g (U = 2 u).",
+      FG_COVERAGE_FACTOR * report->u_calibration);
+}
+
 void fg_experiment_setting_words(const fg_experiment *e, const double *x, bool plain, char *text,
                                  size_t size) {
   text[0] = '\0';
@@ -293,6 +312,7 @@ fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report 
   FG_TRY_EXIT(say_quality(ctx, e, s));
   FG_TRY_EXIT(say_curvature(ctx, e, s));
   FG_TRY_EXIT(say_measurement(ctx, e, s));
+  FG_TRY_EXIT(say_calibration(ctx, report, s));
   FG_TRY_EXIT(fg_experiment_say_order(ctx, report, s));
   FG_TRY_EXIT(say_stationary(ctx, e, s));
 exit:
