@@ -25,9 +25,10 @@ FOILS, BUMPS = 12, 9
 
 
 def form(folder, *options, name="form.json"):
-    path = os.path.join(folder, name)
-    subprocess.run([lib.FOILGAUGE, "form", *options, "-o", path], check=True)
-    return lib.load(path)
+    # Pages name what was read: by its name, not by where it lay.
+    here = [option.removeprefix(folder + os.sep) for option in options]
+    subprocess.run([lib.FOILGAUGE, "form", *here, "-o", name], check=True, cwd=folder)
+    return lib.load(os.path.join(folder, name))
 
 
 def write(folder, name, value):
