@@ -45,8 +45,9 @@ typedef enum fg_scan_held_out {
   FG_SCAN_HELD_OUT_NOTHING, /* nothing was found: it is the rms; or too few bumps to keep some
                                aside: it is NaN */
   FG_SCAN_HELD_OUT_SCANS,   /* scans kept aside */
-  FG_SCAN_HELD_OUT_FOLDS    /* cross-fitted: bumps (discs) in folds, and the search repeated without
-                               each. Before, nothing but the geometry is fitted, as to all rows */
+  FG_SCAN_HELD_OUT_FOLDS    /* cross-fitted: bumps (discs; of a curve over places short stretches of
+                               the edge) in folds, and the search repeated without each. Before,
+                               nothing but the geometry is fitted, as to all rows */
 } fg_scan_held_out;
 
 /* Errors of the points, um. */
@@ -278,7 +279,8 @@ typedef struct fg_scan_result {
   double matters_um; /* an effect of this size would be a nuisance: `absent` below it */
   fg_scan_loop_error before, after;
   fg_scan_held_out held_out;
-  size_t folds; /* that it is cross-fitted over */
+  size_t folds;        /* that it is cross-fitted over */
+  const char *fold_of; /* what they are of: "bumps", "discs", "stretches of the edge"; NULL: none */
   double width_before_um,
       width_after_um; /* with `of_width`: rms of half the width about its mean */
 

@@ -12,32 +12,51 @@
 
 enum { FOLDS_MOST = 5, FOLDS_LEAST = 2 };
 
+/* Several times the length over which neighbours share noise, and less than a curve is fine. */
+#define STRETCH_MM 0.6
+
 typedef struct cross_fit {
   const fg_points *points;
   const fg_effect_set *set;
   const fg_explain_bars *barred;
+  fg_cross_fit_unit unit;
   size_t folds;
-  size_t *fold;                /* per group */
-  double *before_um;           /* per row */
+  size_t *fold;                /* per row */
+  double *before_um;           /* likewise */
   double *after_um;            /* every row from the search without its fold */
   bool cannot[FOLDS_MOST + 1]; /* too few rows, or a geometry that they do not hold */
 } cross_fit;
 
-/* Every other kind of group has a turn of its own: a bump and the land behind it are in one fold,
- * and every fold has both. */
+static bool has_curve_over_place(const fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++) {
+    const fg_effect *kind = set->effects[e].kind;
+    if (fg_effect_is_free(kind) && kind->coordinate != FG_EFFECT_PHI &&
+        kind->coordinate != FG_EFFECT_NORMAL)
+      return true;
+  }
+  return false;
+}
+
+static fg_cross_fit_unit unit_of(const fg_points *points, const fg_effect_set *set) {
+  if (points->discs) return FG_CROSS_FIT_DISCS;
+  return has_curve_over_place(set) ? FG_CROSS_FIT_STRETCHES : FG_CROSS_FIT_BUMPS;
+}
+
+/* Bumps have turns of their own, and so have lands: every fold has both. */
 static fg_status deal(fg_context *ctx, cross_fit *c) {
   const fg_points *points = c->points;
-  size_t bumps = 0, others = 0;
-  FG_TRY(fg_memory_allocate(ctx, points->group_count, sizeof *c->fold, (void **)&c->fold));
+  size_t bumps = 0, others = 0, own = 0;
+  c->unit = unit_of(points, c->set);
+  FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *c->fold, (void **)&c->fold));
   for (size_t i = 0; i < points->row_count; i++) {
     const fg_points_row *row = &points->rows[i];
-    if (i && row->group == points->rows[i - 1].group) continue;
-    c->fold[row->group] = row->bump ? bumps++ : others++;
+    if (!i || row->group != points->rows[i - 1].group) own = row->bump ? bumps++ : others++;
+    c->fold[i] = c->unit == FG_CROSS_FIT_STRETCHES ? (size_t)fmax(0, row->s_mm / STRETCH_MM) : own;
   }
-  size_t units = points->discs ? others : bumps;
-  c->folds = units < FOLDS_MOST ? units : FOLDS_MOST;
-  for (size_t g = 0; g < points->group_count && c->folds; g++)
-    c->fold[g] %= c->folds;
+  size_t units = c->unit == FG_CROSS_FIT_DISCS ? others : bumps;
+  c->folds = units < FOLDS_MOST && c->unit != FG_CROSS_FIT_STRETCHES ? units : FOLDS_MOST;
+  for (size_t i = 0; i < points->row_count && c->folds; i++)
+    c->fold[i] %= c->folds;
   return FG_OK;
 }
 
@@ -62,7 +81,7 @@ static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_memory_allocate(ctx, points->row_count, sizeof *keep, (void **)&keep));
   for (size_t i = 0; i < points->row_count; i++)
-    keep[i] = c->fold[points->rows[i].group] != fold;
+    keep[i] = c->fold[i] != fold;
   FG_TRY_EXIT(fg_points_subset(ctx, points, keep, &others));
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
@@ -82,7 +101,7 @@ static fg_status judge_fold(fg_context *ctx, cross_fit *c, size_t fold) {
   FG_TRY(fg_memory_allocate(ctx, points->row_count, sizeof *left, (void **)&left));
   fg_status status = leave(ctx, points, &set, left);
   for (size_t i = 0; i < points->row_count && status == FG_OK; i++)
-    if (c->fold[points->rows[i].group] == fold) c->after_um[i] = left[i];
+    if (c->fold[i] == fold) c->after_um[i] = left[i];
   free(left);
   return status;
 }
@@ -118,7 +137,8 @@ static void sum_up(const cross_fit *c, fg_cross_fit *result) {
   if (!(weight > 0)) return;
   double gain = before - after;
   double scatter = groups / (groups - 1) * (square - gain * gain / groups);
-  *result = (fg_cross_fit){.folds = c->folds,
+  *result = (fg_cross_fit){.unit = c->unit,
+                           .folds = c->folds,
                            .before_um = sqrt(before / weight),
                            .after_um = sqrt(after / weight),
                            .gain = gain / weight,
@@ -132,7 +152,7 @@ fg_status fg_explain_cross_fit(fg_context *ctx, const fg_points *points, const f
   size_t rows = points->row_count;
   fg_status status = FG_OK;
   bool cannot = false;
-  *result = (fg_cross_fit){0, NAN, NAN, NAN, NAN};
+  *result = (fg_cross_fit){.before_um = NAN, .after_um = NAN, .gain = NAN, .u_gain = NAN};
   FG_TRY_EXIT(deal(ctx, &c));
   if (c.folds < FOLDS_LEAST) goto exit;
   FG_TRY_EXIT(fg_memory_allocate(ctx, rows, sizeof *c.before_um, (void **)&c.before_um));

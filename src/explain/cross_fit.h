@@ -1,17 +1,25 @@
 /* What was found, held against rows that took no part in finding it.
  *
  * Bumps (discs: the discs) and lands go round some folds by their place; all rows of a bump, on
- * every scan of its foil, are in one. Without the rows of a fold the search is repeated, and what
- * it finds then is taken out of all rows with the numbers that it has then. The geometry (every
- * bump's circle, the overall circles, the poses) is not what is tested: it is fitted to all rows,
- * beside nothing before and beside what was found after, so that both errors are of the kind that
- * the residual of all rows is. */
+ * every scan of its foil, are in one. A free curve over a place tells nothing of a place where no
+ * row lies, so where one was found short stretches of every arc go round instead. Without the rows
+ * of a fold the search is repeated, and what it finds then is taken out of all rows with the
+ * numbers that it has then. The geometry (every bump's circle, the overall circles, the poses) is
+ * not what is tested: it is fitted to all rows, beside nothing before and beside what was found
+ * after, so that both errors are of the kind that the residual of all rows is. */
 #ifndef FG_EXPLAIN_CROSS_FIT_H
 #define FG_EXPLAIN_CROSS_FIT_H
 
 #include "explain/explain.h"
 
+typedef enum fg_cross_fit_unit {
+  FG_CROSS_FIT_BUMPS,
+  FG_CROSS_FIT_DISCS,
+  FG_CROSS_FIT_STRETCHES
+} fg_cross_fit_unit;
+
 typedef struct fg_cross_fit {
+  fg_cross_fit_unit unit;
   size_t folds;               /* 0: too few bumps or rows, and no number is told */
   double before_um, after_um; /* rms over all rows, each from the search without its fold */
   double gain, u_gain; /* fall of the mean square, um², and its standard error over what was drawn

@@ -209,10 +209,21 @@ static fg_status fit_or_best_alone(fg_context *ctx, fg_points *points, double no
   return fit(ctx, points, none, at);
 }
 
+/* The first explanation, or one of the effects that are preferred (NULL: none are). */
+static void take_likeliest(const fg_explanations *explanations, const fg_effect_set *prefer,
+                           fg_effect_set *set) {
+  for (size_t m = 0; prefer && m < explanations->count; m++) {
+    fg_explain_take(explanations, m, set);
+    if (same_effects(set, prefer)) return;
+  }
+  fg_explain_take(explanations, 0, set);
+}
+
 /* One turn: the search at the geometry that stands, and the fit of what it finds, which is `next`.
  * The request holds what differs from turn to turn. */
 static fg_status take_turn(fg_context *ctx, fg_points *points, fg_explain_request request,
-                           double none, settling *at, fg_effect_set *next) {
+                           const fg_effect_set *prefer, double none, settling *at,
+                           fg_effect_set *next) {
   const fg_explain_policy *policy = at->policy;
   request.policy = policy;
   request.residual_um = at->residual_um;
@@ -224,7 +235,7 @@ static fg_status take_turn(fg_context *ctx, fg_points *points, fg_explain_reques
   if (policy->scatters) FG_TRY(fg_points_find_scatter(ctx, points, at->residual_um));
   FG_TRY(put_back(ctx, points, &at->set, at->residual_um, at->jacobian));
   FG_TRY(fg_explain_find(ctx, points, &request, &at->explanations));
-  fg_explain_take(&at->explanations, 0, next);
+  take_likeliest(&at->explanations, prefer, next);
   keep_numbers(&at->set, next);
   at->set = *next;
   fg_explain_drop_across_steps(points, &at->set, policy->step_half_mm);
@@ -252,7 +263,7 @@ static fg_status settle_from(fg_context *ctx, fg_points *points, fg_explain_mann
                                         .look = how.eager || round > 0,
                                         .two_curves = how.two_curves,
                                         .hopeless = hopeless};
-    FG_TRY(take_turn(ctx, points, request, none, at, &next));
+    FG_TRY(take_turn(ctx, points, request, NULL, none, at, &next));
     bool same = same_effects(policy->rests_in_force ? &in_force : &last, &next);
     last = next;
     if (!at->explanations.right) tried = next;
@@ -286,7 +297,7 @@ static fg_status settle_from_set(fg_context *ctx, fg_points *points, const fg_ef
   fg_effect_set next;
   const fg_explain_request request = {
       .look = true, .two_curves = count_free(set) > 1, .hopeless = true};
-  return take_turn(ctx, points, request, none, at, &next);
+  return take_turn(ctx, points, request, set, none, at, &next);
 }
 
 /* The manners of the policy, each where the one before does not come to rest at an explanation that

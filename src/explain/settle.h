@@ -17,7 +17,8 @@ fg_status fg_explain_settle(fg_context *ctx, const fg_settle_request *request, f
                             fg_explanations *explanations, double *residual_um);
 
 /* The same in one turn from a set in force, whose shapes are the start, with the noise found
- * anew: for some of the rows on which it was found. */
+ * anew: for some of the rows on which it was found. Where explanations are tied, the set in force
+ * is the one that is taken if it is among them. */
 fg_status fg_explain_settle_again(fg_context *ctx, const fg_settle_request *request,
                                   fg_effect_set *set, double *residual_um);
 

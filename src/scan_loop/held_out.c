@@ -17,27 +17,21 @@ fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop) {
   return FG_OK;
 }
 
-/* What single bumps do by themselves no other bump can foretell. */
-static bool of_single_bumps(const fg_effect_set *set) {
-  for (size_t e = 0; e < set->count; e++)
-    if (set->effects[e].kind->coordinate != FG_EFFECT_INDEX) return false;
-  return true;
+const char *fg_scan_loop_fold_of(const fg_scan_loop *loop) {
+  static const char *const words[] = {[FG_CROSS_FIT_BUMPS] = "bumps",
+                                      [FG_CROSS_FIT_DISCS] = "discs",
+                                      [FG_CROSS_FIT_STRETCHES] = "stretches of the edge"};
+  return loop->cross_fit.folds ? words[loop->cross_fit.unit] : NULL;
 }
 
 fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop) {
   const fg_cross_fit *c = &loop->cross_fit;
   if (!c->folds || c->gain > c->u_gain) return FG_OK;
-  const char *what = loop->points.discs ? "discs" : "bumps";
-  if (of_single_bumps(&loop->set))
-    return fg_scan_loop_bumps_note(
-        ctx, &loop->bumps,
-        "points: the error of bumps that took no part in the search does not fall (%.3g um before, "
-        "%.3g um after): what single bumps do, others cannot foretell",
-        c->before_um, c->after_um);
   return fg_scan_loop_bumps_note(
       ctx, &loop->bumps,
-      "points: the error of %s that took no part in the search %s (%.3g um before, %.3g um after): "
-      "what was found does not show that it foretells other %s; scan more of them",
-      what, c->gain > 0 ? "falls by less than its standard error" : "does not fall", c->before_um,
-      c->after_um, what);
+      "points: on %s that took no part in the search the error %s (%.3g um before, %.3g um after): "
+      "nothing confirms yet what was found; scan more, and keep a scan aside (--hold-out)",
+      fg_scan_loop_fold_of(loop),
+      c->gain > 0 ? "falls by less than its standard error" : "does not fall", c->before_um,
+      c->after_um);
 }

@@ -64,6 +64,8 @@ fg_status fg_scan_loop_check_one_foil(fg_context *ctx, const fg_scan_loop *loop)
 /* Held-out errors of the set in force; a note where they did not fall. */
 fg_status fg_scan_loop_find_held_out(fg_context *ctx, fg_scan_loop *loop);
 fg_status fg_scan_loop_say_held_out(fg_context *ctx, fg_scan_loop *loop);
+/* "bumps"; NULL: they were not cross-fitted. */
+const char *fg_scan_loop_fold_of(const fg_scan_loop *loop);
 
 /* Marks a stretch of the part as tied where a scale of the scanner would do as well. */
 fg_status fg_scan_loop_scale_doubt(fg_context *ctx, fg_scan_loop *loop);

@@ -298,6 +298,7 @@ static void put_numbers(const fg_scan_loop *loop, fg_scan_result *result) {
   result->before = loop->error_before;
   result->after = loop->error_after;
   result->folds = loop->cross_fit.folds;
+  result->fold_of = fg_scan_loop_fold_of(loop);
   result->left_out = loop->left_out;
   result->note = (const char *const *)loop->bumps.note;
   result->notes = loop->bumps.notes;

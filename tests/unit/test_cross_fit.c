@@ -54,6 +54,11 @@ static void search(fixture *f) {
   free(residual_um);
 }
 
+/* One effect of one number. */
+static fg_effect_set set_of(const char *id) {
+  return (fg_effect_set){.count = 1, .effects = {{.kind = fg_effect_find(id), .columns = 1}}};
+}
+
 static fg_cross_fit judge(fixture *f, unsigned threads) {
   fg_cross_fit result;
   assert_int_equal(
@@ -120,8 +125,7 @@ static void what_is_not_there_is_not(void **state) {
   open_foil(&f, 1, BUMPS, 0);
   search(&f);
   assert_int_equal(f.set.count, 0);
-  f.set = (fg_effect_set){.count = 1,
-                          .effects = {{.kind = fg_effect_find("scan.shear"), .columns = 1}}};
+  f.set = set_of("scan.shear");
   assert_int_equal(fg_joint_fit(&f.ctx, &f.points, &f.set, NULL), FG_OK);
   fg_cross_fit result = judge(&f, 1);
   assert_int_equal(result.folds, 5);
@@ -135,9 +139,9 @@ static void before_is_the_rms(void **state) {
   (void)state;
   fixture f;
   open_foil(&f, 1, 3, RIPPLE_UM);
-  search(&f);
-  assert_true(f.set.count > 0);
+  f.set = set_of("scan.shear");
   fg_cross_fit result = judge(&f, 1);
+  assert_int_equal(result.unit, FG_CROSS_FIT_BUMPS);
   assert_int_equal(result.folds, 3); /* a bump each */
   const fg_effect_set none = {.count = 0};
   double *residual_um = calloc(f.points.row_count, sizeof *residual_um), sum = 0, weight = 0;
@@ -152,12 +156,27 @@ static void before_is_the_rms(void **state) {
   close_foil(&f);
 }
 
+/* A curve over places tells nothing of a place without rows: of every arc some stretches stay. */
+static void a_curve_is_judged_by_stretches(void **state) {
+  (void)state;
+  fixture f;
+  open_foil(&f, 1, BUMPS, RIPPLE_UM);
+  const fg_effect *curve = fg_effect_first();
+  while (!(fg_effect_is_free(curve) && curve->coordinate == FG_EFFECT_Y))
+    curve = fg_effect_next(curve);
+  f.set = (fg_effect_set){.count = 1, .effects = {{.kind = curve, .columns = curve->columns}}};
+  fg_cross_fit result = judge(&f, 1);
+  assert_int_equal(result.unit, FG_CROSS_FIT_STRETCHES);
+  assert_int_equal(result.folds, 5);
+  assert_true(result.after_um < 0.5 * result.before_um);
+  close_foil(&f);
+}
+
 static void one_bump_cannot_be_left_out(void **state) {
   (void)state;
   fixture f;
   open_foil(&f, 1, 1, 0);
-  f.set = (fg_effect_set){.count = 1,
-                          .effects = {{.kind = fg_effect_find("scan.shear"), .columns = 1}}};
+  f.set = set_of("scan.shear");
   fg_cross_fit result = judge(&f, 1);
   assert_int_equal(result.folds, 0);
   assert_true(isnan(result.before_um) && isnan(result.after_um));
@@ -170,6 +189,7 @@ int main(void) {
       cmocka_unit_test(what_is_there_is_foretold),
       cmocka_unit_test(what_is_not_there_is_not),
       cmocka_unit_test(before_is_the_rms),
+      cmocka_unit_test(a_curve_is_judged_by_stretches),
       cmocka_unit_test(one_bump_cannot_be_left_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

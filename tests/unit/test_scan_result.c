@@ -102,6 +102,8 @@ static void assert_ratios(const cJSON *json, const fg_scan_result *result) {
   assert_number(json, "held_out", result->after.held_out_rms / result->before.held_out_rms);
   assert_int_equal(member(json, "folds")->valueint, result->folds);
   assert_int_equal(result->folds > 0, result->held_out == FG_SCAN_HELD_OUT_FOLDS);
+  assert_int_equal(!result->folds, cJSON_IsNull(member(json, "fold_of")));
+  if (result->folds) assert_text(json, "fold_of", result->fold_of);
 }
 
 static void assert_noise(const cJSON *json, const fg_scan_noise *noise) {

@@ -30,8 +30,7 @@ static void put_tiles(FILE *out, const fg_scan_result *result) {
   fg_text_clip(small, sizeof small, "what is left is %.3g times this",
                after->rms / result->noise_floor_um);
   put_tile(out, "Noise floor", words, small);
-  const char *held_out = fg_scan_loop_held_out_words(result);
-  if (result->corrected && held_out) {
+  if (result->corrected && result->held_out != FG_SCAN_HELD_OUT_NOTHING) {
     fg_scan_loop_length_words(after->held_out_rms, words, sizeof words);
     fg_text_clip(small, sizeof small, "after / before = %.3g",
                  after->held_out_rms / before->held_out_rms);
@@ -312,23 +311,23 @@ static void put_noise(FILE *out, const fg_scan_noise *noise) {
 }
 
 static void put_held_out(FILE *out, const fg_scan_result *result) {
-  const char *what = result->discs ? "discs" : "bumps";
   if (result->held_out == FG_SCAN_HELD_OUT_SCANS) return;
   fputs("<p class=\"note\">No scan was kept aside (<code>--hold-out</code>)", out);
   if (result->folds)
     fprintf(out,
             ", so the %s went round %zu folds: without each the search was repeated, and what it "
             "found then was taken out of it. The geometry is fitted to all rows, before and after",
-            what, result->folds);
+            result->fold_of, result->folds);
   else if (result->corrected)
-    fprintf(out, ", and the %s are too few to search without some of them", what);
+    fprintf(out, ", and the %s are too few to search without some of them",
+            result->discs ? "discs" : "bumps");
   fputs(".</p>\n", out);
 }
 
 static void put_errors(FILE *out, const fg_scan_result *result) {
   const fg_scan_loop_error *b = &result->before, *a = &result->after;
   size_t left_out = 0;
-  char words[80];
+  char words[FG_HELD_OUT_WORDS];
   for (size_t i = 0; i < result->rows; i++)
     left_out += !(result->row[i].weight > 0);
   fputs("<section><h2 class=\"first\">Errors of the edge rows</h2>\n<div class=\"scroll\"><table>"
@@ -338,11 +337,8 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   put_error(out, "robust sd", b->robust_sd, a->robust_sd);
   put_error(out, "95th percentile", b->p95, a->p95);
   put_error(out, "maximum", b->maximum, a->maximum);
-  const char *held_out = fg_scan_loop_held_out_words(result);
-  if (held_out) {
-    fg_text_clip(words, sizeof words, "%s, rms", held_out);
-    put_error(out, words, b->held_out_rms, a->held_out_rms);
-  }
+  fg_scan_loop_held_out_words(result, words);
+  if (words[0]) put_error(out, words, b->held_out_rms, a->held_out_rms);
   if (result->of_width)
     put_error(out, "half the width, rms", result->width_before_um, result->width_after_um);
   fg_scan_loop_length_words(result->noise_floor_um, words, sizeof words);

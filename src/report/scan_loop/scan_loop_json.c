@@ -232,6 +232,7 @@ fg_status fg_scan_loop_write_json(fg_context *ctx, const fg_scan_loop *loop, FIL
   fg_json_number(&json, "rms", result->after.rms / result->before.rms);
   fg_json_number(&json, "held_out", result->after.held_out_rms / result->before.held_out_rms);
   fg_json_integer(&json, "folds", (int64_t)result->folds);
+  fg_json_string(&json, "fold_of", result->fold_of);
   fg_json_object_end(&json);
   write_rejected(&json, result);
   fg_json_strings(&json, "separating_measurement", result->advice, result->advices);

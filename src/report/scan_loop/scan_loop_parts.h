@@ -10,9 +10,10 @@
 
 /* "µm" for "um", "°" for "deg". */
 const char *fg_scan_loop_unit_words(const char *unit);
-/* What the held-out error is of: "scans kept aside", "bumps that took no part in the search"; NULL:
+/* What the held-out error is of: "scans kept aside", "bumps that took no part in the search"; "":
  * it says nothing that the rms does not. */
-const char *fg_scan_loop_held_out_words(const fg_scan_result *result);
+enum { FG_HELD_OUT_WORDS = 80 };
+void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HELD_OUT_WORDS]);
 
 /* The largest of 1, 2, 5 times a power of ten that is not above `most`. */
 double fg_scan_loop_nice_below(double most);

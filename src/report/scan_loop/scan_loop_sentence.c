@@ -66,8 +66,9 @@ static fg_status say_errors(fg_context *ctx, const fg_scan_result *result, char 
   FG_TRY(fg_text_append(
       ctx, text, " The edge residual %s from %s to %s rms; the noise alone makes %s.",
       result->after.rms <= result->before.rms ? "falls" : "rises", before, after, floor_words));
-  const char *held_out = fg_scan_loop_held_out_words(result);
-  if (!held_out || !isfinite(result->before.held_out_rms)) return FG_OK;
+  char held_out[FG_HELD_OUT_WORDS];
+  fg_scan_loop_held_out_words(result, held_out);
+  if (!held_out[0] || !isfinite(result->before.held_out_rms)) return FG_OK;
   fg_scan_loop_length_words(result->before.held_out_rms, before, sizeof before);
   fg_scan_loop_length_words(result->after.held_out_rms, after, sizeof after);
   return fg_text_append(

@@ -69,8 +69,9 @@ static void put_errors(FILE *out, const fg_scan_result *result) {
   put_error(out, "robust sd", b->robust_sd, a->robust_sd);
   put_error(out, "95th percentile", b->p95, a->p95);
   put_error(out, "maximum", b->maximum, a->maximum);
-  const char *held_out = fg_scan_loop_held_out_words(result);
-  if (held_out) {
+  char held_out[FG_HELD_OUT_WORDS];
+  fg_scan_loop_held_out_words(result, held_out);
+  if (held_out[0]) {
     fprintf(out, "  %s:\n", held_out);
     put_error(out, "rms", b->held_out_rms, a->held_out_rms);
   }

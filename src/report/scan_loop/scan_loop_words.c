@@ -14,16 +14,12 @@ const char *fg_scan_loop_unit_words(const char *unit) {
   return !strcmp(unit, "um") ? "µm" : !strcmp(unit, "deg") ? "°" : unit;
 }
 
-const char *fg_scan_loop_held_out_words(const fg_scan_result *result) {
-  switch (result->held_out) {
-  case FG_SCAN_HELD_OUT_SCANS:
-    return "scans kept aside";
-  case FG_SCAN_HELD_OUT_FOLDS:
-    return result->discs ? "discs that took no part in the search"
-                         : "bumps that took no part in the search";
-  default:
-    return NULL;
-  }
+void fg_scan_loop_held_out_words(const fg_scan_result *result, char words[FG_HELD_OUT_WORDS]) {
+  words[0] = 0;
+  if (result->held_out == FG_SCAN_HELD_OUT_SCANS)
+    fg_text_clip(words, FG_HELD_OUT_WORDS, "scans kept aside");
+  if (result->held_out == FG_SCAN_HELD_OUT_FOLDS)
+    fg_text_clip(words, FG_HELD_OUT_WORDS, "%s that took no part in the search", result->fold_of);
 }
 
 const char *fg_scan_loop_witness_word(fg_scan_witness_verdict verdict) {
