@@ -1,7 +1,9 @@
 /* results.dfq: the Q-DAS ASCII transfer format. A line is a K field, its characteristic and its
  * text; lines end with CR LF. Values stand in fields of their own: K0001 the value, K0002 its
  * attribute (0: valid, 255: no value), K0004 its date and time, K0006 the batch, here the coil,
- * K0009 a text, here what the manifest says besides, K0014 the part's ident, here the foil. */
+ * K0009 a text, here what the manifest says besides and the scan, K0014 the part's ident, here the
+ * foil or the bearing: the characteristics of bearings that the manifest names follow those of
+ * foils, with a value per bearing, whose text names its foils. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,12 +38,12 @@ static void put_number(FILE *out, const char *field, size_t number, double value
   fprintf(out, "%s/%zu %s\r\n", field, number, text);
 }
 
-static void put_characteristic(FILE *out, size_t number, const fg_lot_words *words,
-                               const fg_characteristic *one) {
-  const fg_quantity *row = one->quantity->row;
-  const fg_tolerance *tolerance = one->quantity->tolerance;
-  fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s", number, number, number, row->words);
-  if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
+static void put_characteristic(FILE *out, size_t number, const fg_characteristic *one) {
+  const fg_quantity *row = one->row;
+  const fg_tolerance *tolerance = one->tolerance;
+  fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s%s", number, number, number,
+          one->owner == FG_QUANTITY_OF_BEARING ? "bearing: " : "", row->words);
+  if (one->bump) fprintf(out, " %d", one->bump);
   fprintf(out, "\r\nK2022/%zu 6\r\n", number); /* decimal places */
   put_number(out, "K2101", number, one->nominal);
   if (tolerance) put_number(out, "K2110", number, tolerance->lower);
@@ -65,26 +67,47 @@ static void put_date(FILE *out, const fg_lot *lot, size_t item, size_t number) {
 /* The columns that have a field of their own, and those that are the scan's and the foil's names.
  */
 static bool has_field(const char *column) {
-  static const char *const names[] = {"scan", "foil", FG_LOT_DATE_COLUMN, COIL_COLUMN};
+  static const char *const names[] = {"foil", FG_LOT_DATE_COLUMN, COIL_COLUMN, "scan"};
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     if (!strcmp(column, names[i])) return true;
   return false;
 }
 
-/* "die A, operator Kim": a text of at most so many bytes as the format takes. */
-static void put_besides(FILE *out, const fg_manifest *manifest, size_t item, size_t number) {
-  char text[TEXT_BYTES_MOST] = "";
-  for (size_t i = 0; i < manifest->columns; i++) {
-    const char *cell = fg_manifest_cell(manifest, item, i);
-    size_t used = strlen(text);
-    if (*cell && !has_field(manifest->name[i]))
-      fg_text_clip(text + used, sizeof text - used, "%s%s %s", used ? ", " : "", manifest->name[i],
-                   cell);
-  }
-  if (!text[0]) return;
+static void append_words(char text[TEXT_BYTES_MOST], const char *name, const char *value) {
+  size_t used = strlen(text);
+  fg_text_clip(text + used, TEXT_BYTES_MOST - used, "%s%s %s", used ? ", " : "", name, value);
+}
+
+static void put_besides(FILE *out, const char *text, size_t number) {
+  if (!*text) return;
   fprintf(out, "K0009/%zu ", number);
   put_text(out, text);
   fputs("\r\n", out);
+}
+
+/* "die A, operator Kim, scan foil_7.png": at most as many bytes as the format takes. */
+static void besides_foil(const fg_manifest *manifest, const fg_measured_part *part,
+                         char text[TEXT_BYTES_MOST]) {
+  size_t item = part->foil->item;
+  const char *scan = fg_manifest_scan(manifest, item), *slash = strrchr(scan, '/');
+  text[0] = '\0';
+  for (size_t i = 0; i < manifest->columns; i++) {
+    const char *cell = fg_manifest_cell(manifest, item, i);
+    if (*cell && !has_field(manifest->name[i])) append_words(text, manifest->name[i], cell);
+  }
+  append_words(text, "scan", slash && slash[1] ? slash + 1 : scan);
+}
+
+/* "pad 1 L7-01, pad 3 L7-02" */
+static void besides_bearing(const fg_lot_analysis *analysis, const fg_measured_part *part,
+                            char text[TEXT_BYTES_MOST]) {
+  text[0] = '\0';
+  for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
+    const fg_lot_foil *foil = part->bearing->pad[pad];
+    char name[24];
+    snprintf(name, sizeof name, "pad %zu", pad + 1);
+    if (foil) append_words(text, name, fg_manifest_label(&analysis->lot->manifest, foil->item));
+  }
 }
 
 static void put_coil(FILE *out, const fg_manifest *manifest, size_t item, size_t number) {
@@ -96,36 +119,72 @@ static void put_coil(FILE *out, const fg_manifest *manifest, size_t item, size_t
   fputs("\r\n", out);
 }
 
-static void put_foil(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil,
+static void put_ident(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
+                      size_t number) {
+  const fg_lot *lot = analysis->lot;
+  fprintf(out, "K0014/%zu ", number);
+  put_text(out,
+           part->foil ? fg_manifest_label(&lot->manifest, part->foil->item) : part->bearing->name);
+  if (part->foil && lot->records[part->foil->item].foil_count > 1)
+    fprintf(out, " #%d", part->foil->foil->number);
+  fputs("\r\n", out);
+}
+
+static void put_part(FILE *out, const fg_lot_analysis *analysis, const fg_measured_part *part,
                      const fg_characteristic *list, size_t count) {
+  const fg_lot *lot = analysis->lot;
+  char besides[TEXT_BYTES_MOST];
+  if (part->foil)
+    besides_foil(&lot->manifest, part, besides);
+  else
+    besides_bearing(analysis, part, besides);
   for (size_t i = 0; i < count; i++) {
-    double u, value = fg_characteristic_value(&list[i], foil->foil, &u);
+    if ((list[i].owner == FG_QUANTITY_OF_BEARING) != !part->foil) continue;
+    double u, value = fg_characteristic_value(&list[i], part, &u);
     bool known = isfinite(value);
     put_number(out, "K0001", i + 1, known ? value : 0);
     fprintf(out, "K0002/%zu %d\r\n", i + 1, known ? 0 : 255);
-    put_date(out, analysis->lot, foil->item, i + 1);
-    put_coil(out, &analysis->lot->manifest, foil->item, i + 1);
-    put_besides(out, &analysis->lot->manifest, foil->item, i + 1);
-    fprintf(out, "K0014/%zu ", i + 1);
-    put_text(out, fg_manifest_label(&analysis->lot->manifest, foil->item));
-    if (analysis->lot->records[foil->item].foil_count > 1) fprintf(out, " #%d", foil->foil->number);
-    fputs("\r\n", out);
+    if (part->foil) put_date(out, lot, part->foil->item, i + 1);
+    if (part->foil) put_coil(out, &lot->manifest, part->foil->item, i + 1);
+    put_besides(out, besides, i + 1);
+    put_ident(out, analysis, part, i + 1);
   }
+}
+
+static int by_foil(const void *a, const void *b) {
+  const fg_measured_part *one = a, *other = b;
+  if (!one->foil != !other->foil) return one->foil ? -1 : 1;
+  if (one->foil) return (one->foil > other->foil) - (one->foil < other->foil);
+  return (one->bearing > other->bearing) - (one->bearing < other->bearing);
+}
+
+/* Foils in the order of the lot, then bearings. */
+static void put_parts(FILE *out, const fg_lot_analysis *analysis, fg_measured_part *parts,
+                      size_t part_count, const fg_characteristic *list, size_t count) {
+  qsort(parts, part_count, sizeof *parts, by_foil);
+  for (size_t i = 0; i < part_count; i++)
+    put_part(out, analysis, &parts[i], list, count);
 }
 
 fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FILE *out) {
   fg_characteristic *list;
-  size_t count;
+  fg_measured_part *parts;
+  size_t count, part_count;
   FG_TRY(fg_characteristics_list(ctx, analysis, &list, &count));
+  fg_status status = fg_measured_parts_list(ctx, analysis, &parts, &part_count);
+  if (status != FG_OK) {
+    free(list);
+    return status;
+  }
   fprintf(out, "K0100 %zu\r\nK1001 ", count);
   put_text(out, analysis->lot->settings.design.name);
   fputs("\r\nK1002 ", out);
   put_text(out, analysis->lot->settings.name);
   fputs("\r\n", out);
   for (size_t i = 0; i < count; i++)
-    put_characteristic(out, i + 1, fg_lot_words_of(analysis), &list[i]);
-  for (size_t i = 0; i < analysis->foil_count; i++)
-    put_foil(out, analysis, &analysis->foils[i], list, count);
+    put_characteristic(out, i + 1, &list[i]);
+  put_parts(out, analysis, parts, part_count, list, count);
+  free(parts);
   free(list);
   return fg_stream_finish(ctx, out, "results.dfq");
 }

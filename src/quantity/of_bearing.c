@@ -6,6 +6,18 @@
 
 enum { PAGE = FG_QUANTITY_ON_PAGE };
 
+/* Of foils as designed: the same everywhere. */
+static double clearance_of(const fg_design *design, const fg_nominal *nominal) {
+  (void)design;
+  return nominal->clearance_mm;
+}
+
+static double nothing(const fg_design *design, const fg_nominal *nominal) {
+  (void)design;
+  (void)nominal;
+  return 0;
+}
+
 static const fg_quantity rows[] = {
     {.name = "count",
      .unit = "",
@@ -20,7 +32,9 @@ static const fg_quantity rows[] = {
      .words = "mean clearance",
      FG_AT_U(fg_bearing_clearance, mean_mm, u_mean_mm),
      .decimals = 4,
-     .uses = PAGE},
+     .uses = PAGE,
+     .characteristic = "Length",
+     .nominal = clearance_of},
     {.name = "min_mm",
      .tolerance = "clearance_min_mm",
      .unit = "mm",
@@ -28,7 +42,9 @@ static const fg_quantity rows[] = {
      .words = "least clearance",
      FG_AT_U(fg_bearing_clearance, least_mm, u_least_mm),
      .decimals = 4,
-     .uses = PAGE},
+     .uses = PAGE,
+     .characteristic = "Length",
+     .nominal = clearance_of},
     {.name = "min_at_deg",
      .unit = "°",
      .symbol = "at",
@@ -42,7 +58,9 @@ static const fg_quantity rows[] = {
      .words = "largest clearance",
      FG_AT_U(fg_bearing_clearance, most_mm, u_most_mm),
      .decimals = 4,
-     .uses = PAGE},
+     .uses = PAGE,
+     .characteristic = "Length",
+     .nominal = clearance_of},
     {.name = "circularity_mm",
      .tolerance = "circularity_mm",
      .unit = "mm",
@@ -50,7 +68,9 @@ static const fg_quantity rows[] = {
      .words = "peak to valley about the circle through the crowns",
      FG_AT_U(fg_bearing_clearance, circularity_mm, u_circularity_mm),
      .decimals = 4,
-     .uses = PAGE},
+     .uses = PAGE,
+     .characteristic = "Length",
+     .nominal = nothing},
     {.name = "offset_mm",
      .unit = "mm",
      .symbol = "offset",
@@ -65,7 +85,9 @@ static const fg_quantity rows[] = {
      .words = "least clearance of a rotor where it is largest",
      FG_AT_U(fg_bearing_clearance, centred_least_mm, u_centred_least_mm),
      .decimals = 4,
-     .uses = PAGE},
+     .uses = PAGE,
+     .characteristic = "Length",
+     .nominal = clearance_of},
     {.name = "centred_at_mm",
      .unit = "mm",
      .symbol = "rotor at",

@@ -141,18 +141,62 @@ expect 0 '2 foils of 2 scans' lot lot.csv --group die -o early
 printf 'scan,die,coil,operator,date\nscans/foil1.png,A,C7,"Kim ""K"" <b>",2026-02-03 14:05\nscans/foil2.png,B,,,2026-02-04\n' >traced.csv
 expect 0 '' lot traced.csv -o deep/er/traced
 grep -q 'no date' stderr && fail "dates are called none"
-for line in 'K0004/1 03.02.2026/14:05:00' 'K0006/1 C7' 'K0009/1 die A, operator Kim "K" <b>' 'K0004/1 04.02.2026/00:00:00' 'K0009/1 die B'; do
+for line in 'K0004/1 03.02.2026/14:05:00' 'K0006/1 C7' 'K0009/1 die A, operator Kim "K" <b>, scan foil1.png' 'K0004/1 04.02.2026/00:00:00' 'K0009/1 die B'; do
   grep -qF "$line" deep/er/traced/results.dfq || fail "results.dfq has no $line"
 done
 for part in '<InspectionStart>2026-02-03T14:05:00Z</InspectionStart>' '<InspectionStart>2026-02-04T00:00:00Z<' \
-  '<Attributes n="4"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
-  '<Attributes n="2"><AttributeStr name="die" value="B"/>'; do
+  '<Attributes n="6"><AttributeStr name="die" value="A"/>' 'name="operator" value="Kim &quot;K&quot; &lt;b&gt;"/>' \
+  '<Attributes n="4"><AttributeStr name="die" value="B"/>' '<AttributeStr name="scan" value="scans/foil2.png"/>'; do
   grep -qF "$part" deep/er/traced/results.qif || fail "results.qif has no $part"
 done
 if command -v xmllint >/dev/null; then
   xmllint --noout --schema "$root/tests/support/qif3_results.xsd" deep/er/traced/results.qif 2>xmllint.log ||
     fail "results.qif: $(head -n 3 xmllint.log)"
 fi
+
+# A bearing that the manifest names is a product: itself, judged, and its foils in order of the pads; others are alone.
+printf 'scan,foil,bearing,pad,die\nscans/foil1.png,f1,B<7>,2,A\nscans/foil2.png,f2,B<7>,1,B\nscans/foil3.png,f3,,,A\n' >built.csv
+sed 's/"resamples"/"pads": 2, "bumps_per_pad": 3, "resamples"/; s/"bump_count": 3/&, "tolerances": {"circularity_mm": {"max": 0.5}}/' recipe.json >built.json
+expect 0 '1 bearing' timeout 60 "$program" lot built.csv --recipe built.json -o built
+if command -v xmllint >/dev/null; then
+  xmllint --noout --schema "$root/tests/support/qif3_results.xsd" built/results.qif 2>xmllint.log ||
+    fail "results.qif of bearings: $(head -n 3 xmllint.log)"
+fi
+python3 - built <<'P' || fail "bearings for quality systems"
+import hashlib, json, re, sys
+import xml.etree.ElementTree as tree
+folder, q = sys.argv[1], "{http://qifstandards.org/xsd/qif3}"
+root = tree.parse(f"{folder}/results.qif").getroot()
+for element in root.iter():
+    assert element.get("n") in (None, str(len(element))), element.tag
+assert max(int(e.get("id")) for e in root.iter() if e.get("id")) <= int(root.get("idMax"))
+sets = [[c.findtext(q + "SerialNumber") for c in s] for s in root.iter(q + "ActualComponentSet")]
+assert sets == [["B<7>", "f2", "f1"], ["f3"]], sets
+foil = {a.get("name"): a.get("value") for a in next(root.iter(q + "ActualComponentSet"))[1].iter(q + "AttributeStr")}
+with open("scans/foil2.png", "rb") as file:
+    assert foil == {"foil": "f2", "bearing": "B<7>", "pad": "1", "die": "B", "scan": "scans/foil2.png",
+                    "scan_sha256": hashlib.sha256(file.read()).hexdigest()}, foil
+names = {i.get("id"): i.findtext(q + "Name") for i in root.iter(q + "CharacteristicItems") for i in i}
+of = {c.get("id"): c.findtext(q + "SerialNumber") for c in root.iter(q + "ActualComponent")}
+got = {}
+for results in root.iter(q + "MeasurementResults"):
+    part = of[results.find(q + "ActualComponentIds")[0].text]
+    for one in results.iter(q + "CharacteristicMeasurements"):
+        for value in one:
+            got[part, names[value.findtext(q + "CharacteristicItemId")]] = (
+                float(value.findtext(q + "Value")), value.findtext(f"{q}Status/{q}CharacteristicStatusEnum"))
+bearing = json.load(open(f"{folder}/lot.json"))["bearings"][0]
+name = "bearing: peak to valley about the circle through the crowns"
+assert got["B<7>", name] == (bearing["circularity_mm"], "PASS"), got["B<7>", name]
+assert {n.startswith("bearing: ") for p, n in got if p == "B<7>"} == {True}
+assert {n.startswith("bearing: ") for p, n in got if p != "B<7>"} == {False}
+lines = open(f"{folder}/results.dfq", newline="").read().split("\r\n")
+number = next(re.match(r"K2002/(\d+)", l)[1] for l in lines if l.endswith(name))
+assert [l for l in lines if l.startswith(f"K0014/{number} ")] == [f"K0014/{number} B<7>"]
+assert f"K0009/{number} pad 1 f2, pad 2 f1" in lines
+assert abs(float(next(l for l in lines if l.startswith(f"K0001/{number} ")).split()[1]) - bearing["circularity_mm"]) < 1e-12
+assert [l.split(" ", 1)[1] for l in lines if l.startswith("K0014/1 ")] == ["f1", "f2", "f3"]
+P
 sed 's/2026-02-04/yesterday/' traced.csv >undated.csv
 expect 0 "note: 1 cells of the manifest's column date are no date, the first is 'yesterday'" lot undated.csv -o undated
 [ "$(value undated/lot.json 'r["date"]["from"], r["date"]["cells_not_dates"]')" = "('scans', 1)" ] || fail "the date"
