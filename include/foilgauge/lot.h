@@ -152,6 +152,8 @@ typedef enum fg_lot_pages {
   FG_LOT_PAGES_NONE,
 } fg_lot_pages;
 
+const char *fg_lot_pages_word(fg_lot_pages which); /* "all", "bad", "none" */
+
 /* One part of the work: items i - 1, i - 1 + n, ... of the manifest; {1, 1} is all of it. */
 typedef struct fg_lot_shard {
   size_t index, count;
@@ -203,7 +205,9 @@ typedef struct fg_lot_outcome {
   char first_no_date[64];
   size_t doubles; /* scans that were named once more, under whatever spelling, and count once */
   char first_double[512]; /* the first of them, with the name under which it counts */
-  bool earlier;           /* results.jsonl was of an earlier version: all of it is measured again */
+  size_t empty;           /* folders that are called as a scan is, and hold none */
+  char first_empty[512];
+  bool earlier; /* results.jsonl was of an earlier version: all of it is measured again */
 } fg_lot_outcome;
 
 /* Measures what is missing and, for the whole of a lot, writes the report. A scan that cannot be

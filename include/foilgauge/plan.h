@@ -34,8 +34,8 @@ typedef struct fg_plan_factor {
   const char *name;
   double low, high; /* real values of -1 and +1 */
   bool hard_to_change;
-  double
-      step; /* settings are rounded to its multiples: what the oven can be set to; 0: as they are */
+  double step; /* settings are rounded to its multiples: what the oven can be set to; 0: as they
+                  are. Those between the levels stay between them */
 } fg_plan_factor;
 
 typedef struct fg_plan_options {
@@ -90,6 +90,10 @@ fg_status fg_plan_table(fg_context *ctx, const fg_plan *plan, fg_table *table);
 
 /* What a factor is set to in a run, in real units, rounded as its step says. */
 double fg_plan_setting(const fg_plan *plan, size_t run, size_t factor);
+
+/* What of the settings is other than the levels say, a line each: rounded ones, and ones below 0 of
+ * a factor whose levels are above. "": nothing. The caller frees it. */
+fg_status fg_plan_notes(fg_context *ctx, const fg_plan *plan, char **text);
 
 /* What a run sheet does not say, beside it: RUNS.csv has RUNS.plan.json, "foilgauge/plan/1". A
  * spreadsheet that reads and writes the sheet does not touch it. */

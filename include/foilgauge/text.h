@@ -23,6 +23,9 @@ fg_status fg_text_append(fg_context *ctx, char **text, const char *format, ...)
 void fg_text_clip(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* What a noun ends in behind its count: "" of one, else "s". */
+const char *fg_plural(size_t count);
+
 /* The length of the UTF-8 sequence at `text` (up to its NUL); 0 when it is not one: overlong, a
  * surrogate, above U+10FFFF, a stray byte. */
 size_t fg_utf8_length(const char *text);

@@ -422,10 +422,22 @@ static void note_lost(doe_run *run) {
 static void note_changed(doe_run *run) {
   size_t first = 0, changed = fg_plan_limits_differ(&run->plan, &run->sheet, &first);
   if (changed)
-    snprintf(run->plan_note, sizeof run->plan_note,
-             "%zu runs were made at another setting than planned, the first in row %zu: they "
-             "count as they were made.",
-             changed, first);
+    snprintf(
+        run->plan_note, sizeof run->plan_note,
+        "%zu run%s made at another setting than planned, the first in row %zu: counted as made.",
+        changed, fg_plural(changed), first);
+}
+
+/* What is wrong with it, and what to do. */
+static fg_status load_plan(fg_context *ctx, doe_run *run) {
+  fg_context inner = {.message = ""};
+  fg_status status = fg_plan_limits_load(&inner, run->plan_path, &run->plan);
+  if (status == FG_OK || status == FG_ERR_MEMORY) return status;
+  return fg_fail(
+      ctx, status,
+      "%s; `foilgauge doe plan` wrote it beside the run sheet: put its copy back, or move "
+      "it away and give the limits with --code NAME=LOW:HIGH",
+      inner.message);
 }
 
 static fg_status take_plan(fg_context *ctx, doe_run *run) {
@@ -442,7 +454,7 @@ static fg_status take_plan(fg_context *ctx, doe_run *run) {
     run->plan_path = NULL;
     return FG_OK;
   }
-  FG_TRY(fg_plan_limits_load(ctx, run->plan_path, &run->plan));
+  FG_TRY(load_plan(ctx, run));
   FG_TRY(fg_formula_parse(ctx, a->options.formula, &formula));
   apply_plan(run, &formula);
   fg_formula_free(&formula);

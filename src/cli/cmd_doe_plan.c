@@ -12,6 +12,7 @@
 #include "foilgauge/file.h"
 #include "foilgauge/memory.h"
 #include "foilgauge/plan.h"
+#include "foilgauge/text.h"
 
 typedef struct plan_arguments {
   fg_plan_options options;
@@ -254,7 +255,7 @@ exit:
 
 static fg_status tell(fg_context *ctx, const fg_plan *plan) {
   char *relation = NULL, *aliases = NULL;
-  fprintf(stderr, "%zu runs", plan->runs);
+  fprintf(stderr, "%zu run%s", plan->runs, fg_plural(plan->runs));
   if (plan->blocks > 1) fprintf(stderr, " in %zu blocks", plan->blocks);
   if (plan->plots) fprintf(stderr, ", %zu whole plots", plan->plots);
   if (plan->axial > 0) fprintf(stderr, ", axial distance %.4g", plan->axial);
@@ -266,6 +267,15 @@ static fg_status tell(fg_context *ctx, const fg_plan *plan) {
   free(relation);
   free(aliases);
   return status;
+}
+
+static fg_status tell_notes(fg_context *ctx, const fg_plan *plan) {
+  char *notes, *rest = NULL;
+  FG_TRY(fg_plan_notes(ctx, plan, &notes));
+  for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+    fprintf(stderr, "foilgauge: note: %s\n", line);
+  free(notes);
+  return FG_OK;
 }
 
 /* Beside a sheet that is a file: what a spreadsheet would lose. */
@@ -317,6 +327,7 @@ static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_p
   FG_TRY(fg_output_end(ctx, &output, write_sheet(ctx, a, plan, output.stream)));
   FG_TRY(write_beside(ctx, a, plan));
   FG_TRY(write_page(ctx, a, plan));
+  FG_TRY(tell_notes(ctx, plan));
   return tell(ctx, plan);
 }
 

@@ -9,6 +9,7 @@
 #include "cli/facts.h"
 #include "foilgauge/file.h"
 #include "foilgauge/lot.h"
+#include "foilgauge/text.h"
 
 enum {
   OPTION_RECIPE = 256,
@@ -65,10 +66,8 @@ static const struct argp_option options[] = {
     {"jobs", 'j', "N", 0, "Scans at a time (default: one per core)", 1},
     {"resume", OPTION_RESUME, NULL, 0, "Measure only what is missing or has changed", 1},
     {"dry-run", OPTION_DRY_RUN, NULL, 0, "Say what would be measured; touch nothing", 1},
-    {"pages", OPTION_PAGES, "WHICH", 0,
-     "all, bad or none: which scans get a page of their own, with picture and report (default: "
-     "all)",
-     1},
+    {"pages", OPTION_PAGES, "PAGES", 0,
+     "Which scans get a page of their own, with picture and report: @pages@ (default: all)", 1},
     {"shard", OPTION_SHARD, "I/N", 0, "Only part I of N; `foilgauge merge` joins them", 1},
     {"print-recipe", OPTION_PRINT_RECIPE, NULL, 0, "Print every setting in force", 2},
     {"index", OPTION_INDEX, "FILE.html", 0,
@@ -101,10 +100,8 @@ static fg_lot_shard parse_shard(struct argp_state *state, const char *text) {
 }
 
 static fg_lot_pages parse_pages(struct argp_state *state, const char *text) {
-  static const char *const words[] = {
-      [FG_LOT_PAGES_ALL] = "all", [FG_LOT_PAGES_BAD] = "bad", [FG_LOT_PAGES_NONE] = "none"};
-  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-    if (!strcmp(text, words[i])) return (fg_lot_pages)i;
+  for (int pages = FG_LOT_PAGES_ALL; pages <= FG_LOT_PAGES_NONE; pages++)
+    if (!strcmp(text, fg_lot_pages_word((fg_lot_pages)pages))) return (fg_lot_pages)pages;
   argp_error(state, "--pages: '%s' is none of all, bad, none", text);
   return FG_LOT_PAGES_ALL;
 }
@@ -261,9 +258,9 @@ static void show_progress(void *user, const fg_lot_progress *progress) {
 
 static void say_bearings(const fg_lot_outcome *outcome) {
   const size_t *by = outcome->bearings_by_verdict;
-  fprintf(stderr, "%zu bearings: %zu pass, %zu fail, %zu cannot be told, %zu not measured%s\n",
-          outcome->bearings, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED],
-          by[FG_VERDICT_NOT_MEASURED],
+  fprintf(stderr, "%zu bearing%s: %zu pass, %zu fail, %zu cannot be told, %zu not measured%s\n",
+          outcome->bearings, fg_plural(outcome->bearings), by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
+          by[FG_VERDICT_UNDECIDED], by[FG_VERDICT_NOT_MEASURED],
           outcome->bearings ? ""
                             : ": the design's tolerances of a bearing judge nothing, the foils "
                               "make none");
@@ -273,16 +270,17 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
   const size_t *by = outcome->foils_by_verdict;
   if (outcome->no_dates)
     fprintf(stderr,
-            "foilgauge: note: %zu cells of the manifest's column date are no date, the first is "
+            "foilgauge: note: the manifest's column date: %zu cell%s without a date, the first is "
             "'%s' (2024-05-31 or 31.05.2024 would be one): the lot is dated by the times of its "
             "scans' files\n",
-            outcome->no_dates, outcome->first_no_date);
-  fprintf(stderr, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told", outcome->foils,
-          outcome->scans, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
+            outcome->no_dates, fg_plural(outcome->no_dates), outcome->first_no_date);
+  fprintf(stderr, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told",
+          outcome->foils, fg_plural(outcome->foils), outcome->scans, fg_plural(outcome->scans),
+          by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
   if (by[FG_VERDICT_NONE]) fprintf(stderr, ", %zu without tolerances", by[FG_VERDICT_NONE]);
   if (by[FG_VERDICT_NOT_MEASURED] || outcome->failed)
-    fprintf(stderr, "; not measured: %zu foils, %zu scans", by[FG_VERDICT_NOT_MEASURED],
-            outcome->failed);
+    fprintf(stderr, "; not measured: %zu foil%s, %zu scan%s", by[FG_VERDICT_NOT_MEASURED],
+            fg_plural(by[FG_VERDICT_NOT_MEASURED]), outcome->failed, fg_plural(outcome->failed));
   fputc('\n', stderr);
   if (outcome->bearings_judged) say_bearings(outcome);
   for (size_t i = 0; i < sizeof outcome->assembly / sizeof *outcome->assembly; i++)
@@ -292,15 +290,16 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
 }
 
 static void say_plan(const fg_lot_outcome *outcome) {
-  printf("%zu scans, %zu to measure, %zu kept", outcome->scans, outcome->to_measure, outcome->kept);
+  printf("%zu scan%s, %zu to measure, %zu kept", outcome->scans, fg_plural(outcome->scans),
+         outcome->to_measure, outcome->kept);
   if (outcome->redrawn) printf(", %zu of them for their pages", outcome->redrawn);
   putchar('\n');
 }
 
 static int say_shard(const lot_arguments *arguments, const fg_lot_outcome *outcome) {
-  fprintf(stderr, "shard %zu/%zu: %zu scans measured, %zu kept, %zu could not be measured\n",
-          arguments->shard.index, arguments->shard.count, outcome->measured, outcome->kept,
-          outcome->failed);
+  fprintf(stderr, "shard %zu/%zu: %zu scan%s measured, %zu kept, %zu could not be measured\n",
+          arguments->shard.index, arguments->shard.count, outcome->measured,
+          fg_plural(outcome->measured), outcome->kept, outcome->failed);
   return outcome->failed ? 2 : 0;
 }
 
@@ -333,7 +332,7 @@ static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int
   FG_TRY(fg_lot_index(ctx, &request, &outcome));
   say_lines("foilgauge: note: ", outcome.notes);
   say_lines("", outcome.summary);
-  fprintf(stderr, "%zu lots", outcome.lots);
+  fprintf(stderr, "%zu lot%s", outcome.lots, fg_plural(outcome.lots));
   if (outcome.not_read) fprintf(stderr, ", %zu could not be read", outcome.not_read);
   fprintf(stderr, "\n%s\n", arguments->index);
   *code = outcome.not_read ? 2 : 0;
@@ -363,23 +362,31 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
                                   .user = &terminal};
   FG_TRY(fg_lot_run(ctx, &request, &outcome));
   if (outcome.doubles)
-    fprintf(stderr, "foilgauge: note: %zu scans are there twice and count once; the first is %s\n",
-            outcome.doubles, outcome.first_double);
+    fprintf(stderr, "foilgauge: note: there twice and counted once: %zu scan%s; the first is %s\n",
+            outcome.doubles, fg_plural(outcome.doubles), outcome.first_double);
+  if (outcome.empty)
+    fprintf(
+        stderr,
+        "foilgauge: note: passed over: %zu folder%s with the name of a scan, and no scan in it; "
+        "the first is %s\n",
+        outcome.empty, fg_plural(outcome.empty), outcome.first_empty);
   if (outcome.torn)
-    fprintf(stderr,
-            "foilgauge: note: %zu lines of results.jsonl were damaged or not whole, the first is "
-            "line %zu: what they said is measured again\n",
-            outcome.torn, outcome.first_torn);
+    fprintf(
+        stderr,
+        "foilgauge: note: results.jsonl: %zu line%s damaged or not whole, the first is line %zu: "
+        "what they said is measured again\n",
+        outcome.torn, fg_plural(outcome.torn), outcome.first_torn);
   if (outcome.earlier)
     fprintf(stderr, "foilgauge: note: results.jsonl is of an earlier version, whose records hold "
                     "other values or no checksum: all scans are measured again\n");
   if (outcome.beyond)
-    fprintf(stderr,
-            "foilgauge: note: %zu scans reach beyond the region the scanner's model was found in\n",
-            outcome.beyond);
+    fprintf(
+        stderr,
+        "foilgauge: note: beyond the region that the scanner's model was found in: %zu scan%s\n",
+        outcome.beyond, fg_plural(outcome.beyond));
   if (outcome.not_drawn)
-    fprintf(stderr, "foilgauge: note: %zu pages could not be drawn; the first: %s\n",
-            outcome.not_drawn, outcome.first_not_drawn);
+    fprintf(stderr, "foilgauge: note: %zu page%s could not be drawn; the first: %s\n",
+            outcome.not_drawn, fg_plural(outcome.not_drawn), outcome.first_not_drawn);
   if (arguments->dry_run)
     say_plan(&outcome);
   else

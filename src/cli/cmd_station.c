@@ -9,6 +9,7 @@
 
 enum {
   OPTION_RECIPE = 256,
+  OPTION_ALLOW_LOSSY,
   OPTION_ONCE,
   OPTION_EXPORT,
   OPTION_POLL,
@@ -19,6 +20,7 @@ enum {
 
 typedef struct station_arguments {
   const char *recipe, *design;
+  bool allow_lossy;
   fg_station_request request;
 } station_arguments;
 
@@ -26,6 +28,7 @@ static const struct argp_option options[] = {
     {"recipe", OPTION_RECIPE, "FILE", 0,
      "As of `foilgauge lot`, with a member `station`: file_name, scan_command, check", 0},
     {"design", 'd', "FILE", 0, "What the part should be, with tolerances", 0},
+    {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"once", OPTION_ONCE, NULL, 0, "Measure what is new, and end", 1},
     {"export", OPTION_EXPORT, "DIR", 0,
      "Write every lot of the database as a folder, as `foilgauge lot` makes them, and end", 1},
@@ -56,6 +59,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_RECIPE:
     arguments->recipe = text;
+    break;
+  case OPTION_ALLOW_LOSSY:
+    arguments->allow_lossy = true;
     break;
   case OPTION_ONCE:
     request->once = true;
@@ -111,6 +117,7 @@ int fg_cmd_station(int argc, char **argv) {
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   status = fg_station_settings_load(&ctx, arguments.recipe, arguments.design, &settings);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  settings.lot.allow_lossy |= arguments.allow_lossy;
   arguments.request.settings = &settings;
   arguments.request.ready = say_address;
   arguments.request.looked_at = say_file;

@@ -76,6 +76,12 @@ static void write_channels(FILE *out) {
             fg_channel_word((fg_channel)channel));
 }
 
+static void write_pages(FILE *out) {
+  for (int pages = FG_LOT_PAGES_ALL; pages <= FG_LOT_PAGES_NONE; pages++)
+    fprintf(out, "%s%s", pages == FG_LOT_PAGES_ALL ? "" : ", ",
+            fg_lot_pages_word((fg_lot_pages)pages));
+}
+
 static void write_pixel_cap(FILE *out) {
   fprintf(out, "%g", FG_SCAN_PIXEL_CAP);
 }
@@ -155,6 +161,7 @@ static const fg_fact facts[] = {
     {"formats", write_formats},
     {"forms", fg_cli_write_forms},
     {"channels", write_channels},
+    {"pages", write_pages},
     {"pixel_cap", write_pixel_cap},
     {"memory_cap_mib", write_memory_cap},
     {"confidence", write_confidence},

@@ -96,9 +96,10 @@ static fg_status name_runs(fg_context *ctx, fg_loop_source *source) {
   source->failed = measured->failed > 0;
   if (!measured->failed && !measured->empty) return FG_OK;
   return fg_text_append(ctx, &source->said,
-                        "%sleft out: %zu runs without a scan, %zu scans that "
+                        "%sleft out: %zu run%s without a scan, %zu scan%s that "
                         "could not be measured",
-                        source->said ? "; " : "", measured->empty, measured->failed);
+                        source->said ? "; " : "", measured->empty, fg_plural(measured->empty),
+                        measured->failed, fg_plural(measured->failed));
 }
 
 /* What is not there is said before the scans are measured. */

@@ -30,16 +30,33 @@ static int no_command(const char *name) {
   return fg_status_exit_code(FG_ERR_USAGE);
 }
 
+static void help_form(const fg_command_form *form) {
+  char words[64];
+  snprintf(words, sizeof words, "foilgauge %s", form->words);
+  argp_help(form->parser, stdout, ARGP_HELP_STD_HELP, words);
+}
+
+/* Of one form that has words of its own: `help doe plan`. */
+static int help_part(const fg_command *command, const char *part) {
+  char words[64];
+  snprintf(words, sizeof words, "%s %s", command->name, part);
+  for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++)
+    if (!strcmp(command->form[i].words, words)) {
+      help_form(&command->form[i]);
+      return 0;
+    }
+  return no_command(words);
+}
+
 /* What `foilgauge COMMAND --help` says, of every way to call it. */
-static int help_command(const char *name) {
+static int help_command(const char *name, const char *part) {
   const fg_command *command = find_command(name);
   if (!command) return no_command(name);
+  if (part) return help_part(command, part);
   for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
-    char words[64];
     const fg_command_form *form = &command->form[i];
-    snprintf(words, sizeof words, "foilgauge %s", form->words);
     if (form->title) printf("%s%s\n\n", i ? "\n\n" : "", form->title);
-    argp_help(form->parser, stdout, ARGP_HELP_STD_HELP, words);
+    help_form(form);
   }
   return 0;
 }
@@ -69,7 +86,7 @@ int main(int argc, char **argv) {
     return fg_status_exit_code(FG_ERR_USAGE);
   }
   if (!strcmp(argv[1], "help") || !strcmp(argv[1], "--help")) {
-    if (argc > 2) return help_command(argv[2]);
+    if (argc > 2) return help_command(argv[2], argc > 3 ? argv[3] : NULL);
     print_help(stdout);
     return 0;
   }

@@ -46,3 +46,7 @@ fg_status fg_text_append_word(fg_context *ctx, char **text, const char *word) {
                          : fg_text_append(ctx, text, "%c", *word));
   return fg_text_append(ctx, text, "'");
 }
+
+const char *fg_plural(size_t count) {
+  return count == 1 ? "" : "s";
+}

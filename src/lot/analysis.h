@@ -305,6 +305,8 @@ const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, con
 /* Whether the release of the lot rests on it; and whether groups explain all its signals. */
 bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
 bool fg_lot_is_explained(const fg_lot_quantity *quantity);
+/* No chart, or no signal on one of so few foils that it could hardly show any. */
+bool fg_lot_tells_nothing(const fg_lot_quantity *quantity);
 
 /* Names of the quantities whose charts are drawn where none has a tolerance, then NULL. */
 extern const char *const fg_lot_charted[];

@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/spread.h"
+#include "core/text.h"
 #include "lot/analysis.h"
 
 static const double rad_per_deg = 3.14159265358979323846 / 180;
@@ -272,7 +273,8 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis) {
              assembly->stock.foils, analysis->foil_count, pads);
   else if (places < 3)
     snprintf(assembly->why, sizeof assembly->why,
-             "No bearings are drawn: a bearing of %zu bump(s) has no circle.", places);
+             "No bearings are drawn: a bearing of %zu bump%s has no circle.", places,
+             fg_plural(places));
   memcpy(assembly->statement[0], assembly->why, sizeof assembly->why);
   if (assembly->why[0]) return FG_OK;
   FG_TRY(fg_assembly_draw(ctx, &assembly->stock, &assembly->plan, true, &assembly->drawn));

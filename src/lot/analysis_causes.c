@@ -135,9 +135,10 @@ bool fg_lot_is_explained(const fg_lot_quantity *quantity) {
          !(quantity->has_subgroups && quantity->deviations.signals);
 }
 
-/* Of fewer foils a chart without a signal says nothing: its rules speak of eight points in a row.
- */
-enum { FOILS_LEAST = 8 };
+bool fg_lot_tells_nothing(const fg_lot_quantity *quantity) {
+  enum { FOILS_LEAST = 8 }; /* the rules of a chart speak of eight points in a row */
+  return !quantity->has_chart || (quantity->stable && quantity->chart.count < FOILS_LEAST);
+}
 
 fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis) {
   fg_lot_process *process = &analysis->process;
@@ -145,8 +146,7 @@ fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis) {
     fg_lot_quantity *quantity = &analysis->quantities[i];
     quantity->cause.column = FG_NO_COLUMN;
     if (quantity->has_chart && quantity->chart.signals) FG_TRY(find_cause(ctx, analysis, quantity));
-    bool few = quantity->stable && quantity->chart.count < FOILS_LEAST;
-    if (few || !fg_lot_is_watched(analysis, quantity)) continue;
+    if (fg_lot_tells_nothing(quantity) || !fg_lot_is_watched(analysis, quantity)) continue;
     process->watched++;
     process->unstable += !quantity->stable;
     process->explained += !quantity->stable && fg_lot_is_explained(quantity);

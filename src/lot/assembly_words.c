@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "lot/analysis.h"
 
 __attribute__((format(printf, 3, 4))) static void add(char *text, size_t size, const char *format,
@@ -30,14 +31,14 @@ static void say_how_many(const fg_lot_assembly *assembly, char *text, size_t siz
   size_t foils = assembly->stock.foils, pads = assembly->plan.layout.pads;
   char now[16], low[16], high[16], sure[16], maybe[16];
   add(text, size,
-      "%zu of %zu bearings drawn from %zu foils assemble: %s %% (%s to %s %% as so few foils tell",
-      share->count, assembly->plan.bearings, foils, percent(share->share, now),
+      "%zu of %zu bearings drawn from %zu foil%s assemble: %s %% (%s to %s %% as so few foils tell",
+      share->count, assembly->plan.bearings, foils, fg_plural(foils), percent(share->share, now),
       percent(share->foils_low, low), percent(share->foils_high, high));
   if (share->surely < share->possibly)
     add(text, size, ", %s to %s %% as the measurement does", percent(share->surely, sure),
         percent(share->possibly, maybe));
-  add(text, size, "). That is %.1f of the %zu bearings that these foils make.",
-      share->share * (double)(foils / pads), foils / pads);
+  add(text, size, "). That is %.1f of the %zu bearing%s that these foils make.",
+      share->share * (double)(foils / pads), foils / pads, fg_plural(foils / pads));
 }
 
 static void put_limit(const fg_assembly_limit *limit, char *text, size_t size) {

@@ -24,10 +24,10 @@ static void list_of_foils(const fg_lot_analysis *analysis, fg_characteristic *li
     const fg_quantity *row = quantity->row;
     if (!row->characteristic || !quantity->count) continue;
     double nominal = row->nominal(&analysis->lot->settings.design, &analysis->lot->nominal);
-    bool of_bumps = quantity->owner == FG_QUANTITY_OF_BUMP;
-    for (size_t bump = of_bumps; bump <= (of_bumps ? quantity->places : 0); bump++)
+    bool of_parts = fg_owner_is_part(quantity->owner);
+    for (size_t number = of_parts; number <= (of_parts ? quantity->places : 0); number++)
       list[(*count)++] =
-          (fg_characteristic){row, quantity->owner, quantity->tolerance, (int)bump, nominal};
+          (fg_characteristic){row, quantity->owner, quantity->tolerance, (int)number, nominal};
   }
 }
 
@@ -98,9 +98,11 @@ static const void *find_object(const fg_characteristic *one, const fg_measured_p
     return !part->foil && part->bearing->known ? &part->bearing->clearance : NULL;
   if (!part->foil || !fg_foil_is_measured(part->foil->foil)) return NULL;
   const fg_foil *foil = part->foil->foil;
-  if (!one->bump) return foil;
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number == one->bump) return &foil->bumps[i];
+  if (!one->number) return foil;
+  for (size_t i = 0; i < fg_part_count(foil, one->owner); i++) {
+    const fg_foil_part found = fg_part_at(foil, one->owner, i);
+    if (found.number == one->number) return found.object;
+  }
   return NULL;
 }
 

@@ -1,4 +1,4 @@
-/* What goes to quality systems: lengths and angles, one characteristic per quantity and bump, and
+/* What goes to quality systems: lengths and angles, one characteristic per quantity and part, and
  * of the bearings that the manifest names. */
 #ifndef FG_LOT_CHARACTERISTICS_H
 #define FG_LOT_CHARACTERISTICS_H
@@ -9,7 +9,7 @@ typedef struct fg_characteristic {
   const fg_quantity *row;
   fg_quantity_owner owner;
   const fg_tolerance *tolerance; /* NULL: none */
-  int bump;                      /* 0: the whole foil or bearing */
+  int number;                    /* of the part; 0: the whole foil or bearing */
   double nominal;                /* of the design */
 } fg_characteristic;
 

@@ -16,6 +16,12 @@
 /* Of a scan's name so many bytes stand in its page's, and of the sum so many digits. */
 enum { NAME_BYTES = 60, SUM_DIGITS = 16, PAGE_BYTES_MAX = 1 << 30 };
 
+const char *fg_lot_pages_word(fg_lot_pages which) {
+  static const char *const words[] = {
+      [FG_LOT_PAGES_ALL] = "all", [FG_LOT_PAGES_BAD] = "bad", [FG_LOT_PAGES_NONE] = "none"};
+  return words[which];
+}
+
 /* Letters, digits, dot, dash and underscore stay, but for a dot at the begin; without the ending.
  */
 static void plain_name(const char *scan, char name[NAME_BYTES + 1]) {

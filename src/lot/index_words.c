@@ -244,8 +244,8 @@ static fg_status say_pairs(fg_context *ctx, fg_index *index) {
   } else if (!index->differing) {
     FG_TRY(fg_text_print(ctx, &sentence,
                          "No two lots differ beyond the scatter of their foils in any of %zu "
-                         "quantities (%zu tests, together at 5 %%).",
-                         count_tested(index), index->pair_count));
+                         "quantities (%zu test%s, together at 5 %%).",
+                         count_tested(index), index->pair_count, fg_plural(index->pair_count)));
   }
   if (sentence) return add(ctx, index, sentence);
   if (index->read > LISTED_MAX)
@@ -320,8 +320,8 @@ static fg_status say_no_die(fg_context *ctx, fg_index *index) {
   if (tested)
     FG_TRY(fg_text_append(ctx, &sentence,
                           "No two dies differ beyond chance, of %zu pair%s that can be compared "
-                          "(%zu tests).",
-                          tested, tested == 1 ? "" : "s", tests));
+                          "(%zu test%s).",
+                          tested, fg_plural(tested), tests, fg_plural(tests)));
   if (apart)
     FG_TRY(fg_text_append(ctx, &sentence,
                           "%s%zu pair%s of dies cannot be told from their lots: no lot has foils "

@@ -38,12 +38,13 @@ static void put_number(FILE *out, const char *field, size_t number, double value
   fprintf(out, "%s/%zu %s\r\n", field, number, text);
 }
 
-static void put_characteristic(FILE *out, size_t number, const fg_characteristic *one) {
+static void put_characteristic(FILE *out, size_t number, const fg_lot_words *words,
+                               const fg_characteristic *one) {
   const fg_quantity *row = one->row;
   const fg_tolerance *tolerance = one->tolerance;
   fprintf(out, "K2001/%zu %zu\r\nK2002/%zu %s%s", number, number, number,
           one->owner == FG_QUANTITY_OF_BEARING ? "bearing: " : "", row->words);
-  if (one->bump) fprintf(out, " %d", one->bump);
+  if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
   fprintf(out, "\r\nK2022/%zu 6\r\n", number); /* decimal places */
   put_number(out, "K2101", number, one->nominal);
   if (tolerance) put_number(out, "K2110", number, tolerance->lower);
@@ -182,7 +183,7 @@ fg_status fg_lot_write_dfq(fg_context *ctx, const fg_lot_analysis *analysis, FIL
   put_text(out, analysis->lot->settings.name);
   fputs("\r\n", out);
   for (size_t i = 0; i < count; i++)
-    put_characteristic(out, i + 1, &list[i]);
+    put_characteristic(out, i + 1, fg_lot_words_of(analysis), &list[i]);
   put_parts(out, analysis, parts, part_count, list, count);
   free(parts);
   free(list);

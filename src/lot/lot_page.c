@@ -26,7 +26,7 @@ static void put_left(FILE *out, const fg_lot_analysis *analysis) {
       left += (analysis->foils[i].foil->flags & kinds[k].flag) != 0;
     if (left)
       fprintf(out,
-              "<ul class=\"flags\"><li>The %s of %zu of %zu foils are left as measured: the model "
+              "<ul class=\"flags\"><li>Left as measured: the %s of %zu of %zu foils, for the model "
               "would add more error than it removes (flag %s in foils.csv).</li></ul>\n",
               kinds[k].words, left, analysis->foil_count, kinds[k].name);
   }
@@ -43,12 +43,12 @@ static fg_status put_corrected(fg_context *ctx, FILE *out, const fg_lot_analysis
   for (size_t i = 0; i < analysis->foil_count; i++)
     beyond += (analysis->foils[i].foil->flags & FG_FOIL_BEYOND_MODEL_REGION) != 0;
   if (beyond)
-    fprintf(
-        out,
-        "<ul class=\"flags\"><li>%zu of %zu foils reach beyond the region that the scanner&#39;s "
-        "model was found in: there the correction is not known to hold (flag "
-        "beyond_model_region in foils.csv).</li></ul>\n",
-        beyond, analysis->foil_count);
+    fprintf(out,
+            "<ul class=\"flags\"><li>Beyond the region that the scanner&#39;s model was found in: "
+            "%zu of "
+            "%zu foils; there the correction is not known to hold (flag "
+            "beyond_model_region in foils.csv).</li></ul>\n",
+            beyond, analysis->foil_count);
   put_left(out, analysis);
   return FG_OK;
 }
@@ -59,8 +59,9 @@ static void put_lossy(FILE *out, const fg_lot_analysis *analysis) {
     lossy += (analysis->foils[i].foil->flags & FG_FOIL_LOSSY) != 0;
   if (lossy)
     fprintf(out,
-            "<ul class=\"flags\"><li>%zu of %zu foils are of scans that were compressed with loss "
-            "(JPEG), which moves edges: their uncertainties are wider for it (flag lossy in "
+            "<ul class=\"flags\"><li>Of scans that were compressed with loss (JPEG), which moves "
+            "edges: "
+            "%zu of %zu foils; their uncertainties are wider for it (flag lossy in "
             "foils.csv).</li></ul>\n",
             lossy, analysis->foil_count);
 }

@@ -202,8 +202,7 @@ static void put_left_out(FILE *out, const fg_lot_analysis *analysis) {
   size_t left = analysis->foil_count - assembly->stock.foils;
   const char *separator = "";
   if (!left) return;
-  fprintf(out, "<p class=\"note\">%zu of %zu foils are not drawn from: ", left,
-          analysis->foil_count);
+  fprintf(out, "<p class=\"note\">Not drawn from, %zu of %zu foils: ", left, analysis->foil_count);
   for (int why = FG_LOT_IN_STOCK + 1; why < FG_LOT_LEFT_OUT; why++) {
     if (!assembly->left_out[why]) continue;
     fprintf(out, "%s%s, %zu", separator, fg_lot_left_out_words((fg_lot_left_out)why),

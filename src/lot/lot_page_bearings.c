@@ -1,6 +1,7 @@
 /* The lot's page: what the foils do to the bearings they are built into. */
 #include <math.h>
 
+#include "core/text.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "quantity/quantity_rows.h"
@@ -185,18 +186,20 @@ static void put_unplaced(FILE *out, const fg_lot_analysis *analysis) {
             "and these foils make none: a bearing takes %zu.</p>\n",
             analysis->layout.pads);
   if (unplaced->without)
-    fprintf(out, "<p class=\"note\">%zu foil(s) are in no bearing%s.</p>\n", unplaced->without,
-            assumed ? ": too few are left for another one" : ": the manifest names none for them");
+    fprintf(out, "<p class=\"note\">In no bearing: %zu foil%s%s.</p>\n", unplaced->without,
+            fg_plural(unplaced->without),
+            assumed ? "; too few are left for another one" : "; the manifest names none for them");
   if (unplaced->displaced)
     fprintf(out,
-            "<p class=\"reasons\"><b>%zu foil(s) are left out:</b> the manifest gives them a pad "
+            "<p class=\"reasons\"><b>Left out: %zu foil%s.</b> The manifest gives them a pad "
             "that another foil has already, or a bearing whose %zu pads are taken.</p>\n",
-            unplaced->displaced, analysis->layout.pads);
+            unplaced->displaced, fg_plural(unplaced->displaced), analysis->layout.pads);
   if (unplaced->bad_pads)
     fprintf(out,
-            "<p class=\"reasons\"><b>%zu pad(s) of the manifest</b> are no number from 1 to %zu: "
-            "these foils took the next free one.</p>\n",
-            unplaced->bad_pads, analysis->layout.pads);
+            "<p class=\"reasons\"><b>No number from 1 to %zu: %zu pad%s of the manifest.</b> Their "
+            "foils "
+            "took the next free one.</p>\n",
+            analysis->layout.pads, unplaced->bad_pads, fg_plural(unplaced->bad_pads));
 }
 
 void fg_lot_put_bearings(FILE *out, const fg_lot_analysis *analysis) {

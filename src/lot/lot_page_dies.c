@@ -108,7 +108,7 @@ static void put_sentences(FILE *out, const fg_lot_dies *dies) {
         sum->design_mean_pct, sum->die_error_pct, FG_COVERAGE_FACTOR * sum->u_die_error_pct,
         sum->die_mean_pct);
     if (sum->by_mean)
-      fprintf(out, " %zu of %zu bumps are held against the die's mean: no trace shows theirs.",
+      fprintf(out, " Held against the die's mean, as no trace shows theirs: %zu of %zu bumps.",
               sum->by_mean, sum->bumps);
     fputs("</li>\n", out);
   }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "foilgauge/words.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
@@ -181,8 +182,9 @@ void fg_lot_put_heading(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</h1>", out);
   fg_html_outcome(out, &analysis->outcome);
   put_process(out, &analysis->process);
-  fprintf(out, "<p>%zu foils of %zu scans, design ", analysis->foil_count,
-          analysis->lot->manifest.items);
+  fprintf(out, "<p>%zu foil%s of %zu scan%s, design ", analysis->foil_count,
+          fg_plural(analysis->foil_count), analysis->lot->manifest.items,
+          fg_plural(analysis->lot->manifest.items));
   fg_html_text(out, analysis->lot->settings.design.name);
   fputs("</p></header>\n", out);
   put_causes(out, analysis);
@@ -223,6 +225,14 @@ static bool has_value(const fg_lot_analysis *analysis, const fg_lot_foil *foil) 
          !fg_foil_defect(&analysis->lot->settings.design, foil->foil, NULL, 0);
 }
 
+/* As many as people read of the quantity, or more where its U would be 0.0000. */
+static int decimals_for(const fg_quantity *row, double expanded) {
+  enum { MOST = 9 };
+  if (!(expanded > 0) || !isfinite(expanded)) return row->decimals;
+  int first = (int)-floor(log10(expanded)); /* where its first digit stands */
+  return first > MOST ? MOST : first > row->decimals ? first : row->decimals;
+}
+
 /* Value ± U, its limit, and how far it is from it. */
 void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_foil *foil) {
   const fg_quantity *row = foil->worst_row;
@@ -230,11 +240,13 @@ void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
     fputs("<td>–</td><td>–</td><td>–</td>", out);
     return;
   }
+  double expanded = FG_COVERAGE_FACTOR * foil->worst_u;
+  int decimals = decimals_for(row, expanded);
   fputs("<td>", out);
-  fg_lot_put_value(out, row, foil->worst_value);
-  if (isfinite(foil->worst_u)) {
+  fg_lot_put_decimals(out, foil->worst_value, decimals);
+  if (isfinite(expanded)) {
     fputs(" ± ", out);
-    fg_lot_put_value(out, row, FG_COVERAGE_FACTOR * foil->worst_u);
+    fg_lot_put_decimals(out, expanded, decimals);
   }
   fprintf(out, " %s</td>", row->unit);
   if (!isfinite(foil->worst_limit)) {
@@ -244,7 +256,7 @@ void fg_lot_put_margin(FILE *out, const fg_lot_analysis *analysis, const fg_lot_
   fputs("<td>", out);
   fg_lot_put_number(out, foil->worst_limit, 6);
   fprintf(out, " %s</td><td>", row->unit);
-  fg_lot_put_value(out, row, fabs(foil->worst_margin));
+  fg_lot_put_decimals(out, fabs(foil->worst_margin), decimals);
   fprintf(out, " %s %s</td>", row->unit, foil->worst_margin < 0 ? "beyond" : "within");
 }
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
 #include "report/measure/measure_page_parts.h"
@@ -25,7 +26,7 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
       fputs("</td>", out);
     }
     fprintf(out, "<td%s</td></tr>\n",
-            !quantity->has_chart            ? ">–"
+            fg_lot_tells_nothing(quantity)  ? ">–"
             : quantity->stable              ? " class=\"pass\">stable"
             : fg_lot_is_explained(quantity) ? " class=\"cannot_tell\">groups differ"
                                             : " class=\"cannot_tell\">not stable");
@@ -33,8 +34,8 @@ static void put_quantity_rows(FILE *out, const fg_lot_analysis *analysis) {
   fputs("</tbody></table></div>\n", out);
   if (analysis->left_out)
     fprintf(out,
-            "<p class=\"reasons\"><b>%zu of %zu %s are %s:</b> they are judged, and they are in no "
-            "statistics%s of this page.</p>\n",
+            "<p class=\"reasons\"><b>%zu of %zu %s %s:</b> judged, but in no statistics%s of this "
+            "page.</p>\n",
             analysis->left_out, analysis->part_count, fg_lot_words_of(analysis)->many,
             fg_lot_words_of(analysis)->how,
             analysis->parts == FG_QUANTITY_OF_BUMP ? ", stiffness or clearance" : "");
@@ -222,8 +223,8 @@ void fg_lot_put_springback(FILE *out, const fg_lot_analysis *analysis) {
             "length is a slope of −1 exactly: %.4f",
             line->count - line->trimmed, line->trimmed, line->slope, line->r, line->log_slope);
     if (isfinite(line->log_freedom))
-      fprintf(out, " (%.4f … %.4f; bumps of %zu foils, %.1f degrees of freedom)", line->log_low,
-              line->log_high, line->foils, line->log_freedom);
+      fprintf(out, " (%.4f … %.4f; bumps of %zu foil%s, %.1f degrees of freedom)", line->log_low,
+              line->log_high, line->foils, fg_plural(line->foils), line->log_freedom);
     fprintf(out,
             ". Arc length against the design, all %zu bumps: %+.3f %%, s %.3f %%."
             "</figcaption></figure>\n",
@@ -247,9 +248,10 @@ void fg_lot_put_arcs(FILE *out, const fg_lot_analysis *analysis) {
     if (!quantity || !quantity->has_density) continue;
     fputs("<figure>", out);
     fg_lot_plot_density(out, quantity, 1 / shown[i].design, 0, shown[i].words);
-    fprintf(
-        out, "<figcaption>%s over the design's %g, %zu foils: mean %.5f.</figcaption></figure>\n",
-        quantity->row->words, shown[i].design, quantity->count, quantity->mean / shown[i].design);
+    fprintf(out,
+            "<figcaption>%s over the design's %g, %zu foil%s: mean %.5f.</figcaption></figure>\n",
+            quantity->row->words, shown[i].design, quantity->count, fg_plural(quantity->count),
+            quantity->mean / shown[i].design);
   }
   fputs("</section>\n", out);
 }

@@ -250,7 +250,7 @@ void fg_lot_plot_chart(FILE *out, const fg_lot_analysis *analysis,
   axis_title(title, sizeof title, quantity->row);
   fg_plot_begin(&at, 260 + (int)down, "Control chart, foil after foil");
   fg_plot_y_axis(&at, title);
-  fg_plot_x_numbers(&at);
+  fg_plot_x_counts(&at);
   fg_plot_x_title(&at,
                   fg_owner_is_part(quantity->owner) ? fg_lot_words_of(analysis)->mean : "foil");
   fg_plot_segment(&at, at.x_low, chart->centre, at.x_high, chart->centre, "thin");

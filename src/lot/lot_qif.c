@@ -89,10 +89,10 @@ static void put_tolerance(FILE *out, const fg_tolerance *tolerance) {
   fputs("<DefinedAsLimit>true</DefinedAsLimit></Tolerance>", out);
 }
 
-static void put_name(FILE *out, const fg_characteristic *one) {
+static void put_name(FILE *out, const fg_lot_words *words, const fg_characteristic *one) {
   if (one->owner == FG_QUANTITY_OF_BEARING) fputs("bearing: ", out);
   fputs(one->row->words, out);
-  if (one->bump) fprintf(out, " %d", one->bump);
+  if (one->number) fprintf(out, "%s%d", words->before_number, one->number);
 }
 
 static void put_characteristics(const qif *q) {
@@ -116,7 +116,7 @@ static void put_characteristics(const qif *q) {
   for (size_t i = 0; i < q->count; i++) {
     fprintf(q->out, "<%sCharacteristicItem id=\"%zu\"><Name>", q->list[i].row->characteristic,
             item_id(q, i));
-    put_name(q->out, &q->list[i]);
+    put_name(q->out, fg_lot_words_of(q->analysis), &q->list[i]);
     fprintf(q->out,
             "</Name><CharacteristicNominalId>%zu</CharacteristicNominalId>"
             "</%sCharacteristicItem>\n",

@@ -13,8 +13,10 @@ typedef struct fg_manifest {
   size_t columns;
   char **cell; /* items × columns, row by row; "" where a row has none */
   size_t items;
-  size_t doubles;                      /* scans that were named once more, and left out */
-  char first_double[512];              /* the first of them, and under which other name it counts */
+  size_t doubles;         /* scans that were named once more, and left out */
+  char first_double[512]; /* the first of them, and under which other name it counts */
+  size_t empty;           /* folders that are called as a scan is and hold none */
+  char first_empty[512];
   size_t name_capacity, cell_capacity; /* private */
 } fg_manifest;
 

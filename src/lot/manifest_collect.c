@@ -41,15 +41,22 @@ typedef struct search {
 
 static fg_status add_folder(const search *s, const char *folder, int depth);
 
+static void note_empty(fg_manifest *manifest, const char *path) {
+  if (manifest->empty++ == 0)
+    fg_text_clip(manifest->first_empty, sizeof manifest->first_empty, "%s", path);
+}
+
 static fg_status add_entry(const search *s, const char *folder, const char *name, int depth) {
   char *path = NULL;
   struct stat info;
   FG_TRY(fg_text_print(s->ctx, &path, "%s/%s", folder, name));
   fg_status status = FG_OK;
   bool there = stat(path, &info) == 0;
-  if (there && S_ISDIR(info.st_mode) && !(s->leave_out && same_place(path, s->leave_out)))
+  size_t before = s->manifest->items;
+  if (there && S_ISDIR(info.st_mode) && !(s->leave_out && same_place(path, s->leave_out))) {
     status = add_folder(s, path, depth + 1);
-  else if (fg_format_has_name(name) && !(there && S_ISDIR(info.st_mode)))
+    if (s->manifest->items == before && fg_format_has_name(name)) note_empty(s->manifest, path);
+  } else if (fg_format_has_name(name) && !(there && S_ISDIR(info.st_mode)))
     status = fg_manifest_add_scan(s->ctx, s->manifest, "", path);
   free(path);
   return status;

@@ -154,7 +154,7 @@ static fg_status check_complete(fg_context *ctx, const merger *m) {
       first = i + 1;
     }
   if (missing)
-    return fg_fail(ctx, FG_ERR_DATA, "%zu of %zu shards are missing, the first is %zu/%zu", missing,
+    return fg_fail(ctx, FG_ERR_DATA, "missing: %zu of %zu shards, the first is %zu/%zu", missing,
                    m->head.shard.count, first, m->head.shard.count);
   for (size_t i = m->manifest.items; i-- > 0;)
     if (!m->entries[i].length) {
@@ -164,7 +164,7 @@ static fg_status check_complete(fg_context *ctx, const merger *m) {
   if (!missing) return FG_OK;
   size_t shard = m->shard_of[first % m->head.shard.count] - 1;
   return fg_fail(ctx, FG_ERR_DATA,
-                 "%zu of %zu scans have no record, the first is %s; measure %s with --resume",
+                 "without a record: %zu of %zu scans, the first is %s; measure %s with --resume",
                  missing, m->manifest.items, fg_manifest_scan(&m->manifest, first),
                  m->folders[shard]);
 }

@@ -87,6 +87,8 @@ static fg_status prepare(fg_context *ctx, lot_run *run) {
   FG_TRY(fg_lot_check_columns(ctx, request->settings, &run->manifest));
   run->outcome->doubles = run->manifest.doubles;
   strcpy(run->outcome->first_double, run->manifest.first_double);
+  run->outcome->empty = run->manifest.empty;
+  strcpy(run->outcome->first_empty, run->manifest.first_empty);
   FG_TRY(fg_manifest_index_build(ctx, &run->manifest, &run->index));
   FG_TRY(fg_manifest_format(ctx, &run->manifest, &run->manifest_text));
   FG_TRY(fg_lot_settings_format(ctx, &kept, false, &run->recipe_text));

@@ -43,7 +43,7 @@ static const char tail[] = "}\ncomplete -F _foilgauge foilgauge\n";
 
 static const struct {
   const char *argument, *fact;
-} words_of[] = {{"CHANNEL", "channels"}, {"FORM", "forms"}};
+} words_of[] = {{"CHANNEL", "channels"}, {"FORM", "forms"}, {"PAGES", "pages"}};
 
 /* The words of a list in running text: "a, b or c". */
 static void write_words(const char *fact, FILE *out) {
@@ -112,15 +112,27 @@ static void write_values(const char *command, const struct argp *parser, FILE *o
   }
 }
 
-static void write_names(const struct argp *parser, FILE *out) {
+static bool has_option(const struct argp *parser, const char *name) {
   for (const struct argp_option *option = parser->options; option->name || option->doc; option++)
-    if (option->name) fprintf(out, "--%s%s ", option->name, option->arg ? "=" : "");
+    if (option->name && !strcmp(option->name, name)) return true;
+  return false;
+}
+
+/* Without those that an earlier form of the command has named. */
+static void write_names(const fg_command *command, size_t form, FILE *out) {
+  const struct argp_option *option = command->form[form].parser->options;
+  for (; option->name || option->doc; option++) {
+    bool named = !option->name;
+    for (size_t i = 0; i < form && !named; i++)
+      named = has_option(command->form[i].parser, option->name);
+    if (!named) fprintf(out, "--%s%s ", option->name, option->arg ? "=" : "");
+  }
 }
 
 static void write_command(const fg_command *command, FILE *out) {
   fprintf(out, "    %s:-*) _foilgauge_words '", command->name);
   for (size_t i = 0; i < FG_COMMAND_FORMS && command->form[i].parser; i++)
-    write_names(command->form[i].parser, out);
+    write_names(command, i, out);
   fputs("--help'\n      [[ ${COMPREPLY[0]} == *= ]] && compopt -o nospace 2>/dev/null ;;\n", out);
   fprintf(out, "    %s:*) ", command->name);
   write_choice(command->form[0].parser->args_doc, out);

@@ -1,4 +1,5 @@
 #include "foilgauge/measure.h"
+#include "core/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,15 +56,15 @@ static fg_status fail_empty(fg_context *ctx, const fg_measurement *m) {
   double dpi = fmin(m->dpi[0], m->dpi[1]), width_px = m->design.thickness_mm * dpi / 25.4;
   if (width_px >= STRIP_LEAST_PX)
     return fg_fail(ctx, FG_ERR_DATA,
-                   "%s: no foil in the picture (%zu specks or other objects); is the scan empty, "
+                   "%s: no foil in the picture (%zu speck%s or other objects); is the scan empty, "
                    "or the resolution of %g dpi wrong?",
-                   m->scan, m->specks, m->dpi[0]);
+                   m->scan, m->specks, fg_plural(m->specks), m->dpi[0]);
   return fg_fail(ctx, FG_ERR_DATA,
-                 "%s: no foil in the picture (%zu specks or other objects): at %g dpi a strip of "
+                 "%s: no foil in the picture (%zu speck%s or other objects): at %g dpi a strip of "
                  "%g mm is %.1f pixels wide; is the resolution of %g dpi wrong? if not, scan at "
                  "%.0f dpi or more, where it is %g",
-                 m->scan, m->specks, dpi, m->design.thickness_mm, width_px, dpi,
-                 100 * ceil(STRIP_LEAST_PX * 0.254 / m->design.thickness_mm), STRIP_LEAST_PX);
+                 m->scan, m->specks, fg_plural(m->specks), dpi, m->design.thickness_mm, width_px,
+                 dpi, 100 * ceil(STRIP_LEAST_PX * 0.254 / m->design.thickness_mm), STRIP_LEAST_PX);
 }
 
 static fg_status measure_foils(fg_context *ctx, fg_scan *scan, const fg_measure_options *options,

@@ -313,11 +313,22 @@ static fg_status add_counts(fg_context *ctx, const fg_plan *plan, const char *na
   return fg_table_add_numbers(ctx, table, name, values, plan->runs);
 }
 
+/* The nearest multiple of the step between the levels; where there is none, the nearest. */
+static double round_between(const fg_plan *plan, size_t k, double value) {
+  double low = fmin(plan->low[k], plan->high[k]), high = fmax(plan->low[k], plan->high[k]);
+  double step = plan->step[k], room = 1e-9 * step, nearest = fg_round_to(value, step);
+  double inwards = nearest < low - room    ? nearest + step
+                   : nearest > high + room ? nearest - step
+                                           : nearest;
+  bool between = inwards >= low - room && inwards <= high + room;
+  return between ? fg_round_to(inwards, step) : nearest;
+}
+
 double fg_plan_setting(const fg_plan *plan, size_t run, size_t k) {
   double centre = (plan->low[k] + plan->high[k]) / 2, half = (plan->high[k] - plan->low[k]) / 2;
   double coded = plan->run[run].coded[k];
   double value = coded == -1 ? plan->low[k] : coded == 1 ? plan->high[k] : centre + coded * half;
-  return fg_round_to(value, plan->step[k]);
+  return fabs(coded) > 1 ? fg_round_to(value, plan->step[k]) : round_between(plan, k, value);
 }
 
 static fg_status add_factor(fg_context *ctx, const fg_plan *plan, size_t k, double *values,

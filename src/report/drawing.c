@@ -54,16 +54,20 @@ static double large_residual(const fg_measurement *measurement) {
   return largest;
 }
 
-/* The magnification of residuals that makes the larger ones about 0.9 mm long: 1, 2 or 5 times a
- * power of ten. 1000 when there are none. */
+/* More makes a hedgehog of the noise of a clean scan, whose residuals are 0.1 um: nothing to see.
+ */
+#define MAGNIFICATION_MOST 1000.0
+
+/* The magnification of residuals that makes the larger ones about 0.5 mm long: 1, 2 or 5 times a
+ * power of ten, and as much as says something. */
 static double magnification_for(double largest) {
   static const double steps[] = {1, 2, 5, 10};
-  if (!(largest > 0)) return 1000;
+  if (!(largest > 0)) return MAGNIFICATION_MOST;
   double wanted = whisker_mm / (largest * 1e-3), power = pow(10, floor(log10(wanted)));
   double best = power;
   for (int i = 0; i < 4; i++)
     if (steps[i] * power <= wanted) best = steps[i] * power;
-  return fmax(1, best);
+  return fmin(MAGNIFICATION_MOST, fmax(1, best));
 }
 
 double fg_drawing_magnification(const fg_report *report) {

@@ -1,6 +1,7 @@
 #include "report/plot.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "report/measure/measure_page_parts.h"
 
@@ -30,26 +31,48 @@ void fg_plot_end(const fg_plot *at) {
   fputs("</svg>\n", at->out);
 }
 
-/* As many digits as neighbouring ticks take to differ: 20.7299, 20.7300. */
+/* As many decimals as neighbouring ticks take to differ, the same for all: 20.7299, 20.7300. */
 static void tick_text(char text[32], double value, double step) {
-  enum { LEAST_DIGITS = 4, MOST_DIGITS = 9 };
-  double size = fabs(value), clean = size < step * 1e-6 ? 0 : value;
+  enum { LEAST_DIGITS = 4, MOST_DIGITS = 9, DECIMALS_MOST = 6 };
+  double size = fabs(value), decimals = fmax(0, ceil(-log10(step) - 1e-9));
+  if (decimals <= DECIMALS_MOST && size < 1e6) {
+    snprintf(text, 32, "%.*f", (int)decimals, size < step * 1e-6 ? 0 : value);
+    return;
+  }
+  double clean = size < step * 1e-6 ? 0 : value;
   int digits = clean != 0 ? (int)ceil(log10(size / step * (1 + 1e-9))) + 1 : LEAST_DIGITS;
   digits = digits < LEAST_DIGITS ? LEAST_DIGITS : digits > MOST_DIGITS ? MOST_DIGITS : digits;
   snprintf(text, 32, "%.*g", digits, clean);
 }
 
+/* The ticks' letters in px: smaller where the longest would reach into the title. 0: as they are.
+ */
+static double tick_size(const fg_plot *at, double step) {
+  const double wide_px = 8.9, size_px = 14,
+               title_px = 22; /* of a digit of that size; of the title */
+  size_t longest = 1;
+  for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
+    char number[32];
+    tick_text(number, y, step);
+    if (strlen(number) > longest) longest = strlen(number);
+  }
+  double room = at->left - 8 - title_px, share = room / (wide_px * (double)longest);
+  return share < 1 ? fmax(9, size_px * share) : 0;
+}
+
 void fg_plot_y_axis(const fg_plot *at, const char *title) {
-  double step = fg_plot_nice_step(at->y_high - at->y_low);
+  double step = fg_plot_nice_step(at->y_high - at->y_low), size_px = tick_size(at, step);
+  char size[40] = "";
+  if (size_px > 0) snprintf(size, sizeof size, " style=\"font-size:%.1fpx\"", size_px);
   for (double y = ceil(at->y_low / step) * step; y <= at->y_high + step * 1e-6; y += step) {
     char number[32];
     double clean = fabs(y) < step * 1e-6 ? 0 : y;
     tick_text(number, clean, step);
     fprintf(at->out,
-            "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/><text class=\"y\" x=\"%.1f\" "
+            "<path class=\"%s\" d=\"M%.1f %.1fH%.1f\"/><text class=\"y\"%s x=\"%.1f\" "
             "y=\"%.1f\">%s</text>\n",
-            clean == 0 ? "zero" : "grid", at->left, fg_plot_y(at, clean), at->right, at->left - 8,
-            fg_plot_y(at, clean) + 5, number);
+            clean == 0 ? "zero" : "grid", at->left, fg_plot_y(at, clean), at->right, size,
+            at->left - 8, fg_plot_y(at, clean) + 5, number);
   }
   fprintf(at->out, "<text class=\"title\" transform=\"translate(16 %.1f) rotate(-90)\">",
           (at->top + at->bottom) / 2);
@@ -63,13 +86,20 @@ void fg_plot_x_label(const fg_plot *at, double x, const char *text) {
   fputs("</text>\n", at->out);
 }
 
-void fg_plot_x_numbers(const fg_plot *at) {
-  double step = fg_plot_nice_step(at->x_high - at->x_low);
+static void put_x_numbers(const fg_plot *at, double step) {
   char text[32];
   for (double x = ceil(at->x_low / step) * step; x <= at->x_high + step * 1e-6; x += step) {
     tick_text(text, x, step);
     fg_plot_x_label(at, fg_plot_x(at, x), text);
   }
+}
+
+void fg_plot_x_numbers(const fg_plot *at) {
+  put_x_numbers(at, fg_plot_nice_step(at->x_high - at->x_low));
+}
+
+void fg_plot_x_counts(const fg_plot *at) {
+  put_x_numbers(at, fmax(1, fg_plot_nice_step(at->x_high - at->x_low)));
 }
 
 void fg_plot_x_title(const fg_plot *at, const char *title) {

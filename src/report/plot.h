@@ -26,6 +26,7 @@ void fg_plot_end(const fg_plot *at);
 void fg_plot_y_axis(const fg_plot *at, const char *title);
 void fg_plot_x_label(const fg_plot *at, double x, const char *text);
 void fg_plot_x_numbers(const fg_plot *at);
+void fg_plot_x_counts(const fg_plot *at); /* of whole things: never 1.5 */
 void fg_plot_x_title(const fg_plot *at, const char *title);
 
 #endif

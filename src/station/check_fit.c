@@ -163,9 +163,9 @@ void fg_check_fit_judge(fg_check_fit *fit, double scale_max_ppm, char *words, si
   worst = fmax(worst, 1e6 * (fabs(fit->shear) + 2 * fit->u_shear));
   fit->passes = worst <= scale_max_ppm;
   fg_text_clip(words, size,
-               "scanner %s: %zu discs, x %+.0f ± %.0f ppm, y %+.0f ± %.0f ppm, shear %+.0f ± %.0f "
+               "scanner %s: %zu disc%s, x %+.0f ± %.0f ppm, y %+.0f ± %.0f ppm, shear %+.0f ± %.0f "
                "µrad; allowed %.0f",
-               fit->passes ? "in order" : "out of order", fit->discs, 1e6 * fit->scale[0],
-               2e6 * fit->u_scale[0], 1e6 * fit->scale[1], 2e6 * fit->u_scale[1], 1e6 * fit->shear,
-               2e6 * fit->u_shear, scale_max_ppm);
+               fit->passes ? "in order" : "out of order", fit->discs, fg_plural(fit->discs),
+               1e6 * fit->scale[0], 2e6 * fit->u_scale[0], 1e6 * fit->scale[1],
+               2e6 * fit->u_scale[1], 1e6 * fit->shear, 2e6 * fit->u_shear, scale_max_ppm);
 }

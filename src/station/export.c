@@ -283,9 +283,9 @@ static void find_words(fg_exported_lot *exported) {
   const fg_lot_outcome *outcome = &exported->outcome;
   const size_t *by = outcome->foils_by_verdict, size = sizeof exported->words;
   char *words = exported->words;
-  fg_text_clip(words, size, "%zu foils of %zu scans: %zu pass, %zu fail, %zu cannot be told",
-               outcome->foils, outcome->scans, by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL],
-               by[FG_VERDICT_UNDECIDED]);
+  fg_text_clip(words, size, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told",
+               outcome->foils, fg_plural(outcome->foils), outcome->scans, fg_plural(outcome->scans),
+               by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);
   append(words, size, by[FG_VERDICT_NONE], "without tolerances", "without tolerances");
   append(words, size, by[FG_VERDICT_NOT_MEASURED], "foil not measured", "foils not measured");
   append(words, size, exported->replaced, "foil counts with its later scan",

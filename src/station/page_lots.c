@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "report/measure/measure_page_parts.h"
 #include "station/lot_content.h"
 #include "station/pages.h"
@@ -128,7 +129,7 @@ static void write_closed_lot(const fg_inspection *station, FILE *out, const fg_q
   fg_page_time(out, fg_query_get_integer(row, CLOSED_AT));
   fputs(" by ", out);
   fg_html_text(out, fg_query_get_text(row, CLOSED_BY));
-  if (before) fprintf(out, ", %lld times before", before);
+  if (before) fprintf(out, ", %lld time%s before", before, fg_plural((size_t)before));
   fputs("</span>", out);
   if (fg_query_get_integer(row, CLOSED_CHANGED)) {
     fputs("<b>Foils have come, gone or been corrected since.</b> ", out);

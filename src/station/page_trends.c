@@ -1,6 +1,7 @@
 /* Trends: how the process runs, over foils or lots. */
 #include <math.h>
 
+#include "core/text.h"
 #include "report/measure/measure_page_parts.h"
 #include "station/trend.h"
 
@@ -216,8 +217,8 @@ static void write_why_not(const page *p) {
   else if (p->choice->by_lots)
     fputs("it is a matter of single foils: choose \"Over: foils\".", out);
   else if (p->trend->count < STABLE_LEAST)
-    fprintf(out, "%zu foils are too few to say that the process is stable; it takes %d.",
-            p->trend->count, STABLE_LEAST);
+    fprintf(out, "%zu foil%s: too few to say that the process is stable; it takes %d.",
+            p->trend->count, fg_plural(p->trend->count), STABLE_LEAST);
   else if (quantity->chart.signals)
     fprintf(out,
             "the chart is not stable (%zu %s with a signal). What a process will do can be said "

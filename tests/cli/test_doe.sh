@@ -140,6 +140,14 @@ cut -d, -f4 "$out/runs.csv" | tail -n +2 | sort -u | tr '\n' ' ' | grep -qx '480
   fail "settings of T: $(cut -d, -f4 "$out/runs.csv" | sort -u | tr '\n' ' ')"
 grep -q 'multiples of 0.25' "$out/runs.html" || fail "the page does not say the steps"
 [ "$(grep -c '<td class="blank">' "$out/runs.html")" = 11 ] || fail "the page has not a line per run"
+# Levels are limits: rounded inwards, and told; so is a setting below 0 of what lies above.
+expect 0 'note: T: multiples of 7, so 504 for 500, 553 for 550, 595 for 600' \
+  "$program" doe plan --factor T=500:600 --centre 1 --round T=7 --html "$out/s.html"
+[ "$(tail -n +2 "$folder/stdout" | cut -d, -f4 | sort -u | tr '\n' ' ')" = "504 553 595 " ] || fail "limits: $(cat "$folder/stdout")"
+grep -q '<li>T: multiples of 7, so 504 for 500' "$out/s.html" || fail "the page does not say what is rounded"
+rm "$out/s.html"
+expect 0 'note: D: an axial run is at -1, below 0: .* --axial below 2' "$program" doe plan --factor D=1:3 --kind thesis
+grep -q multiples "$folder/stderr" && fail "nothing is rounded"
 expect 64 'both become' "$program" doe plan --factor T=500:600 --round T=500
 expect 64 'no factor of that name' "$program" doe plan --factor T=500:600 --round D=5
 expect 64 'STEP must be' "$program" doe plan --factor T=500:600 --round T=-5
@@ -167,7 +175,7 @@ valid doe.schema.json "$out/a.json"
 grep -q 'class="set">T 565, D 4.25<' "$out/a.html" || fail "the page does not answer first"
 sed -i '2s/"T"/"T"/; s/"620"/"625"/' "$out/runs.csv"
 expect 0 '' "$program" doe "$out/runs.csv" --response y --model "$quadratic" -o "$out/a.json" --round T=20 --code D=2:6
-value "$out/a.json" 'r["plan_note"]' | grep -q '^1 runs were made at another setting' || fail "another setting is not told"
+value "$out/a.json" 'r["plan_note"]' | grep -q '^1 run made at another setting' || fail "another setting is not told"
 [ "$(value "$out/a.json" '[r["factors"][1]["low"], r["surface"]["rounded"]["real"]]')" = '[2, [560, 4.25]]' ] ||
   fail "options do not go before the plan"
 mv "$out/runs.csv" "$out/renamed.csv"
@@ -178,7 +186,7 @@ expect 0 '' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" 
 [ "$(value "$out/a.json" 'r["factors"][0]["low"]')" = 500 ] || fail "--plan does not code the factors"
 expect 65 'is no plan' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json" --plan "$out/renamed.csv"
 echo '{"schema": "foilgauge/plan/1", "factors": [{"name": "T", "low": 6, "high": 5}], "settings": []}' >"$out/runs.plan.json"
-expect 65 'LOW must be below' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --plan "$out/runs.plan.json"
+expect 65 'LOW must be below.*move it away and give the limits with --code' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --plan "$out/runs.plan.json"
 expect 64 'no numeric factor' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --round E=5
 [ -e /dev/full ] && expect 74 '/dev/full' "${oven[@]}" --html /dev/full
 rm -rf "$out" && mkdir "$out"

@@ -26,6 +26,12 @@ expect 65 '--allow-lossy' "$program" doe runs.csv --scans scan --design design.j
 expect 2 '--allow-lossy' "$program" lot lot --design design.json -o refused
 value refused/lot.json 'r["inputs"][0]["error"]' | grep -q 'allow-lossy' || fail "lot.json does not say why"
 
+mkdir watched
+cp lot/scan.jpg watched/s1.jpg
+expect 2 '--allow-lossy' "$program" station watched --design design.json --once
+touch -d "1 hour ago" watched/s1.jpg # a file that was refused is looked at again when it changes
+expect 0 '1 measured' "$program" station watched --design design.json --once --allow-lossy
+
 # Allowed: in every form of the report, and wider than the same pixels that do not tell where they are from.
 expect 0 'note: compressed with loss \(JPEG, quality 80\)' \
   measure lot/scan.jpg --allow-lossy -o lossy.json --csv lossy.csv --html lossy.html
@@ -53,11 +59,11 @@ value loop.json 'r["notes"]' | grep -q 'lot/scan.jpg was compressed with loss (J
 grep -q 'was compressed with loss' loop.html || fail "the loop's page does not say it"
 
 # A lot takes them by its recipe or by the option, and says how many.
-expect 0 '1 foils of 1 scans' "$program" lot lot --recipe recipe.json -o taken
+expect 0 '1 foil of 1 scan' "$program" lot lot --recipe recipe.json -o taken
 [ "$(value taken/lot.json '"lossy" in r["foils"][0]["flags"]')" = True ] || fail "lot.json: no flag"
 grep -q '"allow_lossy": true' taken/recipe.json || fail "the lot's recipe forgets it"
-grep -q '1 of 1 foils are of scans that were compressed with loss' taken/index.html || fail "the lot's page is silent"
-expect 0 '1 foils of 1 scans' "$program" lot lot --design design.json --allow-lossy -o by/option
+grep -q 'compressed with loss (JPEG), which moves edges: 1 of 1 foils' taken/index.html || fail "the lot's page is silent"
+expect 0 '1 foil of 1 scan' "$program" lot lot --design design.json --allow-lossy -o by/option
 sed 's/true/1/' recipe.json >wrong.json
 expect 65 'allow_lossy must be true or false' "$program" lot lot --recipe wrong.json -o no
 

@@ -120,7 +120,7 @@ expect 2 'row 3: scans/lost.png: cannot be opened' "$program" loop --doe scans/l
   --design four.json -o lost.json
 valid loop.schema.json lost.json
 grep -q '"scans/lost.png", "sha256": null' lost.json || fail "a scan that cannot be read has a sum"
-grep -q '"left out: 0 runs without a scan, 1 scans that could not be measured"' lost.json || fail "what is left out is not said"
+grep -q '"left out: 0 runs without a scan, 1 scan that could not be measured"' lost.json || fail "what is left out is not said"
 expect 64 "which column was measured" "$program" loop --doe runs.csv --model T_C
 expect 64 "belongs to --doe" "$program" loop --lot lot --scans scans
 expect 64 "the scan" "${runs[@]}" --scans scans -o scans/r1.png

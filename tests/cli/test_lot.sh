@@ -148,13 +148,13 @@ for count in 1 2 7 20; do
   expect 2 '11 foils' "$program" merge shards/* -o merged
   same one merged
 done
-expect 65 '1 of 20 shards are missing, the first is 3/20' "$program" merge $(ls -d shards/* | grep -v '/3$') -o no
+expect 65 'missing: 1 of 20 shards, the first is 3/20' "$program" merge $(ls -d shards/* | grep -v '/3$') -o no
 cp -r shards/5 twice
 expect 65 'there twice' "$program" merge shards/* twice -o no
 "$program" lot scans --recipe wider.json -o other --shard 3/20 2>/dev/null
 expect 65 'recipes differ' "$program" merge $(ls -d shards/* | grep -v '/3$') other -o no
 head -n 1 shards/4/results.jsonl >x && mv x shards/4/results.jsonl
-expect 65 'have no record' "$program" merge shards/* -o no
+expect 65 'without a record' "$program" merge shards/* -o no
 expect 64 'overwrite' "$program" merge one -o one
 expect 64 '1/0|from 1' lot -o no --shard 1/0
 expect 64 '' lot -o no --shard 3/2

@@ -109,11 +109,11 @@ wait
 # A scan counts once however its path is spelled; its columns must then agree.
 mkdir links
 ln -s ../scans/foil1.png links/again.png
-expect 0 '5 scans are there twice.*scans/foil1.png' \
+expect 0 'there twice and counted once: 5 scans.*scans/foil1.png' \
   lot scans ./scans/foil1.png "$PWD/scans" links --dry-run -o spelled
 grep -q '^3 scans, 3 to measure' stdout || fail "spellings: $(cat stdout)"
 printf 'scan,die\nscans/foil1.png,A\nscans/../scans/foil1.png,A\n' >same.csv
-expect 0 '1 scans are there twice' lot same.csv --dry-run -o spelled
+expect 0 'there twice and counted once: 1 scan;' lot same.csv --dry-run -o spelled
 printf 'scan,die\nscans/foil1.png,A\nscans/../scans/foil1.png,B\n' >other.csv
 expect 65 'twice, with another die .items 1 and 2' lot other.csv --dry-run -o spelled
 
@@ -121,7 +121,8 @@ expect 65 'twice, with another die .items 1 and 2' lot other.csv --dry-run -o sp
 mkdir formats
 for ending in png tif TIFF pnm pgm ppm pbm txt jpg; do : >"formats/a.$ending"; done
 expect 0 '^8 scans, 8 to measure' lot formats --dry-run -o found
-mkdir empty
+mkdir -p empty formats/y.png
+expect 0 'note: passed over: 1 folder with the name of a scan, .* is formats/y.png' lot formats --dry-run -o found
 expect 65 'no scan: the folders hold no file .*\.pbm' lot empty --dry-run -o found
 
 # A column that is not there, or too many groups: before anything is measured.
@@ -198,7 +199,7 @@ assert abs(float(next(l for l in lines if l.startswith(f"K0001/{number} ")).spli
 assert [l.split(" ", 1)[1] for l in lines if l.startswith("K0014/1 ")] == ["f1", "f2", "f3"]
 P
 sed 's/2026-02-04/yesterday/' traced.csv >undated.csv
-expect 0 "note: 1 cells of the manifest's column date are no date, the first is 'yesterday'" lot undated.csv -o undated
+expect 0 "note: the manifest's column date: 1 cell without a date, the first is 'yesterday'" lot undated.csv -o undated
 [ "$(value undated/lot.json 'r["date"]["from"], r["date"]["cells_not_dates"]')" = "('scans', 1)" ] || fail "the date"
 valid lot.schema.json undated/lot.json
 touch file

@@ -80,6 +80,8 @@ done
 grep -q -- '--response' "$work/out" || say "loop --table --help does not explain the tables' options"
 "$fg" render --help | grep -q '^Usage: foilgauge render ' || say "render --help calls itself otherwise"
 "$fg" doe plan --help | grep -q '^Usage: foilgauge doe plan ' || say "doe plan --help"
+"$fg" help doe plan | grep -q '^Usage: foilgauge doe plan ' || say "help doe plan"
+[ "$("$fg" help doe plan)" = "$("$fg" doe plan --help)" ] || say "help doe plan is not its --help"
 "$fg" help nothing >"$work/out" 2>&1
 [ $? = 64 ] || say "help of no command"
 "$fg" measure --help >/dev/full 2>/dev/null
@@ -188,6 +190,8 @@ mkdir "$work/files"
  [ "$(complete_line foilgauge measure --html = | sort | tr '\n' ' ')" = "e.html sub " ] || exit 3
  [ "$(complete_line foilgauge lot -o '')" = sub ] || exit 4) || say "completion of files: $?"
 complete_line foilgauge measure --ch | grep -qx -- '--channel=' || say "completion of options"
+[ -z "$(complete_line foilgauge doe -- | sort | uniq -d)" ] || say "completion offers an option twice"
+complete_line foilgauge lot --pages b | grep -qx bad || say "completion of --pages"
 complete_line foilgauge measure --channel g | grep -qx green || say "completion of words"
 
 exit $failed

@@ -190,7 +190,7 @@ grep -q 'Corrected by' plain/index.html && fail "a lot that is not corrected say
   "('left desk', 'scanner_model.json', True)" ] || fail "lot.json: the model"
 [ "$(value plain/lot.json "r['model'], 'correction' in r")" = "(None, False)" ] || fail "lot.json without a model: model"
 expect 0 '' "$program" lot scans --model small.json -o beyond
-grep -q '3 of 3 foils reach beyond' beyond/index.html || fail "the lot's page does not say that foils reach beyond the region"
+grep -q 'model was found in: 3 of 3 foils' beyond/index.html || fail "the lot's page does not say that foils reach beyond the region"
 [ "$(value beyond/lot.json "all('beyond_model_region' in f['flags'] for f in r['foils'])")" = True ] || fail "lot.json: no flag"
 cmp -s left.json one/scanner_model.json || fail "the lot does not keep its model"
 grep -q model plain/recipe.json && fail "a lot without a model has a recipe that speaks of one"
@@ -214,7 +214,7 @@ for tied, plain in zip(*rows):
     assert tied["overall.radius_mm"] == plain["overall.radius_mm"]
     assert float(tied["overall.u_radius_mm"]) > float(plain["overall.u_radius_mm"])
 P
-grep -q 'The bump radii R of 3 of 3 foils are left as measured' open/index.html || fail "the lot's page does not say what was left"
+grep -q 'Left as measured: the bump radii R of 3 of 3 foils' open/index.html || fail "the lot's page does not say what was left"
 
 # Kept while the model stays; another one, or none, is another measurement.
 sed 's/0\.036/0.035/' left.json >other.json

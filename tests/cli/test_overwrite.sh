@@ -131,11 +131,11 @@ says() { # WORDS COMMAND...
   "$program" "$@" >said 2>&1 || fail "$*: exit code $?: $(cat said)"
   grep -q "$words" said || fail "$*: says $(cat said)"
 }
-says '1 foils of 1 scans' lot in/list.csv --model in/model.json -o lots/a
+says '1 foil of 1 scan' lot in/list.csv --model in/model.json -o lots/a
 sums lots/a >a
-says '1 foils of 1 scans' lot lots/a/manifest.csv -o lots/a --recipe lots/a/recipe.json --resume
+says '1 foil of 1 scan' lot lots/a/manifest.csv -o lots/a --recipe lots/a/recipe.json --resume
 sums lots/a | cmp -s - a || fail "a lot resumed by its own files is another: $(sums lots/a | diff a - | head -3)"
-says '1 scans, 0 to measure, 1 kept' lot lots/a/manifest.csv -o lots/a --recipe lots/a/recipe.json --resume --dry-run
+says '1 scan, 0 to measure, 1 kept' lot lots/a/manifest.csv -o lots/a --recipe lots/a/recipe.json --resume --dry-run
 sed -i 's/,*$/,/;1s/$/note/' lots/a/manifest.csv # the user's own by now
 sums lots/a >mine
 code=0

@@ -216,7 +216,7 @@ bearings() { # CODE VERDICT LIMITS
 "bump_count":3,"tolerances":{%s}}}' "$3" >recipe.json
   printf 'scan,bearing\nthree.png,A1\nagain.png,A1\nthird.png,A1\n' >bearings.csv
   cp three.png third.png
-  expect "$1" '1 bearings: ' "$program" lot bearings.csv --recipe recipe.json -o whole
+  expect "$1" '1 bearing: ' "$program" lot bearings.csv --recipe recipe.json -o whole
   holds whole/lot.json "r['verdict'] == r['bearings'][0]['verdict'] == '$2' and r['bearings'][0]['judgements']"
   valid lot.schema.json whole/lot.json
   says whole/bearings.csv "^A1,.*,$2,9,9,"

@@ -75,12 +75,12 @@ static void put_best(FILE *out, const fg_experiment *e) {
   const fg_optimum *best = e->has_rounded ? &e->rounded : &e->optimum;
   const fg_prediction *p = &best->prediction;
   char setting[700], value[80];
-  fg_experiment_setting_words(e, best->x, true, setting, sizeof setting);
+  fg_experiment_setting_words(e, best->x, setting, sizeof setting);
   fputs("<p class=\"set\">", out);
   fg_html_text(out, setting);
   fputs("</p>\n<p>", out);
   if (e->has_rounded) {
-    fg_experiment_setting_words(e, e->optimum.x, true, setting, sizeof setting);
+    fg_experiment_setting_words(e, e->optimum.x, setting, sizeof setting);
     fputs("The best of the settings that can be made; without rounding: ", out);
     fg_html_text(out, setting);
     fputs(". ", out);

@@ -1,5 +1,7 @@
 /* A plan's run sheet as a page: to be printed and filled in at the oven. */
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -67,16 +69,34 @@ static void put_run(FILE *out, const fg_plan *plan, size_t i, size_t columns) {
   fputs("</tr>\n", out);
 }
 
+/* Rounded settings, and ones that may be impossible. */
+static fg_status put_notes(fg_context *ctx, FILE *out, const fg_plan *plan) {
+  char *notes, *rest = NULL;
+  FG_TRY(fg_plan_notes(ctx, plan, &notes));
+  if (*notes) {
+    fputs("<ul class=\"flags\">\n", out);
+    for (char *line = strtok_r(notes, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+      fputs("<li>", out);
+      fg_html_text(out, line);
+      fputs("</li>\n", out);
+    }
+    fputs("</ul>\n", out);
+  }
+  free(notes);
+  return FG_OK;
+}
+
 fg_status fg_plan_write_html(fg_context *ctx, const fg_plan *plan, const char *const *column,
                              size_t columns, FILE *out) {
   fg_html_begin(out, "Run sheet");
   fprintf(out,
-          "<section class=\"part\">\n<header><h1>Run sheet: %zu runs</h1><p>to be made in "
+          "<section class=\"part\">\n<header><h1>Run sheet: %zu run%s</h1><p>to be made in "
           "this order",
-          plan->runs);
+          plan->runs, fg_plural(plan->runs));
   if (plan->plots)
     fprintf(out, "; %zu whole plots, each one setting of what is hard to change", plan->plots);
   fputs("</p></header>\n", out);
+  FG_TRY(put_notes(ctx, out, plan));
   put_factors(out, plan);
   fputs("<h2>Runs</h2>\n<table class=\"sheet\">", out);
   put_heads(out, plan, column, columns);

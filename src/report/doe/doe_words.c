@@ -95,18 +95,25 @@ static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, f
   const fg_coefficient *c = &e->regression.coefficient[j];
   const fg_experiment_effect *effect = &e->effect[j];
   const fg_factor *factor = main_factor(e, j);
-  char p_value[16], interval[80] = "";
+  char p_value[16], interval[200] = "", by[80], least[80], most[80], name[300], from[80], to[80];
   double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
   fg_p_value_text(p_value, fg_experiment_p_value(e, j));
   const char *equals = *p_value == '<' ? "" : "= ";
-  if (isfinite(effect->low))
-    snprintf(interval, sizeof interval, ", %g %% interval %.3g to %.3g", 100 * e->confidence,
-             change < 0 ? -high : low, change < 0 ? -low : high);
-  if (factor)
+  if (isfinite(effect->low)) {
+    fg_value_with_unit(e->response, change < 0 ? -high : low, 3, least, sizeof least);
+    fg_value_with_unit(e->response, change < 0 ? -low : high, 3, most, sizeof most);
+    fg_text_clip(interval, sizeof interval, ", %g %% interval %s to %s", 100 * e->confidence, least,
+                 most);
+  }
+  if (factor) {
+    fg_name_words(factor->name, name, sizeof name);
+    fg_value_with_unit(factor->name, fg_factor_real(factor, -1), 6, from, sizeof from);
+    fg_value_with_unit(factor->name, fg_factor_real(factor, 1), 6, to, sizeof to);
+    fg_value_with_unit(e->response, fabs(change), 3, by, sizeof by);
     return fg_sentences_say(
-        ctx, s, "%s matters: from %.6g to %.6g it %s the response by %.3g%s (p %s%s).",
-        factor->name, fg_factor_real(factor, -1), fg_factor_real(factor, 1),
-        change < 0 ? "lowers" : "raises", fabs(change), interval, equals, p_value);
+        ctx, s, "%s matters: from %s to %s it %s the response by %s%s (p %s%s).", name, from, to,
+        change < 0 ? "lowers" : "raises", by, interval, equals, p_value);
+  }
   return fg_sentences_say(ctx, s, "%s matters: coefficient %.4g (p %s%s).", c->name, c->estimate,
                           equals, p_value);
 }
@@ -147,9 +154,9 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
       ctx, s,
       "The model explains %.0f %% of the variation (adjusted %.0f %%) and would predict "
       "%.0f %% of it in runs that it has not seen. The runs scatter about it with a standard "
-      "deviation of %.3g (%zu degrees of freedom).",
+      "deviation of %.3g (%zu degree%s of freedom).",
       100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
-      r->residual_freedom));
+      r->residual_freedom, fg_plural(r->residual_freedom)));
   if (e->has_split_plot)
     FG_TRY(fg_sentences_say(
         ctx, s,
@@ -212,18 +219,14 @@ static fg_status say_calibration(fg_context *ctx, const fg_experiment_report *re
       FG_COVERAGE_FACTOR * report->u_calibration);
 }
 
-void fg_experiment_setting_words(const fg_experiment *e, const double *x, bool plain, char *text,
-                                 size_t size) {
+void fg_experiment_setting_words(const fg_experiment *e, const double *x, char *text, size_t size) {
   text[0] = '\0';
   for (size_t k = 0; k < e->surface.factors; k++) {
     const fg_factor *factor = fg_surface_factor(e, k);
     char name[300], value[80];
     size_t used = strlen(text);
-    fg_text_clip(name, sizeof name, "%s", factor->name);
-    if (plain) fg_name_words(factor->name, name, sizeof name);
-    double real = fg_factor_real(factor, x[k]);
-    fg_text_clip(value, sizeof value, "%.5g", real);
-    if (plain) fg_value_with_unit(factor->name, real, 5, value, sizeof value);
+    fg_name_words(factor->name, name, sizeof name);
+    fg_value_with_unit(factor->name, fg_factor_real(factor, x[k]), 5, value, sizeof value);
     fg_text_clip(text + used, size - used, "%s%s %s", k ? ", " : "", name, value);
   }
   for (size_t v = 0; v < e->model.formula.variables; v++) {
@@ -236,26 +239,30 @@ void fg_experiment_setting_words(const fg_experiment *e, const double *x, bool p
 }
 
 static fg_status say_stationary(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
-  char setting[700];
+  char setting[700], value[80];
   if (!e->has_optimum || !e->surface.has_stationary) return FG_OK;
-  fg_experiment_setting_words(e, e->surface.stationary, false, setting, sizeof setting);
-  return fg_sentences_say(ctx, s, "The surface is stationary at %s: a %s of %.4g, %s the region.",
-                          setting, fg_surface_kind_word(e->surface.kind),
-                          e->surface.stationary_value, e->stationary_inside ? "inside" : "outside");
+  fg_experiment_setting_words(e, e->surface.stationary, setting, sizeof setting);
+  fg_value_with_unit(e->response, e->surface.stationary_value, 4, value, sizeof value);
+  return fg_sentences_say(ctx, s, "The surface is stationary at %s: a %s of %s, %s the region.",
+                          setting, fg_surface_kind_word(e->surface.kind), value,
+                          e->stationary_inside ? "inside" : "outside");
 }
 
 /* "Expected response 3.45 (95 % interval ...); one confirmation run should fall between ...". */
 static fg_status say_expected(fg_context *ctx, const fg_experiment *e, const char *what,
                               const char *setting, const fg_prediction *p, fg_sentences *s) {
+  const double numbers[5] = {p->mean, p->low, p->high, p->run_low, p->run_high};
+  char n[5][80];
+  for (int i = 0; i < 5; i++)
+    fg_value_with_unit(e->response, numbers[i], i ? 3 : 4, n[i], sizeof n[i]);
   if (!isfinite(p->low))
-    return fg_sentences_say(ctx, s, "%s (%s): %s. Expected response %.4g.", what,
-                            fg_goal_word(e->goal), setting, p->mean);
+    return fg_sentences_say(ctx, s, "%s (%s): %s. Expected response %s.", what,
+                            fg_goal_word(e->goal), setting, n[0]);
   return fg_sentences_say(
       ctx, s,
-      "%s (%s): %s. Expected response %.4g (%g %% interval %.3g to %.3g); one confirmation run "
-      "should fall between %.3g and %.3g.",
-      what, fg_goal_word(e->goal), setting, p->mean, 100 * e->confidence, p->low, p->high,
-      p->run_low, p->run_high);
+      "%s (%s): %s. Expected response %s (%g %% interval %s to %s); one confirmation run "
+      "should fall between %s and %s.",
+      what, fg_goal_word(e->goal), setting, n[0], 100 * e->confidence, n[1], n[2], n[3], n[4]);
 }
 
 static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
@@ -270,7 +277,7 @@ static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentenc
     fg_text_clip(what + used, sizeof what - used, "%s%s", separator, step);
     separator = " and ";
   }
-  fg_experiment_setting_words(e, e->rounded.x, false, setting, sizeof setting);
+  fg_experiment_setting_words(e, e->rounded.x, setting, sizeof setting);
   return say_expected(ctx, e, what, setting, &e->rounded.prediction, s);
 }
 
@@ -279,7 +286,7 @@ static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentenc
   if (!e->has_optimum) return FG_OK;
   const fg_prediction *p = &e->optimum.prediction;
   FG_TRY(say_rounded(ctx, e, s));
-  fg_experiment_setting_words(e, e->optimum.x, false, setting, sizeof setting);
+  fg_experiment_setting_words(e, e->optimum.x, setting, sizeof setting);
   FG_TRY(say_expected(ctx, e,
                       e->constraints ? "Best setting in the region of the data and the constraints"
                                      : "Best setting in the region of the data",

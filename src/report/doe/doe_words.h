@@ -37,10 +37,9 @@ fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report
 fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *experiment,
                                        char **words);
 
-/* "temperature_C 600, duration_h 3" of a place of the surface; plainly: "temperature 600 °C,
- * duration 3 h". */
-void fg_experiment_setting_words(const fg_experiment *experiment, const double *x, bool plain,
-                                 char *text, size_t size);
+/* "temperature 600 °C, duration 3 h" of a place of the surface. */
+void fg_experiment_setting_words(const fg_experiment *experiment, const double *x, char *text,
+                                 size_t size);
 
 const char *fg_surface_kind_word(fg_surface_kind kind);
 const char *fg_goal_word(fg_goal goal);

@@ -56,10 +56,10 @@ fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *r
                             "pay for it.",
                             report->model_path ? report->model_path : "The model");
   return fg_sentences_say(ctx, s,
-                          "What %s estimated is paid for: the residual has %zu degrees of freedom "
+                          "What %s estimated is paid for: the residual has %zu degree%s of freedom "
                           "instead of %zu.",
                           report->model_path ? report->model_path : "the model",
-                          e->regression.residual_freedom,
+                          e->regression.residual_freedom, fg_plural(e->regression.residual_freedom),
                           e->regression.residual_freedom + e->freedom_taken);
 }
 

@@ -180,17 +180,18 @@ size_t fg_forming_fit_notes(const fg_forming_fit *fit,
                "The beam model leaves %.2f points (residual sd, %zu constant%s)%s. Of runs that "
                "took no part "
                "it misses %.2f points (rms, each run left out in turn)%s.%s",
-               m->residual_sd, m->parameters, m->parameters == 1 ? "" : "s", surface,
-               m->left_out_rms, missed,
+               m->residual_sd, m->parameters, fg_plural(m->parameters), surface, m->left_out_rms,
+               missed,
                m->left_out_rms > 2 * m->residual_sd
                    ? " It may be believed between these runs and not beyond: without its outermost "
                      "run it does not find it again."
                    : "");
   if (isfinite(fit->repeat_sd))
-    fg_text_clip(notes[n++], FG_FORMING_NOTE,
-                 "Runs of the same temperature and duration differ by %.2f points (sd, %zu degrees "
-                 "of freedom): no model of these two leaves less.",
-                 fit->repeat_sd, fit->repeats);
+    fg_text_clip(
+        notes[n++], FG_FORMING_NOTE,
+        "Runs of the same temperature and duration differ by %.2f points (sd, %zu degree%s "
+        "of freedom): no model of these two leaves less.",
+        fit->repeat_sd, fit->repeats, fg_plural(fit->repeats));
   n += note_sign(fit, notes[n]);
   n += note_bounds(fit, notes[n]);
   n += note_open(fit, notes[n]);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "foilgauge/load_report.h"
 #include "report/load_test/load_plots.h"
 #include "report/measure/measure_page_parts.h"
@@ -148,9 +149,8 @@ static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
     fputs(".</li>\n", out);
   }
   if (b->in_lot && b->unknown_places)
-    fprintf(out,
-            "<li>%zu places of the lot's bearing have no clearance: predicted without them.</li>\n",
-            b->unknown_places);
+    fprintf(out, "<li>No clearance at %zu place%s of the lot's bearing: predicted without.</li>\n",
+            b->unknown_places, fg_plural(b->unknown_places));
   if (test->options.lot && !b->in_lot)
     fputs("<li>The lot has no bearing of this name.</li>\n", out);
   fputs("</ul>\n", out);

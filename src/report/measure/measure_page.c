@@ -161,7 +161,8 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
   if (design->form == FG_FORM_ARC)
     fputs(" · a plain strip", out);
   else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
-    fprintf(out, " · %zu bumps, %s", foil->bump_count, fg_orientation_word(foil->orientation));
+    fprintf(out, " · %zu bump%s, %s", foil->bump_count, fg_plural(foil->bump_count),
+            fg_orientation_word(foil->orientation));
   fputs("</p></header>\n", out);
   fg_html_defect(out, design, foil);
   for (size_t i = 0; i < sizeof told / sizeof *told; i++)
@@ -234,7 +235,8 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fg_report_outcome outcome;
   FG_TRY(fg_report_judge_scan(ctx, report->design, scan, &outcome));
   put_section(out, &outcome, number);
-  fprintf(out, "<header><h1>%zu round features</h1>", measurement->disc_count);
+  fprintf(out, "<header><h1>%zu round feature%s</h1>", measurement->disc_count,
+          fg_plural(measurement->disc_count));
   fg_html_verdict(out, outcome.verdict);
   fputs("<p>", out);
   fg_html_text(out, fg_html_base_name(measurement->scan));

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
@@ -231,8 +232,8 @@ static void put_foil(FILE *out, const fg_design *design, const fg_foil *foil) {
   else if (design->form == FG_FORM_CANTILEVER)
     fprintf(out, "\nfoil %d: flat, %zu beams\n", foil->number, foil->beam_count);
   else
-    fprintf(out, "\nfoil %d: %zu bumps, %s\n", foil->number, foil->bump_count,
-            fg_orientation_word(foil->orientation));
+    fprintf(out, "\nfoil %d: %zu bump%s, %s\n", foil->number, foil->bump_count,
+            fg_plural(foil->bump_count), fg_orientation_word(foil->orientation));
   if (foil->flags & FG_FOIL_NOT_THIS_DESIGN) fprintf(out, "  NOT MEASURED: %s\n", foil->error);
   if (fg_foil_defect(design, foil, defect, sizeof defect)) fprintf(out, "  REJECTED: %s\n", defect);
   put_place(out, foil);
