@@ -1,5 +1,6 @@
 #include "geometry/beam_line.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -270,6 +271,14 @@ static double scatter_at(const asked *a, size_t i, double parabola) {
   return a->line->across[i] - parabola * (x * x - a->mean_square);
 }
 
+/* The correlation is followed to this share of its start. */
+#define TAIL_SHARE 0.01
+/* Values that lines and parabolas of two edges take out; the least freedom, and the most that is
+ * made up for. */
+#define TAKEN_OUT     6.0
+#define FREEDOM_LEAST 4.0
+#define MADE_UP_MOST  2.0
+
 typedef struct sums {
   double products[FG_BEAM_LAGS], pairs[FG_BEAM_LAGS];
   double block_squares, blocks, block_stations;
@@ -315,6 +324,35 @@ static double compare_blocks(const sums *s, const fg_beam_noise *noise) {
   return ratio > LONG_RANGE_LEAST ? ratio : 1;
 }
 
+/* Values that count for one: the integral of the correlation. */
+static double integral_of(const fg_beam_noise *noise) {
+  double integral = 1;
+  for (size_t lag = 1; lag < noise->lags; lag++)
+    integral += 2 * noise->covariance[lag] / noise->covariance[0];
+  return integral;
+}
+
+/* Behind the last lag that is no chance the correlation goes on as an exponential of the length
+ * that the lags have. */
+static void extend(fg_beam_noise *noise) {
+  double length = 0.5 * (integral_of(noise) - 1), ratio = length / (1 + length);
+  if (noise->lags < 2) return;
+  while (noise->lags < FG_BEAM_LAGS &&
+         noise->covariance[noise->lags - 1] > TAIL_SHARE * noise->covariance[0]) {
+    noise->covariance[noise->lags] = ratio * noise->covariance[noise->lags - 1];
+    noise->lags++;
+  }
+}
+
+/* A line and a parabola took three values of those that count out of either edge, and few values
+ * do not tell their variance well: Student's factor makes 2 u mean 95 % all the same. */
+static void make_up(double stations, fg_beam_noise *noise) {
+  double count = stations / integral_of(noise), freedom = fmax(count - TAKEN_OUT, FREEDOM_LEAST);
+  double student = gsl_cdf_tdist_Pinv(0.975, freedom) / 1.959964;
+  for (size_t lag = 0; lag < noise->lags; lag++)
+    noise->covariance[lag] *= fmin(count / freedom, MADE_UP_MOST) * student * student;
+}
+
 static double step_of(const fg_beam_line *line) {
   size_t n = line->edge->count;
   fg_point a = station(line, 0)->at, b = station(line, n - 1)->at;
@@ -334,13 +372,12 @@ fg_status fg_beam_noise_find(fg_context *ctx, const fg_beam_line *left, const fg
   noise->lags = fg_correlation_lags(s.products, s.pairs, FG_BEAM_LAGS);
   for (size_t lag = 0; lag < noise->lags; lag++)
     noise->covariance[lag] = s.products[lag] / s.pairs[lag];
+  extend(noise);
   noise->long_range = compare_blocks(&s, noise);
+  make_up(s.pairs[0], noise);
   return FG_OK;
 }
 
 double fg_beam_noise_length(const fg_beam_noise *noise) {
-  double integral = 1;
-  for (size_t lag = 1; lag < noise->lags; lag++)
-    integral += 2 * noise->covariance[lag] / noise->covariance[0];
-  return integral * noise->step_mm;
+  return integral_of(noise) * noise->step_mm;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "report/draw_beams.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -48,6 +49,10 @@ static double large_residual(const fg_measurement *measurement) {
     }
     free(sizes);
   }
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    for (size_t b = 0; b < measurement->foils[i].beam_count; b++)
+      if (isfinite(measurement->foils[i].beams[b].rms_um))
+        largest = fmax(largest, 2.5 * measurement->foils[i].beams[b].rms_um);
   for (size_t i = 0; i < measurement->disc_count; i++)
     if (isfinite(measurement->discs[i].rms_um))
       largest = fmax(largest, 2.5 * measurement->discs[i].rms_um);
@@ -201,6 +206,7 @@ static fg_status draw_ends(fg_context *ctx, fg_canvas *canvas, const fg_foil *fo
 
 static fg_status draw_foil(fg_context *ctx, fg_canvas *canvas, const fg_foil *foil,
                            double magnification) {
+  if (foil->beam_count) return fg_draw_beams(ctx, canvas, foil, magnification);
   FG_TRY(draw_edges(ctx, canvas, &foil->strip));
   if (foil->flags & FG_FOIL_NOT_MEASURED) return FG_OK;
   FG_TRY(draw_whiskers(ctx, canvas, foil, magnification));
@@ -250,11 +256,24 @@ static fg_drawing_box scale_box(const fg_canvas *canvas, int corner) {
       low, {low.x + size_px[0] / canvas->px_per_mm[0], low.y + size_px[1] / canvas->px_per_mm[1]}};
 }
 
+static size_t crowd_of_beam(const fg_beam *beam, fg_drawing_box box) {
+  size_t inside = 0;
+  for (int side = 0; side < FG_BEAM_SIDES; side++)
+    for (size_t k = 0; k < beam->edges[side].count; k++) {
+      fg_point at = beam->edges[side].stations[k].at;
+      inside += at.x > box.low.x && at.x < box.high.x && at.y > box.low.y && at.y < box.high.y;
+    }
+  return inside;
+}
+
 /* How much of the strips, with their residuals beside them, and of the discs' edges lies in a box.
  */
 static size_t crowd(const fg_measurement *measurement, fg_drawing_box box) {
   size_t inside = 0;
   double margin = baseline_mm + whisker_mm;
+  for (size_t i = 0; i < measurement->foil_count; i++)
+    for (size_t b = 0; b < measurement->foils[i].beam_count; b++)
+      inside += crowd_of_beam(&measurement->foils[i].beams[b], box);
   for (size_t i = 0; i < measurement->foil_count; i++)
     for (size_t k = 0; k < measurement->foils[i].strip.count; k++) {
       fg_point at = midpoint(&measurement->foils[i].strip.stations[k]);

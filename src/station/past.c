@@ -114,7 +114,7 @@ void fg_past_write_tables(const fg_past *past, FILE *out) {
   }
   if (!fg_foil_is_measured(past->foil)) return;
   fputs("<h2>Bumps</h2>\n", out);
-  fg_html_bump_table(out, &past->settings.design, past->foil);
+  fg_html_part_table(out, &past->settings.design, past->foil);
   fg_html_foil_table(out, &past->settings.design, past->foil);
 }
 

@@ -14,7 +14,7 @@
 #define WIDTH_MOST   3.0
 /* Straight to this share of the width, within limits in px. */
 #define TOLERANCE_SHARE 0.01
-#define TOLERANCE_LEAST 1.5
+#define TOLERANCE_LEAST 2.0
 #define TOLERANCE_MOST  5.0
 /* Both long sides are parallel, and the tip is across them, within these angles. */
 #define PARALLEL_RAD 0.15
@@ -180,12 +180,54 @@ static bool make_place(const fg_polygon *rim, const fg_beam_limits *limits, size
   fg_cut_floor_find(rim, w.b, true, &w.right, place->width_px, &w.floors[1]);
   if (!w.floors[0].found && !w.floors[1].found) return false;
   place_sides(&w, place);
+  for (int i = 0; i < 2; i++) {
+    place->edge_sides[i] = (i ? w.b : w.a) % rim->count;
+    place->floor_sides[i] = w.floors[i].side;
+  }
   return place->there[FG_BEAM_LEFT] && place->there[FG_BEAM_RIGHT] &&
          place->length_px >= limits->length_px[0] && place->length_px <= limits->length_px[1];
 }
 
+/* Beside the base of a comb a beam and the base's shoulder can each be taken for a beam that has
+ * the other for its floor. */
+static bool exclude(const fg_beam_place *a, const fg_beam_place *b) {
+  for (int i = 0; i < 2; i++)
+    for (int k = 0; k < 2; k++)
+      if (a->floor_sides[i] == b->edge_sides[k] || b->floor_sides[i] == a->edge_sides[k] ||
+          a->edge_sides[i] == b->edge_sides[k])
+        return true;
+  return false;
+}
+
+/* How far a beam's size is off the design's. */
+static double oddness(const fg_beam_place *place, const fg_beam_limits *limits) {
+  double length = sqrt(limits->length_px[0] * limits->length_px[1] / (LENGTH_LEAST * LENGTH_MOST));
+  double width = sqrt(limits->width_px[0] * limits->width_px[1] / (WIDTH_LEAST * WIDTH_MOST));
+  return fabs(log(place->length_px / length)) + fabs(log(place->width_px / width));
+}
+
+/* Of places that exclude each other the one that is more like the design stays. */
+static void drop_odd(const fg_beam_limits *limits, size_t first, fg_beam_places *places) {
+  for (size_t i = first; i < places->count; i++)
+    for (size_t k = i + 1; k < places->count;) {
+      fg_beam_place *a = &places->list[i], *b = &places->list[k];
+      if (!exclude(a, b)) {
+        k++;
+        continue;
+      }
+      if (oddness(b, limits) < oddness(a, limits)) {
+        *a = *b;
+        k = i + 1; /* what it excludes may lie before it */
+      }
+      size_t at = (size_t)(b - places->list);
+      memmove(b, b + 1, (places->count - at - 1) * sizeof *b);
+      places->count--;
+    }
+}
+
 fg_status fg_beams_find(fg_context *ctx, const fg_polygon *rim, const fg_beam_limits *limits,
                         fg_beam_places *places) {
+  size_t first = places->count;
   for (size_t a = 0; a < rim->count; a++) {
     fg_beam_place place;
     if (!is_long(&rim->sides[a], limits)) continue;
@@ -195,5 +237,6 @@ fg_status fg_beams_find(fg_context *ctx, const fg_polygon *rim, const fg_beam_li
                              (void **)&places->list));
     places->list[places->count++] = place;
   }
+  drop_odd(limits, first, places);
   return FG_OK;
 }

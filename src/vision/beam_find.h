@@ -26,6 +26,7 @@ typedef struct fg_beam_place {
   unsigned flags;     /* fg_beam_flag */
   fg_point root, tip; /* middle of its root and of its tip */
   double length_px, width_px;
+  size_t edge_sides[2], floor_sides[2]; /* of the rim's polygon */
 } fg_beam_place;
 
 typedef struct fg_beam_places {

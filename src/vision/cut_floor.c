@@ -35,6 +35,7 @@
 typedef struct way {
   size_t first, last; /* points, in the rim's order */
   double across;      /* how much of it runs across the beam */
+  size_t longest;     /* side that does; FG_NO_SIDE: none */
   bool opposite;      /* it ends at a side that runs back along the beam */
   size_t other;       /* that side, or the last one that was looked at */
 } way;
@@ -43,10 +44,16 @@ static bool is_way_back(const fg_polygon_side *side, const way *w) {
   return side->length > OPPOSITE_LEAST && side->length > OPPOSITE_SHARE * w->across;
 }
 
+static void take_across(const fg_polygon *rim, size_t at, way *w) {
+  w->across += rim->sides[at].length;
+  if (w->longest == FG_NO_SIDE || rim->sides[at].length > rim->sides[w->longest].length)
+    w->longest = at;
+}
+
 static bool walk(const fg_polygon *rim, size_t side, bool after, way *w) {
   double turn = 0;
   size_t at = side % rim->count;
-  *w = (way){.first = rim->sides[at].last, .last = rim->sides[at].first};
+  *w = (way){.first = rim->sides[at].last, .last = rim->sides[at].first, .longest = FG_NO_SIDE};
   for (size_t k = 1; k < rim->count; k++) {
     size_t next = after ? (at + 1) % rim->count : (at + rim->count - 1) % rim->count;
     turn += after ? fg_polygon_turn(rim->sides[at].angle, rim->sides[next].angle)
@@ -57,7 +64,7 @@ static bool walk(const fg_polygon *rim, size_t side, bool after, way *w) {
       break;
     }
     if (turn > ALONG || (w->across > 0 && -turn < ALONG)) break;
-    if (-turn > ACROSS_FROM && -turn < ACROSS_TO) w->across += rim->sides[at].length;
+    if (-turn > ACROSS_FROM && -turn < ACROSS_TO) take_across(rim, at, w);
   }
   w->other = at;
   if (after)
@@ -188,7 +195,7 @@ static double find_gap(const frame *f, double width_px) {
 void fg_cut_floor_find(const fg_polygon *rim, size_t side, bool after, const fg_straight *line,
                        double width_px, fg_cut_floor *floor) {
   frame f = {.rim = rim, .line = line, .sign = after ? 1 : -1};
-  *floor = (fg_cut_floor){0};
+  *floor = (fg_cut_floor){.side = FG_NO_SIDE};
   if (!walk(rim, side, after, &f.way)) return;
   f.gap = find_gap(&f, width_px);
   if (!(f.gap > 2)) return;
@@ -196,4 +203,5 @@ void fg_cut_floor_find(const fg_polygon *rim, size_t side, bool after, const fg_
   if (isnan(bulge)) return;
   if (!(bulge < BULGE_SHARE * f.gap && place_straight(&f, floor))) place_round(&f, floor);
   floor->found = true;
+  floor->side = f.way.longest;
 }

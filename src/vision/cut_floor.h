@@ -10,11 +10,14 @@
 /* Shorter stretches hold no edge to fit. */
 #define FG_STRETCH_LEAST_PX 6.0
 
+#define FG_NO_SIDE ((size_t)-1)
+
 typedef struct fg_cut_floor {
   bool found;
   fg_stretch stretch; /* its straight part, or the arc about the apex of a round end */
   fg_point place;     /* its middle, or the apex */
   double corner;      /* radius of the corner between it and the beam */
+  size_t side;        /* the rim's longest side along it; FG_NO_SIDE: none */
 } fg_cut_floor;
 
 /* The floor before the side `side` of a rim, which leads to the tip, or `after` one that leads

@@ -6,11 +6,14 @@
 
 #include "core/memory.h"
 
-/* Two sides are one that something small parts: their directions differ by less than this, they
- * are in line within so many tolerances, and what lies between is at most this share of them. */
+/* Two sides are one that something small parts, or roughness: their directions differ by less than
+ * this and what so many tolerances make of the shorter one, the ends between them are as near to
+ * their common chord, what lies between is at most this share of them, and neither is a facet of
+ * the other. */
 #define JOIN_RAD        0.03
 #define JOIN_TOLERANCES 2.5
 #define JOIN_SHARE      0.25
+#define FACET_SHARE     0.12
 
 double fg_polygon_turn(double from, double to) {
   return remainder(to - from, 2 * M_PI);
@@ -80,10 +83,15 @@ static bool is_one(const fg_polygon *p, const fg_polygon_side *a, const fg_polyg
                    double tolerance) {
   double between = (double)fg_polygon_span(p, a->last, b->first);
   if (between > JOIN_SHARE * (a->length + b->length)) return false;
-  if (fabs(fg_polygon_turn(a->angle, b->angle)) > JOIN_RAD) return false;
-  fg_straight line = {p->points[a->first], {cos(a->angle), sin(a->angle)}};
-  return fabs(fg_straight_left(&line, p->points[b->first])) < JOIN_TOLERANCES * tolerance &&
-         fabs(fg_straight_left(&line, p->points[b->last])) < JOIN_TOLERANCES * tolerance;
+  double shorter = fmin(a->length, b->length), longer = fmax(a->length, b->length);
+  double near = JOIN_TOLERANCES * tolerance;
+  if (shorter < FACET_SHARE * longer) return false;
+  if (fabs(fg_polygon_turn(a->angle, b->angle)) > JOIN_RAD + near / shorter) return false;
+  fg_polygon_side both;
+  fill_side(p, a->first, b->last, &both);
+  fg_straight chord = {p->points[a->first], {cos(both.angle), sin(both.angle)}};
+  return fabs(fg_straight_left(&chord, p->points[a->last])) < near &&
+         fabs(fg_straight_left(&chord, p->points[b->first])) < near;
 }
 
 /* The next side after `i` that goes on with it; 0 where there is none. */

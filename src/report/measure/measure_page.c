@@ -46,18 +46,37 @@ static fg_status put_facts(fg_context *ctx, FILE *out, const fg_design *design,
 static void put_uncertainty(FILE *out, const fg_measurement *measurement, const fg_foil *foil) {
   char scale[FG_SCALE_WORDS];
   fg_scale_words(measurement->model, &measurement->design.calibration, scale, sizeof scale);
-  fputs("<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
-        "factor k = 2, about 95 %). u comes from the residuals with their correlation along the "
-        "edge and from what the two edges say against each other. ",
-        out);
+  bool flat = measurement->design.form == FG_FORM_CANTILEVER;
+  fprintf(
+      out,
+      "<h2>What ± means</h2>\n<p class=\"note\">± is the expanded uncertainty U = 2 u (coverage "
+      "factor k = 2, about 95 %%). u comes from the residuals with their correlation along the "
+      "edge and from what %s. ",
+      flat ? "the flanks and the core of every edge say against each other"
+           : "the two edges say against each other");
   fg_html_text(out, scale);
   fputs(" A value passes when value ± U lies inside its tolerance, fails when "
         "it lies outside, and cannot be told when a limit runs through it.",
         out);
   if (foil && measurement->design.form != FG_FORM_ARC)
-    fputs(" s is the standard deviation over the n bumps.", out);
+    fprintf(out, " s is the standard deviation over the n %s.", flat ? "beams" : "bumps");
   fputs("</p>\n", out);
   fg_html_uncertainty_budget(out, measurement, foil);
+}
+
+/* What is measured of a flat foil, and what follows from it. */
+static void put_beam_words(FILE *out, const fg_design *design) {
+  fputs("<h2>How a beam is measured</h2>\n<p class=\"note\">L runs along the beam's axis, midway "
+        "between its long edges, from the root line to the tip's line; the root line joins the "
+        "ends of the cuts on both sides (the middle of a straight end, the apex of a round one). w "
+        "is the width halfway. Beams are numbered from left to right with their tips up. The "
+        "compliance is S = L³ / (3 E I), I = w t³ / 12 (eq 5.10); once bent the sagitta goes with "
+        "L², and the clearance changes by what the sagitta loses. ",
+        out);
+  fprintf(out,
+          "The scan does not show the thickness: t is the design's %.6g mm%s. The scan is of the "
+          "flat foil, before it is bent.</p>\n",
+          design->thickness_mm, design->u_thickness_mm > 0 ? ", its u is in that of S" : "");
 }
 
 static void put_free_and_fitted(FILE *out) {
@@ -76,6 +95,10 @@ static const char *legend_of(fg_form form) {
   if (form == FG_FORM_DISCS)
     return "Orange: the circle that was fitted to each feature, with its number. Magenta: how far "
            "the edge lies from it. A red ring and value: beyond a limit.";
+  if (form == FG_FORM_CANTILEVER)
+    return "Orange: the fitted edges of every beam, with its number. Blue, dashed: root line and "
+           "axis. Magenta: residuals, longer than drawn are cut at 1 mm. A red ring and value: "
+           "beyond a limit, or no length; amber, with a question mark: cannot be told.";
   if (form == FG_FORM_ARC)
     return "Blue, dashed: the circle; orange: the cuts at the ends, with their directions from the "
            "centre. Magenta: residuals.";
@@ -111,18 +134,40 @@ static void put_arc_details(FILE *out, const fg_design *design, const fg_foil *f
         out);
 }
 
+static void put_flat_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+  fg_html_limits(out, design, foil);
+  fputs("<h2>Beams</h2>\n", out);
+  fg_html_part_table(out, design, foil);
+  fputs("<h2>Against the design, per beam</h2>\n<figure>", out);
+  fg_html_errors(out, design, foil);
+  fprintf(out,
+          "<figcaption>Edges scatter about their lines by %.3g µm, correlated over %.3g mm."
+          "</figcaption></figure>\n",
+          foil->noise_um, foil->correlation_mm);
+  put_beam_words(out, design);
+}
+
 static void put_foil_details(FILE *out, const fg_design *design, const fg_foil *foil) {
   fg_html_limits(out, design, foil);
   fputs("<h2>Bumps</h2>\n", out);
-  fg_html_bump_table(out, design, foil);
+  fg_html_part_table(out, design, foil);
   fg_html_foil_table(out, design, foil);
   char thickness[200];
   fg_thickness_words(design, foil, thickness, sizeof thickness);
   if (thickness[0]) fprintf(out, "<p class=\"note\">Strip thickness: %s.</p>\n", thickness);
   fputs("<h2>Springback error per bump</h2>\n<figure>", out);
-  fg_html_springback(out, design, foil);
+  fg_html_errors(out, design, foil);
   fputs("</figure>\n", out);
   put_residuals(out, foil, "its fitted circles: lands in blue, bumps in orange");
+}
+
+static void put_details(FILE *out, const fg_design *design, const fg_foil *foil) {
+  if (design->form == FG_FORM_ARC)
+    put_arc_details(out, design, foil);
+  else if (design->form == FG_FORM_CANTILEVER)
+    put_flat_details(out, design, foil);
+  else
+    put_foil_details(out, design, foil);
 }
 
 static void put_not_judged(FILE *out, const fg_design *design) {
@@ -160,6 +205,8 @@ static void put_judged(FILE *out, const fg_design *design, const fg_report_scan 
   fg_html_text(out, fg_html_base_name(scan->measurement->scan));
   if (design->form == FG_FORM_ARC)
     fputs(" · a plain strip", out);
+  else if (design->form == FG_FORM_CANTILEVER)
+    fprintf(out, " · a flat foil, %zu beams", foil->beam_count);
   else if (!(foil->flags & FG_FOIL_NOT_MEASURED))
     fprintf(out, " · %zu bump%s, %s", foil->bump_count, fg_plural(foil->bump_count),
             fg_orientation_word(foil->orientation));
@@ -183,7 +230,8 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   const fg_measurement *measurement = scan->measurement;
   const fg_design *design = report->design;
   char moved[FG_CORRECTION_WORDS], added[FG_CORRECTION_WORDS];
-  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED), arc = design->form == FG_FORM_ARC;
+  bool measured = !(foil->flags & FG_FOIL_NOT_MEASURED);
+  bool bumps = fg_form_has_bumps(design->form);
   put_error(out, foil);
   put_flags(out, design, foil);
   fg_correction_moved(&foil->correction, moved, sizeof moved);
@@ -192,8 +240,8 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   fg_html_choices(out, foil);
   if (measured) fg_html_tiles(out, design, foil);
   FG_TRY(put_picture(ctx, out, report, measurement, foil));
-  if (measured) (arc ? put_arc_details : put_foil_details)(out, design, foil);
-  if (measured && !arc) put_free_and_fitted(out);
+  if (measured) put_details(out, design, foil);
+  if (measured && bumps) put_free_and_fitted(out);
   if (foil == measurement->foils) fg_html_colour_lines(out, measurement);
   if (measured) put_uncertainty(out, measurement, foil);
   return put_facts(ctx, out, design, measurement);

@@ -1,6 +1,7 @@
-/* Every toleranced quantity of the bumps over their numbers, with its limits. */
+/* Every toleranced quantity of the bumps, or beams, over their numbers, with its limits. */
 #include <math.h>
 
+#include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 #include "report/plot_marks.h"
 
@@ -14,6 +15,7 @@ typedef struct panel {
   fg_plot at;
   const fg_design *design;
   const fg_foil *foil;
+  const fg_foil_parts *parts;
   const fg_quantity *row;
   const fg_tolerance *limit;
 } panel;
@@ -23,8 +25,8 @@ static double distance_of(const panel *p) {
   double low = p->limit->lower, high = p->limit->upper;
   if (isfinite(low) && isfinite(high) && high > low) return high - low;
   double limit = isfinite(low) ? low : high, nearest = INFINITY;
-  for (size_t i = 0; i < p->foil->bump_count; i++) {
-    double value = fg_quantity_value(p->row, &p->foil->bumps[i]);
+  for (size_t i = 0; i < p->parts->count; i++) {
+    double value = fg_quantity_value(p->row, fg_foil_part_at(p->parts, i));
     if (isfinite(value) && value != limit) nearest = fmin(nearest, fabs(value - limit));
   }
   return isfinite(nearest) ? 2 * nearest : fmax(fabs(limit), 1);
@@ -34,9 +36,9 @@ static void find_range(panel *p) {
   double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * distance_of(p);
   double from = isfinite(low) ? low : high, to = isfinite(high) ? high : low;
   const double most[2] = {from - reach, to + reach};
-  for (size_t i = 0; i < p->foil->bump_count; i++) {
-    double value = fg_quantity_value(p->row, &p->foil->bumps[i]);
-    double u = fg_quantity_uncertainty(p->row, &p->foil->bumps[i]);
+  for (size_t i = 0; i < p->parts->count; i++) {
+    double value = fg_quantity_value(p->row, fg_foil_part_at(p->parts, i));
+    double u = fg_quantity_uncertainty(p->row, fg_foil_part_at(p->parts, i));
     double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
     if (!isfinite(value)) continue;
     from = fmin(from, fmax(most[0], value - expanded));
@@ -82,24 +84,20 @@ static void put_beyond(const panel *p, double x, double value) {
           y + (above ? 16 : -6), value < 0 ? "−" : "", p->row->decimals, fabs(value));
 }
 
-static bool is_there(const fg_foil *foil, int number) {
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number == number) return true;
-  return false;
-}
-
-/* A bump without a value: why, upright in its column. */
+/* A part without a value: why, upright in its column. */
 static void put_nothing(const panel *p, int number, const char *why) {
   fprintf(p->at.out,
           "<text class=\"x told\" transform=\"translate(%.1f %.1f) rotate(-90)\">%s</text>\n",
           fg_plot_x(&p->at, number) + 5, (p->at.top + p->at.bottom) / 2, why);
 }
 
-static void put_value(const panel *p, const fg_bump *bump) {
-  double value = fg_quantity_value(p->row, bump), u = fg_quantity_uncertainty(p->row, bump);
-  double x = fg_plot_x(&p->at, bump->number);
+static void put_value(const panel *p, size_t i) {
+  const void *part = fg_foil_part_at(p->parts, i);
+  int number = fg_foil_part_number(p->parts, i);
+  double value = fg_quantity_value(p->row, part), u = fg_quantity_uncertainty(p->row, part);
+  double x = fg_plot_x(&p->at, number);
   if (!isfinite(value)) {
-    put_nothing(p, bump->number, bump->flags & FG_BUMP_NOT_FITTED ? "not fitted" : "no value");
+    put_nothing(p, number, fg_foil_part_lack(p->parts, i));
     return;
   }
   if (value > p->at.y_high || value < p->at.y_low) {
@@ -125,10 +123,9 @@ static void put_inside(const panel *p) {
 
 static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
                       const fg_tolerance *limit, const fg_quantity *row) {
-  int last = (int)design->bump_count;
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number > last) last = foil->bumps[i].number;
-  panel p = {{out, 500, 70, 490, 14, 210, 0.4, last + 0.6, 0, 1}, design, foil, row, limit};
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  int last = fg_foil_parts_last(&parts);
+  panel p = {{out, 500, 70, 490, 14, 210, 0.4, last + 0.6, 0, 1}, design, foil, &parts, row, limit};
   char title[160];
   find_range(&p);
   fputs("<figure><h3>", out);
@@ -143,27 +140,30 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
     char text[16];
     snprintf(text, sizeof text, "%d", number);
     fg_plot_x_label(&p.at, fg_plot_x(&p.at, number), text);
-    if (!is_there(foil, number) && !(foil->flags & FG_FOIL_TOUCHES_BORDER))
+    if (!fg_foil_parts_have(&parts, number) && !(foil->flags & FG_FOIL_TOUCHES_BORDER))
       put_nothing(&p, number, "missing");
   }
-  fg_plot_x_title(&p.at, "bump");
-  for (size_t i = 0; i < foil->bump_count; i++)
-    put_value(&p, &foil->bumps[i]);
+  fg_plot_x_title(&p.at, parts.name);
+  for (size_t i = 0; i < parts.count; i++)
+    put_value(&p, i);
   fputs("</svg></figure>\n", out);
 }
 
 void fg_html_limits(FILE *out, const fg_design *design, const fg_foil *foil) {
   bool opened = false;
-  if (!foil->bump_count) return;
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  if (!parts.count) return;
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *limit = &design->tolerances[i];
-    const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, limit->quantity);
+    const fg_quantity *row = fg_quantity_find(parts.owner, limit->quantity);
     if (!row || row->kind == FG_QUANTITY_PAIR) continue;
     if (!opened)
-      fputs("<h2>Every bump against its limits</h2>\n<p class=\"note\">Green: inside the limits. A "
-            "cross fails, a question mark cannot be told, an arrow lies farther out than the plot "
-            "reaches. Bars: ±.</p>\n<div class=\"panels\">\n",
-            out);
+      fprintf(
+          out,
+          "<h2>Every %s against its limits</h2>\n<p class=\"note\">Green: inside the limits. A "
+          "cross fails, a question mark cannot be told, an arrow lies farther out than the plot "
+          "reaches. Bars: ±.</p>\n<div class=\"panels\">\n",
+          parts.name);
     opened = true;
     put_panel(out, design, foil, limit, row);
   }

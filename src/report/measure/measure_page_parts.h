@@ -31,8 +31,8 @@ fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *meas
 /* Residual of the midline along the foil, bumps marked. */
 void fg_html_residuals(FILE *out, const fg_foil *foil);
 
-/* Radius and angle error of every bump with error bars (as the thesis's figure 5.17), and limits
- * where there are any. */
-void fg_html_springback(FILE *out, const fg_design *design, const fg_foil *foil);
+/* Radius and angle error of every bump with error bars (as the thesis's figure 5.17), of every beam
+ * those of compliance and sagitta, and limits where there are any. */
+void fg_html_errors(FILE *out, const fg_design *design, const fg_foil *foil);
 
 #endif

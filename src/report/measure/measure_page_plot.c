@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/select.h"
+#include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 
 static bool has_residual(const fg_station_label *label) {
@@ -82,18 +83,32 @@ void fg_html_residuals(FILE *out, const fg_foil *foil) {
 }
 
 typedef struct series {
-  const char *quantity, *style, *words;
+  const char *quantity, *style, *words, *of_limit; /* what follows a limit's number */
   double shift; /* sideways, so that two error bars do not hide each other */
 } series;
 
-static const series both_series[] = {
-    {"radius_error_pct", "s1", "bump radius", -7},
-    {"bump_angle_error_pct", "s2", "bump angle", 7},
-};
+/* The two errors that are drawn of every part of a foil. */
+typedef struct error_plot {
+  const char *title, *axis;
+  series series[2];
+} error_plot;
+
+static const error_plot of_bumps = {
+    "Springback error of every bump",
+    "springback error, %",
+    {{"radius_error_pct", "s1", "bump radius", " % of the radius", -7},
+     {"bump_angle_error_pct", "s2", "bump angle", " % of the angle", 7}}};
+
+static const error_plot of_beams = {
+    "Compliance and sagitta of every beam against the design",
+    "against the design, %",
+    {{"compliance_error_pct", "s1", "compliance", " % of the compliance", -7},
+     {"sagitta_error_pct", "s2", "sagitta", " % of the sagitta", 7}}};
 
 /* Crushed bumps lie far out: where the others are is what the plot must show. */
-static bool is_shown(const fg_bump *bump) {
-  return !(bump->flags & FG_BUMP_CRUSHED);
+static bool is_shown(const fg_foil_parts *parts, size_t i) {
+  if (parts->owner != FG_QUANTITY_OF_BUMP) return true;
+  return !(((const fg_bump *)fg_foil_part_at(parts, i))->flags & FG_BUMP_CRUSHED);
 }
 
 static const fg_tolerance *limit_of(const fg_design *design, const series *one) {
@@ -102,19 +117,20 @@ static const fg_tolerance *limit_of(const fg_design *design, const series *one) 
   return NULL;
 }
 
-static void springback_range(const fg_design *design, const fg_foil *foil, double range[2]) {
+static void error_range(const fg_design *design, const error_plot *plot, const fg_foil_parts *parts,
+                        double range[2]) {
   range[0] = range[1] = 0;
   for (size_t k = 0; k < 2; k++) {
-    const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, both_series[k].quantity);
-    for (size_t i = 0; i < foil->bump_count; i++) {
-      double value = fg_quantity_value(row, &foil->bumps[i]);
-      double u = fg_quantity_uncertainty(row, &foil->bumps[i]);
-      if (!isfinite(value) || !is_shown(&foil->bumps[i])) continue;
+    const fg_quantity *row = fg_quantity_find(parts->owner, plot->series[k].quantity);
+    for (size_t i = 0; i < parts->count; i++) {
+      double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
+      double u = fg_quantity_uncertainty(row, fg_foil_part_at(parts, i));
+      if (!isfinite(value) || !is_shown(parts, i)) continue;
       double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
       range[0] = fmin(range[0], value - expanded);
       range[1] = fmax(range[1], value + expanded);
     }
-    const fg_tolerance *limit = limit_of(design, &both_series[k]);
+    const fg_tolerance *limit = limit_of(design, &plot->series[k]);
     if (limit && isfinite(limit->lower)) range[0] = fmin(range[0], limit->lower);
     if (limit && isfinite(limit->upper)) range[1] = fmax(range[1], limit->upper);
   }
@@ -134,11 +150,12 @@ static void put_outside(const fg_plot *at, const series *one, double x, double v
           above ? 8.0 : -8.0, x + 9, above ? y + 16 : y - 6, value < 0 ? "−" : "", fabs(value));
 }
 
-static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) {
-  const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, one->quantity);
-  double value = fg_quantity_value(row, bump), u = fg_quantity_uncertainty(row, bump);
+static void put_mark(const fg_plot *at, const series *one, const fg_foil_parts *parts, size_t i) {
+  const fg_quantity *row = fg_quantity_find(parts->owner, one->quantity);
+  double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
+  double u = fg_quantity_uncertainty(row, fg_foil_part_at(parts, i));
   if (!isfinite(value)) return;
-  double x = fg_plot_x(at, bump->number) + one->shift, y = fg_plot_y(at, value);
+  double x = fg_plot_x(at, fg_foil_part_number(parts, i)) + one->shift, y = fg_plot_y(at, value);
   if (value > at->y_high || value < at->y_low) {
     put_outside(at, one, x, value);
     return;
@@ -152,31 +169,39 @@ static void put_mark(const fg_plot *at, const series *one, const fg_bump *bump) 
           y);
 }
 
-void fg_html_springback(FILE *out, const fg_design *design, const fg_foil *foil) {
+static const char *title_of_numbers(const fg_foil_parts *parts, const fg_foil *foil) {
+  if (parts->owner == FG_QUANTITY_OF_BEAM) return "beam";
+  return foil->flags & FG_FOIL_NO_LIP ? "bump" : "bump, 1 is next to the lip";
+}
+
+void fg_html_errors(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  const error_plot *plot = parts.owner == FG_QUANTITY_OF_BEAM ? &of_beams : &of_bumps;
   double range[2];
   int last = 1;
-  if (foil->bump_count == 0) return;
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number > last) last = foil->bumps[i].number;
-  springback_range(design, foil, range);
+  if (parts.count == 0) return;
+  for (size_t i = 0; i < parts.count; i++)
+    if (fg_foil_part_number(&parts, i) > last) last = fg_foil_part_number(&parts, i);
+  error_range(design, plot, &parts, range);
   fg_plot at = {out, 1000, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
-  fg_plot_begin(&at, 310, "Springback error of every bump");
-  fg_plot_y_axis(&at, "springback error, %");
-  for (size_t i = 0; i < foil->bump_count; i++) {
+  fg_plot_begin(&at, 310, plot->title);
+  fg_plot_y_axis(&at, plot->axis);
+  for (size_t i = 0; i < parts.count; i++) {
     char number[16];
-    snprintf(number, sizeof number, "%d", foil->bumps[i].number);
-    fg_plot_x_label(&at, fg_plot_x(&at, foil->bumps[i].number), number);
+    snprintf(number, sizeof number, "%d", fg_foil_part_number(&parts, i));
+    fg_plot_x_label(&at, fg_plot_x(&at, fg_foil_part_number(&parts, i)), number);
   }
-  fg_plot_x_title(&at, foil->flags & FG_FOIL_NO_LIP ? "bump" : "bump, 1 is next to the lip");
+  fg_plot_x_title(&at, title_of_numbers(&parts, foil));
   for (size_t k = 0; k < 2; k++) {
-    const fg_tolerance *limit = limit_of(design, &both_series[k]);
-    if (limit) fg_html_limit_lines(&at, limit, k ? " % of the angle" : " % of the radius");
-    for (size_t i = 0; i < foil->bump_count; i++)
-      put_mark(&at, &both_series[k], &foil->bumps[i]);
+    const series *one = &plot->series[k];
+    const fg_tolerance *limit = limit_of(design, one);
+    if (limit) fg_html_limit_lines(&at, limit, one->of_limit);
+    for (size_t i = 0; i < parts.count; i++)
+      put_mark(&at, one, &parts, i);
     fprintf(
         out,
         "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s</text>\n",
-        both_series[k].style, 80 + 230.0 * (double)k, 92 + 230.0 * (double)k, both_series[k].words);
+        one->style, 80 + 230.0 * (double)k, 92 + 230.0 * (double)k, one->words);
   }
   fputs("</svg>\n", out);
 }

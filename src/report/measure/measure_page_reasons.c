@@ -1,6 +1,7 @@
 /* Why a verdict is what it is: which values, at which bump, against which limit. */
 #include <math.h>
 
+#include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 
 /* "4.042 %, max 3" of the first that lies farthest out; the others by their numbers. */
@@ -26,7 +27,8 @@ static size_t put_list(FILE *out, const fg_decision *decision, fg_verdict verdic
     const fg_judgement *one = &decision->judgements[i];
     if (!is_told(one, verdict)) continue;
     if (one->tolerance != last)
-      fprintf(out, "%s%s%s", last ? "; " : "", one->row->words, one->number ? ": bump" : "");
+      fprintf(out, "%s%s%s%s", last ? "; " : "", one->row->words, one->number ? ": " : "",
+              one->number ? fg_foil_part_word(one->row) : "");
     else
       fputc(',', out);
     if (one->number) fprintf(out, " %d", one->number);

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 
 const char *fg_html_base_name(const char *path) {
@@ -38,24 +39,31 @@ static void put_number(FILE *out, double value, int decimals) {
     fputs("<td>–</td>", out);
 }
 
-static double mean_of(const fg_foil *foil, const char *name) {
-  const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, name);
+static double mean_of(const fg_design *design, const fg_foil *foil, const char *name) {
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  const fg_quantity *row = fg_quantity_find(parts.owner, name);
   double sum = 0, count = 0;
-  for (size_t i = 0; i < foil->bump_count; i++) {
-    double value = fg_quantity_value(row, &foil->bumps[i]);
+  for (size_t i = 0; i < parts.count; i++) {
+    double value = fg_quantity_value(row, fg_foil_part_at(&parts, i));
     if (isfinite(value)) sum += value, count++;
   }
   return count > 0 ? sum / count : NAN;
 }
 
 static void put_numbers(FILE *out, const fg_design *design, const fg_foil *foil) {
+  if (design->form == FG_FORM_CANTILEVER) {
+    put_number(out, foil ? mean_of(design, foil, "length_mm") : NAN, 4);
+    put_number(out, foil ? mean_of(design, foil, "width_mm") : NAN, 4);
+    put_number(out, foil ? mean_of(design, foil, "compliance_error_pct") : NAN, 3);
+    return;
+  }
   put_number(out, foil ? foil->overall.radius_mm : NAN, 4);
   if (design->form == FG_FORM_ARC) {
     put_number(out, foil ? foil->arc.subtended_angle_deg : NAN, 3);
     return;
   }
-  put_number(out, foil ? mean_of(foil, "radius_mm") : NAN, 4);
-  put_number(out, foil ? mean_of(foil, "height_mm") : NAN, 4);
+  put_number(out, foil ? mean_of(design, foil, "radius_mm") : NAN, 4);
+  put_number(out, foil ? mean_of(design, foil, "height_mm") : NAN, 4);
 }
 
 static fg_status put_foil(fg_context *ctx, FILE *out, const fg_report *report,
@@ -125,6 +133,10 @@ static void put_heads(FILE *out, const fg_design *design) {
         out);
   if (design->form == FG_FORM_ARC)
     fputs("<th>radius<br>mm</th><th>angle<br>°</th>", out);
+  else if (design->form == FG_FORM_CANTILEVER)
+    fputs("<th>length, mean<br>mm</th><th>width, mean<br>mm</th><th>compliance against the "
+          "design, mean<br>%</th>",
+          out);
   else if (design->form != FG_FORM_DISCS)
     fputs(
         "<th>overall radius<br>mm</th><th>bump radius, mean<br>mm</th><th>height, mean<br>mm</th>",

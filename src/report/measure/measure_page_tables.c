@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "quantity/quantity_rows.h"
+#include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 
 enum { PAGE_COLUMNS_MAX = FG_QUANTITY_SHOWN_MAX + FG_TOLERANCES_MAX };
@@ -36,10 +37,10 @@ static void put_cell(FILE *out, const fg_design *design, const fg_quantity *row,
   fputs("</td>", out);
 }
 
-static void put_flag_cell(FILE *out, unsigned flags) {
+static void put_flag_cell(FILE *out, const fg_flag_words *words, unsigned flags) {
   const char *separator = "";
   fputs("<td class=\"words\">", out);
-  for (const fg_flag_words *words = fg_bump_flag_words(); words->name; words++) {
+  for (; words->name; words++) {
     if (!(flags & words->flag)) continue;
     fprintf(out, "%s%s", separator, words->plain);
     separator = "; ";
@@ -66,7 +67,7 @@ typedef struct table_rows {
   const char *title;
   const char *objects;
   size_t count, size;
-  const fg_foil *foil; /* of the bumps; NULL for discs */
+  const fg_foil *foil; /* of the bumps or beams; NULL for discs */
 } table_rows;
 
 static void put_table_head(FILE *out, const fg_design *design, const table_rows *rows,
@@ -89,12 +90,33 @@ static void put_table_head(FILE *out, const fg_design *design, const table_rows 
   fputs("<td></td></tr>\n", out);
 }
 
-/* A bump whose circle could not be fitted has no values: one cell says so. */
-static void put_unfitted(FILE *out, const fg_bump *bump, size_t columns) {
+/* A part that could not be fitted has no values: one cell says so. */
+static void put_unfitted(FILE *out, int number, size_t columns) {
   fprintf(out,
           "<tr class=\"unfitted\"><td>%d</td><td class=\"words not_measured\" colspan=\"%zu\">"
           "not fitted: it has no values</td>",
-          bump->number, columns);
+          number, columns);
+}
+
+/* What a table asks of a row, whatever it is of. */
+typedef struct row_state {
+  int number;
+  bool unfitted;
+  unsigned flags;
+  const fg_flag_words *words;
+} row_state;
+
+static row_state state_of(const fg_design *design, const table_rows *rows, const void *object) {
+  const fg_bump *bump = object;
+  const fg_beam *beam = object;
+  const fg_disc *disc = object;
+  if (rows->owner == FG_QUANTITY_OF_BEAM)
+    return (row_state){beam->number, beam->flags & FG_BEAM_NOT_FITTED,
+                       fg_beam_flags(design, rows->foil, beam), fg_beam_flag_words()};
+  if (rows->owner == FG_QUANTITY_OF_BUMP)
+    return (row_state){bump->number, bump->flags & FG_BUMP_NOT_FITTED,
+                       fg_bump_flags(design, rows->foil, bump), fg_bump_flag_words()};
+  return (row_state){disc->number, false, fg_disc_flags(design, disc), fg_bump_flag_words()};
 }
 
 /* What the symbols of the heads stand for. */
@@ -112,17 +134,14 @@ static void put_table(FILE *out, const fg_design *design, const table_rows *rows
   put_table_head(out, design, rows, columns, count);
   for (size_t i = 0; i < rows->count; i++) {
     const void *object = rows->objects + i * rows->size;
-    const fg_bump *bump = object;
-    const fg_disc *disc = object;
-    bool unfitted = rows->foil && bump->flags & FG_BUMP_NOT_FITTED;
-    if (unfitted)
-      put_unfitted(out, bump, count);
+    const row_state state = state_of(design, rows, object);
+    if (state.unfitted)
+      put_unfitted(out, state.number, count);
     else
-      fprintf(out, "<tr><td>%d</td>", rows->foil ? bump->number : disc->number);
-    for (size_t k = 0; k < count && !unfitted; k++)
+      fprintf(out, "<tr><td>%d</td>", state.number);
+    for (size_t k = 0; k < count && !state.unfitted; k++)
       put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
-    put_flag_cell(out, rows->foil ? fg_bump_flags(design, rows->foil, bump)
-                                  : fg_disc_flags(design, disc));
+    put_flag_cell(out, state.words, state.flags);
   }
   fputs("</tbody></table></div>\n", out);
 }
@@ -143,9 +162,9 @@ void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil)
   fputs("</tbody></table></div>\n", out);
 }
 
-void fg_html_bump_table(FILE *out, const fg_design *design, const fg_foil *foil) {
-  const table_rows rows = {FG_QUANTITY_OF_BUMP, "bump", (const char *)foil->bumps, foil->bump_count,
-                           sizeof *foil->bumps, foil};
+void fg_html_part_table(FILE *out, const fg_design *design, const fg_foil *foil) {
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  const table_rows rows = {parts.owner, parts.name, parts.objects, parts.count, parts.size, foil};
   put_table(out, design, &rows);
 }
 

@@ -5,7 +5,7 @@
 #include "report/measure/measure_page_parts.h"
 #include "report/plot.h"
 
-void fg_html_bump_table(FILE *out, const fg_design *design, const fg_foil *foil);
+void fg_html_part_table(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement *measurement);
 void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil);
 

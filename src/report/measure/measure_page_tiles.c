@@ -1,6 +1,7 @@
 /* Key numbers of a page: those of a foil, a plain strip, the discs of a scan. */
 #include <math.h>
 
+#include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
 
 static void put_tile(FILE *out, fg_quantity_owner owner, const char *name, const char *title,
@@ -17,13 +18,14 @@ static void put_tile(FILE *out, fg_quantity_owner owner, const char *name, const
   fputs("</dd></div>\n", out);
 }
 
-/* Mean over the bumps, with their spread as a standard deviation: it says more than one bump. */
-static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, const char *title) {
-  const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_BUMP, name);
+/* Mean over the parts, with their spread as a standard deviation: it says more than one part. */
+static void put_mean_tile(FILE *out, const fg_foil_parts *parts, const char *name,
+                          const char *title) {
+  const fg_quantity *row = fg_quantity_find(parts->owner, name);
   double sum = 0, squares = 0;
   size_t count = 0;
-  for (size_t i = 0; i < foil->bump_count; i++) {
-    double value = fg_quantity_value(row, &foil->bumps[i]);
+  for (size_t i = 0; i < parts->count; i++) {
+    double value = fg_quantity_value(row, fg_foil_part_at(parts, i));
     if (!isfinite(value)) continue;
     count++;
     double step = value - sum;
@@ -31,7 +33,8 @@ static void put_mean_tile(FILE *out, const fg_foil *foil, const char *name, cons
     squares += step * (value - sum);
   }
   if (count == 0) return;
-  fprintf(out, "<div><dt>%s</dt><dd>%.*f %s", title, row->decimals, sum, row->unit);
+  fprintf(out, "<div><dt>%s</dt><dd>%s%.*f %s", title, sum < 0 ? "−" : "", row->decimals, fabs(sum),
+          row->unit);
   if (count > 1)
     fprintf(out, "<small>s = %.*f, n = %zu</small>", row->decimals,
             sqrt(squares / (double)(count - 1)), count);
@@ -51,20 +54,36 @@ static void put_arc_tiles(FILE *out, const fg_foil *foil) {
   fputs("</dl>\n", out);
 }
 
-static void put_foil_tiles(FILE *out, const fg_foil *foil) {
+static void put_flat_tiles(FILE *out, const fg_foil_parts *beams) {
+  fputs("<dl class=\"tiles\">\n", out);
+  put_mean_tile(out, beams, "length_mm", "Length, mean");
+  put_mean_tile(out, beams, "width_mm", "Width, mean");
+  put_mean_tile(out, beams, "compliance_error_pct", "Compliance against the design, mean");
+  put_mean_tile(out, beams, "sagitta_error_pct", "Sagitta against the design, mean");
+  put_mean_tile(out, beams, "clearance_change_mm", "Clearance change, mean");
+  fputs("</dl>\n", out);
+}
+
+static void put_foil_tiles(FILE *out, const fg_foil *foil, const fg_foil_parts *bumps) {
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, FG_QUANTITY_OF_FOIL, "overall.radius_mm", "Overall radius", foil);
   put_tile(out, FG_QUANTITY_OF_FOIL, "overall.springback_error_pct", "Overall springback", foil);
-  put_mean_tile(out, foil, "radius_mm", "Bump radius, mean");
-  put_mean_tile(out, foil, "height_mm", "Bump height, mean");
-  put_mean_tile(out, foil, "clearance_mm", "Clearance, free, mean");
-  put_mean_tile(out, foil, "clearance_fitted_mm", "Clearance, fitted, mean");
+  put_mean_tile(out, bumps, "radius_mm", "Bump radius, mean");
+  put_mean_tile(out, bumps, "height_mm", "Bump height, mean");
+  put_mean_tile(out, bumps, "clearance_mm", "Clearance, free, mean");
+  put_mean_tile(out, bumps, "clearance_fitted_mm", "Clearance, fitted, mean");
   put_tile(out, FG_QUANTITY_OF_FOIL, "thickness_mm", "Thickness", foil);
   fputs("</dl>\n", out);
 }
 
 void fg_html_tiles(FILE *out, const fg_design *design, const fg_foil *foil) {
-  (design->form == FG_FORM_ARC ? put_arc_tiles : put_foil_tiles)(out, foil);
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  if (design->form == FG_FORM_ARC)
+    put_arc_tiles(out, foil);
+  else if (design->form == FG_FORM_CANTILEVER)
+    put_flat_tiles(out, &parts);
+  else
+    put_foil_tiles(out, foil, &parts);
 }
 
 /* The disc that is farthest from round, the smallest and the largest. */

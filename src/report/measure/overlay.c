@@ -8,6 +8,7 @@
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/drawing.h"
+#include "report/measure/foil_parts.h"
 
 enum { WIDTH_MAX = 8000, LEGEND_FOILS_MAX = 6, LINE_MAX_LENGTH = 256 };
 static const double pixels_max = 48e6;
@@ -81,8 +82,36 @@ static fg_status put_arc(fg_context *ctx, legend *at, const fg_foil *foil) {
   return FG_OK;
 }
 
+static bool is_flagged(const fg_design *design, const fg_foil *foil, size_t i) {
+  if (design->form == FG_FORM_CANTILEVER)
+    return fg_beam_flags(design, foil, &foil->beams[i]) & ~(unsigned)FG_BEAM_ONE_FLOOR;
+  return fg_bump_flags(design, foil, &foil->bumps[i]) != 0;
+}
+
+static fg_status put_parts(fg_context *ctx, legend *at, const fg_design *design,
+                           const fg_foil *foil) {
+  const fg_foil_parts parts = fg_foil_parts_of(design, foil);
+  const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
+  size_t count = fg_quantity_shown(parts.owner, FG_QUANTITY_ON_PICTURE, design->form, columns);
+  FG_TRY(put_heading(ctx, at, columns, count));
+  for (size_t i = 0; i < parts.count; i++)
+    FG_TRY(put_row(ctx, at, columns, count, fg_foil_part_number(&parts, i),
+                   is_flagged(design, foil, i), fg_foil_part_at(&parts, i)));
+  return FG_OK;
+}
+
+static fg_status put_flat(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
+                          bool all) {
+  char text[LINE_MAX_LENGTH];
+  snprintf(text, sizeof text, "Foil %d: flat, %zu beams", foil->number, foil->beam_count);
+  FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
+  at->line++;
+  return all ? put_parts(ctx, at, design, foil) : FG_OK;
+}
+
 static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, const fg_foil *foil,
                           bool all) {
+  if (design->form == FG_FORM_CANTILEVER) return put_flat(ctx, at, design, foil, all);
   char text[LINE_MAX_LENGTH], radius[64], error[64], thickness[64];
   value_text(fg_quantity_find(FG_QUANTITY_OF_FOIL, "overall.radius_mm"), foil, radius,
              sizeof radius);
@@ -98,15 +127,7 @@ static fg_status put_foil(fg_context *ctx, legend *at, const fg_design *design, 
   FG_TRY(put_text(ctx, at, 0, FG_COLOUR_OVERALL, text));
   at->line++;
   if (design->form == FG_FORM_ARC) return put_arc(ctx, at, foil);
-  if (!all) return FG_OK;
-  const fg_quantity *columns[FG_QUANTITY_SHOWN_MAX];
-  size_t count =
-      fg_quantity_shown(FG_QUANTITY_OF_BUMP, FG_QUANTITY_ON_PICTURE, design->form, columns);
-  FG_TRY(put_heading(ctx, at, columns, count));
-  for (size_t i = 0; i < foil->bump_count; i++)
-    FG_TRY(put_row(ctx, at, columns, count, foil->bumps[i].number,
-                   fg_bump_flags(design, foil, &foil->bumps[i]) != 0, &foil->bumps[i]));
-  return FG_OK;
+  return all ? put_parts(ctx, at, design, foil) : FG_OK;
 }
 
 static fg_status put_discs(fg_context *ctx, legend *at, const fg_measurement *measurement) {
@@ -128,7 +149,7 @@ static bool legend_has_bumps(const fg_measurement *measurement) {
 static size_t legend_lines(const fg_measurement *measurement) {
   size_t lines = 3 + measurement->foil_count;
   for (size_t i = 0; legend_has_bumps(measurement) && i < measurement->foil_count; i++)
-    lines += measurement->foils[i].bump_count + 1;
+    lines += measurement->foils[i].bump_count + measurement->foils[i].beam_count + 1;
   return lines + (measurement->disc_count ? measurement->disc_count + 1 : 0);
 }
 
@@ -138,8 +159,11 @@ static fg_status draw_legend(fg_context *ctx, legend *at, const fg_measurement *
                     legend_has_bumps(measurement)));
   if (measurement->disc_count) FG_TRY(put_discs(ctx, at, measurement));
   return put_text(ctx, at, 0, 0xa8b4c0,
-                  "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: beyond. "
-                  "Whiskers: residuals.");
+                  measurement->design.form == FG_FORM_CANTILEVER
+                      ? "± is U = 2 u (k = 2, about 95 %). Orange: fitted edges; blue: root line "
+                        "and axis. Whiskers: residuals."
+                      : "± is U = 2 u (k = 2, about 95 %). Solid arc: used by the fit; dashed: "
+                        "beyond. Whiskers: residuals.");
 }
 
 /* The gray picture on top, a dark panel for the legend below. */

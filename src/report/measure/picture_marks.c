@@ -18,7 +18,8 @@ static const double letter_units = 12, width_per_height = 0.65 / 0.7, gap_units 
 static const double cell_units = 6;
 /* A ring's radius over half the bump's chord; where residuals and the bump's number are drawn
  * (drawing.c) over the ring's centre, mm. */
-static const double ring_over_chord = 1.08, ring_over_disc = 1.12, number_mm = 2.1, band_mm = 0.9;
+static const double ring_over_chord = 1.08, ring_over_disc = 1.12, ring_over_width = 0.62,
+                    number_mm = 2.1, band_mm = 0.9;
 
 /* What is wrong at one place: a value, or what has none (worst NULL: it fails). */
 typedef struct mark {
@@ -148,6 +149,36 @@ static void add_bump(marks *at, const fg_decision *decision, const fg_bump *bump
            ring_over_chord * bump->radius_mm * sin(half));
 }
 
+/* Around the middle of the beam. */
+static void add_beam(marks *at, const fg_decision *decision, const fg_beam *beam) {
+  fg_point middle = {0.5 * (beam->root_mm.x + beam->tip_mm.x),
+                     0.5 * (beam->root_mm.y + beam->tip_mm.y)};
+  double width = isfinite(beam->width_mm) ? beam->width_mm : at->measurement->design.beam_width_mm;
+  char text[TEXT_BYTES];
+  const fg_judgement *worst = find_worst(decision, beam->number);
+  if (worst || isfinite(beam->length_mm)) {
+    add_mark(at, worst, middle, ring_over_width * width);
+    return;
+  }
+  snprintf(text, sizeof text, "%d: no length", beam->number);
+  add_text(at, text, middle, ring_over_width * width);
+}
+
+static void take_beams(marks *at) {
+  for (size_t i = 0; at->foil && i < at->foil->beam_count; i++) {
+    const fg_beam *beam = &at->foil->beams[i];
+    double length = hypot(beam->tip_mm.x - beam->root_mm.x, beam->tip_mm.y - beam->root_mm.y);
+    double half_px = 0.5 * beam->width_mm * at->canvas->px_per_mm[0];
+    for (double s = 0; half_px > 0 && s <= length; s += 0.5 * beam->width_mm) {
+      fg_point px =
+          to_px(at->canvas,
+                (fg_point){beam->root_mm.x + s / length * (beam->tip_mm.x - beam->root_mm.x),
+                           beam->root_mm.y + s / length * (beam->tip_mm.y - beam->root_mm.y)});
+      take_box(&at->cells, px.x - half_px, px.y - half_px, px.x + half_px, px.y + half_px);
+    }
+  }
+}
+
 static void take_strip(marks *at) {
   const fg_canvas *canvas = at->canvas;
   double band_px = band_mm * canvas->px_per_mm[0];
@@ -203,6 +234,7 @@ static void take_drawing(marks *at) {
   take_box(&at->cells, low.x, low.y, high.x, high.y);
   take_centre(at);
   take_strip(at);
+  take_beams(at);
   take_numbers(at);
   take_discs(at);
   for (size_t i = 0; i < at->count; i++) {
@@ -340,7 +372,9 @@ static fg_status draw_foil(fg_context *ctx, marks *at) {
   FG_TRY(fg_foil_decide(ctx, &at->measurement->design, at->foil, &decision));
   for (size_t i = 0; i < at->foil->bump_count; i++)
     add_bump(at, &decision, &at->foil->bumps[i]);
-  add_gaps(at);
+  for (size_t i = 0; i < at->foil->beam_count; i++)
+    add_beam(at, &decision, &at->foil->beams[i]);
+  if (fg_form_has_bumps(at->measurement->design.form)) add_gaps(at);
   fg_canvas *canvas = at->canvas;
   fg_point px = to_px(canvas, at->foil->overall.centre_mm);
   px = (fg_point){fmin(fmax(px.x, 0), canvas->width_px), fmin(fmax(px.y, 0), canvas->height_px)};

@@ -28,6 +28,8 @@ static void add_foil(line *sum, fg_quantity_owner owner, const fg_quantity *row,
   if (owner == FG_QUANTITY_OF_FOIL) add(sum, owner, row, foil, &foil->calibrated);
   for (size_t b = 0; owner == FG_QUANTITY_OF_BUMP && b < foil->bump_count; b++)
     add(sum, owner, row, &foil->bumps[b], &foil->bumps[b].calibrated);
+  for (size_t b = 0; owner == FG_QUANTITY_OF_BEAM && b < foil->beam_count; b++)
+    add(sum, owner, row, &foil->beams[b], &foil->beams[b].calibrated);
 }
 
 /* `foil` NULL: every foil of the scan. */
@@ -41,7 +43,7 @@ static void add_scan(line *sum, fg_quantity_owner owner, const fg_quantity *row,
 }
 
 static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_FOIL, FG_QUANTITY_OF_BUMP,
-                                           FG_QUANTITY_OF_DISC};
+                                           FG_QUANTITY_OF_BEAM, FG_QUANTITY_OF_DISC};
 
 static double root_mean(double squares, size_t count) {
   return sqrt(fmax(0, squares) / (double)count);

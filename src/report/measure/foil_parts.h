@@ -1,0 +1,29 @@
+/* What a foil is made of that pages list, plot and judge one by one: bumps, or beams. */
+#ifndef FG_REPORT_MEASURE_FOIL_PARTS_H
+#define FG_REPORT_MEASURE_FOIL_PARTS_H
+
+#include "foilgauge/words.h"
+
+typedef struct fg_foil_parts {
+  fg_quantity_owner owner;
+  const char *name;   /* "bump" */
+  const char *plural; /* "bumps" */
+  const char *objects;
+  size_t count, size;
+  size_t stated; /* by the design; 0: not */
+} fg_foil_parts;
+
+fg_foil_parts fg_foil_parts_of(const fg_design *design, const fg_foil *foil);
+const void *fg_foil_part_at(const fg_foil_parts *parts, size_t i);
+int fg_foil_part_number(const fg_foil_parts *parts, size_t i);
+int fg_foil_parts_last(
+    const fg_foil_parts *parts); /* the highest number, at least the stated count and 1 */
+bool fg_foil_parts_have(const fg_foil_parts *parts, int number);
+
+/* Why a part has no value, for people. */
+const char *fg_foil_part_lack(const fg_foil_parts *parts, size_t i);
+
+/* What a row of the quantities is of: "bump", "beam" or "". */
+const char *fg_foil_part_word(const fg_quantity *row);
+
+#endif
