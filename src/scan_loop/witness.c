@@ -9,7 +9,7 @@
 
 /* Doubt of either kind that ends it. */
 #define DECIDED_P 0.01
-/* In a tie one member must be beyond doubt. */
+/* In a tie one member must be beyond doubt: for itself, and by the odds against every other. */
 #define BEYOND_DOUBT_P 0.001
 /* What speaks for an effect is its shape: it takes most of what is uneven. */
 #define SHARE_LEAST 0.5
@@ -163,15 +163,12 @@ static double gain(const evidence *e) {
   return 2 * e->sum - e->weight;
 }
 
-static double two_sided(double sigmas) {
-  return erfc(fabs(sigmas) * M_SQRT1_2);
-}
+/* Below it nobody believes a probability, and a report of 0 is none. */
+#define P_LEAST 1e-300
 
-static const char *const words_of[] = {
-    [FG_WITNESS_FOR] = "the colour lines show it as well",
-    [FG_WITNESS_AGAINST] = "the colour lines would show it, and do not",
-    [FG_WITNESS_CANNOT_TELL] = "the colour lines cannot tell",
-};
+static double two_sided(double sigmas) {
+  return fmax(P_LEAST, erfc(fabs(sigmas) * M_SQRT1_2));
+}
 
 static void decide(fg_scan_witness *w, bool most, const char *why_not) {
   w->verdict = FG_WITNESS_CANNOT_TELL;
@@ -180,11 +177,15 @@ static void decide(fg_scan_witness *w, bool most, const char *why_not) {
     w->verdict = FG_WITNESS_FOR;
   else if (w->p_against < DECIDED_P && w->factor < 0.5)
     w->verdict = FG_WITNESS_AGAINST;
-  if (w->verdict != FG_WITNESS_CANNOT_TELL) w->reason = words_of[w->verdict];
+  if (w->verdict == FG_WITNESS_AGAINST) w->reason = "the colour lines would show it, and do not";
+  if (w->verdict == FG_WITNESS_FOR)
+    w->reason = w->gap_stated ? "the colour lines show it as well"
+                              : "the colour lines show it as well, with the gaps that fit best";
 }
 
-/* The lines' gaps are known: what it must show is known in size. */
-static void judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_witness *w) {
+/* The lines' gaps are known: what it must show is known in size. Returns by how much it fits better
+ * than a constant. */
+static double judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_witness *w) {
   double gap_px[LINES] = {loop->options.colour_gap_px[0], 0, loop->options.colour_gap_px[1]};
   evidence e = ask(loop, c, -1, gap_px);
   w->gap_stated = true;
@@ -194,7 +195,7 @@ static void judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_witn
   if (!(e.weight > 0)) {
     w->verdict = FG_WITNESS_CANNOT_TELL;
     w->reason = "it makes the same between the lines everywhere, which the scanner takes out";
-    return;
+    return 0;
   }
   w->factor = e.sum / e.weight;
   w->u_factor = 1 / sqrt(e.weight);
@@ -204,6 +205,7 @@ static void judge_size(const fg_scan_loop *loop, const carriage *c, fg_scan_witn
   decide(w, gain(&e) >= SHARE_LEAST * e.uneven,
          w->p_value < DECIDED_P ? "the colour lines show something uneven of another size or shape"
                                 : "what it makes between the lines is too small for their u");
+  return gain(&e);
 }
 
 /* The likeliest gap of one line. */
@@ -222,14 +224,15 @@ static double find_gap(const fg_scan_loop *loop, const carriage *c, int line, ev
 
 /* The gaps are not known: each line's is taken as it fits best. Gap and what it stands for are two
  * freedoms; the better of the lines counts, as the better of so many. */
-static void judge_shape(const fg_scan_loop *loop, const carriage *c, fg_scan_witness *w) {
-  double least = 1, lines = 0;
+static double judge_shape(const fg_scan_loop *loop, const carriage *c, fg_scan_witness *w) {
+  double least = 1, lines = 0, all = 0;
   bool most = false;
   for (int line = 0; line < LINES; line++) {
     evidence e;
-    double gap = find_gap(loop, c, line, &e), p = exp(-0.5 * fmax(0, gain(&e)));
+    double gap = find_gap(loop, c, line, &e), p = fmax(P_LEAST, exp(-0.5 * fmax(0, gain(&e))));
     w->gap_px[line] = e.courses ? gap : NAN;
     lines += e.courses > 0;
+    all += fmax(0, gain(&e));
     if (!(p < least)) continue;
     least = p;
     most = gain(&e) >= SHARE_LEAST * e.uneven;
@@ -243,9 +246,10 @@ static void judge_shape(const fg_scan_loop *loop, const carriage *c, fg_scan_wit
              ? "the colour lines show something uneven of another shape"
              : "nothing of it shows between the lines; whether it should depends on their gap "
                "(--colour-gap)");
+  return all;
 }
 
-static fg_scan_witness ask_of(const fg_scan_loop *loop, const carriage *c) {
+static fg_scan_witness ask_of(const fg_scan_loop *loop, const carriage *c, double *better) {
   fg_scan_witness w = {.p_value = NAN,
                        .p_against = NAN,
                        .factor = NAN,
@@ -253,7 +257,7 @@ static fg_scan_witness ask_of(const fg_scan_loop *loop, const carriage *c) {
                        .expected_um = NAN,
                        .gap_px = {NAN, NAN, NAN}};
   bool stated = loop->options.colour_gap_px[0] != 0 || loop->options.colour_gap_px[1] != 0;
-  (stated ? judge_size : judge_shape)(loop, c, &w);
+  *better = (stated ? judge_size : judge_shape)(loop, c, &w);
   return w;
 }
 
@@ -297,28 +301,61 @@ static void name_set(const fg_effect_set *set, char name[FG_SCAN_RESULT_WORDS]) 
   }
 }
 
-/* One explanation that the lines show beyond doubt, and no other that they do not speak against or
- * that has nothing of the carriage. */
-static void ask_tie(const fg_scan_loop *loop, fg_scan_result *result) {
-  const fg_effect_set *right = NULL;
-  double p_value = NAN;
-  for (size_t k = 0; k <= loop->tie_count; k++) {
-    const fg_effect_set *set = k ? &loop->tie[k - 1] : &loop->set;
-    carriage c = carriage_of(loop, set);
-    if (!c.fields.count) continue;
-    fg_scan_witness w = ask_of(loop, &c);
-    if (w.verdict == FG_WITNESS_AGAINST) continue;
-    if (right || w.verdict != FG_WITNESS_FOR || !(w.p_value < BEYOND_DOUBT_P)) return;
-    right = set;
-    p_value = w.p_value;
+/* What the lines say of the explanations of a tie: the likeliest, and by how much the next falls
+ * behind it. One without an effect of the carriage wants a constant. */
+typedef struct contest {
+  const fg_effect_set *best;
+  fg_scan_witness witness; /* of the best */
+  double first, second;    /* by how much each fits better than a constant */
+} contest;
+
+static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
+  carriage c = carriage_of(loop, set);
+  fg_scan_witness w = {0};
+  double better = 0;
+  if (c.fields.count) w = ask_of(loop, &c, &better);
+  if (to->best && better <= to->first) {
+    to->second = fmax(to->second, better);
+    return;
   }
-  if (!right || result->advices == FG_SCAN_RESULT_ADVICE) return;
-  char name[FG_SCAN_RESULT_WORDS];
-  name_set(right, name);
+  to->second = to->best ? to->first : 0;
+  to->first = better;
+  to->best = set;
+  to->witness = w;
+}
+
+/* What fits best is no knowledge of the sensor: the reader may have it. */
+static void put_gaps(const fg_scan_witness *w, char words[96]) {
+  double gaps[LINES];
+  size_t count = 0;
+  words[0] = 0;
+  for (int k = 0; k < LINES; k++)
+    if (isfinite(w->gap_px[k])) gaps[count++] = fabs(w->gap_px[k]);
+  if (w->gap_stated || !count) return;
+  if (count == 1)
+    fg_text_clip(words, 96, "; if two of the lines lie %g rows apart", gaps[0]);
+  else
+    fg_text_clip(words, 96, "; if the lines lie %g and %g rows from the one measured", gaps[0],
+                 gaps[1]);
+}
+
+/* The odds of two explanations are exp(half the difference of their chi-squared). */
+static void ask_tie(const fg_scan_loop *loop, fg_scan_result *result) {
+  contest all = {0};
+  char name[FG_SCAN_RESULT_WORDS], gaps[96];
+  enter(loop, &loop->set, &all);
+  for (size_t k = 0; k < loop->tie_count; k++)
+    enter(loop, &loop->tie[k], &all);
+  double odds = 2 * log((double)(loop->tie_count + 1) / BEYOND_DOUBT_P);
+  if (all.witness.verdict != FG_WITNESS_FOR || !(all.witness.p_value < BEYOND_DOUBT_P) ||
+      all.first - all.second < odds || result->advices == FG_SCAN_RESULT_ADVICE)
+    return;
+  name_set(all.best, name);
+  put_gaps(&all.witness, gaps);
   fg_text_clip(result->witness_words, sizeof result->witness_words,
                "the colour lines of these scans, in which neither part nor optics shows, speak for "
-               "%.200s and for no other (p = %.1g)",
-               name, p_value);
+               "%.200s (p = %.1g) and for no other explanation (odds of any below %g)%s",
+               name, all.witness.p_value, BEYOND_DOUBT_P, gaps);
   result->advice[result->advices++] = result->witness_words;
 }
 
@@ -329,7 +366,8 @@ void fg_scan_loop_ask_witness(const fg_scan_loop *loop, fg_scan_result *result) 
     if (result->claim[i].free || !take_effect(&loop->set.effects[i], &c)) continue;
     for (size_t k = 0; k < loop->set.count; k++)
       if (k != i) add_field(&loop->set.effects[k], &c.others);
-    result->claim[i].witness = ask_of(loop, &c);
+    double better;
+    result->claim[i].witness = ask_of(loop, &c, &better);
   }
   if (!result->named) ask_tie(loop, result);
 }
