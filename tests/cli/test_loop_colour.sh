@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # What the colour lines of a scan say of an effect of the carriage that the loop found; a plate of gauges shows it quickest.
 . tests/support/cli.sh
+skip_when_slow
 
 # draw NAME GAP EFFECTS
 draw() {

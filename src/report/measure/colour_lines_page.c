@@ -8,6 +8,8 @@
 
 /* Below this a constant course is doubted. */
 #define UNEVEN_P 0.01
+/* So many windows without edges are a gap. */
+#define GAP_WINDOWS 4
 
 /* Looks of the two channels: not of their colours, which those who do not see them could not tell.
  */
@@ -86,6 +88,17 @@ static bool find_ranges(const fg_measurement *m, double x[2], double y[2]) {
   return x[1] > x[0];
 }
 
+/* Where no edges tell, the line has a gap. */
+static void put_line(const fg_plot *at, const fg_colour_shift *shift, const double *x,
+                     const double *y, const char *style) {
+  size_t first = 0;
+  for (size_t i = 1; i <= shift->window_count; i++) {
+    if (i < shift->window_count && x[i] - x[i - 1] < GAP_WINDOWS * shift->window_mm) continue;
+    fg_plot_line(at, x + first, y + first, i - first, style);
+    first = i;
+  }
+}
+
 static void put_course(const fg_plot *at, const fg_measurement *m, int k) {
   const fg_colour_shift *shift = &m->colour_lines.shifts[k];
   double x[FG_COLOUR_WINDOWS_MAX], y[3][FG_COLOUR_WINDOWS_MAX], key = 80 + 330.0 * k;
@@ -100,7 +113,7 @@ static void put_course(const fg_plot *at, const fg_measurement *m, int k) {
     if (dot > at->y_low && dot < at->y_high) fg_plot_dot(at, x[i], dot, 2, line_style[k]);
   }
   for (int side = 0; side < 3; side++)
-    fg_plot_line(at, x, y[side], shift->window_count, side == 1 ? line_style[k] : doubt_style[k]);
+    put_line(at, shift, x, y[side], side == 1 ? line_style[k] : doubt_style[k]);
   fprintf(at->out,
           "<circle class=\"%s\" cx=\"%.0f\" cy=\"14\" r=\"5\"/><text x=\"%.0f\" y=\"19\">%s, about "
           "%+.2f µm</text>\n",
