@@ -24,6 +24,8 @@ extern "C" {
 
 /* Distance between two channels, in pixels, from which on it is flagged. */
 #define FG_COLOUR_APART_PX 0.1
+/* Below it a course is called uneven, and the constants are found beside it. */
+#define FG_COLOUR_UNEVEN_P 0.01
 
 enum { FG_COLOUR_WINDOWS_MAX = 240, FG_COLOUR_SHARED = 4 };
 

@@ -47,7 +47,6 @@ typedef struct fg_scan_options {
   uint64_t memory_cap; /* bytes that the reader may hold at most; 0: no limit */
   fg_channel channel;
   bool allow_lossy;    /* take what JPEG has compressed with loss, which moves edges */
-  bool colours;        /* all three will be read, see fg_scan_begin_colours */
   bool only_file;      /* refuse pipes and devices, which may never end */
   bool unsummed;       /* the SHA-256 will not be asked for */
   unsigned threads;    /* 1: nothing runs beside the caller; 0: what is of use does */
@@ -94,7 +93,7 @@ fg_status fg_scan_read_rows(fg_context *ctx, fg_scan *scan, int64_t rows, void *
                             int64_t stride_bytes);
 
 /* Whether red, green and blue can be read apart, after everything else: a colour scan without loss
- * that is a regular file, or was opened to have its colours read. */
+ * that is a regular file, or a pipe that was stored to find its channel. */
 bool fg_scan_has_colours(const fg_scan *scan);
 
 /* Goes back to the first row, after the last one (and the SHA-256) was read, for

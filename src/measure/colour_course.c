@@ -20,8 +20,6 @@ enum {
 #define BANDWIDTH_FACTOR 1.5
 /* Windows that tell less than this share of what the middle one tells are left out. */
 #define TELLING_SHARE 0.1
-/* What is called uneven has its constants found beside it. */
-#define UNEVEN_P 0.01
 /* A row so many standard deviations off its own window is something else than the carriage. */
 #define OUTLIER_SIGMAS 4.5
 
@@ -385,7 +383,7 @@ static bool find_course(fg_colour_rows *rows, windows *w, windows *scratch,
   about_mean about = find_mean(rows, shift);
   fg_colour_rows_scatter(rows, course_px, &about);
   shift->p_constant = test_constant(rows, w, scratch);
-  if (!(shift->p_constant < UNEVEN_P)) {
+  if (!(shift->p_constant < FG_COLOUR_UNEVEN_P)) {
     memcpy(rows->values, constant.values, sizeof rows->values);
     memcpy(rows->covariance, constant.covariance, sizeof rows->covariance);
     take_constants(rows, w);

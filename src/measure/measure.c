@@ -109,7 +109,6 @@ static fg_status open_scan(fg_context *ctx, const char *path, const fg_measure_o
                                         .pixel_cap = options->pixel_cap,
                                         .memory_cap = memory_cap(options),
                                         .channel = options->channel,
-                                        .colours = true,
                                         .allow_lossy = options->allow_lossy,
                                         .only_file = options->only_file,
                                         .threads = options->threads,

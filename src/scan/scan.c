@@ -42,8 +42,7 @@ static fg_status find_format(fg_context *ctx, const fg_scan_options *options, fg
     fg_format_problem(head, length, problem, sizeof problem);
     return fg_fail(ctx, FG_ERR_DATA, "%s: %s", source->name, problem);
   }
-  bool twice = (options->channel == FG_CHANNEL_AUTO || options->colours) &&
-               scan->format->has_colour(head, length);
+  bool twice = options->channel == FG_CHANNEL_AUTO && scan->format->has_colour(head, length);
   return twice || scan->format->needs_file ? fg_source_store(ctx, source) : FG_OK;
 }
 

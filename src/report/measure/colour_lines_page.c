@@ -6,8 +6,6 @@
 #include "report/measure/measure_page_parts.h"
 #include "report/plot_marks.h"
 
-/* Below this a constant course is doubted. */
-#define UNEVEN_P 0.01
 /* So many windows without edges are a gap. */
 #define GAP_WINDOWS 4
 
@@ -138,7 +136,7 @@ static void put_plot(FILE *out, const fg_measurement *m) {
 static const char *say_course(const fg_colour_lines *lines) {
   bool uneven = false;
   for (int k = 0; k < 2; k++)
-    uneven = uneven || lines->shifts[k].p_constant < UNEVEN_P;
+    uneven = uneven || lines->shifts[k].p_constant < FG_COLOUR_UNEVEN_P;
   return uneven ? "It is not constant: the carriage was uneven."
                 : "Nothing says that it is not constant.";
 }

@@ -3,16 +3,13 @@
 #include "foilgauge/words.h"
 #include "report/measure/colour_lines_report.h"
 
-/* Below this a constant course is doubted. */
-#define UNEVEN_P 0.01
-
 static void put_shift(FILE *out, const fg_colour_shift *shift) {
   fprintf(out, "%s ", fg_channel_word(shift->channel));
   switch (shift->state) {
   case FG_COLOUR_MEASURED:
     fprintf(out, "dx %+.3f ± %.3f, dy %+.3f ± %.3f px%s", shift->dx_px,
             FG_COVERAGE_FACTOR * shift->u_dx_px, shift->dy_px, FG_COVERAGE_FACTOR * shift->u_dy_px,
-            shift->p_constant < UNEVEN_P ? ", uneven along y" : "");
+            shift->p_constant < FG_COLOUR_UNEVEN_P ? ", uneven along y" : "");
     break;
   case FG_COLOUR_IDENTICAL:
     fputs("is the same picture", out);
