@@ -70,6 +70,22 @@ static fg_status leave(fg_context *ctx, const fg_points *points, const fg_effect
   return status;
 }
 
+static const fg_effect_found *find_of_bumps(const fg_effect_set *set) {
+  for (size_t e = 0; e < set->count; e++)
+    if (set->effects[e].kind->coordinate == FG_EFFECT_INDEX) return &set->effects[e];
+  return NULL;
+}
+
+/* What single bumps do has a test of its own, which finds less than the search can
+ * (scan_loop/single_bumps.c): it stays, with the numbers that the other rows give it. */
+static fg_status keep_single_bumps(fg_context *ctx, const cross_fit *c, fg_points *others,
+                                   fg_effect_set *set) {
+  const fg_effect_found *bumps = find_of_bumps(c->set);
+  if (!bumps || find_of_bumps(set) || set->count == FG_EFFECT_SET_MAX) return FG_OK;
+  set->effects[set->count++] = (fg_effect_found){.kind = bumps->kind, .columns = bumps->columns};
+  return fg_joint_fit(ctx, others, set, NULL);
+}
+
 /* The search on the rows of all other folds. */
 static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold,
                                 fg_effect_set *set) {
@@ -86,6 +102,7 @@ static fg_status search_without(fg_context *ctx, const cross_fit *c, size_t fold
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, others.row_count, sizeof *residual_um, (void **)&residual_um));
   FG_TRY_EXIT(fg_explain_settle_again(ctx, &request, set, residual_um));
+  FG_TRY_EXIT(keep_single_bumps(ctx, c, &others, set));
 exit:
   free(keep);
   free(residual_um);
@@ -117,13 +134,18 @@ static fg_status take_item(fg_context *ctx, void *shared, size_t item) {
   return FG_OK;
 }
 
-/* Mean squares, and how far their difference varies from group to group. */
+/* Whether two rows were left out together, and share what they have by chance. */
+static bool are_one(const cross_fit *c, size_t a, size_t b) {
+  return c->points->rows[a].group == c->points->rows[b].group && c->fold[a] == c->fold[b];
+}
+
+/* Mean squares, and how far their difference varies from unit to unit. */
 static void sum_up(const cross_fit *c, fg_cross_fit *result) {
   const fg_points *points = c->points;
-  double before = 0, after = 0, weight = 0, square = 0, groups = 0;
+  double before = 0, after = 0, weight = 0, square = 0, units = 0;
   for (size_t i = 0, to; i < points->row_count; i = to) {
     double own[2] = {0, 0};
-    for (to = i; to < points->row_count && points->rows[to].group == points->rows[i].group; to++) {
+    for (to = i; to < points->row_count && are_one(c, i, to); to++) {
       double w = points->rows[to].weight;
       own[0] += w * c->before_um[to] * c->before_um[to];
       own[1] += w * c->after_um[to] * c->after_um[to];
@@ -132,11 +154,11 @@ static void sum_up(const cross_fit *c, fg_cross_fit *result) {
     before += own[0];
     after += own[1];
     square += (own[0] - own[1]) * (own[0] - own[1]);
-    groups++;
+    units++;
   }
   if (!(weight > 0)) return;
   double gain = before - after;
-  double scatter = groups / (groups - 1) * (square - gain * gain / groups);
+  double scatter = units / (units - 1) * (square - gain * gain / units);
   *result = (fg_cross_fit){.unit = c->unit,
                            .folds = c->folds,
                            .before_um = sqrt(before / weight),

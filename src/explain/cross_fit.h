@@ -22,8 +22,8 @@ typedef struct fg_cross_fit {
   fg_cross_fit_unit unit;
   size_t folds;               /* 0: too few bumps or rows, and no number is told */
   double before_um, after_um; /* rms over all rows, each from the search without its fold */
-  double gain, u_gain; /* fall of the mean square, um², and its standard error over what was drawn
-                          independently: bumps, lands, discs */
+  double gain, u_gain; /* fall of the mean square, um², and its standard error over what was left
+                          out together: bumps, lands, discs, stretches */
 } fg_cross_fit;
 
 /* `points`: as the search left them, none of them aside; `set`: in force, not empty; `barred`: what
