@@ -37,10 +37,11 @@
  *       width_um [...] per beam, on top; taper_um: width at the root less that at the free end, one
  *       number or one per beam; missing [numbers]; torn [{beam, length_factor [0.5]}];
  *       bent [{beam, angle_deg [2]}]: in the sheet's plane, about the root
- *     rotate_deg [-90]: of a cantilever the direction from roots to free ends; direction of the
- * middle from O (x right, y down); mirror [false]; centre_mm [x, y] of O [placed on shelves from
- * the top]; repeat [1], rotate_step_deg [0] discs[]: centre_mm, radius_mm, hole [false], lobes [0],
- * lobe_um, lobe_phase_deg: r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
+ *     rotate_deg [-90]: direction of the middle from O (x right, y down), of a cantilever from the
+ *     roots to the free ends; mirror [false];
+ *     centre_mm [x, y] of O [placed on shelves from the top]; repeat [1], rotate_step_deg [0]
+ *   discs[]: centre_mm, radius_mm, hole [false], lobes [0], lobe_um, lobe_phase_deg:
+ *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
  *   scanner:
  *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
  *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm], noise

@@ -71,6 +71,10 @@ static void write_quantities_of_bump(FILE *out) {
   write_quantities(FG_QUANTITY_OF_BUMP, "", out);
 }
 
+static void write_quantities_of_beam(FILE *out) {
+  write_quantities(FG_QUANTITY_OF_BEAM, "", out);
+}
+
 static void write_quantities_of_foil(FILE *out) {
   write_quantities(FG_QUANTITY_OF_FOIL, "", out);
 }
@@ -94,6 +98,7 @@ static const fg_fact facts[] = {
     {"station_members", write_station_members},
     {"design_members", write_design_members},
     {"quantities_of_bump", write_quantities_of_bump},
+    {"quantities_of_beam", write_quantities_of_beam},
     {"quantities_of_foil", write_quantities_of_foil},
     {"quantities_of_bearing", write_quantities_of_bearing},
     {"quantities_of_disc", write_quantities_of_disc},

@@ -10,7 +10,7 @@ import json
 import math
 import pathlib
 import random
-import shutil
+import re
 import statistics
 import subprocess
 import sys
@@ -186,7 +186,9 @@ def main():
         reports = ROOT / "reports/thesis"
         with open(reports / "cantilever.md", "w", encoding="utf-8") as out:
             write(folder, tiers, out)
-        shutil.copy(folder / "rough" / "index.html", reports / "cantilever.html")
+        page = (folder / "rough" / "index.html").read_text()
+        # The scans are not kept, so nothing leads to them.
+        (reports / "cantilever.html").write_text(re.sub(r'<a href="\.\./[^"]*">(.*?)</a>', r"\1", page))
 
 
 main()
