@@ -76,7 +76,8 @@ void fg_index_put_pairs(FILE *out, const fg_index *index) {
       out,
       "</tbody></table></div>\n<p class=\"note\">Bold: differs beyond chance, %zu of %zu tests%s. "
       "Welch&#39;s test of the means of foils: the error is what foils of one lot scatter, not "
-      "bumps, which one foil makes alike. All tests of lots are one family (Holm 1979): the "
+      "bumps or beams, which one foil makes alike. All tests of lots are one family (Holm 1979): "
+      "the "
       "chance of even one false difference among them is 5 %% at most. Intervals are of each "
       "pair by itself; what all scans of a scanner have in common is in none.</p>\n"
       "</section>\n",
