@@ -64,15 +64,7 @@ static bool follows(const fg_load_strokes *strokes, const double *forces, size_t
 
 /* Share of the stroke's time until it passes x: of its samples, which are taken at even times. */
 static double time_until(const fg_load_stroke *s, double x) {
-  size_t low = 0, high = s->count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (s->x[middle] < x)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  double share = (double)low / (double)s->count;
+  double share = (double)fg_load_stroke_from(s, x) / (double)s->count;
   return s->sense > 0 ? share : 1 - share;
 }
 

@@ -19,18 +19,6 @@ static const double window_taken = 0.64;
 /* Places where a stroke is looked at for the force that is sought. */
 enum { LOOK_PLACES = 120, SOLVE_STEPS = 6 };
 
-static size_t first_from(const fg_load_stroke *s, double x) {
-  size_t low = 0, high = s->count;
-  while (low < high) {
-    size_t middle = low + (high - low) / 2;
-    if (s->x[middle] < x)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 /* Inverse of a symmetric 3 × 3 matrix. */
 static bool invert(const double m[3][3], double inverse[3][3]) {
   double determinant = 0;
@@ -56,7 +44,7 @@ typedef struct sums {
 
 static sums sum_window(const fg_load_stroke *s, double x, double window) {
   sums all = {0};
-  for (size_t i = first_from(s, x - window); i < s->count && s->x[i] < x + window; i++) {
+  for (size_t i = fg_load_stroke_from(s, x - window); i < s->count && s->x[i] < x + window; i++) {
     double z = (s->x[i] - x) / window, w = 1 - fabs(z * z * z), power[3] = {1, z, z * z};
     w *= w * w;
     all.count += w > 0.01;
@@ -89,7 +77,7 @@ bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, f
 
 /* Half of a width that holds SAMPLES_MIN samples. */
 static double smallest_window(const fg_load_stroke *s, double x) {
-  size_t low = first_from(s, x), high = low;
+  size_t low = fg_load_stroke_from(s, x), high = low;
   double window = window_share_min * (s->x[s->count - 1] - s->x[0]);
   while (high - low < SAMPLES_MIN) {
     bool left = low > 0 && (high == s->count || x - s->x[low - 1] < s->x[high] - x);

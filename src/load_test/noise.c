@@ -56,16 +56,10 @@ typedef struct pilot {
 } pilot;
 
 static fg_status find_pilot(fg_context *ctx, const fg_load_strokes *strokes, int sense, pilot *p) {
-  const fg_load_stroke **chosen;
   fg_load_stroke merged = {0};
-  size_t count = 0;
   double last = 0;
   *p = (pilot){0};
-  FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof *chosen, (void **)&chosen));
-  for (size_t i = 0; i < strokes->count; i++)
-    if (strokes->stroke[i].sense == sense) chosen[count++] = &strokes->stroke[i];
-  fg_status status = fg_load_strokes_merge(ctx, chosen, count, &merged);
-  free(chosen);
+  fg_status status = fg_load_strokes_merge_sense(ctx, strokes, sense, &merged);
   if (status == FG_OK && merged.count) {
     p->low = merged.x[0], p->high = merged.x[merged.count - 1];
     for (size_t k = 0; k < PILOT; k++) {
@@ -164,9 +158,10 @@ static variances find_variances(const fg_load_strokes *strokes, const pilot p[2]
 
 /* ---- where strokes turn ---- */
 
-/* Samples about a turn that a parabola over their order is fitted to: within this share of the
- * stroke of its extreme, or so many times the displacement's noise. */
-static const double turn_share = 0.01, turn_reach = 4;
+/* Samples about a turn that a parabola over their order is fitted to: within so many times the
+ * displacement's noise of its extreme. Where it is small, or the way turns sharply, they are too
+ * few, and the extreme is no worse than the noise. */
+static const double turn_reach = 8;
 enum { TURN_SAMPLES_MIN = 7, TURN_SAMPLES_MAX = 400 };
 
 /* Vertex of the parabola through the samples about `at`; the sample itself where there is none.
@@ -193,8 +188,7 @@ static double turning_point(const fg_load_sample *s, size_t low, size_t high, si
 }
 
 static void find_turns(const fg_load_sample *samples, double noise_mm, fg_load_stroke *s) {
-  double way = fabs(samples[s->last].x_mm - samples[s->first].x_mm);
-  double reach = fmax(turn_share * way, turn_reach * noise_mm);
+  double reach = turn_reach * noise_mm;
   double start = turning_point(samples, s->begin, s->last, s->first, reach);
   double end = turning_point(samples, s->first, s->end - 1, s->last, reach);
   s->low_mm = fmin(start, end);

@@ -1,8 +1,6 @@
 /* Where the strokes pass the threshold. */
 #include <math.h>
-#include <stdlib.h>
 
-#include "core/memory.h"
 #include "core/small_solve.h"
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
@@ -106,21 +104,15 @@ typedef struct passed {
 
 static fg_status find_passed(fg_context *ctx, const fg_load_strokes *strokes, int sense,
                              double level_n, passed *p) {
-  const fg_load_stroke **chosen;
   fg_load_stroke merged = {0};
   fg_local_fit fit;
-  size_t count = 0;
   *p = (passed){0};
-  FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof *chosen, (void **)&chosen));
-  for (size_t i = 0; i < strokes->count; i++)
-    if (strokes->stroke[i].sense == sense) chosen[count++] = &strokes->stroke[i];
-  fg_status status = fg_load_strokes_merge(ctx, chosen, count, &merged);
+  fg_status status = fg_load_strokes_merge_sense(ctx, strokes, sense, &merged);
   if (status == FG_OK && fg_local_crossing(&merged, level_n, &p->x, &p->u, &fit)) {
     p->found = true;
     p->slope = fit.slope;
   }
   fg_load_stroke_free(&merged);
-  free(chosen);
   return status;
 }
 

@@ -198,6 +198,30 @@ exit:
   return status;
 }
 
+fg_status fg_load_strokes_merge_sense(fg_context *ctx, const fg_load_strokes *strokes, int sense,
+                                      fg_load_stroke *merged) {
+  const fg_load_stroke **chosen;
+  size_t count = 0;
+  FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof *chosen, (void **)&chosen));
+  for (size_t i = 0; i < strokes->count; i++)
+    if (strokes->stroke[i].sense == sense) chosen[count++] = &strokes->stroke[i];
+  fg_status status = fg_load_strokes_merge(ctx, chosen, count, merged);
+  free(chosen);
+  return status;
+}
+
+size_t fg_load_stroke_from(const fg_load_stroke *stroke, double x) {
+  size_t low = 0, high = stroke->count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (stroke->x[middle] < x)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, size_t from,
                               fg_load_stroke *half) {
   *half = *stroke;

@@ -34,6 +34,13 @@ void fg_load_strokes_free(fg_load_strokes *strokes);
 fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *chosen, size_t count,
                                 fg_load_stroke *merged);
 
+/* The same of all strokes of one sense; none: no samples. */
+fg_status fg_load_strokes_merge_sense(fg_context *ctx, const fg_load_strokes *strokes, int sense,
+                                      fg_load_stroke *merged);
+
+/* Index of the first sample at x or beyond; the count where there is none. */
+size_t fg_load_stroke_from(const fg_load_stroke *stroke, double x);
+
 /* Every second sample of a stroke, from `from` (0 or 1). */
 fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, size_t from,
                               fg_load_stroke *half);

@@ -1,8 +1,6 @@
 /* What the load cell says where no foil pulls. */
 #include <math.h>
-#include <stdlib.h>
 
-#include "core/memory.h"
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
@@ -18,18 +16,6 @@ static const double flat_share = 0.5;
 /* Places that rise by no more than this share of the steepest beyond the flattest are the gap; the
  * mean over them scatters less than one. */
 static const double gap_share = 0.05;
-
-static fg_status merge_sense(fg_context *ctx, const fg_load_strokes *strokes, int sense,
-                             fg_load_stroke *merged) {
-  const fg_load_stroke **chosen;
-  size_t count = 0;
-  FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof *chosen, (void **)&chosen));
-  for (size_t i = 0; i < strokes->count; i++)
-    if (strokes->stroke[i].sense == sense) chosen[count++] = &strokes->stroke[i];
-  fg_status status = fg_load_strokes_merge(ctx, chosen, count, merged);
-  free(chosen);
-  return status;
-}
 
 static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local_fit *fit) {
   for (double share = window_share; share <= window_share_max; share *= 2)
@@ -80,8 +66,8 @@ fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_
   course c;
   fg_status status = FG_OK;
   *zero = (fg_load_zero){NAN, NAN};
-  FG_TRY_EXIT(merge_sense(ctx, strokes, 1, &up));
-  FG_TRY_EXIT(merge_sense(ctx, strokes, -1, &down));
+  FG_TRY_EXIT(fg_load_strokes_merge_sense(ctx, strokes, 1, &up));
+  FG_TRY_EXIT(fg_load_strokes_merge_sense(ctx, strokes, -1, &down));
   if (up.count && down.count) {
     look(&up, &down, &c);
     *zero = mean_of_gap(&c);
