@@ -238,6 +238,7 @@ typedef enum fg_beam_flag {
   FG_BEAM_OUTLIERS = 1u << 6,         /* "outliers": burr or dust was left out */
   FG_BEAM_DISTURBED_EDGE = 1u << 7,   /* "disturbed_edge": part of an edge is not to be seen */
   FG_BEAM_TOUCHES_BORDER = 1u << 8,   /* "touches_border": of the scan */
+  FG_BEAM_NARROW_CUT = 1u << 9,       /* "narrow_cut": the edges of the cut blur into each other */
 } fg_beam_flag;
 
 /* One edge of a beam as it was found, for measuring it again. */
@@ -390,9 +391,9 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
 
 /* Fits the lines of every beam of a foil of form cantilever to its edges, whose stations the caller
  * filled, and derives every quantity; numbers the beams and puts them in order; sets their flags
- * but for FG_BEAM_TOUCHES_BORDER, rotation_deg (of the beams' common direction; NaN where they have
- * none), noise_um, correlation_mm, FG_FOIL_BEAM_COUNT and FG_FOIL_ROUGH_EDGE of the foil.
- * FG_ERR_MEMORY. */
+ * but for FG_BEAM_TOUCHES_BORDER and FG_BEAM_NARROW_CUT, rotation_deg (of the beams' common
+ * direction; NaN where they have none), noise_um, correlation_mm, FG_FOIL_BEAM_COUNT and
+ * FG_FOIL_ROUGH_EDGE of the foil. FG_ERR_MEMORY. */
 fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil);
 
 /* FREE AND FITTED. A scan shows the foil free: height_mm, clearance_mm (eq 5.8) and clearance_error

@@ -10,7 +10,7 @@
 #include "core/small_solve.h"
 #include "core/spread.h"
 
-enum { ROUNDS = 6, LEAST_STATIONS = 4, BLOCK = 64, BLOCKS_LEAST = 6 };
+enum { ROUNDS = 6, LEAST_STATIONS = 4, BLOCK = 64, BLOCKS_LEAST = 6, BESIDE = 2 };
 /* Stations further off than so many robust deviations, and at least so far, are left out. */
 #define OUTLIER_DEVIATIONS 4.5
 #define OUTLIER_LEAST_MM   0.0004
@@ -55,12 +55,15 @@ static void fit_once(fg_beam_line *line) {
     line->along = (fg_point){-line->along.x, -line->along.y};
 }
 
-/* Usable stations within the limit of where the fit has them. */
+/* Usable stations within the limit of where the fit has them, and whose neighbours are: what
+ * disturbs a station reaches to those beside it. */
 static void take_within(fg_beam_line *line, const double *off, double limit) {
   double squares = 0;
   line->used = 0;
   for (size_t i = 0; i < line->edge->count; i++) {
-    bool use = station(line, i)->used && fabs(off[i]) <= limit;
+    bool use = true;
+    for (size_t k = i < BESIDE ? 0 : i - BESIDE; k <= i + BESIDE && k < line->edge->count; k++)
+      use = use && station(line, k)->used && fabs(off[k]) <= limit;
     line->across[i] = use ? off[i] : NAN;
     line->used += use;
     squares += use ? off[i] * off[i] : 0;
@@ -146,7 +149,7 @@ fg_status fg_beam_line_fit(fg_context *ctx, const fg_beam_edge *edge, fg_point a
   *line = (fg_beam_line){.edge = edge, .spread = 1};
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, sizeof *line->across, (void **)&line->across));
   FG_TRY_EXIT(fg_memory_allocate(ctx, edge->count, 2 * sizeof *block, (void **)&block));
-  take_within(line, line->across, INFINITY); /* across is all 0: what is usable */
+  take_within(line, block, INFINITY); /* block is all 0: what is usable */
   line->usable = line->used;
   if (line->usable < LEAST_STATIONS || 2 * line->usable < edge->count)
     status = fg_fail(ctx, FG_ERR_NUMERIC, "only %zu of %zu stations of an edge are usable",

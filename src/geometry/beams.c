@@ -1,5 +1,6 @@
 /* Beams of a flat foil from their edges: size, uncertainty, numbers, flags. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +24,10 @@
 #define TORN_SHARE  0.002
 /* Neighbouring stations of a rough edge err alike over more than so many steps. */
 #define ROUGH_STEPS 3.0
+
+/* No cut is off by this factor in length and width alike, within this logarithm. */
+#define SCALE_FACTOR 1.2
+#define SAME_FACTOR  0.05
 
 /* One beam at work. */
 typedef struct beam_work {
@@ -287,7 +292,7 @@ static void put_errors(const fg_design *design, fg_beam *beam) {
 static fg_status measure_beam(fg_context *ctx, const fg_design *design, fg_beam *beam,
                               fg_beam_noise *noise) {
   beam_work w = {.beam = beam};
-  beam->flags &= FG_BEAM_TOUCHES_BORDER;
+  beam->flags &= FG_BEAM_TOUCHES_BORDER | FG_BEAM_NARROW_CUT;
   forget_size(beam);
   fg_status status = fit_lines(ctx, &w);
   if (status == FG_OK) status = measure_lines(ctx, &w);
@@ -316,6 +321,31 @@ static void put_noise(fg_foil *foil, const fg_beam_noise *noises, double *scratc
   if (steps > ROUGH_STEPS) foil->flags |= FG_FOIL_ROUGH_EDGE;
 }
 
+static double median_ratio(const fg_foil *foil, size_t offset, double design, double *scratch) {
+  size_t n = 0;
+  for (size_t i = 0; i < foil->beam_count; i++) {
+    double value;
+    memcpy(&value, (const char *)&foil->beams[i] + offset, sizeof value);
+    if (isfinite(value)) scratch[n++] = value / design;
+  }
+  return n ? fg_select(scratch, n, n / 2) : NAN;
+}
+
+/* Beams of the design's shape in another size: the scan's resolution must be wrong. */
+static void check_scale(const fg_design *design, double *scratch, fg_foil *foil) {
+  double length = median_ratio(foil, offsetof(fg_beam, length_mm), design->beam_length_mm, scratch);
+  double width = median_ratio(foil, offsetof(fg_beam, width_mm), design->beam_width_mm, scratch);
+  double factor = sqrt(length * width);
+  foil->flags &= ~(unsigned)FG_FOIL_NOT_THIS_DESIGN;
+  foil->error[0] = '\0';
+  if (!(fabs(log(factor)) > log(SCALE_FACTOR) && fabs(log(length / width)) < SAME_FACTOR)) return;
+  foil->flags |= FG_FOIL_NOT_THIS_DESIGN;
+  snprintf(foil->error, sizeof foil->error,
+           "length and width of the beams are %.3g times the design's: the resolution of the scan "
+           "(--dpi) or the design (--design) is wrong",
+           factor);
+}
+
 fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil) {
   fg_beam_noise *noises = NULL;
   double *scratch = NULL;
@@ -326,6 +356,7 @@ fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *fo
   for (size_t i = 0; i < foil->beam_count; i++)
     FG_TRY_EXIT(measure_beam(ctx, design, &foil->beams[i], &noises[i]));
   put_noise(foil, noises, scratch);
+  check_scale(design, scratch, foil);
   FG_TRY_EXIT(fg_beams_number(ctx, foil));
   if (design->beam_count && foil->beam_count != design->beam_count)
     foil->flags |= FG_FOIL_BEAM_COUNT;

@@ -18,6 +18,13 @@
 #define SPLIT_DEVIATIONS 3.0
 /* A Gaussian's shift along a curved edge, s²/2R, is right but for this share of (s/R)². */
 #define CURVED_DOUBT 0.5
+/* A tone curve is known no better than this, in px, whatever its own doubt makes of the place of
+ * the edge (reports/accuracy_discs.md: gamma 1.8). */
+#define TONE_DOUBT_PX 0.015
+/* An edge that ends so near to the border is cut by it: a corner's margin, and some. */
+#define BORDER_PX 12.0
+/* The next edge is too near when its blur may move this one by more, px. */
+#define NARROW_PX 0.01
 
 /* An island at work. */
 typedef struct flat_work {
@@ -99,10 +106,19 @@ static double find_split(const fg_disc_edge *edge) {
   return copysign(sqrt(mean * mean - variance), mean);
 }
 
+/* What the level of an edge may move it by, px. */
+static double find_doubt(const flat_work *w, const fg_stretch *side, const fg_disc_edge *found,
+                         double overlap_px) {
+  double contrast = fabs(found->inside - found->outside), ratio = found->blur_px / side->radius;
+  double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px);
+  double tone_px = w->tone.gamma == 1 ? 0 : TONE_DOUBT_PX;
+  double curved_px = CURVED_DOUBT * ratio * ratio * 0.5 * ratio * found->blur_px;
+  return hypot(hypot(found->level_doubt_px, loss_px), hypot(tone_px, overlap_px)) + curved_px;
+}
+
 static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
-                           const fg_disc_edge *found, fg_beam_edge *edge) {
-  double mm = w->shape.um / 1000, contrast = fabs(found->inside - found->outside);
-  double loss_px = fg_loss_edge_px(w->m->jpeg_quality, contrast, found->blur_px), curved = 0;
+                           const fg_disc_edge *found, double doubt_px, fg_beam_edge *edge) {
+  double mm = w->shape.um / 1000;
   const double origin[2] = {(double)w->origin_px[0] * w->shape.scale[0],
                             (double)w->origin_px[1] * w->shape.scale[1]};
   FG_TRY(fg_memory_allocate(ctx, found->count, sizeof *edge->stations, (void **)&edge->stations));
@@ -118,13 +134,9 @@ static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch
                                         .used = s->weight > 0};
   }
   edge->round = isfinite(side->radius);
-  if (edge->round) {
-    double ratio = found->blur_px / side->radius;
-    curved = CURVED_DOUBT * ratio * ratio * 0.5 * ratio * found->blur_px;
-  }
   edge->blur_mm = found->blur_px * mm;
   edge->split_mm = find_split(found) * mm;
-  edge->doubt_mm = (hypot(found->level_doubt_px, loss_px) + curved) * mm;
+  edge->doubt_mm = doubt_px * mm;
   edge->loss_share = fg_loss_turn_variance(w->m->jpeg_quality);
   return FG_OK;
 }
@@ -133,6 +145,46 @@ static fg_point to_mm(const flat_work *w, fg_point p) {
   double mm = w->shape.um / 1000;
   return (fg_point){(p.x + (double)w->origin_px[0] * w->shape.scale[0]) * mm,
                     (p.y + (double)w->origin_px[1] * w->shape.scale[1]) * mm};
+}
+
+/* What moves the apex of a round floor is blur along it, which is what blurs the beam's long edges;
+ * its own blur was taken for it. */
+static void mend_curved(const flat_work *w, const fg_stretch *side, const fg_beam_edge *left,
+                        fg_disc_edge *found) {
+  double along_px = left->blur_mm * 1000 / w->shape.um;
+  if (isinf(side->radius) || !left->count) return;
+  double shift = (found->blur_px * found->blur_px - along_px * along_px) / (2 * side->radius);
+  for (size_t i = 0; i < found->count; i++)
+    found->stations[i].edge_px += (float)shift;
+}
+
+static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
+                              fg_beam *beam, fg_beam_edge *edge) {
+  fg_disc_edge found = {0};
+  double next_px;
+  fg_status status = fg_line_edge_measure(ctx, w->tiles, &w->shape, side, middle_level(w), &w->tone,
+                                          &found, &next_px);
+  if (status == FG_OK) {
+    double overlap_px = fg_line_edge_overlap(next_px, found.blur_px);
+    if (overlap_px > NARROW_PX) beam->flags |= FG_BEAM_NARROW_CUT;
+    mend_curved(w, side, &beam->edges[FG_BEAM_LEFT], &found);
+    status = take_edge(ctx, w, side, &found, find_doubt(w, side, &found, overlap_px), edge);
+  }
+  fg_disc_edge_free(&found);
+  return status == FG_ERR_NUMERIC ? FG_OK : status;
+}
+
+/* An edge of it ends at the border of the scan: of the view, whose other borders are far away. */
+static bool is_at_border(const flat_work *w, const fg_beam_place *place) {
+  const double high[2] = {(double)w->tiles->width_px - BORDER_PX,
+                          (double)w->tiles->height_px - BORDER_PX};
+  for (int side = 0; side < FG_BEAM_SIDES; side++)
+    for (int end = 0; end < 2 && place->there[side]; end++) {
+      fg_point p = end ? place->sides[side].to : place->sides[side].from;
+      double x = p.x / w->shape.scale[0], y = p.y / w->shape.scale[1];
+      if (x < BORDER_PX || y < BORDER_PX || x > high[0] || y > high[1]) return true;
+    }
+  return false;
 }
 
 /* The edges of one beam, and where it lies as far as that is known. */
@@ -144,17 +196,10 @@ static fg_status measure_edges(fg_context *ctx, void *shared, size_t i) {
   beam->tip_mm = to_mm(w, place->tip);
   beam->direction_deg =
       atan2(beam->tip_mm.y - beam->root_mm.y, beam->tip_mm.x - beam->root_mm.x) * 180 / M_PI;
-  if (w->rims.list[w->place_rim[i]].touches_border) beam->flags |= FG_BEAM_TOUCHES_BORDER;
-  for (int side = 0; side < FG_BEAM_SIDES; side++) {
-    fg_disc_edge found = {0};
-    if (!place->there[side]) continue;
-    fg_status status = fg_line_edge_measure(ctx, w->tiles, &w->shape, &place->sides[side],
-                                            middle_level(w), &w->tone, &found);
-    if (status == FG_OK)
-      status = take_edge(ctx, w, &place->sides[side], &found, &beam->edges[side]);
-    fg_disc_edge_free(&found);
-    if (status != FG_OK && status != FG_ERR_NUMERIC) return status;
-  }
+  if (is_at_border(w, place)) beam->flags |= FG_BEAM_TOUCHES_BORDER;
+  for (int side = 0; side < FG_BEAM_SIDES; side++)
+    if (place->there[side])
+      FG_TRY(measure_edge(ctx, w, &place->sides[side], beam, &beam->edges[side]));
   return FG_OK;
 }
 

@@ -84,6 +84,10 @@ static const fg_flag_words beam_flags[] = {
     {FG_BEAM_OUTLIERS, "outliers", "burr or dust on its edges was left out"},
     {FG_BEAM_DISTURBED_EDGE, "disturbed_edge", "dust or a burr hides part of an edge"},
     {FG_BEAM_TOUCHES_BORDER, "touches_border", "the border of the scan cuts what it belongs to"},
+    {FG_BEAM_NARROW_CUT, "narrow_cut",
+     "the cut beside it is so few pixels wide that its edges blur into each other: scan at a "
+     "higher "
+     "resolution"},
     {FG_BEAM_OUT_OF_TOLERANCE, "out_of_tolerance", "a tolerance is exceeded"},
     {0, NULL, NULL},
 };

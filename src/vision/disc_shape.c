@@ -68,10 +68,25 @@ static bool fit_course(course *c, double limit) {
   return fg_course_solve(&system, &sums, isfinite(limit), c->coefficients, &c->real);
 }
 
+/* A stretch has few sectors, and dust in one of them would pull the mean of all: the course starts
+ * from the median. What is farther than the limit from there is left out. */
+static double start_open(course *c) {
+  size_t n = 0;
+  for (size_t s = 0; s < c->work->ring.sector_count; s++)
+    if (c->work->sectors[s].good) c->scratch[n++] = c->work->sectors[s].values[c->value];
+  if (n < 3) return INFINITY;
+  c->coefficients[0] = fg_select(c->scratch, n, n / 2);
+  n = 0;
+  for (size_t s = 0; s < c->work->ring.sector_count; s++)
+    if (c->work->sectors[s].good) c->scratch[n++] = fabs(deviation(c, s));
+  return fg_course_limit(c->scratch, n);
+}
+
 static void find_course(course *c) {
   double limit = INFINITY;
   c->real = 0;
   memset(c->coefficients, 0, sizeof c->coefficients);
+  if (c->work->open) limit = start_open(c);
   for (int round = 0; round < 3 && fit_course(c, limit); round++) {
     size_t n = 0;
     for (size_t s = 0; s < c->work->ring.sector_count; s++)
@@ -97,7 +112,7 @@ static double course_at(const course *c, double turn) {
 
 /* How many values of the basis so many good sectors can bear. */
 static size_t count_unknowns(const fg_disc_work *work, size_t good) {
-  if (work->open) return good >= 4 ? 2 : 1;
+  if (work->open) return good >= 8 ? 2 : 1;
   return good >= 24 ? 7 : good >= 14 ? 5 : 3;
 }
 

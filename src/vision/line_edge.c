@@ -19,6 +19,10 @@ enum { SECTORS_MOST = 24, STATIONS_LEAST = 4, PLACES = 9 };
 /* From so much reach on the levels may run with slopes. */
 #define SLOPE_REACH_PX 10.0
 #define CONTRAST_LEAST 6.0
+/* Dust differs from its side by this share of the contrast, so many blurs and px off the edge. */
+#define DUST_SHARE 0.2
+#define DUST_BLURS 3.0
+#define DUST_PX    1.5
 
 /* The stretch as the band's frame: a straight one, or an arc about a centre. */
 typedef struct frame {
@@ -162,15 +166,26 @@ static double next_edge(const fg_disc_work *work, const frame *f, double along, 
 }
 
 /* Half of the band's width: the median over places of what the next edge leaves. */
-static double find_reach(const fg_disc_work *work, const frame *f, double middle) {
+static double find_reach(const fg_disc_work *work, const frame *f, double middle, double *near) {
   double reach = fmin(REACH_PX, RADIUS_SHARE * f->radius);
+  *near = INFINITY;
   for (int side = -1; side <= 1; side += 2) {
     double next[PLACES];
     for (int i = 0; i < PLACES; i++)
       next[i] = next_edge(work, f, f->length * (i + 0.5) / PLACES, side, middle);
-    reach = fmin(reach, NEXT_EDGE_SHARE * fg_select(next, PLACES, PLACES / 2));
+    double typical = fg_select(next, PLACES, PLACES / 2);
+    *near = fmin(*near, typical);
+    reach = fmin(reach, NEXT_EDGE_SHARE * typical);
   }
   return fmax(reach, REACH_LEAST);
+}
+
+/* At the end of the band the next edge has taken Phi(-(1 - share) next / s) of the contrast: as
+ * much as the level there may be wrong by, and half of it, over the profile's slope, is a shift.
+ * Twice that holds the errors of renders. */
+double fg_line_edge_overlap(double next_px, double blur_px) {
+  double taken = 0.5 * erfc((1 - NEXT_EDGE_SHARE) * next_px / blur_px * M_SQRT1_2);
+  return isinf(next_px) ? 0 : taken * blur_px * sqrt(2 * M_PI);
 }
 
 static size_t good_sectors(const fg_disc_work *work) {
@@ -190,30 +205,68 @@ static fg_status check_sectors(fg_context *ctx, const fg_disc_work *work) {
   return fg_fail(ctx, FG_ERR_NUMERIC, "no edge along a side");
 }
 
+/* The value that half of the good sectors are below. */
+static double typical(const fg_disc_work *work, int value) {
+  double values[SECTORS_MOST];
+  size_t n = 0;
+  for (size_t s = 0; s < work->ring.sector_count; s++)
+    if (work->sectors[s].good) values[n++] = work->sectors[s].values[value];
+  return fg_select(values, n, n / 2);
+}
+
+static double count_of(const fg_disc_work *work, int value) {
+  return 255 * pow(fmax(typical(work, value), 0) / 255, 1 / work->gamma);
+}
+
+/* Dust beside the edge: a pixel off the edge's blur whose count is not that of its side. It would
+ * pull the levels of its sector. True when there was any. */
+static bool drop_dust(fg_disc_work *work) {
+  fg_ring *ring = &work->ring;
+  double inside = count_of(work, FG_STEP_INSIDE), outside = count_of(work, FG_STEP_OUTSIDE);
+  double edge = typical(work, FG_STEP_EDGE), blur = typical(work, FG_STEP_BLUR);
+  double limit = DUST_SHARE * fabs(outside - inside), clear = DUST_BLURS * blur + DUST_PX;
+  size_t kept = 0;
+  for (size_t i = 0; i < ring->count; i++) {
+    const fg_ring_pixel *p = &ring->pixels[i];
+    double off = (double)p->across_px - edge, level = off > 0 ? outside : inside;
+    if (fabs(off) > clear && fabs((double)p->value - level) > limit) continue;
+    ring->pixels[kept++] = *p;
+  }
+  bool any = kept < ring->count;
+  ring->count = kept;
+  return any;
+}
+
 /* The band with its profiles, and a step without slopes to each. */
 static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double middle,
-                           fg_disc_work *work) {
+                           fg_disc_work *work, double *next_px) {
   frame f = frame_of(stretch);
   fg_ring *ring = &work->ring;
   if (!(f.length >= STATIONS_LEAST * STATION_PX))
     return fg_fail(ctx, FG_ERR_NUMERIC, "a side is too short");
   work->open = true;
   ring->circle.radius = stretch->radius;
-  ring->reach_px = find_reach(work, &f, middle);
+  ring->reach_px = find_reach(work, &f, middle, next_px);
   ring->sector_count = (size_t)fmin(fmax(f.length / SECTOR_PX, 1), SECTORS_MOST);
   size_t per_sector = (size_t)(f.length / STATION_PX / (double)ring->sector_count);
   ring->station_count = per_sector * ring->sector_count;
   FG_TRY(collect(ctx, work, &f));
   FG_TRY(fg_disc_stack_sectors(ctx, work));
-  fg_disc_fit_sectors(work, 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT);
+  const unsigned held = 1u << FG_STEP_GAMMA | 1u << FG_STEP_SLOPE_IN | 1u << FG_STEP_SLOPE_OUT;
+  fg_disc_fit_sectors(work, held);
+  FG_TRY(check_sectors(ctx, work));
+  if (!drop_dust(work)) return FG_OK;
+  FG_TRY(fg_disc_stack_sectors(ctx, work));
+  fg_disc_fit_sectors(work, held);
   return check_sectors(ctx, work);
 }
 
 fg_status fg_line_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                             const fg_stretch *stretch, double middle, fg_tone *tone) {
   fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = 1};
+  double next_px;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_band(ctx, stretch, middle, &work));
+  FG_TRY_EXIT(open_band(ctx, stretch, middle, &work, &next_px));
   FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
 exit:
   fg_disc_work_free(&work);
@@ -234,8 +287,8 @@ static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
 }
 
 static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch, double middle,
-                     const fg_tone *tone, fg_disc_edge *edge) {
-  FG_TRY(open_band(ctx, stretch, middle, work));
+                     const fg_tone *tone, fg_disc_edge *edge, double *next_px) {
+  FG_TRY(open_band(ctx, stretch, middle, work, next_px));
   FG_TRY(find_shape(ctx, work));
   edge->circle = (fg_circle){.radius = -stretch->radius};
   edge->count = work->ring.station_count;
@@ -247,11 +300,11 @@ static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_stretch *stre
 
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                                const fg_stretch *stretch, double middle, const fg_tone *tone,
-                               fg_disc_edge *edge) {
+                               fg_disc_edge *edge, double *next_px) {
   fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
   memset(edge, 0, sizeof *edge);
   edge->gamma = tone->gamma;
-  fg_status status = run(ctx, &work, stretch, middle, tone, edge);
+  fg_status status = run(ctx, &work, stretch, middle, tone, edge, next_px);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

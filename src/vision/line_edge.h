@@ -28,9 +28,13 @@ fg_status fg_line_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pix
                             const fg_stretch *stretch, double middle, fg_tone *tone);
 
 /* Fills `edge`; its circle is not used, and edge_px counts towards what surrounds the material.
+ * `next_px` is how far the next edge is, on either side: INFINITY, none is near.
  * FG_ERR_NUMERIC when there is no edge. */
 fg_status fg_line_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
                                const fg_stretch *stretch, double middle, const fg_tone *tone,
-                               fg_disc_edge *edge);
+                               fg_disc_edge *edge, double *next_px);
+
+/* What all edge_px may be wrong by together because the next edge's blur reaches into the band. */
+double fg_line_edge_overlap(double next_px, double blur_px);
 
 #endif

@@ -57,11 +57,18 @@ expect 1 'rejected|3 beams where the design has 4' "$program" measure missing.pn
 sheet soft '"length": {"mean_um": 150}'
 expect 1 "out_of_tolerance" "$program" measure soft.png --design design.json
 
+sheet narrow '"layout": "slits", "kerf_mm": 0.1'
+expect 2 'narrow_cut' "$program" measure narrow.png --design design.json
+
 # Calibration widens; a length in doubt by 1e-3 doubts a compliance's error by 2e-3.
 sed 's/"form"/"calibration": {"scale": {"u_rel": 0.001}}, "form"/' design.json >doubted.json
 "$program" measure comb.png --design doubted.json -o doubted.json.out
 near "u of a length" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_length_mm"]')" 0.004 0.0002
 near "u of a compliance" "$(value doubted.json.out 'r["foils"][0]["beams"][0]["u_compliance_error_pct"]')" 0.2 0.02
+
+expect 0 "" "$program" measure slits.png --design design.json --html page.html --overlay picture.png
+grep -q "Every beam against its limits" page.html || fail "the page has no plots of beams"
+grep -q "How a beam is measured" page.html || fail "the page does not say how"
 
 # Other parts, other designs, other commands.
 expect 65 "no foil with beams in the picture" "$program" measure "$root/samples/gen2_foil.png" --design design.json

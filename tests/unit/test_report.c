@@ -84,7 +84,7 @@ static void every_flag_has_its_words(void **state) {
                              FG_FOIL_BEYOND_MODEL_REGION | (2 * FG_FOIL_BEAM_COUNT - 1));
   for (const fg_flag_words *words = fg_beam_flag_words(); words->name; words++)
     beam |= words->flag;
-  assert_int_equal(beam, 2 * FG_BEAM_TOUCHES_BORDER - 1);
+  assert_int_equal(beam, 2 * FG_BEAM_NARROW_CUT - 1);
   assert_int_equal(bump, FG_BUMP_BEYOND_MODEL_REGION | (2 * FG_BUMP_LOSSY - 1));
 }
 
