@@ -117,6 +117,7 @@ FILES = {
     "load_cell.csv": "tests/data/measured/load_cell.csv", "impact.csv": "tests/data/measured/impact_energy.csv",
     "line_width.csv": "tests/data/measured/line_width.csv", "pipeline.csv": "tests/data/measured/pipeline_defects.csv",
     "check.csv": "tests/data/measured/check_standard.csv",
+    "bearings.csv": "samples/stiffness/bearings.csv",
     "wave.csv": WAVE,
     "lot_list.csv": "scan,foil,die,bearing,pad\n" + "".join(
         f"lot_{i}.png,F{i:03d},{'AB'[i % 2]},J{i // 3 + 1},{i % 3 + 1}\n" for i in range(18)) + "text.png,F099,A,,\n",
@@ -157,6 +158,9 @@ PAGES = [
     Page("die", "die concave_1.txt concave_2.txt convex_1.txt convex_2.txt"),
     Page("die_limits", "die concave_1.txt concave_2.txt convex_1.txt convex_2.txt --design die.json"),
     Page("design", "design limits.json"),
+    Page("form", "form --temperature 650 --time 5"),
+    Page("form_fit", "form --fit composite.csv"),
+    Page("stiffness", "stiffness bearings.csv --limit clearance_mm=0.1:0.3"),
     Page("lot", "lot lot_list.csv --recipe recipe.json -o lot", "lot/index.html", tuple(LOT) + ("text.png",)),
     Page("lot_plain", "lot lot_0.png lot_1.png lot_2.png lot_3.png --recipe plain.json -o plain", "plain/index.html"),
     Page("lot_index", "lot --index lots.html lot plain", "lots.html"),
@@ -232,7 +236,15 @@ for (const e of document.querySelectorAll('table, p, figure, dl, pre, ul, h1, h2
   if (shown(e) && (box.right > width + slack || box.left < -slack))
     found.push(name(e) + ' reaches from ' + box.left + ' to ' + box.right + ' px: ' + e.textContent.trim().slice(0, 40));
 }
+const inked = e => { const box = e.getBoundingClientRect(), air = box.height / 6;
+  return {left: box.left, right: box.right, top: box.top + air, bottom: box.bottom - air}; };
 for (const svg of document.querySelectorAll('svg')) {
+  const words = [...svg.querySelectorAll('text')].filter(e => shown(e) && e.textContent.trim()).map(e => [e.textContent, inked(e)]);
+  for (let i = 0; i < words.length; i++) for (let k = i + 1; k < words.length; k++) {
+    const [a, b] = [words[i][1], words[k][1]];
+    if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1)
+      found.push('the words "' + words[i][0] + '" and "' + words[k][0] + '" of a plot lie over each other');
+  }
   const outer = svg.getBoundingClientRect();
   if (shown(svg)) for (const text of svg.querySelectorAll('text')) {
     const box = text.getBoundingClientRect();
