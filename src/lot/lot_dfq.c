@@ -105,7 +105,7 @@ static void besides_bearing(const fg_lot_analysis *analysis, const fg_measured_p
   text[0] = '\0';
   for (size_t pad = 0; pad < analysis->layout.pads; pad++) {
     const fg_lot_foil *foil = part->bearing->pad[pad];
-    char name[24];
+    char name[32];
     snprintf(name, sizeof name, "pad %zu", pad + 1);
     if (foil) append_words(text, name, fg_manifest_label(&analysis->lot->manifest, foil->item));
   }
