@@ -166,6 +166,19 @@ static void find_errors(fg_scan_loop_bump_level *level, const fg_scan_loop_bumps
   level->base = base / n[0];
 }
 
+/* Without bumps kept aside: cross-fitted by the engine, where what it found is what stands. */
+static void take_cross_fitted(fg_scan_loop_bump_level *level, const fg_loop_result *found) {
+  fg_loop_result *result = &level->result;
+  double *held_out = level->error.held_out_rms;
+  if (isfinite(held_out[0])) return;
+  if (!result->claims && !result->has_curve) {
+    held_out[0] = held_out[1] = level->error.rms[0];
+  } else if (result->claims == found->claims && result->has_curve == found->has_curve) {
+    held_out[0] = result->before.held_out_rms;
+    held_out[1] = result->after.held_out_rms;
+  }
+}
+
 /* Of few bumps the engine knows no curves, but counts them: that pays for the second response. */
 static double over_responses(const fg_loop_problem *problem, double p_value) {
   return fmin(1, (problem->few ? 1 : FG_SCAN_LOOP_BUMP_RESPONSES) * p_value);
@@ -302,8 +315,10 @@ static fg_status judge(fg_context *ctx, const fg_design *design, uint64_t seed, 
     }
   level->least = beyond_doubt * sum / n;
   fg_scan_loop_bumps_find_level(bumps, response);
+  const fg_loop_result found = level->result; /* only counted */
   FG_TRY(judge_claims(ctx, bumps, response, seed));
   find_errors(level, bumps, response == RADIUS);
+  take_cross_fitted(level, &found);
   return FG_OK;
 }
 

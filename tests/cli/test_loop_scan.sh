@@ -20,6 +20,8 @@ render ripple 2 -60 '{"id":"scan.carriage_ripple","amplitude_um":7,"period_mm":2
 value ripple.out "r['summary']" | grep -q '^Found: .*ripple.* falls from ' || fail "a ripple is summed up as $(value ripple.out "r['summary']")"
 [ "$(value ripple.out "r['error_ratio']['folds'], r['error_ratio']['fold_of'], r['error_ratio']['held_out'] < 0.1, r['error_ratio']['held_out'] > 0.9 * r['error_ratio']['rms']")" = "(5, 'bumps', True, True)" ] ||
   fail "cross-fitted the ripple leaves $(value ripple.out "r['error_ratio']")"
+[ "$(value clean.out "all(0 < x['rms_before'] == x['held_out_rms_before'] == x['held_out_rms_after'] for x in r['bumps']['responses'][:2])")" = True ] ||
+  fail "the bumps of a clean scan have the errors $(value clean.out "r['bumps']")"
 [ "$(value clean.out "r['error_ratio']")" = "{'rms': 1, 'held_out': 1, 'folds': 0, 'fold_of': None}" ] || fail "a clean scan's errors change: $(value clean.out "r['error_ratio']")"
 near amplitude "$(value ripple.out "r['claims'][0]['parameters']['amplitude_um']")" 7 0.05
 near period "$(value ripple.out "r['claims'][0]['parameters']['period_mm']")" 2.7 0.003

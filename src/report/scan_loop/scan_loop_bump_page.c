@@ -148,7 +148,7 @@ static void put_error(FILE *out, const char *name, const char *model, const char
 static void put_errors(FILE *out, const fg_scan_result_bumps *bumps) {
   fputs(
       "<div class=\"scroll\"><table><tr><th>rms about the declared model</th><th class=\"w\">model"
-      "</th><th>before</th><th>after</th><th>kept aside, before</th><th>after</th></tr>\n",
+      "</th><th>before</th><th>after</th><th>took no part:<br>before</th><th>after</th></tr>\n",
       out);
   for (size_t r = 0; r < FG_SCAN_RESULT_RESPONSES; r++) {
     const fg_scan_result_response *one = &bumps->response[r];
