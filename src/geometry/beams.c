@@ -25,6 +25,12 @@
 /* Neighbouring stations of a rough edge err alike over more than so many steps. */
 #define ROUGH_STEPS 3.0
 
+/* Beams are parallel when half of so many at the least are, within this angle; one leans that is
+ * further off. */
+enum { PARALLEL_LEAST = 4 };
+#define PARALLEL_DEG 0.05
+#define LEANING_DEG  0.25
+
 /* No cut is off by this factor in length and width alike, within this logarithm. */
 #define SCALE_FACTOR 1.2
 #define SAME_FACTOR  0.05
@@ -346,6 +352,26 @@ static void check_scale(const fg_design *design, double *scratch, fg_foil *foil)
            factor);
 }
 
+static double direction_off(const fg_beam *beam, double direction_deg) {
+  return fabs(remainder(beam->direction_deg - direction_deg, 360));
+}
+
+/* Beams that are parallel but for a few: those lean. Beams of a foil whose beams point different
+ * ways by design do not. */
+static void flag_leaning(double *scratch, fg_foil *foil) {
+  const fg_beam *beams = foil->beams;
+  size_t count = foil->beam_count;
+  if (count < PARALLEL_LEAST || isnan(foil->rotation_deg)) return;
+  for (size_t i = 0; i < count; i++)
+    scratch[i] = remainder(beams[i].direction_deg - beams[0].direction_deg, 360);
+  double direction = beams[0].direction_deg + fg_select(scratch, count, count / 2);
+  for (size_t i = 0; i < count; i++)
+    scratch[i] = direction_off(&beams[i], direction);
+  if (fg_select(scratch, count, count / 2) > PARALLEL_DEG) return;
+  for (size_t i = 0; i < count; i++)
+    if (direction_off(&beams[i], direction) > LEANING_DEG) foil->beams[i].flags |= FG_BEAM_BENT;
+}
+
 fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil) {
   fg_beam_noise *noises = NULL;
   double *scratch = NULL;
@@ -358,6 +384,7 @@ fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *fo
   put_noise(foil, noises, scratch);
   check_scale(design, scratch, foil);
   FG_TRY_EXIT(fg_beams_number(ctx, foil));
+  flag_leaning(scratch, foil);
   if (design->beam_count && foil->beam_count != design->beam_count)
     foil->flags |= FG_FOIL_BEAM_COUNT;
 exit:

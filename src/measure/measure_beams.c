@@ -28,11 +28,9 @@
 
 /* An island at work. */
 typedef struct flat_work {
-  const fg_tiles *tiles;
+  fg_line_view view;
   const int64_t *origin_px;
   const fg_measurement *m;
-  fg_pixel_shape shape;
-  fg_two_levels levels;
   fg_rims rims;
   fg_polygon *polygons; /* one per rim */
   fg_beam_places places;
@@ -42,10 +40,6 @@ typedef struct flat_work {
   fg_beam *beams; /* one per place */
 } flat_work;
 
-static double middle_level(const flat_work *w) {
-  return 0.5 * (w->levels.low + w->levels.high);
-}
-
 static double least_px(const fg_measurement *m, const fg_pixel_shape *shape) {
   return LEAST_SHARE * m->design.beam_length_mm * 1000 / shape->um;
 }
@@ -53,16 +47,16 @@ static double least_px(const fg_measurement *m, const fg_pixel_shape *shape) {
 static fg_status find_polygon(fg_context *ctx, void *shared, size_t i) {
   flat_work *w = shared;
   fg_rim *rim = &w->rims.list[i];
-  const fg_beam_limits limits = fg_beam_limits_of(&w->m->design, &w->shape);
+  const fg_beam_limits limits = fg_beam_limits_of(&w->m->design, &w->view.shape);
   for (size_t k = 0; k < rim->count; k++) {
-    rim->points[k].x *= w->shape.scale[0];
-    rim->points[k].y *= w->shape.scale[1];
+    rim->points[k].x *= w->view.shape.scale[0];
+    rim->points[k].y *= w->view.shape.scale[1];
   }
   return fg_polygon_make(ctx, rim->points, rim->count, limits.tolerance_px, &w->polygons[i]);
 }
 
 static fg_status find_places(fg_context *ctx, flat_work *w, unsigned threads) {
-  const fg_beam_limits limits = fg_beam_limits_of(&w->m->design, &w->shape);
+  const fg_beam_limits limits = fg_beam_limits_of(&w->m->design, &w->view.shape);
   size_t capacity = 0;
   FG_TRY(fg_memory_allocate(ctx, w->rims.count, sizeof *w->polygons, (void **)&w->polygons));
   FG_TRY(fg_parallel_run(ctx, threads, w->rims.count, find_polygon, w));
@@ -80,8 +74,7 @@ static fg_status find_places(fg_context *ctx, flat_work *w, unsigned threads) {
 static fg_status find_tone(fg_context *ctx, void *shared, size_t i) {
   flat_work *w = shared;
   const fg_stretch *side = &w->places.list[i / 2].sides[FG_BEAM_LEFT + i % 2];
-  fg_status status =
-      fg_line_edge_tone(ctx, w->tiles, &w->shape, side, middle_level(w), &w->tones[i]);
+  fg_status status = fg_line_edge_tone(ctx, &w->view, side, &w->tones[i]);
   if (status == FG_ERR_NUMERIC) w->tones[i] = (fg_tone){.gamma = 1, .doubt = INFINITY};
   return status == FG_ERR_NUMERIC ? FG_OK : status;
 }
@@ -118,9 +111,9 @@ static double find_doubt(const flat_work *w, const fg_stretch *side, const fg_di
 
 static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch *side,
                            const fg_disc_edge *found, double doubt_px, fg_beam_edge *edge) {
-  double mm = w->shape.um / 1000;
-  const double origin[2] = {(double)w->origin_px[0] * w->shape.scale[0],
-                            (double)w->origin_px[1] * w->shape.scale[1]};
+  double mm = w->view.shape.um / 1000;
+  const double origin[2] = {(double)w->origin_px[0] * w->view.shape.scale[0],
+                            (double)w->origin_px[1] * w->view.shape.scale[1]};
   FG_TRY(fg_memory_allocate(ctx, found->count, sizeof *edge->stations, (void **)&edge->stations));
   edge->count = found->count;
   for (size_t i = 0; i < found->count; i++) {
@@ -142,16 +135,16 @@ static fg_status take_edge(fg_context *ctx, const flat_work *w, const fg_stretch
 }
 
 static fg_point to_mm(const flat_work *w, fg_point p) {
-  double mm = w->shape.um / 1000;
-  return (fg_point){(p.x + (double)w->origin_px[0] * w->shape.scale[0]) * mm,
-                    (p.y + (double)w->origin_px[1] * w->shape.scale[1]) * mm};
+  double mm = w->view.shape.um / 1000;
+  return (fg_point){(p.x + (double)w->origin_px[0] * w->view.shape.scale[0]) * mm,
+                    (p.y + (double)w->origin_px[1] * w->view.shape.scale[1]) * mm};
 }
 
 /* What moves the apex of a round floor is blur along it, which is what blurs the beam's long edges;
  * its own blur was taken for it. */
 static void mend_curved(const flat_work *w, const fg_stretch *side, const fg_beam_edge *left,
                         fg_disc_edge *found) {
-  double along_px = left->blur_mm * 1000 / w->shape.um;
+  double along_px = left->blur_mm * 1000 / w->view.shape.um;
   if (isinf(side->radius) || !left->count) return;
   double shift = (found->blur_px * found->blur_px - along_px * along_px) / (2 * side->radius);
   for (size_t i = 0; i < found->count; i++)
@@ -162,8 +155,7 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
                               fg_beam *beam, fg_beam_edge *edge) {
   fg_disc_edge found = {0};
   double next_px;
-  fg_status status = fg_line_edge_measure(ctx, w->tiles, &w->shape, side, middle_level(w), &w->tone,
-                                          &found, &next_px);
+  fg_status status = fg_line_edge_measure(ctx, &w->view, side, &w->tone, &found, &next_px);
   if (status == FG_OK) {
     double overlap_px = fg_line_edge_overlap(next_px, found.blur_px);
     if (overlap_px > NARROW_PX) beam->flags |= FG_BEAM_NARROW_CUT;
@@ -176,12 +168,12 @@ static fg_status measure_edge(fg_context *ctx, const flat_work *w, const fg_stre
 
 /* An edge of it ends at the border of the scan: of the view, whose other borders are far away. */
 static bool is_at_border(const flat_work *w, const fg_beam_place *place) {
-  const double high[2] = {(double)w->tiles->width_px - BORDER_PX,
-                          (double)w->tiles->height_px - BORDER_PX};
+  const double high[2] = {(double)w->view.tiles->width_px - BORDER_PX,
+                          (double)w->view.tiles->height_px - BORDER_PX};
   for (int side = 0; side < FG_BEAM_SIDES; side++)
     for (int end = 0; end < 2 && place->there[side]; end++) {
       fg_point p = end ? place->sides[side].to : place->sides[side].from;
-      double x = p.x / w->shape.scale[0], y = p.y / w->shape.scale[1];
+      double x = p.x / w->view.shape.scale[0], y = p.y / w->view.shape.scale[1];
       if (x < BORDER_PX || y < BORDER_PX || x > high[0] || y > high[1]) return true;
     }
   return false;
@@ -260,21 +252,23 @@ static void free_work(flat_work *w) {
   free(w->beams);
 }
 
-fg_status fg_flat_island_measure(fg_context *ctx, const fg_tiles *view, const fg_island *island,
-                                 const int64_t origin_px[2], const fg_measurement *m,
-                                 double background, unsigned threads, fg_flat_parts *parts) {
-  flat_work w = {.tiles = view,
-                 .origin_px = origin_px,
-                 .m = m,
-                 .shape = fg_pixel_shape_of(m->dpi),
-                 .levels = fg_two_levels_find(view, island)};
-  bool light = fabs(background - w.levels.low) <= fabs(background - w.levels.high);
+fg_status fg_flat_island_measure(fg_context *ctx, const fg_flat_island *island,
+                                 const fg_measurement *m, unsigned threads, fg_flat_parts *parts) {
+  const fg_two_levels levels = fg_two_levels_find(island->view, island->island);
+  flat_work w = {.view = {.tiles = island->view,
+                          .shape = fg_pixel_shape_of(m->dpi),
+                          .middle = 0.5 * (levels.low + levels.high)},
+                 .origin_px = island->origin_px,
+                 .m = m};
+  double background = island->background;
+  bool light = fabs(background - levels.low) <= fabs(background - levels.high);
+  const fg_rim_options options = {w.view.middle, light, least_px(m, &w.view.shape)};
   fg_status status = FG_OK;
-  if (!w.levels.found) {
+  if (!levels.found) {
     parts->specks++;
     return FG_OK;
   }
-  FG_TRY_EXIT(fg_rims_trace(ctx, view, island, &w.levels, light, least_px(m, &w.shape), &w.rims));
+  FG_TRY_EXIT(fg_rims_trace(ctx, island->view, island->island, &options, &w.rims));
   FG_TRY_EXIT(find_places(ctx, &w, threads));
   FG_TRY_EXIT(measure_places(ctx, &w, threads));
   FG_TRY_EXIT(take_parts(ctx, &w, light, parts));

@@ -31,12 +31,17 @@ void fg_flat_parts_free(fg_flat_parts *parts);
 /* Adds those of one list to another, whose they then are. FG_ERR_MEMORY. */
 fg_status fg_flat_parts_move(fg_context *ctx, fg_flat_parts *from, fg_flat_parts *to);
 
-/* Adds the parts of one island, whose view lies at origin_px of the scan; `background` is the
- * scan's level around all that lies on it, 8-bit counts. The result does not depend on `threads`.
- * FG_ERR_MEMORY. */
-fg_status fg_flat_island_measure(fg_context *ctx, const fg_tiles *view, const fg_island *island,
-                                 const int64_t origin_px[2], const fg_measurement *m,
-                                 double background, unsigned threads, fg_flat_parts *parts);
+/* An island and what it lies on. */
+typedef struct fg_flat_island {
+  const fg_tiles *view;
+  const fg_island *island;
+  const int64_t *origin_px; /* of the view in the scan */
+  double background;        /* the scan's level around all that lies on it, 8-bit counts */
+} fg_flat_island;
+
+/* Adds the parts of one island. The result does not depend on `threads`. FG_ERR_MEMORY. */
+fg_status fg_flat_island_measure(fg_context *ctx, const fg_flat_island *island,
+                                 const fg_measurement *m, unsigned threads, fg_flat_parts *parts);
 
 /* Foils from all parts: fills foils, foil_count, specks and light_on_dark of `m`, in no order.
  * What has beams or is as large as one of the design is a foil; the rest are specks. */

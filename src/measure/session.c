@@ -190,8 +190,8 @@ static fg_status anchor(fg_context *ctx, fg_session *s, job *j) {
 /* Its edges lie where its pixels have them, wherever tiles' corners are: it needs no anchor. */
 static fg_status measure_flat(fg_context *ctx, fg_session *s, const job *j) {
   fg_flat_parts parts = {0};
-  fg_status status = fg_flat_island_measure(ctx, &j->view, &j->island, j->origin_px, s->measurement,
-                                            j->background, s->threads, &parts);
+  const fg_flat_island island = {&j->view, &j->island, j->origin_px, j->background};
+  fg_status status = fg_flat_island_measure(ctx, &island, s->measurement, s->threads, &parts);
   pthread_mutex_lock(&s->lock);
   if (status == FG_OK) status = fg_flat_parts_move(ctx, &parts, &s->parts);
   pthread_mutex_unlock(&s->lock);

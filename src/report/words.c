@@ -80,7 +80,7 @@ static const fg_flag_words beam_flags[] = {
     {FG_BEAM_TORN_TIP, "torn_tip", "its end is no straight edge: no length"},
     {FG_BEAM_NO_FLOOR, "no_floor", "no edge is seen where its root should be: no length"},
     {FG_BEAM_ONE_FLOOR, "one_floor", "the cut beside it has a floor on one side only"},
-    {FG_BEAM_BENT, "bent", "it bows to one side in the plane of the foil"},
+    {FG_BEAM_BENT, "bent", "it bows or leans to one side in the plane of the foil"},
     {FG_BEAM_OUTLIERS, "outliers", "burr or dust on its edges was left out"},
     {FG_BEAM_DISTURBED_EDGE, "disturbed_edge", "dust or a burr hides part of an edge"},
     {FG_BEAM_TOUCHES_BORDER, "touches_border", "the border of the scan cuts what it belongs to"},

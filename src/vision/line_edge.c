@@ -261,12 +261,12 @@ static fg_status open_band(fg_context *ctx, const fg_stretch *stretch, double mi
   return check_sectors(ctx, work);
 }
 
-fg_status fg_line_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                            const fg_stretch *stretch, double middle, fg_tone *tone) {
-  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = 1};
+fg_status fg_line_edge_tone(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
+                            fg_tone *tone) {
+  fg_disc_work work = {.tiles = view->tiles, .shape = &view->shape, .gamma = 1};
   double next_px;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(open_band(ctx, stretch, middle, &work, &next_px));
+  FG_TRY_EXIT(open_band(ctx, stretch, view->middle, &work, &next_px));
   FG_TRY_EXIT(fg_disc_find_tone(ctx, &work, tone));
 exit:
   fg_disc_work_free(&work);
@@ -286,9 +286,9 @@ static fg_status find_shape(fg_context *ctx, fg_disc_work *work) {
   return check_sectors(ctx, work);
 }
 
-static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch, double middle,
-                     const fg_tone *tone, fg_disc_edge *edge, double *next_px) {
-  FG_TRY(open_band(ctx, stretch, middle, work, next_px));
+/* The edge of an open band. */
+static fg_status solve(fg_context *ctx, fg_disc_work *work, const fg_stretch *stretch,
+                       const fg_tone *tone, fg_disc_edge *edge) {
   FG_TRY(find_shape(ctx, work));
   edge->circle = (fg_circle){.radius = -stretch->radius};
   edge->count = work->ring.station_count;
@@ -298,13 +298,13 @@ static fg_status run(fg_context *ctx, fg_disc_work *work, const fg_stretch *stre
   return fg_disc_solve(ctx, work, edge);
 }
 
-fg_status fg_line_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                               const fg_stretch *stretch, double middle, const fg_tone *tone,
-                               fg_disc_edge *edge, double *next_px) {
-  fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
+fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
+                               const fg_tone *tone, fg_disc_edge *edge, double *next_px) {
+  fg_disc_work work = {.tiles = view->tiles, .shape = &view->shape, .gamma = tone->gamma};
   memset(edge, 0, sizeof *edge);
   edge->gamma = tone->gamma;
-  fg_status status = run(ctx, &work, stretch, middle, tone, edge, next_px);
+  fg_status status = open_band(ctx, stretch, view->middle, &work, next_px);
+  if (status == FG_OK) status = solve(ctx, &work, stretch, tone, edge);
   fg_disc_work_free(&work);
   if (status != FG_OK) fg_disc_edge_free(edge);
   return status;

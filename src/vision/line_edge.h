@@ -22,17 +22,22 @@ double fg_stretch_length(const fg_stretch *stretch);
 /* The place at a share of its length, so far towards what surrounds the material. */
 fg_point fg_stretch_point(const fg_stretch *stretch, double share, double outwards);
 
-/* What the stretch says of the tone curve, as fg_disc_edge_tone. `middle` is the count between
- * the two sides. */
-fg_status fg_line_edge_tone(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                            const fg_stretch *stretch, double middle, fg_tone *tone);
+/* Where the stretches lie. */
+typedef struct fg_line_view {
+  const fg_tiles *tiles;
+  fg_pixel_shape shape;
+  double middle; /* the count between the two sides of an edge */
+} fg_line_view;
+
+/* What the stretch says of the tone curve, as fg_disc_edge_tone. */
+fg_status fg_line_edge_tone(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
+                            fg_tone *tone);
 
 /* Fills `edge`; its circle is not used, and edge_px counts towards what surrounds the material.
  * `next_px` is how far the next edge is, on either side: INFINITY, none is near.
  * FG_ERR_NUMERIC when there is no edge. */
-fg_status fg_line_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_pixel_shape *shape,
-                               const fg_stretch *stretch, double middle, const fg_tone *tone,
-                               fg_disc_edge *edge, double *next_px);
+fg_status fg_line_edge_measure(fg_context *ctx, const fg_line_view *view, const fg_stretch *stretch,
+                               const fg_tone *tone, fg_disc_edge *edge, double *next_px);
 
 /* What all edge_px may be wrong by together because the next edge's blur reaches into the band. */
 double fg_line_edge_overlap(double next_px, double blur_px);

@@ -136,8 +136,8 @@ static fg_status trace_tiles(fg_context *ctx, tracer *t, double least_px, fg_rim
 }
 
 fg_status fg_rims_trace(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
-                        const fg_two_levels *levels, bool light, double least_px, fg_rims *rims) {
-  tracer t = {.tiles = tiles, .limit = 0.5 * (levels->low + levels->high), .light = light};
+                        const fg_rim_options *options, fg_rims *rims) {
+  tracer t = {.tiles = tiles, .limit = options->level, .light = options->light};
   fg_status status = FG_OK;
   memset(rims, 0, sizeof *rims);
   t.row_bytes = (size_t)tiles->width_px / 8 + 1;
@@ -147,7 +147,7 @@ fg_status fg_rims_trace(fg_context *ctx, const fg_tiles *tiles, const fg_island 
                                  (void **)&t.seen));
   for (size_t i = 0; i < island->count; i++)
     t.mine[island->tiles[i]] = 1;
-  FG_TRY_EXIT(trace_tiles(ctx, &t, least_px, rims));
+  FG_TRY_EXIT(trace_tiles(ctx, &t, options->least_px, rims));
 exit:
   free(t.mine);
   free(t.seen);

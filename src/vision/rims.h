@@ -36,10 +36,15 @@ typedef struct fg_two_levels {
 /* What parts an island's counts into two classes best (Otsu 1979), and the medians of both. */
 fg_two_levels fg_two_levels_find(const fg_tiles *tiles, const fg_island *island);
 
-/* Every rim of an island between two levels whose box has a diagonal of at least `least_px`, in
- * the order of their uppermost points. `light`: the material is what is brighter. FG_ERR_MEMORY. */
+typedef struct fg_rim_options {
+  double level;    /* between the two sides, 8-bit counts */
+  bool light;      /* the material is what is brighter */
+  double least_px; /* diagonal of the smallest box that counts */
+} fg_rim_options;
+
+/* Every rim of an island, in the order of their uppermost points. FG_ERR_MEMORY. */
 fg_status fg_rims_trace(fg_context *ctx, const fg_tiles *tiles, const fg_island *island,
-                        const fg_two_levels *levels, bool light, double least_px, fg_rims *rims);
+                        const fg_rim_options *options, fg_rims *rims);
 void fg_rims_free(fg_rims *rims);
 
 #endif

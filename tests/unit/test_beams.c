@@ -222,6 +222,20 @@ static void numbers_run_from_left_to_right(void **state) {
   }
 }
 
+static void one_of_parallel_beams_that_leans_is_bent(void **state) {
+  (void)state;
+  const fg_design design = design_of_beams();
+  fg_context ctx = {0};
+  fg_beam beams[BEAMS];
+  for (int i = 0; i < BEAMS; i++)
+    beams[i] = make_beam((shape){4, 1, 0, 0, 0.0002, i == 2 ? 0.02 : 0, {5 + 2 * i, 9}, 1});
+  fg_foil foil = foil_of(beams, BEAMS);
+  assert_int_equal(fg_beams_measure(&ctx, &design, &foil), FG_OK);
+  for (int i = 0; i < BEAMS; i++)
+    assert_int_equal(foil.beams[i].flags, i == 2 ? FG_BEAM_BENT : 0);
+  fg_foil_free(&foil);
+}
+
 /* Around a ring with a gap: clockwise from after the gap. */
 static void beams_of_a_ring_run_clockwise(void **state) {
   (void)state;
@@ -272,6 +286,7 @@ int main(void) {
       cmocka_unit_test(edges_that_are_not_there),
       cmocka_unit_test(burrs_are_left_out),
       cmocka_unit_test(numbers_run_from_left_to_right),
+      cmocka_unit_test(one_of_parallel_beams_that_leans_is_bent),
       cmocka_unit_test(beams_of_a_ring_run_clockwise),
       cmocka_unit_test(another_size_is_no_foil_of_the_design),
       cmocka_unit_test(a_foil_without_beams_is_no_crime),
