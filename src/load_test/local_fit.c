@@ -16,8 +16,9 @@ static const double window_share_min = 1.0 / 60;
 static const double interval_reach[] = {[FG_LOCAL_VALUE] = 1.0, [FG_LOCAL_SLOPE] = 2.0};
 static const double window_taken = 0.64;
 
-/* Places where a stroke is looked at for the force that is sought. */
-enum { LOOK_PLACES = 120, SOLVE_STEPS = 6 };
+/* Places where a stroke is looked at for the force that is sought, and samples of a window there:
+ * so many that noise does not pass for the force in the gap. */
+enum { LOOK_PLACES = 120, LOOK_SAMPLES = 24, SOLVE_STEPS = 6 };
 
 /* Inverse of a symmetric 3 × 3 matrix. */
 static bool invert(const double m[3][3], double inverse[3][3]) {
@@ -75,15 +76,19 @@ bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, f
   return true;
 }
 
-/* Half of a width that holds SAMPLES_MIN samples. */
-static double smallest_window(const fg_load_stroke *s, double x) {
+/* Half of a width that holds so many samples. */
+static double window_of(const fg_load_stroke *s, double x, size_t samples) {
   size_t low = fg_load_stroke_from(s, x), high = low;
   double window = window_share_min * (s->x[s->count - 1] - s->x[0]);
-  while (high - low < SAMPLES_MIN) {
+  while (high - low < samples && high - low < s->count) {
     bool left = low > 0 && (high == s->count || x - s->x[low - 1] < s->x[high] - x);
     window = fmax(window, left ? x - s->x[--low] : s->x[high++] - x);
   }
   return window;
+}
+
+static double smallest_window(const fg_load_stroke *s, double x) {
+  return window_of(s, x, SAMPLES_MIN);
 }
 
 bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm,
@@ -147,7 +152,7 @@ static bool look(const fg_load_stroke *s, double level, double *x) {
   double outer = NAN;
   for (int i = LOOK_PLACES; i >= 0; i--) {
     fg_local_fit fit;
-    double at = low + i * step, window = fmax(2 * step, 1.0001 * smallest_window(s, at));
+    double at = low + i * step, window = fmax(2 * step, 1.0001 * window_of(s, at, LOOK_SAMPLES));
     if (!fg_local_fit_at(s, at, window, &fit)) continue;
     if (fit.value < level && outer >= level) {
       *x = at + step / 2;
@@ -173,6 +178,8 @@ bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, 
     if (*x < low || *x > high) return false;
   }
   if (!fg_local_fit_at(stroke, *x, window, fit) || !(fit->slope > 0)) return false;
-  *u_x = fmax(u, fit->u_value) / fit->slope;
+  u = fmax(u, fit->u_value);
+  if (fabs(fit->value - level_n) > u) return false; /* steps that wander in the noise */
+  *u_x = u / fit->slope;
   return true;
 }

@@ -119,9 +119,9 @@ no slope is taken within 10 times of it: where samples crowd, their places are o
 parabola through the samples there, since the extreme of noisy ones lies beyond. The largest slope is sought with windows that do not follow
 the noise from place to place.
 
-Where it falls short: of one cycle with noise of 2 N and 2 µm the clearance's U is too small, and in some tests no place is found where the
-force passes the threshold; with noise like that record more cycles. Noise that is alike from one sample to the next is known by how cycles
-differ, and where they are few the preload's U is somewhat small.
+Where it falls short: of one cycle with noise of 2 N and 2 µm the clearance's U is too small; with noise like that record more cycles. Noise
+that is alike from one sample to the next hides from neighbours: only what cycles differ by knows of it, and U of the repeats alone is then
+too small by a fifth to a third.
 """
 
 
