@@ -9,7 +9,7 @@
 
 enum {
   BATCH_ROWS = 128,
-  PIXELS_MOST = 512, /* of one cross-section */
+  PIXELS_MOST = 1024, /* of one cross-section; a larger one is not looked at */
 };
 
 /* Rows of the scan, the newest in the place of the oldest. */
@@ -48,7 +48,8 @@ static size_t collect(const ring *r, const fg_colour_station *s, fg_colour_pixel
       double dx = (double)x - s->x, dy = (double)y - s->y;
       double across = dx * s->nx + dy * s->ny, along = dy * s->nx - dx * s->ny;
       if (fabs(across) > s->half_across_px || fabs(along) > s->half_along_px) continue;
-      if (count < PIXELS_MOST) pixels[count++] = pixel_at(r, x, y, across);
+      if (count == PIXELS_MOST) return 0;
+      pixels[count++] = pixel_at(r, x, y, across);
     }
   return count;
 }

@@ -56,14 +56,18 @@ static fg_colour_station across_strip(const chooser *c, const fg_station *from,
                                       const fg_colour_known *known, int part) {
   fg_point middle = {0.5 * (from->left.x + from->right.x), 0.5 * (from->left.y + from->right.y)};
   double nx = from->normal.x * c->pixel_mm[0], ny = from->normal.y * c->pixel_mm[1];
-  double norm = hypot(nx, ny);
+  double norm = hypot(nx, ny), mm = sqrt(c->pixel_mm[0] * c->pixel_mm[1]);
+  /* Where the resolutions differ, the strip has as many pixels as lie along this normal. */
+  double share =
+      mm * (from->normal.x * nx / c->pixel_mm[0] + from->normal.y * ny / c->pixel_mm[1]) / norm;
+  fg_colour_known here = {known->half_width_px * share, known->blur_px};
   return (fg_colour_station){.x = middle.x / c->pixel_mm[0],
                              .y = middle.y / c->pixel_mm[1],
                              .nx = nx / norm,
                              .ny = ny / norm,
                              .half_along_px = 0.5 * ALONG_PX,
-                             .half_across_px = known->half_width_px + reach_px(known->blur_px),
-                             .known = *known,
+                             .half_across_px = here.half_width_px + reach_px(here.blur_px),
+                             .known = here,
                              .part = part};
 }
 
