@@ -203,43 +203,49 @@ static void write_points(const fg_colour_rows *rows, const windows *w, fg_colour
       shift->windows[shift->window_count++] = point_of(rows, w, &w->list[i]);
 }
 
-/* A straight line through the neighbours, weighted by 1 / u² of their own and by how near they are
- * (tricube): its value at y, u of that, and the share of the point `self` in its own value. */
-typedef struct local {
-  double value, u, share;
-} local;
+/* Weight of a neighbour: 1 / u² of its own, and by how near it is (tricube). */
+static double weigh(const fg_colour_window *p, double away_mm, double reach_mm) {
+  double near = fabs(away_mm) / reach_mm, u = (double)p->u_own_um;
+  if (near >= 1) return 0;
+  double rest = 1 - near * near * near;
+  return rest * rest * rest / (u * u);
+}
 
-static local fit_local(const fg_colour_shift *shift, double y_mm, double reach_mm, size_t self) {
-  double s[3] = {0}, t[2] = {0}, lean[SHARED] = {0};
+/* The line through the neighbours at y: its value there is (c0 + c1 d) weight, summed over them. */
+typedef struct line {
+  double value, c0, c1;
+} line;
+
+static line fit_line(const fg_colour_shift *shift, double y_mm, double reach_mm) {
+  double s0 = 0, s1 = 0, s2 = 0, t0 = 0, t1 = 0;
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
-    double d = (double)p->y_mm - y_mm, near = fabs(d) / reach_mm;
-    if (near >= 1) continue;
-    double weight = pow(1 - near * near * near, 3) / ((double)p->u_own_um * (double)p->u_own_um);
-    for (int k = 0; k < 3; k++)
-      s[k] += weight * pow(d, k);
-    for (int k = 0; k < 2; k++)
-      t[k] += weight * pow(d, k) * (double)p->dy_um;
+    double d = (double)p->y_mm - y_mm, weight = weigh(p, d, reach_mm), value = (double)p->dy_um;
+    s0 += weight;
+    s1 += weight * d;
+    s2 += weight * d * d;
+    t0 += weight * value;
+    t1 += weight * d * value;
   }
-  double det = s[0] * s[2] - s[1] * s[1];
-  local at = {.value = t[0] / s[0], .u = 0, .share = 0};
-  bool line = det > 1e-9 * s[0] * s[2];
-  if (line) at.value = (s[2] * t[0] - s[1] * t[1]) / det;
+  double det = s0 * s2 - s1 * s1;
+  if (!(det > 1e-9 * s0 * s2)) return (line){t0 / s0, 1 / s0, 0};
+  return (line){(s2 * t0 - s1 * t1) / det, s2 / det, -s1 / det};
+}
+
+/* Uncertainty of the line's value: of the windows' own, and of what they share. */
+static double doubt_of(const fg_colour_shift *shift, const line *at, double y_mm, double reach_mm) {
+  double own = 0, lean[SHARED] = {0};
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
-    double d = (double)p->y_mm - y_mm, near = fabs(d) / reach_mm;
-    if (near >= 1) continue;
-    double u = (double)p->u_own_um, weight = pow(1 - near * near * near, 3) / (u * u);
-    double share = line ? weight * (s[2] - s[1] * d) / det : weight / s[0];
-    at.u += share * share * u * u;
+    double d = (double)p->y_mm - y_mm, u = (double)p->u_own_um;
+    double share = (at->c0 + at->c1 * d) * weigh(p, d, reach_mm);
+    own += share * share * u * u;
     for (int k = 0; k < SHARED; k++)
       lean[k] += share * (double)p->shared_um[k];
-    if (i == self) at.share = share;
   }
   for (int k = 0; k < SHARED; k++)
-    at.u += lean[k] * lean[k];
-  at.u = sqrt(at.u);
-  return at;
+    own += lean[k] * lean[k];
+  return sqrt(own);
 }
 
 /* Weighted error of every point as the others tell it. */
@@ -247,9 +253,10 @@ static double left_out_error(const fg_colour_shift *shift, double reach_mm) {
   double sum = 0;
   for (size_t i = 0; i < shift->window_count; i++) {
     const fg_colour_window *p = &shift->windows[i];
-    local at = fit_local(shift, (double)p->y_mm, reach_mm, i);
-    if (at.share >= 0.999) return INFINITY;
-    double error = ((double)p->dy_um - at.value) / (1 - at.share) / (double)p->u_own_um;
+    line at = fit_line(shift, (double)p->y_mm, reach_mm);
+    double share = at.c0 * weigh(p, 0, reach_mm); /* of the point in its own value */
+    if (share >= 0.999) return INFINITY;
+    double error = ((double)p->dy_um - at.value) / (1 - share) / (double)p->u_own_um;
     sum += error * error;
   }
   return sum;
@@ -270,9 +277,9 @@ static void smooth(fg_colour_shift *shift) {
   }
   for (size_t i = 0; i < count; i++) {
     fg_colour_window *p = &shift->windows[i];
-    local at = fit_local(shift, (double)p->y_mm, best, i);
+    line at = fit_line(shift, (double)p->y_mm, best);
     p->smooth_um = (float)at.value;
-    p->u_smooth_um = (float)at.u;
+    p->u_smooth_um = (float)doubt_of(shift, &at, (double)p->y_mm, best);
   }
 }
 

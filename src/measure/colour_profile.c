@@ -12,37 +12,33 @@ enum { LEVEL, CONTRAST, SHIFT, BLUR, VALUES, ROUNDS = 12, PIXELS_LEAST = 12 };
 #define BLUR_SETTLED  0.005
 #define OUTER_SHARE   0.8 /* of the reach: beyond it, what lies around is seen */
 
-static double cumulative(double u) {
-  return 0.5 * erfc(-u * M_SQRT1_2);
-}
-
-static double density(double u) {
-  return exp(-0.5 * u * u) * 0.3989422804014327;
-}
-
 /* The profile at v = n - shift, without level and contrast: its value and its derivatives by v and
  * by the blur. */
 typedef struct form {
   double value, by_v, by_blur;
 } form;
 
-static form add_edge(form sum, double sign, double v, double blur) {
-  double u = v / blur, p = density(u) / blur;
-  sum.value += sign * cumulative(u);
+static form add_edge(const fg_edge_tables *tables, form sum, double sign, double v, double blur) {
+  float density, cumulative;
+  double u = v / blur;
+  fg_edge_normal(tables, (float)u, &density, &cumulative);
+  double p = (double)density / blur;
+  sum.value += sign * (double)cumulative;
   sum.by_v += sign * p;
   sum.by_blur -= sign * p * u;
   return sum;
 }
 
-static form form_at(const fg_colour_known *known, double v, double blur) {
+static form form_at(const fg_edge_tables *tables, const fg_colour_known *known, double v,
+                    double blur) {
   form sum = {0};
   if (isinf(known->half_width_px)) {
-    sum = add_edge(sum, 1, -v, blur);
+    sum = add_edge(tables, sum, 1, -v, blur);
     sum.by_v = -sum.by_v;
     return sum;
   }
-  sum = add_edge(sum, 1, v + known->half_width_px, blur);
-  return add_edge(sum, -1, v - known->half_width_px, blur);
+  sum = add_edge(tables, sum, 1, v + known->half_width_px, blur);
+  return add_edge(tables, sum, -1, v - known->half_width_px, blur);
 }
 
 /* Level outside; contrast and place from what the pixels have more than it: of a strip its centre
@@ -77,15 +73,24 @@ static bool start(const fg_colour_known *known, const fg_colour_pixel *pixels, s
   return true;
 }
 
+/* What is fitted to. */
+typedef struct profile {
+  const fg_edge_tables *tables;
+  const fg_colour_known *known;
+  const fg_colour_pixel *pixels;
+  size_t count;
+  int channel;
+} profile;
+
 /* Normal equations of one round; returns the sum of squares. */
-static double add_pixels(const fg_colour_known *known, const fg_colour_pixel *pixels, size_t count,
-                         int channel, const double x[VALUES], fg_normal_equations *system) {
+static double add_pixels(const profile *p, const double x[VALUES], fg_normal_equations *system) {
   double sum = 0;
   fg_normal_clear(system, VALUES);
-  for (size_t i = 0; i < count; i++) {
-    form at = form_at(known, (double)pixels[i].across_px - x[SHIFT], x[BLUR]);
+  for (size_t i = 0; i < p->count; i++) {
+    const fg_colour_pixel *pixel = &p->pixels[i];
+    form at = form_at(p->tables, p->known, (double)pixel->across_px - x[SHIFT], x[BLUR]);
     double row[VALUES] = {1, at.value, -x[CONTRAST] * at.by_v, x[CONTRAST] * at.by_blur};
-    double residual = (double)pixels[i].value[channel] - x[LEVEL] - x[CONTRAST] * at.value;
+    double residual = (double)pixel->value[p->channel] - x[LEVEL] - x[CONTRAST] * at.value;
     fg_normal_add(system, row, residual, 1);
     sum += residual * residual;
   }
@@ -100,8 +105,10 @@ static void take_step(double x[VALUES], const double step[VALUES]) {
   x[BLUR] = fmax(BLUR_LEAST_PX, fmin(BLUR_MOST_PX, blur));
 }
 
-void fg_colour_profile_fit(const fg_colour_known *known, const fg_colour_pixel *pixels,
-                           size_t count, int channel, fg_colour_place *place) {
+void fg_colour_profile_fit(const fg_edge_tables *tables, const fg_colour_known *known,
+                           const fg_colour_pixel *pixels, size_t count, int channel,
+                           fg_colour_place *place) {
+  const profile p = {tables, known, pixels, count, channel};
   double x[VALUES], step[VALUES], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
   fg_normal_equations system;
   *place = (fg_colour_place){0};
@@ -109,7 +116,7 @@ void fg_colour_profile_fit(const fg_colour_known *known, const fg_colour_pixel *
   bool settled = false;
   double sum = 0;
   for (int round = 0; round < ROUNDS && !settled; round++) {
-    sum = add_pixels(known, pixels, count, channel, x, &system);
+    sum = add_pixels(&p, x, &system);
     if (!fg_normal_solve(&system, 1e-9, step, inverse)) return;
     take_step(x, step);
     settled = fabs(step[SHIFT]) < SETTLED_PX && fabs(step[BLUR]) < BLUR_SETTLED * x[BLUR];

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "vision/edge_model.h"
+
 /* A pixel near the cross-section: distance along the normal from where it is known to be. */
 typedef struct fg_colour_pixel {
   float across_px;
@@ -29,7 +31,8 @@ typedef struct fg_colour_place {
  * v = n - shift, to one channel's pixels; of a lone edge b + c Phi(-v / s). A profile that is even
  * about its middle, as halo and tone curve leave it, moves no place; what it differs by from this
  * form is the same in all channels, nearly. */
-void fg_colour_profile_fit(const fg_colour_known *known, const fg_colour_pixel *pixels,
-                           size_t count, int channel, fg_colour_place *place);
+void fg_colour_profile_fit(const fg_edge_tables *tables, const fg_colour_known *known,
+                           const fg_colour_pixel *pixels, size_t count, int channel,
+                           fg_colour_place *place);
 
 #endif

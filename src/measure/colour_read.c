@@ -18,6 +18,7 @@ typedef struct ring {
   int64_t width_px, rows, read; /* that the ring holds; that were read */
   int bytes_per_pixel;
   uint8_t *planes[3];
+  fg_edge_tables *tables;
   size_t first; /* of the stations in order: of the batch */
   atomic_bool differ[3];
 } ring;
@@ -70,7 +71,7 @@ static fg_status look(fg_context *ctx, void *shared, size_t item) {
   size_t count = collect(r, s, pixels);
   compare(r, pixels, count);
   for (int channel = 0; channel < 3; channel++)
-    fg_colour_profile_fit(&s->known, pixels, count, channel, &s->place[channel]);
+    fg_colour_profile_fit(r->tables, &s->known, pixels, count, channel, &s->place[channel]);
   return FG_OK;
 }
 
@@ -99,6 +100,8 @@ static fg_status read_rows(fg_context *ctx, fg_scan *scan, unsigned threads, rin
   size_t bytes = (size_t)r->rows * (size_t)r->width_px * (size_t)r->bytes_per_pixel;
   for (int k = 0; k < 3; k++)
     FG_TRY(fg_memory_allocate(ctx, bytes, 1, (void **)&r->planes[k]));
+  FG_TRY(fg_memory_allocate(ctx, 1, sizeof *r->tables, (void **)&r->tables));
+  fg_edge_tables_init(r->tables, 1);
   FG_TRY(fg_scan_begin_colours(ctx, scan));
   while (r->first < r->stations->count) {
     FG_TRY(read_batch(ctx, scan, r, fg_scan_get_info(scan)->height_px));
@@ -118,6 +121,7 @@ fg_status fg_colour_read(fg_context *ctx, fg_scan *scan, fg_budget *budget, unsi
   FG_TRY(fg_budget_take(ctx, budget, bytes));
   fg_status status = read_rows(ctx, scan, threads, &r);
   fg_budget_give(budget, bytes);
+  free(r.tables);
   for (int k = 0; k < 3; k++) {
     same[k] = !atomic_load(&r.differ[k]);
     free(r.planes[k]);

@@ -9,8 +9,10 @@
 
 /* Doubt of either kind that ends it. */
 #define DECIDED_P 0.01
-/* In a tie one member must be beyond doubt: for itself, and by the odds against every other. */
+/* What is said of a tie must be beyond doubt. */
 #define BEYOND_DOUBT_P 0.001
+/* Less than this between the lines is none. */
+#define CONSTANT_UM 1e-6
 /* What speaks for an effect is its shape: it takes most of what is uneven. */
 #define SHARE_LEAST 0.5
 /* A claim's shape and the windows are not exact: what the lines show of it is known no better. */
@@ -301,29 +303,6 @@ static void name_set(const fg_effect_set *set, char name[FG_SCAN_RESULT_WORDS]) 
   }
 }
 
-/* What the lines say of the explanations of a tie: the likeliest, and by how much the next falls
- * behind it. One without an effect of the carriage wants a constant. */
-typedef struct contest {
-  const fg_effect_set *best;
-  fg_scan_witness witness; /* of the best */
-  double first, second;    /* by how much each fits better than a constant */
-} contest;
-
-static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
-  carriage c = carriage_of(loop, set);
-  fg_scan_witness w = {0};
-  double better = 0;
-  if (c.fields.count) w = ask_of(loop, &c, &better);
-  if (to->best && better <= to->first) {
-    to->second = fmax(to->second, better);
-    return;
-  }
-  to->second = to->best ? to->first : 0;
-  to->first = better;
-  to->best = set;
-  to->witness = w;
-}
-
 /* What fits best is no knowledge of the sensor: the reader may have it. */
 static void put_gaps(const fg_scan_witness *w, char words[96]) {
   double gaps[LINES];
@@ -339,23 +318,51 @@ static void put_gaps(const fg_scan_witness *w, char words[96]) {
                  gaps[1]);
 }
 
-/* The odds of two explanations are exp(half the difference of their chi-squared). */
+/* What the lines say of a tie: which explanations hold something of the carriage that would show
+ * between them, and the witness of the one that fits best. */
+typedef struct contest {
+  char names[FG_SCAN_RESULT_WORDS / 2];
+  size_t holds, lacks; /* explanations */
+  fg_scan_witness witness;
+  double better;
+} contest;
+
+/* Of the carriage's members the numbers are too uncertain in a tie to part them from each other
+ * (reports/colour_lines.md); those that leave the lines constant stand apart. */
+static void enter(const fg_scan_loop *loop, const fg_effect_set *set, contest *to) {
+  carriage c = carriage_of(loop, set);
+  fg_scan_witness w = {.expected_um = NAN};
+  double better = 0;
+  if (c.fields.count) w = ask_of(loop, &c, &better);
+  if (!(w.expected_um > CONSTANT_UM)) {
+    to->lacks++;
+    return;
+  }
+  char name[FG_SCAN_RESULT_WORDS];
+  size_t used = strlen(to->names);
+  name_set(set, name);
+  fg_text_clip(to->names + used, sizeof to->names - used, "%s%s", used ? ", " : "", name);
+  if (!to->holds || better > to->better) {
+    to->better = better;
+    to->witness = w;
+  }
+  to->holds++;
+}
+
 static void ask_tie(const fg_scan_loop *loop, fg_scan_result *result) {
   contest all = {0};
-  char name[FG_SCAN_RESULT_WORDS], gaps[96];
+  char gaps[96];
   enter(loop, &loop->set, &all);
   for (size_t k = 0; k < loop->tie_count; k++)
     enter(loop, &loop->tie[k], &all);
-  double odds = 2 * log((double)(loop->tie_count + 1) / BEYOND_DOUBT_P);
-  if (all.witness.verdict != FG_WITNESS_FOR || !(all.witness.p_value < BEYOND_DOUBT_P) ||
-      all.first - all.second < odds || result->advices == FG_SCAN_RESULT_ADVICE)
+  if (!all.holds || !all.lacks || all.witness.verdict != FG_WITNESS_FOR ||
+      !(all.witness.p_value < BEYOND_DOUBT_P) || result->advices == FG_SCAN_RESULT_ADVICE)
     return;
-  name_set(all.best, name);
   put_gaps(&all.witness, gaps);
   fg_text_clip(result->witness_words, sizeof result->witness_words,
                "the colour lines of these scans, in which neither part nor optics shows, speak for "
-               "%.200s (p = %.1g) and for no other explanation (odds of any below %g)%s",
-               name, all.witness.p_value, BEYOND_DOUBT_P, gaps);
+               "the carriage (p = %.1g): %s, and not for the other %zu%s",
+               all.witness.p_value, all.names, all.lacks, gaps);
   result->advice[result->advices++] = result->witness_words;
 }
 

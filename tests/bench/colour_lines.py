@@ -236,7 +236,7 @@ def one_tie(task):
         run(program, "loop", base + ".png", "-o", base + ".loop.json", *options)
         report = load(base + ".loop.json")
         tied = any(c["verdict"] == "tied" for c in report["claims"])
-        spoken = [w.split("speak for ")[1].split(" (p")[0] for w in report["separating_measurement"] if "speak for" in w]
+        spoken = [w.split("): ")[1].split(", and not for")[0] for w in report["separating_measurement"] if "speak for" in w]
         said.append((tied, spoken[0] if spoken else None))
     os.remove(base + ".png")
     return task, said
@@ -325,8 +325,8 @@ With gap 0 no line sees the carriage at another moment: there nothing may speak 
 8 rows the lines speak `against`. Elsewhere `against` is wrong.
 
 Foils with rough edges at 2400 dpi and one smooth effect, lines {tie_gap} rows apart: where the loop leaves a tie, how often the lines are
-said to speak for an explanation that holds the effect that was drawn (right), or for another (wrong). A scale makes nothing between
-the lines, and a part's effect neither.
+said to speak for explanations with the carriage of which one holds the effect that was drawn (right), or none (wrong). A scale makes
+nothing between the lines, and a part's effect neither: nothing must be said there.
 
 | drawn | scans | tied | right, gap not stated | wrong | right, gap stated | wrong |
 |---|---|---|---|---|---|---|

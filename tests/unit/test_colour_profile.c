@@ -12,6 +12,8 @@
 
 enum { COUNT = 160 };
 
+static fg_edge_tables tables;
+
 /* Channel 0 lies `shift` further than 1; channel 2 shows nothing. */
 static void draw(const fg_colour_known *known, double shift, double blur, fg_colour_pixel *pixels) {
   for (int i = 0; i < COUNT; i++) {
@@ -31,7 +33,7 @@ static void assert_places(const fg_colour_known *known, double shift, double blu
   fg_colour_place place[3];
   draw(known, shift, blur, pixels);
   for (int k = 0; k < 3; k++)
-    fg_colour_profile_fit(known, pixels, COUNT, k, &place[k]);
+    fg_colour_profile_fit(&tables, known, pixels, COUNT, k, &place[k]);
   assert_true(place[0].good && place[1].good);
   assert_float_equal(place[0].shift_px, shift, 1e-3);
   assert_float_equal(place[1].shift_px, 0, 1e-3);
@@ -53,7 +55,7 @@ static void a_strip_narrower_than_its_blur_is_found(void **state) {
   fg_colour_place place;
   const fg_colour_known known = {.half_width_px = 1.2, .blur_px = 2};
   draw(&known, 0.7, 2.2, pixels);
-  fg_colour_profile_fit(&known, pixels, COUNT, 0, &place);
+  fg_colour_profile_fit(&tables, &known, pixels, COUNT, 0, &place);
   assert_true(place.good);
   assert_float_equal(place.shift_px, 0.7, 1e-3);
 }
@@ -70,13 +72,14 @@ static void few_pixels_tell_nothing(void **state) {
   fg_colour_place place = {.good = true};
   const fg_colour_known known = {.half_width_px = 9.5, .blur_px = 1.2};
   draw(&known, 0, 1.2, pixels);
-  fg_colour_profile_fit(&known, pixels, 5, 0, &place);
+  fg_colour_profile_fit(&tables, &known, pixels, 5, 0, &place);
   assert_false(place.good);
-  fg_colour_profile_fit(&known, pixels, 0, 0, &place);
+  fg_colour_profile_fit(&tables, &known, pixels, 0, 0, &place);
   assert_false(place.good);
 }
 
 int main(void) {
+  fg_edge_tables_init(&tables, 1);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_strip_is_found_where_it_is),
       cmocka_unit_test(a_strip_narrower_than_its_blur_is_found),
