@@ -250,7 +250,7 @@ def tie_rows(results):
         for i in (0, 1):
             named = [s[i][1] for s in mine if s[i][0] and s[i][1]]
             right = sum(effect["id"] in name for name in named)
-            cells.append(f"{right} | {len(named) - right}")
+            cells.append(f"{len(named)} | {right}")
         rows.append(f"| {effect['id']} | {len(mine)} | {sum(s[0][0] for s in mine)} | {cells[0]} | {cells[1]} |")
     return "\n".join(rows)
 
@@ -325,10 +325,11 @@ With gap 0 no line sees the carriage at another moment: there nothing may speak 
 8 rows the lines speak `against`. Elsewhere `against` is wrong.
 
 Foils with rough edges at 2400 dpi and one smooth effect, lines {tie_gap} rows apart: where the loop leaves a tie, how often the lines are
-said to speak for explanations with the carriage of which one holds the effect that was drawn (right), or none (wrong). A scale makes
-nothing between the lines, and a part's effect neither: nothing must be said there.
+said to speak for the carriage, and how often an explanation that is named with it holds the effect that was drawn (the loop's class need
+not hold it as an explanation of its own). A scale makes nothing between the lines, and a part's effect neither: of them nothing may be
+said.
 
-| drawn | scans | tied | right, gap not stated | wrong | right, gap stated | wrong |
+| drawn | scans | tied | said, gap not stated | holds it | said, gap stated | holds it |
 |---|---|---|---|---|---|---|
 {ties}
 
