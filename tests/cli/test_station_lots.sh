@@ -168,7 +168,7 @@ urllib.request.urlopen(base + "close", fields).read()
 while "being closed" in get("lots") and time.time() < end:
     time.sleep(0.05)
 lots = get("lots")
-assert "been corrected since" not in lots and "by Bob" in lots and ", 1 times before" in lots, lots
+assert "been corrected since" not in lots and "by Bob" in lots and ", 1 time before" in lots, lots
 PY
 kill "$station"
 wait "$station" 2>/dev/null || true
