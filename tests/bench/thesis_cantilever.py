@@ -171,8 +171,8 @@ carriage's way, halo, edges that scatter by 1.6 µm over 50 µm, dust, scratches
             print(f"| {tier} | {words}, {unit} | {mean:+.{d}f} | {rms:.{d}f} | {u:.{d}f} | {share:.0f} % |", file=out)
     print("""
 The u of lengths on clean scans is too small: what is left beside noise of 1 count, a hundredth of a pixel at the round ends of
-slits, is not in it (at 2 counts u holds: reports/accuracy_beams.md). Widths on rough scans err alike in all beams, by what clipped white and the tone curve do to the level of an edge;
-u holds it.""", file=out)
+slits, is not in it (at 2 counts u holds: reports/accuracy_beams.md). Widths on rough scans err alike
+in all beams, by what clipped white and the tone curve do to the level of an edge; u holds it.""", file=out)
     for tier, found in tiers.items():
         if found["missed"]:
             print(f"Of the {tier} scans {found['missed']} of {FOILS * BEAMS} beams have no length or no width.", file=out)
