@@ -28,7 +28,7 @@ refuse "not a text" binary.txt $say
 tr '\t' '\001' <good.txt >control.txt
 refuse "not a text" control.txt $say
 iconv -f latin1 -t utf16 good.txt >utf16.txt
-refuse "not a text" utf16.txt $say
+refuse "this is UTF-16" utf16.txt $say
 
 sed '100s/.*/1.98\tNaN/' good.txt >nan.txt
 refuse "line 100: z is 'NaN', which is no number" nan.txt $say

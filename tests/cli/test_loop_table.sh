@@ -123,7 +123,7 @@ expect 64 "above 0" "$program" loop --table t.csv "${model[@]}" --minutes 0
 # A bar where standard error is a terminal, and only there.
 if [ -z "${FOILGAUGE_TEST_BRIEF:-}" ] && command -v script >/dev/null; then
   awk 'BEGIN { srand(5); print "run,T,a,b,c,d,e,f,g,y"
-    for (i = 1; i <= 12000; i++) {
+    for (i = 1; i <= 60000; i++) {
       printf "%d", i
       for (k = 0; k < 8; k++) printf ",%s", rand()
       print "," rand() + rand() } }' >slow.csv

@@ -54,12 +54,18 @@ if report["unattributed"] and report["unattributed"]["coordinate"] != "bump.inde
     for curve in [report["unattributed"]] + report["unattributed"]["others"]:
         text_says(f"unattributed, over {curve['coordinate']}", "curve")
         page_says(">unattributed<", "curve")
-for name, title in (("rms", "rms"), ("robust_sd", "robust sd"), ("p95", "95th percentile"), ("maximum", "maximum"),
-                    ("held_out_rms", "scans kept aside, rms")):
+for name, title in (("rms", "rms"), ("robust_sd", "robust sd"), ("p95", "95th percentile"), ("maximum", "maximum")):
     before, after = report["before"][name], report["after"][name]
     if before is None: continue
     page_says(f"<td>{title}</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
     text_says(f"  {title:22s} {before:10.4g} {after:10.4g}", "error")
+ratio = report["error_ratio"]
+aside = any(scan["hold_out"] for scan in report["inputs"])
+if aside or ratio["folds"]:
+    title = "scans kept aside" if aside else f"{ratio['fold_of']} that took no part in the search"
+    before, after = report["before"]["held_out_rms"], report["after"]["held_out_rms"]
+    page_says(f"<td>{title}</td><td>{length(before)}</td><td>{length(after)}</td>", "error")
+    text_says(f"  {title}:\n  {'rms':22s} {before:10.4g} {after:10.4g}", "error")
 if "half_width" in report["before"]:
     before, after = (report[side]["half_width"]["rms"] for side in ("before", "after"))
     page_says(f"<td>half the width, rms</td><td>{length(before)}</td><td>{length(after)}</td>", "error")

@@ -157,7 +157,7 @@ static void too_few_foils_have_none(void **state) {
   assert_has(get(f, "/trends", "", 200), "0 foils with this quantity: a chart needs two");
   add_foils(f, 1, 20, "L1", 3.4);
   const char *page = get(f, "/trends", "", 200);
-  assert_has(page, "20 foils are too few to say that the process is stable; it takes 25.");
+  assert_has(page, "20 foils: too few to say that the process is stable; it takes 25.");
   assert_has_not(page, "<dt>Cpk</dt>");
 }
 
