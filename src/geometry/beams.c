@@ -107,7 +107,7 @@ static double find_root(const beam_work *w, double share[2]) {
   for (int i = 0; i < 2; i++) {
     share[i] = w->fitted[FG_BEAM_ROOT_LEFT + i];
     if (!w->fitted[FG_BEAM_ROOT_LEFT + i]) continue;
-    fg_point p = floor_place(w, FG_BEAM_ROOT_LEFT + i);
+    fg_point p = floor_place(w, (fg_beam_side)(FG_BEAM_ROOT_LEFT + i));
     along[i] = along_axis(w, p);
     left[i] = left_of_axis(w, p);
   }
@@ -140,7 +140,7 @@ static fg_status find_length(fg_context *ctx, beam_work *w) {
   FG_TRY(
       fg_beam_line_variance(ctx, &w->lines[FG_BEAM_TIP], &w->noise, FG_BEAM_PLACE, on_tip, &sum));
   for (int i = 0; i < 2; i++) {
-    fg_beam_side side = FG_BEAM_ROOT_LEFT + i;
+    fg_beam_side side = (fg_beam_side)(FG_BEAM_ROOT_LEFT + i);
     if (share[i] == 0) continue;
     FG_TRY(fg_beam_line_variance(ctx, &w->lines[side], &w->noise, FG_BEAM_PLACE, 0, &variance));
     sum += square(share[i]) * variance;
@@ -168,9 +168,9 @@ static fg_status find_width(fg_context *ctx, beam_work *w) {
   fg_beam *beam = w->beam;
   double at[2], sum = 0, slopes = 0, variance, left[2], root[2], tip[2], doubt = 0, split = 0, on;
   for (int i = 0; i < 2; i++) {
-    left[i] = edge_at(w, FG_BEAM_LEFT + i, 0.5 * w->length, &at[i]);
-    root[i] = edge_at(w, FG_BEAM_LEFT + i, 0, &on);
-    tip[i] = edge_at(w, FG_BEAM_LEFT + i, w->length, &on);
+    left[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), 0.5 * w->length, &at[i]);
+    root[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), 0, &on);
+    tip[i] = edge_at(w, (fg_beam_side)(FG_BEAM_LEFT + i), w->length, &on);
     const fg_beam_line *line = &w->lines[FG_BEAM_LEFT + i];
     FG_TRY(fg_beam_line_variance(ctx, line, &w->noise, FG_BEAM_PLACE, at[i], &variance));
     sum += w->noise.long_range * variance;

@@ -76,7 +76,7 @@ static loops find_loops(const fg_load_sample *samples, const fg_load_strokes *st
     last = area;
   }
   /* One cycle from the middle back to the middle has no turning point twice. */
-  if (!all.single.count && strokes->count)
+  if (!(all.single.count > 0) && strokes->count)
     loop_area(samples, direction, strokes->stroke[0].first,
               strokes->stroke[strokes->count - 1].last, variance, &all);
   return all;
@@ -86,18 +86,18 @@ static loops find_loops(const fg_load_sample *samples, const fg_load_strokes *st
  * 2 of three strokes: 3/2 s²; its neighbour shares s² of that, the next one s² / 4, and so much
  * less they scatter about their mean. */
 static double stroke_variance(const loops *all) {
-  const tally *t = all->pair.count ? &all->pair : &all->single;
+  const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
   double n = t->count, mean = t->sum / n, own = 2;
   if (!(n > 1)) return 0;
-  if (all->pair.count) own = 1.5 - (2 * (n - 1) + (n - 2) / 2) / (n * (n - 1));
+  if (all->pair.count > 0) own = 1.5 - (2 * (n - 1) + (n - 2) / 2) / (n * (n - 1));
   return fmax(0, t->squares - n * mean * mean) / (n - 1) / own;
 }
 
 /* Mean and its standard uncertainty: an area is twice the mean of what its n strokes give, so its
  * variance is 4 s² / n. */
 static double mean_area(const loops *all, double *u) {
-  const tally *t = all->pair.count ? &all->pair : &all->single;
-  double strokes = t->count + (all->pair.count ? 2 : 1);
+  const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
+  double strokes = t->count + (all->pair.count > 0 ? 2 : 1);
   *u = sqrt(4 * fmax(stroke_variance(all), all->noise / 2) / strokes);
   return t->sum / t->count;
 }
@@ -124,7 +124,7 @@ static void find_secant(const fg_load_sample *samples, const fg_load_strokes *st
                          force_about(samples, direction->count, s->first));
     count++;
   }
-  *travel = count ? way / count : NAN;
+  *travel = count > 0 ? way / count : NAN;
   direction->secant_n_mm = force / way;
 }
 

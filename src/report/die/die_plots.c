@@ -67,7 +67,7 @@ static void put_limits(const fg_plot *at, const fg_tolerance *limits) {
 static void put_half_errors(const fg_plot *at, const fg_die *die, fg_die_half half,
                             fg_die_quantity q) {
   const fg_die_side *side = &die->half[half];
-  double shift = half == FG_DIE_CONCAVE ? -7 : 7, key = 80 + 420.0 * half;
+  double shift = half == FG_DIE_CONCAVE ? -7 : 7, key = 80 + 420.0 * (double)half;
   if (!side->traces) return;
   fg_plot_segment(at, at->x_low, side->mean[q].value, at->x_high, side->mean[q].value,
                   half == FG_DIE_CONCAVE ? "k0 aside" : "k1 aside");
