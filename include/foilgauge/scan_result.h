@@ -45,9 +45,10 @@ typedef enum fg_scan_held_out {
   FG_SCAN_HELD_OUT_NOTHING, /* nothing was found: it is the rms; or too few bumps to keep some
                                aside: it is NaN */
   FG_SCAN_HELD_OUT_SCANS,   /* scans kept aside */
-  FG_SCAN_HELD_OUT_FOLDS    /* cross-fitted: bumps (discs; of a curve over places short stretches of
-                               the edge) in folds, and the search repeated without each. Before,
-                               nothing but the geometry is fitted, as to all rows */
+  /* Cross-fitted: bumps (discs; of a curve over places or a step short stretches of the edge) in
+   * folds, and the search repeated without each. Before, nothing but the geometry is fitted, as to
+   * all rows. */
+  FG_SCAN_HELD_OUT_FOLDS
 } fg_scan_held_out;
 
 /* Errors of the points, um. */

@@ -27,9 +27,11 @@ typedef struct cross_fit {
   bool cannot[FOLDS_MOST + 1]; /* too few rows, or a geometry that they do not hold */
 } cross_fit;
 
-static bool has_curve_over_place(const fg_effect_set *set) {
+/* A curve over places, or a jump at one, which a single disc or bump may be all that shows. */
+static bool lives_at_places(const fg_effect_set *set) {
   for (size_t e = 0; e < set->count; e++) {
     const fg_effect *kind = set->effects[e].kind;
+    if (kind->jumps) return true;
     if (fg_effect_is_free(kind) && kind->coordinate != FG_EFFECT_PHI &&
         kind->coordinate != FG_EFFECT_NORMAL)
       return true;
@@ -38,8 +40,8 @@ static bool has_curve_over_place(const fg_effect_set *set) {
 }
 
 static fg_cross_fit_unit unit_of(const fg_points *points, const fg_effect_set *set) {
-  if (points->discs) return FG_CROSS_FIT_DISCS;
-  return has_curve_over_place(set) ? FG_CROSS_FIT_STRETCHES : FG_CROSS_FIT_BUMPS;
+  if (lives_at_places(set)) return FG_CROSS_FIT_STRETCHES;
+  return points->discs ? FG_CROSS_FIT_DISCS : FG_CROSS_FIT_BUMPS;
 }
 
 /* Bumps have turns of their own, and so have lands: every fold has both. */

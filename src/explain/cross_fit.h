@@ -2,7 +2,8 @@
  *
  * Bumps (discs: the discs) and lands go round some folds by their place; all rows of a bump, on
  * every scan of its foil, are in one. A free curve over a place tells nothing of a place where no
- * row lies, so where one was found short stretches of every arc go round instead. Without the rows
+ * row lies, and of a step one disc may be all that shows it, so where one was found short stretches
+ * of every arc go round instead. Without the rows
  * of a fold the search is repeated, and what it finds then is taken out of all rows with the
  * numbers that it has then. The geometry (every bump's circle, the overall circles, the poses) is
  * not what is tested: it is fitted to all rows, beside nothing before and beside what was found
