@@ -7,6 +7,7 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 
+#include "core/dot.h"
 #include "core/extended.h"
 #include "core/memory.h"
 #include "foilgauge/distribution.h"
@@ -109,13 +110,6 @@ static void project_out(const checking *c, double *v) {
   }
 }
 
-static double dot(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 /* The slope of one more column, fitted beside the model (Frisch and Waugh 1933). */
 static void check_drift(const checking *c, fg_order_check *order) {
   const fg_regression *r = &c->e->regression;
@@ -126,9 +120,9 @@ static void check_drift(const checking *c, fg_order_check *order) {
     whole += x[i] * x[i];
   }
   project_out(c, x);
-  double left = dot(x, x, c->rows);
+  double left = fg_dot(x, x, c->rows);
   if (!(freedom > 0) || !(left > 1e-9 * whole)) return; /* the model follows the order itself */
-  order->drift = dot(x, c->residual, c->rows) / left;
+  order->drift = fg_dot(x, c->residual, c->rows) / left;
   double rest = fmax(0, r->residual_ss - order->drift * order->drift * left);
   order->u_drift = sqrt(rest / freedom / left);
   order->drift_p = fg_distribution_t_two_sided(order->drift / order->u_drift, freedom);
@@ -139,7 +133,7 @@ static double neighbours(const checking *c, const double *v) {
   double products = 0;
   for (size_t i = 1; i < c->rows; i++)
     products += v[c->in_order[i]] * v[c->in_order[i - 1]];
-  return products / dot(v, v, c->rows);
+  return products / fg_dot(v, v, c->rows);
 }
 
 /* Residuals of independent errors are correlated by the model that was taken out: the null is
@@ -168,7 +162,7 @@ static fg_status check_neighbours(fg_context *ctx, const checking *c, fg_order_c
   if (c->e->regression.residual_freedom < 2) return FG_OK;
   for (size_t i = 1; i < c->rows; i++)
     squares += pow(c->residual[c->in_order[i]] - c->residual[c->in_order[i - 1]], 2);
-  order->durbin_watson = squares / dot(c->residual, c->residual, c->rows);
+  order->durbin_watson = squares / fg_dot(c->residual, c->residual, c->rows);
   order->neighbours = neighbours(c, c->residual);
   double draws = WORK_OF_DRAWS / (2.0 * (double)c->rows * (double)(c->rank + 1));
   if (draws >= DRAWS_LEAST) return draw_neighbours(ctx, c, (int)fmin(draws, DRAWS_MOST), order);

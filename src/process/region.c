@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/dot.h"
 #include "foilgauge/surface.h"
 
 enum {
@@ -20,13 +21,6 @@ enum {
 
 /* How far from the region counts as in it, as a share of the region's size. */
 static const double SLACK = 1e-9;
-
-static double dot(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
 
 static double distance(const double *a, const double *b, size_t count) {
   double sum = 0;
@@ -44,8 +38,8 @@ bool fg_region_contains(const fg_region *r, const double *x, double tolerance) {
     if (!(x[i] >= r->low[i] - tolerance && x[i] <= r->high[i] + tolerance)) return false;
   if (distance(x, r->centre, r->factors) > r->radius + tolerance) return false;
   for (size_t p = 0; p < r->planes; p++) {
-    double length = sqrt(dot(r->normal[p], r->normal[p], r->factors));
-    if (dot(r->normal[p], x, r->factors) > r->limit[p] + tolerance * length) return false;
+    double length = sqrt(fg_dot(r->normal[p], r->normal[p], r->factors));
+    if (fg_dot(r->normal[p], x, r->factors) > r->limit[p] + tolerance * length) return false;
   }
   return true;
 }
@@ -62,7 +56,7 @@ static void project_on(const fg_region *r, size_t set, double *x) {
       x[i] = r->centre[i] + (x[i] - r->centre[i]) * r->radius / away;
   } else {
     const double *normal = r->normal[set - 2];
-    double beyond = dot(normal, x, n) - r->limit[set - 2], square = dot(normal, normal, n);
+    double beyond = fg_dot(normal, x, n) - r->limit[set - 2], square = fg_dot(normal, normal, n);
     for (size_t i = 0; beyond > 0 && square > 0 && i < n; i++)
       x[i] -= beyond / square * normal[i];
   }
@@ -123,7 +117,7 @@ static void gradient(const objective *o, const double *x, double *slope) {
   double factor = o->goal == FG_GOAL_HIGHEST ? -1 : 1;
   if (o->goal == FG_GOAL_TARGET) factor = 2 * (fg_surface_value(s, x) - o->target);
   for (size_t i = 0; i < s->factors; i++)
-    slope[i] = factor * (s->linear[i] + 2 * dot(s->quadratic[i], x, s->factors));
+    slope[i] = factor * (s->linear[i] + 2 * fg_dot(s->quadratic[i], x, s->factors));
 }
 
 /* A step is taken when it lowers the cost by a tenth of what the slope promises; it doubles after a
@@ -132,7 +126,7 @@ static double walk(const objective *o, const fg_region *r, double *x) {
   size_t n = r->factors;
   double here = cost(o, x), slope[MOST], next[MOST] = {0}, size = size_of(r);
   gradient(o, x, slope);
-  double steepness = sqrt(dot(slope, slope, n));
+  double steepness = sqrt(fg_dot(slope, slope, n));
   double step = steepness > 0 ? 0.5 * size / steepness : 0;
   for (int i = 0; i < STEPS && step * steepness > 1e-15 * size; i++) {
     for (size_t k = 0; k < n; k++)
@@ -147,7 +141,7 @@ static double walk(const objective *o, const fg_region *r, double *x) {
     memcpy(x, next, n * sizeof *x);
     here = there;
     gradient(o, x, slope);
-    steepness = sqrt(dot(slope, slope, n));
+    steepness = sqrt(fg_dot(slope, slope, n));
     step *= 2;
   }
   return here;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/dot.h"
 #include "core/memory.h"
 
 /* The scatter of edges is correlated over 0.02 to 0.1 mm of arc on real flatbeds (reports/real);
@@ -84,27 +85,20 @@ static void fill_polynomials(search *s) {
   }
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 /* Takes the polynomials out of one arc; returns ln of the determinant of their products. */
 static double take_out(search *s, arc *a) {
   size_t rows = s->points->row_count, n = a->to - a->from;
   double determinant = 0, *left = s->left + a->from;
   a->freedom = (double)a->rows;
   for (size_t p = 0; p < a->polynomials; p++) {
-    double *own = s->columns + p * rows + a->from, square = dot(own, own, n);
+    double *own = s->columns + p * rows + a->from, square = fg_dot(own, own, n);
     for (size_t q = 0; q < p; q++) {
       const double *before = s->columns + q * rows + a->from;
-      double along = dot(own, before, n);
+      double along = fg_dot(own, before, n);
       for (size_t i = 0; i < n; i++)
         own[i] -= along * before[i];
     }
-    double rest = dot(own, own, n);
+    double rest = fg_dot(own, own, n);
     if (!(rest > 1e-12 * square)) { /* rounding: it lies in those before it */
       memset(own, 0, n * sizeof *own);
       continue;
@@ -113,11 +107,11 @@ static double take_out(search *s, arc *a) {
     a->freedom--;
     for (size_t i = 0; i < n; i++)
       own[i] /= sqrt(rest);
-    double along = dot(own, left, n);
+    double along = fg_dot(own, left, n);
     for (size_t i = 0; i < n; i++)
       left[i] -= along * own[i];
   }
-  a->square = dot(left, left, n);
+  a->square = fg_dot(left, left, n);
   return determinant;
 }
 
@@ -276,7 +270,7 @@ static void add_waves(const search *s, const arc *a, waves of_bumps[POLYNOMIALS_
   bool bump = s->points->rows[a->from].bump != 0;
   find_waves(s->points, a, &from, &to);
   for (size_t p = from; p < to && !a->out; p++) {
-    double along = dot(s->columns + p * rows + a->from, s->left + a->from, a->to - a->from);
+    double along = fg_dot(s->columns + p * rows + a->from, s->left + a->from, a->to - a->from);
     waves *w = bump ? &of_bumps[p] : of_lands;
     w->sum += along;
     w->square += along * along;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/dot.h"
 #include "core/memory.h"
 #include "rows/scatter.h"
 
@@ -13,15 +14,8 @@ enum { POLYNOMIALS = 18, BUMPS_LEAST = 4 };
 /* Rounding: a polynomial lies in those before it. */
 #define REST_LEAST 1e-9
 
-static double dot(const double *a, const double *b, size_t n) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 static void take(const double *unit, size_t n, double *from) {
-  double along = dot(unit, from, n);
+  double along = fg_dot(unit, from, n);
   for (size_t i = 0; i < n; i++)
     from[i] -= along * unit[i];
 }
@@ -52,10 +46,10 @@ fg_status fg_points_take_shared(fg_context *ctx, const fg_points *points, const 
   FG_TRY(fg_memory_allocate(ctx, n, POLYNOMIALS * sizeof *basis, (void **)&basis));
   size_t bumps = fill(points, left_out, basis);
   for (size_t p = 0; bumps >= BUMPS_LEAST && p < POLYNOMIALS; p++) {
-    double *own = basis + p * n, before = sqrt(dot(own, own, n));
+    double *own = basis + p * n, before = sqrt(fg_dot(own, own, n));
     for (size_t q = 0; q < p; q++)
       take(basis + q * n, n, own);
-    double rest = sqrt(dot(own, own, n));
+    double rest = sqrt(fg_dot(own, own, n));
     if (!(rest > REST_LEAST * before)) {
       memset(own, 0, n * sizeof *own);
       continue;
