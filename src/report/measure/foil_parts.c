@@ -1,31 +1,28 @@
 #include "report/measure/foil_parts.h"
 
+#include "quantity/parts.h"
+
 fg_foil_parts fg_foil_parts_of(const fg_design *design, const fg_foil *foil) {
-  if (design->form == FG_FORM_CANTILEVER)
-    return (fg_foil_parts){.owner = FG_QUANTITY_OF_BEAM,
-                           .name = "beam",
-                           .plural = "beams",
-                           .objects = (const char *)foil->beams,
-                           .count = foil->beam_count,
-                           .size = sizeof *foil->beams,
-                           .stated = design->beam_count};
-  return (fg_foil_parts){.owner = FG_QUANTITY_OF_BUMP,
-                         .name = "bump",
-                         .plural = "bumps",
-                         .objects = (const char *)foil->bumps,
-                         .count = foil->bump_count,
-                         .size = sizeof *foil->bumps,
-                         .stated = design->bump_count};
+  fg_quantity_owner owner = fg_form_parts(design->form);
+  bool beams = owner == FG_QUANTITY_OF_BEAM;
+  return (fg_foil_parts){.owner = owner,
+                         .name = fg_part_word(owner),
+                         .plural = beams ? "beams" : "bumps",
+                         .foil = foil,
+                         .count = fg_part_count(foil, owner),
+                         .stated = beams ? design->beam_count : design->bump_count};
+}
+
+static fg_foil_part part_at(const fg_foil_parts *parts, size_t i) {
+  return fg_part_at(parts->foil, parts->owner, i);
 }
 
 const void *fg_foil_part_at(const fg_foil_parts *parts, size_t i) {
-  return parts->objects + i * parts->size;
+  return part_at(parts, i).object;
 }
 
 int fg_foil_part_number(const fg_foil_parts *parts, size_t i) {
-  if (parts->owner == FG_QUANTITY_OF_BEAM)
-    return ((const fg_beam *)fg_foil_part_at(parts, i))->number;
-  return ((const fg_bump *)fg_foil_part_at(parts, i))->number;
+  return part_at(parts, i).number;
 }
 
 int fg_foil_parts_last(const fg_foil_parts *parts) {
@@ -42,16 +39,17 @@ bool fg_foil_parts_have(const fg_foil_parts *parts, int number) {
 }
 
 const char *fg_foil_part_lack(const fg_foil_parts *parts, size_t i) {
+  unsigned flags = part_at(parts, i).flags;
   if (parts->owner == FG_QUANTITY_OF_BEAM) {
-    const fg_beam *beam = fg_foil_part_at(parts, i);
-    if (beam->flags & FG_BEAM_TORN_TIP) return "torn";
-    return beam->flags & FG_BEAM_NOT_FITTED ? "not fitted" : "no value";
+    if (flags & FG_BEAM_TORN_TIP) return "torn";
+    return flags & FG_BEAM_NOT_FITTED ? "not fitted" : "no value";
   }
-  const fg_bump *bump = fg_foil_part_at(parts, i);
-  return bump->flags & FG_BUMP_NOT_FITTED ? "not fitted" : "no value";
+  return flags & FG_BUMP_NOT_FITTED ? "not fitted" : "no value";
 }
 
 const char *fg_foil_part_word(const fg_quantity *row) {
-  if (fg_quantity_find(FG_QUANTITY_OF_BEAM, row->name) == row) return "beam";
-  return fg_quantity_find(FG_QUANTITY_OF_BUMP, row->name) == row ? "bump" : "";
+  static const fg_quantity_owner owners[] = {FG_QUANTITY_OF_BEAM, FG_QUANTITY_OF_BUMP};
+  for (size_t k = 0; k < sizeof owners / sizeof *owners; k++)
+    if (fg_quantity_find(owners[k], row->name) == row) return fg_part_word(owners[k]);
+  return "";
 }

@@ -8,8 +8,8 @@ typedef struct fg_foil_parts {
   fg_quantity_owner owner;
   const char *name;   /* "bump" */
   const char *plural; /* "bumps" */
-  const char *objects;
-  size_t count, size;
+  const fg_foil *foil;
+  size_t count;
   size_t stated; /* by the design; 0: not */
 } fg_foil_parts;
 

@@ -164,7 +164,13 @@ void fg_html_foil_table(FILE *out, const fg_design *design, const fg_foil *foil)
 
 void fg_html_part_table(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
-  const table_rows rows = {parts.owner, parts.name, parts.objects, parts.count, parts.size, foil};
+  const bool beams = parts.owner == FG_QUANTITY_OF_BEAM;
+  const table_rows rows = {parts.owner,
+                           parts.name,
+                           beams ? (const char *)foil->beams : (const char *)foil->bumps,
+                           parts.count,
+                           beams ? sizeof *foil->beams : sizeof *foil->bumps,
+                           foil};
   put_table(out, design, &rows);
 }
 
