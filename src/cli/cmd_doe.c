@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/doe_kept_plan.h"
 #include "cli/doe_plan.h"
 #include "cli/facts.h"
 #include "cli/runs.h"
@@ -51,9 +52,8 @@ typedef struct doe_run {
   fg_table sheet;
   fg_design design; /* of the scans */
   fg_run_sheet measured;
-  char *u_name, *plan_path; /* the plan's that was found */
-  char plan_note[400];
-  fg_plan_limits plan;
+  char *u_name;
+  fg_doe_plan plan;
   fg_experiment experiment;
 } doe_run;
 
@@ -319,8 +319,8 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
                                        .scan = run->measured.scan,
                                        .scans = run->measured.scans,
                                        .row = run->measured.row,
-                                       .plan_path = run->plan_path,
-                                       .plan_note = run->plan_note[0] ? run->plan_note : NULL};
+                                       .plan_path = run->plan.path,
+                                       .plan_note = run->plan.note[0] ? run->plan.note : NULL};
   return writers[kind](ctx, &report, out);
 }
 
@@ -368,100 +368,6 @@ static fg_status take_loop_model(fg_context *ctx, doe_run *run, fg_table *table)
   return describe_taken(ctx, run);
 }
 
-static bool is_coded(const doe_arguments *a, const char *name) {
-  for (size_t i = 0; i < a->options.codings; i++)
-    if (!strcmp(a->coding[i].name, name)) return true;
-  return false;
-}
-
-static bool is_rounded(const doe_arguments *a, const char *name) {
-  for (size_t i = 0; i < a->options.rounds; i++)
-    if (!strcmp(a->round[i].name, name)) return true;
-  return false;
-}
-
-/* A number of the formula that enters it as it is: what can be coded. */
-static bool is_factor(const fg_formula *formula, const char *name) {
-  bool found = false;
-  for (size_t v = 0; v < formula->variables; v++) {
-    if (strcmp(formula->variable[v].column, name) != 0) continue;
-    if (formula->variable[v].transform != FG_TRANSFORM_NONE) return false;
-    found = true;
-  }
-  return found;
-}
-
-/* The plan's limits and steps of the factors of the model; options go before them. */
-static void apply_plan(doe_run *run, const fg_formula *formula) {
-  doe_arguments *a = &run->arguments;
-  for (size_t k = 0; k < run->plan.factors; k++) {
-    const fg_coding *coding = &run->plan.coding[k];
-    if (!is_factor(formula, coding->name)) continue;
-    if (!a->options.uncoded && !is_coded(a, coding->name) && a->options.codings < CODINGS)
-      a->coding[a->options.codings++] = *coding;
-    if (run->plan.step[k] > 0 && !is_rounded(a, coding->name) && a->options.rounds < CODINGS) {
-      fg_rounding *round = &a->round[a->options.rounds++];
-      memcpy(round->name, coding->name, sizeof round->name);
-      round->step = run->plan.step[k];
-    }
-  }
-}
-
-/* A run sheet of `doe plan` whose plan is gone is analysed by its data, and that is said. */
-static void note_lost(doe_run *run) {
-  const fg_column *column;
-  if (fg_table_find(NULL, &run->sheet, "standard_order", &column) != FG_OK ||
-      fg_table_find(NULL, &run->sheet, "point", &column) != FG_OK)
-    return;
-  snprintf(run->plan_note, sizeof run->plan_note,
-           "The table was a run sheet of `doe plan`, and its plan is not beside it (%.200s): "
-           "factors are coded by their lowest and highest value; --plan names it.",
-           run->plan_path);
-}
-
-static void note_changed(doe_run *run) {
-  size_t first = 0, changed = fg_plan_limits_differ(&run->plan, &run->sheet, &first);
-  if (changed)
-    snprintf(
-        run->plan_note, sizeof run->plan_note,
-        "%zu run%s made at another setting than planned, the first in row %zu: counted as made.",
-        changed, fg_plural(changed), first);
-}
-
-/* What is wrong with it, and what to do. */
-static fg_status load_plan(fg_context *ctx, doe_run *run) {
-  fg_context inner = {.message = ""};
-  fg_status status = fg_plan_limits_load(&inner, run->plan_path, &run->plan);
-  if (status == FG_OK || status == FG_ERR_MEMORY) return status;
-  return fg_fail(
-      ctx, status,
-      "%s; `foilgauge doe plan` wrote it beside the run sheet: put its copy back, or move "
-      "it away and give the limits with --code NAME=LOW:HIGH",
-      inner.message);
-}
-
-static fg_status take_plan(fg_context *ctx, doe_run *run) {
-  const doe_arguments *a = &run->arguments;
-  fg_formula formula;
-  if (!a->plan_path && !strcmp(a->data, "-")) return FG_OK;
-  if (a->plan_path)
-    FG_TRY(fg_text_print(ctx, &run->plan_path, "%s", a->plan_path));
-  else
-    FG_TRY(fg_plan_beside(ctx, a->data, &run->plan_path));
-  if (!a->plan_path && access(run->plan_path, F_OK) != 0) {
-    note_lost(run);
-    free(run->plan_path);
-    run->plan_path = NULL;
-    return FG_OK;
-  }
-  FG_TRY(load_plan(ctx, run));
-  FG_TRY(fg_formula_parse(ctx, a->options.formula, &formula));
-  apply_plan(run, &formula);
-  fg_formula_free(&formula);
-  note_changed(run);
-  return FG_OK;
-}
-
 static fg_status analyse(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
   a->options.coding = a->coding;
@@ -473,7 +379,9 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   if (a->scans) FG_TRY(measure_scans(ctx, run));
   FG_TRY(take_loop_model(ctx, run, a->scans ? &run->measured.table : &run->sheet));
-  FG_TRY(take_plan(ctx, run));
+  const fg_doe_plan_request plan = {a->plan_path, a->data,   &run->sheet,
+                                    &a->options,  a->coding, a->round};
+  FG_TRY(fg_doe_plan_take(ctx, &plan, &run->plan));
   FG_TRY(fg_experiment_analyse(ctx, a->scans ? &run->measured.table : &run->sheet, &a->options,
                                &run->experiment));
   return fg_output_set_write(ctx, &run->outputs, write_output, run);
@@ -488,8 +396,7 @@ static void free_run(doe_run *run) {
   free(run->taken);
   fg_table_free(&run->sheet);
   free(run->u_name);
-  free(run->plan_path);
-  fg_plan_limits_free(&run->plan);
+  fg_doe_plan_free(&run->plan);
 }
 
 const struct argp fg_doe_parser = {options, parse_option, "DATA.csv", doc, NULL, fg_cli_fill, NULL};
