@@ -34,14 +34,17 @@
  * the foils already, and over the bore's surface pi D L the preload:
  *   p = a / (b pi D L):   1.032 N / 0.03 / (pi 40 mm 40 mm) = 6.84 kPa   (thesis: 6.85).
  *
- * AZIMUTHS. clearance = c0 + sum of c_k cos k az + s_k sin k az, k = 2 alone where no azimuths lie
- * more than 180 degrees apart (a line through the bearing comes back after that), else 1 and 2.
+ * AZIMUTHS. Travel along an azimuth is that along the opposite one: azimuths are axes, taken modulo
+ * 180 degrees, and the clearance has even orders only,
+ *   clearance = c0 + sum of c_k cos k az + s_k sin k az, k = 2 from three axes on (0, 120 and 240
+ * degrees are three), k = 4 too from six on. The axis of the smallest clearance is that of the
+ * curve.
  *
  * DOUBT. u of a point follows from the scatter about the regression; where the cycles differ by
  * more than these say, all of them are made larger (the Birge ratio, over all directions of a
- * bearing). To that come the instruments', relative and standard: the load cell's 1.3 % and the
- * displacement's 1.0 % (thesis section 5.13), together 1.64 % of a stiffness; of a clearance the
- * displacement's, and the load cell's over the local stiffness. They are the same for every
+ * bearing). To that come the instruments', relative and standard: the optical probe's 1.3 % and the
+ * load cell's 1.0 % (thesis sections 5.13 and 2.8), together 1.64 % of a stiffness; of a clearance
+ * the displacement's, and the load cell's over the local stiffness. They are the same for every
  * direction and take no part in what differs over the azimuths. */
 #ifndef FOILGAUGE_LOAD_TEST_H
 #define FOILGAUGE_LOAD_TEST_H
@@ -57,8 +60,8 @@ extern "C" {
 #endif
 
 #define FG_LOAD_THRESHOLD_N        5.0
-#define FG_LOAD_U_FORCE_PCT        1.3
-#define FG_LOAD_U_DISPLACEMENT_PCT 1.0
+#define FG_LOAD_U_FORCE_PCT        1.0
+#define FG_LOAD_U_DISPLACEMENT_PCT 1.3
 #define FG_LOAD_DIAMETER_MM        40.0
 #define FG_LOAD_LENGTH_MM          40.0
 
@@ -172,18 +175,28 @@ typedef struct fg_load_direction {
   int predicted_pad;        /* from 1: pad of the place that is met first of both sides; 0: none */
 } fg_load_direction;
 
-enum { FG_LOAD_HARMONICS = 2 };
+enum { FG_LOAD_ORDER_MAX = 4 }; /* orders of the clearance over the azimuths: 2, 4 */
+
+/* Why an axis of the smallest clearance is not named. */
+typedef enum fg_load_axis {
+  FG_LOAD_AXIS_KNOWN,
+  FG_LOAD_AXIS_FEW,    /* fewer than three axes were measured */
+  FG_LOAD_AXIS_ROUND,  /* none stands out of the noise */
+  FG_LOAD_AXIS_RIVALS, /* two minima that are no further apart than their uncertainty */
+} fg_load_axis;
+const char *fg_load_axis_words(fg_load_axis axis); /* NULL: known */
 
 typedef struct fg_load_bearing {
   char name[128];
   size_t directions, measured;
   double least_mm, most_mm, mean_mm, u_mean_mm, least_measured_at_deg, most_measured_at_deg;
   fg_load_value least, most; /* of the directions; mm */
-  bool harmonic[FG_LOAD_HARMONICS + 1];
-  double cosine_mm[FG_LOAD_HARMONICS + 1], sine_mm[FG_LOAD_HARMONICS + 1];
-  double amplitude_mm[FG_LOAD_HARMONICS + 1], u_amplitude_mm[FG_LOAD_HARMONICS + 1];
-  double p_value;                      /* of all directions being alike; NaN: too few */
-  double least_at_deg, u_least_at_deg; /* of the fitted curve; NaN: too few */
+  bool harmonic[FG_LOAD_ORDER_MAX + 1];
+  double cosine_mm[FG_LOAD_ORDER_MAX + 1], sine_mm[FG_LOAD_ORDER_MAX + 1];
+  double amplitude_mm[FG_LOAD_ORDER_MAX + 1], u_amplitude_mm[FG_LOAD_ORDER_MAX + 1];
+  double p_value; /* of all directions being alike; NaN: too few */
+  fg_load_axis axis;
+  double least_at_deg, u_least_at_deg; /* of the fitted curve, 0 to 180; NaN: see `axis` */
   double birge;                        /* how far cycles differ over what they should */
   fg_load_value stiffness;             /* mean over the directions */
   double noise_n, noise_mm, step_mm;   /* of the directions: means, and the largest step */

@@ -54,7 +54,7 @@ static const struct argp_option options[] = {
      "5.13)",
      2},
     {"u-displacement", OPTION_U_DISPLACEMENT, "PCT", 0,
-     "Of the displacement's scale (default: @load_u_displacement_pct@ %, thesis section 5.13)", 2},
+     "Of the scale of the displacement probe (default: @load_u_displacement_pct@ %, thesis section 5.13)", 2},
     {"diameter", OPTION_DIAMETER, "MM", 0,
      "Of the bore, for the preload (default: @load_diameter_mm@)", 2},
     {"length", OPTION_LENGTH, "MM", 0,
@@ -93,7 +93,7 @@ static const char doc[] =
     "what drifts is told from what lies between the strokes, and from their scatter whether the "
     "uncertainties say enough. An azimuth that is only pushed, or that never passes the threshold, "
     "has no clearance: it is reported with the reason, exit code 2.\n\n"
-    "Standard uncertainties of both instruments' scales are combined: sqrt(1.3² + 1.0²) = 1.64 % "
+    "Standard uncertainties of both instruments' scales are combined: sqrt(1.0² + 1.3²) = 1.64 % "
     "of a stiffness. They are the same for all azimuths and do not count where these are "
     "compared.\n\n"
     "  foilgauge stiffness test.csv --threshold 5 --html stiffness.html\n"

@@ -5,21 +5,27 @@
 #include "foilgauge/distribution.h"
 #include "load_test/analysis.h"
 
-/* A line through the bearing comes back after 180 degrees: further apart, azimuths are those of
- * sides. */
-static const double half_turn_deg = 180.5;
+/* Travel from push to pull along an azimuth is that along the azimuth half a turn on: azimuths are
+ * axes, and the travel has even orders only. */
+static const double half_turn_deg = 180;
 
-/* A direction that is known no better than this is none. */
-static const double u_direction_max_deg = 40;
+/* Azimuths nearer to each other than this are one axis. */
+static const double same_axis_deg = 1;
 
-enum { STEPS = 720, COEFFICIENTS_MAX = 1 + 2 * FG_LOAD_HARMONICS };
+/* The 4th order takes so many axes: five would be met exactly, and leave nothing to check it by. */
+enum { SECOND_ORDER_AXES_MIN = 3, FOURTH_ORDER_AXES_MIN = 6 };
+
+/* An axis is named where noise alone would make one with less than this probability, and where no
+ * other minimum lies within so many standard uncertainties of it. */
+static const double p_axis = 0.01, rival_reach = 2;
+
+enum { STEPS = 720, COEFFICIENTS_MAX = 1 + FG_LOAD_ORDER_MAX, KNOWN_DOF = 1000000 };
 
 /* Which cosines and sines the columns are. */
 typedef struct curve {
   int order[COEFFICIENTS_MAX];
   bool sine[COEFFICIENTS_MAX];
   size_t count;
-  double turn_deg;
   double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
 } curve;
 
@@ -27,37 +33,33 @@ static bool is_of(const fg_load_test *test, size_t i, size_t bearing) {
   return test->directions[i].bearing == bearing && isfinite(test->directions[i].clearance.value);
 }
 
-/* Different azimuths, taken modulo a turn. */
-static size_t count_places(const fg_load_test *test, size_t bearing, double turn_deg) {
+static bool is_same_axis(const fg_load_direction *a, const fg_load_direction *b) {
+  return fabs(remainder(a->azimuth_deg - b->azimuth_deg, half_turn_deg)) < same_axis_deg;
+}
+
+static size_t count_axes(const fg_load_test *test, size_t bearing) {
   size_t count = 0;
   for (size_t i = 0; i < test->direction_count; i++) {
     bool again = false;
-    for (size_t k = 0; k < i && is_of(test, i, bearing); k++) {
-      double apart = test->directions[i].azimuth_deg - test->directions[k].azimuth_deg;
-      again = again || (is_of(test, k, bearing) && fabs(remainder(apart, turn_deg)) < 1);
-    }
+    for (size_t k = 0; k < i; k++)
+      again = again ||
+              (is_of(test, k, bearing) && is_same_axis(&test->directions[i], &test->directions[k]));
     count += is_of(test, i, bearing) && !again;
   }
   return count;
 }
 
-static curve make_curve(const fg_load_test *test, size_t bearing) {
-  double low = INFINITY, high = -INFINITY;
-  curve c = {.count = 1, .turn_deg = 180};
-  for (size_t i = 0; i < test->direction_count; i++)
-    if (is_of(test, i, bearing)) {
-      low = fmin(low, test->directions[i].azimuth_deg);
-      high = fmax(high, test->directions[i].azimuth_deg);
-    }
-  if (high - low > half_turn_deg) c.turn_deg = 360;
-  size_t places = count_places(test, bearing, c.turn_deg);
-  for (int order = c.turn_deg > 180 ? 1 : 2; order <= FG_LOAD_HARMONICS; order++) {
-    if (places < c.count + 2) break;
-    for (int sine = 0; sine < 2; sine++) {
-      c.order[c.count] = order;
-      c.sine[c.count++] = sine;
-    }
+static void add_order(int order, curve *c) {
+  for (int sine = 0; sine < 2; sine++) {
+    c->order[c->count] = order;
+    c->sine[c->count++] = sine;
   }
+}
+
+static curve make_curve(size_t axes) {
+  curve c = {.count = 1};
+  if (axes >= SECOND_ORDER_AXES_MIN) add_order(2, &c);
+  if (axes >= FOURTH_ORDER_AXES_MIN) add_order(4, &c);
   return c;
 }
 
@@ -98,35 +100,52 @@ static bool fit(const fg_load_test *test, size_t bearing, curve *c, fg_load_scat
   return true;
 }
 
-/* Where the curve is least, and by how far that is not known. */
-static void find_least(const curve *c, double birge, fg_load_bearing *sum) {
+static bool is_minimum(const curve *c, double deg, double step) {
+  double here = value_at(c, deg, 0);
+  return here < value_at(c, deg - step, 0) && here <= value_at(c, deg + step, 0);
+}
+
+/* Variance of the curve's value at one place less that at another. */
+static double variance_between(const curve *c, double a_deg, double b_deg) {
+  double variance = 0, row[COEFFICIENTS_MAX];
+  for (size_t i = 1; i < c->count; i++)
+    row[i] = term(c, i, a_deg) - term(c, i, b_deg);
+  for (size_t i = 1; i < c->count; i++)
+    for (size_t k = 1; k < c->count; k++)
+      variance += row[i] * c->inverse[i][k] * row[k];
+  return variance;
+}
+
+/* Whether another minimum may be the smallest as well. */
+static bool has_rival(const curve *c, double best, double birge) {
+  double step = half_turn_deg / STEPS;
+  for (int i = 0; i < STEPS; i++) {
+    double deg = i * step;
+    if (fabs(remainder(deg - best, half_turn_deg)) < 2 * step || !is_minimum(c, deg, step))
+      continue;
+    double more = value_at(c, deg, 0) - value_at(c, best, 0);
+    if (more < rival_reach * birge * sqrt(variance_between(c, deg, best))) return true;
+  }
+  return false;
+}
+
+/* Axis where the curve is smallest, and its uncertainty. */
+static fg_load_axis find_axis(const curve *c, double birge, fg_load_bearing *sum) {
   double best = 0, variance = 0;
   for (int i = 1; i < STEPS; i++)
-    if (value_at(c, i * c->turn_deg / STEPS, 0) < value_at(c, best, 0))
-      best = i * c->turn_deg / STEPS;
+    if (value_at(c, i * half_turn_deg / STEPS, 0) < value_at(c, best, 0))
+      best = i * half_turn_deg / STEPS;
   for (int i = 0; i < 8; i++) /* derivatives are per radian */
     best -= value_at(c, best, 1) / fmax(value_at(c, best, 2), 1e-12) * 180 / M_PI;
   for (size_t i = 1; i < c->count; i++)
     for (size_t k = 1; k < c->count; k++)
       variance += turned_term(c, i, best, 1) * c->inverse[i][k] * turned_term(c, k, best, 1);
   double bend = value_at(c, best, 2), u = birge * sqrt(variance) / bend * 180 / M_PI;
-  if (!(bend > 0 && u > 0 && u < u_direction_max_deg)) return;
-  sum->least_at_deg = best - c->turn_deg * floor(best / c->turn_deg);
+  if (!(bend > 0 && u > 0)) return FG_LOAD_AXIS_ROUND;
+  if (has_rival(c, best, birge)) return FG_LOAD_AXIS_RIVALS;
+  sum->least_at_deg = best - half_turn_deg * floor(best / half_turn_deg);
   sum->u_least_at_deg = u;
-}
-
-/* Without its first order, which is no more than doubt: both sides are as good. */
-static curve alike_after_half_a_turn(const curve *c) {
-  curve half = {.count = c->count - 2, .turn_deg = 180};
-  for (size_t i = 0; i < half.count; i++) {
-    size_t from = i ? i + 2 : 0;
-    half.order[i] = c->order[from];
-    half.sine[i] = c->sine[from];
-    half.x[i] = c->x[from];
-    for (size_t k = 0; k < half.count; k++)
-      half.inverse[i][k] = c->inverse[from][k ? k + 2 : 0];
-  }
-  return half;
+  return FG_LOAD_AXIS_KNOWN;
 }
 
 static void take_harmonics(const curve *c, double birge, fg_load_bearing *sum) {
@@ -185,33 +204,55 @@ static void sum_noise(const fg_load_test *test, size_t bearing, fg_load_bearing 
   sum->noise_mm /= count;
 }
 
-/* Whether the directions differ at all: by their weighted mean. */
-static void test_alike(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
+/* Sum of squares about the weighted mean. */
+static bool fit_flat(const fg_load_test *test, size_t bearing, fg_load_scatter *scatter) {
   curve flat = {.count = 1};
-  fg_load_scatter scatter;
-  if (sum->measured < 2 || !fit(test, bearing, &flat, &scatter)) return;
-  enum { KNOWN = 1000000 }; /* the uncertainties are taken for known */
+  return fit(test, bearing, &flat, scatter);
+}
+
+/* Whether the directions differ at all: the uncertainties are taken for known. */
+static void test_alike(const fg_load_scatter *flat, fg_load_bearing *sum) {
+  if (sum->measured < 2) return;
   sum->p_value =
-      fg_distribution_f_upper(fmax(0, scatter.chi2) / scatter.freedom, scatter.freedom, KNOWN);
+      fg_distribution_f_upper(fmax(0, flat->chi2) / flat->freedom, flat->freedom, KNOWN_DOF);
+}
+
+/* Probability that noise alone makes orders this large. */
+static double test_orders(const curve *c, const fg_load_scatter *flat,
+                          const fg_load_scatter *scatter, double birge) {
+  double orders = (double)c->count - 1;
+  double gained = fmax(0, flat->chi2 - scatter->chi2) / (birge * birge);
+  return fg_distribution_f_upper(gained / orders, orders, KNOWN_DOF);
+}
+
+const char *fg_load_axis_words(fg_load_axis axis) {
+  static const char *const words[] = {
+      [FG_LOAD_AXIS_KNOWN] = NULL,
+      [FG_LOAD_AXIS_FEW] = "azimuths lie on fewer than three axes: 0 and 180 degrees are one",
+      [FG_LOAD_AXIS_ROUND] = "no direction stands out of the noise",
+      [FG_LOAD_AXIS_RIVALS] = "two axes may be the smallest",
+  };
+  return words[axis];
 }
 
 void fg_load_sum_bearing(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
-  fg_load_scatter scatter;
+  fg_load_scatter scatter, flat;
   sum->least = sum->most = (fg_load_value){NAN, NAN, NAN};
   sum->mean_mm = sum->u_mean_mm = sum->p_value = NAN;
   sum->least_measured_at_deg = sum->most_measured_at_deg = NAN;
   sum->least_at_deg = sum->u_least_at_deg = NAN;
+  sum->axis = FG_LOAD_AXIS_FEW;
   take_extremes(test, bearing, sum);
   sum_noise(test, bearing, sum);
   if (!sum->measured) return;
-  curve c = make_curve(test, bearing);
-  if (!fit(test, bearing, &c, &scatter)) return;
+  curve c = make_curve(count_axes(test, bearing));
+  if (!fit(test, bearing, &c, &scatter) || !fit_flat(test, bearing, &flat)) return;
   double birge = fg_load_birge(&scatter), scale = test->options.u_displacement_pct / 100;
   sum->mean_mm = c.x[0];
   sum->u_mean_mm = hypot(birge * sqrt(c.inverse[0][0]), scale * c.x[0]);
   take_harmonics(&c, birge, sum);
-  test_alike(test, bearing, sum);
-  if (c.count == COEFFICIENTS_MAX && sum->amplitude_mm[1] < 2 * sum->u_amplitude_mm[1])
-    c = alike_after_half_a_turn(&c);
-  if (c.count > 1) find_least(&c, birge, sum);
+  test_alike(&flat, sum);
+  if (c.count == 1) return;
+  sum->axis = FG_LOAD_AXIS_ROUND;
+  if (test_orders(&c, &flat, &scatter, birge) < p_axis) sum->axis = find_axis(&c, birge, sum);
 }

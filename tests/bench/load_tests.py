@@ -116,7 +116,7 @@ def test_of(names, rng, changes=None, shift=None, scale=True):
     instruments are off."""
     rows, truth = [], {}
     p = bearing(**(changes or {}))
-    scale_f, scale_x = scale * 0.013 * rng.normal(), scale * 0.010 * rng.normal()
+    scale_f, scale_x = scale * 0.010 * rng.normal(), scale * 0.013 * rng.normal()
     for name in names:
         low, high = KINDS[name]
         truth[name] = {}

@@ -78,14 +78,14 @@ PAGE = """# Load-displacement tests
 Section 5.13 of the thesis: a rotor is pushed and pulled in the bearing. `tests/bench/load_tests.py` makes such tests with known truth:
 a gap, a spring k d + k3 d³ behind it (500 N/mm, 5e4 N/mm³, contact rounded over 3 µm), friction 1.032 N + 0.03 |F| that turns round over
 6 µm, five cycles of 600 unequal samples of which a tenth is lost, noise of 0.2 N and 0.2 µm, drift of 0.1 N and 0.5 µm per cycle, and both
-instruments' scales off by 1.3 and 1.0 % (sd, one draw per test). It shares no code with the program.
+instruments' scales off by 1.0 % (force) and 1.3 % (displacement; sd, one draw per test). It shares no code with the program.
 `/usr/bin/python3 tests/bench/stiffness.py build/foilgauge` writes this page.
 
 ## The thesis's numbers
 
 | figure | thesis | here | by |
 |---|---|---|---|
-| instruments together, % | 1.64 | {both:.2f} | sqrt(1.3² + 1.0²), both taken as standard uncertainties: `u_stiffness_pct` of every report |
+| instruments together, % | 1.64 | {both:.2f} | load cell 1.0 %, optical probe 1.3 %: sqrt(1.0² + 1.3²), both taken as standard uncertainties: `u_stiffness_pct` of every report |
 | preload of a fit 1.032 N, slope 0.03, on 40 × 40 mm, kPa | 6.85 | {preload:.3f} | 1.032 N / 0.03 = 34.4 N over pi · 40 mm · 40 mm; over 40 mm × 40 mm it would be {flat:.1f} |
 | clearances of three bearings, mm | 0.16 to 0.20, 0.17 to 0.20, 0.14 to 0.16 | below | synthetic tests with these clearances |
 

@@ -36,8 +36,8 @@ for a in r["azimuths"]:
     truth = {"A": 0.180, "B": 0.140}[a["bearing"]]
     if not (abs(a["clearance_mm"] - truth) < 0.0005 and a["u_repeat_clearance_mm"] < 0.0005):
         bad.append((a["bearing"], a["azimuth_deg"], a["clearance_mm"], a["u_repeat_clearance_mm"]))
-    # The displacement's 1 % and the load cell's 1.3 % of 20 N over 1030 N/mm at both ends.
-    u = (a["u_repeat_clearance_mm"]**2 + (0.01 * truth)**2 + (2 * 0.013 * 20 / 1030)**2)**0.5
+    # The displacement's 1.3 % and the load cell's 1 % of 20 N over 1030 N/mm at both ends.
+    u = (a["u_repeat_clearance_mm"]**2 + (0.013 * truth)**2 + (2 * 0.01 * 20 / 1030)**2)**0.5
     if not abs(a["u_clearance_mm"] - u) < 0.03 * u:
         bad.append(("u", a["u_clearance_mm"], u))
     if not abs(a["stiffness_n_mm"] - 1030) < 4 * a["u_repeat_stiffness_n_mm"] < 206:
@@ -68,6 +68,18 @@ for b in r["bearings"]:
 print(*bad, sep="\n")
 sys.exit(bool(bad))
 END
+# Defaults are the thesis's: load cell 1 %, optical probe 1.3 %; the help says the same.
+[ "$(value r.json '[r["options"][k] for k in ("u_force_pct", "u_displacement_pct")]')" = "[1, 1.3]" ] || fail "instruments"
+"$program" stiffness --help | tr -s ' \n' ' ' >help.txt
+grep -q "load cell.s scale (default: 1 %" help.txt && grep -q "displacement probe (default: 1.3 %" help.txt || fail "instruments in the help"
+# The thesis's plan: 0, 120 and 240 degrees are three axes; clearances of 200, 170, 170 um are smallest along 90 degrees.
+(echo $heading && make A 163.17 0 && make A 133.17 "120 240") >plan.csv
+run 0 "smallest along the axis .* and .* degrees" plan.csv --text -
+run 0 "" plan.csv -o plan.json --html plan.html
+[ "$(value plan.json '[(abs(b["smallest_at_deg"] - 90) < 2 * b["u_smallest_at_deg"] < 3, [h["order"] for h in b["harmonics"]], b["smallest_not_known"])
+  for b in r["bearings"]]')" = "[(True, [2], None)]" ] || fail "the axis of the smallest clearance"
+(echo $heading && make A 163.17 "0 180" && make A 133.17 90) >plan.csv
+run 0 "no axis of the smallest clearance: azimuths lie on fewer than three axes" plan.csv --text -
 # A digital indicator shows whole steps: the report names them, and the values stay within U.
 awk -F, -v OFS=, 'NR > 1 { $5 = sprintf("%.3f", $5) } { print }' test.csv >steps.csv
 run 0 "" steps.csv -o steps.json --text steps.txt --html steps.html

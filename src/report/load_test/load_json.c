@@ -82,7 +82,7 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
 
 static void write_harmonics(fg_json *json, const fg_load_bearing *b) {
   fg_json_array(json, "harmonics");
-  for (int order = 1; order <= FG_LOAD_HARMONICS; order++) {
+  for (int order = 2; order <= FG_LOAD_ORDER_MAX; order += 2) {
     if (!b->harmonic[order]) continue;
     fg_json_object(json, NULL);
     fg_json_line(json);
@@ -114,6 +114,7 @@ static void write_bearing(fg_json *json, const fg_load_test *test, size_t bearin
   write_harmonics(json, b);
   fg_json_number(json, "smallest_at_deg", b->least_at_deg);
   fg_json_number(json, "u_smallest_at_deg", b->u_least_at_deg);
+  fg_json_string(json, "smallest_not_known", fg_load_axis_words(b->axis));
   fg_json_number(json, "birge_ratio", b->birge);
   write_value(json, "stiffness_n_mm", &b->stiffness);
   fg_json_number(json, "friction_intercept_n", b->intercept_n);

@@ -35,7 +35,7 @@ static void put_tile(FILE *out, const char *title, const fg_load_value *v, doubl
 
 static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
-  char least[60] = "", most[60] = "", towards[80];
+  char least[60] = "", most[60] = "";
   if (isfinite(b->least.value)) {
     snprintf(least, sizeof least, "at %g°", b->least_measured_at_deg);
     snprintf(most, sizeof most, "at %g°", b->most_measured_at_deg);
@@ -46,14 +46,12 @@ static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
            count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
   put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
-  fputs("<div><dt>Smallest towards</dt><dd>", out);
-  if (isfinite(b->least_at_deg)) {
-    snprintf(towards, sizeof towards, "%.1f°<small>± %.1f° (U = 2 u), fitted</small>",
-             b->least_at_deg, 2 * b->u_least_at_deg);
-    fputs(towards, out);
-  } else {
-    fputs("–<small>no direction stands out</small>", out);
-  }
+  fputs("<div><dt>Smallest along</dt><dd>", out);
+  if (b->axis == FG_LOAD_AXIS_KNOWN)
+    fprintf(out, "%.1f° and %.1f°<small>± %.1f° (U = 2 u), fitted</small>", b->least_at_deg,
+            b->least_at_deg + 180, 2 * b->u_least_at_deg);
+  else
+    fprintf(out, "–<small>%s</small>", fg_load_axis_words(b->axis));
   fputs("</dd></div>\n</dl>\n", out);
 }
 

@@ -120,7 +120,7 @@ void fg_load_plot_stiffness(FILE *out, const fg_load_direction *d) {
 
 static double curve_at(const fg_load_bearing *b, double deg) {
   double sum = b->mean_mm;
-  for (int order = 1; order <= FG_LOAD_HARMONICS; order++)
+  for (int order = 2; order <= FG_LOAD_ORDER_MAX; order += 2)
     if (b->harmonic[order])
       sum += b->cosine_mm[order] * cos(order * deg * M_PI / 180) +
              b->sine_mm[order] * sin(order * deg * M_PI / 180);
@@ -135,7 +135,9 @@ static void put_curve(const fg_plot *at, const fg_load_bearing *b) {
   }
   fg_plot_line(at, x, y, CURVE_STEPS + 1, "hint");
   if (!isfinite(b->least_at_deg)) return;
-  fg_plot_segment(at, b->least_at_deg, at->y_low, b->least_at_deg, at->y_high, "limit");
+  for (double deg = b->least_at_deg - 720; deg <= at->x_high;
+       deg += 180) /* both ends of the axis */
+    if (deg >= at->x_low) fg_plot_segment(at, deg, at->y_low, deg, at->y_high, "limit");
 }
 
 static void put_direction(const fg_plot *at, const fg_load_direction *d) {

@@ -43,9 +43,11 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   if (b->measured > 1)
     fprintf(out, "  clearance %.2f to %.2f um, mean %.2f, U %.2f\n", 1000 * b->least.value,
             1000 * b->most.value, 1000 * b->mean_mm, 2000 * b->u_mean_mm);
-  if (isfinite(b->least_at_deg))
-    fprintf(out, "  smallest towards %.1f degrees, U %.1f\n", b->least_at_deg,
-            2 * b->u_least_at_deg);
+  if (b->axis == FG_LOAD_AXIS_KNOWN)
+    fprintf(out, "  smallest along the axis %.1f and %.1f degrees, U %.1f\n", b->least_at_deg,
+            b->least_at_deg + 180, 2 * b->u_least_at_deg);
+  else if (b->measured > 1)
+    fprintf(out, "  no axis of the smallest clearance: %s\n", fg_load_axis_words(b->axis));
   if (isfinite(b->noise_n)) {
     fprintf(out, "  noise of a sample %.3g N and %.2g um", b->noise_n, 1000 * b->noise_mm);
     if (b->step_mm > b->noise_mm)
