@@ -70,23 +70,55 @@ static void keep(fg_named *named, size_t field, const char *text, size_t length)
   to[kept] = '\0';
 }
 
-/* Whether `name` up to `last` is as the pattern says. Patterns are short and names too: trying
- * every length of every field is at most fields × length steps, as none follows another. */
-static bool match(const char *pattern, const char *name, const char *last, fg_named *named) {
-  while (*pattern && *pattern != '{' && *pattern != '*') {
-    if (name == last || *name != *pattern) return false;
-    pattern++;
-    name++;
+/* One step of a pattern: an open place (a field or `*`, FIELDS) and the text behind it; `first` has
+ * no open place before its text. */
+typedef struct step {
+  bool first;
+  size_t field, length;
+  const char *text;
+} step;
+
+/* The step at `pattern`; returns what follows it. */
+static const char *take_step(const char *pattern, bool first, step *taken) {
+  const char *text = pattern;
+  *taken = (step){.first = first, .field = FIELDS};
+  if (!first) {
+    text = pattern + 1;
+    if (*pattern == '{') taken->field = find_field(pattern, &text);
   }
-  if (!*pattern) return name == last;
-  const char *next = pattern + 1;
-  size_t field = *pattern == '{' ? find_field(pattern, &next) : FIELDS;
-  for (const char *end = name + (field < FIELDS); end <= last; end++) {
-    if (!match(next, end, last, named)) continue;
-    if (field < FIELDS) keep(named, field, name, (size_t)(end - name));
-    return true;
+  taken->text = text;
+  taken->length = strcspn(text, "{*");
+  return text + taken->length;
+}
+
+/* Where the step's text stands at or behind `from`: at once (first), at the end (last), else the
+ * nearest place. NULL: nowhere. */
+static const char *find_text(const step *at, bool last, const char *from, const char *end) {
+  if ((size_t)(end - from) < at->length) return NULL;
+  if (last && (!at->first || (size_t)(end - from) == at->length)) {
+    const char *place = end - at->length;
+    return memcmp(place, at->text, at->length) ? NULL : place;
   }
-  return false;
+  if (last) return NULL;
+  if (at->first) return memcmp(from, at->text, at->length) ? NULL : from;
+  return memmem(from, (size_t)(end - from), at->text, at->length);
+}
+
+/* Whether `name` up to `end` is as the pattern says. Each text is looked for once: where the rest
+ * fits behind a later place of it, it fits behind the nearest too, as the open place that follows
+ * takes any length. So no step is ever tried again, and fields are as short as they can be. */
+static bool match(const char *pattern, const char *name, const char *end, fg_named *named) {
+  for (bool first = true; first || *pattern; first = false) {
+    step at;
+    pattern = take_step(pattern, first, &at);
+    size_t min = at.field < FIELDS;
+    if ((size_t)(end - name) < min) return false;
+    const char *place = find_text(&at, !*pattern, name + min, end);
+    if (!place) return false;
+    if (at.field < FIELDS) keep(named, at.field, name, (size_t)(place - name));
+    name = place + at.length;
+  }
+  return true;
 }
 
 bool fg_naming_take(const char *pattern, const char *file, fg_named *named) {
