@@ -76,10 +76,11 @@ void fg_closing_end(fg_closing *closing) {
   closing->started = false;
 }
 
-/* Requests come one at a time: only the thread that writes the lot is beside this one. */
-static fg_status start(fg_context *ctx, fg_inspection *station, const char *lot, const char *by) {
+/* The caller holds the mutex: of several requests at once one begins. A thread that no longer runs
+ * has given the mutex back, so that it can be waited for here. */
+static fg_status begin(fg_context *ctx, fg_inspection *station, const char *lot, const char *by) {
   fg_closing *closing = &station->closing;
-  if (is_running(closing))
+  if (closing->running)
     return fg_fail(ctx, FG_ERR_DATA, "The lot '%.127s' is being closed: wait until that is done.",
                    closing->lot);
   fg_closing_end(closing);
@@ -91,6 +92,13 @@ static fg_status start(fg_context *ctx, fg_inspection *station, const char *lot,
   if (closing->started) return FG_OK;
   closing->running = false;
   return fg_fail(ctx, FG_ERR_MEMORY, "There is no thread for it now: try again.");
+}
+
+static fg_status start(fg_context *ctx, fg_inspection *station, const char *lot, const char *by) {
+  pthread_mutex_lock(&station->closing.mutex);
+  fg_status status = begin(ctx, station, lot, by);
+  pthread_mutex_unlock(&station->closing.mutex);
+  return status;
 }
 
 static fg_status check_lot(fg_context *ctx, fg_inspection *station, const char *lot) {
