@@ -6,6 +6,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "foilgauge/station.h"
+#include "foilgauge/text.h"
 
 enum {
   OPTION_RECIPE = 256,
@@ -100,9 +101,15 @@ static void say_address(void *user, const char *address) {
   fflush(stdout);
 }
 
+/* On one line, whatever a file is called: what comes on a line of its own was said by the program.
+ */
 static void say_file(void *user, const char *file, const char *words) {
+  char line[4096];
   (void)user;
-  fprintf(stderr, "foilgauge: %s%s%s\n", file, words[0] ? " " : "", words);
+  fg_text_clip(line, sizeof line, "%s%s%s", file, words[0] ? " " : "", words);
+  for (char *at = line; *at; at++)
+    if (*at == '\n' || *at == '\t') *at = ' ';
+  fprintf(stderr, "foilgauge: %s\n", line);
 }
 
 const struct argp fg_station_parser = {options, parse_option, "FOLDER", doc,

@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "foilgauge/station.h"
+#include "station/stored_name.h"
 
 /* Each step takes a database from one version to the next; a step that was ever released is never
  * changed. */
@@ -68,6 +69,13 @@ static const char *const migrations[] = {
     " closed_at INTEGER NOT NULL, by TEXT NOT NULL, folder TEXT NOT NULL, verdict TEXT NOT NULL,"
     " withheld INTEGER NOT NULL, summary TEXT NOT NULL, state TEXT NOT NULL);"
     "CREATE INDEX lots_by_name ON lots (name);",
+    /* Names and words are UTF-8: before, they were whatever bytes a file's name had. */
+    "UPDATE scans SET path = stored_name(path) WHERE path <> stored_name(path);"
+    "UPDATE files SET path = stored_name(path) WHERE path <> stored_name(path);"
+    "UPDATE arrivals SET path = stored_name(path) WHERE path <> stored_name(path);"
+    "UPDATE arrivals SET message = stored_name(message) WHERE message <> stored_name(message);"
+    "UPDATE checks SET path = stored_name(path) WHERE path <> stored_name(path);"
+    "UPDATE checks SET words = stored_name(words) WHERE words <> stored_name(words);",
 };
 
 enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000 };
@@ -82,6 +90,17 @@ int64_t fg_station_now(void) {
   return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
+/* fg_stored_name in SQL, for migrations. */
+static void store_name(sqlite3_context *call, int count, sqlite3_value **values) {
+  char *stored;
+  const unsigned char *name = count ? sqlite3_value_text(values[0]) : NULL;
+  if (!name) return;
+  if (fg_stored_name(NULL, (const char *)name, &stored) != FG_OK)
+    sqlite3_result_error_nomem(call);
+  else
+    sqlite3_result_text(call, stored, -1, free);
+}
+
 /* journal_size_limit: what a large transaction or a slow reader made of the journal is given back.
  */
 static fg_status open_connection(fg_context *ctx, const char *path, bool write,
@@ -93,6 +112,10 @@ static fg_status open_connection(fg_context *ctx, const char *path, bool write,
   if (sqlite3_open_v2(path, connection, flags | SQLITE_OPEN_NOMUTEX, NULL) != SQLITE_OK)
     return fg_sql_fail(ctx, *connection, path);
   sqlite3_busy_timeout(*connection, BUSY_MS);
+  if (write && sqlite3_create_function(*connection, "stored_name", 1,
+                                       SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY, NULL,
+                                       store_name, NULL, NULL) != SQLITE_OK)
+    return fg_sql_fail(ctx, *connection, path);
   if (sqlite3_exec(*connection, settings, NULL, NULL, NULL) == SQLITE_OK) return FG_OK;
   return fg_sql_fail(ctx, *connection, path);
 }
@@ -119,6 +142,11 @@ static fg_status migrate(fg_context *ctx, fg_station_database *database) {
   int version;
   char *step = NULL;
   FG_TRY(read_version(ctx, database, &version));
+  if (version < 0)
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: the database has version %d, which no program writes: put it elsewhere, or "
+                   "take it from a backup",
+                   database->path, version);
   if (version > VERSION)
     return fg_fail(ctx, FG_ERR_DATA,
                    "%s: the database has version %d, of a later program; this one knows version %d",

@@ -15,6 +15,7 @@
 #include "station/intake.h"
 #include "station/lot_content.h"
 #include "station/lot_folder.h"
+#include "station/stored_name.h"
 
 /* A lot on its way to its folder. */
 typedef struct export {
@@ -121,7 +122,7 @@ static fg_status add_row(fg_context *ctx, export *at, const char *folder, const 
                          const fg_lot_scan *scan) {
   char **row;
   FG_TRY(fg_manifest_add_item(ctx, &at->manifest, &row));
-  FG_TRY(fg_text_print(ctx, &row[SCAN], "%s/%s", folder, scan->path));
+  FG_TRY(fg_stored_name_path(ctx, folder, scan->path, &row[SCAN]));
   FG_TRY(name_scan(ctx, scan, &row[FOIL]));
   FG_TRY(fg_text_print(ctx, &row[LOT], "%s", lot));
   FG_TRY(fg_text_print(ctx, &row[DIE], "%s", scan->die));

@@ -17,13 +17,15 @@
 #include "station/keep.h"
 #include "station/picture.h"
 #include "station/scan_command.h"
+#include "station/stored_name.h"
 
 enum { HEAD_BYTES = 64, TAIL_BYTES = 12, WORDS = 1000 };
 
 /* A file under examination. */
 typedef struct intake {
   fg_inspection *station;
-  char *path;
+  const char *name; /* in the folder, any bytes */
+  char *path, *stored;
   fg_station_file file;
   fg_named named;
   double arrived;
@@ -147,8 +149,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   FG_TRY(fg_station_lot_note(ctx, &station->database, at->named.lot, at->words, WORDS));
   say_lossy(measurement, at->words);
   const fg_station_scan kept = {.file = at->file,
-                                .source =
-                                    fg_station_is_scanned(at->file.name) ? "scanner" : "folder",
+                                .source = fg_station_is_scanned(at->name) ? "scanner" : "folder",
                                 .named = &at->named,
                                 .settings = &station->settings->lot,
                                 .setup = station->setup,
@@ -208,10 +209,10 @@ static fg_status measure(fg_context *ctx, intake *at) {
 static bool is_check(const fg_inspection *station, intake *at) {
   const fg_station_settings *settings = station->settings;
   fg_named as_check;
-  bool called = settings->check.design[0] &&
-                (fg_station_is_scanned_check(at->file.name) ||
-                 fg_naming_take(settings->check.file_name, at->file.name, &as_check));
-  bool fits = fg_naming_take(settings->file_name, at->file.name, &at->named);
+  bool called =
+      settings->check.design[0] && (fg_station_is_scanned_check(at->name) ||
+                                    fg_naming_take(settings->check.file_name, at->name, &as_check));
+  bool fits = fg_naming_take(settings->file_name, at->name, &at->named);
   return called || (fits && at->named.check[0]);
 }
 
@@ -259,10 +260,14 @@ static fg_status take(fg_context *ctx, intake *at, bool final) {
 
 fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
                                bool final, bool *later) {
-  intake at = {.station = station, .file.name = name, .arrived = fg_clock_seconds()};
-  FG_TRY(fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name));
-  fg_status status = take(ctx, &at, final);
+  intake at = {.station = station, .name = name, .arrived = fg_clock_seconds()};
+  *later = false;
+  FG_TRY(fg_stored_name(ctx, name, &at.stored));
+  at.file.name = at.stored;
+  fg_status status = fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name);
+  if (status == FG_OK) status = take(ctx, &at, final);
   *later = at.later;
   free(at.path);
+  free(at.stored);
   return status;
 }

@@ -8,7 +8,7 @@
 
 /* A file of the folder as it was when it was looked at. */
 typedef struct fg_station_file {
-  const char *name; /* below the folder */
+  const char *name; /* below the folder, as stored (stored_name.h) */
   int64_t bytes, modified_ns;
 } fg_station_file;
 

@@ -7,7 +7,7 @@
 /* A scan with foils of the lot: of a bed, maybe not all. */
 typedef struct fg_lot_scan {
   int64_t id;
-  char *path; /* below the station's folder */
+  char *path; /* below the station's folder, as stored (stored_name.h) */
   char sha256[65];
   size_t of; /* foils of the scan, whatever lot they belong to */
   int *numbers;

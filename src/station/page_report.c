@@ -10,6 +10,7 @@
 #include "report/measure/measure_page_parts.h"
 #include "station/pages.h"
 #include "station/past.h"
+#include "station/stored_name.h"
 
 /* One at a time: each takes all cores for a second, and new scans come first. */
 static pthread_mutex_t measuring = PTHREAD_MUTEX_INITIALIZER;
@@ -55,7 +56,7 @@ static fg_status measure_again(fg_context *ctx, const char *folder, const fg_pas
   fg_measurement measurement;
   const fg_measure_options options = {
       .dpi = past->settings.dpi, .allow_lossy = past->settings.allow_lossy, .only_file = true};
-  FG_TRY(fg_text_print(ctx, &path, "%s/%s", folder, past->path));
+  FG_TRY(fg_stored_name_path(ctx, folder, past->path, &path));
   fg_status status = fg_sha256_file(ctx, path, sum);
   if (status == FG_OK && strcmp(sum, past->sha256) != 0)
     status = fg_fail(ctx, FG_ERR_DATA, "%s is another file now", past->path);

@@ -1,7 +1,10 @@
 #include "station/sql.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "core/utf8.h"
 
 static fg_status fail_code(fg_context *ctx, int code, const char *what, const char *words) {
   switch (code & 0xFF) {
@@ -47,8 +50,27 @@ static void note(fg_query *query, int code) {
   if (query->error == SQLITE_OK && code != SQLITE_OK) query->error = code;
 }
 
+/* Other programs cannot read a row that holds anything else than UTF-8: stray bytes, of a message
+ * that was cut, of a text that quotes a file, become \xE4. */
+static void bind_visible(fg_query *query, const char *text) {
+  size_t size = strlen(text), length;
+  char *visible = malloc(4 * size);
+  if (visible) {
+    fg_utf8_make_visible(text, size, true, visible, &length);
+    note(query, sqlite3_bind_text64(query->statement, query->bound, visible, length,
+                                    SQLITE_TRANSIENT, SQLITE_UTF8));
+  } else {
+    note(query, SQLITE_NOMEM);
+  }
+  free(visible);
+}
+
 void fg_query_text(fg_query *query, const char *text) {
   query->bound++;
+  if (text && !fg_utf8_is_valid(text)) {
+    if (query->error == SQLITE_OK) bind_visible(query, text);
+    return;
+  }
   if (query->error == SQLITE_OK)
     note(query, text ? sqlite3_bind_text(query->statement, query->bound, text, -1, SQLITE_TRANSIENT)
                      : sqlite3_bind_null(query->statement, query->bound));

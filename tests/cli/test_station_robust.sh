@@ -1,26 +1,14 @@
 #!/bin/bash
 # A station that is killed, whose disk is full, whose folder goes: nothing lost, nothing twice.
 # Usage: test_station_robust.sh PROGRAM [KILLS [FAILURES]]
-set -euo pipefail
-program=$1
+name=test_station_robust
+. "$(dirname "$0")/../support/station.sh"
 kills=${2:-3}
 [ -z "${FOILGAUGE_TEST_BRIEF-}" ] || kills=1
 failures=${3:-12}
-renderer=${FOILGAUGE_RENDERER:-$program}
 shims=$(realpath "$(dirname "$program")")/tests
-work=$(mktemp -d)
-station=
-end() {
-  [ -z "$station" ] || kill -9 "$station" 2>/dev/null || true
+at_end() {
   ! mountpoint -q "$work/full" || umount -l "$work/full"
-  rm -rf "$work"
-}
-trap end EXIT
-
-fail() {
-  echo "test_station_robust: $*" >&2
-  [ ! -s "$work/said" ] || sed 's/^/  said: /' "$work/said" >&2
-  exit 1
 }
 # expect CODE WORDS COMMAND...: its exit code, and what it says.
 expect() {
@@ -53,48 +41,10 @@ for folder, scans in zip(sys.argv[1::2], sys.argv[2::2]):
     assert cards == [scan[0] for scan in ask("SELECT id FROM scans ORDER BY id")], (folder, cards)
 PY
 }
-# start FOLDER [OPTION...]: a station in the background; its number in $station.
-start() {
-  local folder=$1
-  shift
-  : >"$work/address"
-  "$program" station "$folder" --port 0 "$@" >"$work/address" 2>>"$work/said" &
-  station=$!
-  for ((i = 0; i < 500; i++)); do
-    [ ! -s "$work/address" ] || return 0
-    sleep 0.02
-  done
-  fail "no address"
-}
-stop() {
-  kill -9 "$station" && wait "$station" 2>/dev/null || true
-  station=
-}
-# wait_for SECONDS COMMAND...
-wait_for() {
-  local end=$((SECONDS + $1))
-  shift
-  while ! "$@" >/dev/null 2>&1; do
-    [ $SECONDS -lt $end ] || fail "waited in vain: $*"
-    sleep 0.05
-  done
-}
-measured() { # FOLDER COUNT
-  [ "$(python3 -c 'import sqlite3, sys
-print(sqlite3.connect(f"file:{sys.argv[1]}/foilgauge.sqlite?mode=ro", uri=True)
-      .execute("SELECT count(*) FROM scans").fetchone()[0])' "$1")" -eq "$2" ]
-}
-
 mkdir "$work/scans"
 for seed in 1 2 3 4 5 6; do
-  printf '{"schema": "foilgauge/render/1", "seed": %s, "scanner": {"dpi": 1200},
-    "foils": [{"rotate_deg": -90, "design": {"bump_count": 2}}]}' $seed >"$work/spec.json"
-  "$renderer" render "$work/spec.json" -o "$work/scans/$seed.png"
+  draw $seed "$work/scans/$seed.png"
 done
-cat >"$work/recipe.json" <<'R'
-{"schema": "foilgauge/recipe/1", "design": {"schema": "foilgauge/design/1", "bump_count": 2}}
-R
-recipe="--recipe $work/recipe.json"
 tiff() { # FROM TO: a TIFF of strips, its pixels at the end
   python3 - "$1" "$2" <<'PY'
 import struct, sys, zlib
@@ -143,11 +93,11 @@ cp "$work/scans/3.png" "$work/in/half.png"
 expect 0 "1 measured, 0 known, 0 refused" once "$work/in" $recipe
 check "$work/in" 3
 
-# Databases of version 1 are in use: a change of theirs is a new migration, never another version 1.
+# Databases of versions 1 and 2 are in use: a change of theirs is a new migration, never another version 1.
 python3 - "$work/in/foilgauge.sqlite" <<'PY' || fail "version 1 of the database is not what it was"
 import hashlib, sqlite3, sys
 database = sqlite3.connect(sys.argv[1])
-if database.execute("PRAGMA user_version").fetchone() == (1,):
+if database.execute("PRAGMA user_version").fetchone() in [(1,), (2,)]: # 2 has the tables of 1
     tables = database.execute("SELECT sql FROM sqlite_schema WHERE sql IS NOT NULL AND name NOT LIKE "
                               "'sqlite_%' ORDER BY name").fetchall()
     digest = hashlib.sha256("\n".join(table[0] for table in tables).encode()).hexdigest()
@@ -163,6 +113,8 @@ d = sqlite3.connect(sys.argv[1]); d.executescript(sys.argv[2])' "$work/other/foi
   expect 65 "$1" once "$work/other"
 }
 broken "of a later program" "PRAGMA user_version = 9999"
+broken "has version -1, which no program writes" "PRAGMA user_version = -1"
+broken "has version -2147483648, which no program writes" "PRAGMA user_version = -2147483648"
 broken "of another program" "CREATE TABLE theirs (a)"
 rm -f "$work"/other/foilgauge.sqlite*
 cp "$work/scans/1.png" "$work/other/foilgauge.sqlite"
