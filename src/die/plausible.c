@@ -1,6 +1,10 @@
 #include "die/plausible.h"
 
 #include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/select.h"
 
 /* A die's radii are within this factor of the design's, however badly it was made. */
 #define RADIUS_FACTOR 1.25
@@ -40,12 +44,34 @@ static fg_status fail_length(fg_context *ctx, const fg_design *design, const cha
                  span_mm(design, BUMPS_LEAST) + design->bump_radius_mm);
 }
 
+/* No point of a die lies higher over another than its overall circle is wide: what does was written
+ * for a lost contact, or in another unit. */
+static fg_status check_heights(fg_context *ctx, const fg_design *design, const char *path,
+                               const fg_die_profile *p) {
+  double limit = 2 * LENGTH_DIAMETERS * design->overall_radius_mm, z;
+  double *heights = NULL;
+  FG_TRY(fg_memory_allocate(ctx, p->count, sizeof *heights, (void **)&heights));
+  for (size_t i = 0; i < p->count; i++)
+    heights[i] = p->points[i].y;
+  double middle = fg_select(heights, p->count, p->count / 2);
+  free(heights);
+  for (size_t i = 0; i < p->count; i++)
+    if (z = p->points[i].y, !(fabs(z - middle) <= limit))
+      return fg_fail(ctx, FG_ERR_DATA,
+                     "%s: point %zu (x %.6g mm): z is %.6g mm, where the trace's median is %.6g "
+                     "mm: no die of this design (%s, R0 %.4g mm) is so high; take out points that "
+                     "the instrument has lost, or correct --unit",
+                     path, i + 1, p->points[i].x, z, middle, design->name,
+                     design->overall_radius_mm);
+  return FG_OK;
+}
+
 fg_status fg_die_check_size(fg_context *ctx, const fg_design *design, const char *path,
                             const fg_die_profile *p) {
   double mm = p->points[p->count - 1].x - p->points[0].x;
   if (!length_fits(design, mm)) return fail_length(ctx, design, path, p, mm);
   double per_bump = (double)p->count * design->bump_radius_mm / mm;
-  if (per_bump >= POINTS_PER_BUMP) return FG_OK;
+  if (per_bump >= POINTS_PER_BUMP) return check_heights(ctx, design, path, p);
   return fg_fail(ctx, FG_ERR_DATA,
                  "%s: %zu points over %.4g mm are too few; a bump needs %d, so trace with a point "
                  "every %.2g mm or closer",

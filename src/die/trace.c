@@ -20,18 +20,22 @@
 /* A bump counts as seen whole when its arc reaches over this share of the design's angle. */
 #define WHOLE_SHARE 0.6
 
-static size_t count_stations(const fg_die_profile *p) {
+/* Room for the stations: each takes a point at least, and the next one lies STATION_MM further. The
+ * length is compared before it becomes a count: a stray value may make it larger than any size_t.
+ */
+static size_t count_stations_max(const fg_die_profile *p) {
   double length = 0;
   for (size_t i = 1; i < p->count; i++)
     length += hypot(p->points[i].x - p->points[i - 1].x, p->points[i].y - p->points[i - 1].y);
-  return (size_t)(length / STATION_MM) + 2;
+  double stations = length / STATION_MM + 2;
+  return stations < (double)p->count ? (size_t)stations : p->count;
 }
 
 /* y runs down, as in a scan: the material lies on the side of the normal. */
 static fg_status make_strip(fg_context *ctx, const fg_die_profile *p, fg_strip *strip) {
-  size_t room = count_stations(p), i = 0;
+  size_t i = 0;
   memset(strip, 0, sizeof *strip);
-  FG_TRY(fg_memory_allocate(ctx, room < p->count ? room : p->count, sizeof *strip->stations,
+  FG_TRY(fg_memory_allocate(ctx, count_stations_max(p), sizeof *strip->stations,
                             (void **)&strip->stations));
   double s = 0;
   while (i < p->count) {

@@ -12,10 +12,10 @@ install_missing $FOILGAUGE_PACKAGES clang
 cd "$root"
 step "configuring fuzz in build-fuzz/" cmake -S . -B build-fuzz -G "Unix Makefiles" -C src/cmake/fuzz.cmake
 step "building fuzz" cmake --build build-fuzz -j"$(nproc)" --target fuzz_png fuzz_png_differential fuzz_tiff \
-  fuzz_design fuzz_measure fuzz_loop_scan fuzz_loop_table fuzz_station
+  fuzz_design fuzz_die fuzz_load_test fuzz_forming fuzz_measure fuzz_loop_scan fuzz_loop_table fuzz_station
 kept=$root/build-fuzz/found
 mkdir -p "$kept"
-for target in png png_differential tiff design measure loop_scan loop_table station; do
+for target in png png_differential tiff design die load_test forming measure loop_scan loop_table station; do
   grown=$(mktemp -d)
   log=$kept/$target.log
   code=0

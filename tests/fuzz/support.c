@@ -1,5 +1,7 @@
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -27,4 +29,45 @@ void fuzz_read_scan(const char *path, const fg_scan_options *options) {
     if (fg_scan_read_rows(&ctx, scan, 1, row, stride) != FG_OK) break;
   free(row);
   fg_scan_close(scan);
+}
+
+static bool holds_word(const char *text, const char *word) {
+  size_t length = strlen(word);
+  for (const char *at = strcasestr(text, word); at; at = strcasestr(at + 1, word))
+    if ((at == text || !isalpha((unsigned char)at[-1])) && !isalpha((unsigned char)at[length]))
+      return true;
+  return false;
+}
+
+FILE *fuzz_report_open(fuzz_report *report) {
+  *report = (fuzz_report){0};
+  report->out = open_memstream(&report->text, &report->size);
+  return report->out;
+}
+
+void fuzz_report_close(fuzz_report *report, bool numbers) {
+  fclose(report->out);
+  if (numbers && (holds_word(report->text, "nan") || holds_word(report->text, "inf"))) {
+    fputs(report->text, stderr);
+    abort();
+  }
+  free(report->text);
+}
+
+uint8_t fuzz_take(fuzz_bytes *bytes) {
+  return bytes->at < bytes->end ? *bytes->at++ : 0;
+}
+
+size_t fuzz_take_below(fuzz_bytes *bytes, size_t limit) {
+  size_t high = fuzz_take(bytes);
+  return (high << 8 | fuzz_take(bytes)) % limit;
+}
+
+double fuzz_take_number(fuzz_bytes *bytes, double value) {
+  static const double odd[] = {0,   1e18, -1e18, 1e-308, -1e308, 1e200,        -1e-5, 1e-12,
+                               1e9, -1e4, 1,     -1,     1e300,  4294967296.0, 1e5,   -1e-300};
+  uint8_t kind = fuzz_take(bytes);
+  if (kind < sizeof odd / sizeof *odd) return odd[kind];
+  return kind < 128 ? value * ((double)fuzz_take(bytes) / 64 - 1)
+                    : value + ((double)fuzz_take(bytes) - 128) / 1000;
 }
