@@ -75,7 +75,7 @@ static void put_against_arch(double stiffness_n_mm2, const fg_arch *arch,
 
 static void heshmat_reserve(const fg_arch *arch, const fg_arch_material *material, char *words,
                             size_t size) {
-  double stiffness;
+  double stiffness = 0;
   fg_context unused;
   if (heshmat_stiffness(&unused, arch, material, &stiffness) != FG_OK) return;
   put_against_arch(stiffness, arch, material,
