@@ -37,7 +37,7 @@ const char *fg_stiffness_form_note(fg_form form) {
 
 static fg_status arch_stiffness(fg_context *ctx, const fg_arch *arch,
                                 const fg_arch_material *material, double *n_mm2) {
-  fg_arch_stiffness stiffness;
+  fg_arch_stiffness stiffness = {0};
   FG_TRY(fg_arch_free(ctx, arch, material, &stiffness));
   *n_mm2 = stiffness.stiffness_n_mm2;
   return FG_OK;
@@ -109,7 +109,7 @@ static fg_status link_spring_stiffness(fg_context *ctx, const fg_arch *arch,
 
 static void link_spring_reserve(const fg_arch *arch, const fg_arch_material *material, char *words,
                                 size_t size) {
-  double stiffness;
+  double stiffness = 0;
   fg_context why = {0};
   if (link_spring_stiffness(&why, arch, material, &stiffness) == FG_OK)
     put_against_arch(stiffness, arch, material,
