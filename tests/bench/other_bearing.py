@@ -1,9 +1,8 @@
 """Load-displacement tests of gas foil bearings as a test rig writes them, with their truth: a generator that shares no
-line and no law of friction with foilgauge or with load_tests.py. `foilgauge stiffness` is judged on these records, which
-its makers did not make.
+line and no law of friction with foilgauge or with load_tests.py. `foilgauge stiffness` is judged on these records,
+which its makers did not make.
 
 Usage: other_bearing.py OUT.csv [--truth OUT.json] --seed S [--kind KIND | --spec SPEC.json]
-       other_bearing.py OUT.csv [--truth OUT.json] --seed S --break-away [--spec SPEC.json]
        other_bearing.py --list
 
   /usr/bin/python3 tests/bench/other_bearing.py b7.csv --truth b7.json --seed 7 --kind load_gap_0
@@ -16,7 +15,9 @@ jumps through the gap, where `samples_in_gap` of a crossing are caught) or along
 times (`displacement`; `pace`: `sine` or `triangle`). Then, in this order: the drift of the displacement, linear and
 warming; the gains, one of force and one of displacement for a whole record, normal with the standard uncertainties
 u_force_pct and u_displacement_pct; the offsets; noise, white and of first order autoregression; stretches that are
-lost; the steps of the columns."""
+lost; the steps of the columns.
+
+The kinds that begin with `pulls` are break-away tests: the rotor is turned until it slips."""
 
 import argparse
 import json
@@ -24,18 +25,15 @@ import math
 
 import numpy as np
 
-from other_bearing_kinds import KINDS
+from other_bearing_kinds import KINDS, PULL_KINDS
 from other_bearing_mechanics import strokes_of, truth_of
 
 COLUMNS = "bearing,azimuth_deg,cycle,time_s,displacement_mm,force_N"
-BREAK_AWAY = {"dead_weights_n": [10, 20, 40, 80, 120, 160, 200, 240, 280, 319.5], "repeats": 5,
-              "friction_coefficient": 0.03, "preload_n": 34.4, "diameter_mm": 40, "length_mm": 40, "column": "torque_Nmm", "scatter_pct": 3.0,
-              "noise_n": 0.02, "u_force_pct": 1.0, "step": 0.001}  # fmt: skip
 BREAK_AWAY_DEFINITIONS = {
-    "friction_coefficient": "break-away force over normal force, the preload included",
+    "friction_coefficient": "break-away force over normal force, with the preload; null where it falls with load",
     "preload_n": "normal force of the foils on the rotor without a dead weight",
     "preload_kpa": "preload_n over pi x diameter x length",
-    "friction_intercept_n": "break-away force without a dead weight: friction_coefficient x preload_n",
+    "friction_no_weight_n": "break-away force without a dead weight and without the rig's torque",
 }
 
 
@@ -147,24 +145,36 @@ def draw_spec(kind, seed):
     return KINDS[kind][0](np.random.default_rng([seed, 0, list(KINDS).index(kind)]))
 
 
-def make_break_away(spec, seed):
+def draw_pulls(kind, seed):
+    """The spec of a break-away test of a kind."""
+    return PULL_KINDS[kind][0](np.random.default_rng([seed, 3, list(PULL_KINDS).index(kind)]))
+
+
+def pull_force(spec, weight):
+    """Force at the rotor's surface at which the foils let go, under a true dead weight."""
+    normal = max(weight + spec["preload_n"], 1e-9)
+    return spec["friction_coefficient"] * normal * (normal / 100) ** -spec["falls_with_load"]
+
+
+def make_break_away(spec, seed, deviates=None):
     """A break-away test: the rotor is turned until it slips, under growing dead weights; CSV text and truth."""
-    spec, rng = BREAK_AWAY | spec, np.random.default_rng([seed, 2])
-    gain = 1 + rng.normal(0, spec["u_force_pct"] / 100)
-    torque = spec["column"] == "torque_Nmm"
-    arm = spec["diameter_mm"] / 2 if torque else 1
+    rng = np.random.default_rng([seed, 2])
+    drawn = rng.normal(0, 1, 2) if deviates is None else deviates
+    gain, weight_gain = (1 + z * spec[k] / 100 for z, k in zip(drawn, ("u_force_pct", "u_weight_pct"), strict=True))
+    radius = spec["diameter_mm"] / 2
+    arm = 1 if spec["column"] == "force_N" else radius
     lines = [f"dead_weight_N,{spec['column']},repeat"]
     for weight in spec["dead_weights_n"]:
         for repeat in range(1, spec["repeats"] + 1):
-            slip = spec["friction_coefficient"] * (weight + spec["preload_n"])
-            slip *= 1 + rng.normal(0, spec["scatter_pct"] / 100)
-            value = round(gain * (slip + rng.normal(0, spec["noise_n"])) * arm / spec["step"]) * spec["step"]
+            slip = pull_force(spec, weight * weight_gain) * (1 + rng.normal(0, spec["scatter_pct"] / 100))
+            slip += spec["rig_torque_n_mm"] / radius + rng.normal(0, spec["noise_n"])
+            value = round(gain * slip * arm / spec["step"]) * spec["step"]
             lines.append(f"{weight:g},{value:.{decimals(spec['step'])}f},{repeat}")
     area = math.pi * spec["diameter_mm"] * spec["length_mm"]
-    truth = {k: spec[k] for k in ("friction_coefficient", "preload_n")}
-    truth |= {"preload_kpa": 1000 * spec["preload_n"] / area,
-              "friction_intercept_n": spec["friction_coefficient"] * spec["preload_n"], "gain_force": gain,
-              "definitions": BREAK_AWAY_DEFINITIONS, "spec": spec, "seed": seed}  # fmt: skip
+    truth = {"friction_coefficient": None if spec["falls_with_load"] else spec["friction_coefficient"],
+             "preload_n": spec["preload_n"], "preload_kpa": 1000 * spec["preload_n"] / area,
+             "friction_no_weight_n": pull_force(spec, 0), "gain_force": gain, "gain_weight": weight_gain,
+             "definitions": BREAK_AWAY_DEFINITIONS, "spec": spec, "seed": seed}  # fmt: skip
     return "\n".join(lines) + "\n", truth
 
 
@@ -173,21 +183,20 @@ def main():
     parser.add_argument("out", nargs="?")
     parser.add_argument("--truth")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--kind", choices=KINDS, default="ordinary")
+    parser.add_argument("--kind", choices=[*KINDS, *PULL_KINDS], default="ordinary")
     parser.add_argument("--spec")
-    parser.add_argument("--break-away", action="store_true")
     parser.add_argument("--list", action="store_true")
     args = parser.parse_args()
     if args.list or not args.out:
-        print("\n".join(f"{name:18} {words}" for name, (_, words) in KINDS.items()))
+        print("\n".join(f"{name:18} {words}" for name, (_, words) in (KINDS | PULL_KINDS).items()))
         return
     spec = {}
     if args.spec:
         with open(args.spec, encoding="utf-8") as file:
             spec = json.load(file)
         spec = spec.get("spec", spec)
-    if args.break_away:
-        text, truth = make_break_away(spec, args.seed)
+    if args.kind in PULL_KINDS or "dead_weights_n" in spec:
+        text, truth = make_break_away(spec or draw_pulls(args.kind, args.seed), args.seed)
     else:
         text, truth = make_record(spec or draw_spec(args.kind, args.seed), args.seed)
     with open(args.out, "w", encoding="utf-8") as file:

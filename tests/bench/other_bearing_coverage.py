@@ -12,6 +12,8 @@ is given there without a flag is a silent failure.
 Stiffness and loss factor are judged twice: `there` against the true slope where the report says that it has found it
 (at the force of its course beside stiffness_at_mm), `largest` against the largest over the whole test.
 
+Break-away tests are judged where the program has --break-away.
+
 The gains of the N records of a kind are spread evenly over their distribution (a Latin square), so that N need not be
 large for their share. Members are looked up by their names; null, absent and refused records count as withheld."""
 
@@ -29,11 +31,11 @@ from statistics import NormalDist
 
 import numpy as np
 
-from other_bearing import draw_spec, make_record
-from other_bearing_kinds import KINDS
+from other_bearing import draw_pulls, draw_spec, make_break_away, make_record
+from other_bearing_kinds import KINDS, PULL_KINDS
 
 # Flags that tell of a test and cast no doubt on a value. Every other flag, also one that is new, does.
-INFORMATIVE = {"stiffness_at_end", "one_cycle"}
+INFORMATIVE = {"stiffness_at_end", "one_cycle", "line_not_checked"}
 
 # label, of a direction or the bearing, member of the truth, names in the report
 QUANTITIES = [
@@ -47,6 +49,12 @@ QUANTITIES = [
     ("loss of the foil", "direction", "loss_factor_foil", ["loss_factor_foil", "foil_loss_factor"]),
     ("axis", "bearing", "smallest_axis_deg", ["smallest_at_deg", "smallest_axis_deg"]),
     ("preload", "bearing", "preload_n", ["preload_n"]),
+]
+PULL_QUANTITIES = [
+    ("coefficient", "friction_coefficient", ["friction_coefficient"]),
+    ("no weight", "friction_no_weight_n", ["friction_no_weight_n"]),
+    ("preload N", "preload_n", ["preload_n"]),
+    ("preload kPa", "preload_kpa", ["preload_kpa"]),
 ]
 
 
@@ -121,9 +129,10 @@ def doubts(report):
     return bool(set(report.get("flags", [])) - INFORMATIVE) or report.get("verdict") == "not_measured"
 
 
-def run(program, path):
+def run(program, path, *options):
     """The report of a record, or {} where it is refused, and the exit code."""
-    done = subprocess.run([program, "stiffness", path, "-o", "-"], capture_output=True, text=True, check=False)
+    command = [program, "stiffness", path, *options, "-o", "-"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     try:
         return json.loads(done.stdout), done.returncode
     except json.JSONDecodeError:
@@ -142,13 +151,20 @@ def tally_record(report, truth, tallies, flags):
     bearing = [((report.get("bearings") or [{}])[0], truth)]
     for found, _ in directions + bearing:
         flags.update(found.get("flags", []))
-    for label, level, of_truth, names in QUANTITIES:
-        for found, true in directions if level == "direction" else bearing:
-            name = member(found, names)
-            tallies[label].present |= name is not None
-            value = found.get(name) if name else None
-            u = uncertainty(found, name, report.get("options", {})) if name else None
-            tallies[label].add(value, u, true[of_truth], doubts(found), 180 if label == "axis" else None)
+    for level, rows in (("direction", directions), ("bearing", bearing)):
+        quantities = [(label, true, names) for label, where, true, names in QUANTITIES if where == level]
+        for found, true in rows:
+            tally_quantities(quantities, found, true, tallies, report)
+
+
+def tally_quantities(quantities, found, truth, tallies, report):
+    """Adds the quantities of one part of a report to the counts."""
+    for label, of_truth, names in quantities:
+        name = member(found, names)
+        tallies[label].present |= name is not None
+        value = found.get(name) if name else None
+        u = uncertainty(found, name, report.get("options", {})) if name else None
+        tallies[label].add(value, u, truth[of_truth], doubts(found), 180 if label == "axis" else None)
 
 
 def spread(rng, n):
@@ -156,11 +172,16 @@ def spread(rng, n):
     return [NormalDist().inv_cdf((k + 0.5) / n) for k in rng.permutation(n)]
 
 
+def drawn_gains(kind, records, seed):
+    """Two gains of every record, in their u; each gain alone is spread evenly."""
+    rng = np.random.default_rng([seed, [*KINDS, *PULL_KINDS].index(kind)])
+    return list(zip(spread(rng, records), spread(rng, records), strict=True))
+
+
 def judge_kind(program, kind, records, seed):
     """Counts of every quantity, of flags and of exit codes over the records of one kind."""
     tallies, flags, codes = {q[0]: Tally() for q in QUANTITIES}, Counter(), Counter()
-    rng = np.random.default_rng([seed, list(KINDS).index(kind)])
-    gains = list(zip(spread(rng, records), spread(rng, records), strict=True))
+    gains = drawn_gains(kind, records, seed)
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, f"{kind}.csv")
         for i in range(records):
@@ -173,12 +194,44 @@ def judge_kind(program, kind, records, seed):
     return tallies, flags, codes
 
 
+def judge_pulls(program, kind, records, seed):
+    """Counts over break-away tests of one kind, each given with a load test of a bearing that agrees with it."""
+    tallies, flags, codes = {q[0]: Tally() for q in PULL_QUANTITIES}, Counter(), Counter()
+    gains = drawn_gains(kind, records, seed)
+    with tempfile.TemporaryDirectory() as folder:
+        load, path = os.path.join(folder, "load.csv"), os.path.join(folder, f"{kind}.csv")
+        for i in range(records):
+            text, truth = make_break_away(draw_pulls(kind, seed + i), seed + i, gains[i])
+            spec = draw_spec("interference" if truth["preload_n"] else "clean", seed + i) | {"azimuths": 1}
+            for name, content in ((path, text), (load, make_record(spec, seed + i)[0])):
+                with open(name, "w", encoding="utf-8") as file:
+                    file.write(content)
+            rig = ["--rig-torque", str(truth["spec"]["rig_torque_n_mm"])] if truth["spec"]["rig_torque_given"] else []
+            report, code = run(program, load, "--break-away", path, *rig)
+            codes[code] += 1
+            bearing = (report.get("bearings") or [{}])[0]
+            found = bearing | {k: v for k, v in (bearing.get("break_away") or {}).items() if k != "verdict"}
+            flags.update(found.get("flags", []))
+            tally_quantities(PULL_QUANTITIES, found, truth, tallies, report)
+    return tallies, flags, codes
+
+
+def has_break_away(program):
+    done = subprocess.run([program, "stiffness", "--help"], capture_output=True, text=True, check=False)
+    return "--break-away" in done.stdout
+
+
+def write_head(labels):
+    print("\n| " + " | ".join(["kind", *labels, "flags, in %", "exit codes"]) + " |")
+    print("|---" * (len(labels) + 3) + "|")
+
+
 def write_row(kind, tallies, flags, codes):
-    directions = max(tallies["clearance"].values, 1)
+    directions = max(next(iter(tallies.values())).values, 1)
     named = [(name, n) for name, n in flags.most_common() if name not in INFORMATIVE]
     words = ", ".join(f"{name} {100 * n / directions:.0f}" for name, n in named)
     exits = ", ".join(f"{code}: {n}" for code, n in sorted(codes.items()))
-    print("| " + " | ".join([kind, *(tallies[q[0]].cell() for q in QUANTITIES), words, exits]) + " |", flush=True)
+    print("| " + " | ".join([kind, *(t.cell() for t in tallies.values()), words, exits]) + " |", flush=True)
 
 
 def csv_rows(kind, tallies):
@@ -193,19 +246,20 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
     parser.add_argument("--records", type=int, default=25, help="of every kind")
-    parser.add_argument("--kinds", nargs="+", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--kinds", nargs="+", choices=[*KINDS, *PULL_KINDS], default=[*KINDS, *PULL_KINDS])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--csv", help="counts, median error in percent and in U, a row per kind and quantity")
     args = parser.parse_args()
-    labels = [q[0] for q in QUANTITIES]
-    print(f"{args.records} records of every kind, seed {args.seed}; in %: within U / withheld / flagged / silent\n")
-    print("| " + " | ".join(["kind", *labels, "flags, % of directions", "exit codes"]) + " |")
-    print("|---" * (len(labels) + 3) + "|")
-    rows = []
-    for kind in args.kinds:
-        result = judge_kind(args.program, kind, args.records, args.seed)
-        write_row(kind, *result)
-        rows += csv_rows(kind, result[0])
+    print(f"{args.records} records of every kind, seed {args.seed}; in %: within U / withheld / flagged / silent")
+    rows, chosen = [], [k for k in args.kinds if k in KINDS or has_break_away(args.program)]
+    for judge, table, quantities in ((judge_kind, KINDS, QUANTITIES), (judge_pulls, PULL_KINDS, PULL_QUANTITIES)):
+        kinds = [k for k in chosen if k in table]
+        if kinds:
+            write_head([q[0] for q in quantities])
+        for kind in kinds:
+            result = judge(args.program, kind, args.records, args.seed)
+            write_row(kind, *result)
+            rows += csv_rows(kind, result[0])
     if args.csv:
         with open(args.csv, "w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows([["kind", "quantity", "values", "withheld", "flagged", "comparable", "within",

@@ -127,3 +127,27 @@ KINDS = {
     "one_cycle": (lambda rng: copy.deepcopy(ordinary(rng)) | {"cycles": 1}, "one cycle"),
     "five_cycles": (lambda rng: copy.deepcopy(ordinary(rng)) | {"cycles": 5}, "five cycles"),
 }  # fmt: skip
+
+
+def pulls(rng, **others):
+    """Spec of a break-away test as the thesis planned it, with the friction of foils that press the rotor."""
+    spec = {"dead_weights_n": [10, 20, 40, 80, 120, 160, 200, 240, 280, 319.5], "repeats": 5,
+            "friction_coefficient": rng.uniform(0.02, 0.08), "falls_with_load": 0.0, "preload_n": rng.uniform(10, 80),
+            "diameter_mm": 40, "length_mm": 40, "column": "torque_N_mm", "scatter_pct": 3.0, "noise_n": 0.02,
+            "u_force_pct": 1.0, "u_weight_pct": 1.0, "step": 0.001, "rig_torque_n_mm": 0.0, "rig_torque_given": True}  # fmt: skip
+    return spec | others
+
+
+PULL_KINDS = {
+    "pulls": (pulls, "ten dead weights to 319.5 N, five pulls each, scatter of 3 %"),
+    "pulls_force": (lambda rng: pulls(rng, column="force_N"), "the column is the force at the rotor's surface"),
+    "pulls_nmm": (lambda rng: pulls(rng, column="torque_Nmm"), "the column is named torque_Nmm"),
+    "pulls_no_preload": (lambda rng: pulls(rng, preload_n=0.0), "foils that do not press"),
+    "pulls_scatter": (lambda rng: pulls(rng, scatter_pct=12.0), "scatter of 12 %"),
+    "pulls_few": (lambda rng: pulls(rng, dead_weights_n=[20, 80, 160, 319.5], repeats=2), "four weights, two pulls"),
+    "pulls_rig": (lambda rng: pulls(rng, rig_torque_n_mm=rng.uniform(2, 15)), "the rig's own torque, which is given"),
+    "pulls_rig_unknown": (lambda rng: pulls(rng, rig_torque_n_mm=rng.uniform(2, 15), rig_torque_given=False),
+                          "the same, not given"),
+    "pulls_curved": (lambda rng: pulls(rng, falls_with_load=rng.uniform(0.1, 0.25)),
+                     "a coefficient that falls with the load's power: no line through the weights"),
+}  # fmt: skip

@@ -1,16 +1,16 @@
-"""Quasi-static mechanics of a rotor that is pushed and pulled in a gas foil bearing, and the true values of such a test.
+"""Quasi-static mechanics of a rotor that is pushed and pulled in a gas foil bearing, and the true values of a test.
 
 A side of a direction is a foil behind a gap. Its force over the compression y is
 
     F(y) = K(y) (1 + sum a_i s_i) + sum c_i s_i,    K(y) = k1 y + k3 y^3, or c y^n
 
 with s_i = (y - p_i) / r_i the normalised stop of a play operator p_i of half-width r_i (Prandtl and Ishlinskii): +1
-while the load grows and -1 while it falls, after a reversal of 2 r_i. The shares a_i are Coulomb friction that grows with the
-load, the c_i friction that does not. A foil pushes only: where F would be negative the rotor leaves it, and the foil
+while the load grows and -1 while it falls, after a reversal of 2 r_i. The shares a_i are Coulomb friction that grows
+with the load, the c_i friction that does not. A foil pushes only: where F would be negative the rotor leaves it, and the foil
 stays where it is until the rotor returns.
 
-The rotor's path is a list of strokes, each monotone in its displacement x; the load cell sees F of the + side, less F of
-the - side, and the rig's own dry friction against the motion. Under load control a stroke ends where the cell's force
+The rotor's path is a list of strokes, each monotone in its displacement x; the load cell sees F of the + side, less F
+of the - side, and the rig's own dry friction against the motion. Under load control a stroke ends where the cell's force
 reaches the largest load, under displacement control where x reaches the place at which a first load had reached it.
 
 True values are of the steady cycle (the third: the first begins with foils that have never been loaded), on a grid of
