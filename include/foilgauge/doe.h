@@ -90,6 +90,7 @@ fg_status fg_box_cox_compute(fg_context *ctx, const fg_model *model, const fg_ex
  * n_f n_c (mean_f - mean_c)² / (n_f + n_c), against the error within repeated runs. */
 typedef struct fg_curvature {
   size_t corners, centres, error_freedom;
+  size_t others; /* runs that are neither: axial ones */
   double corner_mean, centre_mean;
   double sum_of_squares, error_mean_square;
   double f, p_value; /* NaN when no run is repeated */

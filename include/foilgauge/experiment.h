@@ -93,10 +93,19 @@ typedef struct fg_experiment_effect {
   double lenth_p_value; /* NaN without Lenth */
 } fg_experiment_effect;
 
+/* A factor of the model that cannot be told from noise: none of its coefficients by itself, nor all
+ * of them together with those of the other such factors. Any of its settings will do. */
+typedef struct fg_idle_factor {
+  size_t variable; /* index into model.formula.variable */
+  size_t columns;  /* of the model that hold it */
+  double p_value;  /* of all of them together; NaN: no error is known, Lenth's margin told */
+} fg_idle_factor;
+
 typedef struct fg_optimum {
   double x[FG_SURFACE_FACTORS]; /* model's units, in the order of surface.variable */
   fg_prediction prediction;     /* mean with its interval; interval of one confirmation run */
   bool on_border;               /* of the region: the best may lie beyond */
+  bool on_edge_of_runs;         /* and there no runs are: it is no constraint that holds it */
 } fg_optimum;
 
 enum { FG_RIDGE_POINTS = 11 };
@@ -122,7 +131,8 @@ typedef struct fg_order_check {
   double farthest_t, farthest_p; /* p over all runs (Bonferroni) */
 } fg_order_check;
 
-typedef struct fg_experiment {
+typedef struct fg_experiment fg_experiment;
+struct fg_experiment {
   fg_table table;           /* as analysed: coded, sign applied */
   char *response, *formula; /* canonical, blocks included */
   char *block, *whole_plot; /* columns; NULL: none */
@@ -168,9 +178,17 @@ typedef struct fg_experiment {
   fg_optimum rounded;
   fg_ridge_point ridge[FG_RIDGE_POINTS];
 
+  /* Factors that cannot be told from noise, and the experiment without them, which has the best
+   * setting; NULL: all matter, or none does. Without `reduced` the optimum is that of the model as
+   * given. */
+  fg_idle_factor idle[FG_FORMULA_VARIABLES];
+  size_t idles;
+  bool all_idle; /* no factor of the model can be told from noise */
+  fg_experiment *reduced;
+
   char **note; /* what could not be said and why */
   size_t notes, note_capacity;
-} fg_experiment;
+};
 
 /* FG_ERR_DATA, with row and column: a column is missing, a word among numbers, a cell without a
  * number, one run only, a response or a factor with one value. FG_ERR_USAGE: formula, coding,
@@ -183,6 +201,9 @@ void fg_experiment_free(fg_experiment *experiment);
  * errors of the strata. */
 fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *experiment,
                                 const double *setting, fg_prediction *prediction);
+
+/* The experiment whose model gives the best setting: `reduced`, or the experiment itself. */
+const fg_experiment *fg_experiment_best(const fg_experiment *experiment);
 
 /* A factor's number in real units. */
 double fg_factor_real(const fg_factor *factor, double x);

@@ -250,6 +250,7 @@ fg_status fg_curvature_compute(fg_context *ctx, const fg_table *table, const cha
   for (size_t i = 0; i < table->rows; i++) {
     size_t corner = 0;
     run_kind kind = classify(x, factor_count, i, &corner);
+    curvature->others += kind == RUN_OTHER;
     if (kind == RUN_OTHER) continue;
     curvature->corners += kind == RUN_CORNER;
     curvature->centres += kind == RUN_CENTRE;

@@ -274,8 +274,8 @@ static fg_status copy_taken(fg_context *ctx, const fg_experiment_options *option
   return FG_OK;
 }
 
-static fg_status analyse(fg_context *ctx, const fg_table *runs,
-                         const fg_experiment_options *options, fg_experiment *e) {
+fg_status fg_experiment_fit(fg_context *ctx, const fg_table *runs,
+                            const fg_experiment_options *options, fg_experiment *e) {
   FG_TRY(read_options(ctx, options, e));
   FG_TRY(fg_table_copy(ctx, runs, &e->table));
   FG_TRY(copy_taken(ctx, options, e));
@@ -287,8 +287,15 @@ static fg_status analyse(fg_context *ctx, const fg_table *runs,
   FG_TRY(fit(ctx, e));
   FG_TRY(note_forgotten(ctx, e));
   FG_TRY(fg_experiment_effects(ctx, e));
-  FG_TRY(fg_experiment_check_order(ctx, e));
-  return fg_experiment_surface(ctx, options, e);
+  return fg_experiment_check_order(ctx, e);
+}
+
+static fg_status analyse(fg_context *ctx, const fg_table *runs,
+                         const fg_experiment_options *options, fg_experiment *e) {
+  FG_TRY(fg_experiment_fit(ctx, runs, options, e));
+  FG_TRY(fg_experiment_surface(ctx, options, NULL, e));
+  FG_TRY(fg_experiment_reduce(ctx, runs, options, e));
+  return fg_experiment_optimise(ctx, options, e);
 }
 
 fg_status fg_experiment_analyse(fg_context *ctx, const fg_table *runs,

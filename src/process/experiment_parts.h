@@ -17,9 +17,24 @@ fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *experiment);
 /* What the residuals show over the order of the runs. */
 fg_status fg_experiment_check_order(fg_context *ctx, fg_experiment *experiment);
 
-/* Surface, region, stationary point, optimum, ridge. */
+/* Surface and region; `whole`: the experiment that this one is without some factors of, or NULL.
+ * Then stationary point, optimum, ridge. */
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
-                                fg_experiment *experiment);
+                                const fg_experiment *whole, fg_experiment *experiment);
+fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
+                                 fg_experiment *experiment);
+
+/* Everything before the surface. */
+fg_status fg_experiment_fit(fg_context *ctx, const fg_table *runs,
+                            const fg_experiment_options *options, fg_experiment *experiment);
+
+/* Finds the factors that cannot be told from noise, and makes the experiment without them. */
+fg_status fg_experiment_reduce(fg_context *ctx, const fg_table *runs,
+                               const fg_experiment_options *options, fg_experiment *experiment);
+
+/* Adds the half-spaces of the whole experiment's region: a factor that is left out takes the value
+ * of its range that leaves the others the most room. */
+void fg_experiment_take_constraints(const fg_experiment *whole, fg_experiment *experiment);
 
 /* Adds "2*a + b <= 3" (real units) to the region as a half-space in the model's units. */
 fg_status fg_experiment_constrain(fg_context *ctx, const fg_experiment *experiment,

@@ -17,8 +17,14 @@ double fg_factor_real(const fg_factor *factor, double x) {
   return factor->coded ? fg_coding_to_real(&factor->coding, x) : x;
 }
 
+const fg_experiment *fg_experiment_best(const fg_experiment *e) {
+  return e->reduced ? e->reduced : e;
+}
+
 void fg_experiment_free(fg_experiment *e) {
   if (!e) return;
+  fg_experiment_free(e->reduced);
+  free(e->reduced);
   fg_notes_free(e->note, e->notes);
   for (size_t i = 0; i < e->constraints; i++)
     free(e->constraint[i]);

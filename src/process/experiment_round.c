@@ -72,6 +72,7 @@ fg_status fg_experiment_round(fg_context *ctx, const fg_experiment_options *opti
   for (size_t k = 0; k < e->surface.factors; k++)
     if (e->step[k] > 0) tried = tried > TRIED_MOST / SIDES ? TRIED_MOST : tried * SIDES;
   e->has_rounded = find_best(e, tried, e->rounded.x);
+  if (!e->has_rounded && e->reduced) return FG_OK;
   if (!e->has_rounded)
     return fg_experiment_note(ctx, e,
                               "no setting that can be made (--round) lies in the region near the "

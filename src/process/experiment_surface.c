@@ -44,8 +44,9 @@ static void drop_ball_of_mixed_units(const fg_experiment *e, fg_region *r) {
     if (!factor_of(e, k)->coded) r->radius = INFINITY;
 }
 
+/* Of an experiment without some factors, the constraints are those of the whole one. */
 static fg_status make_region(fg_context *ctx, const fg_experiment_options *options,
-                             fg_experiment *e) {
+                             const fg_experiment *whole, fg_experiment *e) {
   double centre[FG_SURFACE_FACTORS];
   region_of_data(e, &e->region);
   drop_ball_of_mixed_units(e, &e->region);
@@ -55,8 +56,9 @@ static fg_status make_region(fg_context *ctx, const fg_experiment_options *optio
   for (size_t i = 0; i < options->constraints; i++) {
     FG_TRY(fg_text_print(ctx, &e->constraint[i], "%s", options->constraint[i]));
     e->constraints++;
-    FG_TRY(fg_experiment_constrain(ctx, e, options->constraint[i], &e->region));
+    if (!whole) FG_TRY(fg_experiment_constrain(ctx, e, options->constraint[i], &e->region));
   }
+  if (whole) fg_experiment_take_constraints(whole, e);
   memcpy(centre, e->region.centre, sizeof centre);
   if (fg_region_project(ctx, &e->region, centre) == FG_OK) return FG_OK;
   return fg_fail(ctx, FG_ERR_USAGE,
@@ -103,6 +105,13 @@ static double cost_of(const fg_experiment *e, double value) {
   return e->goal == FG_GOAL_HIGHEST ? -value : value;
 }
 
+/* Where only factors of words are left the surface is level. */
+static fg_status make_surface(fg_context *ctx, const fg_experiment *e, const double *levels,
+                              fg_surface *surface) {
+  *surface = (fg_surface){.kind = FG_SURFACE_PLANE};
+  return e->factors ? fg_surface_make(ctx, &e->model, &e->regression, levels, surface) : FG_OK;
+}
+
 /* Blocks shift the surface by a constant, which the predictions put right. */
 static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
   double levels[FG_FORMULA_VARIABLES] = {0}, best = INFINITY;
@@ -111,7 +120,7 @@ static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
     fg_surface surface;
     fg_optimum optimum = {0};
     double kept[FG_FORMULA_VARIABLES];
-    FG_TRY(fg_surface_make(ctx, &e->model, &e->regression, levels, &surface));
+    FG_TRY(make_surface(ctx, e, levels, &surface));
     fg_prediction centre;
     memcpy(kept, e->best_setting, sizeof kept);
     memcpy(e->best_setting, levels, sizeof levels);
@@ -127,7 +136,10 @@ static fg_status find_optimum(fg_context *ctx, fg_experiment *e) {
       memcpy(e->best_setting, kept, sizeof kept);
     }
   } while (++tried < COMBINATIONS && next_levels(e, levels));
+  fg_region runs = e->region;
+  runs.planes = 0;
   e->optimum.on_border = fg_experiment_on_border(&e->region, e->optimum.x);
+  e->optimum.on_edge_of_runs = fg_experiment_on_border(&runs, e->optimum.x);
   e->has_optimum = true;
   return FG_OK;
 }
@@ -165,18 +177,24 @@ static fg_status judge_stationary(fg_context *ctx, fg_experiment *e) {
 }
 
 fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *options,
-                                fg_experiment *e) {
+                                const fg_experiment *whole, fg_experiment *e) {
   fg_context words = {0};
   e->goal = options->goal;
   e->target = options->target;
-  fg_status status = fg_surface_make(&words, &e->model, &e->regression, NULL, &e->surface);
+  fg_status status = whole ? make_surface(&words, e, NULL, &e->surface)
+                           : fg_surface_make(&words, &e->model, &e->regression, NULL, &e->surface);
   if (status == FG_ERR_USAGE) {
     if (options->constraints) return fg_fail(ctx, status, "no optimum: %.900s", words.message);
     return fg_experiment_note(ctx, e, "no optimum: %s", words.message);
   }
   if (status != FG_OK) return fg_fail(ctx, status, "%s", words.message);
   e->has_surface = true;
-  FG_TRY(make_region(ctx, options, e));
+  return make_region(ctx, options, whole, e);
+}
+
+fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
+                                 fg_experiment *e) {
+  if (!e->has_surface) return FG_OK;
   FG_TRY(find_optimum(ctx, e));
   FG_TRY(fg_experiment_round(ctx, options, e));
   FG_TRY(judge_stationary(ctx, e));

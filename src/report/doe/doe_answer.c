@@ -34,53 +34,39 @@ static void put_interval(FILE *out, const char *name, double low, double high) {
   fprintf(out, "%s to %s", a, b);
 }
 
-/* How far the best setting is to be trusted, in order of what stands most against it. */
-static void put_doubts(FILE *out, const fg_experiment *e, const fg_optimum *best) {
-  const fg_regression *r = &e->regression;
-  bool any = false;
+/* How far the best setting is to be trusted: what stands against it is marked. */
+static void put_trust(FILE *out, const fg_sentences *conclusions) {
   fputs("<ul>\n", out);
-  if (r->model_p_value > 1 - e->confidence) {
-    fprintf(out,
-            "<li class=\"doubt\">Not sure: the model as a whole cannot be told from the mean "
-            "(p = %.3f). It is a setting to test, not a finding.</li>\n",
-            r->model_p_value);
-    any = true;
+  for (size_t i = 0; i < conclusions->trusts; i++) {
+    const char *text = conclusions->text[conclusions->trust + i];
+    fputs(!strncmp(text, "Not sure", 8) ? "<li class=\"doubt\">" : "<li>", out);
+    fg_html_text(out, text);
+    fputs("</li>\n", out);
   }
-  if (r->pure_freedom && r->lack_freedom && r->lack_p_value < 1 - e->confidence) {
-    fprintf(out,
-            "<li class=\"doubt\">Not sure: the model does not fit the repeated runs (lack of fit, "
-            "p = %.4f).</li>\n",
-            r->lack_p_value);
-    any = true;
-  }
-  if (best->on_border) {
-    fputs("<li>It lies on the border of the region: the best may lie beyond, where there are no "
-          "runs.</li>\n",
-          out);
-    any = true;
-  }
-  if (!isfinite(best->prediction.low)) {
-    fputs("<li class=\"doubt\">How sure cannot be said: there is no freedom for an error. Repeat "
-          "runs.</li>\n",
-          out);
-    any = true;
-  }
-  if (!any)
-    fputs("<li>Inside the region of the runs, by a model that the runs do not contradict.</li>\n",
-          out);
   fputs("</ul>\n", out);
 }
 
+/* No factor can be told from noise. */
+static void put_no_best(FILE *out, const fg_sentences *conclusions) {
+  fputs("<p class=\"set\">No best setting</p>\n", out);
+  for (size_t i = conclusions->setting; i < conclusions->trust; i++) {
+    fputs("<p>", out);
+    fg_html_text(out, conclusions->text[i]);
+    fputs("</p>\n", out);
+  }
+}
+
 static void put_best(FILE *out, const fg_experiment *e) {
-  const fg_optimum *best = e->has_rounded ? &e->rounded : &e->optimum;
+  const fg_experiment *of = fg_experiment_best(e);
+  const fg_optimum *best = fg_experiment_best_point(e);
   const fg_prediction *p = &best->prediction;
   char setting[700], value[80];
   fg_experiment_setting_words(e, best->x, setting, sizeof setting);
   fputs("<p class=\"set\">", out);
   fg_html_text(out, setting);
   fputs("</p>\n<p>", out);
-  if (e->has_rounded) {
-    fg_experiment_setting_words(e, e->optimum.x, setting, sizeof setting);
+  if (of->has_rounded) {
+    fg_experiment_setting_words(e, of->optimum.x, setting, sizeof setting);
     fputs("The best of the settings that can be made; without rounding: ", out);
     fg_html_text(out, setting);
     fputs(". ", out);
@@ -93,41 +79,36 @@ static void put_best(FILE *out, const fg_experiment *e) {
     fputs("; one run to confirm it should come out at ", out);
     put_interval(out, e->response, p->run_low, p->run_high);
   }
-  fputs(".", out);
-  if (e->magnitude && isfinite(p->run_low) && p->run_low < 0)
-    fputs(" A magnitude cannot be below 0: where an interval reaches further, read 0.", out);
-  fputs("</p>\n", out);
-  put_doubts(out, e, best);
+  fputs(".</p>\n", out);
 }
 
 void fg_doe_put_answer(FILE *out, const fg_experiment *e, const fg_sentences *conclusions) {
   char words[300];
   fg_name_words(e->response, words, sizeof words);
   fputs("<div class=\"answer\">\n<h2 class=\"first\">", out);
-  if (e->has_optimum && e->goal == FG_GOAL_TARGET)
+  bool has_best = fg_experiment_best(e)->has_optimum;
+  if (has_best && e->goal == FG_GOAL_TARGET)
     fprintf(out, "Best setting for %.6g of ", e->target);
   else
     fprintf(out, "Best setting for the %s ", e->goal == FG_GOAL_HIGHEST ? "highest" : "lowest");
   fg_html_text(out, words);
   fputs("</h2>\n", out);
-  if (e->has_optimum)
-    put_best(out, e);
-  else
+  if (!has_best)
     put_strongest(out, e, conclusions);
+  else if (e->all_idle)
+    put_no_best(out, conclusions);
+  else
+    put_best(out, e);
+  if (has_best) put_trust(out, conclusions);
   fputs("</div>\n", out);
 }
 
 /* The rest of what is said: the answer has stood above. */
 void fg_doe_put_conclusions(FILE *out, const fg_sentences *conclusions) {
-  static const char *const told[] = {"Best setting ", "A magnitude cannot", "It lies on the border",
-                                     "Beware: the model as a whole"};
   fputs("<h2>What the runs say</h2>\n<ul class=\"words\">\n", out);
   for (size_t i = 0; i < conclusions->count; i++) {
     const char *text = conclusions->text[i];
-    bool above = false;
-    for (size_t k = 0; k < sizeof told / sizeof *told; k++)
-      above = above || !strncmp(text, told[k], strlen(told[k]));
-    if (above) continue;
+    if (i >= conclusions->setting && i < conclusions->trust + conclusions->trusts) continue;
     bool command = fg_sentence_is_command(text);
     fputs(command ? "<li class=\"command\"><code>" : "<li>", out);
     fg_html_text(out, text);

@@ -255,11 +255,12 @@ static fg_status put_plots(fg_context *ctx, FILE *out, const fg_experiment_repor
     FG_TRY(fg_doe_plot_profiles(ctx, out, e));
     end_panels(out);
   }
-  if (e->has_optimum && e->surface.factors >= 2) {
+  const fg_experiment *best = fg_experiment_best(e);
+  if (best->has_optimum && best->surface.factors >= 2) {
     begin_panels(out, "Response surface",
                  "Through the best setting (red diamond). Circles: the runs. Pale, behind the "
                  "dark edge: outside the region of the data or the constraints.");
-    fg_doe_plot_contours(out, e);
+    fg_doe_plot_contours(out, best);
     end_panels(out);
   }
   if (!e->regression.residual_freedom) return FG_OK;

@@ -306,8 +306,25 @@ static void put_ridge(fg_json *json, const fg_experiment *e) {
   fg_json_array_end(json);
 }
 
-static void put_surface(fg_json *json, const fg_experiment *e) {
+/* Factors that cannot be told from noise. */
+static void put_any(fg_json *json, const fg_experiment *e) {
+  fg_json_array(json, "any");
+  for (size_t i = 0; i < e->idles; i++) {
+    fg_json_object(json, NULL);
+    fg_json_string(json, "name", e->model.formula.variable[e->idle[i].variable].column);
+    fg_json_integer(json, "terms", (int64_t)e->idle[i].columns);
+    fg_json_number(json, "p_value", e->idle[i].p_value);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
+/* Of the model that has the best setting. */
+static void put_surface(fg_json *json, const fg_experiment *whole) {
+  const fg_experiment *e = fg_experiment_best(whole);
   if (!fg_doe_json_begin_part(json, "surface", e->has_surface)) return;
+  fg_json_string(json, "formula", e->formula);
+  put_any(json, whole);
   put_stationary(json, e);
   if (e->has_optimum) {
     put_optimum(json, e);

@@ -82,8 +82,7 @@ void fg_sentences_free(fg_sentences *s) {
   *s = (fg_sentences){0};
 }
 
-/* The numeric factor whose first power alone the column is, or NULL. */
-static const fg_factor *main_factor(const fg_experiment *e, size_t column) {
+const fg_factor *fg_experiment_main_factor(const fg_experiment *e, size_t column) {
   const fg_model_column *c = &e->model.column[column];
   if (c->parts != 1 || c->part[0].level != FG_PART_NUMBER || c->part[0].power != 1) return NULL;
   for (size_t f = 0; f < e->factors; f++)
@@ -94,7 +93,7 @@ static const fg_factor *main_factor(const fg_experiment *e, size_t column) {
 static fg_status say_effect(fg_context *ctx, const fg_experiment *e, size_t j, fg_sentences *s) {
   const fg_coefficient *c = &e->regression.coefficient[j];
   const fg_experiment_effect *effect = &e->effect[j];
-  const fg_factor *factor = main_factor(e, j);
+  const fg_factor *factor = fg_experiment_main_factor(e, j);
   char p_value[16], interval[200] = "", by[80], least[80], most[80], name[300], from[80], to[80];
   double change = 2 * c->estimate, low = 2 * effect->low, high = 2 * effect->high;
   fg_p_value_text(p_value, fg_experiment_p_value(e, j));
@@ -163,14 +162,12 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
         "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
         "them by %.3g.",
         sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_ms)));
-  if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)
-    FG_TRY(fg_sentences_say(
-        ctx, s,
-        r->lack_p_value < 1 - e->confidence
-            ? "The model does not fit: beside the scatter of repeated runs the lack "
-              "of fit is significant (p = %.4f). Add terms or transform."
-            : "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
-        r->lack_p_value));
+  if (fg_experiment_lacks_fit(e)) {
+    if (!fg_experiment_best(e)->has_optimum) FG_TRY(fg_experiment_say_lack(ctx, e, s));
+  } else if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)
+    FG_TRY(fg_sentences_say(ctx, s,
+                            "No lack of fit shows beside the scatter of repeated runs (p = %.4f).",
+                            r->lack_p_value));
   if (e->has_box_cox && (e->box_cox.low > 1 || e->box_cox.high < 1))
     FG_TRY(fg_sentences_say(
         ctx, s,
@@ -180,14 +177,29 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
   return FG_OK;
 }
 
+/* Whether the model holds the square of a factor. */
+static bool has_squares(const fg_experiment *e) {
+  for (size_t j = 0; j < e->regression.columns; j++) {
+    const fg_model_column *c = &e->model.column[j];
+    if (c->parts == 1 && c->part[0].level == FG_PART_NUMBER && c->part[0].power == 2) return true;
+  }
+  return false;
+}
+
+/* What tells in which factor the response is curved: what is asked for depends on the runs. */
 static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
+  char p_value[16];
   if (!e->has_curvature || !isfinite(e->curvature.p_value)) return FG_OK;
+  fg_p_value_text(p_value, e->curvature.p_value);
   if (e->curvature.p_value < 1 - e->confidence)
     return fg_sentences_say(
         ctx, s,
-        "The centre runs lie off the plane of the corners (p = %.4f): the response is "
-        "curved; axial runs would tell in which factor.",
-        e->curvature.p_value);
+        "The centre runs lie off the plane of the corners (p %s%s): the response is curved; %s.",
+        *p_value == '<' ? "" : "= ", p_value,
+        has_squares(e)            ? "the squares of the model say in which factor"
+        : e->curvature.others > 0 ? "the plan has runs beyond corners and centre: squares in the "
+                                    "model (x^2) tell in which factor"
+                                  : "axial runs would tell in which factor");
   return fg_sentences_say(ctx, s, "The centre runs show no curvature (p = %.4f).",
                           e->curvature.p_value);
 }
@@ -219,109 +231,20 @@ static fg_status say_calibration(fg_context *ctx, const fg_experiment_report *re
       FG_COVERAGE_FACTOR * report->u_calibration);
 }
 
-void fg_experiment_setting_words(const fg_experiment *e, const double *x, char *text, size_t size) {
-  text[0] = '\0';
-  for (size_t k = 0; k < e->surface.factors; k++) {
-    const fg_factor *factor = fg_surface_factor(e, k);
-    char name[300], value[80];
-    size_t used = strlen(text);
-    fg_name_words(factor->name, name, sizeof name);
-    fg_value_with_unit(factor->name, fg_factor_real(factor, x[k]), 5, value, sizeof value);
-    fg_text_clip(text + used, size - used, "%s%s %s", k ? ", " : "", name, value);
-  }
-  for (size_t v = 0; v < e->model.formula.variables; v++) {
-    const fg_levels *levels = &e->model.levels[v];
-    size_t used = strlen(text);
-    if (levels->count && v != e->block_variable)
-      fg_text_clip(text + used, size - used, ", %s %s", e->model.formula.variable[v].name,
-                   levels->name[(size_t)e->best_setting[v]]);
-  }
-}
-
-static fg_status say_stationary(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
-  char setting[700], value[80];
-  if (!e->has_optimum || !e->surface.has_stationary) return FG_OK;
-  fg_experiment_setting_words(e, e->surface.stationary, setting, sizeof setting);
-  fg_value_with_unit(e->response, e->surface.stationary_value, 4, value, sizeof value);
-  return fg_sentences_say(ctx, s, "The surface is stationary at %s: a %s of %s, %s the region.",
-                          setting, fg_surface_kind_word(e->surface.kind), value,
-                          e->stationary_inside ? "inside" : "outside");
-}
-
-/* "Expected response 3.45 (95 % interval ...); one confirmation run should fall between ...". */
-static fg_status say_expected(fg_context *ctx, const fg_experiment *e, const char *what,
-                              const char *setting, const fg_prediction *p, fg_sentences *s) {
-  const double numbers[5] = {p->mean, p->low, p->high, p->run_low, p->run_high};
-  char n[5][80];
-  for (int i = 0; i < 5; i++)
-    fg_value_with_unit(e->response, numbers[i], i ? 3 : 4, n[i], sizeof n[i]);
-  if (!isfinite(p->low))
-    return fg_sentences_say(ctx, s, "%s (%s): %s. Expected response %s.", what,
-                            fg_goal_word(e->goal), setting, n[0]);
-  return fg_sentences_say(
-      ctx, s,
-      "%s (%s): %s. Expected response %s (%g %% interval %s to %s); one confirmation run "
-      "should fall between %s and %s.",
-      what, fg_goal_word(e->goal), setting, n[0], 100 * e->confidence, n[1], n[2], n[3], n[4]);
-}
-
-static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
-  char setting[700], what[700] = "Best setting that can be made, in steps of ";
-  const char *separator = "";
-  if (!e->has_rounded) return FG_OK;
-  for (size_t k = 0; k < e->surface.factors; k++) {
-    char step[80];
-    size_t used = strlen(what);
-    if (!(e->step[k] > 0)) continue;
-    fg_value_with_unit(fg_surface_factor(e, k)->name, e->step[k], 5, step, sizeof step);
-    fg_text_clip(what + used, sizeof what - used, "%s%s", separator, step);
-    separator = " and ";
-  }
-  fg_experiment_setting_words(e, e->rounded.x, setting, sizeof setting);
-  return say_expected(ctx, e, what, setting, &e->rounded.prediction, s);
-}
-
-static fg_status say_optimum(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
-  char setting[700];
-  if (!e->has_optimum) return FG_OK;
-  const fg_prediction *p = &e->optimum.prediction;
-  FG_TRY(say_rounded(ctx, e, s));
-  fg_experiment_setting_words(e, e->optimum.x, setting, sizeof setting);
-  FG_TRY(say_expected(ctx, e,
-                      e->constraints ? "Best setting in the region of the data and the constraints"
-                                     : "Best setting in the region of the data",
-                      setting, p, s));
-  if (e->magnitude && isfinite(p->run_low) && p->run_low < 0)
-    FG_TRY(fg_sentences_say(
-        ctx, s, "A magnitude cannot be below 0: where an interval reaches further, read 0."));
-  if (e->optimum.on_border)
-    FG_TRY(fg_sentences_say(
-        ctx, s,
-        "It lies on the border of the region: the best may lie beyond, where there "
-        "are no runs."));
-  if (e->regression.model_p_value > 1 - e->confidence)
-    return fg_sentences_say(
-        ctx, s,
-        "Beware: the model as a whole is not told from the mean (p = %.3f), so the best "
-        "setting is a suggestion to test, not a finding.",
-        e->regression.model_p_value);
-  return FG_OK;
-}
-
 fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report *report,
                                     fg_sentences *s) {
   const fg_experiment *e = report->experiment;
   *s = (fg_sentences){0};
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_experiment_say_taken(ctx, report, s));
-  FG_TRY_EXIT(say_optimum(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_say_best(ctx, e, s));
   FG_TRY_EXIT(say_effects(ctx, e, s));
   FG_TRY_EXIT(say_quality(ctx, e, s));
   FG_TRY_EXIT(say_curvature(ctx, e, s));
   FG_TRY_EXIT(say_measurement(ctx, e, s));
   FG_TRY_EXIT(say_calibration(ctx, report, s));
   FG_TRY_EXIT(fg_experiment_say_order(ctx, report, s));
-  FG_TRY_EXIT(say_stationary(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_say_stationary(ctx, e, s));
 exit:
   if (status != FG_OK) fg_sentences_free(s);
   return status;

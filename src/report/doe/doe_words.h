@@ -4,9 +4,12 @@
 
 #include "foilgauge/experiment.h"
 
+/* `setting` to before `trust`: the best setting and what it gives; `trusts` from `trust` on: how
+ * far to trust it. The page says the first its own way, above; all else is the same everywhere. */
 typedef struct fg_sentences {
   char **text;
   size_t count, capacity;
+  size_t setting, trust, trusts;
 } fg_sentences;
 
 /* Free with fg_sentences_free. */
@@ -25,6 +28,22 @@ fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *r
 fg_status fg_experiment_say_order(fg_context *ctx, const fg_experiment_report *report,
                                   fg_sentences *sentences);
 
+fg_status fg_experiment_say_best(fg_context *ctx, const fg_experiment *experiment,
+                                 fg_sentences *sentences);
+fg_status fg_experiment_say_stationary(fg_context *ctx, const fg_experiment *experiment,
+                                       fg_sentences *sentences);
+fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *experiment,
+                                 fg_sentences *sentences);
+
+/* Whether repeated runs say that the model does not fit. */
+bool fg_experiment_lacks_fit(const fg_experiment *experiment);
+
+/* The best setting: the one that can be made, where that was asked for. */
+const fg_optimum *fg_experiment_best_point(const fg_experiment *experiment);
+
+/* The numeric factor whose first power alone the column is, or NULL. */
+const fg_factor *fg_experiment_main_factor(const fg_experiment *experiment, size_t column);
+
 /* Whether a test of the order is told, and whether any is. */
 bool fg_order_shows(double p_value);
 bool fg_order_seen(const fg_order_check *order);
@@ -37,7 +56,8 @@ fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report
 fg_status fg_experiment_response_words(fg_context *ctx, const fg_experiment *experiment,
                                        char **words);
 
-/* "temperature 600 °C, duration 3 h" of a place of the surface. */
+/* "temperature 600 °C, duration 3 h, pressure any (cheapest will do)" of a place of the surface
+ * that has the best setting; x is not read where no factor can be told from noise. */
 void fg_experiment_setting_words(const fg_experiment *experiment, const double *x, char *text,
                                  size_t size);
 

@@ -1,0 +1,114 @@
+#!/bin/bash
+# The best setting of `foilgauge doe`: factors that cannot be told from noise take no part in it, and terminal, page
+# and JSON say the same of how far to trust it.
+. tests/support/cli.sh
+
+# A central composite of three factors: pressure does nothing, duration and temperature have a minimum within. The
+# scatter is a fixed column of normal deviates. Beside it the same runs with a die, of two words, that does nothing, and
+# responses of scatter alone.
+cat >made.py <<'P'
+import itertools, random
+points = list(itertools.product((-1, 1), repeat=3)) + [(0, 0, 0)] * 6
+points += [tuple(s if i == k else 0 for i in range(3)) for k in range(3) for s in (-1.682, 1.682)]
+for seed in range(50):  # draws in which the scatter of the pressure is neither large nor nothing
+    rng = random.Random(seed)
+    noise = [rng.gauss(0, 1) for _ in points]
+    slope = sum(p[0] * e for p, e in zip(points, noise)) / sum(p[0] ** 2 for p in points)
+    own = sum(p[0] ** 2 * e for p, e in zip(points, noise)) / 20 - sum(noise) / 20
+    if 0.15 < abs(slope) < 0.25 and abs(own) < 0.1:
+        break
+with open("ccd.csv", "w") as out:
+    out.write("run,pressure_bar,temperature_C,duration_h,die,springback_um,flat\n")
+    for i, ((p, t, d), e) in enumerate(zip(points, noise)):
+        y = 50 - 8 * t + 6 * t * t + 3 * t * d + 5 * d * d - 2 * d + e
+        out.write(f"{i + 1},{20 + 4 * p:.4f},{600 + 50 * t:.4f},{4 + d:.4f},{'AB'[i % 2]},{y:.4f},{7 + e:.4f}\n")
+with open("linear.csv", "w") as out:  # all three matter, and the best is at the corner
+    out.write("a,b,y\n")
+    for i, ((a, b), e) in enumerate(zip(list(itertools.product((-1, 1), repeat=2)) * 2, noise)):
+        out.write(f"{a},{b},{20 - 5 * a - 3 * b + e / 9:.4f}\n")
+    out.write("0,0,24\n0,0,24.1\n0,0,23.9\n")
+P
+python3 made.py
+squares='(pressure_bar+temperature_C+duration_h)^2 + pressure_bar^2 + temperature_C^2 + duration_h^2'
+
+# terminal NAME COMMAND...: what a terminal shows, as one line, into NAME.txt
+terminal() {
+  local name=$1
+  shift
+  script -qec "$(printf '%q ' "$@")" /dev/null </dev/null | tr -d '\r' | tr '\n' ' ' | tr -s ' ' >"$name.txt"
+}
+
+# analyse NAME TABLE RESPONSE MODEL OPTION...: NAME.json, NAME.html (without tags, as one line) and NAME.txt
+analyse() {
+  local name=$1
+  local arguments=(doe "$2" --response "$3" --model "$4" "${@:5}")
+  expect 0 '' "$program" "${arguments[@]}" -o "$name.json" --html "$name.page.html"
+  valid doe.schema.json "$name.json"
+  terminal "$name" "$program" "${arguments[@]}"
+  python3 -c "import html,re,sys; t = re.sub(r'<style.*?</style>|<svg.*?</svg>', '', sys.stdin.read(), flags=re.S)
+print(' '.join(html.unescape(re.sub('<[^>]+>', ' ', t)).split()))" <"$name.page.html" >"$name.html"
+  # Whatever is said of the best setting stands in all three.
+  python3 - "$name" <<'P' || fail "$name: terminal, page and JSON differ"
+import json, sys
+name = sys.argv[1]
+said = json.load(open(name + ".json"))["conclusions"]
+terminal, page = open(name + ".txt").read(), open(name + ".html").read()
+for text in said:
+    words = " ".join(text.split())
+    assert words in terminal, ("terminal", words)
+    if not words.startswith("Best setting"):
+        assert words in page, ("page", words)
+for border in ("It lies on the border", "It lies inside the region", "It lies on a constraint"):
+    there = [border in " ".join(said), border in terminal, border in page]
+    assert len(set(there)) == 1, (border, there)
+P
+}
+
+# The pressure is not sent to an edge; the optimum is that of the model without it.
+analyse noise ccd.csv springback_um "$squares"
+grep -q 'pressure any (cheapest will do), temperature' noise.html || fail "the page sends the pressure somewhere"
+grep -q 'pressure [0-9.]* bar' noise.html && fail "a pressure in bar"
+grep -q 'pressure cannot be told from the scatter (p = [0-9.]*, its terms together)' noise.txt || fail "why any"
+grep -q 'It lies inside the region of the runs' noise.txt || fail "the terminal does not say that it is inside"
+analyse without ccd.csv springback_um 'temperature_C*duration_h + temperature_C^2 + duration_h^2'
+python3 - <<'P' || fail "the optimum is not that of the model without the pressure"
+import json
+noise, without = (json.load(open(n + ".json"))["surface"] for n in ("noise", "without"))
+assert [a["name"] for a in noise["any"]] == ["pressure_bar"] and noise["any"][0]["terms"] == 4, noise["any"]
+assert 0.05 < noise["any"][0]["p_value"] <= 1 and without["any"] == []
+for part in ("axes", "formula", "optimum", "stationary", "ridge", "kind"):
+    assert noise[part] == without[part], part
+P
+
+# A factor of words, steps, and constraints that hold an idle factor.
+analyse die ccd.csv springback_um "$squares + die" --round temperature_C=10 --round pressure_bar=1 \
+  --constraint '3*pressure_bar + temperature_C <= 660'
+grep -q 'pressure any that the constraints allow (cheapest will do), temperature 620 °C' die.html || fail "steps"
+grep -q 'die any (cheapest will do)' die.html || fail "the die is not any"
+[ "$(value die.json 'r["surface"]["optimum"]["real"][0] <= 660 - 3 * 13.272')" = True ] || fail "the constraint is lost"
+grep -q 'It lies on a constraint' die.txt || fail "what holds the optimum is not said"
+
+# On the border without steps, within it with them: one answer.
+analyse corner linear.csv y 'a + b' --goal lowest
+grep -q 'It lies on the border of the region' corner.txt || fail "the border is not said"
+analyse inner linear.csv y 'a + b' --goal lowest --round a=0.7 --round b=0.7
+grep -q 'It lies on the border of the region' inner.html || fail "the page of a rounded setting hides the border"
+
+# No factor matters: no setting is made up, and what the model leads to is called a test.
+analyse flat ccd.csv flat 'temperature_C + duration_h'
+grep -q 'No best setting' flat.html || fail "a best setting out of scatter"
+grep -q 'temperature any (cheapest will do), duration any (cheapest will do)' flat.txt || fail "not any"
+[ "$(value flat.json 'len(r["surface"]["any"])')" = 2 ] || fail "any of the JSON"
+
+# Axial runs are not asked of a plan that has them.
+coding=(--code temperature_C=550:650 --code duration_h=3:5 --code pressure_bar=16:24)
+analyse axial ccd.csv springback_um 'temperature_C + duration_h + pressure_bar' "${coding[@]}"
+grep -q 'the response is curved; the plan has runs beyond corners and centre' axial.txt || fail "axial runs of the plan"
+analyse squared ccd.csv springback_um "$squares" "${coding[@]}"
+grep -q 'the response is curved; the squares of the model say in which factor' squared.txt || fail "squares of the model"
+(head -n 1 ccd.csv; awk -F, '$2 ~ /^(16|24|20)\./ && $3 ~ /^(550|650|600)\./ && $4 ~ /^[345]\./' ccd.csv |
+  awk -F, '($2 == "20.0000") == ($3 == "600.0000") && ($3 == "600.0000") == ($4 == "4.0000")') >corners.csv
+analyse corners corners.csv springback_um 'temperature_C + duration_h + pressure_bar'
+grep -q 'the response is curved; axial runs would tell in which factor' corners.txt || fail "no axial runs here"
+
+exit $failed
