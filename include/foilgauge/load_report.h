@@ -19,6 +19,7 @@ void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *w
 
 /* The words of a direction's flags, joined; "" without. `plain`: for people. */
 void fg_load_flag_words(unsigned flags, bool plain, char *words, size_t size);
+void fg_break_away_flag_words(unsigned flags, bool plain, char *words, size_t size);
 
 /* "foilgauge/load_test/1", reports/schema/load_test.schema.json. */
 fg_status fg_load_write_json(fg_context *ctx, const fg_load_test *test, FILE *out);

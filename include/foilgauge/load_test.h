@@ -27,12 +27,21 @@
  * the loop's ends (secant) it is reported beside: a bearing with clearance has a K that depends on
  * where one looks.
  *
- * PRELOAD. Half of what lies between the strokes is friction. Over the mean force M of both,
- *   H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)),
- * s and s' the ways since each stroke turned, l the way that friction takes to turn round. b is the
- * coefficient of friction; a is there without a load from outside: a / b is the force that presses
- * the foils already, and over the bore's surface pi D L the preload:
- *   p = a / (b pi D L):   1.032 N / 0.03 / (pi 40 mm 40 mm) = 6.84 kPa   (thesis: 6.85).
+ * RADIAL HYSTERESIS. Half of what lies between the strokes is friction, of the foils and of the
+ * rig. Over the mean force M of both, H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)), s and s' the
+ * travel since each stroke turned, l the travel that friction takes to turn round. a is the radial
+ * hysteresis of a bearing without load. It says nothing of a preload: a rig's friction adds to a as
+ * a preload's does, and b is that of sliding feet, not of the rotor in its foils.
+ *
+ * PRELOAD. A break-away test (thesis section 6.2.2): dead weights W load the bearing, and the
+ * torque is read at which the rotor begins to turn. Over the rotor's radius it is friction, F =
+ * torque / (D/2) = mu (W + P) + rig, a straight line over W: its slope is the coefficient of
+ * friction mu, its intercept less the rig's friction is mu P. The foils press the rotor with P
+ * without a weight, over the bore's surface with p = P / (pi D L):   1.032 N / 0.03 / (pi 40 mm 40
+ * mm) = 6.84 kPa   (thesis: 6.85). u of both follows from the residuals, one weight not taken to
+ * scatter as another (HC3: J. S. Long, L. H. Ervin, Using heteroscedasticity consistent standard
+ * errors in the linear regression model, The American Statistician 54, 2000), widened by Student's
+ * t so that U = 2 u holds with few pulls.
  *
  * AZIMUTHS. Travel along an azimuth is that along the opposite one: azimuths are axes, taken modulo
  * 180 degrees, and the clearance has even orders only,
@@ -62,6 +71,7 @@ extern "C" {
 #define FG_LOAD_THRESHOLD_N        5.0
 #define FG_LOAD_U_FORCE_PCT        1.0
 #define FG_LOAD_U_DISPLACEMENT_PCT 1.3
+#define FG_LOAD_U_WEIGHT_PCT       1.0
 #define FG_LOAD_DIAMETER_MM        40.0
 #define FG_LOAD_LENGTH_MM          40.0
 
@@ -78,10 +88,13 @@ typedef enum fg_load_quantity {
   FG_LOAD_STIFFNESS,
   FG_LOAD_LOSS,
   FG_LOAD_PRELOAD, /* of a bearing */
+  FG_LOAD_HYSTERESIS,
+  FG_LOAD_FRICTION,
   FG_LOAD_QUANTITIES,
 } fg_load_quantity;
 
-/* clearance_mm, stiffness_n_mm, loss_factor, preload_kpa */
+/* clearance_mm, stiffness_n_mm, loss_factor, preload_kpa, radial_hysteresis_n, friction_coefficient
+ */
 const char *fg_load_quantity_name(fg_load_quantity quantity);
 
 enum { FG_LOAD_LIMITS_MAX = 16 };
@@ -89,9 +102,14 @@ enum { FG_LOAD_LIMITS_MAX = 16 };
 typedef struct fg_load_options {
   double threshold_n;
   double u_force_pct, u_displacement_pct; /* standard uncertainties */
+  double u_weight_pct;                    /* of a break-away test's dead weights */
+  double lever_mm;                        /* of its force; NaN: half of the diameter */
+  double rig_n_mm, u_rig_n_mm;            /* the rig's own torque; NaN: not known */
   double diameter_mm, length_mm;          /* of the bore */
   double azimuth_zero_deg;                /* azimuth of the lot's direction 0 */
   const char *lot;                        /* folder of a lot; NULL: none */
+  const fg_load_source *break_away;       /* break-away tests; only read by fg_load_test_measure */
+  size_t break_away_count;
   fg_tolerance limits[FG_LOAD_LIMITS_MAX];
   size_t limit_count;
 } fg_load_options;
@@ -146,7 +164,7 @@ typedef struct fg_load_sample {
 /* H = (a + b |M|) ...; NaN where it cannot be said. */
 typedef struct fg_load_friction {
   double a_n, b, way_mm;
-  double u_a_n, u_b, r; /* r: correlation of a and b */
+  double u_a_n, u_b;
 } fg_load_friction;
 
 typedef struct fg_load_direction {
@@ -186,6 +204,37 @@ typedef enum fg_load_axis {
 } fg_load_axis;
 const char *fg_load_axis_words(fg_load_axis axis); /* NULL: known */
 
+/* What is wrong with a break-away test, or must be known of it. */
+enum {
+  FG_BREAK_TOO_FEW = 1 << 0,       /* too few pulls, or one weight */
+  FG_BREAK_CURVED = 1 << 1,        /* not a straight line */
+  FG_BREAK_UNCHECKED = 1 << 2,     /* nothing says whether it is one */
+  FG_BREAK_SLOPE = 1 << 3,         /* the slope is not known */
+  FG_BREAK_BELOW_ZERO = 1 << 4,    /* less friction than the rig's */
+  FG_BREAK_RIG_NOT_GIVEN = 1 << 5, /* the rig's friction counts as preload */
+  FG_BREAK_NONE_SHOWN = 1 << 6,    /* the preload lies within U of none */
+  FG_BREAK_GAP = 1 << 7,           /* a preload where the load test has a clearance */
+};
+const fg_load_flag *fg_break_away_flags(void); /* ends with a row whose name is NULL */
+
+/* One pull of a break-away test. */
+typedef struct fg_break_away_pull {
+  size_t bearing;
+  double weight_n, friction_n; /* at the rotor's surface, the rig's friction included */
+} fg_break_away_pull;
+
+/* F over W of a bearing. Values are NaN where they cannot be said. */
+typedef struct fg_break_away {
+  size_t pulls, weights; /* 0: no such test */
+  unsigned flags;
+  double weight_low_n, weight_high_n;
+  fg_load_value friction;    /* mu */
+  fg_load_value intercept_n; /* F without a weight, less the rig's: mu P */
+  double rig_n;              /* at the rotor's surface; NaN: not given */
+  double residual_n;         /* sd about the line */
+  double p_curved;           /* of a straight line; NaN: too few */
+} fg_break_away;
+
 typedef struct fg_load_bearing {
   char name[128];
   size_t directions, measured;
@@ -200,9 +249,11 @@ typedef struct fg_load_bearing {
   double birge;                        /* how far cycles differ over what they should */
   fg_load_value stiffness;             /* mean over the directions */
   double noise_n, noise_mm, step_mm;   /* of the directions: means, and the largest step */
-  double intercept_n, slope, u_intercept_n, u_slope;
-  fg_load_value preload_n, preload_kpa;
-  size_t unknown_places; /* of the lot's bearing; predicted without them */
+  fg_load_value hysteresis_n;          /* a of the directions' mean */
+  double slope, u_slope;               /* b */
+  fg_break_away break_away;
+  fg_load_value preload_n, preload_kpa; /* of the break-away test */
+  size_t unknown_places;                /* of the lot's bearing; predicted without them */
   bool in_lot;
 } fg_load_bearing;
 
@@ -220,19 +271,19 @@ typedef struct fg_load_test {
   size_t direction_count, direction_capacity;
   fg_load_sample *samples; /* of a direction together, in the order of time */
   size_t sample_count, sample_capacity;
+  fg_break_away_pull *pulls;
+  size_t pull_count, pull_capacity;
   char lot_sha256[65];
 } fg_load_test;
 
 /* FG_ERR_DATA names file, row and line: no such column, no unit, an unknown one; a missing number;
  * times that do not rise; FG_ERR_NOT_MEASURED never: a direction that cannot be measured has a
- * flag. Free with fg_load_test_free. */
+ * flag. `count` may be 0 where there are break-away tests. A break-away test that names no bearing
+ * is that of the only bearing of the tests, else of one that is called as its file. Free with
+ * fg_load_test_free. */
 fg_status fg_load_test_measure(fg_context *ctx, const fg_load_options *options,
                                const fg_load_source *sources, size_t count, fg_load_test *test);
 void fg_load_test_free(fg_load_test *test);
-
-/* p, kPa, and where `u_kpa` is not NULL its uncertainty by u of a and b, correlated by r. */
-double fg_load_preload_kpa(const fg_load_friction *friction, double diameter_mm, double length_mm,
-                           double *u_kpa);
 
 #ifdef __cplusplus
 }

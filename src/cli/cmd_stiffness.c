@@ -17,6 +17,8 @@ typedef struct stiffness_run {
   fg_load_source said; /* what the options before a file say of it */
   fg_load_source *sources;
   size_t count, capacity;
+  fg_load_source *break_away;
+  size_t break_away_capacity;
   fg_load_options options;
   fg_output_set outputs;
   fg_status status; /* of what failed while the command line was read */
@@ -34,6 +36,11 @@ enum {
   OPTION_LENGTH,
   OPTION_LIMIT,
   OPTION_LOT,
+  OPTION_BREAK_AWAY,
+  OPTION_LEVER,
+  OPTION_RIG,
+  OPTION_U_RIG,
+  OPTION_U_WEIGHT,
   OPTION_AZIMUTH_ZERO,
   OPTION_HTML,
   OPTION_TEXT,
@@ -56,12 +63,13 @@ static const struct argp_option options[] = {
     {"u-displacement", OPTION_U_DISPLACEMENT, "PCT", 0,
      "Of the scale of the displacement probe (default: @load_u_displacement_pct@ %, thesis section 5.13)", 2},
     {"diameter", OPTION_DIAMETER, "MM", 0,
-     "Of the bore, for the preload (default: @load_diameter_mm@)", 2},
+     "Of the bore, for friction and preload (default: @load_diameter_mm@)", 2},
     {"length", OPTION_LENGTH, "MM", 0,
      "Of the bearing, for the preload (default: @load_length_mm@)", 2},
     {"limit", OPTION_LIMIT, "NAME=LOW:HIGH", 0,
-     "A limit of clearance_mm, stiffness_n_mm, loss_factor (every azimuth) or preload_kpa (every "
-     "bearing); LOW or HIGH may be empty; may be repeated",
+     "A limit of clearance_mm, stiffness_n_mm, loss_factor (every azimuth), radial_hysteresis_n, "
+     "preload_kpa or friction_coefficient (every bearing); LOW or HIGH may be empty; may be "
+     "repeated",
      2},
     {"lot", OPTION_LOT, "DIR", 0,
      "The lot that `foilgauge lot -o DIR` measured: the travel that its foils leave a rotor, for "
@@ -69,21 +77,36 @@ static const struct argp_option options[] = {
      2},
     {"azimuth-zero", OPTION_AZIMUTH_ZERO, "DEG", 0,
      "Azimuth of the test where the lot's bearings have 0 degrees (default: 0)", 2},
-    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 3},
-    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print, with the loops", 3},
-    {"text", OPTION_TEXT, "FILE.txt", 0, "The table, as on a terminal", 3},
-    {"csv", OPTION_CSV, "FILE.csv", 0, "A row per bearing and azimuth, everything that was found",
+    {NULL, 0, NULL, 0, "Break-away tests, which tell the preload:", 3},
+    {"break-away", OPTION_BREAK_AWAY, "FILE.csv", 0,
+     "A row per pull: dead weight (dead_weight_N), and torque (torque_N_mm) or force (force_N) at "
+     "which the rotor begins to turn; may be repeated",
      3},
+    {"lever", OPTION_LEVER, "MM", 0, "Radius that the force pulls at (default: half of --diameter)",
+     3},
+    {"rig-torque", OPTION_RIG, "NMM", 0,
+     "The rig's own friction torque, N mm; not given, it counts as preload and the report says so",
+     3},
+    {"u-rig-torque", OPTION_U_RIG, "NMM", 0, "Its standard uncertainty (default: 0)", 3},
+    {"u-weight", OPTION_U_WEIGHT, "PCT", 0,
+     "Standard uncertainty of the dead weights' scale (default: @load_u_weight_pct@ %)", 3},
+    {NULL, 0, NULL, 0, "Output:", 4},
+    {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 4},
+    {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print, with the loops", 4},
+    {"text", OPTION_TEXT, "FILE.txt", 0, "The table, as on a terminal", 4},
+    {"csv", OPTION_CSV, "FILE.csv", 0, "A row per bearing and azimuth, everything that was found",
+     4},
     {"table-out", OPTION_TABLE, "FILE.csv", 0,
      "For `foilgauge loop --table`: the clearance (with --lot: what it differs from the lot's by) "
      "beside bearing, azimuth and pad",
-     3},
+     4},
     {0},
 };
 
 static const char doc[] =
     "Judge assembled bearings by load-displacement tests: clearance, stiffness, loss factor, "
-    "preload, and how they differ over the azimuths."
+    "radial hysteresis, and how they differ over the azimuths; by break-away tests: friction "
+    "coefficient and preload."
     "\v"
     "TEST is CSV (comma, semicolon or tab; decimal point or comma) with a row per sample, in the "
     "order of time, and columns named with their unit: azimuth_deg (rad), force_N (mN, kN), "
@@ -96,7 +119,11 @@ static const char doc[] =
     "Standard uncertainties of both instruments' scales are combined: sqrt(1.0² + 1.3²) = 1.64 % "
     "of a stiffness. They are the same for all azimuths and do not count where these are "
     "compared.\n\n"
+    "Preload is the intercept of break-away friction over dead weight, less the rig's, over the "
+    "slope (thesis section 6.2.2); without --break-away none is reported. A bearing column, or "
+    "--bearing before --break-away, names the bearing; else it is the tests' only one.\n\n"
     "  foilgauge stiffness test.csv --threshold 5 --html stiffness.html\n"
+    "  foilgauge stiffness test.csv --break-away pulls.csv --rig-torque 4 --u-rig-torque 0.5\n"
     "  foilgauge stiffness --bearing B1 b1.csv --bearing B2 b2.csv --lot lot1 --table-out t.csv\n"
     "  foilgauge loop --table t.csv --response difference_um --model 1\n\n"
     "@exit_judged@";
@@ -110,6 +137,16 @@ static fg_status add_source(stiffness_run *run, const char *path) {
                            (void **)&run->sources));
   run->sources[run->count] = run->said;
   run->sources[run->count++].path = path;
+  return FG_OK;
+}
+
+static fg_status add_break_away(stiffness_run *run, const char *path) {
+  fg_load_options *o = &run->options;
+  FG_TRY(fg_memory_reserve(run->ctx, o->break_away_count + 1, sizeof *run->break_away,
+                           &run->break_away_capacity, (void **)&run->break_away));
+  run->break_away[o->break_away_count] = run->said;
+  run->break_away[o->break_away_count++].path = path;
+  o->break_away = run->break_away;
   return FG_OK;
 }
 
@@ -134,7 +171,8 @@ static void read_limit(stiffness_run *run, struct argp_state *state, const char 
     q++;
   if (q == FG_LOAD_QUANTITIES)
     argp_error(state,
-               "--limit: '%.*s' is none of clearance_mm, stiffness_n_mm, loss_factor, preload_kpa",
+               "--limit: '%.*s' is none of clearance_mm, stiffness_n_mm, loss_factor, preload_kpa, "
+               "radial_hysteresis_n, friction_coefficient",
                (int)length, text);
   memcpy(limit.quantity, fg_load_quantity_name((fg_load_quantity)q), length);
   if (!read_side(equals + 1, (size_t)(colon - equals - 1), -INFINITY, &limit.lower) ||
@@ -155,6 +193,38 @@ static error_t parse_output(int key, char *text, stiffness_run *run) {
       return 0;
     }
   return ARGP_ERR_UNKNOWN;
+}
+
+static error_t parse_break_away(int key, char *text, struct argp_state *state) {
+  stiffness_run *run = state->input;
+  switch (key) {
+  case OPTION_BREAK_AWAY:
+    take(run, add_break_away(run, text));
+    return 0;
+  case OPTION_LEVER:
+    run->options.lever_mm = fg_cli_number(state, "lever", text, 1e-3, 1e6);
+    return 0;
+  case OPTION_RIG:
+    run->options.rig_n_mm = fg_cli_number(state, "rig-torque", text, 0, 1e12);
+    return 0;
+  case OPTION_U_RIG:
+    run->options.u_rig_n_mm = fg_cli_number(state, "u-rig-torque", text, 0, 1e12);
+    return 0;
+  case OPTION_U_WEIGHT:
+    run->options.u_weight_pct = fg_cli_number(state, "u-weight", text, 0, 100);
+    return 0;
+  default:
+    return parse_output(key, text, run);
+  }
+}
+
+static void check_arguments(const stiffness_run *run, struct argp_state *state) {
+  const fg_load_options *o = &run->options;
+  if (!run->count && !o->break_away_count) argp_error(state, "no TEST was given");
+  if (isfinite(o->rig_n_mm) && !o->break_away_count)
+    argp_error(state, "--rig-torque says something of a --break-away test, and there is none");
+  if (o->u_rig_n_mm > 0 && !isfinite(o->rig_n_mm))
+    argp_error(state, "--u-rig-torque without --rig-torque");
 }
 
 static error_t parse_option(int key, char *text, struct argp_state *state) {
@@ -194,10 +264,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     take(run, add_source(run, text));
     break;
   case ARGP_KEY_END:
-    if (!run->count) argp_error(state, "no TEST was given");
+    check_arguments(run, state);
     break;
   default:
-    return parse_output(key, text, run);
+    return parse_break_away(key, text, state);
   }
   return 0;
 }
@@ -235,6 +305,9 @@ static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
   for (size_t i = 0; i < run->count; i++)
     FG_TRY(
         fg_output_set_check(ctx, &run->outputs, &(fg_input){run->sources[i].path, "the test"}, 1));
+  for (size_t i = 0; i < run->options.break_away_count; i++)
+    FG_TRY(fg_output_set_check(ctx, &run->outputs,
+                               &(fg_input){run->break_away[i].path, "the break-away test"}, 1));
   FG_TRY(check_lot(ctx, run));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(fg_load_test_measure(ctx, &run->options, run->sources, run->count, &run->test));
@@ -259,6 +332,7 @@ int fg_cmd_stiffness(int argc, char **argv) {
   fg_status status = measure(&ctx, &run, &code);
   fg_output_set_close(&run.outputs);
   free(run.sources);
+  free(run.break_away);
   fg_load_test_free(&run.test);
   return status == FG_OK ? code : fg_cli_fail(&ctx, status);
 }

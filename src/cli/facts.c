@@ -110,6 +110,10 @@ static void write_load_u_displacement(FILE *out) {
   fprintf(out, "%g", FG_LOAD_U_DISPLACEMENT_PCT);
 }
 
+static void write_load_u_weight(FILE *out) {
+  fprintf(out, "%g", FG_LOAD_U_WEIGHT_PCT);
+}
+
 static void write_load_diameter(FILE *out) {
   fprintf(out, "%g", FG_LOAD_DIAMETER_MM);
 }
@@ -169,6 +173,7 @@ static const fg_fact facts[] = {
     {"load_threshold_n", write_load_threshold},
     {"load_u_force_pct", write_load_u_force},
     {"load_u_displacement_pct", write_load_u_displacement},
+    {"load_u_weight_pct", write_load_u_weight},
     {"load_diameter_mm", write_load_diameter},
     {"load_length_mm", write_load_length},
     {"youngs_modulus_gpa", write_modulus},

@@ -52,7 +52,10 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
 
 /* Of a bearing, from its directions with their final uncertainties. */
 void fg_load_sum_bearing(const fg_load_test *test, size_t bearing, fg_load_bearing *sum);
-void fg_load_sum_preload(const fg_load_test *test, size_t bearing, fg_load_bearing *sum);
+void fg_load_sum_hysteresis(const fg_load_test *test, size_t bearing, fg_load_bearing *sum);
+
+/* Of a bearing, from its pulls; needs its clearances. */
+void fg_load_sum_break_away(const fg_load_test *test, size_t bearing, fg_load_bearing *sum);
 
 /* What test->options.lot says of the bearings. */
 fg_status fg_load_predict(fg_context *ctx, fg_load_test *test);

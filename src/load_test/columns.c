@@ -38,22 +38,55 @@ static const measured_row rows[FG_LOAD_MEASURED] = {
           {"nm", 1e-6}},
          "displacement_mm, displacement_um, displacement_nm or displacement_m"},
     [FG_LOAD_TIME] = {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, "time_s, time_ms or time_min"},
+    [FG_LOAD_WEIGHT] = {"dead weight",
+                        {{"N", 1}, {"n", 1}, {"mN", 1e-3}, {"kN", 1e3}, {"kn", 1e3}},
+                        "dead_weight_N, dead_weight_mN or dead_weight_kN"},
+    [FG_LOAD_TORQUE] = {"torque",
+                        {{"Nmm", 1}, {"nmm", 1}, {"Nm", 1e3}, {"nm", 1e3}, {"mNm", 1}},
+                        "torque_N_mm, torque_N_m or torque_mN_m"},
 };
 
+typedef enum table_kind { LOAD_TABLE, BREAK_AWAY_TABLE } table_kind;
+
+static bool is_of_table(int which, table_kind kind) {
+  if (which == FG_LOAD_FORCE) return true;
+  return (which == FG_LOAD_WEIGHT || which == FG_LOAD_TORQUE) == (kind == BREAK_AWAY_TABLE);
+}
+
+static bool is_separator(char c) {
+  return c == ' ' || c == '_';
+}
+
+/* The place behind the quantity's word, whose blanks may be underlines; NULL: another word. */
+static const char *skip_word(const char *name, const char *word) {
+  for (; *word; word++, name++) {
+    bool same = is_separator(*word)
+                    ? is_separator(*name)
+                    : tolower((unsigned char)*word) == tolower((unsigned char)*name);
+    if (!same) return NULL;
+  }
+  return isalnum((unsigned char)*name) ? NULL : name;
+}
+
 /* What follows the quantity's word in a column's name, less blanks, underlines and brackets; NULL:
- * the column is of something else. */
-static const char *unit_text(const char *name, const char *word, char *text, size_t size) {
-  size_t length = strlen(word);
-  if (strncasecmp(name, word, length) != 0 || isalnum((unsigned char)name[length])) return NULL;
-  const char *from = name + length + strspn(name + length, " _[(/");
-  size_t count = strcspn(from, " ])");
+ * the column is of something else. Units of torque are products: what joins their parts goes. */
+static const char *unit_text(const char *name, int which, char *text, size_t size) {
+  const char *from = skip_word(name, rows[which].name);
+  if (!from) return NULL;
+  from += strspn(from, " _[(/");
+  bool product = which == FG_LOAD_TORQUE;
+  size_t count = strcspn(from, product ? "])" : " ])"), length = 0;
   fg_text_clip(text, size, "%.*s", (int)count, from);
+  for (const char *c = text; *c && product; c++)
+    if (!strchr(" _.*-", *c)) text[length++] = *c;
+  if (product) text[length] = '\0';
   return text;
 }
 
 static fg_status fail_unit(fg_context *ctx, const fg_table *table, const char *name,
                            const measured_row *row, const char *text) {
-  bool mass = row == &rows[FG_LOAD_FORCE] && (!strncasecmp(text, "kg", 2) || !strcmp(text, "g"));
+  bool force = row == &rows[FG_LOAD_FORCE] || row == &rows[FG_LOAD_WEIGHT];
+  bool mass = force && (!strncasecmp(text, "kg", 2) || !strcmp(text, "g"));
   if (!*text)
     return fg_fail(ctx, FG_ERR_DATA, "%s: the column '%s' has no unit; call it %s", table->source,
                    name, row->wanted);
@@ -85,16 +118,18 @@ static bool is_word(const fg_column *column, const char *word, const fg_column *
   return true;
 }
 
-static fg_status sort_column(fg_context *ctx, const fg_table *table, size_t number,
+static fg_status sort_column(fg_context *ctx, const fg_table *table, size_t number, table_kind kind,
                              fg_load_columns *columns) {
-  const fg_column *column = &table->column[number];
+  const fg_column *column = &table->column[number], *repeat;
   char text[32];
   for (int which = 0; which < FG_LOAD_MEASURED; which++)
-    if (unit_text(column->name, rows[which].name, text, sizeof text))
+    if (is_of_table(which, kind) && unit_text(column->name, which, text, sizeof text))
       return take(ctx, table, number, (fg_load_measured)which, text, columns);
-  if (is_word(column, "cycle", &columns->cycle) || is_word(column, "bearing", &columns->bearing) ||
-      is_word(column, "pad", &columns->pad))
+  if (is_word(column, "bearing", &columns->bearing)) return FG_OK;
+  if (kind == LOAD_TABLE &&
+      (is_word(column, "cycle", &columns->cycle) || is_word(column, "pad", &columns->pad)))
     return FG_OK;
+  if (kind == BREAK_AWAY_TABLE && is_word(column, "repeat", &repeat)) return FG_OK;
   return fg_text_append(ctx, &columns->not_read, "%s%s", columns->not_read ? ", " : "",
                         column->name);
 }
@@ -103,7 +138,7 @@ fg_status fg_load_columns_find(fg_context *ctx, const fg_table *table, bool azim
                                fg_load_columns *columns) {
   *columns = (fg_load_columns){0};
   for (size_t i = 0; i < table->columns; i++)
-    FG_TRY(sort_column(ctx, table, i, columns));
+    FG_TRY(sort_column(ctx, table, i, LOAD_TABLE, columns));
   for (int which = 0; which < FG_LOAD_TIME; which++) {
     if (columns->number[which] || (which == FG_LOAD_AZIMUTH && azimuth_said)) continue;
     return fg_fail(ctx, FG_ERR_DATA, "%s: no column of the %s; it must be called %s%s",
@@ -112,6 +147,26 @@ fg_status fg_load_columns_find(fg_context *ctx, const fg_table *table, bool azim
   }
   if (columns->cycle)
     FG_TRY(fg_table_numbers(ctx, table, columns->cycle->name, &(const fg_extended *){NULL}));
+  return FG_OK;
+}
+
+fg_status fg_load_columns_find_break_away(fg_context *ctx, const fg_table *table,
+                                          fg_load_columns *columns) {
+  *columns = (fg_load_columns){0};
+  for (size_t i = 0; i < table->columns; i++)
+    FG_TRY(sort_column(ctx, table, i, BREAK_AWAY_TABLE, columns));
+  if (!columns->number[FG_LOAD_WEIGHT])
+    return fg_fail(ctx, FG_ERR_DATA, "%s: no column of the dead weight; it must be called %s",
+                   table->source, rows[FG_LOAD_WEIGHT].wanted);
+  if (!columns->number[FG_LOAD_TORQUE] && !columns->number[FG_LOAD_FORCE])
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: no column of the torque or of the force at break-away; it must be called "
+                   "%s, or %s",
+                   table->source, rows[FG_LOAD_TORQUE].wanted, rows[FG_LOAD_FORCE].wanted);
+  if (columns->number[FG_LOAD_TORQUE] && columns->number[FG_LOAD_FORCE])
+    return fg_fail(ctx, FG_ERR_DATA,
+                   "%s: a torque and a force at break-away; one follows from the other, leave one",
+                   table->source);
   return FG_OK;
 }
 

@@ -1,4 +1,4 @@
-/* Friction between the strokes over the force, and the preload that follows from it. */
+/* Friction between the strokes over the force: the radial hysteresis. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -17,9 +17,6 @@ static const double end_left_out = 0.05, way_share_max = 0.25;
  * whatever the noise is: one that the noise widens reaches to where friction turns round, and what
  * it smooths there the slope takes. All places together average the noise. */
 static const double window_places = 1.5;
-
-/* The preload is a / b: where b is not known to a third, a / b has no interval worth the name. */
-static const double slope_known = 3;
 
 typedef struct between {
   double x[PLACES], half[PLACES], middle[PLACES]; /* H, M */
@@ -130,11 +127,10 @@ static void find_doubt(const between *b, double zero, double step, fg_load_frict
   double variance = sum / (double)(PLACES - unknowns) * (1 + alike) / (1 - alike);
   f->u_a_n = sqrt(variance * inverse[0][0]);
   f->u_b = sqrt(variance * inverse[1][1]);
-  f->r = inverse[0][1] / sqrt(inverse[0][0] * inverse[1][1]);
 }
 
 static fg_load_friction fit(const between *b, double zero) {
-  fg_load_friction f = {NAN, NAN, NAN, NAN, NAN, NAN};
+  fg_load_friction f = {NAN, NAN, NAN, NAN, NAN};
   double least = INFINITY, step = way_share_max * (b->high - b->low) / (WAYS - 1), ab[2];
   for (int i = 0; i < WAYS; i++) {
     double squares = try_way(b, zero, i * step, ab);
@@ -151,7 +147,7 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
   between b = {0};
   double *forces = NULL, centre = (direction->push_mm + direction->pull_mm) / 2;
   size_t zero = 0;
-  direction->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN, NAN};
+  direction->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN};
   fg_status status = fit_forces(ctx, strokes, direction, &b, &forces);
   if (status == FG_OK) compare(strokes, forces, &b);
   free(forces);
@@ -163,20 +159,11 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
   return FG_OK;
 }
 
-double fg_load_preload_kpa(const fg_load_friction *friction, double diameter_mm, double length_mm,
-                           double *u_kpa) {
-  double area = M_PI * diameter_mm * length_mm, load = friction->a_n / friction->b;
-  double a = friction->u_a_n / friction->a_n, b = friction->u_b / friction->b;
-  if (u_kpa)
-    *u_kpa = 1000 * fabs(load) / area * sqrt(fmax(0, a * a + b * b - 2 * friction->r * a * b));
-  return 1000 * load / area; /* N/mm² is 1000 kPa */
-}
-
 /* Means of a and b over the directions but one. */
 static size_t mean_of(const fg_load_test *test, size_t bearing, size_t but,
                       fg_load_friction *mean) {
   size_t count = 0;
-  double square_a = 0, square_b = 0, cross = 0;
+  double square_a = 0, square_b = 0;
   *mean = (fg_load_friction){0};
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_friction *f = &test->directions[i].friction;
@@ -185,20 +172,18 @@ static size_t mean_of(const fg_load_test *test, size_t bearing, size_t but,
     mean->b += f->b;
     square_a += f->u_a_n * f->u_a_n;
     square_b += f->u_b * f->u_b;
-    cross += f->r * f->u_a_n * f->u_b;
     count++;
   }
   double n = (double)count;
   mean->a_n /= n, mean->b /= n;
   mean->u_a_n = sqrt(square_a) / n, mean->u_b = sqrt(square_b) / n;
-  mean->r = cross / sqrt(square_a * square_b);
   return count;
 }
 
-/* Scatter of a, b and a / b over the directions, by leaving out one at a time (jackknife). */
+/* Scatter of a and b over the directions, by leaving out one at a time (jackknife). */
 static void leave_out(const fg_load_test *test, size_t bearing, const fg_load_friction *all,
-                      size_t count, double u[3]) {
-  double sum[3] = {0};
+                      size_t count, double u[2]) {
+  double sum[2] = {0};
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_direction *d = &test->directions[i];
     fg_load_friction but;
@@ -206,32 +191,25 @@ static void leave_out(const fg_load_test *test, size_t bearing, const fg_load_fr
     mean_of(test, bearing, i, &but);
     sum[0] += pow(but.a_n - all->a_n, 2);
     sum[1] += pow(but.b - all->b, 2);
-    sum[2] += pow(but.a_n / but.b - all->a_n / all->b, 2);
   }
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 2; k++)
     u[k] = sqrt(sum[k] * (double)(count - 1) / (double)count);
 }
 
-void fg_load_sum_preload(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
+void fg_load_sum_hysteresis(const fg_load_test *test, size_t bearing, fg_load_bearing *sum) {
   enum { SCATTER_DIRECTIONS_MIN = 4 };
   fg_load_friction all;
-  double u[3], u_kpa, area = M_PI * test->options.diameter_mm * test->options.length_mm;
-  sum->preload_n = sum->preload_kpa = (fg_load_value){NAN, NAN, NAN};
+  double u[2];
+  sum->hysteresis_n = (fg_load_value){NAN, NAN, NAN};
+  sum->slope = sum->u_slope = NAN;
   size_t count = mean_of(test, bearing, SIZE_MAX, &all);
-  sum->intercept_n = all.a_n, sum->slope = all.b;
-  sum->u_intercept_n = all.u_a_n, sum->u_slope = all.u_b;
   if (!count) return;
-  double kpa =
-      fg_load_preload_kpa(&all, test->options.diameter_mm, test->options.length_mm, &u_kpa);
   if (count >= SCATTER_DIRECTIONS_MIN) {
     leave_out(test, bearing, &all, count, u);
-    sum->u_intercept_n = fmax(u[0], all.u_a_n);
-    sum->u_slope = fmax(u[1], all.u_b);
-    u_kpa = fmax(u_kpa, 1000 * u[2] / area);
+    all.u_a_n = fmax(u[0], all.u_a_n);
+    all.u_b = fmax(u[1], all.u_b);
   }
-  if (!(sum->slope > slope_known * sum->u_slope) || !(all.a_n > 0)) return;
   double scale = test->options.u_force_pct / 100;
-  sum->preload_kpa = (fg_load_value){kpa, hypot(u_kpa, scale * kpa), u_kpa};
-  double newtons = area / 1000;
-  sum->preload_n = (fg_load_value){newtons * kpa, newtons * sum->preload_kpa.u, newtons * u_kpa};
+  sum->hysteresis_n = (fg_load_value){all.a_n, hypot(all.u_a_n, scale * all.a_n), all.u_a_n};
+  sum->slope = all.b, sum->u_slope = all.u_b;
 }

@@ -7,6 +7,7 @@
 #include "core/memory.h"
 #include "core/numerics.h"
 #include "load_test/analysis.h"
+#include "load_test/break_away.h"
 #include "load_test/noise.h"
 
 fg_load_options fg_load_options_default(void) {
@@ -14,7 +15,10 @@ fg_load_options fg_load_options_default(void) {
                            .u_force_pct = FG_LOAD_U_FORCE_PCT,
                            .u_displacement_pct = FG_LOAD_U_DISPLACEMENT_PCT,
                            .diameter_mm = FG_LOAD_DIAMETER_MM,
-                           .length_mm = FG_LOAD_LENGTH_MM};
+                           .length_mm = FG_LOAD_LENGTH_MM,
+                           .u_weight_pct = FG_LOAD_U_WEIGHT_PCT,
+                           .lever_mm = NAN,
+                           .rig_n_mm = NAN};
 }
 
 const char *fg_load_quantity_name(fg_load_quantity quantity) {
@@ -23,6 +27,8 @@ const char *fg_load_quantity_name(fg_load_quantity quantity) {
       [FG_LOAD_STIFFNESS] = "stiffness_n_mm",
       [FG_LOAD_LOSS] = "loss_factor",
       [FG_LOAD_PRELOAD] = "preload_kpa",
+      [FG_LOAD_HYSTERESIS] = "radial_hysteresis_n",
+      [FG_LOAD_FRICTION] = "friction_coefficient",
   };
   return names[quantity];
 }
@@ -113,7 +119,7 @@ static void forget_all(fg_load_direction *d) {
   d->stiffness = d->loss = d->loss_secant = none;
   d->stiffness_at_mm = NAN;
   d->flags &= ~(unsigned)FG_LOAD_AT_END;
-  d->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN, NAN};
+  d->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN};
 }
 
 static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
@@ -218,10 +224,12 @@ fg_status fg_load_test_measure(fg_context *ctx, const fg_load_options *options,
     FG_TRY_EXIT(measure_direction(ctx, test, &records, &test->directions[i], &findings[i]));
   for (size_t i = 0; i < test->bearing_count; i++)
     finish_bearing(test, findings, i);
+  FG_TRY_EXIT(fg_break_away_read(ctx, test));
   if (options->lot) FG_TRY_EXIT(fg_load_predict(ctx, test));
   for (size_t i = 0; i < test->bearing_count; i++) {
     fg_load_sum_bearing(test, i, &test->bearings[i]);
-    fg_load_sum_preload(test, i, &test->bearings[i]);
+    fg_load_sum_hysteresis(test, i, &test->bearings[i]);
+    fg_load_sum_break_away(test, i, &test->bearings[i]);
   }
 exit:
   fg_load_records_free(&records);
@@ -240,5 +248,6 @@ void fg_load_test_free(fg_load_test *test) {
   free(test->bearings);
   free(test->directions);
   free(test->samples);
+  free(test->pulls);
   memset(test, 0, sizeof *test);
 }

@@ -11,7 +11,7 @@
 #include "load_test/columns.h"
 
 /* More directions are a column of something else that is called azimuth. */
-enum { TEST_BYTES_MAX = 256 << 20, DIRECTIONS_MAX = 1000 };
+enum { DIRECTIONS_MAX = 1000 };
 
 /* A kilometre and 100 MN are units mistaken; sums of squares stay far from the largest double. */
 static const double displacement_max_mm = 1e6, force_max_n = 1e8;
@@ -35,7 +35,7 @@ typedef struct reading {
   size_t last_time_capacity, last_cycle_capacity;
 } reading;
 
-static const char *stem(const char *path, char *text, size_t size) {
+const char *fg_load_file_stem(const char *path, char *text, size_t size) {
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
   const char *dot = strrchr(name, '.');
   fg_text_clip(text, size, "%.*s", (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)),
@@ -43,11 +43,11 @@ static const char *stem(const char *path, char *text, size_t size) {
   return text;
 }
 
-static fg_status find_bearing(reading *r, const char *name, size_t *index) {
-  fg_load_test *test = r->test;
+fg_status fg_load_find_bearing(fg_context *ctx, fg_load_test *test, const char *name,
+                               size_t *index) {
   for (*index = 0; *index < test->bearing_count; (*index)++)
     if (!strcmp(test->bearings[*index].name, name)) return FG_OK;
-  FG_TRY(fg_memory_reserve(r->ctx, test->bearing_count + 1, sizeof *test->bearings,
+  FG_TRY(fg_memory_reserve(ctx, test->bearing_count + 1, sizeof *test->bearings,
                            &test->bearing_capacity, (void **)&test->bearings));
   fg_load_bearing *bearing = &test->bearings[test->bearing_count++];
   *bearing = (fg_load_bearing){0};
@@ -126,12 +126,12 @@ static fg_status check_size(reading *r, const fg_table *table, const fg_load_col
 }
 
 /* Repeats that are one file would halve the doubt for nothing. */
-static fg_status check_new(reading *r) {
-  const fg_load_file *last = &r->test->files[r->test->file_count - 1];
-  for (size_t i = 0; i + 1 < r->test->file_count; i++)
-    if (!strcmp(r->test->files[i].sha256, last->sha256))
-      return fg_fail(r->ctx, FG_ERR_DATA, "%s: the same bytes as %s; a test counts once",
-                     last->path, r->test->files[i].path);
+fg_status fg_load_check_new(fg_context *ctx, const fg_load_test *test) {
+  const fg_load_file *last = &test->files[test->file_count - 1];
+  for (size_t i = 0; i + 1 < test->file_count; i++)
+    if (!strcmp(test->files[i].sha256, last->sha256))
+      return fg_fail(ctx, FG_ERR_DATA, "%s: the same bytes as %s; a test counts once", last->path,
+                     test->files[i].path);
   return FG_OK;
 }
 
@@ -146,11 +146,11 @@ static fg_status take_row(reading *r, const fg_table *table, const fg_load_colum
   else if (source->bearing)
     fg_text_clip(name, sizeof name, "%s", source->bearing);
   else
-    stem(source->path, name, sizeof name);
+    fg_load_file_stem(source->path, name, sizeof name);
   if (columns->pad)
     FG_TRY(fg_load_columns_text(r->ctx, table, columns->pad, i, key.pad, sizeof key.pad));
   FG_TRY(check_size(r, table, columns, i));
-  FG_TRY(find_bearing(r, name, &key.bearing));
+  FG_TRY(fg_load_find_bearing(r->ctx, r->test, name, &key.bearing));
   FG_TRY(find_direction(r, &key, r->count ? r->rows[r->count - 1].direction : 0, &direction));
   FG_TRY(check_order(r, table, columns, i, direction));
   FG_TRY(fg_memory_reserve(r->ctx, r->count + 1, sizeof *r->rows, &r->capacity, (void **)&r->rows));
@@ -168,9 +168,9 @@ static fg_status read_file(reading *r, const fg_load_source *source) {
   fg_status status = FG_OK;
   fg_load_file *file = &r->test->files[r->test->file_count++];
   FG_TRY_EXIT(fg_text_print(r->ctx, &file->path, "%s", source->path));
-  FG_TRY_EXIT(fg_file_read_text(r->ctx, source->path, TEST_BYTES_MAX, &text));
+  FG_TRY_EXIT(fg_file_read_text(r->ctx, source->path, FG_LOAD_BYTES_MAX, &text));
   fg_sha256_text(text, file->sha256);
-  FG_TRY_EXIT(check_new(r));
+  FG_TRY_EXIT(fg_load_check_new(r->ctx, r->test));
   FG_TRY_EXIT(fg_table_parse(r->ctx, source->path, text, strlen(text), &table));
   FG_TRY_EXIT(fg_load_columns_find(r->ctx, &table, isfinite(source->azimuth_deg), &columns));
   for (size_t k = 0; k < r->last_time_capacity; k++)
@@ -212,7 +212,7 @@ static fg_status sort_directions(reading *r) {
   FG_TRY_EXIT(fg_memory_allocate(r->ctx, count, sizeof *now, (void **)&now));
   for (size_t i = 0; i < count; i++)
     places[i] = (place){test->directions[i].bearing, i, test->directions[i].azimuth_deg};
-  qsort(places, count, sizeof *places, by_place);
+  if (count) qsort(places, count, sizeof *places, by_place);
   for (size_t i = 0; i < count; i++) {
     sorted[i] = test->directions[places[i].old];
     now[places[i].old] = i;
@@ -264,7 +264,7 @@ static fg_status gather(reading *r, fg_load_records *records) {
     file[d] = r->rows[i].file;
     test->samples[next[d]++] = r->rows[i].sample;
   }
-  qsort(records->begin, records->count, sizeof *records->begin, by_number);
+  if (records->count) qsort(records->begin, records->count, sizeof *records->begin, by_number);
 exit:
   free(next);
   free(file);
@@ -275,7 +275,8 @@ fg_status fg_load_records_read(fg_context *ctx, const fg_load_source *sources, s
                                fg_load_test *test, fg_load_records *records) {
   reading r = {.ctx = ctx, .test = test};
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *test->files, (void **)&test->files));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count + test->options.break_away_count, sizeof *test->files,
+                                 (void **)&test->files));
   for (size_t i = 0; i < count; i++)
     FG_TRY_EXIT(read_file(&r, &sources[i]));
   FG_TRY_EXIT(sort_directions(&r));

@@ -10,9 +10,24 @@ typedef struct fg_load_records {
   size_t count, capacity;
 } fg_load_records;
 
-/* Fills files, bearings (names), directions (bearing, azimuth, pad, first, count) and samples. */
+/* More bytes of a file are no test's. */
+enum { FG_LOAD_BYTES_MAX = 256 << 20 };
+
+/* Fills files (with room for break-away tests), bearings (names), directions (bearing, azimuth,
+ * pad, first, count) and samples. */
 fg_status fg_load_records_read(fg_context *ctx, const fg_load_source *sources, size_t count,
                                fg_load_test *test, fg_load_records *records);
+
+/* The bearing of that name; a new one where there is none. */
+fg_status fg_load_find_bearing(fg_context *ctx, fg_load_test *test, const char *name,
+                               size_t *index);
+
+/* The file's name less its folder and ending. */
+const char *fg_load_file_stem(const char *path, char *text, size_t size);
+
+/* The last file's bytes must be new. */
+fg_status fg_load_check_new(fg_context *ctx, const fg_load_test *test);
+
 void fg_load_records_free(fg_load_records *records);
 
 #endif

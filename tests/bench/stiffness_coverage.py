@@ -7,7 +7,7 @@ import numpy as np
 
 import load_tests
 
-PRELOAD_KPA = 1000 * 1.032 / 0.03 / (np.pi * 40 * 40)
+HYSTERESIS_N = 1.032
 
 
 def run(program, rows, *options):
@@ -43,7 +43,7 @@ def coverage(program, seeds, names="A", changes=None, scale=True):
             loss = of["area_n_mm"] / (np.pi * stiffness * p["amplitude"]**2)
             add(found, "loss_factor", a["loss_factor"], loss, a[u + "loss_factor"])
         for b in report["bearings"]:
-            add(found, "preload_kpa", b["preload_kpa"], PRELOAD_KPA, b[u + "preload_kpa"])
+            add(found, "radial_hysteresis_n", b["radial_hysteresis_n"], HYSTERESIS_N, b[u + "radial_hysteresis_n"])
             low, high = load_tests.KINDS[b["name"]]
             add(found, "clearance_min_mm", b["clearance_min_mm"], low, b[u + "clearance_min_mm"])
             add(found, "clearance_max_mm", b["clearance_max_mm"], high, b[u + "clearance_max_mm"])

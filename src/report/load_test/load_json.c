@@ -12,10 +12,10 @@ static void write_value(fg_json *json, const char *name, const fg_load_value *va
   fg_json_of(json, "u_repeat_", name, value->u_repeat);
 }
 
-static void write_flags(fg_json *json, unsigned flags) {
+static void write_flag_names(fg_json *json, const fg_load_flag *flag, unsigned flags) {
   fg_json_array(json, "flags");
   fg_json_line(json);
-  for (const fg_load_flag *flag = fg_load_flags(); flag->name; flag++)
+  for (; flag->name; flag++)
     if (flags & flag->flag) fg_json_string(json, NULL, flag->name);
   fg_json_array_end(json);
   fg_json_line_end(json);
@@ -49,7 +49,7 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   fg_json_string(json, "bearing", test->bearings[d->bearing].name);
   fg_json_number(json, "azimuth_deg", d->azimuth_deg);
   fg_json_string(json, "pad", d->pad[0] ? d->pad : NULL);
-  write_flags(json, d->flags);
+  write_flag_names(json, fg_load_flags(), d->flags);
   fg_json_string(json, "verdict", fg_verdict_word(fg_load_judge_direction(test, d)));
   fg_json_integer(json, "samples", (int64_t)d->count);
   fg_json_integer(json, "strokes", (int64_t)d->strokes);
@@ -97,6 +97,25 @@ static void write_harmonics(fg_json *json, const fg_load_bearing *b) {
   fg_json_array_end(json);
 }
 
+static void write_break_away(fg_json *json, const fg_break_away *b) {
+  if (!b->pulls) {
+    fg_json_string(json, "break_away", NULL);
+    return;
+  }
+  fg_json_object(json, "break_away");
+  fg_json_integer(json, "pulls", (int64_t)b->pulls);
+  fg_json_integer(json, "dead_weights", (int64_t)b->weights);
+  fg_json_numbers(json, "dead_weight_range_n", (const double[]){b->weight_low_n, b->weight_high_n},
+                  2);
+  write_flag_names(json, fg_break_away_flags(), b->flags);
+  write_value(json, "friction_coefficient", &b->friction);
+  write_value(json, "friction_no_weight_n", &b->intercept_n);
+  fg_json_number(json, "rig_friction_n", b->rig_n);
+  fg_json_number(json, "residual_sd_n", b->residual_n);
+  fg_json_number(json, "p_curved", b->p_curved);
+  fg_json_object_end(json);
+}
+
 static void write_bearing(fg_json *json, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
   fg_json_object(json, NULL);
@@ -117,10 +136,12 @@ static void write_bearing(fg_json *json, const fg_load_test *test, size_t bearin
   fg_json_string(json, "smallest_not_known", fg_load_axis_words(b->axis));
   fg_json_number(json, "birge_ratio", b->birge);
   write_value(json, "stiffness_n_mm", &b->stiffness);
-  fg_json_number(json, "friction_intercept_n", b->intercept_n);
-  fg_json_number(json, "u_friction_intercept_n", b->u_intercept_n);
+  write_value(json, "radial_hysteresis_n", &b->hysteresis_n);
+  fg_json_number(json, "friction_intercept_n", b->hysteresis_n.value);
+  fg_json_number(json, "u_friction_intercept_n", b->hysteresis_n.u_repeat);
   fg_json_number(json, "friction_slope", b->slope);
   fg_json_number(json, "u_friction_slope", b->u_slope);
+  write_break_away(json, &b->break_away);
   write_value(json, "preload_n", &b->preload_n);
   write_value(json, "preload_kpa", &b->preload_kpa);
   fg_json_bool(json, "in_lot", b->in_lot);
@@ -138,6 +159,10 @@ static void write_options(fg_json *json, const fg_load_test *test) {
   fg_json_number(json, "diameter_mm", o->diameter_mm);
   fg_json_number(json, "length_mm", o->length_mm);
   fg_json_number(json, "azimuth_zero_deg", o->azimuth_zero_deg);
+  fg_json_number(json, "u_weight_pct", o->u_weight_pct);
+  fg_json_number(json, "lever_mm", isfinite(o->lever_mm) ? o->lever_mm : o->diameter_mm / 2);
+  fg_json_number(json, "rig_torque_n_mm", o->rig_n_mm);
+  fg_json_number(json, "u_rig_torque_n_mm", isfinite(o->rig_n_mm) ? o->u_rig_n_mm : NAN);
   fg_json_array(json, "limits");
   for (size_t i = 0; i < o->limit_count; i++) {
     fg_json_object(json, NULL);

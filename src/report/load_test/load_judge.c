@@ -45,7 +45,11 @@ static fg_report_outcome judge_bearing(const fg_load_test *test, size_t bearing)
     fg_report_outcome part = judge_direction(test, &test->directions[i]);
     fg_outcome_add(&sum, &part);
   }
-  add(fg_load_judge_value(test, FG_LOAD_PRELOAD, &test->bearings[bearing].preload_kpa), &sum);
+  const fg_load_bearing *b = &test->bearings[bearing];
+  if (b->break_away.pulls && !isfinite(b->preload_kpa.value)) add(FG_VERDICT_NOT_MEASURED, &sum);
+  add(fg_load_judge_value(test, FG_LOAD_PRELOAD, &b->preload_kpa), &sum);
+  add(fg_load_judge_value(test, FG_LOAD_HYSTERESIS, &b->hysteresis_n), &sum);
+  add(fg_load_judge_value(test, FG_LOAD_FRICTION, &b->break_away.friction), &sum);
   return sum;
 }
 
@@ -53,14 +57,23 @@ fg_verdict fg_load_judge_bearing(const fg_load_test *test, size_t bearing) {
   return judge_bearing(test, bearing).verdict;
 }
 
-void fg_load_flag_words(unsigned flags, bool plain, char *words, size_t size) {
+static void join_words(const fg_load_flag *flag, unsigned flags, bool plain, char *words,
+                       size_t size) {
   words[0] = '\0';
-  for (const fg_load_flag *flag = fg_load_flags(); flag->name; flag++) {
+  for (; flag->name; flag++) {
     size_t length = strlen(words);
     if (flags & flag->flag)
       fg_text_clip(words + length, size - length, "%s%s", length ? (plain ? "; " : " ") : "",
                    plain ? flag->plain : flag->name);
   }
+}
+
+void fg_load_flag_words(unsigned flags, bool plain, char *words, size_t size) {
+  join_words(fg_load_flags(), flags, plain, words, size);
+}
+
+void fg_break_away_flag_words(unsigned flags, bool plain, char *words, size_t size) {
+  join_words(fg_break_away_flags(), flags, plain, words, size);
 }
 
 static void say_range(const fg_load_test *test, char *words, size_t size) {
@@ -76,7 +89,10 @@ static void say_range(const fg_load_test *test, char *words, size_t size) {
   fg_text_clip(counts, sizeof counts, "%zu bearing%s, %zu azimuth%s", test->bearing_count,
                test->bearing_count == 1 ? "" : "s", test->direction_count,
                test->direction_count == 1 ? "" : "s");
-  if (!measured)
+  if (!test->direction_count)
+    fg_text_clip(words, size, "%zu bearing%s", test->bearing_count,
+                 test->bearing_count == 1 ? "" : "s");
+  else if (!measured)
     fg_text_clip(words, size, "%s: none has a clearance", counts);
   else if (measured < test->direction_count)
     fg_text_clip(words, size, "%s: clearances of %.4f to %.4f mm at %g N, none of %zu azimuth%s",
@@ -87,6 +103,28 @@ static void say_range(const fg_load_test *test, char *words, size_t size) {
                  test->options.threshold_n);
 }
 
+/* Preloads of the break-away tests. */
+static void say_preload(const fg_load_test *test, char *words, size_t size) {
+  double low = INFINITY, high = -INFINITY;
+  size_t tests = 0, known = 0, length = strlen(words);
+  for (size_t i = 0; i < test->bearing_count; i++) {
+    const fg_load_bearing *b = &test->bearings[i];
+    tests += b->break_away.pulls > 0;
+    if (!isfinite(b->preload_kpa.value)) continue;
+    low = fmin(low, b->preload_kpa.value), high = fmax(high, b->preload_kpa.value);
+    known++;
+  }
+  const char *join = test->direction_count ? "; " : ": ";
+  if (known == 1)
+    fg_text_clip(words + length, size - length, "%spreload %.2f kPa", join, low);
+  else if (known)
+    fg_text_clip(words + length, size - length, "%spreloads of %.2f to %.2f kPa", join, low, high);
+  length = strlen(words);
+  if (tests > known)
+    fg_text_clip(words + length, size - length, "%s%zu break-away test%s without a preload",
+                 known ? ", " : join, tests - known, tests - known == 1 ? "" : "s");
+}
+
 void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *words, size_t size) {
   *outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
   for (size_t i = 0; i < test->bearing_count; i++) {
@@ -95,6 +133,7 @@ void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *w
   }
   if (!words) return;
   say_range(test, words, size);
+  say_preload(test, words, size);
   size_t length = strlen(words);
   if (outcome->exceeded)
     fg_text_clip(words + length, size - length, "; %zu value%s beyond a limit by more than U",

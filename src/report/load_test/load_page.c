@@ -45,14 +45,16 @@ static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   put_tile(out, "Largest clearance", &b->most, 1000, 1, "µm", most);
   put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
            count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
-  put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
+  put_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
   fputs("<div><dt>Smallest along</dt><dd>", out);
   if (b->axis == FG_LOAD_AXIS_KNOWN)
     fprintf(out, "%.1f° and %.1f°<small>± %.1f° (U = 2 u), fitted</small>", b->least_at_deg,
             b->least_at_deg + 180, 2 * b->u_least_at_deg);
   else
     fprintf(out, "–<small>%s</small>", fg_load_axis_words(b->axis));
-  fputs("</dd></div>\n</dl>\n", out);
+  fputs("</dd></div>\n", out);
+  if (b->break_away.pulls) put_tile(out, "Preload", &b->preload_kpa, 1, 2, "kPa", "");
+  fputs("</dl>\n", out);
 }
 
 static void put_cell(FILE *out, const fg_load_value *v, double unit, int decimals,
@@ -133,12 +135,12 @@ static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
             "<li>The cycles differ by %.1f times what the scatter of the samples says; the "
             "uncertainties are as much larger.</li>\n",
             b->birge);
-  if (isfinite(b->preload_kpa.value))
+  if (isfinite(b->hysteresis_n.value))
     fprintf(out,
-            "<li>Friction between the strokes: %.3f N + %.4f |F|; without a load from outside the "
-            "foils are pressed by %.3f / %.4f = %.1f N, over π · %g mm · %g mm: %.2f kPa.</li>\n",
-            b->intercept_n, b->slope, b->intercept_n, b->slope, b->preload_n.value,
-            test->options.diameter_mm, test->options.length_mm, b->preload_kpa.value);
+            "<li>Radial hysteresis: half of what lies between the strokes is %.3f N + %.4f |F|, "
+            "friction of the foils and of the rig. Preload does not follow from it%s.</li>\n",
+            b->hysteresis_n.value, b->slope,
+            b->break_away.pulls ? "" : ": that takes a break-away test");
   if (isfinite(b->noise_n)) {
     fprintf(out, "<li>Noise of a sample: %.3g N, and %.2g µm of displacement", b->noise_n,
             1000 * b->noise_mm);
@@ -154,15 +156,35 @@ static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
   fputs("</ul>\n", out);
 }
 
-static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
+static void put_break_away(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
-  fputs("<section>\n<header><h1>Bearing ", out);
-  fg_html_text(out, b->name);
-  fputs("</h1>", out);
-  fg_html_verdict(out, fg_load_judge_bearing(test, bearing));
-  fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
-          b->directions == 1 ? "" : "s", test->options.threshold_n);
-  put_tiles(out, test, bearing);
+  const fg_break_away *a = &b->break_away;
+  char flags[1200];
+  if (!a->pulls) return;
+  fprintf(out,
+          "<h2>Break-away test</h2>\n<div class=\"panels\"><figure><h3>%zu pull%s, %zu dead "
+          "weight%s</h3>",
+          a->pulls, fg_plural(a->pulls), a->weights, fg_plural(a->weights));
+  fg_load_plot_break_away(out, test, bearing);
+  fputs("</figure>\n<div><dl class=\"tiles\">\n", out);
+  put_tile(out, "Friction coefficient", &a->friction, 1, 4, "", "");
+  put_tile(out, "Friction without a weight", &a->intercept_n, 1, 3, "N",
+           isfinite(a->rig_n) ? "less the rig's" : "");
+  put_tile(out, "Preload", &b->preload_n, 1, 1, "N", "");
+  put_tile(out, "over the bore", &b->preload_kpa, 1, 2, "kPa", "");
+  fputs("</dl>\n<p class=\"note\">Friction is torque over the rotor's radius. Its line over dead "
+        "weight has the friction coefficient for a slope; intercept over slope is the preload, "
+        "and over π D L its mean pressure.</p>\n<p>",
+        out);
+  fg_break_away_flag_words(a->flags, true, flags, sizeof flags);
+  fg_html_text(out, flags);
+  fprintf(out, "%s</p></div></div>\n", flags[0] ? "." : "");
+}
+
+/* Clearance over the azimuths, their table, their loops. */
+static void put_directions(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  if (!b->directions) return;
   put_sentences(out, test, bearing);
   fputs("<figure>", out);
   fg_load_plot_azimuths(out, test, bearing);
@@ -176,6 +198,19 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
         "2 u, orange its largest value.</p>\n",
         out);
   put_loops(out, test, bearing);
+}
+
+static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_load_bearing *b = &test->bearings[bearing];
+  fputs("<section>\n<header><h1>Bearing ", out);
+  fg_html_text(out, b->name);
+  fputs("</h1>", out);
+  fg_html_verdict(out, fg_load_judge_bearing(test, bearing));
+  fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
+          b->directions == 1 ? "" : "s", test->options.threshold_n);
+  if (b->directions) put_tiles(out, test, bearing);
+  put_break_away(out, test, bearing);
+  put_directions(out, test, bearing);
   fputs("</section>\n", out);
 }
 

@@ -172,3 +172,26 @@ void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) 
     if (test->directions[i].bearing == bearing) put_direction(&at, &test->directions[i]);
   fg_plot_end(&at);
 }
+
+void fg_load_plot_break_away(FILE *out, const fg_load_test *test, size_t bearing) {
+  const fg_break_away *b = &test->bearings[bearing].break_away;
+  double rig = isfinite(b->rig_n) ? b->rig_n : 0, mu = b->friction.value;
+  double start = b->intercept_n.value + rig, end = start + mu * b->weight_high_n;
+  double x[2] = {0, b->weight_high_n}, f[2] = {0, 0};
+  for (size_t i = 0; i < test->pull_count; i++)
+    if (test->pulls[i].bearing == bearing)
+      widen(f, test->pulls[i].friction_n, test->pulls[i].friction_n);
+  widen(f, start, end);
+  add_margin(x, 0.04);
+  add_margin(f, 0.08);
+  fg_plot at = {out, 560, 66, 545, 14, 300, x[0], x[1], f[0], f[1]};
+  fg_plot_begin(&at, 350, "Break-away friction over dead weight");
+  fg_plot_y_axis(&at, "friction, N");
+  fg_plot_x_numbers(&at);
+  fg_plot_x_title(&at, "dead weight, N");
+  if (isfinite(mu)) fg_plot_segment(&at, 0, start, b->weight_high_n, end, "s2");
+  for (size_t i = 0; i < test->pull_count; i++)
+    if (test->pulls[i].bearing == bearing)
+      fg_plot_dot(&at, test->pulls[i].weight_n, test->pulls[i].friction_n, 3.5, "s1");
+  fg_plot_end(&at);
+}

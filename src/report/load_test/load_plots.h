@@ -15,4 +15,7 @@ void fg_load_plot_stiffness(FILE *out, const fg_load_direction *direction);
 /* Clearance of every azimuth with U of the repeats, the fitted curve, the lot's prediction. */
 void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing);
 
+/* Break-away friction over dead weight, and the line. */
+void fg_load_plot_break_away(FILE *out, const fg_load_test *test, size_t bearing);
+
 #endif

@@ -31,13 +31,32 @@ static void put_direction(FILE *out, const fg_load_test *test, const fg_load_dir
   fprintf(out, "%s%s\n", flags[0] ? "  " : "", flags);
 }
 
+static void put_break_away(FILE *out, const fg_load_test *test, const fg_load_bearing *b) {
+  char flags[1200];
+  const fg_break_away *a = &b->break_away;
+  if (!a->pulls) return;
+  fprintf(out, "  break-away: %zu pull%s at %zu dead weight%s of %g to %g N\n", a->pulls,
+          a->pulls == 1 ? "" : "s", a->weights, a->weights == 1 ? "" : "s", a->weight_low_n,
+          a->weight_high_n);
+  if (isfinite(a->friction.value))
+    fprintf(out, "  friction coefficient %.4f, U %.4f; without a weight %.3f N, U %.3f\n",
+            a->friction.value, 2 * a->friction.u, a->intercept_n.value, 2 * a->intercept_n.u);
+  if (isfinite(b->preload_n.value))
+    fprintf(out, "  preload %.2f N, U %.2f: %.3f kPa, U %.3f, over pi %g x %g mm\n",
+            b->preload_n.value, 2 * b->preload_n.u, b->preload_kpa.value, 2 * b->preload_kpa.u,
+            test->options.diameter_mm, test->options.length_mm);
+  fg_break_away_flag_words(a->flags, true, flags, sizeof flags);
+  if (flags[0]) fprintf(out, "  %s\n", flags);
+}
+
 static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
   bool lot = b->in_lot;
   fprintf(out, "\nbearing %s, %zu azimuth%s\n", b->name, b->directions,
           b->directions == 1 ? "" : "s");
-  fprintf(out, "  azimuth    c um    U um    K N/mm  U N/mm    loss   secant%s\n",
-          lot ? "   lot um  diff um" : "");
+  if (b->directions)
+    fprintf(out, "  azimuth    c um    U um    K N/mm  U N/mm    loss   secant%s\n",
+            lot ? "   lot um  diff um" : "");
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_direction(out, test, &test->directions[i], lot);
   if (b->measured > 1)
@@ -54,10 +73,10 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
       fprintf(out, ", which was recorded in steps of %.3g um", 1000 * b->step_mm);
     fputc('\n', out);
   }
-  if (isfinite(b->preload_kpa.value))
-    fprintf(out, "  friction %.3f N + %.4f |F|: preload %.2f N, %.3f kPa, U %.3f, on %g x %g mm\n",
-            b->intercept_n, b->slope, b->preload_n.value, b->preload_kpa.value,
-            2 * b->preload_kpa.u, test->options.diameter_mm, test->options.length_mm);
+  if (isfinite(b->hysteresis_n.value))
+    fprintf(out, "  radial hysteresis %.3f N, U %.3f, and %.4f |F|\n", b->hysteresis_n.value,
+            2 * b->hysteresis_n.u, b->slope);
+  put_break_away(out, test, b);
 }
 
 fg_status fg_load_write_text(fg_context *ctx, const fg_load_test *test, FILE *out) {
