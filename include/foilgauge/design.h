@@ -52,6 +52,17 @@ typedef struct fg_tolerance {
   double lower, upper;
 } fg_tolerance;
 
+/* Where a value lies against the limit that it is nearest to, or farthest beyond. With one limit it
+ * is that one. */
+typedef struct fg_margin {
+  double limit;  /* not finite: there is none */
+  double inside; /* distance to the limit; negative: beyond it; NaN without a value */
+  bool upper;    /* which of both */
+} fg_margin;
+
+/* Every distance to a limit is this one. Limits that are not set are -inf, +inf. */
+fg_margin fg_margin_to(double lower, double upper, double value);
+
 enum { FG_TOLERANCES_MAX = 32, FG_DIAMETERS_MAX = 256 };
 
 typedef struct fg_design {

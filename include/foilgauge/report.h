@@ -47,6 +47,11 @@ typedef struct fg_judgement {
   const fg_quantity *row;
   int number; /* of the bump or disc; 0: the whole foil */
   double value, u;
+  fg_margin margin; /* to the nearest limit */
+  /* Share of the deviation that the tolerance allows: 0 in its middle, 1 at its limit, more beyond.
+   * A single limit allows as far as it is from the design's nominal, and from 0 where the design
+   * has none (of an error, 0 is the nominal). Infinite without a value. */
+  double severity;
   bool missing;  /* of a bump that is not there: no value, and a fail */
   bool exceeded; /* the value fails */
   fg_verdict verdict;
@@ -93,6 +98,11 @@ fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
                             const fg_bearing_clearance *clearance, bool whole,
                             fg_decision *decision);
 void fg_decision_free(fg_decision *decision);
+
+/* Ranks judgements, the worst first: by verdict (fail, not measured, cannot tell, pass), then by
+ * severity, then by number. Below 0: `a` comes before `b`. Every choice of the worst is this one.
+ */
+int fg_judgement_compare(const fg_judgement *a, const fg_judgement *b);
 
 /* How many of the design's tolerances are of a bearing, and which: a scan has none, they are judged
  * in lots. `names` may be NULL. */

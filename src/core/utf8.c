@@ -81,3 +81,10 @@ size_t fg_utf8_make_visible(const char *bytes, size_t size, bool last, char *vis
   }
   return at;
 }
+
+size_t fg_utf8_count(const char *text) {
+  size_t count = 0;
+  for (; *text; text++)
+    count += ((unsigned char)*text & 0xC0) != 0x80; /* not a continuation byte */
+  return count;
+}

@@ -8,6 +8,9 @@
 
 bool fg_utf8_is_valid(const char *text);
 
+/* How many characters the text has. */
+size_t fg_utf8_count(const char *text);
+
 /* Writes the one character at `text`, a stray byte as \xE4; returns how many bytes it took. */
 size_t fg_utf8_put(FILE *out, const char *text);
 

@@ -27,40 +27,19 @@ static fg_status list_foils(fg_context *ctx, fg_lot_analysis *analysis) {
   return FG_OK;
 }
 
-/* 1 at the limit of a two-sided tolerance, 0 in its middle. A one-sided tolerance has no width: the
- * distance counts in units of the limit. */
-static double severity_of(const fg_judgement *judgement) {
-  double lower = judgement->tolerance->lower, upper = judgement->tolerance->upper;
-  double value = judgement->value;
-  if (isnan(value)) return INFINITY;
-  if (isfinite(lower) && isfinite(upper) && upper > lower)
-    return fabs(value - (lower + upper) / 2) / ((upper - lower) / 2);
-  double limit = isfinite(upper) ? upper : lower,
-         past = isfinite(upper) ? value - limit : limit - value;
-  return 1 + past / (fabs(limit) > 0 ? fabs(limit) : 1);
-}
-
-/* Past a limit, or short of it: whichever is less. */
-static void find_margin(const fg_judgement *judgement, fg_lot_foil *foil) {
-  double below = judgement->value - judgement->tolerance->lower,
-         above = judgement->tolerance->upper - judgement->value;
-  bool upper = above < below;
-  foil->worst_limit = upper ? judgement->tolerance->upper : judgement->tolerance->lower;
-  foil->worst_margin = upper ? above : below;
-}
-
 static void find_worst_value(const fg_decision *decision, fg_lot_foil *foil) {
-  for (size_t i = 0; i < decision->count; i++) {
-    const fg_judgement *judgement = &decision->judgements[i];
-    double severity = severity_of(judgement);
-    if (i && !(severity > foil->severity)) continue;
-    foil->severity = severity;
-    foil->worst_number = judgement->number;
-    foil->worst_row = judgement->row;
-    foil->worst_value = judgement->value;
-    foil->worst_u = judgement->u;
-    find_margin(judgement, foil);
-  }
+  const fg_judgement *worst = NULL;
+  for (size_t i = 0; i < decision->count; i++)
+    if (!worst || fg_judgement_compare(&decision->judgements[i], worst) < 0)
+      worst = &decision->judgements[i];
+  if (!worst) return;
+  foil->severity = worst->severity;
+  foil->worst_number = worst->number;
+  foil->worst_row = worst->row;
+  foil->worst_value = worst->value;
+  foil->worst_u = worst->u;
+  foil->worst_limit = worst->margin.limit;
+  foil->worst_margin = worst->margin.inside;
 }
 
 static fg_status judge_foil(fg_context *ctx, fg_lot_analysis *analysis, fg_lot_foil *foil) {
@@ -113,6 +92,13 @@ static void rank_by_spread(fg_lot_analysis *analysis) {
   }
 }
 
+/* By the verdict first, then by the severity. */
+static bool is_worse(const fg_lot_foil *foil, const fg_lot_foil *than) {
+  if (foil->verdict != than->verdict)
+    return fg_verdict_worse(foil->verdict, than->verdict) == foil->verdict;
+  return foil->severity > than->severity;
+}
+
 static void find_worst(fg_lot_analysis *analysis) {
   for (int place = 0; place < 3; place++)
     for (size_t i = 0; i < analysis->foil_count; i++) {
@@ -121,7 +107,7 @@ static void find_worst(fg_lot_analysis *analysis) {
       for (int k = 0; k < place; k++)
         taken = taken || analysis->worst[k] == foil;
       if (taken) continue;
-      if (!analysis->worst[place] || foil->severity > analysis->worst[place]->severity)
+      if (!analysis->worst[place] || is_worse(foil, analysis->worst[place]))
         analysis->worst[place] = foil;
     }
 }

@@ -90,8 +90,8 @@ static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, co
     if (part.number < 1 || !isfinite(value) || !fg_lot_part_counts(foil, quantity->owner, &part))
       continue;
     double x = part.number + FIRST_DOT + (LAST_DOT - FIRST_DOT) * share;
-    bool beyond = quantity->tolerance &&
-                  (value < quantity->tolerance->lower || value > quantity->tolerance->upper);
+    const fg_tolerance *limits = quantity->tolerance;
+    bool beyond = limits && fg_margin_to(limits->lower, limits->upper, value).inside < 0;
     if (beyond)
       fg_plot_shape(at, x, value, 5, FG_SHAPE_CROSS, "beyond-limit");
     else

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "core/select.h"
 #include "report/measure/measure_page_parts.h"
 
 void fg_plot_dot(const fg_plot *at, double x, double y, double radius, const char *style) {
@@ -56,4 +57,38 @@ void fg_plot_text(const fg_plot *at, double x, double y, const char *style, cons
           fg_plot_y(at, y));
   fg_html_text(at->out, text);
   fputs("</text>\n", at->out);
+}
+
+/* The highest first. */
+static int by_height(const void *a, const void *b) {
+  const fg_plot_label *one = a, *other = b;
+  return (one->y < other->y) - (one->y > other->y);
+}
+
+/* Down from the top as far as the gap asks, then up again from the plot's end. */
+static void spread(const fg_plot *at, const fg_plot_label *labels, double *y, size_t count,
+                   double gap_px) {
+  for (size_t i = 0; i < count; i++) {
+    y[i] = fg_plot_y(at, labels[i].y);
+    if (i) y[i] = fmax(y[i], y[i - 1] + gap_px);
+  }
+  if (!count || !(y[count - 1] > at->bottom)) return;
+  y[count - 1] = at->bottom;
+  for (size_t i = count - 1; i > 0; i--)
+    y[i - 1] = fmin(y[i - 1], y[i] - gap_px);
+}
+
+void fg_plot_labels(const fg_plot *at, fg_plot_label *labels, size_t count, double gap_px) {
+  enum { LABELS_MAX = 16 };
+  const double away_px = 6, half_letter_px = 5;
+  double y[LABELS_MAX];
+  if (count > LABELS_MAX) count = LABELS_MAX;
+  fg_sort_items(labels, count, sizeof *labels, by_height);
+  spread(at, labels, y, count, gap_px);
+  for (size_t i = 0; i < count; i++) {
+    fprintf(at->out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">", labels[i].style,
+            at->right + away_px, y[i] + half_letter_px);
+    fg_html_text(at->out, labels[i].text);
+    fputs("</text>\n", at->out);
+  }
 }

@@ -32,4 +32,14 @@ void fg_plot_segment(const fg_plot *at, double x1, double y1, double x2, double 
 /* The text is made harmless. */
 void fg_plot_text(const fg_plot *at, double x, double y, const char *style, const char *text);
 
+/* Labels of levels beside the plot, right of it, none over the other: they are sorted by height and
+ * moved apart to the gap, within the plot's height as long as they fit. Texts are made harmless. */
+typedef struct fg_plot_label {
+  double y; /* in units of the axis */
+  const char *style;
+  char text[80];
+} fg_plot_label;
+#define FG_PLOT_LABEL_GAP_PX 20.0
+void fg_plot_labels(const fg_plot *at, fg_plot_label *labels, size_t count, double gap_px);
+
 #endif

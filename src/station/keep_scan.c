@@ -87,26 +87,8 @@ static fg_status keep_bump(fg_context *ctx, sqlite3 *writer, const fg_design *de
   return keep_measured(ctx, writer, FG_QUANTITY_OF_BUMP, id, bump->number, bump);
 }
 
-/* How near a value is to its limit, or how far beyond: in U where that is known, else in widths of
- * the tolerance. The largest decides. */
-static double urgency(const fg_judgement *judgement) {
-  const fg_tolerance *limit = judgement->tolerance;
-  double beyond = fmax(limit->lower - judgement->value, judgement->value - limit->upper);
-  double width = limit->upper - limit->lower;
-  if (judgement->missing) return INFINITY;
-  if (isfinite(width) && width > 0) return beyond / width;
-  return judgement->u > 0 ? beyond / (FG_COVERAGE_FACTOR * judgement->u) : beyond;
-}
-
-static int by_urgency(const void *a, const void *b) {
-  const fg_judgement *one = a, *other = b;
-  static const int severity[] = {
-      [FG_VERDICT_FAIL] = 3, [FG_VERDICT_NOT_MEASURED] = 2, [FG_VERDICT_UNDECIDED] = 1};
-  int worse = (one->verdict <= FG_VERDICT_NOT_MEASURED ? severity[one->verdict] : 0) -
-              (other->verdict <= FG_VERDICT_NOT_MEASURED ? severity[other->verdict] : 0);
-  if (worse) return -worse;
-  double difference = urgency(other) - urgency(one);
-  return difference > 0 ? 1 : difference < 0 ? -1 : one->number - other->number;
+static int by_severity(const void *a, const void *b) {
+  return fg_judgement_compare(a, b);
 }
 
 static fg_status keep_deciding(fg_context *ctx, sqlite3 *writer, fg_decision *decision,
@@ -115,7 +97,7 @@ static fg_status keep_deciding(fg_context *ctx, sqlite3 *writer, fg_decision *de
   int64_t quantity;
   fg_status status = FG_OK;
   if (decision->count)
-    qsort(decision->judgements, decision->count, sizeof *decision->judgements, by_urgency);
+    qsort(decision->judgements, decision->count, sizeof *decision->judgements, by_severity);
   fg_query_begin(
       writer,
       "INSERT INTO deciding (foil, rank, quantity, bump, value, u, lower, upper, verdict)"

@@ -9,7 +9,7 @@
 #include "report/plot_marks.h"
 #include "station/trend.h"
 
-enum { DOTS_MOST = 120, COLUMNS_MOST = 450, NAME_BYTES = 140, LABELS = 5, CLASS_BYTES = 24 };
+enum { DOTS_MOST = 120, COLUMNS_MOST = 450, NAME_BYTES = 140, LABELS = 5 };
 /* A tolerance is drawn while the plot grows by it to so many times what the values need. */
 #define GROWTH_MOST  4.0
 #define SIGNAL_PX    6.0
@@ -24,11 +24,6 @@ typedef struct drawing {
   int decimals, height;
   double upper, lower; /* tolerances that are drawn; NaN */
 } drawing;
-
-typedef struct label {
-  double y;
-  char text[64], style[CLASS_BYTES];
-} label;
 
 static double place(const drawing *d, size_t point) {
   return (double)fg_trend_number(d->trend, point);
@@ -226,24 +221,16 @@ static void draw_changes(const drawing *d) {
   }
 }
 
-static int by_height(const void *a, const void *b) {
-  const label *one = a, *other = b;
-  return (one->y > other->y) - (one->y < other->y);
-}
-
-static size_t add_label(const drawing *d, label labels[LABELS], size_t count, double value,
+static size_t add_label(const drawing *d, fg_plot_label labels[LABELS], size_t count, double value,
                         const char *words, const char *style) {
   if (!isfinite(value)) return count;
-  label *to = &labels[count];
-  to->y = fg_plot_y(&d->at, value) + 5;
-  snprintf(to->text, sizeof to->text, "%s %.*f", words, d->decimals + 1, value);
-  snprintf(to->style, sizeof to->style, "%s", style);
+  labels[count] = (fg_plot_label){.y = value, .style = style};
+  snprintf(labels[count].text, sizeof labels[count].text, "%s %.*f", words, d->decimals + 1, value);
   return count + 1;
 }
 
-/* Beside the plot, none over the other. */
 static void draw_labels(const drawing *d) {
-  label labels[LABELS];
+  fg_plot_label labels[LABELS];
   size_t count = 0;
   const fg_chart_point *last = &d->chart->point[d->trend->last];
   count = add_label(d, labels, count, d->upper, "max", "start tolerance");
@@ -251,12 +238,7 @@ static void draw_labels(const drawing *d) {
   count = add_label(d, labels, count, d->chart->centre, "mean", "start");
   count = add_label(d, labels, count, last->lower, "−3σ", "start control");
   count = add_label(d, labels, count, d->lower, "min", "start tolerance");
-  fg_sort_items(labels, count, sizeof *labels, by_height);
-  for (size_t i = 1; i < count; i++)
-    labels[i].y = fmax(labels[i].y, labels[i - 1].y + LABEL_GAP_PX);
-  for (size_t i = 0; i < count; i++)
-    fprintf(d->at.out, "<text class=\"%s\" x=\"%.1f\" y=\"%.1f\">%s</text>\n", labels[i].style,
-            d->at.right + 6, labels[i].y, labels[i].text);
+  fg_plot_labels(&d->at, labels, count, LABEL_GAP_PX);
 }
 
 static void draw(const drawing *d, const fg_trend_run *runs, size_t run_count) {

@@ -74,13 +74,12 @@ static void write_decided(FILE *out, const decided *at) {
 
 void fg_page_decided_line(const fg_query *at, int column, FILE *out) {
   decided read = read_decided(at, column);
-  bool nearer_upper = !(read.value - read.lower < read.upper - read.value);
+  const fg_margin margin = fg_margin_to(read.lower, read.upper, read.value);
   if (read.bump) fprintf(out, "bump %lld ", (long long)read.bump);
   fg_html_text(out, read.row ? read.row->symbol : read.name);
   fputc(' ', out);
   write_value(out, &read);
-  fprintf(out, nearer_upper ? ", ≤ " LIMIT_FORMAT : ", ≥ " LIMIT_FORMAT,
-          nearer_upper ? read.upper : read.lower);
+  fprintf(out, margin.upper ? ", ≤ " LIMIT_FORMAT : ", ≥ " LIMIT_FORMAT, margin.limit);
 }
 
 fg_status fg_page_deciding(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out) {

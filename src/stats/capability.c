@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "foilgauge/design.h"
 #include "foilgauge/distribution.h"
 
 enum { NORMALITY_LEAST = 8 };
@@ -63,10 +64,6 @@ fg_status fg_normality_test(fg_context *ctx, const double *values, size_t count,
   return FG_OK;
 }
 
-static double room(double lower, double centre, double upper) {
-  return fmin(upper - centre, centre - lower);
-}
-
 static fg_ratio spread_ratio(double width, double sigma, double freedom, double alpha) {
   fg_ratio ratio = {NAN, NAN, NAN};
   if (!isfinite(width) || !(sigma > 0)) return ratio;
@@ -116,7 +113,7 @@ fg_status fg_capability_compute(fg_context *ctx, const fg_capability_input *inpu
   describe(input->values, input->count, &capability->mean, &capability->sd);
   if (!(capability->sd > 0))
     return fg_fail(ctx, FG_ERR_DATA, "a capability needs two different values at least");
-  double distance = room(input->lower, capability->mean, input->upper);
+  double distance = fg_margin_to(input->lower, input->upper, capability->mean).inside;
   capability->p = spread_ratio(width, capability->sd, n - 1, alpha);
   capability->pk = room_ratio(distance, capability->sd, n, n - 1, alpha);
   if (input->stable && input->sigma > 0) {

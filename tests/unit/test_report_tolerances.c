@@ -186,9 +186,86 @@ static void an_unknown_tolerance_is_refused(void **state) {
   assert_int_equal(fg_report_check_tolerances(&ctx, &all->design), FG_ERR_DATA);
 }
 
+static void a_margin_is_to_the_limit_that_exists(void **state) {
+  (void)state;
+  static const struct {
+    double lower, upper, value, limit, inside;
+  } cases[] = {
+      {1, 2, 1.2, 1, 0.2},      {1, 2, 1.9, 2, 0.1},        {1, 2, 2.5, 2, -0.5},
+      {1, 2, 0.5, 1, -0.5},     {-INFINITY, 2, -40, 2, 42}, {-INFINITY, 2, 2.5, 2, -0.5},
+      {1, INFINITY, 40, 1, 39}, {1, INFINITY, NAN, 1, NAN},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    const fg_margin margin = fg_margin_to(cases[i].lower, cases[i].upper, cases[i].value);
+    assert_true(margin.limit == cases[i].limit);
+    assert_true(margin.upper == (cases[i].limit == cases[i].upper));
+    if (isnan(cases[i].inside))
+      assert_true(isnan(margin.inside));
+    else
+      assert_float_equal(margin.inside, cases[i].inside, 1e-12);
+  }
+  assert_true(isinf(fg_margin_to(-INFINITY, INFINITY, 1).limit) != 0);
+}
+
+/* Judges `quantity` of the whole foil or its first bump. */
+static fg_judgement judgement_of(const fixture *all, const char *quantity, int number) {
+  fg_context ctx = {0};
+  fg_decision decision;
+  fg_judgement found = {.severity = NAN};
+  assert_int_equal(fg_foil_decide(&ctx, &all->design, &all->measurement.foils[0], &decision),
+                   FG_OK);
+  for (size_t i = 0; i < decision.count; i++)
+    if (!strcmp(decision.judgements[i].tolerance->quantity, quantity) &&
+        decision.judgements[i].number == number)
+      found = decision.judgements[i];
+  fg_decision_free(&decision);
+  return found;
+}
+
+/* 1 at the limit: of a width, of the way from the nominal, or from 0 of what has no nominal. A
+ * large number with room to spare does not come before a small one at its limit. */
+static void severity_is_a_share_of_what_is_allowed(void **state) {
+  fixture *all = *state;
+  fg_foil *foil = &all->measurement.foils[0];
+  foil->overall.radius_mm = all->design.overall_radius_mm + 0.02;
+  foil->bumps[0].height_mm = all->nominal.height_mm - 0.05;
+  foil->bumps[0].radius_error_pct = 4;
+  synthetic_tolerance(&all->design, "overall.radius_mm", -INFINITY,
+                      all->design.overall_radius_mm + 0.14);
+  synthetic_tolerance(&all->design, "height_mm", all->nominal.height_mm - 0.06, INFINITY);
+  synthetic_tolerance(&all->design, "radius_error_pct", -INFINITY, 5);
+  const fg_judgement radius = judgement_of(all, "overall.radius_mm", 0),
+                     height = judgement_of(all, "height_mm", 1),
+                     error = judgement_of(all, "radius_error_pct", 1);
+  assert_float_equal(radius.severity, 1.0 / 7, 1e-9);
+  assert_float_equal(height.severity, 5.0 / 6, 1e-9);
+  assert_float_equal(error.severity, 0.8, 1e-9);
+  assert_true(fg_judgement_compare(&height, &radius) < 0);
+  all->design.tolerances[0].lower = all->design.overall_radius_mm - 0.06;
+  assert_float_equal(judgement_of(all, "overall.radius_mm", 0).severity, 0.2, 1e-9);
+}
+
+/* A verdict ranks before any severity. */
+static void a_failing_value_comes_before_one_that_cannot_be_told(void **state) {
+  (void)state;
+  const fg_judgement fail = {.verdict = FG_VERDICT_FAIL, .severity = 1.1, .number = 3},
+                     open = {.verdict = FG_VERDICT_UNDECIDED, .severity = 1.5},
+                     missing = {.verdict = FG_VERDICT_NOT_MEASURED, .severity = INFINITY},
+                     pass = {.verdict = FG_VERDICT_PASS, .severity = 0.99},
+                     same = {.verdict = FG_VERDICT_FAIL, .severity = 1.1, .number = 4};
+  assert_true(fg_judgement_compare(&fail, &missing) < 0);
+  assert_true(fg_judgement_compare(&missing, &open) < 0);
+  assert_true(fg_judgement_compare(&open, &pass) < 0);
+  assert_true(fg_judgement_compare(&fail, &same) < 0);
+  assert_true(fg_judgement_compare(&pass, &open) > 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       REPORT_TEST(verdict_considers_the_uncertainty),
+      REPORT_TEST(a_margin_is_to_the_limit_that_exists),
+      REPORT_TEST(severity_is_a_share_of_what_is_allowed),
+      REPORT_TEST(a_failing_value_comes_before_one_that_cannot_be_told),
       REPORT_TEST(a_bump_beyond_its_limit_is_flagged),
       REPORT_TEST(a_value_within_its_uncertainty_is_not_exceeded),
       REPORT_TEST(a_missing_bump_rejects_the_foil),

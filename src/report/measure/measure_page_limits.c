@@ -1,9 +1,11 @@
 /* Every toleranced quantity of the bumps, or beams, over their numbers, with its limits. */
 #include <math.h>
+#include <stdlib.h>
 
+#include "core/select.h"
+#include "core/utf8.h"
 #include "report/measure/foil_parts.h"
 #include "report/measure/measure_page_tables.h"
-#include "report/plot_marks.h"
 
 /* What lies farther beyond its limits than this share of the limits' distance is drawn at the
  * plot's edge, with its value: one crushed bump must not flatten the others. */
@@ -20,20 +22,26 @@ typedef struct panel {
   const fg_tolerance *limit;
 } panel;
 
-/* With one limit only, the values say how far it is sensible to look. */
-static double distance_of(const panel *p) {
-  double low = p->limit->lower, high = p->limit->upper;
-  if (isfinite(low) && isfinite(high) && high > low) return high - low;
-  double limit = isfinite(low) ? low : high, nearest = INFINITY;
-  for (size_t i = 0; i < p->parts->count; i++) {
+/* How wide the limits are. With one limit only the values say how far it is sensible to look: twice
+ * the median of their distances, which a few crushed bumps do not move. */
+static double width_of(const panel *p) {
+  double low = p->limit->lower, high = p->limit->upper, width = high - low;
+  if (isfinite(width) && width > 0) return width;
+  double *distance = calloc(p->parts->count, sizeof *distance);
+  size_t count = 0;
+  for (size_t i = 0; distance && i < p->parts->count; i++) {
     double value = fg_quantity_value(p->row, fg_foil_part_at(p->parts, i));
-    if (isfinite(value) && value != limit) nearest = fmin(nearest, fabs(value - limit));
+    double inside = fg_margin_to(low, high, value).inside;
+    if (isfinite(inside)) distance[count++] = fabs(inside);
   }
-  return isfinite(nearest) ? 2 * nearest : fmax(fabs(limit), 1);
+  width = count ? 2 * fg_select(distance, count, count / 2) : 0;
+  free(distance);
+  return width > 0 ? width : fmax(fabs(isfinite(low) ? low : high), 1);
 }
 
+/* All that does not fail is drawn where it lies, however far it is from its limit. */
 static void find_range(panel *p) {
-  double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * distance_of(p);
+  double low = p->limit->lower, high = p->limit->upper, reach = shown_beyond * width_of(p);
   double from = isfinite(low) ? low : high, to = isfinite(high) ? high : low;
   const double most[2] = {from - reach, to + reach};
   for (size_t i = 0; i < p->parts->count; i++) {
@@ -41,27 +49,44 @@ static void find_range(panel *p) {
     double u = fg_quantity_uncertainty(p->row, fg_foil_part_at(p->parts, i));
     double expanded = isfinite(u) ? FG_COVERAGE_FACTOR * u : 0;
     if (!isfinite(value)) continue;
-    from = fmin(from, fmax(most[0], value - expanded));
-    to = fmax(to, fmin(most[1], value + expanded));
+    bool fails = fg_judge_value(p->limit, value, u) == FG_VERDICT_FAIL;
+    from = fmin(from, fmin(fails ? INFINITY : value, fmax(most[0], value - expanded)));
+    to = fmax(to, fmax(fails ? -INFINITY : value, fmin(most[1], value + expanded)));
   }
   double margin = margin_share * (to > from ? to - from : fmax(fabs(to), 1e-9));
   p->at.y_low = from - margin;
   p->at.y_high = to + margin;
 }
 
-void fg_html_limit_lines(const fg_plot *at, const fg_tolerance *limit, const char *words) {
-  const double both[2] = {limit->lower, limit->upper};
-  char text[80];
-  for (int k = 0; k < 2; k++) {
-    if (!(both[k] >= at->y_low && both[k] <= at->y_high)) continue;
-    double y = fg_plot_y(at, both[k]);
-    fprintf(at->out, "<path class=\"limits-of\" d=\"M%.1f %.1fH%.1f\"/>", at->left, y, at->right);
-    snprintf(text, sizeof text, "%s %.7g%s", k ? "max" : "min", both[k], words);
-    fprintf(at->out, "<text class=\"told\" text-anchor=\"end\" x=\"%.1f\" y=\"%.1f\">", at->right,
-            k ? y - 5 : y + 15);
-    fg_html_text(at->out, text);
-    fputs("</text>\n", at->out);
+size_t fg_html_limit_labels(const fg_tolerance *limit, const char *words, fg_plot_label labels[2]) {
+  size_t count = 0;
+  if (isfinite(limit->lower)) labels[count++].y = limit->lower;
+  if (isfinite(limit->upper)) labels[count++].y = limit->upper;
+  for (size_t i = 0; i < count; i++) {
+    bool upper = labels[i].y == limit->upper;
+    labels[i].style = "told";
+    snprintf(labels[i].text, sizeof labels[i].text, "%s %s%.7g%s", upper ? "max" : "min",
+             labels[i].y < 0 ? "−" : "", fabs(labels[i].y), words);
   }
+  return count;
+}
+
+double fg_html_limit_room(const fg_plot_label *labels, size_t count) {
+  const double letter_px = 10.5, gap_px = 8;
+  size_t longest = 0;
+  for (size_t i = 0; i < count; i++) {
+    size_t letters = fg_utf8_count(labels[i].text);
+    if (letters > longest) longest = letters;
+  }
+  return longest ? letter_px * (double)longest + gap_px : 0;
+}
+
+void fg_html_limit_lines(const fg_plot *at, fg_plot_label *labels, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    double y = fg_plot_y(at, labels[i].y);
+    fprintf(at->out, "<path class=\"limits-of\" d=\"M%.1f %.1fH%.1f\"/>\n", at->left, y, at->right);
+  }
+  fg_plot_labels(at, labels, count, FG_PLOT_LABEL_GAP_PX);
 }
 
 /* A cross over what fails, a question mark over what cannot be told: the colour is not all. */
@@ -73,15 +98,19 @@ static void put_verdict(const panel *p, fg_verdict verdict, double x, double y) 
     fprintf(p->at.out, "<text class=\"told open\" x=\"%.1f\" y=\"%.1f\">?</text>\n", x + 8, y + 5);
 }
 
-/* At the plot's edge: an arrow, and what it is. */
+/* At the plot's edge: an arrow, and below it the value, upright: neighbours have columns as narrow
+ * as a letter is high. */
 static void put_beyond(const panel *p, double x, double value) {
+  const double arrow_px = 24, half_letter_px = 5;
   bool above = value > p->at.y_high;
   double y = above ? p->at.top : p->at.bottom, away = above ? 1 : -1;
   fprintf(p->at.out,
           "<path class=\"beyond-limit\" d=\"M%.1f %.1fl0 %.1fM%.1f %.1fl-6 %.1fm6 %.1fl6 %.1f\"/>"
-          "<text class=\"told\" x=\"%.1f\" y=\"%.1f\">%s%.*f</text>\n",
-          x, y + 20 * away, -18 * away, x, y + 2 * away, 7 * away, -7 * away, 7 * away, x + 9,
-          y + (above ? 16 : -6), value < 0 ? "−" : "", p->row->decimals, fabs(value));
+          "<text class=\"told\" style=\"text-anchor:%s\" transform=\"translate(%.1f %.1f) "
+          "rotate(-90)\">%s%.*f</text>\n",
+          x, y + 20 * away, -18 * away, x, y + 2 * away, 7 * away, -7 * away, 7 * away,
+          above ? "end" : "start", x + half_letter_px, y + arrow_px * away, value < 0 ? "−" : "",
+          p->row->decimals, fabs(value));
 }
 
 /* A part without a value: why, upright in its column. */
@@ -126,7 +155,10 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
   int last = fg_foil_parts_last(&parts);
   panel p = {{out, 500, 70, 490, 14, 210, 0.4, last + 0.6, 0, 1}, design, foil, &parts, row, limit};
+  fg_plot_label labels[2];
   char title[160];
+  size_t count = fg_html_limit_labels(limit, "", labels);
+  p.at.right -= fg_html_limit_room(labels, count);
   find_range(&p);
   fputs("<figure><h3>", out);
   fg_html_text(out, row->words);
@@ -135,7 +167,7 @@ static void put_panel(FILE *out, const fg_design *design, const fg_foil *foil,
   put_inside(&p);
   snprintf(title, sizeof title, "%s, %s", row->symbol, row->unit);
   fg_plot_y_axis(&p.at, row->unit[0] ? title : row->symbol);
-  fg_html_limit_lines(&p.at, limit, "");
+  fg_html_limit_lines(&p.at, labels, count);
   for (int number = 1; number <= last; number++) {
     char text[16];
     snprintf(text, sizeof text, "%d", number);

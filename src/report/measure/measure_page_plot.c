@@ -93,17 +93,16 @@ typedef struct error_plot {
   series series[2];
 } error_plot;
 
-static const error_plot of_bumps = {
-    "Springback error of every bump",
-    "springback error, %",
-    {{"radius_error_pct", "s1", "bump radius", " % of the radius", -7},
-     {"bump_angle_error_pct", "s2", "bump angle", " % of the angle", 7}}};
+static const error_plot of_bumps = {"Springback error of every bump",
+                                    "springback error, %",
+                                    {{"radius_error_pct", "s1", "bump radius", " % radius", -7},
+                                     {"bump_angle_error_pct", "s2", "bump angle", " % angle", 7}}};
 
 static const error_plot of_beams = {
     "Compliance and sagitta of every beam against the design",
     "against the design, %",
-    {{"compliance_error_pct", "s1", "compliance", " % of the compliance", -7},
-     {"sagitta_error_pct", "s2", "sagitta", " % of the sagitta", 7}}};
+    {{"compliance_error_pct", "s1", "compliance", " % compliance", -7},
+     {"sagitta_error_pct", "s2", "sagitta", " % sagitta", 7}}};
 
 /* Crushed bumps lie far out: where the others are is what the plot must show. */
 static bool is_shown(const fg_foil_parts *parts, size_t i) {
@@ -174,6 +173,16 @@ static const char *title_of_numbers(const fg_foil_parts *parts, const fg_foil *f
   return foil->flags & FG_FOIL_NO_LIP ? "bump" : "bump, 1 is next to the lip";
 }
 
+static size_t limit_labels(const fg_design *design, const error_plot *plot,
+                           fg_plot_label labels[4]) {
+  size_t count = 0;
+  for (size_t k = 0; k < 2; k++) {
+    const fg_tolerance *limit = limit_of(design, &plot->series[k]);
+    if (limit) count += fg_html_limit_labels(limit, plot->series[k].of_limit, &labels[count]);
+  }
+  return count;
+}
+
 void fg_html_errors(FILE *out, const fg_design *design, const fg_foil *foil) {
   const fg_foil_parts parts = fg_foil_parts_of(design, foil);
   const error_plot *plot = parts.owner == FG_QUANTITY_OF_BEAM ? &of_beams : &of_bumps;
@@ -183,7 +192,10 @@ void fg_html_errors(FILE *out, const fg_design *design, const fg_foil *foil) {
   for (size_t i = 0; i < parts.count; i++)
     if (fg_foil_part_number(&parts, i) > last) last = fg_foil_part_number(&parts, i);
   error_range(design, plot, &parts, range);
+  fg_plot_label labels[4];
+  size_t count = limit_labels(design, plot, labels);
   fg_plot at = {out, 1000, 70, 985, 34, 260, 0.4, last + 0.6, range[0], range[1]};
+  at.right -= fg_html_limit_room(labels, count);
   fg_plot_begin(&at, 310, plot->title);
   fg_plot_y_axis(&at, plot->axis);
   for (size_t i = 0; i < parts.count; i++) {
@@ -192,10 +204,9 @@ void fg_html_errors(FILE *out, const fg_design *design, const fg_foil *foil) {
     fg_plot_x_label(&at, fg_plot_x(&at, fg_foil_part_number(&parts, i)), number);
   }
   fg_plot_x_title(&at, title_of_numbers(&parts, foil));
+  fg_html_limit_lines(&at, labels, count);
   for (size_t k = 0; k < 2; k++) {
     const series *one = &plot->series[k];
-    const fg_tolerance *limit = limit_of(design, one);
-    if (limit) fg_html_limit_lines(&at, limit, one->of_limit);
     for (size_t i = 0; i < parts.count; i++)
       put_mark(&at, one, &parts, i);
     fprintf(

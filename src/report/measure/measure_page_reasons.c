@@ -6,13 +6,11 @@
 
 /* "4.042 %, max 3" of the first that lies farthest out; the others by their numbers. */
 static void put_number(FILE *out, const fg_judgement *one) {
-  const fg_tolerance *limit = one->tolerance;
   int decimals = one->row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(one->row, one->u);
   if (!isfinite(one->value)) return;
-  bool high = !(one->value - limit->lower < limit->upper - one->value);
   fprintf(out, " (%s%.*f%s%s, %s %.7g)", one->value < 0 ? "−" : "", decimals, fabs(one->value),
-          one->row->unit[0] ? " " : "", one->row->unit, high ? "max" : "min",
-          high ? limit->upper : limit->lower);
+          one->row->unit[0] ? " " : "", one->row->unit, one->margin.upper ? "max" : "min",
+          one->margin.limit);
 }
 
 static bool is_told(const fg_judgement *one, fg_verdict verdict) {

@@ -3,7 +3,7 @@
 #define FG_REPORT_MEASURE_MEASURE_PAGE_TABLES_H
 
 #include "report/measure/measure_page_parts.h"
-#include "report/plot.h"
+#include "report/plot_marks.h"
 
 void fg_html_part_table(FILE *out, const fg_design *design, const fg_foil *foil);
 void fg_html_disc_table(FILE *out, const fg_design *design, const fg_measurement *measurement);
@@ -29,8 +29,12 @@ void fg_html_why(FILE *out, const fg_design *design, const fg_foil *foil,
 
 /* A plot of every toleranced quantity of the bumps. */
 void fg_html_limits(FILE *out, const fg_design *design, const fg_foil *foil);
-/* The limits that lie in a plot, with their values and `words` behind them. */
-void fg_html_limit_lines(const fg_plot *at, const fg_tolerance *limit, const char *words);
+/* The limits that are set, with `words` behind their values; returns how many. */
+size_t fg_html_limit_labels(const fg_tolerance *limit, const char *words, fg_plot_label labels[2]);
+/* Right of a plot, for the labels; 0 without one. */
+double fg_html_limit_room(const fg_plot_label *labels, size_t count);
+/* A line for each limit, and the labels beside the plot. */
+void fg_html_limit_lines(const fg_plot *at, fg_plot_label *labels, size_t count);
 
 /* ---- several foils (measure_page_summary.c) ---- */
 

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "core/utf8.h"
 #include "foilgauge/words.h"
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
@@ -36,10 +37,7 @@ int fg_report_decimals(const fg_quantity *row, double u) {
 }
 
 static int text_width(const char *text) {
-  int width = 0;
-  for (; *text; text++)
-    if (((unsigned char)*text & 0xC0) != 0x80) width++; /* not a UTF-8 continuation byte */
-  return width;
+  return (int)fg_utf8_count(text);
 }
 
 static int number_width(double value, int decimals) {

@@ -6,6 +6,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/utf8.h"
 #include "foilgauge/words.h"
 #include "report/drawing.h"
 
@@ -73,19 +74,10 @@ static bool is_free(const cells *at, double left, double top, double right, doub
   return true;
 }
 
-/* How far beyond its limit, in U or in shares of the limit: what the eye is led to. */
-static double excess(const fg_judgement *judgement) {
-  const fg_tolerance *limit = judgement->tolerance;
-  double beyond = fmax(judgement->value - limit->upper, limit->lower - judgement->value);
-  double width = limit->upper - limit->lower;
-  return beyond / (isfinite(width) && width > 0 ? width : fabs(judgement->value));
-}
-
+/* A place without a value is worse than any value. */
 static bool is_worse(const fg_judgement *one, const fg_judgement *other) {
-  if (!one || !other) return !one;
-  bool fails = one->verdict == FG_VERDICT_FAIL;
-  if (fails != (other->verdict == FG_VERDICT_FAIL)) return fails;
-  return excess(one) > excess(other);
+  if (!one || !other) return !one && other;
+  return fg_judgement_compare(one, other) < 0;
 }
 
 static const fg_judgement *find_worst(const fg_decision *decision, int number) {
@@ -101,15 +93,13 @@ static const fg_judgement *find_worst(const fg_decision *decision, int number) {
 
 /* "3: R 3.454 mm, max 3.408". */
 static void write_text(const fg_judgement *worst, char text[TEXT_BYTES]) {
-  const fg_tolerance *limit = worst->tolerance;
   int decimals =
       worst->row->kind == FG_QUANTITY_COUNT ? 0 : fg_report_decimals(worst->row, worst->u);
-  bool high = !(worst->value - limit->lower < limit->upper - worst->value);
   char number[16] = "";
   if (worst->number) snprintf(number, sizeof number, "%d: ", worst->number);
   snprintf(text, TEXT_BYTES, "%s%s %s%.*f %s, %s %.7g%s", number, worst->row->symbol,
            worst->value < 0 ? "−" : "", decimals, fabs(worst->value), worst->row->unit,
-           high ? "max" : "min", high ? limit->upper : limit->lower,
+           worst->margin.upper ? "max" : "min", worst->margin.limit,
            worst->verdict == FG_VERDICT_FAIL ? "" : " ?");
 }
 
@@ -118,9 +108,7 @@ static mark *add_text(marks *at, const char *text, fg_point where, double ring_m
   mark *added = &at->list[at->count++];
   *added = (mark){.at = where, .ring_mm = ring_mm};
   snprintf(added->text, sizeof added->text, "%s", text);
-  size_t letters = 0;
-  for (const char *c = added->text; *c; c++)
-    letters += ((unsigned char)*c & 0xC0) != 0x80;
+  size_t letters = fg_utf8_count(added->text);
   double unit = at->canvas->unit_px;
   added->width_px = ((double)letters * letter_units * width_per_height + 2 * gap_units) * unit;
   added->height_px = (letter_units + 2 * gap_units) * unit;

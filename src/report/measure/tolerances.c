@@ -35,12 +35,24 @@ fg_verdict fg_judge_value(const fg_tolerance *tolerance, double value, double u)
   return FG_VERDICT_UNDECIDED;
 }
 
-fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b) {
-  static const int severity[] = {
+/* Higher is worse. */
+static int rank_of(fg_verdict verdict) {
+  static const int rank[] = {
       [FG_VERDICT_NONE] = 0,         [FG_VERDICT_PASS] = 1, [FG_VERDICT_UNDECIDED] = 2,
       [FG_VERDICT_NOT_MEASURED] = 3, [FG_VERDICT_FAIL] = 4,
   };
-  return severity[a] >= severity[b] ? a : b;
+  return rank[verdict];
+}
+
+fg_verdict fg_verdict_worse(fg_verdict a, fg_verdict b) {
+  return rank_of(a) >= rank_of(b) ? a : b;
+}
+
+int fg_judgement_compare(const fg_judgement *a, const fg_judgement *b) {
+  int ranks = rank_of(b->verdict) - rank_of(a->verdict);
+  if (ranks) return ranks;
+  if (a->severity != b->severity) return a->severity > b->severity ? -1 : 1;
+  return a->number - b->number;
 }
 
 void fg_outcome_add(fg_report_outcome *sum, const fg_report_outcome *part) {
@@ -62,15 +74,41 @@ static void add_unmeasured(fg_report_outcome *outcome) {
                  &(fg_report_outcome){.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1});
 }
 
-static fg_judgement judge(const fg_tolerance *tolerance, const fg_quantity *row, const void *object,
-                          int number) {
+/* How far a value may lie from where it should be. Values nearer than U to each other are not told
+ * apart, so it is U at least; a count without U differs by 1 at least. */
+static double allowed_deviation(const fg_design *design, const fg_tolerance *tolerance,
+                                const fg_quantity *row, double limit, double u) {
+  double expanded = u > 0 ? FG_COVERAGE_FACTOR * u : 0, nominal = 0;
+  double allowed = (tolerance->upper - tolerance->lower) / 2;
+  if (!isfinite(allowed)) {
+    fg_nominal derived;
+    if (row->nominal && fg_design_derive(NULL, design, &derived) == FG_OK)
+      nominal = row->nominal(design, &derived);
+    allowed = fabs(limit - (isfinite(nominal) ? nominal : 0));
+  }
+  allowed = fmax(allowed, expanded);
+  return allowed > 0 ? allowed : 1;
+}
+
+static double severity_of(const fg_design *design, const fg_tolerance *tolerance,
+                          const fg_quantity *row, const fg_margin *margin, double u) {
+  if (isnan(margin->inside)) return INFINITY;
+  if (!isfinite(margin->limit)) return 0;
+  return 1 - margin->inside / allowed_deviation(design, tolerance, row, margin->limit, u);
+}
+
+static fg_judgement judge(const fg_design *design, const fg_tolerance *tolerance,
+                          const fg_quantity *row, const void *object, int number) {
   double value = fg_quantity_value(row, object), u = fg_quantity_uncertainty(row, object);
   fg_verdict verdict = fg_judge_value(tolerance, value, u);
+  fg_margin margin = fg_margin_to(tolerance->lower, tolerance->upper, value);
   return (fg_judgement){.tolerance = tolerance,
                         .row = row,
                         .number = number,
                         .value = value,
                         .u = u,
+                        .margin = margin,
+                        .severity = severity_of(design, tolerance, row, &margin, u),
                         .exceeded = verdict == FG_VERDICT_FAIL,
                         .verdict = verdict};
 }
@@ -85,6 +123,8 @@ static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_quanti
                         .number = number,
                         .value = NAN,
                         .u = NAN,
+                        .margin = fg_margin_to(tolerance->lower, tolerance->upper, NAN),
+                        .severity = INFINITY,
                         .missing = !hidden,
                         .verdict = hidden ? FG_VERDICT_NOT_MEASURED : FG_VERDICT_FAIL};
 }
@@ -203,21 +243,22 @@ static void take(fg_decision *decision, fg_judgement judgement) {
   outcome->not_measured += judgement.verdict == FG_VERDICT_NOT_MEASURED;
 }
 
-static void judge_bumps(const fg_tolerance *tolerance, const fg_quantity *row, int last,
-                        const fg_foil *foil, fg_decision *decision) {
+static void judge_bumps(const fg_design *design, const fg_tolerance *tolerance,
+                        const fg_quantity *row, int last, const fg_foil *foil,
+                        fg_decision *decision) {
   int found = last_found(foil);
   for (int number = 1; number <= last; number++) {
     const fg_bump *bump = find_bump(foil, number);
     bool hidden = number > found && may_be_hidden(foil);
-    take(decision, bump ? judge(tolerance, row, bump, number)
+    take(decision, bump ? judge(design, tolerance, row, bump, number)
                         : judge_nothing(tolerance, row, number, hidden));
   }
 }
 
-static void judge_beams(const fg_tolerance *tolerance, const fg_quantity *row, const fg_foil *foil,
-                        fg_decision *decision) {
+static void judge_beams(const fg_design *design, const fg_tolerance *tolerance,
+                        const fg_quantity *row, const fg_foil *foil, fg_decision *decision) {
   for (size_t i = 0; i < foil->beam_count; i++)
-    take(decision, judge(tolerance, row, &foil->beams[i], foil->beams[i].number));
+    take(decision, judge(design, tolerance, row, &foil->beams[i], foil->beams[i].number));
 }
 
 static bool is_sized(const fg_beam *beam) {
@@ -253,11 +294,11 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_FOIL, tolerance->quantity);
-    if (row) take(decision, judge(tolerance, row, foil, 0));
+    if (row) take(decision, judge(design, tolerance, row, foil, 0));
     row = fg_quantity_find(FG_QUANTITY_OF_BUMP, tolerance->quantity);
-    if (row) judge_bumps(tolerance, row, last, foil, decision);
+    if (row) judge_bumps(design, tolerance, row, last, foil, decision);
     row = fg_quantity_find(FG_QUANTITY_OF_BEAM, tolerance->quantity);
-    if (row) judge_beams(tolerance, row, foil, decision);
+    if (row) judge_beams(design, tolerance, row, foil, decision);
   }
   judge_whole(design, foil, &decision->outcome);
   return FG_OK;
@@ -269,7 +310,7 @@ fg_status fg_disc_decide(fg_context *ctx, const fg_design *design, const fg_disc
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_DISC, tolerance->quantity);
-    if (row) take(decision, judge(tolerance, row, disc, disc->number));
+    if (row) take(decision, judge(design, tolerance, row, disc, disc->number));
   }
   return FG_OK;
 }
@@ -301,7 +342,7 @@ fg_status fg_bearing_decide(fg_context *ctx, const fg_design *design,
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_of_bearing_for(tolerance->quantity);
     if (!row) continue;
-    fg_judgement judgement = judge(tolerance, row, clearance ? clearance : &unknown, 0);
+    fg_judgement judgement = judge(design, tolerance, row, clearance ? clearance : &unknown, 0);
     take(decision, clearance && whole ? judgement : judge_part(tolerance, judgement));
   }
   return FG_OK;
@@ -318,7 +359,8 @@ static fg_verdict object_verdict(const fg_design *design, fg_quantity_owner owne
   for (size_t i = 0; i < design->tolerance_count; i++) {
     const fg_quantity *row = fg_quantity_find(owner, design->tolerances[i].quantity);
     if (row)
-      verdict = fg_verdict_worse(verdict, judge(&design->tolerances[i], row, object, 0).verdict);
+      verdict =
+          fg_verdict_worse(verdict, judge(design, &design->tolerances[i], row, object, 0).verdict);
   }
   return verdict;
 }
