@@ -25,7 +25,7 @@ import math
 
 import numpy as np
 
-from other_bearing_kinds import KINDS, PULL_KINDS
+from other_bearing_kinds import KINDS, PULL_KINDS, draw_spec
 from other_bearing_mechanics import strokes_of, truth_of
 
 COLUMNS = "bearing,azimuth_deg,cycle,time_s,displacement_mm,force_N"
@@ -140,16 +140,6 @@ def make_record(spec, seed, name="B", deviates=None):
     return "\n".join(lines) + "\n", truth
 
 
-def draw_spec(kind, seed):
-    """The spec of a record of a kind; follows from kind and seed alone."""
-    return KINDS[kind][0](np.random.default_rng([seed, 0, list(KINDS).index(kind)]))
-
-
-def draw_pulls(kind, seed):
-    """The spec of a break-away test of a kind."""
-    return PULL_KINDS[kind][0](np.random.default_rng([seed, 3, list(PULL_KINDS).index(kind)]))
-
-
 def pull_force(spec, weight):
     """Force at the rotor's surface at which the foils let go, under a true dead weight."""
     normal = max(weight + spec["preload_n"], 1e-9)
@@ -196,7 +186,7 @@ def main():
             spec = json.load(file)
         spec = spec.get("spec", spec)
     if args.kind in PULL_KINDS or "dead_weights_n" in spec:
-        text, truth = make_break_away(spec or draw_pulls(args.kind, args.seed), args.seed)
+        text, truth = make_break_away(spec or draw_spec(args.kind, args.seed), args.seed)
     else:
         text, truth = make_record(spec or draw_spec(args.kind, args.seed), args.seed)
     with open(args.out, "w", encoding="utf-8") as file:

@@ -31,8 +31,8 @@ from statistics import NormalDist
 
 import numpy as np
 
-from other_bearing import draw_pulls, draw_spec, make_break_away, make_record
-from other_bearing_kinds import KINDS, PULL_KINDS
+from other_bearing import make_break_away, make_record
+from other_bearing_kinds import KINDS, PULL_KINDS, draw_spec, generator_of
 
 # Flags that tell of a test and cast no doubt on a value. Every other flag, also one that is new, does.
 INFORMATIVE = {"stiffness_at_end", "one_cycle", "line_not_checked"}
@@ -174,7 +174,7 @@ def spread(rng, n):
 
 def drawn_gains(kind, records, seed):
     """Two gains of every record, in their u; each gain alone is spread evenly."""
-    rng = np.random.default_rng([seed, [*KINDS, *PULL_KINDS].index(kind)])
+    rng = generator_of(kind, seed + 1_000_000)
     return list(zip(spread(rng, records), spread(rng, records), strict=True))
 
 
@@ -201,7 +201,7 @@ def judge_pulls(program, kind, records, seed):
     with tempfile.TemporaryDirectory() as folder:
         load, path = os.path.join(folder, "load.csv"), os.path.join(folder, f"{kind}.csv")
         for i in range(records):
-            text, truth = make_break_away(draw_pulls(kind, seed + i), seed + i, gains[i])
+            text, truth = make_break_away(draw_spec(kind, seed + i), seed + i, gains[i])
             spec = draw_spec("interference" if truth["preload_n"] else "clean", seed + i) | {"azimuths": 1}
             for name, content in ((path, text), (load, make_record(spec, seed + i)[0])):
                 with open(name, "w", encoding="utf-8") as file:

@@ -4,6 +4,9 @@ KINDS names them with what is special about each. All else of a spec is drawn al
 noise. A new kind is a new row."""
 
 import copy
+import zlib
+
+import numpy as np
 
 
 def quiet(rng):
@@ -100,6 +103,28 @@ def friction_without_load(rng):
     return spec
 
 
+def partly_pressed(rng):
+    """An ellipse so large that along its small axis both foils press the rotor, and along the other there is a gap."""
+    spec = unequal(rng, 6)
+    ellipse = [2, rng.uniform(0.02, 0.03), rng.uniform(0, 180)]
+    spec["gap"] = {"mean_mm": rng.uniform(0.008, 0.015), "harmonics": [ellipse]}
+    return spec
+
+
+def anything(rng):
+    """Whatever a rig may do, at once."""
+    spec = unequal(rng, int(rng.integers(3, 13)))
+    spec["cycles"] = int(rng.integers(1, 6))
+    spec["rig"] |= {"control": str(rng.choice(["load", "displacement"])), "pace": str(rng.choice(["sine", "triangle"])),
+                    "friction_n": float(rng.choice([0, rng.uniform(0.2, 2)])),
+                    "samples_in_gap": int(rng.integers(0, 11)), "samples_per_cycle": int(rng.integers(200, 1001))}  # fmt: skip
+    spec["instruments"] |= {"drift_mm_per_cycle": rng.uniform(-0.002, 0.002), "warming_mm": rng.uniform(-0.004, 0.004),
+                            "displacement_step_mm": float(rng.choice([1e-5, 1e-4, 1e-3])),
+                            "force_correlated_n": rng.uniform(0, 0.1)}  # fmt: skip
+    spec["dropouts"] = [{"share": rng.uniform(0.01, 0.06)} for _ in range(rng.integers(0, 3))]
+    return spec
+
+
 KINDS = {
     "clean": (quiet, "displacement control, little noise"),
     "ordinary": (ordinary, "displacement control, noise of 0.1 to 0.3 N and um"),
@@ -126,6 +151,8 @@ KINDS = {
     "foil_friction": (friction_without_load, "0.5 to 2 N of the foils that do not grow with the load"),
     "one_cycle": (lambda rng: copy.deepcopy(ordinary(rng)) | {"cycles": 1}, "one cycle"),
     "five_cycles": (lambda rng: copy.deepcopy(ordinary(rng)) | {"cycles": 5}, "five cycles"),
+    "partly_pressed": (partly_pressed, "an ellipse with a gap along one axis and none along the other"),
+    "anything": (anything, "3 to 12 azimuths, either control, drift, dropouts, steps, friction, 1 to 5 cycles at once"),
 }  # fmt: skip
 
 
@@ -134,7 +161,8 @@ def pulls(rng, **others):
     spec = {"dead_weights_n": [10, 20, 40, 80, 120, 160, 200, 240, 280, 319.5], "repeats": 5,
             "friction_coefficient": rng.uniform(0.02, 0.08), "falls_with_load": 0.0, "preload_n": rng.uniform(10, 80),
             "diameter_mm": 40, "length_mm": 40, "column": "torque_N_mm", "scatter_pct": 3.0, "noise_n": 0.02,
-            "u_force_pct": 1.0, "u_weight_pct": 1.0, "step": 0.001, "rig_torque_n_mm": 0.0, "rig_torque_given": True}  # fmt: skip
+            "u_force_pct": 1.0, "u_weight_pct": 1.0, "step": 0.001,
+            "rig_torque_n_mm": 0.0, "rig_torque_given": True}  # fmt: skip
     return spec | others
 
 
@@ -151,3 +179,13 @@ PULL_KINDS = {
     "pulls_curved": (lambda rng: pulls(rng, falls_with_load=rng.uniform(0.1, 0.25)),
                      "a coefficient that falls with the load's power: no line through the weights"),
 }  # fmt: skip
+
+
+def generator_of(kind, seed):
+    """Random generator of a kind and a seed, whatever other kinds there are."""
+    return np.random.default_rng([seed, zlib.crc32(kind.encode())])
+
+
+def draw_spec(kind, seed):
+    """The spec of a record of a kind; follows from kind and seed alone."""
+    return (KINDS | PULL_KINDS)[kind][0](generator_of(kind, seed))

@@ -6,12 +6,12 @@ A side of a direction is a foil behind a gap. Its force over the compression y i
 
 with s_i = (y - p_i) / r_i the normalised stop of a play operator p_i of half-width r_i (Prandtl and Ishlinskii): +1
 while the load grows and -1 while it falls, after a reversal of 2 r_i. The shares a_i are Coulomb friction that grows
-with the load, the c_i friction that does not. A foil pushes only: where F would be negative the rotor leaves it, and the foil
-stays where it is until the rotor returns.
+with the load, the c_i friction that does not. A foil pushes only: where F would be negative the rotor leaves it, and the
+foil stays where it is until the rotor returns.
 
 The rotor's path is a list of strokes, each monotone in its displacement x; the load cell sees F of the + side, less F
-of the - side, and the rig's own dry friction against the motion. Under load control a stroke ends where the cell's force
-reaches the largest load, under displacement control where x reaches the place at which a first load had reached it.
+of the - side, and the rig's own dry friction against the motion. Under load control a stroke ends where the cell's
+force reaches the largest load, under displacement control where x reaches the place at which a first load had reached it.
 
 True values are of the steady cycle (the third: the first begins with foils that have never been loaded), on a grid of
 0.05 um, without noise, gains, offsets or drift. DEFINITIONS has them in words."""
@@ -43,7 +43,7 @@ DEFINITIONS = {
     "interference_force_n": "mean force of the direction's two foils on the centred rotor, without friction; 0 with a gap",
     "smallest_axis_deg": "direction (mod 180) of the smallest clearance over all directions, not only those tested; null "
     "where the sides' gaps have no even harmonic, so that all directions are alike",
-    "smallest_clearance_mm": "clearance_foil_mm in that direction",
+    "smallest_clearance_mm": "clearance_foil_mm in that direction; null where it has no gap",
     "axis_knowable": "the tested directions tell a second harmonic: three different lines or more",
     "preload_n": "mean interference_force_n over the directions",
 }
@@ -240,7 +240,7 @@ def smallest_axis(spec):
     i = int(np.argmin(clearance))
     before, here, after = clearance[i - 1], clearance[i], clearance[(i + 1) % len(angles)]
     shift = (before - after) / (2 * (before - 2 * here + after))
-    return float((angles[i] + 0.5 * shift) % 180), float(here)
+    return float((angles[i] + 0.5 * shift) % 180), float(here) if gaps[i] > 0 else None
 
 
 def truth_of(spec, azimuths):
