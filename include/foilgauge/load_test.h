@@ -19,6 +19,13 @@
  * there (the halves of one cycle's samples, where there is but one): the largest of noisy values
  * would be too large.
  *
+ * UNSAMPLED STRETCHES, of a dropout or of a rotor that jumps through the gap under load control. No
+ * regression reaches over one: a contact is found on its own side's loaded branch. A threshold that
+ * is passed within one lies where the force, which rises and no more than twice as steeply as
+ * beside it, may pass it: a rectangular distribution, in u, and a flag. Contacts that contradict
+ * each other (push and pull on one side of the gap; unloading inside of loading, or further out
+ * than friction over the stiffness) withhold the clearance.
+ *
  * THE WINDOW of a regression grows as long as the intervals of all windows so far have a value in
  * common (A. Goldenshluger, A. Nemirovski, On spatially adaptive estimation of nonparametric
  * regression, Math. Methods Statist. 6, 1997; intersection of confidence intervals).
@@ -124,17 +131,21 @@ typedef struct fg_load_value {
 
 /* What is wrong with a direction. */
 enum {
-  FG_LOAD_NO_CONTACT = 1 << 0,    /* |F| never passes the threshold */
-  FG_LOAD_ONE_SIDE = 1 << 1,      /* pushed or pulled only */
-  FG_LOAD_TOO_FEW = 1 << 2,       /* too few samples to regress */
-  FG_LOAD_WRONG_WAY = 1 << 3,     /* loops that give energy */
-  FG_LOAD_FORCE_TURNED = 1 << 4,  /* the force ran against the displacement; it was turned */
-  FG_LOAD_AT_END = 1 << 5,        /* stiffness is largest where the test ends */
-  FG_LOAD_FRICTION_HIGH = 1 << 6, /* friction in the middle is more than half of the threshold */
-  FG_LOAD_ONE_CYCLE = 1 << 7,     /* nothing says how cycles differ */
-  FG_LOAD_ZERO_OFF = 1 << 8,      /* the load cell's zero exceeds half of the threshold */
-  FG_LOAD_NO_GAP = 1 << 9,        /* clearance at or below zero */
-  FG_LOAD_UNITS = 1 << 10,        /* clearance or stiffness of no bearing of that diameter */
+  FG_LOAD_NO_CONTACT = 1 << 0,      /* |F| never passes the threshold */
+  FG_LOAD_ONE_SIDE = 1 << 1,        /* pushed or pulled only */
+  FG_LOAD_TOO_FEW = 1 << 2,         /* too few samples to regress */
+  FG_LOAD_WRONG_WAY = 1 << 3,       /* loops that give energy */
+  FG_LOAD_FORCE_TURNED = 1 << 4,    /* the force ran against the displacement; it was turned */
+  FG_LOAD_AT_END = 1 << 5,          /* stiffness is largest where the test ends */
+  FG_LOAD_FRICTION_HIGH = 1 << 6,   /* friction in the middle is more than half of the threshold */
+  FG_LOAD_ONE_CYCLE = 1 << 7,       /* nothing says how cycles differ */
+  FG_LOAD_ZERO_OFF = 1 << 8,        /* the load cell's zero exceeds half of the threshold */
+  FG_LOAD_NO_GAP = 1 << 9,          /* clearance at or below zero */
+  FG_LOAD_UNITS = 1 << 10,          /* clearance or stiffness of no bearing of that diameter */
+  FG_LOAD_UNSAMPLED = 1 << 11,      /* the threshold is passed where no sample lies */
+  FG_LOAD_SAME_SIDE = 1 << 12,      /* push and pull contact on one side of the gap */
+  FG_LOAD_BRANCHES_APART = 1 << 13, /* loading and unloading contacts do not fit together */
+  FG_LOAD_CONTRADICTION = FG_LOAD_SAME_SIDE | FG_LOAD_BRANCHES_APART,
 };
 
 typedef struct fg_load_flag {

@@ -19,9 +19,10 @@ typedef struct fg_load_findings {
 } fg_load_findings;
 
 /* Between the strokes where the mean of both rises least: the load cell's zero, and the friction
- * that is passed without a foil. NaN where no such place stands out. */
+ * that is passed without a foil; the place is that of strokes that have not drifted. NaN where no
+ * such place stands out. */
 typedef struct fg_load_zero {
-  double force_n, friction_n;
+  double force_n, friction_n, place_mm;
 } fg_load_zero;
 fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_load_zero *zero);
 
@@ -32,6 +33,11 @@ typedef struct fg_load_levels {
 } fg_load_levels;
 fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load_levels levels,
                               fg_load_direction *direction, fg_load_findings *findings);
+
+/* Flags of contacts that contradict each other: push and pull on one side of the gap, loading and
+ * unloading further apart than friction can part them. */
+fg_status fg_load_check_contacts(fg_context *ctx, const fg_load_strokes *strokes, double gap_at_mm,
+                                 fg_load_direction *direction);
 
 /* Whether a stroke goes as far as the record does, on one side. */
 bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_direction *direction,

@@ -49,6 +49,14 @@ const fg_load_flag *fg_load_flags(void) {
       {FG_LOAD_UNITS, "units_suspect",
        "a clearance beyond 5 % of the diameter or below 1 um, or a stiffness beyond 1e5 N/mm: are "
        "the units what they say?"},
+      {FG_LOAD_UNSAMPLED, "unsampled",
+       "the threshold is passed in a stretch that the record did not sample: U holds the stretch, "
+       "and where that leaves nothing known there is no clearance"},
+      {FG_LOAD_SAME_SIDE, "same_side",
+       "push and pull contact lie on the same side of the gap: there is no clearance"},
+      {FG_LOAD_BRANCHES_APART, "branches_apart",
+       "loading and unloading pass the threshold further apart than friction and U explain: there "
+       "is no clearance"},
       {FG_LOAD_FORCE_TURNED, "force_turned",
        "the force runs against the displacement, as a reaction does; its sign was turned"},
       {FG_LOAD_AT_END, "stiffness_at_end",
@@ -99,14 +107,20 @@ static void forget_clearance(fg_load_direction *d) {
   d->push_mm = d->pull_mm = NAN;
 }
 
+/* An unsampled stretch may leave anything between nothing and twice the value. */
+static bool leaves_nothing(const fg_load_direction *d) {
+  return (d->flags & FG_LOAD_UNSAMPLED) && !(d->clearance.value > 2 * d->clearance.u_repeat);
+}
+
 /* What is no clearance though both thresholds are passed. */
 static void check_clearance(const fg_load_test *test, const fg_load_zero *zero,
                             fg_load_direction *d) {
   double t = test->options.threshold_n, c = d->clearance.value;
   if (fabs(zero->force_n) > t / 2) d->flags |= FG_LOAD_ZERO_OFF;
   if (zero->friction_n > t / 2) d->flags |= FG_LOAD_FRICTION_HIGH;
-  if (c <= 0) d->flags |= FG_LOAD_NO_GAP;
-  if ((d->flags & (FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP)) || zero->friction_n >= t)
+  if (c <= 0 && !leaves_nothing(d)) d->flags |= FG_LOAD_NO_GAP;
+  if ((d->flags & (FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP | FG_LOAD_CONTRADICTION)) ||
+      zero->friction_n >= t || leaves_nothing(d))
     forget_clearance(d);
   else if (c > clearance_share_max * test->options.diameter_mm || c < clearance_min_mm)
     d->flags |= FG_LOAD_UNITS;
@@ -123,7 +137,10 @@ static void forget_all(fg_load_direction *d) {
 }
 
 static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
-  enum { REASONS = FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP | FG_LOAD_WRONG_WAY | FG_LOAD_FRICTION_HIGH };
+  enum {
+    REASONS = FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP | FG_LOAD_WRONG_WAY | FG_LOAD_FRICTION_HIGH |
+              FG_LOAD_UNSAMPLED | FG_LOAD_CONTRADICTION
+  };
   if (isfinite(d->clearance.value)) {
     if (d->cycles < 2) d->flags |= FG_LOAD_ONE_CYCLE;
     return;
@@ -160,6 +177,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   d->zero_n = zero.force_n;
   levels.zero_n = isfinite(zero.force_n) ? zero.force_n : 0;
   FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, levels, d, findings));
+  FG_TRY_EXIT(fg_load_check_contacts(ctx, &strokes, zero.place_mm, d));
   check_clearance(test, &zero, d);
   FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
   if (d->stiffness.value > stiffness_max_n_mm) d->flags |= FG_LOAD_UNITS;

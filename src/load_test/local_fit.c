@@ -43,9 +43,26 @@ typedef struct sums {
   size_t count;
 } sums;
 
+/* First sample and the one after the last within the window about x, on this side of unsampled
+ * stretches; false: x lies in one. */
+static bool find_range(const fg_load_stroke *s, double x, double window, size_t *first,
+                       size_t *end) {
+  size_t at = fg_load_stroke_from(s, x);
+  if (at < s->count && s->after_hole[at] && x < s->x[at]) return false;
+  *first = *end = at;
+  while (*first > 0 && s->x[*first - 1] >= x - window &&
+         (*first == s->count || !s->after_hole[*first]))
+    --*first;
+  while (*end < s->count && s->x[*end] < x + window && (*end == at || !s->after_hole[*end]))
+    ++*end;
+  return true;
+}
+
 static sums sum_window(const fg_load_stroke *s, double x, double window) {
   sums all = {0};
-  for (size_t i = fg_load_stroke_from(s, x - window); i < s->count && s->x[i] < x + window; i++) {
+  size_t first, end;
+  if (!find_range(s, x, window, &first, &end)) return all;
+  for (size_t i = first; i < end; i++) {
     double z = (s->x[i] - x) / window, w = 1 - fabs(z * z * z), power[3] = {1, z, z * z};
     w *= w * w;
     all.count += w > 0.01;
@@ -71,17 +88,24 @@ bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, f
     for (int r = 0; r < 3; r++)
       for (int c = 0; c < 3; c++)
         variance[k] += inverse[k][r] * all.noise[r][c] * inverse[c][k];
-  *fit = (fg_local_fit){solution[0], sqrt(variance[0]), solution[1] / window_mm,
-                        sqrt(variance[1]) / window_mm, window_mm};
+  *fit = (fg_local_fit){solution[0],
+                        sqrt(variance[0]),
+                        solution[1] / window_mm,
+                        sqrt(variance[1]) / window_mm,
+                        window_mm,
+                        0};
   return true;
 }
 
-/* Half of a width that holds so many samples. */
+/* Half of a width that holds so many samples, or all of this side of unsampled stretches. */
 static double window_of(const fg_load_stroke *s, double x, size_t samples) {
   size_t low = fg_load_stroke_from(s, x), high = low;
   double window = window_share_min * (s->x[s->count - 1] - s->x[0]);
-  while (high - low < samples && high - low < s->count) {
-    bool left = low > 0 && (high == s->count || x - s->x[low - 1] < s->x[high] - x);
+  while (high - low < samples) {
+    bool lower = low > 0 && (low == s->count || !s->after_hole[low]);
+    bool upper = high < s->count && (high == low || !s->after_hole[high]);
+    if (!lower && !upper) break;
+    bool left = lower && (!upper || x - s->x[low - 1] < s->x[high] - x);
     window = fmax(window, left ? x - s->x[--low] : s->x[high++] - x);
   }
   return window;
@@ -146,27 +170,91 @@ bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_targ
   return found;
 }
 
-/* A coarse look: between which places the force passes the level. */
-static bool look(const fg_load_stroke *s, double level, double *x) {
-  double low = s->x[0], high = s->x[s->count - 1], step = (high - low) / LOOK_PLACES;
-  double outer = NAN;
-  for (int i = LOOK_PLACES; i >= 0; i--) {
-    fg_local_fit fit;
-    double at = low + i * step, window = fmax(2 * step, 1.0001 * window_of(s, at, LOOK_SAMPLES));
-    if (!fg_local_fit_at(s, at, window, &fit)) continue;
-    if (fit.value < level && outer >= level) {
-      *x = at + step / 2;
-      return true;
-    }
-    outer = fit.value;
-  }
+/* Between which places the force passes the level, seen from the largest displacement. */
+typedef struct look_around {
+  const fg_load_stroke *stroke;
+  double level;
+  double outer_x, outer_value, inner_x, inner_value;
+} look_around;
+
+/* False: the search goes on. */
+static bool visit(look_around *l, double x, double value) {
+  l->inner_x = x, l->inner_value = value;
+  if (value < l->level && l->outer_value >= l->level) return true;
+  l->outer_x = x, l->outer_value = value;
   return false;
+}
+
+/* Force at a sample beside an unsampled stretch; the sample's own where it is almost alone. */
+static double border_value(const fg_load_stroke *s, size_t i) {
+  fg_local_fit fit;
+  double window = 1.0001 * window_of(s, s->x[i], LOOK_SAMPLES);
+  return fg_local_fit_at(s, s->x[i], window, &fit) ? fit.value : s->f[i];
+}
+
+typedef enum looked { NOWHERE, SAMPLED, UNSAMPLED } looked;
+
+/* Coarsely, at places of a grid and on both borders of every unsampled stretch. */
+static looked look(look_around *l) {
+  const fg_load_stroke *s = l->stroke;
+  double low = s->x[0], high = s->x[s->count - 1], step = (high - low) / LOOK_PLACES;
+  size_t i = s->count - 1;
+  l->outer_value = NAN;
+  for (int k = LOOK_PLACES; k >= 0; k--) {
+    fg_local_fit fit;
+    double at = low + k * step;
+    for (; i > 0 && s->x[i] > at; i--) {
+      if (!s->after_hole[i]) continue;
+      if (visit(l, s->x[i], border_value(s, i))) return SAMPLED;
+      if (visit(l, s->x[i - 1], border_value(s, i - 1))) return UNSAMPLED;
+    }
+    double window = fmax(2 * step, 1.0001 * window_of(s, at, LOOK_SAMPLES));
+    if (fg_local_fit_at(s, at, window, &fit) && visit(l, at, fit.value)) return SAMPLED;
+  }
+  return NOWHERE;
+}
+
+/* In an unsampled stretch the force rises, and no steeper than so many times what is known beside
+ * it: that bounds the place, which is the middle of them, of a rectangular distribution. */
+static const double steeper_max = 2;
+
+static bool bracket(const look_around *l, double *x, double *u_x, fg_local_fit *fit) {
+  const fg_load_stroke *s = l->stroke;
+  double width = l->outer_x - l->inner_x, rise = l->outer_value - l->inner_value;
+  double slope = rise / width;
+  fg_local_fit border;
+  if (fg_local_fit_near(s, l->outer_x, 0, &border)) slope = fmax(slope, border.slope);
+  double steepest = steeper_max * slope;
+  double from = l->inner_x + (l->level - l->inner_value) / steepest;
+  double to = l->outer_x - (l->outer_value - l->level) / steepest;
+  size_t i = fg_load_stroke_from(s, l->outer_x);
+  *x = (from + to) / 2;
+  double u_within = (to - from) / sqrt(12);
+  *u_x = hypot(u_within, sqrt(s->variance[i]) / slope);
+  *fit = (fg_local_fit){.value = l->level,
+                        .u_value = slope * *u_x,
+                        .slope = slope,
+                        .u_slope = slope,
+                        .window_mm = width / 2,
+                        .u_unsampled_mm = u_within};
+  return true;
+}
+
+static bool is_within(const look_around *l, double x) {
+  size_t first, last;
+  if (!fg_load_stroke_part(l->stroke, (l->inner_x + l->outer_x) / 2, &first, &last)) return true;
+  return x >= l->stroke->x[first] && x <= l->stroke->x[last];
 }
 
 bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
                        fg_local_fit *fit) {
-  double low = stroke->x[0], high = stroke->x[stroke->count - 1], window = 0, u = 0;
-  if (stroke->count < SAMPLES_MIN || !(high > low) || !look(stroke, level_n, x)) return false;
+  double window = 0, u = 0;
+  look_around l = {.stroke = stroke, .level = level_n};
+  if (stroke->count < SAMPLES_MIN || !(stroke->x[stroke->count - 1] > stroke->x[0])) return false;
+  looked where = look(&l);
+  if (where == NOWHERE) return false;
+  if (where == UNSAMPLED) return bracket(&l, x, u_x, fit);
+  *x = (l.inner_x + l.outer_x) / 2;
   for (int step = 0; step < SOLVE_STEPS; step++) {
     /* The window is that of the second place: the first is a guess. */
     if (step < 2 ? !fg_local_fit_adaptive(stroke, *x, FG_LOCAL_VALUE, fit)
@@ -175,7 +263,7 @@ bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, 
     if (step < 2) window = fit->window_mm, u = fit->u_value;
     if (!(fit->slope > 0)) return false;
     *x += fmax(-window, fmin(window, (level_n - fit->value) / fit->slope));
-    if (*x < low || *x > high) return false;
+    if (!is_within(&l, *x)) return false;
   }
   if (!fg_local_fit_at(stroke, *x, window, fit) || !(fit->slope > 0)) return false;
   u = fmax(u, fit->u_value);

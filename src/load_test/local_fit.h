@@ -1,4 +1,5 @@
-/* Local quadratic regression of a stroke's force over its displacement. */
+/* Local quadratic regression of a stroke's force over its displacement. It never reaches over an
+ * unsampled stretch (holes.c): what lies on the other side is another branch. */
 #ifndef FG_LOAD_TEST_LOCAL_FIT_H
 #define FG_LOAD_TEST_LOCAL_FIT_H
 
@@ -8,6 +9,7 @@ typedef struct fg_local_fit {
   double value, u_value; /* F, N */
   double slope, u_slope; /* dF/dx, N/mm */
   double window_mm;      /* half of its width */
+  double u_unsampled_mm; /* of a crossing in an unsampled stretch, for that alone; 0: in none */
 } fg_local_fit;
 
 typedef enum fg_local_target { FG_LOCAL_VALUE, FG_LOCAL_SLOPE } fg_local_target;
@@ -25,8 +27,8 @@ bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm,
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
                            fg_local_fit *fit);
 
-/* Where the force passes `level_n`, seen from the largest displacement; the fit there. False: it
- * does not. */
+/* Where the force passes `level_n`, seen from the largest displacement; the fit there. In an
+ * unsampled stretch: within its bounds, see `u_unsampled_mm`. False: it does not. */
 bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
                        fg_local_fit *fit);
 

@@ -216,10 +216,18 @@ static void trim(double noise_mm, double step_mm, fg_load_stroke *s) {
   memmove(s->scatter, s->scatter + first, s->count * sizeof *s->scatter);
 }
 
+static void mark_holes(double resolution_mm, fg_load_strokes *strokes) {
+  for (size_t i = 0; i < strokes->count; i++) {
+    strokes->stroke[i].resolution_mm = resolution_mm;
+    fg_load_stroke_find_holes(&strokes->stroke[i]);
+  }
+}
+
 fg_status fg_load_find_noise(fg_context *ctx, const fg_load_sample *samples, double step_mm,
                              fg_load_strokes *strokes) {
   pilot p[2];
   if (!strokes->count) return FG_OK;
+  mark_holes(step_mm, strokes);
   for (int up = 0; up < 2; up++)
     FG_TRY(find_pilot(ctx, strokes, up ? 1 : -1, &p[up]));
   double first;
@@ -234,5 +242,6 @@ fg_status fg_load_find_noise(fg_context *ctx, const fg_load_sample *samples, dou
     find_turns(samples, strokes->noise_mm, s);
     trim(strokes->noise_mm, step_mm, s);
   }
+  mark_holes(fmax(strokes->noise_mm, step_mm), strokes);
   return FG_OK;
 }

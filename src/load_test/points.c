@@ -99,7 +99,7 @@ static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
 /* Where all strokes of one sense pass a force. */
 typedef struct passed {
   bool found;
-  double x, u, slope;
+  double x, u, u_unsampled, slope;
 } passed;
 
 static fg_status find_passed(fg_context *ctx, const fg_load_strokes *strokes, int sense,
@@ -111,14 +111,20 @@ static fg_status find_passed(fg_context *ctx, const fg_load_strokes *strokes, in
   if (status == FG_OK && fg_local_crossing(&merged, level_n, &p->x, &p->u, &fit)) {
     p->found = true;
     p->slope = fit.slope;
+    p->u_unsampled = fit.u_unsampled_mm;
   }
   fg_load_stroke_free(&merged);
   return status;
 }
 
+/* One unsampled stretch may hold both places: what it leaves open of them adds up. */
 static fg_load_value travel(const passed side[2]) {
-  if (!side[PUSH].found || !side[PULL].found) return (fg_load_value){NAN, NAN, NAN};
-  return (fg_load_value){side[PUSH].x - side[PULL].x, NAN, hypot(side[PUSH].u, side[PULL].u)};
+  const passed *push = &side[PUSH], *pull = &side[PULL];
+  if (!push->found || !pull->found) return (fg_load_value){NAN, NAN, NAN};
+  double both = push->u_unsampled + pull->u_unsampled;
+  double variance = push->u * push->u - push->u_unsampled * push->u_unsampled + pull->u * pull->u -
+                    pull->u_unsampled * pull->u_unsampled;
+  return (fg_load_value){push->x - pull->x, NAN, hypot(both, sqrt(fmax(0, variance)))};
 }
 
 fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load_levels levels,
@@ -137,6 +143,7 @@ fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load
     FG_TRY(find_passed(ctx, strokes, sense, level, &loading[side]));
     FG_TRY(find_passed(ctx, strokes, -sense, level, &unloading[side]));
     if (loading[side].found) findings->compliance_mm_n += 1 / loading[side].slope;
+    if (loading[side].found && loading[side].u_unsampled > 0) direction->flags |= FG_LOAD_UNSAMPLED;
   }
   direction->clearance = travel(loading);
   direction->unloading = travel(unloading);

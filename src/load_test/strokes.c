@@ -19,6 +19,7 @@ void fg_load_stroke_free(fg_load_stroke *stroke) {
   free(stroke->f);
   free(stroke->variance);
   free(stroke->scatter);
+  free(stroke->after_hole);
   *stroke = (fg_load_stroke){0};
 }
 
@@ -34,6 +35,7 @@ static fg_status allocate(fg_context *ctx, size_t count, fg_load_stroke *stroke)
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->x, (void **)&stroke->x));
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->f, (void **)&stroke->f));
   FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->scatter, (void **)&stroke->scatter));
+  FG_TRY(fg_memory_allocate(ctx, count, sizeof *stroke->after_hole, (void **)&stroke->after_hole));
   return fg_memory_allocate(ctx, count, sizeof *stroke->variance, (void **)&stroke->variance);
 }
 
@@ -177,7 +179,8 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
   cell *cells = NULL;
   size_t total = 0, n = 0;
   fg_status status = FG_OK;
-  *merged = (fg_load_stroke){.sense = count ? chosen[0]->sense : 0};
+  *merged = (fg_load_stroke){.sense = count ? chosen[0]->sense : 0,
+                             .resolution_mm = count ? chosen[0]->resolution_mm : 0};
   for (size_t i = 0; i < count; i++)
     total += chosen[i]->count;
   FG_TRY_EXIT(allocate(ctx, total, merged));
@@ -193,6 +196,7 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
     merged->variance[i] = cells[i].variance;
     merged->scatter[i] = cells[i].scatter;
   }
+  fg_load_stroke_find_holes(merged);
 exit:
   free(cells);
   return status;
@@ -226,6 +230,7 @@ fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, siz
                               fg_load_stroke *half) {
   *half = *stroke;
   half->x = half->f = half->variance = half->scatter = NULL;
+  half->after_hole = NULL;
   FG_TRY(allocate(ctx, (stroke->count - from + 1) / 2, half));
   for (size_t i = 0; i < half->count; i++) {
     half->x[i] = stroke->x[2 * i + from];
@@ -233,5 +238,6 @@ fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, siz
     half->variance[i] = stroke->variance[2 * i + from];
     half->scatter[i] = stroke->scatter[2 * i + from];
   }
+  fg_load_stroke_find_holes(half);
   return FG_OK;
 }

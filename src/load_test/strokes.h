@@ -9,7 +9,10 @@ typedef struct fg_load_stroke {
   double *x, *f;    /* count each */
   double *variance; /* of f about its course, by the noise of both columns */
   double *scatter;  /* squared, of f about the line between its neighbours */
+  bool
+      *after_hole; /* before this sample lies an unsampled stretch, see fg_load_stroke_find_holes */
   size_t count;
+  double resolution_mm;   /* displacement's noise or step: places that are nearer are one */
   size_t first, last;     /* of the direction's samples, the turning points */
   size_t begin, end;      /* of their record */
   double low_mm, high_mm; /* where it turns, without the displacement's noise */
@@ -40,6 +43,13 @@ fg_status fg_load_strokes_merge_sense(fg_context *ctx, const fg_load_strokes *st
 
 /* Index of the first sample at x or beyond; the count where there is none. */
 size_t fg_load_stroke_from(const fg_load_stroke *stroke, double x);
+
+/* Marks the stretches that the record did not sample: much wider than the distances of the places
+ * around them. What is regressed on one side of such a stretch says nothing of the other. */
+void fg_load_stroke_find_holes(fg_load_stroke *stroke);
+
+/* First and last sample about x without an unsampled stretch between; false: x lies in one. */
+bool fg_load_stroke_part(const fg_load_stroke *stroke, double x, size_t *first, size_t *last);
 
 /* Every second sample of a stroke, from `from` (0 or 1). */
 fg_status fg_load_stroke_half(fg_context *ctx, const fg_load_stroke *stroke, size_t from,

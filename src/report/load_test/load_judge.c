@@ -22,13 +22,21 @@ static void add(fg_verdict verdict, fg_report_outcome *sum) {
                                            .not_measured = verdict == FG_VERDICT_NOT_MEASURED});
 }
 
+/* A record that has a clearance, which it does not tell: no limit passes or fails for it. */
+static bool is_withheld(const fg_load_direction *d) {
+  return !isfinite(d->clearance.value) && (d->flags & (FG_LOAD_UNSAMPLED | FG_LOAD_CONTRADICTION));
+}
+
 static fg_report_outcome judge_direction(const fg_load_test *test, const fg_load_direction *d) {
   fg_report_outcome sum = {.verdict = FG_VERDICT_NONE};
-  if (!isfinite(d->clearance.value)) {
+  fg_verdict clearance = fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance);
+  if (clearance == FG_VERDICT_NOT_MEASURED && is_withheld(d)) {
+    clearance = FG_VERDICT_UNDECIDED;
+  } else if (!isfinite(d->clearance.value)) {
     add(FG_VERDICT_NOT_MEASURED, &sum);
-    return sum;
+    if (!is_withheld(d)) return sum;
   }
-  add(fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance), &sum);
+  add(clearance, &sum);
   add(fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness), &sum);
   add(fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss), &sum);
   return sum;
@@ -125,6 +133,13 @@ static void say_preload(const fg_load_test *test, char *words, size_t size) {
                  known ? ", " : join, tests - known, tests - known == 1 ? "" : "s");
 }
 
+static bool any_withheld(const fg_load_test *test) {
+  bool any = false;
+  for (size_t i = 0; i < test->direction_count; i++)
+    any = any || is_withheld(&test->directions[i]);
+  return any;
+}
+
 void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *words, size_t size) {
   *outcome = (fg_report_outcome){.verdict = FG_VERDICT_NONE};
   for (size_t i = 0; i < test->bearing_count; i++) {
@@ -139,8 +154,9 @@ void fg_load_judge(const fg_load_test *test, fg_report_outcome *outcome, char *w
     fg_text_clip(words + length, size - length, "; %zu value%s beyond a limit by more than U",
                  outcome->exceeded, outcome->exceeded == 1 ? " is" : "s are");
   else if (outcome->undecided)
-    fg_text_clip(words + length, size - length, "; %zu value%s with a limit within U",
-                 outcome->undecided, outcome->undecided == 1 ? "" : "s");
+    fg_text_clip(words + length, size - length, "; %zu value%s with a limit within U%s",
+                 outcome->undecided, outcome->undecided == 1 ? "" : "s",
+                 any_withheld(test) ? " or withheld" : "");
   else if (test->options.limit_count)
     fg_text_clip(words + length, size - length, "; what was measured is within the limits");
 }

@@ -1,0 +1,57 @@
+/* Stretches of a stroke that its record did not sample: a dropout, or a rotor under load control
+ * that jumps through the gap. */
+#include <math.h>
+
+#include "load_test/strokes.h"
+
+/* Distances between places that a stretch is held against on either side; nearer ones than so many
+ * resolutions are one place, as those of a rotor that rests under a weight are. */
+enum { AROUND = 24, AROUND_MIN = 4 };
+static const double place_resolutions = 3;
+
+/* A stretch this many times as wide as three quarters of the distances around it was not sampled.
+ * Of places at random that is one in a thousand; a few samples within a gap leave it one. */
+static const double hole_factor = 5, smaller_share = 0.75;
+
+typedef enum around { FEW, WIDE, DENSE } around;
+
+/* What most of the distances from sample `i` on, outwards, are. */
+static around look_around(const fg_load_stroke *s, size_t i, int step, double small) {
+  size_t count = 0, smaller = 0;
+  double place = place_resolutions * s->resolution_mm, last = s->x[i];
+  while (count < AROUND && (step > 0 ? i + 1 < s->count : i > 0)) {
+    i = step > 0 ? i + 1 : i - 1;
+    double distance = fabs(s->x[i] - last);
+    if (distance < place) continue;
+    last = s->x[i];
+    smaller += distance < small;
+    count++;
+  }
+  if (count < AROUND_MIN) return FEW;
+  return (double)smaller >= smaller_share * (double)count ? DENSE : WIDE;
+}
+
+static bool is_hole(const fg_load_stroke *s, size_t i) {
+  double small = (s->x[i] - s->x[i - 1]) / hole_factor;
+  if (small <= place_resolutions * s->resolution_mm) return false;
+  around right = look_around(s, i, 1, small), left = look_around(s, i - 1, -1, small);
+  return left != WIDE && right != WIDE && (left == DENSE || right == DENSE);
+}
+
+void fg_load_stroke_find_holes(fg_load_stroke *s) {
+  double mean = s->count > 1 ? (s->x[s->count - 1] - s->x[0]) / (double)(s->count - 1) : 0;
+  for (size_t i = 0; i < s->count; i++)
+    s->after_hole[i] = i && s->x[i] - s->x[i - 1] > mean && is_hole(s, i);
+}
+
+bool fg_load_stroke_part(const fg_load_stroke *s, double x, size_t *first, size_t *last) {
+  size_t at = fg_load_stroke_from(s, x);
+  if (!s->count) return false;
+  if (at < s->count && s->after_hole[at] && x < s->x[at]) return false;
+  *first = *last = at < s->count ? at : s->count - 1;
+  while (*first > 0 && !s->after_hole[*first])
+    --*first;
+  while (*last + 1 < s->count && !s->after_hole[*last + 1])
+    ++*last;
+  return true;
+}
