@@ -39,6 +39,9 @@ typedef struct fg_station_settings {
    * hidden until the command has ended well, then called station-DATE-TIME.png (.tif, .pnm where
    * the command names that). "": none. */
   char scan_command[1024];
+  /* How long after its last change a file that is not whole may still be received; then it is said
+   * what is missing. */
+  double receive_s;
   fg_station_check check;
 } fg_station_settings;
 

@@ -7,9 +7,9 @@
 #include "core/text.h"
 #include "report/measure/measure_page_parts.h"
 #include "station/actions.h"
+#include "station/news.h"
 #include "station/pages.h"
 #include "station/trend.h"
-#include "station/trouble.h"
 
 typedef struct route {
   const char *path;
@@ -185,31 +185,28 @@ static void act(fg_inspection *station, const fg_request *request, fg_action *ac
   if (status != FG_OK) say(answer, code_of(status), ctx.message);
 }
 
-/* What is there: the newest card, whether its picture is, whether the scanner is at work; for pages
- * that wait for something new. The reply ends the connection:
- * the browser asks again by itself. */
+/* The count of news, for pages that wait for more. The reply ends the connection: the browser asks
+ * again by itself. Nothing here waits for the database. */
 static void tell_events(fg_inspection *station, const fg_request *request, fg_answer *answer) {
-  fg_query query;
-  fg_context ctx;
-  long long newest = 0;
-  pthread_mutex_lock(&station->database.reading);
-  fg_query_begin(
-      station->database.reader,
-      "SELECT coalesce((SELECT max(id) FROM arrivals), 0) * 4 + (SELECT count(*) FROM "
-      "(SELECT 1 FROM pictures JOIN foils ON foils.id = foil WHERE scan = (SELECT max(id) "
-      "FROM scans) LIMIT 1))",
-      &query);
-  if (fg_query_row(&query)) newest = fg_query_get_integer(&query, 0);
-  newest += 2 * atomic_load(&station->scanning);
-  newest = newest * 16 + fg_station_trouble_changes(station) % 16;
-  fg_query_end(&ctx, &query, "reading the cards");
-  pthread_mutex_unlock(&station->database.reading);
+  long long news = fg_station_news(station);
   *answer = (fg_answer){.code = 200, .type = "text/event-stream"};
-  answer->wait = newest == request->last_event;
+  answer->wait = news == request->last_event;
   FILE *out = open_memstream(&answer->body, &answer->size);
   if (!out) return;
-  fprintf(out, "retry: 250\nid: %lld\ndata: %s\n\n", newest,
+  fprintf(out, "retry: 250\nid: %lld\ndata: %s\n\n", news,
           answer->wait || request->last_event < 0 ? "same" : "new");
+  fclose(out);
+}
+
+/* The heartbeat of a page: the count of news, and the time. A station that answers it stands behind
+ * a page with that count. */
+static void tell_alive(fg_inspection *station, fg_answer *answer) {
+  *answer = (fg_answer){.code = 200, .type = "text/plain; charset=utf-8"};
+  FILE *out = open_memstream(&answer->body, &answer->size);
+  if (!out) return;
+  fprintf(out, "%lld ", fg_station_news(station));
+  fg_page_time(out, fg_station_now());
+  fputc('\n', out);
   fclose(out);
 }
 
@@ -224,6 +221,8 @@ static bool give_fixed(fg_inspection *station, const fg_request *request, fg_ans
     give_text(answer, "text/javascript; charset=utf-8", fg_trend_script);
   else if (!strcmp(request->path, "/events"))
     tell_events(station, request, answer);
+  else if (!strcmp(request->path, "/alive"))
+    tell_alive(station, answer);
   else
     return false;
   return true;

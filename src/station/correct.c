@@ -1,40 +1,42 @@
-/* What somebody says of a foil, over what its file's name said: every change leaves a trail. */
+/* What somebody says of a foil, over what its file's name said: every change leaves a trail.
+ *
+ * A form carries what it showed (`was_serial` beside `serial`). Only a field that was changed in it
+ * is applied, and not over a change that somebody else made meanwhile: that, and a serial number
+ * that another foil has, is asked about. */
+#include "station/correct.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "station/actions.h"
-#include "station/naming.h"
+#include "station/news.h"
 
 static const struct {
-  const char *field;
+  const char *field, *was;
   const char *update;
-} fields[] = {
-    {"serial", "UPDATE foils SET serial = ? WHERE id = ?"},
-    {"lot", "UPDATE foils SET lot = ? WHERE id = ?"},
-    {"die", "UPDATE foils SET die = ? WHERE id = ?"},
-    {"operator", "UPDATE foils SET operator = ? WHERE id = ?"},
+} fields[FG_IDENTITY_FIELDS] = {
+    {"serial", "was_serial", "UPDATE foils SET serial = ? WHERE id = ?"},
+    {"lot", "was_lot", "UPDATE foils SET lot = ? WHERE id = ?"},
+    {"die", "was_die", "UPDATE foils SET die = ? WHERE id = ?"},
+    {"operator", "was_operator", "UPDATE foils SET operator = ? WHERE id = ?"},
 };
 
-/* TEXT_BYTES: a file's name, and the number of a foil of its bed. */
-enum { FIELDS = sizeof fields / sizeof *fields, TEXT_BYTES = FG_NAMED_TEXT + 16 };
+enum { SERIAL = 0, OPERATOR = FG_IDENTITY_FIELDS - 1 };
 
-typedef struct correction {
-  int64_t foil;
-  char before[FIELDS][TEXT_BYTES], after[FIELDS][TEXT_BYTES];
-  bool asked[FIELDS];
-  char by[TEXT_BYTES];
-} correction;
+const char *fg_identity_field(size_t field) {
+  return fields[field].field;
+}
 
 /* Without the spaces around it, which readers and fingers add. */
 static fg_status take_text(fg_context *ctx, const char *field, const char *given,
-                           char text[TEXT_BYTES]) {
+                           char text[FG_IDENTITY_BYTES]) {
   given += strspn(given, " ");
   size_t length = strlen(given);
   while (length && given[length - 1] == ' ')
     length--;
-  if (length >= TEXT_BYTES)
+  if (length >= FG_IDENTITY_BYTES)
     return fg_fail(ctx, FG_ERR_DATA, "The %s is too long: at most %d bytes.", field,
-                   TEXT_BYTES - 1);
+                   FG_IDENTITY_BYTES - 1);
   memcpy(text, given, length);
   text[length] = '\0';
   return FG_OK;
@@ -46,35 +48,69 @@ static bool is_given(const fg_request *request, const char *name) {
   return false;
 }
 
-/* A field that the form does not have stays as it is. */
-static fg_status take_form(fg_context *ctx, const fg_request *request, correction *asked) {
+/* A field that the form does not have, or that stands in it as it was, stays as it is. */
+static fg_status take_field(fg_context *ctx, const fg_request *request, size_t i,
+                            fg_identity_change *asked) {
+  const char *name = fields[i].field;
+  FG_TRY(take_text(ctx, name, fg_request_get(request, name), asked->after[i]));
+  FG_TRY(take_text(ctx, name, fg_request_get(request, fields[i].was), asked->was[i]));
+  asked->was_given[i] = is_given(request, fields[i].was);
+  asked->asked[i] =
+      is_given(request, name) && !(asked->was_given[i] && !strcmp(asked->was[i], asked->after[i]));
+  return FG_OK;
+}
+
+static fg_status take_form(fg_context *ctx, const fg_request *request, fg_identity_change *asked) {
   char *end;
   const char *id = fg_request_get(request, "foil");
-  *asked = (correction){.foil = strtoll(id, &end, 10)};
+  *asked = (fg_identity_change){.foil = strtoll(id, &end, 10)};
   if (*end || asked->foil <= 0) return fg_fail(ctx, FG_ERR_USAGE, "There is no such foil.");
-  for (size_t i = 0; i < FIELDS; i++) {
-    asked->asked[i] = is_given(request, fields[i].field);
-    FG_TRY(
-        take_text(ctx, fields[i].field, fg_request_get(request, fields[i].field), asked->after[i]));
-  }
-  if (asked->asked[0] && !asked->after[0][0])
+  for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
+    FG_TRY(take_field(ctx, request, i, asked));
+  if (asked->asked[SERIAL] && !asked->after[SERIAL][0])
     return fg_fail(ctx, FG_ERR_DATA,
                    "The serial number is empty: a foil needs one to be found again.");
+  /* Back to one of two pages of our own, whatever the form says. */
+  asked->to_now = !strcmp(fg_request_get(request, "back"), "/");
+  FG_TRY(take_text(ctx, "serial", fg_request_get(request, "also"), asked->also));
   return take_text(ctx, "name", fg_request_get(request, "by"), asked->by);
 }
 
-static fg_status read_before(fg_context *ctx, sqlite3 *writer, correction *asked) {
+static fg_status read_before(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
   fg_query query;
   fg_query_begin(writer, "SELECT serial, lot, die, operator FROM foils WHERE id = ?", &query);
   fg_query_integer(&query, asked->foil);
   bool found = fg_query_row(&query);
-  for (int i = 0; found && i < FIELDS; i++)
+  for (int i = 0; found && i < FG_IDENTITY_FIELDS; i++)
     snprintf(asked->before[i], sizeof asked->before[i], "%s", fg_query_get_text(&query, i));
   FG_TRY(fg_query_end(ctx, &query, "reading a foil"));
   return found ? FG_OK : fg_fail(ctx, FG_ERR_USAGE, "There is no such foil.");
 }
 
-static fg_status set_field(fg_context *ctx, sqlite3 *writer, const correction *asked, size_t i) {
+/* Whether it was changed by somebody else since the form was shown; not when to the same. */
+static bool is_overtaken(const fg_identity_change *asked, size_t i) {
+  char before[FG_IDENTITY_BYTES];
+  if (!asked->asked[i] || !asked->was_given[i]) return false;
+  if (take_text(NULL, "", asked->before[i], before) != FG_OK) return true;
+  return strcmp(before, asked->was[i]) != 0 && strcmp(before, asked->after[i]) != 0;
+}
+
+/* Whether another foil has the serial number, and nobody has said yet that this one has it, too. */
+static fg_status look_for_owner(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
+  fg_query query;
+  const char *serial = asked->after[SERIAL];
+  if (!asked->asked[SERIAL] || !strcmp(serial, asked->before[SERIAL]) ||
+      !strcmp(serial, asked->also))
+    return FG_OK;
+  fg_query_begin(writer, "SELECT 1 FROM foils WHERE serial = ? AND id <> ? LIMIT 1", &query);
+  fg_query_text(&query, serial);
+  fg_query_integer(&query, asked->foil);
+  asked->owned = fg_query_row(&query);
+  return fg_query_end(ctx, &query, "reading the serial numbers");
+}
+
+static fg_status set_field(fg_context *ctx, sqlite3 *writer, const fg_identity_change *asked,
+                           size_t i) {
   fg_query query;
   fg_query_begin(writer, fields[i].update, &query);
   fg_query_text(&query, asked->after[i]);
@@ -96,13 +132,19 @@ static fg_status set_field(fg_context *ctx, sqlite3 *writer, const correction *a
 }
 
 /* Whoever does not say who corrects is taken for the operator that the foil has then. */
-static fg_status change(fg_context *ctx, sqlite3 *writer, correction *asked) {
-  enum { OPERATOR = FIELDS - 1 };
+static fg_status change(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
   FG_TRY(read_before(ctx, writer, asked));
+  for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++) {
+    asked->overtaken[i] = is_overtaken(asked, i);
+    asked->held = asked->held || asked->overtaken[i];
+  }
+  FG_TRY(look_for_owner(ctx, writer, asked));
+  asked->held = asked->held || asked->owned;
+  if (asked->held) return FG_OK;
   if (!asked->by[0])
     snprintf(asked->by, sizeof asked->by, "%s",
              asked->asked[OPERATOR] ? asked->after[OPERATOR] : asked->before[OPERATOR]);
-  for (size_t i = 0; i < FIELDS; i++)
+  for (size_t i = 0; i < FG_IDENTITY_FIELDS; i++)
     if (asked->asked[i] && strcmp(asked->before[i], asked->after[i]) != 0)
       FG_TRY(set_field(ctx, writer, asked, i));
   return FG_OK;
@@ -110,13 +152,14 @@ static fg_status change(fg_context *ctx, sqlite3 *writer, correction *asked) {
 
 fg_status fg_action_correct(fg_context *ctx, fg_inspection *station, const fg_request *request,
                             fg_answer *answer) {
-  correction asked;
+  fg_identity_change asked;
   FG_TRY(take_form(ctx, request, &asked));
   FG_TRY(fg_station_database_begin(ctx, &station->database));
   FG_TRY(fg_station_database_end(ctx, &station->database,
                                  change(ctx, station->database.writer, &asked)));
-  /* Back to one of two pages of our own, whatever the form says. */
-  if (!strcmp(fg_request_get(request, "back"), "/"))
+  if (asked.held) return fg_page_identity(ctx, station, &asked, answer);
+  fg_station_tell(station);
+  if (asked.to_now)
     strcpy(answer->location, "/");
   else
     snprintf(answer->location, sizeof answer->location, "/foil?id=%lld", (long long)asked.foil);

@@ -4,6 +4,7 @@
 
 #include "report/measure/measure_page_parts.h"
 #include "station/check.h"
+#include "station/news.h"
 #include "station/pages.h"
 
 static const struct {
@@ -46,6 +47,21 @@ const char *fg_page_verdict_class(const char *verdict, bool withheld) {
   return "again";
 }
 
+fg_card_look fg_page_card_look(const char *kind, const char *verdict, bool withheld) {
+  static const struct {
+    const char *kind;
+    fg_card_look look;
+  } rows[] = {
+      {"known", {"MEASURED BEFORE", "none"}},  {"duplicate", {"SAME SCAN", "again"}},
+      {"check", {"CHECKED", "none"}},          {"foreign", {"NO SCAN", "again"}},
+      {"unfinished", {"SCAN AGAIN", "again"}}, {"unreadable", {"SCAN AGAIN", "again"}},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+    if (!strcmp(kind, rows[i].kind)) return rows[i].look;
+  return (fg_card_look){fg_page_verdict_words(verdict, withheld),
+                        fg_page_verdict_class(verdict, withheld)};
+}
+
 static void write_tabs(FILE *out, fg_tab here) {
   fputs("<nav>", out);
   for (size_t i = 0; i < sizeof tabs / sizeof *tabs; i++)
@@ -82,9 +98,19 @@ static fg_status write_banner(fg_context *ctx, const fg_inspection *station, sql
   return FG_OK;
 }
 
+/* Seen until the page's script has heard of the station: without a script, always. */
+static void write_silent(FILE *out) {
+  fputs("<p id=\"silent\" role=\"alert\">This page shows what was known at ", out);
+  fg_page_time(out, fg_station_now());
+  fputs(", and does not renew itself: <a href=\"\">load it again</a>.</p>\n", out);
+}
+
 fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader, FILE *out,
                         fg_tab tab, const char *title) {
-  fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+  long long news =
+      fg_station_news(station); /* before anything is read: the page is as new, or newer */
+  fputs("<!doctype html>\n<html lang=\"en\" class=\"unconfirmed\">\n<head>\n<meta "
+        "charset=\"utf-8\">\n<meta "
         "name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
         out);
   fg_html_text(out, title);
@@ -93,7 +119,10 @@ fg_status fg_page_begin(fg_context *ctx, fg_inspection *station, sqlite3 *reader
         "src=\"/script.js\" defer></script>\n</head>\n<body>\n",
         out);
   write_tabs(out, tab);
-  fputs("<main>\n", out);
+  write_silent(out);
+  fprintf(out, "<main data-news=\"%lld\" data-form=\"%s\" data-at=\"", news, station->form_token);
+  fg_page_time(out, fg_station_now());
+  fputs("\">\n", out);
   write_trouble(station, out);
   return write_banner(ctx, station, reader, out);
 }

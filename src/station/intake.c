@@ -15,6 +15,7 @@
 #include "station/check.h"
 #include "station/close.h"
 #include "station/keep.h"
+#include "station/news.h"
 #include "station/picture.h"
 #include "station/scan_command.h"
 #include "station/stored_name.h"
@@ -102,20 +103,41 @@ static void take_words(intake *at, const char *message) {
   fg_text_clip(at->words, WORDS, "%s", named ? message + length + 2 : message);
 }
 
+/* Whether a scan that was measured before is that of the foil which the file's name says: the file
+ * is the one that was measured, or a foil of it has that serial number, and the lot where the name
+ * has one. Bytes that come again under another serial number are no measurement of that foil. */
+static const char find_known[] =
+    "SELECT path, path = ?1 OR EXISTS (SELECT 1 FROM foils WHERE scan = scans.id"
+    " AND (serial = ?2 OR serial = ?2 || '.' || number) AND (?3 = '' OR lot = ?3)),"
+    " (SELECT group_concat(serial, ', ') FROM foils WHERE scan = scans.id)"
+    " FROM scans WHERE id = ?4";
+
 static fg_status keep_known(fg_context *ctx, intake *at, int64_t scan) {
   fg_query query;
+  fg_card card = FG_CARD_KNOWN;
   fg_station_database *database = &at->station->database;
   pthread_mutex_lock(&database->writing);
-  fg_query_begin(database->writer, "SELECT path FROM scans WHERE id = ?", &query);
+  fg_query_begin(database->writer, find_known, &query);
+  fg_query_text(&query, at->file.name);
+  fg_query_text(&query, at->named.serial);
+  fg_query_text(&query, at->named.lot);
   fg_query_integer(&query, scan);
-  if (fg_query_row(&query))
+  if (fg_query_row(&query)) {
+    card = fg_query_get_integer(&query, 1) ? FG_CARD_KNOWN : FG_CARD_DUPLICATE;
     fg_text_clip(at->words, WORDS, "is the scan that was measured before as %s",
                  fg_query_get_text(&query, 0));
+    if (card == FG_CARD_DUPLICATE)
+      fg_text_clip(at->words, WORDS,
+                   "is, byte for byte, the scan that was measured before as %s: it shows foil %s, "
+                   "and says nothing of foil %s",
+                   fg_query_get_text(&query, 0), fg_query_get_text(&query, 2), at->named.serial);
+  }
   fg_status status = fg_query_end(ctx, &query, "reading the scans");
   pthread_mutex_unlock(&database->writing);
   if (status == FG_OK)
-    status = fg_station_keep_card(ctx, database, &at->file, FG_CARD_KNOWN, at->words, scan);
+    status = fg_station_keep_card(ctx, database, &at->file, card, at->words, scan);
   at->station->outcome->known += status == FG_OK;
+  at->station->outcome->judged.not_measured += status == FG_OK && card == FG_CARD_DUPLICATE;
   return status;
 }
 
@@ -125,10 +147,6 @@ static bool is_unchanged(const intake *at) {
   struct stat now;
   return stat(at->path, &now) == 0 && now.st_size == at->file.bytes &&
          (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec == at->file.modified_ns;
-}
-
-static void wake(fg_inspection *station) {
-  if (station->wake) station->wake(station->server);
 }
 
 /* On the card, beside whatever else it says. */
@@ -160,7 +178,7 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   FG_TRY(fg_station_keep_scan(ctx, &station->database, &kept, &scan, &outcome));
   fg_outcome_add(&station->outcome->judged, &outcome);
   station->outcome->measured++;
-  wake(station); /* the verdict first, the picture when it is drawn */
+  fg_station_tell(station); /* the verdict first, the picture when it is drawn */
   return fg_station_keep_pictures(ctx, &station->database, scan, measurement);
 }
 
@@ -219,7 +237,7 @@ static bool is_check(const fg_inspection *station, intake *at) {
 static void say(const intake *at) {
   const fg_station_request *request = at->station->request;
   if (request->looked_at) request->looked_at(request->user, at->file.name, at->words);
-  wake(at->station);
+  fg_station_tell(at->station);
 }
 
 /* Somebody writes to it. */

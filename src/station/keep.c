@@ -9,8 +9,8 @@
 #include "station/keep_parts.h"
 
 const char *fg_card_word(fg_card card) {
-  static const char *const words[] = {"measured", "known",      "unfinished",
-                                      "foreign",  "unreadable", "check"};
+  static const char *const words[] = {"measured",   "known", "unfinished", "foreign",
+                                      "unreadable", "check", "duplicate"};
   return words[card];
 }
 

@@ -15,11 +15,13 @@ typedef struct fg_station_file {
 /* What a card says of a file. */
 typedef enum fg_card {
   FG_CARD_MEASURED,
-  FG_CARD_KNOWN,      /* the same scan was measured before, under this or another name */
+  FG_CARD_KNOWN,      /* the same scan of the same foil was measured before */
   FG_CARD_UNFINISHED, /* not whole: half-written, or cut off */
   FG_CARD_FOREIGN,    /* no scan */
   FG_CARD_UNREADABLE, /* a scan that could not be read or measured */
   FG_CARD_CHECK,      /* of the scanner */
+  FG_CARD_DUPLICATE,  /* the scan of another foil once more, byte for byte: it says nothing of this
+                       */
 } fg_card;
 const char *fg_card_word(fg_card card);
 

@@ -100,7 +100,9 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_HISTORY, past->serial));
   fputs("<section>\n", out);
   write_call(past, out);
+  FG_TRY(fg_page_crushed(ctx, reader, past->id, out));
   FG_TRY(fg_page_deciding(ctx, reader, past->id, out));
+  FG_TRY(fg_page_same_serial(ctx, reader, past->id, out));
   FG_TRY(write_picture(ctx, reader, past, out));
   fprintf(out,
           "<p class=\"noprint\"><a class=\"button\" href=\"/report?foil=%lld\">The whole "

@@ -146,8 +146,10 @@ static fg_status write_form(fg_context *ctx, sqlite3 *reader, const search *at, 
                            out);
 }
 
-static void write_cell(FILE *out, const char *style, const char *text) {
-  fprintf(out, "<td class=\"text%s\">", style);
+static void write_cell(FILE *out, const char *style, const char *name, const char *text) {
+  fprintf(out, "<td class=\"text%s\"", style);
+  if (text[0]) fprintf(out, " data-name=\"%s\"", name);
+  fputc('>', out);
   fg_html_text(out, text);
   fputs("</td>", out);
 }
@@ -162,9 +164,9 @@ static void write_row(const fg_query *at, FILE *out) {
           fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
   fg_page_time(out, fg_query_get_integer(at, 5));
   fputs("</td>", out);
-  write_cell(out, "", fg_query_get_text(at, 2));
-  write_cell(out, "", fg_query_get_text(at, 3));
-  write_cell(out, " wide", fg_query_get_text(at, 4));
+  write_cell(out, "", "lot", fg_query_get_text(at, 2));
+  write_cell(out, "", "die", fg_query_get_text(at, 3));
+  write_cell(out, " wide", "operator", fg_query_get_text(at, 4));
   fputs("<td class=\"wide\">", out);
   if (!fg_query_is_null(at, 9)) fg_page_decided_line(at, 9, out);
   fputs("</td></tr>\n", out);
@@ -185,10 +187,11 @@ static fg_status write_rows(fg_context *ctx, sqlite3 *reader, const search *at, 
   bind(at, &query);
   fg_query_integer(&query, PAGE_FOILS);
   fg_query_integer(&query, (at->page - 1) * PAGE_FOILS);
-  fputs("<div class=\"scroll\"><table class=\"left found\"><thead><tr><th>Serial</th><th>Verdict"
-        "</th><th>When</th><th>Lot</th><th>Die</th><th class=\"wide\">Operator</th>"
-        "<th class=\"wide\">Nearest its limit</th></tr></thead>\n<tbody>\n",
-        out);
+  fputs(
+      "<div class=\"scroll\"><table class=\"left rows found\"><thead><tr><th>Serial</th><th>Verdict"
+      "</th><th>When</th><th>Lot</th><th>Die</th><th class=\"wide\">Operator</th>"
+      "<th class=\"wide\">Nearest its limit</th></tr></thead>\n<tbody>\n",
+      out);
   while (fg_query_row(&query))
     write_row(&query, out);
   fputs("</tbody></table></div>\n", out);

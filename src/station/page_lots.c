@@ -39,7 +39,7 @@ static void write_counts(FILE *out, const fg_query *row, int from) {
   static const char *const words[] = {"PASS", "FAIL", "SCAN AGAIN", "NO VERDICT"};
   static const char *const styles[] = {"pass", "fail", "again", "again"};
   long long foils = fg_query_get_integer(row, from);
-  fprintf(out, "<td>%lld</td><td>", foils);
+  fprintf(out, "<td data-name=\"foils\">%lld</td><td>", foils);
   for (int i = 0; i < 4; i++) {
     long long count = fg_query_get_integer(row, from + 1 + i);
     if (count) fprintf(out, "<span class=\"tag %s\">%lld %s</span> ", styles[i], count, words[i]);
@@ -63,7 +63,7 @@ static void write_open_lot(FILE *out, const fg_query *row) {
   write_name(out, lot);
   fputs("</a></td>", out);
   write_counts(out, row, 2);
-  fputs("<td>", out);
+  fputs("<td data-name=\"newest\">", out);
   fg_page_time(out, fg_query_get_integer(row, 1));
   fputs("</td><td class=\"noprint\">", out);
   write_link(out, "/lots?close=1&amp;lot=", lot, "Close …");
@@ -80,7 +80,8 @@ static fg_status write_open(fg_context *ctx, sqlite3 *reader, int64_t from, FILE
   for (; fg_query_row(&query) && count <= LOTS_SHOWN; count++) {
     if (!count)
       fputs("<table "
-            "class=\"left\"><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
+            "class=\"left "
+            "rows\"><thead><tr><th>Lot</th><th>Foils</th><th>Verdicts</th><th>Newest</th>"
             "<th class=\"noprint\"></th></tr></thead><tbody>\n",
             out);
     if (count < LOTS_SHOWN) write_open_lot(out, &query);
@@ -190,7 +191,7 @@ static fg_status write_question(fg_context *ctx, const fg_inspection *station, s
   fputs("<section><h2 class=\"first\">Close the lot ", out);
   write_name(out, lot);
   fputs("?</h2>\n<table "
-        "class=\"left\"><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>",
+        "class=\"left rows\"><thead><tr><th>Foils</th><th>Verdicts</th></tr></thead><tbody><tr>",
         out);
   if (fg_query_row(&query)) write_counts(out, &query, 0);
   fputs("</tr></tbody></table>\n<p>Its report is written into the folder lots of the station. "

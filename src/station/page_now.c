@@ -4,11 +4,13 @@
 
 #include "quantity/quantity_rows.h"
 #include "report/measure/measure_page_parts.h"
+#include "station/news.h"
 #include "station/pages.h"
 #include "station/scan_command.h"
 #include "station/values.h"
 
-enum { CARDS = 12, WORDS = 700 };
+/* LARGE_LETTERS: what fits beside the name of a file in the largest letters. */
+enum { CARDS = 12, WORDS = 700, LARGE_LETTERS = 10 };
 
 /* The newest arrival. */
 typedef struct card {
@@ -45,15 +47,15 @@ static fg_status read_newest(fg_context *ctx, sqlite3 *reader, card *newest) {
 }
 
 static const char *next_step(const card *newest) {
-  bool scan = newest->scan != 0;
-  if (!strcmp(newest->kind, "unfinished")) return "Wait until the scanner is done, or scan again.";
+  if (!strcmp(newest->kind, "unfinished")) return "Scan the foil again.";
   if (!strcmp(newest->kind, "foreign"))
     return "Scan to PNG or TIFF into this folder; take this file out of it.";
   if (!strcmp(newest->kind, "unreadable") && fg_station_is_scanned(newest->path))
     return "See to the scanner, the glass and the foil, and scan again.";
   if (!strcmp(newest->kind, "unreadable")) return "Look at the foil and the glass, and scan again.";
   if (!strcmp(newest->kind, "check")) return "Go on with foils.";
-  if (!scan) return "";
+  if (!strcmp(newest->kind, "known")) return "Nothing is new: go on with the next foil.";
+  if (!strcmp(newest->kind, "duplicate")) return "Put this foil on the glass and scan it.";
   if (newest->withheld[0]) return newest->withheld;
   if (!strcmp(newest->verdict, "pass") && newest->foils > 1)
     return "Put the foils with the good ones, and the next ones on the glass.";
@@ -71,16 +73,18 @@ static const char *next_step(const card *newest) {
   return "The design states no tolerances, so nothing was judged.";
 }
 
+/* What a script counts as newer than a foil whose form is half typed. */
+static void write_arrival(FILE *out, int64_t id, const char *words) {
+  fprintf(out, " data-arrival=\"%lld\" data-words=\"%s\"", (long long)id, words);
+}
+
 static void write_call(FILE *out, const card *newest) {
-  bool withheld = newest->withheld[0] != '\0', scan = newest->scan != 0;
-  const char *words = scan ? fg_page_verdict_words(newest->verdict, withheld)
-                      : !strcmp(newest->kind, "check")   ? "CHECKED"
-                      : !strcmp(newest->kind, "foreign") ? "NO SCAN"
-                                                         : "SCAN AGAIN";
-  const char *style = scan ? fg_page_verdict_class(newest->verdict, withheld)
-                      : !strcmp(newest->kind, "check") ? "none"
-                                                       : "again";
-  fprintf(out, "<div class=\"call %s\" role=\"status\"><b>%s</b><span>", style, words);
+  const fg_card_look look =
+      fg_page_card_look(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  fprintf(out, "<div class=\"call %s%s\" role=\"status\"", look.style,
+          strlen(look.words) > LARGE_LETTERS ? " long" : "");
+  write_arrival(out, newest->id, look.words);
+  fprintf(out, "><b>%s</b><span>", look.words);
   fg_html_text(out, newest->path);
   fputs("<br>", out);
   fg_page_time(out, newest->at);
@@ -93,6 +97,31 @@ static void write_call(FILE *out, const card *newest) {
   }
   fg_html_text(out, next_step(newest));
   fputs("</p>\n", out);
+}
+
+/* What is on its way; false: nothing. A verdict that is shown meanwhile is that of the foil before.
+ */
+static bool write_stage(FILE *out, fg_inspection *station) {
+  static const char *const words[] = {"", "RECEIVING", "MEASURING"};
+  fg_arriving arriving;
+  fg_station_read_stage(station, &arriving);
+  bool scanning = atomic_load(&station->scanning);
+  if (arriving.stage == FG_STAGE_NONE && !scanning) return false;
+  fprintf(out, "<div class=\"call long none\" role=\"status\"><b>%s</b><span>",
+          arriving.stage == FG_STAGE_NONE ? "SCANNING" : words[arriving.stage]);
+  if (arriving.stage != FG_STAGE_NONE) {
+    fg_html_text(out, arriving.file);
+    fputs("<br>since ", out);
+    fg_page_time(out, arriving.since);
+  }
+  fputs("</span></div>\n<p class=\"next\">The verdict comes by itself.", out);
+  if (arriving.stage == FG_STAGE_RECEIVING)
+    fprintf(out,
+            " The file is not whole yet; when nothing more has come for %g s, this page says what "
+            "is missing.",
+            station->settings->receive_s);
+  fputs("</p>\n", out);
+  return true;
 }
 
 static fg_status write_picture(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out) {
@@ -118,12 +147,14 @@ static fg_status write_foil(fg_context *ctx, fg_inspection *station, sqlite3 *re
     fg_html_text(out, fg_query_get_text(foil, 6));
     fputs("</p>\n", out);
   }
+  FG_TRY(fg_page_crushed(ctx, reader, id, out));
   /* Without a verdict no colour of one, either. */
   fputs(withheld ? "<div class=\"withheld\">" : "<div>", out);
   FG_TRY(fg_page_deciding(ctx, reader, id, out));
   fputs("</div>\n", out);
   const fg_foil_form form = {.back = "/", .focus = focus};
   fg_page_foil_form(station, foil, &form, out);
+  FG_TRY(fg_page_same_serial(ctx, reader, id, out));
   return write_picture(ctx, reader, id, out);
 }
 
@@ -179,19 +210,20 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
   fg_query query;
   fg_query_begin(reader,
                  "SELECT arrivals.at, arrivals.path, kind, message, scans.verdict, scans.withheld,"
-                 " (SELECT min(id) FROM foils WHERE foils.scan = arrivals.scan) FROM arrivals"
-                 " LEFT JOIN scans ON scans.id = scan WHERE superseded = 0 AND arrivals.id < ?"
+                 " (SELECT min(id) FROM foils WHERE foils.scan = arrivals.scan), arrivals.id"
+                 " FROM arrivals LEFT JOIN scans ON scans.id = scan"
+                 " WHERE superseded = 0 AND arrivals.id < ?"
                  " ORDER BY arrivals.id DESC LIMIT ?",
                  &query);
   fg_query_integer(&query, newest);
   fg_query_integer(&query, CARDS);
   fputs("<section class=\"noprint\"><h2 class=\"first\">Before</h2>\n<ul class=\"cards\">", out);
   while (fg_query_row(&query)) {
-    bool scan = !fg_query_is_null(&query, 4), withheld = !fg_query_is_null(&query, 5);
-    const char *verdict = fg_query_get_text(&query, 4);
-    fprintf(out, "<li><span class=\"tag %s\">%s</span><span>",
-            scan ? fg_page_verdict_class(verdict, withheld) : "card",
-            scan ? fg_page_verdict_words(verdict, withheld) : fg_query_get_text(&query, 2));
+    const fg_card_look look = fg_page_card_look(
+        fg_query_get_text(&query, 2), fg_query_get_text(&query, 4), !fg_query_is_null(&query, 5));
+    fputs("<li", out);
+    write_arrival(out, fg_query_get_integer(&query, 7), look.words);
+    fprintf(out, "><span class=\"tag %s\">%s</span><span>", look.style, look.words);
     if (!fg_query_is_null(&query, 6))
       fprintf(out, "<a href=\"/foil?id=%lld\">", (long long)fg_query_get_integer(&query, 6));
     fg_html_text(out, fg_query_get_text(&query, 1));
@@ -205,24 +237,48 @@ static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, F
   return fg_query_end(ctx, &query, "reading the cards");
 }
 
+static void write_ready(const fg_inspection *station, FILE *out) {
+  fputs("<div class=\"call none\"><b>READY</b><span>Put a foil on the glass and scan it into ",
+        out);
+  fg_html_text(out, station->request->folder);
+  fputs("</span></div>\n", out);
+}
+
+/* The foils of a card, if it is theirs: a scan that came a second time under another name is none.
+ */
+static fg_status write_scan(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
+                            const card *newest, FILE *out) {
+  if (!newest->scan || !strcmp(newest->kind, "duplicate")) return FG_OK;
+  FG_TRY(write_overview(ctx, reader, newest, out));
+  return write_foils(ctx, station, reader, newest->scan, out);
+}
+
+static void write_before(FILE *out, const card *newest) {
+  const fg_card_look look =
+      fg_page_card_look(newest->kind, newest->verdict, newest->withheld[0] != '\0');
+  fputs("<p class=\"note\"", out);
+  write_arrival(out, newest->id, look.words);
+  fputs(">Before it: ", out);
+  fg_html_text(out, newest->path);
+  fprintf(out, " %s, ", look.words);
+  fg_page_time(out, newest->at);
+  fputs("</p>\n", out);
+}
+
 fg_status fg_page_now(fg_context *ctx, fg_inspection *station, sqlite3 *reader,
                       const fg_request *request, FILE *out) {
   card newest;
   (void)request;
-  FG_TRY(read_newest(ctx, reader, &newest));
   FG_TRY(fg_page_begin(ctx, station, reader, out, FG_TAB_NOW, "Now"));
+  FG_TRY(read_newest(ctx, reader, &newest));
   fputs(newest.foils > 1 ? "<section class=\"many\" data-live>\n" : "<section data-live>\n", out);
+  bool arriving = write_stage(out, station);
+  if (newest.id && !arriving) write_call(out, &newest);
+  if (!newest.id && !arriving) write_ready(station, out);
+  fputs("<div data-typing></div>\n", out);
   write_scan_button(station, out);
-  if (newest.id) {
-    write_call(out, &newest);
-    if (newest.scan) FG_TRY(write_overview(ctx, reader, &newest, out));
-    if (newest.scan) FG_TRY(write_foils(ctx, station, reader, newest.scan, out));
-  } else {
-    fputs("<div class=\"call none\"><b>READY</b><span>Put a foil on the glass and scan it into ",
-          out);
-    fg_html_text(out, station->request->folder);
-    fputs("</span></div>\n", out);
-  }
+  if (newest.id && arriving) write_before(out, &newest);
+  FG_TRY(write_scan(ctx, station, reader, &newest, out));
   fputs("</section>\n", out);
   if (newest.id) FG_TRY(write_cards(ctx, reader, newest.id, out));
   fg_page_end(out);

@@ -32,9 +32,17 @@ void fg_page_form_token(const fg_inspection *station, FILE *out);
 const char *fg_page_verdict_words(const char *verdict, bool withheld);
 const char *fg_page_verdict_class(const char *verdict, bool withheld);
 
-/* The styles of the reports and the station's own; the one script. */
+/* Both of a card in the list of arrivals: its kind, and the verdict of its scan where it has one. A
+ * scan that was measured before gives no verdict again. */
+typedef struct fg_card_look {
+  const char *words, *style;
+} fg_card_look;
+fg_card_look fg_page_card_look(const char *kind, const char *verdict, bool withheld);
+
+/* The styles of the reports and the station's own. */
 const char *fg_station_style_text(void);
-extern const char fg_station_script[];
-extern const char fg_station_icon[]; /* SVG */
+extern const char fg_station_style[];  /* station.css */
+extern const char fg_station_script[]; /* station.js */
+extern const char fg_station_icon[];   /* SVG */
 
 #endif

@@ -18,6 +18,7 @@
 #include "core/text.h"
 #include "station/actions.h"
 #include "station/keep.h"
+#include "station/news.h"
 
 extern char **environ;
 
@@ -224,10 +225,6 @@ static fg_status publish(fg_context *ctx, const scanner *at) {
   return fg_fail(ctx, FG_ERR_IO, "was scanned but not kept: %s", strerror(error));
 }
 
-static void wake(fg_inspection *station) {
-  if (station->wake) station->wake(station->server);
-}
-
 static void keep_failure(scanner *at, const char *why, const words *said) {
   char last[SAID_BYTES + 1], message[SAID_BYTES + 400];
   fg_context ctx;
@@ -254,7 +251,7 @@ static void *scan(void *argument) {
   if (status != FG_OK && !atomic_load(&at->stop)) keep_failure(at, ctx.message, &said);
   if (status != FG_OK) remove_hidden(at);
   atomic_store(&station->scanning, false);
-  wake(station);
+  fg_station_tell(station);
   return NULL;
 }
 
@@ -299,7 +296,7 @@ fg_status fg_action_scan(fg_context *ctx, fg_inspection *station, const fg_reque
   if (!station->settings->scan_command[0])
     return fg_fail(ctx, FG_ERR_USAGE, "The recipe has no scan_command.");
   FG_TRY(fg_station_scan_begin(ctx, station, check));
-  wake(station);
+  fg_station_tell(station);
   strcpy(answer->location, "/");
   return FG_OK;
 }

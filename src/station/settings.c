@@ -36,6 +36,10 @@ static const member members[] = {
     TEXT("scan_command", scan_command,
          "Puts a Scan button on the page: a command of the shell that writes the scan `{file}`. It "
          "runs in the folder, as the user of the station."),
+    {"receive_s", NUMBER, AT(receive_s), 0, 3600,
+     "Seconds that a scan which is not whole may pause: the page says RECEIVING until nothing has "
+     "come for so long, and then what is missing. Scanners wait for their carriage, networks for "
+     "lost packets."},
 };
 
 static const member check_members[] = {
@@ -151,6 +155,7 @@ static fg_status load_station(fg_context *ctx, const char *recipe, fg_station_se
 
 static void set_usual(fg_station_settings *settings) {
   *settings = (fg_station_settings){.file_name = "{serial}",
+                                    .receive_s = 20,
                                     .check = {.file_name = "check*", .scale_max_ppm = 500}};
   fg_lot_settings_default(&settings->lot);
 }

@@ -23,8 +23,21 @@ typedef struct fg_closing {
 typedef struct fg_trouble {
   pthread_mutex_t mutex;
   char words[1000]; /* "": all is well */
-  unsigned changes;
 } fg_trouble;
+
+/* What becomes of the newest file before there is a card of it. */
+typedef enum fg_stage {
+  FG_STAGE_NONE,
+  FG_STAGE_RECEIVING, /* it is not whole yet, and its writer may go on */
+  FG_STAGE_MEASURING
+} fg_stage;
+
+typedef struct fg_arriving {
+  pthread_mutex_t mutex;
+  fg_stage stage;
+  int64_t since;
+  char file[256]; /* below the folder; clipped */
+} fg_arriving;
 
 typedef struct fg_inspection {
   const fg_station_request *request;
@@ -42,7 +55,9 @@ typedef struct fg_inspection {
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
   fg_trouble trouble;
-  void (*wake)(void *server); /* a card was added; NULL: nobody waits */
+  fg_arriving arriving;
+  atomic_llong news;          /* station/news.h */
+  void (*wake)(void *server); /* there is news; NULL: nobody waits */
   void *server;
 } fg_inspection;
 

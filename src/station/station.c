@@ -65,6 +65,8 @@ fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
   station->lock = -1;
   pthread_mutex_init(&station->closing.mutex, NULL);
   pthread_mutex_init(&station->trouble.mutex, NULL);
+  pthread_mutex_init(&station->arriving.mutex, NULL);
+  atomic_init(&station->news, fg_station_now());
   fg_status status = work(ctx, station);
   fg_closing_end(&station->closing);
   fg_station_database_close(&station->database);

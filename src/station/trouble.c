@@ -9,29 +9,20 @@
 #include "core/text.h"
 #include "lot/folder_lock.h"
 #include "station/keep.h"
+#include "station/news.h"
 
 void fg_station_set_trouble(fg_inspection *station, const char *words) {
   fg_trouble *trouble = &station->trouble;
   const fg_station_request *request = station->request;
   pthread_mutex_lock(&trouble->mutex);
   bool changed = strncmp(trouble->words, words, sizeof trouble->words - 1) != 0;
-  if (changed) {
-    fg_text_clip(trouble->words, sizeof trouble->words, "%s", words);
-    trouble->changes++;
-  }
+  if (changed) fg_text_clip(trouble->words, sizeof trouble->words, "%s", words);
   pthread_mutex_unlock(&trouble->mutex);
   if (!changed) return;
   if (request->looked_at)
     request->looked_at(request->user, *words ? words : "the station goes on:",
                        *words ? "(it is tried again)" : "what was in its way is over");
-  if (station->wake) station->wake(station->server);
-}
-
-unsigned fg_station_trouble_changes(fg_inspection *station) {
-  pthread_mutex_lock(&station->trouble.mutex);
-  unsigned changes = station->trouble.changes;
-  pthread_mutex_unlock(&station->trouble.mutex);
-  return changes;
+  fg_station_tell(station);
 }
 
 static bool has_lock(const fg_inspection *station) {

@@ -7,9 +7,6 @@
 /* "": it is over. Says a change to the request's `looked_at`, too. */
 void fg_station_set_trouble(fg_inspection *station, const char *words);
 
-/* A number that changes with the trouble. */
-unsigned fg_station_trouble_changes(fg_inspection *station);
-
 /* Sees that lock and database are those that lie in the folder: where another folder has come in
  * its place, or one of them was taken away, they are opened again. FG_ERR_IO: the folder is gone,
  * or another station is at work in it. */

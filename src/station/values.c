@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/text.h"
 #include "quantity/quantity_rows.h"
 #include "report/measure/measure_page_parts.h"
 
@@ -99,27 +100,113 @@ fg_status fg_page_deciding(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE 
   return fg_query_end(ctx, &query, "reading what decided");
 }
 
-static void write_field(FILE *out, const char *label, const char *name, const char *value,
-                        const char *more) {
-  fprintf(out, "<label>%s<input name=\"%s\" maxlength=\"127\" autocomplete=\"off\"%s value=\"",
-          label, name, more);
-  fg_html_text(out, value);
+fg_status fg_page_crushed(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out) {
+  fg_query query;
+  int64_t crushed = 0, bumps = 0;
+  char list[200] = "";
+  fg_query_begin(reader,
+                 "SELECT number, instr(' ' || flags || ' ', ' crushed ') > 0 FROM bumps"
+                 " WHERE foil = ? ORDER BY number",
+                 &query);
+  fg_query_integer(&query, foil);
+  for (; fg_query_row(&query); bumps++) {
+    size_t length = strlen(list);
+    if (!fg_query_get_integer(&query, 1)) continue;
+    fg_text_clip(list + length, sizeof list - length, "%s%lld", crushed++ ? ", " : "",
+                 (long long)fg_query_get_integer(&query, 0));
+  }
+  /* Where all of them are so, none was crushed: it is another design's foil. */
+  if (crushed && crushed == bumps)
+    fputs("<p class=\"next\">No bump has the height and radius of the design: is this a foil of "
+          "it?</p>\n",
+          out);
+  else if (crushed)
+    fprintf(out,
+            "<p class=\"next\">Bump%s %s %s crushed: far lower, wider or rounder than the "
+            "others.</p>\n",
+            fg_plural((size_t)crushed), list, crushed == 1 ? "is" : "are");
+  return fg_query_end(ctx, &query, "reading the bumps");
+}
+
+fg_status fg_page_same_serial(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out) {
+  enum { SHOWN = 3 };
+  fg_query query;
+  int64_t count = 0;
+  fg_query_begin(reader,
+                 "SELECT o.id, o.lot, o.verdict, s.withheld, s.at FROM foils AS f JOIN foils AS o"
+                 " ON o.serial = f.serial AND o.id <> f.id JOIN scans AS s ON s.id = o.scan"
+                 " WHERE f.id = ? ORDER BY o.id DESC LIMIT ?",
+                 &query);
+  fg_query_integer(&query, foil);
+  fg_query_integer(&query, SHOWN + 1);
+  for (; fg_query_row(&query); count++) {
+    bool withheld = !fg_query_is_null(&query, 3);
+    const char *verdict = fg_query_get_text(&query, 2), *lot = fg_query_get_text(&query, 1);
+    if (count < SHOWN) {
+      fprintf(out, "%s<a href=\"/foil?id=%lld\">",
+              count ? ", " : "<p class=\"note\">The serial also has ",
+              (long long)fg_query_get_integer(&query, 0));
+      fg_page_time(out, fg_query_get_integer(&query, 4));
+      fprintf(out, "</a> <span class=\"tag %s\">%s</span>",
+              fg_page_verdict_class(verdict, withheld), fg_page_verdict_words(verdict, withheld));
+      if (*lot) fputs(" in lot ", out);
+      fg_html_text(out, lot);
+    }
+  }
+  if (count) fputs(count > SHOWN ? " and older ones.</p>\n" : ".</p>\n", out);
+  return fg_query_end(ctx, &query, "reading the serial numbers");
+}
+
+static const struct {
+  const char *label, *name, *more;
+} foil_fields[] = {{"Serial", "serial", " required"},
+                   {"Lot", "lot", ""},
+                   {"Die", "die", ""},
+                   {"Operator", "operator", ""}};
+
+enum { FOIL_FIELDS = sizeof foil_fields / sizeof *foil_fields };
+
+/* Column i + 1 of the row, and what it was when it was shown. */
+static void write_field(const fg_query *foil, const fg_foil_form *form, int i, FILE *out) {
+  const char *was = fg_query_get_text(foil, i + 1), *name = foil_fields[i].name;
+  fprintf(out, "<input type=\"hidden\" name=\"was_%s\" value=\"", name);
+  fg_html_text(out, was);
+  fprintf(out, "\"><label>%s<input name=\"%s\" maxlength=\"127\" autocomplete=\"off\"%s%s value=\"",
+          foil_fields[i].label, name, foil_fields[i].more, !i && form->focus ? " data-focus" : "");
+  fg_html_text(out, form->asked[i] ? form->asked[i] : was);
   fputs("\"></label>", out);
+}
+
+/* Enter, which a barcode reader adds, presses the first button: never the one that shares. */
+static void write_buttons(const fg_foil_form *form, FILE *out) {
+  fputs("<button>Keep</button>", out);
+  if (!form->also || !form->also[0]) return;
+  fputs("<button class=\"plain\" name=\"also\" value=\"", out);
+  fg_html_text(out, form->also);
+  fputs("\">The same foil: keep ", out);
+  fg_html_text(out, form->also);
+  fputs("</button>", out);
 }
 
 void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const fg_foil_form *form,
                        FILE *out) {
-  fputs("<form class=\"fields\" method=\"post\" action=\"/correct\">", out);
+  long long id = (long long)fg_query_get_integer(foil, 0);
+  fprintf(out, "<form class=\"fields\" method=\"post\" action=\"/correct\" data-foil=\"%lld\">",
+          id);
   fg_page_form_token(station, out);
   fprintf(out,
           "<input type=\"hidden\" name=\"foil\" value=\"%lld\">"
           "<input type=\"hidden\" name=\"back\" value=\"%s\">",
-          (long long)fg_query_get_integer(foil, 0), form->back);
-  write_field(out, "Serial", "serial", fg_query_get_text(foil, 1),
-              form->focus ? " required autofocus data-focus" : " required");
-  write_field(out, "Lot", "lot", fg_query_get_text(foil, 2), "");
-  write_field(out, "Die", "die", fg_query_get_text(foil, 3), "");
-  write_field(out, "Operator", "operator", fg_query_get_text(foil, 4), "");
-  if (form->who) write_field(out, "Corrected by", "by", "", " required");
-  fputs("<button>Keep</button></form>\n", out);
+          id, form->back);
+  for (int i = 0; i < FOIL_FIELDS; i++)
+    write_field(foil, form, i, out);
+  if (form->who) {
+    fputs("<label>Corrected by<input name=\"by\" maxlength=\"127\" autocomplete=\"off\" required "
+          "value=\"",
+          out);
+    fg_html_text(out, form->by ? form->by : "");
+    fputs("\"></label>", out);
+  }
+  write_buttons(form, out);
+  fputs("</form>\n", out);
 }

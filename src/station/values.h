@@ -2,6 +2,7 @@
 #ifndef FG_STATION_VALUES_H
 #define FG_STATION_VALUES_H
 
+#include "station/correct.h"
 #include "station/pages.h"
 
 /* The values that decided, each with its limits. */
@@ -11,13 +12,26 @@ fg_status fg_page_deciding(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE 
  * `column` on: name, owner, unit, bump, value, u, lower, upper, verdict. */
 void fg_page_decided_line(const fg_query *at, int column, FILE *out);
 
+/* Which bumps are crushed, in a sentence; nothing where none is. */
+fg_status fg_page_crushed(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
+
+/* What else was measured under the foil's serial number, the newest first; nothing where nothing
+ * was. */
+fg_status fg_page_same_serial(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
+
 typedef struct fg_foil_form {
   const char *back; /* the page to return to: "/", else the foil's own */
   bool focus;       /* for the barcode reader */
   bool who;         /* asks who corrects */
+  /* Of a correction that was held: */
+  const char *asked[FG_IDENTITY_FIELDS]; /* what somebody wants for serial, lot, die, operator;
+                                            NULL: as it is */
+  const char *by;                        /* who corrects, as it was said; NULL: not */
+  const char *also; /* a serial number that may be shared, with a button for it; NULL or "": none */
 } fg_foil_form;
 
-/* The form for serial, lot, die and operator; `foil` is a row of id, serial, lot, die, operator. */
+/* The form for serial, lot, die and operator; `foil` is a row of id, serial, lot, die, operator. It
+ * carries what it showed, so that only what was changed in it is applied (fg_action_correct). */
 void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const fg_foil_form *form,
                        FILE *out);
 

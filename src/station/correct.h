@@ -1,0 +1,34 @@
+/* A change of what is said of a foil (its identity: serial, lot, die, operator), and the page that
+ * asks where it cannot simply be kept. */
+#ifndef FG_STATION_CORRECT_H
+#define FG_STATION_CORRECT_H
+
+#include "station/answer.h"
+#include "station/naming.h"
+
+/* FG_IDENTITY_FIELDS: serial, lot, die, operator. FG_IDENTITY_BYTES: a file's name, and the number
+ * of a foil of its bed. */
+enum { FG_IDENTITY_FIELDS = 4, FG_IDENTITY_BYTES = FG_NAMED_TEXT + 16 };
+
+typedef struct fg_identity_change {
+  int64_t foil;
+  /* Of a field: what the foil has, what the form showed, what somebody wants. */
+  char before[FG_IDENTITY_FIELDS][FG_IDENTITY_BYTES], was[FG_IDENTITY_FIELDS][FG_IDENTITY_BYTES],
+      after[FG_IDENTITY_FIELDS][FG_IDENTITY_BYTES];
+  bool was_given[FG_IDENTITY_FIELDS];
+  bool asked[FG_IDENTITY_FIELDS];     /* it was changed in the form */
+  bool overtaken[FG_IDENTITY_FIELDS]; /* somebody else changed it meanwhile */
+  bool owned;                         /* another foil has the serial number that is wanted */
+  bool held;                          /* nothing was changed: one of these is asked about first */
+  bool to_now;                        /* the form was that of Now */
+  char also[FG_IDENTITY_BYTES];       /* the serial number that was said to be shared; "": none */
+  char by[FG_IDENTITY_BYTES];
+} fg_identity_change;
+
+const char *fg_identity_field(size_t field);
+
+/* 409: what stands in the way of a correction that is held, and a form to answer it. */
+fg_status fg_page_identity(fg_context *ctx, fg_inspection *station, const fg_identity_change *asked,
+                           fg_answer *answer);
+
+#endif

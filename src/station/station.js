@@ -1,0 +1,188 @@
+'use strict';
+/* A page of the station while it is open: whether the station still stands behind what it shows, and, on Now, new
+ * results as they come.
+ *
+ * The page is served grey (class `unconfirmed`) with the time of what it shows. It takes its colours only while the
+ * station answers, and the time that counts is this clock's: a cable that was pulled ends no connection. */
+(function () {
+  var BEAT_MS = 1000, ANSWER_MS = 2500, LOST_MS = 4000, LOOK_MS = 250, LOAD_MS = 15000, AGAIN_MS = 2000;
+  var REFUSED_MAX = 2; /* a station that starts again refuses once or twice within a beat */
+  var root = document.documentElement, silent = document.getElementById('silent');
+  var started = Date.now(), heard = 0, refused = 0, beating = false, loading = false, again = false;
+  var main = document.querySelector('main'), live = document.querySelector('[data-live]');
+  var shown = main && main.dataset.news, known = main && main.dataset.at;
+
+  function isRecent(since) {
+    var age = Date.now() - since;
+    return age >= 0 && age < LOST_MS; /* a clock that was set back says nothing */
+  }
+
+  function show() {
+    var confirmed = heard > 0 && refused < REFUSED_MAX && isRecent(heard);
+    var lost = !confirmed && (refused >= REFUSED_MAX || !isRecent(heard || started));
+    root.classList.toggle('unconfirmed', !confirmed);
+    root.classList.toggle('asking', !confirmed && !lost);
+    if (lost && !root.classList.contains('lost') && silent) {
+      silent.textContent = 'No connection to the station. This page shows what was known at ' + known +
+        '; what came later is not here.';
+    }
+    root.classList.toggle('lost', lost);
+  }
+
+  function fetchText(address, patience) {
+    var stop = new AbortController(), clock = setTimeout(function () { stop.abort(); }, patience);
+    return fetch(address, {credentials: 'same-origin', cache: 'no-store', signal: stop.signal})
+      .then(function (answer) {
+        if (!answer.ok) throw new Error('refused');
+        return answer.text();
+      }).finally(function () { clearTimeout(clock); });
+  }
+
+  /* What is confirmed is how things were when the question was sent. */
+  function beat() {
+    var sent = Date.now();
+    if (beating) return;
+    beating = true;
+    fetchText('/alive', ANSWER_MS).then(function (text) {
+      var words = /^(\d+) (.+)\n$/.exec(text);
+      if (!words) throw new Error('not the station');
+      heard = sent;
+      refused = 0;
+      if (live && words[1] !== shown) load();
+      else known = words[2];
+    }).catch(function () { refused++; }).finally(function () {
+      beating = false;
+      show();
+    });
+  }
+
+  function isTyped(form) {
+    return Array.prototype.some.call(form.elements, function (field) {
+      return field.tagName === 'INPUT' && field.type !== 'hidden' && field.value !== field.defaultValue;
+    });
+  }
+
+  /* A half-typed form that leaves its place: whose foil it is, and what has come since. */
+  function makeTyping(form, page) {
+    var panel = document.createElement('div'), whose = document.createElement('p');
+    var heading = page.querySelector('#foil' + form.dataset.foil);
+    var drop = document.createElement('button');
+    panel.className = 'typing';
+    panel.dataset.after = page.querySelector('[data-arrival]').dataset.arrival;
+    whose.innerHTML = (heading ? heading.innerHTML : '') + ' <span class="newer"></span>';
+    drop.type = 'reset';
+    drop.className = 'plain';
+    drop.textContent = 'Drop';
+    form.appendChild(drop);
+    form.addEventListener('reset', function () { setTimeout(load, 0); });
+    panel.append(whose, form);
+    return panel;
+  }
+
+  function sayNewer(panel, next) {
+    var words = Array.prototype.filter.call(next.querySelectorAll('[data-arrival]'), function (card) {
+      return +card.dataset.arrival > +panel.dataset.after;
+    }).map(function (card) { return card.dataset.words; });
+    panel.querySelector('.newer').textContent = words.length ? words.length + ' newer: ' + words.join(', ') : '';
+  }
+
+  /* What is half typed stays with its foil, also where newer ones take the page. True: it has the focus. */
+  function keepTyped(page, next) {
+    var at = document.activeElement, held = false;
+    var from = at && at.selectionStart, to = at && at.selectionEnd;
+    page.querySelectorAll('form[data-foil]').forEach(function (form) {
+      if (!isTyped(form)) return;
+      var home = next.querySelector('form[data-foil="' + form.dataset.foil + '"]');
+      var panel = form.closest('.typing');
+      form.elements.form.value = next.dataset.form;
+      held = held || form.contains(at);
+      if (home && !panel) {
+        home.replaceWith(form);
+      } else {
+        if (home) home.remove();
+        panel = panel || makeTyping(form, page);
+        sayNewer(panel, next);
+        next.querySelector('[data-typing]').append(panel);
+      }
+    });
+    return held && function () {
+      at.focus({preventScroll: true});
+      if (from !== null && at.setSelectionRange) at.setSelectionRange(from, to);
+    };
+  }
+
+  function wordsOfCall(page) {
+    var call = page.querySelector('.call');
+    return call ? call.textContent : '';
+  }
+
+  function put(text) {
+    var page = document.querySelector('main');
+    var next = new DOMParser().parseFromString(text, 'text/html').querySelector('main');
+    if (!page || !next || !next.dataset.news) return;
+    next = document.importNode(next, true);
+    var focus = keepTyped(page, next), other = wordsOfCall(page) !== wordsOfCall(next);
+    page.replaceWith(next);
+    shown = next.dataset.news;
+    known = next.dataset.at;
+    if (other) window.scrollTo(0, 0);
+    if (focus) focus();
+    else takeFocus();
+  }
+
+  /* One at a time: of two that overtake each other the older would stay. */
+  function load() {
+    if (!live) return;
+    again = loading;
+    if (loading) return;
+    loading = true;
+    fetchText(location.href, LOAD_MS).then(put).catch(function () {}).finally(function () {
+      loading = false;
+      if (again) load();
+      again = false;
+    });
+  }
+
+  /* A barcode reader types where the focus is, over what is marked, and ends with Enter. */
+  function takeFocus() {
+    var field = document.querySelector('[data-focus]');
+    if (!field) return;
+    field.focus({preventScroll: true});
+    field.select();
+  }
+
+  /* Told of news at once; a beat that brings another number makes up for what this misses. */
+  function listen() {
+    var events = new EventSource('/events');
+    events.onmessage = function (news) { if (news.lastEventId !== shown) load(); };
+    events.onerror = function () {
+      if (events.readyState === EventSource.CLOSED) setTimeout(listen, AGAIN_MS);
+    };
+  }
+
+  function wakeUp() {
+    show();
+    beat();
+  }
+
+  function turnPages(key) {
+    var way = key.key === 'ArrowLeft' ? 'prev' : key.key === 'ArrowRight' ? 'next' : '', at = key.target.tagName;
+    var link = way && document.querySelector('a[rel=' + way + ']');
+    if (link && !key.altKey && !key.ctrlKey && !key.metaKey && at !== 'INPUT' && at !== 'SELECT') link.click();
+  }
+
+  if (live && window.EventSource) listen();
+  takeFocus();
+  document.addEventListener('keydown', turnPages);
+  /* A page that comes back from the browser's memory shows what was so when it was left. */
+  window.addEventListener('pageshow', function (event) {
+    if (event.persisted) heard = 0;
+    if (event.persisted) started = Date.now();
+    wakeUp();
+  });
+  document.addEventListener('visibilitychange', wakeUp);
+  window.addEventListener('online', wakeUp);
+  setInterval(beat, BEAT_MS);
+  setInterval(show, LOOK_MS);
+  wakeUp();
+})();
