@@ -9,8 +9,10 @@
 #include <unistd.h>
 
 #include "core/clock.h"
+#include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/measure.h"
+#include "foilgauge/scan.h"
 #include "scan/format.h"
 #include "station/check.h"
 #include "station/close.h"
@@ -31,8 +33,11 @@ typedef struct intake {
   fg_named named;
   double arrived;
   char words[WORDS]; /* of its card */
-  bool later;        /* it has to be looked at again */
-  bool silent;       /* nothing is new: no card */
+  fg_writer writer;
+  bool scan;   /* or the beginning of one */
+  bool sure;   /* that it is whole, as a look at its ends tells */
+  bool later;  /* it has to be looked at again */
+  bool silent; /* nothing is new: no card */
 } intake;
 
 static bool read_ends(const char *path, uint8_t head[HEAD_BYTES], size_t *length,
@@ -56,17 +61,16 @@ static bool is_cut_off(const fg_format *format, const uint8_t tail[TAIL_BYTES], 
   return format == &fg_format_png && (bytes < TAIL_BYTES || memcmp(tail, end, TAIL_BYTES) != 0);
 }
 
-/* What a look at its ends says; FG_CARD_MEASURED: a scan that seems whole, and is if `sure`. */
-static fg_card look(intake *at, bool *sure) {
+/* What a look at its ends says; FG_CARD_MEASURED: a scan that seems whole, and is if at->sure. */
+static fg_card look(intake *at) {
   uint8_t head[HEAD_BYTES], tail[TAIL_BYTES] = {0};
   size_t length;
-  *sure = false;
   if (!read_ends(at->path, head, &length, tail)) {
     fg_text_clip(at->words, WORDS, "cannot be read: %s", strerror(errno));
     return FG_CARD_UNREADABLE;
   }
   if (!length) {
-    fg_text_clip(at->words, WORDS, "is empty so far: it is looked at again when it changes");
+    fg_text_clip(at->words, WORDS, "is empty: it is looked at again when it changes");
     return FG_CARD_UNFINISHED;
   }
   const fg_format *format = fg_format_find(head, length);
@@ -74,7 +78,7 @@ static fg_card look(intake *at, bool *sure) {
     fg_format_problem(head, length, at->words, WORDS);
     return FG_CARD_FOREIGN;
   }
-  *sure = format == &fg_format_png;
+  at->sure = format == &fg_format_png;
   if (!is_cut_off(format, tail, at->file.bytes)) return FG_CARD_MEASURED;
   fg_text_clip(at->words, WORDS,
                "is not whole: its end is missing; it is looked at again when it changes, else scan "
@@ -178,7 +182,8 @@ static fg_status keep_new(fg_context *ctx, intake *at, const fg_measurement *mea
   FG_TRY(fg_station_keep_scan(ctx, &station->database, &kept, &scan, &outcome));
   fg_outcome_add(&station->outcome->judged, &outcome);
   station->outcome->measured++;
-  fg_station_tell(station); /* the verdict first, the picture when it is drawn */
+  /* The verdict first, the picture when it is drawn. */
+  fg_station_end_stage(station, at->file.name);
   return fg_station_keep_pictures(ctx, &station->database, scan, measurement);
 }
 
@@ -199,6 +204,25 @@ fg_status fg_station_correct(fg_context *ctx, const fg_scanner_model *model, uns
   return status;
 }
 
+/* Whether all of its rows can be read: what is wrong with a scan is then no missing end. */
+static bool is_readable(const char *path) {
+  const double any_dpi = 1200;
+  const fg_scan_options options = {
+      .dpi = any_dpi, .channel = FG_CHANNEL_RED, .allow_lossy = true, .only_file = true};
+  fg_scan *scan;
+  fg_context ctx;
+  void *row = NULL;
+  if (fg_scan_open(&ctx, path, &options, &scan) != FG_OK) return false;
+  const fg_scan_info *info = fg_scan_get_info(scan);
+  int64_t stride = info->width_px * info->bytes_per_pixel, rows = info->height_px;
+  fg_status status = fg_memory_allocate(&ctx, 1, (size_t)stride, &row);
+  while (status == FG_OK && rows-- > 0)
+    status = fg_scan_read_rows(&ctx, scan, 1, row, stride);
+  free(row);
+  fg_scan_close(scan);
+  return status == FG_OK;
+}
+
 /* Memory that ran out is the station's trouble, not the scan's. */
 static fg_status measure(fg_context *ctx, intake *at) {
   const fg_lot_settings *settings = &at->station->settings->lot;
@@ -209,7 +233,8 @@ static fg_status measure(fg_context *ctx, intake *at) {
   fg_status failure = fg_measure_scan(&inner, at->path, &settings->design, &options, &measurement);
   if (failure == FG_OK) failure = fg_station_correct(&inner, at->station->model, 0, &measurement);
   if (failure == FG_ERR_MEMORY) return fg_fail(ctx, failure, "%s", inner.message);
-  at->later = !is_unchanged(at);
+  at->later = !is_unchanged(at) || (failure == FG_ERR_DATA && !at->sure &&
+                                    at->writer != FG_WRITER_GONE && !is_readable(at->path));
   if (at->later) {
     if (failure == FG_OK) fg_measurement_free(&measurement);
     return FG_OK;
@@ -255,20 +280,29 @@ static fg_status take_card(fg_context *ctx, intake *at, fg_card card) {
   fg_inspection *station = at->station;
   bool check = is_check(station, at);
   if (card != FG_CARD_MEASURED) return refuse(ctx, at, card, card == FG_CARD_UNREADABLE);
+  fg_station_set_stage(station, FG_STAGE_MEASURING, at->file.name);
   if (check) return fg_station_take_check(ctx, station, at->path, &at->file, at->words, WORDS);
   return measure(ctx, at);
 }
 
-static fg_status take(fg_context *ctx, intake *at, bool final) {
+/* Whether more of it is waited for, as a look at its ends tells. */
+static bool is_awaited(const intake *at, fg_card card) {
+  if (card == FG_CARD_MEASURED) return at->writer == FG_WRITER_WRITES && !at->sure;
+  if (card == FG_CARD_UNFINISHED) return at->writer != FG_WRITER_GONE;
+  return at->writer == FG_WRITER_WRITES;
+}
+
+static fg_status take(fg_context *ctx, intake *at) {
   struct stat now;
-  bool done, sure;
+  bool done;
   if (stat(at->path, &now) != 0 || !S_ISREG(now.st_mode)) return FG_OK; /* gone, or no file */
   at->file.bytes = now.st_size;
   at->file.modified_ns = (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec;
   FG_TRY(fg_station_file_is_done(ctx, &at->station->database, &at->file, &done));
   if (done) return FG_OK;
-  fg_card card = look(at, &sure);
-  at->later = !final && !(sure && card == FG_CARD_MEASURED);
+  fg_card card = look(at);
+  at->scan = card == FG_CARD_MEASURED || card == FG_CARD_UNFINISHED;
+  at->later = is_awaited(at, card);
   if (at->later) return FG_OK;
   FG_TRY(take_card(ctx, at, card));
   if (at->later) return leave(at);
@@ -276,14 +310,23 @@ static fg_status take(fg_context *ctx, intake *at, bool final) {
   return FG_OK;
 }
 
+/* What pages say of the file until there is a card of it. */
+static void set_stage(const intake *at) {
+  if (at->later && at->scan)
+    fg_station_set_stage(at->station, FG_STAGE_RECEIVING, at->file.name);
+  else
+    fg_station_end_stage(at->station, at->file.name);
+}
+
 fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
-                               bool final, bool *later) {
-  intake at = {.station = station, .name = name, .arrived = fg_clock_seconds()};
+                               fg_writer writer, bool *later) {
+  intake at = {.station = station, .name = name, .writer = writer, .arrived = fg_clock_seconds()};
   *later = false;
   FG_TRY(fg_stored_name(ctx, name, &at.stored));
   at.file.name = at.stored;
   fg_status status = fg_text_print(ctx, &at.path, "%s/%s", station->request->folder, name);
-  if (status == FG_OK) status = take(ctx, &at, final);
+  if (status == FG_OK) status = take(ctx, &at);
+  set_stage(&at);
   *later = at.later;
   free(at.path);
   free(at.stored);

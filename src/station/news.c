@@ -13,27 +13,46 @@ long long fg_station_news(fg_inspection *station) {
   return atomic_load(&station->news);
 }
 
+static bool is_of(const fg_arriving *at, const char *file) {
+  return at->stage != FG_STAGE_NONE && !strncmp(at->file, file, sizeof at->file - 1);
+}
+
 void fg_station_set_stage(fg_inspection *station, fg_stage stage, const char *file) {
   fg_arriving *at = &station->arriving;
+  bool changed = false;
   pthread_mutex_lock(&at->mutex);
-  bool same_file = !strncmp(at->file, file, sizeof at->file - 1);
-  bool changed = at->stage != stage || !same_file;
-  if (changed) at->since = fg_station_now();
-  at->stage = stage;
-  if (!same_file) fg_text_clip(at->file, sizeof at->file, "%s", file);
+  bool same_file = is_of(at, file);
+  if (same_file || at->stage == FG_STAGE_NONE || stage == FG_STAGE_MEASURING) {
+    changed = at->stage != stage || !same_file;
+    if (!same_file) at->since = fg_station_now();
+    if (!same_file) fg_text_clip(at->file, sizeof at->file, "%s", file);
+    at->stage = stage;
+    at->seen = true;
+  }
   pthread_mutex_unlock(&at->mutex);
   if (changed) fg_station_tell(station);
 }
 
-void fg_station_end_stage(fg_inspection *station, const char *file) {
-  fg_arriving *at = &station->arriving;
-  pthread_mutex_lock(&at->mutex);
-  bool ends =
-      at->stage != FG_STAGE_NONE && (!file || !strncmp(at->file, file, sizeof at->file - 1));
-  if (ends) at->stage = FG_STAGE_NONE;
-  if (ends) at->file[0] = '\0';
-  pthread_mutex_unlock(&at->mutex);
+static void end_if(fg_inspection *station, bool ends) {
+  if (ends) station->arriving.stage = FG_STAGE_NONE;
+  pthread_mutex_unlock(&station->arriving.mutex);
   if (ends) fg_station_tell(station);
+}
+
+void fg_station_end_stage(fg_inspection *station, const char *file) {
+  pthread_mutex_lock(&station->arriving.mutex);
+  end_if(station, is_of(&station->arriving, file));
+}
+
+void fg_station_begin_round(fg_inspection *station) {
+  pthread_mutex_lock(&station->arriving.mutex);
+  station->arriving.seen = false;
+  pthread_mutex_unlock(&station->arriving.mutex);
+}
+
+void fg_station_end_round(fg_inspection *station) {
+  pthread_mutex_lock(&station->arriving.mutex);
+  end_if(station, station->arriving.stage != FG_STAGE_NONE && !station->arriving.seen);
 }
 
 void fg_station_read_stage(fg_inspection *station, fg_arriving *copy) {

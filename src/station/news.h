@@ -10,12 +10,16 @@ void fg_station_tell(fg_inspection *station);
 /* The count. It begins with the station's start, so that a page of an earlier run has another. */
 long long fg_station_news(fg_inspection *station);
 
-/* A new stage of what is on its way to a verdict; `file` is a name below the folder. Tells who
- * waits where that is a change. */
+/* The stage of a file, a name below the folder, on its way to its card. One is shown: that of the
+ * first which is received, until it is gone or one is measured. Tells who waits of a change. */
 void fg_station_set_stage(fg_inspection *station, fg_stage stage, const char *file);
 
-/* The end of that stage of that file; NULL: of any. Another file's stage stays. */
+/* The file has its card, or is none any more. */
 void fg_station_end_stage(fg_inspection *station, const char *file);
+
+/* Before and after a look at all files of the folder: one that is gone is received no more. */
+void fg_station_begin_round(fg_inspection *station);
+void fg_station_end_round(fg_inspection *station);
 
 /* A copy, without its mutex. */
 void fg_station_read_stage(fg_inspection *station, fg_arriving *copy);

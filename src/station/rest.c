@@ -24,16 +24,17 @@ static fg_status add(fg_context *ctx, fg_rest *rest, const char *name, fg_restin
 }
 
 fg_status fg_rest_look(fg_context *ctx, fg_rest *rest, const char *name, int64_t bytes,
-                       int64_t modified_ns, int64_t now_ns, bool *at_rest) {
+                       int64_t modified_ns, int64_t now_ns, fg_resting **found) {
   fg_resting *file = find(rest, name);
   if (!file) FG_TRY(add(ctx, rest, name, &file));
   if (file->bytes != bytes || file->modified_ns != modified_ns) {
     file->bytes = bytes;
     file->modified_ns = modified_ns;
     file->since_ns = now_ns;
+    file->tried = false;
   }
   file->seen = true;
-  *at_rest = now_ns - file->since_ns >= FG_REST_NS;
+  *found = file;
   return FG_OK;
 }
 

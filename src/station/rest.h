@@ -1,4 +1,4 @@
-/* Files at rest: nobody has written to them for a while, as this machine's steady clock tells.
+/* Files that stay as they are, and for how long, as this machine's steady clock tells.
  *
  * The time of a file is its file system's, on the network another machine's: it only has to stay
  * the same. */
@@ -11,14 +11,15 @@
 
 #include "foilgauge/status.h"
 
-/* As long as a slow scanner pauses between rows. */
+/* A whole file is taken when nothing has come for so long and nobody has said that it is closed. */
 #define FG_REST_NS INT64_C(2000000000)
 
 /* A file as it was first seen so. */
 typedef struct fg_resting {
   char *name;
   int64_t bytes, modified_ns, since_ns;
-  bool seen; /* in this round */
+  bool seen;  /* in this round */
+  bool tried; /* as it is; the caller's */
 } fg_resting;
 
 typedef struct fg_rest {
@@ -26,10 +27,10 @@ typedef struct fg_rest {
   size_t count, capacity;
 } fg_rest;
 
-/* Whether the file has been as it is for FG_REST_NS at the time `now_ns` of a clock that nobody
- * sets; it is remembered from its first look on. */
+/* Since when the file has been as it is: `now_ns` is of a clock that nobody sets, and it is
+ * remembered from its first look on. *file is valid until the next call. */
 fg_status fg_rest_look(fg_context *ctx, fg_rest *rest, const char *name, int64_t bytes,
-                       int64_t modified_ns, int64_t now_ns, bool *at_rest);
+                       int64_t modified_ns, int64_t now_ns, fg_resting **file);
 
 /* The end of a round: files that were not looked at in it are forgotten. */
 void fg_rest_end_round(fg_rest *rest);

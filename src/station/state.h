@@ -28,7 +28,7 @@ typedef struct fg_trouble {
 /* What becomes of the newest file before there is a card of it. */
 typedef enum fg_stage {
   FG_STAGE_NONE,
-  FG_STAGE_RECEIVING, /* it is not whole yet, and its writer may go on */
+  FG_STAGE_RECEIVING, /* it is not whole, and its writer may go on */
   FG_STAGE_MEASURING
 } fg_stage;
 
@@ -37,6 +37,7 @@ typedef struct fg_arriving {
   fg_stage stage;
   int64_t since;
   char file[256]; /* below the folder; clipped */
+  bool seen;      /* in this round of looks at the folder */
 } fg_arriving;
 
 typedef struct fg_inspection {

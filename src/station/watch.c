@@ -1,5 +1,6 @@
-/* A file is whole when its writer has closed or renamed it (inotify), or, where the system does
+/* A file is looked at when its writer has closed or renamed it (inotify), or, where the system does
  * not tell (network folders, files that were there before), when it has been at rest for a while.
+ * One that is not whole then is waited for: its writer may only pause.
  * Whatever inotify says, the folder is listed now and then: what was missed is found.
  *
  * What the station cannot do now (a full disk, a folder that is gone) is its trouble: pages say so,
@@ -21,6 +22,7 @@
 #include "core/select.h"
 #include "core/text.h"
 #include "station/intake.h"
+#include "station/news.h"
 #include "station/rest.h"
 #include "station/trouble.h"
 
@@ -108,27 +110,45 @@ static fg_status list(fg_context *ctx, watch *at) {
   return status;
 }
 
-static fg_status take(fg_context *ctx, watch *at, const char *name, bool closed) {
+static fg_status take_closed(fg_context *ctx, watch *at, const char *name) {
   bool later;
-  FG_TRY(fg_station_take_file(ctx, at->station, name, closed, &later));
+  FG_TRY(fg_station_take_file(ctx, at->station, name, FG_WRITER_PAUSES, &later));
   at->pending = at->pending || later;
   return FG_OK;
 }
 
-/* What was there long before the station began, by this machine's clock, nobody writes to; of files
- * of other machines it says nothing. */
-static bool is_old(const watch *at, const found *file) {
-  return !at->listed_ns && at->station->request->poll_s <= 0 &&
-         now_ns(CLOCK_REALTIME) - file->modified_ns > FG_REST_NS;
+static int64_t receive_ns(const watch *at) {
+  int64_t given = (int64_t)(at->station->settings->receive_s * 1e9);
+  return given > FG_REST_NS ? given : FG_REST_NS;
 }
 
+static fg_writer writer_after(const watch *at, int64_t still_ns) {
+  if (still_ns < FG_REST_NS) return FG_WRITER_WRITES;
+  return still_ns < receive_ns(at) ? FG_WRITER_PAUSES : FG_WRITER_GONE;
+}
+
+/* Of what was there before the station began this machine's clock tells how long nobody has written
+ * to it; of files of other machines it says nothing. */
+static fg_writer first_writer(const watch *at, const found *file, bool once) {
+  if (once) return FG_WRITER_GONE;
+  if (at->listed_ns || at->station->request->poll_s > 0) return FG_WRITER_WRITES;
+  return writer_after(at, now_ns(CLOCK_REALTIME) - file->modified_ns);
+}
+
+/* A file that is read to its end and found to be cut off is not read again until it changes, or
+ * until nothing more is waited for. */
 static fg_status take_listed(fg_context *ctx, watch *at, const found *file, bool once) {
-  bool later, at_rest = once || is_old(at, file);
-  FG_TRY(fg_station_take_file(ctx, at->station, file->name, at_rest, &later));
+  bool later;
+  fg_resting *resting;
+  int64_t now = now_ns(CLOCK_MONOTONIC);
+  FG_TRY(fg_station_take_file(ctx, at->station, file->name, first_writer(at, file, once), &later));
   if (!later) return FG_OK;
-  FG_TRY(fg_rest_look(ctx, &at->rest, file->name, file->bytes, file->modified_ns,
-                      now_ns(CLOCK_MONOTONIC), &at_rest));
-  if (at_rest && !once) FG_TRY(fg_station_take_file(ctx, at->station, file->name, true, &later));
+  FG_TRY(fg_rest_look(ctx, &at->rest, file->name, file->bytes, file->modified_ns, now, &resting));
+  fg_writer writer = writer_after(at, now - resting->since_ns);
+  if (writer == FG_WRITER_GONE || (writer == FG_WRITER_PAUSES && !resting->tried)) {
+    FG_TRY(fg_station_take_file(ctx, at->station, file->name, writer, &later));
+    resting->tried = true;
+  }
   at->pending = at->pending || later;
   return FG_OK;
 }
@@ -140,6 +160,7 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
   fg_context inner = {.message = ""};
   at->pending = false;
   FG_TRY(list(ctx, at));
+  fg_station_begin_round(at->station);
   for (size_t i = 0; i < at->count; i++) {
     fg_status status = take_listed(&inner, at, &at->files[i], once);
     if (status == FG_ERR_MEMORY)
@@ -148,6 +169,7 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
       return fg_fail(ctx, status, "%s", inner.message);
   }
   fg_rest_end_round(&at->rest);
+  fg_station_end_round(at->station);
   at->listed_ns = now_ns(CLOCK_MONOTONIC);
   return short_of_memory;
 }
@@ -178,7 +200,7 @@ static fg_status take_event(fg_context *ctx, watch *at, const struct inotify_eve
     return FG_OK;
   }
   if (!event->len || is_ignored(event->name)) return FG_OK;
-  if (event->mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) return take(ctx, at, event->name, true);
+  if (event->mask & (IN_CLOSE_WRITE | IN_MOVED_TO)) return take_closed(ctx, at, event->name);
   at->pending = true; /* it is being written */
   return FG_OK;
 }

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """A day at the inspection station in a real browser, headless: an empty folder, a good foil, a bad one,
-a scan that is half written, a file that is no scan; a barcode; History, a report, a chart that is zoomed
-by dragging, a lot that is closed and downloaded. Ends with an error at the first thing that is not as said.
+a scan that is half written, a file that is no scan; a barcode; a serial number that is half typed while results
+come; two browsers at once; History, a report, a chart that is zoomed by dragging, a lot that is closed and downloaded;
+a phone; a station that is killed. Ends with an error at the first thing that is not as said.
 
     tests/browser/station_browser.py PROGRAM [--renderer PROGRAM]
     tests/browser/station_browser.py PROGRAM --pictures FOLDER      draws the five tabs instead
@@ -13,6 +14,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -21,7 +23,7 @@ import xml.etree.ElementTree
 
 try:
     from selenium import webdriver
-    from selenium.common.exceptions import StaleElementReferenceException
+    from selenium.common.exceptions import WebDriverException
     from selenium.webdriver.chrome.service import Service
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.by import By
@@ -39,20 +41,27 @@ TALLEST_OTHERS = 1280
 LIMITS = {"radius_mm": {"min": 3.3, "max": 3.34}}  # of a foil that is drawn with 3.32 mm
 GOOD_MM, BAD_MM = 3.32, 3.4
 WAIT_S = 20
+RECEIVE_S = 3  # of the recipe: how long a scan that is not whole may pause
+SILENT_S = 5  # a page that has lost its station says so within these
+PHONE = {"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": True}
+GREY = "grayscale"
 
 
 def wait(what, seconds=WAIT_S):
-    """What `what` comes to, as soon as it is true. A page may change while it is read."""
+    """What `what` comes to, as soon as it is true. A page may change or go between finding an element and reading
+    it: some drivers call that stale, others say that a node does not belong to the document, or that navigation
+    has aborted a script."""
     end = time.time() + seconds
     while True:
+        trouble = None
         try:
             found = what()
-        except StaleElementReferenceException:
-            found = None
+        except WebDriverException as error:
+            found, trouble = None, error
         if found:
             return found
         if time.time() > end:
-            raise AssertionError("waited in vain")
+            raise AssertionError("waited in vain") from trouble
         time.sleep(0.02)
 
 
@@ -65,13 +74,26 @@ class Station:
     """A station that runs, and its address."""
 
     def __init__(self, program, folder, recipe, errors):
-        self.process = subprocess.Popen([program, "station", folder, "--recipe", recipe, "--port", "0"],
-                                        stdout=subprocess.PIPE, stderr=errors, text=True)
+        self.command = [program, "station", folder, "--recipe", recipe]
+        self.errors = errors
+        self.start("0")
+
+    def start(self, port):
+        self.process = subprocess.Popen(self.command + ["--port", port], stdout=subprocess.PIPE, stderr=self.errors,
+                                        text=True)
         self.address = self.process.stdout.readline().strip()
         expect(self.address.startswith("http://"), f"no address: {self.address!r}")
 
+    def start_again(self):
+        """At the address that pages know."""
+        self.start(self.address.rstrip("/").rsplit(":", 1)[1])
+
     def end(self):
         self.process.terminate()
+        self.process.wait()
+
+    def kill(self):
+        self.process.kill()
         self.process.wait()
 
 
@@ -99,10 +121,22 @@ class Day:
         return wait(lambda: (self.browser.find_elements(By.CSS_SELECTOR, selector) or [None])[0])
 
     def text(self, selector="main"):
-        return self.one(selector).text
+        """In one step, so that no page comes between."""
+        return wait(lambda: self.browser.execute_script(
+            "var e=document.querySelector(arguments[0]);return e&&e.innerText", selector))
+
+    def press(self, find):
+        """Clicks the first of what `find` comes to; a page that is replaced before that is looked at again."""
+        def pressed():
+            found = find()
+            if found:
+                found[0].click()
+            return bool(found)
+
+        wait(pressed)
 
     def follow(self, words):
-        wait(lambda: self.browser.find_elements(By.PARTIAL_LINK_TEXT, words))[0].click()
+        self.press(lambda: self.browser.find_elements(By.PARTIAL_LINK_TEXT, words))
 
     def draw(self, path, radius_mm):
         self.seed += 1
@@ -144,7 +178,8 @@ class Day:
             whole = file.read()
         with open(os.path.join(self.folder, "7_half.png"), "wb") as file:
             file.write(whole[:len(whole) // 2])
-        self.card("7_half.png", "SCAN AGAIN", "its end is missing", "Wait until the scanner is done")
+        self.card("7_half.png", "RECEIVING", "The verdict comes by itself", "Before it: 7_bad.png FAIL")
+        self.card("7_half.png", "SCAN AGAIN", "its end is missing", "Scan the foil again")
         with open(os.path.join(self.folder, "notes.txt"), "w", encoding="utf-8") as file:
             file.write("not a scan\n")
         self.card("notes.txt", "NO SCAN", "take this file out")
@@ -160,6 +195,163 @@ class Day:
         ActionChains(self.browser).send_keys("SN-4711", Keys.ENTER).perform()
         wait(lambda: "SN-4711" in self.text("h2"))
         expect("Foil SN-4711" in self.text("h2"), "the barcode was not taken: " + self.text("h2"))
+
+    def is_grey(self):
+        """Whether the verdict has no colour, and the page says why."""
+        return self.browser.execute_script(
+            "var c=document.querySelector('.call'),s=document.getElementById('silent');"
+            "return getComputedStyle(c).filter.includes(arguments[0])&&s.getClientRects().length>0", GREY)
+
+    def half_typed(self):
+        """What is typed stays with its foil, and hides no result: "2 newer: FAIL, PASS"."""
+        self.go("/")
+        self.drop("7_typed.png", GOOD_MM)
+        self.card("7_typed.png", "PASS")
+        wait(lambda: self.browser.find_elements(By.CSS_SELECTOR, "svg.picture"))
+        ActionChains(self.browser).send_keys("SN-47").perform()
+        self.drop("7_newer1.png", GOOD_MM)
+        self.card("7_newer1.png", "PASS", "1 newer: PASS")
+        ActionChains(self.browser).send_keys("1").perform()
+        self.drop("7_newer2.png", BAD_MM)
+        self.card("7_newer2.png", "FAIL", "2 newer: FAIL, PASS")
+        wait(lambda: self.browser.find_elements(By.CSS_SELECTOR, "svg.picture"))
+        panel = self.one(".typing")
+        expect("Foil typed" in panel.text and "PASS" in panel.text, "whose serial is typed is not said: " + panel.text)
+        field = self.browser.switch_to.active_element
+        expect(field.get_attribute("value") == "SN-471", "typed was SN-471, but there is " + field.get_attribute("value"))
+        ActionChains(self.browser).send_keys("2", Keys.ENTER).perform()
+        wait(lambda: not self.browser.find_elements(By.CSS_SELECTOR, ".typing"))
+        self.card("7_newer2.png", "FAIL")
+        expect("newer2" in self.text("h2"), "the newest foil has another's serial: " + self.text("h2"))
+        self.go("/history?serial=SN-4712")
+        expect("1 foil found" in self.text(), "the serial was not kept: " + self.text())
+        # What is given up leaves no trace.
+        self.go("/")
+        ActionChains(self.browser).send_keys("nobody").perform()
+        self.drop("7_newer3.png", GOOD_MM)
+        self.card("7_newer3.png", "PASS", "1 newer: PASS")
+        self.press(lambda: self.browser.find_elements(By.CSS_SELECTOR, ".typing button[type=reset]"))
+        wait(lambda: not self.browser.find_elements(By.CSS_SELECTOR, ".typing"))
+        expect(self.browser.switch_to.active_element.get_attribute("value") == "newer3", "the newest serial has no focus")
+
+    def fill(self, name, text):
+        field = self.one(f"form[data-foil] input[name={name}]")
+        field.clear()
+        field.send_keys(text)
+
+    def keep(self):
+        self.press(lambda: self.browser.find_elements(By.CSS_SELECTOR, "form[data-foil] button"))
+
+    def two_at_once(self, other):
+        """Of a form that was loaded before somebody else's change only what was changed in it counts."""
+        self.go("/")
+        foil = self.one("h2 a").get_attribute("href").rsplit("/", 1)[1]
+        for day in self, other:
+            day.go("/" + foil)
+        self.fill("operator", "Ada")
+        self.fill("by", "Ada")
+        self.keep()
+        wait(lambda: "Ada" in self.text("table.left"))
+        other.fill("die", "D9")
+        other.fill("by", "Bea")
+        other.keep()
+        wait(lambda: "D9" in other.text("table.left"))
+        expect(other.one("input[name=operator]").get_attribute("value") == "Ada", "a stale form erased the operator")
+        self.fill("die", "D7")
+        self.fill("by", "Ada")
+        self.keep()
+        wait(lambda: "Somebody else has changed the foil" in self.text())
+        expect("D9" in self.text("table") and "Bea" in self.text("table"), "who changed what: " + self.text("table"))
+        expect(self.one("input[name=die]").get_attribute("value") == "D7", "what was wanted is lost")
+        self.keep()
+        wait(lambda: "D7" in self.text("table.left"))
+        # A serial that another foil has.
+        other.go("/" + foil)
+        other.fill("serial", "SN-4712")
+        other.fill("by", "Bea")
+        other.keep()
+        wait(lambda: "another foil has the serial number SN-4712" in other.text())
+        other.browser.execute_script("window.asked = true")
+        other.browser.switch_to.active_element.send_keys(Keys.ENTER)  # a reader's next Enter takes nothing
+        wait(lambda: not other.browser.execute_script("return window.asked")
+             and "another foil has the serial number SN-4712" in other.text())
+        other.go("/" + foil)
+        expect("SN-4712" not in other.text("h2, .call"), "the serial was taken")
+        # News of one browser are those of the other.
+        self.go("/")
+        self.fill("serial", "SN-1000")
+        other.go("/")
+        other.browser.execute_script("window.never_loaded = true")
+        self.keep()
+        wait(lambda: "SN-1000" in other.text("h2"))
+        expect(other.browser.execute_script("return window.never_loaded"), "the other page was loaded, not told")
+
+    def phone(self, other):
+        """Nothing is wider than the screen; the verdict is in view, whatever has the focus."""
+        other.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", PHONE)
+        self.drop("7_a_file_with_a_rather_long_name_of_one_word_as_scanners_give_them.png", BAD_MM)
+        for path in [path for _, path in TABS] + ["/lots?close=1&lot=7", "/foil?id=2"]:
+            other.go(path)
+            wait(lambda: not other.browser.find_elements(By.CSS_SELECTOR, "html.unconfirmed"))
+            if path == "/":
+                other.card("as_scanners_give_them", "FAIL")
+                wait(lambda: other.browser.find_elements(By.CSS_SELECTOR, "svg.picture"))
+            wide, top, bottom = other.browser.execute_script(
+                "var c=document.querySelector('.call'),b=c&&c.getBoundingClientRect();"
+                "return [document.documentElement.scrollWidth,b?b.top:0,b?b.bottom:0]")
+            expect(0 <= top and bottom <= PHONE["height"] / 2, f"{path}: the verdict is at {top} to {bottom} px")
+            beyond = other.browser.execute_script(
+                "return [].filter.call(document.querySelectorAll('main *'),function(e){"
+                "return e.getBoundingClientRect().right>arguments[0]+1&&!e.closest('svg')&&!e.closest('.scroll');})"
+                ".map(function(e){return e.outerHTML.slice(0,80);})", PHONE["width"])
+            expect(wide <= PHONE["width"] and not beyond, f"{path} is {wide} px wide on a phone: {beyond}")
+
+    def lost(self):
+        """A station that is gone: no page keeps a verdict in its colours, and it comes back by itself."""
+        self.go("/")
+        wait(lambda: not self.is_grey())
+        self.browser.execute_script("window.never_loaded = true")
+        held = self.text(".call")
+        killed = time.time()
+        self.station.kill()
+        wait(self.is_grey, SILENT_S)
+        expect(time.time() - killed <= SILENT_S, f"said after {time.time() - killed:.1f} s")
+        words = self.text("#silent")
+        expect("No connection" in words and re.search(r"known at 20\d\d-\d\d-\d\d \d\d:\d\d:\d\d", words),
+               "the time of what is shown: " + words)
+        self.station.start_again()
+        wait(lambda: not self.is_grey())
+        expect(self.text(".call") == held, "another card after the restart")
+        self.drop("7_back.png", GOOD_MM)
+        self.card("7_back.png", "PASS")
+        expect(self.browser.execute_script("return window.never_loaded"), "the page was loaded, not told")
+
+    def silent(self):
+        """Connections that stay open and carry nothing, as through a cable that was pulled; and a page whose
+        script never hears of its station."""
+        self.go("/")
+        wait(lambda: not self.is_grey())
+        self.station.process.send_signal(signal.SIGSTOP)
+        try:
+            stopped = time.time()
+            wait(self.is_grey, SILENT_S)
+            expect(time.time() - stopped <= SILENT_S, f"said after {time.time() - stopped:.1f} s")
+        finally:
+            self.station.process.send_signal(signal.SIGCONT)
+        wait(lambda: not self.is_grey())
+        self.browser.execute_cdp_cmd("Network.enable", {})
+        for blocked in "*/alive", "*/script.js":
+            self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": [blocked]})
+            self.go("/")
+            wait(self.is_grey, SILENT_S)
+        self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": []})
+        # A page that comes back from the browser's memory, while the station is gone.
+        self.go("/")
+        wait(lambda: not self.is_grey())
+        self.go("/history")
+        self.station.kill()
+        self.browser.back()
+        wait(lambda: not self.browser.find_elements(By.CSS_SELECTOR, ".call") or self.is_grey(), SILENT_S)
 
     def history(self):
         self.follow("History")
@@ -206,7 +398,7 @@ class Day:
         ActionChains(self.browser).send_keys("Ada", Keys.ENTER).perform()
         wait(lambda: "closed" in self.text() and "by Ada" in self.text())
         expect("FAIL" in self.text("ul.cards li"), "a lot with a bad foil did not fail: " + self.text("ul.cards li"))
-        wait(lambda: self.browser.find_elements(By.CSS_SELECTOR, "button[value='results.qif']"))[0].click()
+        self.press(lambda: self.browser.find_elements(By.CSS_SELECTOR, "button[value='results.qif']"))
         path = wait(lambda: [os.path.join(downloads, name) for name in os.listdir(downloads) if name.endswith(".qif")])[0]
         root = xml.etree.ElementTree.parse(path).getroot()
         expect(root.tag.endswith("}QIFDocument"), f"no QIF: {root.tag}")
@@ -225,13 +417,14 @@ def run_day(program, renderer, work):
     os.mkdir(downloads)
     recipe = os.path.join(work, "recipe.json")
     with open(recipe, "w", encoding="utf-8") as file:
-        json.dump({"schema": "foilgauge/recipe/1", "station": {"file_name": "{lot}_{serial}"},
+        json.dump({"schema": "foilgauge/recipe/1", "station": {"file_name": "{lot}_{serial}", "receive_s": RECEIVE_S},
                    "design": {"schema": "foilgauge/design/1", "bump_count": 2, "tolerances": LIMITS}}, file)
     with open(os.path.join(work, "errors"), "w", encoding="utf-8") as errors:
-        station, browser = Station(program, folder, recipe, errors), None
+        station, browsers = Station(program, folder, recipe, errors), []
         try:
-            browser = open_browser(downloads)
-            day = Day(browser, station, folder, work, renderer)
+            browsers = [open_browser(downloads), open_browser(downloads)]
+            day, other = (Day(browser, station, folder, work, renderer) for browser in browsers)
+            other.seed = 1000
             day.cards()
             day.barcode()
             for i in range(5):
@@ -240,12 +433,18 @@ def run_day(program, renderer, work):
             day.history()
             day.trends(8)
             day.lots(downloads)
-            day.quiet()
+            day.half_typed()
+            day.quiet()  # before answers that are refusals
+            day.two_at_once(other)
+            day.phone(other)
+            day.lost()
+            day.silent()
         finally:
-            if browser:
+            for browser in browsers:
                 browser.quit()
             station.end()
-    print("browser: cards by themselves, barcode, search, report, zoom, lot, QIF")
+    print("browser: cards by themselves, barcode, search, report, zoom, lot, QIF, half-typed serial, two at once, phone, "
+          "lost connection")
 
 
 def run_pictures(program, folder, work):

@@ -18,9 +18,9 @@
 static bool look(fg_rest *rest, const char *name, int64_t bytes, int64_t modified_ns,
                  int64_t now_ns) {
   fg_context ctx;
-  bool at_rest;
-  assert_int_equal(fg_rest_look(&ctx, rest, name, bytes, modified_ns, now_ns, &at_rest), FG_OK);
-  return at_rest;
+  fg_resting *file;
+  assert_int_equal(fg_rest_look(&ctx, rest, name, bytes, modified_ns, now_ns, &file), FG_OK);
+  return now_ns - file->since_ns >= FG_REST_NS;
 }
 
 static void test_a_file_rests_when_it_stays_the_same(void **state) {

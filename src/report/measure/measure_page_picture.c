@@ -11,7 +11,6 @@ static const double pixels_max = 4e6;
 /* What the page's style leaves to a picture, in its own pixels: one unit of the drawing is one. */
 #define SHOWN_WIDTH  1038.0
 #define SHOWN_HEIGHT 600.0
-static const double margin_mm = 3.5; /* room for residuals and numbers */
 
 static void put_base64(FILE *out, const uint8_t *bytes, size_t size) {
   static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -26,9 +25,26 @@ static void put_base64(FILE *out, const uint8_t *bytes, size_t size) {
   }
 }
 
-/* The foil's box with a margin, inside the scan; the whole scan without a foil or a box. */
-static void choose_box(const fg_measurement *measurement, const fg_foil *foil, int64_t box[4]) {
+/* Room for residuals, numbers, and a ring around the middle of any bump's chord (picture_marks.c):
+ * none is wider than the bump. */
+static double find_margin_mm(const fg_foil *foil) {
+  static const double usual_mm = 3.5, ring_over_half_chord = 1.08, pen_mm = 0.2;
+  static const double degree = 3.14159265358979323846 / 180, right_angle_deg = 90;
+  double margin = usual_mm;
+  for (size_t i = 0; foil && i < foil->bump_count; i++) {
+    double half_deg = fmin(foil->bumps[i].bump_angle_deg / 2, right_angle_deg);
+    double ring = ring_over_half_chord * foil->bumps[i].radius_mm * sin(half_deg * degree);
+    margin = fmax(margin, ring + pen_mm); /* fmax leaves out what was not measured */
+  }
+  return fmin(margin, 3 * usual_mm);
+}
+
+/* `box`: the foil's with a margin, inside the scan; the whole scan without a foil or a box.
+ * `beyond`: by how much the margin reaches over the scan's left, upper, right and lower edge. */
+static void choose_box(const fg_measurement *measurement, const fg_foil *foil, int64_t box[4],
+                       int64_t beyond[4]) {
   const int64_t size[2] = {measurement->width_px, measurement->height_px};
+  double margin_mm = find_margin_mm(foil);
   for (int i = 0; i < 2; i++) {
     bool known = foil && foil->strip.box_px[2] > 0 && foil->strip.box_px[3] > 0;
     int64_t margin = (int64_t)(margin_mm * measurement->dpi[i] / 25.4);
@@ -36,9 +52,12 @@ static void choose_box(const fg_measurement *measurement, const fg_foil *foil, i
     int64_t to = known ? foil->strip.box_px[i] + foil->strip.box_px[i + 2] + margin : size[i];
     box[i] = from > 0 ? from : 0;
     box[i + 2] = (to < size[i] ? to : size[i]) - box[i];
+    beyond[i] = from < 0 ? -from : 0;
+    beyond[i + 2] = to > size[i] ? to - size[i] : 0;
     if (box[i + 2] <= 0) {
       box[i] = 0;
       box[i + 2] = size[i];
+      beyond[i] = beyond[i + 2] = 0;
     }
   }
 }
@@ -96,23 +115,33 @@ static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *pictu
   return FG_OK;
 }
 
+/* Where the margin reaches beyond the scan, or there are no pixels, the ground is plain. */
+static void begin_picture(FILE *out, const fg_picture *picture, const int64_t beyond[4]) {
+  double edge[4];
+  for (int i = 0; i < 4; i++)
+    edge[i] = ceil((double)beyond[i] * picture->reduction[i % 2]);
+  double width = picture->width + edge[0] + edge[2], height = picture->height + edge[1] + edge[3];
+  fprintf(out,
+          "<svg class=\"picture\" width=\"%.0f\" height=\"%.0f\" viewBox=\"%.0f %.0f %.0f %.0f\" "
+          "role=\"img\" aria-label=\"The scan with fitted circles and residuals\">\n"
+          "<rect x=\"%.0f\" y=\"%.0f\" width=\"%.0f\" height=\"%.0f\" fill=\"#20262c\"/>\n",
+          width, height, 0 - edge[0], 0 - edge[1], width, height, 0 - edge[0], 0 - edge[1], width,
+          height);
+}
+
 fg_status fg_html_picture(fg_context *ctx, FILE *out, const fg_measurement *measurement,
                           const fg_foil *foil, double magnification) {
-  int64_t box[4];
+  int64_t box[4], beyond[4];
   fg_picture picture;
-  choose_box(measurement, foil, box);
+  choose_box(measurement, foil, box, beyond);
   bool readable = strcmp(measurement->scan, "-") != 0 && measurement->foil_count <= FOILS_MAX;
   if (readable)
     FG_TRY(fg_picture_load(ctx, measurement, box, WIDTH_MAX, pixels_max, &picture));
   else
     empty_picture(box, &picture);
-  fprintf(out,
-          "<svg class=\"picture\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" role=\"img\" "
-          "aria-label=\"The scan with fitted circles and residuals\">\n",
-          picture.width, picture.height, picture.width, picture.height);
+  begin_picture(out, &picture, beyond);
   if (readable) drop_noise(&picture);
   fg_status status = readable ? put_image(ctx, out, &picture) : FG_OK;
-  if (!readable) fputs("<rect width=\"100%\" height=\"100%\" fill=\"#20262c\"/>\n", out);
   if (status == FG_OK) status = put_drawing(ctx, out, &picture, measurement, foil, magnification);
   fputs("</svg>\n", out);
   fg_picture_free(&picture);
