@@ -61,7 +61,8 @@ def load_control(rng, in_gap):
 
 
 def dead_weights(rng):
-    return ordinary(rng, control="load", samples_per_cycle=12 * int(rng.integers(15, 31)), readings=3)
+    """An odd number of levels a stroke: the last is the largest load, and none is without a weight."""
+    return ordinary(rng, control="load", samples_per_cycle=3 * (4 * int(rng.integers(15, 31)) + 2), readings=3)
 
 
 def dropouts(rng):
