@@ -14,6 +14,12 @@
  * T and more without a foil, loops that give energy: no clearance is named. Friction makes the
  * unloading points lie elsewhere; their travel is reported beside.
  *
+ * GAP. Free travel of the rotor, less than the clearance by what both foils yield under T: from
+ * place to place where the loaded branches, taken as the mean of loading and unloading, come down
+ * to no force. A branch is followed by x0 + p F^(1/n) + q F^(2/n), n from 1 (a spring) to 2; what n
+ * makes of x0 is in u. A gap that does not exceed its U is none that is shown: both foils may press
+ * the rotor at once, the travel between +T and -T is then theirs, and no clearance is named.
+ *
  * STIFFNESS. dF/dx of the loading strokes by the same regression; structural stiffness is its
  * largest value. Where that is, is decided by the other cycles than the one whose value is taken
  * there (the halves of one cycle's samples, where there is but one): the largest of noisy values
@@ -140,11 +146,12 @@ enum {
   FG_LOAD_FRICTION_HIGH = 1 << 6,   /* friction in the middle is more than half of the threshold */
   FG_LOAD_ONE_CYCLE = 1 << 7,       /* nothing says how cycles differ */
   FG_LOAD_ZERO_OFF = 1 << 8,        /* the load cell's zero exceeds half of the threshold */
-  FG_LOAD_NO_GAP = 1 << 9,          /* clearance at or below zero */
+  FG_LOAD_NO_GAP = 1 << 9,          /* both foils touch the rotor at once, or nearly */
   FG_LOAD_UNITS = 1 << 10,          /* clearance or stiffness of no bearing of that diameter */
   FG_LOAD_UNSAMPLED = 1 << 11,      /* the threshold is passed where no sample lies */
   FG_LOAD_SAME_SIDE = 1 << 12,      /* push and pull contact on one side of the gap */
   FG_LOAD_BRANCHES_APART = 1 << 13, /* loading and unloading contacts do not fit together */
+  FG_LOAD_GAP_UNKNOWN = 1 << 14,    /* nothing says whether there is a gap */
   FG_LOAD_CONTRADICTION = FG_LOAD_SAME_SIDE | FG_LOAD_BRANCHES_APART,
 };
 
@@ -189,6 +196,7 @@ typedef struct fg_load_direction {
   double noise_n, noise_mm;           /* sd of the columns; the displacement's with its step */
   double step_mm;                     /* that the displacement was rounded to; 0: none is seen */
   fg_load_value clearance, unloading; /* mm */
+  fg_load_value gap;                  /* free travel, mm; NaN: not known, or none is shown */
   double zero_n;                      /* what the load cell says in the gap; NaN: not known */
   double push_mm, pull_mm;            /* where zero + T, zero - T are passed */
   double drift_um_cycle;
@@ -200,7 +208,7 @@ typedef struct fg_load_direction {
   fg_load_friction friction;
   fg_load_course course[FG_LOAD_SIDES];
   fg_load_value predicted;  /* by the lot, mm; NaN: not */
-  fg_load_value difference; /* clearance - predicted */
+  fg_load_value difference; /* gap - predicted */
   int predicted_pad;        /* from 1: pad of the place that is met first of both sides; 0: none */
 } fg_load_direction;
 

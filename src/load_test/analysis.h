@@ -39,6 +39,10 @@ fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load
 fg_status fg_load_check_contacts(fg_context *ctx, const fg_load_strokes *strokes, double gap_at_mm,
                                  fg_load_direction *direction);
 
+/* Free travel, its u_repeat before repeats widen it. */
+void fg_load_find_gap(const fg_load_strokes *strokes, fg_load_zero zero,
+                      fg_load_direction *direction);
+
 /* Whether a stroke goes as far as the record does, on one side. */
 bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_direction *direction,
                             double low, double high, int side);

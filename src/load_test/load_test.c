@@ -45,7 +45,12 @@ const fg_load_flag *fg_load_flags(void) {
        "the load cell's zero is off by more than half of the threshold: set it, or choose a higher "
        "threshold"},
       {FG_LOAD_NO_GAP, "no_gap",
-       "the loading strokes pass the threshold on the wrong sides: there is no clearance at it"},
+       "no gap: the foils of both sides touch the rotor at once, or within U; there is no "
+       "clearance"},
+      {FG_LOAD_GAP_UNKNOWN, "gap_not_known",
+       "too few samples near to where the foils are touched, up and back, to say whether there is "
+       "a "
+       "gap: the travel may be that of foils that press the rotor"},
       {FG_LOAD_UNITS, "units_suspect",
        "a clearance beyond 5 % of the diameter or below 1 um, or a stiffness beyond 1e5 N/mm: are "
        "the units what they say?"},
@@ -103,8 +108,21 @@ static const double clearance_share_max = 0.05, clearance_min_mm = 0.001;
 static const double stiffness_max_n_mm = 1e5;
 
 static void forget_clearance(fg_load_direction *d) {
-  d->clearance = d->unloading = (fg_load_value){NAN, NAN, NAN};
+  d->clearance = d->unloading = d->gap = (fg_load_value){NAN, NAN, NAN};
   d->push_mm = d->pull_mm = NAN;
+}
+
+/* U = 2 u: a gap within it is none that is shown. */
+static const double gap_reach = 2;
+
+/* Foils that press the rotor have no place where it is free, and so neither a zero nor a friction
+ * that is passed there. */
+static void check_gap(fg_load_zero *zero, fg_load_direction *d) {
+  if (!(d->gap.value <= gap_reach * d->gap.u_repeat)) return;
+  if (isfinite(d->clearance.value)) d->flags |= FG_LOAD_NO_GAP;
+  d->flags &= ~(unsigned)FG_LOAD_UNSAMPLED;
+  forget_clearance(d);
+  d->zero_n = zero->force_n = zero->friction_n = NAN;
 }
 
 /* An unsampled stretch may leave anything between nothing and twice the value. */
@@ -143,6 +161,7 @@ static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
   };
   if (isfinite(d->clearance.value)) {
     if (d->cycles < 2) d->flags |= FG_LOAD_ONE_CYCLE;
+    if (!isfinite(d->gap.value)) d->flags |= FG_LOAD_GAP_UNKNOWN;
     return;
   }
   if (d->flags & REASONS) return;
@@ -177,6 +196,8 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   d->zero_n = zero.force_n;
   levels.zero_n = isfinite(zero.force_n) ? zero.force_n : 0;
   FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, levels, d, findings));
+  fg_load_find_gap(&strokes, zero, d);
+  check_gap(&zero, d);
   FG_TRY_EXIT(fg_load_check_contacts(ctx, &strokes, zero.place_mm, d));
   check_clearance(test, &zero, d);
   FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
@@ -219,6 +240,7 @@ static void finish_bearing(fg_load_test *test, const fg_load_findings *findings,
     if (d->bearing != bearing) continue;
     double threshold = o->threshold_n * o->u_force_pct / 100 * findings[i].compliance_mm_n;
     widen(&d->clearance, birge, o->u_displacement_pct, threshold);
+    widen(&d->gap, birge, o->u_displacement_pct, 0);
     widen(&d->unloading, birge, o->u_displacement_pct, threshold);
     widen(&d->stiffness, steep, both, 0);
     widen(&d->area, 1, both, 0);

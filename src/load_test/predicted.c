@@ -1,4 +1,6 @@
-/* The travel that a lot's measured foils leave a rotor, in the directions of the tests. */
+/* The travel that a lot's measured foils leave a rotor, in the directions of the tests. It is that
+ * of a rotor that touches and does not press, so that it stands against the gap, not against the
+ * clearance at a threshold. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -99,9 +101,8 @@ static void predict(const fg_load_test *test, const places *p, fg_load_direction
   double doubt = hypot(u[0], u[1]);
   d->predicted = (fg_load_value){way[0] + way[1], doubt, doubt};
   d->predicted_pad = 1 + (int)((way[0] <= way[1] ? push : pull) / p->per_pad);
-  d->difference =
-      (fg_load_value){d->clearance.value - d->predicted.value, hypot(d->clearance.u, doubt),
-                      hypot(d->clearance.u_repeat, doubt)};
+  d->difference = (fg_load_value){d->gap.value - d->predicted.value, hypot(d->gap.u, doubt),
+                                  hypot(d->gap.u_repeat, doubt)};
 }
 
 static fg_status take_bearings(fg_context *ctx, fg_load_test *test, const cJSON *root,

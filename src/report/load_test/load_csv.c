@@ -21,7 +21,7 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
         "stiffness_at_mm,loop_area_n_mm,u_loop_area_n_mm,loss_factor,u_loss_factor,"
         "loss_factor_secant,u_loss_factor_secant,friction_intercept_n,friction_slope,"
         "predicted_clearance_mm,u_predicted_clearance_mm,clearance_difference_mm,"
-        "u_clearance_difference_mm\n",
+        "u_clearance_difference_mm,gap_mm,u_gap_mm\n",
         out);
   for (size_t i = 0; i < test->direction_count; i++) {
     const fg_load_direction *d = &test->directions[i];
@@ -43,6 +43,7 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
     fg_csv_put_number(out, d->friction.b);
     put_value(out, &d->predicted, 1);
     put_value(out, &d->difference, 1);
+    put_value(out, &d->gap, 1);
     fputc('\n', out);
   }
   return fg_stream_finish(ctx, out, "the CSV");

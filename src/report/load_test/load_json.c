@@ -61,6 +61,7 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   fg_json_number(json, "displacement_noise_mm", d->noise_mm);
   fg_json_number(json, "displacement_step_mm", d->step_mm > 0 ? d->step_mm : NAN);
   write_value(json, "clearance_mm", &d->clearance);
+  write_value(json, "gap_mm", &d->gap);
   fg_json_number(json, "push_mm", d->push_mm);
   fg_json_number(json, "pull_mm", d->pull_mm);
   write_value(json, "clearance_unloading_mm", &d->unloading);

@@ -74,6 +74,7 @@ static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction
   put_cell(out, &d->clearance, 1000, 1,
            fg_load_judge_value(test, FG_LOAD_CLEARANCE, &d->clearance));
   put_cell(out, &d->unloading, 1000, 1, FG_VERDICT_NONE);
+  put_cell(out, &d->gap, 1000, 1, FG_VERDICT_NONE);
   put_cell(out, &d->stiffness, 1, 0, fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
   put_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
   put_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
@@ -90,9 +91,10 @@ static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
   bool lot = test->bearings[bearing].in_lot;
   fprintf(out,
           "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance, µm</th><th>the same, "
-          "unloading</th><th>stiffness, N/mm</th><th>loss factor</th><th>of the secant</th>%s"
+          "unloading</th><th>gap, µm</th><th>stiffness, N/mm</th><th>loss factor</th><th>of the "
+          "secant</th>%s"
           "<th>cycles</th><th class=\"w\">to know</th></tr>\n",
-          lot ? "<th>by the lot, µm</th><th>difference, µm</th>" : "");
+          lot ? "<th>gap by the lot, µm</th><th>difference of gaps, µm</th>" : "");
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_row(out, test, &test->directions[i], lot);
   fputs("</table></div>\n", out);

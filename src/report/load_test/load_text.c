@@ -17,6 +17,8 @@ static void put_direction(FILE *out, const fg_load_test *test, const fg_load_dir
   fprintf(out, "  %8.1f", d->azimuth_deg);
   put(out, 1000 * d->clearance.value, 9, 2);
   put(out, 2000 * d->clearance.u, 7, 2);
+  put(out, 1000 * d->gap.value, 8, 1);
+  put(out, 2000 * d->gap.u, 6, 1);
   put(out, d->stiffness.value, 9, 1);
   put(out, 2 * d->stiffness.u, 7, 1);
   put(out, d->loss.value, 8, 4);
@@ -55,7 +57,7 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   fprintf(out, "\nbearing %s, %zu azimuth%s\n", b->name, b->directions,
           b->directions == 1 ? "" : "s");
   if (b->directions)
-    fprintf(out, "  azimuth    c um    U um    K N/mm  U N/mm    loss   secant%s\n",
+    fprintf(out, "  azimuth    c um    U um  gap um  U um    K N/mm  U N/mm    loss   secant%s\n",
             lot ? "   lot um  diff um" : "");
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_direction(out, test, &test->directions[i], lot);

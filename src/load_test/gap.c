@@ -1,0 +1,156 @@
+/* The gap: free travel between the places where the foils are touched, by extrapolating each side's
+ * loaded branch to no force. */
+#include <math.h>
+
+#include "core/small_solve.h"
+#include "load_test/analysis.h"
+
+/* A foil's force over its compression y is c y^n and what a second term bends of it: n is 1 for a
+ * spring, more where bumps are touched one after the other, and no more than 2. The exponents are
+ * tried in steps. */
+enum { EXPONENTS = 11 };
+static const double exponent_min = 1, exponent_max = 2;
+
+/* Forces that the branch is fitted over. Low, since it is extrapolated to none; but above what
+ * noise and friction make of a rotor in the gap, where up strokes read +a and down strokes -a. */
+static const double noise_reach = 5, friction_reach = 2, low_share = 0.02;
+static const double span = 8, high_share_min = 0.15, high_share_max = 0.7, span_min = 2,
+                    span_growth = 1.25;
+
+/* A load cell's zero lies within this share of the force's range about its middle. Further out it
+ * is none but a place where the foils are less stiff, as behind an interference. */
+static const double zero_share_max = 0.25;
+
+/* Samples of each sense that a branch takes; where there are fewer it is followed further. */
+enum { SAMPLES_MIN = 10 };
+
+/* x = x0 + p e + q e² + s (g + h e), e = F^(1/n), s the stroke's sense: its last two terms are what
+ * friction parts loading and unloading by. */
+enum { CONTACT, GROWTH, BEND, PARTED, PARTED_GROWTH, TERMS };
+
+/* One side's branch, its force and travel outwards. */
+typedef struct branch {
+  const fg_load_strokes *strokes;
+  int side; /* +1: push, -1: pull */
+  double zero_n, low_n, high_n, origin_mm;
+  double count[2]; /* samples of loading, of unloading */
+} branch;
+
+/* A sample of the branch; false: it is none. */
+static bool take_sample(const branch *b, const fg_load_stroke *s, size_t k, double *force,
+                        double *x) {
+  *force = b->side * (s->f[k] - b->zero_n);
+  *x = b->side * (s->x[k] - s->shift_mm) - b->origin_mm;
+  return *force > b->low_n && *force < b->high_n;
+}
+
+/* Whether there are enough; their mean becomes the origin, so that sums of squares keep their
+ * digits. */
+static bool count_samples(branch *b) {
+  double force, x, sum = 0;
+  b->count[0] = b->count[1] = b->origin_mm = 0;
+  for (size_t i = 0; i < b->strokes->count; i++)
+    for (size_t k = 0; k < b->strokes->stroke[i].count; k++)
+      if (take_sample(b, &b->strokes->stroke[i], k, &force, &x)) {
+        b->count[b->strokes->stroke[i].sense != b->side]++;
+        sum += x;
+      }
+  b->origin_mm = sum / (b->count[0] + b->count[1]);
+  return b->count[0] >= SAMPLES_MIN && b->count[1] >= SAMPLES_MIN;
+}
+
+static branch make_branch(const fg_load_strokes *strokes, int side, fg_load_zero zero,
+                          const fg_load_direction *d) {
+  branch b = {.strokes = strokes, .side = side};
+  double range = d->force_high_n - d->force_low_n, middle = (d->force_high_n + d->force_low_n) / 2;
+  bool known = fabs(zero.force_n - middle) < zero_share_max * range;
+  double friction = known ? fmax(0, zero.friction_n) : 0;
+  b.zero_n = known ? zero.force_n : 0;
+  double most = side > 0 ? d->force_high_n - b.zero_n : b.zero_n - d->force_low_n;
+  b.low_n = fmax(fmax(friction_reach * friction, friction + noise_reach * strokes->noise_n),
+                 low_share * most);
+  b.high_n = fmin(fmax(span * b.low_n, high_share_min * most), high_share_max * most);
+  while (!count_samples(&b) && b.high_n < high_share_max * most)
+    b.high_n = fmin(span_growth * b.high_n, high_share_max * most);
+  return b;
+}
+
+typedef struct branch_fit {
+  double contact, variance; /* x0, and of x0 over the samples' variance */
+  double parted, squares;   /* g; of the residuals */
+} branch_fit;
+
+static bool fit_exponent(const branch *b, double exponent, branch_fit *fit) {
+  fg_normal_equations system;
+  double solution[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], force, x;
+  fg_normal_clear(&system, TERMS);
+  for (size_t i = 0; i < b->strokes->count; i++) {
+    const fg_load_stroke *s = &b->strokes->stroke[i];
+    double sense = s->sense == b->side ? 1 : -1;
+    for (size_t k = 0; k < s->count; k++) {
+      if (!take_sample(b, s, k, &force, &x)) continue;
+      double e = pow(force / b->high_n, 1 / exponent);
+      fg_normal_add(&system, (const double[TERMS]){1, e, e * e, sense, sense * e}, x, 1);
+    }
+  }
+  if (!fg_normal_solve(&system, 0, solution, inverse)) return false;
+  fit->contact = solution[CONTACT];
+  fit->variance = inverse[CONTACT][CONTACT];
+  fit->parted = solution[PARTED];
+  fit->squares = system.sum_squares;
+  for (int k = 0; k < TERMS; k++)
+    fit->squares -= solution[k] * system.right[k];
+  fit->squares = fmax(0, fit->squares);
+  return true;
+}
+
+/* Where a foil is touched, outwards; what noise and friction leave unknown; half of what the
+ * exponents make of it, which is alike on both sides. */
+typedef struct touched {
+  double x_mm, u_mm, model_mm;
+} touched;
+
+/* Exponents that fit better count more; but friction that turns round at the contact bends the
+ * branch as an exponent does, so that half of the weight stays with all of them alike. */
+static touched weigh(const branch *b, const branch_fit fits[EXPONENTS]) {
+  double least = INFINITY, low = INFINITY, high = -INFINITY, weights = 0;
+  double contact = 0, variance = 0, parted = 0, plain = 0;
+  for (int i = 0; i < EXPONENTS; i++) {
+    least = fmin(least, fits[i].squares);
+    low = fmin(low, fits[i].contact), high = fmax(high, fits[i].contact);
+    plain += fits[i].contact / EXPONENTS;
+  }
+  double noise = least / (b->count[0] + b->count[1] - TERMS);
+  for (int i = 0; i < EXPONENTS; i++) {
+    double more = fits[i].squares - least, w = more > 0 ? exp(-more / (2 * noise)) : 1;
+    weights += w;
+    contact += w * fits[i].contact;
+    variance += w * noise * fits[i].variance;
+    parted += w * fits[i].parted;
+  }
+  return (touched){b->origin_mm + (contact / weights + plain) / 2,
+                   hypot(sqrt(variance / weights), parted / weights), (high - low) / 2};
+}
+
+/* False: too few samples. */
+static bool find_touched(const branch *b, touched *out) {
+  branch_fit fits[EXPONENTS];
+  if (b->count[0] < SAMPLES_MIN || b->count[1] < SAMPLES_MIN) return false;
+  if (!(b->high_n > span_min * b->low_n)) return false;
+  for (int i = 0; i < EXPONENTS; i++) {
+    double exponent = exponent_min + (exponent_max - exponent_min) * i / (EXPONENTS - 1);
+    if (!fit_exponent(b, exponent, &fits[i])) return false;
+  }
+  *out = weigh(b, fits);
+  return isfinite(out->x_mm + out->u_mm);
+}
+
+void fg_load_find_gap(const fg_load_strokes *strokes, fg_load_zero zero, fg_load_direction *d) {
+  touched push, pull;
+  d->gap = (fg_load_value){NAN, NAN, NAN};
+  branch out = make_branch(strokes, 1, zero, d), back = make_branch(strokes, -1, zero, d);
+  if (!find_touched(&out, &push) || !find_touched(&back, &pull)) return;
+  d->gap.value = push.x_mm + pull.x_mm;
+  d->gap.u_repeat =
+      sqrt(pow(push.u_mm, 2) + pow(pull.u_mm, 2) + pow(push.model_mm + pull.model_mm, 2));
+}
