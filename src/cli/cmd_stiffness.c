@@ -61,7 +61,9 @@ static const struct argp_option options[] = {
      "5.13)",
      2},
     {"u-displacement", OPTION_U_DISPLACEMENT, "PCT", 0,
-     "Of the scale of the displacement probe (default: @load_u_displacement_pct@ %, thesis section 5.13)", 2},
+     "Of the scale of the displacement probe (default: @load_u_displacement_pct@ %, thesis section "
+     "5.13)",
+     2},
     {"diameter", OPTION_DIAMETER, "MM", 0,
      "Of the bore, for friction and preload (default: @load_diameter_mm@)", 2},
     {"length", OPTION_LENGTH, "MM", 0,
@@ -72,8 +74,8 @@ static const struct argp_option options[] = {
      "repeated",
      2},
     {"lot", OPTION_LOT, "DIR", 0,
-     "The lot that `foilgauge lot -o DIR` measured: the travel that its foils leave a rotor, for "
-     "bearings of the same name",
+     "The lot that `foilgauge lot -o DIR` measured: the free travel that its foils leave a rotor, "
+     "beside the gap of bearings of the same name",
      2},
     {"azimuth-zero", OPTION_AZIMUTH_ZERO, "DEG", 0,
      "Azimuth of the test where the lot's bearings have 0 degrees (default: 0)", 2},
@@ -97,7 +99,8 @@ static const struct argp_option options[] = {
     {"csv", OPTION_CSV, "FILE.csv", 0, "A row per bearing and azimuth, everything that was found",
      4},
     {"table-out", OPTION_TABLE, "FILE.csv", 0,
-     "For `foilgauge loop --table`: the clearance (with --lot: what it differs from the lot's by) "
+     "For `foilgauge loop --table`: the clearance (with --lot: what the gap differs from the lot's "
+     "by) "
      "beside bearing, azimuth and pad",
      4},
     {0},

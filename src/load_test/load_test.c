@@ -119,7 +119,7 @@ static const double gap_reach = 2;
  * that is passed there. */
 static void check_gap(fg_load_zero *zero, fg_load_direction *d) {
   if (!(d->gap.value <= gap_reach * d->gap.u_repeat)) return;
-  if (isfinite(d->clearance.value)) d->flags |= FG_LOAD_NO_GAP;
+  d->flags |= FG_LOAD_NO_GAP;
   d->flags &= ~(unsigned)FG_LOAD_UNSAMPLED;
   forget_clearance(d);
   d->zero_n = zero->force_n = zero->friction_n = NAN;
