@@ -61,6 +61,7 @@ typedef struct fg_station_request {
   const char *listen; /* address; NULL: 127.0.0.1 */
   unsigned port;      /* 0: one that is free */
   const char *token;  /* needed by every request; NULL: none (loopback only) */
+  int end_descriptor; /* readable: the station ends, with FG_ERR_INTERRUPTED; 0: it is never told */
   /* Called once when pages can be had, with their address; and for every file that was looked at.
    * From any thread, one at a time; either may be NULL. */
   void (*ready)(void *user, const char *address);
@@ -75,8 +76,8 @@ typedef struct fg_station_outcome {
 } fg_station_outcome;
 
 /* FG_ERR_IO: another station is at work in the folder, the database cannot be written, the address
- * is taken. Without `once` and `export_path` it returns only when something fails that cannot wait:
- * a station ends with its process. */
+ * is taken. Without `once` and `export_path` it goes on until `end_descriptor` says otherwise
+ * (FG_ERR_INTERRUPTED); what goes wrong meanwhile is on its pages, and is tried again. */
 fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
                          fg_station_outcome *outcome);
 

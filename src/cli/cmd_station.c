@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/facts.h"
+#include "cli/interrupt.h"
 #include "foilgauge/station.h"
 #include "foilgauge/text.h"
 
@@ -128,6 +129,7 @@ int fg_cmd_station(int argc, char **argv) {
   arguments.request.settings = &settings;
   arguments.request.ready = say_address;
   arguments.request.looked_at = say_file;
+  if (!arguments.request.export_path) arguments.request.end_descriptor = fg_interrupt_defer();
   status = fg_station_run(&ctx, &arguments.request, &outcome);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   if (arguments.request.export_path) return fg_outcome_exit_code(&outcome.judged);

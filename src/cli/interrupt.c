@@ -2,16 +2,38 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdbool.h>
+#include <stdint.h>
+#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include "foilgauge/file.h"
+
+/* Told of a signal where a command ends itself (fg_interrupt_defer); -1: none does. */
+static atomic_int deferred = -1;
+
+int fg_interrupt_defer(void) {
+  int told = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  atomic_store(&deferred, told);
+  return told;
+}
+
+/* A command that ends itself does so within the time it has, or when it is asked again. */
+static void leave_time(const sigset_t *signals) {
+  const struct timespec limit = {.tv_sec = FG_INTERRUPT_SECONDS};
+  uint64_t one = 1;
+  int told = atomic_load(&deferred);
+  if (told >= 0 && write(told, &one, sizeof one) == (ssize_t)sizeof one)
+    sigtimedwait(signals, NULL, &limit);
+}
 
 static void *wait_for_signal(void *argument) {
   static const char words[] = "\nfoilgauge: interrupted\n";
   const sigset_t *signals = argument;
   int number, code = fg_status_exit_code(FG_ERR_INTERRUPTED);
   if (sigwait(signals, &number) != 0) return NULL;
+  leave_time(signals);
   fg_temporaries_remove();
   if (write(STDERR_FILENO, words, sizeof words - 1) < 0) _exit(code);
   _exit(code);

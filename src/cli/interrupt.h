@@ -8,4 +8,12 @@
  * other thread, so that all inherit the blocked signals. */
 void fg_interrupt_start(void);
 
+/* How long a command has to end itself. */
+enum { FG_INTERRUPT_SECONDS = 20 };
+
+/* From here on the first signal makes the returned descriptor readable, and the command ends itself
+ * (with FG_ERR_INTERRUPTED). A second signal, or the time, ends it as always. -1: every signal
+ * does. */
+int fg_interrupt_defer(void);
+
 #endif

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <time.h>
 
+#include "core/clock.h"
 #include "core/text.h"
 #include "foilgauge/station.h"
 #include "station/stored_name.h"
@@ -78,7 +79,7 @@ static const char *const migrations[] = {
     "UPDATE checks SET words = stored_name(words) WHERE words <> stored_name(words);",
 };
 
-enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000 };
+enum { VERSION = sizeof migrations / sizeof *migrations, BUSY_MS = 5000, IN_FILE_EVERY_S = 5 };
 
 int fg_station_database_version(void) {
   return VERSION;
@@ -204,12 +205,33 @@ static void leave_journal(sqlite3 *connection) {
   sqlite3_file_control(connection, "main", SQLITE_FCNTL_PERSIST_WAL, &persist);
 }
 
+void fg_station_database_keep_up(fg_station_database *database) {
+  double now = fg_clock_seconds();
+  if (now - database->in_file_at < IN_FILE_EVERY_S) return;
+  pthread_mutex_lock(&database->writing);
+  int64_t changes = sqlite3_total_changes64(database->writer);
+  if (changes != database->in_file && fg_station_database_is_there(database) &&
+      sqlite3_wal_checkpoint_v2(database->writer, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL, NULL) ==
+          SQLITE_OK)
+    database->in_file = changes;
+  database->in_file_at = now;
+  pthread_mutex_unlock(&database->writing);
+}
+
+/* SQLite does so itself when the last connection closes, but not where another program has the file
+ * open. */
+static void move_journal(sqlite3 *writer) {
+  if (writer) sqlite3_wal_checkpoint_v2(writer, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+}
+
 void fg_station_database_close(fg_station_database *database) {
-  if (database->inode && !fg_station_database_is_there(database)) {
+  bool gone = database->inode && !fg_station_database_is_there(database);
+  if (gone) {
     leave_journal(database->reader);
     leave_journal(database->writer);
   }
   sqlite3_close_v2(database->reader);
+  if (!gone) move_journal(database->writer);
   sqlite3_close_v2(database->writer);
   database->reader = database->writer = NULL;
   free(database->path);
@@ -229,6 +251,7 @@ fg_status fg_station_database_reopen(fg_context *ctx, const char *folder,
     database->path = other.path;
     database->device = other.device;
     database->inode = other.inode;
+    database->in_file = other.in_file;
     pthread_mutex_unlock(&database->writing);
     pthread_mutex_unlock(&database->reading);
     other = before;

@@ -21,13 +21,21 @@ typedef struct fg_station_database {
   char *path;
   dev_t device; /* which file it is: another one may come under its name */
   ino_t inode;
+  int64_t in_file;   /* the writer's changes that are in the file itself, not in its journal only */
+  double in_file_at; /* when that was so (core/clock.h) */
 } fg_station_database;
 
 /* Opens or makes folder/FG_STATION_DATABASE and brings it up to date. FG_ERR_DATA: damaged, no
  * database, or of a later program. */
 fg_status fg_station_database_open(fg_context *ctx, const char *folder,
                                    fg_station_database *database);
-void fg_station_database_close(fg_station_database *database); /* of an all-zero one, too */
+/* Everything is in the file itself then, unless another program reads it at the time. Of an
+ * all-zero one, too. */
+void fg_station_database_close(fg_station_database *database);
+
+/* Now and then, where something was written, moves the journal into the file: whoever copies the
+ * file alone misses seconds. */
+void fg_station_database_keep_up(fg_station_database *database);
 
 /* Whether the file that is open still lies under its name. */
 bool fg_station_database_is_there(const fg_station_database *database);

@@ -26,7 +26,9 @@
 #include "station/rest.h"
 #include "station/trouble.h"
 
-enum { NAMES_MAX = 100000, LIST_EVERY_MS = 30000, LIST_SOON_MS = 500, EVENT_BYTES = 1 << 16 };
+/* TURN_MS: how long the station sleeps when nobody tells it anything. */
+enum { NAMES_MAX = 100000, LIST_EVERY_MS = 30000, LIST_SOON_MS = 500, TURN_MS = 1000 };
+enum { EVENT_BYTES = 1 << 16 };
 
 typedef struct found {
   char *name;
@@ -153,6 +155,16 @@ static fg_status take_listed(fg_context *ctx, watch *at, const found *file, bool
   return FG_OK;
 }
 
+/* Waits for at most so long, less where the folder tells something. FG_ERR_INTERRUPTED: the station
+ * is to end. */
+static fg_status wait_for_event(fg_context *ctx, const watch *at, bool of_folder, int wait_ms) {
+  int end = at->station->request->end_descriptor;
+  struct pollfd descriptors[] = {{.fd = end > 0 ? end : -1, .events = POLLIN},
+                                 {.fd = of_folder ? at->inotify : -1, .events = POLLIN}};
+  poll(descriptors, 2, wait_ms);
+  return descriptors[0].revents ? fg_fail(ctx, FG_ERR_INTERRUPTED, "interrupted") : FG_OK;
+}
+
 /* Everything that is there; `once` does not wait for anybody. One scan that takes more memory than
  * there is does not hold up the others. */
 static fg_status take_all(fg_context *ctx, watch *at, bool once) {
@@ -162,6 +174,7 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
   FG_TRY(list(ctx, at));
   fg_station_begin_round(at->station);
   for (size_t i = 0; i < at->count; i++) {
+    FG_TRY(wait_for_event(ctx, at, false, 0));
     fg_status status = take_listed(&inner, at, &at->files[i], once);
     if (status == FG_ERR_MEMORY)
       short_of_memory = fg_fail(ctx, status, "%s: %.900s", at->files[i].name, inner.message);
@@ -224,10 +237,12 @@ static int list_after_ms(const watch *at) {
   return soon && wait > LIST_SOON_MS ? LIST_SOON_MS : wait;
 }
 
-/* Waits for the next thing to do: events that came, or the time to list. */
-static fg_status wait_and_take(fg_context *ctx, watch *at) {
-  struct pollfd descriptor = {.fd = at->inotify, .events = POLLIN};
-  poll(&descriptor, 1, list_after_ms(at));
+/* Waits for the next thing to do: events that came, or the time to list. Where something is in the
+ * way, events do not make the next attempt come sooner. */
+static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_trouble) {
+  int wait_ms = in_trouble ? TURN_MS : list_after_ms(at);
+  FG_TRY(wait_for_event(ctx, at, !in_trouble, wait_ms < TURN_MS ? wait_ms : TURN_MS));
+  fg_station_database_keep_up(&at->station->database);
   FG_TRY(fg_station_look_after_folder(ctx, at->station));
   FG_TRY(take_events(ctx, at));
   if (at->inotify < 0) listen_to(at);
@@ -236,22 +251,17 @@ static fg_status wait_and_take(fg_context *ctx, watch *at) {
   return take_all(ctx, at, false);
 }
 
-/* False: the station cannot go on. */
-static bool can_wait(fg_status status) {
-  return status == FG_ERR_IO || status == FG_ERR_MEMORY;
-}
-
+/* Whatever is in its way, a station goes on: a disk that is full, a folder that is gone, a database
+ * that somebody has damaged are put right while it runs. */
 static fg_status run(fg_context *ctx, watch *at) {
-  const struct timespec pause = {.tv_sec = 1};
   fg_context inner = {.message = ""};
   fg_status status;
   listen_to(at);
   status = take_all(&inner, at, false);
-  while (status == FG_OK || can_wait(status)) {
+  while (status != FG_ERR_INTERRUPTED) {
     fg_station_set_trouble(at->station, status == FG_OK ? "" : inner.message);
     at->pending = at->pending || status != FG_OK;
-    if (status != FG_OK) nanosleep(&pause, NULL);
-    status = wait_and_take(&inner, at);
+    status = wait_and_take(&inner, at, status != FG_OK);
   }
   return fg_fail(ctx, status, "%s", inner.message);
 }
