@@ -79,6 +79,11 @@ static void write_trouble(fg_inspection *station, FILE *out) {
     fg_html_text(out, trouble->words);
     fputs("</p>\n", out);
   }
+  if (trouble->crowd[0]) {
+    fputs("<p class=\"banner\"><b>Very many files.</b> ", out);
+    fg_html_text(out, trouble->crowd);
+    fputs("</p>\n", out);
+  }
   pthread_mutex_unlock(&trouble->mutex);
 }
 

@@ -73,21 +73,40 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
   return status;
 }
 
-fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
-                                  const fg_station_file *file, bool *done) {
-  fg_query query;
+void fg_done_files_begin(fg_station_database *database, fg_done_files *files) {
+  files->database = database;
   pthread_mutex_lock(&database->writing);
   fg_query_begin(database->writer,
-                 "SELECT 1 FROM files JOIN arrivals ON arrivals.id = files.arrival"
-                 " WHERE files.path = ? AND bytes = ? AND modified_ns = ?",
-                 &query);
-  fg_query_text(&query, file->name);
-  fg_query_integer(&query, file->bytes);
-  fg_query_integer(&query, file->modified_ns);
-  *done = fg_query_row(&query);
-  fg_status status = fg_query_end(ctx, &query, "reading what is known of files");
+                 "SELECT 1 FROM files WHERE path = ? AND bytes = ? AND modified_ns = ?",
+                 &files->query);
   pthread_mutex_unlock(&database->writing);
+}
+
+bool fg_done_files_have(fg_done_files *files, const fg_station_file *file) {
+  fg_query *query = &files->query;
+  pthread_mutex_lock(&files->database->writing);
+  fg_query_text(query, file->name);
+  fg_query_integer(query, file->bytes);
+  fg_query_integer(query, file->modified_ns);
+  bool done = fg_query_row(query);
+  fg_query_again(query);
+  pthread_mutex_unlock(&files->database->writing);
+  return done;
+}
+
+fg_status fg_done_files_end(fg_context *ctx, fg_done_files *files) {
+  pthread_mutex_lock(&files->database->writing);
+  fg_status status = fg_query_end(ctx, &files->query, "reading what is known of files");
+  pthread_mutex_unlock(&files->database->writing);
   return status;
+}
+
+fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
+                                  const fg_station_file *file, bool *done) {
+  fg_done_files files;
+  fg_done_files_begin(database, &files);
+  *done = fg_done_files_have(&files, file);
+  return fg_done_files_end(ctx, &files);
 }
 
 fg_status fg_station_card_stands(fg_context *ctx, fg_station_database *database,

@@ -33,6 +33,15 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
 fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
                                   const fg_station_file *file, bool *done);
 
+/* The same of many files: the query is begun once. The database is not opened again meanwhile. */
+typedef struct fg_done_files {
+  fg_station_database *database;
+  fg_query query;
+} fg_done_files;
+void fg_done_files_begin(fg_station_database *database, fg_done_files *files);
+bool fg_done_files_have(fg_done_files *files, const fg_station_file *file);
+fg_status fg_done_files_end(fg_context *ctx, fg_done_files *files); /* of all of it */
+
 /* Whether that is what the file's newest card says of it already. */
 fg_status fg_station_card_stands(fg_context *ctx, fg_station_database *database,
                                  const fg_station_file *file, fg_card card, const char *message,

@@ -25,6 +25,7 @@ typedef struct fg_resting {
 typedef struct fg_rest {
   fg_resting *files;
   size_t count, capacity;
+  size_t *slots, slot_count; /* a hash table: 1 + a file's index, by its name; 0: nothing */
 } fg_rest;
 
 /* Since when the file has been as it is: `now_ns` is of a clock that nobody sets, and it is

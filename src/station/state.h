@@ -23,6 +23,7 @@ typedef struct fg_closing {
 typedef struct fg_trouble {
   pthread_mutex_t mutex;
   char words[1000]; /* "": all is well */
+  char crowd[200];  /* of a folder with very many files; "": it has not */
 } fg_trouble;
 
 /* What becomes of the newest file before there is a card of it. */

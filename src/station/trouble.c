@@ -25,6 +25,26 @@ void fg_station_set_trouble(fg_inspection *station, const char *words) {
   fg_station_tell(station);
 }
 
+void fg_station_note_files(fg_inspection *station, size_t files, double seconds) {
+  fg_trouble *trouble = &station->trouble;
+  const fg_station_request *request = station->request;
+  char words[sizeof trouble->crowd] = "";
+  if (files > FG_STATION_FILES)
+    fg_text_clip(
+        words, sizeof words,
+        "The folder holds %zu files; looking through them takes %.1f s each time. Move old "
+        "ones elsewhere: what was measured stays in the database.",
+        files, seconds);
+  pthread_mutex_lock(&trouble->mutex);
+  bool changed = !trouble->crowd[0] != !words[0];
+  strcpy(trouble->crowd, words);
+  pthread_mutex_unlock(&trouble->mutex);
+  if (changed && request->looked_at)
+    request->looked_at(request->user, request->folder,
+                       words[0] ? words : "The folder does not hold too many files any more.");
+  if (changed) fg_station_tell(station);
+}
+
 static bool has_lock(const fg_inspection *station) {
   char *path;
   struct stat file, own;

@@ -7,6 +7,13 @@
 /* "": it is over. Says a change to the request's `looked_at`, too. */
 void fg_station_set_trouble(fg_inspection *station, const char *words);
 
+/* How many files a folder holds without a word, and how many new ones are listed at once. */
+enum { FG_STATION_FILES = 100000 };
+
+/* What looking through the folder's files takes. Very many are told of: once in the log, on the
+ * pages as long as it is so. */
+void fg_station_note_files(fg_inspection *station, size_t files, double seconds);
+
 /* Sees that lock and database are those that lie in the folder: where another folder has come in
  * its place, or one of them was taken away, they are opened again. FG_ERR_IO: the folder is gone,
  * or another station is at work in it. */

@@ -9,6 +9,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,13 +23,15 @@
 #include "core/select.h"
 #include "core/text.h"
 #include "station/intake.h"
+#include "station/keep.h"
 #include "station/news.h"
 #include "station/rest.h"
+#include "station/stored_name.h"
 #include "station/trouble.h"
 
-/* TURN_MS: how long the station sleeps when nobody tells it anything. */
-enum { NAMES_MAX = 100000, LIST_EVERY_MS = 30000, LIST_SOON_MS = 500, TURN_MS = 1000 };
-enum { EVENT_BYTES = 1 << 16 };
+/* TURN_MS: how long the station sleeps when nobody tells it anything. A folder that is removed
+ * while somebody has a file of it open (the station its database) tells nothing. */
+enum { LIST_EVERY_MS = 30000, LIST_SOON_MS = 500, TURN_MS = 500, EVENT_BYTES = 1 << 16 };
 
 typedef struct found {
   char *name;
@@ -37,12 +40,16 @@ typedef struct found {
 
 typedef struct watch {
   fg_inspection *station;
-  int inotify, descriptor; /* -1: none */
-  found *files;
+  int inotify;  /* -1: none */
+  dev_t device; /* of the folder that is listened to: another one may come under its name */
+  ino_t inode;
+  found *files; /* that are not done */
   size_t count, capacity;
   fg_rest rest;
   int64_t listed_ns; /* when the folder was, by the steady clock; 0: not yet */
+  int64_t took_ns;   /* the list, without what was measured */
   bool pending;      /* a file was not whole yet */
+  bool once;
 } watch;
 
 static int64_t now_ns(clockid_t clock) {
@@ -64,14 +71,17 @@ static bool is_ignored(const char *name) {
   return false;
 }
 
+static int64_t modified_ns(const struct stat *file) {
+  return (int64_t)file->st_mtim.tv_sec * 1000000000 + file->st_mtim.tv_nsec;
+}
+
 static fg_status add(fg_context *ctx, watch *at, const char *name, const struct stat *file) {
   void *block = at->files;
   FG_TRY(fg_memory_reserve(ctx, at->count + 1, sizeof *at->files, &at->capacity, &block));
   at->files = block;
   FG_TRY(fg_text_print(ctx, &at->files[at->count].name, "%s", name));
   at->files[at->count].bytes = file->st_size;
-  at->files[at->count++].modified_ns =
-      (int64_t)file->st_mtim.tv_sec * 1000000000 + file->st_mtim.tv_nsec;
+  at->files[at->count++].modified_ns = modified_ns(file);
   return FG_OK;
 }
 
@@ -89,27 +99,65 @@ static int by_arrival(const void *a, const void *b) {
   return strcmp(one->name, other->name);
 }
 
-static fg_status list(fg_context *ctx, watch *at) {
-  const char *folder = at->station->request->folder;
-  fg_status status = FG_OK;
-  DIR *open = opendir(folder);
-  clear(at);
-  if (!open)
-    return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", folder, strerror(errno));
-  for (struct dirent *entry; status == FG_OK && (entry = readdir(open));) {
+static void sort(watch *at) {
+  fg_sort_items(at->files, at->count, sizeof *at->files, by_arrival);
+}
+
+/* However many files are new, a list of them stays short: those that came first. The others are
+ * found by the next list, which follows at once. */
+static void keep_first(watch *at) {
+  sort(at);
+  while (at->count > FG_STATION_FILES)
+    free(at->files[--at->count].name);
+  at->pending = true;
+}
+
+static fg_status is_done(fg_context *ctx, fg_done_files *done, const char *name,
+                         const struct stat *info, bool *is) {
+  char *stored;
+  FG_TRY(fg_stored_name(ctx, name, &stored));
+  const fg_station_file file = {
+      .name = stored, .bytes = info->st_size, .modified_ns = modified_ns(info)};
+  *is = fg_done_files_have(done, &file);
+  free(stored);
+  return FG_OK;
+}
+
+/* Of all files that the folder holds, `*files` of them, those that are not done. */
+static fg_status list_entries(fg_context *ctx, watch *at, DIR *open, fg_done_files *done,
+                              size_t *files) {
+  for (struct dirent *entry; (entry = readdir(open));) {
     struct stat file;
+    bool known;
     if (is_ignored(entry->d_name) || fstatat(dirfd(open), entry->d_name, &file, 0) != 0 ||
         !S_ISREG(file.st_mode))
       continue;
-    if (at->count == NAMES_MAX)
-      status = fg_fail(ctx, FG_ERR_DATA, "%s: more than %d files; move old ones elsewhere", folder,
-                       NAMES_MAX);
-    else
-      status = add(ctx, at, entry->d_name, &file);
+    ++*files;
+    FG_TRY(is_done(ctx, done, entry->d_name, &file, &known));
+    if (!known) FG_TRY(add(ctx, at, entry->d_name, &file));
+    if (at->count == 2 * FG_STATION_FILES && !at->once) keep_first(at);
   }
+  return FG_OK;
+}
+
+static fg_status list(fg_context *ctx, watch *at) {
+  const char *folder = at->station->request->folder;
+  fg_done_files done;
+  size_t files = 0;
+  int64_t began_ns = now_ns(CLOCK_MONOTONIC);
+  clear(at);
+  DIR *open = opendir(folder);
+  if (!open)
+    return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", folder, strerror(errno));
+  fg_done_files_begin(&at->station->database, &done);
+  fg_status status = list_entries(ctx, at, open, &done, &files);
+  fg_status ended = fg_done_files_end(status == FG_OK ? ctx : NULL, &done);
   closedir(open);
-  fg_sort_items(at->files, at->count, sizeof *at->files, by_arrival);
-  return status;
+  sort(at);
+  if (at->count > FG_STATION_FILES && !at->once) keep_first(at);
+  at->took_ns = now_ns(CLOCK_MONOTONIC) - began_ns;
+  fg_station_note_files(at->station, files, (double)at->took_ns / 1e9);
+  return status == FG_OK ? ended : status;
 }
 
 static fg_status take_closed(fg_context *ctx, watch *at, const char *name) {
@@ -189,20 +237,29 @@ static fg_status take_all(fg_context *ctx, watch *at, bool once) {
 
 static void stop_listening(watch *at) {
   if (at->inotify >= 0) close(at->inotify);
-  at->inotify = at->descriptor = -1;
+  at->inotify = -1;
+}
+
+/* Whether what is listened to is no longer what lies under the folder's name. */
+static bool is_another_folder(const watch *at) {
+  struct stat folder;
+  return at->inotify >= 0 && (stat(at->station->request->folder, &folder) != 0 ||
+                              folder.st_dev != at->device || folder.st_ino != at->inode);
 }
 
 /* Where the system cannot tell, the folder is listed. IN_ATTRIB: what could not be read may be
  * readable now. */
 static void listen_to(watch *at) {
+  static const uint32_t events = IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_MODIFY | IN_ATTRIB |
+                                 IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
+  const char *folder = at->station->request->folder;
+  struct stat info;
   stop_listening(at);
-  if (at->station->request->poll_s > 0) return;
+  if (at->station->request->poll_s > 0 || stat(folder, &info) != 0) return;
+  at->device = info.st_dev;
+  at->inode = info.st_ino;
   at->inotify = inotify_init1(IN_CLOEXEC | IN_NONBLOCK);
-  if (at->inotify < 0) return;
-  at->descriptor = inotify_add_watch(at->inotify, at->station->request->folder,
-                                     IN_CLOSE_WRITE | IN_MOVED_TO | IN_CREATE | IN_MODIFY |
-                                         IN_ATTRIB | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR);
-  if (at->descriptor < 0) stop_listening(at);
+  if (at->inotify >= 0 && inotify_add_watch(at->inotify, folder, events) < 0) stop_listening(at);
 }
 
 static fg_status take_event(fg_context *ctx, watch *at, const struct inotify_event *event) {
@@ -230,11 +287,16 @@ static fg_status take_events(fg_context *ctx, watch *at) {
   return FG_OK;
 }
 
+/* A list of very many files takes its time: it has a twentieth of all time, where a file is being
+ * written a half. */
 static int list_after_ms(const watch *at) {
   double poll_s = at->station->request->poll_s;
-  int wait = poll_s > 0 ? (int)(1000 * poll_s) : LIST_EVERY_MS;
-  bool soon = at->pending || (poll_s <= 0 && at->inotify < 0);
-  return soon && wait > LIST_SOON_MS ? LIST_SOON_MS : wait;
+  int64_t took_ms = at->took_ns / 1000000;
+  int64_t wait = poll_s > 0 ? (int64_t)(1000 * poll_s) : LIST_EVERY_MS, soon = LIST_SOON_MS;
+  if (wait < 20 * took_ms) wait = 20 * took_ms;
+  if (soon < 2 * took_ms) soon = 2 * took_ms;
+  if ((at->pending || (poll_s <= 0 && at->inotify < 0)) && wait > soon) wait = soon;
+  return wait < INT_MAX ? (int)wait : INT_MAX;
 }
 
 /* Waits for the next thing to do: events that came, or the time to list. Where something is in the
@@ -245,6 +307,10 @@ static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_trouble) {
   fg_station_database_keep_up(&at->station->database);
   FG_TRY(fg_station_look_after_folder(ctx, at->station));
   FG_TRY(take_events(ctx, at));
+  if (is_another_folder(at)) {
+    stop_listening(at);
+    at->pending = true;
+  }
   if (at->inotify < 0) listen_to(at);
   int64_t since_ns = now_ns(CLOCK_MONOTONIC) - at->listed_ns;
   if (since_ns < (int64_t)list_after_ms(at) * 1000000) return FG_OK;
@@ -267,7 +333,7 @@ static fg_status run(fg_context *ctx, watch *at) {
 }
 
 fg_status fg_station_watch(fg_context *ctx, fg_inspection *station, bool once) {
-  watch at = {.station = station, .inotify = -1, .descriptor = -1};
+  watch at = {.station = station, .inotify = -1, .once = once};
   fg_status status = once ? take_all(ctx, &at, true) : run(ctx, &at);
   stop_listening(&at);
   clear(&at);
