@@ -213,28 +213,6 @@ static fg_status wait_for_event(fg_context *ctx, const watch *at, bool of_folder
   return descriptors[0].revents ? fg_fail(ctx, FG_ERR_INTERRUPTED, "interrupted") : FG_OK;
 }
 
-/* Everything that is there; `once` does not wait for anybody. One scan that takes more memory than
- * there is does not hold up the others. */
-static fg_status take_all(fg_context *ctx, watch *at, bool once) {
-  fg_status short_of_memory = FG_OK;
-  fg_context inner = {.message = ""};
-  at->pending = false;
-  FG_TRY(list(ctx, at));
-  fg_station_begin_round(at->station);
-  for (size_t i = 0; i < at->count; i++) {
-    FG_TRY(wait_for_event(ctx, at, false, 0));
-    fg_status status = take_listed(&inner, at, &at->files[i], once);
-    if (status == FG_ERR_MEMORY)
-      short_of_memory = fg_fail(ctx, status, "%s: %.900s", at->files[i].name, inner.message);
-    else if (status != FG_OK)
-      return fg_fail(ctx, status, "%s", inner.message);
-  }
-  fg_rest_end_round(&at->rest);
-  fg_station_end_round(at->station);
-  at->listed_ns = now_ns(CLOCK_MONOTONIC);
-  return short_of_memory;
-}
-
 static void stop_listening(watch *at) {
   if (at->inotify >= 0) close(at->inotify);
   at->inotify = -1;
@@ -285,6 +263,35 @@ static fg_status take_events(fg_context *ctx, watch *at) {
     i += (ssize_t)sizeof *event + event->len;
   }
   return FG_OK;
+}
+
+/* Between two files of a list, which may be long: a scan that comes now does not wait for them. */
+static fg_status attend(fg_context *ctx, watch *at) {
+  FG_TRY(wait_for_event(ctx, at, false, 0));
+  fg_station_database_keep_up(&at->station->database);
+  return take_events(ctx, at);
+}
+
+/* Everything that is there; `once` does not wait for anybody. One scan that takes more memory than
+ * there is does not hold up the others. */
+static fg_status take_all(fg_context *ctx, watch *at, bool once) {
+  fg_status short_of_memory = FG_OK;
+  fg_context inner = {.message = ""};
+  at->pending = false;
+  FG_TRY(list(ctx, at));
+  fg_station_begin_round(at->station);
+  for (size_t i = 0; i < at->count; i++) {
+    FG_TRY(attend(ctx, at));
+    fg_status status = take_listed(&inner, at, &at->files[i], once);
+    if (status == FG_ERR_MEMORY)
+      short_of_memory = fg_fail(ctx, status, "%s: %.900s", at->files[i].name, inner.message);
+    else if (status != FG_OK)
+      return fg_fail(ctx, status, "%s", inner.message);
+  }
+  fg_rest_end_round(&at->rest);
+  fg_station_end_round(at->station);
+  at->listed_ns = now_ns(CLOCK_MONOTONIC);
+  return short_of_memory;
 }
 
 /* A list of very many files takes its time: it has a twentieth of all time, where a file is being
