@@ -209,18 +209,19 @@ fi
 # A station that runs gets over a full disk.
 if [ "$(id -u)" -eq 0 ] && mkdir "$work/full" && mount -t tmpfs -o size=1m tmpfs "$work/full" 2>/dev/null; then
   start "$work/full" $recipe
-  cp "$work/scans/1.png" "$work/full/.1"
+  # More than fits into what the journal has already.
+  for scan in 1 2 3 4; do cp "$work/scans/$scan.png" "$work/full/.$scan"; done
   dd if=/dev/zero of="$work/full/.fill" bs=4k 2>/dev/null || true
-  mv "$work/full/.1" "$work/full/1.png"
+  for scan in 1 2 3 4; do mv "$work/full/.$scan" "$work/full/$scan.png"; done
   wait_for 20 grep -q "(it is tried again)" "$work/said"
-  python3 -c 'import sys, urllib.request
+  wait_for 20 python3 -c 'import sys, urllib.request
 page = urllib.request.urlopen(open(sys.argv[1]).read().strip()).read().decode()
 assert "Nothing is kept now" in page, page' "$work/address" || fail "the page does not say that the disk is full"
   rm "$work/full/.fill"
-  wait_for 20 measured "$work/full" 1
+  wait_for 20 measured "$work/full" 4
   wait_for 20 grep -q "the station goes on" "$work/said"
   stop
-  check "$work/full" 1
+  check "$work/full" 4
   umount -l "$work/full"
 fi
 
