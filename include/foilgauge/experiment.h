@@ -39,6 +39,7 @@ typedef enum fg_experiment_sign {
 /* An effect of a loop's model that was taken out of the response before the analysis. */
 typedef struct fg_experiment_taken {
   char id[64], words[400]; /* "table.linear", "a trend with humidity" */
+  char sentence[1000];     /* with what it does to the response; empty: not known */
   double amplitude,
       u_amplitude;   /* half its range where it was found, and the standard uncertainty */
   size_t parameters; /* that were estimated for it */

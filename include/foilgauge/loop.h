@@ -157,6 +157,21 @@ typedef enum fg_loop_over_bumps {
   FG_LOOP_BUMP_KINDS
 } fg_loop_over_bumps;
 
+/* What a claim says to its reader: a difference between two places of its form. */
+typedef enum fg_loop_reads {
+  FG_LOOP_READS_RANGE,    /* over the rows */
+  FG_LOOP_READS_SLOPE,    /* between the ends */
+  FG_LOOP_READS_BEND,     /* between the turn and the farther end */
+  FG_LOOP_READS_LEVELS,   /* between the highest level and the lowest */
+  FG_LOOP_READS_STEP,     /* between both sides */
+  FG_LOOP_READS_FADE,     /* between the first row and the last */
+  FG_LOOP_READS_SWING,    /* between peak and valley */
+  FG_LOOP_READS_SLOPES,   /* between slopes over one column, at both ends of the other */
+  FG_LOOP_READS_ROWS,     /* between a row and what the others say of it */
+  FG_LOOP_READS_EXCHANGE, /* between two rows */
+  FG_LOOP_READINGS
+} fg_loop_reads;
+
 typedef struct fg_loop_effect {
   const char *id, *level, *frame;
   const char *words; /* "a trend with" */
@@ -179,6 +194,7 @@ typedef struct fg_loop_effect {
   fg_loop_scatter scatter;
   fg_loop_over_bumps over_bumps;
   const char *bump_words; /* "a decay from the lip" */
+  fg_loop_reads reads;    /* in words for people */
   const char *sought;     /* "trends", for what was looked for in vain; NULL: not told */
   const char *term; /* of a formula, {a} and {b} for its columns, beside them; NULL: none has it */
 } fg_loop_effect;
@@ -436,6 +452,8 @@ fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_ta
 /* What a model took out of a table. */
 typedef struct fg_loop_taken {
   char id[FG_LOOP_NAME], words[4 * FG_LOOP_NAME]; /* "a trend with humidity" */
+  char sentence[10 * FG_LOOP_NAME]; /* with what it does to the response, as the file says it; or
+                                       empty */
   double amplitude, u_amplitude; /* as it was found, standard uncertainty; NaN: not known */
   size_t parameters;             /* that were estimated for it */
   double low, high;              /* of what was taken out of the rows */

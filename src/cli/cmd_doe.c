@@ -345,6 +345,7 @@ static fg_status describe_taken(fg_context *ctx, doe_run *run) {
                                 .applied = from->applied};
     fg_text_clip(to->id, sizeof to->id, "%s", from->id);
     fg_text_clip(to->words, sizeof to->words, "%s", from->words);
+    fg_text_clip(to->sentence, sizeof to->sentence, "%s", from->sentence);
   }
   how->taken = run->taken;
   how->takens = takings->count;

@@ -27,6 +27,7 @@ static void lone_basis(const fg_loop_problem *problem, const fg_loop_candidate *
 
 static const fg_loop_effect lone_effects[] = {
     {.id = "table.outlier",
+     .reads = FG_LOOP_READS_ROWS,
      .sought = "lone wrong values",
      .lone = FG_LOOP_WRONG_ROW,
      .level = "runs",
@@ -35,6 +36,7 @@ static const fg_loop_effect lone_effects[] = {
      .columns = lone_columns,
      .basis = lone_basis},
     {.id = "table.exchanged_runs",
+     .reads = FG_LOOP_READS_EXCHANGE,
      .lone = FG_LOOP_EXCHANGED_ROWS,
      .level = "runs",
      .frame = "row",

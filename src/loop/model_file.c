@@ -281,6 +281,9 @@ static void describe(const cJSON *json, fg_loop_taken *taken) {
   const cJSON *coefficients = cJSON_GetObjectItemCaseSensitive(json, "coefficients");
   taken->parameters =
       (size_t)cJSON_GetArraySize(coefficients) + (taken->applied ? effect->shapes : 0);
+  const cJSON *sentence = cJSON_GetObjectItemCaseSensitive(json, "sentence");
+  if (cJSON_IsString(sentence))
+    fg_text_clip(taken->sentence, sizeof taken->sentence, "%s", sentence->valuestring);
   taken->amplitude = number_or(json, "amplitude", NAN);
   taken->u_amplitude = number_or(json, "u_amplitude", NAN);
 }

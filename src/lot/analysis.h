@@ -39,6 +39,15 @@ typedef struct fg_lot_cause {
   bool in_turn;        /* one foil of each group after the other */
 } fg_lot_cause;
 
+/* A trend of a quantity over the order of the foils. */
+typedef struct fg_lot_trend {
+  bool known;                       /* told from noise; else all is 0 */
+  double per_foil, u_per_foil, dof; /* slope, its u and degrees of freedom */
+  double correlation;               /* of neighbours beside it, for which u is widened */
+  double p_value;                   /* of no trend */
+  size_t foils, signals_left;       /* of the same chart without the trend */
+} fg_lot_trend;
+
 /* Mean and spread of one bump (or other part) of the foils, by its number. */
 typedef struct fg_lot_place {
   size_t count;
@@ -65,6 +74,7 @@ typedef struct fg_lot_quantity {
   double within_sigma;
   bool stable;        /* no signal on the chart of individuals, nor on that of the deviations */
   fg_lot_cause cause; /* of the signals of the chart of individuals */
+  fg_lot_trend trend; /* looked for where there are such signals */
   fg_capability capability;
 } fg_lot_quantity;
 
@@ -303,6 +313,12 @@ const fg_lot_quantity *fg_lot_leading_quantity(const fg_lot_analysis *analysis);
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name);
 
 /* Whether the release of the lot rests on it; and whether groups explain all its signals. */
+/* Looks for a trend, which is known where noise alone makes one with less than `level`. */
+fg_status fg_lot_find_trend(fg_context *ctx, unsigned rules, double level,
+                            fg_lot_quantity *quantity);
+
+/* Whether the trend leaves fewer signals than the groups do, where both are known. */
+bool fg_lot_is_trend(const fg_lot_quantity *quantity);
 bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
 bool fg_lot_is_explained(const fg_lot_quantity *quantity);
 /* No chart, or no signal on one of so few foils that it could hardly show any. */

@@ -7,10 +7,10 @@
 #include "foilgauge/distribution.h"
 #include "lot/analysis.h"
 
-/* A group that differs by chance in one of twenty lots would explain any chart: all columns tried
- * share that chance (Bonferroni). */
+/* A group that differs by chance in one of twenty lots would explain any chart: all columns tried,
+ * and the order of the foils, share that chance (Bonferroni). */
 static const double chance = 0.05;
-enum { COLUMNS_TRIED = 3, FOILS_PER_GROUP = 2 };
+enum { COLUMNS_TRIED = 3, CAUSES_TRIED = COLUMNS_TRIED + 1, FOILS_PER_GROUP = 2 };
 
 /* The points of a chart with the group of each. */
 typedef struct grouping {
@@ -87,7 +87,7 @@ static fg_status try_column(fg_context *ctx, const fg_lot_analysis *analysis,
   if (cause.column == FG_NO_COLUMN || cause.column == quantity->cause.column) return FG_OK;
   if (!find_groups(analysis, quantity, &cause, by)) return FG_OK;
   cause.p_value = p_of(quantity, &cause, by);
-  if (!(cause.p_value < chance / COLUMNS_TRIED)) return FG_OK;
+  if (!(cause.p_value < chance / CAUSES_TRIED)) return FG_OK;
   cause.in_turn = is_in_turn(&cause, by, quantity->chart.count);
   FG_TRY(count_left(ctx, analysis->lot->settings.run_rules, quantity, &cause, by));
   size_t known = quantity->cause.column == FG_NO_COLUMN ? quantity->chart.signals
@@ -130,6 +130,12 @@ const char *const fg_lot_charted[] = {
     "arc.subtended_angle_deg", "length_mm",         "width_mm",
     "compliance_error_pct",    "sagitta_error_pct", NULL};
 
+bool fg_lot_is_trend(const fg_lot_quantity *quantity) {
+  const fg_lot_cause *cause = &quantity->cause;
+  return quantity->trend.known &&
+         (cause->column == FG_NO_COLUMN || quantity->trend.signals_left < cause->signals_left);
+}
+
 bool fg_lot_is_explained(const fg_lot_quantity *quantity) {
   return quantity->cause.column != FG_NO_COLUMN && quantity->cause.signals_left == 0 &&
          !(quantity->has_subgroups && quantity->deviations.signals);
@@ -145,7 +151,11 @@ fg_status fg_lot_analyse_causes(fg_context *ctx, fg_lot_analysis *analysis) {
   for (size_t i = 0; i < analysis->quantity_count; i++) {
     fg_lot_quantity *quantity = &analysis->quantities[i];
     quantity->cause.column = FG_NO_COLUMN;
-    if (quantity->has_chart && quantity->chart.signals) FG_TRY(find_cause(ctx, analysis, quantity));
+    if (quantity->has_chart && quantity->chart.signals) {
+      FG_TRY(find_cause(ctx, analysis, quantity));
+      FG_TRY(fg_lot_find_trend(ctx, analysis->lot->settings.run_rules, chance / CAUSES_TRIED,
+                               quantity));
+    }
     if (fg_lot_tells_nothing(quantity) || !fg_lot_is_watched(analysis, quantity)) continue;
     process->watched++;
     process->unstable += !quantity->stable;

@@ -1,9 +1,26 @@
 /* lot.json: whether the process runs as it did, and what its charts' signals come from. */
 #include "lot/json_parts.h"
 
+static void write_trend(fg_json *json, const fg_lot_trend *trend) {
+  if (!trend->known) {
+    fg_json_string(json, "trend", NULL);
+    return;
+  }
+  fg_json_object(json, "trend");
+  fg_json_number(json, "per_foil", trend->per_foil);
+  fg_json_number(json, "u_per_foil", trend->u_per_foil);
+  fg_json_number(json, "freedom", trend->dof);
+  fg_json_number(json, "first_to_last", (double)(trend->foils - 1) * trend->per_foil);
+  fg_json_number(json, "neighbours", trend->correlation);
+  fg_json_number(json, "p_value", trend->p_value);
+  fg_json_integer(json, "signals_left", (int64_t)trend->signals_left);
+  fg_json_object_end(json);
+}
+
 void fg_lot_json_cause(fg_json *json, const fg_lot_analysis *analysis,
                        const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
+  write_trend(json, &quantity->trend);
   if (cause->column == FG_NO_COLUMN) {
     fg_json_string(json, "signals_by", NULL);
     return;

@@ -3,10 +3,14 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "foilgauge/distribution.h"
+#include "foilgauge/report.h"
 #include "foilgauge/words.h"
 #include "lot/lot_plots.h"
 #include "lot/page_parts.h"
+#include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/value_words.h"
 
 /* What a count means, in colour and in a mark: a page is printed in black and white too. */
 typedef enum tile_tone { TONE_PLAIN, TONE_GOOD, TONE_BAD, TONE_OPEN } tile_tone;
@@ -124,11 +128,48 @@ static void put_signals(FILE *out, const fg_lot_analysis *analysis,
   fputs(")", out);
 }
 
+/* In the unit that people read such differences in: µm of mm. */
+static void put_change(FILE *out, const fg_quantity *row, double change, double u) {
+  bool fine = !strcmp(row->unit, "mm");
+  char words[80];
+  fg_scan_loop_value_words((fine ? 1000 : 1) * fabs(change), (fine ? 1000 : 1) * u, words,
+                           sizeof words);
+  fprintf(out, "%s %s", words, fine ? "µm" : row->unit);
+}
+
+/* ": in the order of the foils it rises by 2.03 ± 0.31 µm a foil, 28.4 ± 4.3 µm from the first to
+ * the last (p = 0.0002); without this trend no signal is left." U is of 95 %. */
+static void put_trend(FILE *out, const fg_lot_quantity *quantity) {
+  const fg_lot_trend *trend = &quantity->trend;
+  double u = trend->u_per_foil * fg_distribution_t_quantile(0.975, trend->dof) / FG_COVERAGE_FACTOR;
+  double steps = (double)(trend->foils - 1);
+  char p_value[16];
+  fprintf(out, ": in the order of the foils it %s by ", trend->per_foil < 0 ? "falls" : "rises");
+  put_change(out, quantity->row, trend->per_foil, u);
+  fputs(" a foil, ", out);
+  put_change(out, quantity->row, steps * trend->per_foil, steps * u);
+  fg_p_value_text(p_value, trend->p_value);
+  fputs(" from the first to the last (p ", out);
+  fg_html_text(out, *p_value == '<' ? "" : "= ");
+  fg_html_text(out, p_value);
+  fputs("); without this trend ", out);
+  if (trend->signals_left)
+    fprintf(out, "%zu of the signals %s left.</li>\n", trend->signals_left,
+            trend->signals_left == 1 ? "is" : "are");
+  else
+    fputs("no signal is left.</li>\n", out);
+}
+
 /* "The signals of bump radius come from the column die: ... each by itself shows none." */
 static void put_cause(FILE *out, const fg_lot_analysis *analysis, const fg_lot_quantity *quantity) {
   const fg_lot_cause *cause = &quantity->cause;
   fprintf(out, "<li>%zu signal%s of the %s", quantity->chart.signals,
           quantity->chart.signals == 1 ? "" : "s", quantity->row->words);
+  if (fg_lot_is_trend(quantity)) {
+    put_signals(out, analysis, quantity);
+    put_trend(out, quantity);
+    return;
+  }
   if (cause->column == FG_NO_COLUMN) {
     put_signals(out, analysis, quantity);
     fprintf(out, ": no group of foils explains %s.</li>\n",

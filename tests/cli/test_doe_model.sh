@@ -42,7 +42,8 @@ error = {row["term"]: row["freedom"] for row in after["anova"]["error"]}
 assert error["residual"] == error["lack of fit"] + error["pure error"] == 29, error
 assert [i["path"] for i in after["inputs"]] == ["runs.csv", "better.json"], after["inputs"]
 words = " ".join(after["conclusions"])
-assert "Taken out before the analysis: a trend with humidity (amplitude" in words and "±" in words, words
+assert "Taken out before the analysis: a trend with humidity: it rises by 4." in words and "±" in words, words
+assert "amplitude" not in words and claim["sentence"] in words, words
 assert "29 degrees of freedom instead of 30" in words, words
 P
 valid doe.schema.json before.json after.json

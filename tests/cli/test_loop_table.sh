@@ -73,7 +73,7 @@ says() { # says FILE WORDS...: in the summary and on the page, without ids and w
 grep -qF "Declare a trend with humidity: --model &#39;1 + T + humidity&#39;" a.html || fail "the page does not say what to do next"
 grep -qF '"verdict": "explained"' a.json || fail "what is found is not explained"
 expect 0 '"verdict": "clean"' "$program" loop --table t.csv --response y --model "1 + T + humidity" -o -
-says wrong "Rows 2 and 54 are wrong (off by " "on rows that took no part in the search"
+says wrong "Rows 2 and 54 are wrong: row 2 lies " "on rows that took no part in the search"
 says spread "The scatter grows with x: " " times from the smallest to the largest" "No mean changes"
 says alike "eighbouring runs are alike (correlation 0."
 says clean "Nothing is claimed: in 40 rows" "steps" "cycles down to two rows" "lone wrong values"

@@ -1,6 +1,7 @@
 /* Whether the process runs as it did, what its signals come from, and what is said of it. */
 #include "lot/writers.h"
 #include "support/made_lot.h"
+#include "support/random.h"
 
 enum { FOILS = 24, BUMPS = 3 };
 
@@ -70,8 +71,8 @@ static void dies_in_turn_explain_the_signals(void **state) {
   free(page);
 }
 
-/* A drift has nothing to do with the die of every other foil: the signals stay unexplained. */
-static void a_drift_is_no_group(void **state) {
+/* 6 um a foil have nothing to do with the die of every other foil: the page says what they do. */
+static void a_drift_is_a_trend(void **state) {
   (void)state;
   const char *cells[FOILS];
   double offset[FOILS];
@@ -86,9 +87,65 @@ static void a_drift_is_no_group(void **state) {
   assert_true(radius.cause.column == FG_NO_COLUMN);
   assert_int_equal(process.unstable, 1);
   assert_int_equal(process.explained, 0);
+  assert_true(radius.trend.known && radius.trend.foils == FOILS);
+  assert_true(fabs(radius.trend.per_foil - 0.006) < 2 * radius.trend.u_per_foil);
+  assert_true(radius.trend.u_per_foil < 0.0003 && radius.trend.p_value < 1e-10);
+  assert_int_equal(radius.trend.signals_left, 0);
   assert_non_null(strstr(page, "Process not stable: 1 of 1 quantities"));
-  assert_non_null(strstr(page, "no group of foils explains them"));
+  assert_null(strstr(page, "no group of foils"));
+  assert_non_null(strstr(page, ": in the order of the foils it rises by 5.9"));
+  assert_non_null(strstr(page, " µm a foil, 13"));
+  assert_non_null(strstr(page,
+                         " µm from the first to the last (p &lt; 0.0001); without this trend no "
+                         "signal is left."));
   free(page);
+}
+
+/* One foil out of line is no trend, nor are dies that follow each other: those explain more. */
+static void a_lone_foil_and_a_new_die_are_no_trend(void **state) {
+  (void)state;
+  const char *cells[FOILS];
+  double offset[FOILS] = {[11] = 0.08};
+  fg_lot_process process;
+  char *page;
+  for (size_t i = 0; i < FOILS; i++)
+    cells[i] = i % 2 ? ",B,ada" : ",A,ada";
+  fg_lot_quantity radius = radius_of(cells, offset, &process, &page);
+  assert_true(radius.chart.signals > 0 && !radius.trend.known);
+  assert_non_null(strstr(page, "no group of foils explains"));
+  free(page);
+  for (size_t i = 0; i < FOILS; i++) {
+    cells[i] = i < FOILS / 2 ? ",A,ada" : ",B,ada";
+    offset[i] = i < FOILS / 2 ? 0 : 0.06;
+  }
+  radius = radius_of(cells, offset, &process, &page);
+  assert_int_equal(radius.cause.signals_left, 0);
+  assert_false(fg_lot_is_trend(&radius));
+  assert_non_null(strstr(page, "come from the groups of the column <b>die</b>"));
+  free(page);
+}
+
+/* White noise has a trend as often as the level says; neighbours that are alike seldom have one. */
+static void trends_of_noise_are_rare(void **state) {
+  (void)state;
+  enum { LOTS = 4000, COUNT = 20 };
+  static const double alike[] = {0, 0.4};
+  for (size_t k = 0; k < 2; k++) {
+    size_t known = 0;
+    for (uint64_t seed = 1; seed <= LOTS; seed++) {
+      fg_chart_point point[COUNT] = {{0}};
+      fg_lot_quantity quantity = {.chart = {.point = point, .count = COUNT}};
+      double value = 0;
+      uint64_t noise = seed;
+      for (size_t i = 0; i < COUNT + 20; i++) {
+        value = alike[k] * value + random_gaussian(&noise);
+        if (i >= 20) point[i - 20].value = value;
+      }
+      assert_int_equal(fg_lot_find_trend(NULL, 0, 0.0125, &quantity), FG_OK);
+      known += quantity.trend.known;
+    }
+    assert_true(known <= (k ? 0.035 : 0.0125) * LOTS && known >= 0.004 * LOTS);
+  }
 }
 
 /* Foils whose die is not named, and dies of one foil each, explain nothing. */
@@ -147,7 +204,9 @@ static void the_margin_of_the_worst_is_told(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(dies_in_turn_explain_the_signals),
-      cmocka_unit_test(a_drift_is_no_group),
+      cmocka_unit_test(a_drift_is_a_trend),
+      cmocka_unit_test(a_lone_foil_and_a_new_die_are_no_trend),
+      cmocka_unit_test(trends_of_noise_are_rare),
       cmocka_unit_test(groups_must_hold_every_foil),
       cmocka_unit_test(a_quiet_process_is_stable),
       cmocka_unit_test(the_margin_of_the_worst_is_told),

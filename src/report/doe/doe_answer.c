@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "report/doe/doe_answer.h"
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 #include "report/measure/measure_page_parts.h"
 
 /* Why there is no best setting, where there is none. */

@@ -5,7 +5,7 @@
 
 #include "report/doe/doe_axes.h"
 #include "report/doe/doe_plots.h"
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
 #include "report/plot_marks.h"
 

@@ -6,7 +6,7 @@
 #include "foilgauge/words.h"
 #include "report/doe/doe_answer.h"
 #include "report/doe/doe_plots.h"
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/provenance.h"

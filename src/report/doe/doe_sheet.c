@@ -6,7 +6,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/plan.h"
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 #include "report/measure/measure_page_parts.h"
 
 enum { WORDS = 320 };

@@ -9,7 +9,7 @@
 
 #include "core/memory.h"
 #include "core/text.h"
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 
 const char *fg_surface_kind_word(fg_surface_kind kind) {
   switch (kind) {

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
 
 const fg_optimum *fg_experiment_best_point(const fg_experiment *e) {

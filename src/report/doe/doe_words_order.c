@@ -6,6 +6,7 @@
 
 #include "core/text.h"
 #include "report/doe/doe_words.h"
+#include "report/value_words.h"
 
 static const char program[] = "foilgauge ";
 
@@ -32,16 +33,20 @@ fg_status fg_experiment_loop_command(fg_context *ctx, const fg_experiment_report
 }
 
 static fg_status say_one(fg_context *ctx, const fg_experiment_taken *t, fg_sentences *s) {
-  char u[48] = "";
+  char size[80] = "";
+  const char *parameters = t->parameters == 1 ? "parameter" : "parameters";
   if (!t->applied)
     return fg_sentences_say(
         ctx, s, "Not taken out: %s, which concerns rows of the table it was found in.", t->words);
-  if (isfinite(t->u_amplitude)) fg_text_clip(u, sizeof u, " ± %.2g", 2 * t->u_amplitude);
+  if (*t->sentence)
+    return fg_sentences_say(
+        ctx, s, "Taken out before the analysis: %s (%zu %s), %.3g to %.3g in these runs.",
+        t->sentence, t->parameters, parameters, t->low, t->high);
+  fg_scan_loop_value_words(2 * t->amplitude, 2 * t->u_amplitude, size, sizeof size);
   return fg_sentences_say(ctx, s,
-                          "Taken out before the analysis: %s (amplitude %.3g%s, 95 %%; %zu %s), "
-                          "%.3g to %.3g in these runs.",
-                          t->words, t->amplitude, u, t->parameters,
-                          t->parameters == 1 ? "parameter" : "parameters", t->low, t->high);
+                          "Taken out before the analysis: %s (from its lowest to its highest %s, "
+                          "95 %%; %zu %s), %.3g to %.3g in these runs.",
+                          t->words, size, t->parameters, parameters, t->low, t->high);
 }
 
 fg_status fg_experiment_say_taken(fg_context *ctx, const fg_experiment_report *report,

@@ -13,6 +13,7 @@
 #include "report/table_loop/loop_checks.h"
 #include "report/table_loop/loop_next.h"
 #include "report/table_loop/loop_plots.h"
+#include "report/table_loop/loop_reading.h"
 #include "report/table_loop/loop_words.h"
 
 static const char style[] =
@@ -111,11 +112,12 @@ static void put_battery(FILE *out, const fg_loop_report *report) {
     fputs("<tr><td>", out);
     fg_html_text(out, words);
     fprintf(out, "</td><td class=\"w\">%s</td><td class=\"n\">%s</td></tr>\n",
-            check[k].failed ? "<span class=\"no\">no</span>" : "yes",
+            check[k].failed ? "<span class=\"no\">no</span>" : fg_loop_check_answer(&check[k]),
             fg_loop_p_cell(check[k].p_value).text);
   }
   fprintf(out,
-          "</tbody></table></div><p class=\"soft\">No: p below %.2g. What was looked for by name "
+          "</tbody></table></div><p class=\"soft\">No: p below %.2g. Not sure: p up to 0.1. What "
+          "was looked for by name "
           "(neighbours that are alike, cycles, scatter that changes, lone values and more) is "
           "listed below.</p></section>\n",
           level);
@@ -137,13 +139,15 @@ static bool any_alias(const fg_loop_result *result) {
 
 static void put_claim_row(FILE *out, const fg_loop_report *report, const fg_loop_claim *claim,
                           bool aliases) {
-  char words[2 * FG_LOOP_WORDS], size[FG_LOOP_NAME];
+  char words[2 * FG_LOOP_WORDS], size[FG_LOOP_WORDS];
   fg_loop_claim_words(report, claim, words);
-  fg_loop_claim_size(claim, size);
+  fg_loop_claim_size(report, claim, size);
   fputs("<tr><td>", out);
   put_name(out, words, claim->name);
-  fprintf(out, "</td><td class=\"w\"><b>%s</b></td><td>%s</td><td class=\"n\">%s</td>",
-          fg_loop_verdict_word(claim->verdict), size, fg_loop_p_cell(claim->p_value).text);
+  fprintf(out, "</td><td class=\"w\"><b>%s</b></td><td class=\"w\">",
+          fg_loop_verdict_word(claim->verdict));
+  fg_html_text(out, size);
+  fprintf(out, "</td><td class=\"n\">%s</td>", fg_loop_p_cell(claim->p_value).text);
   if (aliases) fputs("<td class=\"w\">", out);
   for (size_t k = 0; k < claim->aliases; k++) {
     fg_loop_alias_words(report, &claim->alias[k], words);
@@ -158,8 +162,10 @@ static void put_rejected_row(FILE *out, const fg_loop_report *report, const fg_l
   fg_loop_candidate_words(report, &one->candidate, words);
   fputs("<tr><td>", out);
   put_name(out, words, one->name);
-  fprintf(out, "</td><td class=\"w\">%s</td><td>%s</td><td class=\"n\">%s</td>%s</tr>\n",
-          fg_loop_rejected_word(one), fg_loop_number_text("≥ %.3g", one->smallest_detectable).text,
+  double shows = fg_loop_readable_size(&one->candidate, one->smallest_detectable);
+  fprintf(out,
+          "</td><td class=\"w\">%s</td><td class=\"w\">%s</td><td class=\"n\">%s</td>%s</tr>\n",
+          fg_loop_rejected_word(one), fg_loop_number_text("≥ %.3g", shows).text,
           fg_loop_p_cell(one->p_value).text, aliases ? "<td></td>" : "");
 }
 
@@ -171,8 +177,9 @@ static void put_candidates(FILE *out, const fg_loop_report *report) {
           "<section class=\"long\"><h2>All that was looked for</h2><p class=\"soft key\">Absent: "
           "it would have shown at the size that matters. Inconclusive: only a larger one would "
           "have. In the model already: the declared model takes it up.</p><div class=\"scroll\">"
-          "<table><thead><tr><th>effect</th><th class=\"w\">verdict</th><th>size, or what would "
-          "have shown</th><th>p</th>%s</tr></thead><tbody>\n",
+          "<table><thead><tr><th>effect</th><th class=\"w\">verdict</th><th "
+          "class=\"w\">difference, or what "
+          "would have shown</th><th>p</th>%s</tr></thead><tbody>\n",
           aliases ? "<th class=\"w\">could also be</th>" : "");
   for (size_t i = 0; i < result->claims; i++)
     put_claim_row(out, report, &result->claim[i], aliases);
@@ -217,6 +224,9 @@ static void put_next(FILE *out, const fg_loop_report *report) {
 
 static void put_head(FILE *out, const fg_loop_report *report, const char *sentence) {
   static const char *const classes[] = {"clean", "explained", "partly", "unattributed"};
+  fg_loop_check check;
+  bool suspected =
+      fg_loop_suspect(report->result) || fg_loop_suspects_residual(report->result, &check);
   fg_html_head(out, "Closing the loop");
   fprintf(out, "<style>%s</style></head><body><main><section><h1>", style);
   fg_html_text(out, report->spec->response);
@@ -236,7 +246,7 @@ static void put_head(FILE *out, const fg_loop_report *report, const char *senten
   fprintf(out,
           "; %zu rows</p><span class=\"verdict %s\">%s</span><span class=\"mean\">%s</span><p "
           "class=\"say\">",
-          report->problem->problem.rows, classes[report->result->verdict],
+          report->problem->problem.rows, suspected ? "suspected" : classes[report->result->verdict],
           fg_loop_outcome_word(report->result->verdict), fg_loop_outcome_meaning(report->result));
   fg_html_text(out, sentence);
   fputs("</p>", out);

@@ -105,6 +105,9 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   write_parameters(json, report, claim, false);
   write_parameters(json, report, claim, true);
   write_row_names(json, report, claim);
+  char sentence[2 * FG_LOOP_WORDS];
+  fg_loop_claim_sentence(report, claim, sentence);
+  fg_json_string(json, "sentence", sentence);
   fg_json_number(json, "amplitude", claim->amplitude);
   fg_json_number(json, "u_amplitude", claim->amplitude_u);
   fg_json_numbers(json, "amplitude_interval_95", claim->interval, 2);

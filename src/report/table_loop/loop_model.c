@@ -3,6 +3,7 @@
 #include "core/json_writer.h"
 #include "foilgauge/loop.h"
 #include "foilgauge/words.h"
+#include "report/table_loop/loop_words.h"
 
 static void write_coordinate(fg_json *json, const fg_loop_coordinate *at) {
   fg_json_object(json, NULL);
@@ -34,6 +35,9 @@ static void write_claim(fg_json *json, const fg_loop_report *report, const fg_lo
   fg_json_array_end(json);
   fg_json_numbers(json, "coefficients", claim->coefficient, claim->columns);
   fg_json_numbers(json, "shape", claim->shape, effect->shapes);
+  char sentence[2 * FG_LOOP_WORDS];
+  fg_loop_claim_sentence(report, claim, sentence);
+  fg_json_string(json, "sentence", sentence);
   fg_json_number(json, "amplitude", claim->amplitude);
   fg_json_number(json, "u_amplitude", claim->amplitude_u);
   fg_json_object_end(json);

@@ -8,6 +8,9 @@
 #include "report/table_loop/loop_checks.h"
 
 const char *fg_loop_outcome_meaning(const fg_loop_result *result) {
+  fg_loop_check check;
+  if (fg_loop_suspect(result) || fg_loop_suspects_residual(result, &check))
+    return "Something is suspected, nothing is proven.";
   if (result->verdict == FG_LOOP_CLEAN)
     return "The declared model is enough, as far as these data can tell.";
   if (result->verdict == FG_LOOP_UNATTRIBUTED)
@@ -237,6 +240,7 @@ size_t fg_loop_next_count(const fg_loop_report *report) {
 void fg_loop_next_step(const fg_loop_report *report, size_t step, char text[FG_LOOP_STEP]) {
   const fg_loop_result *result = report->result;
   char words[FG_LOOP_WORDS];
+  fg_loop_check check;
   if (step < result->claims) {
     step_of_claim(report, step, text);
   } else if (result->has_curve && step == result->claims) {
@@ -244,6 +248,10 @@ void fg_loop_next_step(const fg_loop_report *report, size_t step, char text[FG_L
   } else if (result->fails) {
     fg_loop_failed_advice(report, words);
     fg_text_clip(text, FG_LOOP_STEP, "%s", words);
+  } else if (fg_loop_suspect(result) || fg_loop_suspects_residual(result, &check)) {
+    fg_text_clip(text, FG_LOOP_STEP,
+                 "Add rows, or measure again, and run the loop on all of them: these rows neither "
+                 "prove what is suspected nor clear the model of it.");
   } else {
     fg_text_clip(text, FG_LOOP_STEP,
                  "Nothing. What is called inconclusive below could still be there, smaller than "

@@ -8,6 +8,7 @@
 #include "foilgauge/loop.h"
 #include "report/table_loop/loop_checks.h"
 #include "report/table_loop/loop_next.h"
+#include "report/table_loop/loop_reading.h"
 #include "report/table_loop/loop_words.h"
 #include "report/wrapped.h"
 
@@ -41,15 +42,14 @@ static fg_status say_claim(fg_context *ctx, const fg_loop_report *report, size_t
   const fg_loop_claim *claim = &report->result->claim[i];
   const fg_loop_effect *effect = claim->candidate.effect;
   bool lacks = effect->accepts && effect->scatter == FG_LOOP_OF_THE_MEAN;
-  char words[FG_LOOP_WORDS], size[FG_LOOP_NAME];
-  fg_loop_claim_words(report, claim, words);
-  fg_loop_claim_size(claim, size);
+  char words[2 * FG_LOOP_WORDS];
+  fg_loop_claim_sentence(report, claim, words);
   if (!lacks && *words >= 'a' && *words <= 'z') *words = (char)(*words - 'a' + 'A');
-  FG_TRY(fg_text_append(ctx, text, "%s%s%s (%s, %s)", i ? " " : "",
+  FG_TRY(fg_text_append(ctx, text, "%s%s%s (%s)", i ? " " : "",
                         !lacks ? ""
                         : i    ? "The model also lacks "
                                : "The declared model lacks ",
-                        words, size, fg_loop_p_text(claim->p_value).text));
+                        words, fg_loop_p_text(claim->p_value).text));
   FG_TRY(say_aliases(ctx, report, claim, text));
   return fg_text_append(ctx, text, ".");
 }
@@ -91,14 +91,33 @@ static bool is_first(const fg_loop_result *result, size_t i) {
   return true;
 }
 
+/* Noise, or what noise alone would hardly do. */
+static fg_status say_suspect(fg_context *ctx, const fg_loop_report *report, char **text) {
+  const fg_loop_rejected *suspect = fg_loop_suspect(report->result);
+  fg_loop_check check;
+  char words[FG_LOOP_WORDS];
+  if (suspect) {
+    fg_loop_candidate_words(report, &suspect->candidate, words);
+    return fg_text_append(ctx, text,
+                          "is suspected to hold %s (%s): noise alone would look like this in %.2g "
+                          "%% of such tables, which neither proves it nor clears the model.",
+                          words, fg_loop_p_text(suspect->p_value).text, 100 * suspect->p_value);
+  }
+  if (fg_loop_suspects_residual(report->result, &check)) {
+    fg_loop_check_words(report, check, words);
+    return fg_text_append(ctx, text, "may not be noise alone. Not sure: %s (%s)", words,
+                          fg_loop_p_text(report->result->check[check].p_value).text);
+  }
+  return fg_text_append(ctx, text, "is noise as far as these data can tell.");
+}
+
 /* What was looked for where nothing was found: only that of which there was a candidate. */
 static fg_status say_clean(fg_context *ctx, const fg_loop_report *report, char **text) {
   const fg_loop_result *result = report->result;
   size_t said = 0;
-  FG_TRY(fg_text_append(ctx, text,
-                        "Nothing is claimed: in %zu rows the residual (%.3g rms) is noise as far "
-                        "as these data can tell.",
+  FG_TRY(fg_text_append(ctx, text, "Nothing is claimed: in %zu rows the residual (%.3g rms) ",
                         report->problem->problem.rows, result->before.rms));
+  FG_TRY(say_suspect(ctx, report, text));
   for (size_t i = 0; i < result->rejects; i++)
     if (is_first(result, i))
       FG_TRY(fg_text_append(ctx, text, "%s%s", said++ ? ", " : " Looked for: ",
@@ -169,7 +188,7 @@ static void write_battery(const fg_loop_report *report, FILE *out) {
     if (!any) fputs("\nis what is left only noise?\n", out);
     any = true;
     fg_loop_check_words(report, (fg_loop_check)k, words);
-    fprintf(out, "  %-4s %s (%s)\n", check->failed ? "NO" : "yes", words,
+    fprintf(out, "  %-8s %s (%s)\n", check->failed ? "NO" : fg_loop_check_answer(check), words,
             fg_loop_p_text(check->p_value).text);
   }
 }
@@ -204,7 +223,9 @@ static void write_rejected(const fg_loop_report *report, FILE *out) {
     fg_loop_candidate_words(report, &list[i]->candidate, words);
     fprintf(out, "%-52s %-20s %7s %9s\n", words, fg_loop_rejected_word(list[i]),
             fg_loop_p_cell(list[i]->p_value).text,
-            fg_loop_number_text("%.3g", list[i]->smallest_detectable).text);
+            fg_loop_number_text(
+                "%.3g", fg_loop_readable_size(&list[i]->candidate, list[i]->smallest_detectable))
+                .text);
   }
   if (result->rejects > SHOWN) fprintf(out, "and %zu more\n", result->rejects - SHOWN);
   free(list);
@@ -215,6 +236,8 @@ static void write_claim(const fg_loop_report *report, const fg_loop_claim *claim
   char words[2 * FG_LOOP_WORDS], closeness[FG_LOOP_WORDS];
   fg_loop_claim_words(report, claim, words);
   fprintf(out, "  %s: %s [%s]\n", words, fg_loop_verdict_word(claim->verdict), claim->name);
+  fg_loop_claim_size(report, claim, words);
+  fg_write_wrapped(out, "    ", "    ", words);
   for (size_t k = 0; k < claim->aliases; k++) {
     const fg_loop_alias *alias = &claim->alias[k];
     fg_loop_alias_words(report, alias, words);
@@ -240,7 +263,10 @@ fg_status fg_loop_write_text(fg_context *ctx, const fg_loop_report *report, FILE
   char *sentence = NULL;
   FG_TRY(fg_loop_sentence(ctx, report, &sentence));
   fprintf(out, "%s: %s\n", report->path, fg_loop_outcome_word(result->verdict));
-  if (result->verdict != FG_LOOP_CLEAN) fprintf(out, "%s\n", fg_loop_outcome_meaning(result));
+  fg_loop_check check;
+  if (result->verdict != FG_LOOP_CLEAN || fg_loop_suspect(result) ||
+      fg_loop_suspects_residual(result, &check))
+    fprintf(out, "%s\n", fg_loop_outcome_meaning(result));
   fputc('\n', out);
   fg_write_wrapped(out, "", "", sentence);
   free(sentence);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/text.h"
+#include "report/table_loop/loop_reading.h"
 
 fg_loop_number fg_loop_number_text(const char *format, double value) {
   fg_loop_number out;
@@ -167,34 +168,28 @@ void fg_loop_claim_words(const fg_loop_report *report, const fg_loop_claim *clai
     mean_statement(report, claim, text);
 }
 
-/* Every wrong row has a size of its own. */
-static void rows_size(const fg_loop_claim *claim, char text[FG_LOOP_NAME]) {
-  fg_text_clip(text, FG_LOOP_NAME, "off by ");
-  for (size_t k = 0, used; k < claim->columns; k++) {
-    used = strlen(text);
-    fg_text_clip(text + used, FG_LOOP_NAME - used, "%s%.3g",
-                 !k                        ? ""
-                 : k + 1 == claim->columns ? " and "
-                                           : ", ",
-                 claim->coefficient[k]);
+void fg_loop_claim_size(const fg_loop_report *report, const fg_loop_claim *claim,
+                        char text[FG_LOOP_WORDS]) {
+  const fg_loop_effect *effect = claim->candidate.effect;
+  if (effect->scatter == FG_LOOP_OF_THE_MEAN) {
+    fg_loop_claim_reading(report, claim, text);
+    return;
   }
+  fg_text_clip(text, FG_LOOP_WORDS, "%s %s",
+               effect->scatter == FG_LOOP_SERIAL ? "correlation" : "ratio of the sd",
+               fg_loop_number_text("%.3g", claim->noise_value).text);
+  size_t used = strlen(text);
+  if (isfinite(claim->noise_value_u))
+    fg_text_clip(text + used, FG_LOOP_WORDS - used, " ± %.2g", 2 * claim->noise_value_u);
 }
 
-void fg_loop_claim_size(const fg_loop_claim *claim, char text[FG_LOOP_NAME]) {
-  const fg_loop_effect *effect = claim->candidate.effect;
-  bool of_mean = effect->scatter == FG_LOOP_OF_THE_MEAN;
-  double value = of_mean ? claim->amplitude : claim->noise_value;
-  double u = of_mean ? claim->amplitude_u : claim->noise_value_u;
-  if (effect->lone == FG_LOOP_WRONG_ROW)
-    rows_size(claim, text);
-  else
-    fg_text_clip(text, FG_LOOP_NAME, "%s %s",
-                 of_mean                             ? "amplitude"
-                 : effect->scatter == FG_LOOP_SERIAL ? "correlation"
-                                                     : "ratio of the sd",
-                 fg_loop_number_text("%.3g", value).text);
-  size_t used = strlen(text);
-  if (isfinite(u)) fg_text_clip(text + used, FG_LOOP_NAME - used, " ± %.2g", 2 * u);
+void fg_loop_claim_sentence(const fg_loop_report *report, const fg_loop_claim *claim,
+                            char text[2 * FG_LOOP_WORDS]) {
+  char words[FG_LOOP_WORDS], size[FG_LOOP_WORDS];
+  bool mean = claim->candidate.effect->scatter == FG_LOOP_OF_THE_MEAN;
+  fg_loop_claim_words(report, claim, words);
+  fg_loop_claim_size(report, claim, size);
+  fg_text_clip(text, (size_t)2 * FG_LOOP_WORDS, mean ? "%s: %s" : "%s (%s)", words, size);
 }
 
 const char *fg_loop_rejected_word(const fg_loop_rejected *rejected) {
@@ -244,4 +239,34 @@ size_t fg_loop_error_rows(const fg_loop_report *report,
   for (size_t i = 0; i < FG_LOOP_ERROR_ROWS; i++)
     if (isfinite(all[i].before)) rows[count++] = all[i];
   return count;
+}
+
+/* Between what is proven and what noise alone does often. */
+#define SUSPECTED_P 0.1
+
+const char *fg_loop_check_answer(const fg_loop_checked *check) {
+  return check->failed ? "no" : check->p_value <= SUSPECTED_P ? "not sure" : "yes";
+}
+
+const fg_loop_rejected *fg_loop_suspect(const fg_loop_result *result) {
+  const fg_loop_rejected *suspect = NULL;
+  if (result->verdict != FG_LOOP_CLEAN) return NULL;
+  for (size_t i = 0; i < result->rejects; i++)
+    if (result->rejected[i].p_value <= (suspect ? suspect->p_value : SUSPECTED_P))
+      suspect = &result->rejected[i];
+  return suspect;
+}
+
+bool fg_loop_suspects_residual(const fg_loop_result *result, fg_loop_check *check) {
+  double least = SUSPECTED_P, tests = 0;
+  bool suspected = false;
+  for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
+    tests += result->check[k].done;
+  for (size_t k = 0; k < FG_LOOP_CHECKS && result->verdict == FG_LOOP_CLEAN; k++) {
+    if (!result->check[k].done || !(tests * result->check[k].p_value <= least)) continue;
+    least = tests * result->check[k].p_value;
+    *check = (fg_loop_check)k;
+    suspected = true;
+  }
+  return suspected;
 }

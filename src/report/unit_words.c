@@ -1,4 +1,4 @@
-#include "report/doe/doe_units.h"
+#include "report/unit_words.h"
 
 #include <math.h>
 #include <string.h>
