@@ -39,8 +39,9 @@ fg_status fg_load_find_points(fg_context *ctx, fg_load_strokes *strokes, fg_load
 fg_status fg_load_check_contacts(fg_context *ctx, const fg_load_strokes *strokes, double gap_at_mm,
                                  fg_load_direction *direction);
 
-/* Free travel, its u_repeat before repeats widen it. */
-void fg_load_find_gap(const fg_load_strokes *strokes, fg_load_zero zero,
+/* Free travel, its u_repeat before repeats widen it; `yield_mm`: what both foils yield under the
+ * threshold at most. */
+void fg_load_find_gap(const fg_load_strokes *strokes, fg_load_zero zero, double yield_mm,
                       fg_load_direction *direction);
 
 /* Whether a stroke goes as far as the record does, on one side. */

@@ -21,6 +21,10 @@ static const double span = 8, high_share_min = 0.15, high_share_max = 0.7, span_
  * is none but a place where the foils are less stiff, as behind an interference. */
 static const double zero_share_max = 0.25;
 
+/* Nor is it one where up and down strokes have changed places by more than noise: few samples of a
+ * rotor that jumps through the gap. */
+static const double friction_noise = 3;
+
 /* Samples of each sense that a branch takes; where there are fewer it is followed further. */
 enum { SAMPLES_MIN = 10 };
 
@@ -33,6 +37,7 @@ typedef struct branch {
   const fg_load_strokes *strokes;
   int side; /* +1: push, -1: pull */
   double zero_n, low_n, high_n, origin_mm;
+  double from_mm;  /* the foil is touched no further inwards */
   double count[2]; /* samples of loading, of unloading */
 } branch;
 
@@ -40,8 +45,9 @@ typedef struct branch {
 static bool take_sample(const branch *b, const fg_load_stroke *s, size_t k, double *force,
                         double *x) {
   *force = b->side * (s->f[k] - b->zero_n);
-  *x = b->side * (s->x[k] - s->shift_mm) - b->origin_mm;
-  return *force > b->low_n && *force < b->high_n;
+  double out = b->side * (s->x[k] - s->shift_mm);
+  *x = out - b->origin_mm;
+  return *force > b->low_n && *force < b->high_n && out > b->from_mm;
 }
 
 /* Whether there are enough; their mean becomes the origin, so that sums of squares keep their
@@ -59,11 +65,15 @@ static bool count_samples(branch *b) {
   return b->count[0] >= SAMPLES_MIN && b->count[1] >= SAMPLES_MIN;
 }
 
+/* `yield_mm`: what the foils yield under the threshold at most. */
 static branch make_branch(const fg_load_strokes *strokes, int side, fg_load_zero zero,
-                          const fg_load_direction *d) {
+                          double yield_mm, const fg_load_direction *d) {
   branch b = {.strokes = strokes, .side = side};
+  b.from_mm = (side > 0 ? d->push_mm : -d->pull_mm) - yield_mm;
+  if (!isfinite(b.from_mm)) b.from_mm = -INFINITY;
   double range = d->force_high_n - d->force_low_n, middle = (d->force_high_n + d->force_low_n) / 2;
-  bool known = fabs(zero.force_n - middle) < zero_share_max * range;
+  bool known = fabs(zero.force_n - middle) < zero_share_max * range &&
+               zero.friction_n > -friction_noise * strokes->noise_n;
   double friction = known ? fmax(0, zero.friction_n) : 0;
   b.zero_n = known ? zero.force_n : 0;
   double most = side > 0 ? d->force_high_n - b.zero_n : b.zero_n - d->force_low_n;
@@ -145,10 +155,12 @@ static bool find_touched(const branch *b, touched *out) {
   return isfinite(out->x_mm + out->u_mm);
 }
 
-void fg_load_find_gap(const fg_load_strokes *strokes, fg_load_zero zero, fg_load_direction *d) {
+void fg_load_find_gap(const fg_load_strokes *strokes, fg_load_zero zero, double yield_mm,
+                      fg_load_direction *d) {
   touched push, pull;
   d->gap = (fg_load_value){NAN, NAN, NAN};
-  branch out = make_branch(strokes, 1, zero, d), back = make_branch(strokes, -1, zero, d);
+  branch out = make_branch(strokes, 1, zero, yield_mm, d);
+  branch back = make_branch(strokes, -1, zero, yield_mm, d);
   if (!find_touched(&out, &push) || !find_touched(&back, &pull)) return;
   d->gap.value = push.x_mm + pull.x_mm;
   d->gap.u_repeat =

@@ -48,9 +48,8 @@ const fg_load_flag *fg_load_flags(void) {
        "no gap: the foils of both sides touch the rotor at once, or within U; there is no "
        "clearance"},
       {FG_LOAD_GAP_UNKNOWN, "gap_not_known",
-       "too few samples near to where the foils are touched, up and back, to say whether there is "
-       "a "
-       "gap: the travel may be that of foils that press the rotor"},
+       "the record does not say whether there is a gap: the travel may be that of foils that press "
+       "the rotor, and no clearance is named"},
       {FG_LOAD_UNITS, "units_suspect",
        "a clearance beyond 5 % of the diameter or below 1 um, or a stiffness beyond 1e5 N/mm: are "
        "the units what they say?"},
@@ -115,11 +114,28 @@ static void forget_clearance(fg_load_direction *d) {
 /* U = 2 u: a gap within it is none that is shown. */
 static const double gap_reach = 2;
 
+/* A foil's force grows with its compression y as y² at most, so that y is 2 F / (dF/dx) at most:
+ * travel beyond that of both sides is free. */
+static const double yield_max = 2;
+
+static double find_yield_mm(const fg_load_test *test, const fg_load_findings *findings) {
+  return yield_max * test->options.threshold_n * findings->compliance_mm_n;
+}
+
 /* Foils that press the rotor have no place where it is free, and so neither a zero nor a friction
- * that is passed there. */
-static void check_gap(fg_load_zero *zero, fg_load_direction *d) {
-  if (!(d->gap.value <= gap_reach * d->gap.u_repeat)) return;
-  d->flags |= FG_LOAD_NO_GAP;
+ * that is passed there. Branches that leave anything between no gap and the whole travel say
+ * nothing: then the travel may. */
+static void check_gap(double yield_mm, fg_load_zero *zero, fg_load_direction *d) {
+  double u = gap_reach * d->gap.u_repeat, c = d->clearance.value;
+  const fg_load_value none = {NAN, NAN, NAN};
+  bool known = isfinite(d->gap.value), decided = known && !(d->gap.value + u >= c);
+  if (known && d->gap.value > u) return;
+  if (!known && !isfinite(c)) return;
+  if (!decided && c - yield_mm > gap_reach * d->clearance.u_repeat) {
+    d->gap = none;
+    return;
+  }
+  d->flags |= known ? FG_LOAD_NO_GAP : FG_LOAD_GAP_UNKNOWN;
   d->flags &= ~(unsigned)FG_LOAD_UNSAMPLED;
   forget_clearance(d);
   d->zero_n = zero->force_n = zero->friction_n = NAN;
@@ -157,11 +173,10 @@ static void forget_all(fg_load_direction *d) {
 static void say_why_not(const fg_load_test *test, fg_load_direction *d) {
   enum {
     REASONS = FG_LOAD_ZERO_OFF | FG_LOAD_NO_GAP | FG_LOAD_WRONG_WAY | FG_LOAD_FRICTION_HIGH |
-              FG_LOAD_UNSAMPLED | FG_LOAD_CONTRADICTION
+              FG_LOAD_UNSAMPLED | FG_LOAD_CONTRADICTION | FG_LOAD_GAP_UNKNOWN
   };
   if (isfinite(d->clearance.value)) {
     if (d->cycles < 2) d->flags |= FG_LOAD_ONE_CYCLE;
-    if (!isfinite(d->gap.value)) d->flags |= FG_LOAD_GAP_UNKNOWN;
     return;
   }
   if (d->flags & REASONS) return;
@@ -196,8 +211,9 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   d->zero_n = zero.force_n;
   levels.zero_n = isfinite(zero.force_n) ? zero.force_n : 0;
   FG_TRY_EXIT(fg_load_find_points(ctx, &strokes, levels, d, findings));
-  fg_load_find_gap(&strokes, zero, d);
-  check_gap(&zero, d);
+  double yield_mm = find_yield_mm(test, findings);
+  fg_load_find_gap(&strokes, zero, yield_mm, d);
+  check_gap(yield_mm, &zero, d);
   FG_TRY_EXIT(fg_load_check_contacts(ctx, &strokes, zero.place_mm, d));
   check_clearance(test, &zero, d);
   FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
