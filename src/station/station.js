@@ -5,7 +5,7 @@
  * The page is served grey (class `unconfirmed`) with the time of what it shows. It takes its colours only while the
  * station answers, and the time that counts is this clock's: a cable that was pulled ends no connection. */
 (function () {
-  var BEAT_MS = 1000, ANSWER_MS = 2500, LOST_MS = 4000, LOOK_MS = 250, LOAD_MS = 15000, AGAIN_MS = 2000;
+  var BEAT_MS = 1000, ANSWER_MS = 2500, LOST_MS = 3500, LOOK_MS = 250, LOAD_MS = 15000, AGAIN_MS = 2000;
   var REFUSED_MAX = 2; /* a station that starts again refuses once or twice within a beat */
   var root = document.documentElement, silent = document.getElementById('silent');
   var started = Date.now(), heard = 0, refused = 0, beating = false, loading = false, again = false;
