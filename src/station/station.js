@@ -160,7 +160,14 @@
     };
   }
 
-  function wakeUp() {
+  /* Of a page that nobody saw, or that comes back from the browser's memory, nobody has asked for a while: it has no
+   * colours until the station answers, and is not called lost before that had time to. */
+  function wakeUp(event) {
+    if (event && event.persisted) heard = 0;
+    if (!isRecent(heard) && !root.classList.contains('lost')) {
+      heard = 0;
+      started = Date.now();
+    }
     show();
     beat();
   }
@@ -174,12 +181,7 @@
   if (live && window.EventSource) listen();
   takeFocus();
   document.addEventListener('keydown', turnPages);
-  /* A page that comes back from the browser's memory shows what was so when it was left. */
-  window.addEventListener('pageshow', function (event) {
-    if (event.persisted) heard = 0;
-    if (event.persisted) started = Date.now();
-    wakeUp();
-  });
+  window.addEventListener('pageshow', wakeUp);
   document.addEventListener('visibilitychange', wakeUp);
   window.addEventListener('online', wakeUp);
   setInterval(beat, BEAT_MS);

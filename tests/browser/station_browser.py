@@ -345,6 +345,12 @@ class Day:
             self.go("/")
             wait(self.is_grey, SILENT_S)
         self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": []})
+        # A page that is told nothing, as one that loads while a result comes, finds out by asking.
+        self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": ["*/events"]})
+        self.go("/")
+        self.drop("7_untold.png", BAD_MM)
+        self.card("7_untold.png", "FAIL")
+        self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": []})
         # A page that comes back from the browser's memory, while the station is gone.
         self.go("/")
         wait(lambda: not self.is_grey())

@@ -231,6 +231,7 @@ static void test_token(void **state) {
       {"/", "", NULL, 401, ""},
       {"/style.css", "", NULL, 401, ""},
       {"/events", "", NULL, 401, ""},
+      {"/alive", "", NULL, 401, ""},
       {"/", "token=a-token-of-a-statio", NULL, 401, ""},
       {"/", "token=", NULL, 401, ""},
       {"/", "token=a-token-of-a-station", NULL, 303, "/"},
