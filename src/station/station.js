@@ -8,7 +8,7 @@
   var BEAT_MS = 1000, ANSWER_MS = 2500, LOST_MS = 3500, LOOK_MS = 250, LOAD_MS = 15000, AGAIN_MS = 2000;
   var REFUSED_MAX = 2; /* a station that starts again refuses once or twice within a beat */
   var root = document.documentElement, silent = document.getElementById('silent');
-  var started = Date.now(), heard = 0, refused = 0, beating = false, loading = false, again = false;
+  var started = Date.now(), heard = 0, answered = 0, refused = 0, beating = false, loading = false, again = false;
   var main = document.querySelector('main'), live = document.querySelector('[data-live]');
   var shown = main && main.dataset.news, known = main && main.dataset.at;
 
@@ -17,15 +17,18 @@
     return age >= 0 && age < LOST_MS; /* a clock that was set back says nothing */
   }
 
+  function sayLost(answers) {
+    var words = (answers ? 'The station cannot show its newest result now. ' : 'No connection to the station. ') +
+      'This page shows what was known at ' + known + '; what came later is not here.';
+    if (silent.textContent !== words) silent.textContent = words; /* said once to who listens to it */
+  }
+
   function show() {
     var confirmed = heard > 0 && refused < REFUSED_MAX && isRecent(heard);
     var lost = !confirmed && (refused >= REFUSED_MAX || !isRecent(heard || started));
     root.classList.toggle('unconfirmed', !confirmed);
     root.classList.toggle('asking', !confirmed && !lost);
-    if (lost && !root.classList.contains('lost') && silent) {
-      silent.textContent = 'No connection to the station. This page shows what was known at ' + known +
-        '; what came later is not here.';
-    }
+    if (lost && silent) sayLost(refused < REFUSED_MAX && isRecent(answered));
     root.classList.toggle('lost', lost);
   }
 
@@ -38,7 +41,7 @@
       }).finally(function () { clearTimeout(clock); });
   }
 
-  /* What is confirmed is how things were when the question was sent. */
+  /* What is confirmed is how things were when the question was sent. A page of older news is not: its next load is. */
   function beat() {
     var sent = Date.now();
     if (beating) return;
@@ -46,10 +49,14 @@
     fetchText('/alive', ANSWER_MS).then(function (text) {
       var words = /^(\d+) (.+)\n$/.exec(text);
       if (!words) throw new Error('not the station');
-      heard = sent;
+      answered = sent;
       refused = 0;
-      if (live && words[1] !== shown) load();
-      else known = words[2];
+      if (live && words[1] !== shown) {
+        load();
+        return;
+      }
+      heard = sent;
+      known = words[2];
     }).catch(function () { refused++; }).finally(function () {
       beating = false;
       show();
@@ -116,7 +123,7 @@
     return call ? call.textContent : '';
   }
 
-  function put(text) {
+  function put(text, sent) {
     var page = document.querySelector('main');
     var next = new DOMParser().parseFromString(text, 'text/html').querySelector('main');
     if (!page || !next || !next.dataset.news) return;
@@ -125,6 +132,7 @@
     page.replaceWith(next);
     shown = next.dataset.news;
     known = next.dataset.at;
+    heard = answered = sent;
     if (other) window.scrollTo(0, 0);
     if (focus) focus();
     else takeFocus();
@@ -136,7 +144,8 @@
     again = loading;
     if (loading) return;
     loading = true;
-    fetchText(location.href, LOAD_MS).then(put).catch(function () {}).finally(function () {
+    var sent = Date.now();
+    fetchText(location.href, LOAD_MS).then(function (text) { put(text, sent); }).catch(function () {}).finally(function () {
       loading = false;
       if (again) load();
       again = false;

@@ -345,6 +345,17 @@ class Day:
             self.go("/")
             wait(self.is_grey, SILENT_S)
         self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": []})
+        # A station that answers but cannot give its page: the verdict is not its newest word any more.
+        self.go("/")
+        wait(lambda: not self.is_grey())
+        self.browser.execute_script(
+            "window.whole=window.fetch;window.fetch=function(to,how){"
+            "return to===location.href?Promise.reject(new Error('no page')):window.whole(to,how);}")
+        self.drop("7_hidden.png", BAD_MM)
+        wait(self.is_grey)
+        expect("cannot show its newest" in self.text("#silent"), "what is wrong: " + self.text("#silent"))
+        self.browser.execute_script("window.fetch=window.whole")
+        self.card("7_hidden.png", "FAIL")
         # A page that is told nothing, as one that loads while a result comes, finds out by asking.
         self.browser.execute_cdp_cmd("Network.setBlockedURLs", {"urls": ["*/events"]})
         self.go("/")
