@@ -28,6 +28,7 @@ if [ $long = yes ]; then
   tests/bench/thesis_lot.sh
   tests/bench/thesis_lots.sh
   tests/bench/lot_speed.sh
+  build/bench/lot_groups >reports/lot_groups.md
   tests/bench/slurm_lot.sh || [ $? = 77 ]
   tests/bench/doe_end_to_end.sh
   tests/bench/thesis.sh

@@ -210,13 +210,27 @@ typedef struct fg_lot_assembly {
   char statement[3][400];
 } fg_lot_assembly;
 
-/* Two groups of the lot (dies, coils) in one quantity. */
+/* Tests of a pair of groups in one quantity. */
+typedef enum fg_lot_group_test {
+  FG_LOT_TEST_MEANS,     /* of the foils: Welch */
+  FG_LOT_TEST_VARIANCES, /* of the foils: F, by relabelling */
+  FG_LOT_TEST_LEVENE,    /* of the foils: Levene, by relabelling */
+  FG_LOT_TEST_WITHIN,    /* spread of the parts within a foil: Welch of its logarithm */
+  FG_LOT_GROUP_TESTS
+} fg_lot_group_test;
+
+/* Two groups of the lot (dies, coils) in one quantity. Foils are the unit (lot/foil_levels.h): the
+ * parts of a foil share its strip, its heat and its die, and are no independent values. */
 typedef struct fg_lot_difference {
   const fg_lot_quantity *quantity;
   const char *a, *b;
-  size_t count_a, count_b;
-  double mean_a, mean_b, sd_a, sd_b;
-  fg_comparison comparison;
+  size_t count_a, count_b; /* values */
+  size_t foils_a, foils_b;
+  double mean_a, mean_b, sd_a, sd_b; /* of the foils' levels */
+  double within_sd_a, within_sd_b;   /* of parts within a foil; NaN: of the whole foil */
+  double p[FG_LOT_GROUP_TESTS];      /* of each test alone; NaN: not made */
+  double p_holm[FG_LOT_GROUP_TESTS]; /* adjusted for all tests of the lot (Holm 1979) */
+  fg_comparison comparison;          /* of the foils' levels */
 } fg_lot_difference;
 
 typedef struct fg_lot_gauge {
@@ -261,6 +275,7 @@ typedef struct fg_lot_analysis {
   fg_lot_spread clearance_pct, clearance_fitted_pct;
   fg_lot_difference *differences;
   size_t difference_count, difference_capacity;
+  size_t group_tests, group_tests_differ; /* made; of them those that differ by Holm's p */
   fg_lot_gauge *gauges;
   size_t gauge_count, gauge_capacity;
 } fg_lot_analysis;
@@ -351,6 +366,8 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_assembly_free(fg_lot_assembly *assembly);
 void fg_lot_say_assembly(fg_lot_analysis *analysis); /* the statements */
 fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis);
+/* Whether an adjusted p-value lies below what the recipe's confidence leaves. */
+bool fg_lot_group_differs(const fg_lot_analysis *analysis, double p_holm);
 fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 
 /* Mean, sd, range of `count` finite values, and the mode of their density. */

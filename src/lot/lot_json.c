@@ -226,6 +226,12 @@ static void write_thickness(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object_end(json);
 }
 
+/* Members of the tests, in the order of fg_lot_group_test. */
+static const char *const test_members[FG_LOT_GROUP_TESTS][2] = {{"p_means", "p_means_holm"},
+                                                                {"p_variances", "p_variances_holm"},
+                                                                {"p_levene", "p_levene_holm"},
+                                                                {"p_within", "p_within_holm"}};
+
 static void write_difference(fg_json *json, const fg_lot_difference *difference) {
   const fg_comparison *comparison = &difference->comparison;
   fg_json_object(json, NULL);
@@ -234,17 +240,22 @@ static void write_difference(fg_json *json, const fg_lot_difference *difference)
   fg_json_string(json, "b", difference->b);
   fg_json_integer(json, "count_a", (int64_t)difference->count_a);
   fg_json_integer(json, "count_b", (int64_t)difference->count_b);
+  fg_json_integer(json, "foils_a", (int64_t)difference->foils_a);
+  fg_json_integer(json, "foils_b", (int64_t)difference->foils_b);
   fg_json_number(json, "mean_a", difference->mean_a);
   fg_json_number(json, "mean_b", difference->mean_b);
   fg_json_number(json, "sd_a", difference->sd_a);
   fg_json_number(json, "sd_b", difference->sd_b);
+  fg_json_number(json, "within_sd_a", difference->within_sd_a);
+  fg_json_number(json, "within_sd_b", difference->within_sd_b);
   fg_json_number(json, "difference", comparison->difference);
   fg_json_number(json, "difference_low", comparison->low);
   fg_json_number(json, "difference_high", comparison->high);
-  fg_json_number(json, "p_means", comparison->p_means);
   fg_json_number(json, "variance_ratio", comparison->variance_ratio);
-  fg_json_number(json, "p_variances", comparison->p_variances);
-  fg_json_number(json, "p_levene", comparison->p_levene);
+  for (size_t t = 0; t < FG_LOT_GROUP_TESTS; t++) {
+    fg_json_number(json, test_members[t][0], difference->p[t]);
+    fg_json_number(json, test_members[t][1], difference->p_holm[t]);
+  }
   fg_json_object_end(json);
 }
 
