@@ -31,6 +31,8 @@ if [ $long = yes ]; then
   build/bench/lot_groups >reports/lot_groups.md
   tests/bench/slurm_lot.sh || [ $? = 77 ]
   tests/bench/doe_end_to_end.sh
+  build/bench/split_plots >reports/split_plots.md
+  python3 tests/bench/split_plots_r.py build/foilgauge 150 || [ $? = 77 ]
   tests/bench/thesis.sh
   install_missing $FOILGAUGE_R_PACKAGES $FOILGAUGE_BROWSER_PACKAGES
   tests/bench/differential_r.sh 300 reports/differential_r.csv

@@ -10,6 +10,7 @@
 #ifndef FOILGAUGE_DOE_H
 #define FOILGAUGE_DOE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "foilgauge/regression.h"
@@ -101,18 +102,29 @@ fg_status fg_curvature_compute(fg_context *ctx, const fg_table *table, const cha
                                size_t factor_count, const char *response, fg_curvature *curvature);
 
 /* Restricted randomisation: factors that stay put within a whole plot (one oven load) are judged
- * against the scatter of whole plots, the others against the scatter within them. */
+ * against the scatter of whole plots, the others against the scatter within them.
+ *
+ * Where whole plots have one size and the factors within them are orthogonal to them, by an
+ * analysis of variance in two strata, which is exact. Where runs are missing, or settings differ
+ * from plot to plot, an effect is estimated from both strata: by restricted likelihood, with the
+ * degrees of freedom of Kenward and Roger (1997). Then f and p_value of a term are theirs, of the
+ * term beside all others, and there are no sums of squares. */
 typedef struct fg_split_plot_term {
-  fg_anova_row row;  /* f and p against its own error; owned by the result */
-  size_t whole_plot; /* 1: constant within every whole plot */
+  fg_anova_row row;     /* f and p against its own error; owned by the result */
+  size_t whole_plot;    /* 1: constant within every whole plot */
+  double error_freedom; /* that f is judged by */
 } fg_split_plot_term;
+struct fg_mixed_model;
 typedef struct fg_split_plot {
   fg_split_plot_term *term; /* whole-plot terms first, then the others, each sequential */
   size_t terms;
   size_t plots, plot_freedom, run_freedom;
-  double plot_ss, plot_ms, run_ss, run_ms; /* the two errors; NaN mean square without freedom */
-  double plot_variance;                    /* (plot_ms - run_ms) / runs per plot, at least 0 */
-  size_t balanced;                         /* 1: equal plots; otherwise the tests are approximate */
+  double plot_ss, plot_ms, run_ss, run_ms; /* of the strata; NaN mean square without freedom */
+  double plot_variance, run_variance;      /* the first at least 0; NaN: not known */
+  size_t balanced;                         /* 1: equal plots */
+  bool at_border;                          /* the whole plots' variance is estimated as 0 */
+  struct fg_mixed_model *mixed;            /* NULL: by strata; owned */
+  size_t taken_plots, taken_runs; /* freedom that fg_split_plot_pay took, of which stratum */
 } fg_split_plot;
 /* `plot` is the column that names whole plots. FG_ERR_DATA when it holds one only, or as many as
  * there are runs. Free with fg_split_plot_free. */

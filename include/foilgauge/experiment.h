@@ -5,7 +5,8 @@
  * to -1 and +1, by the levels given or else by the lowest and highest of the data; a factor that
  * the formula transforms (log(t)) or takes for names (factor(t)) stays as it is. Blocks enter as a
  * factor of their own, and predictions are averaged over them. With whole plots every coefficient
- * is judged by the error of its own stratum (doe.h).
+ * is judged by the error of its own stratum, or where runs are missing by restricted likelihood
+ * (doe.h); then coefficients, fitted and residual are its.
  *
  * Where the uncertainty of the responses differs between runs so much that it matters (some u
  * above twice the middle one and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with

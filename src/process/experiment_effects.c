@@ -3,9 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/extended.h"
 #include "core/memory.h"
 #include "foilgauge/distribution.h"
 #include "process/experiment_parts.h"
+#include "stats/mixed_model.h"
 
 /* Box-Cox looks at the residuals some 300 times: not worth the wait with a sea of runs. */
 enum { BOX_COX_RUNS = 100000 };
@@ -43,7 +45,47 @@ static bool is_block_term(const fg_experiment *e, size_t term) {
          e->model.formula.term[term].power[e->block_variable] > 0;
 }
 
-static void fill_effect(const fg_experiment *e, size_t j, fg_experiment_effect *effect) {
+/* Variance by restricted likelihood, and its freedom, less what was paid before. */
+static double mixed_variance(const fg_experiment *e, const double *row, bool run, size_t taken,
+                             double *freedom) {
+  double variance = fg_mixed_variance(e->split_plot.mixed, row, run, freedom);
+  double left = *freedom - (double)taken;
+  if (!taken) return variance;
+  variance *= left > 0 ? *freedom / left : NAN;
+  *freedom = left;
+  return variance;
+}
+
+/* `row` is 0 and stays so. */
+static void judge_mixed(const fg_experiment *e, size_t j, double *row,
+                        fg_experiment_effect *effect) {
+  const fg_split_plot *s = &e->split_plot;
+  row[j] = 1;
+  effect->standard_error = sqrt(mixed_variance(
+      e, row, false, effect->whole_plot ? s->taken_plots : s->taken_runs, &effect->freedom));
+  row[j] = 0;
+  if (s->mixed->fixed_groups && effect->whole_plot) effect->standard_error = effect->freedom = NAN;
+}
+
+/* The fit of the experiment becomes that of the restricted likelihood. */
+static void take_mixed_estimates(fg_experiment *e) {
+  fg_regression *reg = &e->regression;
+  for (size_t j = 0; j < reg->columns; j++) {
+    if (reg->coefficient[j].aliased) continue;
+    reg->coefficient[j].estimate = e->split_plot.mixed->estimate[j];
+    reg->estimate_extended[j] = fg_extended_of(reg->coefficient[j].estimate);
+  }
+  for (size_t i = 0; i < reg->rows; i++) {
+    double response = reg->fitted[i] + reg->residual[i];
+    reg->fitted[i] = 0;
+    for (size_t j = 0; j < reg->columns; j++)
+      reg->fitted[i] += e->split_plot.mixed->estimate[j] * e->model.matrix[j * reg->rows + i].value;
+    reg->residual[i] = response - reg->fitted[i];
+  }
+}
+
+static void fill_effect(const fg_experiment *e, size_t j, double *row,
+                        fg_experiment_effect *effect) {
   const fg_regression *reg = &e->regression;
   const fg_coefficient *c = &reg->coefficient[j];
   *effect = (fg_experiment_effect){.block = is_block_term(e, c->term),
@@ -63,6 +105,7 @@ static void fill_effect(const fg_experiment *e, size_t j, fg_experiment_effect *
   effect->contrast = c->estimate / sqrt(variance * (double)reg->rows);
   if (!e->has_split_plot) return;
   effect->standard_error = sd * sqrt(variance);
+  if (e->split_plot.mixed) judge_mixed(e, j, row, effect);
   effect->t = c->estimate / effect->standard_error;
   effect->p_value = fg_distribution_t_two_sided(effect->t, effect->freedom);
   double half =
@@ -93,7 +136,8 @@ static fg_status fill_effects(fg_context *ctx, fg_experiment *e) {
   FG_TRY(fg_memory_allocate(ctx, columns, sizeof *e->effect, (void **)&e->effect));
   FG_TRY(fg_memory_allocate(ctx, columns, sizeof *row, (void **)&row));
   for (size_t j = 0; j < columns; j++) {
-    fill_effect(e, j, &e->effect[j]);
+    memset(row, 0, columns * sizeof *row);
+    fill_effect(e, j, row, &e->effect[j]);
     if (e->u && !e->regression.coefficient[j].aliased) propagate(e, j, row, &e->effect[j]);
   }
   free(row);
@@ -117,6 +161,27 @@ static fg_status note_measurement(fg_context *ctx, fg_experiment *e) {
   return FG_OK;
 }
 
+static fg_status note_mixed(fg_context *ctx, fg_experiment *e) {
+  const fg_split_plot *s = &e->split_plot;
+  if (s->mixed)
+    FG_TRY(fg_experiment_note(
+        ctx, e,
+        "%s: analysed by restricted likelihood, with Kenward and Roger's degrees of freedom",
+        s->balanced ? "the settings differ from whole plot to whole plot"
+                    : "the whole plots hold different numbers of runs"));
+  if (s->mixed && s->at_border)
+    FG_TRY(fg_experiment_note(ctx, e,
+                              "the whole plots scatter no more than the runs within them explain: "
+                              "their own variance is estimated as 0, the least there is, and may "
+                              "be larger; more whole plots would tell"));
+  if (!s->mixed && !s->balanced)
+    FG_TRY(
+        fg_experiment_note(ctx, e,
+                           "the whole plots hold different numbers of runs, and nothing is left "
+                           "to tell the scatter by: what is said of the effects is approximate"));
+  return FG_OK;
+}
+
 static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
   fg_formula formula = {0};
   if (!e->whole_plot) return FG_OK;
@@ -136,11 +201,7 @@ static fg_status make_split_plot(fg_context *ctx, fg_experiment *e) {
                               e->split_plot.plots));
   if (!e->split_plot.run_freedom)
     FG_TRY(fg_experiment_note(ctx, e, "no freedom is left for the error within whole plots"));
-  if (!e->split_plot.balanced)
-    FG_TRY(fg_experiment_note(ctx, e,
-                              "the whole plots hold different numbers of runs: their tests are "
-                              "approximate"));
-  return FG_OK;
+  return note_mixed(ctx, e);
 }
 
 static bool is_of_interest(const fg_experiment *e, size_t j) {
@@ -200,6 +261,7 @@ static fg_status make_curvature(fg_context *ctx, fg_experiment *e) {
 
 fg_status fg_experiment_effects(fg_context *ctx, fg_experiment *e) {
   FG_TRY(make_split_plot(ctx, e));
+  if (e->has_split_plot && e->split_plot.mixed) take_mixed_estimates(e);
   FG_TRY(fill_effects(ctx, e));
   FG_TRY(make_lenth(ctx, e));
   FG_TRY(make_box_cox(ctx, e));
@@ -224,6 +286,27 @@ static fg_status average_row(fg_context *ctx, const fg_experiment *e, const doub
   return FG_OK;
 }
 
+static void fill_intervals(const fg_experiment *e, double freedom, double run_freedom,
+                           fg_prediction *p) {
+  double q = fg_distribution_t_quantile((1 + e->confidence) / 2, freedom),
+         run = fg_distribution_t_quantile((1 + e->confidence) / 2, run_freedom);
+  p->low = p->mean - q * p->standard_error;
+  p->high = p->mean + q * p->standard_error;
+  p->run_low = p->mean - run * p->run_standard_error;
+  p->run_high = p->mean + run * p->run_standard_error;
+}
+
+static void predict_mixed(const fg_experiment *e, const double *row, fg_prediction *p) {
+  double freedom, run_freedom;
+  *p = (fg_prediction){0};
+  for (size_t j = 0; j < e->regression.columns; j++)
+    p->mean += row[j] * e->split_plot.mixed->estimate[j];
+  p->standard_error = sqrt(mixed_variance(e, row, false, e->freedom_taken, &freedom));
+  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->freedom_taken, &run_freedom));
+  if (e->split_plot.mixed->fixed_groups) p->standard_error = p->run_standard_error = NAN;
+  fill_intervals(e, freedom, run_freedom, p);
+}
+
 /* Var(row b) = |U' (row × sd of each column's stratum)|². */
 static void predict_row(const fg_experiment *e, const double *row, fg_prediction *p) {
   const fg_regression *reg = &e->regression;
@@ -243,13 +326,9 @@ static void predict_row(const fg_experiment *e, const double *row, fg_prediction
   }
   double run_variance = reg->residual_sd * reg->residual_sd;
   if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;
-  double q = fg_distribution_t_quantile((1 + e->confidence) / 2, least_freedom);
   p->standard_error = sqrt(variance);
   p->run_standard_error = sqrt(variance + run_variance);
-  p->low = p->mean - q * p->standard_error;
-  p->high = p->mean + q * p->standard_error;
-  p->run_low = p->mean - q * p->run_standard_error;
-  p->run_high = p->mean + q * p->run_standard_error;
+  fill_intervals(e, least_freedom, least_freedom, p);
 }
 
 fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *e, const double *setting,
@@ -257,7 +336,8 @@ fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *e, const d
   double *row = NULL;
   FG_TRY(fg_memory_allocate(ctx, 2 * e->model.columns, sizeof *row, (void **)&row));
   fg_status status = average_row(ctx, e, setting, row, row + e->model.columns);
-  if (status == FG_OK) predict_row(e, row, prediction);
+  if (status == FG_OK)
+    (e->has_split_plot && e->split_plot.mixed ? predict_mixed : predict_row)(e, row, prediction);
   free(row);
   return status;
 }

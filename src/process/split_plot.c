@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "foilgauge/distribution.h"
 #include "foilgauge/doe.h"
+#include "stats/mixed_model.h"
 
 /* A term is of the whole plot when all its columns are constant within every plot. */
 static bool is_constant_within(const fg_model *model, const fg_levels *plots, size_t term,
@@ -91,20 +92,25 @@ static fg_status add_term(fg_context *ctx, const fg_anova_row *from, bool whole,
 }
 
 static void judge_terms(fg_split_plot *result) {
+  if (result->mixed) return;
   for (size_t t = 0; t < result->terms; t++) {
     fg_split_plot_term *term = &result->term[t];
     double error = term->whole_plot ? result->plot_ms : result->run_ms;
     size_t freedom = term->whole_plot ? result->plot_freedom : result->run_freedom;
     term->row.f = term->row.mean_square / error;
+    term->error_freedom = (double)freedom;
     term->row.p_value =
         fg_distribution_f_upper(term->row.f, (double)term->row.freedom, (double)freedom);
   }
 }
 
 static void find_variance(size_t rows, fg_split_plot *result) {
+  if (result->mixed) return;
   double runs_per_plot = (double)rows / (double)result->plots;
   double excess = result->plot_ms - result->run_ms;
   result->plot_variance = isnan(excess) ? NAN : fmax(0, excess / runs_per_plot);
+  result->run_variance = result->run_ms;
+  result->at_border = excess <= 0;
 }
 
 fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *plot,
@@ -128,6 +134,7 @@ fg_status fg_split_plot_pay(fg_context *ctx, const fg_table *table, const char *
                    "of freedom: none is left to judge by; add runs",
                    freedom, whole ? "whole plots" : "runs", *left);
   if (*left) *left -= freedom;
+  *(whole ? &result->taken_plots : &result->taken_runs) += freedom;
   if (result->plot_freedom) result->plot_ms = result->plot_ss / (double)result->plot_freedom;
   if (result->run_freedom) result->run_ms = result->run_ss / (double)result->run_freedom;
   find_variance(table->rows, result);
@@ -153,6 +160,68 @@ static fg_status read_strata(fg_context *ctx, const strata *s, const fg_regressi
       if (s->whole[t] == whole) FG_TRY(add_term(ctx, &reg->sequential[t + 1], whole, result));
   judge_terms(result);
   return FG_OK;
+}
+
+/* The term beside all others. */
+static fg_status test_term(fg_context *ctx, const fg_model *model, const fg_mixed_model *mixed,
+                           const fg_regression *ols, size_t *column, fg_split_plot_term *term) {
+  size_t count = 0;
+  for (size_t j = 0; j < model->columns; j++)
+    if (model->column[j].term != FG_MODEL_CONSTANT && !ols->coefficient[j].aliased &&
+        !strcmp(model->term_name[model->column[j].term], term->row.name))
+      column[count++] = j;
+  term->row.freedom = count;
+  term->row.sum_of_squares = term->row.mean_square = NAN;
+  FG_TRY(fg_mixed_test(ctx, mixed, column, count, &term->row.f, &term->error_freedom));
+  term->row.p_value = fg_distribution_f_upper(term->row.f, (double)count, term->error_freedom);
+  return FG_OK;
+}
+
+static fg_status test_terms(fg_context *ctx, const fg_model *model, const fg_regression *ols,
+                            fg_split_plot *result) {
+  size_t *column = NULL;
+  FG_TRY(fg_memory_allocate(ctx, model->columns, sizeof *column, (void **)&column));
+  fg_status status = FG_OK;
+  for (size_t t = 0; t < result->terms && status == FG_OK; t++) {
+    fg_split_plot_term *term = &result->term[t];
+    if (term->whole_plot && result->mixed->fixed_groups)
+      term->row.f = term->row.p_value = term->row.sum_of_squares = term->row.mean_square =
+          term->error_freedom = NAN;
+    else
+      status = test_term(ctx, model, result->mixed, ols, column, term);
+  }
+  free(column);
+  return status;
+}
+
+/* Restricted likelihood where the strata are not orthogonal, as far as there is scatter to tell. */
+static fg_status fit_mixed(fg_context *ctx, const strata *s, const fg_extended *y,
+                           fg_split_plot *result) {
+  fg_regression ols = {0};
+  fg_context unused = {0};
+  bool orthogonal = true;
+  fg_status status = FG_OK;
+  if (!result->run_freedom) return FG_OK;
+  FG_TRY_EXIT(fg_regression_fit(ctx, s->model, y, NULL, &ols));
+  FG_TRY_EXIT(fg_mixed_is_orthogonal(ctx, s->model, s->plots, &ols, &orthogonal));
+  if (orthogonal) goto exit;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, 1, sizeof *result->mixed, (void **)&result->mixed));
+  status = fg_mixed_fit(&unused, s->model, s->plots, &ols, !result->plot_freedom, result->mixed);
+  if (status == FG_ERR_MEMORY) FG_TRY_EXIT(fg_fail(ctx, status, "out of memory"));
+  if (status != FG_OK) { /* a fit without scatter */
+    free(result->mixed);
+    result->mixed = NULL;
+    status = FG_OK;
+    goto exit;
+  }
+  result->plot_variance = fmax(0, result->mixed->variance[FG_MIXED_GROUPS]);
+  if (result->mixed->fixed_groups) result->plot_variance = NAN;
+  result->run_variance = result->mixed->variance[FG_MIXED_RUNS];
+  result->at_border = result->mixed->at_border;
+  FG_TRY_EXIT(test_terms(ctx, s->model, &ols, result));
+exit:
+  fg_regression_free(&ols);
+  return status;
 }
 
 static size_t plots_are_equal(const fg_levels *plots, double *count) {
@@ -204,6 +273,7 @@ fg_status fg_split_plot_analyse(fg_context *ctx, const fg_table *table, const fg
   FG_TRY_EXIT(join(ctx, &s));
   FG_TRY_EXIT(fg_regression_fit(ctx, &s.joint, y, NULL, &reg));
   FG_TRY_EXIT(read_strata(ctx, &s, &reg, result));
+  FG_TRY_EXIT(fit_mixed(ctx, &s, y, result));
 exit:
   fg_regression_free(&reg);
   free(s.joint.column);
@@ -221,5 +291,7 @@ void fg_split_plot_free(fg_split_plot *result) {
   for (size_t t = 0; t < result->terms; t++)
     free(result->term[t].row.name);
   free(result->term);
+  if (result->mixed) fg_mixed_free(result->mixed);
+  free(result->mixed);
   *result = (fg_split_plot){0};
 }

@@ -239,6 +239,17 @@ for model in 'temperature_C' "$second"; do
   valid doe.schema.json "$folder/v.json"
 done
 
+# Runs of a split plot are missing: restricted likelihood, which says so; a complete one keeps its strata.
+split=("$program" doe tests/data/split_plot/plan_4.csv --response y --model 'T*D + group' --whole-plot load)
+expect 0 '' "${split[@]}" -o - --html "$out/split.html"
+cp "$folder/stdout" "$folder/v.json"
+valid doe.schema.json "$folder/v.json"
+grep -q '"method": "restricted_likelihood"' "$folder/v.json" || fail "missing runs are not analysed by restricted likelihood"
+grep -q 'own variance is estimated as 0' "$folder/v.json" || fail "a variance of 0 is not said"
+grep -q 'df of<br>its error' "$out/split.html" || fail "the page has no tests of the terms"
+script -qc "${split[*]@Q}" /dev/null | grep -q 'error df' || fail 'the terminal has no tests of the terms'
+rm "$out/split.html"
+
 # A million runs.
 awk 'BEGIN { print "a,b,y"; for (i = 0; i < 1000000; i++) { a = i % 3; b = int(i / 3) % 2;
   print a "," b "," 5 + a - b + (i * 7919 % 101) / 100 } }' >"$folder/t.csv"

@@ -131,8 +131,33 @@ static void put_split_plot(FILE *out, const fg_split_plot *s) {
   }
 }
 
+/* By restricted likelihood: each term has an error of its own. */
+static void put_mixed(FILE *out, const fg_experiment *e) {
+  const fg_split_plot *s = &e->split_plot;
+  fputs("<h2>Tests of the terms</h2>\n<div class=\"scroll\"><table><thead><tr><th>term</th>"
+        "<th>df</th><th>df of<br>its error</th><th>F</th><th>p</th></tr></thead>\n<tbody>\n",
+        out);
+  for (size_t t = 0; t < s->terms; t++) {
+    const fg_anova_row *row = &s->term[t].row;
+    fputs(row->p_value < 1 - e->confidence ? "<tr class=\"on\">" : "<tr>", out);
+    put_name_cell(out, row->name);
+    fprintf(out, "<td>%zu</td>", row->freedom);
+    put_cell(out, s->term[t].error_freedom, 4);
+    put_cell(out, row->f, 4);
+    put_p_cell(out, row->p_value);
+    fputs("</tr>\n", out);
+  }
+  fputs("</tbody></table></div>\n<p class=\"note\">Restricted likelihood, with the degrees of "
+        "freedom of Kenward and Roger; each term beside all others.</p>\n",
+        out);
+}
+
 static void put_anova(FILE *out, const fg_experiment *e) {
   const fg_regression *r = &e->regression;
+  if (e->has_split_plot && e->split_plot.mixed) {
+    put_mixed(out, e);
+    return;
+  }
   fputs("<h2>Analysis of variance</h2>\n<div class=\"scroll\"><table><thead><tr><th>term</th>"
         "<th>df</th><th>sum of<br>squares</th><th>mean<br>square</th><th>F</th><th>p</th>"
         "<th>partial<br>sum</th><th>partial<br>p</th></tr></thead>\n<tbody>\n",

@@ -210,12 +210,16 @@ static void put_split_plot(fg_json *json, const fg_experiment *e) {
   fg_json_number(json, "whole_plot_mean_square", s->plot_ms);
   fg_json_integer(json, "run_freedom", (int64_t)s->run_freedom);
   fg_json_number(json, "run_mean_square", s->run_ms);
+  fg_json_string(json, "method", s->mixed ? "restricted_likelihood" : "strata");
   fg_json_number(json, "whole_plot_variance", s->plot_variance);
+  fg_json_bool(json, "whole_plot_variance_at_border", s->at_border);
+  fg_json_number(json, "run_variance", s->run_variance);
   fg_json_array(json, "terms");
   for (size_t t = 0; t < s->terms; t++) {
     fg_json_object(json, NULL);
     fg_json_string(json, "stratum", s->term[t].whole_plot ? "whole plots" : "runs");
     put_anova_row(json, &s->term[t].row);
+    fg_json_number(json, "error_freedom", s->term[t].error_freedom);
     fg_json_object_end(json);
   }
   fg_json_array_end(json);

@@ -62,8 +62,30 @@ static void put_error_row(FILE *out, const char *name, size_t freedom, double su
   put_anova_row(out, &row);
 }
 
+/* By restricted likelihood: each term has an error of its own. */
+static void put_mixed(FILE *out, const fg_split_plot *s) {
+  fprintf(out, "\n%-30s%6s%12s%10s%10s\n", "tests of the terms", "df", "error df", "F", "p");
+  for (size_t t = 0; t < s->terms; t++) {
+    const fg_anova_row *row = &s->term[t].row;
+    fprintf(out, "%-30s%6zu", row->name, row->freedom);
+    put_number(out, 12, s->term[t].error_freedom);
+    put_number(out, 10, row->f);
+    put_p(out, row->p_value);
+    fputc('\n', out);
+  }
+  fprintf(out, "standard deviation of whole plots");
+  put_number(out, 12, sqrt(s->plot_variance));
+  fprintf(out, ", of runs within them");
+  put_number(out, 12, sqrt(s->run_variance));
+  fputc('\n', out);
+}
+
 static void put_anova(FILE *out, const fg_experiment *e) {
   const fg_regression *r = &e->regression;
+  if (e->has_split_plot && e->split_plot.mixed) {
+    put_mixed(out, &e->split_plot);
+    return;
+  }
   fprintf(out, "\n%-30s%6s%12s%12s%10s%10s\n", "analysis of variance", "df", "sum sq", "mean sq",
           "F", "p");
   if (e->has_split_plot) {

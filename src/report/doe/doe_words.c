@@ -156,12 +156,12 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
       "deviation of %.3g (%zu degree%s of freedom).",
       100 * r->r2, 100 * r->adjusted_r2, 100 * fmax(0, r->predicted_r2), r->residual_sd,
       r->residual_freedom, fg_plural(r->residual_freedom)));
-  if (e->has_split_plot)
+  if (e->has_split_plot && isfinite(e->split_plot.plot_variance))
     FG_TRY(fg_sentences_say(
         ctx, s,
         "Of this scatter, whole plots differ by a standard deviation of %.3g, runs within "
         "them by %.3g.",
-        sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_ms)));
+        sqrt(e->split_plot.plot_variance), sqrt(e->split_plot.run_variance)));
   if (fg_experiment_lacks_fit(e)) {
     if (!fg_experiment_best(e)->has_optimum) FG_TRY(fg_experiment_say_lack(ctx, e, s));
   } else if (r->pure_freedom && r->lack_freedom && isfinite(r->lack_p_value) && !e->has_split_plot)

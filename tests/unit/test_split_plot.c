@@ -1,0 +1,196 @@
+/* Split plots with missing runs, against R; where none is missing, the analysis of variance. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "foilgauge/experiment.h"
+#include "stats/mixed_model.h"
+#include "support/data.h"
+#include "support/random.h"
+
+static fg_experiment analyse(const char *text, const char *formula) {
+  fg_context ctx = {0};
+  fg_table table;
+  fg_experiment e;
+  const fg_experiment_options options = {.response = "y", .formula = formula, .whole_plot = "load"};
+  if (fg_table_parse(&ctx, "t", text, strlen(text), &table) != FG_OK ||
+      fg_experiment_analyse(&ctx, &table, &options, &e) != FG_OK)
+    fail_msg("%s", ctx.message);
+  fg_table_free(&table);
+  return e;
+}
+
+/* R writes (Intercept) and groupb. */
+static bool is_named(const char *ours, const char *theirs) {
+  if (!strcmp(ours, "(constant)")) return !strcmp(theirs, "(Intercept)");
+  for (; *ours; ours++) {
+    if (*ours == '[' || *ours == ']') continue;
+    if (*ours != *theirs++) return false;
+  }
+  return !*theirs;
+}
+
+static double ours(const fg_experiment *e, const char *what, const char *name) {
+  const fg_split_plot *s = &e->split_plot;
+  if (!strcmp(what, "plot_variance")) return s->plot_variance;
+  if (!strcmp(what, "run_variance")) return s->run_variance;
+  if (!strcmp(what, "nlme_plot_sd")) return sqrt(s->plot_variance);
+  for (size_t j = 0; j < e->regression.columns; j++) {
+    if (!is_named(e->regression.coefficient[j].name, name)) continue;
+    if (!strcmp(what, "estimate")) return e->regression.coefficient[j].estimate;
+    if (!strcmp(what, "standard_error")) return e->effect[j].standard_error;
+    if (!strcmp(what, "freedom")) return e->effect[j].freedom;
+  }
+  for (size_t t = 0; t < s->terms; t++) {
+    if (strcmp(s->term[t].row.name, name) != 0) continue;
+    if (!strcmp(what, "term_f")) return s->term[t].row.f;
+    if (!strcmp(what, "term_freedom")) return s->term[t].error_freedom;
+    if (!strcmp(what, "term_p")) return s->term[t].row.p_value;
+  }
+  fail_msg("no %s of %s", what, name);
+  return NAN;
+}
+
+/* Lines plan,what,"name",value. */
+static size_t check_plan(const fg_experiment *e, const char *plan, const char *reference) {
+  size_t checked = 0;
+  for (const char *line = reference; line;
+       line = strchr(line, '\n') ? strchr(line, '\n') + 1 : NULL) {
+    char of[40], what[40], rest[80], name[40] = "";
+    if (sscanf(line, "%39[^,],%39[^,],\"%79[^\n]", of, what, rest) != 3 || strcmp(of, plan) != 0)
+      continue;
+    char *end = strchr(rest, '"');
+    snprintf(name, sizeof name, "%.*s", (int)(end - rest), rest);
+    double theirs = strtod(end + 2, NULL), own = ours(e, what, name);
+    double tolerance = !strcmp(what, "nlme_plot_sd") ? 1e-4 : 5e-6;
+    if (!(fabs(own - theirs) <= tolerance * fmax(fabs(theirs), 1e-2)))
+      fail_msg("%s: %s %s is %.12g, by R %.12g", plan, what, name, own, theirs);
+    checked++;
+  }
+  return checked;
+}
+
+static void missing_runs_are_analysed_as_by_r(void **state) {
+  (void)state;
+  char *plans = data_read("split_plot/plans.txt"),
+       *reference = data_read("split_plot/reference.csv");
+  size_t checked = 0, border = 0;
+  for (const char *line = plans; *line; line = strchr(line, '\n') + 1) {
+    char name[40], model[40], path[80];
+    assert_int_equal(sscanf(line, "%39[^\t]\t%39[^\n]", name, model), 2);
+    snprintf(path, sizeof path, "split_plot/%s", name);
+    char *text = data_read(path);
+    fg_experiment e = analyse(text, model);
+    assert_non_null(e.split_plot.mixed);
+    checked += check_plan(&e, name, reference);
+    border += e.split_plot.at_border;
+    fg_experiment_free(&e);
+    free(text);
+  }
+  assert_true(checked > 100 && border > 1);
+  free(plans);
+  free(reference);
+}
+
+enum { PLOTS = 8, PER_PLOT = 4 };
+
+static char *complete_plan(uint64_t seed, double plot_sd, const char *drop) {
+  char *text = calloc(1, 4096);
+  size_t used = (size_t)snprintf(text, 4096, "T,D,P,load,y\n");
+  for (int plot = 0; plot < PLOTS; plot++) {
+    double shift = plot_sd * random_gaussian(&seed);
+    for (int run = 0; run < PER_PLOT; run++) {
+      int t = plot % 2 ? 1 : -1, d = run % 2 ? 1 : -1, p = run / 2 ? 1 : -1;
+      char row[80];
+      snprintf(row, sizeof row, "%d,%d,%d,%d,%.6f\n", t, d, p, plot + 1,
+               20 + 3 * t + 2 * d - p + shift + random_gaussian(&seed));
+      if (!drop || strncmp(row, drop, strlen(drop)) != 0)
+        used += (size_t)snprintf(text + used, 4096 - used, "%s", row);
+    }
+  }
+  return text;
+}
+
+/* Without missing runs restricted likelihood comes to the analysis of variance, in both signs of
+ * the whole plots' variance; it is the latter that is used. */
+static void complete_plans_agree_with_the_strata(void **state) {
+  (void)state;
+  int negative = 0;
+  for (uint64_t seed = 1; seed <= 12; seed++) {
+    char *text = complete_plan(seed, seed % 3 ? 0 : 1, NULL);
+    fg_experiment e = analyse(text, "T*(D + P)");
+    fg_levels plots;
+    fg_mixed_model mixed;
+    assert_null(e.split_plot.mixed);
+    assert_int_equal(fg_table_levels(NULL, &e.table, "load", true, &plots), FG_OK);
+    assert_int_equal(fg_mixed_fit(NULL, &e.model, &plots, &e.regression, false, &mixed), FG_OK);
+    const fg_split_plot *s = &e.split_plot;
+    assert_true(fabs(mixed.variance[FG_MIXED_RUNS] / s->run_ms - 1) < 1e-9);
+    assert_true(fabs(mixed.variance[FG_MIXED_GROUPS] - (s->plot_ms - s->run_ms) / PER_PLOT) < 1e-9);
+    negative += mixed.at_border;
+    for (size_t j = 0; j < e.regression.columns; j++) {
+      double row[8] = {0}, freedom;
+      row[j] = 1;
+      double u = sqrt(fg_mixed_variance(&mixed, row, false, &freedom));
+      assert_true(fabs(u / e.effect[j].standard_error - 1) < 1e-9);
+      assert_true(fabs(freedom - e.effect[j].freedom) < 1e-6);
+      assert_true(fabs(mixed.estimate[j] - e.regression.coefficient[j].estimate) < 1e-9);
+    }
+    fg_mixed_free(&mixed);
+    fg_levels_free(&plots);
+    fg_experiment_free(&e);
+    free(text);
+  }
+  assert_in_range(negative, 2, 10);
+}
+
+/* Each temperature in one whole plot: T cannot be told, D is told within the plots. */
+static void whole_plots_without_freedom_leave_what_is_within_them(void **state) {
+  (void)state;
+  static const char text[] = "T,D,load,y\n-1,-1,1,11\n-1,1,1,15\n-1,-1,1,12\n"
+                             "1,-1,2,20\n1,1,2,26\n1,1,2,25\n1,-1,2,21\n";
+  fg_experiment e = analyse(text, "T + D");
+  assert_non_null(e.split_plot.mixed);
+  assert_true(isnan(e.effect[1].standard_error) && isnan(e.split_plot.plot_variance));
+  /* Within plot 1: 3.5 / 2, weight 2/3; within plot 2: 5 / 2, weight 1. */
+  double slope = (1.75 * 8 / 3 + 2.5 * 4) / (8.0 / 3 + 4);
+  assert_true(fabs(e.regression.coefficient[2].estimate - slope) < 1e-5);
+  assert_true(fabs(e.effect[2].freedom - 4) < 1e-9);
+  assert_true(e.effect[2].low < slope && e.effect[2].high > slope);
+  fg_experiment_free(&e);
+}
+
+/* A fit without scatter, a whole plot that is one run, one that is gone: nothing is invented. */
+static void odd_plans_are_analysed_or_say_why(void **state) {
+  (void)state;
+  fg_experiment e = analyse("T,D,load,y\n-1,-1,1,1\n-1,1,1,3\n-1,-1,2,1\n1,-1,3,5\n1,1,3,7\n"
+                            "1,-1,4,5\n1,1,4,7\n",
+                            "T + D");
+  assert_true(e.regression.residual_ss < 1e-20);
+  fg_experiment_free(&e);
+  char *text = complete_plan(4, 1, "-1,1,");
+  e = analyse(text, "T + D + P");
+  assert_non_null(e.split_plot.mixed);
+  for (size_t j = 0; j < e.regression.columns; j++)
+    if (!e.regression.coefficient[j].aliased)
+      assert_true(e.effect[j].standard_error > 0 && e.effect[j].freedom > 1);
+  assert_true(e.optimum.prediction.standard_error > 0);
+  fg_experiment_free(&e);
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(missing_runs_are_analysed_as_by_r),
+      cmocka_unit_test(complete_plans_agree_with_the_strata),
+      cmocka_unit_test(whole_plots_without_freedom_leave_what_is_within_them),
+      cmocka_unit_test(odd_plans_are_analysed_or_say_why),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
