@@ -8,26 +8,31 @@
 #include <string.h>
 #include <sys/socket.h>
 
-#include "core/clock.h"
 #include "core/memory.h"
 #include "station/answer.h"
-#include "station/patience.h"
+#include "station/connections.h"
 #include "station/scan_command.h"
 
 /* A browser opens six connections, one of which waits for news; a page that was left is told apart
  * from one that waits only when there is news: what waits must leave room for others.
- * THREADS: a report that is measured again keeps one of them for a second. */
-enum { THREADS = 4, OF_ONE = 48, WAITING_MAX = 16, SECONDS = 15, HEADER_BYTES = 16384 };
+ * THREADS: a report that is measured again keeps one of them for a second. Each of them takes as
+ * many connections as there are: the library gives them to whichever is free. */
+enum { THREADS = 4, WAITING_MAX = 64, SECONDS = 15, HEADER_BYTES = 16384 };
+
+typedef struct waiter {
+  struct MHD_Connection *connection;
+  fg_client client;
+} waiter;
 
 typedef struct server {
   fg_inspection *station;
   struct MHD_Daemon *daemon;
   pthread_mutex_t mutex;
-  struct MHD_Connection *waiting[WAITING_MAX];
+  waiter waiting[WAITING_MAX]; /* the oldest first */
   size_t waiters;
   unsigned long news; /* how often there were any */
   bool closing;
-  fg_patience patience;
+  fg_connections connections;
 } server;
 
 /* One request on its way. */
@@ -35,7 +40,6 @@ typedef struct call {
   fg_request request;
   char *body;
   size_t size;
-  double until; /* when all of it must have come */
   bool broken, waited;
 } call;
 
@@ -64,7 +68,6 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   call *at = calloc(1, sizeof *at);
   if (!at) return NULL;
   fg_request *request = &at->request;
-  at->until = fg_clock_seconds() + SECONDS;
   request->post = !strcmp(method, "POST");
   request->host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
   request->origin = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Origin");
@@ -76,9 +79,9 @@ static call *begin_call(struct MHD_Connection *connection, const char *method) {
   return at;
 }
 
-/* False: too much, or for too long. */
+/* False: too much. */
 static bool take_body(call *at, const char *bytes, size_t size) {
-  if (at->size + size > FG_BODY_MAX || fg_clock_seconds() > at->until) return false;
+  if (at->size + size > FG_BODY_MAX) return false;
   char *grown = realloc(at->body, at->size + size);
   if (!grown) return false;
   memcpy(grown + at->size, bytes, size);
@@ -109,7 +112,8 @@ static void add_headers(struct MHD_Response *response, const fg_answer *answer) 
   MHD_add_response_header(response, "Content-Disposition", saved);
 }
 
-static enum MHD_Result send_answer(struct MHD_Connection *connection, fg_answer *answer) {
+static enum MHD_Result send_answer(server *at, struct MHD_Connection *connection,
+                                   fg_answer *answer) {
   struct MHD_Response *response = MHD_create_response_from_buffer(
       answer->body ? answer->size : 0, answer->body ? answer->body : "",
       answer->body ? MHD_RESPMEM_MUST_FREE : MHD_RESPMEM_PERSISTENT);
@@ -118,22 +122,45 @@ static enum MHD_Result send_answer(struct MHD_Connection *connection, fg_answer 
     return MHD_NO;
   }
   add_headers(response, answer);
+  fg_connections_sending(&at->connections, connection, answer->body ? answer->size : 0);
   enum MHD_Result result =
       MHD_queue_response(connection, (unsigned)(answer->code ? answer->code : 500), response);
   MHD_destroy_response(response);
   return result;
 }
 
-static enum MHD_Result refuse(struct MHD_Connection *connection, int code, const char *words) {
+static enum MHD_Result refuse(server *at, struct MHD_Connection *connection, int code,
+                              const char *words) {
   fg_answer answer = {.code = code, .type = "text/plain; charset=utf-8", .body = strdup(words)};
   answer.size = answer.body ? strlen(words) : 0;
-  return send_answer(connection, &answer);
+  return send_answer(at, connection, &answer);
 }
 
 typedef enum waiting { WAITS, NEWS_CAME, CLOSING } waiting;
 
+/* The place of who makes room: of those of the client with the most, the one that has waited
+ * longest. */
+static size_t find_patient(const server *at) {
+  size_t place = 0, most = 0;
+  for (size_t i = 0; i < at->waiters; i++) {
+    size_t count = 0;
+    for (size_t k = 0; k < at->waiters; k++)
+      count += fg_client_is(&at->waiting[i].client, &at->waiting[k].client);
+    if (count > most) place = i;
+    if (count > most) most = count;
+  }
+  return place;
+}
+
+/* It is answered, and asks again. */
+static void make_room(server *at) {
+  size_t place = find_patient(at), behind = --at->waiters - place;
+  MHD_resume_connection(at->waiting[place].connection);
+  memmove(&at->waiting[place], &at->waiting[place + 1], behind * sizeof *at->waiting);
+}
+
 /* Until there is news. Those that `seen` does not count came after the answer was made: then there
- * is another answer already. Who has waited longest makes room: it asks again. */
+ * is another answer already. */
 static waiting wait_for_news(server *at, struct MHD_Connection *connection, unsigned long seen) {
   waiting result = WAITS;
   pthread_mutex_lock(&at->mutex);
@@ -142,12 +169,9 @@ static waiting wait_for_news(server *at, struct MHD_Connection *connection, unsi
   } else if (at->news != seen) {
     result = NEWS_CAME;
   } else {
-    if (at->waiters == WAITING_MAX) {
-      MHD_resume_connection(at->waiting[0]);
-      memmove(at->waiting, at->waiting + 1, --at->waiters * sizeof *at->waiting);
-    }
+    if (at->waiters == WAITING_MAX) make_room(at);
     MHD_suspend_connection(connection);
-    at->waiting[at->waiters++] = connection;
+    at->waiting[at->waiters++] = (waiter){connection, fg_connection_client(connection)};
   }
   pthread_mutex_unlock(&at->mutex);
   return result;
@@ -158,7 +182,7 @@ static void resume_all(void *user) {
   pthread_mutex_lock(&at->mutex);
   at->news++;
   for (size_t i = 0; i < at->waiters; i++)
-    MHD_resume_connection(at->waiting[i]);
+    MHD_resume_connection(at->waiting[i].connection);
   at->waiters = 0;
   pthread_mutex_unlock(&at->mutex);
 }
@@ -172,9 +196,10 @@ static unsigned long count_news(server *at) {
 
 static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection, call *asked) {
   fg_answer answer;
+  fg_connections_asked(&at->connections, connection);
   if (asked->request.post && !fg_request_read_fields(&asked->request, asked->body, asked->size))
     asked->broken = true;
-  if (asked->broken) return refuse(connection, 400, "The fields cannot be read.\n");
+  if (asked->broken) return refuse(at, connection, 400, "The fields cannot be read.\n");
   unsigned long seen = count_news(at);
   fg_station_answer(at->station, &asked->request, &answer);
   if (answer.wait && !asked->waited) {
@@ -184,17 +209,18 @@ static enum MHD_Result answer_call(server *at, struct MHD_Connection *connection
     if (result == WAITS) return MHD_YES;
     if (result == NEWS_CAME) fg_station_answer(at->station, &asked->request, &answer);
   }
-  return send_answer(connection, &answer);
+  return send_answer(at, connection, &answer);
 }
 
 /* What can be said before the body has come. */
-static enum MHD_Result begin(struct MHD_Connection *connection, const char *method, void **place) {
+static enum MHD_Result begin(server *at, struct MHD_Connection *connection, const char *method,
+                             void **place) {
   const char *length =
       MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
   if (strcmp(method, "GET") != 0 && strcmp(method, "HEAD") != 0 && strcmp(method, "POST") != 0)
-    return refuse(connection, 405, "GET and POST are answered.\n");
+    return refuse(at, connection, 405, "GET and POST are answered.\n");
   if (length && (strlen(length) > 9 || read_number(length) > FG_BODY_MAX))
-    return refuse(connection, 413, "The form is too long.\n");
+    return refuse(at, connection, 413, "The form is too long.\n");
   *place = begin_call(connection, method);
   return *place ? MHD_YES : MHD_NO;
 }
@@ -205,10 +231,7 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *connection, con
   server *at = user;
   call *asked = *place;
   (void)version;
-  if (!asked) {
-    fg_patience_asked(&at->patience, connection);
-    return begin(connection, method, place);
-  }
+  if (!asked) return begin(at, connection, method, place);
   if (*size) {
     bool taken = take_body(asked, bytes, *size);
     *size = 0;
@@ -223,7 +246,7 @@ static void end_call(void *user, struct MHD_Connection *connection, void **place
   server *at = user;
   call *asked = *place;
   (void)code;
-  fg_patience_answered(&at->patience, connection);
+  fg_connections_answered(&at->connections, connection);
   if (asked) free(asked->body);
   free(asked);
   *place = NULL;
@@ -262,11 +285,11 @@ static fg_status start(fg_context *ctx, server *at, const struct sockaddr_in *ad
   errno = 0;
   at->daemon = MHD_start_daemon(
       flags, 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED,
-      end_call, at, MHD_OPTION_NOTIFY_CONNECTION, fg_patience_notify, &at->patience,
+      end_call, at, MHD_OPTION_NOTIFY_CONNECTION, fg_connections_notify, &at->connections,
       MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL, MHD_OPTION_THREAD_POOL_SIZE,
-      (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)FG_CONNECTIONS,
-      MHD_OPTION_PER_IP_CONNECTION_LIMIT, (unsigned)OF_ONE, MHD_OPTION_CONNECTION_TIMEOUT,
-      (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADER_BYTES, MHD_OPTION_END);
+      (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)(THREADS * 2 * FG_CONNECTIONS),
+      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+      (size_t)HEADER_BYTES, MHD_OPTION_END);
   if (at->daemon) return FG_OK;
   return fg_fail(ctx, FG_ERR_IO, "%s:%u: pages cannot be served there: %s; choose another --port",
                  inet_ntoa(address->sin_addr), ntohs(address->sin_port),
@@ -283,10 +306,11 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
   server *at = block;
   at->station = station;
   pthread_mutex_init(&at->mutex, NULL);
-  fg_patience_begin(&at->patience);
-  fg_status status = start(ctx, at, &address);
+  fg_status status = fg_connections_begin(&at->connections)
+                         ? start(ctx, at, &address)
+                         : fg_fail(ctx, FG_ERR_MEMORY, "there is no thread for the pages");
   if (status != FG_OK) {
-    fg_patience_end(&at->patience);
+    fg_connections_end(&at->connections);
     free(at);
     return status;
   }
@@ -311,6 +335,6 @@ void fg_station_server_stop(fg_inspection *station) {
   fg_station_scan_stop(station);
   station->wake = NULL;
   station->server = NULL;
-  fg_patience_end(&at->patience);
+  fg_connections_end(&at->connections);
   free(at);
 }
