@@ -205,7 +205,10 @@ typedef struct fg_lot_outcome {
   char first_no_date[64];
   size_t doubles; /* scans that were named once more, under whatever spelling, and count once */
   char first_double[512]; /* the first of them, with the name under which it counts */
-  size_t empty;           /* folders that are called as a scan is, and hold none */
+  /* Scans with the bytes of an earlier one under another name: they count as not measured. */
+  size_t repeated;
+  char first_repeated[1024]; /* in words */
+  size_t empty;              /* folders that are called as a scan is, and hold none */
   char first_empty[512];
   bool earlier; /* results.jsonl was of an earlier version: all of it is measured again */
 } fg_lot_outcome;

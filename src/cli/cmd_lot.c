@@ -274,6 +274,12 @@ int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder) {
             "'%s' (2024-05-31 or 31.05.2024 would be one): the lot is dated by the times of its "
             "scans' files\n",
             outcome->no_dates, fg_plural(outcome->no_dates), outcome->first_no_date);
+  if (outcome->repeated)
+    fprintf(
+        stderr,
+        "foilgauge: note: the same scan under another name, counted once: %zu scan%s; the first: "
+        "%s\n",
+        outcome->repeated, fg_plural(outcome->repeated), outcome->first_repeated);
   fprintf(stderr, "%zu foil%s of %zu scan%s: %zu pass, %zu fail, %zu cannot be told",
           outcome->foils, fg_plural(outcome->foils), outcome->scans, fg_plural(outcome->scans),
           by[FG_VERDICT_PASS], by[FG_VERDICT_FAIL], by[FG_VERDICT_UNDECIDED]);

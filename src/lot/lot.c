@@ -121,6 +121,7 @@ fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
     if (!lot->records[i].scan)
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
                           fg_manifest_scan(&lot->manifest, i)));
+  FG_TRY_EXIT(fg_lot_mark_repeats(ctx, lot));
   if (lot->settings.model[0]) FG_TRY_EXIT(load_model(ctx, folder, lot));
 exit:
   free(path);

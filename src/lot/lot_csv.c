@@ -71,7 +71,7 @@ static void put_failed(FILE *out, const fg_lot *lot, size_t item) {
   size_t rows;
   const fg_quantity *row = fg_quantities(FG_QUANTITY_OF_FOIL, &rows);
   put_columns(out, &lot->manifest, item);
-  fputs(",,,not_measured,,", out);
+  fprintf(out, ",,,not_measured,%s,", lot->records[item].repeat_of ? "repeated_scan" : "");
   put_text(out, lot->records[item].error);
   for (size_t i = 0; i < rows; i++)
     if (row[i].kind != FG_QUANTITY_PAIR) fputs(fg_quantity_has_u(&row[i]) ? ",," : ",", out);

@@ -22,6 +22,7 @@ static void write_inputs(fg_json *json, const fg_lot *lot) {
     fg_json_string(json, "path", record->scan);
     fg_json_string(json, "sha256", record->sha256[0] ? record->sha256 : NULL);
     fg_json_string(json, "error", record->error);
+    if (record->repeat_of) fg_json_integer(json, "repeat_of", (int64_t)record->repeat_of - 1);
     fg_json_object_end(json);
     fg_json_line_end(json);
   }
@@ -33,6 +34,9 @@ static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object(json, "counts");
   fg_json_integer(json, "scans", (int64_t)analysis->lot->manifest.items);
   fg_json_integer(json, "scans_not_measured", (int64_t)analysis->failed_scans);
+  const fg_record *repeat;
+  size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
+  fg_json_integer(json, "scans_repeated", (int64_t)repeats);
   fg_json_integer(json, "foils", (int64_t)analysis->foil_count);
   fg_json_integer(json, words->many, (int64_t)analysis->part_count);
   fg_json_integer(json, words->json_damaged, (int64_t)analysis->left_out);

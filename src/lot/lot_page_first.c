@@ -43,6 +43,10 @@ static void put_scan_tiles(FILE *out, const fg_lot_analysis *analysis) {
   fputs("<dl class=\"tiles\">\n", out);
   put_tile(out, TONE_PLAIN, "Scans", scans, failed ? "" : "all could be measured");
   if (failed) put_tile(out, TONE_OPEN, "Scans not measured", failed, "named below");
+  const fg_record *repeat;
+  size_t repeats = fg_lot_count_repeats(analysis->lot, &repeat);
+  if (repeats)
+    put_tile(out, TONE_OPEN, "of them there twice", repeats, "the same bytes under another name");
   put_tile(out, TONE_PLAIN, "Foils on them", analysis->foil_count, "");
   if (analysis->lot->settings.design.form != FG_FORM_ARC) {
     const fg_lot_words *words = fg_lot_words_of(analysis);

@@ -44,6 +44,10 @@ static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcom
   outcome->scans = analysis->lot->manifest.items;
   outcome->failed = analysis->failed_scans;
   outcome->foils = analysis->foil_count;
+  const fg_record *repeat;
+  outcome->repeated = fg_lot_count_repeats(analysis->lot, &repeat);
+  if (repeat)
+    fg_text_clip(outcome->first_repeated, sizeof outcome->first_repeated, "%s", repeat->error);
   outcome->exceeded = analysis->exceeded;
   for (int i = 0; i <= FG_VERDICT_NONE; i++)
     outcome->foils_by_verdict[i] = analysis->by_verdict[i];

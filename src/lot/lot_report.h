@@ -26,6 +26,12 @@ typedef struct fg_lot {
 fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot);
 void fg_lot_free(fg_lot *lot);
 
+/* Of scans with the same bytes the first counts: the others are scans that were not measured, and
+ * their error says why. fg_lot_load does it. */
+fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot);
+/* How many there are; the first, or NULL. */
+size_t fg_lot_count_repeats(const fg_lot *lot, const fg_record **first);
+
 /* Writes every file of the report, lot.json last, so that it says that all are there. */
 fg_status fg_lot_write_report(fg_context *ctx, const char *folder, const fg_lot *lot,
                               fg_lot_outcome *outcome);

@@ -24,6 +24,7 @@ typedef struct fg_record {
   char *error;            /* NULL: it was measured */
   fg_foil *foils;         /* without strips and labels; owned, with their bumps */
   size_t foil_count;
+  size_t repeat_of; /* in a lot: item + 1 of an earlier scan with the same bytes; 0: none */
 } fg_record;
 
 /* When the scan's file was written last, by its own time; "" where that is not known. A lot whose

@@ -8,7 +8,7 @@ SPEC
 "$renderer" render spec.json -o plain.png || fail "render"
 red=$'\e[31m\x9b2J\x07red\xc2\x9b5m\x7f\r.png'
 cp plain.png "scans/$red"
-cp plain.png scans/=cmd.png
+(cat plain.png && echo 2) >scans/=cmd.png # another scan
 echo no scan >"$red.txt.png"
 
 # tame FILE WHAT: no control character but newline and tab, nor C1 in UTF-8, nor a stray byte of it.
@@ -74,7 +74,7 @@ terminal shown "$program" measure "scans/$red" -o -
 tame shown "JSON on a terminal"
 
 # CSV: a text that a spreadsheet would take for a formula is marked; numbers stay numbers.
-cp plain.png scans/plain.png
+(cat plain.png && echo 3) >scans/plain.png
 printf 'scan,die,=head,coil\nplain.png,=1+1,@x,-2.5\n=cmd.png,+a,"-b,c",+3\n' >scans/list.csv
 "$program" lot scans/list.csv -o lot --group die 2>said || fail "lot: $(cat said)"
 head -1 lot/foils.csv | grep -q "^scan,die,'=head,coil," || fail "foils.csv: $(head -1 lot/foils.csv | cut -c1-80)"

@@ -68,6 +68,29 @@ expect 0 ' 0 to measure' "$program" lot scans --recipe wider.json -o changed --r
 sed 's/"bump_count": 3/"bump_count": 3, "pitch_deg": 13.3/' recipe.json >pitch.json
 expect 0 ' 12 to measure' "$program" lot scans --recipe pitch.json -o changed --resume --dry-run
 
+# The same bytes under the names of two foils: the first counts, once, and the second was not measured.
+mkdir copied
+cp scans/foil1.png scans/foil2.png scans/foil3.png copied/
+expect 0 '' "$program" lot copied --recipe recipe.json -o without
+cp scans/foil2.png copied/foil9.png
+expect 2 'the same scan under another name, counted once: 1 scan; the first: .*foil9.png.* as that of foil2.png' \
+  "$program" lot copied --recipe recipe.json -o with
+for i in 1 2; do "$program" lot copied --recipe recipe.json -o part$i --shard $i/2 2>stderr; done
+expect 2 'counted once: 1 scan' "$program" merge part1 part2 -o joined
+same with joined
+valid with/lot.json
+python3 - without/lot.json with/lot.json <<'P' || fail "a copy of a scan changes the lot's statistics"
+import json, sys
+a, b = (json.load(open(name)) for name in sys.argv[1:])
+assert a["quantities"] == b["quantities"] and a["foils"] == b["foils"], "statistics"
+assert b["counts"]["scans_repeated"] == 1 and b["counts"]["scans_not_measured"] == 1, b["counts"]
+assert [i.get("repeat_of") for i in b["inputs"]] == [None, None, None, 1], b["inputs"]
+P
+grep -q '^copied/foil9.png,,,not_measured,repeated_scan,' with/foils.csv || fail "foils.csv: $(tail -1 with/foils.csv)"
+grep -q 'the same scan, byte by byte, as that of foil2.png' with/index.html || fail "the page does not say what was copied"
+expect 2 'counted once: 1 scan' "$program" lot copied --recipe recipe.json -o with --resume
+same with joined
+
 # A scan that goes away keeps its record; one that is missing from the start is a record as well.
 cp -r one gone
 mv scans/foil2.png kept.png
@@ -127,8 +150,8 @@ expect 2 'not whole' lot -o torn --resume
 same one torn
 
 # A lot of one foil over and over: nothing varies, and the report is there all the same.
-mkdir equal
-for i in $(seq 12); do ln scans/foil1.png "equal/$i.png"; done
+mkdir equal # the same pixels; other bytes behind them, or they would be one scan
+for i in $(seq 12); do (cat scans/foil1.png && echo "$i") >"equal/$i.png"; done
 expect 0 '' timeout 60 "$program" lot equal --recipe recipe.json -o same
 [ -s same/lot.json ] || fail "a lot of equal foils has no report"
 python3 - same/lot.json <<'P' || fail "a lot of equal foils shows signals"

@@ -24,7 +24,7 @@ P
 mkdir scans
 printf '{"schema":"foilgauge/render/1","foils":[{"design":{"bump_count":3},"rotate_deg":-90}],"scanner":{"dpi":1200}}' >spec.json
 "$renderer" render spec.json -o scans/a.png || fail "render"
-cp scans/a.png scans/b.png
+(cat scans/a.png && echo b) >scans/b.png # other bytes: another scan
 touch -d '2025-03-04T12:00:00Z' scans/a.png
 touch -d '2025-03-06T12:00:00Z' scans/b.png
 echo '{"schema":"foilgauge/design/1","bump_count":3,"tolerances":{"height_mm":{"min":0.5,"max":0.6}}}' >design.json
