@@ -189,7 +189,9 @@ typedef struct fg_lot_request {
 typedef struct fg_lot_outcome {
   fg_report_outcome judged; /* of all foils, scans, bearings; fg_outcome_exit_code */
   size_t scans, to_measure, measured, failed, kept; /* scans; failed: could not be measured */
-  size_t redrawn;                                   /* kept scans whose pages are drawn again */
+  size_t missing; /* scans without a record that are not there; not in to_measure */
+  char first_missing[512];
+  size_t redrawn;   /* kept scans whose pages are drawn again */
   size_t not_drawn; /* pages that could not be: the scan could not be read again */
   char first_not_drawn[512];
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];

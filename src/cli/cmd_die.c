@@ -173,12 +173,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static void choose_standard_output(fg_output_set *outputs) {
-  for (size_t i = 0; i < OUT_COUNT; i++)
-    if (outputs->path[i]) return;
-  outputs->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
-}
-
 static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const die_run *run = user;
   if (kind == OUT_JSON) return fg_die_write_json(ctx, &run->die, out);
@@ -189,7 +183,7 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
 static fg_status load(fg_context *ctx, die_run *run, fg_design *design) {
   const fg_input others[] = {{run->design_path, "the design"}, {run->list_path, "the list"}};
   FG_TRY(run->status);
-  choose_standard_output(&run->outputs);
+  fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, false);
   FG_TRY(fg_output_set_check(ctx, &run->outputs, others, sizeof others / sizeof *others));
   if (run->list_path) FG_TRY(fg_die_list_load(ctx, run->list_path, &run->said, &run->sources));
   for (size_t i = 0; i < run->sources.count; i++)

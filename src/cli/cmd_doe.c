@@ -324,12 +324,6 @@ static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *ou
   return writers[kind](ctx, &report, out);
 }
 
-/* Results without -o go to standard output, unless the page is there already. */
-static void choose_standard_output(fg_output_set *set) {
-  if (set->path[OUT_JSON] || fg_output_set_has_standard(set)) return;
-  set->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
-}
-
 static fg_status describe_taken(fg_context *ctx, doe_run *run) {
   const fg_loop_takings *takings = &run->takings;
   fg_experiment_options *how = &run->arguments.options;
@@ -374,7 +368,7 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   a->options.coding = a->coding;
   a->options.constraint = a->constraint;
   a->options.round = a->round;
-  choose_standard_output(&run->outputs);
+  fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, true);
   FG_TRY(check_outputs(ctx, run));
   FG_TRY(fg_table_load(ctx, a->data, &run->sheet, run->sha256));
   FG_TRY(fg_output_set_open(ctx, &run->outputs));

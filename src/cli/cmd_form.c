@@ -220,12 +220,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   }
 }
 
-static void choose_standard_output(fg_output_set *outputs) {
-  for (size_t i = 0; i < OUT_COUNT; i++)
-    if (outputs->path[i]) return;
-  outputs->path[isatty(STDOUT_FILENO) ? OUT_TEXT : OUT_JSON] = "-";
-}
-
 static fg_status write_form(fg_context *ctx, void *user, size_t kind, FILE *out) {
   const form_run *run = user;
   typedef fg_status writer(fg_context *, const fg_forming *, FILE *);
@@ -252,7 +246,7 @@ static fg_status load(fg_context *ctx, form_run *run) {
                              {run->material_path, "the material"},
                              {run->schedule_path, "the schedule"},
                              {run->fit_path, "the table of runs"}};
-  choose_standard_output(&run->outputs);
+  fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TEXT, false);
   FG_TRY(fg_output_set_check(ctx, &run->outputs, inputs, sizeof inputs / sizeof *inputs));
   fg_design_default(&run->design);
   if (run->design_path) FG_TRY(fg_design_load(ctx, run->design_path, &run->design));

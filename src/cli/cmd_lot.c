@@ -51,7 +51,7 @@ static const struct argp_option options[] = {
     {"model", OPTION_MODEL, "FILE.json", 0,
      "Correct every scan by what `foilgauge loop --model-out` found of this scanner", 0},
     {"scanner", OPTION_SCANNER, "NAME", 0, "Refuse a model that is of another scanner", 0},
-    {"name", OPTION_NAME, "TEXT", 0, "Of the lot", 0},
+    {"name", OPTION_NAME, "TEXT", 0, "Of the lot (default: its folder's name)", 0},
     {"dpi", OPTION_DPI, "N", 0, "Resolution of the scans; overrules the files", 0},
     {"allow-lossy", OPTION_ALLOW_LOSSY, NULL, 0, FG_CLI_ALLOW_LOSSY, 0},
     {"group", OPTION_GROUP, "COLUMN", 0, "Compare the groups of this column of the manifest", 0},
@@ -299,6 +299,9 @@ static void say_plan(const fg_lot_outcome *outcome) {
   printf("%zu scan%s, %zu to measure, %zu kept", outcome->scans, fg_plural(outcome->scans),
          outcome->to_measure, outcome->kept);
   if (outcome->redrawn) printf(", %zu of them for their pages", outcome->redrawn);
+  if (outcome->missing)
+    printf(", %zu missing: %s%s", outcome->missing, outcome->missing > 1 ? "the first is " : "",
+           outcome->first_missing);
   putchar('\n');
 }
 

@@ -177,12 +177,6 @@ static fg_status name_file(fg_context *ctx, const char *path, fg_status status) 
   return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);
 }
 
-/* Results without -o go to standard output, unless another output is there already. */
-static void choose_standard_output(fg_output_set *outputs) {
-  if (outputs->path[OUT_JSON] || fg_output_set_has_standard(outputs)) return;
-  outputs->path[isatty(STDOUT_FILENO) ? OUT_TABLE : OUT_JSON] = "-";
-}
-
 static fg_status check_arguments(fg_context *ctx, measure_run *run) {
   const measure_arguments *arguments = &run->arguments;
   size_t standard = 0;
@@ -341,7 +335,7 @@ static void tell_not_judged(const fg_design *design) {
 }
 
 static fg_status measure(fg_context *ctx, measure_run *run, int *code) {
-  choose_standard_output(&run->outputs);
+  fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, true);
   FG_TRY(check_arguments(ctx, run));
   FG_TRY(load_design(ctx, run));
   tell_not_judged(&run->design);

@@ -275,12 +275,6 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   return 0;
 }
 
-static void choose_standard_output(fg_output_set *outputs) {
-  for (size_t i = 0; i < OUT_COUNT; i++)
-    if (outputs->path[i]) return;
-  outputs->path[isatty(STDOUT_FILENO) ? OUT_TEXT : OUT_JSON] = "-";
-}
-
 static fg_status write_output(fg_context *ctx, void *user, size_t kind, FILE *out) {
   typedef fg_status writer(fg_context *, const fg_load_test *, FILE *);
   static writer *const writers[OUT_COUNT] = {
@@ -304,7 +298,7 @@ static fg_status check_lot(fg_context *ctx, stiffness_run *run) {
 static fg_status measure(fg_context *ctx, stiffness_run *run, int *code) {
   fg_report_outcome outcome;
   FG_TRY(run->status);
-  choose_standard_output(&run->outputs);
+  fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TEXT, false);
   for (size_t i = 0; i < run->count; i++)
     FG_TRY(
         fg_output_set_check(ctx, &run->outputs, &(fg_input){run->sources[i].path, "the test"}, 1));

@@ -14,6 +14,17 @@ bool fg_output_set_has_standard(const fg_output_set *set) {
   return false;
 }
 
+void fg_output_set_choose_standard(fg_output_set *set, size_t json, size_t text, bool json_beside) {
+  if (fg_output_set_has_standard(set)) return;
+  if (isatty(STDOUT_FILENO)) {
+    if (!set->path[text]) set->path[text] = "-";
+    return;
+  }
+  for (size_t i = 0; i < set->count; i++)
+    if (set->path[i] && (!json_beside || i == json)) return;
+  set->path[json] = "-";
+}
+
 fg_status fg_output_set_check(fg_context *ctx, fg_output_set *set, const fg_input *inputs,
                               size_t count) {
   if (!set->overwrite.places)

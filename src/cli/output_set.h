@@ -26,6 +26,11 @@ typedef struct fg_input {
 bool fg_is_standard(const char *path);
 bool fg_output_set_has_standard(const fg_output_set *set); /* one of them is standard output */
 
+/* Where results go that no option sends anywhere: a terminal shows the text, whatever files are
+ * written besides; elsewhere standard output gets the JSON when no output is asked for, and with
+ * `json_beside` when no JSON is. */
+void fg_output_set_choose_standard(fg_output_set *set, size_t json, size_t text, bool json_beside);
+
 /* FG_ERR_USAGE when two outputs are one file, or one is an input (foilgauge/file.h). Once all
  * outputs are known and before anything is done; again where more inputs become known. */
 fg_status fg_output_set_check(fg_context *ctx, fg_output_set *set, const fg_input *inputs,

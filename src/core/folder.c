@@ -11,7 +11,8 @@ static fg_status make_one(fg_context *ctx, const char *path) {
   int error = errno;
   if (error == EEXIST && stat(path, &about) == 0 && !S_ISDIR(about.st_mode)) error = ENOTDIR;
   if (error == EEXIST) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", path, strerror(error));
+  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", *path ? path : "''",
+                 strerror(error));
 }
 
 /* One that is there may lie in a folder where nothing can be made: it is asked for only where the
@@ -31,4 +32,14 @@ fg_status fg_folder_make(fg_context *ctx, const char *path) {
   }
   free(part);
   return status == FG_OK ? make_one(ctx, path) : status;
+}
+
+fg_status fg_folder_require(fg_context *ctx, const char *path) {
+  struct stat info;
+  if (stat(path, &info) == 0) {
+    if (S_ISDIR(info.st_mode)) return FG_OK;
+    errno = ENOTDIR;
+  }
+  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be opened: %s", *path ? path : "''",
+                 strerror(errno));
 }

@@ -8,4 +8,7 @@
  * cannot be made. */
 fg_status fg_folder_make(fg_context *ctx, const char *path);
 
+/* FG_ERR_IO with its name where there is no such folder. */
+fg_status fg_folder_require(fg_context *ctx, const char *path);
+
 #endif

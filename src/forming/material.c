@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_syntax.h"
 #include "core/json_writer.h"
 #include "core/sha256.h"
 #include "core/text.h"
@@ -233,12 +234,10 @@ fg_status fg_forming_material_load(fg_context *ctx, const char *path,
   fg_text_clip(read.file.path, sizeof read.file.path, "%s", path);
   fg_sha256_text(text, read.file.sha256);
   cJSON *root = cJSON_ParseWithOpts(text, &end, true);
-  size_t line = 1;
-  for (const char *c = text; !root && end && c < end; c++)
-    line += *c == '\n';
+  fg_status status = root ? FG_OK : fg_json_fail_syntax(ctx, path, text, end);
   free(text);
-  if (!root) return fg_fail(ctx, FG_ERR_DATA, "%s: line %zu: this is not JSON", path, line);
-  fg_status status = read_root(&words, root, &read);
+  FG_TRY(status);
+  status = read_root(&words, root, &read);
   cJSON_Delete(root);
   if (status != FG_OK) return fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
   *material = read;

@@ -8,6 +8,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "core/folder.h"
 #include "core/text.h"
 
 /* Ours alone: the names that outputs have before they are whole (core/file.h). */
@@ -25,6 +26,7 @@ static void remove_leftovers(const char *folder) {
 
 fg_status fg_folder_lock(fg_context *ctx, const char *folder, int *lock) {
   char *path = NULL;
+  FG_TRY(fg_folder_require(ctx, folder));
   FG_TRY(fg_text_print(ctx, &path, "%s/.lock", folder));
   fg_status status = FG_OK;
   *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);

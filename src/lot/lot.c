@@ -105,6 +105,14 @@ static fg_status load_model(fg_context *ctx, const char *folder, fg_lot *lot) {
   return status;
 }
 
+/* The folder's own name, whatever the path to it ends in. */
+static void name_by_folder(const char *folder, char *name, size_t size) {
+  char *path = realpath(folder, NULL);
+  const char *slash = path ? strrchr(path, '/') : NULL;
+  fg_text_clip(name, size, "%s", slash && slash[1] ? slash + 1 : "lot");
+  free(path);
+}
+
 fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
   loader l = {.lot = lot};
   char *path = NULL;
@@ -122,6 +130,7 @@ fg_status fg_lot_load(fg_context *ctx, const char *folder, fg_lot *lot) {
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: no record of %s; measure it with --resume", path,
                           fg_manifest_scan(&lot->manifest, i)));
   FG_TRY_EXIT(fg_lot_mark_repeats(ctx, lot));
+  if (!lot->settings.name[0]) name_by_folder(folder, lot->settings.name, sizeof lot->settings.name);
   if (lot->settings.model[0]) FG_TRY_EXIT(load_model(ctx, folder, lot));
 exit:
   free(path);

@@ -173,8 +173,10 @@ static fg_status gather(fg_context *ctx, merger *m) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, m->count, sizeof *m->paths, &block));
   m->paths = block;
-  for (size_t i = 0; i < m->count; i++)
+  for (size_t i = 0; i < m->count; i++) {
+    FG_TRY(fg_folder_require(ctx, m->folders[i]));
     FG_TRY(fg_lot_path(ctx, m->folders[i], "results.jsonl", &m->paths[i]));
+  }
   FG_TRY(fg_journal_read_head(ctx, m->paths[0], &m->head));
   FG_TRY(read_first(ctx, m));
   FG_TRY(allocate(ctx, m));

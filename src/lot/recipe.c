@@ -7,6 +7,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/json_syntax.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/control.h"
@@ -255,8 +256,7 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
   fg_lot_settings copy = *settings;
   const char *end = NULL;
   cJSON *root = cJSON_ParseWithOpts(json, &end, true);
-  if (!root)
-    return fg_fail(ctx, FG_ERR_DATA, "%.200s: not JSON at byte %td", path, end ? end - json : 0);
+  if (!root) return fg_json_fail_syntax(ctx, path, json, end);
   fg_status status = read_object(&inner, path, root, &copy);
   cJSON_Delete(root);
   if (status != FG_OK) return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);

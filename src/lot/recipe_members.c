@@ -19,7 +19,7 @@
   }
 
 static const fg_recipe_member members[] = {
-    TEXT("name", name, "Of the lot, as its reports show it."),
+    TEXT("name", name, "Of the lot, as its reports show it; empty: its folder's name."),
     TEXT("model", model,
          "The scanner's model that corrects every scan (what `foilgauge loop --model-out` wrote): "
          "a path, beside the recipe."),
@@ -90,7 +90,6 @@ const fg_recipe_table fg_recipe_assembly = {assembly_members,
 
 void fg_lot_settings_default(fg_lot_settings *settings) {
   *settings = (fg_lot_settings){
-      .name = "lot",
       .trim_pct = 5,
       .confidence = 0.95,
       .bandwidth = FG_BANDWIDTH_SILVERMAN,

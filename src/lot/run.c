@@ -160,6 +160,13 @@ static fg_status read_earlier(fg_context *ctx, lot_run *run) {
   return fg_parallel_run(ctx, run->request->settings->jobs, run->manifest.items, check_scan, run);
 }
 
+/* A scan that is not there has a record all the same, with its error. */
+static void note_missing(const char *scan, fg_lot_outcome *outcome) {
+  if (access(scan, F_OK) == 0) return;
+  if (outcome->missing++ == 0)
+    fg_text_clip(outcome->first_missing, sizeof outcome->first_missing, "%s", scan);
+}
+
 static fg_status list_todo(fg_context *ctx, lot_run *run) {
   void *block;
   FG_TRY(fg_memory_allocate(ctx, run->manifest.items, sizeof *run->todo, &block));
@@ -171,8 +178,9 @@ static fg_status list_todo(fg_context *ctx, lot_run *run) {
     run->outcome->kept += kept;
     run->outcome->redrawn += redrawn;
     if (!kept || redrawn) run->todo[run->todo_count++] = i;
+    if (!kept) note_missing(fg_manifest_scan(&run->manifest, i), run->outcome);
   }
-  run->outcome->to_measure = run->todo_count - run->outcome->redrawn;
+  run->outcome->to_measure = run->todo_count - run->outcome->redrawn - run->outcome->missing;
   return FG_OK;
 }
 

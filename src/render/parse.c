@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_syntax.h"
 #include "core/memory.h"
 #include "render/parse.h"
 
@@ -60,8 +61,7 @@ fg_status fg_render_parse(fg_context *ctx, const char *path, const char *json,
   const char *where = NULL;
   root = cJSON_ParseWithOpts(json, &where, true);
   if (!root) {
-    status = fg_fail(ctx, FG_ERR_DATA, "%s: this is not JSON, from character %td: %.30s", path,
-                     where ? where - json : 0, where ? where : "");
+    status = fg_json_fail_syntax(ctx, path, json, where);
     goto exit;
   }
   FG_TRY_EXIT(read_spec(&place, root, spec));

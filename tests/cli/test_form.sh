@@ -62,7 +62,7 @@ bad() {
   expect 65 "bad.json: .*$1" "$program" form --material bad.json
 }
 head='"schema": "foilgauge/material/1"'
-bad "line 2: this is not JSON" "{ $head"
+bad "line 2, column 1: this is not JSON" "{ $head"
 bad "schema is missing" '{"yield_mpa": 300}'
 bad "yield_stress is not a member" "{$head, \"yield_stress\": 300}"
 bad "yield_mpa must be a number" "{$head, \"yield_mpa\": \"300\"}"

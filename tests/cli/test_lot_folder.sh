@@ -13,7 +13,7 @@ cat >recipe.json <<'R'
 {"schema": "foilgauge/recipe/1", "resamples": 500, "design": {"schema": "foilgauge/design/1", "bump_count": 3}}
 R
 lot() {
-  timeout 60 "$program" lot "$@" --recipe recipe.json
+  timeout 60 "$program" lot "$@" --name "the lot" --recipe recipe.json
 }
 expect 0 '3 foils of 3 scans' lot scans -o one
 

@@ -18,7 +18,7 @@ cat >recipe.json <<'R'
  "tolerances": {"radius_error_pct": {"max": 10}}}}
 R
 lot() {
-  timeout 60 "$program" lot --recipe recipe.json "$@"
+  timeout 60 "$program" lot --name "the lot" --recipe recipe.json "$@"
 }
 
 # links LOT: every link of its page into `pages` leads to a file and a section; prints how many files they are of.
@@ -62,7 +62,7 @@ expect 0 '3 kept$' lot a b -o none --resume --pages none --dry-run
 # Other tolerances are another page; the record stands, and the old page goes. What is no page stays.
 echo mine >none/pages/notes.html
 sed 's/10}/40}/' recipe.json >wide.json
-expect 0 '' timeout 60 "$program" lot --recipe wide.json a b -o none --resume --jobs 1
+expect 0 '' timeout 60 "$program" lot --name "the lot" --recipe wide.json a b -o none --resume --jobs 1
 rm none/pages/notes.html || fail "a file that is no page was removed"
 [ "$(links none)" = 3 ] || fail "old pages beside new ones"
 grep -ql 'verdict fail' none/pages/*.html && fail "a page with the tolerances of before"
@@ -96,7 +96,7 @@ cat >bed.json <<'S'
  {"design": {"bump_count": 3}, "rotate_deg": -90, "centre_mm": [48, 30]}]}
 S
 "$renderer" render bed.json -o bed.png || fail "render bed"
-"$program" lot --recipe recipe.json bed.png -o bed 2>/dev/null
+"$program" lot --name "the lot" --recipe recipe.json bed.png -o bed 2>/dev/null
 [ "$(links bed)" = 1 ] || fail "two foils of a scan"
 grep -q 'pages/bed-[0-9a-f]*.html#part2' bed/index.html || fail "no link to the second foil"
 exit $failed

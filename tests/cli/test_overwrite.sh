@@ -7,7 +7,7 @@ cat >in/spec.json <<'SPEC'
 {"schema": "foilgauge/render/1", "seed": 3, "foils": [{}], "scanner": {"dpi": 1200}}
 SPEC
 "$renderer" render in/spec.json -o in/scan.png || fail "render"
-cp in/scan.png in/other.png
+(cat in/scan.png && echo 2) >in/other.png # another scan
 printf 'T,D,y\n' >in/runs.csv
 for i in 1 2 3 4 5 6 7 8 9 10; do echo "$((i % 3)),$((i % 2)),$((i * i % 7)).$i" >>in/runs.csv; done
 printf 'T,scan\n1,scan.png\n2,other.png\n' >in/sheet.csv

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_syntax.h"
 #include "core/member_words.h"
 #include "core/text.h"
 #include "foilgauge/design.h"
@@ -323,25 +324,6 @@ static fg_status read_root(const reader *r, const cJSON *root, fg_design *design
   return FG_OK;
 }
 
-/* Line and column of where the text stops being JSON, and that line: it mostly names the member. */
-static fg_status fail_syntax(const reader *r, const char *json, const char *at) {
-  const char *start = json;
-  int line = 1, shown = 0;
-  char excerpt[81];
-  if (!at || at < json) at = json;
-  for (const char *c = json; c < at; c++)
-    if (*c == '\n') {
-      line++;
-      start = c + 1;
-    }
-  for (const char *c = start; *c && *c != '\n' && shown < 80; c++)
-    if (shown > 0 || !isspace((unsigned char)*c))
-      excerpt[shown++] = iscntrl((unsigned char)*c) ? ' ' : *c;
-  excerpt[shown] = '\0';
-  return fg_fail(r->ctx, FG_ERR_DATA, "%s: line %d, column %td: this is not JSON: %s", r->path,
-                 line, at - start + 1, shown ? excerpt : "(the text ends)");
-}
-
 static fg_status check_design(const reader *r, const fg_design *design) {
   fg_context words = {0};
   fg_status status = fg_design_check(&words, design);
@@ -355,7 +337,7 @@ fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, f
   const char *end = NULL;
   fg_design read = *design;
   cJSON *root = cJSON_ParseWithOpts(json, &end, true);
-  if (!root) return fail_syntax(&r, json, end);
+  if (!root) return fg_json_fail_syntax(ctx, path, json, end);
   fg_status status = read_root(&r, root, &read);
   cJSON_Delete(root);
   if (status == FG_OK) status = check_design(&r, &read);

@@ -9,6 +9,7 @@
 #include "quantity/quantity_rows.h"
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
+#include "report/measure/outcome_words.h"
 #include "report/measure/scan_model_words.h"
 
 enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
@@ -274,18 +275,25 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
 }
 
 /* A line per thing that keeps the whole from passing: the worst first. */
-static void put_outcome(FILE *out, const fg_design *design, const fg_report_outcome *outcome) {
+static fg_status put_outcome(fg_context *ctx, FILE *out, const fg_report *report,
+                             const fg_report_outcome *outcome) {
+  const fg_design *design = report->design;
   char names[400];
-  if (outcome->exceeded)
-    fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit.\n", outcome->exceeded);
+  if (outcome->exceeded) {
+    fprintf(out, "OUT OF TOLERANCE: %zu value(s) beyond a limit", outcome->exceeded);
+    FG_TRY(fg_report_write_quantities(ctx, report, FG_VERDICT_FAIL, out));
+    fputs(".\n", out);
+  }
   if (outcome->rejected)
     fprintf(out, "REJECTED: %zu foil(s) with %s missing or too many.\n", outcome->rejected,
             design->form == FG_FORM_CANTILEVER ? "beams" : "bumps");
   if (outcome->not_measured)
     fprintf(out, "INCOMPLETE: %zu without a value.\n", outcome->not_measured);
-  if (outcome->undecided)
-    fprintf(out, "CANNOT TELL: a limit lies within ± of %zu value(s)%s.\n", outcome->undecided,
-            outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit" : "");
+  if (outcome->undecided) {
+    fprintf(out, "CANNOT TELL: a limit lies within ± of %zu value(s)", outcome->undecided);
+    FG_TRY(fg_report_write_quantities(ctx, report, FG_VERDICT_UNDECIDED, out));
+    fputs(outcome->verdict == FG_VERDICT_UNDECIDED ? "; none is beyond a limit.\n" : ".\n", out);
+  }
   if (outcome->verdict == FG_VERDICT_PASS)
     fputs("Within every tolerance, uncertainty included.\n", out);
   size_t of_bearing = fg_report_of_bearing(design, names, sizeof names);
@@ -294,6 +302,7 @@ static void put_outcome(FILE *out, const fg_design *design, const fg_report_outc
             of_bearing ? " of a foil" : "");
   if (of_bearing)
     fprintf(out, "Not judged here: %s: of a bearing; `foilgauge lot` judges it.\n", names);
+  return FG_OK;
 }
 
 fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *out) {
@@ -304,7 +313,7 @@ fg_status fg_report_write_table(fg_context *ctx, const fg_report *report, FILE *
     FG_TRY(put_scan(ctx, out, report->design, &report->scans[i]));
   }
   fputc('\n', out);
-  put_outcome(out, report->design, &outcome);
+  FG_TRY(put_outcome(ctx, out, report, &outcome));
   char scale[FG_SCALE_WORDS];
   fg_scale_words(fg_report_model(report), &report->design->calibration, scale, sizeof scale);
   if (fg_form_has_bumps(report->design->form))
