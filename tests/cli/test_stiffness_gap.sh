@@ -109,6 +109,6 @@ python3 -c 'import sys
 at = [eval(text) for text in sys.argv[1:]]
 sys.exit(any(abs(a[0] - b[0]) > 0.1 * a[1] for a, b in zip(*at)))' "$(value at_5.json "$gaps")" "$(value at_20.json "$gaps")" ||
   fail "the gap depends on the threshold"
-grep -q "difference of gaps" at.html && head -1 rows.csv | grep -q "gap_mm,u_gap_mm" || fail "page or CSV has no gap"
+grep -q "difference<br>of gaps" at.html && head -1 rows.csv | grep -q "gap_mm,u_gap_mm" || fail "page or CSV has no gap"
 valid load_test.schema.json r.json at_5.json
 exit $failed

@@ -33,6 +33,16 @@ static void put_tile(FILE *out, const char *title, const fg_load_value *v, doubl
     fputs("–<small>not known</small></dd></div>\n", out);
 }
 
+/* A clearance of a bearing's directions; where foils press the rotor all around, why there is none.
+ */
+static void put_clearance_tile(FILE *out, const fg_load_test *test, size_t bearing,
+                               const char *title, const fg_load_value *v, const char *small) {
+  if (count_flagged(test, bearing, FG_LOAD_NO_GAP) == test->bearings[bearing].directions)
+    fprintf(out, "<div><dt>%s</dt><dd>–<small>no gap</small></dd></div>\n", title);
+  else
+    put_tile(out, title, v, 1000, 1, "µm", small);
+}
+
 static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
   char least[60] = "", most[60] = "";
@@ -41,8 +51,8 @@ static void put_tiles(FILE *out, const fg_load_test *test, size_t bearing) {
     snprintf(most, sizeof most, "at %g°", b->most_measured_at_deg);
   }
   fputs("<dl class=\"tiles\">\n", out);
-  put_tile(out, "Smallest clearance", &b->least, 1000, 1, "µm", least);
-  put_tile(out, "Largest clearance", &b->most, 1000, 1, "µm", most);
+  put_clearance_tile(out, test, bearing, "Smallest clearance", &b->least, least);
+  put_clearance_tile(out, test, bearing, "Largest clearance", &b->most, most);
   put_tile(out, "Structural stiffness, mean", &b->stiffness, 1, 0, "N/mm",
            count_flagged(test, bearing, FG_LOAD_AT_END) ? "a lower bound" : "");
   put_tile(out, "Radial hysteresis", &b->hysteresis_n, 1, 2, "N", "no preload");
@@ -90,11 +100,10 @@ static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction
 static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
   bool lot = test->bearings[bearing].in_lot;
   fprintf(out,
-          "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance, µm</th><th>the same, "
-          "unloading</th><th>gap, µm</th><th>stiffness, N/mm</th><th>loss factor</th><th>of the "
-          "secant</th>%s"
-          "<th>cycles</th><th class=\"w\">to know</th></tr>\n",
-          lot ? "<th>gap by the lot, µm</th><th>difference of gaps, µm</th>" : "");
+          "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance,<br>µm</th><th>"
+          "unloading,<br>µm</th><th>gap,<br>µm</th><th>stiffness,<br>N/mm</th><th>loss<br>factor"
+          "</th><th>of the<br>secant</th>%s<th>cycles</th><th class=\"w\">to know</th></tr>\n",
+          lot ? "<th>gap by<br>the lot, µm</th><th>difference<br>of gaps, µm</th>" : "");
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_row(out, test, &test->directions[i], lot);
   fputs("</table></div>\n", out);
@@ -176,11 +185,15 @@ static void put_break_away(FILE *out, const fg_load_test *test, size_t bearing) 
   put_tile(out, "over the bore", &b->preload_kpa, 1, 2, "kPa", "");
   fputs("</dl>\n<p class=\"note\">Friction is torque over the rotor's radius. Its line over dead "
         "weight has the friction coefficient for a slope; intercept over slope is the preload, "
-        "and over π D L its mean pressure.</p>\n<p>",
+        "and over π D L its mean pressure.</p>\n",
         out);
   fg_break_away_flag_words(a->flags, true, flags, sizeof flags);
-  fg_html_text(out, flags);
-  fprintf(out, "%s</p></div></div>\n", flags[0] ? "." : "");
+  if (flags[0]) {
+    fputs("<p><b>To know:</b> ", out);
+    fg_html_text(out, flags);
+    fputs(".</p>\n", out);
+  }
+  fputs("</div></div>\n", out);
 }
 
 /* Clearance over the azimuths, their table, their loops. */
@@ -188,12 +201,15 @@ static void put_directions(FILE *out, const fg_load_test *test, size_t bearing) 
   const fg_load_bearing *b = &test->bearings[bearing];
   if (!b->directions) return;
   put_sentences(out, test, bearing);
-  fputs("<figure>", out);
-  fg_load_plot_azimuths(out, test, bearing);
-  fprintf(out,
-          "<figcaption>Clearance with U of its repeats alone; dashed the fitted harmonics, red "
-          "where they are smallest%s.</figcaption></figure>\n",
-          b->in_lot ? "; orange what the lot's foils leave a rotor" : "");
+  if (b->measured) {
+    fputs("<figure>", out);
+    fg_load_plot_azimuths(out, test, bearing);
+    fprintf(out,
+            "<figcaption>Clearance with U of its repeats alone; dashed the fitted harmonics, red "
+            "where they are smallest%s.</figcaption></figure>\n",
+            b->in_lot ? "; triangles the gap, orange the gap that the lot's foils leave a rotor"
+                      : "");
+  }
   put_table(out, test, bearing);
   fputs("<h2>Loops</h2>\n<p class=\"note\">Every cycle as recorded; the band is the threshold, "
         "orange where the loading strokes pass it. Beside it dF/dx of the loading strokes with U = "
@@ -208,8 +224,11 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   fg_html_text(out, b->name);
   fputs("</h1>", out);
   fg_html_verdict(out, fg_load_judge_bearing(test, bearing));
-  fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
-          b->directions == 1 ? "" : "s", test->options.threshold_n);
+  if (b->directions)
+    fprintf(out, "<p>%zu azimuth%s, threshold %g N</p></header>\n", b->directions,
+            b->directions == 1 ? "" : "s", test->options.threshold_n);
+  else
+    fputs("<p>break-away test alone</p></header>\n", out);
   if (b->directions) put_tiles(out, test, bearing);
   put_break_away(out, test, bearing);
   put_directions(out, test, bearing);

@@ -145,8 +145,10 @@ static void put_direction(const fg_plot *at, const fg_load_direction *d) {
   if (!isfinite(c)) return;
   fg_plot_segment(at, d->azimuth_deg, c - reach, d->azimuth_deg, c + reach, "s2");
   fg_plot_dot(at, d->azimuth_deg, c, 4.5, "s2");
-  if (isfinite(d->predicted.value))
-    fg_plot_dot(at, d->azimuth_deg, 1000 * d->predicted.value, 4.5, "s1");
+  if (!isfinite(d->predicted.value)) return;
+  fg_plot_dot(at, d->azimuth_deg, 1000 * d->predicted.value, 4.5, "s1");
+  if (isfinite(d->gap.value))
+    fg_plot_shape(at, d->azimuth_deg, 1000 * d->gap.value, 4.5, FG_SHAPE_TRIANGLE, "s2");
 }
 
 void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) {
@@ -157,7 +159,9 @@ void fg_load_plot_azimuths(FILE *out, const fg_load_test *test, size_t bearing) 
     if (d->bearing != bearing) continue;
     widen(x, d->azimuth_deg, d->azimuth_deg);
     widen(c, 1000 * d->clearance.value - reach, 1000 * d->clearance.value + reach);
+    if (!isfinite(d->predicted.value)) continue;
     widen(c, 1000 * d->predicted.value, 1000 * d->predicted.value);
+    widen(c, 1000 * d->gap.value, 1000 * d->gap.value);
   }
   if (!(c[1] >= c[0])) return;
   x[0] -= 10, x[1] += 10;

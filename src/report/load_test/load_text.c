@@ -54,8 +54,11 @@ static void put_break_away(FILE *out, const fg_load_test *test, const fg_load_be
 static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   const fg_load_bearing *b = &test->bearings[bearing];
   bool lot = b->in_lot;
-  fprintf(out, "\nbearing %s, %zu azimuth%s\n", b->name, b->directions,
-          b->directions == 1 ? "" : "s");
+  fprintf(out, "\nbearing %s", b->name);
+  if (b->directions)
+    fprintf(out, ", %zu azimuth%s\n", b->directions, b->directions == 1 ? "" : "s");
+  else
+    fputs(", break-away test alone\n", out);
   if (b->directions)
     fprintf(out, "  azimuth    c um    U um  gap um  U um    K N/mm  U N/mm    loss   secant%s\n",
             lot ? "   lot um  diff um" : "");
