@@ -27,6 +27,13 @@
  *   K = W / delta = 2 k tan²beta / (1 - mu tan beta).
  * For mu >= cot(alpha / 4) friction holds the links and the model has no stiffness to give.
  *
+ * IORDANOFF. I. Iordanoff (ASME J. Tribology 121, 1999, 816-822) gives closed forms with friction
+ * for a bump whose ends are both free and for one with a welded end. They are no row: no text of
+ * them could be had to hold a formula against. (The analytic formulas in use for these two cases
+ * are reported to differ from numerics: M. Arghir, About the stiffness of bumps in aerodynamic foil
+ * bearings, STLE annual meeting 2015.) Both cases are solved by fg_arch_free and fg_arch_welded of
+ * foilgauge/bearing.h, as curved beams with friction at their feet.
+ *
  * SLENDER BENDING. In each of them, and in every model of a slender arc that bends, R enters by
  * K = D / R³ g(alpha) alone: strain energy is M²/2D over R dpsi, and M is R times a force times a
  * function of angles. For small alpha g goes with alpha⁻³: 6 / phi³ for arch (no friction) and
@@ -68,6 +75,9 @@ typedef struct fg_stiffness_model {
 } fg_stiffness_model;
 
 enum { FG_STIFFNESS_MODELS = 3, FG_STIFFNESS_WORDS = 240 };
+
+/* Why a model that the field names is no row. */
+const char *fg_stiffness_absent_note(void);
 
 /* The arch comes first. */
 const fg_stiffness_model *fg_stiffness_models(void);

@@ -138,6 +138,12 @@ const fg_stiffness_model *fg_stiffness_models(void) {
   return models;
 }
 
+const char *fg_stiffness_absent_note(void) {
+  return "Not a row: I. Iordanoff, J. Tribology 121 (1999) 816, closed forms for bumps with both "
+         "ends free and with one welded. No text of them was at hand to hold a formula against, "
+         "and none is written from memory. The arch solves both cases with friction.";
+}
+
 /* d ln K / d ln x by a central difference over exp(± step). */
 static fg_status slope_of(fg_context *ctx, const fg_stiffness_model *model, const fg_arch *arch,
                           const fg_arch_material *material, const double power[3], double *slope) {

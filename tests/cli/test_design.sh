@@ -31,6 +31,8 @@ expect 0 "<!doctype html>" "$program" design --html -
 expect 64 "two outputs cannot go to one file" "$program" design --html - --json
 expect 64 "two outputs cannot go to one file" "$program" design --html "$work/a" -o "$work/a"
 "$program" design --html "$work/page.html" -o "$work/stiff.json" || fail "design --html"
+# A model that the field names and that is no row is named with the reason.
+grep -q "Iordanoff</dt><dd>Not a row" "$work/page.html" || fail "the page does not say why Iordanoff's formulas are not there"
 "$program" design --youngs-modulus-gpa 100 -o "$work/soft.json" || fail "design --youngs-modulus-gpa"
 "$program" design "$work/discs.json" -o "$work/none.json" || fail "design of discs"
 echo '{"schema": "foilgauge/design/1", "form": "sinusoidal"}' >"$work/sinus.json"

@@ -84,7 +84,9 @@ static void put_sources(FILE *out, const fg_stiffness_case *bump) {
     }
     fputs("</dd>\n", out);
   }
-  fputs("</dl>\n", out);
+  fputs("<dt>Iordanoff</dt><dd>", out);
+  fg_html_text(out, fg_stiffness_absent_note());
+  fputs("</dd>\n</dl>\n", out);
 }
 
 void fg_html_stiffness_table(FILE *out, const fg_stiffness_case *cases, size_t count,
