@@ -104,7 +104,8 @@ static const char doc[] =
     "literature's with their sources and scatter (in the report); trends may be believed, sizes "
     "only after --fit.\n\n"
     "Out of reach is what needs contact and friction: where the die touches while it closes, "
-    "whether the pressure closes it, bumps that differ by their place. A pressure on both faces is "
+    "whether the pressure closes it, bumps that differ by their place; with its bumps the "
+    "classical foil closes where measured ones open. A pressure on both faces is "
     "hydrostatic in plane strain: it neither yields nor creeps.\n\n"
     "@exit_done@";
 

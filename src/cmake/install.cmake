@@ -80,7 +80,7 @@ endforeach()
 install(FILES ${CMAKE_BINARY_DIR}/completion/foilgauge
         DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 install(DIRECTORY reports/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/foilgauge COMPONENT program)
-install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+include(src/cmake/installed_readme.cmake)
 install(DIRECTORY samples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
         PATTERN run.sh EXCLUDE)
 install(FILES samples/station/foilgauge-station.service DESTINATION lib/systemd/system

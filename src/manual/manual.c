@@ -12,7 +12,7 @@
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "core/file.h"
-#include "manual/facts.h"
+#include "manual/marks.h"
 #include "manual/page.h"
 
 enum { TEXT_BYTES_MAX = 1 << 20, PAGES_MAX = 64 };
@@ -60,7 +60,9 @@ static int write_page(manual *all, const char *path, const fg_manual_text *text)
   fprintf(all->examples, "# %s\n", name);
   fg_manual_write_examples(text, all->examples);
   if (fclose(out) != 0) return complain(name, "cannot be written");
-  return known ? 0 : complain(path, "a @name@ of the command's help is not known");
+  return known ? 0
+               : complain(path, "a @name@ of the command's help is not known, or a row of a table "
+                                "has more cells than its head: a bar of the text is \\|");
 }
 
 static int read_page(manual *all, const char *path) {
@@ -68,21 +70,23 @@ static int read_page(manual *all, const char *path) {
   fg_manual_text text = {0};
   char *raw, *whole = NULL;
   size_t size;
+  char wrong[200];
   int skip = 0;
   if (fg_file_read_text(&ctx, path, TEXT_BYTES_MAX, &raw) != FG_OK)
     return complain(path, ctx.message);
   FILE *filled = open_memstream(&whole, &size);
   if (!filled) abort();
-  bool known = fg_facts_write(raw, fg_manual_fact, filled);
+  bool known = fg_manual_fill(raw, wrong, filled);
   if (fclose(filled) != 0) abort();
   free(raw);
   bool titled = sscanf(whole, "# %63[^(](%c) - %199[^\n]%n", text.name, &text.section, text.summary,
                        &skip) == 3;
   text.body = whole + skip;
-  if (command_of(&text) && command_of(&text)->name)
-    snprintf(text.summary, sizeof text.summary, "%s", command_of(&text)->summary);
-  int failed = !known    ? complain(path, "a @name@ in it is not known")
+  const fg_command *command = titled ? command_of(&text) : NULL;
+  bool same = !command || !command->name || !strcmp(command->summary, text.summary);
+  int failed = !known    ? complain(path, wrong)
                : !titled ? complain(path, "does not begin with `# name(section) - summary`")
+               : !same   ? complain(path, "its title says something else than `foilgauge help`")
                          : write_page(all, path, &text);
   free(whole);
   return failed;

@@ -45,7 +45,7 @@ static void write_synopsis(const fg_command *command, FILE *out) {
 }
 
 /* Paragraphs of a parser's text as those of a manual: an example there has two blanks before it. */
-static void write_paragraphs(const char *text, FILE *out) {
+static bool write_paragraphs(const char *text, FILE *out) {
   char *marked = NULL;
   size_t size;
   FILE *lines = open_memstream(&marked, &size);
@@ -57,8 +57,9 @@ static void write_paragraphs(const char *text, FILE *out) {
     text += length + (text[length] == '\n');
   }
   if (fclose(lines) != 0) abort();
-  fg_roff_text(marked, out);
+  bool right = fg_roff_text(marked, out);
   free(marked);
+  return right;
 }
 
 /* The paragraph of a parser's text that says how the command ends, or NULL. */
@@ -76,8 +77,8 @@ static void write_description(const fg_command_form *form, bool *known, FILE *ou
   fill(doc, known, &whole);
   char *line = after ? strchr(whole, '\n') : NULL;
   if (line) *line = '\0';
-  write_paragraphs(whole, out);
-  if (line) write_paragraphs(line + 1, out);
+  *known = write_paragraphs(whole, out) && *known;
+  if (line) *known = write_paragraphs(line + 1, out) && *known;
   free(whole);
   free(doc);
 }
@@ -138,7 +139,7 @@ static void write_exit_status(const fg_command *command, bool *known, FILE *out)
     char *rest = NULL;
     fill(found + 2 + strcspn(found + 1, "@"), known, &rest);
     if (*rest) fputs(".PP\n", out);
-    write_paragraphs(rest, out);
+    *known = write_paragraphs(rest, out) && *known;
     free(rest);
     last = found;
   }
@@ -181,11 +182,12 @@ static void write_head(const fg_manual_text *text, FILE *out) {
   fputc('\n', out);
 }
 
-static void write_part(const char *from, const char *to, FILE *out) {
+static bool write_part(const char *from, const char *to, FILE *out) {
   char *part = strndup(from, (size_t)(to - from));
   if (!part) abort();
-  fg_roff_text(part, out);
+  bool right = fg_roff_text(part, out);
   free(part);
+  return right;
 }
 
 bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command, FILE *out) {
@@ -198,16 +200,16 @@ bool fg_manual_write_page(const fg_manual_text *text, const fg_command *command,
   write_head(text, out);
   if (command) write_synopsis(command, out);
   fputs(".SH DESCRIPTION\n", out);
-  if (several) write_part(body, sections, out);
+  if (several) known = write_part(body, sections, out) && known;
   for (size_t i = 0; command && i < FG_COMMAND_FORMS && command->form[i].parser; i++) {
     if (command->form[i].title) fprintf(out, ".SS %s\n", command->form[i].title);
     write_description(&command->form[i], &known, out);
   }
-  if (!several) write_part(body, sections, out);
+  if (!several) known = write_part(body, sections, out) && known;
   if (command) write_options(command, &known, out);
-  write_part(sections, examples, out);
+  known = write_part(sections, examples, out) && known;
   if (command) write_exit_status(command, &known, out);
-  write_part(examples, end, out);
+  known = write_part(examples, end, out) && known;
   write_see_also(text->name, text->section, out);
   return known;
 }

@@ -1,7 +1,7 @@
 #include "manual/roff.h"
 
 #include <ctype.h>
-#include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The code point of a UTF-8 sequence and its length. Texts are the project's own. */
@@ -93,7 +93,8 @@ typedef struct writer {
   FILE *out;
   bool in_code, in_table, gap; /* gap: a paragraph begins */
   char heading[4][80];         /* of the table's columns */
-  size_t columns;
+  size_t columns, cells;       /* that have a heading, and all */
+  bool wrong;                  /* a row has other cells than its table's head */
 } writer;
 
 static void end_code(writer *w) {
@@ -108,18 +109,28 @@ static void write_code(writer *w, const char *line, size_t length) {
   fputc('\n', w->out);
 }
 
-/* The next cell of a row, without the blanks about it. A `\|` is a bar of the text. */
+/* A bar between cells, as readers of Markdown see it; `\\|` is a bar of the text, in code as well.
+ */
+static bool is_border(const char *at, const char *start) {
+  return *at == '|' && (at == start || at[-1] != '\\');
+}
+
+static size_t count_cells(const char *line, size_t length) {
+  size_t borders = 0;
+  for (size_t i = 0; i < length; i++)
+    borders += is_border(line + i, line);
+  return borders ? borders - 1 : 0;
+}
+
+/* The next cell of a row, without the blanks about it. */
 static bool next_cell(const char **at, const char *end, const char **cell, size_t *length) {
   const char *start = *at;
   while (start < end && (*start == '|' || *start == ' '))
     start++;
   if (start >= end) return false;
   const char *stop = start;
-  bool code = false;
-  while (stop < end && (*stop != '|' || code)) {
-    if (*stop == '`') code = !code;
+  while (stop < end && !is_border(stop, start))
     stop++;
-  }
   *at = stop;
   while (stop > start && stop[-1] == ' ')
     stop--;
@@ -136,6 +147,17 @@ static void read_headings(writer *w, const char *at, const char *end) {
     snprintf(w->heading[w->columns++], sizeof *w->heading, "%.*s", (int)length, cell);
 }
 
+/* The text of a cell, its bars without their escape. */
+static void write_cell(const char *cell, size_t length, FILE *out) {
+  char *plain = malloc(length + 1);
+  size_t count = 0;
+  if (!plain) abort();
+  for (size_t i = 0; i < length; i++)
+    if (cell[i] != '\\' || i + 1 == length || cell[i + 1] != '|') plain[count++] = cell[i];
+  fg_roff_inline(plain, count, out);
+  free(plain);
+}
+
 /* A row is a tagged paragraph: the first cell, then the others, named where there are several. */
 static void write_row(writer *w, const char *at, const char *end) {
   const char *cell;
@@ -146,12 +168,15 @@ static void write_row(writer *w, const char *at, const char *end) {
       fg_roff_inline(w->heading[column], strlen(w->heading[column]), w->out);
       fputs(": ", w->out);
     }
-    fg_roff_inline(cell, length, w->out);
+    write_cell(cell, length, w->out);
     fputs(column > 0 && column + 1 < w->columns ? ";\n" : "\n", w->out);
   }
 }
 
 static void write_table_line(writer *w, const char *line, size_t length) {
+  size_t cells = count_cells(line, length);
+  if (!w->in_table) w->cells = cells;
+  w->wrong = w->wrong || cells != w->cells;
   if (!w->in_table)
     read_headings(w, line, line + length);
   else if (strncmp(line, "|---", 4) != 0)
@@ -204,7 +229,7 @@ static void write_line(writer *w, const char *line, size_t length) {
   }
 }
 
-void fg_roff_text(const char *text, FILE *out) {
+bool fg_roff_text(const char *text, FILE *out) {
   writer w = {.out = out, .gap = true};
   while (*text) {
     size_t length = strcspn(text, "\n");
@@ -212,4 +237,5 @@ void fg_roff_text(const char *text, FILE *out) {
     text += length + (text[length] == '\n');
   }
   end_code(&w);
+  return !w.wrong;
 }

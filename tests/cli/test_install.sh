@@ -17,6 +17,9 @@ for there in bin/foilgauge lib/foilgauge/foilgauge-opencv.so include/foilgauge/m
   share/doc/foilgauge/samples/render/clean.json lib/systemd/system/foilgauge-station.service; do
   find "$usr" -path "*/${there##*lib/}" -type f | grep -q . || fail "$there is not installed"
 done
+links "$usr/share/doc/foilgauge/README.md"
+links "$root/README.md"
+grep -q 'man 1 foilgauge-measure' "$usr/share/doc/foilgauge/README.md" || fail "the installed README names no page of the manual"
 ! grep -rlF "$build" "$usr" || fail "what is installed names the folder where it was built"
 
 # The program where it was put, with a picture, which needs the module.

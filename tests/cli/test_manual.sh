@@ -64,6 +64,30 @@ for object in '{"?": 1}' '{"scale": {"?": 1}}' \
 done
 grep -q '@[a-z_]*@' "$man"/*.[15] && say "something was not put in"
 
+# A text reads right where it lies: a title of its own, and what the code puts in stands there or is told.
+for text in src/manual/text/*.md; do
+  head -n 1 "$text" | grep -qE '^# foilgauge[-a-z]*\([15]\) - [a-z]' || say "$text has no title"
+  sed 's/<!--@[a-z_]*@-->//g' "$text" | grep -q '@[a-z_]*@' && say "$text shows a name in place of what is put in"
+  grep -q 'of the table of commands' "$text" && say "$text has no summary of its own"
+done
+
+# Bars of a text stay; and the build says what is wrong with a text.
+plain "$man/foilgauge-stiffness.1" | grep -qF 'a + b |F|' || say "the bars of a + b |F| are lost"
+mkdir "$work/text" "$work/bars"
+# refuse WORDS FILE EDIT: with this edit (of sed) of a text the manual is not made.
+refuse() {
+  cp src/manual/text/*.md "$work/text/"
+  sed -i "$3" "$work/text/$2"
+  cmp -s "src/manual/text/$2" "$work/text/$2" && say "the edit $3 changes nothing"
+  "$build/foilgauge_manual" "$work/bars" "$work/text"/*.md 2>"$work/said" && say "made with $3"
+  grep -q -- "$1" "$work/said" || say "$3 says $(head -c 300 "$work/said")"
+}
+refuse 'more cells than its head' foilgauge-stiffness.1.md 's/\\|F\\|/|F|/'
+refuse 'something else than `foilgauge help`' foilgauge-die.1.md '1s/ - .*/ - of the table of commands/'
+refuse "@loop_minutes@ reads '99', the code says" foilgauge-loop.1.md 's/@loop_minutes@-->[0-9]*/@loop_minutes@-->99/'
+refuse '@loop_hours@ is not known' foilgauge-loop.1.md 's/@loop_minutes@/@loop_hours@/'
+refuse 'a mark <!--@ without its end' foilgauge-recipe.5.md '/<!--@-->/d'
+
 # man passes on what groff says; without man, groff itself.
 for page in "$man"/*.[15]; do
   if command -v man >/dev/null; then

@@ -22,6 +22,7 @@ version=$("$program" version | cut -d' ' -f2)
 [ "$(field "$dev" Depends)" = "foilgauge (= $version)" ] || fail "foilgauge-dev depends on $(field "$dev" Depends)"
 # Every library that the program, the shared library and the module are linked with is of a package that is depended on.
 dpkg-deb -x "$deb" "$work/open"
+links "$work/open/usr/share/doc/foilgauge/README.md"
 depends=$(field "$deb" Depends)
 find "$work/open" -type f -exec readelf -d {} + 2>/dev/null | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort -u >"$work/needed"
 [ "$(wc -l <"$work/needed")" -gt 8 ] || fail "what is needed is not found"

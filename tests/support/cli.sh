@@ -28,6 +28,16 @@ expect() {
     fail "$*: no '$words' in: $(cd "$work" && cat $listened | head -c 600)"
 }
 
+# links FILE: every relative link of a page of Markdown leads to something that is there.
+links() {
+  local link count=0
+  while read -r link; do
+    count=$((count + 1))
+    [ -e "$(dirname "$1")/${link%%#*}" ] || fail "$1: the link $link leads nowhere"
+  done < <(grep -oE '\]\([^)]+\)' "$1" | sed 's/^](//; s/)$//' | grep -vE '^[a-z]+:|^#')
+  [ $count -gt 0 ] || fail "$1 has no links"
+}
+
 # same A B: the same files with the same bytes.
 same() {
   diff -r "$1" "$2" >"$work/difference" 2>&1 || fail "$1 and $2 differ: $(head -n 3 "$work/difference")"

@@ -1,0 +1,61 @@
+#include "manual/marks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/facts.h"
+#include "manual/facts.h"
+
+static const char begin[] = "<!--@", middle[] = "@-->", end[] = "<!--@-->";
+
+/* What the code says; the caller frees. NULL: the fact is not known. */
+static char *text_of_fact(const char *name, size_t length) {
+  const fg_fact *fact = fg_fact_find(name, length);
+  char *text = NULL;
+  size_t size;
+  if (!fact) fact = fg_manual_fact(name, length);
+  if (!fact) return NULL;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) abort();
+  fact->write(out);
+  if (fclose(out) != 0) abort();
+  return text;
+}
+
+/* The fact in place of what is shown, which must be the same unless the fact is a table. */
+static bool put_fact(const char *fact, const char *shown, size_t length, FILE *out) {
+  bool table = strchr(fact, '\n') != NULL;
+  fputs(fact, out);
+  return table || (strlen(fact) == length && !strncmp(fact, shown, length));
+}
+
+static bool fill_one(const char **at, char wrong[200], FILE *out) {
+  const char *name = *at + sizeof begin - 1;
+  const char *name_end = strstr(name, middle);
+  const char *shown = name_end ? name_end + sizeof middle - 1 : NULL;
+  const char *shown_end = shown ? strstr(shown, end) : NULL;
+  if (!shown_end) {
+    snprintf(wrong, 200, "a mark <!--@ without its end");
+    return false;
+  }
+  char *fact = text_of_fact(name, (size_t)(name_end - name));
+  if (!fact)
+    snprintf(wrong, 200, "@%.*s@ is not known", (int)(name_end - name), name);
+  else if (!put_fact(fact, shown, (size_t)(shown_end - shown), out))
+    snprintf(wrong, 200, "@%.*s@ reads '%.*s', the code says '%.60s'", (int)(name_end - name), name,
+             (int)(shown_end - shown), shown, fact);
+  free(fact);
+  *at = shown_end + sizeof end - 1;
+  return !*wrong;
+}
+
+bool fg_manual_fill(const char *text, char wrong[200], FILE *out) {
+  *wrong = '\0';
+  while (*text) {
+    if (strncmp(text, begin, sizeof begin - 1) != 0)
+      fputc(*text++, out);
+    else if (!fill_one(&text, wrong, out))
+      return false;
+  }
+  return true;
+}
