@@ -61,9 +61,12 @@ typedef struct fg_station_request {
   const char *listen; /* address; NULL: 127.0.0.1 */
   unsigned port;      /* 0: one that is free */
   const char *token;  /* needed by every request; NULL: none (loopback only) */
+  const char *const *hosts; /* further names that requests may be for, with or without a port */
+  size_t host_count;
+  const char *origin; /* "https://scanner.example.com": of a proxy before the pages; NULL: none */
   int end_descriptor; /* readable: the station ends, with FG_ERR_INTERRUPTED; 0: it is never told */
-  /* Called once when pages can be had, with their address; and for every file that was looked at.
-   * From any thread, one at a time; either may be NULL. */
+  /* Called when pages can be had, once for each of their addresses; and for every file that was
+   * looked at. From any thread, one at a time; either may be NULL. */
   void (*ready)(void *user, const char *address);
   void (*looked_at)(void *user, const char *file, const char *words);
   void *user;

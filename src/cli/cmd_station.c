@@ -1,4 +1,5 @@
 #include <argp.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -17,11 +18,17 @@ enum {
   OPTION_POLL,
   OPTION_LISTEN,
   OPTION_PORT,
-  OPTION_TOKEN
+  OPTION_TOKEN,
+  OPTION_TOKEN_FILE,
+  OPTION_HOST,
+  OPTION_ORIGIN
 };
+
+enum { HOSTS_MAX = 16, TOKEN_BYTES = 256 };
 
 typedef struct station_arguments {
   const char *recipe, *design;
+  const char *token_file, *hosts[HOSTS_MAX];
   bool allow_lossy;
   fg_station_request request;
 } station_arguments;
@@ -39,8 +46,19 @@ static const struct argp_option options[] = {
      2},
     {"port", OPTION_PORT, "N", 0, "Of the pages (default: @station_port@; 0: one that is free)", 2},
     {"listen", OPTION_LISTEN, "ADDRESS", 0,
-     "Serve the pages to other machines; needs --token (default: this machine alone)", 2},
-    {"token", OPTION_TOKEN, "TEXT", 0, "What a browser must know; at least 16 characters", 2},
+     "Serve the pages to other machines, at all addresses with 0.0.0.0 or ::; needs a token "
+     "(default: this machine alone)",
+     2},
+    {"host", OPTION_HOST, "NAME", 0,
+     "Answer under this name, too (repeatable); beside the machine's own names and addresses", 2},
+    {"origin", OPTION_ORIGIN, "URL", 0,
+     "What browsers open where a proxy with TLS stands before the pages, as "
+     "https://scanner.example.com; needs a token",
+     2},
+    {"token-file", OPTION_TOKEN_FILE, "FILE", 0,
+     "What a browser must know: the first line of FILE, at least 16 characters", 2},
+    {"token", OPTION_TOKEN, "TEXT", 0,
+     "The same on the command line, where every user of the machine can read it", 2},
     {0},
 };
 
@@ -83,17 +101,39 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_TOKEN:
     request->token = text;
     break;
+  case OPTION_TOKEN_FILE:
+    arguments->token_file = text;
+    break;
+  case OPTION_HOST:
+    if (request->host_count == HOSTS_MAX) argp_error(state, "--host: at most %d", HOSTS_MAX);
+    arguments->hosts[request->host_count++] = text;
+    break;
+  case OPTION_ORIGIN:
+    request->origin = text;
+    break;
   case ARGP_KEY_ARG:
     if (request->folder) argp_error(state, "one FOLDER is watched");
     request->folder = text;
     break;
   case ARGP_KEY_END:
     if (!request->folder) argp_error(state, "no FOLDER was given");
+    if (request->token && arguments->token_file)
+      argp_error(state, "--token and --token-file: one of them");
     break;
   default:
     return ARGP_ERR_UNKNOWN;
   }
   return 0;
+}
+
+static fg_status read_token(fg_context *ctx, const char *path, char token[TOKEN_BYTES]) {
+  FILE *file = fopen(path, "re");
+  if (!file) return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+  char *line = fgets(token, TOKEN_BYTES, file);
+  fclose(file);
+  if (!line) return fg_fail(ctx, FG_ERR_DATA, "%s: there is no token in it", path);
+  token[strcspn(token, " \t\r\n")] = '\0';
+  return FG_OK;
 }
 
 static void say_address(void *user, const char *address) {
@@ -121,10 +161,17 @@ int fg_cmd_station(int argc, char **argv) {
   fg_context ctx = {0};
   station_arguments arguments = {.request = {.port = FG_CLI_STATION_PORT}};
   fg_station_outcome outcome;
+  char token[TOKEN_BYTES];
   fg_status status = fg_cli_parse(&ctx, &fg_station_parser, argc, argv, &arguments);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   status = fg_station_settings_load(&ctx, arguments.recipe, arguments.design, &settings);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
+  if (arguments.token_file) {
+    status = read_token(&ctx, arguments.token_file, token);
+    if (status != FG_OK) return fg_cli_fail(&ctx, status);
+    arguments.request.token = token;
+  }
+  arguments.request.hosts = arguments.hosts;
   settings.lot.allow_lossy |= arguments.allow_lossy;
   arguments.request.settings = &settings;
   arguments.request.ready = say_address;

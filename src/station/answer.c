@@ -9,6 +9,7 @@
 #include "station/actions.h"
 #include "station/news.h"
 #include "station/pages.h"
+#include "station/reach.h"
 #include "station/trend.h"
 
 typedef struct route {
@@ -96,21 +97,8 @@ static bool has_cookie(const fg_request *request, const char *token) {
   return false;
 }
 
-/* Another name for this machine would be another site's: its pages could read ours (DNS
- * rebinding). */
-static bool is_our_host(const fg_inspection *station, const char *host) {
-  char local[64];
-  const char *port = strrchr(station->host, ':');
-  if (!host) return false;
-  if (!strcmp(host, station->host)) return true;
-  snprintf(local, sizeof local, "localhost%s", port ? port : "");
-  return !station->request->token && !strcmp(host, local);
-}
-
 static bool is_our_form(const fg_inspection *station, const fg_request *request) {
-  char own[160];
-  snprintf(own, sizeof own, "http://%s", request->host);
-  if (request->origin && strcmp(request->origin, own) != 0) return false;
+  if (request->origin && !fg_reach_is_origin(station, request->host, request->origin)) return false;
   if (request->site && strcmp(request->site, "same-origin") != 0 &&
       strcmp(request->site, "none") != 0)
     return false;
@@ -125,9 +113,11 @@ static bool is_page(const char *path) {
 
 /* False with the answer when the request goes no further. */
 static bool may_ask(const fg_inspection *station, const fg_request *request, fg_answer *answer) {
-  const char *token = station->request->token;
-  if (!is_our_host(station, request->host)) {
-    say(answer, 421, "This address is not the station's: use the one that it printed.");
+  const char *token = station->request->token, *origin = station->request->origin;
+  if (!fg_reach_is_host(station, request->host)) {
+    say(answer, 421,
+        "This address is not the station's: use one that it printed, or start it with --host for "
+        "another name.");
     return false;
   }
   if (token && !has_cookie(request, token)) {
@@ -136,7 +126,8 @@ static bool may_ask(const fg_inspection *station, const fg_request *request, fg_
       /* To a page of our own: what else the address holds may lead anywhere ("//elsewhere"). */
       strcpy(answer->location, is_page(request->path) ? request->path : "/");
       snprintf(answer->cookie, sizeof answer->cookie,
-               "foilgauge=%s; HttpOnly; SameSite=Strict; Path=/", token);
+               "foilgauge=%s; HttpOnly; SameSite=Strict; Path=/%s", token,
+               origin && !strncmp(origin, "https:", 6) ? "; Secure" : "");
       return false;
     }
     say(answer, 401, "Open the address that the station printed: it carries the token.");

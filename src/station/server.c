@@ -1,9 +1,7 @@
 #include "station/server.h"
 
-#include <arpa/inet.h>
 #include <errno.h>
 #include <microhttpd.h>
-#include <netinet/in.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -11,6 +9,7 @@
 #include "core/memory.h"
 #include "station/answer.h"
 #include "station/connections.h"
+#include "station/reach.h"
 #include "station/scan_command.h"
 
 /* A browser opens six connections, one of which waits for news; a page that was left is told apart
@@ -252,56 +251,35 @@ static void end_call(void *user, struct MHD_Connection *connection, void **place
   *place = NULL;
 }
 
-/* It stands in an address and in a cookie. */
-static fg_status check_token(fg_context *ctx, const char *token) {
-  static const char allowed[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_.~";
-  size_t length = strlen(token);
-  if (length >= FG_TOKEN_MIN && length <= FG_TOKEN_MAX && strspn(token, allowed) == length)
-    return FG_OK;
-  return fg_fail(ctx, FG_ERR_USAGE, "--token needs %d to %d of the characters A-Z a-z 0-9 - _ . ~",
-                 FG_TOKEN_MIN, FG_TOKEN_MAX);
-}
-
-static fg_status find_address(fg_context *ctx, const fg_station_request *request,
-                              struct sockaddr_in *address) {
-  const char *text = request->listen ? request->listen : "127.0.0.1";
-  *address =
-      (struct sockaddr_in){.sin_family = AF_INET, .sin_port = htons((uint16_t)request->port)};
-  if (inet_pton(AF_INET, text, &address->sin_addr) != 1)
-    return fg_fail(ctx, FG_ERR_USAGE, "--listen: '%.60s' is no IPv4 address, as 192.168.1.20",
-                   text);
-  bool local = ntohl(address->sin_addr.s_addr) >> 24 == 127;
-  if (!local && !request->token)
-    return fg_fail(ctx, FG_ERR_USAGE,
-                   "--listen %s: others can reach this address: give --token with at least %d "
-                   "characters",
-                   text, FG_TOKEN_MIN);
-  return request->token ? check_token(ctx, request->token) : FG_OK;
-}
-
-static fg_status start(fg_context *ctx, server *at, const struct sockaddr_in *address) {
+/* At `::` it answers to IPv4, too. */
+static unsigned flags_of(const struct sockaddr_storage *address, fg_reach reach) {
   unsigned flags = MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME;
+  if (address->ss_family == AF_INET6)
+    flags |= reach == FG_REACH_ANY ? MHD_USE_DUAL_STACK : MHD_USE_IPv6;
+  return flags;
+}
+
+static fg_status start(fg_context *ctx, server *at, const struct sockaddr_storage *address) {
+  const fg_station_request *request = at->station->request;
   errno = 0;
   at->daemon = MHD_start_daemon(
-      flags, 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR, address, MHD_OPTION_NOTIFY_COMPLETED,
-      end_call, at, MHD_OPTION_NOTIFY_CONNECTION, fg_connections_notify, &at->connections,
-      MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL, MHD_OPTION_THREAD_POOL_SIZE,
-      (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT, (unsigned)(THREADS * 2 * FG_CONNECTIONS),
-      MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-      (size_t)HEADER_BYTES, MHD_OPTION_END);
+      flags_of(address, at->station->reach), 0, NULL, NULL, handle, at, MHD_OPTION_SOCK_ADDR,
+      address, MHD_OPTION_NOTIFY_COMPLETED, end_call, at, MHD_OPTION_NOTIFY_CONNECTION,
+      fg_connections_notify, &at->connections, MHD_OPTION_UNESCAPE_CALLBACK, leave_encoded, NULL,
+      MHD_OPTION_THREAD_POOL_SIZE, (unsigned)THREADS, MHD_OPTION_CONNECTION_LIMIT,
+      (unsigned)(THREADS * 2 * FG_CONNECTIONS), MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SECONDS,
+      MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEADER_BYTES, MHD_OPTION_END);
   if (at->daemon) return FG_OK;
   return fg_fail(ctx, FG_ERR_IO, "%s:%u: pages cannot be served there: %s; choose another --port",
-                 inet_ntoa(address->sin_addr), ntohs(address->sin_port),
+                 request->listen ? request->listen : "127.0.0.1", request->port,
                  errno ? strerror(errno) : "the address is taken or not this machine's");
 }
 
 fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
-  struct sockaddr_in address;
-  char url[400];
+  struct sockaddr_storage address;
   void *block;
   const fg_station_request *request = station->request;
-  FG_TRY(find_address(ctx, request, &address));
+  FG_TRY(fg_reach_find(ctx, request, &address, &station->reach));
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof(server), &block));
   server *at = block;
   at->station = station;
@@ -315,13 +293,10 @@ fg_status fg_station_server_start(fg_context *ctx, fg_inspection *station) {
     return status;
   }
   const union MHD_DaemonInfo *info = MHD_get_daemon_info(at->daemon, MHD_DAEMON_INFO_BIND_PORT);
-  snprintf(station->host, sizeof station->host, "%s:%u", inet_ntoa(address.sin_addr),
-           info ? info->port : request->port);
+  fg_reach_write(&address, info ? info->port : request->port, station->host, sizeof station->host);
   station->server = at;
   station->wake = resume_all;
-  snprintf(url, sizeof url, "http://%s/%s%s", station->host, request->token ? "?token=" : "",
-           request->token ? request->token : "");
-  if (request->ready) request->ready(request->user, url);
+  fg_reach_tell(station);
   return FG_OK;
 }
 

@@ -41,6 +41,13 @@ typedef struct fg_arriving {
   bool seen;      /* in this round of looks at the folder */
 } fg_arriving;
 
+/* Who can reach the address that is listened at. */
+typedef enum fg_reach {
+  FG_REACH_LOCAL,   /* this machine */
+  FG_REACH_ADDRESS, /* others, at one address of this machine */
+  FG_REACH_ANY      /* others, at every address */
+} fg_reach;
+
 typedef struct fg_inspection {
   const fg_station_request *request;
   const fg_station_settings *settings;
@@ -51,8 +58,9 @@ typedef struct fg_inspection {
   bool check_design_known;
   int64_t setup;
   int lock;
-  char form_token[FG_FORM_TOKEN];     /* what a form of this station's pages carries */
-  char host[128];                     /* "127.0.0.1:8317": what requests must be for */
+  char form_token[FG_FORM_TOKEN]; /* what a form of this station's pages carries */
+  char host[128];                 /* "127.0.0.1:8317": where it listens */
+  fg_reach reach;
   atomic_bool scanning;               /* the scan command runs */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;

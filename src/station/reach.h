@@ -1,0 +1,29 @@
+/* Where the pages can be had, and under which names: requests for any other name are another
+ * site's, whose pages could read ours (DNS rebinding). */
+#ifndef FG_STATION_REACH_H
+#define FG_STATION_REACH_H
+
+#include <sys/socket.h>
+
+#include "station/state.h"
+
+/* The address to listen at. FG_ERR_USAGE: it is none, or others can reach the station (there, or by
+ * a proxy: --origin) and there is no token; a token, host or origin that is none. */
+fg_status fg_reach_find(fg_context *ctx, const fg_station_request *request,
+                        struct sockaddr_storage *address, fg_reach *reach);
+
+/* "192.168.1.20:8317", "[::1]:8317"; `port` is that of the socket. */
+void fg_reach_write(const struct sockaddr_storage *address, unsigned port, char *text, size_t size);
+
+/* Tells the request's `ready` every address that a browser can open. */
+void fg_reach_tell(const fg_inspection *station);
+
+/* Whether a request's Host is this station's: its address, localhost where only this machine can
+ * reach it, --host, the host of --origin; names of the machine where others can reach it, and every
+ * address of the machine where it listens at all of them. */
+bool fg_reach_is_host(const fg_inspection *station, const char *host);
+
+/* Whether a form's Origin is: of that host, or --origin. */
+bool fg_reach_is_origin(const fg_inspection *station, const char *host, const char *origin);
+
+#endif
