@@ -262,6 +262,8 @@ static void write_before(FILE *out, const card *newest) {
   fg_html_text(out, newest->path);
   fprintf(out, " %s, ", look.words);
   fg_page_time(out, newest->at);
+  fputs(newest->message[0] ? ": " : "", out);
+  fg_html_text(out, newest->message);
   fputs("</p>\n", out);
 }
 

@@ -182,6 +182,17 @@ static void test_what_is_on_its_way_stands_before_the_last_verdict(void **state)
   expect_words("class=\"call pass");
 }
 
+/* What went wrong a moment ago is not lost behind what is on its way. */
+static void test_the_message_of_the_card_before_stays(void **state) {
+  (void)state;
+  sql("INSERT INTO arrivals (id, at, path, kind, message) VALUES"
+      " (2, 1000000002000, 'scan.png', 'unreadable', 'the scan command ended with exit code 3')");
+  fg_station_set_stage(&fixture.station, FG_STAGE_MEASURING, "other.png");
+  assert_int_equal(ask("/", "", false), 200);
+  expect_words("Before it: scan.png SCAN AGAIN, 2001-");
+  expect_words(": the scan command ended with exit code 3</p>");
+}
+
 /* The file that is received first is shown until it is gone; a round that does not see it ends it.
  */
 static void test_of_two_files_one_is_shown(void **state) {
@@ -261,6 +272,7 @@ int main(void) {
       TEST(a_serial_of_another_foil_is_asked_about),
       TEST(a_scan_that_came_again_is_no_pass),
       TEST(what_is_on_its_way_stands_before_the_last_verdict),
+      TEST(the_message_of_the_card_before_stays),
       TEST(of_two_files_one_is_shown),
       TEST(crushed_is_said_of_crushed_bumps),
       TEST(a_page_says_how_old_it_is),
