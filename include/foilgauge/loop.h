@@ -391,6 +391,15 @@ typedef struct fg_loop_table_spec {
   uint64_t seed;
 } fg_loop_table_spec;
 
+/* A declared model in a file: {"response", "model", "group", "order", "design": {...}}. What `spec`
+ * has already stays; its other members point into `declaration`, which lives as long as they are
+ * used. FG_ERR_DATA names the file and the member, or line and column of what is no JSON. */
+typedef struct fg_loop_declaration fg_loop_declaration;
+fg_status fg_loop_declaration_load(fg_context *ctx, const char *path, fg_loop_table_spec *spec,
+                                   fg_design *design, fg_loop_declaration **declaration);
+bool fg_loop_declaration_has_design(const fg_loop_declaration *declaration); /* NULL: no */
+void fg_loop_declaration_free(fg_loop_declaration *declaration);
+
 /* A problem built from a table; owns everything in it. `row` maps its rows to the table's. */
 typedef struct fg_loop_table_problem {
   fg_loop_problem problem;

@@ -16,7 +16,7 @@ typedef enum fg_status {
   FG_ERR_USAGE,        /* the call or the command line is wrong: exit 64 */
   FG_ERR_DATA,         /* a file's content is wrong: exit 65 */
   FG_ERR_IO,           /* a file cannot be read or written: exit 74 */
-  FG_ERR_MEMORY,       /* out of memory: exit 74 */
+  FG_ERR_MEMORY,       /* out of memory: exit 71 */
   FG_ERR_NUMERIC,      /* a fit did not converge; usually a flag on one object: exit 65 */
   FG_ERR_INTERRUPTED,  /* stopped by a signal: exit 130 */
   FG_ERR_NOT_MEASURED, /* nothing in the input could be measured: exit 2 */
@@ -31,6 +31,10 @@ typedef struct fg_context {
  * replaced. */
 fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/* The status of a call of the system that failed with `error` (errno): FG_ERR_MEMORY where it was for
+ * want of memory, else FG_ERR_IO. */
+fg_status fg_status_of_errno(int error);
 
 /* The exit code that goes with a status. */
 int fg_status_exit_code(fg_status status);

@@ -5,8 +5,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include <cjson/cJSON.h>
-
 #include "cli/commands.h"
 #include "cli/facts.h"
 #include "cli/loop_outputs.h"
@@ -29,7 +27,7 @@ typedef struct loop_arguments {
   fg_output_set outputs;
   fg_loop_table_spec spec;
   double matters, minutes, mebibytes;
-  cJSON *declared; /* owns the strings that came from --declared */
+  fg_loop_declaration *declared; /* owns the strings that came from --declared */
 } loop_arguments;
 
 enum {
@@ -217,64 +215,10 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   }
 }
 
-static fg_status take_text(fg_context *ctx, const loop_arguments *arguments, const char *name,
-                           const char **into) {
-  const cJSON *item = cJSON_GetObjectItemCaseSensitive(arguments->declared, name);
-  if (!item || cJSON_IsNull(item) || *into) return FG_OK;
-  if (!cJSON_IsString(item))
-    return fg_fail(ctx, FG_ERR_DATA, "%s: %s must be a text", arguments->declared_path, name);
-  *into = item->valuestring;
-  return FG_OK;
-}
-
-static fg_status take_design(fg_context *ctx, const loop_arguments *arguments, fg_design *design) {
-  const struct {
-    const char *name;
-    double *value;
-  } members[] = {
-      {"bump_radius_mm", &design->bump_radius_mm},
-      {"bump_angle_deg", &design->bump_angle_deg},
-      {"overall_radius_mm", &design->overall_radius_mm},
-      {"thickness_mm", &design->thickness_mm},
-      {"top_foil_thickness_mm", &design->top_foil_thickness_mm},
-      {"rotor_diameter_mm", &design->rotor_diameter_mm},
-  };
-  const size_t count = sizeof members / sizeof *members;
-  const cJSON *object = cJSON_GetObjectItemCaseSensitive(arguments->declared, "design"), *item;
-  if (object && !cJSON_IsObject(object))
-    return fg_fail(ctx, FG_ERR_DATA, "%s: design must be an object", arguments->declared_path);
-  cJSON_ArrayForEach(item, object) {
-    size_t i = 0;
-    while (i < count && strcmp(members[i].name, item->string))
-      i++;
-    if (i == count)
-      return fg_fail(ctx, FG_ERR_DATA,
-                     "%s: design.%s is not known here; what is known are bump_radius_mm, "
-                     "bump_angle_deg, overall_radius_mm, thickness_mm, top_foil_thickness_mm and "
-                     "rotor_diameter_mm",
-                     arguments->declared_path, item->string);
-    if (!cJSON_IsNumber(item))
-      return fg_fail(ctx, FG_ERR_DATA, "%s: design.%s must be a number", arguments->declared_path,
-                     members[i].name);
-    *members[i].value = item->valuedouble;
-  }
-  return FG_OK;
-}
-
 static fg_status read_declared(fg_context *ctx, loop_arguments *arguments, fg_design *design) {
-  char *text = NULL;
-  if (arguments->declared_path) {
-    FG_TRY(fg_file_read_text(ctx, arguments->declared_path, 1 << 20, &text));
-    arguments->declared = cJSON_Parse(text);
-    free(text);
-    if (!cJSON_IsObject(arguments->declared))
-      return fg_fail(ctx, FG_ERR_DATA, "%s: not a JSON object", arguments->declared_path);
-    FG_TRY(take_text(ctx, arguments, "response", &arguments->spec.response));
-    FG_TRY(take_text(ctx, arguments, "model", &arguments->spec.model));
-    FG_TRY(take_text(ctx, arguments, "group", &arguments->spec.group));
-    FG_TRY(take_text(ctx, arguments, "order", &arguments->spec.order));
-    FG_TRY(take_design(ctx, arguments, design));
-  }
+  if (arguments->declared_path)
+    FG_TRY(fg_loop_declaration_load(ctx, arguments->declared_path, &arguments->spec, design,
+                                    &arguments->declared));
   if (arguments->design_path) FG_TRY(fg_design_load(ctx, arguments->design_path, design));
   if (arguments->source.lot && !arguments->spec.response) arguments->spec.response = lot_response;
   if (arguments->source.lot && !arguments->spec.model) arguments->spec.model = lot_model;
@@ -320,8 +264,7 @@ static fg_status search(fg_context *ctx, const loop_arguments *arguments, const 
 }
 
 static bool has_own_design(const loop_arguments *arguments) {
-  return arguments->design_path ||
-         cJSON_GetObjectItemCaseSensitive(arguments->declared, "design") != NULL;
+  return arguments->design_path || fg_loop_declaration_has_design(arguments->declared);
 }
 
 static fg_status run_loop(fg_context *ctx, loop_arguments *arguments, bool *failed) {
@@ -357,7 +300,7 @@ exit:
   fg_loop_result_free(&result);
   fg_loop_table_problem_free(&problem);
   fg_loop_source_free(&source);
-  cJSON_Delete(arguments->declared);
+  fg_loop_declaration_free(arguments->declared);
   return status;
 }
 

@@ -21,6 +21,8 @@ const fg_exit_code fg_exit_codes[] = {
     {3, "cannot tell: a limit lies within U of a value, and nothing fails"},
     {64, "the command line is wrong"},
     {65, "a file's content is wrong"},
+    {71, "out of memory: nothing is said of the input; close other programs, or give it less at a "
+         "time"},
     {74, "a file cannot be read or written, or who reads standard output has gone"},
     {130, "interrupted"},
     {0, NULL},

@@ -27,13 +27,15 @@ static const struct {
     {EISDIR, "it is a folder; give the name of a file"},
     {EPIPE, "the program that should read it has ended"},
     {ENAMETOOLONG, "choose a shorter name"},
+    {ENOMEM, "close other programs"},
 };
 
 fg_status fg_output_fail(fg_context *ctx, const char *path, int error) {
   const char *advice = "check the disk or choose another place";
   for (size_t i = 0; i < sizeof advices / sizeof advices[0]; i++)
     if (advices[i].error == error) advice = advices[i].advice;
-  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be written: %s; %s", path, strerror(error), advice);
+  return fg_fail(ctx, fg_status_of_errno(error), "%s: cannot be written: %s; %s", path,
+                 strerror(error), advice);
 }
 
 /* What the stream writes to. A stream alone remembers only that a write has failed, not why. */
@@ -255,7 +257,7 @@ static fg_status read_stream(fg_context *ctx, FILE *stream, const char *path, si
                      cap);
   } while (got > 0);
   if (ferror(stream))
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be read: %s", path, strerror(errno));
   (*text)[length] = '\0';
   const char *nul = memchr(*text, '\0', length);
   if (nul && length > 1 && (!memcmp(*text, "\xff\xfe", 2) || !memcmp(*text, "\xfe\xff", 2)))
@@ -270,8 +272,8 @@ fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char 
   *text = NULL;
   FILE *stream = fopen(path, "rbe");
   if (!stream)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s; check the name", path,
-                   strerror(errno));
+    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be opened: %s; %s", path,
+                   strerror(errno), errno == ENOMEM ? "close other programs" : "check the name");
   fg_status status = read_stream(ctx, stream, path, cap, text);
   fclose(stream);
   if (status != FG_OK) {
@@ -286,6 +288,7 @@ fg_status fg_stream_finish(fg_context *ctx, FILE *out, const char *what) {
   bool failed = ferror(out) != 0;
   errno = 0;
   if (fflush(out) == 0 && !failed) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s cannot be written: %s; is there space on the disk?", what,
+  return fg_fail(ctx, fg_status_of_errno(errno),
+                 "%s cannot be written: %s; is there space on the disk?", what,
                  errno ? strerror(errno) : "a write failed");
 }

@@ -11,8 +11,8 @@ static fg_status make_one(fg_context *ctx, const char *path) {
   int error = errno;
   if (error == EEXIST && stat(path, &about) == 0 && !S_ISDIR(about.st_mode)) error = ENOTDIR;
   if (error == EEXIST) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: the folder cannot be made: %s", *path ? path : "''",
-                 strerror(error));
+  return fg_fail(ctx, fg_status_of_errno(error), "%s: the folder cannot be made: %s",
+                 *path ? path : "''", strerror(error));
 }
 
 /* One that is there may lie in a folder where nothing can be made: it is asked for only where the

@@ -40,7 +40,8 @@ static fg_status sum_descriptor(fg_context *ctx, int descriptor, const char *nam
   for (off_t offset = 0; (got = read_at(descriptor, piece, offset)) > 0; offset += got)
     sha256_update(&sum, (size_t)got, piece);
   if (got < 0)
-    status = fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", name, strerror(errno));
+    status =
+        fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be read: %s", name, strerror(errno));
   else
     fg_sha256_finish(&sum, hex);
   free(piece);
@@ -51,7 +52,8 @@ fg_status fg_sha256_file(fg_context *ctx, const char *path, char hex[65]) {
   struct stat entry;
   int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s", path, strerror(errno));
+    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be opened: %s", path,
+                   strerror(errno));
   fg_status status = FG_OK;
   if (fstat(descriptor, &entry) != 0 || !S_ISREG(entry.st_mode))
     status = fg_fail(ctx, FG_ERR_IO, "%s: is no file", path);

@@ -1,5 +1,6 @@
 #include "foilgauge/status.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 
@@ -13,6 +14,10 @@ fg_status fg_fail(fg_context *ctx, fg_status status, const char *format, ...) {
   return status;
 }
 
+fg_status fg_status_of_errno(int error) {
+  return error == ENOMEM ? FG_ERR_MEMORY : FG_ERR_IO;
+}
+
 int fg_status_exit_code(fg_status status) {
   switch (status) {
   case FG_OK:
@@ -22,8 +27,9 @@ int fg_status_exit_code(fg_status status) {
   case FG_ERR_DATA:
   case FG_ERR_NUMERIC:
     return 65;
-  case FG_ERR_IO:
   case FG_ERR_MEMORY:
+    return 71;
+  case FG_ERR_IO:
     return 74;
   case FG_ERR_INTERRUPTED:
     return 130;

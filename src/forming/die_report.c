@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "forming/strip.h"
@@ -69,12 +70,13 @@ fg_status fg_forming_die_load(fg_context *ctx, const char *path, const fg_design
   fg_context words = {0};
   *die = (fg_forming_die){0};
   FG_TRY(fg_file_read_text(ctx, path, BYTES_MAX, &text));
-  cJSON *root = cJSON_Parse(text);
-  fg_status status =
-      root ? read_root(&words, root, design, die) : fg_fail(&words, FG_ERR_DATA, "not JSON");
-  cJSON_Delete(root);
+  cJSON *root;
   fg_text_clip(die->file.path, sizeof die->file.path, "%s", path);
   fg_sha256_text(text, die->file.sha256);
+  fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
+  FG_TRY(status);
+  status = read_root(&words, root, design, die);
+  cJSON_Delete(root);
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/json_syntax.h"
+#include "core/json_read.h"
 #include "core/json_writer.h"
 #include "core/sha256.h"
 #include "core/text.h"
@@ -227,14 +227,13 @@ static fg_status read_root(fg_context *ctx, const cJSON *root, fg_forming_materi
 fg_status fg_forming_material_load(fg_context *ctx, const char *path,
                                    fg_forming_material *material) {
   char *text = NULL;
-  const char *end = NULL;
   fg_forming_material read = *material;
   fg_context words = {0};
   FG_TRY(fg_file_read_text(ctx, path, BYTES_MAX, &text));
   fg_text_clip(read.file.path, sizeof read.file.path, "%s", path);
   fg_sha256_text(text, read.file.sha256);
-  cJSON *root = cJSON_ParseWithOpts(text, &end, true);
-  fg_status status = root ? FG_OK : fg_json_fail_syntax(ctx, path, text, end);
+  cJSON *root;
+  fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
   FG_TRY(status);
   status = read_root(&words, root, &read);

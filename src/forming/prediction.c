@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/forming.h"
@@ -56,10 +57,11 @@ fg_status fg_forming_prediction_load(fg_context *ctx, const char *path,
   FG_TRY(fg_file_read_text(ctx, path, BYTES_MAX, &text));
   fg_text_clip(prediction->path, sizeof prediction->path, "%s", path);
   fg_sha256_text(text, prediction->sha256);
-  cJSON *root = cJSON_Parse(text);
+  cJSON *root;
+  fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
-  fg_status status =
-      root ? read_root(&words, root, prediction) : fg_fail(&words, FG_ERR_DATA, "not JSON");
+  FG_TRY(status);
+  status = read_root(&words, root, prediction);
   cJSON_Delete(root);
   return status == FG_OK ? FG_OK : fg_fail(ctx, status, "%s: %.*s", path, 700, words.message);
 }

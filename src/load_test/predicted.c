@@ -8,6 +8,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/sha256.h"
 #include "core/text.h"
 #include "foilgauge/bearing.h"
@@ -138,7 +139,7 @@ fg_status fg_load_predict(fg_context *ctx, fg_load_test *test) {
   FG_TRY_EXIT(fg_text_print(ctx, &path, "%s/lot.json", test->options.lot));
   FG_TRY_EXIT(fg_file_read_text(ctx, path, LOT_BYTES_MAX, &text));
   fg_sha256_text(text, test->lot_sha256);
-  root = cJSON_Parse(text);
+  FG_TRY_EXIT(fg_json_read(ctx, path, text, &root));
   const cJSON *schema = cJSON_GetObjectItemCaseSensitive(root, "schema");
   if (!cJSON_IsString(schema) || strcmp(schema->valuestring, "foilgauge/lot/1") != 0)
     FG_TRY_EXIT(fg_fail(ctx, FG_ERR_DATA, "%s: not the report of a lot (foilgauge/lot/1)", path));

@@ -6,6 +6,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/loop.h"
@@ -58,7 +59,7 @@ fg_status fg_loop_model_load(fg_context *ctx, const char *path, fg_loop_model **
   FG_TRY_EXIT(fg_text_print(ctx, &model->owned_path, "%s", path));
   model->path = model->owned_path;
   FG_TRY_EXIT(fg_file_read_text(ctx, path, 1 << 24, &text));
-  model->json = cJSON_Parse(text);
+  FG_TRY_EXIT(fg_json_read(ctx, path, text, &model->json));
   if (!cJSON_IsObject(model->json)) {
     status = wrong(ctx, model, "not a JSON object");
     goto exit;

@@ -1,6 +1,7 @@
 /* Dies of a recipe: what was measured of them, kept in the recipe itself, so that a lot can be
  * reported anew without their files. */
 #include "lot/dies.h"
+#include "core/json_read.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,13 +67,14 @@ static fg_status read_report(fg_context *ctx, const cJSON *root, fg_lot_die *die
 
 static fg_status load_report(fg_context *ctx, const char *file, fg_lot_die *die) {
   char *text;
+  cJSON *root;
   FG_TRY(fg_file_read_text(ctx, file, DIE_BYTES_MAX, &text));
   fg_lot_sum_text(text, die->sha256);
-  cJSON *root = cJSON_Parse(text);
+  fg_status status = fg_json_read(ctx, file, text, &root);
   free(text);
+  FG_TRY(status);
   fg_context inner = {.message = ""};
-  fg_status status =
-      root ? read_report(&inner, root, die) : fg_fail(&inner, FG_ERR_DATA, "not JSON");
+  status = read_report(&inner, root, die);
   cJSON_Delete(root);
   return status == FG_OK ? FG_OK
                          : fg_fail(ctx, status, "%.200s: %.*s", file, CONTEXT_WORDS, inner.message);

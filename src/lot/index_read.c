@@ -8,6 +8,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/index.h"
@@ -237,9 +238,11 @@ fg_status fg_index_read_lot(fg_context *ctx, fg_index_lot *lot) {
   } else if (status != FG_OK) {
     status = say_missing(ctx, lot, path, inner.message);
   } else {
-    cJSON *root = cJSON_Parse(text);
+    cJSON *root;
+    status = fg_json_read(ctx, path, text, &root);
     fg_lot_sum_text(text, lot->sha256);
-    status = take_all(ctx, lot, path, root);
+    if (status != FG_ERR_MEMORY)
+      status = take_all(ctx, lot, path, root); /* damage is noted there */
     cJSON_Delete(root);
   }
   free(text);

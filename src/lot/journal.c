@@ -1,4 +1,5 @@
 #include "lot/journal.h"
+#include "core/json_read.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -22,7 +23,8 @@ static fg_status fail_errno(fg_context *ctx, const char *path, const char *what)
   const char *advice = errno == ENOSPC || errno == EDQUOT || errno == EFBIG
                            ? "; what is kept stays valid: free some space and --resume"
                            : "";
-  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be %s: %s%s", path, what, strerror(errno), advice);
+  return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be %s: %s%s", path, what,
+                 strerror(errno), advice);
 }
 
 static void write_head_members(FILE *out, const fg_journal_head *head) {
@@ -106,7 +108,9 @@ static fg_status parse_head(fg_context *ctx, const char *line, fg_journal_head *
                             head_state *out) {
   *head = (fg_journal_head){0};
   head_state state = HEAD_DAMAGED;
-  cJSON *root = cJSON_Parse(line);
+  cJSON *root;
+  if (fg_json_read(ctx, "the head of a journal", line, &root) == FG_ERR_MEMORY)
+    return FG_ERR_MEMORY;
   if (has_schema(root, SCHEMA_UNSEALED) && !cJSON_HasObjectItem(root, "checksum"))
     state = HEAD_EARLIER;
   else if (fg_seal_holds(line, strlen(line)) && has_schema(root, SCHEMA) &&

@@ -55,8 +55,9 @@ static fg_status remove_file(fg_context *ctx, const char *folder, const char *na
   char *path;
   FG_TRY(fg_lot_path(ctx, folder, name, &path));
   bool gone = unlink(path) == 0 || errno == ENOENT;
-  fg_status status =
-      gone ? FG_OK : fg_fail(ctx, FG_ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
+  fg_status status = gone ? FG_OK
+                          : fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be removed: %s",
+                                    path, strerror(errno));
   free(path);
   return status;
 }

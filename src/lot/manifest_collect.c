@@ -70,7 +70,8 @@ static fg_status add_folder(const search *s, const char *folder, int depth) {
                    DEPTH_MAX);
   int count = scandir(folder, &entries, keep_visible, by_bytes);
   if (count < 0)
-    return fg_fail(s->ctx, FG_ERR_IO, "%s: the folder cannot be read: %s", folder, strerror(errno));
+    return fg_fail(s->ctx, fg_status_of_errno(errno), "%s: the folder cannot be read: %s", folder,
+                   strerror(errno));
   fg_status status = FG_OK;
   for (int i = 0; i < count; i++) {
     if (status == FG_OK) status = add_entry(s, folder, entries[i]->d_name, depth);

@@ -7,7 +7,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
-#include "core/json_syntax.h"
+#include "core/json_read.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "foilgauge/control.h"
@@ -254,9 +254,8 @@ fg_status fg_lot_settings_parse(fg_context *ctx, const char *path, const char *j
                                 fg_lot_settings *settings) {
   fg_context inner = {.message = ""};
   fg_lot_settings copy = *settings;
-  const char *end = NULL;
-  cJSON *root = cJSON_ParseWithOpts(json, &end, true);
-  if (!root) return fg_json_fail_syntax(ctx, path, json, end);
+  cJSON *root;
+  FG_TRY(fg_json_read(ctx, path, json, &root));
   fg_status status = read_object(&inner, path, root, &copy);
   cJSON_Delete(root);
   if (status != FG_OK) return fg_fail(ctx, status, "%.200s: %.800s", path, inner.message);

@@ -1,4 +1,5 @@
 #include "lot/record.h"
+#include "core/json_read.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -346,9 +347,9 @@ static fg_status read_foils(fg_context *ctx, const cJSON *root, fg_record *recor
 fg_status fg_record_parse(fg_context *ctx, const char *line, fg_record *record) {
   *record = (fg_record){0};
   if (!fg_seal_holds(line, strlen(line))) return fail_record(ctx, "its checksum does not hold");
-  cJSON *root = cJSON_Parse(line);
-  if (!root) return fail_record(ctx, "not JSON");
-  fg_status status = read_head(ctx, root, record);
+  cJSON *root;
+  fg_status status = fg_json_read(ctx, "a record of a lot", line, &root);
+  if (status == FG_OK) status = read_head(ctx, root, record);
   if (status == FG_OK) status = read_foils(ctx, root, record);
   cJSON_Delete(root);
   if (status != FG_OK) fg_record_free(record);

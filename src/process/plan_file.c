@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/json_writer.h"
 #include "core/memory.h"
 #include "core/text.h"
@@ -123,10 +124,10 @@ fg_status fg_plan_limits_load(fg_context *ctx, const char *path, fg_plan_limits 
   char *text = NULL;
   *limits = (fg_plan_limits){0};
   FG_TRY(fg_file_read_text(ctx, path, PLAN_BYTES_MAX, &text));
-  cJSON *root = cJSON_Parse(text);
+  cJSON *root;
+  fg_status status = fg_json_read(ctx, path, text, &root);
   free(text);
-  fg_status status = root ? read_plan(ctx, path, root, limits)
-                          : fg_fail(ctx, FG_ERR_DATA, "%s: is no plan: it is no JSON", path);
+  if (status == FG_OK) status = read_plan(ctx, path, root, limits);
   cJSON_Delete(root);
   if (status != FG_OK) fg_plan_limits_free(limits);
   return status;

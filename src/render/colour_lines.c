@@ -91,42 +91,42 @@ static double carriage_mm(const fg_render_spec *spec, const fg_colour_line *line
   return d[1];
 }
 
-/* What true = nominal + d puts up the picture by d. */
-static void put_course(cJSON *entry, const fg_render_spec *spec, int i) {
+/* true = nominal + d: the picture moves up by d. */
+static void put_course(fg_json *json, const fg_render_spec *spec, int i) {
   const fg_colour_line *line = &spec->scanner.colour.line[i],
                        *green = &spec->scanner.colour.line[1];
   double height_mm = (double)spec->truth.height_px * spec->pixel_mm[1];
   double shift_mm = (line->shift_px[1] - green->shift_px[1]) * spec->pixel_mm[1];
-  cJSON *course = cJSON_AddArrayToObject(entry, "course");
+  fg_json_array(json, "course");
   for (int k = 0; k < COURSE_POINTS; k++) {
     double y = height_mm * k / (COURSE_POINTS - 1);
     double um = 1e3 * (shift_mm - carriage_mm(spec, line, y) + carriage_mm(spec, green, y));
-    double pair[2] = {y, um};
-    cJSON_AddItemToArray(course, cJSON_CreateDoubleArray(pair, 2));
+    fg_json_numbers(json, NULL, (const double[]){y, um}, 2);
   }
+  fg_json_array_end(json);
 }
 
-static void put_line(cJSON *object, const fg_render_spec *spec, int i) {
+static void put_line(fg_json *json, const fg_render_spec *spec, int i) {
   const fg_colour_line *line = &spec->scanner.colour.line[i],
                        *green = &spec->scanner.colour.line[1];
-  cJSON *entry = cJSON_AddObjectToObject(object, line_words[i]);
   double dx = line->shift_px[0] - green->shift_px[0], dy = line->shift_px[1] - green->shift_px[1];
-  cJSON_AddNumberToObject(entry, "gap_px", line->gap_px - green->gap_px);
-  cJSON_AddNumberToObject(entry, "dx_px", dx);
-  cJSON_AddNumberToObject(entry, "dy_px", dy);
-  cJSON_AddNumberToObject(entry, "dx_um", 1e3 * dx * spec->pixel_mm[0]);
-  cJSON_AddNumberToObject(entry, "dy_um", 1e3 * dy * spec->pixel_mm[1]);
-  cJSON_AddNumberToObject(entry, "magnification_ppm",
-                          line->magnification_ppm - green->magnification_ppm);
-  put_course(entry, spec, i);
+  fg_json_object(json, line_words[i]);
+  fg_json_number(json, "gap_px", line->gap_px - green->gap_px);
+  fg_json_number(json, "dx_px", dx);
+  fg_json_number(json, "dy_px", dy);
+  fg_json_number(json, "dx_um", 1e3 * dx * spec->pixel_mm[0]);
+  fg_json_number(json, "dy_um", 1e3 * dy * spec->pixel_mm[1]);
+  fg_json_number(json, "magnification_ppm", line->magnification_ppm - green->magnification_ppm);
+  put_course(json, spec, i);
+  fg_json_object_end(json);
 }
 
-void fg_colour_lines_put_truth(cJSON *root, const fg_render_spec *spec) {
+void fg_colour_lines_put_truth(fg_json *json, const fg_render_spec *spec) {
   if (!spec->scanner.colour.stated) return;
-  cJSON *object = cJSON_AddObjectToObject(root, "colour_lines");
-  cJSON_AddStringToObject(object, "against", line_words[1]);
-  cJSON_AddNumberToObject(object, "middle_x_mm",
-                          0.5 * (double)(spec->truth.width_px - 1) * spec->pixel_mm[0]);
-  put_line(object, spec, 0);
-  put_line(object, spec, 2);
+  fg_json_object(json, "colour_lines");
+  fg_json_string(json, "against", line_words[1]);
+  fg_json_number(json, "middle_x_mm", 0.5 * (double)(spec->truth.width_px - 1) * spec->pixel_mm[0]);
+  put_line(json, spec, 0);
+  put_line(json, spec, 2);
+  fg_json_object_end(json);
 }

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 
+#include "core/json_writer.h"
 #include "render/members.h"
 
 enum { FG_COLOUR_LINES = 3 }; /* red, green, blue */
@@ -35,6 +36,6 @@ double fg_colour_lines_reach_px(const fg_colour_lines *lines, double width_px);
 struct fg_render_spec;
 
 /* The same as truth: what red and blue show against green, and its course along y. */
-void fg_colour_lines_put_truth(cJSON *root, const struct fg_render_spec *spec);
+void fg_colour_lines_put_truth(fg_json *json, const struct fg_render_spec *spec);
 
 #endif

@@ -15,11 +15,14 @@ typedef struct png_out {
   png_structp png;
   png_infop info;
   jmp_buf failed;
+  fg_status status; /* of what failed */
 } png_out;
 
+/* libpng and zlib have no code for want of memory: "insufficient memory", "Out of memory". */
 static void on_error(png_structp png, png_const_charp words) {
   png_out *out = png_get_error_ptr(png);
-  fg_fail(out->ctx, FG_ERR_IO, "%s: cannot be written: %s",
+  out->status = strcasestr(words, "memory") ? FG_ERR_MEMORY : FG_ERR_IO;
+  fg_fail(out->ctx, out->status, "%s: cannot be written: %s",
           out->file.path ? out->file.path : "standard output", words);
   longjmp(out->failed, 1);
 }
@@ -46,7 +49,7 @@ static void write_header(png_out *out, const fg_render_truth *truth) {
 }
 
 static fg_status put_header(png_out *out, const fg_render_truth *truth) {
-  if (setjmp(out->failed)) return FG_ERR_IO;
+  if (setjmp(out->failed)) return out->status;
   write_header(out, truth);
   return FG_OK;
 }
@@ -55,13 +58,13 @@ static fg_status put_row(fg_context *ctx, void *user, int64_t row, const void *p
   (void)ctx;
   (void)row;
   png_out *out = user;
-  if (setjmp(out->failed)) return FG_ERR_IO;
+  if (setjmp(out->failed)) return out->status;
   png_write_row(out->png, (png_const_bytep)pixels);
   return FG_OK;
 }
 
 static fg_status put_end(png_out *out) {
-  if (setjmp(out->failed)) return FG_ERR_IO;
+  if (setjmp(out->failed)) return out->status;
   png_write_end(out->png, NULL);
   return FG_OK;
 }

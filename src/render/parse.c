@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/json_syntax.h"
+#include "core/json_read.h"
 #include "core/memory.h"
 #include "render/parse.h"
 
@@ -58,12 +58,7 @@ fg_status fg_render_parse(fg_context *ctx, const char *path, const char *json,
   spec->scanner = fg_spec_default_scanner();
   spec->width_px = spec->height_px = NAN;
   spec->margin_px = 80;
-  const char *where = NULL;
-  root = cJSON_ParseWithOpts(json, &where, true);
-  if (!root) {
-    status = fg_json_fail_syntax(ctx, path, json, where);
-    goto exit;
-  }
+  FG_TRY_EXIT(fg_json_read(ctx, path, json, &root));
   FG_TRY_EXIT(read_spec(&place, root, spec));
   FG_TRY_EXIT(default_foil(ctx, spec));
   FG_TRY_EXIT(fg_scene_build(&place, spec));

@@ -2,234 +2,239 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include <cjson/cJSON.h>
-
+#include "core/json_writer.h"
 #include "render/spec.h"
 
-static void put(cJSON *object, const char *name, double value) {
-  cJSON_AddNumberToObject(object, name, value);
+static void put_pair(fg_json *json, const char *name, double first, double second) {
+  const double pair[2] = {first, second};
+  fg_json_numbers(json, name, pair, 2);
 }
 
-static void put_point(cJSON *object, const char *name, fg_point point) {
-  double pair[2] = {point.x, point.y};
-  cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(pair, 2));
-}
-
-static void put_bumps(cJSON *foil, const fg_render_foil *truth) {
-  cJSON *bumps = cJSON_AddArrayToObject(foil, "bumps");
+static void put_bumps(fg_json *json, const fg_render_foil *truth) {
+  fg_json_array(json, "bumps");
   for (size_t i = 0; i < truth->bump_count; i++) {
     const fg_render_bump *bump = &truth->bumps[i];
-    cJSON *entry = cJSON_CreateObject();
-    put(entry, "index", bump->index);
-    put(entry, "radius_mm", bump->radius_mm);
-    put(entry, "bump_angle_deg", bump->bump_angle_deg);
-    put(entry, "intersection_angle_deg", bump->intersection_angle_deg);
-    put(entry, "centre_to_centre_mm", bump->centre_to_centre_mm);
-    put(entry, "height_mm", bump->height_mm);
-    put_point(entry, "centre_px", bump->centre_px);
-    if (bump->crushed) cJSON_AddTrueToObject(entry, "crushed");
-    cJSON_AddItemToArray(bumps, entry);
+    fg_json_object(json, NULL);
+    fg_json_number(json, "index", bump->index);
+    fg_json_number(json, "radius_mm", bump->radius_mm);
+    fg_json_number(json, "bump_angle_deg", bump->bump_angle_deg);
+    fg_json_number(json, "intersection_angle_deg", bump->intersection_angle_deg);
+    fg_json_number(json, "centre_to_centre_mm", bump->centre_to_centre_mm);
+    fg_json_number(json, "height_mm", bump->height_mm);
+    put_pair(json, "centre_px", bump->centre_px.x, bump->centre_px.y);
+    if (bump->crushed) fg_json_bool(json, "crushed", true);
+    fg_json_object_end(json);
   }
+  fg_json_array_end(json);
 }
 
-static void put_design(cJSON *foil, const fg_render_design *design) {
-  cJSON *object = cJSON_AddObjectToObject(foil, "design");
-  put(object, "bump_radius_mm", design->bump_radius_mm);
-  put(object, "bump_angle_deg", design->bump_angle_deg);
-  put(object, "bump_count", design->bump_count);
-  put(object, "overall_radius_mm", design->overall_radius_mm);
-  put(object, "sleeve_radius_mm", design->sleeve_radius_mm);
-  put(object, "pitch_deg", design->pitch_deg);
-  put(object, "thickness_mm", design->thickness_mm);
-  put(object, "fillet_radius_mm", design->fillet_radius_mm);
-  put(object, "rotor_diameter_mm", design->rotor_diameter_mm);
+static void put_design(fg_json *json, const fg_render_design *design) {
+  fg_json_object(json, "design");
+  fg_json_number(json, "bump_radius_mm", design->bump_radius_mm);
+  fg_json_number(json, "bump_angle_deg", design->bump_angle_deg);
+  fg_json_number(json, "bump_count", design->bump_count);
+  fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+  fg_json_number(json, "sleeve_radius_mm", design->sleeve_radius_mm);
+  fg_json_number(json, "pitch_deg", design->pitch_deg);
+  fg_json_number(json, "thickness_mm", design->thickness_mm);
+  fg_json_number(json, "fillet_radius_mm", design->fillet_radius_mm);
+  fg_json_number(json, "rotor_diameter_mm", design->rotor_diameter_mm);
+  fg_json_object_end(json);
   fg_render_bump nominal = fg_outline_nominal(design);
-  cJSON *derived = cJSON_AddObjectToObject(foil, "nominal");
+  fg_json_object(json, "nominal");
   double height = design->bump_radius_mm - (nominal.centre_to_centre_mm - design->sleeve_radius_mm);
-  put(derived, "centre_to_centre_mm", nominal.centre_to_centre_mm);
-  put(derived, "height_mm", height);
-  put(derived, "clearance_mm",
-      design->sleeve_radius_mm - height - design->rotor_diameter_mm / 2 - design->thickness_mm);
+  fg_json_number(json, "centre_to_centre_mm", nominal.centre_to_centre_mm);
+  fg_json_number(json, "height_mm", height);
+  fg_json_number(json, "clearance_mm",
+                 design->sleeve_radius_mm - height - design->rotor_diameter_mm / 2 -
+                     design->thickness_mm);
+  fg_json_object_end(json);
 }
 
-static void put_arc_design(cJSON *foil, const fg_render_design *design) {
-  cJSON *object = cJSON_AddObjectToObject(foil, "design");
-  cJSON_AddStringToObject(object, "form", "arc");
-  put(object, "overall_radius_mm", design->overall_radius_mm);
-  put(object, "subtended_angle_deg", design->subtended_angle_deg);
-  put(object, "thickness_mm", design->thickness_mm);
+static void put_arc_design(fg_json *json, const fg_render_design *design) {
+  fg_json_object(json, "design");
+  fg_json_string(json, "form", "arc");
+  fg_json_number(json, "overall_radius_mm", design->overall_radius_mm);
+  fg_json_number(json, "subtended_angle_deg", design->subtended_angle_deg);
+  fg_json_number(json, "thickness_mm", design->thickness_mm);
+  fg_json_object_end(json);
 }
 
 /* What is stated of sagitta and clearance. */
-static void put_stated(cJSON *object, const char *name, double value) {
-  if (isfinite(value)) put(object, name, value);
+static void put_stated(fg_json *json, const char *name, double value) {
+  if (isfinite(value)) fg_json_number(json, name, value);
 }
 
-static void put_cantilever_design(cJSON *foil, const fg_render_design *design) {
-  cJSON *object = cJSON_AddObjectToObject(foil, "design");
-  cJSON_AddStringToObject(object, "form", "cantilever");
-  put(object, "beam_count", design->beam_count);
-  put(object, "beam_length_mm", design->beam_length_mm);
-  put(object, "beam_width_mm", design->beam_width_mm);
-  put(object, "thickness_mm", design->thickness_mm);
-  put_stated(object, "sagitta_mm", design->sagitta_mm);
-  put_stated(object, "clearance_mm", design->clearance_mm);
+static void put_cantilever_design(fg_json *json, const fg_render_design *design) {
+  fg_json_object(json, "design");
+  fg_json_string(json, "form", "cantilever");
+  fg_json_number(json, "beam_count", design->beam_count);
+  fg_json_number(json, "beam_length_mm", design->beam_length_mm);
+  fg_json_number(json, "beam_width_mm", design->beam_width_mm);
+  fg_json_number(json, "thickness_mm", design->thickness_mm);
+  put_stated(json, "sagitta_mm", design->sagitta_mm);
+  put_stated(json, "clearance_mm", design->clearance_mm);
+  fg_json_object_end(json);
 }
 
 /* S goes with L³ / w (eq 5.10), s with L². */
-static void put_consequences(cJSON *entry, const fg_render_beam *beam,
+static void put_consequences(fg_json *json, const fg_render_beam *beam,
                              const fg_render_design *design) {
   double length = beam->length_mm / design->beam_length_mm;
   double width = beam->width_mm / design->beam_width_mm;
   double change_mm = design->sagitta_mm * (1 - length * length);
-  put(entry, "compliance_error_pct", 100 * (length * length * length / width - 1));
-  put(entry, "sagitta_error_pct", 100 * (length * length - 1));
-  put_stated(entry, "sagitta_mm", design->sagitta_mm * length * length);
-  put_stated(entry, "clearance_change_mm", change_mm);
-  put_stated(entry, "clearance_change_pct", 100 * change_mm / design->clearance_mm);
+  fg_json_number(json, "compliance_error_pct", 100 * (length * length * length / width - 1));
+  fg_json_number(json, "sagitta_error_pct", 100 * (length * length - 1));
+  put_stated(json, "sagitta_mm", design->sagitta_mm * length * length);
+  put_stated(json, "clearance_change_mm", change_mm);
+  put_stated(json, "clearance_change_pct", 100 * change_mm / design->clearance_mm);
 }
 
-static void put_beams(cJSON *foil, const fg_render_foil *truth, const fg_render_design *design) {
-  cJSON *beams = cJSON_AddArrayToObject(foil, "beams");
+static void put_beams(fg_json *json, const fg_render_foil *truth, const fg_render_design *design) {
+  fg_json_array(json, "beams");
   for (size_t i = 0; i < truth->beam_count; i++) {
     const fg_render_beam *beam = &truth->beams[i];
-    cJSON *entry = cJSON_CreateObject();
-    put(entry, "number", beam->number);
-    put(entry, "length_mm", beam->length_mm);
-    put(entry, "width_mm", beam->width_mm);
-    put_consequences(entry, beam, design);
-    put(entry, "taper_um", beam->taper_um);
-    put_point(entry, "root_px", beam->root_px);
-    put_point(entry, "tip_px", beam->tip_px);
-    if (beam->torn) cJSON_AddTrueToObject(entry, "torn");
-    if (beam->bent_deg != 0) put(entry, "bent_deg", beam->bent_deg);
-    cJSON_AddItemToArray(beams, entry);
+    fg_json_object(json, NULL);
+    fg_json_number(json, "number", beam->number);
+    fg_json_number(json, "length_mm", beam->length_mm);
+    fg_json_number(json, "width_mm", beam->width_mm);
+    put_consequences(json, beam, design);
+    fg_json_number(json, "taper_um", beam->taper_um);
+    put_pair(json, "root_px", beam->root_px.x, beam->root_px.y);
+    put_pair(json, "tip_px", beam->tip_px.x, beam->tip_px.y);
+    if (beam->torn) fg_json_bool(json, "torn", true);
+    if (beam->bent_deg != 0) fg_json_number(json, "bent_deg", beam->bent_deg);
+    fg_json_object_end(json);
   }
+  fg_json_array_end(json);
 }
 
-static void put_cantilever(cJSON *object, const fg_render_foil *truth,
+static void put_cantilever(fg_json *json, const fg_render_foil *truth,
                            const fg_render_design *design) {
-  put_point(object, "root_centre_px", truth->overall_centre_px);
-  put(object, "thickness_mm", truth->thickness_mm);
-  put(object, "rotate_deg", truth->rotate_deg);
-  cJSON_AddBoolToObject(object, "mirror", truth->mirror);
-  put_cantilever_design(object, design);
-  put_beams(object, truth, design);
+  put_pair(json, "root_centre_px", truth->overall_centre_px.x, truth->overall_centre_px.y);
+  fg_json_number(json, "thickness_mm", truth->thickness_mm);
+  fg_json_number(json, "rotate_deg", truth->rotate_deg);
+  fg_json_bool(json, "mirror", truth->mirror);
+  put_cantilever_design(json, design);
+  put_beams(json, truth, design);
 }
 
-static void put_foil(cJSON *object, const fg_render_foil *truth, const fg_render_design *design) {
+static void put_foil(fg_json *json, const fg_render_foil *truth, const fg_render_design *design) {
   if (design->cantilever) {
-    put_cantilever(object, truth, design);
+    put_cantilever(json, truth, design);
     return;
   }
-  put(object, "overall_radius_mm", truth->overall_radius_mm);
-  put_point(object, "overall_centre_px", truth->overall_centre_px);
-  put(object, "thickness_mm", truth->thickness_mm);
+  fg_json_number(json, "overall_radius_mm", truth->overall_radius_mm);
+  put_pair(json, "overall_centre_px", truth->overall_centre_px.x, truth->overall_centre_px.y);
+  fg_json_number(json, "thickness_mm", truth->thickness_mm);
   if (design->arc) {
-    put(object, "subtended_angle_deg", truth->subtended_angle_deg);
-    put(object, "length_mm",
-        truth->overall_radius_mm * truth->subtended_angle_deg * 3.14159265358979323846 / 180);
+    fg_json_number(json, "subtended_angle_deg", truth->subtended_angle_deg);
+    fg_json_number(json, "length_mm",
+                   truth->overall_radius_mm * truth->subtended_angle_deg * 3.14159265358979323846 /
+                       180);
   }
-  put(object, "rotate_deg", truth->rotate_deg);
-  cJSON_AddBoolToObject(object, "mirror", truth->mirror);
+  fg_json_number(json, "rotate_deg", truth->rotate_deg);
+  fg_json_bool(json, "mirror", truth->mirror);
   if (design->arc) {
-    put_arc_design(object, design);
+    put_arc_design(json, design);
     return;
   }
-  put_design(object, design);
-  put_bumps(object, truth);
+  put_design(json, design);
+  put_bumps(json, truth);
 }
 
 /* One number where both axes agree. */
-static void put_axes(cJSON *object, const char *name, const double value[2]) {
+static void put_axes(fg_json *json, const char *name, const double value[2]) {
   if (value[0] == value[1])
-    put(object, name, value[0]);
+    fg_json_number(json, name, value[0]);
   else
-    cJSON_AddItemToObject(object, name, cJSON_CreateDoubleArray(value, 2));
+    fg_json_numbers(json, name, value, 2);
 }
 
-static void put_scan(cJSON *root, const fg_render_spec *spec) {
+static void put_scan(fg_json *json, const fg_render_spec *spec) {
   const fg_scanner *scanner = &spec->scanner;
-  cJSON *scan = cJSON_AddObjectToObject(root, "scan");
-  put_axes(scan, "dpi", scanner->dpi);
-  put(scan, "width", (double)spec->truth.width_px);
-  put(scan, "height", (double)spec->truth.height_px);
-  put(scan, "bits", scanner->bits);
-  put_axes(scan, "blur_px", scanner->blur_px);
-  put(scan, "motion_blur_px", scanner->motion_blur_px);
-  put(scan, "background", scanner->background);
-  put(scan, "contrast", scanner->contrast);
-  put(scan, "gamma", scanner->gamma);
-  put(scan, "noise", scanner->noise);
-  put(scan, "noise_correlation", scanner->noise_correlation);
-  put(scan, "one_sided_blur_px", scanner->one_sided_blur_px);
-  cJSON_AddStringToObject(scan, "one_sided_way", scanner->one_sided_way < 0 ? "-y" : "+y");
-  put(scan, "edge_roughness_um", scanner->edge_roughness_um);
-  put(scan, "edge_common_um", scanner->edge_common_um);
-  put(scan, "correlation_um", scanner->edge_correlation_um);
-  cJSON_AddStringToObject(scan, "correlation_form",
-                          scanner->edge_exponential ? "exponential" : "gaussian");
-  put(scan, "halo_fraction", scanner->halo_fraction);
-  put(scan, "side_wall_amplitude", scanner->wall_amplitude);
-  put(scan, "seed", (double)spec->seed);
+  fg_json_object(json, "scan");
+  put_axes(json, "dpi", scanner->dpi);
+  fg_json_number(json, "width", (double)spec->truth.width_px);
+  fg_json_number(json, "height", (double)spec->truth.height_px);
+  fg_json_number(json, "bits", scanner->bits);
+  put_axes(json, "blur_px", scanner->blur_px);
+  fg_json_number(json, "motion_blur_px", scanner->motion_blur_px);
+  fg_json_number(json, "background", scanner->background);
+  fg_json_number(json, "contrast", scanner->contrast);
+  fg_json_number(json, "gamma", scanner->gamma);
+  fg_json_number(json, "noise", scanner->noise);
+  fg_json_number(json, "noise_correlation", scanner->noise_correlation);
+  fg_json_number(json, "one_sided_blur_px", scanner->one_sided_blur_px);
+  fg_json_string(json, "one_sided_way", scanner->one_sided_way < 0 ? "-y" : "+y");
+  fg_json_number(json, "edge_roughness_um", scanner->edge_roughness_um);
+  fg_json_number(json, "edge_common_um", scanner->edge_common_um);
+  fg_json_number(json, "correlation_um", scanner->edge_correlation_um);
+  fg_json_string(json, "correlation_form", scanner->edge_exponential ? "exponential" : "gaussian");
+  fg_json_number(json, "halo_fraction", scanner->halo_fraction);
+  fg_json_number(json, "side_wall_amplitude", scanner->wall_amplitude);
+  fg_json_number(json, "seed", (double)spec->seed);
+  fg_json_object_end(json);
 }
 
-static void put_curve(cJSON *entry, const fg_render_effect *effect) {
+static void put_curve(fg_json *json, const fg_render_effect *effect) {
   if (effect->row->target == FG_RENDER_EFFECT_SCANNER)
-    cJSON_AddStringToObject(entry, "moves", effect->moves ? "y" : "x");
+    fg_json_string(json, "moves", effect->moves ? "y" : "x");
   if (effect->row->target == FG_RENDER_EFFECT_EDGE)
-    cJSON_AddStringToObject(entry, "edges", effect->apart ? "apart" : "together");
-  cJSON *knots = cJSON_AddArrayToObject(entry, "knots");
-  for (size_t i = 0; i < effect->curve.count; i++) {
-    double pair[2] = {effect->curve.at[i], effect->curve.value_um[i]};
-    cJSON_AddItemToArray(knots, cJSON_CreateDoubleArray(pair, 2));
-  }
+    fg_json_string(json, "edges", effect->apart ? "apart" : "together");
+  fg_json_array(json, "knots");
+  for (size_t i = 0; i < effect->curve.count; i++)
+    put_pair(json, NULL, effect->curve.at[i], effect->curve.value_um[i]);
+  fg_json_array_end(json);
 }
 
 /* Lost rows and seams are effects under the names that reports give them. */
-static cJSON *jump_entry(const fg_render_jump *jump) {
-  cJSON *entry = cJSON_CreateObject();
+static void put_jump(fg_json *json, const fg_render_jump *jump) {
+  fg_json_object(json, NULL);
   double along = jump->repeats * jump->d_mm[jump->axis];
-  cJSON_AddStringToObject(entry, "id", jump->axis ? "scan.row_step" : "scan.column_step");
-  put(entry, "amplitude_um", 1e3 * along);
-  put(entry, jump->axis ? "y_mm" : "x_mm", jump->at_mm);
-  if (jump->axis) put(entry, "rows", round(along / jump->every_mm));
-  if (!jump->axis && jump->d_mm[1] != 0) put(entry, "amplitude_y_um", 1e3 * jump->d_mm[1]);
-  return entry;
+  fg_json_string(json, "id", jump->axis ? "scan.row_step" : "scan.column_step");
+  fg_json_number(json, "amplitude_um", 1e3 * along);
+  fg_json_number(json, jump->axis ? "y_mm" : "x_mm", jump->at_mm);
+  if (jump->axis) fg_json_number(json, "rows", round(along / jump->every_mm));
+  if (!jump->axis && jump->d_mm[1] != 0)
+    fg_json_number(json, "amplitude_y_um", 1e3 * jump->d_mm[1]);
+  fg_json_object_end(json);
 }
 
-static void put_lift(cJSON *entry, const fg_render_effect *effect, int bumps) {
-  cJSON_AddStringToObject(entry, "form", effect->lift.whole ? "whole" : "crown");
-  cJSON_AddItemToObject(entry, "values_um", cJSON_CreateDoubleArray(effect->lift.um, bumps));
+static void put_lift(fg_json *json, const fg_render_effect *effect, int bumps) {
+  fg_json_string(json, "form", effect->lift.whole ? "whole" : "crown");
+  fg_json_numbers(json, "values_um", effect->lift.um, (size_t)bumps);
 }
 
-static void put_effects(cJSON *root, const fg_render_spec *spec) {
+static void put_effects(fg_json *json, const fg_render_spec *spec) {
   const fg_render_effect_list *list = &spec->effects;
-  cJSON *effects = cJSON_AddArrayToObject(root, "effects");
+  fg_json_array(json, "effects");
   for (size_t i = 0; i < list->count; i++) {
     const fg_render_effect *effect = &list->effects[i];
-    cJSON *entry = cJSON_CreateObject();
-    cJSON_AddStringToObject(entry, "id", effect->row->id);
+    fg_json_object(json, NULL);
+    fg_json_string(json, "id", effect->row->id);
     for (int k = 0; k < FG_RENDER_EFFECT_PARAMETERS_MAX && effect->row->parameters[k].name; k++)
-      put(entry, effect->row->parameters[k].name, effect->p[k]);
-    if (effect->row->curve) put_curve(entry, effect);
-    if (effect->target == FG_RENDER_EFFECT_LIFT) put_lift(entry, effect, fg_scene_most_bumps(spec));
-    cJSON_AddItemToArray(effects, entry);
+      fg_json_number(json, effect->row->parameters[k].name, effect->p[k]);
+    if (effect->row->curve) put_curve(json, effect);
+    if (effect->target == FG_RENDER_EFFECT_LIFT) put_lift(json, effect, fg_scene_most_bumps(spec));
+    fg_json_object_end(json);
   }
   for (size_t i = 0; i < list->jumps.count; i++)
-    cJSON_AddItemToArray(effects, jump_entry(&list->jumps.each[i]));
+    put_jump(json, &list->jumps.each[i]);
+  fg_json_array_end(json);
 }
 
-static void put_discs(cJSON *root, const fg_render_spec *spec) {
+static void put_discs(fg_json *json, const fg_render_spec *spec) {
   if (spec->truth.disc_count == 0) return;
-  cJSON *discs = cJSON_AddArrayToObject(root, "discs");
+  fg_json_array(json, "discs");
   for (size_t i = 0; i < spec->truth.disc_count; i++) {
-    cJSON *entry = cJSON_CreateObject();
-    put_point(entry, "centre_px", spec->truth.discs[i].centre_px);
-    put(entry, "radius_mm", spec->truth.discs[i].radius_mm);
-    cJSON_AddBoolToObject(entry, "hole", spec->truth.discs[i].hole);
-    cJSON_AddItemToArray(discs, entry);
+    fg_json_object(json, NULL);
+    put_pair(json, "centre_px", spec->truth.discs[i].centre_px.x, spec->truth.discs[i].centre_px.y);
+    fg_json_number(json, "radius_mm", spec->truth.discs[i].radius_mm);
+    fg_json_bool(json, "hole", spec->truth.discs[i].hole);
+    fg_json_object_end(json);
   }
+  fg_json_array_end(json);
 }
 
 static const fg_render_design *design_of(const fg_render_spec *spec, size_t foil) {
@@ -239,24 +244,42 @@ static const fg_render_design *design_of(const fg_render_spec *spec, size_t foil
   return &spec->requests[i].design;
 }
 
-fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json) {
-  *json = NULL;
-  cJSON *root = cJSON_CreateObject();
-  cJSON_AddStringToObject(root, "schema", "foilgauge/truth/1");
-  if (spec->truth.foil_count == 1) put_foil(root, &spec->truth.foils[0], design_of(spec, 0));
-  if (spec->truth.foil_count > 1) {
-    cJSON *foils = cJSON_AddArrayToObject(root, "foils");
-    for (size_t i = 0; i < spec->truth.foil_count; i++) {
-      cJSON *foil = cJSON_CreateObject();
-      put_foil(foil, &spec->truth.foils[i], design_of(spec, i));
-      cJSON_AddItemToArray(foils, foil);
-    }
+static void put_foils(fg_json *json, const fg_render_spec *spec) {
+  if (spec->truth.foil_count == 1) put_foil(json, &spec->truth.foils[0], design_of(spec, 0));
+  if (spec->truth.foil_count < 2) return;
+  fg_json_array(json, "foils");
+  for (size_t i = 0; i < spec->truth.foil_count; i++) {
+    fg_json_object(json, NULL);
+    put_foil(json, &spec->truth.foils[i], design_of(spec, i));
+    fg_json_object_end(json);
   }
-  put_discs(root, spec);
-  put_scan(root, spec);
-  put_effects(root, spec);
-  fg_colour_lines_put_truth(root, spec);
-  *json = cJSON_Print(root);
-  cJSON_Delete(root);
-  return *json ? FG_OK : fg_fail(ctx, FG_ERR_MEMORY, "out of memory for the truth");
+  fg_json_array_end(json);
+}
+
+static void write_truth(const fg_render_spec *spec, FILE *out) {
+  fg_json json;
+  fg_json_begin(&json, out);
+  json.exact = true;
+  fg_json_object(&json, NULL);
+  fg_json_string(&json, "schema", "foilgauge/truth/1");
+  put_foils(&json, spec);
+  put_discs(&json, spec);
+  put_scan(&json, spec);
+  put_effects(&json, spec);
+  fg_colour_lines_put_truth(&json, spec);
+  fg_json_object_end(&json);
+}
+
+/* The stream in memory keeps an allocation's failure until it is asked. */
+fg_status fg_render_truth_json(fg_context *ctx, const fg_render_spec *spec, char **json) {
+  size_t length;
+  *json = NULL;
+  FILE *out = open_memstream(json, &length);
+  if (!out) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the truth");
+  write_truth(spec, out);
+  bool broken = ferror(out) != 0;
+  if (fclose(out) == 0 && !broken) return FG_OK;
+  free(*json);
+  *json = NULL;
+  return fg_fail(ctx, FG_ERR_MEMORY, "out of memory: the truth");
 }

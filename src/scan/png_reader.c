@@ -223,6 +223,21 @@ static bool is_common(const fg_png_header *header) {
   return !header->interlaced && !header->has_palette && header->bit_depth >= 8;
 }
 
+/* Whether no distance in the compressed stream can reach beyond the window that its first byte
+ * declares (RFC 1950): 32 KiB, or as much as the image has bytes. ISA-L looks only for the
+ * beginning of the stream, libpng for the window: what may differ is libpng's. */
+static bool window_covers_image(const fg_png *png) {
+  enum { WINDOW_BITS_LEAST = 8, WINDOW_BITS_MOST = 15 };
+  const uint8_t *first;
+  const fg_png_header *header = &png->header;
+  bool empty_chunk = !(png->head[0] | png->head[1] | png->head[2] | png->head[3]);
+  if (empty_chunk || fg_source_peek(png->source, 1, &first) < 1) return false;
+  int bits = (*first >> 4) + WINDOW_BITS_LEAST;
+  uint64_t row_bytes =
+      (uint64_t)header->width_px * (uint64_t)(header->channels * header->bit_depth / 8);
+  return bits >= WINDOW_BITS_MOST || ((uint64_t)1 << bits) >= (row_bytes + 1) * header->height_px;
+}
+
 static fg_status start_image(fg_context *ctx, fg_png *png, bool beside) {
   const fg_png_header *header = &png->header;
   size_t pixel_bytes = (size_t)(header->channels * header->bit_depth / 8);
@@ -234,7 +249,8 @@ static fg_status start_image(fg_context *ctx, fg_png *png, bool beside) {
 
 fg_status fg_png_start(fg_context *ctx, fg_png *png, bool beside) {
   png->in_image = true;
-  if (is_common(&png->header) && !png->by_libpng) return start_image(ctx, png, beside);
+  if (is_common(&png->header) && !png->by_libpng && window_covers_image(png))
+    return start_image(ctx, png, beside);
   return run(png, start, NULL) ? FG_OK : fail(ctx, png);
 }
 

@@ -18,7 +18,8 @@ enum { BUFFER_BYTES = FG_LEDGER_BLOCK_BYTES };
 static fg_status examine(fg_context *ctx, fg_source *source) {
   struct stat entry;
   if (fstat(source->descriptor, &entry) != 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", source->name, strerror(errno));
+    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be read: %s", source->name,
+                   strerror(errno));
   if (S_ISDIR(entry.st_mode))
     return fg_fail(ctx, FG_ERR_IO, "%s: is a folder; give the name of a scan in it", source->name);
   source->regular = S_ISREG(entry.st_mode);
@@ -41,8 +42,11 @@ fg_status fg_source_open(fg_context *ctx, const char *path, bool only_file, fg_s
       standard ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | (only_file ? O_NONBLOCK : 0));
   source->owned = !standard;
   if (source->descriptor < 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be opened: %s; %s", path, strerror(errno),
-                   errno == EACCES ? "ask for permission to read it" : "check the name");
+    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be opened: %s; %s", path,
+                   strerror(errno),
+                   errno == EACCES   ? "ask for permission to read it"
+                   : errno == ENOMEM ? "close other programs"
+                                     : "check the name");
   FG_TRY(examine(ctx, source));
   if (only_file && !source->regular)
     return fg_fail(ctx, FG_ERR_IO, "%s: is a pipe or a device, not a file; give a scan's file",
@@ -149,7 +153,8 @@ static fg_status copy_to_store(fg_context *ctx, fg_source *source, int store) {
     held = receive(source, source->buffer, BUFFER_BYTES);
   } while (held > 0);
   if (!source->error) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", source->name, strerror(source->error));
+  return fg_fail(ctx, fg_status_of_errno(source->error), "%s: cannot be read: %s", source->name,
+                 strerror(source->error));
 }
 
 fg_status fg_source_store(fg_context *ctx, fg_source *source) {
@@ -241,7 +246,8 @@ fg_status fg_source_rewind(fg_context *ctx, fg_source *source) {
   char unused[65];
   if (!source->stored) fg_sha256_stream_finish(&source->sum, unused);
   if (lseek(source->descriptor, source->start, SEEK_SET) < 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read again: %s", source->name, strerror(errno));
+    return fg_fail(ctx, fg_status_of_errno(errno), "%s: cannot be read again: %s", source->name,
+                   strerror(errno));
   source->begin = source->end = 0;
   source->offset = 0;
   source->ended = false;
@@ -260,8 +266,8 @@ fg_status fg_source_drain(fg_context *ctx, fg_source *source) {
                      "%s: goes on for more than %d MiB behind its image; give one image",
                      source->name, (int)(PAST_BYTES >> 20));
   if (!source->error) return FG_OK;
-  return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read behind the image: %s", source->name,
-                 strerror(source->error));
+  return fg_fail(ctx, fg_status_of_errno(source->error), "%s: cannot be read behind the image: %s",
+                 source->name, strerror(source->error));
 }
 
 /* The reading of its own: block by block beside the other's. */
@@ -278,7 +284,8 @@ static fg_status sum_blocks(fg_context *ctx, fg_source *source, char hex[65]) {
   int error = errno;
   free(block);
   if (got < 0)
-    return fg_fail(ctx, FG_ERR_IO, "%s: cannot be read: %s", source->name, strerror(error));
+    return fg_fail(ctx, fg_status_of_errno(error), "%s: cannot be read: %s", source->name,
+                   strerror(error));
   fg_sha256_finish(&sum, hex);
   return FG_OK;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/memory.h"
 #include "core/sha256.h"
 #include "core/text.h"
@@ -182,24 +183,20 @@ fg_status fg_scanner_model_parse(fg_context *ctx, const char *path, const char *
                                  fg_scanner_model **model) {
   fg_context inner = {.message = ""};
   fg_scanner_model *made = NULL;
-  const char *end = NULL;
   *model = NULL;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *made, (void **)&made));
   sum_text(text, made->sha256);
   fg_text_clip(made->path, sizeof made->path, "%s", path);
-  cJSON *root = cJSON_ParseWithOpts(text, &end, true);
-  fg_status status = root ? read_model(&inner, root, made)
-                          : fg_fail(&inner, FG_ERR_DATA,
-                                    "not a model of a scanner, or not all of one: no JSON at "
-                                    "byte %td",
-                                    end ? end - text : 0);
+  cJSON *root;
+  fg_status read = fg_json_read(ctx, path, text, &root);
+  fg_status status = read == FG_OK ? read_model(&inner, root, made) : read;
   cJSON_Delete(root);
   if (status == FG_OK) {
     *model = made;
     return FG_OK;
   }
   free(made);
-  return fg_fail(ctx, status, "%.200s: %.700s", path, inner.message);
+  return read != FG_OK ? read : fg_fail(ctx, status, "%.200s: %.700s", path, inner.message);
 }
 
 fg_status fg_scanner_model_load(fg_context *ctx, const char *path, fg_scanner_model **model) {

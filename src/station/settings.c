@@ -7,6 +7,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/member_words.h"
 #include "core/text.h"
 #include "foilgauge/station.h"
@@ -143,11 +144,13 @@ static fg_status load_station(fg_context *ctx, const char *recipe, fg_station_se
   char *text;
   fg_context inner = {.message = ""};
   FG_TRY(fg_file_read_text(ctx, recipe, RECIPE_BYTES_MAX, &text));
-  cJSON *root = cJSON_Parse(text); /* the lot's settings have been read of it: it is JSON */
-  const cJSON *station = cJSON_GetObjectItemCaseSensitive(root, "station");
-  fg_status status = station ? read_station(&inner, station, settings) : FG_OK;
-  cJSON_Delete(root);
+  cJSON *root;
+  fg_status status = fg_json_read(ctx, recipe, text, &root);
   free(text);
+  FG_TRY(status);
+  const cJSON *station = cJSON_GetObjectItemCaseSensitive(root, "station");
+  if (station) status = read_station(&inner, station, settings);
+  cJSON_Delete(root);
   if (status != FG_OK)
     return fg_fail(ctx, status, "%.200s: station: %.700s", recipe, inner.message);
   return place_check(ctx, recipe, &settings->check);

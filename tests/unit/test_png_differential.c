@@ -178,6 +178,46 @@ static void no_wrong_byte_is_taken_otherwise(void **state) {
   assert_int_equal(alone, 0);
 }
 
+/* The stream's first two bytes declare another window than the data were compressed with. */
+static void declare_window(growing *png, int bits) {
+  for (size_t at = 8; at + 12 <= png->size; at += 12 + get_32(png->data + at)) {
+    if (memcmp(png->data + at + 4, "IDAT", 4)) continue;
+    uint8_t *head = png->data + at + 8;
+    head[0] = (uint8_t)((bits - 8) << 4 | 8);
+    head[1] = (uint8_t)(head[1] & 0xC0);
+    head[1] = (uint8_t)(head[1] | (31 - (head[0] * 256 + head[1]) % 31) % 31);
+    break;
+  }
+  seal_all(png);
+}
+
+/* Distances beyond the window are refused exactly where libpng refuses them. */
+static void windows_are_believed_as_libpng_does(void **state) {
+  (void)state;
+  int refused = 0;
+  for (int number = 0; number < 100; number++) {
+    recipe r = plain;
+    r.width = 40 + (uint32_t)number;
+    r.height = 20 + (uint32_t)number % 17;
+    r.filter = number % 6;
+    r.level = 9;
+    r.idat_bytes = number % 3 ? 0 : 50;
+    uint8_t *raw = make_raw(&r, (uint32_t)number);
+    growing png = make_pair_png(&r, raw);
+    for (int bits = 8; bits <= 15; bits++) {
+      declare_window(&png, bits);
+      assert_int_equal(count_alone(&png, "window", (size_t)(number * 100 + bits)), 0);
+      pair p = read_bytes(&png);
+      assert_int_equal(p.ours.status, p.libpng.status);
+      refused += p.ours.status != FG_OK;
+      free_pair(&p);
+    }
+    free(png.data);
+    free(raw);
+  }
+  assert_in_range(refused, 50, 700); /* some of each kind */
+}
+
 /* So large that it is decompressed on a thread of its own. */
 static growing make_large(void) {
   recipe r = plain;
@@ -309,6 +349,7 @@ int main(void) {
       cmocka_unit_test(every_split),
       cmocka_unit_test(more_than_a_block),
       cmocka_unit_test(no_wrong_byte_is_taken_otherwise),
+      cmocka_unit_test(windows_are_believed_as_libpng_does),
       cmocka_unit_test(damage_of_a_large_image_is_told),
       cmocka_unit_test(a_large_image_may_be_left),
       cmocka_unit_test(no_cut_is_taken),

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "core/file.h"
-#include "core/json_syntax.h"
+#include "core/json_read.h"
 #include "core/member_words.h"
 #include "core/text.h"
 #include "foilgauge/design.h"
@@ -334,10 +334,9 @@ static fg_status check_design(const reader *r, const fg_design *design) {
 
 fg_status fg_design_parse(fg_context *ctx, const char *path, const char *json, fg_design *design) {
   const reader r = {ctx, path};
-  const char *end = NULL;
   fg_design read = *design;
-  cJSON *root = cJSON_ParseWithOpts(json, &end, true);
-  if (!root) return fg_json_fail_syntax(ctx, path, json, end);
+  cJSON *root;
+  FG_TRY(fg_json_read(ctx, path, json, &root));
   fg_status status = read_root(&r, root, &read);
   cJSON_Delete(root);
   if (status == FG_OK) status = check_design(&r, &read);

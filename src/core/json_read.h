@@ -1,0 +1,14 @@
+/* JSON from text, with memory that runs out told from text that is no JSON: cJSON says NULL of
+ * both. */
+#ifndef FG_CORE_JSON_READ_H
+#define FG_CORE_JSON_READ_H
+
+#include <cjson/cJSON.h>
+
+#include "foilgauge/status.h"
+
+/* The whole text, white space around it allowed. FG_ERR_DATA: `path`, line, column and what stands
+ * there; FG_ERR_MEMORY. The caller deletes `root`, which is NULL after an error. */
+fg_status fg_json_read(fg_context *ctx, const char *path, const char *text, cJSON **root);
+
+#endif
