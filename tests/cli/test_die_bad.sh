@@ -34,7 +34,7 @@ sed '100s/.*/1.98\tNaN/' good.txt >nan.txt
 refuse "line 100: z is 'NaN', which is no number" nan.txt $say
 for value in 1e18 -1e18 1e200 400; do # lengths beyond any count of stations, and merely no die
   awk -v z=$value 'NR == 100 {$2 = z} {print $1 "\t" $2}' good.txt >stray.txt
-  refuse "point 100 (x .* mm): z is .* mm, where the trace's median is .* no die of this design" stray.txt $say
+  refuse "point 100 .x .* mm.: z is .* mm, where the trace's median is .* no die of this design" stray.txt $say
 done
 sed '100s/.*/1.98/' good.txt >short.txt
 refuse "line 100: 1 columns where the lines before have 2" short.txt $say

@@ -74,7 +74,7 @@ grep -q 'die_radius_mm' without/bumps.csv && fail "a column of dies of a lot wit
 expect 65 "there is no report; name it, or leave the cell empty" "$program" lot lot.csv -o bad --die A=a.json
 expect 65 "has no column 'die'" "$program" lot foil1.png -o bad --die A=a.json
 expect 65 "recipe.json: not a report of .foilgauge die" "$program" lot lot.csv -o bad --die A=recipe.json
-expect 65 "con.*txt: not JSON" "$program" lot lot.csv -o bad --die A=concave_1.txt
+expect 65 "con.*txt: line 1, column 1: this is not JSON" "$program" lot lot.csv -o bad --die A=concave_1.txt
 expect 74 "no.json" "$program" lot lot.csv -o bad --die A=no.json
 expect 65 "'A' is there twice" "$program" lot lot.csv -o bad --die A=a.json --die A=b.json
 expect 64 "not NAME=FILE.json" "$program" lot lot.csv -o bad --die a.json

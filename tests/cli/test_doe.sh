@@ -186,7 +186,7 @@ value "$out/a.json" 'r["plan_note"]' | grep -q 'is not beside it' || fail "a pla
 [ "$(value "$out/a.json" 'r["surface"]["rounded"]')" = None ] || fail "steps of a plan that is lost"
 expect 0 '' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json" --plan "$out/runs.plan.json"
 [ "$(value "$out/a.json" 'r["factors"][0]["low"]')" = 500 ] || fail "--plan does not code the factors"
-expect 65 'is no plan' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json" --plan "$out/renamed.csv"
+expect 65 'line 1, column 6: this is not JSON' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" -o "$out/a.json" --plan "$out/renamed.csv"
 echo '{"schema": "foilgauge/plan/1", "factors": [{"name": "T", "low": 6, "high": 5}], "settings": []}' >"$out/runs.plan.json"
 expect 65 'LOW must be below.*move it away and give the limits with --code' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --plan "$out/runs.plan.json"
 expect 64 'no numeric factor' "$program" doe "$out/renamed.csv" --response y --model "$quadratic" --round E=5

@@ -91,7 +91,7 @@ assert sorted(map(off, large))[-4] > 60, (line, large)
 P
 grep -q 'The dashed line belongs to the [0-9]* small effects' factorial.html || fail "what the line belongs to"
 
-# Memory that ends anywhere on the way is said (exit code 74), and leaves no report.
+# Memory that ends anywhere on the way is said (exit code 71), and leaves no report.
 shim=$(dirname "$program")/tests/libfailing_malloc.so
 if [ -e "$shim" ] && [ -z "${FOILGAUGE_TEST_BRIEF:-}" ]; then
   failing() {
@@ -103,7 +103,7 @@ if [ -e "$shim" ] && [ -z "${FOILGAUGE_TEST_BRIEF:-}" ]; then
   for ((at = 10; at <= total; at += total / 60 + 1)); do
     code=0
     failing "$at" || code=$?
-    [ $code = 0 ] || [ $code = 74 ] || fail "allocation $at of $total: exit code $code: $(head -c 200 said)"
+    [ $code = 0 ] || [ $code = 71 ] || fail "allocation $at of $total: exit code $code: $(head -c 200 said)"
     [ $code = 0 ] || [ ! -e out.json ] || fail "allocation $at of $total leaves a report behind"
   done
 fi

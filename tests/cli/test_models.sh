@@ -157,9 +157,9 @@ while IFS='|' read -r file code words; do
   expect "$code" "$words" "$program" lot scans --model "$file" -o never
   [ ! -e never.out ] && [ ! -e never ] || fail "$file leaves something behind"
 done <<'TABLE'
-text.json|65|no JSON at byte
-cut.json|65|not all of one: no JSON at byte
-nan.json|65|no JSON at byte
+text.json|65|line 1, column 1: this is not JSON
+cut.json|65|line 14, column .*: this is not JSON
+nan.json|65|line 7, column .*: this is not JSON
 unknown.json|65|effect that is not known: scan.wormhole
 null.json|65|`fields.0..u_amplitude_mm.0.` is null; 0 to 1 mm is allowed .scan.scale_y
 negative.json|65|`fields.0..u_amplitude_mm.0.` is -0.001; 0 to 1 mm is allowed .scan.scale_y

@@ -142,9 +142,9 @@ static void truth_says_which(void **state) {
   char *json = NULL;
   fg_render_spec *spec = parse(LIFT("\"amplitude_um\":4,\"every\":3,\"form\":\"whole\""));
   assert_int_equal(fg_render_truth_json(&ctx, spec, &json), FG_OK);
-  assert_non_null(strstr(json, "\"id\":\t\"free.bump.index\""));
-  assert_non_null(strstr(json, "\"form\":\t\"whole\""));
-  assert_non_null(strstr(json, "\"values_um\":\t[0, 0, 4, 0, 0, 4, 0, 0, 4]"));
+  assert_non_null(strstr(json, "\"id\": \"free.bump.index\""));
+  assert_non_null(strstr(json, "\"form\": \"whole\""));
+  assert_non_null(strstr(json, "\"values_um\": [0, 0, 4, 0, 0, 4, 0, 0, 4]"));
   free(json);
   fg_render_free(spec);
 }
