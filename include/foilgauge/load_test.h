@@ -36,9 +36,16 @@
  * common (A. Goldenshluger, A. Nemirovski, On spatially adaptive estimation of nonparametric
  * regression, Math. Methods Statist. 6, 1997; intersection of confidence intervals).
  *
- * LOSS FACTOR. Loop area over pi K X²: K the structural stiffness, X half of the travel. With K of
- * the loop's ends (secant) it is reported beside: a bearing with clearance has a K that depends on
- * where one looks.
+ * LOSS FACTORS OF THE TEST. Loop area over pi K X²: K the structural stiffness, X half of the
+ * travel, gap included: the same foil has a smaller one behind a wider gap. With K of the loop's
+ * ends (secant) it is reported beside. The force of an end is that of its loading branch, extended
+ * to the turn: beyond it friction reverses.
+ *
+ * LOSS FACTOR OF THE FOIL. Of the compression alone, whatever the gap is: energy lost in
+ * compressing both sides' foils and letting them go, over 2 pi times the elastic work, the mean of
+ * that of loading and of unloading (Ungar and Kerwin, 1962). Comparable with the loss factor gamma
+ * of a foil in models (thesis table 5.6). Friction that is passed in the gap is the rig's, and left
+ * out.
  *
  * RADIAL HYSTERESIS. Half of what lies between the strokes is friction, of the foils and of the
  * rig. Over the mean force M of both, H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)), s and s' the
@@ -202,9 +209,9 @@ typedef struct fg_load_direction {
   double drift_um_cycle;
   fg_load_value stiffness; /* N/mm */
   double stiffness_at_mm;
-  fg_load_value area; /* N mm */
-  fg_load_value loss, loss_secant;
-  double secant_n_mm;
+  fg_load_value area;                         /* N mm */
+  fg_load_value secant;                       /* N/mm, of the loops' ends */
+  fg_load_value loss, loss_secant, loss_foil; /* of the test with K or secant; of the foils alone */
   fg_load_friction friction;
   fg_load_course course[FG_LOAD_SIDES];
   fg_load_value predicted;  /* by the lot, mm; NaN: not */

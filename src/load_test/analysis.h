@@ -23,6 +23,7 @@ typedef struct fg_load_findings {
  * such place stands out. */
 typedef struct fg_load_zero {
   double force_n, friction_n, place_mm;
+  double u_n; /* of both forces */
 } fg_load_zero;
 fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_load_zero *zero);
 
@@ -52,10 +53,11 @@ bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_directio
 fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes,
                                  fg_load_direction *direction, fg_load_findings *findings);
 
-/* Area, loss factor (needs the stiffness; without its uncertainty, which repeats widen); whether
- * the loops give energy by more than U. */
-void fg_load_find_loops(const fg_load_test *test, const fg_load_strokes *strokes,
-                        fg_load_direction *direction);
+/* Area, secant, loss factors (need contacts and stiffness; without the stiffness's uncertainty,
+ * which repeats widen); whether the loops give energy by more than U. */
+fg_status fg_load_find_loops(fg_context *ctx, const fg_load_test *test,
+                             const fg_load_strokes *strokes, const fg_load_zero *zero,
+                             fg_load_direction *direction);
 
 /* Friction over force. */
 fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,

@@ -164,7 +164,7 @@ static void check_clearance(const fg_load_test *test, const fg_load_zero *zero,
 static void forget_all(fg_load_direction *d) {
   const fg_load_value none = {NAN, NAN, NAN};
   forget_clearance(d);
-  d->stiffness = d->loss = d->loss_secant = none;
+  d->stiffness = d->secant = d->loss = d->loss_secant = d->loss_foil = none;
   d->stiffness_at_mm = NAN;
   d->flags &= ~(unsigned)FG_LOAD_AT_END;
   d->friction = (fg_load_friction){NAN, NAN, NAN, NAN, NAN};
@@ -218,7 +218,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   check_clearance(test, &zero, d);
   FG_TRY_EXIT(fg_load_find_stiffness(ctx, &strokes, d, findings));
   if (d->stiffness.value > stiffness_max_n_mm) d->flags |= FG_LOAD_UNITS;
-  fg_load_find_loops(test, &strokes, d);
+  FG_TRY_EXIT(fg_load_find_loops(ctx, test, &strokes, &zero, d));
   FG_TRY_EXIT(fg_load_find_friction(ctx, &strokes, d));
   if (d->flags & FG_LOAD_WRONG_WAY) forget_all(d);
   say_why_not(test, d);
@@ -236,7 +236,9 @@ static void widen(fg_load_value *value, double birge, double scale_pct, double m
 static void doubt_loss(fg_load_direction *d) {
   double area = d->area.u_repeat / d->area.value, k = d->stiffness.u_repeat / d->stiffness.value;
   d->loss.u = d->loss.u_repeat = fabs(d->loss.value) * hypot(area, k);
-  d->loss_secant.u = d->loss_secant.u_repeat = fabs(d->loss_secant.value * area);
+  double secant = d->secant.u_repeat / d->secant.value;
+  d->loss_secant.u = d->loss_secant.u_repeat = fabs(d->loss_secant.value) * hypot(area, secant);
+  d->loss_foil.u = d->loss_foil.u_repeat;
 }
 
 /* What repeats say of a bearing's directions, and the instruments' share. */
@@ -260,6 +262,7 @@ static void finish_bearing(fg_load_test *test, const fg_load_findings *findings,
     widen(&d->unloading, birge, o->u_displacement_pct, threshold);
     widen(&d->stiffness, steep, both, 0);
     widen(&d->area, 1, both, 0);
+    widen(&d->secant, 1, both, 0);
     doubt_loss(d);
     for (int side = 0; side < FG_LOAD_SIDES; side++)
       for (size_t k = 0; k < d->course[side].count; k++)

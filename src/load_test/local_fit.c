@@ -192,6 +192,19 @@ static double border_value(const fg_load_stroke *s, size_t i) {
   return fg_local_fit_at(s, s->x[i], window, &fit) ? fit.value : s->f[i];
 }
 
+bool fg_local_across(const fg_load_stroke *stroke, double x, fg_local_fit *fit) {
+  size_t i = fg_load_stroke_from(stroke, x);
+  if (i == 0 || i >= stroke->count || !stroke->after_hole[i]) return false;
+  double a = border_value(stroke, i - 1), b = border_value(stroke, i);
+  double width = stroke->x[i] - stroke->x[i - 1], slope = (b - a) / width;
+  *fit = (fg_local_fit){.value = a + slope * (x - stroke->x[i - 1]),
+                        .u_value = hypot(fabs(b - a) / sqrt(12), sqrt(stroke->variance[i])),
+                        .slope = slope,
+                        .u_slope = fabs(slope),
+                        .window_mm = width / 2};
+  return true;
+}
+
 typedef enum looked { NOWHERE, SAMPLED, UNSAMPLED } looked;
 
 /* Coarsely, at places of a grid and on both borders of every unsampled stretch. */

@@ -23,6 +23,10 @@ bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm,
 /* With this window; u holds half of what the next wider one says otherwise. */
 bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm, fg_local_fit *fit);
 
+/* Within an unsampled stretch: on the chord between its borders, u that of a rectangular
+ * distribution over what the force rises by. False: x lies in none. */
+bool fg_local_across(const fg_load_stroke *stroke, double x, fg_local_fit *fit);
+
 /* With the window that the noise decides. */
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
                            fg_local_fit *fit);

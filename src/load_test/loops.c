@@ -1,16 +1,19 @@
-/* The area of the loops and what it says of damping. */
+/* The area of the loops and what it says of damping.
+ *
+ * The mean loop is that of the whole strokes of each sense, taken together: what one of them has
+ * lost in a dropout the others hold. Loops one by one say how they scatter. */
 #include <math.h>
+#include <stdlib.h>
 
+#include "core/memory.h"
 #include "load_test/analysis.h"
+#include "load_test/local_fit.h"
 
 /* Ends of a loop that lie nearer to each other than this share of the travel close it. */
 static const double close_share = 0.05;
 
 /* Loops give energy where their area is below zero by more than U = 2 u. */
 static const double gained_reach = 2;
-
-/* Samples about a turning point whose mean is its force. */
-enum { TURN_SAMPLES = 9 };
 
 typedef struct tally {
   double sum, squares, count;
@@ -93,53 +96,241 @@ static double stroke_variance(const loops *all) {
   return fmax(0, t->squares - n * mean * mean) / (n - 1) / own;
 }
 
-/* Mean and its standard uncertainty: an area is twice the mean of what its n strokes give, so its
- * variance is 4 s² / n. */
-static double mean_area(const loops *all, double *u) {
+/* Standard uncertainty of the mean area by how the loops scatter: it is twice the mean of what its
+ * n strokes give, so its variance is 4 s² / n. */
+static double u_of_scatter(const loops *all) {
   const tally *t = all->pair.count > 0 ? &all->pair : &all->single;
   double strokes = t->count + (all->pair.count > 0 ? 2 : 1);
-  *u = sqrt(4 * fmax(stroke_variance(all), all->noise / 2) / strokes);
-  return t->sum / t->count;
+  return sqrt(4 * fmax(stroke_variance(all), all->noise / 2) / strokes);
 }
 
-static double force_about(const fg_load_sample *s, size_t count, size_t at) {
-  size_t low = at > TURN_SAMPLES / 2 ? at - TURN_SAMPLES / 2 : 0;
-  size_t high = at + TURN_SAMPLES / 2 < count ? at + TURN_SAMPLES / 2 : count - 1;
-  double sum = 0;
-  for (size_t i = low; i <= high; i++)
-    sum += s[i].force_n;
-  return sum / (double)(high - low + 1);
+/* ---- the mean loop ---- */
+
+enum { UP, DOWN, SENSES };
+
+typedef struct mean_loop {
+  fg_load_stroke branch[SENSES];
+  double low_mm, high_mm; /* where it turns */
+} mean_loop;
+
+typedef struct chosen {
+  const fg_load_stroke **stroke;
+  double *turn;
+  size_t count;
+} chosen;
+
+static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction) {
+  return s->high_mm - s->low_mm > (1 - 2 * close_share) * direction->travel_mm;
 }
 
-/* Travel and stiffness from end to end of the whole strokes. */
-static void find_secant(const fg_load_sample *samples, const fg_load_strokes *strokes,
-                        fg_load_direction *direction, double *travel) {
-  double way = 0, force = 0, count = 0;
-  for (size_t i = 0; i < strokes->count; i++) {
-    const fg_load_stroke *s = &strokes->stroke[i];
-    double reach = s->high_mm - s->low_mm;
-    if (reach < (1 - 2 * close_share) * direction->travel_mm) continue;
-    way += reach;
-    force += s->sense * (force_about(samples, direction->count, s->last) -
-                         force_about(samples, direction->count, s->first));
-    count++;
+static int by_size(const void *left, const void *right) {
+  double a = *(const double *)left, b = *(const double *)right;
+  return (a > b) - (a < b);
+}
+
+/* Median of where the strokes turn: one whose tip was lost turns too early. */
+static double turn_of(const chosen *c, bool high) {
+  for (size_t i = 0; i < c->count; i++)
+    c->turn[i] = (high ? c->stroke[i]->high_mm : c->stroke[i]->low_mm) - c->stroke[i]->shift_mm;
+  qsort(c->turn, c->count, sizeof *c->turn, by_size);
+  return (c->turn[(c->count - 1) / 2] + c->turn[c->count / 2]) / 2;
+}
+
+/* Whole strokes; all of them where a sense has none, as in one cycle from the middle to the middle.
+ */
+static void choose(const fg_load_strokes *strokes, const fg_load_direction *direction, chosen *c) {
+  bool has[SENSES] = {false};
+  for (size_t i = 0; i < strokes->count; i++)
+    if (is_whole(&strokes->stroke[i], direction)) has[strokes->stroke[i].sense < 0] = true;
+  for (size_t i = 0; i < strokes->count; i++)
+    if (!(has[UP] && has[DOWN]) || is_whole(&strokes->stroke[i], direction))
+      c->stroke[c->count++] = &strokes->stroke[i];
+}
+
+static fg_status merge(fg_context *ctx, const chosen *c, int sense, fg_load_stroke *branch) {
+  const fg_load_stroke **of;
+  size_t count = 0;
+  FG_TRY(fg_memory_allocate(ctx, c->count + 1, sizeof *of, (void **)&of));
+  for (size_t i = 0; i < c->count; i++)
+    if ((c->stroke[i]->sense < 0) == sense) of[count++] = c->stroke[i];
+  fg_status status = fg_load_strokes_merge(ctx, of, count, branch);
+  free(of);
+  return status;
+}
+
+static fg_status make_loop(fg_context *ctx, const fg_load_strokes *strokes,
+                           const fg_load_direction *direction, mean_loop *loop) {
+  chosen c = {0};
+  fg_status status = FG_OK;
+  size_t room = strokes->count + 1;
+  FG_TRY_EXIT(fg_memory_allocate(ctx, room, sizeof(fg_load_stroke *), (void **)&c.stroke));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, room, sizeof *c.turn, (void **)&c.turn));
+  choose(strokes, direction, &c);
+  for (int sense = UP; sense < SENSES; sense++)
+    FG_TRY_EXIT(merge(ctx, &c, sense, &loop->branch[sense]));
+  chosen turning = c; /* partial strokes turn at one end only */
+  bool whole = c.count && is_whole(c.stroke[0], direction);
+  loop->low_mm = whole ? turn_of(&turning, false) : INFINITY;
+  loop->high_mm = whole ? turn_of(&turning, true) : -INFINITY;
+  for (size_t i = 0; i < c.count && !whole; i++) {
+    loop->low_mm = fmin(loop->low_mm, c.stroke[i]->low_mm - c.stroke[i]->shift_mm);
+    loop->high_mm = fmax(loop->high_mm, c.stroke[i]->high_mm - c.stroke[i]->shift_mm);
   }
-  *travel = count > 0 ? way / count : NAN;
-  direction->secant_n_mm = force / way;
+exit:
+  free(c.stroke);
+  free(c.turn);
+  return status;
 }
 
-void fg_load_find_loops(const fg_load_test *test, const fg_load_strokes *strokes,
-                        fg_load_direction *direction) {
-  const fg_load_sample *samples = test->samples + direction->first;
-  loops all = find_loops(samples, strokes, direction);
-  double travel, u_area;
-  direction->area = direction->loss = direction->loss_secant = (fg_load_value){NAN, NAN, NAN};
-  find_secant(samples, strokes, direction, &travel);
-  if (!(all.single.count > 0)) return;
-  double mean = mean_area(&all, &u_area);
-  direction->area = (fg_load_value){mean, NAN, u_area};
-  if (mean < -gained_reach * direction->area.u_repeat) direction->flags |= FG_LOAD_WRONG_WAY;
-  double k = direction->stiffness.value, half = travel / 2;
-  direction->loss.value = mean / (M_PI * k * half * half);
-  direction->loss_secant.value = mean / (M_PI * direction->secant_n_mm * half * half);
+/* ---- work along a branch ---- */
+
+typedef struct work {
+  double value, variance; /* by the samples' noise */
+  double unsampled;       /* u of what lies in unsampled stretches, where the force only rises */
+} work;
+
+static double force_between(const fg_load_stroke *s, size_t i, double x) {
+  double width = s->x[i + 1] - s->x[i], share = width > 0 ? (x - s->x[i]) / width : 0.5;
+  return s->f[i] + share * (s->f[i + 1] - s->f[i]);
+}
+
+/* Integral of the force less `base` from `from` to `to`, both within the samples. */
+static work integrate(const fg_load_stroke *s, double base, double from, double to) {
+  work w = {0};
+  size_t i = fg_load_stroke_from(s, from);
+  for (i -= i > 0; i + 1 < s->count && s->x[i] < to; i++) {
+    double a = fmax(from, s->x[i]), b = fmin(to, s->x[i + 1]);
+    if (!(b > a)) continue;
+    w.value += ((force_between(s, i, a) + force_between(s, i, b)) / 2 - base) * (b - a);
+    double around = (s->x[i + 1] - (i ? s->x[i - 1] : s->x[i])) / 2;
+    w.variance += s->variance[i] * around * around;
+    if (s->after_hole[i + 1]) w.unsampled += fabs(s->f[i + 1] - s->f[i]) * (b - a) / sqrt(12);
+  }
+  return w;
+}
+
+/* One end of the loop: the tip's force on the loading branch, and how far the samples of both
+ * branches stay away from it, as those near a turn are left out. */
+typedef struct tip {
+  bool found;
+  double force_n, u_force_n;
+  double sampled_mm, rest_mm; /* last place of both branches; from there to the turn */
+  double apart_n;             /* of both branches there */
+} tip;
+
+static tip find_tip(const mean_loop *loop, int side) {
+  const fg_load_stroke *load = &loop->branch[side == FG_LOAD_PUSH ? UP : DOWN];
+  const fg_load_stroke *unload = &loop->branch[side == FG_LOAD_PUSH ? DOWN : UP];
+  double turn = side == FG_LOAD_PUSH ? loop->high_mm : loop->low_mm;
+  fg_local_fit end, a, b;
+  tip t = {0};
+  if (!load->count || !unload->count) return t;
+  double at = side == FG_LOAD_PUSH ? fmin(load->x[load->count - 1], unload->x[unload->count - 1])
+                                   : fmax(load->x[0], unload->x[0]);
+  at = side == FG_LOAD_PUSH ? fmin(at, turn) : fmax(at, turn);
+  t.found = fg_local_fit_adaptive(load, turn, FG_LOCAL_VALUE, &end) &&
+            fg_local_fit_near(load, at, 0, &a) && fg_local_fit_near(unload, at, 0, &b);
+  t.force_n = end.value, t.u_force_n = end.u_value;
+  t.sampled_mm = at, t.rest_mm = fabs(turn - at);
+  t.apart_n = fabs(a.value - b.value);
+  return t;
+}
+
+/* Between both ends, and half of what the branches are apart where the samples end: there they meet
+ * somewhere until the turn. */
+static fg_load_value area_of(const mean_loop *loop, const tip end[FG_LOAD_SIDES]) {
+  double low = end[FG_LOAD_PULL].sampled_mm, high = end[FG_LOAD_PUSH].sampled_mm;
+  work up = integrate(&loop->branch[UP], 0, low, high);
+  work down = integrate(&loop->branch[DOWN], 0, low, high);
+  double tips = 0, variance = up.variance + down.variance;
+  for (int side = 0; side < FG_LOAD_SIDES; side++) {
+    double most = end[side].apart_n * end[side].rest_mm;
+    tips += most / 2;
+    variance += most * most / 12;
+  }
+  double u = hypot(sqrt(variance), up.unsampled + down.unsampled);
+  return (fg_load_value){up.value - down.value + tips, NAN, u};
+}
+
+/* ---- the foils alone ---- */
+
+/* The compression begins before the threshold is passed by this many times what the local stiffness
+ * makes of it: until then there is next to no force. */
+static const double before_threshold = 1.5;
+
+typedef struct energy {
+  double lost, elastic, travel, u_elastic;
+} energy;
+
+/* Lost and elastic work of one side's foil, the rig's friction and the load cell's zero left out.
+ */
+static bool press(const mean_loop *loop, const tip *end, int side, const fg_load_zero *zero,
+                  const fg_load_direction *d, double threshold, energy *sum) {
+  int sign = side == FG_LOAD_PUSH ? 1 : -1;
+  const fg_load_stroke *load = &loop->branch[sign > 0 ? UP : DOWN];
+  const fg_load_stroke *unload = &loop->branch[sign > 0 ? DOWN : UP];
+  double contact = sign > 0 ? d->push_mm : d->pull_mm, middle = (d->push_mm + d->pull_mm) / 2;
+  fg_local_fit fit;
+  if (!fg_local_fit_near(load, contact, 0, &fit) || !(fit.slope > 0)) return false;
+  double reach = fmin(before_threshold * threshold / fit.slope, sign * (contact - middle));
+  double from = contact - sign * reach, to = end->sampled_mm;
+  if (!(sign * (to - from) > 0)) return false;
+  double base = zero->force_n + sign * zero->friction_n,
+         unbase = zero->force_n - sign * zero->friction_n;
+  work in = integrate(load, base, fmin(from, to), fmax(from, to));
+  work out = integrate(unload, unbase, fmin(from, to), fmax(from, to));
+  double tip_work = sign * (end->force_n - base) * end->rest_mm;
+  double tip_lost = fmax(0, end->apart_n - 2 * zero->friction_n) * end->rest_mm / 2;
+  sum->lost += sign * (in.value - out.value) + tip_lost;
+  sum->elastic += sign * (in.value + out.value) / 2 + tip_work - tip_lost / 2;
+  sum->travel += sign * (to - from) + end->rest_mm;
+  sum->u_elastic += hypot(sqrt(in.variance + out.variance) / 2, (in.unsampled + out.unsampled) / 2);
+  return true;
+}
+
+/* Energy lost over 2 pi times the elastic work (E. E. Ungar, E. M. Kerwin, Loss factors of
+ * viscoelastic systems in terms of energy concepts, J. Acoust. Soc. Am. 34, 1962). */
+static void find_foil_loss(const mean_loop *loop, const tip end[FG_LOAD_SIDES],
+                           const fg_load_zero *zero, double threshold, fg_load_direction *d) {
+  energy sum = {0};
+  if (!isfinite(d->clearance.value) || !isfinite(zero->force_n)) return;
+  for (int side = 0; side < FG_LOAD_SIDES; side++)
+    if (!press(loop, &end[side], side, zero, d, threshold, &sum)) return;
+  if (!(sum.elastic > 0)) return;
+  double value = sum.lost / (2 * M_PI * sum.elastic);
+  double lost = hypot(d->area.u_repeat, 2 * zero->u_n * sum.travel) / (2 * M_PI * sum.elastic);
+  double elastic = value * hypot(sum.u_elastic, zero->u_n * sum.travel) / sum.elastic;
+  d->loss_foil = (fg_load_value){value, NAN, hypot(lost, elastic)};
+}
+
+static void find_mean(const mean_loop *loop, const loops *all, const fg_load_strokes *strokes,
+                      const fg_load_zero *zero, double threshold, fg_load_direction *d) {
+  tip end[FG_LOAD_SIDES] = {find_tip(loop, FG_LOAD_PULL), find_tip(loop, FG_LOAD_PUSH)};
+  double travel = loop->high_mm - loop->low_mm, half = travel / 2;
+  if (!end[FG_LOAD_PULL].found || !end[FG_LOAD_PUSH].found || !(travel > 0)) return;
+  d->area = area_of(loop, end);
+  d->area.u_repeat = hypot(d->area.u_repeat, all->single.count > 0 ? u_of_scatter(all) : 0);
+  if (d->area.value < -gained_reach * d->area.u_repeat) d->flags |= FG_LOAD_WRONG_WAY;
+  double k = (end[FG_LOAD_PUSH].force_n - end[FG_LOAD_PULL].force_n) / travel;
+  double u_force = hypot(end[FG_LOAD_PUSH].u_force_n, end[FG_LOAD_PULL].u_force_n);
+  d->secant = (fg_load_value){k, NAN, hypot(u_force, M_SQRT2 * strokes->noise_mm * k) / travel};
+  d->loss.value = d->area.value / (M_PI * d->stiffness.value * half * half);
+  d->loss_secant.value = d->area.value / (M_PI * k * half * half);
+  find_foil_loss(loop, end, zero, threshold, d);
+}
+
+fg_status fg_load_find_loops(fg_context *ctx, const fg_load_test *test,
+                             const fg_load_strokes *strokes, const fg_load_zero *zero,
+                             fg_load_direction *direction) {
+  const fg_load_value none = {NAN, NAN, NAN};
+  mean_loop loop = {0};
+  direction->area = direction->secant = none;
+  direction->loss = direction->loss_secant = direction->loss_foil = none;
+  if (!strokes->count) return FG_OK;
+  loops all = find_loops(test->samples + direction->first, strokes, direction);
+  fg_status status = make_loop(ctx, strokes, direction, &loop);
+  if (status == FG_OK) find_mean(&loop, &all, strokes, zero, test->options.threshold_n, direction);
+  for (int sense = UP; sense < SENSES; sense++)
+    fg_load_stroke_free(&loop.branch[sense]);
+  return status;
 }

@@ -20,12 +20,12 @@ static const double gap_share = 0.05;
 static bool fit_at(const fg_load_stroke *stroke, double x, double span, fg_local_fit *fit) {
   for (double share = window_share; share <= window_share_max; share *= 2)
     if (fg_local_fit_at(stroke, x, share * span, fit)) return true;
-  return false;
+  return fg_local_across(stroke, x, fit);
 }
 
 /* What both say where both are known, and how fast their mean rises. */
 typedef struct course {
-  double x[PLACES], middle[PLACES], half[PLACES], slope[PLACES], least, most;
+  double x[PLACES], middle[PLACES], half[PLACES], u[PLACES], slope[PLACES], least, most;
   size_t count;
 } course;
 
@@ -41,6 +41,7 @@ static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c
     c->x[c->count] = x;
     c->middle[c->count] = (a.value + b.value) / 2;
     c->half[c->count] = (a.value - b.value) / 2;
+    c->u[c->count] = hypot(a.u_value, b.u_value) / 2;
     c->slope[c->count] = fabs(a.slope + b.slope) / 2;
     c->least = fmin(c->least, c->slope[c->count]);
     c->most = fmax(c->most, c->slope[c->count]);
@@ -48,27 +49,29 @@ static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c
   }
 }
 
-/* Mean over the places where it rises next to nothing. Where unsampled stretches leave places out,
- * the flattest of the others may lie on the foils: there only what does not rise is a gap. */
+/* Mean over the places where it rises next to nothing. Neighbouring places share samples: the mean
+ * is taken to be known no better than one of them. */
 static fg_load_zero mean_of_gap(const course *c) {
-  fg_load_zero zero = {0, 0, 0};
-  double count = 0, share = c->count == PLACES ? flat_share : gap_share;
-  if (!(c->least < share * c->most)) return (fg_load_zero){NAN, NAN, NAN};
+  fg_load_zero zero = {0, 0, 0, 0};
+  double count = 0;
+  if (!(c->least < flat_share * c->most)) return (fg_load_zero){NAN, NAN, NAN, NAN};
   for (size_t k = 0; k < c->count; k++) {
     if (c->slope[k] > c->least + gap_share * c->most) continue;
     zero.force_n += c->middle[k];
     zero.friction_n += c->half[k];
     zero.place_mm += c->x[k];
+    zero.u_n += c->u[k];
     count++;
   }
-  return (fg_load_zero){zero.force_n / count, zero.friction_n / count, zero.place_mm / count};
+  return (fg_load_zero){zero.force_n / count, zero.friction_n / count, zero.place_mm / count,
+                        zero.u_n / count};
 }
 
 fg_status fg_load_find_zero(fg_context *ctx, const fg_load_strokes *strokes, fg_load_zero *zero) {
   fg_load_stroke up = {0}, down = {0};
   course c;
   fg_status status = FG_OK;
-  *zero = (fg_load_zero){NAN, NAN, NAN};
+  *zero = (fg_load_zero){NAN, NAN, NAN, NAN};
   FG_TRY_EXIT(fg_load_strokes_merge_sense(ctx, strokes, 1, &up));
   FG_TRY_EXIT(fg_load_strokes_merge_sense(ctx, strokes, -1, &down));
   if (up.count && down.count) {

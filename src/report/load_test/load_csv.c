@@ -19,7 +19,8 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
   fputs("bearing,azimuth_deg,pad,verdict,flags,cycles,clearance_mm,u_clearance_mm,"
         "clearance_unloading_mm,u_clearance_unloading_mm,stiffness_n_mm,u_stiffness_n_mm,"
         "stiffness_at_mm,loop_area_n_mm,u_loop_area_n_mm,loss_factor,u_loss_factor,"
-        "loss_factor_secant,u_loss_factor_secant,friction_intercept_n,friction_slope,"
+        "loss_factor_secant,u_loss_factor_secant,stiffness_secant_n_mm,u_stiffness_secant_n_mm,"
+        "loss_factor_foil,u_loss_factor_foil,friction_intercept_n,friction_slope,"
         "predicted_clearance_mm,u_predicted_clearance_mm,clearance_difference_mm,"
         "u_clearance_difference_mm,gap_mm,u_gap_mm\n",
         out);
@@ -39,6 +40,8 @@ fg_status fg_load_write_csv(fg_context *ctx, const fg_load_test *test, FILE *out
     put_value(out, &d->area, 1);
     put_value(out, &d->loss, 1);
     put_value(out, &d->loss_secant, 1);
+    put_value(out, &d->secant, 1);
+    put_value(out, &d->loss_foil, 1);
     fg_csv_put_number(out, d->friction.a_n);
     fg_csv_put_number(out, d->friction.b);
     put_value(out, &d->predicted, 1);

@@ -68,10 +68,11 @@ static void write_direction(fg_json *json, const fg_load_test *test, const fg_lo
   fg_json_number(json, "drift_um_per_cycle", d->drift_um_cycle);
   write_value(json, "stiffness_n_mm", &d->stiffness);
   fg_json_number(json, "stiffness_at_mm", d->stiffness_at_mm);
-  fg_json_number(json, "stiffness_secant_n_mm", d->secant_n_mm);
+  write_value(json, "stiffness_secant_n_mm", &d->secant);
   write_value(json, "loop_area_n_mm", &d->area);
   write_value(json, "loss_factor", &d->loss);
   write_value(json, "loss_factor_secant", &d->loss_secant);
+  write_value(json, "loss_factor_foil", &d->loss_foil);
   write_friction(json, &d->friction);
   write_value(json, "predicted_clearance_mm", &d->predicted);
   write_value(json, "clearance_difference_mm", &d->difference);

@@ -88,6 +88,7 @@ static void put_row(FILE *out, const fg_load_test *test, const fg_load_direction
   put_cell(out, &d->stiffness, 1, 0, fg_load_judge_value(test, FG_LOAD_STIFFNESS, &d->stiffness));
   put_cell(out, &d->loss, 1, 4, fg_load_judge_value(test, FG_LOAD_LOSS, &d->loss));
   put_cell(out, &d->loss_secant, 1, 4, FG_VERDICT_NONE);
+  put_cell(out, &d->loss_foil, 1, 4, FG_VERDICT_NONE);
   if (lot) {
     put_cell(out, &d->predicted, 1000, 1, FG_VERDICT_NONE);
     put_cell(out, &d->difference, 1000, 1, FG_VERDICT_NONE);
@@ -102,7 +103,8 @@ static void put_table(FILE *out, const fg_load_test *test, size_t bearing) {
   fprintf(out,
           "<div class=\"scroll\"><table>\n<tr><th>azimuth</th><th>clearance,<br>µm</th><th>"
           "unloading,<br>µm</th><th>gap,<br>µm</th><th>stiffness,<br>N/mm</th><th>loss<br>factor"
-          "</th><th>of the<br>secant</th>%s<th>cycles</th><th class=\"w\">to know</th></tr>\n",
+          "</th><th>of the<br>secant</th><th>of the<br>foil</th>%s<th>cycles</th>"
+          "<th class=\"w\">to know</th></tr>\n",
           lot ? "<th>gap by<br>the lot, µm</th><th>difference<br>of gaps, µm</th>" : "");
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_row(out, test, &test->directions[i], lot);
@@ -251,7 +253,8 @@ static void put_end(FILE *out, const fg_load_test *test) {
           "</table></div>\n<p class=\"note\">± is U = 2 u. Instruments, standard: load cell %g %%, "
           "displacement %g %%, together %.2f %% of a stiffness. Loss factor: loop area / (π K X²), "
           "X half of the travel, K the largest stiffness, or that of the loop's ends "
-          "(secant).</p>\n</section>\n",
+          "(secant); of the foil: energy lost in its compression / (2π × elastic work), whatever "
+          "the gap is.</p>\n</section>\n",
           o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct));
 }
 

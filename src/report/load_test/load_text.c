@@ -23,6 +23,7 @@ static void put_direction(FILE *out, const fg_load_test *test, const fg_load_dir
   put(out, 2 * d->stiffness.u, 7, 1);
   put(out, d->loss.value, 8, 4);
   put(out, d->loss_secant.value, 8, 4);
+  put(out, d->loss_foil.value, 8, 4);
   if (lot) {
     put(out, 1000 * d->predicted.value, 9, 2);
     put(out, 1000 * d->difference.value, 9, 2);
@@ -60,8 +61,10 @@ static void put_bearing(FILE *out, const fg_load_test *test, size_t bearing) {
   else
     fputs(", break-away test alone\n", out);
   if (b->directions)
-    fprintf(out, "  azimuth    c um    U um  gap um  U um    K N/mm  U N/mm    loss   secant%s\n",
-            lot ? "   lot um  diff um" : "");
+    fprintf(
+        out,
+        "  azimuth    c um    U um  gap um  U um    K N/mm  U N/mm    loss   secant    foil%s\n",
+        lot ? "   lot um  diff um" : "");
   for (size_t i = 0; i < test->direction_count; i++)
     if (test->directions[i].bearing == bearing) put_direction(out, test, &test->directions[i], lot);
   if (b->measured > 1)
@@ -91,12 +94,13 @@ fg_status fg_load_write_text(fg_context *ctx, const fg_load_test *test, FILE *ou
   fprintf(out, "%s: %s\n", fg_verdict_word(outcome.verdict), words);
   for (size_t i = 0; i < test->bearing_count; i++)
     put_bearing(out, test, i);
-  fprintf(out,
-          "\nU = 2 u; instruments %g %% of force and %g %% of displacement, together %.2f %% of a "
-          "stiffness; loss: loop area / (pi K X2), K the largest stiffness, secant: of the loop's "
-          "ends\n",
-          test->options.u_force_pct, test->options.u_displacement_pct,
-          hypot(test->options.u_force_pct, test->options.u_displacement_pct));
+  fprintf(
+      out,
+      "\nU = 2 u; instruments %g %% of force and %g %% of displacement, together %.2f %% of a "
+      "stiffness; loss of the test: loop area / (pi K X2), K the largest stiffness, "
+      "secant: of the loop's ends; foil: energy lost in its compression / (2 pi elastic work)\n",
+      test->options.u_force_pct, test->options.u_displacement_pct,
+      hypot(test->options.u_force_pct, test->options.u_displacement_pct));
   for (size_t i = 0; i < test->file_count; i++)
     if (test->files[i].not_read)
       fprintf(out, "%s: not read: %s\n", test->files[i].path, test->files[i].not_read);
