@@ -85,7 +85,7 @@ static void place(const fg_load_direction *direction, int which, double noise_mm
   double end = which == FG_LOAD_PUSH ? INFINITY : -INFINITY;
   for (size_t i = 0; i < s->count; i++) {
     const fg_load_stroke *stroke = s->stroke[i];
-    double low = stroke->low_mm - stroke->shift_mm, high = stroke->high_mm - stroke->shift_mm;
+    double low = fg_load_stroke_turn(stroke, false), high = fg_load_stroke_turn(stroke, true);
     end = which == FG_LOAD_PUSH ? fmin(end, high) : fmax(end, low);
     if (!isfinite(middle)) middle = (low + high) / 2;
   }

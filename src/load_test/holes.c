@@ -11,14 +11,18 @@ static const double place_resolutions = 3;
 
 /* A stretch this many times as wide as three quarters of the distances around it was not sampled.
  * Of places at random that is one in a thousand; a few samples within a gap leave it one. */
-static const double hole_factor = 5, smaller_share = 0.75;
+static const double hole_factor = 7, smaller_share = 0.75;
+
+double fg_load_stroke_place(const fg_load_stroke *s) {
+  return place_resolutions * s->resolution_mm;
+}
 
 typedef enum around { FEW, WIDE, DENSE } around;
 
 /* What most of the distances from sample `i` on, outwards, are. */
 static around look_around(const fg_load_stroke *s, size_t i, int step, double small) {
   size_t count = 0, smaller = 0;
-  double place = place_resolutions * s->resolution_mm, last = s->x[i];
+  double place = fg_load_stroke_place(s), last = s->x[i];
   while (count < AROUND && (step > 0 ? i + 1 < s->count : i > 0)) {
     i = step > 0 ? i + 1 : i - 1;
     double distance = fabs(s->x[i] - last);
@@ -33,9 +37,8 @@ static around look_around(const fg_load_stroke *s, size_t i, int step, double sm
 
 static bool is_hole(const fg_load_stroke *s, size_t i) {
   double small = (s->x[i] - s->x[i - 1]) / hole_factor;
-  if (small <= place_resolutions * s->resolution_mm) return false;
-  around right = look_around(s, i, 1, small), left = look_around(s, i - 1, -1, small);
-  return left != WIDE && right != WIDE && (left == DENSE || right == DENSE);
+  if (small <= fg_load_stroke_place(s)) return false;
+  return look_around(s, i, 1, small) == DENSE || look_around(s, i - 1, -1, small) == DENSE;
 }
 
 void fg_load_stroke_find_holes(fg_load_stroke *s) {

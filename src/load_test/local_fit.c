@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* Samples of the smallest window; a window grows by a quarter. */
-enum { SAMPLES_MIN = 12 };
+/* Samples and places of the smallest window; a window grows by a quarter. */
+enum { SAMPLES_MIN = 12, PLACES_MIN = 4 };
 static const double window_growth = 1.25, window_share_max = 0.5;
 
 /* Of the stroke: where it turns, samples lie so close that the displacement's noise would flatten
@@ -97,22 +97,30 @@ bool fg_local_fit_at(const fg_load_stroke *stroke, double x, double window_mm, f
   return true;
 }
 
-/* Half of a width that holds so many samples, or all of this side of unsampled stretches. */
-static double window_of(const fg_load_stroke *s, double x, size_t samples) {
-  size_t low = fg_load_stroke_from(s, x), high = low;
+/* Half of a width that holds so many samples at so many places, or all of this side of unsampled
+ * stretches. A rotor that rests under weights leaves many samples at few places. */
+static double window_of(const fg_load_stroke *s, double x, size_t samples, size_t places) {
+  size_t low = fg_load_stroke_from(s, x), high = low, seen = 0;
   double window = window_share_min * (s->x[s->count - 1] - s->x[0]);
-  while (high - low < samples) {
+  double place = fg_load_stroke_place(s), lowest = x + place, highest = x - place;
+  while (high - low < samples || seen < places) {
     bool lower = low > 0 && (low == s->count || !s->after_hole[low]);
     bool upper = high < s->count && (high == low || !s->after_hole[high]);
     if (!lower && !upper) break;
-    bool left = lower && (!upper || x - s->x[low - 1] < s->x[high] - x);
-    window = fmax(window, left ? x - s->x[--low] : s->x[high++] - x);
+    if (lower && (!upper || x - s->x[low - 1] < s->x[high] - x)) {
+      window = fmax(window, x - s->x[--low]);
+      if (lowest - s->x[low] >= place) lowest = s->x[low], seen++;
+    } else {
+      window = fmax(window, s->x[high] - x);
+      if (s->x[high] - highest >= place) highest = s->x[high], seen++;
+      high++;
+    }
   }
   return window;
 }
 
 static double smallest_window(const fg_load_stroke *s, double x) {
-  return window_of(s, x, SAMPLES_MIN);
+  return window_of(s, x, SAMPLES_MIN, PLACES_MIN);
 }
 
 bool fg_local_fit_near(const fg_load_stroke *stroke, double x, double window_mm,
@@ -188,7 +196,7 @@ static bool visit(look_around *l, double x, double value) {
 /* Force at a sample beside an unsampled stretch; the sample's own where it is almost alone. */
 static double border_value(const fg_load_stroke *s, size_t i) {
   fg_local_fit fit;
-  double window = 1.0001 * window_of(s, s->x[i], LOOK_SAMPLES);
+  double window = 1.0001 * window_of(s, s->x[i], LOOK_SAMPLES, PLACES_MIN);
   return fg_local_fit_at(s, s->x[i], window, &fit) ? fit.value : s->f[i];
 }
 
@@ -221,7 +229,7 @@ static looked look(look_around *l) {
       if (visit(l, s->x[i], border_value(s, i))) return SAMPLED;
       if (visit(l, s->x[i - 1], border_value(s, i - 1))) return UNSAMPLED;
     }
-    double window = fmax(2 * step, 1.0001 * window_of(s, at, LOOK_SAMPLES));
+    double window = fmax(2 * step, 1.0001 * window_of(s, at, LOOK_SAMPLES, PLACES_MIN));
     if (fg_local_fit_at(s, at, window, &fit) && visit(l, at, fit.value)) return SAMPLED;
   }
   return NOWHERE;

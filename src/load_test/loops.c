@@ -115,7 +115,6 @@ typedef struct mean_loop {
 
 typedef struct chosen {
   const fg_load_stroke **stroke;
-  double *turn;
   size_t count;
 } chosen;
 
@@ -123,17 +122,22 @@ static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction
   return s->high_mm - s->low_mm > (1 - 2 * close_share) * direction->travel_mm;
 }
 
-static int by_size(const void *left, const void *right) {
-  double a = *(const double *)left, b = *(const double *)right;
-  return (a > b) - (a < b);
-}
+/* Turns within so many of the displacement's noise of the outermost are as far out. */
+static const double turn_reach = 3;
 
-/* Median of where the strokes turn: one whose tip was lost turns too early. */
-static double turn_of(const chosen *c, bool high) {
+/* Mean of the outermost turns: a stroke that has lost its tip in a dropout turns too early. */
+static double turn_of(const chosen *c, double noise_mm, bool high) {
+  double outermost = -INFINITY, sum = 0, count = 0;
+  int sign = high ? 1 : -1;
   for (size_t i = 0; i < c->count; i++)
-    c->turn[i] = (high ? c->stroke[i]->high_mm : c->stroke[i]->low_mm) - c->stroke[i]->shift_mm;
-  qsort(c->turn, c->count, sizeof *c->turn, by_size);
-  return (c->turn[(c->count - 1) / 2] + c->turn[c->count / 2]) / 2;
+    outermost = fmax(outermost, sign * fg_load_stroke_turn(c->stroke[i], high));
+  for (size_t i = 0; i < c->count; i++) {
+    double turn = sign * fg_load_stroke_turn(c->stroke[i], high);
+    if (turn < outermost - turn_reach * noise_mm) continue;
+    sum += turn;
+    count++;
+  }
+  return sign * sum / count;
 }
 
 /* Whole strokes; all of them where a sense has none, as in one cycle from the middle to the middle.
@@ -162,23 +166,14 @@ static fg_status make_loop(fg_context *ctx, const fg_load_strokes *strokes,
                            const fg_load_direction *direction, mean_loop *loop) {
   chosen c = {0};
   fg_status status = FG_OK;
-  size_t room = strokes->count + 1;
-  FG_TRY_EXIT(fg_memory_allocate(ctx, room, sizeof(fg_load_stroke *), (void **)&c.stroke));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, room, sizeof *c.turn, (void **)&c.turn));
+  FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof(fg_load_stroke *), (void **)&c.stroke));
   choose(strokes, direction, &c);
   for (int sense = UP; sense < SENSES; sense++)
     FG_TRY_EXIT(merge(ctx, &c, sense, &loop->branch[sense]));
-  chosen turning = c; /* partial strokes turn at one end only */
-  bool whole = c.count && is_whole(c.stroke[0], direction);
-  loop->low_mm = whole ? turn_of(&turning, false) : INFINITY;
-  loop->high_mm = whole ? turn_of(&turning, true) : -INFINITY;
-  for (size_t i = 0; i < c.count && !whole; i++) {
-    loop->low_mm = fmin(loop->low_mm, c.stroke[i]->low_mm - c.stroke[i]->shift_mm);
-    loop->high_mm = fmax(loop->high_mm, c.stroke[i]->high_mm - c.stroke[i]->shift_mm);
-  }
+  loop->low_mm = turn_of(&c, strokes->noise_mm, false);
+  loop->high_mm = turn_of(&c, strokes->noise_mm, true);
 exit:
   free(c.stroke);
-  free(c.turn);
   return status;
 }
 
@@ -218,21 +213,36 @@ typedef struct tip {
   double apart_n;             /* of both branches there */
 } tip;
 
+/* Half of the window that a tip is extended from, in distances that it is extended over. */
+static const double window_rests = 6;
+
+/* From the last place of the loading branch along its slope to the turn. */
+static bool extend(const fg_load_stroke *load, double at, double turn, tip *t) {
+  fg_local_fit fit;
+  double rest = turn - at;
+  if (!fg_local_fit_adaptive(load, at, FG_LOCAL_VALUE, &fit)) return false;
+  if (fit.window_mm < window_rests * fabs(rest) &&
+      !fg_local_fit_with(load, at, window_rests * fabs(rest), &fit))
+    return false;
+  t->force_n = fit.value + fit.slope * rest;
+  t->u_force_n = hypot(fit.u_value, fit.u_slope * rest);
+  return true;
+}
+
 static tip find_tip(const mean_loop *loop, int side) {
-  const fg_load_stroke *load = &loop->branch[side == FG_LOAD_PUSH ? UP : DOWN];
-  const fg_load_stroke *unload = &loop->branch[side == FG_LOAD_PUSH ? DOWN : UP];
-  double turn = side == FG_LOAD_PUSH ? loop->high_mm : loop->low_mm;
-  fg_local_fit end, a, b;
+  bool push = side == FG_LOAD_PUSH;
+  const fg_load_stroke *load = &loop->branch[push ? UP : DOWN];
+  const fg_load_stroke *unload = &loop->branch[push ? DOWN : UP];
+  double turn = push ? loop->high_mm : loop->low_mm;
+  fg_local_fit a, b;
   tip t = {0};
   if (!load->count || !unload->count) return t;
-  double at = side == FG_LOAD_PUSH ? fmin(load->x[load->count - 1], unload->x[unload->count - 1])
-                                   : fmax(load->x[0], unload->x[0]);
-  at = side == FG_LOAD_PUSH ? fmin(at, turn) : fmax(at, turn);
-  t.found = fg_local_fit_adaptive(load, turn, FG_LOCAL_VALUE, &end) &&
-            fg_local_fit_near(load, at, 0, &a) && fg_local_fit_near(unload, at, 0, &b);
-  t.force_n = end.value, t.u_force_n = end.u_value;
-  t.sampled_mm = at, t.rest_mm = fabs(turn - at);
-  t.apart_n = fabs(a.value - b.value);
+  double last = push ? fmin(turn, load->x[load->count - 1]) : fmax(turn, load->x[0]);
+  t.sampled_mm = push ? fmin(last, unload->x[unload->count - 1]) : fmax(last, unload->x[0]);
+  t.rest_mm = fabs(turn - t.sampled_mm);
+  t.found = extend(load, last, turn, &t) && fg_local_fit_near(load, t.sampled_mm, 0, &a) &&
+            fg_local_fit_near(unload, t.sampled_mm, 0, &b);
+  t.apart_n = t.found ? fabs(a.value - b.value) : 0;
   return t;
 }
 
@@ -271,7 +281,9 @@ static bool press(const mean_loop *loop, const tip *end, int side, const fg_load
   const fg_load_stroke *unload = &loop->branch[sign > 0 ? DOWN : UP];
   double contact = sign > 0 ? d->push_mm : d->pull_mm, middle = (d->push_mm + d->pull_mm) / 2;
   fg_local_fit fit;
-  if (!fg_local_fit_near(load, contact, 0, &fit) || !(fit.slope > 0)) return false;
+  if (!fg_local_fit_near(load, contact, 0, &fit) && !fg_local_across(load, contact, &fit))
+    return false;
+  if (!(fit.slope > 0)) return false;
   double reach = fmin(before_threshold * threshold / fit.slope, sign * (contact - middle));
   double from = contact - sign * reach, to = end->sampled_mm;
   if (!(sign * (to - from) > 0)) return false;
@@ -284,7 +296,8 @@ static bool press(const mean_loop *loop, const tip *end, int side, const fg_load
   sum->lost += sign * (in.value - out.value) + tip_lost;
   sum->elastic += sign * (in.value + out.value) / 2 + tip_work - tip_lost / 2;
   sum->travel += sign * (to - from) + end->rest_mm;
-  sum->u_elastic += hypot(sqrt(in.variance + out.variance) / 2, (in.unsampled + out.unsampled) / 2);
+  double noise = hypot(sqrt(in.variance + out.variance) / 2, end->u_force_n * end->rest_mm);
+  sum->u_elastic += hypot(noise, (in.unsampled + out.unsampled) / 2);
   return true;
 }
 

@@ -5,6 +5,9 @@
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
+/* Strokes at least this share of the longest have both turns. */
+static const double whole_share = 0.9;
+
 enum { RECORDS_MAX = FG_SMALL_MAX - 3, PUSH = 0, PULL, DRIFT, OFFSETS };
 
 double fg_load_birge(const fg_load_scatter *scatter) {
@@ -58,6 +61,40 @@ typedef struct joined {
   fg_load_scatter scatter;
 } joined;
 
+static double middle_of(const fg_load_stroke *s) {
+  return (fg_load_stroke_turn(s, false) + fg_load_stroke_turn(s, true)) / 2;
+}
+
+static bool is_whole(const fg_load_stroke *s, const fg_load_strokes *strokes) {
+  double longest = 0;
+  for (size_t i = 0; i < strokes->count; i++)
+    longest = fmax(longest, strokes->stroke[i].high_mm - strokes->stroke[i].low_mm);
+  return s->high_mm - s->low_mm > whole_share * longest;
+}
+
+/* What strokes drift by on their own: by as much as their points and the middles of their turns
+ * both say. Points alone may differ as a foil that was never loaded yields otherwise, middles alone
+ * as the turns do; a place that scatters by its uncertainty says little. */
+static void align(fg_load_strokes *strokes, fg_load_levels levels, const double *x,
+                  double variance) {
+  double middle = 0, count = 0;
+  for (size_t i = 0; i < strokes->count; i++) {
+    if (!is_whole(&strokes->stroke[i], strokes)) continue;
+    middle += middle_of(&strokes->stroke[i]);
+    count++;
+  }
+  for (size_t i = 0; i < strokes->count; i++) {
+    fg_load_stroke *s = &strokes->stroke[i];
+    point p = find_point(s, levels);
+    if (!p.found || !is_whole(s, strokes)) continue;
+    double share = variance / (variance + p.u * p.u);
+    double by_point = share * (p.x - x[p.side] - s->shift_mm);
+    double by_middle = middle_of(s) - middle / count;
+    if (by_point * by_middle <= 0) continue;
+    s->shift_mm += fabs(by_point) < fabs(by_middle) ? by_point : by_middle;
+  }
+}
+
 /* Least squares of all strokes' points, which says how the strokes have drifted; false where a side
  * has none. */
 static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
@@ -69,6 +106,7 @@ static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   size_t unknowns = drifts ? OFFSETS : DRIFT, first = unknowns;
   if (all.apart) unknowns += all.records - 1;
   fg_normal_clear(&system, unknowns);
+  double weights = 0;
   *out = (joined){0};
   for (size_t i = 0; i < strokes->count; i++) {
     const fg_load_stroke *s = &strokes->stroke[i];
@@ -80,6 +118,7 @@ static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
     if (all.apart && s->record > all.first_record)
       row[first + s->record - all.first_record - 1] = 1;
     fg_normal_add(&system, row, p.x, 1 / (p.u * p.u));
+    weights += 1 / (p.u * p.u);
   }
   if (!fg_normal_solve(&system, 0, x, inverse)) return false;
   out->drift = drifts ? x[DRIFT] : NAN;
@@ -87,12 +126,16 @@ static bool join(fg_load_strokes *strokes, fg_load_levels levels, joined *out) {
   out->scatter.chi2 = system.sum_squares;
   for (size_t k = 0; k < unknowns; k++)
     out->scatter.chi2 -= x[k] * system.right[k];
+  double excess = pow(fg_load_birge(&out->scatter), 2) - 1;
+  double variance = excess * (double)(all.count[0] + all.count[1]) / weights;
   for (size_t i = 0; i < strokes->count; i++) {
     fg_load_stroke *s = &strokes->stroke[i];
+    if (drifts) s->drift_mm = x[DRIFT];
     if (drifts) s->shift_mm = x[DRIFT] * ((double)i - 0.5 * (double)(strokes->count - 1));
     if (all.apart && s->record > all.first_record)
       s->shift_mm += x[first + s->record - all.first_record - 1];
   }
+  align(strokes, levels, x, variance);
   return true;
 }
 

@@ -174,6 +174,21 @@ static int by_cell(const void *left, const void *right) {
   return (a->order > b->order) - (a->order < b->order);
 }
 
+double fg_load_stroke_drifted(const fg_load_stroke *stroke, double share) {
+  return stroke->shift_mm + stroke->drift_mm * (share - 0.5);
+}
+
+double fg_load_stroke_turn(const fg_load_stroke *stroke, bool high) {
+  bool end = high == (stroke->sense > 0);
+  return (high ? stroke->high_mm : stroke->low_mm) - fg_load_stroke_drifted(stroke, end ? 1 : 0);
+}
+
+/* Samples of a stroke follow each other at even times. */
+static double without_drift(const fg_load_stroke *s, size_t k) {
+  double share = ((double)k + 0.5) / (double)s->count;
+  return s->x[k] - fg_load_stroke_drifted(s, s->sense > 0 ? share : 1 - share);
+}
+
 fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *chosen, size_t count,
                                 fg_load_stroke *merged) {
   cell *cells = NULL;
@@ -187,8 +202,8 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
   FG_TRY_EXIT(fg_memory_allocate(ctx, total, sizeof *cells, (void **)&cells));
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < chosen[i]->count; k++, n++)
-      cells[n] = (cell){chosen[i]->x[k] - chosen[i]->shift_mm, chosen[i]->f[k],
-                        chosen[i]->variance[k], chosen[i]->scatter[k], shuffled(n)};
+      cells[n] = (cell){without_drift(chosen[i], k), chosen[i]->f[k], chosen[i]->variance[k],
+                        chosen[i]->scatter[k], shuffled(n)};
   qsort(cells, total, sizeof *cells, by_cell);
   for (size_t i = 0; i < total; i++) {
     merged->x[i] = cells[i].x;

@@ -18,7 +18,8 @@ typedef struct fg_load_stroke {
   double low_mm, high_mm; /* where it turns, without the displacement's noise */
   int sense;              /* +1: displacement grows, -1: shrinks */
   size_t record;          /* strokes of one record follow each other */
-  double shift_mm;        /* what has drifted until then */
+  double shift_mm;        /* what has drifted until its middle */
+  double drift_mm;        /* and from its begin to its end */
 } fg_load_stroke;
 
 typedef struct fg_load_strokes {
@@ -41,12 +42,21 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
 fg_status fg_load_strokes_merge_sense(fg_context *ctx, const fg_load_strokes *strokes, int sense,
                                       fg_load_stroke *merged);
 
+/* What has drifted until this share of the stroke's way. */
+double fg_load_stroke_drifted(const fg_load_stroke *stroke, double share);
+
+/* Where it turns, without what has drifted. */
+double fg_load_stroke_turn(const fg_load_stroke *stroke, bool high);
+
 /* Index of the first sample at x or beyond; the count where there is none. */
 size_t fg_load_stroke_from(const fg_load_stroke *stroke, double x);
 
 /* Marks the stretches that the record did not sample: much wider than the distances of the places
  * around them. What is regressed on one side of such a stretch says nothing of the other. */
 void fg_load_stroke_find_holes(fg_load_stroke *stroke);
+
+/* Samples nearer to each other than this are of one place. */
+double fg_load_stroke_place(const fg_load_stroke *stroke);
 
 /* First and last sample about x without an unsampled stretch between; false: x lies in one. */
 bool fg_load_stroke_part(const fg_load_stroke *stroke, double x, size_t *first, size_t *last);

@@ -49,20 +49,31 @@ static void look(const fg_load_stroke *up, const fg_load_stroke *down, course *c
   }
 }
 
-/* Mean over the places where it rises next to nothing. Neighbouring places share samples: the mean
- * is taken to be known no better than one of them. */
+static bool is_flat(const course *c, size_t k) {
+  return c->slope[k] <= c->least + gap_share * c->most;
+}
+
+/* Mean over the places where it rises next to nothing, of the middle half of them: windows of the
+ * others reach to the foils. Neighbouring places share samples: the mean is taken to be known no
+ * better than one of them. */
 static fg_load_zero mean_of_gap(const course *c) {
   fg_load_zero zero = {0, 0, 0, 0};
-  double count = 0;
+  double count = 0, first = INFINITY, last = -INFINITY;
   if (!(c->least < flat_share * c->most)) return (fg_load_zero){NAN, NAN, NAN, NAN};
   for (size_t k = 0; k < c->count; k++) {
-    if (c->slope[k] > c->least + gap_share * c->most) continue;
+    if (!is_flat(c, k)) continue;
+    first = fmin(first, c->x[k]), last = fmax(last, c->x[k]);
+  }
+  double quarter = (last - first) / 4;
+  for (size_t k = 0; k < c->count; k++) {
+    if (!is_flat(c, k) || c->x[k] < first + quarter || c->x[k] > last - quarter) continue;
     zero.force_n += c->middle[k];
     zero.friction_n += c->half[k];
     zero.place_mm += c->x[k];
     zero.u_n += c->u[k];
     count++;
   }
+  if (!(count > 0)) return (fg_load_zero){NAN, NAN, NAN, NAN};
   return (fg_load_zero){zero.force_n / count, zero.friction_n / count, zero.place_mm / count,
                         zero.u_n / count};
 }
