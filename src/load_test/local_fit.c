@@ -261,21 +261,41 @@ static bool bracket(const look_around *l, double *x, double *u_x, fg_local_fit *
   return true;
 }
 
+/* Mean force of the samples of one place, from sample `i` on outwards. */
+static double place_mean(const fg_load_stroke *s, size_t i, int step) {
+  double sum = 0, count = 0, from = s->x[i];
+  for (; fabs(s->x[i] - from) <= fg_load_stroke_place(s); i = step > 0 ? i + 1 : i - 1) {
+    sum += s->f[i];
+    count++;
+    if (step > 0 ? i + 1 == s->count : i == 0) break;
+  }
+  return sum / count;
+}
+
+/* Where no regression passes the level, as between two rests of a rotor under weights: between the
+ * places on both sides. */
+static bool bracket_places(look_around *l, double *x, double *u_x, fg_local_fit *fit) {
+  const fg_load_stroke *s = l->stroke;
+  size_t outer = fg_load_stroke_from(s, l->outer_x), inner = fg_load_stroke_from(s, l->inner_x);
+  if (outer >= s->count || inner == 0) return false;
+  l->outer_x = s->x[outer], l->outer_value = place_mean(s, outer, 1);
+  l->inner_x = s->x[inner - 1], l->inner_value = place_mean(s, inner - 1, -1);
+  if (l->outer_value < l->level || l->inner_value >= l->level) return false;
+  bracket(l, x, u_x, fit);
+  fit->u_unsampled_mm = 0;
+  return true;
+}
+
 static bool is_within(const look_around *l, double x) {
   size_t first, last;
   if (!fg_load_stroke_part(l->stroke, (l->inner_x + l->outer_x) / 2, &first, &last)) return true;
   return x >= l->stroke->x[first] && x <= l->stroke->x[last];
 }
 
-bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
-                       fg_local_fit *fit) {
+static bool solve(const look_around *l, double *x, double *u_x, fg_local_fit *fit) {
+  const fg_load_stroke *stroke = l->stroke;
   double window = 0, u = 0;
-  look_around l = {.stroke = stroke, .level = level_n};
-  if (stroke->count < SAMPLES_MIN || !(stroke->x[stroke->count - 1] > stroke->x[0])) return false;
-  looked where = look(&l);
-  if (where == NOWHERE) return false;
-  if (where == UNSAMPLED) return bracket(&l, x, u_x, fit);
-  *x = (l.inner_x + l.outer_x) / 2;
+  *x = (l->inner_x + l->outer_x) / 2;
   for (int step = 0; step < SOLVE_STEPS; step++) {
     /* The window is that of the second place: the first is a guess. */
     if (step < 2 ? !fg_local_fit_adaptive(stroke, *x, FG_LOCAL_VALUE, fit)
@@ -283,12 +303,22 @@ bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, 
       return false;
     if (step < 2) window = fit->window_mm, u = fit->u_value;
     if (!(fit->slope > 0)) return false;
-    *x += fmax(-window, fmin(window, (level_n - fit->value) / fit->slope));
-    if (!is_within(&l, *x)) return false;
+    *x += fmax(-window, fmin(window, (l->level - fit->value) / fit->slope));
+    if (!is_within(l, *x)) return false;
   }
   if (!fg_local_fit_at(stroke, *x, window, fit) || !(fit->slope > 0)) return false;
   u = fmax(u, fit->u_value);
-  if (fabs(fit->value - level_n) > u) return false; /* steps that wander in the noise */
+  if (fabs(fit->value - l->level) > u) return false; /* steps that wander in the noise */
   *u_x = u / fit->slope;
   return true;
+}
+
+bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
+                       fg_local_fit *fit) {
+  look_around l = {.stroke = stroke, .level = level_n};
+  if (stroke->count < SAMPLES_MIN || !(stroke->x[stroke->count - 1] > stroke->x[0])) return false;
+  looked where = look(&l);
+  if (where == NOWHERE) return false;
+  if (where == UNSAMPLED) return bracket(&l, x, u_x, fit);
+  return solve(&l, x, u_x, fit) || bracket_places(&l, x, u_x, fit);
 }
