@@ -50,8 +50,9 @@
  * RADIAL HYSTERESIS. Half of what lies between the strokes is friction, of the foils and of the
  * rig. Over the mean force M of both, H = (a + b |M|) (1 - exp(-s/l) - exp(-s'/l)), s and s' the
  * travel since each stroke turned, l the travel that friction takes to turn round. a is the radial
- * hysteresis of a bearing without load. It says nothing of a preload: a rig's friction adds to a as
- * a preload's does, and b is that of sliding feet, not of the rotor in its foils.
+ * hysteresis of a bearing without load; where there is a gap it is the mean of H over the gap. It
+ * says nothing of a preload: a rig's friction adds to a as a preload's does, and b is that of
+ * sliding feet, not of the rotor in its foils.
  *
  * PRELOAD. A break-away test (thesis section 6.2.2): dead weights W load the bearing, and the
  * torque is read at which the rotor begins to turn. Over the rotor's radius it is friction, F =

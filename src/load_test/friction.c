@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "core/small_solve.h"
+#include "foilgauge/distribution.h"
 #include "load_test/analysis.h"
 #include "load_test/local_fit.h"
 
@@ -142,6 +143,76 @@ static fg_load_friction fit(const between *b, double zero) {
   return f;
 }
 
+/* Share of the gap about its middle where no foil pulls, whatever it was rounded to. */
+static const double gap_share = 0.7;
+
+/* u of a by how the strokes' mean forces between two places scatter about a drift: noise that is
+ * alike from sample to sample shows there. Widened by Student's t, as they are few; 0 where none is
+ * left to scatter. */
+static double scatter_of_strokes(const fg_load_strokes *strokes, double low, double high) {
+  enum { LEVEL, DRIFT, SENSE, UNKNOWNS };
+  fg_normal_equations system;
+  double x[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX], count = 0;
+  fg_normal_clear(&system, UNKNOWNS);
+  for (size_t i = 0; i < strokes->count; i++) {
+    const fg_load_stroke *s = &strokes->stroke[i];
+    size_t first = fg_load_stroke_from(s, low + s->shift_mm);
+    size_t end = fg_load_stroke_from(s, high + s->shift_mm);
+    double sum = 0;
+    for (size_t k = first; k < end; k++)
+      sum += s->f[k];
+    if (end == first) continue;
+    fg_normal_add(&system, (const double[UNKNOWNS]){1, (double)i, s->sense},
+                  sum / (double)(end - first), 1);
+    count++;
+  }
+  if (count <= UNKNOWNS || !fg_normal_solve(&system, 0, x, inverse)) return 0;
+  double squares = system.sum_squares;
+  for (int k = 0; k < UNKNOWNS; k++)
+    squares -= x[k] * system.right[k];
+  double dof = count - UNKNOWNS;
+  double wide = fg_distribution_t_quantile(0.975, dof) / fg_distribution_normal_quantile(0.975);
+  return wide * sqrt(fmax(0, squares) / dof * inverse[SENSE][SENSE]);
+}
+
+static double count_between(const fg_load_strokes *strokes, int sense, double low, double high) {
+  double count = 0;
+  for (size_t i = 0; i < strokes->count; i++) {
+    const fg_load_stroke *s = &strokes->stroke[i];
+    if (s->sense != sense) continue;
+    count += (double)(fg_load_stroke_from(s, high + s->shift_mm) -
+                      fg_load_stroke_from(s, low + s->shift_mm));
+  }
+  return count;
+}
+
+/* In a gap a is seen alone: the mean of H over it, with no model of what the foils do beside it.
+ * Its u is that of the places' scatter, whose neighbours are alike, of the samples' noise, or of
+ * the strokes. */
+static void take_gap(const between *b, const fg_load_strokes *strokes,
+                     const fg_load_direction *direction, double centre, fg_load_friction *f) {
+  enum { GAP_PLACES_MIN = 4 };
+  double reach = gap_share * direction->gap.value / 2, low = centre - reach, high = centre + reach;
+  double count = 0, mean = 0, sum = 0, cross = 0, last = NAN;
+  for (size_t k = 0; k < PLACES; k++)
+    if (b->x[k] > low && b->x[k] < high && isfinite(b->half[k])) mean += b->half[k], count++;
+  if (count < GAP_PLACES_MIN) return;
+  mean /= count;
+  for (size_t k = 0; k < PLACES; k++) {
+    if (!(b->x[k] > low && b->x[k] < high && isfinite(b->half[k]))) continue;
+    double off = b->half[k] - mean;
+    sum += off * off;
+    cross += isfinite(last) ? off * last : 0;
+    last = off;
+  }
+  double alike = fmax(0, fmin(0.9, sum > 0 ? cross / sum : 0));
+  double scatter = sum / (count - 1) / count * (1 + alike) / (1 - alike);
+  double up = count_between(strokes, 1, low, high), down = count_between(strokes, -1, low, high);
+  double noise = strokes->noise_n * strokes->noise_n / 4 * (1 / up + 1 / down);
+  f->a_n = mean;
+  f->u_a_n = fmax(sqrt(fmax(scatter, noise)), scatter_of_strokes(strokes, low, high));
+}
+
 fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
                                 fg_load_direction *direction) {
   between b = {0};
@@ -156,6 +227,7 @@ fg_status fg_load_find_friction(fg_context *ctx, const fg_load_strokes *strokes,
     if (fabs(b.x[k] - centre) < fabs(b.x[zero] - centre)) zero = k;
   /* In the middle between the points no foil pulls: what the cell says there is its zero. */
   direction->friction = fit(&b, b.middle[zero]);
+  take_gap(&b, strokes, direction, centre, &direction->friction);
   return FG_OK;
 }
 

@@ -69,6 +69,11 @@ for a in json.load(open(sys.argv[1]))["azimuths"]:
             and not {"no_gap", "gap_not_known"} & set(a["flags"])
     if not right:
         bad.append((name, a["azimuth_deg"], a["clearance_mm"], a["gap_mm"], a["u_gap_mm"], a["flags"]))
+for b in json.load(open(sys.argv[1]))["bearings"]:  # without load there is the rig's friction alone
+    true, row = BEARINGS[b["name"]][3], BEARINGS[b["name"]]
+    value, u = b["radial_hysteresis_n"], b["u_radial_hysteresis_n"]
+    if b["preload_n"] is not None or (row[2] > 0 and row[4] == "x" and not abs(value - true) <= 3 * u < 0.1):
+        bad.append((b["name"], "radial hysteresis", value, u, b["preload_n"]))
 print(*bad, sep="\n")
 sys.exit(bool(bad))
 END
