@@ -65,6 +65,9 @@ typedef struct fg_experiment_options {
   double target;                 /* FG_GOAL_TARGET: the response wanted */
   const char *const *constraint; /* "temperature_C <= 700", "2*a + b >= 3", in real units */
   size_t constraints;
+  const char *const *at; /* "temperature_C=650, duration_h=4": settings that are asked for, in real
+                            units, every factor once */
+  size_t ats;
   const fg_rounding *round; /* what the best setting is rounded to */
   size_t rounds;
   const fg_experiment_taken *taken; /* what is out of the response already */
@@ -109,6 +112,16 @@ typedef struct fg_optimum {
   bool on_border;               /* of the region: the best may lie beyond */
   bool on_edge_of_runs;         /* and there no runs are: it is no constraint that holds it */
 } fg_optimum;
+
+/* A setting that was asked for, by the model as given. */
+typedef struct fg_asked {
+  char *text;                           /* as it was asked */
+  double setting[FG_FORMULA_VARIABLES]; /* as in fg_model_row */
+  fg_prediction prediction;
+  bool inside; /* the range of the runs, in every factor */
+  /* By variable of a numeric factor: where it is best within the runs, the others as asked. */
+  double best_at[FG_FORMULA_VARIABLES], best_mean[FG_FORMULA_VARIABLES];
+} fg_asked;
 
 enum { FG_RIDGE_POINTS = 11 };
 
@@ -187,6 +200,9 @@ struct fg_experiment {
   size_t idles;
   bool all_idle; /* no factor of the model can be told from noise */
   fg_experiment *reduced;
+
+  fg_asked *asked;
+  size_t askeds;
 
   char **note; /* what could not be said and why */
   size_t notes, note_capacity;

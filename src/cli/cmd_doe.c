@@ -27,13 +27,13 @@ static report_writer *const writers[OUT_COUNT] = {
     [OUT_TABLE] = fg_experiment_write_table,
 };
 
-enum { CODINGS = FG_FORMULA_VARIABLES };
+enum { CODINGS = FG_FORMULA_VARIABLES, SETTINGS = 20 };
 
 typedef struct doe_arguments {
   const char *data, *scans, *design_path;
   fg_experiment_options options;
   fg_coding coding[CODINGS];
-  const char *constraint[FG_REGION_PLANES];
+  const char *constraint[FG_REGION_PLANES], *at[SETTINGS];
   fg_rounding round[CODINGS];
   const char *plan_path; /* NULL: beside the table, if it is there */
   double dpi;
@@ -70,6 +70,7 @@ enum {
   OPTION_ALLOW_LOSSY,
   OPTION_THREADS,
   OPTION_CONSTRAINT,
+  OPTION_AT,
   OPTION_GOAL,
   OPTION_CONFIDENCE,
   OPTION_HTML,
@@ -105,6 +106,10 @@ static const struct argp_option options[] = {
     {"goal", OPTION_GOAL, "GOAL", 0, "lowest (default), highest, or the number to aim at", 2},
     {"constraint", OPTION_CONSTRAINT, "LIMIT", 0,
      "Keep the best setting within: 'temperature_C <= 700', '2*a + b >= 3'; may be repeated", 2},
+    {"at", OPTION_AT, "SETTING", 0,
+     "Also what the model expects at this setting, 'temperature_C=650, duration_h=4', and where "
+     "along each factor it would be better; may be repeated",
+     2},
     {"round", OPTION_ROUND, "NAME=STEP", 0,
      "Also the best setting with this factor at a multiple of STEP, as the oven can be set; once "
      "for each factor (default: as planned)",
@@ -165,6 +170,11 @@ static void parse_constraint(struct argp_state *state, const char *text, doe_arg
   if (a->options.constraints == FG_REGION_PLANES)
     argp_error(state, "--constraint: %d are possible", FG_REGION_PLANES);
   a->constraint[a->options.constraints++] = text;
+}
+
+static void parse_at(struct argp_state *state, const char *text, doe_arguments *a) {
+  if (a->options.ats == SETTINGS) argp_error(state, "--at: %d are possible", SETTINGS);
+  a->at[a->options.ats++] = text;
 }
 
 static void parse_round(struct argp_state *state, const char *text, doe_arguments *a) {
@@ -233,6 +243,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_CONSTRAINT:
     parse_constraint(state, text, a);
+    break;
+  case OPTION_AT:
+    parse_at(state, text, a);
     break;
   case OPTION_ROUND:
     parse_round(state, text, a);
@@ -367,6 +380,7 @@ static fg_status analyse(fg_context *ctx, doe_run *run) {
   doe_arguments *a = &run->arguments;
   a->options.coding = a->coding;
   a->options.constraint = a->constraint;
+  a->options.at = a->at;
   a->options.round = a->round;
   fg_output_set_choose_standard(&run->outputs, OUT_JSON, OUT_TABLE, true);
   FG_TRY(check_outputs(ctx, run));

@@ -25,6 +25,9 @@ void fg_experiment_free(fg_experiment *e) {
   if (!e) return;
   fg_experiment_free(e->reduced);
   free(e->reduced);
+  for (size_t i = 0; i < e->askeds; i++)
+    free(e->asked[i].text);
+  free(e->asked);
   fg_notes_free(e->note, e->notes);
   for (size_t i = 0; i < e->constraints; i++)
     free(e->constraint[i]);

@@ -24,6 +24,7 @@ doe table_5_2 springback_factorial "($first)^2" $levels $levels_two
 doe table_5_3 springback_factorial 'temperature_C*duration_h' $levels_two
 doe saturated springback_factorial "($first)^3" $levels $levels_two
 doe table_5_5 springback_composite "$second" --code temperature_C=400:700 --code duration_h=1:7 \
-  --constraint 'temperature_C <= 700'
+  --constraint 'temperature_C <= 700' --at 'temperature_C=675, duration_h=4' --at 'temperature_C=675, duration_h=5' \
+  --at 'temperature_C=650, duration_h=5'
 
 build/tests/test_thesis --report reports

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "report/doe/doe_answer.h"
-#include "report/unit_words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/unit_words.h"
 
 /* Why there is no best setting, where there is none. */
 static const char *why_no_optimum(const fg_experiment *e) {

@@ -5,9 +5,9 @@
 
 #include "report/doe/doe_axes.h"
 #include "report/doe/doe_plots.h"
-#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
 #include "report/plot_marks.h"
+#include "report/unit_words.h"
 
 enum {
   GRID = 64,

@@ -6,10 +6,10 @@
 #include "foilgauge/words.h"
 #include "report/doe/doe_answer.h"
 #include "report/doe/doe_plots.h"
-#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
 #include "report/provenance.h"
+#include "report/unit_words.h"
 
 enum { RUNS_SHOWN = 200 };
 

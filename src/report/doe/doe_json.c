@@ -338,6 +338,32 @@ static void put_surface(fg_json *json, const fg_experiment *whole) {
   fg_json_object_end(json);
 }
 
+/* Settings that were asked for, in the order of `factors`. */
+static void put_asked(fg_json *json, const fg_experiment *e) {
+  double numbers[4][FG_FORMULA_VARIABLES];
+  fg_json_array(json, "asked");
+  for (size_t i = 0; i < e->askeds; i++) {
+    const fg_asked *asked = &e->asked[i];
+    for (size_t f = 0; f < e->factors; f++) {
+      size_t v = e->factor[f].variable;
+      numbers[0][f] = asked->setting[v];
+      numbers[1][f] = fg_factor_real(&e->factor[f], asked->setting[v]);
+      numbers[2][f] = fg_factor_real(&e->factor[f], asked->best_at[v]);
+      numbers[3][f] = asked->best_mean[v];
+    }
+    fg_json_object(json, NULL);
+    fg_json_string(json, "setting", asked->text);
+    fg_json_numbers(json, "coded", numbers[0], e->factors);
+    fg_json_numbers(json, "real", numbers[1], e->factors);
+    put_prediction(json, &asked->prediction);
+    fg_json_bool(json, "inside_runs", asked->inside);
+    fg_json_numbers(json, "best_along_real", numbers[2], e->factors);
+    fg_json_numbers(json, "best_along_mean", numbers[3], e->factors);
+    fg_json_object_end(json);
+  }
+  fg_json_array_end(json);
+}
+
 static void put_runs(fg_json *json, const fg_experiment_report *report) {
   const fg_experiment *e = report->experiment;
   const fg_regression *r = &e->regression;
@@ -405,6 +431,7 @@ static fg_status put_report(fg_context *ctx, fg_json *json, const fg_experiment_
   put_split_plot(json, e);
   FG_TRY(fg_doe_json_order(ctx, json, report));
   put_surface(json, e);
+  put_asked(json, e);
   put_runs(json, report);
   return FG_OK;
 }

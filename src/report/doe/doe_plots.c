@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "report/doe/doe_axes.h"
-#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/unit_words.h"
 
 enum { LEVELS_SHOWN = 12, PAIRS_SHOWN = 6 };
 

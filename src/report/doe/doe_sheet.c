@@ -6,8 +6,8 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "foilgauge/plan.h"
-#include "report/unit_words.h"
 #include "report/measure/measure_page_parts.h"
+#include "report/unit_words.h"
 
 enum { WORDS = 320 };
 

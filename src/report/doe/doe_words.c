@@ -238,6 +238,7 @@ fg_status fg_experiment_conclusions(fg_context *ctx, const fg_experiment_report 
   fg_status status = FG_OK;
   FG_TRY_EXIT(fg_experiment_say_taken(ctx, report, s));
   FG_TRY_EXIT(fg_experiment_say_best(ctx, e, s));
+  FG_TRY_EXIT(fg_experiment_say_asked(ctx, e, s));
   FG_TRY_EXIT(say_effects(ctx, e, s));
   FG_TRY_EXIT(say_quality(ctx, e, s));
   FG_TRY_EXIT(say_curvature(ctx, e, s));

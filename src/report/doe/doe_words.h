@@ -35,6 +35,9 @@ fg_status fg_experiment_say_stationary(fg_context *ctx, const fg_experiment *exp
 fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *experiment,
                                  fg_sentences *sentences);
 
+fg_status fg_experiment_say_asked(fg_context *ctx, const fg_experiment *experiment,
+                                  fg_sentences *sentences);
+
 /* Whether repeated runs say that the model does not fit. */
 bool fg_experiment_lacks_fit(const fg_experiment *experiment);
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "core/text.h"
-#include "report/unit_words.h"
 #include "report/doe/doe_words.h"
+#include "report/unit_words.h"
 
 const fg_optimum *fg_experiment_best_point(const fg_experiment *e) {
   const fg_experiment *best = fg_experiment_best(e);

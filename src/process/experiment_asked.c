@@ -1,0 +1,160 @@
+/* What the model expects at settings that were asked for, and where along each factor it would be
+ * better: a setting that others call the best is held against the model so. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/memory.h"
+#include "core/text.h"
+#include "process/experiment_parts.h"
+
+/* Places along a factor that are looked at; a parabola through the best finds the rest. */
+enum { PLACES = 200 };
+
+static fg_status fail_at(fg_context *ctx, const char *text, const char *at, const char *what) {
+  return fg_fail(ctx, FG_ERR_USAGE,
+                 "--at '%s', character %zu: %s; write it like 'temperature_C=650, duration_h=4'",
+                 text, (size_t)(at - text) + 1, what);
+}
+
+static const fg_factor *factor_of(const fg_experiment *e, size_t variable) {
+  for (size_t f = 0; f < e->factors; f++)
+    if (e->factor[f].variable == variable) return &e->factor[f];
+  return NULL;
+}
+
+static double coded(const fg_factor *f, double real) {
+  double middle = fg_factor_real(f, 0), half = fg_factor_real(f, 1) - middle;
+  return (real - middle) / half;
+}
+
+static size_t variable_of(const fg_experiment *e, const char *name, size_t length) {
+  for (size_t v = 0; v < e->model.formula.variables; v++) {
+    const char *column = e->model.formula.variable[v].column;
+    if (v != e->block_variable && strlen(column) == length && !memcmp(column, name, length))
+      return v;
+  }
+  return FG_FORMULA_VARIABLES;
+}
+
+/* A level of words, or a number. */
+static bool read_value(const fg_experiment *e, size_t v, const char *text, size_t length,
+                       double *value) {
+  const fg_levels *levels = &e->model.levels[v];
+  const fg_factor *factor = factor_of(e, v);
+  char *end;
+  for (size_t k = 0; k < levels->count; k++)
+    if (strlen(levels->name[k]) == length && !memcmp(levels->name[k], text, length)) {
+      *value = (double)k;
+      return true;
+    }
+  if (levels->count || !factor) return false;
+  double real = strtod(text, &end);
+  *value = coded(factor, real);
+  return end == text + length && length && isfinite(real);
+}
+
+static size_t without_blanks(const char *text, size_t length) {
+  while (length && text[length - 1] == ' ')
+    length--;
+  return length;
+}
+
+/* NAME=VALUE up to a comma; the place behind it. */
+static fg_status read_one(fg_context *ctx, const fg_experiment *e, const char *text,
+                          const char **at, double *setting) {
+  const char *name = *at + strspn(*at, " ");
+  size_t length = strcspn(name, "=,");
+  if (name[length] != '=') return fail_at(ctx, text, name + length, "'=' is expected");
+  size_t v = variable_of(e, name, without_blanks(name, length));
+  if (v == FG_FORMULA_VARIABLES) return fail_at(ctx, text, name, "this is no factor of the model");
+  const char *value = name + length + 1;
+  value += strspn(value, " ");
+  length = strcspn(value, ",");
+  if (!read_value(e, v, value, without_blanks(value, length), &setting[v]))
+    return fail_at(ctx, text, value, "this is no value of the factor");
+  *at = value + length + (value[length] == ',');
+  return FG_OK;
+}
+
+static fg_status read_setting(fg_context *ctx, const fg_experiment *e, const char *text,
+                              double *setting) {
+  for (size_t v = 0; v < e->model.formula.variables; v++)
+    setting[v] = v == e->block_variable ? 0 : NAN;
+  for (const char *at = text; *at;)
+    FG_TRY(read_one(ctx, e, text, &at, setting));
+  for (size_t v = 0; v < e->model.formula.variables; v++)
+    if (isnan(setting[v]))
+      return fg_fail(ctx, FG_ERR_USAGE, "--at '%s': '%s' has no value", text,
+                     e->model.formula.variable[v].column);
+  return FG_OK;
+}
+
+static double cost_of(const fg_experiment *e, double value) {
+  if (e->goal == FG_GOAL_TARGET) return fabs(value - e->target);
+  return e->goal == FG_GOAL_HIGHEST ? -value : value;
+}
+
+static fg_status cost_at(fg_context *ctx, const fg_experiment *e, const fg_asked *asked, size_t v,
+                         double x, double *mean, double *cost) {
+  double setting[FG_FORMULA_VARIABLES];
+  fg_prediction p;
+  memcpy(setting, asked->setting, sizeof setting);
+  setting[v] = x;
+  FG_TRY(fg_experiment_predict(ctx, e, setting, &p));
+  *mean = p.mean;
+  *cost = cost_of(e, p.mean);
+  return FG_OK;
+}
+
+/* The best of this factor within the runs, the others as asked. */
+static fg_status best_along(fg_context *ctx, const fg_experiment *e, const fg_factor *factor,
+                            fg_asked *asked) {
+  size_t v = factor->variable;
+  double low = factor->lowest, step = (factor->highest - low) / PLACES, best = INFINITY;
+  for (int i = 0; i <= PLACES; i++) {
+    double x = low + step * i, mean, cost;
+    FG_TRY(cost_at(ctx, e, asked, v, x, &mean, &cost));
+    if (!(cost < best)) continue;
+    best = cost;
+    asked->best_at[v] = x;
+    asked->best_mean[v] = mean;
+  }
+  for (double half = step; half > 1e-6 * step; half /= 2) /* down to where digits end */
+    for (int side = -1; side <= 1; side += 2) {
+      double x = fmin(fmax(asked->best_at[v] + side * half, low), factor->highest), mean, cost;
+      FG_TRY(cost_at(ctx, e, asked, v, x, &mean, &cost));
+      if (!(cost < best)) continue;
+      best = cost;
+      asked->best_at[v] = x;
+      asked->best_mean[v] = mean;
+    }
+  return FG_OK;
+}
+
+static fg_status ask(fg_context *ctx, const fg_experiment *e, const char *text, fg_asked *asked) {
+  *asked = (fg_asked){.text = NULL};
+  FG_TRY(read_setting(ctx, e, text, asked->setting));
+  FG_TRY(fg_experiment_predict(ctx, e, asked->setting, &asked->prediction));
+  asked->inside = true;
+  for (size_t f = 0; f < e->factors; f++) {
+    const fg_factor *factor = &e->factor[f];
+    double x = asked->setting[factor->variable];
+    asked->inside = asked->inside && x >= factor->lowest - 1e-9 && x <= factor->highest + 1e-9;
+    FG_TRY(best_along(ctx, e, factor, asked));
+  }
+  return fg_text_print(ctx, &asked->text, "%s", text);
+}
+
+fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
+                            fg_experiment *e) {
+  if (!options->ats) return FG_OK;
+  e->goal = options->goal;
+  e->target = options->target;
+  FG_TRY(fg_memory_allocate(ctx, options->ats, sizeof *e->asked, (void **)&e->asked));
+  for (size_t i = 0; i < options->ats; i++) {
+    FG_TRY(ask(ctx, e, options->at[i], &e->asked[i]));
+    e->askeds++;
+  }
+  return FG_OK;
+}
