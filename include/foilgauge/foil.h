@@ -54,6 +54,10 @@ typedef enum fg_foil_flag {
   FG_FOIL_OVERALL_RADIUS_LEFT = 1u << 21, /* "overall_radius_not_corrected" */
   FG_FOIL_RADIUS_LEFT = 1u << 22,         /* "radius_not_corrected" */
   FG_FOIL_HEIGHT_LEFT = 1u << 23,         /* "height_not_corrected" */
+  /* Of form cantilever: */
+  FG_FOIL_MISSING_BEAM = 1u << 24, /* "missing_beam": a place where a beam belongs is empty */
+  /* "beam_places_unknown": beams are missing, and which cannot be told: numbers are the order */
+  FG_FOIL_BEAM_PLACES_UNKNOWN = 1u << 25,
 } fg_foil_flag;
 
 typedef enum fg_bump_flag {
@@ -218,7 +222,11 @@ typedef struct fg_disc_point {
  * Beams that point the same way within 45 degrees are numbered from left to right, as the scan is
  * seen when it is turned so that their tips point up, row by row from the top; others clockwise
  * about the middle of them all, starting after the widest gap. A foil that is turned over has them
- * the other way round. */
+ * the other way round. Where there are fewer beams than the design states, numbers follow places: a
+ * place at the pitch that is empty leaves its number out, and so does one at an end, told by the
+ * middle of the foil's box; around a ring the order starts after the one gap that leaves as many
+ * places as beams. Where that does not tell (FG_FOIL_BEAM_PLACES_UNKNOWN), numbers are the order
+ * alone. */
 typedef enum fg_beam_side {
   FG_BEAM_LEFT, /* as seen with the tip up */
   FG_BEAM_RIGHT,
@@ -392,8 +400,9 @@ fg_status fg_foil_measure(fg_context *ctx, const fg_design *design, unsigned thr
 /* Fits the lines of every beam of a foil of form cantilever to its edges, whose stations the caller
  * filled, and derives every quantity; numbers the beams and puts them in order; sets their flags
  * but for FG_BEAM_TOUCHES_BORDER and FG_BEAM_NARROW_CUT, rotation_deg (of the beams' common
- * direction; NaN where they have none), noise_um, correlation_mm, FG_FOIL_BEAM_COUNT and
- * FG_FOIL_ROUGH_EDGE of the foil. FG_ERR_MEMORY. */
+ * direction; NaN where they have none), noise_um, correlation_mm, FG_FOIL_BEAM_COUNT,
+ * FG_FOIL_MISSING_BEAM, FG_FOIL_BEAM_PLACES_UNKNOWN and FG_FOIL_ROUGH_EDGE of the foil. Which
+ * beams are missing at an end is told from its place_mm. FG_ERR_MEMORY. */
 fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *foil);
 
 /* FREE AND FITTED. A scan shows the foil free: height_mm, clearance_mm (eq 5.8) and clearance_error

@@ -9,10 +9,19 @@
 /* Beams point the same way when none is further than this from their mean direction. */
 #define SAME_WAY 0.7071 /* cos 45 degrees */
 
+/* A gap is a whole number of pitches when it is within this share of a pitch of it. */
+#define WHOLE_SHARE 0.25
+/* How far, in pitches, the foil's middle may lie from where so many missing ends would put it. The
+ * box of a foil that lies askew by more than some 45 degrees may end at the tips: there it moves
+ * with the beam that is missing, and does not tell. */
+#define MIDDLE_SHARE 0.3
+
 /* Where a beam stands in the order. */
 typedef struct place {
   fg_beam beam;
   double row, column;
+  size_t line; /* its row, from 0 */
+  int index;   /* its place in the row, from 0 */
 } place;
 
 static int by_row(const void *a, const void *b) {
@@ -55,8 +64,9 @@ static bool find_direction(const fg_foil *foil, fg_point *mean) {
 
 /* Rows from the tips down, by the roots, which a beam that is torn off keeps; a row ends where the
  * next root lies half a length lower. */
-static void sort_rows(place *places, size_t count, fg_point up) {
+static size_t sort_rows(place *places, size_t count, fg_point up) {
   double longest = 0;
+  size_t rows = 0;
   for (size_t i = 0; i < count; i++) {
     fg_point root = places[i].beam.root_mm;
     places[i].row = -(root.x * up.x + root.y * up.y);
@@ -69,8 +79,71 @@ static void sort_rows(place *places, size_t count, fg_point up) {
     while (next < count && places[next].row - places[next - 1].row < 0.5 * longest)
       next++;
     fg_sort_items(places + first, next - first, sizeof *places, by_column);
+    for (size_t i = first; i < next; i++)
+      places[i].line = rows;
+    rows++;
     first = next;
   }
+  return rows;
+}
+
+/* The smallest gap, evened out over the others by how many times they hold it. */
+static double find_pitch(const double *gaps, size_t count) {
+  double least = INFINITY, sum = 0, steps = 0;
+  for (size_t i = 0; i < count; i++)
+    least = fmin(least, gaps[i]);
+  for (size_t i = 0; i < count; i++) {
+    sum += gaps[i];
+    steps += round(gaps[i] / least);
+  }
+  return count && least > 0 ? sum / steps : NAN;
+}
+
+static size_t gaps_in_rows(const place *places, size_t count, double *gaps) {
+  size_t n = 0;
+  for (size_t i = 1; i < count; i++)
+    if (places[i].line == places[i - 1].line) gaps[n++] = places[i].column - places[i - 1].column;
+  return n;
+}
+
+/* Of `missing` places at the ends of the rows, those before the first: the foil's middle is that of
+ * its box. -1: it cannot be told. */
+static int count_before(const fg_foil *foil, fg_point up, double first, double pitch, int span,
+                        int missing) {
+  const double *box = foil->place_mm;
+  if (!missing) return 0;
+  if (foil->flags & FG_FOIL_TOUCHES_BORDER || !(box[2] > 0 && box[3] > 0)) return -1;
+  fg_point centre = {box[0] + box[2] / 2, box[1] + box[3] / 2};
+  double middle = centre.y * up.x - centre.x * up.y;
+  double off = (first + (span - 1) * pitch / 2 - middle) / pitch;
+  double before = off + missing / 2.0, whole = round(before);
+  if (fabs(before - whole) > MIDDLE_SHARE || whole < 0 || whole > missing) return -1;
+  return (int)whole;
+}
+
+/* Rows have the same places, at one pitch. False: the beams do not say which of them are empty. */
+static bool place_in_rows(const fg_foil *foil, size_t stated, place *places, size_t rows,
+                          fg_point up, double *gaps) {
+  size_t count = foil->beam_count;
+  int span = 1, each = (int)(stated / rows);
+  double first = INFINITY, pitch = find_pitch(gaps, gaps_in_rows(places, count, gaps));
+  if (stated % rows || !(pitch > 0)) return false;
+  for (size_t i = 0; i < count; i++)
+    first = fmin(first, places[i].column);
+  for (size_t i = 0; i < count; i++) {
+    double steps = (places[i].column - first) / pitch;
+    places[i].index = (int)lround(steps);
+    if (fabs(steps - places[i].index) > WHOLE_SHARE) return false;
+    if (places[i].index >= span) span = places[i].index + 1;
+  }
+  /* Beams so few that the pitch may be half of it: every other one may be missing. */
+  if (span > each || 2 * span - 1 <= each) return false;
+  int before = count_before(foil, up, first, pitch, span, each - span);
+  for (size_t i = 0; i < count; i++) {
+    places[i].index += before + (int)places[i].line * each;
+    if (i && places[i].index <= places[i - 1].index) return false;
+  }
+  return before >= 0;
 }
 
 /* Clockwise as seen (y runs down: rising angles), from after the widest gap. */
@@ -99,23 +172,84 @@ static void sort_around(place *places, size_t count) {
   fg_sort_items(places, count, sizeof *places, by_column);
 }
 
-fg_status fg_beams_number(fg_context *ctx, fg_foil *foil) {
-  place *places;
+/* From 0 to 2 pi. */
+static double turn_to(const place *from, const place *to) {
+  double turn = (to->beam.direction_deg - from->beam.direction_deg) * M_PI / 180;
+  return turn - 2 * M_PI * floor(turn / (2 * M_PI));
+}
+
+/* Places of the beams that follow the gap before `start`; 0: a gap is no whole number of pitches.
+ */
+static int count_around(const place *places, size_t count, size_t start, double pitch) {
+  int index = 0;
+  for (size_t k = 1; k < count; k++) {
+    double gap = turn_to(&places[(start + k - 1) % count], &places[(start + k) % count]) / pitch;
+    if (fabs(gap - round(gap)) > WHOLE_SHARE || gap < WHOLE_SHARE) return 0;
+    index += (int)lround(gap);
+  }
+  return index + 1;
+}
+
+/* The beams point away from the ring's middle, or turn with it. The order starts after the one gap
+ * that leaves as many places as the design has beams. */
+static bool place_around(const fg_foil *foil, size_t stated, place *places, double *gaps) {
+  size_t count = foil->beam_count, starts = 0, start = 0;
+  for (size_t i = 0; i < count; i++)
+    gaps[i] = turn_to(&places[i], &places[(i + 1) % count]);
+  double pitch = INFINITY;
+  for (size_t i = 0; i < count; i++)
+    pitch = fmin(pitch, gaps[i]);
+  for (size_t i = 0; i < count && pitch > 0; i++) {
+    if (count_around(places, count, i, pitch) != (int)stated) continue;
+    starts++;
+    start = i;
+  }
+  if (starts != 1) return false;
+  const place first = places[start];
+  for (size_t i = 0; i < count; i++) {
+    places[i].column = i == start ? 0 : turn_to(&first, &places[i]);
+    places[i].index = (int)lround(places[i].column / pitch);
+  }
+  fg_sort_items(places, count, sizeof *places, by_column);
+  return true;
+}
+
+/* Numbers by places where beams are missing; else, and where the places cannot be told, by order.
+ */
+static void number(const fg_design *design, place *places, size_t rows, fg_point up, double *gaps,
+                   fg_foil *foil) {
+  size_t count = foil->beam_count, stated = design->beam_count;
+  bool lacks = count && count < stated, placed = false;
+  if (lacks && rows) placed = place_in_rows(foil, stated, places, rows, up, gaps);
+  if (lacks && !rows) placed = place_around(foil, stated, places, gaps);
+  if (placed) foil->flags |= FG_FOIL_MISSING_BEAM;
+  if (lacks && !placed) foil->flags |= FG_FOIL_BEAM_PLACES_UNKNOWN;
+  for (size_t i = 0; i < count; i++) {
+    foil->beams[i] = places[i].beam;
+    foil->beams[i].number = (placed ? places[i].index : (int)i) + 1;
+  }
+}
+
+fg_status fg_beams_number(fg_context *ctx, const fg_design *design, fg_foil *foil) {
+  place *places = NULL;
+  double *gaps = NULL;
   fg_point up;
-  size_t count = foil->beam_count;
+  size_t count = foil->beam_count, rows = 0;
+  fg_status status = FG_OK;
   bool same_way = find_direction(foil, &up);
   foil->rotation_deg = same_way ? atan2(up.y, up.x) * 180 / M_PI : NAN;
-  FG_TRY(fg_memory_allocate(ctx, count, sizeof *places, (void **)&places));
+  foil->flags &= ~(unsigned)(FG_FOIL_MISSING_BEAM | FG_FOIL_BEAM_PLACES_UNKNOWN);
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *places, (void **)&places));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, count, sizeof *gaps, (void **)&gaps));
   for (size_t i = 0; i < count; i++)
     places[i].beam = foil->beams[i];
   if (same_way)
-    sort_rows(places, count, up);
+    rows = sort_rows(places, count, up);
   else
     sort_around(places, count);
-  for (size_t i = 0; i < count; i++) {
-    foil->beams[i] = places[i].beam;
-    foil->beams[i].number = (int)i + 1;
-  }
+  number(design, places, rows, up, gaps, foil);
+exit:
   free(places);
-  return FG_OK;
+  free(gaps);
+  return status;
 }

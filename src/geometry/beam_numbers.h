@@ -4,8 +4,8 @@
 
 #include "foilgauge/foil.h"
 
-/* Sorts the beams, numbers them from 1 (foilgauge/foil.h says how) and sets rotation_deg.
- * FG_ERR_MEMORY. */
-fg_status fg_beams_number(fg_context *ctx, fg_foil *foil);
+/* Sorts the beams, numbers them (foilgauge/foil.h says how), sets rotation_deg,
+ * FG_FOIL_MISSING_BEAM and FG_FOIL_BEAM_PLACES_UNKNOWN. FG_ERR_MEMORY. */
+fg_status fg_beams_number(fg_context *ctx, const fg_design *design, fg_foil *foil);
 
 #endif

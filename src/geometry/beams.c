@@ -383,7 +383,7 @@ fg_status fg_beams_measure(fg_context *ctx, const fg_design *design, fg_foil *fo
     FG_TRY_EXIT(measure_beam(ctx, design, &foil->beams[i], &noises[i]));
   put_noise(foil, noises, scratch);
   check_scale(design, scratch, foil);
-  FG_TRY_EXIT(fg_beams_number(ctx, foil));
+  FG_TRY_EXIT(fg_beams_number(ctx, design, foil));
   flag_leaning(scratch, foil);
   if (design->beam_count && foil->beam_count != design->beam_count)
     foil->flags |= FG_FOIL_BEAM_COUNT;

@@ -289,6 +289,8 @@ void fg_lot_analysis_free(fg_lot_analysis *analysis);
 enum { FG_LOT_BEAM_DAMAGED = FG_BEAM_NOT_FITTED | FG_BEAM_TORN_TIP | FG_BEAM_BENT };
 bool fg_lot_bump_counts(const fg_foil *foil, const fg_bump *bump);
 bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_foil_part *part);
+/* For statistics by number: 0 where the foil does not tell which of its places are empty. */
+int fg_lot_part_number(const fg_foil *foil, const fg_foil_part *part);
 
 /* What a lot calls the parts of its foils. */
 typedef struct fg_lot_words {

@@ -57,7 +57,8 @@ static double foil_value(const fg_lot_quantity *quantity, const fg_foil *foil, i
   if (!number) return fg_quantity_value(quantity->row, foil);
   for (size_t i = 0; i < fg_part_count(foil, quantity->owner); i++) {
     const fg_foil_part part = fg_part_at(foil, quantity->owner, i);
-    if (part.number == number && fg_lot_part_counts(foil, quantity->owner, &part))
+    if (fg_lot_part_number(foil, &part) == number &&
+        fg_lot_part_counts(foil, quantity->owner, &part))
       return fg_quantity_value(quantity->row, part.object);
   }
   return NAN;

@@ -108,7 +108,8 @@ static size_t highest_number(const fg_lot_analysis *analysis) {
     const fg_foil *foil = analysis->foils[i].foil;
     size_t parts = fg_foil_is_measured(foil) ? fg_part_count(foil, analysis->parts) : 0;
     for (size_t k = 0; k < parts; k++) {
-      int number = fg_part_at(foil, analysis->parts, k).number;
+      const fg_foil_part part = fg_part_at(foil, analysis->parts, k);
+      int number = fg_lot_part_number(foil, &part);
       highest = number > highest ? number : highest;
     }
   }
@@ -135,9 +136,9 @@ static fg_status describe_places(fg_context *ctx, const fg_lot_analysis *analysi
     const fg_foil *foil = analysis->foils[i].foil;
     for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
       const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
-      if (part.number >= 1 && fg_lot_part_counts(foil, quantity->owner, &part))
-        add_to_place(&quantity->place[part.number - 1],
-                     fg_quantity_value(quantity->row, part.object));
+      int number = fg_lot_part_number(foil, &part);
+      if (number >= 1 && fg_lot_part_counts(foil, quantity->owner, &part))
+        add_to_place(&quantity->place[number - 1], fg_quantity_value(quantity->row, part.object));
     }
   }
   for (size_t i = 0; i < quantity->places; i++) {

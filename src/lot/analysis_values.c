@@ -14,6 +14,10 @@ bool fg_lot_part_counts(const fg_foil *foil, fg_quantity_owner owner, const fg_f
   return fg_lot_bump_counts(foil, part->object);
 }
 
+int fg_lot_part_number(const fg_foil *foil, const fg_foil_part *part) {
+  return foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN ? 0 : part->number;
+}
+
 const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, const char *name) {
   for (size_t i = 0; i < analysis->quantity_count; i++)
     if (!strcmp(analysis->quantities[i].row->name, name)) return &analysis->quantities[i];

@@ -52,7 +52,8 @@ static void gather(const fg_lot_analysis *analysis, const fg_lot_quantity *quant
     for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
       const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
       if (fg_lot_part_counts(foil, quantity->owner, &part))
-        add_value(l, at, part.number, fg_quantity_value(quantity->row, part.object));
+        add_value(l, at, fg_lot_part_number(foil, &part),
+                  fg_quantity_value(quantity->row, part.object));
     }
   }
 }

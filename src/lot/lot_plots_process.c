@@ -87,9 +87,10 @@ static void put_foil_dots(const fg_plot *at, const fg_lot_quantity *quantity, co
   for (size_t k = 0; k < fg_part_count(foil, quantity->owner); k++) {
     const fg_foil_part part = fg_part_at(foil, quantity->owner, k);
     double value = fg_quantity_value(quantity->row, part.object);
-    if (part.number < 1 || !isfinite(value) || !fg_lot_part_counts(foil, quantity->owner, &part))
+    int number = fg_lot_part_number(foil, &part);
+    if (number < 1 || !isfinite(value) || !fg_lot_part_counts(foil, quantity->owner, &part))
       continue;
-    double x = part.number + FIRST_DOT + (LAST_DOT - FIRST_DOT) * share;
+    double x = number + FIRST_DOT + (LAST_DOT - FIRST_DOT) * share;
     const fg_tolerance *limits = quantity->tolerance;
     bool beyond = limits && fg_margin_to(limits->lower, limits->upper, value).inside < 0;
     if (beyond)

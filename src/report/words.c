@@ -38,6 +38,10 @@ static const fg_flag_words foil_flags[] = {
      "The resolutions along x and y differ: radii may be off by more than their uncertainty. Scan "
      "with equal ones."},
     {FG_FOIL_BEAM_COUNT, "beam_count", "The number of beams is not the one the design states."},
+    {FG_FOIL_MISSING_BEAM, "missing_beam", "A place where a beam belongs is empty."},
+    {FG_FOIL_BEAM_PLACES_UNKNOWN, "beam_places_unknown",
+     "Beams are missing, and which of them cannot be told: they are numbered in their order, and "
+     "are in no statistics by number."},
     {FG_FOIL_LOSSY, "lossy",
      "The scan was compressed with loss (JPEG), which moves edges: the uncertainties are wider by "
      "what that does. Scan to PNG or TIFF."},

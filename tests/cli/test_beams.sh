@@ -53,7 +53,15 @@ done
 sheet torn '"torn": [{"beam": 2}]'
 expect 2 'torn_tip' "$program" measure torn.png --design design.json
 sheet missing '"missing": [3]'
-expect 1 'rejected|3 beams where the design has 4' "$program" measure missing.png --design design.json
+expect 1 'beam 3 is missing' "$program" measure missing.png --design design.json
+for lost in 1 2 3 4; do # numbers follow places, at the ends as well
+  sheet lost "\"missing\": [$lost]"
+  expect 1 "" "$program" measure lost.png --design design.json -o lost.json
+  valid measure.schema.json lost.json
+  [ "$(value lost.json '[b["number"] for b in r["foils"][0]["beams"]]')" = "$(python3 -c "print([i for i in range(1, 5) if i != $lost])")" ] ||
+    fail "beam $lost is missing, and the others are numbered $(value lost.json '[b["number"] for b in r["foils"][0]["beams"]]')"
+  [[ "$(value lost.json 'r["foils"][0]["flags"]')" = *missing_beam* ]] || fail "no flag says that beam $lost is missing"
+done
 sheet soft '"length": {"mean_um": 150}'
 expect 1 "out_of_tolerance" "$program" measure soft.png --design design.json
 

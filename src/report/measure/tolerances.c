@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "foilgauge/report.h"
+#include "quantity/parts.h"
 #include "quantity/quantity_rows.h"
 
 const char *fg_verdict_word(fg_verdict verdict) {
@@ -130,31 +131,37 @@ static fg_judgement judge_nothing(const fg_tolerance *tolerance, const fg_quanti
 }
 
 /* A place at the pitch that is empty makes numbers jump: look for the number, not the index. */
-static const fg_bump *find_bump(const fg_foil *foil, int number) {
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number == number) return &foil->bumps[i];
+static const void *find_part(const fg_foil *foil, fg_quantity_owner owner, int number) {
+  for (size_t i = 0; i < fg_part_count(foil, owner); i++) {
+    const fg_foil_part part = fg_part_at(foil, owner, i);
+    if (part.number == number) return part.object;
+  }
   return NULL;
 }
 
-static int last_found(const fg_foil *foil) {
+static int last_found(const fg_foil *foil, fg_quantity_owner owner) {
   int last = 0;
-  for (size_t i = 0; i < foil->bump_count; i++)
-    if (foil->bumps[i].number > last) last = foil->bumps[i].number;
+  for (size_t i = 0; i < fg_part_count(foil, owner); i++) {
+    int number = fg_part_at(foil, owner, i).number;
+    if (number > last) last = number;
+  }
   return last;
 }
 
-static int last_bump_number(const fg_design *design, const fg_foil *foil) {
-  int last = last_found(foil), stated = (int)design->bump_count;
+static size_t stated_parts(const fg_design *design) {
+  return fg_form_parts(design->form) == FG_QUANTITY_OF_BEAM ? design->beam_count
+                                                            : design->bump_count;
+}
+
+static int last_number(const fg_design *design, const fg_foil *foil) {
+  int last = last_found(foil, fg_form_parts(design->form)), stated = (int)stated_parts(design);
+  if (foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN) return last;
   return last > stated ? last : stated;
 }
 
-static bool lacks_bumps(const fg_design *design, const fg_foil *foil) {
-  return design->tolerance_count && foil->bump_count < design->bump_count;
-}
-
-/* Of a cantilever. */
-static bool lacks_beams(const fg_design *design, const fg_foil *foil) {
-  return design->tolerance_count && foil->beam_count < design->beam_count;
+static bool lacks_parts(const fg_design *design, const fg_foil *foil) {
+  return design->tolerance_count &&
+         fg_part_count(foil, fg_form_parts(design->form)) < stated_parts(design);
 }
 
 static bool may_be_hidden(const fg_foil *foil) {
@@ -171,58 +178,57 @@ __attribute__((format(printf, 3, 4))) static void add_words(char *words, size_t 
   va_end(list);
 }
 
-static int count_missing(const fg_foil *foil, int last) {
+static int count_missing(const fg_foil *foil, fg_quantity_owner owner, int last) {
   int missing = 0;
   for (int number = 1; number <= last; number++)
-    missing += find_bump(foil, number) == NULL;
+    missing += find_part(foil, owner, number) == NULL;
   return missing;
 }
 
 /* "bumps 3, 7 are missing (7 found, the design has 9)" */
 static void name_missing(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
   enum { NAMED_MAX = 12 };
-  int last = last_found(foil), missing = count_missing(foil, last);
-  if (!missing || !may_be_hidden(foil)) {
-    last = last_bump_number(design, foil);
-    missing = count_missing(foil, last);
+  fg_quantity_owner owner = fg_form_parts(design->form);
+  size_t found = fg_part_count(foil, owner), stated = stated_parts(design);
+  const char *word = fg_part_word(owner);
+  int last = last_found(foil, owner), missing = count_missing(foil, owner, last);
+  if (foil->flags & FG_FOIL_BEAM_PLACES_UNKNOWN) {
+    add_words(words, size, "%zu of %zu %ss missing, which cannot be told", stated - found, stated,
+              word);
+    return;
   }
-  add_words(words, size, missing == 1 ? "bump" : "bumps");
+  if (!missing || !may_be_hidden(foil)) {
+    last = last_number(design, foil);
+    missing = count_missing(foil, owner, last);
+  }
+  add_words(words, size, missing == 1 ? "%s" : "%ss", word);
   for (int number = 1, named = 0; number <= last && named < NAMED_MAX; number++)
-    if (!find_bump(foil, number)) add_words(words, size, "%s %d", named++ ? "," : "", number);
+    if (!find_part(foil, owner, number))
+      add_words(words, size, "%s %d", named++ ? "," : "", number);
   if (missing > NAMED_MAX) add_words(words, size, " and others");
   add_words(words, size, missing == 1 ? " is missing (%zu found" : " are missing (%zu found",
-            foil->bump_count);
-  if (design->bump_count) add_words(words, size, ", the design has %zu", design->bump_count);
+            found);
+  if (stated) add_words(words, size, ", the design has %zu", stated);
   add_words(words, size, ")");
-}
-
-/* Another number of beams than the design's rejects a foil, unless the border may hide some. */
-static bool is_miscounted(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
-  if (!design->tolerance_count || !design->beam_count || foil->beam_count == design->beam_count)
-    return false;
-  if (lacks_beams(design, foil) && may_be_hidden(foil)) return false;
-  add_words(words, size, "%zu beams where the design has %zu", foil->beam_count,
-            design->beam_count);
-  return true;
 }
 
 bool fg_foil_defect(const fg_design *design, const fg_foil *foil, char *words, size_t size) {
   char unused[1];
+  fg_quantity_owner owner = fg_form_parts(design->form);
   if (!words) {
     words = unused;
     size = sizeof unused;
   }
   words[0] = '\0';
-  if (!fg_foil_is_measured(foil)) return false;
-  if (design->form == FG_FORM_CANTILEVER) return is_miscounted(design, foil, words, size);
-  if (foil->flags & FG_FOIL_MISSING_BUMP || (lacks_bumps(design, foil) && !may_be_hidden(foil))) {
+  if (!fg_foil_is_measured(foil) || !fg_owner_is_part(owner)) return false;
+  if (foil->flags & (FG_FOIL_MISSING_BUMP | FG_FOIL_MISSING_BEAM) ||
+      (lacks_parts(design, foil) && !may_be_hidden(foil))) {
     name_missing(design, foil, words, size);
     return true;
   }
-  if (!design->tolerance_count || !design->bump_count || foil->bump_count <= design->bump_count)
-    return false;
-  add_words(words, size, "%zu bumps where the design has %zu", foil->bump_count,
-            design->bump_count);
+  size_t found = fg_part_count(foil, owner), stated = stated_parts(design);
+  if (!design->tolerance_count || !stated || found <= stated) return false;
+  add_words(words, size, "%zu %ss where the design has %zu", found, fg_part_word(owner), stated);
   return true;
 }
 
@@ -243,22 +249,16 @@ static void take(fg_decision *decision, fg_judgement judgement) {
   outcome->not_measured += judgement.verdict == FG_VERDICT_NOT_MEASURED;
 }
 
-static void judge_bumps(const fg_design *design, const fg_tolerance *tolerance,
-                        const fg_quantity *row, int last, const fg_foil *foil,
+static void judge_parts(const fg_design *design, const fg_tolerance *tolerance,
+                        const fg_quantity *row, fg_quantity_owner owner, const fg_foil *foil,
                         fg_decision *decision) {
-  int found = last_found(foil);
+  int found = last_found(foil, owner), last = last_number(design, foil);
   for (int number = 1; number <= last; number++) {
-    const fg_bump *bump = find_bump(foil, number);
+    const void *part = find_part(foil, owner, number);
     bool hidden = number > found && may_be_hidden(foil);
-    take(decision, bump ? judge(design, tolerance, row, bump, number)
+    take(decision, part ? judge(design, tolerance, row, part, number)
                         : judge_nothing(tolerance, row, number, hidden));
   }
-}
-
-static void judge_beams(const fg_design *design, const fg_tolerance *tolerance,
-                        const fg_quantity *row, const fg_foil *foil, fg_decision *decision) {
-  for (size_t i = 0; i < foil->beam_count; i++)
-    take(decision, judge(design, tolerance, row, &foil->beams[i], foil->beams[i].number));
 }
 
 static bool is_sized(const fg_beam *beam) {
@@ -268,10 +268,9 @@ static bool is_sized(const fg_beam *beam) {
 static bool is_whole(const fg_design *design, const fg_foil *foil) {
   for (size_t i = 0; i < foil->beam_count; i++)
     if (!is_sized(&foil->beams[i])) return false;
-  if (lacks_beams(design, foil) && may_be_hidden(foil)) return false;
   for (size_t i = 0; i < foil->bump_count; i++)
     if (foil->bumps[i].flags & FG_BUMP_NOT_FITTED) return false;
-  return !(lacks_bumps(design, foil) && may_be_hidden(foil));
+  return !(lacks_parts(design, foil) && may_be_hidden(foil));
 }
 
 /* What no single value says. */
@@ -285,8 +284,9 @@ static void judge_whole(const fg_design *design, const fg_foil *foil, fg_report_
 
 fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil *foil,
                          fg_decision *decision) {
-  int last = fg_form_has_bumps(design->form) ? last_bump_number(design, foil) : 0;
-  FG_TRY(allocate(ctx, design->tolerance_count, (size_t)last + foil->beam_count + 1, decision));
+  const fg_quantity_owner owner = fg_form_parts(design->form);
+  size_t parts = fg_owner_is_part(owner) ? (size_t)last_number(design, foil) : 0;
+  FG_TRY(allocate(ctx, design->tolerance_count, parts + 1, decision));
   if (!fg_foil_is_measured(foil)) {
     add_unmeasured(&decision->outcome);
     return FG_OK;
@@ -295,10 +295,8 @@ fg_status fg_foil_decide(fg_context *ctx, const fg_design *design, const fg_foil
     const fg_tolerance *tolerance = &design->tolerances[i];
     const fg_quantity *row = fg_quantity_find(FG_QUANTITY_OF_FOIL, tolerance->quantity);
     if (row) take(decision, judge(design, tolerance, row, foil, 0));
-    row = fg_quantity_find(FG_QUANTITY_OF_BUMP, tolerance->quantity);
-    if (row) judge_bumps(design, tolerance, row, last, foil, decision);
-    row = fg_quantity_find(FG_QUANTITY_OF_BEAM, tolerance->quantity);
-    if (row) judge_beams(design, tolerance, row, foil, decision);
+    row = fg_owner_is_part(owner) ? fg_quantity_find(owner, tolerance->quantity) : NULL;
+    if (row) judge_parts(design, tolerance, row, owner, foil, decision);
   }
   judge_whole(design, foil, &decision->outcome);
   return FG_OK;
