@@ -241,6 +241,7 @@ enum {
   FG_BREAK_RIG_NOT_GIVEN = 1 << 5, /* the rig's friction counts as preload */
   FG_BREAK_NONE_SHOWN = 1 << 6,    /* the preload lies within U of none */
   FG_BREAK_GAP = 1 << 7,           /* a preload where the load test has a clearance */
+  FG_BREAK_SUSPECTED = 1 << 8,     /* perhaps no straight line */
 };
 const fg_load_flag *fg_break_away_flags(void); /* ends with a row whose name is NULL */
 

@@ -7,8 +7,8 @@
 #include "foilgauge/distribution.h"
 #include "load_test/analysis.h"
 
-/* Straight lines fail the test for a curve this often. */
-static const double p_curved_max = 0.01;
+/* Straight lines fail the test for a curve this often, and are suspected of one. */
+static const double p_curved_max = 0.01, p_suspected_max = 0.1;
 
 /* P is the intercept over the slope: where the slope is not known to a third, P has no interval
  * worth the name. */
@@ -30,6 +30,8 @@ const fg_load_flag *fg_break_away_flags(void) {
       {FG_BREAK_CURVED, "not_straight",
        "friction over dead weight is no straight line: neither coefficient nor preload follow from "
        "it"},
+      {FG_BREAK_SUSPECTED, "curve_suspected",
+       "friction over dead weight may be bent (p < 0.1): more pulls, at more weights, would tell"},
       {FG_BREAK_SLOPE, "slope_not_known",
        "the friction coefficient is known no better than to a third: heavier weights, or more "
        "pulls, would tell the preload"},
@@ -113,23 +115,24 @@ static bool fit(const pulls *p, size_t unknowns, line *l) {
   return true;
 }
 
-/* Covariance of intercept and slope: sum of (r / (1 - h))² of every pull, h its leverage (HC3). */
-static void find_covariance(const pulls *p, const line *l, double covariance[LINE][LINE]) {
-  for (int a = 0; a < LINE; a++)
-    for (int b = 0; b < LINE; b++)
+/* Covariance of the coefficients: sum of (r / (1 - h))² of every pull, h its leverage (HC3). */
+static void find_covariance(const pulls *p, const line *l, size_t unknowns,
+                            double covariance[CURVE][CURVE]) {
+  for (size_t a = 0; a < unknowns; a++)
+    for (size_t b = 0; b < unknowns; b++)
       covariance[a][b] = 0;
   for (size_t i = 0; i < p->test->pull_count; i++) {
-    double row[CURVE], lever[LINE] = {0}, leverage = 0;
+    double row[CURVE], lever[CURVE] = {0}, leverage = 0;
     if (!is_of(p, i)) continue;
     make_row(p, i, row);
-    for (int a = 0; a < LINE; a++)
-      for (int b = 0; b < LINE; b++)
+    for (size_t a = 0; a < unknowns; a++)
+      for (size_t b = 0; b < unknowns; b++)
         lever[a] += l->inverse[a][b] * row[b];
-    for (int a = 0; a < LINE; a++)
+    for (size_t a = 0; a < unknowns; a++)
       leverage += row[a] * lever[a];
-    double square = pow(residual(p, l, LINE, i) / fmax(1e-9, 1 - leverage), 2);
-    for (int a = 0; a < LINE; a++)
-      for (int b = 0; b < LINE; b++)
+    double square = pow(residual(p, l, unknowns, i) / fmax(1e-9, 1 - leverage), 2);
+    for (size_t a = 0; a < unknowns; a++)
+      for (size_t b = 0; b < unknowns; b++)
         covariance[a][b] += square * lever[a] * lever[b];
   }
 }
@@ -137,12 +140,14 @@ static void find_covariance(const pulls *p, const line *l, double covariance[LIN
 /* Probability that a straight line shows such a curve; NaN where nothing can say. */
 static double test_curve(const pulls *p, const line *straight) {
   line curve;
-  double freedom = (double)p->count - CURVE;
+  double covariance[CURVE][CURVE];
   if (p->weights < CHECKED_WEIGHTS_MIN || p->count < CHECKED_PULLS_MIN) return NAN;
   if (!(straight->squares > rounding * straight->all_squares)) return 1;
   if (!fit(p, CURVE, &curve)) return NAN;
-  double f = (straight->squares - curve.squares) / (curve.squares / freedom);
-  return isfinite(f) ? fg_distribution_f_upper(fmax(0, f), 1, freedom) : 0;
+  if (!(curve.squares > rounding * curve.all_squares)) return 0;
+  find_covariance(p, &curve, CURVE, covariance);
+  double t = curve.x[CURVE - 1] / sqrt(covariance[CURVE - 1][CURVE - 1]);
+  return fg_distribution_t_two_sided(t, (double)p->count - CURVE);
 }
 
 /* The rig's friction and its standard uncertainty at the rotor's surface. */
@@ -160,12 +165,12 @@ static double to_kpa(const fg_load_options *o, double newtons) {
 static void take_line(const pulls *p, const line *l, fg_load_bearing *sum) {
   const fg_load_options *o = &p->test->options;
   fg_break_away *out = &sum->break_away;
-  double covariance[LINE][LINE], u_rig, rig = rig_friction(o, &u_rig);
+  double covariance[CURVE][CURVE], u_rig, rig = rig_friction(o, &u_rig);
   double force = o->u_force_pct / 100, weight = o->u_weight_pct / 100;
   double mu = l->x[1] / p->high_n, a = l->x[0] - rig, preload = a / mu;
   double freedom = (double)p->count - LINE;
   double wide = fg_distribution_t_quantile(0.975, freedom) / fg_distribution_normal_quantile(0.975);
-  find_covariance(p, l, covariance);
+  find_covariance(p, l, LINE, covariance);
   double u_a = wide * sqrt(covariance[0][0]), u_mu = wide * sqrt(covariance[1][1]) / p->high_n;
   double cross = wide * wide * covariance[0][1] / p->high_n;
   double u_preload =
@@ -194,6 +199,7 @@ static void check(const pulls *p, fg_load_bearing *sum) {
   bool slope = out->friction.value > slope_known * out->friction.u_repeat;
   bool below = out->intercept_n.value < -reach * out->intercept_n.u;
   if (curved) out->flags |= FG_BREAK_CURVED;
+  if (!curved && out->p_curved < p_suspected_max) out->flags |= FG_BREAK_SUSPECTED;
   if (!curved && !slope) out->flags |= FG_BREAK_SLOPE;
   if (!curved && slope && below) out->flags |= FG_BREAK_BELOW_ZERO;
   if (!isfinite(out->p_curved)) out->flags |= FG_BREAK_UNCHECKED;
