@@ -17,6 +17,7 @@ import urllib.request
 import zlib
 
 import benchlib
+import station_attacked
 
 RECIPE = os.path.join(benchlib.ROOT, "samples", "station", "recipe.json")
 FILL = os.path.join(benchlib.ROOT, "tests", "bench", "station_fill.py")
@@ -190,8 +191,9 @@ def write(path, options, filled, starts, pages, waits, requests, day):
         benchlib.table(["scans", "resident, MiB", "open files", "database, MiB", "journal, MiB"],
                        [[i, f"{m:.1f}", f, f"{d:.1f}", f"{j:.1f}"] for i, m, f, d, j in samples]),
     ]
+    attacked = station_attacked.read_section(path)
     with open(path, "w", encoding="utf-8") as out:
-        out.write("\n".join(lines))
+        out.write("\n".join(lines) + attacked)
 
 
 def main():
