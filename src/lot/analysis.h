@@ -107,6 +107,7 @@ typedef struct fg_lot_thickness {
 typedef struct fg_lot_budget_term {
   double spread_pct, sensitivity; /* relative sd over the bumps; NaN: not known */
   double variance_pct2;           /* of the stiffness: their product, squared */
+  double share_pct;               /* of the observed variance, 0 to 100; NaN: not known */
 } fg_lot_budget_term;
 
 /* Standard uncertainty of a mean over a lot's values; NaN: not known. */
@@ -117,7 +118,12 @@ typedef struct fg_lot_known {
 /* Where the relative sd of the stiffness (arch) comes from, to first order about the lot's mean:
  *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
  *          + (s_t sigma_t)²,   s_t = 3 for slender bumps, r the correlation of R and arc length.
- * All scans share the doubt about the thickness: it is in the mean (u_by_thickness), not here. */
+ * All scans share the doubt about the thickness: it is in the mean (u_by_thickness), not here.
+ *
+ * These terms do not add up where the causes are correlated or stiffness curves. The shares do:
+ * what a cause adds to the variance that a regression on the causes explains, averaged over the
+ * orders in which they may enter (Lindeman, Merenda and Gold 1980). None is negative, and with the
+ * rest they are 100 %. */
 typedef struct fg_lot_budget {
   bool known;
   fg_lot_budget_term radius; /* at constant arc length */
@@ -129,6 +135,7 @@ typedef struct fg_lot_budget {
                                         negative */
   double measurement_pct;            /* of the observed, by the bumps' own uncertainties; NaN */
   double parts_pct;                  /* what is left of the observed without it */
+  double rest_share_pct;             /* of the observed variance: what no cause explains */
 } fg_lot_budget;
 
 enum { FG_LOT_CASE_DESIGN, FG_LOT_CASE_MEAN, FG_LOT_CASES };

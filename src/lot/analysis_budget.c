@@ -56,19 +56,72 @@ static double measurement_pct(const fg_bump_columns *columns) {
   return m.count ? 100 * sqrt(m.mean_x) : NAN;
 }
 
+enum { CAUSES = 3, SUBSETS = 1 << CAUSES };
+
+/* A cause that keeps less than this of its variance beside the others adds nothing. */
+static const double COLLINEAR = 1e-9;
+
+/* Share of y's variance that the causes of `subset` explain: y is their combination as far as they
+ * go, by elimination on the correlations `r`, whose last row and column are y's. */
+static double explained(const double r[CAUSES + 1][CAUSES + 1], int subset) {
+  double m[CAUSES + 1][CAUSES + 1];
+  for (int i = 0; i <= CAUSES; i++)
+    for (int j = 0; j <= CAUSES; j++)
+      m[i][j] = r[i][j];
+  for (int k = 0; k < CAUSES; k++) {
+    double pivot = m[k][k];
+    if (!(subset >> k & 1) || !(pivot > COLLINEAR)) continue;
+    for (int i = 0; i <= CAUSES; i++) {
+      double factor = m[i][k] / pivot;
+      for (int j = 0; j <= CAUSES && i != k; j++)
+        m[i][j] -= factor * m[k][j];
+    }
+  }
+  return fmin(1, fmax(0, 1 - m[CAUSES][CAUSES]));
+}
+
+/* Weight of a subset of `size` others that enters before: size! (CAUSES - 1 - size)! / CAUSES!. */
+static const double order_weight[CAUSES] = {1.0 / 3, 1.0 / 6, 1.0 / 3};
+
+static void find_shares(const fg_bump_columns *columns, bool thickness, fg_lot_budget *budget) {
+  const double *const column[CAUSES + 1] = {columns->arch_radius, columns->arch_length,
+                                            columns->thickness, columns->ratio[0]};
+  fg_lot_budget_term *const term[CAUSES] = {&budget->radius, &budget->arc_length,
+                                            &budget->thickness};
+  double r[CAUSES + 1][CAUSES + 1], all = 0;
+  for (int i = 0; i <= CAUSES; i++)
+    for (int j = 0; j <= CAUSES; j++) {
+      moments m = moments_of(column[i], column[j], columns->count);
+      r[i][j] = m.xx > 0 && m.yy > 0 ? m.xy / sqrt(m.xx * m.yy) : 0;
+    }
+  for (int k = 0; k < CAUSES; k++) {
+    term[k]->share_pct = 0;
+    for (int subset = 0; subset < SUBSETS; subset++) {
+      if (subset >> k & 1) continue;
+      int size = (subset & 1) + (subset >> 1 & 1) + (subset >> 2 & 1);
+      double gain = explained((const double(*)[CAUSES + 1]) r, subset | 1 << k) -
+                    explained((const double(*)[CAUSES + 1]) r, subset);
+      term[k]->share_pct += 100 * order_weight[size] * fmax(0, gain);
+    }
+    all += term[k]->share_pct;
+  }
+  budget->rest_share_pct = fmax(0, 100 - all);
+  if (!thickness) budget->thickness.share_pct = NAN;
+}
+
 void fg_lot_analyse_budget(fg_lot_analysis *analysis, const fg_bump_columns *columns) {
   fg_lot_budget *budget = &analysis->stiffness.budget;
   const fg_arch_sensitivity *slope =
       &analysis->stiffness.cases[FG_LOT_CASE_MEAN].lines[0].sensitivity;
   moments m = moments_of(columns->arch_radius, columns->arch_length, columns->count);
   moments t = moments_of(columns->strip, columns->strip, columns->count);
-  budget->radius =
-      (fg_lot_budget_term){relative_pct(m.xx, m.count, m.mean_x), slope->radius_at_arc_length, NAN};
+  budget->radius = (fg_lot_budget_term){relative_pct(m.xx, m.count, m.mean_x),
+                                        slope->radius_at_arc_length, NAN, NAN};
   budget->arc_length =
-      (fg_lot_budget_term){relative_pct(m.yy, m.count, m.mean_y), slope->angle, NAN};
+      (fg_lot_budget_term){relative_pct(m.yy, m.count, m.mean_y), slope->angle, NAN, NAN};
   budget->thickness = (fg_lot_budget_term){
       analysis->thickness.foils > 1 ? relative_pct(t.xx, t.count, t.mean_x) : NAN, slope->thickness,
-      NAN};
+      NAN, NAN};
   fg_lot_budget_term *const terms[] = {&budget->radius, &budget->arc_length, &budget->thickness};
   for (size_t i = 0; i < sizeof terms / sizeof *terms; i++) {
     terms[i]->variance_pct2 = pow(terms[i]->sensitivity * terms[i]->spread_pct, 2);
@@ -84,5 +137,6 @@ void fg_lot_analyse_budget(fg_lot_analysis *analysis, const fg_bump_columns *col
   budget->measurement_pct = measurement_pct(columns);
   budget->parts_pct =
       sqrt(fmax(0, pow(budget->observed_pct, 2) - pow(known_or_0(budget->measurement_pct), 2)));
+  find_shares(columns, analysis->thickness.foils > 1, budget);
   budget->known = true;
 }

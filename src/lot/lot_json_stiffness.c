@@ -35,6 +35,7 @@ static void write_term(fg_json *json, const char *name, const fg_lot_budget_term
   fg_json_number(json, "relative_sd_pct", term->spread_pct);
   fg_json_number(json, "sensitivity", term->sensitivity);
   fg_json_number(json, "variance_pct2", term->variance_pct2);
+  fg_json_number(json, "share_pct", term->share_pct);
   fg_json_object_end(json);
   fg_json_line_end(json);
 }
@@ -53,6 +54,7 @@ static void write_budget(fg_json *json, const fg_lot_budget *budget) {
   fg_json_number(json, "sum_pct2", budget->sum_pct2);
   fg_json_number(json, "observed_relative_sd_pct", budget->observed_pct);
   fg_json_number(json, "unexplained_pct2", budget->unexplained_pct2);
+  fg_json_number(json, "rest_share_pct", budget->rest_share_pct);
   fg_json_number(json, "measurement_relative_sd_pct", budget->measurement_pct);
   fg_json_number(json, "parts_relative_sd_pct", budget->parts_pct);
   fg_json_object_end(json);

@@ -3,43 +3,39 @@
 
 #include "lot/page_parts.h"
 
-/* A sum that leaves less than this of the observed variance aside explains it. */
-static const double settled_share = 0.1;
-
 static void put_cell(FILE *out, double value, int digits) {
   fputs("<td>", out);
   fg_lot_put_number(out, value, digits);
   fputs("</td>", out);
 }
 
-/* Three digits, and nothing finer than a hundredth of the whole. */
-static double share_pct(const fg_lot_budget *budget, double variance_pct2) {
-  return round(1e4 * variance_pct2 / pow(budget->observed_pct, 2)) / 100;
-}
-
-/* A variance as the spread that it would give alone; below zero it takes away. */
+/* A variance as the spread that it would give alone. */
 static double as_spread(double variance_pct2) {
-  return copysign(sqrt(fabs(variance_pct2)), variance_pct2);
+  return sqrt(variance_pct2);
 }
 
-static void put_row(FILE *out, const char *style, const char *title, const fg_lot_budget *budget,
-                    const fg_lot_budget_term *term) {
-  fprintf(out, "<tr%s><td>%s</td>", style, title);
+/* A tenth of a percent of the whole is fine enough. */
+static double rounded(double share_pct) {
+  return round(10 * share_pct) / 10;
+}
+
+static void put_row(FILE *out, const char *title, const fg_lot_budget_term *term) {
+  fprintf(out, "<tr><td>%s</td>", title);
   put_cell(out, term->spread_pct, 3);
   if (isfinite(term->sensitivity))
     fprintf(out, "<td>%s%.2f</td>", term->sensitivity < 0 ? "−" : "+", fabs(term->sensitivity));
   else
     fputs("<td></td>", out);
   put_cell(out, as_spread(term->variance_pct2), 3);
-  put_cell(out, share_pct(budget, term->variance_pct2), 3);
+  put_cell(out, rounded(term->share_pct), 3);
   fputs("</tr>\n", out);
 }
 
-static void put_sum(FILE *out, const char *style, const char *title, const fg_lot_budget *budget,
-                    double variance_pct2) {
+static void put_share(FILE *out, const char *style, const char *title, double spread_pct,
+                      double share_pct) {
   fprintf(out, "<tr%s><td>%s</td><td></td><td></td>", style, title);
-  put_cell(out, as_spread(variance_pct2), 3);
-  put_cell(out, share_pct(budget, variance_pct2), 3);
+  put_cell(out, spread_pct, 3);
+  put_cell(out, rounded(share_pct), 3);
   fputs("</tr>\n", out);
 }
 
@@ -52,7 +48,7 @@ static void put_sentence(FILE *out, const fg_lot_budget *budget) {
                 {"the strip's thickness", &budget->thickness}};
   size_t most = 0;
   for (size_t i = 1; i < sizeof causes / sizeof *causes; i++)
-    if (causes[i].term->variance_pct2 > causes[most].term->variance_pct2) most = i;
+    if (causes[i].term->share_pct > causes[most].term->share_pct) most = i;
   fprintf(
       out,
       "<p>From bump to bump stiffness varies by <b>%.3g&nbsp;%%</b> (one standard deviation). Most "
@@ -70,14 +66,13 @@ static void put_thickness_note(FILE *out, const fg_lot_analysis *analysis) {
 }
 
 static void put_rest(FILE *out, const fg_lot_budget *budget) {
-  double observed = pow(budget->observed_pct, 2);
-  fputs("<p class=\"note\">It is the squares that add up; a minus takes away. ", out);
-  if (fabs(budget->unexplained_pct2) > settled_share * observed)
-    fprintf(out,
-            "The causes add up to %.3g %% where %.3g %% is observed. Slopes hold for small "
-            "differences: over a wide lot stiffness curves, %s. ",
-            as_spread(budget->sum_pct2), budget->observed_pct,
-            budget->unexplained_pct2 < 0 ? "and here that takes away" : "and here that adds");
+  fprintf(out,
+          "<p class=\"note\">The shares are what each cause adds to the variance that a regression "
+          "on the causes explains, averaged over the orders in which they may enter (Lindeman, "
+          "Merenda and Gold): none is negative, and with what is not explained, as stiffness "
+          "curves, they are 100 %%. Radius and arc length go together with a correlation of "
+          "%s%.2f: what each gives alone does not add up. ",
+          budget->correlation < 0 ? "−" : "+", fabs(budget->correlation));
   if (isfinite(budget->measurement_pct) && budget->measurement_pct > 0)
     fprintf(out,
             "Measurement is in the observed spread and not in the parts: radius and angle of a "
@@ -105,24 +100,18 @@ static void put_calibration(FILE *out, const fg_lot_analysis *analysis) {
 
 void fg_lot_put_stiffness_budget(FILE *out, const fg_lot_analysis *analysis) {
   const fg_lot_budget *budget = &analysis->stiffness.budget;
-  char title[80];
   if (!budget->known) return;
   fputs("<h2>Where the spread comes from</h2>\n", out);
   put_sentence(out, budget);
   fputs("<div class=\"scroll\"><table><thead><tr><th>cause</th><th>varies by, %</th><th>% of "
-        "stiffness<br>per %</th><th>gives, %</th><th>share of the<br>variance, "
+        "stiffness<br>per %</th><th>alone gives, %</th><th>share of the<br>variance, "
         "%</th></tr></thead>\n<tbody>\n",
         out);
-  put_row(out, "", "radius, at constant arc length", budget, &budget->radius);
-  put_row(out, "", "arc length R α of the bump", budget, &budget->arc_length);
-  snprintf(title, sizeof title, "these two together (correlation %s%.2f)",
-           budget->correlation < 0 ? "−" : "+", fabs(budget->correlation));
-  put_sum(out, "", title, budget, budget->together_pct2);
-  put_row(out, "", "thickness of the strip", budget, &budget->thickness);
-  put_sum(out, " class=\"total\"", "sum", budget, budget->sum_pct2);
-  put_sum(out, "", "observed", budget, pow(budget->observed_pct, 2));
-  put_sum(out, "", "not explained by these slopes", budget, budget->unexplained_pct2);
-  put_sum(out, "", "of the observed: measurement", budget, pow(budget->measurement_pct, 2));
+  put_row(out, "radius, at constant arc length", &budget->radius);
+  put_row(out, "arc length R α of the bump", &budget->arc_length);
+  put_row(out, "thickness of the strip", &budget->thickness);
+  put_share(out, "", "not explained by these", NAN, budget->rest_share_pct);
+  put_share(out, " class=\"total\"", "observed", budget->observed_pct, 100);
   fputs("</tbody></table></div>\n", out);
   put_thickness_note(out, analysis);
   put_rest(out, budget);

@@ -100,8 +100,11 @@ def budget_rows(lots):
             cause = lot.stiffness["budget"][member]
             cells += [cause.get("relative_sd_pct"), cause.get("sensitivity"), signed(cause["variance_pct2"])]
         lines.append((words, cells))
-    for words, member in (("sum", "sum_pct2"), ("not explained by these slopes", "unexplained_pct2")):
-        lines.append((words, [cell for lot in lots for cell in (None, None, signed(lot.stiffness["budget"][member]))]))
+    for words, member in (("radius", "radius_at_arc_length"), ("arc length", "arc_length"), ("thickness", "thickness")):
+        lines.append((f"share of {words}, % of the variance",
+                      [cell for lot in lots for cell in (None, None, lot.stiffness["budget"][member]["share_pct"])]))
+    lines.append(("share not explained, % of the variance",
+                  [cell for lot in lots for cell in (None, None, lot.stiffness["budget"]["rest_share_pct"])]))
     for words, member in (("observed", "observed_relative_sd_pct"), ("of it measurement", "measurement_relative_sd_pct")):
         lines.append((words, [cell for lot in lots for cell in (None, None, lot.stiffness["budget"][member])]))
     return lines

@@ -53,6 +53,44 @@ static void causes_come_back(void **state) {
   }
 }
 
+static void assert_shares_are_the_whole(const fg_lot_budget *budget) {
+  const double share[] = {budget->radius.share_pct, budget->arc_length.share_pct,
+                          isnan(budget->thickness.share_pct) ? 0 : budget->thickness.share_pct,
+                          budget->rest_share_pct};
+  double sum = 0;
+  for (int i = 0; i < 4; i++) {
+    assert_true(share[i] >= 0 && share[i] <= 100);
+    sum += share[i];
+  }
+  assert_near(sum, 100, 1e-9);
+}
+
+/* Arc length that goes with the radius: the causes' own variances add up to far more than is
+ * observed. */
+static void shares_of_causes_that_go_together_are_the_whole(void **state) {
+  (void)state;
+  static const double together[] = {-0.9, 0, 0.5, 1};
+  for (int c = 0; c < 4; c++) {
+    fg_design design;
+    fg_lot_analysis analysis;
+    fg_design_default(&design);
+    fg_lot lot = made_lot(&design, FOILS, BUMPS, "", NULL);
+    for (size_t i = 0; i < FOILS; i++)
+      for (size_t k = 0; k < BUMPS; k++) {
+        double radius = 3.4 * (1 + 0.012 * ((double)((5 * i + 3 * k) % 11) - 5));
+        double length =
+            3.32 * 63.15 *
+            (1 + together[c] * (radius / 3.4 - 1) + 0.004 * ((double)((3 * i + 7 * k) % 5) - 2));
+        made_bump(&lot, i, k, radius, length / radius);
+      }
+    assert_int_equal(fg_lot_analyse(NULL, &lot, &analysis), FG_OK);
+    assert_true(analysis.stiffness.budget.known);
+    assert_shares_are_the_whole(&analysis.stiffness.budget);
+    fg_lot_analysis_free(&analysis);
+    made_lot_free(&lot);
+  }
+}
+
 static char *text_of(const fg_lot_analysis *analysis, fg_lot_writer *writer) {
   char *text;
   size_t size;
@@ -167,6 +205,7 @@ static void measurement_is_what_drawing_gives(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(causes_come_back),
+      cmocka_unit_test(shares_of_causes_that_go_together_are_the_whole),
       cmocka_unit_test(thickness_that_is_not_known_is_not_zero),
       cmocka_unit_test(one_bump_has_no_spread),
       cmocka_unit_test(measurement_is_what_drawing_gives),
