@@ -83,6 +83,13 @@ void fg_overwrite_free(fg_overwrite *overwrite);
 /* The whole text file, NUL-terminated; at most `cap` bytes, else FG_ERR_DATA. Caller frees. */
 fg_status fg_file_read_text(fg_context *ctx, const char *path, size_t cap, char **text);
 
+/* Writes CSV: as `write` writes it, with commas and decimal points; or with `decimal_comma` the
+ * same cells between semicolons, numbers with decimal commas, behind a byte order mark, as
+ * spreadsheets of many countries read it. */
+typedef fg_status fg_csv_writer(fg_context *ctx, void *user, FILE *out);
+fg_status fg_csv_write(fg_context *ctx, bool decimal_comma, fg_csv_writer *write, void *user,
+                       FILE *out);
+
 /* The SHA-256 of a regular file as reports state it: 64 lower-case hex digits. FG_ERR_IO,
  * FG_ERR_MEMORY. */
 fg_status fg_sha256_file(fg_context *ctx, const char *path, char hex[65]);

@@ -178,8 +178,9 @@ typedef struct fg_lot_request {
   size_t path_count;
   const char *folder; /* of the results; none of its files may overwrite an input: FG_ERR_USAGE */
   const char *recipe, *design; /* the files that the settings came from; NULL: none */
-  bool resume;  /* keep valid records; without it a folder with results is FG_ERR_USAGE */
-  bool dry_run; /* say what would be measured, and touch nothing */
+  bool resume;        /* keep valid records; without it a folder with results is FG_ERR_USAGE */
+  bool dry_run;       /* say what would be measured, and touch nothing */
+  bool decimal_comma; /* of the report's tables (fg_csv_write); not of its copy of the manifest */
   fg_lot_pages pages;
   fg_lot_shard shard;
   fg_lot_listener *listener; /* may be NULL */
@@ -223,7 +224,7 @@ fg_status fg_lot_run(fg_context *ctx, const fg_lot_request *request, fg_lot_outc
 /* Shards to one lot. FG_ERR_DATA when recipes, manifests or versions differ, a shard is missing or
  * there twice, a record is missing. */
 fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
-                       const char *folder, fg_lot_outcome *outcome);
+                       const char *folder, bool decimal_comma, fg_lot_outcome *outcome);
 
 /* Lots over time and against each other: from lot.json, foils.csv and bumps.csv of their folders.
  */
@@ -232,6 +233,7 @@ typedef struct fg_lot_index_request {
   size_t count;
   const char *page;       /* links are relative to it */
   const char *json, *csv; /* "foilgauge/lot_index/1", and a line per lot and quantity; NULL: none */
+  bool decimal_comma;     /* of the csv (fg_csv_write) */
 } fg_lot_index_request;
 
 typedef struct fg_lot_index_outcome {

@@ -57,6 +57,7 @@ typedef struct fg_station_request {
   bool once; /* measure what is new, and return */
   const char
       *export_path;   /* write the lots of the database as folders below this one, and return */
+  bool decimal_comma; /* of the tables of lots that are closed or written (fg_csv_write) */
   double poll_s;      /* look every so many seconds (network folders); 0: be told by the system */
   const char *listen; /* address; NULL: 127.0.0.1 */
   unsigned port;      /* 0: one that is free */

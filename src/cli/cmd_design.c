@@ -35,6 +35,7 @@ static const struct argp_option options[] = {
      "from "
      "-5 to +30 %",
      0},
+    FG_CLI_DECIMAL_COMMA_ROW(0),
     {"html", OPTION_HTML, "FILE.html", 0,
      "One page to read and print, with the stiffness of a bump by three models and its map over "
      "radius and angle",
@@ -92,6 +93,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     return parse_number("poisson-ratio", text, 0, 0.499, &arguments->material.poisson_ratio, state);
   case OPTION_FRICTION:
     return parse_number("friction", text, 0, 10, &arguments->material.friction, state);
+  case FG_CLI_DECIMAL_COMMA:
+    arguments->outputs.decimal_comma = true;
+    break;
   case ARGP_KEY_ARG:
     if (arguments->design_path) argp_error(state, "more than one DESIGN: %s", text);
     arguments->design_path = text;
@@ -138,6 +142,7 @@ static fg_status show_design(fg_context *ctx, design_arguments *arguments) {
   if (arguments->outputs.path[OUT_HTML] && !fg_form_has_bumps(view.design.form))
     return fg_fail(ctx, FG_ERR_DATA, "%s: form \"%s\" has no bumps, so there is no page of them",
                    arguments->design_path, fg_form_word(view.design.form));
+  if (arguments->curve) arguments->outputs.csv = 1u << OUT_DATA;
   FG_TRY(fg_output_set_open(ctx, &arguments->outputs));
   return fg_output_set_write(ctx, &arguments->outputs, write_view, &view);
 }

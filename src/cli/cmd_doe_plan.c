@@ -26,6 +26,7 @@ typedef struct plan_arguments {
   fg_rounding round[FG_PLAN_FACTORS];
   size_t rounds;
   const char *output_path, *page_path;
+  bool decimal_comma;
 } plan_arguments;
 
 enum {
@@ -70,6 +71,7 @@ static const struct argp_option options[] = {
      "beside "
      "it, as RUNS.plan.json, where `foilgauge doe` finds them",
      3},
+    FG_CLI_DECIMAL_COMMA_ROW(3),
     {"html", OPTION_HTML, "RUNS.html", 0, "The run sheet as a page, to print and fill in", 3},
     {0},
 };
@@ -186,6 +188,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case 'o':
     a->output_path = text;
     break;
+  case FG_CLI_DECIMAL_COMMA:
+    a->decimal_comma = true;
+    break;
   case ARGP_KEY_ARG:
     argp_error(state, "what is '%s'? factors are given as --factor NAME=LOW:HIGH", text);
     break;
@@ -238,13 +243,18 @@ static fg_status add_empty_columns(fg_context *ctx, const plan_arguments *a, fg_
   return status;
 }
 
-static fg_status write_sheet(fg_context *ctx, const plan_arguments *a, const fg_plan *plan,
-                             FILE *out) {
+typedef struct sheet {
+  const plan_arguments *arguments;
+  const fg_plan *plan;
+} sheet;
+
+static fg_status write_sheet(fg_context *ctx, void *user, FILE *out) {
+  const sheet *of = user;
   fg_table table = {0};
   char *text = NULL;
   fg_status status = FG_OK;
-  FG_TRY_EXIT(fg_plan_table(ctx, plan, &table));
-  FG_TRY_EXIT(add_empty_columns(ctx, a, &table));
+  FG_TRY_EXIT(fg_plan_table(ctx, of->plan, &table));
+  FG_TRY_EXIT(add_empty_columns(ctx, of->arguments, &table));
   FG_TRY_EXIT(fg_table_format(ctx, &table, &text));
   fputs(text, out);
 exit:
@@ -322,9 +332,11 @@ static fg_status check_unfilled(fg_context *ctx, const plan_arguments *a) {
 
 static fg_status write_plan(fg_context *ctx, const plan_arguments *a, const fg_plan *plan) {
   fg_output output;
+  sheet of = {a, plan};
   FG_TRY(check_unfilled(ctx, a));
   FG_TRY(fg_output_open(ctx, a->output_path, &output));
-  FG_TRY(fg_output_end(ctx, &output, write_sheet(ctx, a, plan, output.stream)));
+  FG_TRY(fg_output_end(ctx, &output,
+                       fg_csv_write(ctx, a->decimal_comma, write_sheet, &of, output.stream)));
   FG_TRY(write_beside(ctx, a, plan));
   FG_TRY(write_page(ctx, a, plan));
   FG_TRY(tell_notes(ctx, plan));

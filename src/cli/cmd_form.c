@@ -87,6 +87,7 @@ static const struct argp_option options[] = {
     {"table-out", OPTION_BUMPS, "FILE.csv", 0,
      "The bumps; also a lot's reference curve (`lot --reference-curve`)", 4},
     {"strip-out", OPTION_STRIP, "FILE.csv", 0, "Curvature and stress along the strip", 4},
+    FG_CLI_DECIMAL_COMMA_ROW(4),
     {"material-out", OPTION_MATERIAL_OUT, "FILE.json", 0,
      "The constants, with what was found, for --material", 4},
     {0},
@@ -209,6 +210,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_FREE:
     take_free(state, run, text);
     return 0;
+  case FG_CLI_DECIMAL_COMMA:
+    run->outputs.decimal_comma = true;
+    return 0;
   case ARGP_KEY_ARG:
     if (run->design_path) argp_error(state, "more than one DESIGN: %s", text);
     run->design_path = text;
@@ -317,8 +321,11 @@ const struct argp fg_form_parser = {options, parse_option, "[DESIGN]", doc,
 
 int fg_cmd_form(int argc, char **argv) {
   fg_context ctx = {0};
-  form_run run = {
-      .outputs.count = OUT_COUNT, .temperature_C = NAN, .hours = NAN, .pressure_bar = NAN};
+  form_run run = {.outputs.count = OUT_COUNT,
+                  .outputs.csv = 1u << OUT_BUMPS | 1u << OUT_STRIP,
+                  .temperature_C = NAN,
+                  .hours = NAN,
+                  .pressure_bar = NAN};
   fg_status status = fg_cli_parse(&ctx, &fg_form_parser, argc, argv, &run);
   if (status == FG_OK) status = form(&ctx, &run);
   fg_output_set_close(&run.outputs);

@@ -27,14 +27,14 @@ enum {
   OPTION_DIE,
   OPTION_CURVE,
   OPTION_INDEX,
-  OPTION_CSV
+  OPTION_CSV,
 };
 
 typedef struct lot_arguments {
   const char *recipe, *design, *model, *scanner, *folder, *name, *group, *index, *csv;
   double dpi;
   int jobs; /* -1: not given */
-  bool allow_lossy, print_recipe, resume, dry_run;
+  bool allow_lossy, print_recipe, resume, dry_run, decimal_comma;
   fg_lot_shard shard;
   fg_lot_pages pages;
   const char *curve; /* reference curve; NULL: the recipe's */
@@ -75,6 +75,7 @@ static const struct argp_option options[] = {
      "FILE.json writes the numbers",
      2},
     {"csv", OPTION_CSV, "FILE.csv", 0, "With --index: a line per lot and quantity", 2},
+    FG_CLI_DECIMAL_COMMA_ROW(0),
     {0},
 };
 
@@ -168,6 +169,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_CSV:
     arguments->csv = text;
+    break;
+  case FG_CLI_DECIMAL_COMMA:
+    arguments->decimal_comma = true;
     break;
   case ARGP_KEY_ARGS:
     arguments->paths = state->argv + state->next;
@@ -337,7 +341,8 @@ static fg_status make_index(fg_context *ctx, const lot_arguments *arguments, int
                                         .count = arguments->path_count,
                                         .page = arguments->index,
                                         .json = arguments->folder,
-                                        .csv = arguments->csv};
+                                        .csv = arguments->csv,
+                                        .decimal_comma = arguments->decimal_comma};
   FG_TRY(fg_lot_index(ctx, &request, &outcome));
   say_lines("foilgauge: note: ", outcome.notes);
   say_lines("", outcome.summary);
@@ -365,6 +370,7 @@ static fg_status run(fg_context *ctx, const lot_arguments *arguments, int *code)
                                   .design = arguments->design,
                                   .resume = arguments->resume,
                                   .dry_run = arguments->dry_run,
+                                  .decimal_comma = arguments->decimal_comma,
                                   .shard = arguments->shard,
                                   .pages = arguments->pages,
                                   .listener = show_progress,

@@ -84,6 +84,7 @@ static const struct argp_option options[] = {
     {"output", 'o', "FILE.json", 0, "Write the JSON report here (-: standard output)", 1},
     {"csv", OPTION_CSV, "FILE.csv", 0, "One line per bump", 1},
     {"points", OPTION_POINTS, "FILE.csv", 0, "Every edge point, its arc and its residual", 1},
+    FG_CLI_DECIMAL_COMMA_ROW(1),
     {"overlay", OPTION_OVERLAY, "FILE.png", 0, "The scan with what was found drawn over it", 1},
     {"html", OPTION_HTML, "FILE.html", 0, "One page to read and print", 1},
     {"threads", OPTION_THREADS, "N", 0, "Threads (default: one per core)", 2},
@@ -156,6 +157,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_MAX_MEMORY:
     arguments->options.memory_cap = (size_t)fg_cli_number(state, "max-memory", text, 1, 1 << 24)
                                     << 20;
+    break;
+  case FG_CLI_DECIMAL_COMMA:
+    run->outputs.decimal_comma = true;
     break;
   case ARGP_KEY_ARGS:
     arguments->scans = state->argv + state->next;
@@ -351,7 +355,7 @@ const struct argp fg_measure_parser = {options, parse_option, "SCAN...", doc,
 
 int fg_cmd_measure(int argc, char **argv) {
   fg_context ctx = {0};
-  measure_run run = {.outputs.count = OUT_COUNT};
+  measure_run run = {.outputs.count = OUT_COUNT, .outputs.csv = 1u << OUT_CSV | 1u << OUT_POINTS};
   int code = 0;
   fg_status parsed = fg_cli_parse(&ctx, &fg_measure_parser, argc, argv, &run);
   if (parsed != FG_OK) return fg_cli_fail(&ctx, parsed);

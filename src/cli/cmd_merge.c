@@ -8,10 +8,12 @@ typedef struct merge_arguments {
   const char *folder;
   char **folders; /* of argv */
   size_t count;
+  bool decimal_comma;
 } merge_arguments;
 
 static const struct argp_option options[] = {
     {"output", 'o', "DIR", 0, "The folder of the whole lot", 0},
+    FG_CLI_DECIMAL_COMMA_ROW(0),
     {0},
 };
 
@@ -26,6 +28,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   switch (key) {
   case 'o':
     arguments->folder = text;
+    break;
+  case FG_CLI_DECIMAL_COMMA:
+    arguments->decimal_comma = true;
     break;
   case ARGP_KEY_ARGS:
     arguments->folders = state->argv + state->next;
@@ -50,7 +55,7 @@ int fg_cmd_merge(int argc, char **argv) {
   fg_status status = fg_cli_parse(&ctx, &fg_merge_parser, argc, argv, &arguments);
   if (status != FG_OK) return fg_cli_fail(&ctx, status);
   status = fg_lot_merge(&ctx, (const char *const *)arguments.folders, arguments.count,
-                        arguments.folder, &outcome);
+                        arguments.folder, arguments.decimal_comma, &outcome);
   return status == FG_OK ? fg_cli_lot_summary(&outcome, arguments.folder)
                          : fg_cli_fail(&ctx, status);
 }

@@ -59,6 +59,7 @@ static const struct argp_option options[] = {
      "What a browser must know: the first line of FILE, at least 16 characters", 2},
     {"token", OPTION_TOKEN, "TEXT", 0,
      "The same on the command line, where every user of the machine can read it", 2},
+    FG_CLI_DECIMAL_COMMA_ROW(2),
     {0},
 };
 
@@ -110,6 +111,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_ORIGIN:
     request->origin = text;
+  case FG_CLI_DECIMAL_COMMA:
+    request->decimal_comma = true;
     break;
   case ARGP_KEY_ARG:
     if (request->folder) argp_error(state, "one FOLDER is watched");

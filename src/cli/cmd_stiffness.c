@@ -103,6 +103,7 @@ static const struct argp_option options[] = {
      "by) "
      "beside bearing, azimuth and pad",
      4},
+    FG_CLI_DECIMAL_COMMA_ROW(4),
     {0},
 };
 
@@ -263,6 +264,9 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
   case OPTION_LOT:
     run->options.lot = text;
     break;
+  case FG_CLI_DECIMAL_COMMA:
+    run->outputs.decimal_comma = true;
+    break;
   case ARGP_KEY_ARG:
     take(run, add_source(run, text));
     break;
@@ -319,6 +323,7 @@ const struct argp fg_stiffness_parser = {options, parse_option, "TEST...", doc,
 int fg_cmd_stiffness(int argc, char **argv) {
   fg_context ctx = {0};
   stiffness_run run = {.outputs.count = OUT_COUNT,
+                       .outputs.csv = 1u << OUT_CSV | 1u << OUT_TABLE,
                        .said.azimuth_deg = NAN,
                        .options = fg_load_options_default(),
                        .ctx = &ctx};

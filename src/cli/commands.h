@@ -72,6 +72,17 @@ int fg_cli_fail(const fg_context *ctx, fg_status status);
 int fg_cli_lot_summary(const fg_lot_outcome *outcome, const char *folder);
 
 /* What --allow-lossy is for, in every command that reads scans. */
+/* The row of an option that every command with CSV to write has, and its key. */
+enum { FG_CLI_DECIMAL_COMMA = 0x7001 };
+#define FG_CLI_DECIMAL_COMMA_ROW(group)                                                            \
+  {                                                                                                \
+    "decimal-comma", FG_CLI_DECIMAL_COMMA, NULL, 0,                                                \
+        "Write CSV with semicolons, decimal commas and a byte order mark, as spreadsheets of "     \
+        "countries "                                                                               \
+        "with a decimal comma read it",                                                            \
+        group                                                                                      \
+  }
+
 #define FG_CLI_ALLOW_LOSSY                                                                         \
   "Take scans that JPEG has compressed with loss, with the wider uncertainties that belong to "    \
   "them"

@@ -43,10 +43,24 @@ fg_status fg_output_set_open(fg_context *ctx, fg_output_set *set) {
   return FG_OK;
 }
 
+typedef struct kind_writing {
+  fg_output_writer *writer;
+  void *user;
+  size_t kind;
+} kind_writing;
+
+static fg_status write_kind(fg_context *ctx, void *user, FILE *out) {
+  const kind_writing *of = user;
+  return of->writer(ctx, of->user, of->kind, out);
+}
+
 static fg_status write_one(fg_context *ctx, fg_output_set *set, size_t kind,
                            fg_output_writer *writer, void *user) {
   fg_output *output = &set->output[kind];
-  return fg_output_flush(ctx, output, writer(ctx, user, kind, output->stream));
+  kind_writing of = {writer, user, kind};
+  bool decimal_comma = set->decimal_comma && set->csv >> kind & 1u;
+  return fg_output_flush(ctx, output,
+                         fg_csv_write(ctx, decimal_comma, write_kind, &of, output->stream));
 }
 
 /* An output that fails after another has its final name: none may look finished. */

@@ -15,6 +15,8 @@ typedef struct fg_output_set {
   fg_output output[FG_OUTPUT_SET_MAX];
   bool open[FG_OUTPUT_SET_MAX];
   fg_overwrite overwrite;
+  unsigned csv; /* bits of the kinds that are CSV */
+  bool decimal_comma;
 } fg_output_set;
 
 /* Something that the command reads; a path of NULL is nothing. */

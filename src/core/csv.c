@@ -3,7 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/extended.h"
 #include "core/json_writer.h"
 
 static bool begins_formula(const char *text, size_t length) {
@@ -14,9 +13,10 @@ static bool begins_formula(const char *text, size_t length) {
 }
 
 bool fg_csv_needs_apostrophe(const char *text) {
-  fg_extended number;
   size_t length = strlen(text);
-  return begins_formula(text, length) && !fg_extended_parse(text, length, &number);
+  if (!begins_formula(text, length)) return false;
+  fg_csv_number kind = fg_csv_number_kind(text, length);
+  return kind == FG_CSV_WORD || kind == FG_CSV_THOUSANDS;
 }
 
 /* Spaces at the ends would be dropped by a reader. */

@@ -78,15 +78,20 @@ static fg_status make(fg_context *ctx, const fg_lot_index_request *request, fg_i
   return fg_index_say(ctx, index);
 }
 
-static fg_status write_kind(fg_context *ctx, const fg_index *index, int kind, const char *path,
-                            FILE *out) {
-  if (kind == PAGE) return fg_index_write_page(ctx, index, path, out);
-  return kind == JSON ? fg_index_write_json(ctx, index, out) : fg_index_write_csv(ctx, index, out);
+static fg_status write_csv(fg_context *ctx, void *index, FILE *out) {
+  return fg_index_write_csv(ctx, index, out);
+}
+
+static fg_status write_kind(fg_context *ctx, const fg_lot_index_request *request, fg_index *index,
+                            int kind, FILE *out) {
+  if (kind == PAGE) return fg_index_write_page(ctx, index, request->page, out);
+  return kind == JSON ? fg_index_write_json(ctx, index, out)
+                      : fg_csv_write(ctx, request->decimal_comma, write_csv, index, out);
 }
 
 /* All are written and flushed before one gets its name: none where one cannot be written. */
 static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *request,
-                               const fg_index *index) {
+                               fg_index *index) {
   const char *const path[OUTPUTS] = {request->page, request->json, request->csv};
   fg_output output[OUTPUTS];
   int opened = 0;
@@ -96,7 +101,7 @@ static fg_status write_outputs(fg_context *ctx, const fg_lot_index_request *requ
   if (status != FG_OK) opened--; /* the last one is not open */
   for (int i = 0; i < OUTPUTS && status == FG_OK; i++)
     if (path[i]) {
-      status = write_kind(ctx, index, i, path[i], output[i].stream);
+      status = write_kind(ctx, request, index, i, output[i].stream);
       status = fg_output_flush(ctx, &output[i], status);
     }
   for (int i = 0; i < opened; i++)

@@ -26,6 +26,16 @@ static const struct {
     {"lot.json", fg_lot_write_json, ALL},
 };
 
+typedef struct file_writing {
+  fg_lot_writer *write;
+  const fg_lot_analysis *analysis;
+} file_writing;
+
+static fg_status write_stream(fg_context *ctx, void *user, FILE *out) {
+  const file_writing *of = user;
+  return of->write(ctx, of->analysis, out);
+}
+
 static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
                             const fg_lot_analysis *analysis) {
   char *path;
@@ -36,7 +46,12 @@ static fg_status write_file(fg_context *ctx, const char *folder, size_t i,
   fg_status status = fg_output_open(ctx, path, &output);
   free(path);
   FG_TRY(status);
-  return fg_output_end(ctx, &output, files[i].write(ctx, analysis, output.stream));
+  file_writing of = {files[i].write, analysis};
+  size_t length = strlen(files[i].name), tail = strlen(".csv");
+  bool csv = length > tail && !strcmp(files[i].name + length - tail, ".csv");
+  return fg_output_end(
+      ctx, &output,
+      fg_csv_write(ctx, csv && analysis->lot->decimal_comma, write_stream, &of, output.stream));
 }
 
 static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcome) {

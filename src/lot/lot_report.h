@@ -19,6 +19,7 @@ typedef struct fg_lot {
   fg_journal_head head;
   fg_record *records;      /* manifest.items */
   fg_scanner_model *model; /* of the scanner, that corrected every scan; NULL: none */
+  bool decimal_comma;      /* of the report's tables */
 } fg_lot;
 
 /* Reads folder/results.jsonl and the copy of the scanner's model; settings and manifest are there

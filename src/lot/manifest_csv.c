@@ -20,6 +20,7 @@ typedef struct csv_reader {
   const char *source, *folder;
   size_t *column; /* of the file to those of the manifest */
   size_t columns, capacity, cell, row, scan;
+  unsigned char separator;
   char **cells; /* of the row that is read; NULL before its first cell */
   bool named, filled;
   fg_status status;
@@ -47,8 +48,10 @@ static fg_status take_cell(csv_reader *r, const char *text, size_t length) {
                    r->source, COLUMNS_MAX);
   if (!r->named) return take_name(r, text, length);
   if (r->cell >= r->columns && length)
-    return fg_fail(r->ctx, FG_ERR_DATA, "%s: row %zu has more cells than the heading (%zu)",
-                   r->source, r->row + 1, r->columns);
+    return fg_fail(r->ctx, FG_ERR_DATA, "%s: row %zu has more cells than the heading (%zu)%s",
+                   r->source, r->row + 1, r->columns,
+                   r->separator == ',' ? "; decimal commas? Then separate the cells by semicolons"
+                                       : "");
   if (r->cell >= r->columns) return FG_OK;
   if (!r->cells) FG_TRY(fg_manifest_add_item(r->ctx, r->manifest, &r->cells));
   size_t column = r->column[r->cell++];
@@ -130,6 +133,7 @@ static fg_status parse_rows(csv_reader *r, const char *text) {
   if (csv_init(&parser, CSV_STRICT | CSV_STRICT_FINI) != 0)
     return fg_fail(r->ctx, FG_ERR_MEMORY, "out of memory: a CSV reader");
   csv_set_delim(&parser, separator);
+  r->separator = separator;
   bool broken = csv_parse(&parser, text, size, on_cell, on_row, r) != size;
   broken = csv_fini(&parser, on_cell, on_row, r) != 0 || broken;
   csv_free(&parser);

@@ -32,6 +32,7 @@ typedef struct merger {
   size_t *from;
   size_t at; /* the folder being read */
   int lock;
+  bool decimal_comma;
 } merger;
 
 static fg_status read_text(fg_context *ctx, const char *folder, const char *name, char **text) {
@@ -209,7 +210,8 @@ static fg_status write_lot(fg_context *ctx, merger *m, fg_lot_outcome *outcome) 
                                         m->entries, m->manifest.items);
   free(path);
   FG_TRY(status);
-  fg_lot lot = {.settings = m->settings, .manifest = m->manifest};
+  fg_lot lot = {
+      .settings = m->settings, .manifest = m->manifest, .decimal_comma = m->decimal_comma};
   m->manifest = (fg_manifest){0};
   status = fg_lot_load(ctx, m->folder, &lot);
   if (status == FG_OK) status = fg_lot_pages_take(ctx, m->folders, m->from, m->folder, &lot);
@@ -227,8 +229,12 @@ static fg_status merge(fg_context *ctx, merger *m, fg_lot_outcome *outcome) {
 }
 
 fg_status fg_lot_merge(fg_context *ctx, const char *const *folders, size_t count,
-                       const char *folder, fg_lot_outcome *outcome) {
-  merger m = {.folders = folders, .count = count, .folder = folder, .lock = -1};
+                       const char *folder, bool decimal_comma, fg_lot_outcome *outcome) {
+  merger m = {.folders = folders,
+              .count = count,
+              .folder = folder,
+              .decimal_comma = decimal_comma,
+              .lock = -1};
   *outcome = (fg_lot_outcome){.judged = {.verdict = FG_VERDICT_NONE}};
   fg_status status = merge(ctx, &m, outcome);
   if (m.lock >= 0) close(m.lock);

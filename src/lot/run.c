@@ -348,7 +348,7 @@ static fg_status put_in_order(fg_context *ctx, lot_run *run) {
 }
 
 static fg_status report(fg_context *ctx, lot_run *run) {
-  fg_lot lot = {.manifest = run->manifest};
+  fg_lot lot = {.manifest = run->manifest, .decimal_comma = run->request->decimal_comma};
   fg_lot_settings_default(&lot.settings); /* as a merge reads them: a recipe has ten digits */
   FG_TRY(fg_lot_settings_parse(ctx, "recipe.json", run->recipe_text, &lot.settings));
   run->manifest = (fg_manifest){0};

@@ -250,7 +250,7 @@ static fg_status write_record(fg_context *ctx, void *user, size_t item, char **l
 }
 
 static fg_status write_report(fg_context *ctx, export *at) {
-  fg_lot lot = {.manifest = at->manifest};
+  fg_lot lot = {.manifest = at->manifest, .decimal_comma = at->station->request->decimal_comma};
   at->manifest = (fg_manifest){0};
   fg_lot_settings_default(&lot.settings); /* as `lot` and `merge` read them */
   fg_status status = fg_lot_settings_parse(ctx, "recipe.json", at->recipe_text, &lot.settings);

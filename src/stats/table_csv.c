@@ -66,12 +66,31 @@ static fg_status hold_cell(csv_reader *r, const char *text, size_t length) {
   return FG_OK;
 }
 
+/* What stands before a decimal comma may have a sign, what stands behind it has none, but perhaps
+ * an exponent. */
+static bool is_whole(const char *text, bool before) {
+  if (before) text += *text == '-' || *text == '+';
+  size_t digits = strspn(text, "0123456789");
+  if (!digits || before) return digits && !text[digits];
+  text += digits;
+  if (*text == 'e' || *text == 'E') {
+    text++;
+    text += *text == '-' || *text == '+';
+    text += strspn(text, "0123456789");
+  }
+  return !*text;
+}
+
 /* Whether the row has too many cells as it has when decimal commas stand between commas. */
 static bool commas_in_numbers(const csv_reader *r) {
   if (r->separator != ',' || r->column <= r->table->columns) return false;
-  for (size_t i = 0; i < r->column; i++)
-    if (r->pending[i][strspn(r->pending[i], "-0123456789")]) return false;
-  return true;
+  size_t pairs = 0;
+  for (size_t i = 0; i + 1 < r->column; i++)
+    if (is_whole(r->pending[i], true) && is_whole(r->pending[i + 1], false)) {
+      pairs++;
+      i++;
+    }
+  return pairs >= r->column - r->table->columns;
 }
 
 static const char *what_to_do(const csv_reader *r) {

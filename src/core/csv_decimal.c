@@ -1,0 +1,64 @@
+/* CSV for spreadsheets whose decimal mark is a comma: made of what any writer of CSV writes, so
+ * that no writer knows of it. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/csv.h"
+#include "core/file.h"
+#include "core/memory.h"
+#include "foilgauge/file.h"
+
+/* How long the cell at `text` is; one in quotes ends behind the quote that no other follows. */
+static size_t cell_length(const char *text, const char *end) {
+  const char *at = text;
+  bool quoted = at < end && *at == '"';
+  if (!quoted) {
+    while (at < end && *at != ',' && *at != '\n' && *at != '\r')
+      at++;
+    return (size_t)(at - text);
+  }
+  for (at++; at < end; at++) {
+    if (*at != '"') continue;
+    if (at + 1 == end || at[1] != '"') return (size_t)(at + 1 - text);
+    at++;
+  }
+  return (size_t)(end - text);
+}
+
+/* Quotes stay: whoever wrote them quotes semicolons as well (fg_csv_needs_quotes). */
+static void put_cell(FILE *out, const char *cell, size_t length) {
+  const char *point = memchr(cell, '.', length);
+  if (!point || fg_csv_number_kind(cell, length) != FG_CSV_POINT) {
+    fwrite(cell, 1, length, out);
+    return;
+  }
+  fwrite(cell, 1, (size_t)(point - cell), out);
+  fputc(',', out);
+  fwrite(point + 1, 1, length - (size_t)(point - cell) - 1, out);
+}
+
+static void convert(const char *text, size_t size, FILE *out) {
+  const char *end = text + size;
+  fputs("\xef\xbb\xbf", out);
+  while (text < end) {
+    size_t length = cell_length(text, end);
+    put_cell(out, text, length);
+    text += length;
+    if (text < end) fputc(*text == ',' ? ';' : *text, out);
+    text++;
+  }
+}
+
+fg_status fg_csv_write(fg_context *ctx, bool decimal_comma, fg_csv_writer *write, void *user,
+                       FILE *out) {
+  char *text = NULL;
+  size_t size = 0;
+  if (!decimal_comma) return write(ctx, user, out);
+  FILE *memory = open_memstream(&text, &size);
+  if (!memory) return fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  fg_status status = write(ctx, user, memory);
+  if (fclose(memory) != 0 && status == FG_OK) status = fg_fail(ctx, FG_ERR_MEMORY, "out of memory");
+  if (status == FG_OK) convert(text, size, out);
+  free(text);
+  return status == FG_OK ? fg_stream_finish(ctx, out, "the table") : status;
+}
