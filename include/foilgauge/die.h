@@ -100,12 +100,15 @@ typedef struct fg_die_trace {
   double step_um;          /* mean distance of its stations */
   double steep_share;      /* of its stations that are too steep */
   size_t lands, cut_bumps; /* cut: seen in part only, at an end or too steep */
-  int last_number;         /* the highest number of the bumps whose crown is seen */
-  double noise_um;         /* sd of the bumps' residuals */
-  fg_die_form form;        /* what they are made of */
-  double shift_mm;         /* what the tip and the datum add to a bump's traced radius */
-  fg_overall overall;      /* springback_error_pct is the error with its sign turned round */
-  fg_bump *bumps;          /* in order of number; owned */
+  int *lost;               /* numbers of bumps that were traced from foot to foot, and whose arc is
+                              no circle: dust, a burr, a lost contact; among cut_bumps; owned */
+  size_t lost_count;
+  int last_number;    /* the highest number of the bumps whose crown is seen */
+  double noise_um;    /* sd of the bumps' residuals */
+  fg_die_form form;   /* what they are made of */
+  double shift_mm;    /* what the tip and the datum add to a bump's traced radius */
+  fg_overall overall; /* springback_error_pct is the error with its sign turned round */
+  fg_bump *bumps;     /* in order of number; owned */
   size_t bump_count;
   fg_die_station *stations; /* in order of x; owned */
   size_t station_count;

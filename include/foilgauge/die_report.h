@@ -19,8 +19,18 @@ void fg_die_judge(const fg_die *die, fg_report_outcome *outcome, char *words, si
 /* How many of the design's tolerances are about a die. */
 size_t fg_die_tolerances(const fg_die *die);
 
-/* Bumps of the design that no trace of a half shows whole, as words "1, 9"; false: none. */
-bool fg_die_unseen(const fg_die *die, fg_die_half half, char *words, size_t size);
+/* Bumps of the design that no trace of a half measured: all, those that were traced and lost to
+ * dust (fg_die_trace), and those that no trace shows whole. */
+typedef enum fg_die_unseen_kind {
+  FG_DIE_UNSEEN,
+  FG_DIE_LOST,
+  FG_DIE_UNTRACED,
+} fg_die_unseen_kind;
+
+/* How many; their numbers are put into words: "1, 9". 0 of a half without traces. */
+size_t fg_die_unseen(const fg_die *die, fg_die_half half, fg_die_unseen_kind kind, char *words,
+                     size_t size);
+bool fg_die_is_lost(const fg_die_trace *trace, int number);
 
 /* "foilgauge/die/1", reports/schema/die.schema.json. */
 fg_status fg_die_write_json(fg_context *ctx, const fg_die *die, FILE *out);

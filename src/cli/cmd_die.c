@@ -10,6 +10,7 @@
 #include "cli/output_set.h"
 #include "foilgauge/die.h"
 #include "foilgauge/die_report.h"
+#include "foilgauge/text.h"
 #include "foilgauge/words.h"
 
 enum { OUT_JSON, OUT_HTML, OUT_TABLE, OUT_COUNT };
@@ -197,6 +198,38 @@ static fg_status load(fg_context *ctx, die_run *run, fg_design *design) {
   return FG_OK;
 }
 
+/* A bump that one trace lost and another measured. */
+static void tell_lost_by_trace(const fg_die *die) {
+  for (size_t i = 0; i < die->trace_count; i++) {
+    const fg_die_trace *trace = &die->traces[i];
+    const fg_die_side *side = &die->half[trace->half];
+    for (size_t b = 0; b < side->bump_count; b++)
+      if (fg_die_is_lost(trace, side->bumps[b].number))
+        fprintf(stderr,
+                "foilgauge: note: %s: bump %d is lost to dust or a lost contact; its values are of "
+                "the other traces\n",
+                trace->path, side->bumps[b].number);
+  }
+}
+
+static void tell_unseen(const fg_die *die) {
+  char numbers[200];
+  for (int h = 0; h < FG_DIE_HALVES; h++) {
+    fg_die_half half = (fg_die_half)h;
+    size_t count = fg_die_unseen(die, half, FG_DIE_LOST, numbers, sizeof numbers);
+    if (count)
+      fprintf(stderr,
+              "foilgauge: note: %s half: lost to dust or a lost contact: bump%s %s: traced, but no "
+              "circle in any trace; clean the die and trace it again\n",
+              fg_die_half_word(half), fg_plural(count), numbers);
+    count = fg_die_unseen(die, half, FG_DIE_UNTRACED, numbers, sizeof numbers);
+    if (count)
+      fprintf(stderr, "foilgauge: note: %s half: bump%s %s: no trace shows %s whole\n",
+              fg_die_half_word(half), fg_plural(count), numbers, count == 1 ? "it" : "them");
+  }
+  tell_lost_by_trace(die);
+}
+
 static fg_status measure(fg_context *ctx, die_run *run, int *code) {
   fg_design design;
   fg_report_outcome outcome;
@@ -204,6 +237,7 @@ static fg_status measure(fg_context *ctx, die_run *run, int *code) {
   FG_TRY(fg_output_set_open(ctx, &run->outputs));
   FG_TRY(fg_die_measure(ctx, &design, &run->options, run->sources.source, run->sources.count,
                         &run->die));
+  tell_unseen(&run->die);
   fg_die_judge(&run->die, &outcome, NULL, 0);
   *code = fg_outcome_exit_code(&outcome);
   return fg_output_set_write(ctx, &run->outputs, write_output, run);

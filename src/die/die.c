@@ -267,6 +267,7 @@ void fg_die_free(fg_die *die) {
   if (!die) return;
   for (size_t i = 0; i < die->trace_count; i++) {
     free(die->traces[i].bumps);
+    free(die->traces[i].lost);
     free(die->traces[i].stations);
   }
   free(die->traces);

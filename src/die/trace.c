@@ -179,9 +179,8 @@ static double bump_direction_deg(const fg_layout *layout, size_t i) {
   return direction_deg(layout, (fg_point){c->x, c->y});
 }
 
-/* Whether the trace shows a bump's crown in a direction: it goes there, and away from the lands. */
-static bool has_crown(const fg_layout *layout, double at_deg, double height_mm) {
-  const fg_circle *o = &layout->overall.circle;
+/* The station in a direction; false where the trace does not reach so far. */
+static bool find_station(const fg_layout *layout, double at_deg, size_t *station) {
   const fg_strip *strip = layout->line.strip;
   double near = 180;
   size_t nearest = 0;
@@ -192,9 +191,26 @@ static bool has_crown(const fg_layout *layout, double at_deg, double height_mm) 
       nearest = k;
     }
   }
-  fg_point p = strip->stations[nearest].left;
-  bool inside = nearest > 0 && nearest + 1 < strip->count;
-  return inside && fabs(hypot(p.x - o->x, p.y - o->y) - o->radius) > CROWN_SHARE * height_mm;
+  *station = nearest;
+  return nearest > 0 && nearest + 1 < strip->count;
+}
+
+/* Whether the trace shows a bump's crown in a direction: it goes there, and away from the lands. */
+static bool has_crown(const fg_layout *layout, double at_deg, double height_mm) {
+  const fg_circle *o = &layout->overall.circle;
+  size_t station;
+  if (!find_station(layout, at_deg, &station)) return false;
+  fg_point p = layout->line.strip->stations[station].left;
+  return fabs(hypot(p.x - o->x, p.y - o->y) - o->radius) > CROWN_SHARE * height_mm;
+}
+
+/* Whether the trace shows both feet of a bump whose crown lies in that direction. */
+static bool is_traced(const fg_layout *layout, const fg_nominal *nominal, double at_deg) {
+  size_t station;
+  double half_deg =
+      asin(fmin(1, nominal->half_chord_mm / layout->overall.circle.radius)) * 180 / M_PI;
+  return find_station(layout, at_deg - half_deg, &station) &&
+         find_station(layout, at_deg + half_deg, &station);
 }
 
 /* Bumps before (`way` -1) or after (1) one of the layout, in the order of x, whose crowns are seen:
@@ -215,19 +231,38 @@ static int places_between(const fg_design *design, const fg_layout *layout, size
   return (int)lround(turn / design->pitch_deg);
 }
 
+static int number_at(const fg_die_source *source, int along, int last) {
+  return (source->first_bump ? source->first_bump : 1) + (source->reversed ? last - along : along);
+}
+
 /* From numbers that count along x from 0. */
 static void number_bumps(const fg_die_source *source, int last, fg_die_trace *trace) {
-  int first = source->first_bump ? source->first_bump : 1;
   size_t n = trace->bump_count;
-  for (size_t i = 0; i < n; i++) {
-    int along = trace->bumps[i].number;
-    trace->bumps[i].number = first + (source->reversed ? last - along : along);
-  }
+  for (size_t i = 0; i < n; i++)
+    trace->bumps[i].number = number_at(source, trace->bumps[i].number, last);
   for (size_t i = 0; source->reversed && i < n / 2; i++) {
     fg_bump swap = trace->bumps[i];
     trace->bumps[i] = trace->bumps[n - 1 - i];
     trace->bumps[n - 1 - i] = swap;
   }
+}
+
+/* Bumps that were traced and not measured. Those that an end of the trace cuts are none. `first` is
+ * a bump of the layout that was measured, `at` its place along x, `last` the last place. */
+static fg_status find_lost(fg_context *ctx, const fg_design *design, const fg_nominal *nominal,
+                           const fg_layout *layout, const fg_die_source *source, size_t first,
+                           int at, int last, fg_die_trace *trace) {
+  double rising = layout->turning.sense < 0 ? 1 : -1, from = bump_direction_deg(layout, first);
+  FG_TRY(fg_memory_allocate(ctx, (size_t)last + 1, sizeof *trace->lost, (void **)&trace->lost));
+  for (int along = 0; along <= last; along++) {
+    bool measured = false;
+    for (size_t b = 0; b < trace->bump_count; b++)
+      measured = measured || trace->bumps[b].number == along;
+    double at_deg = from + rising * design->pitch_deg * (along - at);
+    if (!measured && is_traced(layout, nominal, at_deg))
+      trace->lost[trace->lost_count++] = number_at(source, along, last);
+  }
+  return FG_OK;
 }
 
 static fg_status fill_bumps(fg_context *ctx, const fg_design *design, const fg_layout *layout,
@@ -250,6 +285,8 @@ static fg_status fill_bumps(fg_context *ctx, const fg_design *design, const fg_l
   along += crowns_beyond(design, &nominal, layout, before, 1);
   trace->cut_bumps = (size_t)along + 1 - trace->bump_count;
   trace->last_number = along + (source->first_bump ? source->first_bump : 1);
+  FG_TRY(find_lost(ctx, design, &nominal, layout, source, before,
+                   trace->bumps[trace->bump_count - 1].number, along, trace));
   number_bumps(source, along, trace);
   return FG_OK;
 }

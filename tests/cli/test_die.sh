@@ -136,4 +136,26 @@ expect 64 "--half: 'hollow'" "$program" die --half hollow bare.txt
 expect 64 "" "$program" die concave_1.txt -o concave_1.txt
 expect 74 "no_such.txt" "$program" die no_such.txt
 
+# Dust on bump 5: said apart from bumps 1 and 9, which no trace shows whole; in one trace of two the other has it.
+awk '$1 ~ /^[0-9.]+$/ && $1 > 16 && $1 < 18 { $2 += 0.02 * rand() } { print $1 "\t" $2 }' concave_1.txt >dusty.txt
+grep -v '^[0-9.-]' concave_1.txt >dusty_1.txt
+grep '^[0-9.]' dusty.txt >>dusty_1.txt
+{ grep -v '^[0-9.-]' concave_2.txt
+  awk '/^[0-9.]/ { if ($1 > 16 && $1 < 18) $2 += 0.02 * rand(); print $1 "\t" $2 }' concave_2.txt; } >dusty_2.txt
+listened=stderr
+expect 0 'concave half: lost to dust or a lost contact: bump 5: traced' "$program" die dusty_1.txt dusty_2.txt convex_[12].txt -o dust.json
+grep -q 'concave half: bumps 1, 9: no trace shows them whole' stderr || fail "places that were not traced: $(cat stderr)"
+valid die.schema.json dust.json
+[ "$(value dust.json '[(h["bumps_not_seen"], h["bumps_lost"]) for h in r["halves"]], [t["bumps_lost"] for t in r["traces"]]')" = \
+  "([('1, 5, 9', '5'), ('1, 9', '')], [[5], [5], [], []])" ] || fail "lost bumps of the report"
+expect 0 'dusty_1.txt: bump 5 is lost to dust' "$program" die dusty_1.txt concave_2.txt -o dust.json
+grep -q 'lost to dust or a lost contact: bump 5' stderr && fail "a bump that another trace has is lost"
+expect 0 '' "$program" die --reversed dusty_1.txt -o dust.json
+[ "$(value dust.json 'r["traces"][0]["bumps_lost"]')" = '[5]' ] || fail "reversed: $(value dust.json 'r["traces"][0]["bumps_lost"]')"
+listened=stdout
+echo '{"schema":"foilgauge/design/1","tolerances":{"radius_mm":{"min":3,"max":4}}}' >wide.json
+expect 2 'not_measured: 2 bumps that no trace shows whole; .*; lost to dust or a lost contact: concave bump 5$' \
+  "$program" die dusty_1.txt dusty_2.txt --design wide.json --table -
+grep -q 'traced, but lost to dust or a lost contact: bump 5$' stdout || fail "the table: $(grep -i bump stdout | head -3)"
+
 exit $failed

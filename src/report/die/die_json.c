@@ -39,12 +39,14 @@ static void write_side(fg_json *json, const fg_die *die, const fg_die_side *side
 }
 
 static void write_half(fg_json *json, const fg_die *die, fg_die_half half) {
-  char unseen[200];
+  char unseen[200], lost[200];
   fg_json_object(json, NULL);
   fg_json_string(json, "half", fg_die_half_word(half));
   fg_json_integer(json, "traces", (int64_t)die->half[half].traces);
-  fg_die_unseen(die, half, unseen, sizeof unseen);
+  fg_die_unseen(die, half, FG_DIE_UNSEEN, unseen, sizeof unseen);
+  fg_die_unseen(die, half, FG_DIE_LOST, lost, sizeof lost);
   fg_json_string(json, "bumps_not_seen", unseen);
+  fg_json_string(json, "bumps_lost", lost);
   write_side(json, die, &die->half[half], "repeats");
   fg_json_object_end(json);
 }
@@ -82,6 +84,10 @@ static void write_trace(fg_json *json, const fg_die_trace *trace) {
   fg_json_number(json, "steep_share", trace->steep_share);
   fg_json_integer(json, "lands", (int64_t)trace->lands);
   fg_json_integer(json, "bumps_cut_off", (int64_t)trace->cut_bumps);
+  fg_json_array(json, "bumps_lost");
+  for (size_t i = 0; i < trace->lost_count; i++)
+    fg_json_integer(json, NULL, trace->lost[i]);
+  fg_json_array_end(json);
   fg_json_number(json, "noise_um", trace->noise_um);
   fg_json_object(json, "form");
   fg_json_line(json);

@@ -67,8 +67,10 @@ static void put_sentences(FILE *out, const fg_die *die) {
             fg_die_half_word((fg_die_half)half), radius->value, FG_COVERAGE_FACTOR * radius->u,
             error->value, FG_COVERAGE_FACTOR * error->u, die->design.bump_radius_mm,
             sure ? "" : ", which is within U");
-    if (fg_die_unseen(die, (fg_die_half)half, unseen, sizeof unseen))
+    if (fg_die_unseen(die, (fg_die_half)half, FG_DIE_UNTRACED, unseen, sizeof unseen))
       fprintf(out, " No trace shows bump %s whole.", unseen);
+    if (fg_die_unseen(die, (fg_die_half)half, FG_DIE_LOST, unseen, sizeof unseen))
+      fprintf(out, " Lost to dust or a lost contact: bump %s.", unseen);
     fputs("</li>\n", out);
   }
   fputs("</ul>\n", out);

@@ -49,8 +49,10 @@ static void write_half(FILE *out, const fg_die *die, fg_die_half half) {
                                  : "ridges; touches the strip's outer side",
           side->traces, side->traces == 1 ? "" : "s");
   write_side(out, die, side);
-  if (fg_die_unseen(die, half, unseen, sizeof unseen))
+  if (fg_die_unseen(die, half, FG_DIE_UNTRACED, unseen, sizeof unseen))
     fprintf(out, "  not seen whole in any trace: bump %s\n", unseen);
+  if (fg_die_unseen(die, half, FG_DIE_LOST, unseen, sizeof unseen))
+    fprintf(out, "  traced, but lost to dust or a lost contact: bump %s\n", unseen);
 }
 
 fg_status fg_die_write_table(fg_context *ctx, const fg_die *die, FILE *out) {
