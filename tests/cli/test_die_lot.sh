@@ -27,7 +27,7 @@ for foil in 1 2 3 4; do
 done
 printf 'scan,die\nfoil1.png,A\nfoil2.png,A\nfoil3.png,B\nfoil4.png,B\n' >lot.csv
 echo '{"schema":"foilgauge/recipe/1","design":"design.json","resamples":1000,"dies":{"A":"a.json","B":"b.json"}}' >recipe.json
-expect 0 "4 foils" "$program" lot lot.csv -o lot --recipe recipe.json
+expect 0 "4 foils" "$program" lot lot.csv -o lot --name "the lot" --recipe recipe.json
 valid lot.schema.json lot/lot.json
 for i in 0 1; do
   near "springback against die $i" "$(value lot/lot.json "r['dies']['each'][$i]['radius_error_to_die_mean_pct']")" 5 0.05
@@ -54,10 +54,10 @@ grep -q "Held against the die's mean" lot/index.html || fail "the page does not 
 # The lot's folder says all: it is reported anew, and in parts, without the dies' files.
 mv a.json kept_a.json
 cp -r lot again
-expect 0 "" "$program" lot lot.csv -o again --resume --recipe lot/recipe.json
+expect 0 "" "$program" lot lot.csv -o again --name "the lot" --resume --recipe lot/recipe.json
 same lot again
 for part in 1 2; do
-  expect 0 "" "$program" lot lot.csv -o "part$part" --recipe lot/recipe.json --shard $part/2
+  expect 0 "" "$program" lot lot.csv -o "part$part" --recipe lot/recipe.json --name "the lot" --shard $part/2
 done
 expect 0 "" "$program" merge part1 part2 -o merged
 same lot/lot.json merged/lot.json
