@@ -111,6 +111,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state) {
     break;
   case OPTION_ORIGIN:
     request->origin = text;
+    break;
   case FG_CLI_DECIMAL_COMMA:
     request->decimal_comma = true;
     break;
