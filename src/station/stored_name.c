@@ -55,7 +55,9 @@ fg_status fg_stored_name_path(fg_context *ctx, const char *folder, const char *s
     int high = *stored == '/' ? digit_of(stored[1]) : -1;
     int low = high >= 0 ? digit_of(stored[2]) : -1;
     bool number = low >= 0 && (high || low);
-    *to++ = number ? (char)(high << 4 | low) : *stored;
+    char byte = *stored;
+    if (number) byte = (char)(high << 4 | low);
+    *to++ = byte;
     stored += number ? 3 : 1;
   }
   *to = '\0';
