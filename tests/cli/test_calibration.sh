@@ -68,12 +68,12 @@ expect 65 'bad.json: calibration.scale: k belongs to U_rel' "$program" measure $
 
 # A lot: the recipe overrules the design; no number of foils makes it smaller; the same bytes however it came.
 echo "{\"schema\": \"foilgauge/recipe/1\", \"calibration\": {\"scale\": {\"u_rel\": 2e-3}}, \"design\": \"scale.json\", \"assembly\": {\"bearings\": 0}}" >recipe.json
-expect 0 '' "$program" lot scans --recipe recipe.json -o lot
-expect 0 '' "$program" lot scans --recipe recipe.json -o one --shard 1/2
-expect 0 '' "$program" lot scans --recipe recipe.json -o two --shard 2/2
+expect 0 '' "$program" lot scans --name calibrated --recipe recipe.json -o lot
+expect 0 '' "$program" lot scans --name calibrated --recipe recipe.json -o one --shard 1/2
+expect 0 '' "$program" lot scans --name calibrated --recipe recipe.json -o two --shard 2/2
 expect 0 '' "$program" merge one two -o merged
 cp -r lot before
-expect 0 '' "$program" lot scans --recipe lot/recipe.json -o lot --resume
+expect 0 '' "$program" lot scans --name calibrated --recipe lot/recipe.json -o lot --resume
 for file in lot.json index.html bumps.csv; do
   same lot/$file before/$file
   same lot/$file merged/$file

@@ -75,7 +75,11 @@ tame shown "JSON on a terminal"
 
 # CSV: a text that a spreadsheet would take for a formula is marked; numbers stay numbers.
 (cat plain.png && echo 3) >scans/plain.png
-printf 'scan,die,=head,coil\nplain.png,=1+1,@x,-2.5\n=cmd.png,+a,"-b,c",+3\n' >scans/list.csv
+for more in 4 5; do # a group is of two foils, and foils differ
+  sed 's/"seed": [0-9]*/"seed": '$more'/' spec.json >more.json
+  "$renderer" render more.json -o scans/more$more.png || fail "render $more"
+done
+printf 'scan,die,=head,coil\nplain.png,=1+1,@x,-2.5\n=cmd.png,+a,"-b,c",+3\nmore4.png,=1+1,@x,-2.5\nmore5.png,+a,"-b,c",+3\n' >scans/list.csv
 "$program" lot scans/list.csv -o lot --group die 2>said || fail "lot: $(cat said)"
 head -1 lot/foils.csv | grep -q "^scan,die,'=head,coil," || fail "foils.csv: $(head -1 lot/foils.csv | cut -c1-80)"
 for file in foils.csv bumps.csv manifest.csv; do

@@ -22,7 +22,7 @@ for i in 1 2 3 4 5 6; do
   sheet lot/f$i $i $((i % 2 ? 0 : 40))
   echo "lot/f$i.png,f$i,$([ $((i % 2)) = 1 ] && echo A || echo B),2026-11-0$i" >>manifest.csv
 done
-run() { "$program" lot manifest.csv --design design.json --group die "$@"; }
+run() { "$program" lot manifest.csv --name combs --design design.json --group die "$@"; }
 expect 0 "6 foils of 6 scans: 6 pass" run -o one
 valid lot.schema.json one/lot.json
 [ -e one/bumps.csv ] || [ -e one/bearings.csv ] && fail "files of bumps beside those of beams"

@@ -13,7 +13,7 @@ echo '{"schema": "foilgauge/design/1", "bump_count": 3}' >design.json
 # As Europe writes it, bumps in any order, a column more.
 printf 'bump;radius_error_pct;note;intersection_angle_error_pct\n3;2,5;x;-2,25\n1;3,5;;-3,25\n' >curve.csv
 
-expect 0 "" "$program" lot lot -o out --design design.json --reference-curve curve.csv
+expect 0 "" "$program" lot lot -o out --name curved --design design.json --reference-curve curve.csv
 valid lot.schema.json out/lot.json
 [ "$(value out/lot.json 'r["reference_curve"]["points"]')" = "[[1, 3.5, -3.25], [3, 2.5, -2.25]]" ] ||
   fail "lot.json has another curve: $(value out/lot.json 'r["reference_curve"]')"
@@ -22,7 +22,7 @@ grep -q 'the reference curve curve.csv' out/index.html || fail "the page does no
 # Without its file the lot reads the same.
 mv curve.csv away.csv
 cp -r out again
-expect 0 "" "$program" lot lot -o again --resume --recipe out/recipe.json
+expect 0 "" "$program" lot lot -o again --name curved --resume --recipe out/recipe.json
 same out/index.html again/index.html
 same out/lot.json again/lot.json
 mv away.csv curve.csv
