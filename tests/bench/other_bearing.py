@@ -50,12 +50,12 @@ def path_of(strokes):
 
 
 def places_by_load(rng, rig, force, number, free, cycles):
-    """Indices along the path at equal steps of force, and those that are caught in the gap."""
+    """Places along the path at equal steps of force, and those that are caught in the gap."""
     way = np.concatenate([[0], np.cumsum(np.abs(np.diff(force)))])
     levels = max(rig["samples_per_cycle"] * cycles // rig["readings"], 4)
     phase = 0.5 if rig["readings"] > 1 else rng.uniform(0.2, 0.8)  # weights: the same up and down
     steps = (np.arange(levels) + phase) * way[-1] / levels
-    places = np.searchsorted(way, np.repeat(steps, rig["readings"])).astype(float)
+    places = np.interp(np.repeat(steps, rig["readings"]), way, np.arange(len(way)))
     caught = [rng.choice(np.flatnonzero(free & (number == n)), rig["samples_in_gap"], replace=False)
               for n in np.unique(number) if np.count_nonzero(free & (number == n)) > rig["samples_in_gap"]]  # fmt: skip
     return np.sort(np.concatenate([places, *caught]))
