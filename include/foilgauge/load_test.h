@@ -38,8 +38,9 @@
  *
  * LOSS FACTORS OF THE TEST. Loop area over pi K X²: K the structural stiffness, X half of the
  * travel, gap included: the same foil has a smaller one behind a wider gap. With K of the loop's
- * ends (secant) it is reported beside. The force of an end is that of its loading branch, extended
- * to the turn: beyond it friction reverses.
+ * ends (secant) it is reported beside. The force of an end is that where its loading branch turns,
+ * its place what a regression of the displacement over the force says there: the extreme of noisy
+ * displacements lies beyond the turn.
  *
  * LOSS FACTOR OF THE FOIL. Of the compression alone, whatever the gap is: energy lost in
  * compressing both sides' foils and letting them go, over 2 pi times the elastic work, the mean of

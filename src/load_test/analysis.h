@@ -53,6 +53,24 @@ bool fg_load_stroke_reaches(const fg_load_stroke *stroke, const fg_load_directio
 fg_status fg_load_find_stiffness(fg_context *ctx, const fg_load_strokes *strokes,
                                  fg_load_direction *direction, fg_load_findings *findings);
 
+/* Whole strokes of a direction. */
+typedef struct fg_load_loop_strokes {
+  const fg_load_stroke **stroke;
+  size_t count;
+  double noise_mm;
+} fg_load_loop_strokes;
+
+/* Where the strokes of a sense turn: force and place on the loading branch. `compliance_mm_n`:
+ * dx/dF there. `found` is false where there are too few samples. */
+typedef struct fg_load_turn {
+  bool found;
+  double force_n, u_force_n;
+  double place_mm, u_place_mm; /* at that force */
+  double compliance_mm_n;
+} fg_load_turn;
+fg_status fg_load_find_turn(fg_context *ctx, const fg_load_sample *samples,
+                            const fg_load_loop_strokes *strokes, int sense, fg_load_turn *turn);
+
 /* Area, secant, loss factors (need contacts and stiffness; without the stiffness's uncertainty,
  * which repeats widen); whether the loops give energy by more than U. */
 fg_status fg_load_find_loops(fg_context *ctx, const fg_load_test *test,

@@ -110,39 +110,17 @@ enum { UP, DOWN, SENSES };
 
 typedef struct mean_loop {
   fg_load_stroke branch[SENSES];
-  double low_mm, high_mm; /* where it turns */
+  fg_load_turn turn[FG_LOAD_SIDES];
 } mean_loop;
-
-typedef struct chosen {
-  const fg_load_stroke **stroke;
-  size_t count;
-} chosen;
 
 static bool is_whole(const fg_load_stroke *s, const fg_load_direction *direction) {
   return s->high_mm - s->low_mm > (1 - 2 * close_share) * direction->travel_mm;
 }
 
-/* Turns within so many of the displacement's noise of the outermost are as far out. */
-static const double turn_reach = 3;
-
-/* Mean of the outermost turns: a stroke that has lost its tip in a dropout turns too early. */
-static double turn_of(const chosen *c, double noise_mm, bool high) {
-  double outermost = -INFINITY, sum = 0, count = 0;
-  int sign = high ? 1 : -1;
-  for (size_t i = 0; i < c->count; i++)
-    outermost = fmax(outermost, sign * fg_load_stroke_turn(c->stroke[i], high));
-  for (size_t i = 0; i < c->count; i++) {
-    double turn = sign * fg_load_stroke_turn(c->stroke[i], high);
-    if (turn < outermost - turn_reach * noise_mm) continue;
-    sum += turn;
-    count++;
-  }
-  return sign * sum / count;
-}
-
 /* Whole strokes; all of them where a sense has none, as in one cycle from the middle to the middle.
  */
-static void choose(const fg_load_strokes *strokes, const fg_load_direction *direction, chosen *c) {
+static void choose(const fg_load_strokes *strokes, const fg_load_direction *direction,
+                   fg_load_loop_strokes *c) {
   bool has[SENSES] = {false};
   for (size_t i = 0; i < strokes->count; i++)
     if (is_whole(&strokes->stroke[i], direction)) has[strokes->stroke[i].sense < 0] = true;
@@ -151,7 +129,8 @@ static void choose(const fg_load_strokes *strokes, const fg_load_direction *dire
       c->stroke[c->count++] = &strokes->stroke[i];
 }
 
-static fg_status merge(fg_context *ctx, const chosen *c, int sense, fg_load_stroke *branch) {
+static fg_status merge(fg_context *ctx, const fg_load_loop_strokes *c, int sense,
+                       fg_load_stroke *branch) {
   const fg_load_stroke **of;
   size_t count = 0;
   FG_TRY(fg_memory_allocate(ctx, c->count + 1, sizeof *of, (void **)&of));
@@ -162,16 +141,18 @@ static fg_status merge(fg_context *ctx, const chosen *c, int sense, fg_load_stro
   return status;
 }
 
-static fg_status make_loop(fg_context *ctx, const fg_load_strokes *strokes,
-                           const fg_load_direction *direction, mean_loop *loop) {
-  chosen c = {0};
+static fg_status make_loop(fg_context *ctx, const fg_load_sample *samples,
+                           const fg_load_strokes *strokes, const fg_load_direction *direction,
+                           mean_loop *loop) {
+  fg_load_loop_strokes c = {.noise_mm = strokes->noise_mm};
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, strokes->count, sizeof(fg_load_stroke *), (void **)&c.stroke));
   choose(strokes, direction, &c);
   for (int sense = UP; sense < SENSES; sense++)
     FG_TRY_EXIT(merge(ctx, &c, sense, &loop->branch[sense]));
-  loop->low_mm = turn_of(&c, strokes->noise_mm, false);
-  loop->high_mm = turn_of(&c, strokes->noise_mm, true);
+  for (int side = 0; side < FG_LOAD_SIDES; side++)
+    FG_TRY_EXIT(
+        fg_load_find_turn(ctx, samples, &c, side == FG_LOAD_PUSH ? 1 : -1, &loop->turn[side]));
 exit:
   free(c.stroke);
   return status;
@@ -213,34 +194,18 @@ typedef struct tip {
   double apart_n;             /* of both branches there */
 } tip;
 
-/* Half of the window that a tip is extended from, in distances that it is extended over. */
-static const double window_rests = 6;
-
-/* From the last place of the loading branch along its slope to the turn. */
-static bool extend(const fg_load_stroke *load, double at, double turn, tip *t) {
-  fg_local_fit fit;
-  double rest = turn - at;
-  if (!fg_local_fit_adaptive(load, at, FG_LOCAL_VALUE, &fit)) return false;
-  if (fit.window_mm < window_rests * fabs(rest) &&
-      !fg_local_fit_with(load, at, window_rests * fabs(rest), &fit))
-    return false;
-  t->force_n = fit.value + fit.slope * rest;
-  t->u_force_n = hypot(fit.u_value, fit.u_slope * rest);
-  return true;
-}
-
 static tip find_tip(const mean_loop *loop, int side) {
   bool push = side == FG_LOAD_PUSH;
   const fg_load_stroke *load = &loop->branch[push ? UP : DOWN];
   const fg_load_stroke *unload = &loop->branch[push ? DOWN : UP];
-  double turn = push ? loop->high_mm : loop->low_mm;
+  double turn = loop->turn[side].place_mm;
   fg_local_fit a, b;
-  tip t = {0};
-  if (!load->count || !unload->count) return t;
+  tip t = {.force_n = loop->turn[side].force_n, .u_force_n = loop->turn[side].u_force_n};
+  if (!loop->turn[side].found || !load->count || !unload->count) return t;
   double last = push ? fmin(turn, load->x[load->count - 1]) : fmax(turn, load->x[0]);
   t.sampled_mm = push ? fmin(last, unload->x[unload->count - 1]) : fmax(last, unload->x[0]);
   t.rest_mm = fabs(turn - t.sampled_mm);
-  t.found = extend(load, last, turn, &t) && fg_local_fit_near(load, t.sampled_mm, 0, &a) &&
+  t.found = fg_local_fit_near(load, t.sampled_mm, 0, &a) &&
             fg_local_fit_near(unload, t.sampled_mm, 0, &b);
   t.apart_n = t.found ? fabs(a.value - b.value) : 0;
   return t;
@@ -316,17 +281,27 @@ static void find_foil_loss(const mean_loop *loop, const tip end[FG_LOAD_SIDES],
   d->loss_foil = (fg_load_value){value, NAN, hypot(lost, elastic)};
 }
 
-static void find_mean(const mean_loop *loop, const loops *all, const fg_load_strokes *strokes,
-                      const fg_load_zero *zero, double threshold, fg_load_direction *d) {
+/* A force at the turn that is off takes the place along the branch with it. */
+static double u_of_secant(const mean_loop *loop, double k, double travel) {
+  double variance = 0;
+  for (int side = 0; side < FG_LOAD_SIDES; side++) {
+    const fg_load_turn *t = &loop->turn[side];
+    variance += pow(t->u_force_n * (1 - k * t->compliance_mm_n), 2) + pow(k * t->u_place_mm, 2);
+  }
+  return sqrt(variance) / travel;
+}
+
+static void find_mean(const mean_loop *loop, const loops *all, const fg_load_zero *zero,
+                      double threshold, fg_load_direction *d) {
   tip end[FG_LOAD_SIDES] = {find_tip(loop, FG_LOAD_PULL), find_tip(loop, FG_LOAD_PUSH)};
-  double travel = loop->high_mm - loop->low_mm, half = travel / 2;
+  double travel = loop->turn[FG_LOAD_PUSH].place_mm - loop->turn[FG_LOAD_PULL].place_mm;
+  double half = travel / 2;
   if (!end[FG_LOAD_PULL].found || !end[FG_LOAD_PUSH].found || !(travel > 0)) return;
   d->area = area_of(loop, end);
   d->area.u_repeat = hypot(d->area.u_repeat, all->single.count > 0 ? u_of_scatter(all) : 0);
   if (d->area.value < -gained_reach * d->area.u_repeat) d->flags |= FG_LOAD_WRONG_WAY;
   double k = (end[FG_LOAD_PUSH].force_n - end[FG_LOAD_PULL].force_n) / travel;
-  double u_force = hypot(end[FG_LOAD_PUSH].u_force_n, end[FG_LOAD_PULL].u_force_n);
-  d->secant = (fg_load_value){k, NAN, hypot(u_force, M_SQRT2 * strokes->noise_mm * k) / travel};
+  d->secant = (fg_load_value){k, NAN, u_of_secant(loop, k, travel)};
   d->loss.value = d->area.value / (M_PI * d->stiffness.value * half * half);
   d->loss_secant.value = d->area.value / (M_PI * k * half * half);
   find_foil_loss(loop, end, zero, threshold, d);
@@ -341,8 +316,8 @@ fg_status fg_load_find_loops(fg_context *ctx, const fg_load_test *test,
   direction->loss = direction->loss_secant = direction->loss_foil = none;
   if (!strokes->count) return FG_OK;
   loops all = find_loops(test->samples + direction->first, strokes, direction);
-  fg_status status = make_loop(ctx, strokes, direction, &loop);
-  if (status == FG_OK) find_mean(&loop, &all, strokes, zero, test->options.threshold_n, direction);
+  fg_status status = make_loop(ctx, test->samples + direction->first, strokes, direction, &loop);
+  if (status == FG_OK) find_mean(&loop, &all, zero, test->options.threshold_n, direction);
   for (int sense = UP; sense < SENSES; sense++)
     fg_load_stroke_free(&loop.branch[sense]);
   return status;

@@ -1,0 +1,201 @@
+/* Where a loading branch turns: its force, and the place that the branch has at that force.
+ *
+ * The extreme of a noisy displacement lies beyond the turn, and where the force is controlled its
+ * sample may be any of several about it. An error of the place d counts (s - K) d in the force
+ * between the ends, s the slope there, K the secant: several percent, as s is a multiple of K. At
+ * the ends the force tells the place better than the displacement does, s times its noise being
+ * larger than that of the force. So the turn is sought in the force over time, and the place is
+ * that of a regression of displacement over force. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/small_solve.h"
+#include "load_test/analysis.h"
+
+/* Samples before a turn that a parabola is fitted to. */
+enum { BEFORE = 12, PARAMETERS = 3 };
+
+/* The turn is sought where the displacement lies within so many times its noise of its extreme. */
+static const double candidate_reach = 4;
+enum { CANDIDATES_MAX = 60 };
+
+/* The largest of several fits that lean on nearly the same samples lies above its own mean by up
+ * to this share of their standard uncertainty. */
+static const double selection_share = 1;
+
+/* Turns further below the outermost than so many standard uncertainties have lost their tip in a
+ * dropout, or are none of the loop's. */
+static const double turn_reach = 4;
+
+/* Of the force at the turn, and samples at least: what the place is regressed over. */
+static const double window_share = 0.2;
+enum { PLACE_SAMPLES_MIN = 24 };
+
+typedef struct turn {
+  double force, u, rise; /* of one sample */
+  size_t at;
+} turn;
+
+/* y = c0 + c1 z + c2 z²; variances of c0 and c1 by the residuals. */
+typedef struct parabola {
+  double c0, c1, u_c0;
+} parabola;
+
+static bool solve(const fg_normal_equations *system, size_t count, parabola *p) {
+  double c[FG_SMALL_MAX], inverse[FG_SMALL_MAX][FG_SMALL_MAX];
+  if (count <= PARAMETERS || !fg_normal_solve(system, 0, c, inverse)) return false;
+  double squares = system->sum_squares;
+  for (size_t k = 0; k < PARAMETERS; k++)
+    squares -= c[k] * system->right[k];
+  double variance = fmax(0, squares) / (double)(count - PARAMETERS);
+  *p = (parabola){c[0], c[1], sqrt(variance * inverse[0][0])};
+  return true;
+}
+
+static void add(fg_normal_equations *system, double z, double y) {
+  fg_normal_add(system, (const double[PARAMETERS]){1, z, z * z}, y, 1);
+}
+
+/* Force at sample `at` by the samples before it. */
+static bool fit_force(const fg_load_sample *samples, size_t at, int sign, turn *t) {
+  fg_normal_equations system;
+  parabola p;
+  double here = samples[at].force_n;
+  fg_normal_clear(&system, PARAMETERS);
+  for (size_t i = 0; i < BEFORE; i++)
+    add(&system, -(double)i / BEFORE, sign * (samples[at - i].force_n - here));
+  if (!solve(&system, BEFORE, &p)) return false;
+  double rise = fmax(0, p.c1) / BEFORE;
+  *t = (turn){sign * here + p.c0 + rise / 2, p.u_c0, rise, at};
+  return true;
+}
+
+/* Largest force about the end of a stroke; never beyond the extreme reading, as a parabola is at
+ * the end of a rest under a weight. Forces count outwards. */
+static bool find_turn(const fg_load_sample *samples, const fg_load_stroke *s, double noise_mm,
+                      turn *best) {
+  double reach = candidate_reach * noise_mm, x = samples[s->last].x_mm, extreme = -INFINITY;
+  size_t from = s->last, to = s->last;
+  bool found = false;
+  if (s->last < s->first + BEFORE) return false;
+  while (from > s->first + BEFORE && s->last - from < CANDIDATES_MAX &&
+         fabs(samples[from - 1].x_mm - x) < reach)
+    from--;
+  while (to + 1 < s->end && to - s->last < CANDIDATES_MAX && fabs(samples[to + 1].x_mm - x) < reach)
+    to++;
+  for (size_t at = from; at <= to; at++) {
+    turn next;
+    extreme = fmax(extreme, s->sense * samples[at].force_n);
+    if (!fit_force(samples, at, s->sense, &next)) continue;
+    if (!found || next.force > best->force) *best = next;
+    found = true;
+  }
+  if (found) best->force = fmin(best->force, extreme);
+  return found;
+}
+
+typedef struct branch {
+  const fg_load_stroke **stroke;
+  turn *turns;
+  size_t count;
+} branch;
+
+/* Strokes that load this side and turn as far out as any. */
+static void choose(const fg_load_sample *samples, const fg_load_loop_strokes *strokes, int sense,
+                   branch *b) {
+  size_t outermost = 0, kept = 0;
+  for (size_t i = 0; i < strokes->count; i++)
+    if (strokes->stroke[i]->sense == sense &&
+        find_turn(samples, strokes->stroke[i], strokes->noise_mm, &b->turns[b->count])) {
+      b->stroke[b->count] = strokes->stroke[i];
+      if (b->turns[b->count].force > b->turns[outermost].force) outermost = b->count;
+      b->count++;
+    }
+  if (!b->count) return;
+  turn limit = b->turns[outermost];
+  for (size_t i = 0; i < b->count; i++) {
+    double u = hypot(b->turns[i].u, limit.u) + limit.rise;
+    if (b->turns[i].force < limit.force - turn_reach * u) continue;
+    b->turns[kept] = b->turns[i];
+    b->stroke[kept++] = b->stroke[i];
+  }
+  b->count = kept;
+}
+
+/* Mean of the turns' forces. The turn lies anywhere between two samples: `rise` of a rectangular
+ * distribution, alike at every turn. */
+static void mean_force(const branch *b, int sense, fg_load_turn *t) {
+  double n = (double)b->count, sum = 0, squares = 0, own = 0, rise = 0;
+  for (size_t i = 0; i < b->count; i++) {
+    sum += b->turns[i].force / n;
+    own += b->turns[i].u * b->turns[i].u / n;
+    rise += b->turns[i].rise / n;
+  }
+  for (size_t i = 0; i < b->count; i++)
+    squares += pow(b->turns[i].force - sum, 2);
+  double scatter = n > 1 ? squares / (n - 1) : 0;
+  t->force_n = sense * sum;
+  t->u_force_n = sqrt(fmax(own, scatter) / n + pow(selection_share, 2) * own + rise * rise / 12);
+}
+
+static double force_span(const fg_load_sample *samples, const branch *b, double force) {
+  double span = 0;
+  for (size_t i = 0; i < b->count; i++)
+    span = fmax(span, fabs(force - samples[b->stroke[i]->first].force_n));
+  return span;
+}
+
+/* Adds the samples before a turn within the window of force, the turn's own first. */
+static size_t add_samples(const fg_load_sample *samples, const fg_load_stroke *s, size_t at,
+                          double window, const fg_load_turn *t, fg_normal_equations *system) {
+  size_t count = 0;
+  for (size_t i = at + 1; i-- > s->first;) {
+    double z = s->sense * (samples[i].force_n - t->force_n) / window;
+    double share = ((double)(i - s->first) + 0.5) / (double)(s->last - s->first + 1);
+    if (z < -1) continue;
+    add(system, z, samples[i].x_mm - fg_load_stroke_drifted(s, share) - t->place_mm);
+    count++;
+  }
+  return count;
+}
+
+/* Place at the turn's force by the displacement's regression over the force. */
+static bool find_place(const fg_load_sample *samples, const branch *b, fg_load_turn *t) {
+  double most = force_span(samples, b, t->force_n);
+  fg_normal_equations system;
+  t->place_mm = samples[b->turns[0].at].x_mm; /* datum of the regression */
+  for (double window = fmin(most, window_share * fabs(t->force_n)); window > 0;
+       window = fmin(most, 1.25 * window)) {
+    size_t count = 0;
+    parabola p;
+    fg_normal_clear(&system, PARAMETERS);
+    for (size_t i = 0; i < b->count; i++)
+      count += add_samples(samples, b->stroke[i], b->turns[i].at, window, t, &system);
+    if (count < PLACE_SAMPLES_MIN && window < most) continue;
+    if (!solve(&system, count, &p)) return false;
+    t->place_mm += p.c0;
+    t->u_place_mm = p.u_c0;
+    t->compliance_mm_n = fabs(p.c1) / window;
+    return true;
+  }
+  return false;
+}
+
+fg_status fg_load_find_turn(fg_context *ctx, const fg_load_sample *samples,
+                            const fg_load_loop_strokes *strokes, int sense, fg_load_turn *t) {
+  branch b = {0};
+  fg_status status = FG_OK;
+  *t = (fg_load_turn){0};
+  FG_TRY_EXIT(fg_memory_allocate(ctx, strokes->count + 1, sizeof *b.stroke, (void **)&b.stroke));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, strokes->count + 1, sizeof *b.turns, (void **)&b.turns));
+  choose(samples, strokes, sense, &b);
+  if (b.count) {
+    mean_force(&b, sense, t);
+    t->found = find_place(samples, &b, t);
+  }
+exit:
+  free(b.stroke);
+  free(b.turns);
+  return status;
+}
