@@ -198,7 +198,7 @@ typedef struct fg_lot_outcome {
   size_t foils, foils_by_verdict[FG_VERDICT_NONE + 1];
   bool bearings_judged; /* the design states tolerances of a bearing */
   size_t bearings, bearings_by_verdict[FG_VERDICT_NONE + 1];
-  char assembly[3][400]; /* what drawn bearings come to, in words; "": none were drawn */
+  char assembly[4][400]; /* drawn bearings in words, last what they do not tell; "": none drawn */
   size_t exceeded;       /* foils with a value that fails */
   size_t beyond;     /* scans measured now that reach beyond the region of the scanner's model */
   size_t torn;       /* lines of results.jsonl that were damaged or not whole, and measured again */

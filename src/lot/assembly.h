@@ -43,6 +43,9 @@ enum { FG_ASSEMBLY_LIMITS_MAX = 8, FG_ASSEMBLY_QUANTILES = 5, FG_ASSEMBLY_VALUES
 extern const double fg_assembly_probability[FG_ASSEMBLY_QUANTILES];
 const fg_quantity *fg_assembly_row(size_t value);
 
+/* The limits of what drawn bearings tell, as a sentence for every report of them. */
+extern const char fg_assembly_scope[];
+
 typedef struct fg_assembly_plan {
   fg_bearing_layout layout;
   size_t bearings;

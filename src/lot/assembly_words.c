@@ -26,6 +26,10 @@ static const char *percent(double share, char text[16]) {
   return text;
 }
 
+const char fg_assembly_scope[] =
+    "This is geometry: clearances of the bearings at rest. It is no rotordynamic simulation: what "
+    "bearings of such spread do at speed (thesis 5.12) it does not say.";
+
 static void say_how_many(const fg_lot_assembly *assembly, char *text, size_t size) {
   const fg_assembly_share *share = &assembly->drawn.assembled;
   size_t foils = assembly->stock.foils, pads = assembly->plan.layout.pads;

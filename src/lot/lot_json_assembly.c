@@ -108,6 +108,7 @@ void fg_lot_json_assembly(fg_json *json, const fg_lot_analysis *analysis) {
   for (size_t i = 0; i < sizeof assembly->statement / sizeof *assembly->statement; i++)
     if (assembly->statement[i][0]) fg_json_string(json, NULL, assembly->statement[i]);
   fg_json_array_end(json);
+  fg_json_string(json, "scope", fg_assembly_scope);
   if (!assembly->why[0]) write_drawn(json, analysis);
   fg_json_object_end(json);
 }

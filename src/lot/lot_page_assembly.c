@@ -246,10 +246,7 @@ void fg_lot_put_assembly(FILE *out, const fg_lot_analysis *analysis) {
     fputs("</li>\n", out);
   }
   fputs("</ul>\n", out);
-  fputs("<p class=\"note\">This is geometry: clearances of the bearings at rest. It is no "
-        "rotordynamic "
-        "simulation: what bearings of such spread do at speed (thesis 5.12) it does not say.</p>\n",
-        out);
+  fprintf(out, "<p class=\"note\">%s</p>\n", fg_assembly_scope);
   put_left_out(out, analysis);
   if (!assembly->why[0]) {
     put_shares(out, analysis);

@@ -71,7 +71,9 @@ static void take_outcome(const fg_lot_analysis *analysis, fg_lot_outcome *outcom
   const char *no_date;
   outcome->no_dates = fg_lot_date_wrong(&analysis->lot->manifest, &no_date);
   if (no_date) fg_text_clip(outcome->first_no_date, sizeof outcome->first_no_date, "%s", no_date);
-  memcpy(outcome->assembly, analysis->assembly.statement, sizeof outcome->assembly);
+  memcpy(outcome->assembly, analysis->assembly.statement, sizeof analysis->assembly.statement);
+  if (outcome->assembly[0][0] && !analysis->assembly.why[0])
+    fg_text_clip(outcome->assembly[3], sizeof outcome->assembly[3], "%s", fg_assembly_scope);
   for (int i = 0; i <= FG_VERDICT_NONE; i++)
     outcome->bearings_by_verdict[i] = analysis->bearings_by_verdict[i];
 }

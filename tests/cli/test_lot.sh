@@ -43,6 +43,8 @@ same one jobs3
 [ "$(wc -l <one/bumps.csv)" = 34 ] || fail "bumps.csv"
 
 grep -q '"assembled"' one/lot.json || fail "no bearings were drawn"
+grep -q 'It is no rotordynamic simulation' stderr || fail "the terminal does not say what drawn bearings do not tell"
+grep -q '"scope": "This is geometry' one/lot.json || fail "lot.json does not say what drawn bearings do not tell"
 grep -q 'of 50 bearings drawn from' stderr || fail "the terminal does not say how many bearings assemble"
 
 # A name is text wherever it stands.
