@@ -52,12 +52,12 @@ typedef struct fg_tolerance {
   double lower, upper;
 } fg_tolerance;
 
-/* Where a value lies against the limit that it is nearest to, or farthest beyond. With one limit it
- * is that one. */
+/* Position of a value against a limit: the nearest one, or the one that it is farthest beyond. With
+ * one limit it is that one. */
 typedef struct fg_margin {
   double limit;  /* not finite: there is none */
   double inside; /* distance to the limit; negative: beyond it; NaN without a value */
-  bool upper;    /* which of both */
+  bool upper;    /* the limit is the upper one */
 } fg_margin;
 
 /* Every distance to a limit is this one. Limits that are not set are -inf, +inf. */

@@ -105,8 +105,8 @@ typedef struct fg_die_trace {
   size_t lost_count;
   int last_number;    /* the highest number of the bumps whose crown is seen */
   double noise_um;    /* sd of the bumps' residuals */
-  fg_die_form form;   /* what they are made of */
-  double shift_mm;    /* what the tip and the datum add to a bump's traced radius */
+  fg_die_form form;   /* form error: noise model of the residuals */
+  double shift_mm;    /* added to a bump's traced radius by tip and datum */
   fg_overall overall; /* springback_error_pct is the error with its sign turned round */
   fg_bump *bumps;     /* in order of number; owned */
   size_t bump_count;

@@ -119,12 +119,12 @@ typedef struct fg_split_plot {
   fg_split_plot_term *term; /* whole-plot terms first, then the others, each sequential */
   size_t terms;
   size_t plots, plot_freedom, run_freedom;
-  double plot_ss, plot_ms, run_ss, run_ms; /* of the strata; NaN mean square without freedom */
+  double plot_ss, plot_ms, run_ss, run_ms; /* of the strata; NaN mean square without dof */
   double plot_variance, run_variance;      /* the first at least 0; NaN: not known */
   size_t balanced;                         /* 1: equal plots */
   bool at_border;                          /* the whole plots' variance is estimated as 0 */
   struct fg_mixed_model *mixed;            /* NULL: by strata; owned */
-  size_t taken_plots, taken_runs; /* freedom that fg_split_plot_pay took, of which stratum */
+  size_t taken_plots, taken_runs;          /* dof that fg_split_plot_pay took from each stratum */
 } fg_split_plot;
 /* `plot` is the column that names whole plots. FG_ERR_DATA when it holds one only, or as many as
  * there are runs. Free with fg_split_plot_free. */

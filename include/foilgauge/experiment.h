@@ -8,13 +8,12 @@
  * is judged by the error of its own stratum, or where runs are missing by restricted likelihood
  * (doe.h); then coefficients, fitted and residual are its.
  *
- * Where the uncertainty of the responses differs between runs so much that it matters (some u
- * above twice the middle one and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with
- * s, the scatter of the process, such that the weighted residuals are as large as their freedom
- * says (Mandel and Paule 1970); split plots are not weighed.
+ * Where the uncertainty of the responses differs between runs so much that it matters (some u above
+ * twice the middle one and above 0.3 of the scatter), runs are weighed by 1 / (s² + u²), with s,
+ * the scatter of the process, such that the weighted residuals are as large as their degrees of
+ * freedom say (Mandel and Paule 1970); split plots are not weighed.
  *
- * What cannot be computed is NaN, and a note says why and what can still be said.
- */
+ * A value that cannot be computed is NaN; a note says why, and which conclusions remain. */
 #ifndef FOILGAUGE_EXPERIMENT_H
 #define FOILGAUGE_EXPERIMENT_H
 
@@ -40,7 +39,7 @@ typedef enum fg_experiment_sign {
 /* An effect of a loop's model that was taken out of the response before the analysis. */
 typedef struct fg_experiment_taken {
   char id[64], words[400]; /* "table.linear", "a trend with humidity" */
-  char sentence[1000];     /* with what it does to the response; empty: not known */
+  char sentence[1000];     /* with its effect on the response; empty: not known */
   double amplitude,
       u_amplitude;   /* half its range where it was found, and the standard uncertainty */
   size_t parameters; /* that were estimated for it */

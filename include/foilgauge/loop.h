@@ -157,7 +157,7 @@ typedef enum fg_loop_over_bumps {
   FG_LOOP_BUMP_KINDS
 } fg_loop_over_bumps;
 
-/* What a claim says to its reader: a difference between two places of its form. */
+/* Difference that a claim states, by the kind of its effect. */
 typedef enum fg_loop_reads {
   FG_LOOP_READS_RANGE,    /* over the rows */
   FG_LOOP_READS_SLOPE,    /* between the ends */
@@ -167,7 +167,7 @@ typedef enum fg_loop_reads {
   FG_LOOP_READS_FADE,     /* between the first row and the last */
   FG_LOOP_READS_SWING,    /* between peak and valley */
   FG_LOOP_READS_SLOPES,   /* between slopes over one column, at both ends of the other */
-  FG_LOOP_READS_ROWS,     /* between a row and what the others say of it */
+  FG_LOOP_READS_ROWS,     /* between a row and its prediction by the others */
   FG_LOOP_READS_EXCHANGE, /* between two rows */
   FG_LOOP_READINGS
 } fg_loop_reads;
@@ -391,9 +391,10 @@ typedef struct fg_loop_table_spec {
   uint64_t seed;
 } fg_loop_table_spec;
 
-/* A declared model in a file: {"response", "model", "group", "order", "design": {...}}. What `spec`
- * has already stays; its other members point into `declaration`, which lives as long as they are
- * used. FG_ERR_DATA names the file and the member, or line and column of what is no JSON. */
+/* A declared model in a file: {"response", "model", "group", "order", "design": {...}}. Members
+ * that `spec` has already stay; its other members point into `declaration`, which lives as long as
+ * they are used. FG_ERR_DATA names the file and the member, or line and column where the JSON stops
+ * being valid. */
 typedef struct fg_loop_declaration fg_loop_declaration;
 fg_status fg_loop_declaration_load(fg_context *ctx, const char *path, fg_loop_table_spec *spec,
                                    fg_design *design, fg_loop_declaration **declaration);
@@ -461,12 +462,12 @@ fg_status fg_loop_model_apply(fg_context *ctx, const fg_loop_model *model, fg_ta
 /* What a model took out of a table. */
 typedef struct fg_loop_taken {
   char id[FG_LOOP_NAME], words[4 * FG_LOOP_NAME]; /* "a trend with humidity" */
-  char sentence[10 * FG_LOOP_NAME]; /* with what it does to the response, as the file says it; or
+  char sentence[10 * FG_LOOP_NAME]; /* with its effect on the response, in the words of the file; or
                                        empty */
-  double amplitude, u_amplitude; /* as it was found, standard uncertainty; NaN: not known */
-  size_t parameters;             /* that were estimated for it */
-  double low, high;              /* of what was taken out of the rows */
-  bool applied;                  /* false: it concerns rows of the table it was found in */
+  double amplitude, u_amplitude;    /* as it was found, standard uncertainty; NaN: not known */
+  size_t parameters;                /* that were estimated for it */
+  double low, high;                 /* range of the effect taken out of the rows */
+  bool applied;                     /* false: it concerns rows of the table it was found in */
 } fg_loop_taken;
 
 typedef struct fg_loop_takings {

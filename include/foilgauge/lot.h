@@ -179,7 +179,7 @@ typedef struct fg_lot_request {
   const char *folder; /* of the results; none of its files may overwrite an input: FG_ERR_USAGE */
   const char *recipe, *design; /* the files that the settings came from; NULL: none */
   bool resume;        /* keep valid records; without it a folder with results is FG_ERR_USAGE */
-  bool dry_run;       /* say what would be measured, and touch nothing */
+  bool dry_run;       /* list the scans to measure, and touch nothing */
   bool decimal_comma; /* of the report's tables (fg_csv_write); not of its copy of the manifest */
   fg_lot_pages pages;
   fg_lot_shard shard;

@@ -39,8 +39,8 @@ typedef struct fg_station_settings {
    * hidden until the command has ended well, then called station-DATE-TIME.png (.tif, .pnm where
    * the command names that). "": none. */
   char scan_command[1024];
-  /* How long after its last change a file that is not whole may still be received; then it is said
-   * what is missing. */
+  /* Time after its last change in which an incomplete file may still grow; then the station reports
+   * the missing part. */
   double receive_s;
   fg_station_check check;
 } fg_station_settings;
@@ -80,8 +80,8 @@ typedef struct fg_station_outcome {
 } fg_station_outcome;
 
 /* FG_ERR_IO: another station is at work in the folder, the database cannot be written, the address
- * is taken. Without `once` and `export_path` it goes on until `end_descriptor` says otherwise
- * (FG_ERR_INTERRUPTED); what goes wrong meanwhile is on its pages, and is tried again. */
+ * is taken. Without `once` and `export_path` it runs until `end_descriptor` is readable
+ * (FG_ERR_INTERRUPTED). Its pages report failures meanwhile, and it tries again. */
 fg_status fg_station_run(fg_context *ctx, const fg_station_request *request,
                          fg_station_outcome *outcome);
 

@@ -1,4 +1,4 @@
-/* Stiffness of a bump by the models that the field uses, side by side, and what changes it.
+/* Stiffness of a bump by the models that the field uses, side by side, and its sensitivities.
  *
  * Everything is per bump and per mm of width, in N/mm²; over the pitch s of the bumps (mm along the
  * bearing) it is the stiffness per area of a bump foil, N/mm³. A bump is a thin arc of radius R,
@@ -76,7 +76,7 @@ typedef struct fg_stiffness_model {
 
 enum { FG_STIFFNESS_MODELS = 3, FG_STIFFNESS_WORDS = 240 };
 
-/* Why a model that the field names is no row. */
+/* Reason that a model named in the field has no row. */
 const char *fg_stiffness_absent_note(void);
 
 /* The arch comes first. */

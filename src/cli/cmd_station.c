@@ -146,8 +146,8 @@ static void say_address(void *user, const char *address) {
   fflush(stdout);
 }
 
-/* On one line, whatever a file is called: what comes on a line of its own was said by the program.
- */
+/* A line per file, whatever bytes its name has: a line break in a name would pass for a line of the
+ * program. */
 static void say_file(void *user, const char *file, const char *words) {
   char line[4096];
   (void)user;

@@ -8,7 +8,7 @@
  * other thread, so that all inherit the blocked signals. */
 void fg_interrupt_start(void);
 
-/* How long a command has to end itself. */
+/* Time that a command has to end itself. */
 enum { FG_INTERRUPT_SECONDS = 20 };
 
 /* From here on the first signal makes the returned descriptor readable, and the command ends itself

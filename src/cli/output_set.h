@@ -28,9 +28,9 @@ typedef struct fg_input {
 bool fg_is_standard(const char *path);
 bool fg_output_set_has_standard(const fg_output_set *set); /* one of them is standard output */
 
-/* Where results go that no option sends anywhere: a terminal shows the text, whatever files are
- * written besides; elsewhere standard output gets the JSON when no output is asked for, and with
- * `json_beside` when no JSON is. */
+/* Chooses standard output for results that no option sends elsewhere. A terminal shows the text,
+ * even where files are written. A pipe or a file gets the JSON when no output is asked for, and
+ * with `json_beside` when no JSON is. */
 void fg_output_set_choose_standard(fg_output_set *set, size_t json, size_t text, bool json_beside);
 
 /* FG_ERR_USAGE when two outputs are one file, or one is an input (foilgauge/file.h). Once all

@@ -3,8 +3,8 @@
  *
  * A text that begins with = + - @, a tab or a carriage return gets an apostrophe before it, as
  * OWASP (CSV injection) says, unless it is a number, with a point or a comma. A text that begins
- * with apostrophes and one of these gets one as well, so that a reader who takes one away has what
- * was written. */
+ * with apostrophes and one of these gets one as well, so that a reader who takes one away has the
+ * text as it was written. */
 #ifndef FG_CORE_CSV_H
 #define FG_CORE_CSV_H
 

@@ -1,5 +1,5 @@
-/* CSV for spreadsheets whose decimal mark is a comma: made of what any writer of CSV writes, so
- * that no writer knows of it. */
+/* CSV for spreadsheets whose decimal mark is a comma. Finished CSV is converted, so that its
+ * writers need not know of it. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +8,7 @@
 #include "core/memory.h"
 #include "foilgauge/file.h"
 
-/* How long the cell at `text` is; one in quotes ends behind the quote that no other follows. */
+/* Length of the cell at `text`. A quoted cell ends behind a quote that no other follows. */
 static size_t cell_length(const char *text, const char *end) {
   const char *at = text;
   bool quoted = at < end && *at == '"';

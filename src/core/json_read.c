@@ -6,9 +6,9 @@
 
 enum { EXCERPT_MAX = 80 };
 
-/* Each function below takes the place where its part of RFC 8259 begins and returns its end, NULL
- * where the text is not of that grammar. They allocate nothing. Stricter than cJSON, never looser:
- * what they accept cJSON refuses only for want of memory. */
+/* Each function below takes the start of its part of RFC 8259 and returns its end, or NULL where
+ * the text breaks the grammar. They allocate nothing. They are stricter than cJSON, never looser:
+ * cJSON refuses a text that they accept only for want of memory. */
 static const char *skip_value(const char *at, int depth);
 
 static const char *skip_space(const char *at) {

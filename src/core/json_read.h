@@ -7,8 +7,9 @@
 
 #include "foilgauge/status.h"
 
-/* The whole text, white space around it allowed. FG_ERR_DATA: `path`, line, column and what stands
- * there; FG_ERR_MEMORY. The caller deletes `root`, which is NULL after an error. */
+/* Parses the whole text; white space around it is allowed. FG_ERR_DATA names `path`, line, column
+ * and the text found there; FG_ERR_MEMORY. The caller deletes `root`, which is NULL after an error.
+ */
 fg_status fg_json_read(fg_context *ctx, const char *path, const char *text, cJSON **root);
 
 #endif

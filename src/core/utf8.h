@@ -8,7 +8,7 @@
 
 bool fg_utf8_is_valid(const char *text);
 
-/* How many characters the text has. */
+/* Returns the number of characters. */
 size_t fg_utf8_count(const char *text);
 
 /* Writes the one character at `text`, a stray byte as \xE4; returns how many bytes it took. */

@@ -44,8 +44,8 @@ static fg_status fail_length(fg_context *ctx, const fg_design *design, const cha
                  span_mm(design, BUMPS_LEAST) + design->bump_radius_mm);
 }
 
-/* No point of a die lies higher over another than its overall circle is wide: what does was written
- * for a lost contact, or in another unit. */
+/* Heights of a die differ by less than the diameter of its overall circle. A larger difference was
+ * written for a lost contact, or in another unit. */
 static fg_status check_heights(fg_context *ctx, const fg_design *design, const char *path,
                                const fg_die_profile *p) {
   double limit = 2 * LENGTH_DIAMETERS * design->overall_radius_mm, z;

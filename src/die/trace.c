@@ -195,7 +195,7 @@ static bool find_station(const fg_layout *layout, double at_deg, size_t *station
   return nearest > 0 && nearest + 1 < strip->count;
 }
 
-/* Whether the trace shows a bump's crown in a direction: it goes there, and away from the lands. */
+/* True where the trace reaches a bump's direction and leaves the lands there. */
 static bool has_crown(const fg_layout *layout, double at_deg, double height_mm) {
   const fg_circle *o = &layout->overall.circle;
   size_t station;
@@ -204,7 +204,7 @@ static bool has_crown(const fg_layout *layout, double at_deg, double height_mm) 
   return fabs(hypot(p.x - o->x, p.y - o->y) - o->radius) > CROWN_SHARE * height_mm;
 }
 
-/* Whether the trace shows both feet of a bump whose crown lies in that direction. */
+/* True where the trace shows both feet of a bump whose crown lies in that direction. */
 static bool is_traced(const fg_layout *layout, const fg_nominal *nominal, double at_deg) {
   size_t station;
   double half_deg =

@@ -11,9 +11,9 @@
 
 /* A gap is a whole number of pitches when it is within this share of a pitch of it. */
 #define WHOLE_SHARE 0.25
-/* How far, in pitches, the foil's middle may lie from where so many missing ends would put it. The
- * box of a foil that lies askew by more than some 45 degrees may end at the tips: there it moves
- * with the beam that is missing, and does not tell. */
+/* Tolerance, in pitches, of the foil's middle against the middle that a number of missing end beams
+ * predicts. The box of a foil askew by more than some 45 degrees may end at the tips. It then moves
+ * with the missing beam, and cannot tell which end lacks one. */
 #define MIDDLE_SHARE 0.3
 
 /* Where a beam stands in the order. */
@@ -89,14 +89,14 @@ static size_t sort_rows(place *places, size_t count, fg_point up) {
 
 /* The smallest gap, evened out over the others by how many times they hold it. */
 static double find_pitch(const double *gaps, size_t count) {
-  double least = INFINITY, sum = 0, steps = 0;
+  double min = INFINITY, sum = 0, steps = 0;
   for (size_t i = 0; i < count; i++)
-    least = fmin(least, gaps[i]);
+    min = fmin(min, gaps[i]);
   for (size_t i = 0; i < count; i++) {
     sum += gaps[i];
-    steps += round(gaps[i] / least);
+    steps += round(gaps[i] / min);
   }
-  return count && least > 0 ? sum / steps : NAN;
+  return count && min > 0 ? sum / steps : NAN;
 }
 
 static size_t gaps_in_rows(const place *places, size_t count, double *gaps) {

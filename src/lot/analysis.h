@@ -115,15 +115,16 @@ typedef struct fg_lot_known {
   double u_statistical, u_calibration, u;
 } fg_lot_known;
 
-/* Where the relative sd of the stiffness (arch) comes from, to first order about the lot's mean:
+/* Sources of the relative sd of the stiffness (arch), to first order about the lot's mean:
  *   rsd² = (s_arc sigma_R)² + (s_alpha sigma_arc)² + 2 r s_arc sigma_R s_alpha sigma_arc
  *          + (s_t sigma_t)²,   s_t = 3 for slender bumps, r the correlation of R and arc length.
- * All scans share the doubt about the thickness: it is in the mean (u_by_thickness), not here.
+ * All scans share the uncertainty of the thickness: it belongs to the mean (u_by_thickness), not to
+ * the budget.
  *
- * These terms do not add up where the causes are correlated or stiffness curves. The shares do:
- * what a cause adds to the variance that a regression on the causes explains, averaged over the
- * orders in which they may enter (Lindeman, Merenda and Gold 1980). None is negative, and with the
- * rest they are 100 %. */
+ * These terms do not add up where the causes are correlated or stiffness curves. The shares do. A
+ * share is the variance that a cause adds to the part explained by a regression on the causes,
+ * averaged over the orders in which they may enter (Lindeman, Merenda and Gold 1980). None is
+ * negative, and with the rest they are 100 %. */
 typedef struct fg_lot_budget {
   bool known;
   fg_lot_budget_term radius; /* at constant arc length */
@@ -135,7 +136,7 @@ typedef struct fg_lot_budget {
                                         negative */
   double measurement_pct;            /* of the observed, by the bumps' own uncertainties; NaN */
   double parts_pct;                  /* what is left of the observed without it */
-  double rest_share_pct;             /* of the observed variance: what no cause explains */
+  double rest_share_pct;             /* of the observed variance: explained by no cause */
 } fg_lot_budget;
 
 enum { FG_LOT_CASE_DESIGN, FG_LOT_CASE_MEAN, FG_LOT_CASES };
@@ -341,7 +342,7 @@ const fg_lot_quantity *fg_lot_find_quantity(const fg_lot_analysis *analysis, con
 fg_status fg_lot_find_trend(fg_context *ctx, unsigned rules, double level,
                             fg_lot_quantity *quantity);
 
-/* Whether the trend leaves fewer signals than the groups do, where both are known. */
+/* True where the trend leaves fewer signals than the groups do, both being known. */
 bool fg_lot_is_trend(const fg_lot_quantity *quantity);
 bool fg_lot_is_watched(const fg_lot_analysis *analysis, const fg_lot_quantity *quantity);
 bool fg_lot_is_explained(const fg_lot_quantity *quantity);
@@ -375,7 +376,7 @@ fg_status fg_lot_analyse_assembly(fg_context *ctx, fg_lot_analysis *analysis);
 void fg_lot_assembly_free(fg_lot_assembly *assembly);
 void fg_lot_say_assembly(fg_lot_analysis *analysis); /* the statements */
 fg_status fg_lot_analyse_groups(fg_context *ctx, fg_lot_analysis *analysis);
-/* Whether an adjusted p-value lies below what the recipe's confidence leaves. */
+/* True where an adjusted p-value lies below 1 minus the recipe's confidence. */
 bool fg_lot_group_differs(const fg_lot_analysis *analysis, double p_holm);
 fg_status fg_lot_analyse_gauge(fg_context *ctx, fg_lot_analysis *analysis);
 

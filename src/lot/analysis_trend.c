@@ -1,7 +1,7 @@
-/* A trend of a quantity over the order of the foils: a tool that wears, a coil that hardens. The
- * line is fitted to the foils' values. Foils next to each other may be alike without a trend, so
- * the slope's u is widened by what the residuals' serial correlation takes from the foils' number:
- * n (1 - rho) / (1 + rho) of them are independent (Bartlett 1935). */
+/* Trend of a quantity over the order of the foils: a tool wears, a coil hardens. The line is fitted
+ * to the foils' values. Successive foils may resemble each other without a trend. So the slope's u
+ * counts only n (1 - rho) / (1 + rho) of the n foils as independent (Bartlett 1935), with rho the
+ * serial correlation of the residuals. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,8 +11,8 @@
 
 /* Fewer foils have a line through them by chance; correlation cannot be told from a trend beyond
  * its limit. */
-enum { FOILS_LEAST = 6 };
-static const double rho_most = 0.95;
+enum { FOILS_MIN = 6 };
+static const double rho_max = 0.95;
 
 /* value = mean + slope (i - middle) + residual. */
 typedef struct line {
@@ -30,7 +30,7 @@ static double serial_correlation(const line *l, const fg_chart *chart) {
   for (size_t i = 1; i < chart->count; i++)
     cross += residual_at(l, chart, i - 1) * residual_at(l, chart, i);
   double r = l->residual_ss > 0 ? cross / l->residual_ss : 0;
-  return fmin(fmax(r + (2 + 4 * r) / n, 0), rho_most);
+  return fmin(fmax(r + (2 + 4 * r) / n, 0), rho_max);
 }
 
 static line fit_line(const fg_chart *chart) {
@@ -69,7 +69,7 @@ fg_status fg_lot_find_trend(fg_context *ctx, unsigned rules, double level,
                             fg_lot_quantity *quantity) {
   const fg_chart *chart = &quantity->chart;
   quantity->trend = (fg_lot_trend){0};
-  if (chart->count < FOILS_LEAST) return FG_OK;
+  if (chart->count < FOILS_MIN) return FG_OK;
   line l = fit_line(chart);
   double n = (double)chart->count, factor = (1 + l.rho) / (1 - l.rho);
   double dof = fmax(n / factor - 2, 1);

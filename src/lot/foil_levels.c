@@ -107,20 +107,20 @@ static void fit(const layout *l) {
 
 /* The places take degrees of freedom, which all foils share by their values. */
 static void find_within(const layout *l) {
-  double freedom = 0, places = 0;
+  double dof = 0, places = 0;
   fg_foil_level *foil = l->levels->foil;
   for (size_t p = 0; p < l->places; p++)
     places += l->count[p] > 0;
   for (size_t i = 0; i < l->levels->count; i++) {
     foil[i].within_sd = 0;
-    freedom += (double)foil[i].values - 1;
+    dof += (double)foil[i].values - 1;
   }
   for (size_t e = 0; e < l->entries; e++) {
     const entry *one = &l->entry[e];
     double rest = one->value - l->effect[one->place] - foil[one->foil].level;
     foil[one->foil].within_sd += rest * rest;
   }
-  double share = freedom > places - 1 ? (freedom - (places - 1)) / freedom : NAN;
+  double share = dof > places - 1 ? (dof - (places - 1)) / dof : NAN;
   for (size_t i = 0; i < l->levels->count; i++) {
     double own = ((double)foil[i].values - 1) * share;
     foil[i].within_sd = own > 0 ? sqrt(foil[i].within_sd / own) : NAN;
@@ -139,13 +139,13 @@ fg_status fg_foil_levels_make(fg_context *ctx, const fg_lot_analysis *analysis,
                               const size_t *owner, fg_foil_levels *levels) {
   layout l = {.levels = levels};
   fg_status status = FG_OK;
-  size_t most = 0;
+  size_t max = 0;
   *levels = (fg_foil_levels){0};
   for (size_t i = 0; i < analysis->foil_count; i++)
-    most += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
+    max += 1 + fg_part_count(analysis->foils[i].foil, quantity->owner);
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, analysis->foil_count, sizeof *levels->foil, (void **)&levels->foil));
-  FG_TRY_EXIT(fg_memory_allocate(ctx, most, sizeof *l.entry, (void **)&l.entry));
+  FG_TRY_EXIT(fg_memory_allocate(ctx, max, sizeof *l.entry, (void **)&l.entry));
   gather(analysis, quantity, group, owner, &l);
   FG_TRY_EXIT(fg_memory_allocate(ctx, l.places, sizeof *l.effect, (void **)&l.effect));
   FG_TRY_EXIT(fg_memory_allocate(ctx, l.places, sizeof *l.sum, (void **)&l.sum));

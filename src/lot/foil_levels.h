@@ -1,4 +1,4 @@
-/* What each foil of a lot is like in one quantity: the foil is what was made once, its bumps are
+/* Level of each foil of a lot in one quantity. The foil is the unit that was made; its bumps are
  * repeats within it.
  *
  * y = level of the foil + effect of the place + rest, by least squares. A bump that is missing does

@@ -106,7 +106,7 @@ static fg_status load_model(fg_context *ctx, const char *folder, fg_lot *lot) {
   return status;
 }
 
-/* The folder's own name, whatever the path to it ends in. */
+/* The lot is named after the folder itself, even where the path ends in "." or a link. */
 static void name_by_folder(const char *folder, char *name, size_t size) {
   char *path = realpath(folder, NULL);
   const char *slash = path ? strrchr(path, '/') : NULL;

@@ -8,7 +8,7 @@ static void put_number(FILE *out, double p) {
   fprintf(out, "%s%.3g", p < 1e-4 ? "&lt; " : "", p < 1e-4 ? 1e-4 : p);
 }
 
-/* The adjusted p is what counts: a reader looks for the smallest of the page. */
+/* The adjusted p decides, because a reader looks for the smallest p of the page. */
 static void put_p(FILE *out, const fg_lot_analysis *analysis, const fg_lot_difference *one,
                   fg_lot_group_test test) {
   bool differs = fg_lot_group_differs(analysis, one->p_holm[test]);

@@ -30,7 +30,7 @@ void fg_lot_free(fg_lot *lot);
 /* Of scans with the same bytes the first counts: the others are scans that were not measured, and
  * their error says why. fg_lot_load does it. */
 fg_status fg_lot_mark_repeats(fg_context *ctx, fg_lot *lot);
-/* How many there are; the first, or NULL. */
+/* Returns the number of repeated scans; *first is the first of them, or NULL. */
 size_t fg_lot_count_repeats(const fg_lot *lot, const fg_record **first);
 
 /* Writes every file of the report, lot.json last, so that it says that all are there. */

@@ -132,7 +132,7 @@ static fg_status add_path(const search *s, const char *path) {
   if (ends_with(path, ".csv"))
     return add_text_file(s->ctx, path, false, s->own == path, s->manifest);
   if (ends_with(path, ".txt")) return add_text_file(s->ctx, path, true, false, s->manifest);
-  /* A scan that is gone is a record with its error; what is not called as a scan is can only be a
+  /* A missing scan becomes a record with its error. A path without the name of a scan can only be a
    * folder. */
   if (!fg_format_has_name(path) && stat(path, &info) != 0) return fg_folder_require(s->ctx, path);
   return fg_manifest_add_scan(s->ctx, s->manifest, "", path);

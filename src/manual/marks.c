@@ -8,7 +8,7 @@
 
 static const char begin[] = "<!--@", middle[] = "@-->", end[] = "<!--@-->";
 
-/* What the code says; the caller frees. NULL: the fact is not known. */
+/* Returns the fact as the code states it; the caller frees. NULL: the fact is not known. */
 static char *text_of_fact(const char *name, size_t length) {
   const fg_fact *fact = fg_fact_find(name, length);
   char *text = NULL;
@@ -22,7 +22,7 @@ static char *text_of_fact(const char *name, size_t length) {
   return text;
 }
 
-/* The fact in place of what is shown, which must be the same unless the fact is a table. */
+/* Writes the fact. False where the shown text differs from it; only a table may differ. */
 static bool put_fact(const char *fact, const char *shown, size_t length, FILE *out) {
   bool table = strchr(fact, '\n') != NULL;
   fputs(fact, out);

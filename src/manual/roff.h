@@ -13,8 +13,8 @@ void fg_roff_escape(const char *text, size_t length, FILE *out);
 void fg_roff_inline(const char *text, size_t length, FILE *out);
 
 /* A text of paragraphs, `## Headings`, tables (| a | b |), lists (- a) and indented examples; `#`
- * headings and what stands before the first are left out. In a cell `\\|` is a bar. False: a row of
- * a table has other cells than its head. */
+ * headings and the text before the first heading are left out. In a cell `\\|` is a bar. False: a
+ * row of a table has more or fewer cells than its head. */
 bool fg_roff_text(const char *text, FILE *out);
 
 #endif

@@ -1,5 +1,5 @@
-/* What the model expects at settings that were asked for, and where along each factor it would be
- * better: a setting that others call the best is held against the model so. */
+/* Predictions of the model at settings that the user asked for, and the best place along each
+ * factor from there. This tests a setting that others call the best. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -30,13 +30,13 @@ static bool is_whole_plot(const fg_experiment *e, size_t term) {
   return false;
 }
 
-/* The standard deviation that a column is judged by, and its freedom. */
-static double error_of(const fg_experiment *e, bool whole_plot, double *freedom) {
+/* Standard deviation that a column is judged by, and its degrees of freedom. */
+static double error_of(const fg_experiment *e, bool whole_plot, double *dof) {
   const fg_split_plot *s = &e->split_plot;
-  *freedom = (double)e->regression.residual_freedom;
+  *dof = (double)e->regression.residual_freedom;
   if (!e->has_split_plot) return e->regression.residual_freedom ? e->regression.residual_sd : NAN;
-  *freedom = (double)(whole_plot ? s->plot_freedom : s->run_freedom);
-  if (!(*freedom > 0)) return NAN;
+  *dof = (double)(whole_plot ? s->plot_freedom : s->run_freedom);
+  if (!(*dof > 0)) return NAN;
   return sqrt(whole_plot ? s->plot_ms : s->run_ms);
 }
 
@@ -45,14 +45,15 @@ static bool is_block_term(const fg_experiment *e, size_t term) {
          e->model.formula.term[term].power[e->block_variable] > 0;
 }
 
-/* Variance by restricted likelihood, and its freedom, less what was paid before. */
+/* Variance and degrees of freedom by restricted likelihood. Effects removed from the response
+ * before have used `taken` of the latter. */
 static double mixed_variance(const fg_experiment *e, const double *row, bool run, size_t taken,
-                             double *freedom) {
-  double variance = fg_mixed_variance(e->split_plot.mixed, row, run, freedom);
-  double left = *freedom - (double)taken;
+                             double *dof) {
+  double variance = fg_mixed_variance(e->split_plot.mixed, row, run, dof);
+  double left = *dof - (double)taken;
   if (!taken) return variance;
-  variance *= left > 0 ? *freedom / left : NAN;
-  *freedom = left;
+  variance *= left > 0 ? *dof / left : NAN;
+  *dof = left;
   return variance;
 }
 
@@ -286,10 +287,9 @@ static fg_status average_row(fg_context *ctx, const fg_experiment *e, const doub
   return FG_OK;
 }
 
-static void fill_intervals(const fg_experiment *e, double freedom, double run_freedom,
-                           fg_prediction *p) {
-  double q = fg_distribution_t_quantile((1 + e->confidence) / 2, freedom),
-         run = fg_distribution_t_quantile((1 + e->confidence) / 2, run_freedom);
+static void fill_intervals(const fg_experiment *e, double dof, double run_dof, fg_prediction *p) {
+  double q = fg_distribution_t_quantile((1 + e->confidence) / 2, dof),
+         run = fg_distribution_t_quantile((1 + e->confidence) / 2, run_dof);
   p->low = p->mean - q * p->standard_error;
   p->high = p->mean + q * p->standard_error;
   p->run_low = p->mean - run * p->run_standard_error;
@@ -297,28 +297,28 @@ static void fill_intervals(const fg_experiment *e, double freedom, double run_fr
 }
 
 static void predict_mixed(const fg_experiment *e, const double *row, fg_prediction *p) {
-  double freedom, run_freedom;
+  double dof, run_dof;
   *p = (fg_prediction){0};
   for (size_t j = 0; j < e->regression.columns; j++)
     p->mean += row[j] * e->split_plot.mixed->estimate[j];
-  p->standard_error = sqrt(mixed_variance(e, row, false, e->freedom_taken, &freedom));
-  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->freedom_taken, &run_freedom));
+  p->standard_error = sqrt(mixed_variance(e, row, false, e->freedom_taken, &dof));
+  p->run_standard_error = sqrt(mixed_variance(e, row, true, e->freedom_taken, &run_dof));
   if (e->split_plot.mixed->fixed_groups) p->standard_error = p->run_standard_error = NAN;
-  fill_intervals(e, freedom, run_freedom, p);
+  fill_intervals(e, dof, run_dof, p);
 }
 
 /* Var(row b) = |U' (row × sd of each column's stratum)|². */
 static void predict_row(const fg_experiment *e, const double *row, fg_prediction *p) {
   const fg_regression *reg = &e->regression;
-  double variance = 0, least_freedom = INFINITY;
+  double variance = 0, min_dof = INFINITY;
   *p = (fg_prediction){0};
   for (size_t k = 0; k < reg->columns; k++) {
     double along = 0;
     for (size_t j = 0; j < reg->columns; j++) {
-      double freedom;
+      double dof;
       if (reg->coefficient[j].aliased || row[j] == 0) continue;
-      double sd = error_of(e, e->effect[j].whole_plot, &freedom);
-      least_freedom = fmin(least_freedom, freedom);
+      double sd = error_of(e, e->effect[j].whole_plot, &dof);
+      min_dof = fmin(min_dof, dof);
       along += reg->inverse_root[j * reg->columns + k].value * row[j] * sd;
     }
     variance += along * along;
@@ -328,7 +328,7 @@ static void predict_row(const fg_experiment *e, const double *row, fg_prediction
   if (e->has_split_plot) run_variance = e->split_plot.run_ms + e->split_plot.plot_variance;
   p->standard_error = sqrt(variance);
   p->run_standard_error = sqrt(variance + run_variance);
-  fill_intervals(e, least_freedom, least_freedom, p);
+  fill_intervals(e, min_dof, min_dof, p);
 }
 
 fg_status fg_experiment_predict(fg_context *ctx, const fg_experiment *e, const double *setting,

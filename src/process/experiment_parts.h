@@ -24,7 +24,7 @@ fg_status fg_experiment_surface(fg_context *ctx, const fg_experiment_options *op
 fg_status fg_experiment_optimise(fg_context *ctx, const fg_experiment_options *options,
                                  fg_experiment *experiment);
 
-/* What the model says of the settings that were asked for. */
+/* Predicts the response at the settings that were asked for. */
 fg_status fg_experiment_ask(fg_context *ctx, const fg_experiment_options *options,
                             fg_experiment *experiment);
 

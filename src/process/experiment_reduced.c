@@ -75,7 +75,7 @@ static fg_status joint_p(fg_context *ctx, const fg_experiment *e, const bool *va
                          double *p_value) {
   fg_status status = FG_OK;
   size_t *column = NULL, count = 0;
-  double freedom = INFINITY;
+  double dof = INFINITY;
   gsl_matrix *c = NULL;
   gsl_vector *t = NULL, *x = NULL;
   *p_value = NAN;
@@ -84,14 +84,14 @@ static fg_status joint_p(fg_context *ctx, const fg_experiment *e, const bool *va
   for (size_t j = 0; j < e->regression.columns; j++) {
     if (!holds_any(e, j, variable)) continue;
     column[count++] = j;
-    freedom = fmin(freedom, e->effect[j].freedom);
+    dof = fmin(dof, e->effect[j].freedom);
   }
   c = count ? gsl_matrix_alloc(count, count) : NULL;
   t = count ? gsl_vector_alloc(count) : NULL;
   x = count ? gsl_vector_alloc(count) : NULL;
   if (!c || !t || !x) FG_TRY_EXIT(fg_fail(ctx, FG_ERR_MEMORY, "out of memory"));
   double square = wald(e, column, count, c, t, x);
-  *p_value = fg_distribution_f_upper(square / (double)count, (double)count, freedom);
+  *p_value = fg_distribution_f_upper(square / (double)count, (double)count, dof);
 exit:
   free(column);
   gsl_matrix_free(c);
@@ -103,7 +103,7 @@ exit:
 /* The suspect whose leaving shows least; FG_FORMULA_VARIABLES: none may leave. */
 static fg_status next_to_leave(fg_context *ctx, const fg_experiment *e, const suspects *s,
                                size_t *next) {
-  double most = 1 - e->confidence;
+  double max_p = 1 - e->confidence;
   *next = FG_FORMULA_VARIABLES;
   for (size_t v = 0; v < e->model.formula.variables; v++) {
     bool with[FG_FORMULA_VARIABLES];
@@ -113,8 +113,8 @@ static fg_status next_to_leave(fg_context *ctx, const fg_experiment *e, const su
     with[v] = true;
     FG_TRY(joint_p(ctx, e, with, &p_value));
     if (!e->regression.residual_freedom) p_value = 1;
-    if (!(p_value >= most)) continue;
-    most = p_value;
+    if (!(p_value >= max_p)) continue;
+    max_p = p_value;
     *next = v;
   }
   return FG_OK;
@@ -172,7 +172,7 @@ static bool is_left(const fg_experiment *e, const suspects *s, const char *colum
   return false;
 }
 
-/* What the whole experiment was asked, without what concerns the idle factors. */
+/* Repeats the analysis with the same options, without those of the idle factors. */
 static fg_status analyse_without(fg_context *ctx, const fg_table *runs,
                                  const fg_experiment_options *asked, const suspects *s,
                                  const char *formula, fg_experiment *e) {

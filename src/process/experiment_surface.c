@@ -105,7 +105,7 @@ static double cost_of(const fg_experiment *e, double value) {
   return e->goal == FG_GOAL_HIGHEST ? -value : value;
 }
 
-/* Where only factors of words are left the surface is level. */
+/* Without numeric factors the surface is level. */
 static fg_status make_surface(fg_context *ctx, const fg_experiment *e, const double *levels,
                               fg_surface *surface) {
   *surface = (fg_surface){.kind = FG_SURFACE_PLANE};

@@ -15,7 +15,7 @@ typedef struct png_out {
   png_structp png;
   png_infop info;
   jmp_buf failed;
-  fg_status status; /* of what failed */
+  fg_status status; /* of the call that failed */
 } png_out;
 
 /* libpng and zlib have no code for want of memory: "insufficient memory", "Out of memory". */

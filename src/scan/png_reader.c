@@ -223,19 +223,20 @@ static bool is_common(const fg_png_header *header) {
   return !header->interlaced && !header->has_palette && header->bit_depth >= 8;
 }
 
-/* Whether no distance in the compressed stream can reach beyond the window that its first byte
- * declares (RFC 1950): 32 KiB, or as much as the image has bytes. ISA-L looks only for the
- * beginning of the stream, libpng for the window: what may differ is libpng's. */
+/* True where no distance in the compressed stream can exceed the window that its first byte
+ * declares (RFC 1950): 32 KiB, or at least the bytes of the image. ISA-L only rejects distances
+ * beyond the start of the stream; libpng also rejects those beyond the window. So images for which
+ * the two may disagree are left to libpng. */
 static bool window_covers_image(const fg_png *png) {
-  enum { WINDOW_BITS_LEAST = 8, WINDOW_BITS_MOST = 15 };
+  enum { WINDOW_BITS_MIN = 8, WINDOW_BITS_MAX = 15 };
   const uint8_t *first;
   const fg_png_header *header = &png->header;
   bool empty_chunk = !(png->head[0] | png->head[1] | png->head[2] | png->head[3]);
   if (empty_chunk || fg_source_peek(png->source, 1, &first) < 1) return false;
-  int bits = (*first >> 4) + WINDOW_BITS_LEAST;
+  int bits = (*first >> 4) + WINDOW_BITS_MIN;
   uint64_t row_bytes =
       (uint64_t)header->width_px * (uint64_t)(header->channels * header->bit_depth / 8);
-  return bits >= WINDOW_BITS_MOST || ((uint64_t)1 << bits) >= (row_bytes + 1) * header->height_px;
+  return bits >= WINDOW_BITS_MAX || ((uint64_t)1 << bits) >= (row_bytes + 1) * header->height_px;
 }
 
 static fg_status start_image(fg_context *ctx, fg_png *png, bool beside) {

@@ -8,8 +8,8 @@
 
 #include "core/clock.h"
 
-/* SECONDS: for a request, and for an answer. BYTES_PER_S: a radio link at the far end of a hall has
- * more. TICK_MS: how late the clock may be. FILES: what else is open. */
+/* SECONDS: time limit of a request, and of an answer. BYTES_PER_S: a radio link at the far end of a
+ * hall has more. TICK_MS: largest delay of the clock. FILES: other open descriptors. */
 enum { SECONDS = 15, BYTES_PER_S = 16384, TICK_MS = 500, FILES = 64 };
 
 fg_client fg_connection_client(struct MHD_Connection *connection) {
@@ -35,7 +35,8 @@ bool fg_client_is(const fg_client *one, const fg_client *other) {
   return !memcmp(one->bytes, other->bytes, sizeof one->bytes);
 }
 
-/* Whether it takes a place from others: it has not asked yet, or takes its answer. */
+/* True where the connection takes a place from others: it has not asked yet, or takes its answer.
+ */
 static bool is_slow(const fg_connection *at) {
   return at->connection && at->until > 0 && !at->cut;
 }
@@ -55,12 +56,12 @@ static size_t count_slow(const fg_connections *all, const fg_client *of) {
 
 static const fg_client *find_busiest(const fg_connections *all) {
   const fg_client *busiest = NULL;
-  size_t most = 0;
+  size_t max = 0;
   for (size_t i = 0; i < 2 * FG_CONNECTIONS; i++) {
     if (!is_slow(&all->one[i])) continue;
     size_t count = count_slow(all, &all->one[i].client);
-    if (count <= most) continue;
-    most = count;
+    if (count <= max) continue;
+    max = count;
     busiest = &all->one[i].client;
   }
   return busiest;

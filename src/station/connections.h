@@ -17,7 +17,8 @@
 /* FG_CONNECTIONS_OF_ONE: a browser opens six, a proxy has those of all its browsers. */
 enum { FG_CONNECTIONS = 256, FG_CONNECTIONS_OF_ONE = 48 };
 
-/* An IPv4 address, or the network (/64) of an IPv6 address: what one machine can choose from. */
+/* Client by its IPv4 address, or by its IPv6 network (/64): one machine can choose any address of
+ * its network. */
 typedef struct fg_client {
   uint8_t bytes[16];
 } fg_client;

@@ -1,8 +1,8 @@
-/* What somebody says of a foil, over what its file's name said: every change leaves a trail.
+/* Corrections of a foil's identity, which its file's name gave: every change leaves a trail.
  *
- * A form carries what it showed (`was_serial` beside `serial`). Only a field that was changed in it
- * is applied, and not over a change that somebody else made meanwhile: that, and a serial number
- * that another foil has, is asked about. */
+ * A form carries the values that it showed (`was_serial` beside `serial`), so that only fields
+ * changed in it are applied. A change that somebody else made meanwhile is not overwritten, and a
+ * serial number of another foil is not taken: the page asks first. */
 #include "station/correct.h"
 
 #include <stdlib.h>
@@ -70,7 +70,7 @@ static fg_status take_form(fg_context *ctx, const fg_request *request, fg_identi
   if (asked->asked[SERIAL] && !asked->after[SERIAL][0])
     return fg_fail(ctx, FG_ERR_DATA,
                    "The serial number is empty: a foil needs one to be found again.");
-  /* Back to one of two pages of our own, whatever the form says. */
+  /* A form returns to one of two pages of the station, whatever address it holds. */
   asked->to_now = !strcmp(fg_request_get(request, "back"), "/");
   FG_TRY(take_text(ctx, "serial", fg_request_get(request, "also"), asked->also));
   return take_text(ctx, "name", fg_request_get(request, "by"), asked->by);
@@ -87,7 +87,7 @@ static fg_status read_before(fg_context *ctx, sqlite3 *writer, fg_identity_chang
   return found ? FG_OK : fg_fail(ctx, FG_ERR_USAGE, "There is no such foil.");
 }
 
-/* Whether it was changed by somebody else since the form was shown; not when to the same. */
+/* True where somebody else changed the field since the form was shown, and to another value. */
 static bool is_overtaken(const fg_identity_change *asked, size_t i) {
   char before[FG_IDENTITY_BYTES];
   if (!asked->asked[i] || !asked->was_given[i]) return false;
@@ -95,7 +95,7 @@ static bool is_overtaken(const fg_identity_change *asked, size_t i) {
   return strcmp(before, asked->was[i]) != 0 && strcmp(before, asked->after[i]) != 0;
 }
 
-/* Whether another foil has the serial number, and nobody has said yet that this one has it, too. */
+/* Finds another foil with the serial number, unless a shared number has been confirmed. */
 static fg_status look_for_owner(fg_context *ctx, sqlite3 *writer, fg_identity_change *asked) {
   fg_query query;
   const char *serial = asked->after[SERIAL];

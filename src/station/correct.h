@@ -1,5 +1,5 @@
-/* A change of what is said of a foil (its identity: serial, lot, die, operator), and the page that
- * asks where it cannot simply be kept. */
+/* A change of a foil's identity (serial, lot, die, operator), and the page that asks before a
+ * change in conflict. */
 #ifndef FG_STATION_CORRECT_H
 #define FG_STATION_CORRECT_H
 
@@ -12,7 +12,7 @@ enum { FG_IDENTITY_FIELDS = 4, FG_IDENTITY_BYTES = FG_NAMED_TEXT + 16 };
 
 typedef struct fg_identity_change {
   int64_t foil;
-  /* Of a field: what the foil has, what the form showed, what somebody wants. */
+  /* By field: the foil's value, the value that the form showed, and the one wanted. */
   char before[FG_IDENTITY_FIELDS][FG_IDENTITY_BYTES], was[FG_IDENTITY_FIELDS][FG_IDENTITY_BYTES],
       after[FG_IDENTITY_FIELDS][FG_IDENTITY_BYTES];
   bool was_given[FG_IDENTITY_FIELDS];
@@ -27,7 +27,7 @@ typedef struct fg_identity_change {
 
 const char *fg_identity_field(size_t field);
 
-/* 409: what stands in the way of a correction that is held, and a form to answer it. */
+/* 409: the conflicts of a held correction, and a form to resolve them. */
 fg_status fg_page_identity(fg_context *ctx, fg_inspection *station, const fg_identity_change *asked,
                            fg_answer *answer);
 

@@ -61,8 +61,9 @@ static bool is_cut_off(const fg_format *format, const uint8_t tail[TAIL_BYTES], 
   return format == &fg_format_png && (bytes < TAIL_BYTES || memcmp(tail, end, TAIL_BYTES) != 0);
 }
 
-/* What a look at its ends says; FG_CARD_MEASURED: a scan that seems whole, and is if at->sure. */
-static fg_card look(intake *at) {
+/* Card by the first and last bytes of the file. FG_CARD_MEASURED: the scan seems whole, and is
+ * whole if at->sure. */
+static fg_card inspect_ends(intake *at) {
   uint8_t head[HEAD_BYTES], tail[TAIL_BYTES] = {0};
   size_t length;
   if (!read_ends(at->path, head, &length, tail)) {
@@ -107,9 +108,10 @@ static void take_words(intake *at, const char *message) {
   fg_text_clip(at->words, WORDS, "%s", named ? message + length + 2 : message);
 }
 
-/* Whether a scan that was measured before is that of the foil which the file's name says: the file
- * is the one that was measured, or a foil of it has that serial number, and the lot where the name
- * has one. Bytes that come again under another serial number are no measurement of that foil. */
+/* The second column is true where an earlier scan shows the foil that the file's name states: the
+ * file is the measured one, or a foil of that scan has the serial number, and the lot where the
+ * name has one. Bytes that come again under another serial number are no measurement of that foil.
+ */
 static const char find_known[] =
     "SELECT path, path = ?1 OR EXISTS (SELECT 1 FROM foils WHERE scan = scans.id"
     " AND (serial = ?2 OR serial = ?2 || '.' || number) AND (?3 = '' OR lot = ?3)),"
@@ -204,7 +206,7 @@ fg_status fg_station_correct(fg_context *ctx, const fg_scanner_model *model, uns
   return status;
 }
 
-/* Whether all of its rows can be read: what is wrong with a scan is then no missing end. */
+/* True where all rows can be read: then a failure is not due to a missing end. */
 static bool is_readable(const char *path) {
   const double any_dpi = 1200;
   const fg_scan_options options = {
@@ -285,7 +287,7 @@ static fg_status take_card(fg_context *ctx, intake *at, fg_card card) {
   return measure(ctx, at);
 }
 
-/* Whether more of it is waited for, as a look at its ends tells. */
+/* True where more of the file may come, given the card by its ends. */
 static bool is_awaited(const intake *at, fg_card card) {
   if (card == FG_CARD_MEASURED) return at->writer == FG_WRITER_WRITES && !at->sure;
   if (card == FG_CARD_UNFINISHED) return at->writer != FG_WRITER_GONE;
@@ -300,7 +302,7 @@ static fg_status take(fg_context *ctx, intake *at) {
   at->file.modified_ns = (int64_t)now.st_mtim.tv_sec * 1000000000 + now.st_mtim.tv_nsec;
   FG_TRY(fg_station_file_is_done(ctx, &at->station->database, &at->file, &done));
   if (done) return FG_OK;
-  fg_card card = look(at);
+  fg_card card = inspect_ends(at);
   at->scan = card == FG_CARD_MEASURED || card == FG_CARD_UNFINISHED;
   at->later = is_awaited(at, card);
   if (at->later) return FG_OK;
@@ -310,7 +312,7 @@ static fg_status take(fg_context *ctx, intake *at) {
   return FG_OK;
 }
 
-/* What pages say of the file until there is a card of it. */
+/* Pages show a stage of the file until it has a card. */
 static void set_stage(const intake *at) {
   if (at->later && at->scan)
     fg_station_set_stage(at->station, FG_STAGE_RECEIVING, at->file.name);

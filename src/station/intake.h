@@ -4,16 +4,16 @@
 
 #include "station/state.h"
 
-/* What is known of who writes a file. */
+/* State of the process that writes a file. */
 typedef enum fg_writer {
-  FG_WRITER_WRITES, /* as far as is known: what is surely whole is taken */
-  FG_WRITER_PAUSES, /* it is closed, renamed or at rest: what seems whole is taken */
-  FG_WRITER_GONE    /* nothing has come for receive_s: what is not whole gets its card */
+  FG_WRITER_WRITES, /* as far as is known: only a surely whole file is taken */
+  FG_WRITER_PAUSES, /* it is closed, renamed or at rest: a file that seems whole is taken */
+  FG_WRITER_GONE    /* nothing has come for receive_s: an incomplete file gets its card */
 } fg_writer;
 
-/* Looks at folder/name unless it is known as it is. What is not taken is left for later: *later
- * says that it has to be looked at again. FG_ERR_IO and
- * FG_ERR_MEMORY are the station's trouble; what is wrong with the file is its card. */
+/* Inspects folder/name unless it was inspected in this state. A file that is not taken yet sets
+ * *later: it has to be inspected again. FG_ERR_IO and FG_ERR_MEMORY are failures of the station; a
+ * fault of the file is its card. */
 fg_status fg_station_take_file(fg_context *ctx, fg_inspection *station, const char *name,
                                fg_writer writer, bool *later);
 

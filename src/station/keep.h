@@ -33,7 +33,8 @@ fg_status fg_station_keep_setup(fg_context *ctx, fg_station_database *database,
 fg_status fg_station_file_is_done(fg_context *ctx, fg_station_database *database,
                                   const fg_station_file *file, bool *done);
 
-/* The same of many files: the query is begun once. The database is not opened again meanwhile. */
+/* Many files, as fg_station_file_is_done of each: the query is prepared once. The database is not
+ * opened again meanwhile. */
 typedef struct fg_done_files {
   fg_station_database *database;
   fg_query query;

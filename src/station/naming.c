@@ -91,7 +91,7 @@ static const char *take_step(const char *pattern, bool first, step *taken) {
   return text + taken->length;
 }
 
-/* Where the step's text stands at or behind `from`: at once (first), at the end (last), else the
+/* Place of the step's text at or behind `from`: at once (first), at the end (last), else the
  * nearest place. NULL: nowhere. */
 static const char *find_text(const step *at, bool last, const char *from, const char *end) {
   if ((size_t)(end - from) < at->length) return NULL;
@@ -104,7 +104,7 @@ static const char *find_text(const step *at, bool last, const char *from, const 
   return memmem(from, (size_t)(end - from), at->text, at->length);
 }
 
-/* Whether `name` up to `end` is as the pattern says. Each text is looked for once: where the rest
+/* True where `name` up to `end` matches the pattern. Each text is looked for once: where the rest
  * fits behind a later place of it, it fits behind the nearest too, as the open place that follows
  * takes any length. So no step is ever tried again, and fields are as short as they can be. */
 static bool match(const char *pattern, const char *name, const char *end, fg_named *named) {

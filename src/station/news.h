@@ -1,4 +1,4 @@
-/* News: what changes a page that waits for new results. */
+/* News: changes of a page that waits for new results. */
 #ifndef FG_STATION_NEWS_H
 #define FG_STATION_NEWS_H
 

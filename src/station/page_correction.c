@@ -1,4 +1,5 @@
-/* A correction that is held: what somebody else changed meanwhile, or whose serial number it is. */
+/* Page of a held correction: fields that somebody else changed meanwhile, or the foil that has the
+ * serial number already. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +14,7 @@ static void write_cell(FILE *out, const char *name, const char *text) {
   fputs("</td>", out);
 }
 
-/* Who made the last change of a field, and when. */
+/* Author and time of the last change of a field. */
 static fg_status write_last_change(fg_context *ctx, sqlite3 *reader, int64_t foil,
                                    const char *field, FILE *out) {
   fg_query query;

@@ -9,7 +9,7 @@
 #include "station/scan_command.h"
 #include "station/values.h"
 
-/* LARGE_LETTERS: what fits beside the name of a file in the largest letters. */
+/* LARGE_LETTERS: room beside the name of a file in the largest letters. */
 enum { CARDS = 12, WORDS = 700, LARGE_LETTERS = 10 };
 
 /* The newest arrival. */
@@ -73,7 +73,7 @@ static const char *next_step(const card *newest) {
   return "The design states no tolerances, so nothing was judged.";
 }
 
-/* What a script counts as newer than a foil whose form is half typed. */
+/* A script compares this number with that of the foil whose form is half typed. */
 static void write_arrival(FILE *out, int64_t id, const char *words) {
   fprintf(out, " data-arrival=\"%lld\" data-words=\"%s\"", (long long)id, words);
 }
@@ -99,8 +99,8 @@ static void write_call(FILE *out, const card *newest) {
   fputs("</p>\n", out);
 }
 
-/* What is on its way; false: nothing. A verdict that is shown meanwhile is that of the foil before.
- */
+/* Writes the stage of the newest file or of the scanner; false: there is none. A verdict that is
+ * shown meanwhile is that of the foil before. */
 static bool write_stage(FILE *out, fg_inspection *station) {
   static const char *const words[] = {"", "RECEIVING", "MEASURING"};
   fg_arriving arriving;

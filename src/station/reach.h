@@ -1,5 +1,5 @@
-/* Where the pages can be had, and under which names: requests for any other name are another
- * site's, whose pages could read ours (DNS rebinding). */
+/* Addresses and names of the pages. A request for any other name comes from a page of another site,
+ * which could read ours (DNS rebinding). */
 #ifndef FG_STATION_REACH_H
 #define FG_STATION_REACH_H
 
@@ -18,12 +18,12 @@ void fg_reach_write(const struct sockaddr_storage *address, unsigned port, char 
 /* Tells the request's `ready` every address that a browser can open. */
 void fg_reach_tell(const fg_inspection *station);
 
-/* Whether a request's Host is this station's: its address, localhost where only this machine can
+/* True where a request's Host is this station's: its address, localhost where only this machine can
  * reach it, --host, the host of --origin; names of the machine where others can reach it, and every
  * address of the machine where it listens at all of them. */
 bool fg_reach_is_host(const fg_inspection *station, const char *host);
 
-/* Whether a form's Origin is: of that host, or --origin. */
+/* True where a form's Origin is that host, or --origin. */
 bool fg_reach_is_origin(const fg_inspection *station, const char *host, const char *origin);
 
 #endif

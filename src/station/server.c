@@ -12,10 +12,10 @@
 #include "station/reach.h"
 #include "station/scan_command.h"
 
-/* A browser opens six connections, one of which waits for news; a page that was left is told apart
- * from one that waits only when there is news: what waits must leave room for others.
- * THREADS: a report that is measured again keeps one of them for a second. Each of them takes as
- * many connections as there are: the library gives them to whichever is free. */
+/* WAITING_MAX: a browser opens six connections, one of which waits for news. A closed page is
+ * noticed only at the next news, so waiting pages must leave room for others. THREADS: a report
+ * that is measured again keeps one of them for a second. Each of them takes as many connections as
+ * there are: the library gives them to whichever is free. */
 enum { THREADS = 4, WAITING_MAX = 64, SECONDS = 15, HEADER_BYTES = 16384 };
 
 typedef struct waiter {
@@ -137,23 +137,22 @@ static enum MHD_Result refuse(server *at, struct MHD_Connection *connection, int
 
 typedef enum waiting { WAITS, NEWS_CAME, CLOSING } waiting;
 
-/* The place of who makes room: of those of the client with the most, the one that has waited
- * longest. */
-static size_t find_patient(const server *at) {
-  size_t place = 0, most = 0;
+/* Place of the connection that makes room: the longest waiting one of the client with the most. */
+static size_t find_longest_waiting(const server *at) {
+  size_t place = 0, max = 0;
   for (size_t i = 0; i < at->waiters; i++) {
     size_t count = 0;
     for (size_t k = 0; k < at->waiters; k++)
       count += fg_client_is(&at->waiting[i].client, &at->waiting[k].client);
-    if (count > most) place = i;
-    if (count > most) most = count;
+    if (count > max) place = i;
+    if (count > max) max = count;
   }
   return place;
 }
 
 /* It is answered, and asks again. */
 static void make_room(server *at) {
-  size_t place = find_patient(at), behind = --at->waiters - place;
+  size_t place = find_longest_waiting(at), behind = --at->waiters - place;
   MHD_resume_connection(at->waiting[place].connection);
   memmove(&at->waiting[place], &at->waiting[place + 1], behind * sizeof *at->waiting);
 }

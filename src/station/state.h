@@ -26,7 +26,7 @@ typedef struct fg_trouble {
   char crowd[200];  /* of a folder with very many files; "": it has not */
 } fg_trouble;
 
-/* What becomes of the newest file before there is a card of it. */
+/* Stage of the newest file before it has a card. */
 typedef enum fg_stage {
   FG_STAGE_NONE,
   FG_STAGE_RECEIVING, /* it is not whole, and its writer may go on */
@@ -41,7 +41,7 @@ typedef struct fg_arriving {
   bool seen;      /* in this round of looks at the folder */
 } fg_arriving;
 
-/* Who can reach the address that is listened at. */
+/* Machines that can reach the address listened at. */
 typedef enum fg_reach {
   FG_REACH_LOCAL,   /* this machine */
   FG_REACH_ADDRESS, /* others, at one address of this machine */
@@ -58,7 +58,7 @@ typedef struct fg_inspection {
   bool check_design_known;
   int64_t setup;
   int lock;
-  char form_token[FG_FORM_TOKEN]; /* what a form of this station's pages carries */
+  char form_token[FG_FORM_TOKEN]; /* carried by the html forms of this station's pages */
   char host[128];                 /* "127.0.0.1:8317": where it listens */
   fg_reach reach;
   atomic_bool scanning;               /* the scan command runs */

@@ -8,8 +8,8 @@
 
 static const char digits[] = "0123456789ABCDEF";
 
-/* How many bytes of `text` are stored as they are; 0: its first byte is stored by its number. C1
- * are the control characters of two bytes, C2 80 to C2 9F. */
+/* Length of the first character of `text` if it is stored as it is; 0: its first byte is stored by
+ * its number. C1 are the control characters of two bytes, C2 80 to C2 9F. */
 static size_t count_plain(const char *text) {
   const unsigned char *at = (const unsigned char *)text;
   size_t length = fg_utf8_length(text);

@@ -11,7 +11,7 @@
 /* The caller frees both. A name that is stored so already stays the same. */
 fg_status fg_stored_name(fg_context *ctx, const char *name, char **stored);
 
-/* folder/name of what is stored: the path of the file. */
+/* Path of a file by its stored name: folder/name. */
 fg_status fg_stored_name_path(fg_context *ctx, const char *folder, const char *stored, char **path);
 
 #endif

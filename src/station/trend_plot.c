@@ -9,7 +9,7 @@
 #include "report/plot_marks.h"
 #include "station/trend.h"
 
-enum { DOTS_MOST = 120, COLUMNS_MOST = 450, NAME_BYTES = 140, LABELS = 5 };
+enum { DOTS_MAX = 120, COLUMNS_MAX = 450, NAME_BYTES = 140, LABELS = 5 };
 /* A tolerance is drawn while the plot grows by it to so many times what the values need. */
 #define GROWTH_MOST  4.0
 #define SIGNAL_PX    6.0
@@ -136,7 +136,7 @@ static void draw_limit(const drawing *d, bool upper) {
  * number. */
 static void draw_course(const drawing *d) {
   const fg_trend *trend = d->trend;
-  size_t count = trend->last - trend->first + 1, share = count / COLUMNS_MOST + 1;
+  size_t count = trend->last - trend->first + 1, share = count / COLUMNS_MAX + 1;
   char letter = 'M';
   fputs("<path class=\"curve\" d=\"", d->at.out);
   for (size_t i = trend->first; i <= trend->last; i += share) {
@@ -175,7 +175,7 @@ static void draw_dot(const drawing *d, size_t i) {
 /* All points where they are few, else the signals, no two on the same spot. */
 static void draw_dots(const drawing *d) {
   const fg_trend *trend = d->trend;
-  bool few = trend->last - trend->first < DOTS_MOST;
+  bool few = trend->last - trend->first < DOTS_MAX;
   double x_before = -INFINITY, y_before = 0;
   for (size_t i = trend->first; i <= trend->last; i++) {
     const fg_chart_point *point = &d->chart->point[i];

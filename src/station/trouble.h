@@ -7,11 +7,11 @@
 /* "": it is over. Says a change to the request's `looked_at`, too. */
 void fg_station_set_trouble(fg_inspection *station, const char *words);
 
-/* How many files a folder holds without a word, and how many new ones are listed at once. */
+/* Largest number of files that a folder holds without a warning, and of new ones listed at once. */
 enum { FG_STATION_FILES = 100000 };
 
-/* What looking through the folder's files takes. Very many are told of: once in the log, on the
- * pages as long as it is so. */
+/* Notes the size of the folder and the time to list it. The log has one warning of a very large
+ * folder, the pages have it as long as the folder is so. */
 void fg_station_note_files(fg_inspection *station, size_t files, double seconds);
 
 /* Sees that lock and database are those that lie in the folder: where another folder has come in

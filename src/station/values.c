@@ -115,7 +115,7 @@ fg_status fg_page_crushed(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *
     fg_text_clip(list + length, sizeof list - length, "%s%lld", crushed++ ? ", " : "",
                  (long long)fg_query_get_integer(&query, 0));
   }
-  /* Where all of them are so, none was crushed: it is another design's foil. */
+  /* If all bumps are off, none was crushed: the foil is of another design. */
   if (crushed && crushed == bumps)
     fputs("<p class=\"next\">No bump has the height and radius of the design: is this a foil of "
           "it?</p>\n",
@@ -166,7 +166,7 @@ static const struct {
 
 enum { FOIL_FIELDS = sizeof foil_fields / sizeof *foil_fields };
 
-/* Column i + 1 of the row, and what it was when it was shown. */
+/* Input for column i + 1 of the row; its value at display goes along, hidden. */
 static void write_field(const fg_query *foil, const fg_foil_form *form, int i, FILE *out) {
   const char *was = fg_query_get_text(foil, i + 1), *name = foil_fields[i].name;
   fprintf(out, "<input type=\"hidden\" name=\"was_%s\" value=\"", name);

@@ -12,11 +12,10 @@ fg_status fg_page_deciding(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE 
  * `column` on: name, owner, unit, bump, value, u, lower, upper, verdict. */
 void fg_page_decided_line(const fg_query *at, int column, FILE *out);
 
-/* Which bumps are crushed, in a sentence; nothing where none is. */
+/* Sentence that names the crushed bumps; nothing where there are none. */
 fg_status fg_page_crushed(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
 
-/* What else was measured under the foil's serial number, the newest first; nothing where nothing
- * was. */
+/* Other measurements under the foil's serial number, the newest first; nothing without any. */
 fg_status fg_page_same_serial(fg_context *ctx, sqlite3 *reader, int64_t foil, FILE *out);
 
 typedef struct fg_foil_form {
@@ -24,14 +23,14 @@ typedef struct fg_foil_form {
   bool focus;       /* for the barcode reader */
   bool who;         /* asks who corrects */
   /* Of a correction that was held: */
-  const char *asked[FG_IDENTITY_FIELDS]; /* what somebody wants for serial, lot, die, operator;
-                                            NULL: as it is */
-  const char *by;                        /* who corrects, as it was said; NULL: not */
+  const char *asked[FG_IDENTITY_FIELDS]; /* new serial, lot, die, operator; NULL: as it is */
+  const char *by;                        /* author of the correction; NULL: none given */
   const char *also; /* a serial number that may be shared, with a button for it; NULL or "": none */
 } fg_foil_form;
 
 /* The form for serial, lot, die and operator; `foil` is a row of id, serial, lot, die, operator. It
- * carries what it showed, so that only what was changed in it is applied (fg_action_correct). */
+ * carries the values that it showed, so that only changed fields are applied (fg_action_correct).
+ */
 void fg_page_foil_form(const fg_inspection *station, const fg_query *foil, const fg_foil_form *form,
                        FILE *out);
 

@@ -1,10 +1,10 @@
-/* A file is looked at when its writer has closed or renamed it (inotify), or, where the system does
- * not tell (network folders, files that were there before), when it has been at rest for a while.
- * One that is not whole then is waited for: its writer may only pause.
- * Whatever inotify says, the folder is listed now and then: what was missed is found.
+/* Watches the folder. A file is inspected when its writer has closed or renamed it (inotify). Where
+ * the system does not tell (network folders, files that were there before) it is inspected once it
+ * has been at rest for a while. An incomplete file is waited for: its writer may only pause. The
+ * folder is also listed now and then, to find events that inotify missed.
  *
- * What the station cannot do now (a full disk, a folder that is gone) is its trouble: pages say so,
- * and it is tried again. */
+ * Tasks that the station cannot do now (a full disk, a folder that is gone) are on its pages as
+ * trouble, and are tried again. */
 #include "station/watch.h"
 
 #include <dirent.h>
@@ -103,8 +103,8 @@ static void sort(watch *at) {
   fg_sort_items(at->files, at->count, sizeof *at->files, by_arrival);
 }
 
-/* However many files are new, a list of them stays short: those that came first. The others are
- * found by the next list, which follows at once. */
+/* A list of new files is limited, to bound its memory: it keeps those that came first. The others
+ * are found by the next list, which follows at once. */
 static void keep_first(watch *at) {
   sort(at);
   while (at->count > FG_STATION_FILES)
@@ -177,8 +177,8 @@ static fg_writer writer_after(const watch *at, int64_t still_ns) {
   return still_ns < receive_ns(at) ? FG_WRITER_PAUSES : FG_WRITER_GONE;
 }
 
-/* Of what was there before the station began this machine's clock tells how long nobody has written
- * to it; of files of other machines it says nothing. */
+/* Age, by this machine's clock, of a file that was there before the station began. For files of
+ * other machines it says nothing. */
 static fg_writer first_writer(const watch *at, const found *file, bool once) {
   if (once) return FG_WRITER_GONE;
   if (at->listed_ns || at->station->request->poll_s > 0) return FG_WRITER_WRITES;
@@ -218,7 +218,7 @@ static void stop_listening(watch *at) {
   at->inotify = -1;
 }
 
-/* Whether what is listened to is no longer what lies under the folder's name. */
+/* True where another folder has taken the place of the one listened to. */
 static bool is_another_folder(const watch *at) {
   struct stat folder;
   return at->inotify >= 0 && (stat(at->station->request->folder, &folder) != 0 ||
@@ -306,8 +306,8 @@ static int list_after_ms(const watch *at) {
   return wait < INT_MAX ? (int)wait : INT_MAX;
 }
 
-/* Waits for the next thing to do: events that came, or the time to list. Where something is in the
- * way, events do not make the next attempt come sooner. */
+/* Waits for the next thing to do: events that came, or the time to list. In trouble, events do not
+ * bring the next attempt forward. */
 static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_trouble) {
   int wait_ms = in_trouble ? TURN_MS : list_after_ms(at);
   FG_TRY(wait_for_event(ctx, at, !in_trouble, wait_ms < TURN_MS ? wait_ms : TURN_MS));
@@ -324,8 +324,8 @@ static fg_status wait_and_take(fg_context *ctx, watch *at, bool in_trouble) {
   return take_all(ctx, at, false);
 }
 
-/* Whatever is in its way, a station goes on: a disk that is full, a folder that is gone, a database
- * that somebody has damaged are put right while it runs. */
+/* A station goes on in any trouble: a full disk, a missing folder or a damaged database is put
+ * right while it runs. */
 static fg_status run(fg_context *ctx, watch *at) {
   fg_context inner = {.message = ""};
   fg_status status;

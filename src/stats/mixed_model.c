@@ -13,7 +13,8 @@
  * runs do not scatter at all; before the first a group's mean would be known far better than its
  * runs say. */
 static const double STEP = 0.25, FIRST = -3, LAST = 25;
-/* There a group's mean weighs 1e-6 of what it would as a run: groups are as good as fixed. */
+/* At this ratio a group's mean has 1e-6 of its weight among independent runs: groups are as good as
+ * fixed. */
 static const double FIXED = 14;
 enum { HALVINGS = 60 };
 
@@ -91,7 +92,7 @@ static double between(const setting *s, const gsl_matrix *m, size_t g) {
   return total;
 }
 
-/* What is left of a group's residuals at the estimate. */
+/* Sum of a group's residuals at the estimate. */
 static double left_over(const setting *s, size_t g) {
   double left = s->residual[g];
   for (size_t k = 0; k < s->rank; k++)
@@ -389,7 +390,7 @@ fg_status fg_mixed_is_orthogonal(fg_context *ctx, const fg_model *model, const f
   for (size_t g = 1; g < s.groups; g++)
     *orthogonal = *orthogonal && s.size[g] == s.size[0];
   for (size_t k = 0; k < s.rank && *orthogonal; k++) {
-    double length = 0, within = 0; /* of Z Z' q_k, and of what of it lies in the model */
+    double length = 0, within = 0; /* squared: of Z Z' q_k, and of its part within the model */
     for (size_t g = 0; g < s.groups; g++)
       length += s.size[g] * s.sum[g * s.rank + k] * s.sum[g * s.rank + k];
     for (size_t l = 0; l < s.rank; l++) {

@@ -1,4 +1,4 @@
-/* Variances and tests of what a mixed model estimates (Kenward and Roger 1997). */
+/* Variances and tests of a mixed model's estimates (Kenward and Roger 1997). */
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -13,10 +13,9 @@ static double quadratic(const double *matrix, const double *row, size_t columns)
   return sum;
 }
 
-/* Degrees of freedom 2 v² / var(v), v by the covariance that is not adjusted: what Kenward and
- * Roger's come to for one contrast. */
-double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool run,
-                         double *freedom) {
+/* Degrees of freedom 2 v² / var(v), v by the unadjusted covariance: Kenward and Roger's for a
+ * single contrast. */
+double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool run, double *dof) {
   double extra = run ? mixed->variance[0] + fmax(0, mixed->variance[1]) : 0, scatter = 0, slope[2];
   double variance = quadratic(mixed->covariance, row, mixed->columns) + extra;
   int varied = mixed->at_border ? 1 : 2; /* variances of a new run: a negative one is none */
@@ -25,7 +24,7 @@ double fg_mixed_variance(const fg_mixed_model *mixed, const double *row, bool ru
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++)
       scatter += slope[i] * slope[j] * mixed->variances_covariance[i][j];
-  *freedom = 2 * variance * variance / scatter;
+  *dof = 2 * variance * variance / scatter;
   return quadratic(mixed->adjusted, row, mixed->columns) + extra;
 }
 
@@ -40,14 +39,14 @@ static gsl_matrix *part_of(const double *matrix, size_t columns, const size_t *c
 }
 
 /* Scale of F and its degrees of freedom (Kenward and Roger 1997, section 3) of q coefficients. */
-static void match_moments(double q, double a1, double a2, double *scale, double *freedom) {
+static void match_moments(double q, double a1, double a2, double *scale, double *dof) {
   double b = (a1 + 6 * a2) / (2 * q), g = ((q + 1) * a1 - (q + 4) * a2) / ((q + 2) * a2);
   double below = 3 * q + 2 * (1 - g);
   double v0 = 1 + g / below * b, v1 = 1 - (q - g) / below * b, v2 = 1 - (q + 2 - g) / below * b;
   double mean = 1 - a2 / q;
   double ratio = v0 / v2 / q * (mean / v1) * (mean / v1);
-  *freedom = 4 + (q + 2) / (q * ratio - 1);
-  *scale = fabs(*freedom - 2) < 0.01 ? 1 : *freedom * mean / (*freedom - 2);
+  *dof = 4 + (q + 2) / (q * ratio - 1);
+  *scale = fabs(*dof - 2) < 0.01 ? 1 : *dof * mean / (*dof - 2);
 }
 
 static double trace_product(const gsl_matrix *a, const gsl_matrix *b) {
@@ -73,7 +72,7 @@ static void sum_traces(const fg_mixed_model *mixed, const gsl_matrix *const prod
 }
 
 static fg_status test_kept(fg_context *ctx, const fg_mixed_model *mixed, const size_t *kept,
-                           size_t count, double *f, double *freedom) {
+                           size_t count, double *f, double *dof) {
   enum { COVARIANCE, ADJUSTED, SLOPE_0, SLOPE_1, PRODUCT_0, PRODUCT_1, PARTS };
   const double *const source[] = {mixed->covariance, mixed->adjusted, mixed->slope[0],
                                   mixed->slope[1],   mixed->slope[0], mixed->slope[1]};
@@ -84,7 +83,7 @@ static fg_status test_kept(fg_context *ctx, const fg_mixed_model *mixed, const s
   for (int i = 0; i < PARTS; i++)
     if (!(part[i] = part_of(source[i], mixed->columns, kept, count)) || !b || !solved)
       FG_TRY_EXIT(fg_fail(ctx, FG_ERR_MEMORY, "out of memory"));
-  *f = *freedom = NAN;
+  *f = *dof = NAN;
   if (gsl_linalg_cholesky_decomp1(part[COVARIANCE]) != 0 ||
       gsl_linalg_cholesky_decomp1(part[ADJUSTED]) != 0)
     goto exit;
@@ -98,7 +97,7 @@ static fg_status test_kept(fg_context *ctx, const fg_mixed_model *mixed, const s
     gsl_vector_set(b, i, mixed->estimate[kept[i]]);
   gsl_linalg_cholesky_solve(part[ADJUSTED], b, solved);
   gsl_blas_ddot(b, solved, &square);
-  match_moments((double)count, a1, a2, &scale, freedom);
+  match_moments((double)count, a1, a2, &scale, dof);
   *f = scale * square / (double)count;
 exit:
   for (int i = 0; i < PARTS; i++)
@@ -109,7 +108,7 @@ exit:
 }
 
 fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const size_t *column,
-                        size_t count, double *f, double *freedom) {
-  *f = *freedom = NAN;
-  return count ? test_kept(ctx, mixed, column, count, f, freedom) : FG_OK;
+                        size_t count, double *f, double *dof) {
+  *f = *dof = NAN;
+  return count ? test_kept(ctx, mixed, column, count, f, dof) : FG_OK;
 }

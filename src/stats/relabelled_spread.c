@@ -75,7 +75,7 @@ typedef struct tally {
   size_t exceeded[STATISTICS], dealt[STATISTICS];
 } tally;
 
-/* Returns whether every statistic has been exceeded often enough. */
+/* True where every statistic has been exceeded often enough. */
 static bool count_exceeded(const deal *d, size_t enough, tally *t) {
   double statistic[STATISTICS];
   bool done = true;
@@ -89,7 +89,7 @@ static bool count_exceeded(const deal *d, size_t enough, tally *t) {
   return done;
 }
 
-/* Whether there are at most ALL_MAX ways to choose the first sample. */
+/* True where the first sample can be chosen in at most ALL_MAX ways. */
 static bool can_deal_all(size_t count, size_t first) {
   size_t chosen = first < count - first ? first : count - first;
   double ways = 1;

@@ -1,10 +1,10 @@
-/* Whether two small samples differ in their spread, judged by relabelling.
+/* Permutation tests for a difference in spread between two small samples.
  *
  * F and Levene's statistic (about the median) refer to many values, F to normal ones: with seven on
  * each side Levene's p falls below 0.05 in 2 % of cases, and that of F in 0 to 44 %, as the values
  * have short or long tails. Here the values, aligned in their means, are dealt to the two samples
- * anew in every way there is, or at random, and the statistic is held against what that gives.
- */
+ * anew in every way there is, or at random, and the statistic is compared with those of the
+ * relabelled samples. */
 #ifndef FG_STATS_RELABELLED_SPREAD_H
 #define FG_STATS_RELABELLED_SPREAD_H
 

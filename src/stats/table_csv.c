@@ -66,8 +66,8 @@ static fg_status hold_cell(csv_reader *r, const char *text, size_t length) {
   return FG_OK;
 }
 
-/* What stands before a decimal comma may have a sign, what stands behind it has none, but perhaps
- * an exponent. */
+/* True where the text can stand before a decimal comma (a sign, digits) or behind it (digits, an
+ * exponent). */
 static bool is_whole(const char *text, bool before) {
   if (before) text += *text == '-' || *text == '+';
   size_t digits = strspn(text, "0123456789");

@@ -97,7 +97,7 @@ static void judge_side(const fg_die *die, fg_die_half half, fg_report_outcome *s
     add_verdict(FG_VERDICT_NOT_MEASURED, sum);
 }
 
-/* "; lost to dust: concave 5, convex 2, 3": of what was traced. */
+/* Adds the traced bumps without a value: "; lost to dust: concave 5, convex 2, 3". */
 static void add_lost(const fg_die *die, char *words, size_t size) {
   char numbers[200];
   size_t sum = 0;

@@ -34,7 +34,7 @@ static void put_interval(FILE *out, const char *name, double low, double high) {
   fprintf(out, "%s to %s", a, b);
 }
 
-/* How far the best setting is to be trusted: what stands against it is marked. */
+/* Lists the reasons for and against trust in the best setting; those against are marked. */
 static void put_trust(FILE *out, const fg_sentences *conclusions) {
   fputs("<ul>\n", out);
   for (size_t i = 0; i < conclusions->trusts; i++) {

@@ -177,7 +177,7 @@ static fg_status say_quality(fg_context *ctx, const fg_experiment *e, fg_sentenc
   return FG_OK;
 }
 
-/* Whether the model holds the square of a factor. */
+/* True where the model holds the square of a factor. */
 static bool has_squares(const fg_experiment *e) {
   for (size_t j = 0; j < e->regression.columns; j++) {
     const fg_model_column *c = &e->model.column[j];
@@ -186,7 +186,8 @@ static bool has_squares(const fg_experiment *e) {
   return false;
 }
 
-/* What tells in which factor the response is curved: what is asked for depends on the runs. */
+/* Curvature at the centre belongs to no factor: squares in the model tell which, or need further
+ * runs first. */
 static fg_status say_curvature(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   char p_value[16];
   if (!e->has_curvature || !isfinite(e->curvature.p_value)) return FG_OK;

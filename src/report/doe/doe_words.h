@@ -1,11 +1,12 @@
-/* What an experiment says, in plain words; the same on the terminal, the page and in JSON. */
+/* Conclusions of an experiment in plain words; the same on the terminal, the page and in JSON. */
 #ifndef FG_REPORT_DOE_DOE_WORDS_H
 #define FG_REPORT_DOE_DOE_WORDS_H
 
 #include "foilgauge/experiment.h"
 
-/* `setting` to before `trust`: the best setting and what it gives; `trusts` from `trust` on: how
- * far to trust it. The page says the first its own way, above; all else is the same everywhere. */
+/* Sentences from `setting` up to `trust`: the best setting and its response. The `trusts` sentences
+ * from `trust` on: reasons for and against trust in it. The page shows the former as a panel of its
+ * own; all others are the same everywhere. */
 typedef struct fg_sentences {
   char **text;
   size_t count, capacity;
@@ -38,7 +39,7 @@ fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *experimen
 fg_status fg_experiment_say_asked(fg_context *ctx, const fg_experiment *experiment,
                                   fg_sentences *sentences);
 
-/* Whether repeated runs say that the model does not fit. */
+/* True where repeated runs show lack of fit. */
 bool fg_experiment_lacks_fit(const fg_experiment *experiment);
 
 /* The best setting: the one that can be made, where that was asked for. */

@@ -1,4 +1,4 @@
-/* What is said of settings that were asked for, against what the model finds along each factor. */
+/* Conclusions on settings that were asked for: their response, and the best along each factor. */
 #include <math.h>
 #include <string.h>
 
@@ -25,7 +25,8 @@ static void put_setting(const fg_experiment *e, const fg_asked *asked, char *tex
   }
 }
 
-/* "3.72 % at temperature 694 °C" where that is better than the setting by what its digits show. */
+/* Writes "3.72 % at temperature 694 °C" where that beats the setting by a difference that the
+ * digits show. */
 static void put_better(const fg_experiment *e, const fg_asked *asked, char *text, size_t size) {
   *text = '\0';
   for (size_t f = 0; f < e->factors; f++) {

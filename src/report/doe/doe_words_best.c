@@ -1,4 +1,4 @@
-/* What is said of the best setting: where it is, what it gives, and how far to trust it. */
+/* Conclusions on the best setting: its place, its response, and the trust in it. */
 #include <math.h>
 #include <string.h>
 
@@ -57,7 +57,7 @@ static void put_variable(const fg_experiment *best, const double *x, const char 
                  best->model.levels[v].name[(size_t)best->best_setting[v]]);
 }
 
-/* Whether a constraint holds the factor: then not any setting is allowed. */
+/* True where a constraint involves the factor: then not every setting is allowed. */
 static bool is_constrained(const fg_experiment *e, size_t variable) {
   for (size_t k = 0; k < e->surface.factors; k++)
     for (size_t p = 0; p < e->region.planes; p++)
@@ -133,7 +133,7 @@ static fg_status say_rounded(fg_context *ctx, const fg_experiment *e, fg_sentenc
   return say_expected(ctx, e, what, setting, &best->rounded.prediction, s);
 }
 
-/* Where the model as given would lead, scatter and all. */
+/* The best setting of the model as given, with the factors that are only noise. */
 static fg_status say_as_given(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_optimum *best = fg_experiment_best_point(e);
   char setting[700] = "", value[80];
@@ -209,7 +209,7 @@ fg_status fg_experiment_say_lack(fg_context *ctx, const fg_experiment *e, fg_sen
                           *p_value == '<' ? "" : "= ", p_value);
 }
 
-/* Whether the optimum lies where runs end; else a constraint holds it. */
+/* Tells an optimum at the border of the runs from one that a constraint holds. */
 static fg_status say_border(fg_context *ctx, const fg_experiment *best, fg_sentences *s) {
   if (best->optimum.on_edge_of_runs)
     return fg_sentences_say(ctx, s,
@@ -219,7 +219,7 @@ static fg_status say_border(fg_context *ctx, const fg_experiment *best, fg_sente
                           "It lies on a constraint: the best may lie beyond what was allowed.");
 }
 
-/* How far the best setting is to be trusted, in order of what stands most against it. */
+/* Reasons for and against trust in the best setting, the gravest first. */
 static fg_status say_trust(fg_context *ctx, const fg_experiment *e, fg_sentences *s) {
   const fg_experiment *best = fg_experiment_best(e);
   const fg_prediction *p = &fg_experiment_best_point(e)->prediction;

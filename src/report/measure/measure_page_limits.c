@@ -22,8 +22,8 @@ typedef struct panel {
   const fg_tolerance *limit;
 } panel;
 
-/* How wide the limits are. With one limit only the values say how far it is sensible to look: twice
- * the median of their distances, which a few crushed bumps do not move. */
+/* Width between the limits. A single limit has none: twice the median of the values' distances
+ * stands in for it, which a few damaged bumps do not move. */
 static double width_of(const panel *p) {
   double low = p->limit->lower, high = p->limit->upper, width = high - low;
   if (isfinite(width) && width > 0) return width;

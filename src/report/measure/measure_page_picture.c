@@ -34,7 +34,7 @@ static double find_margin_mm(const fg_foil *foil) {
   for (size_t i = 0; foil && i < foil->bump_count; i++) {
     double half_deg = fmin(foil->bumps[i].bump_angle_deg / 2, right_angle_deg);
     double ring = ring_over_half_chord * foil->bumps[i].radius_mm * sin(half_deg * degree);
-    margin = fmax(margin, ring + pen_mm); /* fmax leaves out what was not measured */
+    margin = fmax(margin, ring + pen_mm); /* fmax skips missing values */
   }
   return fmin(margin, 3 * usual_mm);
 }
@@ -115,7 +115,7 @@ static fg_status put_drawing(fg_context *ctx, FILE *out, const fg_picture *pictu
   return FG_OK;
 }
 
-/* Where the margin reaches beyond the scan, or there are no pixels, the ground is plain. */
+/* The ground is plain where the margin reaches beyond the scan, or there are no pixels. */
 static void begin_picture(FILE *out, const fg_picture *picture, const int64_t beyond[4]) {
   double edge[4];
   for (int i = 0; i < 4; i++)

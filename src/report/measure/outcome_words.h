@@ -1,4 +1,4 @@
-/* Which quantities keep a run from passing. */
+/* Names of the quantities that keep a run from passing. */
 #ifndef FG_REPORT_MEASURE_OUTCOME_WORDS_H
 #define FG_REPORT_MEASURE_OUTCOME_WORDS_H
 

@@ -75,8 +75,8 @@ static void add_unmeasured(fg_report_outcome *outcome) {
                  &(fg_report_outcome){.verdict = FG_VERDICT_NOT_MEASURED, .not_measured = 1});
 }
 
-/* How far a value may lie from where it should be. Values nearer than U to each other are not told
- * apart, so it is U at least; a count without U differs by 1 at least. */
+/* Deviation that the tolerance allows. It is U at least, because values nearer than U to each other
+ * are not told apart; a count without U differs by 1 at least. */
 static double allowed_deviation(const fg_design *design, const fg_tolerance *tolerance,
                                 const fg_quantity *row, double limit, double u) {
   double expanded = u > 0 ? FG_COVERAGE_FACTOR * u : 0, nominal = 0;

@@ -1,6 +1,6 @@
-/* What a finding of the loop on tables does to the response. An amplitude is half a range: right
- * for the engine, which compares forms by it, and wrong for whoever reads a gauge. So every form
- * says the difference that its reader sees, between two levels, two ends, two sides. */
+/* Words for the size of a finding, as its reader sees it: a difference between two levels, two
+ * ends, two sides. The engine compares amplitudes, half a range each; a reader of a gauge would be
+ * misled by them. */
 #include "report/table_loop/loop_reading.h"
 
 #include <math.h>
@@ -130,7 +130,7 @@ static void read_levels(const reading *r) {
   fg_text_clip(r->text + used, FG_LOOP_WORDS - used, ", the lowest of %zu", levels);
 }
 
-/* Where it is stands with the claim's words. */
+/* The claim's words already name the place of the step. */
 static void read_step(const reading *r) {
   char range[VALUE_WORDS];
   put_difference(r, 2 * r->claim->coefficient[0], 2 * r->claim->coefficient_u[0], range);

@@ -1,4 +1,4 @@
-/* What a finding of the loop on tables does to the response, in its reader's numbers. */
+/* Words for the size of a finding in its reader's numbers. */
 #ifndef FG_REPORT_TABLE_LOOP_LOOP_READING_H
 #define FG_REPORT_TABLE_LOOP_LOOP_READING_H
 

@@ -241,7 +241,7 @@ size_t fg_loop_error_rows(const fg_loop_report *report,
   return count;
 }
 
-/* Between what is proven and what noise alone does often. */
+/* Between proof and a p-value that noise alone reaches often. */
 #define SUSPECTED_P 0.1
 
 const char *fg_loop_check_answer(const fg_loop_checked *check) {
@@ -258,13 +258,13 @@ const fg_loop_rejected *fg_loop_suspect(const fg_loop_result *result) {
 }
 
 bool fg_loop_suspects_residual(const fg_loop_result *result, fg_loop_check *check) {
-  double least = SUSPECTED_P, tests = 0;
+  double min = SUSPECTED_P, tests = 0;
   bool suspected = false;
   for (size_t k = 0; k < FG_LOOP_CHECKS; k++)
     tests += result->check[k].done;
   for (size_t k = 0; k < FG_LOOP_CHECKS && result->verdict == FG_LOOP_CLEAN; k++) {
-    if (!result->check[k].done || !(tests * result->check[k].p_value <= least)) continue;
-    least = tests * result->check[k].p_value;
+    if (!result->check[k].done || !(tests * result->check[k].p_value <= min)) continue;
+    min = tests * result->check[k].p_value;
     *check = (fg_loop_check)k;
     suspected = true;
   }
