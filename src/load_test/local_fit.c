@@ -152,13 +152,23 @@ bool fg_local_fit_with(const fg_load_stroke *stroke, double x, double window_mm,
   return true;
 }
 
+/* Widest window: half of the stroke, and no wider than what lies on this side of unsampled
+ * stretches. Windows beyond that hold the same samples, and agree whatever their bias is. */
+static double widest_window(const fg_load_stroke *s, double x) {
+  size_t first, last;
+  double widest = window_share_max * (s->x[s->count - 1] - s->x[0]);
+  if (!fg_load_stroke_part(s, x, &first, &last)) return widest;
+  return fmin(widest, fmax(x - s->x[first], s->x[last] - x));
+}
+
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
                            fg_local_fit *fit) {
   double span = stroke->x[stroke->count - 1] - stroke->x[0], low = -INFINITY, high = INFINITY;
   bool found = false;
   if (stroke->count < SAMPLES_MIN || !(span > 0)) return false;
   double window = fmax(1.0001 * smallest_window(stroke, x), 1e-9 * span);
-  for (; window < window_share_max * span; window *= window_growth) {
+  double widest = fmax(window, widest_window(stroke, x));
+  for (; window <= widest; window *= window_growth) {
     fg_local_fit next;
     if (!fg_local_fit_at(stroke, x, window, &next)) continue;
     double value = target == FG_LOCAL_VALUE ? next.value : next.slope;

@@ -25,8 +25,12 @@ enum { CANDIDATES_MAX = 60 };
 static const double selection_share = 1;
 
 /* Turns further below the outermost than so many standard uncertainties have lost their tip in a
- * dropout, or are none of the loop's. */
+ * dropout, or are none of the loop's. The smallest uncertainty of all counts: noise is alike at
+ * every turn, and a dropout within the samples before it makes that of its own turn large. */
 static const double turn_reach = 4;
+
+/* A stretch beside a turn is a dropout where it is as many times as wide as the others there. */
+static const double leap_factor = 7;
 
 /* Of the force at the turn, and samples at least: what the place is regressed over. */
 static const double window_share = 0.2;
@@ -34,6 +38,7 @@ enum { PLACE_SAMPLES_MIN = 24 };
 
 typedef struct turn {
   double force, u, rise; /* of one sample */
+  double lost;           /* what the force leaps by in a dropout beside the turn; 0: none */
   size_t at;
 } turn;
 
@@ -67,8 +72,22 @@ static bool fit_force(const fg_load_sample *samples, size_t at, int sign, turn *
     add(&system, -(double)i / BEFORE, sign * (samples[at - i].force_n - here));
   if (!solve(&system, BEFORE, &p)) return false;
   double rise = fmax(0, p.c1) / BEFORE;
-  *t = (turn){sign * here + p.c0 + rise / 2, p.u_c0, rise, at};
+  *t = (turn){sign * here + p.c0 + rise / 2, p.u_c0, rise, 0, at};
   return true;
+}
+
+/* Force that a dropout leaps over beside sample `at`: one whose way is many times that of the
+ * samples before it and of the displacement's noise. */
+static double leap_at(const fg_load_sample *samples, const fg_load_stroke *s, size_t at,
+                      double noise_mm) {
+  double way = 0, leap = 0;
+  for (size_t i = at - BEFORE + 1; i < at; i++)
+    way += fabs(samples[i].x_mm - samples[i - 1].x_mm) / (BEFORE - 1);
+  double limit = leap_factor * fmax(way, noise_mm);
+  for (size_t i = at; i <= at + 1 && i < s->end; i++)
+    if (fabs(samples[i].x_mm - samples[i - 1].x_mm) > limit)
+      leap = fmax(leap, fabs(samples[i].force_n - samples[i - 1].force_n));
+  return leap;
 }
 
 /* Largest force about the end of a stroke; never beyond the extreme reading, as a parabola is at
@@ -91,8 +110,10 @@ static bool find_turn(const fg_load_sample *samples, const fg_load_stroke *s, do
     if (!found || next.force > best->force) *best = next;
     found = true;
   }
-  if (found) best->force = fmin(best->force, extreme);
-  return found;
+  if (!found) return false;
+  best->force = fmin(best->force, extreme);
+  best->lost = leap_at(samples, s, best->at, noise_mm);
+  return true;
 }
 
 typedef struct branch {
@@ -100,6 +121,19 @@ typedef struct branch {
   turn *turns;
   size_t count;
 } branch;
+
+/* Turns beside a dropout go where there is any other. */
+static void drop_lost(branch *b) {
+  size_t kept = 0, whole = 0;
+  for (size_t i = 0; i < b->count; i++)
+    whole += !(b->turns[i].lost > 0);
+  for (size_t i = 0; i < b->count; i++) {
+    if (whole && b->turns[i].lost > 0) continue;
+    b->turns[kept] = b->turns[i];
+    b->stroke[kept++] = b->stroke[i];
+  }
+  b->count = kept;
+}
 
 /* Strokes that load this side and turn as far out as any. */
 static void choose(const fg_load_sample *samples, const fg_load_loop_strokes *strokes, int sense,
@@ -113,30 +147,35 @@ static void choose(const fg_load_sample *samples, const fg_load_loop_strokes *st
       b->count++;
     }
   if (!b->count) return;
-  turn limit = b->turns[outermost];
+  double limit = b->turns[outermost].force, u = INFINITY;
+  for (size_t i = 0; i < b->count; i++)
+    u = fmin(u, M_SQRT2 * b->turns[i].u + b->turns[i].rise);
   for (size_t i = 0; i < b->count; i++) {
-    double u = hypot(b->turns[i].u, limit.u) + limit.rise;
-    if (b->turns[i].force < limit.force - turn_reach * u) continue;
+    if (b->turns[i].force < limit - turn_reach * u) continue;
     b->turns[kept] = b->turns[i];
     b->stroke[kept++] = b->stroke[i];
   }
   b->count = kept;
+  drop_lost(b);
 }
 
 /* Mean of the turns' forces. The turn lies anywhere between two samples: `rise` of a rectangular
- * distribution, alike at every turn. */
+ * distribution, alike at every turn. Where all turns were lost in dropouts it may lie as far beyond
+ * the samples as the force leaps there. */
 static void mean_force(const branch *b, int sense, fg_load_turn *t) {
-  double n = (double)b->count, sum = 0, squares = 0, own = 0, rise = 0;
+  double n = (double)b->count, sum = 0, squares = 0, own = 0, rise = 0, lost = 0;
   for (size_t i = 0; i < b->count; i++) {
     sum += b->turns[i].force / n;
     own += b->turns[i].u * b->turns[i].u / n;
     rise += b->turns[i].rise / n;
+    lost += b->turns[i].lost / n;
   }
   for (size_t i = 0; i < b->count; i++)
     squares += pow(b->turns[i].force - sum, 2);
   double scatter = n > 1 ? squares / (n - 1) : 0;
   t->force_n = sense * sum;
-  t->u_force_n = sqrt(fmax(own, scatter) / n + pow(selection_share, 2) * own + rise * rise / 12);
+  t->u_force_n = sqrt(fmax(own, scatter) / n + pow(selection_share, 2) * own + rise * rise / 12 +
+                      lost * lost / 3);
 }
 
 static double force_span(const fg_load_sample *samples, const branch *b, double force) {
