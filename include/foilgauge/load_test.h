@@ -21,9 +21,10 @@
  * the rotor at once, the travel between +T and -T is then theirs, and no clearance is named.
  *
  * STIFFNESS. dF/dx of the loading strokes by the same regression; structural stiffness is its
- * largest value. Where that is, is decided by the other cycles than the one whose value is taken
- * there (the halves of one cycle's samples, where there is but one): the largest of noisy values
- * would be too large.
+ * largest value up to just before the turn: 1 % of the travel, or ten times the displacement's
+ * noise where that is more, is left out there, and a foil that hardens is stiffer beyond. The place
+ * is decided by the other cycles than the one whose value is taken there (the halves of one cycle's
+ * samples, where there is but one): the largest of noisy values would be too large.
  *
  * UNSAMPLED STRETCHES, of a dropout or of a rotor that jumps through the gap under load control. No
  * regression reaches over one: a contact is found on its own side's loaded branch. A threshold that
@@ -151,7 +152,7 @@ enum {
   FG_LOAD_TOO_FEW = 1 << 2,         /* too few samples to regress */
   FG_LOAD_WRONG_WAY = 1 << 3,       /* loops that give energy */
   FG_LOAD_FORCE_TURNED = 1 << 4,    /* the force ran against the displacement; it was turned */
-  FG_LOAD_AT_END = 1 << 5,          /* stiffness is largest where the test ends */
+  FG_LOAD_AT_END = 1 << 5,          /* stiffness is largest at the last place before the turn */
   FG_LOAD_FRICTION_HIGH = 1 << 6,   /* friction in the middle is more than half of the threshold */
   FG_LOAD_ONE_CYCLE = 1 << 7,       /* nothing says how cycles differ */
   FG_LOAD_ZERO_OFF = 1 << 8,        /* the load cell's zero exceeds half of the threshold */
@@ -209,7 +210,7 @@ typedef struct fg_load_direction {
   double zero_n;                      /* what the load cell says in the gap; NaN: not known */
   double push_mm, pull_mm;            /* where zero + T, zero - T are passed */
   double drift_um_cycle;
-  fg_load_value stiffness; /* N/mm */
+  fg_load_value stiffness; /* N/mm, largest up to just before the turn */
   double stiffness_at_mm;
   fg_load_value area;                         /* N mm */
   fg_load_value secant;                       /* N/mm, of the loops' ends */

@@ -1,4 +1,4 @@
-/* The stiffness over the displacement, and its largest value. */
+/* The stiffness over the displacement, and its largest value up to just before the turn. */
 #include <math.h>
 #include <stdlib.h>
 

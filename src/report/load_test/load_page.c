@@ -139,10 +139,11 @@ static void put_sentences(FILE *out, const fg_load_test *test, size_t bearing) {
             b->p_value < p_least ? "&lt;" : "=", fmax(b->p_value, p_least));
   size_t at_end = count_flagged(test, bearing, FG_LOAD_AT_END);
   if (at_end)
-    fprintf(out,
-            "<li>Of %zu of %zu azimuths the stiffness is largest where the test ends: more travel "
-            "would find more, and K is a lower bound.</li>\n",
-            at_end, b->directions);
+    fprintf(
+        out,
+        "<li>Of %zu of %zu azimuths the stiffness is largest at the last place before the turn: "
+        "a foil that hardens is stiffer at the turn and beyond, and K is a lower bound.</li>\n",
+        at_end, b->directions);
   if (b->birge > 1.2)
     fprintf(out,
             "<li>The cycles differ by %.1f times what the scatter of the samples says; the "
@@ -215,7 +216,7 @@ static void put_directions(FILE *out, const fg_load_test *test, size_t bearing) 
   put_table(out, test, bearing);
   fputs("<h2>Loops</h2>\n<p class=\"note\">Every cycle as recorded; the band is the threshold, "
         "orange where the loading strokes pass it. Beside it dF/dx of the loading strokes with U = "
-        "2 u, orange its largest value.</p>\n",
+        "2 u, orange its largest value up to just before the turn.</p>\n",
         out);
   put_loops(out, test, bearing);
 }
@@ -252,8 +253,10 @@ static void put_end(FILE *out, const fg_load_test *test) {
   fprintf(out,
           "</table></div>\n<p class=\"note\">± is U = 2 u. Instruments, standard: load cell %g %%, "
           "displacement %g %%, together %.2f %% of a stiffness. Loss factor: loop area / (π K X²), "
-          "X half of the travel, K the largest stiffness, or that of the loop's ends "
-          "(secant); of the foil: energy lost in its compression / (2π × elastic work), whatever "
+          "X half of the travel, K the largest stiffness up to 1 %% of the travel (10 times the "
+          "displacement's noise where that is more) before the turn, or that of the loop's ends "
+          "(secant); a foil that hardens is stiffer beyond K's place; of the foil: energy lost in "
+          "its compression / (2π × elastic work), whatever "
           "the gap is.</p>\n</section>\n",
           o->u_force_pct, o->u_displacement_pct, hypot(o->u_force_pct, o->u_displacement_pct));
 }

@@ -97,7 +97,8 @@ fg_status fg_load_write_text(fg_context *ctx, const fg_load_test *test, FILE *ou
   fprintf(
       out,
       "\nU = 2 u; instruments %g %% of force and %g %% of displacement, together %.2f %% of a "
-      "stiffness; loss of the test: loop area / (pi K X2), K the largest stiffness, "
+      "stiffness; K: largest stiffness up to 1 %% of the travel (10 times the noise) before the "
+      "turn, a foil that hardens is stiffer beyond; loss of the test: loop area / (pi K X2), "
       "secant: of the loop's ends; foil: energy lost in its compression / (2 pi elastic work)\n",
       test->options.u_force_pct, test->options.u_displacement_pct,
       hypot(test->options.u_force_pct, test->options.u_displacement_pct));
