@@ -64,9 +64,8 @@ const fg_load_flag *fg_load_flags(void) {
       {FG_LOAD_FORCE_TURNED, "force_turned",
        "the force runs against the displacement, as a reaction does; its sign was turned"},
       {FG_LOAD_AT_END, "stiffness_at_end",
-       "the stiffness is largest at the last place before the turn: the foil is stiffer at the "
-       "turn "
-       "beyond"},
+       "the stiffness is largest at the last place before the turn: a foil that hardens is stiffer "
+       "at the turn and beyond"},
       {FG_LOAD_FRICTION_HIGH, "friction_high",
        "friction in the middle is more than half of the threshold: choose a higher one (from the "
        "threshold on there is no clearance)"},
