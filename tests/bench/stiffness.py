@@ -156,8 +156,8 @@ Break-away tests of that generator:
 Within an unsampled stretch U is that of a rectangular distribution, which never lies beyond 2 u: such cells reach 100 %. The loss factor of the foil is
 held against energy lost over 2 pi times the elastic work of the foils alone; it is the same whatever the gap is, while that of the test falls as the gap grows.
 
-Where it falls short: the secant's U holds 78 to 88 % under load control, with dead weights and with everything at once, where the turn's place is an extreme of
-noisy samples; the stiffness's holds 86 to 91 % there. Loss factors hold 88 to 90 % under noise that is alike over 20 samples. A contact in a dropout may move
+Where it falls short: the secant's U holds 82 % with everything at once, where dropouts, steps and drift fall together on the turns, and there the
+loss factor of the foil is withheld for 8 %. Loss factors hold 88 to 90 % under noise that is alike over 20 samples. A contact in a dropout may move
 the axis: of 24 such bearings, alike all around, one was given an axis. Of one cycle with noise of 2 N and 2 µm the clearance's U is too small; with noise like that record more cycles. Noise
 that is alike from one sample to the next hides from neighbours: only what cycles differ by knows of it, and U of the repeats alone is then
 too small by a fifth to a third.
