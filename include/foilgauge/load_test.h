@@ -162,6 +162,7 @@ enum {
   FG_LOAD_SAME_SIDE = 1 << 12,      /* push and pull contact on one side of the gap */
   FG_LOAD_BRANCHES_APART = 1 << 13, /* loading and unloading contacts do not fit together */
   FG_LOAD_GAP_UNKNOWN = 1 << 14,    /* nothing says whether there is a gap */
+  FG_LOAD_OUTLIERS = 1 << 15,       /* isolated wrong readings, which took no part */
   FG_LOAD_CONTRADICTION = FG_LOAD_SAME_SIDE | FG_LOAD_BRANCHES_APART,
 };
 

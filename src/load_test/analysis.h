@@ -13,6 +13,11 @@ typedef struct fg_load_scatter {
  * squares, Phys. Rev. 40, 1932); 1 without repeats. */
 double fg_load_birge(const fg_load_scatter *scatter);
 
+/* Readings that jump away from both neighbours and back, at most two together, are replaced by the
+ * line between these, and flagged: one of them moves a contact, a turn or a loop by any amount. */
+fg_status fg_load_bridge_outliers(fg_context *ctx, fg_load_test *test,
+                                  fg_load_direction *direction);
+
 typedef struct fg_load_findings {
   fg_load_scatter points, slopes;
   double compliance_mm_n; /* sum of both points' 1 / (dF/dx): what the threshold's u moves */

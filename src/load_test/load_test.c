@@ -61,6 +61,9 @@ const fg_load_flag *fg_load_flags(void) {
       {FG_LOAD_BRANCHES_APART, "branches_apart",
        "loading and unloading pass the threshold further apart than friction and U explain: there "
        "is no clearance"},
+      {FG_LOAD_OUTLIERS, "outliers",
+       "readings that jump away from their neighbours and back took no part: look at plug and "
+       "probe"},
       {FG_LOAD_FORCE_TURNED, "force_turned",
        "the force runs against the displacement, as a reaction does; its sign was turned"},
       {FG_LOAD_AT_END, "stiffness_at_end",
@@ -200,6 +203,7 @@ static fg_status measure_direction(fg_context *ctx, fg_load_test *test,
   fg_status status = FG_OK;
   const fg_load_value none = {NAN, NAN, NAN};
   d->predicted = d->difference = none;
+  FG_TRY_EXIT(fg_load_bridge_outliers(ctx, test, d));
   turn_force(test, d);
   find_ranges(test, d);
   d->step_mm = fg_load_find_step(test->samples + d->first, d->count);

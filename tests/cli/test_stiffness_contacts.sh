@@ -94,6 +94,24 @@ for within in 0 1 3 10; do
   record "load$within" load "$within" && judged "load$within" 0 ""
   [ "$(value "load$within.json" '[a["u_repeat_clearance_mm"] < 0.0005 for a in r["azimuths"]]')" = "[True]" ] || fail "load$within: U"
 done
+# One reading, or two together, that jumps away and back, anywhere in the record: told, and no value moves by it.
+record clean displacement 9 9
+"$program" stiffness --azimuth 0 clean.csv -o clean.json
+for wrong in "150 2 -60" "700 2 -45" "901 2 100" "333 1 0.3" "1200 1 -0.3" "600 1 1000"; do
+  for run in 1 2; do
+    awk -F, -v OFS=, -v wrong="$wrong" -v run=$run 'BEGIN {split(wrong, w, " ")} NR - 1 >= w[1] && NR - 1 < w[1] + run {$(w[2]) = w[3]} 1' \
+      clean.csv >jumped.csv
+    judged jumped 0 ""
+    python3 - <<'END' || fail "$wrong, $run times: another result"
+import json
+a, b = (json.load(open(name))["azimuths"][0] for name in ("jumped.json", "clean.json"))
+assert "outliers" in a["flags"] and "outliers" not in b["flags"], a["flags"]
+for name in ("clearance_mm", "stiffness_n_mm", "stiffness_secant_n_mm", "loss_factor", "loss_factor_secant", "loss_factor_foil"):
+    assert abs(a[name] - b[name]) <= a["u_" + name] / 2, (name, a[name], b[name], a["u_" + name])
+END
+  done
+done
+expect 0 "jump away from their neighbours" "$program" stiffness --azimuth 0 jumped.csv --text -
 # Dropouts: beside the contact; over it; over all of the gap.
 record clean displacement 9 9 && judged clean 0 ""
 record gap displacement -0.06 0.06 && judged gap 0 ""

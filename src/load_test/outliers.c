@@ -1,0 +1,83 @@
+/* Isolated wrong readings of a record: a loose plug, a lost reflection. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "core/memory.h"
+#include "core/select.h"
+#include "load_test/analysis.h"
+
+/* A reading is isolated when it lies further from every line through its neighbours than this many
+ * medians of all readings' distances (some eight standard deviations of white noise), and than this
+ * share of the column's range. */
+static const double medians = 12, range_share = 0.02;
+
+/* And when its neighbours lie this much nearer to each other: a rotor that jumps through its gap
+ * leaves them apart. */
+static const double apart = 3;
+
+enum { RUN_MAX = 2, COLUMNS = 2 };
+
+static double *value_at(fg_load_sample *sample, int column) {
+  return column ? &sample->force_n : &sample->x_mm;
+}
+
+/* Distance of a run's reading from the line between its neighbours, and from the lines that go on
+ * from each side's last two: at a turn of the stroke one of these meets it. */
+static double distance(fg_load_sample *s, size_t run, size_t k, int column) {
+  double before[2] = {*value_at(s - 2, column), *value_at(s - 1, column)};
+  double after[2] = {*value_at(s + run, column), *value_at(s + run + 1, column)};
+  double here = *value_at(s + k, column), at = (double)(k + 1), back = (double)(run - k);
+  double between = before[1] + (after[0] - before[1]) * at / (double)(run + 1);
+  double from_left = before[1] + at * (before[1] - before[0]);
+  double from_right = after[0] + back * (after[0] - after[1]);
+  double d = fmin(fabs(here - between), fabs(here - from_left));
+  return fmin(d, fabs(here - from_right));
+}
+
+static bool is_isolated(fg_load_sample *s, size_t run, int column, double limit) {
+  double gap = fabs(*value_at(s + run, column) - *value_at(s - 1, column));
+  for (size_t k = 0; k < run; k++) {
+    double d = distance(s, run, k, column);
+    if (!(d > limit && d > apart * gap)) return false;
+  }
+  return true;
+}
+
+static void bridge(fg_load_sample *s, size_t run, int column) {
+  double from = *value_at(s - 1, column), to = *value_at(s + run, column);
+  for (size_t k = 0; k < run; k++)
+    *value_at(s + k, column) = from + (to - from) * (double)(k + 1) / (double)(run + 1);
+}
+
+static double find_limit(fg_load_sample *s, size_t count, int column, double *room) {
+  double low = INFINITY, high = -INFINITY;
+  size_t n = 0;
+  for (size_t i = 2; i + 2 < count; i++)
+    room[n++] = distance(s + i, 1, 0, column);
+  double median = fg_select(room, n, n / 2);
+  for (size_t i = 0; i < count; i++)
+    room[i] = *value_at(s + i, column);
+  /* Quantiles: the wrong readings must not widen the range that they are held against. */
+  low = fg_select(room, count, count / 20);
+  high = fg_select(room, count, count - 1 - count / 20);
+  return fmax(medians * median, range_share * (high - low));
+}
+
+fg_status fg_load_bridge_outliers(fg_context *ctx, fg_load_test *test, fg_load_direction *d) {
+  enum { COUNT_MIN = 20 };
+  fg_load_sample *s = test->samples + d->first;
+  double *room = NULL;
+  if (d->count < COUNT_MIN) return FG_OK;
+  FG_TRY(fg_memory_allocate(ctx, d->count, sizeof *room, (void **)&room));
+  for (int column = 0; column < COLUMNS; column++) {
+    double limit = find_limit(s, d->count, column, room);
+    for (size_t run = 1; run <= RUN_MAX; run++)
+      for (size_t i = 2; i + run + 1 < d->count; i++) {
+        if (!is_isolated(s + i, run, column, limit)) continue;
+        bridge(s + i, run, column);
+        d->flags |= FG_LOAD_OUTLIERS;
+      }
+  }
+  free(room);
+  return FG_OK;
+}
