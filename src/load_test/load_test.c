@@ -134,9 +134,12 @@ static void check_gap(double yield_mm, fg_load_zero *zero, fg_load_direction *d)
   const fg_load_value none = {NAN, NAN, NAN};
   bool known = isfinite(d->gap.value), decided = known && !(d->gap.value + u >= c);
   if (known && d->gap.value > u) return;
-  if (!known && !isfinite(c)) return;
-  if (!decided && c - yield_mm > gap_reach * d->clearance.u_repeat) {
+  if (!isfinite(c) && !(known && u < yield_mm)) { /* nothing that U could be held against */
     d->gap = none;
+    return;
+  }
+  if (c - yield_mm > gap_reach * d->clearance.u_repeat) {
+    if (!decided) d->gap = none;
     return;
   }
   d->flags |= known ? FG_LOAD_NO_GAP : FG_LOAD_GAP_UNKNOWN;

@@ -124,6 +124,9 @@ judged all 3 withheld --limit clearance_mm=:5
 expect 3 "cannot_tell.*with a limit within U or withheld" "$program" stiffness --azimuth 0 all.csv --limit clearance_mm=:5 --text -
 "$program" stiffness --azimuth 0 all.csv --html all.html >/dev/null 2>&1
 grep -q "that leaves nothing known there is no clearance" all.html || fail "the page has no reason"
+# A probe that runs out of its range behind one contact: little of that branch is left, which does not mean no gap.
+record range displacement 0.115 9 && judged range 0 ""
+[ "$(value range.json '["no_gap" in a["flags"] for a in r["azimuths"]]')" = "[False]" ] || fail "a gap is taken for none"
 # Contacts that contradict each other.
 record slipped slipped 9 9
 expect 2 "loading and unloading pass the threshold further apart" "$program" stiffness --azimuth 0 slipped.csv --text -
