@@ -46,6 +46,14 @@ fg_verdict fg_load_judge_direction(const fg_load_test *test, const fg_load_direc
   return judge_direction(test, direction).verdict;
 }
 
+/* Friction without a weight that a gap contradicts may be the rig's: no limit passes or fails for
+ * it. */
+static fg_verdict judge_preload(const fg_load_test *test, const fg_load_bearing *b) {
+  fg_verdict verdict = fg_load_judge_value(test, FG_LOAD_PRELOAD, &b->preload_kpa);
+  bool judged = verdict == FG_VERDICT_PASS || verdict == FG_VERDICT_FAIL;
+  return judged && (b->break_away.flags & FG_BREAK_GAP) ? FG_VERDICT_UNDECIDED : verdict;
+}
+
 static fg_report_outcome judge_bearing(const fg_load_test *test, size_t bearing) {
   fg_report_outcome sum = {.verdict = FG_VERDICT_NONE};
   for (size_t i = 0; i < test->direction_count; i++) {
@@ -55,7 +63,7 @@ static fg_report_outcome judge_bearing(const fg_load_test *test, size_t bearing)
   }
   const fg_load_bearing *b = &test->bearings[bearing];
   if (b->break_away.pulls && !isfinite(b->preload_kpa.value)) add(FG_VERDICT_NOT_MEASURED, &sum);
-  add(fg_load_judge_value(test, FG_LOAD_PRELOAD, &b->preload_kpa), &sum);
+  add(judge_preload(test, b), &sum);
   add(fg_load_judge_value(test, FG_LOAD_HYSTERESIS, &b->hysteresis_n), &sum);
   add(fg_load_judge_value(test, FG_LOAD_FRICTION, &b->break_away.friction), &sum);
   return sum;
