@@ -50,16 +50,15 @@ static void bridge(fg_load_sample *s, size_t run, int column) {
 }
 
 static double find_limit(fg_load_sample *s, size_t count, int column, double *room) {
-  double low = INFINITY, high = -INFINITY;
   size_t n = 0;
   for (size_t i = 2; i + 2 < count; i++)
     room[n++] = distance(s + i, 1, 0, column);
   double median = fg_select(room, n, n / 2);
   for (size_t i = 0; i < count; i++)
     room[i] = *value_at(s + i, column);
-  /* Quantiles: the wrong readings must not widen the range that they are held against. */
-  low = fg_select(room, count, count / 20);
-  high = fg_select(room, count, count - 1 - count / 20);
+  /* Quantiles: wrong readings must not widen the range that they are held against. */
+  double low = fg_select(room, count, count / 20);
+  double high = fg_select(room, count, count - 1 - count / 20);
   return fmax(medians * median, range_share * (high - low));
 }
 
