@@ -11,6 +11,13 @@ double fg_mean(const double *values, size_t count) {
   return sum / (double)count;
 }
 
+double fg_squares_about(const double *values, size_t count, double mean) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += (values[i] - mean) * (values[i] - mean);
+  return sum;
+}
+
 fg_spread fg_spread_of(double *sizes, size_t count) {
   if (!count) return (fg_spread){NAN, NAN, NAN};
   size_t last = count - 1;

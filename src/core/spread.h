@@ -7,6 +7,9 @@
 /* NaN when there are none. */
 double fg_mean(const double *values, size_t count);
 
+/* Sum of squared differences from `mean`. */
+double fg_squares_about(const double *values, size_t count, double mean);
+
 /* The sd of a normal distribution over the median of its sizes. */
 #define FG_SD_PER_MEDIAN 1.4826
 

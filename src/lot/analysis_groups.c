@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/memory.h"
+#include "core/spread.h"
 #include "lot/analysis.h"
 #include "lot/foil_levels.h"
 #include "lot/manifest_words.h"
@@ -23,18 +24,8 @@ typedef struct grouping {
   size_t draws;
 } grouping;
 
-static double mean_of(const double *values, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += values[i];
-  return sum / (double)count;
-}
-
 static double sd_of(const double *values, size_t count, double mean) {
-  double squares = 0;
-  for (size_t i = 0; i < count; i++)
-    squares += (values[i] - mean) * (values[i] - mean);
-  return sqrt(squares / (double)(count - 1));
+  return sqrt(fg_squares_about(values, count, mean) / (double)(count - 1));
 }
 
 static size_t select_levels(const fg_foil_levels *levels, size_t group, double *values,
@@ -113,8 +104,8 @@ static fg_status compare(fg_context *ctx, fg_lot_analysis *analysis,
   FG_TRY(compare_samples(by->values, d.foils_a, d.foils_b, analysis->lot->settings.confidence,
                          &d.comparison, &compared));
   if (!compared) return FG_OK;
-  d.mean_a = mean_of(by->values, d.foils_a);
-  d.mean_b = mean_of(second, d.foils_b);
+  d.mean_a = fg_mean(by->values, d.foils_a);
+  d.mean_b = fg_mean(second, d.foils_b);
   d.sd_a = sd_of(by->values, d.foils_a, d.mean_a);
   d.sd_b = sd_of(second, d.foils_b, d.mean_b);
   FG_TRY(fg_relabel_spreads(ctx, (fg_sample){by->values, d.foils_a}, (fg_sample){second, d.foils_b},

@@ -1,5 +1,4 @@
 #include "lot/journal.h"
-#include "core/json_read.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,6 +9,7 @@
 #include <cjson/cJSON.h>
 
 #include "core/file.h"
+#include "core/json_read.h"
 #include "core/memory.h"
 #include "core/text.h"
 #include "lot/seal.h"

@@ -158,7 +158,7 @@ static double trace_of(const setting *s, double ratio, int middles) {
   return sum;
 }
 
-static double trace_product(const gsl_matrix *a, const gsl_matrix *b) {
+double fg_mixed_trace_product(const gsl_matrix *a, const gsl_matrix *b) {
   double sum = 0;
   for (size_t i = 0; i < a->size1; i++)
     for (size_t j = 0; j < a->size2; j++)
@@ -220,8 +220,8 @@ static bool correct(const setting *s, double ratio, double *weight, gsl_matrix *
     for (int j = 0; j <= i; j++) {
       fill_product(s, ratio, 3, i + j, weight, m[PRODUCT]);
       information[i][j] = information[j][i] =
-          (trace_of(s, ratio, i + j) - 2 * trace_product(phi, m[PRODUCT]) +
-           trace_product(m[i], m[j])) /
+          (trace_of(s, ratio, i + j) - 2 * fg_mixed_trace_product(phi, m[PRODUCT]) +
+           fg_mixed_trace_product(m[i], m[j])) /
           2;
     }
   if (!invert_information((const double(*)[2])information, w)) return false;

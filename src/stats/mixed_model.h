@@ -15,6 +15,8 @@
 #ifndef FG_STATS_MIXED_MODEL_H
 #define FG_STATS_MIXED_MODEL_H
 
+#include <gsl/gsl_matrix.h>
+
 #include "foilgauge/regression.h"
 #include "foilgauge/table.h"
 
@@ -55,5 +57,8 @@ fg_status fg_mixed_test(fg_context *ctx, const fg_mixed_model *mixed, const size
  * strata is exact. */
 fg_status fg_mixed_is_orthogonal(fg_context *ctx, const fg_model *model, const fg_levels *groups,
                                  const fg_regression *least_squares, bool *orthogonal);
+
+/* Trace of a b. */
+double fg_mixed_trace_product(const gsl_matrix *a, const gsl_matrix *b);
 
 #endif

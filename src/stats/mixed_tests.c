@@ -49,14 +49,6 @@ static void match_moments(double q, double a1, double a2, double *scale, double 
   *scale = fabs(*dof - 2) < 0.01 ? 1 : *dof * mean / (*dof - 2);
 }
 
-static double trace_product(const gsl_matrix *a, const gsl_matrix *b) {
-  double sum = 0;
-  for (size_t i = 0; i < a->size1; i++)
-    for (size_t j = 0; j < a->size2; j++)
-      sum += gsl_matrix_get(a, i, j) * gsl_matrix_get(b, j, i);
-  return sum;
-}
-
 static void sum_traces(const fg_mixed_model *mixed, const gsl_matrix *const product[2], double *a1,
                        double *a2) {
   double trace[2] = {0, 0};
@@ -67,7 +59,7 @@ static void sum_traces(const fg_mixed_model *mixed, const gsl_matrix *const prod
   for (int i = 0; i < 2; i++)
     for (int j = 0; j < 2; j++) {
       *a1 += mixed->variances_covariance[i][j] * trace[i] * trace[j];
-      *a2 += mixed->variances_covariance[i][j] * trace_product(product[i], product[j]);
+      *a2 += mixed->variances_covariance[i][j] * fg_mixed_trace_product(product[i], product[j]);
     }
 }
 

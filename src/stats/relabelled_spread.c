@@ -7,6 +7,7 @@
 
 #include "core/memory.h"
 #include "core/select.h"
+#include "core/spread.h"
 #include "foilgauge/density.h"
 
 enum {
@@ -27,20 +28,6 @@ typedef struct deal {
   size_t first, count;
 } deal;
 
-static double mean_of(const double *value, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += value[i];
-  return sum / (double)count;
-}
-
-static double squares_about(const double *value, size_t count, double mean) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += (value[i] - mean) * (value[i] - mean);
-  return sum;
-}
-
 /* Distances from the median take the values' place. */
 static void take_distances(double *value, double *sorted, size_t count) {
   memcpy(sorted, value, count * sizeof *sorted);
@@ -60,14 +47,14 @@ static void find_statistics(const deal *d, double statistic[STATISTICS]) {
   size_t na = d->first, nb = d->count - d->first;
   for (size_t i = 0; i < d->count; i++)
     a[i] = d->value[d->order[i]];
-  double va = squares_about(a, na, mean_of(a, na)) / (double)(na - 1),
-         vb = squares_about(b, nb, mean_of(b, nb)) / (double)(nb - 1);
+  double va = fg_squares_about(a, na, fg_mean(a, na)) / (double)(na - 1),
+         vb = fg_squares_about(b, nb, fg_mean(b, nb)) / (double)(nb - 1);
   statistic[VARIANCES] = or_zero(fabs(log(va / vb)));
   take_distances(a, d->sorted, na);
   take_distances(b, d->sorted, nb);
-  double ma = mean_of(a, na), mb = mean_of(b, nb);
+  double ma = fg_mean(a, na), mb = fg_mean(b, nb);
   statistic[LEVENE] =
-      or_zero((ma - mb) * (ma - mb) / (squares_about(a, na, ma) + squares_about(b, nb, mb)));
+      or_zero((ma - mb) * (ma - mb) / (fg_squares_about(a, na, ma) + fg_squares_about(b, nb, mb)));
 }
 
 typedef struct tally {
@@ -165,8 +152,8 @@ static void relabel(const deal *d, size_t draws, tally *t, fg_relabelled_spread 
 static double share_taken(fg_sample a, fg_sample b, double mean_a, double mean_b) {
   static const double chance = 4;
   double na = (double)a.count, nb = (double)b.count;
-  double square = squares_about(a.values, a.count, mean_a) / (na * (na - 1)) +
-                  squares_about(b.values, b.count, mean_b) / (nb * (nb - 1));
+  double square = fg_squares_about(a.values, a.count, mean_a) / (na * (na - 1)) +
+                  fg_squares_about(b.values, b.count, mean_b) / (nb * (nb - 1));
   double t2 = (mean_a - mean_b) * (mean_a - mean_b) / square;
   return t2 > chance ? 1 - chance / t2 : 0;
 }
@@ -181,9 +168,10 @@ static void put_deviations(fg_sample sample, double mean, double common, double 
 
 /* False: there is no spread. */
 static bool align(fg_sample a, fg_sample b, double *value) {
-  double na = (double)a.count, nb = (double)b.count, mean_a = mean_of(a.values, a.count),
-         mean_b = mean_of(b.values, b.count), common = (na * mean_a + nb * mean_b) / (na + nb);
-  if (!(squares_about(a.values, a.count, mean_a) + squares_about(b.values, b.count, mean_b) > 0))
+  double na = (double)a.count, nb = (double)b.count, mean_a = fg_mean(a.values, a.count),
+         mean_b = fg_mean(b.values, b.count), common = (na * mean_a + nb * mean_b) / (na + nb);
+  if (!(fg_squares_about(a.values, a.count, mean_a) + fg_squares_about(b.values, b.count, mean_b) >
+        0))
     return false;
   double share = share_taken(a, b, mean_a, mean_b);
   put_deviations(a, mean_a, common, share, value);
