@@ -234,7 +234,7 @@ typedef enum fg_load_axis {
 } fg_load_axis;
 const char *fg_load_axis_words(fg_load_axis axis); /* NULL: known */
 
-/* What is wrong with a break-away test, or must be known of it. */
+/* Faults of a break-away test, and reservations about its result. */
 enum {
   FG_BREAK_TOO_FEW = 1 << 0,       /* too few pulls, or one weight */
   FG_BREAK_CURVED = 1 << 1,        /* not a straight line */

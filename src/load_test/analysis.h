@@ -65,8 +65,8 @@ typedef struct fg_load_loop_strokes {
   double noise_mm;
 } fg_load_loop_strokes;
 
-/* Where the strokes of a sense turn: force and place on the loading branch. `compliance_mm_n`:
- * dx/dF there. `found` is false where there are too few samples. */
+/* Turning point of the strokes of a sense: force and place on the loading branch.
+ * `compliance_mm_n`: dx/dF there. `found` is false where there are too few samples. */
 typedef struct fg_load_turn {
   bool found;
   double force_n, u_force_n;

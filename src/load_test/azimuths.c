@@ -116,7 +116,7 @@ static double variance_between(const curve *c, double a_deg, double b_deg) {
   return variance;
 }
 
-/* Whether another minimum may be the smallest as well. */
+/* True where another minimum lies within the uncertainty of the smallest. */
 static bool has_rival(const curve *c, double best, double birge) {
   double step = half_turn_deg / STEPS;
   for (int i = 0; i < STEPS; i++) {
@@ -210,7 +210,7 @@ static bool fit_flat(const fg_load_test *test, size_t bearing, fg_load_scatter *
   return fit(test, bearing, &flat, scatter);
 }
 
-/* Whether the directions differ at all: the uncertainties are taken for known. */
+/* Chi-squared test of equal directions: the uncertainties are taken for known. */
 static void test_alike(const fg_load_scatter *flat, fg_load_bearing *sum) {
   if (sum->measured < 2) return;
   sum->p_value =

@@ -168,14 +168,14 @@ static void take_line(const pulls *p, const line *l, fg_load_bearing *sum) {
   double covariance[CURVE][CURVE], u_rig, rig = rig_friction(o, &u_rig);
   double force = o->u_force_pct / 100, weight = o->u_weight_pct / 100;
   double mu = l->x[1] / p->high_n, a = l->x[0] - rig, preload = a / mu;
-  double freedom = (double)p->count - LINE;
-  double wide = fg_distribution_t_quantile(0.975, freedom) / fg_distribution_normal_quantile(0.975);
+  double dof = (double)p->count - LINE;
+  double wide = fg_distribution_t_quantile(0.975, dof) / fg_distribution_normal_quantile(0.975);
   find_covariance(p, l, LINE, covariance);
   double u_a = wide * sqrt(covariance[0][0]), u_mu = wide * sqrt(covariance[1][1]) / p->high_n;
   double cross = wide * wide * covariance[0][1] / p->high_n;
   double u_preload =
       sqrt(fmax(0, u_a * u_a + preload * preload * u_mu * u_mu - 2 * preload * cross)) / fabs(mu);
-  out->residual_n = sqrt(l->squares / freedom);
+  out->residual_n = sqrt(l->squares / dof);
   out->friction = (fg_load_value){mu, hypot(u_mu, mu * hypot(force, weight)), u_mu};
   out->intercept_n =
       (fg_load_value){a, sqrt(u_a * u_a + pow(force * l->x[0], 2) + u_rig * u_rig), u_a};
@@ -191,7 +191,7 @@ static bool has_gap(const fg_load_test *test, size_t bearing) {
   return false;
 }
 
-/* What cannot be said is withheld, with its reason. */
+/* Withholds values that the pulls do not support, each with its reason as a flag. */
 static void check(const pulls *p, fg_load_bearing *sum) {
   const fg_load_value none = {NAN, NAN, NAN};
   fg_break_away *out = &sum->break_away;

@@ -1,4 +1,4 @@
-/* Whether the contacts of a direction agree with each other and with the strokes. */
+/* Contradictions among the contacts of a direction, and between them and the strokes. */
 #include <math.h>
 
 #include "load_test/analysis.h"
@@ -12,9 +12,9 @@ static const double window_share = 1.0 / 8;
 /* Standard uncertainties that two contacts may be apart by. */
 static const double reach = 2;
 
-/* How far friction can part loading and unloading on one side: at the place where the unloading
- * stroke passes T the loading one is 2 H above it, and has risen by that since it passed T. NaN:
- * the branch does not say. */
+/* Distance by which friction can part loading and unloading on one side: at the place where the
+ * unloading stroke passes T the loading one is 2 H above it, and has risen by that since it passed
+ * T. NaN: the branch does not say. */
 static double parted_by_friction(const fg_load_stroke *load, const fg_load_stroke *unload,
                                  double contact, double end) {
   double friction = 0, slope = INFINITY;

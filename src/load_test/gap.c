@@ -50,8 +50,8 @@ static bool take_sample(const branch *b, const fg_load_stroke *s, size_t k, doub
   return *force > b->low_n && *force < b->high_n && out > b->from_mm;
 }
 
-/* Whether there are enough; their mean becomes the origin, so that sums of squares keep their
- * digits. */
+/* True where the branch has enough samples. Their mean becomes the origin, so that sums of squares
+ * keep their digits. */
 static bool count_samples(branch *b) {
   double force, x, sum = 0;
   b->count[0] = b->count[1] = b->origin_mm = 0;
@@ -114,8 +114,8 @@ static bool fit_exponent(const branch *b, double exponent, branch_fit *fit) {
   return true;
 }
 
-/* Where a foil is touched, outwards; what noise and friction leave unknown; half of what the
- * exponents make of it, which is alike on both sides. */
+/* Contact with one foil: its place outwards, its u by noise and friction, and half of the range
+ * over the exponents, an error that both sides share. */
 typedef struct touched {
   double x_mm, u_mm, model_mm;
 } touched;

@@ -19,7 +19,7 @@ double fg_load_stroke_place(const fg_load_stroke *s) {
 
 typedef enum around { FEW, WIDE, DENSE } around;
 
-/* What most of the distances from sample `i` on, outwards, are. */
+/* Class of most distances between samples from `i` on, outwards. */
 static around look_around(const fg_load_stroke *s, size_t i, int step, double small) {
   size_t count = 0, smaller = 0;
   double place = fg_load_stroke_place(s), last = s->x[i];

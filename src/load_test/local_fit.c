@@ -282,8 +282,8 @@ static double place_mean(const fg_load_stroke *s, size_t i, int step) {
   return sum / count;
 }
 
-/* Where no regression passes the level, as between two rests of a rotor under weights: between the
- * places on both sides. */
+/* For a level that no regression passes, as between two rests of a rotor under weights: it lies
+ * between the places on both sides. */
 static bool bracket_places(look_around *l, double *x, double *u_x, fg_local_fit *fit) {
   const fg_load_stroke *s = l->stroke;
   size_t outer = fg_load_stroke_from(s, l->outer_x), inner = fg_load_stroke_from(s, l->inner_x);

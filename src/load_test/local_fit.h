@@ -31,8 +31,8 @@ bool fg_local_across(const fg_load_stroke *stroke, double x, fg_local_fit *fit);
 bool fg_local_fit_adaptive(const fg_load_stroke *stroke, double x, fg_local_target target,
                            fg_local_fit *fit);
 
-/* Where the force passes `level_n`, seen from the largest displacement; the fit there. In an
- * unsampled stretch: within its bounds, see `u_unsampled_mm`. False: it does not. */
+/* Place at which the force passes `level_n`, seen from the largest displacement; the fit there. In
+ * an unsampled stretch: within its bounds, see `u_unsampled_mm`. False: it does not. */
 bool fg_local_crossing(const fg_load_stroke *stroke, double level_n, double *x, double *u_x,
                        fg_local_fit *fit);
 

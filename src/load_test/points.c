@@ -72,7 +72,7 @@ static bool is_whole(const fg_load_stroke *s, const fg_load_strokes *strokes) {
   return s->high_mm - s->low_mm > whole_share * longest;
 }
 
-/* What strokes drift by on their own: by as much as their points and the middles of their turns
+/* Drift of single strokes: as much as their points and the middles of their turns
  * both say. Points alone may differ as a foil that was never loaded yields otherwise, middles alone
  * as the turns do; a place that scatters by its uncertainty says little. */
 static void align(fg_load_strokes *strokes, fg_load_levels levels, const double *x,

@@ -99,11 +99,11 @@ static void predict(const fg_load_test *test, const places *p, fg_load_direction
   double deg = d->azimuth_deg - test->options.azimuth_zero_deg;
   size_t push = first_met(p, deg, &way[0], &u[0]), pull = first_met(p, deg + 180, &way[1], &u[1]);
   if (push == p->count || pull == p->count) return;
-  double doubt = hypot(u[0], u[1]);
-  d->predicted = (fg_load_value){way[0] + way[1], doubt, doubt};
+  double u_both = hypot(u[0], u[1]);
+  d->predicted = (fg_load_value){way[0] + way[1], u_both, u_both};
   d->predicted_pad = 1 + (int)((way[0] <= way[1] ? push : pull) / p->per_pad);
-  d->difference = (fg_load_value){d->gap.value - d->predicted.value, hypot(d->gap.u, doubt),
-                                  hypot(d->gap.u_repeat, doubt)};
+  d->difference = (fg_load_value){d->gap.value - d->predicted.value, hypot(d->gap.u, u_both),
+                                  hypot(d->gap.u_repeat, u_both)};
 }
 
 static fg_status take_bearings(fg_context *ctx, fg_load_test *test, const cJSON *root,

@@ -42,10 +42,10 @@ fg_status fg_load_strokes_merge(fg_context *ctx, const fg_load_stroke *const *ch
 fg_status fg_load_strokes_merge_sense(fg_context *ctx, const fg_load_strokes *strokes, int sense,
                                       fg_load_stroke *merged);
 
-/* What has drifted until this share of the stroke's way. */
+/* Drift up to this share of the stroke's way. */
 double fg_load_stroke_drifted(const fg_load_stroke *stroke, double share);
 
-/* Where it turns, without what has drifted. */
+/* Place of its turn, free of drift. */
 double fg_load_stroke_turn(const fg_load_stroke *stroke, bool high);
 
 /* Index of the first sample at x or beyond; the count where there is none. */

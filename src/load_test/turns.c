@@ -1,4 +1,4 @@
-/* Where a loading branch turns: its force, and the place that the branch has at that force.
+/* Turning point of a loading branch: its force, and the place of the branch at that force.
  *
  * The extreme of a noisy displacement lies beyond the turn, and where the force is controlled its
  * sample may be any of several about it. An error of the place d counts (s - K) d in the force
