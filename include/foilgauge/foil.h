@@ -338,8 +338,9 @@ typedef struct fg_disc {
   double radius_range_mm[2];
   fg_disc_point *stations; /* owned; the edge as it was found, for measuring it again */
   size_t station_count;
-  double loss_variance;  /* share by which JPEG's steps raise the variance that the edge tells */
-  double level_doubt_mm; /* what the level of the edge may move the radius by */
+  double loss_variance;     /* share by which JPEG's steps raise the variance that the edge tells */
+  double level_doubt_mm;    /* what the level of the edge may move the radius by */
+  fg_picture_state picture; /* beside its edge */
   fg_calibrated calibrated;
 } fg_disc;
 
@@ -359,7 +360,8 @@ typedef struct fg_measurement {
   bool colour;        /* the scan holds colours */
   fg_channel channel; /* what of them was measured */
   fg_colour_lines colour_lines;
-  char warning[256]; /* what is odd about the file; empty when nothing is */
+  fg_picture_state picture; /* worst of all that was measured */
+  char warning[256];        /* what is odd about the file; empty when nothing is */
   fg_design design;
   fg_nominal nominal;
   bool light_on_dark;

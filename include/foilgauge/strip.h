@@ -13,6 +13,7 @@
 #include "foilgauge/status.h"
 
 #include "foilgauge/circle.h"
+#include "foilgauge/picture.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -73,9 +74,10 @@ typedef struct fg_strip {
   double loss_um;  /* u of each edge's place, outwards or inwards with the other, by what the scan
                       has lost by JPEG; 0: nothing */
   double loss_variance; /* and share by which it raises the variance that the residuals tell */
-  double tone_um;    /* of thickness per unit of ln gamma: both edges lie where the light is half */
-  unsigned facts;    /* fg_strip_fact */
-  int64_t box_px[4]; /* x, y, width, height of what belongs to it in the scan */
+  double tone_um; /* of thickness per unit of ln gamma: both edges lie where the light is half */
+  unsigned facts; /* fg_strip_fact */
+  fg_picture_state picture; /* beside its edges */
+  int64_t box_px[4];        /* x, y, width, height of what belongs to it in the scan */
 } fg_strip;
 
 void fg_strip_free(fg_strip *strip); /* frees the stations; NULL is fine */

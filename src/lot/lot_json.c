@@ -48,10 +48,12 @@ static void write_counts(fg_json *json, const fg_lot_analysis *analysis) {
   fg_json_object_end(json);
 }
 
-static void write_flags(fg_json *json, unsigned flags) {
+static void write_flags(fg_json *json, const fg_foil *foil) {
   fg_json_array(json, "flags");
   for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
-    if (flags & words->flag) fg_json_string(json, NULL, words->name);
+    if (foil->flags & words->flag) fg_json_string(json, NULL, words->name);
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
+    if (foil->strip.picture.findings & found->finding) fg_json_string(json, NULL, found->name);
   fg_json_array_end(json);
 }
 
@@ -63,7 +65,7 @@ static void write_foil(fg_json *json, const fg_lot_analysis *analysis, const fg_
   fg_json_integer(json, "input", (int64_t)foil->item);
   fg_json_string(json, "label", fg_manifest_label(manifest, foil->item));
   fg_json_integer(json, "number", foil->foil->number);
-  write_flags(json, foil->foil->flags);
+  write_flags(json, foil->foil);
   fg_json_verdict(json, foil->verdict);
   bool rejected =
       fg_foil_defect(&analysis->lot->settings.design, foil->foil, defect, sizeof defect);

@@ -52,10 +52,13 @@ static void write_calibrated(fg_json *json, fg_quantity_owner owner,
   fg_json_array_end(json);
 }
 
-static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags) {
+static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags,
+                        unsigned findings) {
   fg_json_array(json, "flags");
   for (; words->name; words++)
     if (flags & words->flag) fg_json_string(json, NULL, words->name);
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
+    if (findings & found->finding) fg_json_string(json, NULL, found->name);
   fg_json_array_end(json);
 }
 
@@ -72,7 +75,7 @@ static void write_parts(fg_json *json, const char *name, const fg_foil *foil,
     const fg_foil_part part = fg_part_at(foil, owner, i);
     fg_json_object(json, NULL);
     fg_json_integer(json, "number", part.number);
-    write_flags(json, flag_words(owner), part.flags);
+    write_flags(json, flag_words(owner), part.flags, 0);
     write_values(json, owner, part.object);
     write_calibrated(json, owner, part.calibrated);
     fg_json_object_end(json);
@@ -83,7 +86,7 @@ static void write_parts(fg_json *json, const char *name, const fg_foil *foil,
 static void write_foil(fg_json *json, const fg_foil *foil) {
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
-  write_flags(json, fg_foil_flag_words(), foil->flags);
+  write_flags(json, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   write_values(json, FG_QUANTITY_OF_FOIL, foil);
   write_calibrated(json, FG_QUANTITY_OF_FOIL, &foil->calibrated);
@@ -161,17 +164,31 @@ static const cJSON *member(const cJSON *object, const char *name) {
   return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
+static unsigned find_flag(const fg_flag_words *words, const char *name) {
+  while (words->name && strcmp(name, words->name))
+    words++;
+  return words->flag;
+}
+
+static unsigned find_finding(const char *name) {
+  const fg_picture_words *words = fg_picture_finding_words();
+  while (words->name && strcmp(name, words->name))
+    words++;
+  return words->finding;
+}
+
+/* `findings` NULL: of a part, which has none of its own. */
 static fg_status read_flags(fg_context *ctx, const cJSON *object, const fg_flag_words *words,
-                            unsigned *flags) {
-  const cJSON *list = member(object, "flags"), *name;
+                            unsigned *flags, unsigned *findings) {
+  const cJSON *list = member(object, "flags"), *item;
   *flags = 0;
   if (!cJSON_IsArray(list)) return fail_record(ctx, "no flags");
-  cJSON_ArrayForEach(name, list) {
-    const fg_flag_words *row = words;
-    while (row->name && !(cJSON_IsString(name) && !strcmp(name->valuestring, row->name)))
-      row++;
-    if (!row->name) return fail_record(ctx, "an unknown flag");
-    *flags |= row->flag;
+  cJSON_ArrayForEach(item, list) {
+    const char *name = cJSON_IsString(item) ? item->valuestring : "";
+    unsigned flag = find_flag(words, name), finding = findings ? find_finding(name) : 0;
+    if (!flag && !finding) return fail_record(ctx, "an unknown flag");
+    *flags |= flag;
+    if (findings) *findings |= finding;
   }
   return FG_OK;
 }
@@ -227,7 +244,7 @@ static fg_status read_number(fg_context *ctx, const cJSON *object, int *number) 
 static fg_status read_part(fg_context *ctx, const cJSON *object, fg_quantity_owner owner,
                            fg_foil_part *part, void *target, fg_calibrated *calibrated) {
   FG_TRY(read_number(ctx, object, &part->number));
-  FG_TRY(read_flags(ctx, object, flag_words(owner), &part->flags));
+  FG_TRY(read_flags(ctx, object, flag_words(owner), &part->flags, NULL));
   FG_TRY(read_values(ctx, object, owner, target));
   return read_calibrated(ctx, object, owner, calibrated);
 }
@@ -269,7 +286,8 @@ static fg_status read_beams(fg_context *ctx, const cJSON *beams, fg_foil *foil) 
 static fg_status read_foil(fg_context *ctx, const cJSON *object, fg_foil *foil) {
   const cJSON *error = member(object, "error");
   FG_TRY(read_number(ctx, object, &foil->number));
-  FG_TRY(read_flags(ctx, object, fg_foil_flag_words(), &foil->flags));
+  FG_TRY(
+      read_flags(ctx, object, fg_foil_flag_words(), &foil->flags, &foil->strip.picture.findings));
   FG_TRY(read_values(ctx, object, FG_QUANTITY_OF_FOIL, foil));
   FG_TRY(read_calibrated(ctx, object, FG_QUANTITY_OF_FOIL, &foil->calibrated));
   if (cJSON_IsString(error))

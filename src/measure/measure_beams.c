@@ -351,6 +351,7 @@ static fg_status make_foil(fg_context *ctx, fg_flat_part *part, fg_measurement *
   fg_foil *foil = &m->foils[m->foil_count++];
   fg_foil_give_up(foil, "");
   foil->flags = 0;
+  foil->strip.picture = fg_picture_unknown();
   place_foil(part, m, foil);
   foil->beams = part->beams;
   foil->beam_count = part->beam_count;

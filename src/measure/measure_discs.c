@@ -89,6 +89,7 @@ static fg_status fit_edge(fg_context *ctx, const disc_work *work, const fg_disc_
 }
 
 static void describe(const disc_work *work, const fg_disc_edge *edge, fg_disc *disc) {
+  disc->picture = edge->picture;
   double contrast = fabs(edge->inside - edge->outside);
   disc->bright = edge->inside > edge->outside;
   disc->hole = fabs(edge->outside - work->background) > BACKGROUND_SHARE * contrast;

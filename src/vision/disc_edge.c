@@ -206,6 +206,7 @@ fg_status fg_disc_edge_measure(fg_context *ctx, const fg_tiles *tiles, const fg_
                                fg_disc_edge *edge) {
   fg_disc_work work = {.tiles = tiles, .shape = shape, .gamma = tone->gamma};
   memset(edge, 0, sizeof *edge);
+  edge->picture = fg_picture_unknown();
   edge->gamma = tone->gamma;
   fg_status status = run(ctx, &work, candidate, tone, edge);
   fg_disc_work_free(&work);

@@ -14,6 +14,8 @@
 
 #include <stdbool.h>
 
+#include "foilgauge/picture.h"
+
 #include "vision/disc_find.h"
 #include "vision/ring.h"
 #include "vision/step_model.h"
@@ -36,7 +38,8 @@ typedef struct fg_disc_edge {
   size_t count;
   double inside, outside; /* levels, 8-bit counts */
   double blur_px, noise, gamma;
-  double sector_rms_px;  /* of the sectors' edges about the circle */
+  double sector_rms_px; /* of the sectors' edges about the circle */
+  fg_picture_state picture;
   double level_doubt_px; /* what all edge_px may be wrong by together: for the tone curve's
                             doubt, and, where the scale ends at white, for light a tenth of
                             the contrast beyond it */

@@ -176,6 +176,7 @@ fg_status fg_edges_measure(fg_context *ctx, const fg_tiles *tiles,
   FG_TRY_EXIT(
       fg_memory_allocate(ctx, reference.count, sizeof *strip->stations, (void **)&strip->stations));
   strip->facts = trace->facts;
+  strip->picture = fg_picture_unknown();
   FG_TRY_EXIT(run(ctx, &work, &strip->facts));
   strip->count = reference.count;
   fill_stations(&work, dpi, strip);

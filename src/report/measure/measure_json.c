@@ -9,6 +9,7 @@
 #include "report/correction_words.h"
 #include "report/design/calibration_json.h"
 #include "report/measure/colour_lines_report.h"
+#include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
 #include "report/quantity_json.h"
@@ -115,11 +116,15 @@ static void write_input(fg_json *json, const fg_report_scan *scan) {
   fg_json_object_end(json);
 }
 
-static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags) {
+/* Flags of a foil or its part, and what was found of the picture that it was measured in. */
+static void write_flags(fg_json *json, const fg_flag_words *words, unsigned flags,
+                        unsigned findings) {
   fg_json_array(json, "flags");
   fg_json_line(json);
   for (; words->name; words++)
     if (flags & words->flag) fg_json_string(json, NULL, words->name);
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
+    if (findings & found->finding) fg_json_string(json, NULL, found->name);
   fg_json_array_end(json);
   fg_json_line_end(json);
 }
@@ -142,7 +147,7 @@ static void write_bump(fg_json *json, const fg_design *design, const fg_foil *fo
                        const fg_bump *bump) {
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", bump->number);
-  write_flags(json, fg_bump_flag_words(), fg_bump_flags(design, foil, bump));
+  write_flags(json, fg_bump_flag_words(), fg_bump_flags(design, foil, bump), 0);
   fg_json_string(json, "verdict", fg_verdict_word(fg_bump_verdict(design, foil, bump)));
   fg_json_quantities(json, FG_QUANTITY_OF_BUMP, "", bump, true);
   write_covariance(json, bump->covariance);
@@ -208,7 +213,7 @@ static void write_beam(fg_json *json, const fg_design *design, const fg_foil *fo
                        const fg_beam *beam) {
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", beam->number);
-  write_flags(json, fg_beam_flag_words(), fg_beam_flags(design, foil, beam));
+  write_flags(json, fg_beam_flag_words(), fg_beam_flags(design, foil, beam), 0);
   fg_json_string(json, "verdict", fg_verdict_word(fg_beam_verdict(design, foil, beam)));
   fg_json_quantities(json, FG_QUANTITY_OF_BEAM, "", beam, true);
   fg_json_numbers(json, "root_mm", (const double[]){beam->root_mm.x, beam->root_mm.y}, 2);
@@ -264,7 +269,7 @@ fg_status fg_json_foil(fg_context *ctx, fg_json *json, const fg_design *design,
   bool rejected = fg_foil_defect(design, foil, defect, sizeof defect);
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", foil->number);
-  write_flags(json, fg_foil_flag_words(), foil->flags);
+  write_flags(json, fg_foil_flag_words(), foil->flags, foil->strip.picture.findings);
   fg_json_numbers(json, "place_mm", foil->place_mm, 4);
   fg_json_string(json, "error", foil->error[0] ? foil->error : NULL);
   fg_json_verdict(json, decision.outcome.verdict);
@@ -286,7 +291,7 @@ fg_status fg_json_disc(fg_context *ctx, fg_json *json, const fg_design *design,
   FG_TRY(fg_disc_decide(ctx, design, disc, &decision));
   fg_json_object(json, NULL);
   fg_json_integer(json, "number", disc->number);
-  write_flags(json, fg_bump_flag_words(), fg_disc_flags(design, disc));
+  write_flags(json, fg_bump_flag_words(), fg_disc_flags(design, disc), disc->picture.findings);
   fg_json_bool(json, "hole", disc->hole);
   fg_json_bool(json, "bright", disc->bright);
   fg_json_verdict(json, decision.outcome.verdict);
@@ -306,6 +311,7 @@ static fg_status write_scan(fg_context *ctx, fg_json *json, const fg_report *rep
   fg_json_bool(json, "light_on_dark", measurement->light_on_dark);
   fg_json_integer(json, "specks", (int64_t)measurement->specks);
   fg_json_colour_lines(json, measurement);
+  fg_json_picture_state(json, measurement);
   fg_json_array(json, "foils");
   for (size_t i = 0; i < measurement->foil_count; i++)
     FG_TRY(fg_json_foil(ctx, json, report->design, &measurement->foils[i]));

@@ -8,16 +8,19 @@
 #include "report/drawing.h"
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/measure_page_tables.h"
+#include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
 #include "report/measure/uncertainty_budget.h"
 #include "report/provenance.h"
 
 static void put_flags(FILE *out, const fg_design *design, const fg_foil *foil) {
-  unsigned flags = fg_foil_flags_told(design, foil);
-  if (!flags) return;
+  unsigned flags = fg_foil_flags_told(design, foil), findings = foil->strip.picture.findings;
+  if (!flags && !findings) return;
   fputs("<ul class=\"flags\">\n", out);
   for (const fg_flag_words *words = fg_foil_flag_words(); words->name; words++)
     if (flags & words->flag) fprintf(out, "<li>%s</li>\n", words->plain);
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
+    if (findings & found->finding) fprintf(out, "<li>%s %s</li>\n", found->meaning, found->cure);
   fputs("</ul>\n", out);
 }
 
@@ -242,7 +245,10 @@ static fg_status put_foil_section(fg_context *ctx, FILE *out, const fg_report *r
   FG_TRY(put_picture(ctx, out, report, measurement, foil));
   if (measured) put_details(out, design, foil);
   if (measured && bumps) put_free_and_fitted(out);
-  if (foil == measurement->foils) fg_html_colour_lines(out, measurement);
+  if (foil == measurement->foils) {
+    fg_html_colour_lines(out, measurement);
+    fg_html_picture_state(out, measurement);
+  }
   if (measured) put_uncertainty(out, measurement, foil);
   return put_facts(ctx, out, design, measurement);
 }
@@ -296,6 +302,7 @@ static fg_status put_discs(fg_context *ctx, FILE *out, const fg_report *report,
   fputs("<h2>Every feature</h2>\n", out);
   fg_html_disc_table(out, report->design, measurement);
   fg_html_colour_lines(out, measurement);
+  fg_html_picture_state(out, measurement);
   put_uncertainty(out, measurement, NULL);
   FG_TRY(put_facts(ctx, out, report->design, measurement));
   fputs("</section>\n", out);

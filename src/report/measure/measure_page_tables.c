@@ -37,12 +37,18 @@ static void put_cell(FILE *out, const fg_design *design, const fg_quantity *row,
   fputs("</td>", out);
 }
 
-static void put_flag_cell(FILE *out, const fg_flag_words *words, unsigned flags) {
+static void put_flag_cell(FILE *out, const fg_flag_words *words, unsigned flags,
+                          unsigned findings) {
   const char *separator = "";
   fputs("<td class=\"words\">", out);
   for (; words->name; words++) {
     if (!(flags & words->flag)) continue;
     fprintf(out, "%s%s", separator, words->plain);
+    separator = "; ";
+  }
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++) {
+    if (!(findings & found->finding)) continue;
+    fprintf(out, "%s%s", separator, found->name);
     separator = "; ";
   }
   fputs("</td></tr>\n", out);
@@ -104,6 +110,7 @@ typedef struct row_state {
   bool unfitted;
   unsigned flags;
   const fg_flag_words *words;
+  unsigned findings; /* fg_picture_finding; a foil tells its own once, above its parts */
 } row_state;
 
 static row_state state_of(const fg_design *design, const table_rows *rows, const void *object) {
@@ -112,11 +119,12 @@ static row_state state_of(const fg_design *design, const table_rows *rows, const
   const fg_disc *disc = object;
   if (rows->owner == FG_QUANTITY_OF_BEAM)
     return (row_state){beam->number, beam->flags & FG_BEAM_NOT_FITTED,
-                       fg_beam_flags(design, rows->foil, beam), fg_beam_flag_words()};
+                       fg_beam_flags(design, rows->foil, beam), fg_beam_flag_words(), 0};
   if (rows->owner == FG_QUANTITY_OF_BUMP)
     return (row_state){bump->number, bump->flags & FG_BUMP_NOT_FITTED,
-                       fg_bump_flags(design, rows->foil, bump), fg_bump_flag_words()};
-  return (row_state){disc->number, false, fg_disc_flags(design, disc), fg_bump_flag_words()};
+                       fg_bump_flags(design, rows->foil, bump), fg_bump_flag_words(), 0};
+  return (row_state){disc->number, false, fg_disc_flags(design, disc), fg_bump_flag_words(),
+                     disc->picture.findings};
 }
 
 /* What the symbols of the heads stand for. */
@@ -141,7 +149,7 @@ static void put_table(FILE *out, const fg_design *design, const table_rows *rows
       fprintf(out, "<tr><td>%d</td>", state.number);
     for (size_t k = 0; k < count && !state.unfitted; k++)
       put_cell(out, design, columns[k], object, !rows->foil || fg_foil_is_measured(rows->foil));
-    put_flag_cell(out, state.words, state.flags);
+    put_flag_cell(out, state.words, state.flags, state.findings);
   }
   fputs("</tbody></table></div>\n", out);
 }

@@ -10,6 +10,7 @@
 #include "report/correction_words.h"
 #include "report/measure/colour_lines_report.h"
 #include "report/measure/outcome_words.h"
+#include "report/measure/picture_report.h"
 #include "report/measure/scan_model_words.h"
 
 enum { DECIMALS_FINE = 5, DECIMALS_MAX = 7 };
@@ -97,6 +98,11 @@ static void put_flags(FILE *out, const fg_flag_words *words, unsigned flags) {
     if (flags & words->flag) fprintf(out, "  %s", words->name);
 }
 
+static void put_findings(FILE *out, unsigned findings) {
+  for (const fg_picture_words *found = fg_picture_finding_words(); found->name; found++)
+    if (findings & found->finding) fprintf(out, "  %s", found->name);
+}
+
 static void put_row(FILE *out, const column *columns, size_t count, int number,
                     const void *object) {
   fprintf(out, "%4d", number);
@@ -165,6 +171,7 @@ static void put_discs(FILE *out, const fg_design *design, const fg_measurement *
   for (size_t i = 0; i < measurement->disc_count; i++) {
     put_row(out, columns, count, measurement->discs[i].number, &measurement->discs[i]);
     put_flags(out, fg_bump_flag_words(), fg_disc_flags(design, &measurement->discs[i]));
+    put_findings(out, measurement->discs[i].picture.findings);
     fputc('\n', out);
   }
 }
@@ -267,6 +274,7 @@ static fg_status put_scan(fg_context *ctx, FILE *out, const fg_design *design,
   if (measurement->colour) fprintf(out, ", channel %s", fg_channel_word(measurement->channel));
   fputc('\n', out);
   fg_text_colour_lines(out, measurement);
+  fg_text_picture_state(out, measurement);
   FG_TRY(fg_text_scan_model(ctx, out, measurement->model));
   for (size_t i = 0; i < measurement->foil_count; i++)
     put_foil(out, design, &measurement->foils[i]);

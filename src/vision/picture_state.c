@@ -1,0 +1,84 @@
+/* The state of a picture: one that is not known, and the worse of two. */
+#include "foilgauge/picture.h"
+
+#include <math.h>
+
+fg_picture_state fg_picture_unknown(void) {
+  return (fg_picture_state){
+      .gray_levels = NAN,
+      .missing_levels = NAN,
+      .clipped_low = NAN,
+      .clipped_high = NAN,
+      .undershoot = NAN,
+      .overshoot = NAN,
+      .block_noise = NAN,
+      .blur_px = {NAN, NAN},
+      .blur_direction_deg = NAN,
+      .noise = NAN,
+      .noise_correlation = {NAN, NAN},
+      .shadow = NAN,
+      .shadow_direction_deg = NAN,
+      .row_jumps = NAN,
+      .row_jump_px = NAN,
+      .shading = NAN,
+      .gamma = NAN,
+      .u_gamma = NAN,
+      .tone_s = NAN,
+      .sharpen_amount = NAN,
+      .sharpen_radius_px = NAN,
+      .level = NAN,
+      .u_level = NAN,
+  };
+}
+
+/* fmax and fmin prefer the number to NaN. */
+static void take_more(double *value, double other) {
+  *value = fmax(*value, other);
+}
+
+/* Takes the larger of two magnitudes, and says whether it was the other. */
+static int take_larger(double *value, double other) {
+  if (!(fabs(other) > fabs(*value)) && !isnan(*value)) return 0;
+  *value = other;
+  return 1;
+}
+
+static void merge_blur(fg_picture_state *state, const fg_picture_state *other) {
+  double ratio = state->blur_px[0] / state->blur_px[1];
+  if (!(other->blur_px[0] / other->blur_px[1] > ratio) && !isnan(ratio)) return;
+  state->blur_px[0] = other->blur_px[0];
+  state->blur_px[1] = other->blur_px[1];
+  state->blur_direction_deg = other->blur_direction_deg;
+}
+
+static void merge_tone(fg_picture_state *state, const fg_picture_state *other) {
+  if (take_larger(&state->u_level, other->u_level)) {
+    state->level = other->level;
+    state->gamma = other->gamma;
+    state->u_gamma = other->u_gamma;
+  }
+  take_larger(&state->tone_s, other->tone_s);
+  if (take_larger(&state->sharpen_amount, other->sharpen_amount))
+    state->sharpen_radius_px = other->sharpen_radius_px;
+}
+
+void fg_picture_merge(fg_picture_state *state, const fg_picture_state *other) {
+  state->gray_levels = fmin(state->gray_levels, other->gray_levels);
+  take_more(&state->missing_levels, other->missing_levels);
+  take_more(&state->clipped_low, other->clipped_low);
+  take_more(&state->clipped_high, other->clipped_high);
+  take_more(&state->undershoot, other->undershoot);
+  take_more(&state->overshoot, other->overshoot);
+  take_more(&state->block_noise, other->block_noise);
+  take_more(&state->noise, other->noise);
+  take_more(&state->noise_correlation[0], other->noise_correlation[0]);
+  take_more(&state->noise_correlation[1], other->noise_correlation[1]);
+  take_more(&state->row_jumps, other->row_jumps);
+  take_more(&state->shading, other->shading);
+  take_larger(&state->row_jump_px, other->row_jump_px);
+  if (take_larger(&state->shadow, other->shadow))
+    state->shadow_direction_deg = other->shadow_direction_deg;
+  merge_blur(state, other);
+  merge_tone(state, other);
+  state->findings |= other->findings;
+}
