@@ -11,7 +11,8 @@
  *   optical blur (Gaussian, sd `blur_px`) and the pixel's own square (1 px box, not counted in
  *   blur_px); halo; light = background + contrast × coverage, linear; shading; tone curve
  *   DN = 255 light^(1/gamma), where background and background + contrast keep their DN; noise;
- *   clipping; rounding to 8 or 16 bit (full scale 65535 = 255 × 257); JPEG blocks.
+ *   clipping; tone_curve; rounding to 8 or 16 bit (full scale 65535 = 255 × 257); unsharp_mask;
+ *   levels; JPEG blocks.
  *
  * Members of a spec (default in brackets; lengths in mm of the midline, unless the name says else):
  *   seed [0], width_px, height_px [fitted to the content], margin_px [80], comment
@@ -48,6 +49,15 @@
  *     [1 DN], noise_correlation [0] to the next pixel along x and y, clip_white, shading {x, y,
  *     quadratic}: relative, at the picture's edges
  *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
+ *     what the driver does with the numbers, each channel by itself:
+ *       tone_curve [[in, out], ...]: 2 to 256 points in counts of 255, in ascending, out not
+ *         falling; straight between points, constant beyond them
+ *       unsharp_mask {amount_pct, radius_px [1], threshold [0]}: out = in + amount (in -
+ *         gaussian(in)) where the two differ by the threshold at least, on the rounded numbers and
+ *         clipped to the scale; the Gaussian's sd is the radius, the outermost pixels go on beyond
+ *         the picture
+ *       levels [all]: the number of gray levels, which divide the scale evenly; 2 are one bit, at
+ *         threshold [127.5 of 255]: white from there on
  *     rows_lost[] {y_mm, count}: behind that place of the picture `count` rows of the glass were
  *       never read; negative: the carriage stood still, and the row before it is seen as often
  *       again (its noise is new). Whole rows, sharp; the truth has it as scan.row_step of count
@@ -74,7 +84,7 @@
  *       halo {fraction, length_px}: that share of the light goes to two Gaussians, 0.6 and 1.6 L
  *       side_wall {amplitude, direction_deg, length_px, gap_px}: a band (negative: a shadow) beside
  *         edges that face the direction, decaying over the length, times the cosine to it
- *       jpeg {quality}
+ *       jpeg {quality}: the finished picture, after all the driver did, as JPEG leaves it
  *   effects[] {id, parameters}: src/render/spec_effects.c holds the table. Free-form curves have
  *     knots [[coordinate, um], ...]: 2 to 64, ascending; natural cubic spline, constant beyond:
  *     free.scan.x, free.scan.y: mm; moves "x" or "y" [the coordinate's]; at most 100 um per mm

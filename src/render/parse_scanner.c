@@ -145,6 +145,10 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_OTHER("rows_lost"),
       FG_SPEC_OTHER("chip_seams"),
       FG_SPEC_OTHER("colour_lines"),
+      FG_SPEC_OTHER("tone_curve"),
+      FG_SPEC_OTHER("unsharp_mask"),
+      FG_SPEC_OTHER("levels"),
+      FG_SPEC_OTHER("threshold"),
       FG_SPEC_END,
   };
   static const fg_member shading[] = {
@@ -167,6 +171,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   fg_place rough = fg_place_inside(place, "rough");
   FG_TRY(read_rough(&rough, fg_spec_member(object, "rough"), scanner));
   FG_TRY(check_scanner(place, object, scanner));
+  FG_TRY(fg_driver_read(place, object, scanner->bits, &scanner->driver));
   return read_colour_lines(place, object, scanner);
 }
 
@@ -187,5 +192,6 @@ fg_scanner fg_spec_default_scanner(void) {
       .edge_correlation_um = 50,
       .halo_length_px = 15,
       .wall_length_px = 15,
+      .driver = {.unsharp = {.radius_px = 1}, .threshold = NAN},
   };
 }

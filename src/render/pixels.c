@@ -1,10 +1,10 @@
-/* From coverage to pixels, row after row: light, shading, tone, noise, clipping, rounding. */
+/* From coverage to pixels, row after row: light, shading, tone, noise, clipping, the driver's tone
+ * curve, rounding; what the driver does then is in driver_rows.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
-#include "render/jpeg.h"
 #include "render/random.h"
 #include "render/tile.h"
 
@@ -24,7 +24,7 @@ typedef struct picture {
   void *pixels; /* strip_rows rows of `channels` values a pixel */
   int channels;
   fg_noise_table table;
-  fg_jpeg jpeg;
+  fg_driver driver;
 } picture;
 
 static fg_status make_tone(fg_context *ctx, picture *p) {
@@ -34,6 +34,16 @@ static fg_status make_tone(fg_context *ctx, picture *p) {
   for (int i = 0; i < TONE_STEPS + 2; i++)
     p->tone[i] = (float)(255 * pow((double)i / TONE_STEPS, 1 / gamma));
   return FG_OK;
+}
+
+static fg_status create_driver(fg_context *ctx, fg_render_row *row, void *user, picture *p) {
+  const fg_scanner *scanner = &p->spec->scanner;
+  const fg_driver_picture finished = {.width = p->width,
+                                      .height = p->spec->truth.height_px,
+                                      .channels = p->channels,
+                                      .wide = scanner->bits == 16,
+                                      .jpeg_quality = scanner->jpeg_quality};
+  return fg_driver_create(ctx, &scanner->driver, &finished, row, user, &p->driver);
 }
 
 static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
@@ -64,11 +74,11 @@ static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int
     p->column_shading[x] = (float)(1 + shading[0] * u + shading[2] * u * u);
   }
   fg_noise_table_fill(&p->table);
-  if (spec->scanner.jpeg_quality) fg_jpeg_init(spec->scanner.jpeg_quality, &p->jpeg);
   return FG_OK;
 }
 
 static void picture_free(picture *p) {
+  fg_driver_free(&p->driver);
   fg_tiler_free(&p->tiler);
   fg_band_free(&p->band);
   free(p->coverage);
@@ -136,11 +146,13 @@ static void quantise_row(const picture *p, int line, const float *values, void *
   float top = isnan(scanner->clip_white) ? 255.0F : (float)scanner->clip_white;
   float sd = (float)scanner->noise;
   bool wide = scanner->bits == 16;
+  const fg_tone_curve *tone = scanner->driver.tone.count ? &scanner->driver.tone : NULL;
   uint8_t *narrow_out = (uint8_t *)pixels + line;
   uint16_t *wide_out = (uint16_t *)pixels + line;
   for (int64_t x = 0; x < p->width; x++) {
     float value = values[x] + sd * p->noise[x];
     value = value < 0 ? 0 : value > top ? top : value;
+    if (tone) value = fg_tone_curve_value(tone, value);
     if (wide)
       wide_out[x * p->channels] = (uint16_t)(value * 257 + 0.5F);
     else
@@ -159,8 +171,7 @@ static void draw_channel(picture *p, int line, int64_t y0, int64_t rows, size_t 
   }
 }
 
-static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0, fg_render_row *row,
-                            void *user) {
+static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0) {
   int64_t rows = p->spec->truth.height_px - y0;
   if (rows > p->strip_rows) rows = p->strip_rows;
   size_t row_bytes =
@@ -168,10 +179,8 @@ static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0, fg_render_r
   FG_TRY(fg_band_fill(ctx, &p->sampler, y0, fg_tiler_reach_px(&p->tiler), &p->band));
   for (int line = 0; line < p->channels; line++)
     draw_channel(p, line, y0, rows, row_bytes);
-  if (p->spec->scanner.jpeg_quality)
-    fg_jpeg_squeeze(&p->jpeg, p->pixels, p->width, rows, p->padded);
   for (int64_t y = 0; y < rows; y++)
-    FG_TRY(row(ctx, user, y0 + y, (const char *)p->pixels + (size_t)y * row_bytes));
+    FG_TRY(fg_driver_take_row(ctx, &p->driver, (char *)p->pixels + (size_t)y * row_bytes));
   return FG_OK;
 }
 
@@ -181,8 +190,9 @@ fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t st
   fg_status status = FG_OK;
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *p, (void **)&p));
   FG_TRY_EXIT(picture_create(ctx, spec, strip_rows, p));
+  FG_TRY_EXIT(create_driver(ctx, row, user, p));
   for (int64_t y = 0; y < spec->truth.height_px; y += p->strip_rows)
-    FG_TRY_EXIT(draw_strip(ctx, p, y, row, user));
+    FG_TRY_EXIT(draw_strip(ctx, p, y));
 exit:
   picture_free(p);
   free(p);

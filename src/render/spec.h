@@ -8,6 +8,7 @@
 
 #include "foilgauge/render.h"
 #include "render/colour_lines.h"
+#include "render/driver.h"
 #include "render/jumps.h"
 #include "render/spec_effects.h"
 
@@ -96,6 +97,7 @@ typedef struct fg_scanner {
   int jpeg_quality; /* 0: none */
   fg_jump_requests jumps;
   fg_colour_lines colour;
+  fg_driver_settings driver;
 } fg_scanner;
 
 /* A piece of a midline, in mm of true coordinates. Arc length runs from the lip to the free end. */

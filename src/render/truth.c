@@ -173,6 +173,7 @@ static void put_scan(fg_json *json, const fg_render_spec *spec) {
   fg_json_string(json, "correlation_form", scanner->edge_exponential ? "exponential" : "gaussian");
   fg_json_number(json, "halo_fraction", scanner->halo_fraction);
   fg_json_number(json, "side_wall_amplitude", scanner->wall_amplitude);
+  fg_driver_put_truth(json, &scanner->driver);
   fg_json_number(json, "seed", (double)spec->seed);
   fg_json_object_end(json);
 }

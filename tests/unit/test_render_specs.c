@@ -15,6 +15,7 @@ typedef struct bad_spec {
 
 #define HEAD "{\"schema\":\"foilgauge/render/1\","
 
+#define SCANNER(members)     HEAD "\"scanner\":{" members "}}"
 #define ROUGH(members)       HEAD "\"scanner\":{\"rough\":{" members "}}}"
 #define JUMPS(name, members) HEAD "\"scanner\":{\"" name "\":" members "}}"
 #define LIFT(members)        HEAD "\"effects\":[{\"id\":\"free.bump.index\"" members "}]}"
@@ -100,6 +101,27 @@ static void bad_specs_are_refused_by_name(void **state) {
       {JUMPS("chip_seams", "[{\"x_mm\":1,\"shift\":3}]"), "shift is 3: there is no such member"},
       {JUMPS("chip_seams", "[{\"x_mm\":900,\"shift_um\":3}]"),
        "scanner.chip_seams[0] is at 900 mm: must be within the picture's"},
+      {SCANNER("\"tone_curve\":3"), "scanner.tone_curve is 3: must be an array of 2 to 256 points"},
+      {SCANNER("\"tone_curve\":[[0,0]]"), "must be an array of 2 to 256 points"},
+      {SCANNER("\"tone_curve\":[[0,0],[9]]"), "scanner.tone_curve[1] is [9]: must be [in, out]"},
+      {SCANNER("\"tone_curve\":[[0,0],[9,null]]"), "tone_curve[1].out is null: must be a number"},
+      {SCANNER("\"tone_curve\":[[0,0],[300,9]]"), "tone_curve[1].in is 300: must be a number from"},
+      {SCANNER("\"tone_curve\":[[0,0],[0,9]]"), "in must ascend and out must not fall"},
+      {SCANNER("\"tone_curve\":[[0,20],[9,10]]"), "and the one before is [0, 20]"},
+      {SCANNER("\"unsharp_mask\":150"), "scanner.unsharp_mask is 150: must be an object"},
+      {SCANNER("\"unsharp_mask\":{}"), "scanner.unsharp_mask.amount_pct is missing: say how much"},
+      {SCANNER("\"unsharp_mask\":{\"amount_pct\":-5}"),
+       "amount_pct is -5: must be a number from 0"},
+      {SCANNER("\"unsharp_mask\":{\"amount_pct\":5,\"radius_px\":0}"), "radius_px is 0: must be"},
+      {SCANNER("\"unsharp_mask\":{\"amount_pct\":5,\"threshold\":256}"), "threshold is 256: must"},
+      {SCANNER("\"unsharp_mask\":{\"amount\":5}"), "amount is 5: there is no such member"},
+      {SCANNER("\"levels\":1"), "scanner.levels is 1: must be a number from 2 to 256"},
+      {SCANNER("\"levels\":257"), "scanner.levels is 257: must be a number from 2 to 256"},
+      {SCANNER("\"levels\":2.5"), "scanner.levels is 2.5: must be a whole number"},
+      {SCANNER("\"bits\":16,\"levels\":65537"), "scanner.levels is 65537: must be a number"},
+      {SCANNER("\"threshold\":100"), "scanner.threshold is 100: belongs to two levels"},
+      {SCANNER("\"levels\":4,\"threshold\":100"), "threshold is 100: belongs to two levels"},
+      {SCANNER("\"levels\":2,\"threshold\":-1"), "scanner.threshold is -1: must be a number"},
       {HEAD "\"effects\":[{\"id\":\"scan.magic\"}]}", "effects[0].id is \"scan.magic\""},
       {HEAD "\"effects\":[{\"id\":\"scan.scale_y\"}]}", "effects[0].value is missing"},
       {HEAD "\"effects\":[{\"id\":\"scan.scale_y\",\"value\":0.001,\"x\":1}]}",

@@ -1,0 +1,117 @@
+#include "render/driver.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double FULL_SCALE = 255;
+
+static fg_status read_tone_point(const fg_place *place, size_t index, const cJSON *item,
+                                 fg_tone_curve *tone) {
+  char name[32], what[128];
+  snprintf(name, sizeof name, "tone_curve[%zu]", index);
+  if (!cJSON_IsArray(item) || cJSON_GetArraySize(item) != 2)
+    return fg_member_fail(place, name, item, "must be [in, out]");
+  fg_place inner = fg_place_inside(place, name);
+  FG_TRY(fg_member_number(&inner, "in", item->child, 0, FULL_SCALE, &tone->in[index]));
+  FG_TRY(fg_member_number(&inner, "out", item->child->next, 0, FULL_SCALE, &tone->out[index]));
+  if (index == 0) return FG_OK;
+  double in = tone->in[index - 1], out = tone->out[index - 1];
+  if (tone->in[index] > in && tone->out[index] >= out) return FG_OK;
+  snprintf(what, sizeof what,
+           "in must ascend and out must not fall, and the one before is [%g, %g]", in, out);
+  return fg_member_fail(place, name, item, what);
+}
+
+/* Where to look for a count: the last point at or below its whole part. */
+static void index_tone(fg_tone_curve *tone) {
+  size_t point = 0;
+  for (int i = 0; i < FG_TONE_COUNTS; i++) {
+    while (point + 1 < tone->count && tone->in[point + 1] <= i)
+      point++;
+    tone->first[i] = point;
+  }
+}
+
+static fg_status read_tone(const fg_place *place, const cJSON *array, fg_tone_curve *tone) {
+  if (!array) return FG_OK;
+  if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) < 2 ||
+      cJSON_GetArraySize(array) > FG_TONE_POINTS_MAX)
+    return fg_member_fail(place, "tone_curve", array, "must be an array of 2 to 256 points");
+  const cJSON *item;
+  size_t index = 0;
+  cJSON_ArrayForEach(item, array) FG_TRY(read_tone_point(place, index++, item, tone));
+  tone->count = index;
+  index_tone(tone);
+  return FG_OK;
+}
+
+static fg_status read_unsharp(const fg_place *place, const cJSON *object, fg_unsharp_mask *mask) {
+  static const fg_member table[] = {
+      {"amount_pct", FG_MEMBER_NUMBER, offsetof(fg_unsharp_mask, amount_pct), 0, 1000},
+      {"radius_px", FG_MEMBER_NUMBER, offsetof(fg_unsharp_mask, radius_px), 0.1, 30},
+      {"threshold", FG_MEMBER_NUMBER, offsetof(fg_unsharp_mask, threshold), 0, 255},
+      {0}};
+  if (!object) return FG_OK;
+  fg_place inner = fg_place_inside(place, "unsharp_mask");
+  FG_TRY(fg_members_read(&inner, object, table, mask));
+  if (!cJSON_GetObjectItemCaseSensitive(object, "amount_pct"))
+    return fg_member_fail(&inner, "amount_pct", NULL, "say how much, in percent");
+  return FG_OK;
+}
+
+static fg_status read_levels(const fg_place *place, const cJSON *scanner, int bits,
+                             fg_driver_settings *settings) {
+  const cJSON *levels = cJSON_GetObjectItemCaseSensitive(scanner, "levels");
+  const cJSON *threshold = cJSON_GetObjectItemCaseSensitive(scanner, "threshold");
+  double number = 0;
+  if (levels) FG_TRY(fg_member_number(place, "levels", levels, 2, 1 << bits, &number));
+  if (number != floor(number))
+    return fg_member_fail(place, "levels", levels, "must be a whole number");
+  settings->levels = (int)number;
+  if (!threshold) return FG_OK;
+  if (settings->levels != 2)
+    return fg_member_fail(place, "threshold", threshold, "belongs to two levels: \"levels\": 2");
+  return fg_member_number(place, "threshold", threshold, 0, FULL_SCALE, &settings->threshold);
+}
+
+fg_status fg_driver_read(const fg_place *place, const cJSON *scanner, int bits,
+                         fg_driver_settings *settings) {
+  FG_TRY(
+      read_tone(place, cJSON_GetObjectItemCaseSensitive(scanner, "tone_curve"), &settings->tone));
+  FG_TRY(read_unsharp(place, cJSON_GetObjectItemCaseSensitive(scanner, "unsharp_mask"),
+                      &settings->unsharp));
+  return read_levels(place, scanner, bits, settings);
+}
+
+static void put_unsharp(fg_json *json, const fg_unsharp_mask *mask) {
+  fg_json_object(json, "unsharp_mask");
+  fg_json_number(json, "amount_pct", mask->amount_pct);
+  fg_json_number(json, "radius_px", mask->radius_px);
+  fg_json_number(json, "threshold", mask->threshold);
+  fg_json_object_end(json);
+}
+
+void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings) {
+  const fg_tone_curve *tone = &settings->tone;
+  if (tone->count) {
+    fg_json_array(json, "tone_curve");
+    for (size_t i = 0; i < tone->count; i++)
+      fg_json_numbers(json, NULL, (const double[]){tone->in[i], tone->out[i]}, 2);
+    fg_json_array_end(json);
+  }
+  if (settings->unsharp.amount_pct > 0) put_unsharp(json, &settings->unsharp);
+  if (settings->levels) fg_json_number(json, "levels", settings->levels);
+  if (isfinite(settings->threshold)) fg_json_number(json, "threshold", settings->threshold);
+}
+
+float fg_tone_curve_value(const fg_tone_curve *tone, float count) {
+  double at = (double)count;
+  size_t last = tone->count - 1;
+  if (at <= tone->in[0]) return (float)tone->out[0];
+  if (at >= tone->in[last]) return (float)tone->out[last];
+  size_t i = tone->first[(int)at];
+  while (at >= tone->in[i + 1])
+    i++;
+  double share = (at - tone->in[i]) / (tone->in[i + 1] - tone->in[i]);
+  return (float)(tone->out[i] + share * (tone->out[i + 1] - tone->out[i]));
+}

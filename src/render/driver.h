@@ -1,0 +1,80 @@
+/* What a scanner's driver does to the numbers that the sensor gave: tone curve, unsharp mask, gray
+ * levels; and JPEG, where the picture once was one.
+ *
+ * The tone curve bends the sensor's number, with its noise, before it is rounded to the bits of the
+ * scan. What follows works on rounded numbers, as in drivers. */
+#ifndef FG_RENDER_DRIVER_H
+#define FG_RENDER_DRIVER_H
+
+#include "core/json_writer.h"
+#include "foilgauge/render.h"
+#include "render/jpeg.h"
+#include "render/members.h"
+
+enum { FG_TONE_POINTS_MAX = 256, FG_TONE_COUNTS = 256 };
+
+/* Straight between its points, constant beyond them. Counts of 8 bit. */
+typedef struct fg_tone_curve {
+  size_t count; /* 0: none */
+  double in[FG_TONE_POINTS_MAX], out[FG_TONE_POINTS_MAX];
+  size_t first[FG_TONE_COUNTS]; /* the last point at or below a whole count */
+} fg_tone_curve;
+
+/* out = in + amount (in - blurred), where the two differ by the threshold at least. */
+typedef struct fg_unsharp_mask {
+  double amount_pct; /* 0: none */
+  double radius_px;  /* sd of the Gaussian */
+  double threshold;  /* counts of 8 bit */
+} fg_unsharp_mask;
+
+typedef struct fg_driver_settings {
+  fg_tone_curve tone;
+  fg_unsharp_mask unsharp;
+  int levels;       /* 0: all of the scan's bits */
+  double threshold; /* of two levels; NaN: half way */
+} fg_driver_settings;
+
+/* Members tone_curve, unsharp_mask, levels and threshold of a spec's scanner with so many bits. */
+fg_status fg_driver_read(const fg_place *place, const cJSON *scanner, int bits,
+                         fg_driver_settings *settings);
+
+/* The same as truth, of what is stated. */
+void fg_driver_put_truth(fg_json *json, const fg_driver_settings *settings);
+
+/* Value of the curve, which has points. */
+float fg_tone_curve_value(const fg_tone_curve *tone, float count);
+
+/* What arrives as finished rows of rounded numbers. */
+typedef struct fg_driver_picture {
+  int64_t width, height;
+  int channels;
+  bool wide;        /* 16 bit */
+  int jpeg_quality; /* 0: none */
+} fg_driver_picture;
+
+typedef struct fg_driver {
+  const fg_driver_settings *settings;
+  fg_driver_picture picture;
+  fg_render_row *row; /* takes what is finished */
+  void *user;
+  int64_t taken, given;      /* rows */
+  int taps;                  /* of the unsharp mask's Gaussian, each side of the centre */
+  int64_t kept;              /* rows that it needs at once */
+  float *kernel, *line;      /* `line` has room for the taps on both sides */
+  float *numbers, *smoothed; /* rings of rows, channel after channel; along the row only */
+  float *blurred;            /* one row */
+  void *sharpened;           /* one row */
+  uint8_t *block;            /* eight rows for JPEG */
+  fg_jpeg jpeg;
+} fg_driver;
+
+fg_status fg_driver_create(fg_context *ctx, const fg_driver_settings *settings,
+                           const fg_driver_picture *picture, fg_render_row *row, void *user,
+                           fg_driver *driver);
+void fg_driver_free(fg_driver *driver);
+
+/* Takes the next row, whose pixels it may change, and hands out the rows that are finished. The
+ * last row hands out all. */
+fg_status fg_driver_take_row(fg_context *ctx, fg_driver *driver, void *pixels);
+
+#endif
