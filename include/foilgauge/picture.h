@@ -8,6 +8,7 @@
 #ifndef FOILGAUGE_PICTURE_H
 #define FOILGAUGE_PICTURE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -50,7 +51,8 @@ typedef struct fg_picture_state {
   double tone_s;                 /* S-shaped part of it: (slope at the middle) - 1 */
   double sharpen_amount, sharpen_radius_px; /* of the unsharp mask that explains the overshoot */
   double level, u_level;                    /* T(1/2) less what the model has, and its sd */
-  unsigned findings;                        /* fg_picture_finding */
+  bool level_known;  /* by a gauge or a scanner's model: u_level is all that is uncertain of it */
+  unsigned findings; /* fg_picture_finding */
 } fg_picture_state;
 
 /* All NaN, nothing found. */

@@ -54,6 +54,7 @@ static void merge_blur(fg_picture_state *state, const fg_picture_state *other) {
 static void merge_tone(fg_picture_state *state, const fg_picture_state *other) {
   if (take_larger(&state->u_level, other->u_level)) {
     state->level = other->level;
+    state->level_known = other->level_known;
     state->gamma = other->gamma;
     state->u_gamma = other->u_gamma;
   }
