@@ -49,6 +49,10 @@
  *     [1 DN], noise_correlation [0] to the next pixel along x and y, clip_white, shading {x, y,
  *     quadratic}: relative, at the picture's edges
  *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
+ *     shadow {amplitude, direction_deg [0], width_deg [90], length_px [15], gap_px [0]}: a band
+ *       beside edges (of foils, discs and holes) whose normal, out of the material, lies near the
+ *       direction: its share is 1 there, 1/2 at half the width, nothing from the width on. Light in
+ *       shares of the contrast, negative: darker. From the gap on it decays over the length
  *     what the driver does with the numbers, each channel by itself:
  *       tone_curve [[in, out], ...]: 2 to 256 points in counts of 255, in ascending, out not
  *         falling; straight between points, constant beyond them

@@ -34,8 +34,8 @@ static double reach_px(const fg_sampler *sampler, double half_width_mm, double r
 
 static void shape_box(const fg_sampler *sampler, const fg_shape *shape, double box_px[4]) {
   double half = shape->radius + fabs(shape->lobe_mm);
-  double reach =
-      reach_px(sampler, half + (sampler->has_field ? 0.1 * half : 0), sampler->edge_reach_mm);
+  double reach = reach_px(sampler, half + (sampler->has_field ? 0.1 * half : 0),
+                          sampler->edge_reach_mm + (shape->adds ? 0 : sampler->disc_band_mm));
   fg_point a = nominal_px(sampler, shape->x0, shape->y0);
   fg_point b = nominal_px(sampler, shape->x1, shape->y1);
   box_px[0] = fmin(a.x, b.x) - reach;

@@ -30,6 +30,24 @@ static fg_status read_part(const fg_place *place, const cJSON *parent, const cha
   return fg_members_read(&inner, object, table, base);
 }
 
+static fg_status read_shadow(const fg_place *place, const cJSON *scanner, fg_shadow *shadow) {
+  static const fg_member table[] = {
+      FG_SPEC_NUMBER(fg_shadow, amplitude, -1, 1),
+      FG_SPEC_NUMBER(fg_shadow, direction_deg, -360, 360),
+      FG_SPEC_NUMBER(fg_shadow, width_deg, 1, 180),
+      FG_SPEC_NUMBER(fg_shadow, length_px, 1, 100),
+      FG_SPEC_NUMBER(fg_shadow, gap_px, 0, 30),
+      FG_SPEC_END,
+  };
+  const cJSON *object = fg_spec_member(scanner, "shadow");
+  if (!object) return FG_OK;
+  fg_place inner = fg_place_inside(place, "shadow");
+  FG_TRY(fg_members_read(&inner, object, table, shadow));
+  if (!fg_spec_member(object, "amplitude"))
+    return fg_member_fail(&inner, "amplitude", NULL, "say how much; negative is darker");
+  return FG_OK;
+}
+
 static fg_status read_rough(const fg_place *place, const cJSON *rough, fg_scanner *scanner) {
   static const fg_member table[] = {
       FG_SPEC_NUMBER(fg_scanner, one_sided_blur_px, 0, 10),
@@ -145,6 +163,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_OTHER("rows_lost"),
       FG_SPEC_OTHER("chip_seams"),
       FG_SPEC_OTHER("colour_lines"),
+      FG_SPEC_OTHER("shadow"),
       FG_SPEC_OTHER("tone_curve"),
       FG_SPEC_OTHER("unsharp_mask"),
       FG_SPEC_OTHER("levels"),
@@ -168,6 +187,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   FG_TRY(read_litter(place, object, "dust", &scanner->dust));
   FG_TRY(read_litter(place, object, "specks", &scanner->specks));
   FG_TRY(read_litter(place, object, "scratches", &scanner->scratches));
+  FG_TRY(read_shadow(place, object, &scanner->shadow));
   fg_place rough = fg_place_inside(place, "rough");
   FG_TRY(read_rough(&rough, fg_spec_member(object, "rough"), scanner));
   FG_TRY(check_scanner(place, object, scanner));
@@ -192,6 +212,7 @@ fg_scanner fg_spec_default_scanner(void) {
       .edge_correlation_um = 50,
       .halo_length_px = 15,
       .wall_length_px = 15,
+      .shadow = {.width_deg = 90, .length_px = 15},
       .driver = {.unsharp = {.radius_px = 1}, .threshold = NAN},
   };
 }

@@ -3,7 +3,36 @@
 #include <math.h>
 
 static const double phi_limit = 5;  /* 1 - Phi(5) = 3e-7 */
-static const double wall_reach = 6; /* decay lengths */
+static const double band_reach = 6; /* decay lengths */
+static const double pi = 3.14159265358979323846;
+
+static fg_side_band make_band(double amplitude, double direction_deg, double length_mm,
+                              double gap_mm) {
+  double direction = direction_deg * pi / 180;
+  return (fg_side_band){.amplitude = amplitude,
+                        .x = cos(direction),
+                        .y = sin(direction),
+                        .length_mm = length_mm,
+                        .gap_mm = gap_mm};
+}
+
+/* A shadow's amplitude is light, which less coverage is where the scan is dark on light. */
+static void add_bands(fg_sampler *sampler) {
+  const fg_scanner *scanner = &sampler->spec->scanner;
+  const fg_shadow *shadow = &scanner->shadow;
+  double pixel = fmin(sampler->pixel_mm[0], sampler->pixel_mm[1]);
+  if (scanner->wall_amplitude != 0)
+    sampler->bands[sampler->band_count++] =
+        make_band(scanner->wall_amplitude, scanner->wall_direction_deg,
+                  scanner->wall_length_px * pixel, scanner->wall_gap_px * pixel);
+  if (shadow->amplitude == 0) return;
+  fg_side_band *band = &sampler->bands[sampler->band_count++];
+  *band = make_band(scanner->contrast > 0 ? shadow->amplitude : -shadow->amplitude,
+                    shadow->direction_deg, shadow->length_px * pixel, shadow->gap_px * pixel);
+  band->width_rad = shadow->width_deg * pi / 180;
+  band->of_discs = true;
+  sampler->disc_band_mm = band_reach * band->length_mm + band->gap_mm;
+}
 
 void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   const fg_scanner *scanner = &spec->scanner;
@@ -22,20 +51,17 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
                       fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_LIFT);
   sampler->has_edge = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
-  double direction = scanner->wall_direction_deg * 3.14159265358979323846 / 180;
-  sampler->wall_x = cos(direction);
-  sampler->wall_y = sin(direction);
-  sampler->wall_mm = scanner->wall_length_px * pixel;
-  sampler->wall_gap_mm = scanner->wall_gap_px * pixel;
+  add_bands(sampler);
   double line_px = fg_colour_lines_reach_px(&scanner->colour, (double)spec->truth.width_px);
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
   reach += fg_render_effects_reach(&spec->effects);
   reach += line_px * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
   sampler->edge_reach_mm = reach;
-  sampler->reach_mm =
-      reach +
-      (scanner->wall_amplitude != 0 ? wall_reach * sampler->wall_mm + sampler->wall_gap_mm : 0);
+  double beside = 0;
+  for (int i = 0; i < sampler->band_count; i++)
+    beside = fmax(beside, band_reach * sampler->bands[i].length_mm + sampler->bands[i].gap_mm);
+  sampler->reach_mm = reach + beside;
   for (int i = 0; i < FG_PHI_STEPS + 2; i++) {
     double u = phi_limit * (2.0 * i / FG_PHI_STEPS - 1);
     sampler->phi[i] = (float)(0.5 * erfc(-u / sqrt(2.0)));
@@ -121,7 +147,7 @@ static double roughness(const fg_drawn_foil *drawn, int edge, double s_mm) {
 /* A disc's values have one before the first and three behind the last, of the circle that closes.
  */
 static double disc_roughness(const fg_shape *shape, double dx, double dy) {
-  double turn = atan2(dy, dx) / (2 * 3.14159265358979323846);
+  double turn = atan2(dy, dx) / (2 * pi);
   return fg_roughness_at(shape->roughness,
                          1 + (turn - floor(turn)) * (double)shape->roughness_count);
 }
@@ -135,17 +161,33 @@ static double edge_sd(const fg_sampler *sampler, double sd, double my, double br
   return sqrt(sd * sd + extra * extra);
 }
 
-static double wall(const fg_sampler *sampler, const cross_section *at, double inner, double outer) {
-  double facing = at->nx * sampler->wall_x + at->ny * sampler->wall_y;
-  double distance = at->n > 0.5 * (inner + outer) ? at->n - inner : outer - at->n;
-  if (at->n <= 0.5 * (inner + outer)) facing = -facing;
-  if (facing <= 0) return 0;
-  double strength = sampler->spec->scanner.wall_amplitude * facing;
-  double past = distance - sampler->wall_gap_mm;
-  if (past >= 0) return strength * exp(-past / sampler->wall_mm);
-  if (sampler->wall_gap_mm <= 0) return strength;
-  double u = 2 * past / sampler->wall_gap_mm; /* within the gap it fades towards the edge */
+/* Share of a band's amplitude beside an edge that faces (nx, ny). */
+static double band_share(const fg_side_band *band, double nx, double ny) {
+  double facing = nx * band->x + ny * band->y;
+  if (band->width_rad <= 0) return fmax(0, facing);
+  double turn = acos(fmax(-1, fmin(1, facing)));
+  return turn < band->width_rad ? 0.5 * (1 + cos(pi * turn / band->width_rad)) : 0;
+}
+
+/* At a distance from an edge that faces (nx, ny). */
+static double band_value(const fg_side_band *band, double nx, double ny, double distance) {
+  double share = band_share(band, nx, ny);
+  if (share <= 0) return 0;
+  double strength = band->amplitude * share, past = distance - band->gap_mm;
+  if (past >= 0) return strength * exp(-past / band->length_mm);
+  if (band->gap_mm <= 0) return strength;
+  double u = 2 * past / band->gap_mm; /* within the gap it fades towards the edge */
   return strength * exp(-0.5 * u * u);
+}
+
+/* Sum of the bands beside a strip, on the side that the place is on. */
+static double side_bands(const fg_sampler *sampler, const cross_section *at, double inner,
+                         double outer) {
+  bool inside = at->n > 0.5 * (inner + outer);
+  double way = inside ? 1 : -1, distance = inside ? at->n - inner : outer - at->n, sum = 0;
+  for (int i = 0; i < sampler->band_count; i++)
+    sum += band_value(&sampler->bands[i], way * at->nx, way * at->ny, distance);
+  return sum;
 }
 
 /* Sum of the shapes of one target where the cross-section meets the midline. */
@@ -163,12 +205,12 @@ static double half_thickness(const fg_sampler *sampler, const fg_drawn_foil *dra
   return drawn->half_thickness_mm + shape_at(sampler, drawn, at, FG_RENDER_EFFECT_WIDTH);
 }
 
-/* Beyond the reach of the edges there is the wall or nothing. */
+/* Beyond the reach of the edges there is a band or nothing. */
 static double far_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
                         const cross_section *at, double sd) {
   const fg_segment *segment = at->segment;
-  if (sampler->spec->scanner.wall_amplitude == 0) return 0;
-  double half = half_thickness(sampler, drawn, at), value = wall(sampler, at, half, -half);
+  if (!sampler->band_count) return 0;
+  double half = half_thickness(sampler, drawn, at), value = side_bands(sampler, at, half, -half);
   if (value == 0 || !(segment->open_start || segment->open_end)) return value;
   double t = along(at);
   if (segment->open_start) value *= phi(sampler, t / sd);
@@ -217,8 +259,7 @@ static double strip_value(const fg_sampler *sampler, const fg_drawn_foil *drawn,
   double outer_sd = edge_sd(sampler, sd, -at->ny, bright);
   double n = at->n + bend_shift(at->bend, sd);
   double value = phi(sampler, (n - outer) / outer_sd) - phi(sampler, (n - inner) / inner_sd);
-  if (sampler->spec->scanner.wall_amplitude != 0)
-    value += (1 - value) * wall(sampler, at, inner, outer);
+  if (sampler->band_count) value += (1 - value) * side_bands(sampler, at, inner, outer);
   if (segment->open_start) value *= phi(sampler, (t + cut_shift(drawn, 0, at->n)) / sd);
   if (segment->open_end)
     value *= phi(sampler, (segment->length_mm - t + cut_shift(drawn, 1, at->n)) / sd);
@@ -241,16 +282,16 @@ static double sheet_shift(const fg_sampler *sampler, const fg_drawn_foil *drawn,
   return shift[0];
 }
 
-/* The strongest of the walls whose edges face this place: a band goes on where another edge is
- * nearer. */
-static double sheet_wall(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
-                         double y) {
+/* The strongest of the bands beside edges that face this place: a band goes on where another edge
+ * is nearer. */
+static double sheet_bands(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
+                          double y) {
   double strongest = 0;
   for (size_t i = 0; i < count; i++) {
     cross_section at = {0};
     try_segment(&sampler->spec->scene.segments[ids[i]], x, y, &at);
     if (!at.segment || at.n > 0) continue;
-    double value = wall(sampler, &at, INFINITY, 0);
+    double value = side_bands(sampler, &at, INFINITY, 0);
     if (fabs(value) > fabs(strongest)) strongest = value;
   }
   return strongest;
@@ -271,8 +312,8 @@ static double sheet_value(const fg_sampler *sampler, const size_t *ids, size_t c
     double n = best.n + bend_shift(best.bend, sd) + sheet_shift(sampler, drawn, &best);
     value = phi(sampler, n / edge_sd(sampler, sd, -best.ny, bright));
   }
-  if (sampler->spec->scanner.wall_amplitude == 0 || best.n > 0) return value;
-  return value + (1 - value) * sheet_wall(sampler, ids, count, x, y);
+  if (!sampler->band_count || best.n > 0) return value;
+  return value + (1 - value) * sheet_bands(sampler, ids, count, x, y);
 }
 
 static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t count, double x,
@@ -296,6 +337,18 @@ static double foil_value(const fg_sampler *sampler, const size_t *ids, size_t co
       sampler->edge_reach_mm + drawn->half_thickness_mm + phi_limit * (sd - sampler->sd_mm);
   if (fabs(best.n) > limit) return far_value(sampler, drawn, &best, sd);
   return strip_value(sampler, drawn, &best, sd);
+}
+
+/* Bands beside a disc's edge, or within a hole; `out` is the way from its centre, `edge` the
+ * distance from its edge, `cover` what it covers here. */
+static double disc_bands(const fg_sampler *sampler, const fg_shape *shape, const double out[2],
+                         double edge, double cover, double value) {
+  bool hole = shape->value < 0.5;
+  double way = hole ? -1 : 1, sum = 0;
+  for (int i = 0; i < sampler->band_count; i++)
+    if (sampler->bands[i].of_discs)
+      sum += band_value(&sampler->bands[i], way * out[0], way * out[1], way * edge);
+  return value + (hole ? cover : 1 - value) * sum;
 }
 
 static double shape_value(const fg_sampler *sampler, const fg_shape *shape, double x, double y,
@@ -326,7 +379,10 @@ static double shape_value(const fg_sampler *sampler, const fg_shape *shape, doub
     sd = edge_sd(sampler, sd, dy / r, bright);
   }
   double cover = phi(sampler, -edge / sd);
-  return shape->adds ? below + shape->value * cover : below + (shape->value - below) * cover;
+  if (shape->adds) return below + shape->value * cover;
+  double value = below + (shape->value - below) * cover;
+  if (sampler->disc_band_mm <= 0 || r <= 0) return value;
+  return disc_bands(sampler, shape, (double[]){dx / r, dy / r}, edge, cover, value);
 }
 
 double fg_sample(const fg_sampler *sampler, const fg_near *near, double x_mm, double y_mm,

@@ -18,6 +18,20 @@ enum {
   FG_PHI_STEPS = 2048,
 };
 
+/* A band of light or shade beside edges: the strip's own wall, or a shadow. Its value is coverage.
+ */
+typedef struct fg_side_band {
+  double amplitude;
+  double x, y;      /* direction */
+  double width_rad; /* its share falls from 1 at the direction to 0 at this turn, half way to a
+                       half; 0: the cosine to the direction */
+  double length_mm; /* decay */
+  double gap_mm;
+  bool of_discs; /* strips and sheets always have it */
+} fg_side_band;
+
+enum { FG_SIDE_BANDS_MAX = 2 };
+
 typedef struct fg_sampler {
   const fg_render_spec *spec;
   double pixel_mm[2];
@@ -29,10 +43,10 @@ typedef struct fg_sampler {
   double line_shift_mm[2], line_scale, line_middle_mm;
   double lag_mm; /* errors of the carriage at y are those of y + lag; 0 without lines */
   bool has_field, has_part, has_normal, has_width, has_bump, has_edge;
-  double one_sided_mm;   /* sd; 0 without */
-  double wall_x, wall_y; /* direction */
-  double wall_mm;        /* decay length */
-  double wall_gap_mm;
+  double one_sided_mm; /* sd; 0 without */
+  fg_side_band bands[FG_SIDE_BANDS_MAX];
+  int band_count;
+  double disc_band_mm; /* how far beside a disc's edge its bands can be seen */
   float phi[FG_PHI_STEPS + 2];
 } fg_sampler;
 

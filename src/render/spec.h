@@ -80,6 +80,13 @@ typedef struct fg_litter {
   double radius_px, length_px, contrast;
 } fg_litter;
 
+/* The light from one side: a band beside edges whose normal lies in a sector of directions. */
+typedef struct fg_shadow {
+  double amplitude; /* of the contrast; negative: darker. 0: none */
+  double direction_deg, width_deg;
+  double length_px, gap_px;
+} fg_shadow;
+
 typedef struct fg_scanner {
   double dpi[2];
   int bits;
@@ -94,6 +101,7 @@ typedef struct fg_scanner {
   bool edge_exponential; /* the scatter's autocorrelation; else Gaussian */
   double halo_fraction, halo_length_px;
   double wall_amplitude, wall_direction_deg, wall_length_px, wall_gap_px;
+  fg_shadow shadow;
   int jpeg_quality; /* 0: none */
   fg_jump_requests jumps;
   fg_colour_lines colour;

@@ -151,6 +151,17 @@ static void put_axes(fg_json *json, const char *name, const double value[2]) {
     fg_json_numbers(json, name, value, 2);
 }
 
+static void put_shadow(fg_json *json, const fg_shadow *shadow) {
+  if (shadow->amplitude == 0) return;
+  fg_json_object(json, "shadow");
+  fg_json_number(json, "amplitude", shadow->amplitude);
+  fg_json_number(json, "direction_deg", shadow->direction_deg);
+  fg_json_number(json, "width_deg", shadow->width_deg);
+  fg_json_number(json, "length_px", shadow->length_px);
+  fg_json_number(json, "gap_px", shadow->gap_px);
+  fg_json_object_end(json);
+}
+
 static void put_scan(fg_json *json, const fg_render_spec *spec) {
   const fg_scanner *scanner = &spec->scanner;
   fg_json_object(json, "scan");
@@ -173,6 +184,7 @@ static void put_scan(fg_json *json, const fg_render_spec *spec) {
   fg_json_string(json, "correlation_form", scanner->edge_exponential ? "exponential" : "gaussian");
   fg_json_number(json, "halo_fraction", scanner->halo_fraction);
   fg_json_number(json, "side_wall_amplitude", scanner->wall_amplitude);
+  put_shadow(json, &scanner->shadow);
   fg_driver_put_truth(json, &scanner->driver);
   fg_json_number(json, "seed", (double)spec->seed);
   fg_json_object_end(json);
