@@ -71,7 +71,7 @@ configure_file(src/cmake/foilgauge.pc.in ${CMAKE_BINARY_DIR}/package/foilgauge.p
 install(FILES ${CMAKE_BINARY_DIR}/package/foilgauge.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 
-foreach(section 1 5)
+foreach(section 1 5 7)
   if(MANUAL_TEXTS MATCHES "\\.${section}\\.md")
     install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man${section}
             COMPONENT program FILES_MATCHING PATTERN "*.${section}")

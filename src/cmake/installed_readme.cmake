@@ -3,7 +3,7 @@
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS README.md)
 file(READ README.md readme)
 
-set(page "src/manual/text/(foilgauge[-a-z]*)\\.([15])\\.md")
+set(page "src/manual/text/(foilgauge[-a-z]*)\\.([157])\\.md")
 string(REGEX REPLACE "\\[foilgauge[-a-z]*\\]\\(${page}\\)" "`man \\2 \\1`" readme "${readme}")
 string(REGEX REPLACE "\\[([^]]*)\\]\\(${page}\\)" "\\1 (`man \\3 \\2`)" readme "${readme}")
 

@@ -1,10 +1,12 @@
 #include "manual/facts.h"
 
+#include <stddef.h>
 #include <string.h>
 
 #include "cli/commands.h"
 #include "core/member_words.h"
 #include "foilgauge/control.h"
+#include "foilgauge/picture.h"
 #include "foilgauge/quantity.h"
 #include "scan/format.h"
 
@@ -93,6 +95,40 @@ static void write_run_rules(FILE *out) {
     fprintf(out, "| %u | %s |\n", rule, fg_run_rule_words(rule));
 }
 
+static void write_picture_findings(FILE *out) {
+  fputs("| finding | what it means, and what to change |\n|---|---|\n", out);
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++)
+    fprintf(out, "| `%s` | %s %s |\n", words->name, words->meaning, words->cure);
+}
+
+/* Settings of one interface to scanners, where it has any for a finding. */
+static void write_settings(size_t offset, FILE *out) {
+  fputs("| finding | settings |\n|---|---|\n", out);
+  for (const fg_picture_words *words = fg_picture_finding_words(); words->name; words++) {
+    const char *settings = *(const char *const *)((const char *)words + offset);
+    if (settings[0]) fprintf(out, "| `%s` | %s |\n", words->name, settings);
+  }
+}
+
+static void write_sane_settings(FILE *out) {
+  write_settings(offsetof(fg_picture_words, sane), out);
+}
+
+static void write_twain_settings(FILE *out) {
+  write_settings(offsetof(fg_picture_words, twain), out);
+}
+
+static void write_wia_settings(FILE *out) {
+  write_settings(offsetof(fg_picture_words, wia), out);
+}
+
+static void write_picture_members(FILE *out) {
+  fputs("| member of `picture` | what it is |\n|---|---|\n", out);
+  for (const fg_picture_member *member = fg_picture_members(); member->name; member++)
+    fprintf(out, "| `%s` | %s%s%s |\n", member->name, member->words, member->unit[0] ? ", " : "",
+            member->unit);
+}
+
 static const fg_fact facts[] = {
     {"recipe_members", write_recipe_members},
     {"station_members", write_station_members},
@@ -103,6 +139,11 @@ static const fg_fact facts[] = {
     {"quantities_of_bearing", write_quantities_of_bearing},
     {"quantities_of_disc", write_quantities_of_disc},
     {"run_rules", write_run_rules},
+    {"picture_findings", write_picture_findings},
+    {"sane_settings", write_sane_settings},
+    {"twain_settings", write_twain_settings},
+    {"wia_settings", write_wia_settings},
+    {"picture_members", write_picture_members},
     {"commands", write_commands},
     {"exit_codes", write_exit_codes},
     {"scan_endings", write_endings},

@@ -7,8 +7,10 @@
 #include "cli/facts.h"
 #include "manual/roff.h"
 
-/* Of files, section 5. */
-static const char see_also[][24] = {"foilgauge-design", "foilgauge-recipe"};
+/* Pages beside those of the commands. */
+static const struct {
+  char name[24], section;
+} see_also[] = {{"foilgauge-design", '5'}, {"foilgauge-recipe", '5'}, {"foilgauge-scanning", '7'}};
 
 /* What a parser says, with what the code knows put in; the caller frees. */
 static void fill(const char *text, bool *known, char **whole) {
@@ -165,8 +167,8 @@ static void write_see_also(const char *self, char section, FILE *out) {
     first = false;
   }
   for (size_t i = 0; i < sizeof see_also / sizeof *see_also; i++)
-    if (section != '5' || strcmp(self, see_also[i]) != 0)
-      write_reference(see_also[i], strlen(see_also[i]), '5', false, out);
+    if (section != see_also[i].section || strcmp(self, see_also[i].name) != 0)
+      write_reference(see_also[i].name, strlen(see_also[i].name), see_also[i].section, false, out);
   fputc('\n', out);
 }
 

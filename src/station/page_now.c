@@ -204,6 +204,10 @@ static void write_scan_button(const fg_inspection *station, FILE *out) {
   fprintf(out, "<button class=\"big\"%s>%s</button></form>\n",
           atomic_load(&station->scanning) ? " disabled" : "",
           atomic_load(&station->scanning) ? "Scanning …" : "Scan");
+  if (!station->scan_warning[0]) return;
+  fputs("<p class=\"banner\"><b>The recipe's scan_command spoils scans.</b> ", out);
+  fg_html_text(out, station->scan_warning);
+  fputs("</p>\n", out);
 }
 
 static fg_status write_cards(fg_context *ctx, sqlite3 *reader, int64_t newest, FILE *out) {

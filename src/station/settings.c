@@ -34,9 +34,13 @@ static const member members[] = {
          "What a file's name says, without its ending: text, `*` for anything, `{serial}`, "
          "`{lot}`, `{die}`, `{operator}`; such as `{lot}_{die}_{serial}`. A name of another form "
          "is a serial number as a whole."),
-    TEXT("scan_command", scan_command,
-         "Puts a Scan button on the page: a command of the shell that writes the scan `{file}`. It "
-         "runs in the folder, as the user of the station."),
+    TEXT(
+        "scan_command", scan_command,
+        "Puts a Scan button on the page: a command of the shell that writes the scan `{file}`. It "
+        "runs in the folder, as the user of the station. What a driver does to a picture unless it "
+        "is told not to moves edges: foilgauge-scanning(7) says which options it needs, "
+        "samples/station/scan.sh sets them on any scanner that SANE knows. The station names "
+        "options that are known to spoil a scan, at its start and on the page."),
     {"receive_s", NUMBER, AT(receive_s), 0, 3600,
      "Seconds that a scan which is not whole may pause: the page says RECEIVING until nothing has "
      "come for so long, and then what is missing. Scanners wait for their carriage, networks for "

@@ -62,6 +62,7 @@ typedef struct fg_inspection {
   char host[128];                 /* "127.0.0.1:8317": where it listens */
   fg_reach reach;
   atomic_bool scanning;               /* the scan command runs */
+  char scan_warning[1000];            /* options of it that spoil scans; "": none is known */
   struct fg_station_scanner *scanner; /* of the last scan by command; NULL: none yet */
   fg_closing closing;
   fg_trouble trouble;

@@ -8,6 +8,7 @@
 #include "station/close.h"
 #include "station/export.h"
 #include "station/keep.h"
+#include "station/scan_options.h"
 #include "station/server.h"
 #include "station/watch.h"
 
@@ -38,6 +39,16 @@ static fg_status make_form_token(fg_context *ctx, fg_inspection *station) {
   return FG_OK;
 }
 
+/* Said once, and on the page beside the button. */
+static void inspect_scan_command(fg_inspection *station) {
+  const fg_station_request *request = station->request;
+  char *warning = station->scan_warning;
+  if (fg_scan_options_inspect(station->settings->scan_command, warning,
+                              sizeof station->scan_warning) &&
+      request->looked_at)
+    request->looked_at(request->user, "scan_command:", warning);
+}
+
 static fg_status work(fg_context *ctx, fg_inspection *station) {
   const fg_station_request *request = station->request;
   FG_TRY(load_model(ctx, station));
@@ -48,6 +59,7 @@ static fg_status work(fg_context *ctx, fg_inspection *station) {
   FG_TRY(fg_station_keep_setup(ctx, &station->database, &station->settings->lot, &station->setup));
   if (request->once) return fg_station_watch(ctx, station, true);
   FG_TRY(make_form_token(ctx, station));
+  inspect_scan_command(station);
   FG_TRY(fg_station_server_start(ctx, station));
   fg_status status = fg_station_watch(ctx, station, false);
   fg_station_server_stop(station);

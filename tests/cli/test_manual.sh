@@ -62,11 +62,11 @@ for object in '{"?": 1}' '{"scale": {"?": 1}}' \
     grep -qw -- "$name" "$work/page" || say "the calibration's $name is in no page"
   done
 done
-grep -q '@[a-z_]*@' "$man"/*.[15] && say "something was not put in"
+grep -q '@[a-z_]*@' "$man"/*.[157] && say "something was not put in"
 
 # A text reads right where it lies: a title of its own, and what the code puts in stands there or is told.
 for text in src/manual/text/*.md; do
-  head -n 1 "$text" | grep -qE '^# foilgauge[-a-z]*\([15]\) - [a-z]' || say "$text has no title"
+  head -n 1 "$text" | grep -qE '^# foilgauge[-a-z]*\([157]\) - [a-z]' || say "$text has no title"
   sed 's/<!--@[a-z_]*@-->//g' "$text" | grep -q '@[a-z_]*@' && say "$text shows a name in place of what is put in"
   grep -q 'of the table of commands' "$text" && say "$text has no summary of its own"
 done
@@ -89,7 +89,7 @@ refuse '@loop_hours@ is not known' foilgauge-loop.1.md 's/@loop_minutes@/@loop_h
 refuse 'a mark <!--@ without its end' foilgauge-recipe.5.md '/<!--@-->/d'
 
 # man passes on what groff says; without man, groff itself.
-for page in "$man"/*.[15]; do
+for page in "$man"/*.[157]; do
   if command -v man >/dev/null; then
     words=$(LC_ALL=C.UTF-8 MANWIDTH=80 man --warnings -l "$page" 2>&1 >"$work/shown")
     [ "$(wc -l <"$work/shown")" -gt 10 ] || say "man shows nothing of $page"

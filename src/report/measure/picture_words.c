@@ -3,47 +3,103 @@
 
 #define AT(member) offsetof(fg_picture_state, member)
 
+/* Options as SANE's backends spell them, capabilities of TWAIN 2, properties of WIA 2: what they
+ * are set to, or in brackets what has them. */
 static const fg_picture_words findings[] = {
     {FG_PICTURE_FEW_LEVELS, "few_levels",
-     "The picture has so few gray levels that the place of an edge depends on where they lie.",
-     "Scan in gray of 8 or 16 bits.", "--mode Gray --depth 16",
-     "ICAP_PIXELTYPE TWPT_GRAY, "
-     "ICAP_BITDEPTH 16",
-     "WIA_IPA_DEPTH 16"},
+     "There are so few gray levels that the place of an edge depends on where they lie.",
+     "Scan in gray with 16 bits, or with 8: never in black and white.", "--mode Gray --depth 16",
+     "ICAP_PIXELTYPE = TWPT_GRAY, ICAP_BITDEPTH = 16 or 8",
+     "WIA_IPA_DATATYPE = WIA_DATA_GRAYSCALE, WIA_IPA_DEPTH = 16 or 8"},
     {FG_PICTURE_LEVEL_GAPS, "level_gaps",
-     "Gray levels are missing between others: a tone curve was applied after rounding.",
-     "Turn off tone curve, brightness and contrast; scan with 16 bits.", "", "", ""},
-    {FG_PICTURE_CLIPPED, "clipped_levels", "An end of the gray scale cuts the edges' profile.",
-     "Turn off automatic contrast; scan with less exposure.", "", "", ""},
+     "Gray levels are missing between others: the driver stretched or bent the scale after "
+     "rounding.",
+     "Turn off automatic levels, brightness, contrast and gamma; scan with 16 bits.",
+     "--brightness 0, --contrast 0, --shadow 0, --highlight 100, --depth 16",
+     "ICAP_AUTOBRIGHT = FALSE, ICAP_BRIGHTNESS = 0, ICAP_CONTRAST = 0, ICAP_GAMMA = 1, "
+     "ICAP_BITDEPTH = 16",
+     "WIA_IPS_BRIGHTNESS = 0, WIA_IPS_CONTRAST = 0"},
+    {FG_PICTURE_CLIPPED, "clipped_levels",
+     "An end of the gray scale cuts the edges' profile: how bright or dark it would have been is "
+     "not known.",
+     "Turn off automatic levels and contrast; scan with less exposure.",
+     "--brightness 0, --contrast 0, --shadow 0, --highlight 100, --white-level and --exposure "
+     "lower",
+     "ICAP_AUTOBRIGHT = FALSE, ICAP_BRIGHTNESS = 0, ICAP_CONTRAST = 0, ICAP_SHADOW = 0, "
+     "ICAP_HIGHLIGHT = 255, ICAP_EXPOSURETIME shorter",
+     "WIA_IPS_BRIGHTNESS = 0, WIA_IPS_CONTRAST = 0"},
     {FG_PICTURE_SHARPENED, "sharpened",
-     "The edges overshoot: the driver has sharpened the picture.", "Turn sharpening off.", "", "",
+     "The picture is sharpened: edges overshoot, and a strip reads too thin or too thick.",
+     "Turn off sharpening (unsharp mask, outline emphasis).",
+     "--sharpness 0 (epson2, epkowa), --sharpen 0 (escl)",
+     "ICAP_IMAGEFILTER = TWIF_NONE; an unsharp mask has no capability: the driver's own window has "
+     "it",
      ""},
     {FG_PICTURE_TONE_CURVE, "tone_curve",
-     "The driver has applied a tone curve: widths depend on its middle.",
-     "Turn off automatic contrast and tone curve; scan linearly (gamma 1).", "", "", ""},
+     "A tone curve moves the level at which edges lie: both edges of a strip move apart or "
+     "together.",
+     "Turn off automatic contrast and colour correction; scan with gamma 1.",
+     "--gamma-correction 'User defined (Gamma=1.0)' (epson2, epkowa), --gamma 1 (pixma), "
+     "--gamma-value 1 (gt68xx), --custom-gamma=yes --gamma-table '[0]0-[255]255' (genesys, "
+     "plustek, snapscan; the last index is the scanner's), --analog-gamma 1 (airscan), "
+     "--brightness 0, --contrast 0, --color-correction None",
+     "ICAP_GAMMA = 1 (2.2 unless it is set), ICAP_AUTOBRIGHT = FALSE, ICAP_BRIGHTNESS = 0, "
+     "ICAP_CONTRAST = 0, ICAP_COLORMANAGEMENTENABLED = FALSE",
+     "WIA_IPS_BRIGHTNESS = 0, WIA_IPS_CONTRAST = 0; gamma has no property"},
     {FG_PICTURE_BLOCK_NOISE, "block_noise",
      "Blocks of 8 × 8 pixels show: the picture once was a JPEG, which moves edges.",
-     "Have the scanner write PNG or TIFF.", "", "", ""},
+     "Have the driver send it without loss, to PNG or TIFF.",
+     "--format png, --compression None (hpaio; where it has JPEG alone, --jpeg-quality 0), "
+     "--jpeg=no (xerox_mfp)",
+     "ICAP_COMPRESSION = TWCP_NONE, ICAP_XFERMECH = TWSX_NATIVE or TWSX_MEMORY",
+     "WIA_IPA_COMPRESSION = WIA_COMPRESSION_NONE, WIA_IPA_FORMAT = WiaImgFmt_BMP, WiaImgFmt_PNG or "
+     "WiaImgFmt_TIFF"},
     {FG_PICTURE_UNEVEN_BLUR, "uneven_blur",
      "The picture is blurred more along one direction than across it.",
-     "Scan at a resolution that the scanner has along both axes.", "", "", ""},
+     "Scan with equal resolutions that the optics have along both axes; clean the glass.",
+     "--resolution of the optics",
+     "ICAP_XRESOLUTION = ICAP_YRESOLUTION, neither above ICAP_XNATIVERESOLUTION or "
+     "ICAP_YNATIVERESOLUTION",
+     "WIA_IPS_XRES = WIA_IPS_YRES, neither above WIA_IPS_OPTICAL_XRES or WIA_IPS_OPTICAL_YRES"},
     {FG_PICTURE_CORRELATED_NOISE, "correlated_noise",
-     "The noise of neighbouring pixels is alike: the driver has interpolated or smoothed.",
-     "Scan at the optical resolution; turn noise reduction off.", "", "", ""},
+     "The noise of neighbouring pixels is alike: they were interpolated, turned or smoothed.",
+     "Scan with the resolution of the optics; turn off noise reduction, despeckling and deskewing.",
+     "--resolution of the optics, --preview=no, --quality-scan=yes (avision), --high-quality=yes "
+     "(snapscan), --swdeskew=no and --swdespeck 0 (document scanners)",
+     "ICAP_XRESOLUTION = ICAP_XNATIVERESOLUTION, ICAP_YRESOLUTION = ICAP_YNATIVERESOLUTION, "
+     "ICAP_XSCALING = ICAP_YSCALING = 1, ICAP_NOISEFILTER = TWNF_NONE, ICAP_IMAGEFILTER = "
+     "TWIF_NONE, ICAP_AUTOMATICDESKEW = FALSE, ICAP_ROTATION = 0",
+     "WIA_IPS_XRES = WIA_IPS_OPTICAL_XRES, WIA_IPS_YRES = WIA_IPS_OPTICAL_YRES, "
+     "WIA_IPS_AUTO_DESKEW = WIA_AUTO_DESKEW_OFF"},
     {FG_PICTURE_SHADOW, "shadow",
      "A shadow or the foil's wall shows beside edges of some directions, and moves them.",
-     "Lay the foil flat and close the lid; turn it and scan again.", "", "", ""},
+     "Lay the foil flat on the glass and close the lid; turn the foil and scan it again.", "", "",
+     ""},
     {FG_PICTURE_ROW_JUMPS, "row_jumps",
-     "Rows jump: the carriage stopped, or the picture was stitched.",
-     "Scan without pauses: less resolution, a smaller window, or a faster connection.", "", "", ""},
-    {FG_PICTURE_CHANNEL_SCALE, "channel_scale", "The colour channels have unequal magnification.",
-     "Measure one channel (--channel green).", "--mode Gray", "ICAP_PIXELTYPE TWPT_GRAY",
-     "WIA_IPA_DATATYPE grayscale"},
+     "Rows are missing, doubled or shifted: the carriage stopped, or the picture was stitched.",
+     "Scan without a pause: a smaller window, a lower resolution, a faster connection.",
+     "-l, -t, -x, -y (a smaller window)", "ICAP_FRAMES (a smaller window)",
+     "WIA_IPS_XPOS, WIA_IPS_YPOS, WIA_IPS_XEXTENT, WIA_IPS_YEXTENT (a smaller window)"},
+    {FG_PICTURE_CHANNEL_SCALE, "channel_scale",
+     "The colour channels differ in magnification: their mean blurs edges and moves them.",
+     "Scan in gray, or measure one channel (--channel green).",
+     "--mode Gray, --color-filter Green (genesys)", "ICAP_PIXELTYPE = TWPT_GRAY",
+     "WIA_IPA_DATATYPE = WIA_DATA_GRAYSCALE"},
     {FG_PICTURE_SHADING, "shading", "The light changes much over the picture.",
-     "Let the scanner calibrate; close the lid; keep stray light out.", "", "", ""},
+     "Let the lamp warm up and the scanner calibrate itself; close the lid and keep other light "
+     "out.",
+     "--calibrate Always (pixma), --clear-calibration (genesys), --quality-cal=yes (avision, "
+     "snapscan, umax)",
+     "ICAP_LAMPSTATE = TRUE, ICAP_LIGHTPATH = TWLP_REFLECTIVE",
+     "WIA_IPS_LAMP = WIA_LAMP_ON, WIA_IPS_WARM_UP_TIME"},
     {FG_PICTURE_UNKNOWN_PROFILE, "edge_profile",
-     "The edges' profile is none that a scanner makes of light: widths are uncertain.",
-     "Turn off every improvement of the picture in the driver.", "", "", ""},
+     "The edges' profile is none that a scanner makes of light: widths may be off by more than is "
+     "known.",
+     "Turn off everything in the driver that improves pictures; foilgauge-scanning(7) lists it.",
+     "every option that samples/station/scan.sh --show writes",
+     "ICAP_IMAGEFILTER = TWIF_NONE, ICAP_NOISEFILTER = TWNF_NONE, ICAP_GAMMA = 1, ICAP_AUTOBRIGHT "
+     "= FALSE",
+     "WIA_IPS_CUR_INTENT = WIA_INTENT_NONE, WIA_IPS_BRIGHTNESS = 0, WIA_IPS_CONTRAST = 0"},
     {0, NULL, NULL, NULL, NULL, NULL, NULL},
 };
 
