@@ -13,7 +13,7 @@ An outline is covered exactly (other_strip.py): pixels are areas of a polygon wh
 an exponential or a Matern correlation of 5 to 11 px. Then, in this order: the optics' Gaussian and a halo of
 exp(-r / L); a sensor that lags behind along the carriage's way, rising light and falling light by different lengths;
 shading and columns of unequal gain; grain, correlated and larger where it is bright; the tone; white that clips; 8 bit;
-JPEG's quantised blocks."""
+JPEG's quantised blocks. What a driver adds: other_driver.py."""
 
 import argparse
 import json
@@ -24,9 +24,10 @@ import zlib
 
 import numpy as np
 
+import other_driver
 from loop_cases import GEN2, draw_foil, log_uniform, place
 from loop_foil import natural_spline
-from other_strip import bump_of, coverage, disc_outline, outline_of
+from other_strip import bump_of, coverage, disc_outline, leaf_outline, outline_of
 
 STEP_PX = 0.25
 BAND = 128  # rows; whole blocks of JPEG
@@ -102,10 +103,10 @@ def with_middles(spec):
     return [{"centre_mm": size["carriage" in e["id"]], **e} for e in spec["effects"]]
 
 
-def strips_between(effects, name, member, end):
+def strips_between(effects, name, member, end, dpi):
     """Where the picture jumps along one axis: [(from px, to px, shift mm)]."""
     steps = sorted((e[member], e["amplitude_um"] / 1000) for e in effects if e["id"] == name)
-    starts = [0] + [min(end, max(0, int(math.floor(at / 25.4 * 4800)) + 1)) for at, _ in steps] + [end]
+    starts = [0] + [min(end, max(0, int(math.floor(at / 25.4 * dpi)) + 1)) for at, _ in steps] + [end]
     shifts = np.concatenate([[0], np.cumsum([a for _, a in steps])])
     return list(zip(starts[:-1], starts[1:], shifts))
 
@@ -113,10 +114,11 @@ def strips_between(effects, name, member, end):
 def cover(spec, outlines_mm):
     """Rows and columns that are lost or doubled: every part of the picture is covered for itself."""
     width, height, effects = spec["width_px"], spec["height_px"], with_middles(spec)
+    dpi = spec["scanner"]["dpi"]
     result = np.zeros((height, width), np.float32)
-    for top, bottom, dy in strips_between(effects, "scan.row_step", "y_mm", height):
-        for left, right, dx in strips_between(effects, "scan.column_step", "x_mm", width):
-            shown = [picture_mm(effects, o - [dx, dy]) / 25.4 * spec["scanner"]["dpi"] for o in outlines_mm]
+    for top, bottom, dy in strips_between(effects, "scan.row_step", "y_mm", height, dpi):
+        for left, right, dx in strips_between(effects, "scan.column_step", "x_mm", width, dpi):
+            shown = [picture_mm(effects, o - [dx, dy]) / 25.4 * dpi for o in outlines_mm]
             if bottom > top and right > left:
                 result[top:bottom, left:right] = coverage(shown, width, height)[top:bottom, left:right]
     return result
@@ -137,6 +139,8 @@ def outlines_of(spec, rng):
         yield outline + np.array(foil["centre_mm"])
     for disc in spec.get("discs", []):
         yield disc_outline(rng, disc, edges, STEP_PX * mm_per_px)
+    for leaf in spec.get("leaves", []):
+        yield leaf_outline(leaf)
 
 
 def filter_along(picture, kernel, axis):
@@ -243,54 +247,101 @@ def blurred_where(covered, margin, sd):
     return light
 
 
-def optics(covered, halo, scanner):
+def blurred(covered, blur_px):
     """Blurred rows, BAND at a time: (first row, light)."""
-    margin = int(4.5 * scanner["blur_px"]) + 1
+    margin = int(4.5 * blur_px) + 1
     for top in range(0, len(covered), BAND):
         bottom, low = min(top + BAND, len(covered)), max(top - margin, 0)
-        light = blurred_where(covered[low : bottom + margin], margin, scanner["blur_px"])[top - low : bottom - low]
+        yield top, blurred_where(covered[low : bottom + margin], margin, blur_px)[top - low : bottom - low]
+
+
+def optics(covered, halo, scanner):
+    """Blurred rows with their halo, BAND at a time: (first row, light)."""
+    if isinstance(scanner["blur_px"], list):
+        whole = other_driver.blur_ellipse(covered, scanner["blur_px"], scanner.get("blur_angle_deg", 0))
+        bands = ((top, whole[top : top + BAND]) for top in range(0, len(whole), BAND))
+    else:
+        bands = blurred(covered, scanner["blur_px"])
+    for top, light in bands:
         if halo:
-            light += np.float32(scanner["halo"]["fraction"]) * (halo.rows(top, bottom) - light)
+            light += np.float32(scanner["halo"]["fraction"]) * (halo.rows(top, top + len(light)) - light)
         yield top, light
 
 
 def finish(numbers, scanner):
+    """Rounded to the file's bits; JPEG goes last."""
     if "clip_white" in scanner:
         np.minimum(numbers, scanner["clip_white"], out=numbers)
+    if scanner.get("bits", 8) == 16:
+        return np.rint(np.clip(numbers, 0, 255) * 257).astype(np.uint16)
     numbers = np.clip(np.rint(numbers), 0, 255)
     if "jpeg_quality" in scanner:
         numbers = np.clip(np.rint(jpeg(numbers, scanner["jpeg_quality"])), 0, 255)
     return numbers.astype(np.uint8)
 
 
-def picture_of(spec):
-    """8 bit, as the scanner of the spec gives it."""
-    scanner, rng = spec["scanner"], np.random.default_rng([spec["seed"], 81])
-    covered = cover(spec, list(outlines_of(spec, rng)))
+def sensed(covered, scanner, rng):
+    """The sensor's numbers, BAND rows at a time: (rows, numbers of 0 to 255)."""
     height, width = covered.shape
+    if "shadow" in scanner:
+        covered = other_driver.cast_shadow(covered, scanner["shadow"])
     shading = scanner.get("shading", [0, 0])
     gain = 1 + shading[0] * np.linspace(-1, 1, width) + scanner["columns"] * rng.standard_normal(width)
     down = 1 + shading[1] * np.linspace(-1, 1, height)
     grain = Grain(rng, width, scanner["grain"])
     halo = Halo(covered, scanner["halo"]["length_px"]) if "halo" in scanner else None
-    result, last = np.empty((height, width), np.uint8), covered[0]
+    last = covered[0]
     for top, light in optics(covered, halo, scanner):
         last, rows = lag(light, last, *scanner["lag_px"]), slice(top, top + len(light))
         bright = light if scanner["contrast"] > 0 else 1 - light
-        noise = np.float32(scanner["noise"]) * np.sqrt(0.6 + 0.4 * bright) * grain.rows(len(light))
+        noise = np.float32(scanner["noise"]) * np.sqrt(np.maximum(0.6 + 0.4 * bright, 0)) * grain.rows(len(light))
         factor = (down[rows, None] * gain).astype(np.float32)
-        result[rows] = finish(tone(light, scanner) * factor + noise, scanner)
-    return result
+        yield rows, tone(light, scanner) * factor + noise
+
+
+def channel_of(spec, outlines, rng, magnification=0.0):
+    """One channel of the file: its magnification is about the picture's middle, along x."""
+    scanner, size = spec["scanner"], (spec["height_px"], spec["width_px"])
+    if "resampled_from_dpi" in scanner:
+        share = scanner["resampled_from_dpi"] / scanner["dpi"]
+        spec = {**spec, "width_px": round(size[1] * share), "height_px": round(size[0] * share)}
+        spec["scanner"] = scanner = {**scanner, "dpi": spec["width_px"] / size[1] * scanner["dpi"]}
+    middle = np.array([spec["width_px"] / 2 * 25.4 / scanner["dpi"], 0])
+    shown = [o + (o - middle) * [magnification, 0] for o in outlines]
+    covered = cover(spec, shown)
+    if not other_driver.is_wanted(scanner):
+        result = np.empty(size, np.uint16 if scanner.get("bits", 8) == 16 else np.uint8)
+        for rows, numbers in sensed(covered, scanner, rng):
+            result[rows] = finish(numbers, scanner)
+        return result
+    numbers = np.concatenate([numbers for _, numbers in sensed(covered, scanner, rng)])
+    return finish(other_driver.drive(numbers, scanner, size), scanner)
+
+
+def picture_of(spec):
+    """As the scanner of the spec gives it: rows, columns and, of a colour scan, channels."""
+    scanner, rng = spec["scanner"], np.random.default_rng([spec["seed"], 81])
+    outlines = list(outlines_of(spec, rng))
+    if "magnification_ppm" not in scanner:
+        return channel_of(spec, outlines, rng)
+    channels = []
+    for ppm, share in zip(scanner["magnification_ppm"], scanner.get("channel_contrast", [1, 1, 1])):
+        own = {**spec, "scanner": {**scanner, "contrast": scanner["contrast"] * share}}
+        channels.append(channel_of(own, outlines, rng, ppm * 1e-6))
+    return np.stack(channels, axis=2)
 
 
 def write_png(path, picture, dpi):
-    height, width = picture.shape
-    lines = np.zeros((height, width + 1), np.uint8)  # no filter: grain hardly gains by one
-    lines[:, 1:] = picture
+    height, width = picture.shape[:2]
+    channels, bits = (3 if picture.ndim == 3 else 1), 8 * picture.itemsize
+    pixels = picture.astype(picture.dtype.newbyteorder(">")).reshape(height, -1).view(np.uint8)
+    lines = np.zeros((height, pixels.shape[1] + 1), np.uint8)  # no filter: grain hardly gains by one
+    lines[:, 1:] = pixels
     chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     per_metre = round(dpi / 0.0254)
+    head = struct.pack(">IIBBBBB", width, height, bits, 2 if channels == 3 else 0, 0, 0, 0)
     with open(path + ".part", "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)))
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head))
         file.write(chunk(b"pHYs", struct.pack(">IIB", per_metre, per_metre, 1)))
         file.write(chunk(b"IDAT", zlib.compress(lines.tobytes(), 1)) + chunk(b"IEND", b""))
     os.replace(path + ".part", path)

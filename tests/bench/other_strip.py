@@ -161,6 +161,14 @@ def disc_outline(rng, disc, edges, step_mm):
     return np.array(disc["centre_mm"]) + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
+def leaf_outline(leaf):
+    """A feeler leaf on its edge (mm): straight, its edges smooth."""
+    c, s = math.cos(math.radians(leaf["rotate_deg"])), math.sin(math.radians(leaf["rotate_deg"]))
+    x, y = leaf["length_mm"] / 2, leaf["width_mm"] / 2
+    corners = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+    return np.array(leaf["centre_mm"]) + corners @ np.array([[c, s], [-s, c]])
+
+
 def cut(points):
     """Pieces of a closed polygon's sides, cut where they cross whole x or y; sides are shorter than a pixel."""
     ends = np.roll(points, -1, axis=0)
