@@ -45,8 +45,9 @@
  *     r = radius + lobe cos(lobes (phi - phase)); later ones lie on top
  *   scanner:
  *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
- *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm], noise
- *     [1 DN], noise_correlation [0] to the next pixel along x and y, clip_white, shading {x, y,
+ *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm],
+ *     blur_angle_deg [0]: the two are along the axes of an ellipse, the first at this angle from x
+ *     (right) towards y (down); noise [1 DN], noise_correlation [0] to the next pixel along x and y, clip_white, shading {x, y,
  *     quadratic}: relative, at the picture's edges
  *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
  *     shadow {amplitude, direction_deg [0], width_deg [90], length_px [15], gap_px [0]}: a band

@@ -110,10 +110,14 @@ static fg_status read_axes(const fg_place *place, const cJSON *scanner, const ch
 static fg_status check_blur(const fg_place *place, const cJSON *object, const fg_scanner *scanner) {
   double coarsest = fmin(scanner->dpi[0], scanner->dpi[1]);
   for (int axis = 0; axis < 2; axis++) {
-    double least = LEAST_BLUR_PX * scanner->dpi[axis] / coarsest;
+    bool turned = scanner->blur_angle_deg != 0;
+    double finest = fmax(scanner->dpi[0], scanner->dpi[1]);
+    double least = LEAST_BLUR_PX * (turned ? finest : scanner->dpi[axis]) / coarsest;
     char what[96];
     snprintf(what, sizeof what, "must be at least %g along %s at these resolutions", least,
-             axis ? "y" : "x");
+             turned ? "both axes"
+             : axis ? "y"
+                    : "x");
     if (scanner->blur_px[axis] < least)
       return fg_member_fail(place, "blur_px", fg_spec_member(object, "blur_px"), what);
   }
@@ -151,6 +155,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_NUMBER(fg_scanner, contrast, -255, 255),
       FG_SPEC_NUMBER(fg_scanner, gamma, 0.2, 5),
       FG_SPEC_OTHER("blur_px"),
+      FG_SPEC_NUMBER(fg_scanner, blur_angle_deg, -180, 180),
       FG_SPEC_NUMBER(fg_scanner, noise, 0, 100),
       FG_SPEC_NUMBER(fg_scanner, noise_correlation, 0, 0.95),
       FG_SPEC_NUMBER(fg_scanner, clip_white, 1, 255),

@@ -91,7 +91,8 @@ typedef struct fg_scanner {
   double dpi[2];
   int bits;
   double background, contrast, gamma, noise, noise_correlation, clip_white;
-  double blur_px[2];     /* x, y */
+  double blur_px[2];     /* x, y; or along the ellipse's own axes */
+  double blur_angle_deg; /* of its first axis, from x towards y */
   double motion_blur_px; /* along y: the carriage moves while a row is read */
   double shading[3];     /* relative, at the picture's edge: x, y, quadratic */
   fg_litter dust, specks, scratches;

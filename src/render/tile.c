@@ -6,6 +6,8 @@
 
 #include "core/memory.h"
 
+enum { MARGIN_MAX_PX = 64 }; /* of the widest blur: 10 px and a motion of 20 px */
+
 static int64_t round_up(double value, int64_t step) {
   return step * (int64_t)ceil(value / (double)step);
 }
@@ -90,16 +92,30 @@ static int64_t sample_side(const fg_tiler *tiler) {
   return FG_SAMPLES * (FG_TILE_PX + 2 * tiler->margin_px);
 }
 
+static fg_status create_blur(fg_context *ctx, const fg_sampler *sampler, fg_tiler *tiler) {
+  const fg_scanner *scanner = &sampler->spec->scanner;
+  fg_blur_ellipse ellipse = {.angle_deg = scanner->blur_angle_deg,
+                             .motion = scanner->motion_blur_px};
+  for (int axis = 0; axis < 2; axis++) {
+    ellipse.sd[axis] = scanner->blur_px[axis];
+    ellipse.sampled[axis] = sampler->sd_mm / sampler->pixel_mm[axis];
+  }
+  if (fg_blur_is_turned(&ellipse)) {
+    FG_TRY(fg_turned_blur_create(ctx, &ellipse, FG_SAMPLES, &tiler->turned));
+    memcpy(tiler->taps, tiler->turned.taps, sizeof tiler->taps);
+    return FG_OK;
+  }
+  for (int axis = 0; axis < 2; axis++)
+    FG_TRY(make_kernel(ctx, ellipse.sd[axis], axis ? ellipse.motion : 0, ellipse.sampled[axis],
+                       &tiler->taps[axis], &tiler->kernel[axis]));
+  return FG_OK;
+}
+
 fg_status fg_tiler_create(fg_context *ctx, fg_sampler *sampler, fg_tiler *tiler) {
   const fg_scanner *scanner = &sampler->spec->scanner;
   *tiler = (fg_tiler){.sampler = sampler};
-  int taps = 0;
-  for (int axis = 0; axis < 2; axis++) {
-    FG_TRY(make_kernel(ctx, scanner->blur_px[axis], axis ? scanner->motion_blur_px : 0,
-                       sampler->sd_mm / sampler->pixel_mm[axis], &tiler->taps[axis],
-                       &tiler->kernel[axis]));
-    if (tiler->taps[axis] > taps) taps = tiler->taps[axis];
-  }
+  FG_TRY(create_blur(ctx, sampler, tiler));
+  int taps = tiler->taps[0] > tiler->taps[1] ? tiler->taps[0] : tiler->taps[1];
   tiler->margin_px = round_up((double)(taps + 1) / FG_SAMPLES, FG_BLOCK_PX);
   size_t side = (size_t)sample_side(tiler);
   FG_TRY(fg_memory_allocate(ctx, side * side, sizeof(float), (void **)&tiler->samples));
@@ -112,6 +128,7 @@ void fg_tiler_free(fg_tiler *tiler) {
                      tiler->cells,     tiler->cell_rows, tiler->halo,    tiler->halo_kernel};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
     free(blocks[i]);
+  fg_turned_blur_free(&tiler->turned);
   *tiler = (fg_tiler){0};
 }
 
@@ -149,7 +166,7 @@ static void sample_tile(const fg_tiler *tiler, const fg_band *band, int64_t x0, 
 /* Down the columns first, to one value per pixel row: the inner loop runs along memory. */
 static void blur_tile(const fg_tiler *tiler, float *out, int64_t stride) {
   int64_t side = sample_side(tiler);
-  float line[FG_SAMPLES * (FG_TILE_PX + 2 * 64)];
+  float line[FG_SAMPLES * (FG_TILE_PX + 2 * MARGIN_MAX_PX)];
   for (int64_t y = 0; y < FG_TILE_PX; y++) {
     int64_t centre = FG_SAMPLES * (y + tiler->margin_px) + 1;
     memset(line, 0, (size_t)side * sizeof *line);
@@ -167,6 +184,17 @@ static void blur_tile(const fg_tiler *tiler, float *out, int64_t stride) {
       out[y * stride + x] = sum;
     }
   }
+}
+
+static void blur_tile_turned(const fg_tiler *tiler, float *out, int64_t stride) {
+  float line[FG_SAMPLES * (FG_TILE_PX + 2 * MARGIN_MAX_PX)];
+  const fg_sample_square square = {.values = tiler->samples,
+                                   .side = sample_side(tiler),
+                                   .margin = tiler->margin_px,
+                                   .width_px = FG_TILE_PX};
+  fg_turned_blur_sort(&tiler->turned, &square, line);
+  for (int64_t y = 0; y < FG_TILE_PX; y++)
+    fg_turned_blur_row(&tiler->turned, &square, y, out + y * stride);
 }
 
 /* Mean of a cell, by 2 × 2 samples smoothed with 1.2 px: enough for what is blurred by 6 px. */
@@ -240,7 +268,7 @@ static void draw_plain(fg_tiler *tiler, const fg_band *band, int64_t x0, int64_t
                        int64_t stride) {
   if (anything_within(band, x0, y0, tiler->margin_px)) {
     sample_tile(tiler, band, x0, y0);
-    blur_tile(tiler, out, stride);
+    (tiler->turned.weights ? blur_tile_turned : blur_tile)(tiler, out, stride);
   } else {
     for (int64_t y = 0; y < FG_TILE_PX; y++)
       memset(out + y * stride, 0, FG_TILE_PX * sizeof *out);

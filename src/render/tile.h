@@ -5,6 +5,7 @@
 #define FG_RENDER_TILE_H
 
 #include "render/sampler.h"
+#include "render/turned_blur.h"
 
 enum {
   FG_TILE_PX = 64,
@@ -18,6 +19,7 @@ typedef struct fg_tiler {
   int64_t halo_px;   /* the same for the halo; 0 without */
   int taps[2];       /* of the kernel on each axis, each side of the centre */
   float *kernel[2];
+  fg_turned_blur turned; /* without weights the blur separates along x and y */
   float *samples, *jump; /* buffers */
   float *cells, *cell_rows, *halo, *halo_kernel;
 } fg_tiler;

@@ -170,6 +170,7 @@ static void put_scan(fg_json *json, const fg_render_spec *spec) {
   fg_json_number(json, "height", (double)spec->truth.height_px);
   fg_json_number(json, "bits", scanner->bits);
   put_axes(json, "blur_px", scanner->blur_px);
+  if (scanner->blur_angle_deg != 0) fg_json_number(json, "blur_angle_deg", scanner->blur_angle_deg);
   fg_json_number(json, "motion_blur_px", scanner->motion_blur_px);
   fg_json_number(json, "background", scanner->background);
   fg_json_number(json, "contrast", scanner->contrast);

@@ -70,13 +70,86 @@ static void motion_blurs_along_the_way(void **state) {
   }
 }
 
+/* Sd along its normal of a straight edge that faces `degrees`, without the pixel's box: of a disc
+ * so large that it is straight. */
+static double straight_edge_sd(const char *scanner, double degrees) {
+  const double pi = 3.14159265358979323846, radius = 40;
+  double c = cos(degrees * pi / 180), s = sin(degrees * pi / 180);
+  int axis = fabs(s) > fabs(c);
+  picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":121,\"height_px\":121,"
+                          "\"discs\":[{\"centre_mm\":[%.9f,%.9f],\"radius_mm\":%g}],"
+                          "\"scanner\":{" EXACT ",%s}}",
+                          60 * pixel - radius * c, 60 * pixel - radius * s, radius, scanner);
+  double sum = 0, first = 0, second = 0;
+  for (int64_t i = 0; i < 120; i++) {
+    double step = axis ? coverage(&p, 60, i + 1) - coverage(&p, 60, i)
+                       : coverage(&p, i + 1, 60) - coverage(&p, i, 60);
+    sum += step;
+    first += step * (double)i;
+    second += step * (double)(i * i);
+  }
+  drop(&p);
+  double along = second / sum - first / sum * first / sum - 1 / 12.0; /* the step's box */
+  return sqrt(along * fmax(c * c, s * s) - 1 / 12.0);
+}
+
+/* An ellipse along its own axes, which are turned against the rows; between them sd² is that of the
+ * normal in its covariance. */
+static void ellipse_is_turned(void **state) {
+  (void)state;
+  const double pi = 3.14159265358979323846, angles[] = {30, -60, 90, 135};
+  for (size_t i = 0; i < 4; i++)
+    for (double normal = 0; normal < 180; normal += 15) {
+      char members[96];
+      snprintf(members, sizeof members, "\"blur_px\":[3,1],\"blur_angle_deg\":%g", angles[i]);
+      double turn = (normal - angles[i]) * pi / 180;
+      double expected = hypot(3 * cos(turn), sin(turn));
+      assert_close(straight_edge_sd(members, normal), expected, 0.01);
+    }
+}
+
+/* Along the rows, and where it is a circle, it is the blur that separates; the motion adds to it.
+ */
+static void turned_ellipse_meets_the_straight_one(void **state) {
+  (void)state;
+  const char *pairs[][2] = {
+      {"\"blur_px\":[0.6,2.2],\"blur_angle_deg\":90", "\"blur_px\":[2.2,0.6]"},
+      {"\"blur_px\":[1.5,1.5],\"blur_angle_deg\":20", "\"blur_px\":1.5"},
+      {"\"blur_px\":[1,2],\"blur_angle_deg\":90,\"rough\":{\"motion_blur_px\":4}",
+       "\"blur_px\":[2,1],\"rough\":{\"motion_blur_px\":4}"}};
+  for (size_t i = 0; i < 3; i++) {
+    picture both[2];
+    for (int k = 0; k < 2; k++)
+      both[k] = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":150,"
+                            "\"height_px\":150,\"discs\":[{\"centre_mm\":[0.4,0.4],\"radius_mm\":"
+                            "0.2}],\"scanner\":{" EXACT ",%s}}",
+                            pairs[i][k]);
+    for (int64_t k = 0; k < 150 * 150; k++)
+      assert_close(both[0].dn[k], both[1].dn[k], 0.05);
+    drop(&both[0]);
+    drop(&both[1]);
+  }
+}
+
+static void strips_of_any_height_give_one_picture(void **state) {
+  (void)state;
+  const char *json = "{\"schema\":\"foilgauge/render/1\",\"foils\":[{\"rotate_deg\":20,"
+                     "\"design\":{\"bump_count\":1}}],\"scanner\":{\"dpi\":1200,\"rows_lost\":[{"
+                     "\"y_mm\":2,\"count\":2}],\"blur_px\":[2.5,0.8],\"blur_angle_deg\":40}}";
+  picture first = draw(64, json), other = draw(100000, json);
+  assert_memory_equal(first.dn, other.dn, (size_t)(first.width * first.height) * sizeof *first.dn);
+  drop(&first);
+  drop(&other);
+}
+
 /* Widths are what they were: blur moves no edge of a straight strip, and makes no light. */
 static void blur_keeps_the_light(void **state) {
   (void)state;
   const char *scanners[] = {"\"blur_px\":1", "\"blur_px\":[2.5,0.7]",
-                            "\"blur_px\":1,\"rough\":{\"motion_blur_px\":5}"};
-  double sums[3] = {0};
-  for (size_t i = 0; i < 3; i++) {
+                            "\"blur_px\":1,\"rough\":{\"motion_blur_px\":5}",
+                            "\"blur_px\":[2.5,0.7],\"blur_angle_deg\":25"};
+  double sums[4] = {0};
+  for (size_t i = 0; i < 4; i++) {
     picture p = draw_format("{\"schema\":\"foilgauge/render/1\",\"width_px\":250,"
                             "\"height_px\":250,\"discs\":[{\"centre_mm\":[0.66,0.66],"
                             "\"radius_mm\":0.4}],\"scanner\":{" EXACT ",%s}}",
@@ -87,6 +160,7 @@ static void blur_keeps_the_light(void **state) {
   }
   assert_close(sums[1] / sums[0], 1, 1e-5);
   assert_close(sums[2] / sums[0], 1, 1e-5);
+  assert_close(sums[3] / sums[0], 1, 1e-5);
 }
 
 int main(void) {
@@ -94,6 +168,9 @@ int main(void) {
       cmocka_unit_test(blur_is_one_sided),
       cmocka_unit_test(blur_has_its_own_size_along_each_axis),
       cmocka_unit_test(motion_blurs_along_the_way),
+      cmocka_unit_test(ellipse_is_turned),
+      cmocka_unit_test(turned_ellipse_meets_the_straight_one),
+      cmocka_unit_test(strips_of_any_height_give_one_picture),
       cmocka_unit_test(blur_keeps_the_light),
   };
   return cmocka_run_group_tests_name("render blur", tests, NULL, NULL);
