@@ -9,7 +9,8 @@ where its foil or disc has a flag that the plain scan of the same part has not, 
   driver.py build/foilgauge                          all of it
   driver.py build/foilgauge --quick                  a sixth
   driver.py build/foilgauge --kinds unsharp,levels   single kinds
-  driver.py build/foilgauge --show unsharp           and every value of them"""
+  driver.py build/foilgauge --show unsharp           and every value of them
+  driver.py build/foilgauge --kinds plain            plain scans only"""
 
 import argparse
 import csv
@@ -279,7 +280,7 @@ def main():
     if options.show:
         print(driver_report.every_value(rows))
     clean, count = None, options.clean // 4 if options.quick else options.clean
-    if not names and count:
+    if names in ([], ["plain"]) and count:
         import driver_clean  # it measures by this module
 
         clean = driver_clean.run(count, told, options.before, options.jobs)

@@ -54,7 +54,7 @@ def random_curve(rng, evenness):
     """Six steps of random height; the lower the evenness, the more they differ."""
     steps = 0.02 + 0.88 * rng.dirichlet(np.full(6, evenness))
     x, y = np.linspace(0, 255, 7), np.concatenate([[0], np.cumsum(steps / steps.sum())])
-    return [[float(a), float(255 * b)] for a, b in zip(x, y)]
+    return [[float(a), min(float(255 * b), 255.0)] for a, b in zip(x, y)]
 
 
 def toe_curve(length, is_shoulder):

@@ -161,6 +161,8 @@ u 0.5 µm, beside the foil (`--gauge`).
 
 
 def page(rows, clean, missing, options):
+    if not rows:
+        return clean or "nothing to do\n"
     scan = [r for r in rows if r["variant"] == "scan"]
     words = "".join([" --quick" if options.quick else "", f" --kinds {options.kinds}" if options.kinds else "",
                      " --before BEFORE" if options.before else ""])  # fmt: skip
