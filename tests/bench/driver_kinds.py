@@ -354,8 +354,8 @@ def for_program(spec):
 
 
 def straight_foil(leaf):
-    """A leaf is a plain strip of a radius of 20 m: it bends by 0.2 um over 6 mm."""
-    radius, angle = 20000.0, leaf["rotate_deg"] + 90
+    """A leaf is a plain strip of a radius of 3 m: it bends by 1.5 um over 6 mm."""
+    radius, angle = 3000.0, leaf["rotate_deg"] + 90
     centre = [leaf["centre_mm"][0] - radius * math.cos(math.radians(angle)),
               leaf["centre_mm"][1] - radius * math.sin(math.radians(angle))]  # fmt: skip
     design = {"form": "arc", "overall_radius_mm": radius, "thickness_mm": leaf["width_mm"],
