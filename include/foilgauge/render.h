@@ -11,8 +11,8 @@
  *   optical blur (Gaussian, sd `blur_px`) and the pixel's own square (1 px box, not counted in
  *   blur_px); halo; light = background + contrast × coverage, linear; shading; tone curve
  *   DN = 255 light^(1/gamma), where background and background + contrast keep their DN; noise;
- *   clipping; tone_curve; rounding to 8 or 16 bit (full scale 65535 = 255 × 257); unsharp_mask;
- *   levels; JPEG blocks.
+ *   clipping; interpolation from the sensor's resolution; tone_curve; rounding to 8 or 16 bit
+ *   (full scale 65535 = 255 × 257); unsharp_mask; levels; JPEG blocks.
  *
  * Members of a spec (default in brackets; lengths in mm of the midline, unless the name says else):
  *   seed [0], width_px, height_px [fitted to the content], margin_px [80], comment
@@ -47,13 +47,17 @@
  *     dpi [4800] or [x, y], bits [8], background [30], contrast [175; negative: dark on light],
  *     gamma [1], blur_px [1.2] or [x, y] [at least 0.4, and that of the coarser axis in mm],
  *     blur_angle_deg [0]: the two are along the axes of an ellipse, the first at this angle from x
- *     (right) towards y (down); noise [1 DN], noise_correlation [0] to the next pixel along x and y, clip_white, shading {x, y,
- *     quadratic}: relative, at the picture's edges
+ *     (right) towards y (down); noise [1 DN], noise_correlation [0] to the next pixel along x
+ *     and y, clip_white, shading {x, y, quadratic}: relative, at the picture's edges
  *     dust, specks, scratches {count [0], radius_px, length_px, contrast}
  *     shadow {amplitude, direction_deg [0], width_deg [90], length_px [15], gap_px [0]}: a band
  *       beside edges (of foils, discs and holes) whose normal, out of the material, lies near the
  *       direction: its share is 1 there, 1/2 at half the width, nothing from the width on. Light in
  *       shares of the contrast, negative: darker. From the gap on it decays over the length
+ *     resampled_from_dpi, one number or [x, y]: what the sensor reads where that is less than dpi;
+ *       the driver interpolates, resampled_by "bilinear" or "bicubic" (Catmull-Rom) ["bilinear"],
+ *       before its tone curve. What optics, sensor and carriage do (blur, halo, shadow, noise,
+ *       colour lines, lost rows) is then in the sensor's pixels, everything else in the picture's
  *     what the driver does with the numbers, each channel by itself:
  *       tone_curve [[in, out], ...]: 2 to 256 points in counts of 255, in ascending, out not
  *         falling; straight between points, constant beyond them

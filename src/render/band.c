@@ -89,7 +89,7 @@ static void find_spans(const fg_sampler *sampler, fg_band *band) {
 fg_status fg_band_create(fg_context *ctx, const fg_sampler *sampler, int64_t rows_px,
                          int64_t margin_px, fg_band *band) {
   *band = (fg_band){0};
-  int64_t width = sampler->spec->truth.width_px;
+  int64_t width = sampler->spec->sensor.width_px;
   band->columns = (width + 2 * margin_px + FG_BLOCK_PX - 1) / FG_BLOCK_PX + 1;
   band->rows = (rows_px + 2 * margin_px) / FG_BLOCK_PX + 1;
   band->column0 = -margin_px / FG_BLOCK_PX;

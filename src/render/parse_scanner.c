@@ -106,13 +106,35 @@ static fg_status read_axes(const fg_place *place, const cJSON *scanner, const ch
   return FG_OK;
 }
 
+static double sensor_dpi(const fg_scanner *scanner, int axis) {
+  return isnan(scanner->sensor_dpi[axis]) ? scanner->dpi[axis] : scanner->sensor_dpi[axis];
+}
+
+static fg_status read_resampling(const fg_place *place, const cJSON *object, fg_scanner *scanner) {
+  const cJSON *from = fg_spec_member(object, "resampled_from_dpi");
+  const cJSON *by = fg_spec_member(object, "resampled_by");
+  int bicubic = 0;
+  FG_TRY(read_axes(place, object, "resampled_from_dpi", 50, 20000, scanner->sensor_dpi));
+  FG_TRY(fg_member_choice(place, object, "resampled_by",
+                          (const char *const[]){"bilinear", "bicubic"}, &bicubic));
+  scanner->bicubic = bicubic == 1;
+  if (by && !from)
+    return fg_member_fail(place, "resampled_by", by, "belongs to resampled_from_dpi");
+  for (int axis = 0; axis < 2; axis++)
+    if (sensor_dpi(scanner, axis) > scanner->dpi[axis])
+      return fg_member_fail(place, "resampled_from_dpi", from,
+                            "must be at most dpi: drivers make scans finer, not coarser");
+  return FG_OK;
+}
+
 /* Samples are smoothed alike along both axes, by what the coarser one needs. */
 static fg_status check_blur(const fg_place *place, const cJSON *object, const fg_scanner *scanner) {
-  double coarsest = fmin(scanner->dpi[0], scanner->dpi[1]);
+  const double dpi[2] = {sensor_dpi(scanner, 0), sensor_dpi(scanner, 1)};
+  double coarsest = fmin(dpi[0], dpi[1]);
   for (int axis = 0; axis < 2; axis++) {
     bool turned = scanner->blur_angle_deg != 0;
-    double finest = fmax(scanner->dpi[0], scanner->dpi[1]);
-    double least = LEAST_BLUR_PX * (turned ? finest : scanner->dpi[axis]) / coarsest;
+    double finest = fmax(dpi[0], dpi[1]);
+    double least = LEAST_BLUR_PX * (turned ? finest : dpi[axis]) / coarsest;
     char what[96];
     snprintf(what, sizeof what, "must be at least %g along %s at these resolutions", least,
              turned ? "both axes"
@@ -160,6 +182,8 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
       FG_SPEC_NUMBER(fg_scanner, noise_correlation, 0, 0.95),
       FG_SPEC_NUMBER(fg_scanner, clip_white, 1, 255),
       FG_SPEC_OTHER("dpi"),
+      FG_SPEC_OTHER("resampled_from_dpi"),
+      FG_SPEC_OTHER("resampled_by"),
       FG_SPEC_OTHER("shading"),
       FG_SPEC_OTHER("dust"),
       FG_SPEC_OTHER("specks"),
@@ -186,6 +210,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
   FG_TRY(fg_members_read(place, object, table, scanner));
   FG_TRY(read_axes(place, object, "dpi", 50, 20000, scanner->dpi));
   FG_TRY(read_axes(place, object, "blur_px", LEAST_BLUR_PX, 10, scanner->blur_px));
+  FG_TRY(read_resampling(place, object, scanner));
   FG_TRY(check_blur(place, object, scanner));
   FG_TRY(fg_jumps_read(place, object, &scanner->jumps));
   FG_TRY(read_part(place, object, "shading", shading, scanner));
@@ -203,6 +228,7 @@ fg_status fg_spec_read_scanner(const fg_place *place, const cJSON *object, fg_sc
 fg_scanner fg_spec_default_scanner(void) {
   return (fg_scanner){
       .dpi = {4800, 4800},
+      .sensor_dpi = {NAN, NAN},
       .bits = 8,
       .background = 30,
       .contrast = 175,

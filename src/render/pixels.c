@@ -1,11 +1,13 @@
-/* From coverage to pixels, row after row: light, shading, tone, noise, clipping, the driver's tone
- * curve, rounding; what the driver does then is in driver_rows.c. */
+/* From coverage to pixels, row after row: light, shading, tone, noise, clipping; from the sensor's
+ * grid to the picture's; the driver's tone curve, rounding. What the driver does then is in
+ * driver_rows.c. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "core/memory.h"
 #include "render/random.h"
+#include "render/resample.h"
 #include "render/tile.h"
 
 enum { TONE_STEPS = 65536 };
@@ -15,17 +17,21 @@ typedef struct picture {
   fg_sampler sampler;
   fg_tiler tiler;
   fg_band band;
-  int64_t width, padded, strip_rows;
-  float *coverage; /* padded × strip_rows */
+  int64_t width, padded, strip_rows; /* of the sensor */
+  float *coverage;                   /* padded × strip_rows */
   float *values, *noise;
   float *noise_above; /* of every channel */
   float *column_shading;
-  float *tone;  /* NULL: linear */
-  void *pixels; /* strip_rows rows of `channels` values a pixel */
+  float *tone;   /* NULL: linear */
+  void *pixels;  /* strip_rows rows of `channels` values a pixel; of a resampled picture one row */
+  float *sensed; /* of a resampled picture: strip_rows rows of every channel's values */
   int channels;
   fg_noise_table table;
+  fg_resampler resampler; /* without rows the sensor's grid is the picture's */
   fg_driver driver;
 } picture;
+
+static fg_resampled_row finish_resampled;
 
 static fg_status make_tone(fg_context *ctx, picture *p) {
   double gamma = p->spec->scanner.gamma;
@@ -38,7 +44,7 @@ static fg_status make_tone(fg_context *ctx, picture *p) {
 
 static fg_status create_driver(fg_context *ctx, fg_render_row *row, void *user, picture *p) {
   const fg_scanner *scanner = &p->spec->scanner;
-  const fg_driver_picture finished = {.width = p->width,
+  const fg_driver_picture finished = {.width = p->spec->truth.width_px,
                                       .height = p->spec->truth.height_px,
                                       .channels = p->channels,
                                       .wide = scanner->bits == 16,
@@ -46,22 +52,47 @@ static fg_status create_driver(fg_context *ctx, fg_render_row *row, void *user, 
   return fg_driver_create(ctx, &scanner->driver, &finished, row, user, &p->driver);
 }
 
+static bool is_resampled(const fg_render_spec *spec) {
+  return !isnan(spec->scanner.sensor_dpi[0]);
+}
+
+static fg_status create_resampler(fg_context *ctx, picture *p) {
+  const fg_render_spec *spec = p->spec;
+  const fg_resampling way = {.from_px = {spec->sensor.width_px, spec->sensor.height_px},
+                             .to_px = {spec->truth.width_px, spec->truth.height_px},
+                             .step = {spec->pixel_mm[0] / spec->sensor.pixel_mm[0],
+                                      spec->pixel_mm[1] / spec->sensor.pixel_mm[1]},
+                             .bicubic = spec->scanner.bicubic,
+                             .channels = p->channels};
+  FG_TRY(fg_memory_allocate(ctx, (size_t)p->padded * (size_t)p->strip_rows,
+                            (size_t)p->channels * sizeof *p->sensed, (void **)&p->sensed));
+  return fg_resampler_create(ctx, &way, finish_resampled, p, &p->resampler);
+}
+
+/* The picture's pixels, and what lies between them and the sensor's values. */
+static fg_status create_finish(fg_context *ctx, picture *p) {
+  size_t bytes = (p->spec->scanner.bits == 16 ? 2 : 1) * (size_t)p->channels;
+  if (!is_resampled(p->spec))
+    return fg_memory_allocate(ctx, (size_t)p->padded * (size_t)p->strip_rows, bytes, &p->pixels);
+  FG_TRY(fg_memory_allocate(ctx, (size_t)p->spec->truth.width_px, bytes, &p->pixels));
+  return create_resampler(ctx, p);
+}
+
 static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int64_t strip_rows,
                                 picture *p) {
   p->spec = spec;
-  p->width = spec->truth.width_px;
+  p->width = spec->sensor.width_px;
   p->channels = spec->truth.channels;
   p->padded = (p->width + FG_TILE_PX - 1) / FG_TILE_PX * FG_TILE_PX;
   if (strip_rows < 1) strip_rows = FG_TILE_PX;
-  if (strip_rows > spec->truth.height_px) strip_rows = spec->truth.height_px;
+  if (strip_rows > spec->sensor.height_px) strip_rows = spec->sensor.height_px;
   p->strip_rows = (strip_rows + FG_TILE_PX - 1) / FG_TILE_PX * FG_TILE_PX;
   fg_sampler_init(spec, &p->sampler);
   FG_TRY(fg_tiler_create(ctx, &p->sampler, &p->tiler));
   FG_TRY(fg_band_create(ctx, &p->sampler, p->strip_rows, fg_tiler_reach_px(&p->tiler), &p->band));
   size_t padded = (size_t)p->padded, rows = (size_t)p->strip_rows;
   FG_TRY(fg_memory_allocate(ctx, padded * rows, sizeof(float), (void **)&p->coverage));
-  FG_TRY(fg_memory_allocate(ctx, padded * rows,
-                            (spec->scanner.bits == 16 ? 2 : 1) * (size_t)p->channels, &p->pixels));
+  FG_TRY(create_finish(ctx, p));
   FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->values));
   FG_TRY(fg_memory_allocate(ctx, padded, sizeof(float), (void **)&p->noise));
   FG_TRY(fg_memory_allocate(ctx, padded * (size_t)p->channels, sizeof(float),
@@ -79,10 +110,12 @@ static fg_status picture_create(fg_context *ctx, const fg_render_spec *spec, int
 
 static void picture_free(picture *p) {
   fg_driver_free(&p->driver);
+  fg_resampler_free(&p->resampler);
   fg_tiler_free(&p->tiler);
   fg_band_free(&p->band);
   free(p->coverage);
   free(p->pixels);
+  free(p->sensed);
   free(p->values);
   free(p->noise);
   free(p->noise_above);
@@ -92,7 +125,7 @@ static void picture_free(picture *p) {
 
 static void draw_coverage(picture *p, int64_t y0) {
   memset(p->coverage, 0, (size_t)p->padded * (size_t)p->strip_rows * sizeof *p->coverage);
-  for (int64_t y = 0; y < p->strip_rows && y0 + y < p->spec->truth.height_px; y += FG_TILE_PX)
+  for (int64_t y = 0; y < p->strip_rows && y0 + y < p->spec->sensor.height_px; y += FG_TILE_PX)
     for (int64_t x = 0; x < p->padded; x += FG_TILE_PX)
       fg_tiler_draw(&p->tiler, &p->band, x, y0 + y, p->coverage + y * p->padded + x, p->padded);
 }
@@ -105,7 +138,7 @@ static void expose_row(const picture *p, int line, int64_t y, const float *cover
   double background = scanner->colour.line[line].background;
   double dark = pow(background / 255, gamma);
   double bright = pow((background + scanner->colour.line[line].contrast) / 255, gamma);
-  double v = 2.0 * (double)y / (double)(p->spec->truth.height_px - 1) - 1;
+  double v = 2.0 * (double)y / (double)(p->spec->sensor.height_px - 1) - 1;
   float row_shading = (float)(scanner->shading[1] * v + scanner->shading[2] * v * v);
   float base = (float)dark, step = (float)(bright - dark);
   for (int64_t x = 0; x < p->width; x++)
@@ -141,18 +174,27 @@ static void noise_row(picture *p, int line, int64_t y) {
   memcpy(above, p->noise, (size_t)p->width * sizeof *p->noise);
 }
 
-static void quantise_row(const picture *p, int line, const float *values, void *pixels) {
+/* What the sensor gives: with noise, within its range. */
+static void sense_row(picture *p, int line, int64_t y, float *values) {
   const fg_scanner *scanner = &p->spec->scanner;
   float top = isnan(scanner->clip_white) ? 255.0F : (float)scanner->clip_white;
   float sd = (float)scanner->noise;
-  bool wide = scanner->bits == 16;
-  const fg_tone_curve *tone = scanner->driver.tone.count ? &scanner->driver.tone : NULL;
-  uint8_t *narrow_out = (uint8_t *)pixels + line;
-  uint16_t *wide_out = (uint16_t *)pixels + line;
+  if (scanner->noise > 0) noise_row(p, line, y);
   for (int64_t x = 0; x < p->width; x++) {
     float value = values[x] + sd * p->noise[x];
-    value = value < 0 ? 0 : value > top ? top : value;
-    if (tone) value = fg_tone_curve_value(tone, value);
+    values[x] = value < 0 ? 0 : value > top ? top : value;
+  }
+}
+
+/* Values of one channel through the tone curve into rounded pixels. */
+static void quantise_row(const picture *p, int line, const float *values, int64_t width,
+                         void *pixels) {
+  const fg_tone_curve *tone = &p->spec->scanner.driver.tone;
+  bool wide = p->spec->scanner.bits == 16;
+  uint8_t *narrow_out = (uint8_t *)pixels + line;
+  uint16_t *wide_out = (uint16_t *)pixels + line;
+  for (int64_t x = 0; x < width; x++) {
+    float value = tone->count ? fg_tone_curve_value(tone, values[x]) : values[x];
     if (wide)
       wide_out[x * p->channels] = (uint16_t)(value * 257 + 0.5F);
     else
@@ -160,27 +202,43 @@ static void quantise_row(const picture *p, int line, const float *values, void *
   }
 }
 
+static fg_status finish_resampled(fg_context *ctx, void *user, float *values) {
+  picture *p = user;
+  int64_t width = p->spec->truth.width_px;
+  for (int line = 0; line < p->channels; line++)
+    quantise_row(p, line, values + line * width, width, p->pixels);
+  return fg_driver_take_row(ctx, &p->driver, p->pixels);
+}
+
+static size_t row_bytes(const picture *p) {
+  return (size_t)p->padded * (size_t)p->channels * (p->spec->scanner.bits == 16 ? 2 : 1);
+}
+
 /* One channel of the strip's rows. Noise of a colour scan is each line's own. */
-static void draw_channel(picture *p, int line, int64_t y0, int64_t rows, size_t row_bytes) {
+static void draw_channel(picture *p, int line, int64_t y0, int64_t rows) {
   if (p->spec->scanner.colour.stated) fg_sampler_take_line(&p->sampler, line);
   draw_coverage(p, y0);
   for (int64_t y = 0; y < rows; y++) {
-    expose_row(p, line, y0 + y, p->coverage + y * p->padded, p->values);
-    if (p->spec->scanner.noise > 0) noise_row(p, line, y0 + y);
-    quantise_row(p, line, p->values, (char *)p->pixels + (size_t)y * row_bytes);
+    float *values = p->sensed ? p->sensed + (y * p->channels + line) * p->padded : p->values;
+    expose_row(p, line, y0 + y, p->coverage + y * p->padded, values);
+    sense_row(p, line, y0 + y, values);
+    if (!p->sensed)
+      quantise_row(p, line, values, p->width, (char *)p->pixels + (size_t)y * row_bytes(p));
   }
 }
 
 static fg_status draw_strip(fg_context *ctx, picture *p, int64_t y0) {
-  int64_t rows = p->spec->truth.height_px - y0;
+  int64_t rows = p->spec->sensor.height_px - y0;
   if (rows > p->strip_rows) rows = p->strip_rows;
-  size_t row_bytes =
-      (size_t)p->padded * (size_t)p->channels * (p->spec->scanner.bits == 16 ? 2 : 1);
   FG_TRY(fg_band_fill(ctx, &p->sampler, y0, fg_tiler_reach_px(&p->tiler), &p->band));
   for (int line = 0; line < p->channels; line++)
-    draw_channel(p, line, y0, rows, row_bytes);
+    draw_channel(p, line, y0, rows);
   for (int64_t y = 0; y < rows; y++)
-    FG_TRY(fg_driver_take_row(ctx, &p->driver, (char *)p->pixels + (size_t)y * row_bytes));
+    if (p->sensed)
+      FG_TRY(fg_resampler_take_row(ctx, &p->resampler, p->sensed + y * p->channels * p->padded,
+                                   p->padded));
+    else
+      FG_TRY(fg_driver_take_row(ctx, &p->driver, (char *)p->pixels + (size_t)y * row_bytes(p)));
   return FG_OK;
 }
 
@@ -191,7 +249,7 @@ fg_status fg_render_rows(fg_context *ctx, const fg_render_spec *spec, int64_t st
   FG_TRY(fg_memory_allocate(ctx, 1, sizeof *p, (void **)&p));
   FG_TRY_EXIT(picture_create(ctx, spec, strip_rows, p));
   FG_TRY_EXIT(create_driver(ctx, row, user, p));
-  for (int64_t y = 0; y < spec->truth.height_px; y += p->strip_rows)
+  for (int64_t y = 0; y < spec->sensor.height_px; y += p->strip_rows)
     FG_TRY_EXIT(draw_strip(ctx, p, y));
 exit:
   picture_free(p);

@@ -117,7 +117,7 @@ static void draw_sequence(fg_random *random, sequence *q, double sd, float *out)
 
 static sequence describe(const fg_render_spec *spec, bool closed) {
   sequence q = {.length_mm = 1e-3 * spec->scanner.edge_correlation_um,
-                .smooth_mm = SAMPLED_PX * fmax(spec->pixel_mm[0], spec->pixel_mm[1]),
+                .smooth_mm = SAMPLED_PX * fmax(spec->sensor.pixel_mm[0], spec->sensor.pixel_mm[1]),
                 .exponential = spec->scanner.edge_exponential,
                 .closed = closed};
   q.step_mm = q.length_mm / STEPS_PER_CORRELATION;

@@ -37,10 +37,10 @@ static void add_bands(fg_sampler *sampler) {
 void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   const fg_scanner *scanner = &spec->scanner;
   *sampler = (fg_sampler){.spec = spec, .side_mm = {NAN, NAN}};
-  double pixel = fmin(spec->pixel_mm[0], spec->pixel_mm[1]);
+  double pixel = fmin(spec->sensor.pixel_mm[0], spec->sensor.pixel_mm[1]);
   for (int axis = 0; axis < 2; axis++)
-    sampler->pixel_mm[axis] = spec->pixel_mm[axis];
-  sampler->sd_mm = 0.3 * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
+    sampler->pixel_mm[axis] = spec->sensor.pixel_mm[axis];
+  sampler->sd_mm = 0.3 * fmax(spec->sensor.pixel_mm[0], spec->sensor.pixel_mm[1]);
   sampler->has_field = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_SCANNER) ||
                        fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_STEP) ||
                        spec->effects.jumps.count > 0;
@@ -52,11 +52,11 @@ void fg_sampler_init(const fg_render_spec *spec, fg_sampler *sampler) {
   sampler->has_edge = fg_render_effects_have(&spec->effects, FG_RENDER_EFFECT_EDGE);
   sampler->one_sided_mm = scanner->one_sided_blur_px * pixel;
   add_bands(sampler);
-  double line_px = fg_colour_lines_reach_px(&scanner->colour, (double)spec->truth.width_px);
+  double line_px = fg_colour_lines_reach_px(&scanner->colour, (double)spec->sensor.width_px);
   double reach = phi_limit * hypot(sampler->sd_mm, sampler->one_sided_mm);
   reach += 5e-3 * hypot(scanner->edge_roughness_um, scanner->edge_common_um);
   reach += fg_render_effects_reach(&spec->effects);
-  reach += line_px * fmax(spec->pixel_mm[0], spec->pixel_mm[1]);
+  reach += line_px * fmax(spec->sensor.pixel_mm[0], spec->sensor.pixel_mm[1]);
   sampler->edge_reach_mm = reach;
   double beside = 0;
   for (int i = 0; i < sampler->band_count; i++)
@@ -75,7 +75,7 @@ void fg_sampler_take_line(fg_sampler *sampler, int line) {
     sampler->line_shift_mm[axis] = from->shift_px[axis] * sampler->pixel_mm[axis];
   sampler->line_scale = 1 / (1 + 1e-6 * from->magnification_ppm);
   sampler->line_middle_mm =
-      0.5 * (double)(sampler->spec->truth.width_px - 1) * sampler->pixel_mm[0];
+      0.5 * (double)(sampler->spec->sensor.width_px - 1) * sampler->pixel_mm[0];
   sampler->lag_mm = from->gap_px * sampler->pixel_mm[1];
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/memory.h"
 #include "render/random.h"
+#include "render/resample.h"
 #include "render/spec.h"
 
 static const double pi = 3.14159265358979323846;
@@ -281,7 +282,9 @@ static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box
   double *sizes[2] = {&spec->width_px, &spec->height_px};
   for (int axis = 0; axis < 2; axis++) {
     double need = all->high[axis] / spec->pixel_mm[axis] + spec->margin_px;
-    if (axis == 1) need += fg_jumps_rows_more(&spec->scanner.jumps);
+    if (axis == 1)
+      need +=
+          fg_jumps_rows_more(&spec->scanner.jumps) * spec->sensor.pixel_mm[1] / spec->pixel_mm[1];
     if (isnan(*sizes[axis])) *sizes[axis] = ceil(need);
     if (!(*sizes[axis] >= 16 && *sizes[axis] <= 200000))
       return fg_fail(place->ctx, FG_ERR_DATA,
@@ -294,11 +297,18 @@ static fg_status fit_size(const fg_place *place, fg_render_spec *spec, const box
   return FG_OK;
 }
 
+static void set_pixels(fg_render_spec *spec, int axis) {
+  const fg_scanner *scanner = &spec->scanner;
+  bool resampled = !isnan(scanner->sensor_dpi[axis]);
+  spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
+  spec->sensor.pixel_mm[axis] = 25.4 / (resampled ? scanner->sensor_dpi[axis] : scanner->dpi[axis]);
+}
+
 fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   fg_scene *scene = &spec->scene;
   const fg_scanner *scanner = &spec->scanner;
   for (int axis = 0; axis < 2; axis++)
-    spec->pixel_mm[axis] = 25.4 / scanner->dpi[axis];
+    set_pixels(spec, axis);
   box all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   FG_TRY(check_lifts(place, spec));
   FG_TRY(check_sheets(place, spec));
@@ -317,7 +327,12 @@ fg_status fg_scene_build(const fg_place *place, fg_render_spec *spec) {
   const double size_mm[2] = {spec->width_px * spec->pixel_mm[0],
                              spec->height_px * spec->pixel_mm[1]};
   fg_render_effects_resolve(&spec->effects, size_mm[0], size_mm[1]);
-  FG_TRY(fg_jumps_build(place, &scanner->jumps, spec->pixel_mm, size_mm, &spec->effects.jumps));
+  FG_TRY(
+      fg_jumps_build(place, &scanner->jumps, spec->sensor.pixel_mm, size_mm, &spec->effects.jumps));
+  spec->sensor.width_px =
+      fg_resampling_need((int64_t)spec->width_px, spec->pixel_mm[0] / spec->sensor.pixel_mm[0]);
+  spec->sensor.height_px =
+      fg_resampling_need((int64_t)spec->height_px, spec->pixel_mm[1] / spec->sensor.pixel_mm[1]);
   spec->truth = (fg_render_truth){.width_px = (int64_t)spec->width_px,
                                   .height_px = (int64_t)spec->height_px,
                                   .bits = scanner->bits,

@@ -89,6 +89,8 @@ typedef struct fg_shadow {
 
 typedef struct fg_scanner {
   double dpi[2];
+  double sensor_dpi[2]; /* NaN: dpi; else the driver interpolates */
+  bool bicubic;         /* the interpolation; else bilinear */
   int bits;
   double background, contrast, gamma, noise, noise_correlation, clip_white;
   double blur_px[2];     /* x, y; or along the ellipse's own axes */
@@ -163,6 +165,12 @@ typedef struct fg_scene {
   size_t disc_count;
 } fg_scene;
 
+/* The grid that the sensor reads; the finished picture's own, unless the driver resamples. */
+typedef struct fg_sensor_grid {
+  double pixel_mm[2];
+  int64_t width_px, height_px;
+} fg_sensor_grid;
+
 struct fg_render_spec {
   fg_scanner scanner;
   fg_render_effect_list effects;
@@ -172,7 +180,8 @@ struct fg_render_spec {
   size_t request_count;
   fg_disc_request *disc_requests;
   size_t disc_request_count;
-  double pixel_mm[2];
+  double pixel_mm[2]; /* of the finished picture */
+  fg_sensor_grid sensor;
   fg_scene scene;
   fg_render_truth truth;
 };

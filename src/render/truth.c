@@ -162,10 +162,17 @@ static void put_shadow(fg_json *json, const fg_shadow *shadow) {
   fg_json_object_end(json);
 }
 
+static void put_resampling(fg_json *json, const fg_scanner *scanner) {
+  if (isnan(scanner->sensor_dpi[0])) return;
+  put_axes(json, "resampled_from_dpi", scanner->sensor_dpi);
+  fg_json_string(json, "resampled_by", scanner->bicubic ? "bicubic" : "bilinear");
+}
+
 static void put_scan(fg_json *json, const fg_render_spec *spec) {
   const fg_scanner *scanner = &spec->scanner;
   fg_json_object(json, "scan");
   put_axes(json, "dpi", scanner->dpi);
+  put_resampling(json, scanner);
   fg_json_number(json, "width", (double)spec->truth.width_px);
   fg_json_number(json, "height", (double)spec->truth.height_px);
   fg_json_number(json, "bits", scanner->bits);
